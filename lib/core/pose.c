@@ -1,0 +1,41 @@
+#include "core/pose.h"
+
+static bool pose_is_finite(const wh_pose_t *pose) {
+    /* A sum of differences that are each zero, or NaN as soon as one number is not finite. */
+    wh_real_t zero = (pose->r.x - pose->r.x) + (pose->r.y - pose->r.y) + (pose->r.z - pose->r.z);
+    for (size_t row = 0; row < 3; ++row) {
+        for (size_t column = 0; column < 3; ++column) {
+            zero += pose->R.m[row][column] - pose->R.m[row][column];
+        }
+    }
+    return zero == 0;
+}
+
+static bool near(wh_real_t value, wh_real_t wanted) {
+    return wh_real_abs(value - wanted) <= WH_ROTATION_TOLERANCE;
+}
+
+wh_status_t wh_pose_validate(const wh_pose_t *pose) {
+    if (!pose_is_finite(pose)) {
+        return WH_STATUS_NOT_FINITE;
+    }
+    const wh_vec3_t e1 = wh_mat3_column(&pose->R, 0);
+    const wh_vec3_t e2 = wh_mat3_column(&pose->R, 1);
+    const wh_vec3_t e3 = wh_mat3_column(&pose->R, 2);
+    const wh_vec3_t e1_cross_e2 = wh_vec3_cross(&e1, &e2);
+    const bool orthonormal = near(wh_vec3_dot(&e1, &e1), 1) && near(wh_vec3_dot(&e2, &e2), 1) &&
+                             near(wh_vec3_dot(&e3, &e3), 1) && near(wh_vec3_dot(&e1, &e2), 0) &&
+                             near(wh_vec3_dot(&e1, &e3), 0) && near(wh_vec3_dot(&e2, &e3), 0);
+    return orthonormal && wh_vec3_dot(&e1_cross_e2, &e3) > 0 ? WH_OK : WH_STATUS_NOT_A_ROTATION;
+}
+
+wh_mat3_t wh_mat3_orthonormalise(const wh_mat3_t *almost) {
+    wh_mat3_t correction = wh_mat3_multiply_back(almost, almost);
+    for (size_t row = 0; row < 3; ++row) {
+        for (size_t column = 0; column < 3; ++column) {
+            const wh_real_t identity = row == column ? WH_REAL(3) : WH_REAL(0);
+            correction.m[row][column] = (identity - correction.m[row][column]) / 2;
+        }
+    }
+    return wh_mat3_multiply(almost, &correction);
+}

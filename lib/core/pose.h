@@ -1,0 +1,49 @@
+/* Poses: where a body stands and how it is turned.
+ *
+ * Names read as products: base_from_gripper * gripper_from_wafer = base_from_wafer. The rotation R has the body's
+ * axes as columns, the position r is the body's origin (mm), both seen from the left-hand frame.
+ */
+#ifndef WH_CORE_POSE_H
+#define WH_CORE_POSE_H
+
+#include "core/status.h"
+#include "core/vector.h"
+
+typedef struct {
+    wh_mat3_t R;
+    wh_vec3_t r;
+} wh_pose_t;
+
+static inline wh_pose_t wh_pose_identity(void) {
+    wh_pose_t pose = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
+    return pose;
+}
+
+/* a_from_b * b_from_c = a_from_c. Cost: 36 products. */
+static inline wh_pose_t wh_pose_compose(const wh_pose_t *a_from_b, const wh_pose_t *b_from_c) {
+    wh_pose_t a_from_c;
+    const wh_vec3_t turned = wh_mat3_transform(&a_from_b->R, &b_from_c->r);
+    a_from_c.R = wh_mat3_multiply(&a_from_b->R, &b_from_c->R);
+    a_from_c.r = wh_vec3_add(&turned, &a_from_b->r);
+    return a_from_c;
+}
+
+/* inverse(a_from_b) * a_from_c = b_from_c, with the difference of the positions taken first: a round trip through
+ * wh_pose_compose keeps positions to rounding even far from a's origin. Cost: 36 products. */
+static inline wh_pose_t wh_pose_relative(const wh_pose_t *a_from_b, const wh_pose_t *a_from_c) {
+    wh_pose_t b_from_c;
+    const wh_vec3_t between = wh_vec3_subtract(&a_from_c->r, &a_from_b->r);
+    b_from_c.R = wh_mat3_multiply_back(&a_from_b->R, &a_from_c->R);
+    b_from_c.r = wh_mat3_transform_back(&a_from_b->R, &between);
+    return b_from_c;
+}
+
+/* WH_STATUS_OK when all twelve numbers are finite, no entry of |R^T R - I| is above WH_ROTATION_TOLERANCE and
+ * det R > 0; else WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION. Cost: about 30 products. */
+wh_status_t wh_pose_validate(const wh_pose_t *pose);
+
+/* The rotation nearest to an almost-rotation, by one Newton step R (3 I - R^T R) / 2: an error of e in R^T R
+ * becomes about e^2. R must pass wh_pose_validate. */
+wh_mat3_t wh_mat3_orthonormalise(const wh_mat3_t *almost);
+
+#endif

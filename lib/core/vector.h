@@ -1,0 +1,120 @@
+/* Vectors and matrices of three: structs passed by const pointer, results by value.
+ *
+ * Every sum runs left to right and every product is rounded on its own (build with -ffp-contract=off): the same
+ * inputs give the same bits everywhere. No function here looks for NaN: it passes through.
+ */
+#ifndef WH_CORE_VECTOR_H
+#define WH_CORE_VECTOR_H
+
+#include <math.h>
+
+#include "core/config.h"
+
+typedef struct {
+    wh_real_t x, y, z;
+} wh_vec3_t;
+
+/* Row by row: m[row][column]. The columns of a rotation are the body's axes, seen from base. */
+typedef struct {
+    wh_real_t m[3][3];
+} wh_mat3_t;
+
+static inline wh_real_t wh_real_abs(wh_real_t a) {
+    return a < 0 ? -a : a;
+}
+
+/* Correctly rounded, as IEEE 754 asks. */
+static inline wh_real_t wh_real_sqrt(wh_real_t a) {
+#if defined(WH_FLOAT)
+    return sqrtf(a);
+#else
+    return sqrt(a);
+#endif
+}
+
+/* Neither NaN nor infinite. */
+static inline bool wh_real_is_finite(wh_real_t a) {
+    return a - a == 0;
+}
+
+static inline wh_vec3_t wh_vec3(wh_real_t x, wh_real_t y, wh_real_t z) {
+    wh_vec3_t v = {x, y, z};
+    return v;
+}
+
+static inline wh_vec3_t wh_vec3_add(const wh_vec3_t *a, const wh_vec3_t *b) {
+    return wh_vec3(a->x + b->x, a->y + b->y, a->z + b->z);
+}
+
+static inline wh_vec3_t wh_vec3_subtract(const wh_vec3_t *a, const wh_vec3_t *b) {
+    return wh_vec3(a->x - b->x, a->y - b->y, a->z - b->z);
+}
+
+static inline wh_vec3_t wh_vec3_scale(wh_real_t factor, const wh_vec3_t *a) {
+    return wh_vec3(factor * a->x, factor * a->y, factor * a->z);
+}
+
+static inline wh_real_t wh_vec3_dot(const wh_vec3_t *a, const wh_vec3_t *b) {
+    return a->x * b->x + a->y * b->y + a->z * b->z;
+}
+
+static inline wh_vec3_t wh_vec3_cross(const wh_vec3_t *a, const wh_vec3_t *b) {
+    return wh_vec3(a->y * b->z - a->z * b->y, a->z * b->x - a->x * b->z, a->x * b->y - a->y * b->x);
+}
+
+static inline wh_real_t wh_vec3_norm(const wh_vec3_t *a) {
+    return wh_real_sqrt(wh_vec3_dot(a, a));
+}
+
+static inline wh_mat3_t wh_mat3_identity(void) {
+    wh_mat3_t i = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    return i;
+}
+
+static inline wh_vec3_t wh_mat3_row(const wh_mat3_t *a, size_t row) {
+    return wh_vec3(a->m[row][0], a->m[row][1], a->m[row][2]);
+}
+
+static inline wh_vec3_t wh_mat3_column(const wh_mat3_t *a, size_t column) {
+    return wh_vec3(a->m[0][column], a->m[1][column], a->m[2][column]);
+}
+
+/* a * v */
+static inline wh_vec3_t wh_mat3_transform(const wh_mat3_t *a, const wh_vec3_t *v) {
+    return wh_vec3(a->m[0][0] * v->x + a->m[0][1] * v->y + a->m[0][2] * v->z,
+                   a->m[1][0] * v->x + a->m[1][1] * v->y + a->m[1][2] * v->z,
+                   a->m[2][0] * v->x + a->m[2][1] * v->y + a->m[2][2] * v->z);
+}
+
+/* transpose(a) * v */
+static inline wh_vec3_t wh_mat3_transform_back(const wh_mat3_t *a, const wh_vec3_t *v) {
+    return wh_vec3(a->m[0][0] * v->x + a->m[1][0] * v->y + a->m[2][0] * v->z,
+                   a->m[0][1] * v->x + a->m[1][1] * v->y + a->m[2][1] * v->z,
+                   a->m[0][2] * v->x + a->m[1][2] * v->y + a->m[2][2] * v->z);
+}
+
+/* a * b */
+static inline wh_mat3_t wh_mat3_multiply(const wh_mat3_t *a, const wh_mat3_t *b) {
+    wh_mat3_t c;
+    for (size_t row = 0; row < 3; ++row) {
+        for (size_t column = 0; column < 3; ++column) {
+            c.m[row][column] = a->m[row][0] * b->m[0][column] + a->m[row][1] * b->m[1][column] +
+                               a->m[row][2] * b->m[2][column];
+        }
+    }
+    return c;
+}
+
+/* transpose(a) * b */
+static inline wh_mat3_t wh_mat3_multiply_back(const wh_mat3_t *a, const wh_mat3_t *b) {
+    wh_mat3_t c;
+    for (size_t row = 0; row < 3; ++row) {
+        for (size_t column = 0; column < 3; ++column) {
+            c.m[row][column] = a->m[0][row] * b->m[0][column] + a->m[1][row] * b->m[1][column] +
+                               a->m[2][row] * b->m[2][column];
+        }
+    }
+    return c;
+}
+
+#endif
