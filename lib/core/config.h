@@ -15,10 +15,12 @@
 
 /* The same inputs must give the same bits on every machine, which these builds cannot hold. */
 #if defined(__FAST_MATH__)
-#error "waferhand: -ffast-math reorders sums and drops NaN, so verdicts would differ between builds: remove it"
+#error                                                                                                       \
+    "waferhand: -ffast-math reorders sums and drops NaN, so verdicts would differ between builds: remove it"
 #endif
 #if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD != 0
-#error "waferhand: needs FLT_EVAL_METHOD 0 (no x87 excess precision): on 32-bit x86 build with -msse2 -mfpmath=sse"
+#error                                                                                                       \
+    "waferhand: needs FLT_EVAL_METHOD 0 (no x87 excess precision): on 32-bit x86 build with -msse2 -mfpmath=sse"
 #endif
 
 /* The library's real number: double, or float when built with -DWH_FLOAT. Library and program must agree. */

@@ -1,7 +1,7 @@
 /* Poses: where a body stands and how it is turned.
  *
- * Names read as products: base_from_gripper * gripper_from_wafer = base_from_wafer. The rotation R has the body's
- * axes as columns, the position r is the body's origin (mm), both seen from the left-hand frame.
+ * Names read as products: base_from_gripper * gripper_from_wafer = base_from_wafer. The rotation R has the
+ * body's axes as columns, the position r is the body's origin (mm), both seen from the left-hand frame.
  */
 #ifndef WH_CORE_POSE_H
 #define WH_CORE_POSE_H
@@ -28,8 +28,8 @@ static inline wh_pose_t wh_pose_compose(const wh_pose_t *a_from_b, const wh_pose
     return a_from_c;
 }
 
-/* inverse(a_from_b) * a_from_c = b_from_c, with the difference of the positions taken first: a round trip through
- * wh_pose_compose keeps positions to rounding even far from a's origin. Cost: 36 products. */
+/* inverse(a_from_b) * a_from_c = b_from_c, with the difference of the positions taken first: a round trip
+ * through wh_pose_compose keeps positions to rounding even far from a's origin. Cost: 36 products. */
 static inline wh_pose_t wh_pose_relative(const wh_pose_t *a_from_b, const wh_pose_t *a_from_c) {
     wh_pose_t b_from_c;
     const wh_vec3_t between = wh_vec3_subtract(&a_from_c->r, &a_from_b->r);

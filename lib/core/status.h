@@ -13,8 +13,8 @@ typedef enum {
 
 #define WH_OK WH_STATUS_OK
 
-/* The catalogue's text for a status: a constant string in English without a full stop, never null; for a number
- * that is not in the catalogue "unknown status". Cost: linear in the catalogue. */
+/* The catalogue's text for a status: a constant string in English without a full stop, never null; for a
+ * number that is not in the catalogue "unknown status". Cost: linear in the catalogue. */
 const char *wh_status_text(wh_status_t status);
 
 /* The catalogue's name for a status, such as "NOT_FINITE"; "UNKNOWN" if it is not in it. Same cost. */

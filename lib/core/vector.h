@@ -1,7 +1,7 @@
 /* Vectors and matrices of three: structs passed by const pointer, results by value.
  *
- * Every sum runs left to right and every product is rounded on its own (build with -ffp-contract=off): the same
- * inputs give the same bits everywhere. No function here looks for NaN: it passes through.
+ * Every sum runs left to right and every product is rounded on its own (build with -ffp-contract=off): the
+ * same inputs give the same bits everywhere. No function here looks for NaN: it passes through.
  */
 #ifndef WH_CORE_VECTOR_H
 #define WH_CORE_VECTOR_H

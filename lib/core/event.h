@@ -1,0 +1,55 @@
+/* Events: what happened in a step, with the values that explain it. */
+#ifndef WH_CORE_EVENT_H
+#define WH_CORE_EVENT_H
+
+#include "core/proximity.h"
+
+/* A step of the grasp table yields at most this many events for each of its grippers. */
+#define WH_EVENTS_PER_GRIPPER 4
+
+typedef enum {
+    /* An open gripper took a free wafer. `measured` is what made it ready. */
+    WH_EVENT_PICKED,
+    /* The gripper's valve closed: its wafer stays where it is. `measured` is the wafer against that gripper.
+     */
+    WH_EVENT_RELEASED,
+    /* In one step `other` let go of the wafer and `gripper` took it: instead of a release and a pick. */
+    WH_EVENT_HANDED_OVER,
+    /* A free wafer came into the neighbourhood of an open, empty gripper and left it again, or the valve
+     * closed, without a pick. `measured` is the closest approach, of slice `measured_slice`. Not reported
+     * when another gripper took that wafer, or this one another wafer, meanwhile. */
+    WH_EVENT_NEAR_MISS,
+    /* An open, empty gripper was ready on a wafer that `other` held. Reported once, when it ends without a
+     * hand-over (only then it is known that none follows): `measured` and `measured_slice` are of its
+     * beginning. */
+    WH_EVENT_CONTESTED,
+    /* The step was refused and nothing changed: `status` says why; `gripper` is the input that is wrong. */
+    WH_EVENT_BAD_INPUT,
+    /* From the cell: a wafer was let go with no support under it, `height` mm above what is below. */
+    WH_EVENT_RELEASED_UNSUPPORTED,
+    /* From the cell: a wafer was let go in a slot where wafer `other` lies. */
+    WH_EVENT_SLOT_OCCUPIED
+} wh_event_kind_t;
+
+typedef struct {
+    wh_event_kind_t kind;
+    uint64_t slice;          /* number of the step in which it is reported; the first step is 1 */
+    uint64_t measured_slice; /* number of the step whose values `measured` holds */
+    int32_t wafer;           /* index from 0, or WH_NONE */
+    int32_t gripper;         /* index from 0, or WH_NONE */
+    int32_t other;           /* a second gripper or wafer where the kind names one, else WH_NONE */
+    wh_status_t status;      /* WH_OK but for WH_EVENT_BAD_INPUT */
+    wh_real_t height;        /* mm; 0 where the kind has none */
+    wh_proximity_t measured; /* all zero where the kind has none */
+} wh_event_t;
+
+/* The caller's array of events: a step sets `count` and writes events[0 .. count-1]. */
+typedef struct {
+    wh_event_t *events;
+    size_t capacity, count;
+} wh_event_list_t;
+
+/* The kind's name in lower case, such as "handed_over": a constant string, never null. */
+const char *wh_event_name(wh_event_kind_t kind);
+
+#endif

@@ -1,0 +1,176 @@
+#include "core/grasp.h"
+
+#include "core/hash.h"
+
+wh_grasp_config_t wh_grasp_config_default(void) {
+    wh_grasp_config_t config;
+    config.tolerance = wh_tolerance_paper();
+    config.check = WH_CHECK_SAMPLED;
+    config.seat = false;
+    config.near_projz = WH_REAL(4.5);
+    config.near_projxy = 2 * config.tolerance.projxy;
+    return config;
+}
+
+static wh_status_t validate_config(const wh_grasp_config_t *config) {
+    const bool near_good = config->near_projz > 0 && config->near_projz <= WH_REAL(1e6) &&
+                           config->near_projxy > 0 && config->near_projxy <= WH_REAL(1e6);
+    if (config->check != WH_CHECK_SAMPLED && config->check != WH_CHECK_SWEPT) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    return near_good ? wh_tolerance_validate(&config->tolerance) : WH_STATUS_BAD_TOLERANCE;
+}
+
+static wh_status_t validate_storage(const wh_grasp_storage_t *storage) {
+    if ((!storage->wafers && storage->wafer_count > 0) ||
+        (!storage->grippers && storage->gripper_count > 0) ||
+        (!storage->buckets && storage->bucket_count > 0)) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (storage->wafer_count > INT32_MAX || storage->gripper_count > INT32_MAX ||
+        storage->bucket_count > INT32_MAX) {
+        return WH_STATUS_BAD_CAPACITY;
+    }
+    for (size_t w = 0; w < storage->wafer_count; ++w) {
+        const wh_status_t status = wh_pose_validate(&storage->wafers[w].base_from_wafer);
+        if (status != WH_OK) {
+            return status;
+        }
+    }
+    return WH_OK;
+}
+
+static void clear_gripper(wh_gripper_t *gripper) {
+    static const wh_gripper_t empty = {.wafer = WH_NONE,
+                                       .valve = WH_VALVE_CLOSED,
+                                       .approach = {.wafer = WH_NONE, .holder = WH_NONE},
+                                       .contest = {.wafer = WH_NONE, .holder = WH_NONE}};
+    *gripper = empty;
+    gripper->base_from_gripper = wh_pose_identity();
+    gripper->gripper_from_wafer = wh_pose_identity();
+}
+
+wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
+                          const wh_grasp_storage_t *storage) {
+    if (!table || !config || !storage) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    wh_status_t status = validate_config(config);
+    if (status == WH_OK) {
+        status = validate_storage(storage);
+    }
+    if (status != WH_OK) {
+        return status;
+    }
+    static const wh_grasp_counters_t none = {0};
+    table->config = *config;
+    table->storage = *storage;
+    table->slice = 0;
+    table->counters = none;
+    for (size_t w = 0; w < storage->wafer_count; ++w) {
+        storage->wafers[w].holder = WH_NONE;
+        storage->wafers[w].released_by = WH_NONE;
+    }
+    for (size_t g = 0; g < storage->gripper_count; ++g) {
+        clear_gripper(&storage->grippers[g]);
+    }
+    return WH_OK;
+}
+
+static wh_status_t may_place(const wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer) {
+    if (!base_from_wafer) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (wafer >= table->storage.wafer_count) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    if (table->storage.wafers[wafer].holder != WH_NONE) {
+        return WH_STATUS_HELD;
+    }
+    return wh_pose_validate(base_from_wafer);
+}
+
+wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer) {
+    if (!table) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const wh_status_t status = may_place(table, wafer, base_from_wafer);
+    if (status != WH_OK) {
+        ++table->counters.refused;
+        return status;
+    }
+    table->storage.wafers[wafer].base_from_wafer = *base_from_wafer;
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        wh_encounter_t *approach = &table->storage.grippers[g].approach;
+        if (approach->wafer == (int32_t)wafer) {
+            approach->wafer = WH_NONE;
+        }
+    }
+    return WH_OK;
+}
+
+wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *base_from_wafer,
+                           int32_t *holder) {
+    if (!table) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (wafer >= table->storage.wafer_count) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    if (base_from_wafer) {
+        *base_from_wafer = table->storage.wafers[wafer].base_from_wafer;
+    }
+    if (holder) {
+        *holder = table->storage.wafers[wafer].holder;
+    }
+    return WH_OK;
+}
+
+wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafer) {
+    if (!table || !wafer) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (gripper >= table->storage.gripper_count) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    *wafer = table->storage.grippers[gripper].wafer;
+    return WH_OK;
+}
+
+static uint64_t hash_encounter(uint64_t hash, const wh_encounter_t *encounter) {
+    hash = wh_hash_int(hash, encounter->wafer);
+    if (encounter->wafer == WH_NONE) {
+        return hash;
+    }
+    const wh_proximity_t *p = &encounter->measured;
+    hash = wh_hash_int(hash, encounter->holder);
+    hash = wh_hash_word(hash, encounter->slice);
+    hash = wh_hash_vec3(hash, &p->dr);
+    hash = wh_hash_real(hash, p->n1_proj_n2);
+    hash = wh_hash_real(hash, p->dr_proj_z);
+    hash = wh_hash_vec3(hash, &p->dr_proj_xy);
+    return wh_hash_real(hash, p->dr_proj_xy_norm);
+}
+
+static uint64_t hash_gripper(uint64_t hash, const wh_gripper_t *gripper) {
+    hash = wh_hash_pose(hash, &gripper->base_from_gripper);
+    hash = wh_hash_int(hash, gripper->valve);
+    hash = wh_hash_int(hash, gripper->wafer);
+    if (gripper->wafer != WH_NONE) {
+        hash = wh_hash_pose(hash, &gripper->gripper_from_wafer);
+    }
+    hash = hash_encounter(hash, &gripper->approach);
+    return hash_encounter(hash, &gripper->contest);
+}
+
+uint64_t wh_grasp_hash(const wh_grasp_t *table) {
+    uint64_t hash = wh_hash_word(WH_HASH_START, table->slice);
+    for (size_t w = 0; w < table->storage.wafer_count; ++w) {
+        hash = wh_hash_pose(hash, &table->storage.wafers[w].base_from_wafer);
+        hash = wh_hash_int(hash, table->storage.wafers[w].holder);
+    }
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        hash = hash_gripper(hash, &table->storage.grippers[g]);
+    }
+    return hash;
+}
