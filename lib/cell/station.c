@@ -1,0 +1,69 @@
+#include "cell/station.h"
+
+#include "motion/trig.h"
+
+wh_pose_t wh_station_slot(const wh_station_t *station, int32_t slot) {
+    const wh_vec3_t e3 = wh_mat3_column(&station->base_from_station.R, 2);
+    const wh_vec3_t up = wh_vec3_scale((wh_real_t)(slot - 1) * station->pitch, &e3);
+    wh_pose_t base_from_slot = station->base_from_station;
+    base_from_slot.r = wh_vec3_add(&station->base_from_station.r, &up);
+    return base_from_slot;
+}
+
+wh_place_t wh_station_measure(const wh_station_t *station, int32_t slot, const wh_pose_t *base_from_wafer) {
+    const wh_pose_t base_from_slot = wh_station_slot(station, slot);
+    const wh_pose_t slot_from_wafer = wh_pose_relative(&base_from_slot, base_from_wafer);
+    const wh_mat3_t *R = &slot_from_wafer.R;
+    const wh_real_t sine = wh_real_sqrt(R->m[0][2] * R->m[0][2] + R->m[1][2] * R->m[1][2]);
+    wh_place_t place;
+    place.station = WH_NONE;
+    place.slot = slot;
+    place.dx = slot_from_wafer.r.x;
+    place.dy = slot_from_wafer.r.y;
+    place.dz = slot_from_wafer.r.z;
+    place.tilt = wh_atan2(sine, R->m[2][2]);
+    return place;
+}
+
+/* The slot whose plane is nearest to a height above slot 1, by comparison rather than by conversion: a height
+ * far away does not fit an integer. */
+static int32_t nearest_slot(const wh_station_t *station, wh_real_t height) {
+    const wh_real_t position = height / station->pitch + WH_REAL(0.5);
+    if (!(position >= 0)) {
+        return 1;
+    }
+    return position >= (wh_real_t)station->slots ? station->slots : (int32_t)position + 1;
+}
+
+static int32_t nearest_slot_of(const wh_station_t *station, const wh_pose_t *base_from_wafer) {
+    const wh_vec3_t e3 = wh_mat3_column(&station->base_from_station.R, 2);
+    const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &station->base_from_station.r);
+    return nearest_slot(station, wh_vec3_dot(&e3, &dr));
+}
+
+static bool lies_in(const wh_cell_t *cell, const wh_station_t *station, const wh_pose_t *base_from_wafer,
+                    const wh_place_t *place) {
+    const wh_vec3_t slot_normal = wh_mat3_column(&station->base_from_station.R, 2);
+    const wh_vec3_t n1 = wh_mat3_column(&base_from_wafer->R, 2);
+    return wh_real_abs(place->dz) < station->pitch / 2 &&
+           wh_real_sqrt(place->dx * place->dx + place->dy * place->dy) < cell->tolerance.projxy &&
+           wh_vec3_dot(&n1, &slot_normal) > cell->tolerance.planar;
+}
+
+bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_place_t *place) {
+    wh_real_t best = 0;
+    bool found = false;
+    for (size_t s = 0; s < cell->count; ++s) {
+        const wh_station_t *station = &cell->stations[s];
+        const int32_t slot = nearest_slot_of(station, base_from_wafer);
+        wh_place_t here = wh_station_measure(station, slot, base_from_wafer);
+        const wh_real_t square = here.dx * here.dx + here.dy * here.dy + here.dz * here.dz;
+        if (lies_in(cell, station, base_from_wafer, &here) && (!found || square < best)) {
+            here.station = (int32_t)s;
+            *place = here;
+            best = square;
+            found = true;
+        }
+    }
+    return found;
+}

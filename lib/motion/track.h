@@ -1,0 +1,81 @@
+/* Tracks: segments played slice by slice, on a host or on a microcontroller.
+ *
+ * Whoever decides (a Lua pattern, a recorded list) hands over one segment at a time; the track plans it when
+ * it begins and then yields axes and valves for each slice until it is over. A segment ends on the first
+ * slice at or after its duration, where its axes have exactly the target's bits, so the next one starts from
+ * a clean state. Before each slice the caller reports which grippers' sensors are on.
+ *
+ *     wh_track_begin(&track, &segment);
+ *     while ((state = wh_track_next(&track, sensors)) == WH_TRACK_MOVING) { use track.axes, track.valves }
+ *
+ * No heap; a track is a plain struct that its owner may copy.
+ */
+#ifndef WH_MOTION_TRACK_H
+#define WH_MOTION_TRACK_H
+
+#include "motion/line.h"
+#include "motion/machine.h"
+
+typedef enum {
+    WH_SEGMENT_AXES,   /* axes go to target[], synchronised, each at rest at both ends */
+    WH_SEGMENT_LINE,   /* the end-effector goes by `travel` along a straight line at constant heading */
+    WH_SEGMENT_VALVES, /* valves change; lasts one slice */
+    WH_SEGMENT_DWELL,  /* everything stands still for `seconds`, rounded up to whole slices */
+    WH_SEGMENT_SENSOR  /* stand still until the sensor of `gripper` is on, at most `seconds` */
+} wh_segment_kind_t;
+
+typedef struct {
+    wh_segment_kind_t kind;
+    wh_real_t target[WH_AXES];   /* AXES: every axis of the machine, rad or mm */
+    wh_vec3_t travel;            /* LINE: base, mm */
+    wh_real_t speed;             /* LINE: at most this, mm/s; 0: the axes' own limits */
+    wh_real_t seconds;           /* DWELL, SENSOR: 0 to 1e6 */
+    int32_t valves[WH_GRIPPERS]; /* VALVES: WH_VALVE_OPEN, WH_VALVE_CLOSED or WH_NONE: as it was */
+    int32_t gripper;             /* SENSOR */
+} wh_segment_t;
+
+typedef enum {
+    WH_TRACK_MOVING,   /* axes and valves are those of one more slice */
+    WH_TRACK_DONE,     /* the segment is over; no slice was used by this call */
+    WH_TRACK_TIMED_OUT /* SENSOR: it did not come on; no slice was used by this call */
+} wh_track_state_t;
+
+/* Read axes, valves and slice; the rest is the track's own. */
+typedef struct {
+    const wh_machine_t *machine; /* the caller's, which must outlive the track */
+    int64_t slice_us;
+    int64_t slice; /* slices yielded since wh_track_init: utime = slice * slice_us */
+    wh_real_t axes[WH_AXES];
+    int32_t valves[WH_GRIPPERS];
+    wh_segment_t segment;
+    int64_t segment_slices; /* how many the running segment takes */
+    int64_t segment_slice;  /* how many of them were yielded */
+    union {
+        wh_move_t move;
+        wh_line_t line;
+    } plan;
+} wh_track_t;
+
+/* Starts at rest at home (wh_robot_t.home, chucks at 0), all valves closed. `slice_us` is 1 to 1e6. Refuses
+ * null pointers, an invalid machine and a slice out of range; the track is then unchanged. */
+wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_t slice_us);
+
+/* A segment that changes nothing, to be filled in: DWELL of 0 s, all valves WH_NONE, target at the track's
+ * axes. */
+wh_segment_t wh_track_blank(const wh_track_t *track);
+
+/* Plans a segment from where the track stands. Refused, the track unchanged: WH_STATUS_BAD_SEGMENT (kind,
+ * gripper, valve, speed or seconds out of range), WH_STATUS_NOT_FINITE, WH_STATUS_LIMIT_EXCEEDED (an axis
+ * outside its travel), WH_STATUS_OUT_OF_REACH (a line that leaves the arm's reach). Cost: about 1 us for a
+ * move, 2 us for a line. */
+wh_status_t wh_track_begin(wh_track_t *track, const wh_segment_t *segment);
+
+/* One slice of the running segment. Bit g of `sensors` says that gripper g's vacuum sensor is on. Cost: four
+ * axes of a profile, or a square root and an arc tangent on a line. */
+wh_track_state_t wh_track_next(wh_track_t *track, uint32_t sensors);
+
+/* Jumps to the running segment's end, as if all its slices had been played: for checking a pattern's reach
+ * without playing it. `slice` stays. */
+void wh_track_skip(wh_track_t *track);
+
+#endif

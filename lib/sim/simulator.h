@@ -1,0 +1,28 @@
+/* The simulator: a grasp table and the cell around it, stepped by commands. No heap; arrays are the caller's.
+ */
+#ifndef WH_SIM_SIMULATOR_H
+#define WH_SIM_SIMULATOR_H
+
+#include "cell/station.h"
+#include "sim/slice.h"
+
+typedef struct {
+    wh_link_t link; /* first: &simulator->link is the call version of the interface */
+    wh_grasp_t table;
+    wh_cell_t cell;
+    wh_event_t events[WH_GRIPPERS * WH_EVENTS_PER_GRIPPER];
+    size_t event_count;
+} wh_simulator_t;
+
+/* Sets up a run: all wafers free where storage->wafers has them. `cell->stations` and the arrays of `storage`
+ * must outlive the simulator. Refuses what wh_grasp_init refuses, and more than WH_GRIPPERS grippers
+ * (WH_STATUS_BAD_CAPACITY). The simulator must not be moved afterwards. */
+wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
+                              const wh_grasp_storage_t *storage, const wh_cell_t *cell);
+
+/* One slice: steps the table, lets the cell judge the releases, and fills in `state`. A refused command
+ * leaves everything as it was and state->status says why; its gripper_count must be the table's
+ * (WH_STATUS_OUT_OF_RANGE). Cost: wh_grasp_step and wh_cell_judge. */
+wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state);
+
+#endif

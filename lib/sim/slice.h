@@ -1,0 +1,40 @@
+/* The interface at which the motion control software and the simulator meet: for each slice a command goes in
+ * and a state comes out. */
+#ifndef WH_SIM_SLICE_H
+#define WH_SIM_SLICE_H
+
+#include "core/grasp.h"
+#include "motion/machine.h"
+
+/* What the machine does in slice `seq`. Entries beyond gripper_count and axis_count are not looked at. */
+typedef struct {
+    int64_t utime; /* us of simulated time: seq times the slice's length */
+    int64_t seq;   /* 1 for the first slice */
+    size_t gripper_count, axis_count;
+    wh_gripper_input_t grippers[WH_GRIPPERS];
+    wh_real_t axes[WH_AXES]; /* rad or mm, as in motion/machine.h */
+} wh_command_t;
+
+/* What has become of it: a view of the simulator's own memory, true until the next exchange. */
+typedef struct {
+    int64_t utime, seq;
+    wh_status_t status; /* anything but WH_OK: the command was refused, the rest is as it was */
+    const wh_wafer_t *wafers;
+    size_t wafer_count;
+    const wh_gripper_t *grippers;
+    size_t gripper_count;
+    const wh_event_t *events; /* of this slice */
+    size_t event_count;
+    uint32_t sensors; /* bit g: gripper g's vacuum sensor is on */
+} wh_state_t;
+
+/* One side's view of the other: by a call within the process, or by messages. */
+typedef struct wh_link wh_link_t;
+struct wh_link {
+    /* Steps one slice. Returns state->status, or what kept the answer from coming. */
+    wh_status_t (*exchange)(wh_link_t *link, const wh_command_t *command, wh_state_t *state);
+    /* wh_grasp_hash of the state after the last exchange. */
+    uint64_t (*hash)(wh_link_t *link);
+};
+
+#endif
