@@ -1,0 +1,74 @@
+/* A layout: the cell that a Lua file describes, checked and with every default filled in.
+ *
+ * Lengths in mm, angles in rad, times in s, as in the library; names as the layout spells them.
+ */
+#ifndef WH_SCRIPT_LAYOUT_H
+#define WH_SCRIPT_LAYOUT_H
+
+#include "cell/station.h"
+#include "motion/machine.h"
+
+/* Longest name of a station, gripper, wafer or valve, with its terminator. */
+#define WH_NAME_SIZE 64
+
+/* How many wafers, stations and slots of a station a layout may have. */
+#define WH_LAYOUT_WAFERS 1000000
+#define WH_LAYOUT_STATIONS 1000
+#define WH_LAYOUT_SLOTS 1000
+
+typedef struct {
+    char name[WH_NAME_SIZE];
+    char valve[WH_NAME_SIZE]; /* the output's name, such as eeVacValve[0] */
+    int32_t station;          /* the prealigner whose chuck it is, or WH_NONE: the robot's end-effector */
+} wh_layout_gripper_t;
+
+/* In which order the valves switch when a chuck and an end-effector pass a wafer on. */
+typedef enum {
+    WH_HANDOVER_NEW_FIRST, /* the new gripper opens a slice before the old one closes */
+    WH_HANDOVER_SAME_SLICE
+} wh_handover_t;
+
+/* The station parameters that GET and PUT use; geometry is in wh_layout_t.places at the same index. */
+typedef struct {
+    char name[WH_NAME_SIZE];
+    bool prealigner;
+    wh_real_t stroke;       /* from entry below the wafer to exit above it */
+    wh_real_t offset;       /* how far above the slot a GET leaves and a PUT starts */
+    wh_real_t retract;      /* how far before the slot the end-effector enters the line */
+    wh_real_t pickup_speed; /* of the strokes, mm/s */
+    wh_real_t release;      /* height above the slot's plane at which a PUT switches the valves */
+    wh_real_t vacuum_delay; /* after the stroke before the sensor is asked, s */
+    wh_real_t timeout;      /* how long the sensor is then waited for, s */
+    wh_handover_t handover;
+} wh_layout_station_t;
+
+typedef struct {
+    char name[WH_NAME_SIZE];
+    int32_t station, slot; /* slot from 1 */
+} wh_layout_wafer_t;
+
+/* Owned by whoever called wh_layout_read; free with wh_layout_free. Nothing in it changes during a run. */
+typedef struct {
+    char *path;              /* as it was asked for */
+    char tolerance_name[16]; /* the preset's, or "own" */
+    double wafer_diameter, wafer_thickness;
+    wh_grasp_config_t grasp;
+    int64_t slice_us;
+    wh_machine_t machine; /* machine.gripper_count is the number of grippers */
+    wh_layout_gripper_t grippers[WH_GRIPPERS];
+    size_t station_count;
+    wh_layout_station_t *stations; /* sorted by name */
+    wh_station_t *places;
+    size_t wafer_count;
+    wh_layout_wafer_t *wafers;
+    wh_wafer_t *start; /* where each wafer is when a run begins */
+} wh_layout_t;
+
+void wh_layout_free(wh_layout_t *layout);
+
+/* The index of a name, or WH_NONE. Cost: linear. */
+int32_t wh_layout_find_station(const wh_layout_t *layout, const char *name);
+int32_t wh_layout_find_gripper(const wh_layout_t *layout, const char *name);
+int32_t wh_layout_find_wafer(const wh_layout_t *layout, const char *name);
+
+#endif

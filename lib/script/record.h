@@ -1,0 +1,51 @@
+/* The record of a run: what was commanded, what happened, what was expected. */
+#ifndef WH_SCRIPT_RECORD_H
+#define WH_SCRIPT_RECORD_H
+
+#include "script/layout.h"
+
+typedef struct {
+    int line;             /* in the script; 0 when unknown */
+    char *text;           /* as an operator would type it: GET A 1 */
+    wh_status_t error;    /* WH_OK: it succeeded */
+    char *message;        /* what the error said, or null */
+    double begin_s, end_s; /* simulated */
+} wh_command_record_t;
+
+typedef struct {
+    int64_t utime;
+    int32_t command; /* index of the command during which it happened, or WH_NONE */
+    wh_event_t event;
+} wh_event_record_t;
+
+typedef struct {
+    int line;
+    char *text; /* what was expected, with the value found when it was not met */
+    bool ok;
+} wh_expectation_record_t;
+
+/* Where a wafer is at the end. */
+typedef struct {
+    wh_pose_t base_from_wafer;
+    int32_t holder;
+    wh_place_t place; /* place.station is WH_NONE when it lies in no slot */
+} wh_wafer_record_t;
+
+typedef struct {
+    char *script;              /* path as given */
+    const wh_layout_t *layout; /* null when the script named none; lives as long as the record */
+    bool ok;                   /* no command failed uncaught, every expectation was met, the cell had no complaint */
+    char *failure;             /* the uncaught error's message with file and line, or null */
+    int64_t slices;
+    double simulated_s, wall_s;
+    uint64_t hash;
+    wh_command_record_t *commands;
+    size_t command_count, command_capacity;
+    wh_event_record_t *events;
+    size_t event_count, event_capacity;
+    wh_expectation_record_t *expectations;
+    size_t expectation_count, expectation_capacity;
+    wh_wafer_record_t *wafers; /* layout->wafer_count of them */
+} wh_record_t;
+
+#endif
