@@ -1,0 +1,68 @@
+# Waferhand: the commands that people type. What is made from what stands in lib/packaging/build.mk and
+# tests/tests.mk, the checks in lib/packaging/check.mk, the packages in lib/packaging/*.packages.
+#
+# Settings, as in `make CC=clang WERROR=1`:
+#   CC CXX CFLAGS CXXFLAGS LDFLAGS  as usual; EXTRA is appended to every compiler call
+#   FLOAT=1    the library's number is float instead of double
+#   WERROR=1   warnings are errors (so they are where CI is set)
+#   V=1        shows the commands
+#   PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=   where `make install` puts things
+
+# Commands run one after the other, the builds that they start in parallel: `make -j run test` would else
+# have two makes at work in build/.
+.NOTPARALLEL:
+
+NEED = @CC='$(CC)' lib/packaging/need
+JOBS = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
+BUILD = @+$(MAKE) --no-print-directory $(JOBS) -f lib/packaging/build.mk
+
+# Invariants (WH_ASSERT) are on as well; -O1, for these builds are the slow ones.
+SANITIZE = CFLAGS='-O1 -g -DWH_DEBUG' CXXFLAGS='-O1 -g -DWH_DEBUG' \
+           EXTRA='$(EXTRA) -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all'
+
+include tests/tests.mk
+
+.PHONY: all library run test quick check install uninstall clean help
+
+all: ## the library, the program, the Lua module and the manual page, in build/
+	$(NEED) run
+	$(BUILD) all
+
+library: ## build/libwaferhand.a alone: needs nothing but a C compiler, of any target
+	$(BUILD) library
+
+run: all ## plays the two examples of the paper
+	@for script in 01_transfer 02_prealigner; do \
+	    build/waferhand run "lua/examples/$$script.lua" || exit; \
+	done
+
+test: ## every test: plain, under sanitizers, in float, and end to end
+	$(NEED) run test
+	$(BUILD) all tests
+	$(BUILD) B=build/sanitize $(SANITIZE) tests
+	$(BUILD) B=build/float FLOAT=1 library-tests
+	@tests/run $(TESTS:%=build/%) $(TESTS:%=build/sanitize/%) $(LIBRARY_TESTS:%=build/float/%) $(END_TO_END)
+
+quick: ## the plain unit and property tests alone, for while you work
+	$(NEED) run test
+	$(BUILD) tests
+	@tests/run $(TESTS:%=build/%)
+
+check: ## format, warnings as errors, static analysis
+	$(NEED) run test check
+	$(BUILD) B=build/check CC=gcc CXX=g++ WERROR=1 all tests check
+	$(BUILD) B=build/check/float CC=gcc WERROR=1 FLOAT=1 library
+	$(BUILD) B=build/check/analyzer CC=gcc WERROR=1 EXTRA='$(EXTRA) -fanalyzer' library
+	@echo "checked: nothing found"
+
+install: all ## into PREFIX, below DESTDIR
+	$(BUILD) install
+
+uninstall: ## takes away what install put there
+	$(BUILD) uninstall
+
+clean: ## removes build/
+	rm -rf build
+
+help: ## this list
+	@sed -n 's/^\([a-z-]*\):.*## /make \1\t/p' Makefile | expand -t 18

@@ -1,0 +1,138 @@
+# What is made from what, below B. Called by the Makefile, once everything it needs is installed.
+
+B := build
+CFLAGS ?= -O2 -g
+CXXFLAGS ?= -O2 -g
+PKG_CONFIG ?= pkg-config
+PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
+WERROR ?= $(if $(CI),1)
+Q := $(if $(V),,@)
+
+VERSION := $(shell sed -n 's/^.define WH_VERSION "\(.*\)"/\1/p' lib/core/config.h)
+
+# ---------------------------------------------------------------------------------------------- sources
+LIBRARY_PARTS := core motion cell sim
+LIBRARY_SOURCES := $(wildcard $(LIBRARY_PARTS:%=lib/%/*.c))
+MODULE_SOURCES := $(wildcard lib/script/wh_module*.c)
+SCRIPT_SOURCES := $(filter-out $(MODULE_SOURCES),$(wildcard lib/script/*.c))
+PROGRAM_SOURCES := $(SCRIPT_SOURCES) $(MODULE_SOURCES) $(wildcard lib/app/*.c)
+LUA_SOURCES := $(sort $(shell find lua -name '*.lua' 2>/dev/null))
+HEADERS := $(wildcard lib/*.h lib/*/*.h lib/*/*.def)
+include tests/tests.mk
+
+LIBRARY_OBJECTS := $(LIBRARY_SOURCES:%.c=$(B)/obj/%.o)
+PROGRAM_OBJECTS := $(PROGRAM_SOURCES:%.c=$(B)/obj/%.o) $(B)/obj/embedded_lua.o
+MODULE_OBJECTS := $(MODULE_SOURCES:%.c=$(B)/pic/%.o)
+MODULE_SUPPORT := $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o) $(SCRIPT_SOURCES:%.c=$(B)/pic/%.o)
+
+# ------------------------------------------------------------------------------------------------ flags
+WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wundef -Wcast-align -Wcast-qual -Wformat=2 -Wvla -Wswitch-enum \
+            -Wwrite-strings -Wsign-conversion
+C_WARNINGS := -Wstrict-prototypes -Wmissing-prototypes
+# Not for a float build's tests, which compare in double on purpose.
+NUMBER_WARNINGS := -Wconversion -Wdouble-promotion
+
+# Contraction to fused multiply-adds would change bits from machine to machine; errno keeps sqrt from being
+# one instruction. The prefix map keeps the folder's name out of what is built.
+BASE := -Ilib -ffp-contract=off -fno-math-errno -ffile-prefix-map=$(CURDIR)=. $(WARNINGS) \
+        $(if $(WERROR),-Werror) $(if $(FLOAT),-DWH_FLOAT)
+LIBRARY_FLAGS := -std=c99 $(BASE) $(C_WARNINGS) $(NUMBER_WARNINGS) -DWH_BUILDING_LIBRARY
+HOST_FLAGS := -std=c99 -D_GNU_SOURCE $(BASE) $(C_WARNINGS)
+
+# Headers of other packages are not ours to warn about.
+package_flags = $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(1) 2>/dev/null))
+LUA := $(firstword $(foreach name,lua5.4 lua-5.4 lua54 lua,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
+PROGRAM_FLAGS := $(HOST_FLAGS) $(NUMBER_WARNINGS) $(call package_flags,$(LUA) jansson smartcols)
+TEST_FLAGS := $(HOST_FLAGS) $(if $(FLOAT),,$(NUMBER_WARNINGS)) -Itests $(call package_flags,$(LUA) jansson)
+CXX_TEST_FLAGS := -std=c++17 $(BASE) -Itests $(call package_flags,eigen3)
+
+# Lua comes from its static archive, so that its `^` calls the program's own pow and not libm's.
+LUA_ARCHIVE = $(firstword $(filter /%,$(foreach name,liblua5.4.a liblua-5.4.a liblua.a,\
+                $(shell $(CC) -print-file-name=$(name)))))
+PROGRAM_LIBS = $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson smartcols) -ldl -lm
+
+# Written when its text changes: what depends on it is rebuilt when a flag or the set of files changes.
+STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(LIBRARY_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS)
+$(B)/flags: TEXT = $(STAMP)
+$(B)/sources: TEXT = $(LIBRARY_SOURCES) $(PROGRAM_SOURCES) $(LUA_SOURCES)
+$(B)/flags $(B)/sources: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' '$(TEXT)' | cmp -s - $@ || printf '%s\n' '$(TEXT)' >$@
+
+# ---------------------------------------------------------------------------------------------- targets
+.PHONY: all library tests library-tests install uninstall FORCE
+.DELETE_ON_ERROR:
+.SECONDARY:
+
+all: library $(B)/waferhand $(B)/wh.so $(B)/waferhand.1
+library: $(B)/libwaferhand.a
+tests: $(TESTS:%=$(B)/%)
+library-tests: $(LIBRARY_TESTS:%=$(B)/%)
+
+# ------------------------------------------------------------------------------------------- compiling
+$(LIBRARY_OBJECTS): FLAGS = $(LIBRARY_FLAGS)
+$(PROGRAM_OBJECTS): FLAGS = $(PROGRAM_FLAGS)
+$(LIBRARY_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(LIBRARY_FLAGS) -fPIC
+$(SCRIPT_SOURCES:%.c=$(B)/pic/%.o) $(MODULE_OBJECTS): FLAGS = $(PROGRAM_FLAGS) -fPIC
+$(B)/obj/tests/%.o: FLAGS = $(TEST_FLAGS)
+$(CXX_TESTS:%=$(B)/obj/%.o): FLAGS = $(CXX_TEST_FLAGS)
+
+define compile
+@mkdir -p $(@D)
+@echo "  $(1)  $<"
+$(Q)$(2) $(FLAGS) $(3) $(EXTRA) -MMD -MP -c -o $@ $<
+endef
+$(B)/obj/%.o: %.c $(B)/flags
+	$(call compile,CC ,$(CC),$(CFLAGS))
+$(B)/pic/%.o: %.c $(B)/flags
+	$(call compile,PIC,$(CC),$(CFLAGS))
+$(B)/obj/%.o: %.cpp $(B)/flags
+	$(call compile,CXX,$(CXX),$(CXXFLAGS))
+$(B)/obj/embedded_lua.o: $(B)/embedded_lua.c $(B)/flags
+	$(call compile,CC ,$(CC),$(CFLAGS))
+$(B)/embedded_lua.c: lib/packaging/embed $(LUA_SOURCES) $(B)/sources
+	@lib/packaging/embed $(LUA_SOURCES) >$@
+
+-include $(shell find $(B)/obj $(B)/pic -name '*.d' 2>/dev/null)
+
+# --------------------------------------------------------------------------------------------- linking
+# Made anew and with q: r would replace the first of two members that have the same base name.
+define archive
+@echo "  AR   $@"
+$(Q)rm -f $@ && $(AR) qcsD $@ $(filter %.o,$^)
+endef
+$(B)/libwaferhand.a: $(LIBRARY_OBJECTS) $(B)/sources
+	$(archive)
+$(B)/pic/support.a: $(MODULE_SUPPORT) $(B)/sources
+	$(archive)
+
+LINK = $(Q)$(CC) $(CFLAGS) $(EXTRA) $(LDFLAGS)
+
+# -E: native modules that a trusted script loads look for Lua in the program.
+$(B)/waferhand: $(PROGRAM_OBJECTS) $(B)/libwaferhand.a $(B)/sources
+	@echo "  LD   $@"
+	$(LINK) -Wl,-E -o $@ $(PROGRAM_OBJECTS) $(B)/libwaferhand.a $(PROGRAM_LIBS)
+
+# Lua's own symbols come from the interpreter that loads it, hence -z now: a missing one shows at once. Only
+# the module's own symbols go out.
+$(B)/wh.so: $(MODULE_OBJECTS) $(B)/pic/support.a
+	@echo "  LD   $@"
+	$(LINK) -shared -Wl,-z,now,--exclude-libs,ALL -o $@ $^ -lm
+
+TEST_SUPPORT := $(patsubst %.c,$(B)/obj/%.o,$(wildcard tests/support/*.c))
+$(PROGRAM_TESTS:%=$(B)/%): $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS))
+$(PROGRAM_TESTS:%=$(B)/%): LIBS = $(PROGRAM_LIBS)
+$(CXX_TESTS:%=$(B)/%): LINK = $(Q)$(CXX) $(CXXFLAGS) $(EXTRA) $(LDFLAGS)
+$(B)/tests/%: $(B)/obj/tests/%.o $(TEST_SUPPORT) $(B)/libwaferhand.a
+	@mkdir -p $(@D)
+	@echo "  LD   $@"
+	$(LINK) -o $@ $(filter %.o,$^) $(B)/libwaferhand.a $(LIBS) -lcmocka -lm
+
+# ----------------------------------------------------------------------------------- manual, installing
+# The manual's table of errors is lib/core/status.def.
+$(B)/waferhand.1: lib/packaging/waferhand.1.in lib/core/status.def lib/core/config.h
+	@sed -n 's/^WH_STATUS(\([1-9][0-9]*\), \([A-Z_]*\), "\(.*\)")$$/.TP\n.B \1 \2\n\3/p' lib/core/status.def >$@.errors
+	@sed -e 's/@version@/$(VERSION)/' -e '/@errors@/{r $@.errors' -e 'd}' lib/packaging/waferhand.1.in >$@
+
+include lib/packaging/install.mk lib/packaging/check.mk
