@@ -6,6 +6,7 @@
 #   FLOAT=1    the library's number is float instead of double
 #   WERROR=1   warnings are errors (so they are where CI is set)
 #   V=1        shows the commands
+#   B=build    the folder to build in, as in `make library B=build/m7 CC=arm-none-eabi-gcc CFLAGS=...`
 #   PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=   where `make install` puts things
 
 # Commands run one after the other, the builds that they start in parallel: `make -j run test` would else

@@ -1,13 +1,17 @@
 # Static checks; compiling with warnings as errors and with gcc's analyzer is done by the Makefile.
 
-.PHONY: check check-format check-cppcheck check-lua check-manual
+.PHONY: check check-format check-shell check-lua check-manual check-cppcheck
 FORMATTED := $(shell find lib tests -name '*.[ch]' -o -name '*.cpp')
+SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/packaging/* $(wildcard tests/run tests/*/*))
 TIDY := $(LIBRARY_SOURCES:%.c=$(B)/tidy/%) $(PROGRAM_SOURCES:%.c=$(B)/tidy/%)
 
-check: check-format check-lua check-manual check-cppcheck $(TIDY)
+check: check-format check-shell check-lua check-manual check-cppcheck $(TIDY)
 
 check-format:
 	@clang-format --dry-run --Werror $(FORMATTED)
+
+check-shell:
+	@shellcheck $(SHELL_SCRIPTS)
 
 check-lua:
 	@$(foreach file,$(LUA_SOURCES),luac5.4 -p $(file) &&) true
