@@ -53,7 +53,8 @@ LUA_ARCHIVE = $(firstword $(filter /%,$(foreach name,liblua5.4.a liblua-5.4.a li
 PROGRAM_LIBS = $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson smartcols) -ldl -lm
 
 # Written when its text changes: what depends on it is rebuilt when a flag or the set of files changes.
-STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(LIBRARY_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS)
+STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(LIBRARY_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS) \
+         $(CXX_TEST_FLAGS)
 $(B)/flags: TEXT = $(STAMP)
 $(B)/sources: TEXT = $(LIBRARY_SOURCES) $(PROGRAM_SOURCES) $(LUA_SOURCES)
 $(B)/flags $(B)/sources: FORCE
