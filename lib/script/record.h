@@ -5,10 +5,10 @@
 #include "script/layout.h"
 
 typedef struct {
-    int line;             /* in the script; 0 when unknown */
-    char *text;           /* as an operator would type it: GET A 1 */
-    wh_status_t error;    /* WH_OK: it succeeded */
-    char *message;        /* what the error said, or null */
+    int line;              /* in the script; 0 when unknown */
+    char *text;            /* as an operator would type it: GET A 1 */
+    wh_status_t error;     /* WH_OK: it succeeded */
+    char *message;         /* what the error said, or null */
     double begin_s, end_s; /* simulated */
 } wh_command_record_t;
 
@@ -34,8 +34,8 @@ typedef struct {
 typedef struct {
     char *script;              /* path as given */
     const wh_layout_t *layout; /* null when the script named none; lives as long as the record */
-    bool ok;                   /* no command failed uncaught, every expectation was met, the cell had no complaint */
-    char *failure;             /* the uncaught error's message with file and line, or null */
+    bool ok;       /* no command failed uncaught, every expectation was met, the cell had no complaint */
+    char *failure; /* the uncaught error's message with file and line, or null */
     int64_t slices;
     double simulated_s, wall_s;
     uint64_t hash;
