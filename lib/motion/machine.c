@@ -31,14 +31,23 @@ wh_status_t wh_machine_validate(const wh_machine_t *machine) {
 }
 
 const wh_limits_t *wh_machine_limits(const wh_machine_t *machine, size_t axis) {
-    return axis < WH_ROBOT_AXES ? &machine->robot.axes[axis].limits : &machine->chuck_limits;
+    return axis < WH_ROBOT_AXES ? &machine->robot.limits[axis] : &machine->chuck_limits;
 }
 
-bool wh_machine_allows(const wh_machine_t *machine, size_t axis, wh_real_t position) {
-    if (axis < WH_ROBOT_AXES) {
-        return wh_robot_allows(&machine->robot, axis, position);
+wh_status_t wh_machine_check_travel(const wh_machine_t *machine, const wh_real_t axes[]) {
+    const wh_status_t status = wh_robot_check_travel(&machine->robot, axes);
+    if (status != WH_OK) {
+        return status;
     }
-    return wh_real_abs(position) <= WH_CHUCK_TRAVEL;
+    for (size_t axis = WH_ROBOT_AXES; axis < machine->axis_count; ++axis) {
+        if (!wh_real_is_finite(axes[axis])) {
+            return WH_STATUS_NOT_FINITE;
+        }
+        if (wh_real_abs(axes[axis]) > WH_CHUCK_TRAVEL) {
+            return WH_STATUS_LIMIT_EXCEEDED;
+        }
+    }
+    return WH_OK;
 }
 
 void wh_machine_grippers(const wh_machine_t *machine, const wh_real_t axes[], wh_pose_t poses[]) {

@@ -36,8 +36,9 @@ wh_status_t wh_machine_validate(const wh_machine_t *machine);
 /* The limits of one axis; `axis` is not checked. */
 const wh_limits_t *wh_machine_limits(const wh_machine_t *machine, size_t axis);
 
-/* Whether an axis may stand at a position, its travel's ends included. `axis` is not checked. */
-bool wh_machine_allows(const wh_machine_t *machine, size_t axis, wh_real_t position);
+/* Whether axes[0 .. axis_count - 1] are within their travel: what wh_robot_check_travel says of the first four, then
+ * WH_STATUS_NOT_FINITE or WH_STATUS_LIMIT_EXCEEDED for a chuck. */
+wh_status_t wh_machine_check_travel(const wh_machine_t *machine, const wh_real_t axes[]);
 
 /* Where each gripper is: poses[0 .. gripper_count - 1] from axes[0 .. axis_count - 1]. No argument is
  * checked. Cost: a sine and cosine for the robot and for each chuck. */

@@ -21,7 +21,7 @@ wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_
     track->machine = machine;
     track->slice_us = slice_us;
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        track->axes[axis] = machine->robot.axes[axis].home;
+        track->axes[axis] = machine->robot.home[axis];
     }
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         track->valves[g] = WH_VALVE_CLOSED;
@@ -60,13 +60,11 @@ static wh_real_t segment_time(const wh_track_t *track) {
 static wh_status_t plan_axes(wh_track_t *track, const wh_segment_t *segment) {
     const wh_machine_t *machine = track->machine;
     wh_limits_t limits[WH_AXES];
+    const wh_status_t travel = wh_machine_check_travel(machine, segment->target);
+    if (travel != WH_OK) {
+        return travel;
+    }
     for (size_t axis = 0; axis < machine->axis_count; ++axis) {
-        if (!wh_real_is_finite(segment->target[axis])) {
-            return WH_STATUS_NOT_FINITE;
-        }
-        if (!wh_machine_allows(machine, axis, segment->target[axis])) {
-            return WH_STATUS_LIMIT_EXCEEDED;
-        }
         limits[axis] = *wh_machine_limits(machine, axis);
     }
     wh_move_t move;

@@ -5,6 +5,8 @@
 #ifndef WH_SCRIPT_LAYOUT_H
 #define WH_SCRIPT_LAYOUT_H
 
+#include <lua.h>
+
 #include "cell/station.h"
 #include "motion/machine.h"
 
@@ -47,9 +49,9 @@ typedef struct {
     int32_t station, slot; /* slot from 1 */
 } wh_layout_wafer_t;
 
-/* Owned by whoever called wh_layout_read; free with wh_layout_free. Nothing in it changes during a run. */
+/* Lives as long as the Lua state that it was read in. Nothing in it changes during a run. */
 typedef struct {
-    char *path;              /* as it was asked for */
+    const char *path;        /* as it was asked for */
     char tolerance_name[16]; /* the preset's, or "own" */
     double wafer_diameter, wafer_thickness;
     wh_grasp_config_t grasp;
@@ -64,7 +66,12 @@ typedef struct {
     wh_wafer_t *start; /* where each wafer is when a run begins */
 } wh_layout_t;
 
-void wh_layout_free(wh_layout_t *layout);
+/* Reads the table on top of L's stack (what the layout file returned, which is left there), fills in the
+ * defaults and checks everything that can be checked without moving: fields, ranges, names, who lies and who
+ * rides where, strokes against slices. Raises a Lua error that names file, field path, value and what was
+ * expected. The layout's memory is Lua's; the reference is kept in the registry. Cost: linear in wafers, plus
+ * a sort. */
+const wh_layout_t *wh_layout_read(lua_State *L, const char *path);
 
 /* The index of a name, or WH_NONE. Cost: linear. */
 int32_t wh_layout_find_station(const wh_layout_t *layout, const char *name);

@@ -48,4 +48,18 @@ typedef struct {
     wh_wafer_record_t *wafers; /* layout->wafer_count of them */
 } wh_record_t;
 
+/* Appending; texts are copied. A program that runs out of memory here aborts. */
+wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s);
+void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event);
+void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok);
+
+/* Room for one more item of `size` bytes, by doubling. */
+void *wh_record_grow(void *items, size_t count, size_t *capacity, size_t size);
+
+/* A copy of the text, to be freed. */
+char *wh_record_text(const char *text);
+
+/* Frees everything that the record holds and zeroes it. */
+void wh_record_free(wh_record_t *record);
+
 #endif

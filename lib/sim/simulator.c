@@ -48,6 +48,17 @@ static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *com
     return status;
 }
 
+void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) {
+    const wh_grasp_t *table = &simulator->table;
+    state->wafers = table->storage.wafers;
+    state->wafer_count = table->storage.wafer_count;
+    state->grippers = table->storage.grippers;
+    state->gripper_count = table->storage.gripper_count;
+    state->events = simulator->events;
+    state->event_count = simulator->event_count;
+    state->sensors = read_sensors(table);
+}
+
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state) {
     if (!simulator || !command || !state) {
         return WH_STATUS_NULL_ARGUMENT;
@@ -55,12 +66,6 @@ wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *com
     state->status = step_table(simulator, command);
     state->utime = command->utime;
     state->seq = command->seq;
-    state->wafers = simulator->table.storage.wafers;
-    state->wafer_count = simulator->table.storage.wafer_count;
-    state->grippers = simulator->table.storage.grippers;
-    state->gripper_count = simulator->table.storage.gripper_count;
-    state->events = simulator->events;
-    state->event_count = simulator->event_count;
-    state->sensors = read_sensors(&simulator->table);
+    wh_simulator_view(simulator, state);
     return state->status;
 }

@@ -25,4 +25,7 @@ wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t
  * (WH_STATUS_OUT_OF_RANGE). Cost: wh_grasp_step and wh_cell_judge. */
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state);
 
+/* Fills in all of a state but utime, seq and status, without stepping. Cost: linear in grippers. */
+void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state);
+
 #endif

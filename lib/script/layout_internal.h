@@ -1,0 +1,18 @@
+/* Within the layout reader: one function for each part of a layout, in the order in which they are read. */
+#ifndef WH_SCRIPT_LAYOUT_INTERNAL_H
+#define WH_SCRIPT_LAYOUT_INTERNAL_H
+
+#include "script/layout.h"
+#include "script/reader.h"
+
+/* Memory for `count` items that lives as long as the state, zeroed. */
+void *wh_layout_memory(lua_State *L, size_t count, size_t size);
+
+/* Each reads its fields from the table that the reader is at, the layout's top. */
+void wh_layout_read_checks(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_read_grippers(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout);
+
+#endif

@@ -1,0 +1,44 @@
+/* The motion control software in the host: what the Lua side of it (lua/mcs) stands on.
+ *
+ * Lua decides, this executes: it reads the layout, plays segments slice by slice against the simulator,
+ * measures, and keeps the record of the run. It reaches Lua as a table of functions that only lua/mcs sees;
+ * scripts see the operator's words that lua/mcs/init.lua makes of them.
+ */
+#ifndef WH_SCRIPT_MCS_H
+#define WH_SCRIPT_MCS_H
+
+#include "motion/track.h"
+#include "script/record.h"
+#include "script/sandbox.h"
+#include "sim/simulator.h"
+
+/* Written by lib/script/mcs*.c only. Must not be moved once opened. */
+typedef struct {
+    const char *script; /* as the user gave it; borrowed */
+    wh_record_t *record;
+    const wh_layout_t *layout; /* null until a script names one */
+    wh_simulator_t simulator;
+    wh_link_t *link; /* the simulator's, or whoever stands in for it */
+    wh_track_t track;
+    wh_command_t command; /* the last one sent */
+    wh_state_t state;     /* the answer to it */
+    int32_t running;      /* index of the running command in the record, or WH_NONE */
+    bool rehearsing;      /* segments are planned and skipped, not played */
+    wh_track_t kept;      /* the track from before the rehearsal */
+    bool keep_segments;   /* collect what is played, for --segments */
+    wh_segment_t *segments;
+    size_t segment_count, segment_capacity;
+} wh_mcs_t;
+
+/* Opens the operator's words in a sandbox for one run of `script`. `mcs` and `record` must outlive the
+ * sandbox. False, and the reason in `result`, when the sandbox has no room for it. */
+bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_record_t *record,
+                 wh_sandbox_result_t *result);
+
+/* Closes the record: wafers, slices, hash. The sandbox must still be there. */
+void wh_mcs_finish(wh_mcs_t *mcs);
+
+/* Frees what the run collected; the record is its owner's. */
+void wh_mcs_close(wh_mcs_t *mcs);
+
+#endif

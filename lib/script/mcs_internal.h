@@ -1,0 +1,34 @@
+/* Within the MCS host. */
+#ifndef WH_SCRIPT_MCS_INTERNAL_H
+#define WH_SCRIPT_MCS_INTERNAL_H
+
+#include <lauxlib.h>
+
+#include "script/mcs.h"
+
+/* The host behind a function of the native table. */
+wh_mcs_t *wh_mcs_of(lua_State *L);
+
+/* The same, with a layout; raises NO_LAYOUT when none was set up. */
+wh_mcs_t *wh_mcs_with_layout(lua_State *L);
+
+/* Raises a numbered error: a table { number, name, message, line } whose text is "script:line: COMMAND: text,
+ * detail". */
+int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *detail)
+    __attribute__((noreturn));
+
+/* The line of the script that is running in L, or 0. */
+int wh_mcs_script_line(lua_State *L, const wh_mcs_t *mcs);
+
+/* Simulated seconds so far. */
+double wh_mcs_now(const wh_mcs_t *mcs);
+
+/* Index (from 0) of a wafer, gripper or station given from 1 by lua/mcs. */
+int32_t wh_mcs_index(lua_State *L, int argument, size_t count);
+
+/* Functions of the native table, by subject. */
+extern const luaL_Reg wh_mcs_play_functions[];
+extern const luaL_Reg wh_mcs_query_functions[];
+extern const luaL_Reg wh_mcs_record_functions[];
+
+#endif

@@ -1,0 +1,188 @@
+/* The MCS host's eyes: what the layout holds, where wafers are and who holds them. */
+#include <stdio.h>
+#include <string.h>
+
+#include "motion/trig.h"
+#include "script/mcs_internal.h"
+
+static void set_number(lua_State *L, const char *name, double value) {
+    lua_pushnumber(L, value);
+    lua_setfield(L, -2, name);
+}
+
+/* Gripper and wafer indices go to Lua from 1; none is nil. */
+static void push_index(lua_State *L, int32_t index) {
+    if (index == WH_NONE) {
+        lua_pushnil(L);
+    } else {
+        lua_pushinteger(L, index + 1);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------- the layout
+ */
+
+static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) {
+    const wh_layout_station_t *station = &layout->stations[index];
+    lua_createtable(L, 0, 12);
+    lua_pushstring(L, station->name);
+    lua_setfield(L, -2, "name");
+    lua_pushinteger(L, (lua_Integer)index + 1);
+    lua_setfield(L, -2, "index");
+    lua_pushinteger(L, layout->places[index].slots);
+    lua_setfield(L, -2, "slots");
+    push_index(L, layout->places[index].chuck);
+    lua_setfield(L, -2, "chuck");
+    set_number(L, "stroke", station->stroke);
+    set_number(L, "offset", station->offset);
+    set_number(L, "retract", station->retract);
+    set_number(L, "pickup_speed", station->pickup_speed);
+    set_number(L, "release", station->release);
+    set_number(L, "vacuum_delay", station->vacuum_delay);
+    set_number(L, "timeout", station->timeout);
+    lua_pushstring(L, station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
+    lua_setfield(L, -2, "handover");
+}
+
+static void push_stations(lua_State *L, const wh_layout_t *layout) {
+    lua_createtable(L, 0, (int)layout->station_count);
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        push_station(L, layout, s);
+        lua_setfield(L, -2, layout->stations[s].name);
+    }
+}
+
+static void push_grippers(lua_State *L, const wh_layout_t *layout) {
+    lua_createtable(L, (int)layout->machine.gripper_count, 0);
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        lua_createtable(L, 0, 3);
+        lua_pushstring(L, layout->grippers[g].name);
+        lua_setfield(L, -2, "name");
+        lua_pushboolean(L, layout->grippers[g].station == WH_NONE);
+        lua_setfield(L, -2, "on_robot");
+        push_index(L, layout->machine.mounts[g].axis);
+        lua_setfield(L, -2, "axis");
+        lua_rawseti(L, -2, (lua_Integer)g + 1);
+    }
+}
+
+/* native.layout(): { stations by name, grippers in order, tolerance, slice, sampled }. */
+static int describe_layout(lua_State *L) {
+    const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
+    lua_createtable(L, 0, 5);
+    push_stations(L, layout);
+    lua_setfield(L, -2, "stations");
+    push_grippers(L, layout);
+    lua_setfield(L, -2, "grippers");
+    lua_createtable(L, 0, 3);
+    set_number(L, "projz", layout->grasp.tolerance.projz);
+    set_number(L, "projxy", layout->grasp.tolerance.projxy);
+    set_number(L, "planar", layout->grasp.tolerance.planar);
+    lua_setfield(L, -2, "tolerance");
+    set_number(L, "slice", (double)layout->slice_us / 1e6);
+    lua_pushboolean(L, layout->grasp.check == WH_CHECK_SAMPLED);
+    lua_setfield(L, -2, "sampled");
+    return 1;
+}
+
+/* native.wafer(name): the wafer's index, or nil. */
+static int find_wafer(lua_State *L) {
+    const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
+    push_index(L, wh_layout_find_wafer(layout, luaL_checkstring(L, 1)));
+    return 1;
+}
+
+/* ------------------------------------------------------------------------------------------------- the run
+ */
+
+static const wh_wafer_t *wafer_argument(lua_State *L, const wh_mcs_t *mcs, int argument) {
+    return &mcs->state.wafers[wh_mcs_index(L, argument, mcs->state.wafer_count)];
+}
+
+/* native.sensor(gripper): whether its vacuum sensor is on. */
+static int read_sensor(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    lua_pushboolean(L, (mcs->state.sensors >> gripper & 1U) != 0);
+    return 1;
+}
+
+/* native.holder(wafer): the gripper's index, or nil. */
+static int find_holder(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    push_index(L, wafer_argument(L, mcs, 1)->holder);
+    return 1;
+}
+
+/* native.measure(wafer, station, slot): dx, dy, dz, tilt_deg in that slot's frame. */
+static int measure(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_wafer_t *wafer = wafer_argument(L, mcs, 1);
+    const wh_station_t *station = &mcs->layout->places[wh_mcs_index(L, 2, mcs->layout->station_count)];
+    const int32_t slot = wh_mcs_index(L, 3, (size_t)station->slots) + 1;
+    const wh_place_t place = wh_station_measure(station, slot, &wafer->base_from_wafer);
+    lua_pushnumber(L, place.dx);
+    lua_pushnumber(L, place.dy);
+    lua_pushnumber(L, place.dz);
+    lua_pushnumber(L, wh_deg_from_rad(place.tilt));
+    return 4;
+}
+
+/* native.locate(wafer): station's name and slot, or nil when it lies in none. */
+static int locate(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_place_t place;
+    if (!wh_cell_locate(&mcs->simulator.cell, &wafer_argument(L, mcs, 1)->base_from_wafer, &place)) {
+        return 0;
+    }
+    lua_pushstring(L, mcs->layout->stations[place.station].name);
+    lua_pushinteger(L, place.slot);
+    return 2;
+}
+
+static void push_list(lua_State *L, const double values[], int count) {
+    lua_createtable(L, count, 0);
+    for (int i = 0; i < count; ++i) {
+        lua_pushnumber(L, values[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+}
+
+static int push_pose(lua_State *L, const wh_pose_t *pose) {
+    const double r[] = {pose->r.x, pose->r.y, pose->r.z};
+    lua_createtable(L, 0, 2);
+    push_list(L, r, 3);
+    lua_setfield(L, -2, "r");
+    lua_createtable(L, 3, 0);
+    for (int row = 0; row < 3; ++row) {
+        push_list(L, pose->R.m[row], 3);
+        lua_rawseti(L, -2, row + 1);
+    }
+    lua_setfield(L, -2, "R");
+    return 1;
+}
+
+/* native.wafer_pose(wafer): { r, R }, as the module wh takes it. */
+static int read_wafer_pose(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    return push_pose(L, &wafer_argument(L, mcs, 1)->base_from_wafer);
+}
+
+/* native.gripper_pose(gripper): where it is now, also before the first slice. */
+static int read_gripper_pose(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    wh_pose_t poses[WH_GRIPPERS];
+    wh_machine_grippers(&mcs->layout->machine, mcs->track.axes, poses);
+    return push_pose(L, &poses[gripper]);
+}
+
+const luaL_Reg wh_mcs_query_functions[] = {{"layout", describe_layout},
+                                           {"wafer", find_wafer},
+                                           {"sensor", read_sensor},
+                                           {"holder", find_holder},
+                                           {"measure", measure},
+                                           {"locate", locate},
+                                           {"wafer_pose", read_wafer_pose},
+                                           {"gripper_pose", read_gripper_pose},
+                                           {NULL, NULL}};

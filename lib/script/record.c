@@ -1,0 +1,73 @@
+#include "script/record.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void *wh_record_grow(void *items, size_t count, size_t *capacity, size_t size) {
+    if (count < *capacity) {
+        return items;
+    }
+    const size_t wanted = *capacity > 0 ? 2 * *capacity : 64;
+    void *grown = realloc(items, wanted * size);
+    if (!grown) {
+        abort();
+    }
+    *capacity = wanted;
+    return grown;
+}
+
+char *wh_record_text(const char *text) {
+    char *copy = strdup(text);
+    if (!copy) {
+        abort();
+    }
+    return copy;
+}
+
+wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s) {
+    record->commands = wh_record_grow(record->commands, record->command_count, &record->command_capacity,
+                                      sizeof *record->commands);
+    wh_command_record_t *command = &record->commands[record->command_count++];
+    command->line = line;
+    command->text = wh_record_text(text);
+    command->error = WH_OK;
+    command->message = NULL;
+    command->begin_s = begin_s;
+    command->end_s = begin_s;
+    return command;
+}
+
+void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event) {
+    record->events =
+        wh_record_grow(record->events, record->event_count, &record->event_capacity, sizeof *record->events);
+    wh_event_record_t *added = &record->events[record->event_count++];
+    added->utime = utime;
+    added->command = command;
+    added->event = *event;
+}
+
+void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok) {
+    record->expectations = wh_record_grow(record->expectations, record->expectation_count,
+                                          &record->expectation_capacity, sizeof *record->expectations);
+    wh_expectation_record_t *added = &record->expectations[record->expectation_count++];
+    added->line = line;
+    added->text = wh_record_text(text);
+    added->ok = ok;
+}
+
+void wh_record_free(wh_record_t *record) {
+    for (size_t i = 0; i < record->command_count; ++i) {
+        free(record->commands[i].text);
+        free(record->commands[i].message);
+    }
+    for (size_t i = 0; i < record->expectation_count; ++i) {
+        free(record->expectations[i].text);
+    }
+    free(record->commands);
+    free(record->events);
+    free(record->expectations);
+    free(record->wafers);
+    free(record->script);
+    free(record->failure);
+    memset(record, 0, sizeof *record);
+}
