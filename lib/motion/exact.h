@@ -1,0 +1,46 @@
+/* Sums and products without rounding error: private to lib/motion.
+ *
+ * A value is kept as hi + lo, hi being the rounded result and lo what rounding took away (Knuth's two-sum and
+ * Dekker's product with Veltkamp's split, which need round-to-nearest and no fused multiply-add). Exact
+ * unless something overflows or underflows: operands of a product stay below 1e300 (1e34 in float).
+ */
+#ifndef WH_MOTION_EXACT_H
+#define WH_MOTION_EXACT_H
+
+#include "core/config.h"
+
+typedef struct {
+    wh_real_t hi, lo;
+} wh_exact_t;
+
+/* 2^27 + 1 and 2^12 + 1: cuts a significand into two halves. */
+#if defined(WH_FLOAT)
+#define WH_EXACT_SPLIT 4097.0F
+#else
+#define WH_EXACT_SPLIT 134217729.0
+#endif
+
+/* a + b; six sums, any order of magnitudes. */
+static inline wh_exact_t wh_exact_sum(wh_real_t a, wh_real_t b) {
+    wh_exact_t sum;
+    sum.hi = a + b;
+    const wh_real_t b_seen = sum.hi - a;
+    sum.lo = (a - (sum.hi - b_seen)) + (b - b_seen);
+    return sum;
+}
+
+/* a * b; 17 operations. */
+static inline wh_exact_t wh_exact_product(wh_real_t a, wh_real_t b) {
+    wh_exact_t product;
+    const wh_real_t a_scaled = WH_EXACT_SPLIT * a;
+    const wh_real_t b_scaled = WH_EXACT_SPLIT * b;
+    const wh_real_t a_high = a_scaled - (a_scaled - a);
+    const wh_real_t b_high = b_scaled - (b_scaled - b);
+    const wh_real_t a_low = a - a_high;
+    const wh_real_t b_low = b - b_high;
+    product.hi = a * b;
+    product.lo = ((a_high * b_high - product.hi) + a_high * b_low + a_low * b_high) + a_low * b_low;
+    return product;
+}
+
+#endif
