@@ -1,4 +1,4 @@
-/* Sums and products without rounding error: private to lib/motion.
+/* Sums and products without rounding error, and rounding to whole numbers: private to lib/motion.
  *
  * A value is kept as hi + lo, hi being the rounded result and lo what rounding took away (Knuth's two-sum and
  * Dekker's product with Veltkamp's split, which need round-to-nearest and no fused multiply-add). Exact
@@ -41,6 +41,11 @@ static inline wh_exact_t wh_exact_product(wh_real_t a, wh_real_t b) {
     product.hi = a * b;
     product.lo = ((a_high * b_high - product.hi) + a_high * b_low + a_low * b_high) + a_low * b_low;
     return product;
+}
+
+/* The nearest whole number, halves away from zero, for |x| < 2^31: what libm's round does. */
+static inline int32_t wh_nearest_whole(wh_real_t x) {
+    return (int32_t)(x < 0 ? x - WH_REAL(0.5) : x + WH_REAL(0.5));
 }
 
 #endif

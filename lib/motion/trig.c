@@ -64,12 +64,8 @@ static wh_real_t cos_of(wh_exact_t x) {
     return about + (((1 - about) - z / 2) + (z * z * polynomial(cos_terms, z) - x.hi * x.lo));
 }
 
-static int32_t nearest(wh_real_t x) {
-    return (int32_t)(x < 0 ? x - WH_REAL(0.5) : x + WH_REAL(0.5));
-}
-
 static reduced_t reduce_rad(wh_real_t x) {
-    reduced_t angle = {nearest(x * QUARTERS_PER_RAD), {x, 0}};
+    reduced_t angle = {wh_nearest_whole(x * QUARTERS_PER_RAD), {x, 0}};
     if (angle.quarters != 0) {
         const wh_real_t n = (wh_real_t)angle.quarters;
         wh_real_t lost = 0;
@@ -85,7 +81,7 @@ static reduced_t reduce_rad(wh_real_t x) {
 /* deg - 90 n is exact; its product with pi/180 is kept in two numbers. */
 static reduced_t reduce_deg(wh_real_t deg) {
     reduced_t angle;
-    angle.quarters = nearest(deg / 90);
+    angle.quarters = wh_nearest_whole(deg / 90);
     const wh_real_t rest = deg - 90 * (wh_real_t)angle.quarters;
     angle.rest = wh_exact_product(rest, rad_per_deg.hi);
     angle.rest.lo += rest * rad_per_deg.lo;
