@@ -71,26 +71,21 @@ static wh_status_t plan_axes(wh_track_t *track, const wh_segment_t *segment) {
     const wh_status_t status = wh_move_plan(&move, machine->axis_count, track->axes, segment->target, limits);
     if (status == WH_OK) {
         track->plan.move = move;
-        track->segment_slices = slices_for(track, move.duration);
+        track->segment_slices = slices_for(track, wh_move_duration(&move));
     }
     return status;
 }
 
 static wh_status_t plan_line(wh_track_t *track, const wh_segment_t *segment) {
-    if (!wh_real_is_finite(segment->speed)) {
-        return WH_STATUS_NOT_FINITE;
-    }
-    if (segment->speed < 0) {
-        return WH_STATUS_BAD_SEGMENT;
-    }
+    const wh_vec3_t *travel = &segment->travel;
     wh_line_t line;
-    const wh_status_t status =
-        wh_line_plan(&line, &track->machine->robot, track->axes, &segment->travel, segment->speed);
+    const wh_status_t status = wh_line_plan(&line, &track->machine->robot, track->axes, travel->x, travel->y,
+                                            travel->z, segment->speed);
     if (status == WH_OK) {
         track->plan.line = line;
-        track->segment_slices = slices_for(track, line.duration);
+        track->segment_slices = slices_for(track, wh_line_duration(&line));
     }
-    return status;
+    return status == WH_STATUS_OUT_OF_RANGE ? WH_STATUS_BAD_SEGMENT : status;
 }
 
 static bool valve_is_sound(int32_t valve) {

@@ -1,0 +1,52 @@
+#include <argp.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "core/config.h"
+
+static const struct {
+    const char *name, *purpose;
+    int (*act)(int argc, char **argv);
+} subcommands[] = {
+    {"run", "play a motion script against the simulator", wh_app_run},
+};
+
+#define SUBCOMMANDS (sizeof subcommands / sizeof subcommands[0])
+
+static void print_help(FILE *out) {
+    fputs("Usage: waferhand COMMAND [OPTION...] [ARGUMENT...]\n"
+          "Run, test and judge wafer handling robots before any robot moves.\n\nCommands:\n",
+          out);
+    for (size_t i = 0; i < SUBCOMMANDS; ++i) {
+        fprintf(out, "  %-8s %s\n", subcommands[i].name, subcommands[i].purpose);
+    }
+    fputs("\n  waferhand COMMAND --help    tells the options of a command\n"
+          "  waferhand --version         prints the version\n\n"
+          "Exit status: 0 if all expectations were met, 1 if not, 2 for wrong usage or a bad input file.\n",
+          out);
+}
+
+int main(int argc, char **argv) {
+    argp_err_exit_status = WH_EXIT_USAGE;
+    argp_program_version = "waferhand " WH_VERSION;
+    if (argc < 2) {
+        print_help(stderr);
+        return WH_EXIT_USAGE;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-?") == 0) {
+        print_help(stdout);
+        return WH_EXIT_MET;
+    }
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
+        puts(argp_program_version);
+        return WH_EXIT_MET;
+    }
+    for (size_t i = 0; i < SUBCOMMANDS; ++i) {
+        if (strcmp(argv[1], subcommands[i].name) == 0) {
+            return subcommands[i].act(argc - 1, argv + 1);
+        }
+    }
+    fprintf(stderr, "waferhand: %s: no such command (expected run; see waferhand --help)\n", argv[1]);
+    return WH_EXIT_USAGE;
+}

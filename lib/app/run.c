@@ -1,0 +1,131 @@
+/* waferhand run SCRIPT */
+#include <argp.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "app/record_json.h"
+#include "app/record_table.h"
+#include "app/segments.h"
+#include "app/style.h"
+#include "script/run.h"
+
+enum { OPTION_JSON = 1000, OPTION_SEGMENTS, OPTION_SET, OPTION_TRUST, OPTION_BUDGET, OPTION_MEMORY };
+
+typedef struct {
+    wh_run_options_t run;
+    const char **parameters; /* room for one for each argument */
+    const char *segments_path;
+    bool json;
+} arguments_t;
+
+static const struct argp_option options[] = {
+    {"json", OPTION_JSON, NULL, 0, "Print the result as one JSON object", 0},
+    {"segments", OPTION_SEGMENTS, "FILE", 0, "Write the motion that was played as C source for a firmware test", 0},
+    {"set", OPTION_SET, "NAME=VALUE", 0, "Hand the script a parameter: params.NAME", 0},
+    {"trust", OPTION_TRUST, NULL, 0, "Let the script use all of Lua, files and native modules too", 0},
+    {"budget", OPTION_BUDGET, "N", 0, "End the script after N steps of Lua and simulated slices (default 2e9)", 0},
+    {"memory", OPTION_MEMORY, "MIB", 0, "Let the script use so many MiB of memory (default 256)", 0},
+    {0},
+};
+
+/* A whole number in a range, given as 1000000 or 1e6. */
+static double whole_number(const struct argp_state *state, const char *name, const char *text, double max) {
+    char *end = NULL;
+    errno = 0;
+    const double value = strtod(text, &end);
+    if (end == text || *end != '\0' || !(value >= 1 && value <= max)) {
+        argp_error(state, "--%s: %s (expected a number from 1 to %g)", name, text, max);
+    }
+    return value;
+}
+
+static error_t parse(int key, char *argument, struct argp_state *state) {
+    arguments_t *arguments = state->input;
+    switch (key) {
+    case OPTION_JSON:
+        arguments->json = true;
+        return 0;
+    case OPTION_SEGMENTS:
+        arguments->segments_path = argument;
+        return 0;
+    case OPTION_SET:
+        arguments->parameters[arguments->run.parameter_count++] = argument;
+        return 0;
+    case OPTION_TRUST:
+        arguments->run.limits.trust = true;
+        return 0;
+    case OPTION_BUDGET:
+        arguments->run.limits.instructions = (uint64_t)whole_number(state, "budget", argument, 1e18);
+        return 0;
+    case OPTION_MEMORY:
+        arguments->run.limits.memory_bytes = (size_t)(whole_number(state, "memory", argument, 1e6) * 1048576);
+        return 0;
+    case ARGP_KEY_ARG:
+        if (arguments->run.script) {
+            argp_error(state, "%s: one script is enough", argument);
+        }
+        arguments->run.script = argument;
+        return 0;
+    case ARGP_KEY_NO_ARGS:
+        argp_error(state, "which script?");
+        return EINVAL;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static int print_result(const arguments_t *arguments, const wh_run_t *run) {
+    if (arguments->json) {
+        return wh_record_print_json(&run->record, stdout);
+    }
+    return wh_record_print_table(&run->record, stdout);
+}
+
+static int report(const arguments_t *arguments, const wh_run_t *run, wh_run_outcome_t outcome) {
+    if (outcome == WH_RUN_BAD_INPUT) {
+        fprintf(stderr, "%s\n", run->message);
+        return WH_EXIT_USAGE;
+    }
+    if (arguments->segments_path && wh_segments_write(&run->mcs, arguments->segments_path) != 0) {
+        fprintf(stderr, "%s: %s (expected a file that can be written)\n", arguments->segments_path,
+                strerror(errno));
+        return WH_EXIT_USAGE;
+    }
+    if (print_result(arguments, run) != 0 || fflush(stdout) != 0) {
+        fprintf(stderr, "standard output: %s\n", strerror(errno));
+        return WH_EXIT_USAGE;
+    }
+    if (run->record.failure) {
+        fprintf(stderr, "%s\n", run->record.failure);
+    }
+    return outcome == WH_RUN_MET ? WH_EXIT_MET : WH_EXIT_FAILED;
+}
+
+int wh_app_run(int argc, char **argv) {
+    static const struct argp argp = {
+        options, parse, "SCRIPT",
+        "Plays a motion script against the simulator and prints what came of it.\v"
+        "Exit status: 0 if all expectations were met, 1 if the script's expectations or the cell failed, "
+        "2 for wrong usage or a bad input file.",
+        NULL, NULL, NULL};
+    static char name[] = "waferhand run";
+    arguments_t arguments = {0};
+    arguments.parameters = calloc((size_t)argc + 1, sizeof *arguments.parameters);
+    if (!arguments.parameters) {
+        perror("waferhand");
+        return WH_EXIT_USAGE;
+    }
+    argv[0] = name;
+    argp_parse(&argp, argc, argv, 0, NULL, &arguments);
+    arguments.run.parameters = arguments.parameters;
+    arguments.run.keep_segments = arguments.segments_path != NULL;
+    arguments.run.limits.print_to = arguments.json ? stderr : stdout;
+    wh_run_t run;
+    const wh_run_outcome_t outcome = wh_run_script(&run, &arguments.run);
+    const int status = report(&arguments, &run, outcome);
+    wh_run_close(&run);
+    free(arguments.parameters);
+    return status;
+}

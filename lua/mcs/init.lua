@@ -1,0 +1,29 @@
+-- Makes the operator's words out of what the host offers (`native`) and sets them as globals.
+
+return function(native)
+  local names = native.module("mcs/names.lua")(native, wh.errors)
+  local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), names)
+  local questions = native.module("mcs/questions.lua")(native, names)
+  local rehearse = commands.rehearse
+  commands.rehearse = nil
+
+  -- cell "LAYOUT.lua", relative to the script: every slot's ends must be in reach.
+  function cell(path)
+    local layout_path = native.cell(path)
+    for name, station in pairs(native.layout().stations) do
+      for _, slot in ipairs({ 1, station.slots }) do
+        local problem = rehearse(name, slot)
+        if problem then
+          local reason = type(problem) == "table" and problem.message:gsub("^.*error %d+ ", "") or tostring(problem)
+          error(("%s: stations.%s: slot %d (expected one in reach: %s)"):format(layout_path, name, slot, reason), 0)
+        end
+      end
+    end
+  end
+
+  for _, group in ipairs({ commands, questions }) do
+    for word, action in pairs(group) do
+      _G[word] = action
+    end
+  end
+end

@@ -1,0 +1,87 @@
+-- From what an operator writes to what the host knows: stations, slots, grippers, wafers, numbers. Each refuses
+-- what it does not know with a numbered error that names it.
+
+return function(native, errors)
+  local names = { errors = errors }
+
+  function names.quote(value)
+    return type(value) == "string" and ('"%s"'):format(value) or tostring(value)
+  end
+
+  local function listed(map)
+    local all = {}
+    for name in pairs(map) do
+      all[#all + 1] = name
+    end
+    return table.concat(all, ", ")
+  end
+
+  function names.station(name)
+    local stations = native.layout().stations
+    if type(name) ~= "string" or not stations[name] then
+      native.fail("NO_SUCH_STATION", ("%s (expected %s)"):format(names.quote(name), listed(stations)))
+    end
+    return stations[name]
+  end
+
+  function names.slot(station, slot)
+    local whole = math.tointeger(slot)
+    if type(slot) ~= "number" or not whole or whole < 1 or whole > station.slots then
+      local expected = ("%s has slots 1 to %d"):format(station.name, station.slots)
+      native.fail("NO_SUCH_SLOT", ("%s (%s)"):format(names.quote(slot), expected))
+    end
+    return whole
+  end
+
+  function names.gripper(name)
+    local known = {}
+    for index, gripper in ipairs(native.layout().grippers) do
+      if gripper.name == name then
+        return index
+      end
+      known[#known + 1] = gripper.name
+    end
+    native.fail("NO_SUCH_GRIPPER", ("%s (expected %s)"):format(names.quote(name), table.concat(known, ", ")))
+  end
+
+  -- A gripper on the robot: the named one, or the first.
+  function names.effector(name)
+    local grippers = native.layout().grippers
+    if name ~= nil then
+      local index = names.gripper(name)
+      if not grippers[index].on_robot then
+        native.fail("NO_SUCH_GRIPPER", names.quote(name) .. " (expected one on the robot)")
+      end
+      return index
+    end
+    for index, gripper in ipairs(grippers) do
+      if gripper.on_robot then
+        return index
+      end
+    end
+  end
+
+  function names.wafer(name)
+    local index = type(name) == "string" and native.wafer(name) or nil
+    if not index then
+      native.fail("NO_SUCH_WAFER", names.quote(name))
+    end
+    return index
+  end
+
+  function names.number(what, value)
+    if type(value) ~= "number" or value ~= value or value - value ~= 0 then
+      native.fail("BAD_ARGUMENT", ("%s: %s (expected a finite number)"):format(what, names.quote(value)))
+    end
+    return value
+  end
+
+  function names.table(what, value)
+    if type(value) ~= "table" then
+      native.fail("BAD_ARGUMENT", ("%s: %s (expected a table)"):format(what, names.quote(value)))
+    end
+    return value
+  end
+
+  return names
+end

@@ -1,0 +1,55 @@
+-- The operator's words that ask and judge: offset, holder, proximity, expect, expect_offset.
+
+return function(native, names)
+  local questions = {}
+
+  -- dx, dy, dz (mm) and tilt (degrees) of a wafer in a slot's frame.
+  function questions.offset(wafer, station_name, slot)
+    local station = names.station(station_name)
+    return native.measure(names.wafer(wafer), station.index, names.slot(station, slot))
+  end
+
+  -- The name of the gripper that holds the wafer, or nil.
+  function questions.holder(wafer)
+    local gripper = native.holder(names.wafer(wafer))
+    return gripper and native.layout().grippers[gripper].name
+  end
+
+  -- The check of a wafer against a gripper as they stand now: see wh.proximity.
+  function questions.proximity(wafer, gripper)
+    local tolerance = native.layout().tolerance
+    return wh.proximity(native.wafer_pose(names.wafer(wafer)), native.gripper_pose(names.gripper(gripper)), tolerance)
+  end
+
+  -- States what should be so; the run fails if it is not, and goes on. Returns the condition.
+  function questions.expect(condition, text)
+    native.expect(condition, text == nil and "an expectation without words" or tostring(text))
+    return condition
+  end
+
+  local function where(wafer)
+    local station, slot = native.locate(wafer)
+    return station and ("lies in %s slot %d"):format(station, slot) or "lies in no slot"
+  end
+
+  -- The wafer lies in that slot with this offset, mm; to 1e-9 mm unless a tolerance follows.
+  function questions.expect_offset(wafer, station_name, slot, dx, dy, tolerance)
+    tolerance = names.number("tolerance", tolerance == nil and 1e-9 or tolerance)
+    names.number("dx", dx)
+    names.number("dy", dy)
+    local index = names.wafer(wafer)
+    local x, y = questions.offset(wafer, station_name, slot)
+    local station, at = native.locate(index)
+    local lies_there = station == station_name and at == math.tointeger(slot)
+    local met = lies_there and math.abs(x - dx) < tolerance and math.abs(y - dy) < tolerance
+    local text = ("%s in %s slot %d with dX %.10g, dY %.10g to %.3g mm"):format(wafer, station_name, slot, dx, dy, tolerance)
+    if not lies_there then
+      text = ("%s; it %s"):format(text, where(index))
+    elseif not met then
+      text = ("%s; found dX %.12g, dY %.12g"):format(text, x, y)
+    end
+    return questions.expect(met, text)
+  end
+
+  return questions
+end
