@@ -1,0 +1,90 @@
+/* Within the module `wh`: values to and from Lua, and errors that name the field they are about. */
+#ifndef WH_SCRIPT_WH_MODULE_INTERNAL_H
+#define WH_SCRIPT_WH_MODULE_INTERNAL_H
+
+#include <lauxlib.h>
+#include <lua.h>
+
+#include "core/grasp.h"
+
+#if defined(WH_FLOAT)
+#error "waferhand: the Lua module's numbers are double; build it and the library without WH_FLOAT"
+#endif
+#if LUA_VERSION_NUM != 504 || LUA_FLOAT_TYPE != LUA_FLOAT_DOUBLE
+#error "waferhand: the Lua module needs Lua 5.4 with double numbers"
+#endif
+
+/* The largest cell, as large as the largest layout: WH_GRIPPERS, WH_LAYOUT_WAFERS. */
+#define WH_MODULE_GRIPPERS 8
+#define WH_MODULE_WAFERS 1000000
+
+/* The path of a value within an argument, such as inputs[2].pose.R, as a chain of the callers' locals. */
+typedef struct wh_field {
+    const struct wh_field *of; /* null: this is the whole argument */
+    const char *name;          /* null: an entry of a list; "": an argument that goes without a name */
+    lua_Integer index;         /* the entry's, from 1; of a whole argument its number */
+} wh_field_t;
+
+static inline wh_field_t wh_lua_argument(const char *name, int number) {
+    const wh_field_t field = {NULL, name, number};
+    return field;
+}
+
+static inline wh_field_t wh_lua_field(const wh_field_t *of, const char *name) {
+    const wh_field_t field = {of, name, 0};
+    return field;
+}
+
+static inline wh_field_t wh_lua_entry(const wh_field_t *of, lua_Integer index) {
+    const wh_field_t field = {of, NULL, index};
+    return field;
+}
+
+/* Raises "bad argument #n to 'f' (path: what)"; `what` is formatted as by lua_pushfstring. Never returns. */
+int wh_lua_refuse(lua_State *L, const wh_field_t *at, const char *what, ...);
+
+/* Raises what wh_pose_validate said; of a number that is not finite also which it is. Never returns. */
+int wh_lua_refuse_pose(lua_State *L, const wh_field_t *at, const wh_pose_t *pose, wh_status_t status);
+
+/* Refuse a value at an absolute stack index that is no table, and keys of its own that are not in `names`
+ * (null at its end), or not in 1 to `count`. Nothing is pushed. */
+void wh_lua_check_record(lua_State *L, int index, const wh_field_t *at, const char *const *names);
+void wh_lua_check_list(lua_State *L, int index, const wh_field_t *at, lua_Integer count);
+
+/* The readers take the value on top of the stack and pop it, or refuse it. */
+wh_real_t wh_lua_take_number(lua_State *L, const wh_field_t *at);
+lua_Integer wh_lua_take_integer(lua_State *L, const wh_field_t *at, lua_Integer first, lua_Integer last,
+                                const char *expected);
+/* A wafer's or a gripper's index, 1 to `count`, as the library counts. */
+size_t wh_lua_take_index(lua_State *L, const wh_field_t *at, size_t count);
+/* As it stands: whether it is a pose is for the library to say. */
+void wh_lua_take_pose(lua_State *L, const wh_field_t *at, wh_pose_t *pose);
+/* Refuses what wh_pose_validate refuses. */
+void wh_lua_take_valid_pose(lua_State *L, const wh_field_t *at, wh_pose_t *pose);
+/* Refuses what wh_tolerance_validate refuses; nil is "paper". */
+wh_tolerance_t wh_lua_take_tolerance(lua_State *L, const wh_field_t *at);
+
+/* What wh.cell's table, argument 1, says about the rules; the rest of it is for the caller to read. */
+wh_grasp_config_t wh_lua_read_config(lua_State *L, const wh_field_t *of);
+
+/* A field of the table at an absolute index, or `otherwise` where it is nil. */
+wh_real_t wh_lua_get_number(lua_State *L, int index, const wh_field_t *of, const char *name,
+                            wh_real_t otherwise);
+
+void wh_lua_push_pose(lua_State *L, const wh_pose_t *pose);
+void wh_lua_push_tolerance(lua_State *L, const wh_tolerance_t *tolerance);
+/* From the library's index: one more, or nil for WH_NONE. */
+void wh_lua_push_index(lua_State *L, int32_t index);
+void wh_lua_push_proximity(lua_State *L, const wh_proximity_t *proximity);
+void wh_lua_push_event(lua_State *L, const wh_event_t *event);
+
+/* The module's functions. */
+int wh_lua_proximity(lua_State *L);
+int wh_lua_rim_gap(lua_State *L);
+int wh_lua_tolerance(lua_State *L);
+int wh_lua_cell(lua_State *L);
+
+/* Makes the type of cells known to this state. */
+void wh_lua_open_cell(lua_State *L);
+
+#endif
