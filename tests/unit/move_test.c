@@ -27,13 +27,13 @@ typedef struct {
 static task_t random_task(void) {
     task_t task;
     memset(&task, 0, sizeof task);
-    task.count = 1 + (size_t)(wh_test_bits() % WH_AXES);
+    task.count = 1 + (size_t)(wh_test_random() % WH_AXES);
     for (size_t axis = 0; axis < task.count; ++axis) {
         task.from[axis] = (wh_real_t)wh_test_uniform(-1000, 1000);
         task.to[axis] = (wh_real_t)wh_test_uniform(-1000, 1000);
-        if (wh_test_bits() % 4 == 0) {
+        if (wh_test_random() % 4 == 0) {
             task.to[axis] = task.from[axis];
-        } else if (wh_test_bits() % 4 == 0) {
+        } else if (wh_test_random() % 4 == 0) {
             task.to[axis] = task.from[axis] + (wh_real_t)wh_test_decades(1e-9, 1);
         }
         task.limits[axis].speed = (wh_real_t)wh_test_decades(1, 2000);
