@@ -77,6 +77,11 @@ static bool is_within_xy(wh_real_t x, wh_real_t y, wh_real_t limit) {
     return square <= limit_square * (1 + CLEAR) && wh_real_sqrt(square) < limit;
 }
 
+/* (1)-(8) never look at the gripper's first two axes; a NaN there must not pass for all that. */
+static bool unused_are_numbers(const wh_mat3_t *R) {
+    return wh_real_is_finite(R->m[0][0] + R->m[0][1] + R->m[1][0] + R->m[1][1] + R->m[2][0] + R->m[2][1]);
+}
+
 bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                         const wh_tolerance_t *tolerance) {
     const wh_vec3_t n1 = wh_mat3_column(&base_from_wafer->R, 2);
@@ -90,7 +95,7 @@ bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_
         return false;
     }
     const wh_vec3_t n2 = wh_mat3_column(&base_from_gripper->R, 2);
-    return wh_vec3_dot(&n1, &n2) > tolerance->planar;
+    return wh_vec3_dot(&n1, &n2) > tolerance->planar && unused_are_numbers(&base_from_gripper->R);
 }
 
 wh_real_t wh_proximity_rim_gap(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
