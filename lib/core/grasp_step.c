@@ -41,6 +41,16 @@ static wh_status_t validate_inputs(wh_grasp_t *table, const wh_gripper_input_t *
     return WH_OK;
 }
 
+/* Where a gripper carries its wafer. A gripper's pose that just passes wh_pose_validate can turn the wafer's
+ * into one that does not, and that the table's owner could not hand back to any call: such a one is mended. */
+static wh_pose_t carried(const wh_pose_t *base_from_gripper, const wh_pose_t *gripper_from_wafer) {
+    wh_pose_t base_from_wafer = wh_pose_compose(base_from_gripper, gripper_from_wafer);
+    if (wh_pose_validate(&base_from_wafer) != WH_OK) {
+        base_from_wafer.R = wh_mat3_orthonormalise(&base_from_wafer.R);
+    }
+    return base_from_wafer;
+}
+
 /* Parts 2 and 3: held wafers go where their grippers carry them; a closed valve lets go of them there. */
 static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
@@ -49,7 +59,7 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
             continue;
         }
         wh_wafer_t *wafer = &table->storage.wafers[gripper->wafer];
-        wafer->base_from_wafer = wh_pose_compose(&inputs[g].base_from_gripper, &gripper->gripper_from_wafer);
+        wafer->base_from_wafer = carried(&inputs[g].base_from_gripper, &gripper->gripper_from_wafer);
         if (inputs[g].valve == WH_VALVE_CLOSED) {
             wafer->holder = WH_NONE;
             wafer->released_by = (int32_t)g;
@@ -120,7 +130,7 @@ static void take(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input, c
         seat(gripper_from_wafer);
     }
     if (table->config.seat || taken->t < 1) {
-        wafer->base_from_wafer = wh_pose_compose(&input->base_from_gripper, gripper_from_wafer);
+        wafer->base_from_wafer = carried(&input->base_from_gripper, gripper_from_wafer);
     }
     wafer->holder = (int32_t)g;
     gripper->wafer = taken->wafer;
