@@ -146,14 +146,27 @@ static void end_contest(const watch_t *watch) {
     report(watch, contest, WH_EVENT_CONTESTED);
 }
 
+static bool contest_goes_on(const watch_t *watch) {
+    const wh_encounter_t *contest = &watch->gripper->contest;
+    if (contest->wafer == WH_NONE) {
+        return false;
+    }
+    const wh_wafer_t *wafer = &watch->table->storage.wafers[contest->wafer];
+    return wafer->holder == contest->holder &&
+           wh_proximity_ready(&wafer->base_from_wafer, watch->base_from_gripper,
+                              &watch->table->config.tolerance);
+}
+
+/* A contest that goes on is kept even when another held wafer has come nearer: it would be reported each time
+ * that the two change places, and before its own hand-over. */
 static void follow_contest(const watch_t *watch) {
-    wh_encounter_t *contest = &watch->gripper->contest;
-    wh_encounter_t found;
-    find_contest(watch, &found);
-    if (found.wafer != WH_NONE && found.wafer == contest->wafer && found.holder == contest->holder) {
+    if (contest_goes_on(watch)) {
         return;
     }
+    wh_encounter_t *contest = &watch->gripper->contest;
+    wh_encounter_t found;
     end_contest(watch);
+    find_contest(watch, &found);
     if (found.wafer != WH_NONE) {
         *contest = found;
     }

@@ -42,7 +42,8 @@ static wh_status_t validate_inputs(wh_grasp_t *table, const wh_gripper_input_t *
 }
 
 /* Where a gripper carries its wafer. A gripper's pose that just passes wh_pose_validate can turn the wafer's
- * into one that does not, and that the table's owner could not hand back to any call: such a one is mended. */
+ * into one that does not, and that the table's owner could not hand back to any call: such a one is mended.
+ */
 static wh_pose_t carried(const wh_pose_t *base_from_gripper, const wh_pose_t *gripper_from_wafer) {
     wh_pose_t base_from_wafer = wh_pose_compose(base_from_gripper, gripper_from_wafer);
     if (wh_pose_validate(&base_from_wafer) != WH_OK) {

@@ -1,0 +1,305 @@
+/* The grasp table beside a slow, obvious model of it: random runs, compared bit for bit after every step. */
+#include "core/grasp.h"
+#include "grasp_model_hash.h"
+#include "support_pose.h"
+
+#ifndef RUNS
+#define RUNS 30000
+#endif
+
+enum { STEPS = 24 };
+
+/* A run, drawn beforehand, so that a failing one can be repeated with fewer steps. */
+typedef struct {
+    wh_grasp_config_t config;
+    size_t wafers, grippers;
+    wh_wafer_t start[MODEL_WAFERS];
+    wh_gripper_input_t input[STEPS][MODEL_GRIPPERS];
+    bool skip[STEPS];
+} script_t;
+
+typedef struct {
+    wh_grasp_t table;
+    wh_wafer_t wafer[MODEL_WAFERS];
+    wh_gripper_t gripper[MODEL_GRIPPERS];
+    wh_event_t event[WH_EVENTS_PER_GRIPPER * MODEL_GRIPPERS];
+    wh_event_list_t list;
+    model_t model;
+} pair_t;
+
+/* Level and on a grid, so that values equal each other and the limits; or tilted a little. */
+static wh_pose_t draw_pose(bool grid, double reach, double height) {
+    if (grid) {
+        return wh_test_at((int)wh_test_below(5) * reach / 4, 0,
+                          ((int)wh_test_below(17) - 8) * 0.0625 * height);
+    }
+    wh_pose_t pose = wh_test_random_pose(reach);
+    pose.R = wh_test_random_turn(wh_test_below(4) ? 0.09 : 0.2);
+    pose.r.z = WH_REAL(wh_test_uniform(-height, height));
+    return pose;
+}
+
+/* As far from orthonormal as may be, or farther now and then. */
+static void wear_out(wh_mat3_t *R) {
+    const double limit = 0.45 * (double)WH_ROTATION_TOLERANCE;
+    const wh_mat3_t exact = *R;
+    wh_pose_t tried = wh_pose_identity();
+    do {
+        for (int k = 0; k < 9; ++k) {
+            R->m[k / 3][k % 3] = exact.m[k / 3][k % 3] + WH_REAL(wh_test_uniform(-limit, limit));
+        }
+        tried.R = *R;
+    } while (wh_pose_validate(&tried) != WH_OK);
+}
+
+static void spoil(wh_gripper_input_t *input) {
+    const wh_real_t bad[] = {WH_REAL(NAN), WH_REAL(INFINITY), WH_REAL(-INFINITY)};
+    switch (wh_test_below(4)) {
+    case 0:
+        input->base_from_gripper.R.m[wh_test_below(3)][wh_test_below(3)] = bad[wh_test_below(3)];
+        break;
+    case 1:
+        input->base_from_gripper.r.y = bad[wh_test_below(3)];
+        break;
+    case 2:
+        input->base_from_gripper.R.m[wh_test_below(3)][wh_test_below(3)] += WH_REAL(0.01);
+        break;
+    default:
+        input->valve = wh_test_below(2) ? 2 : -1;
+    }
+}
+
+static void draw_script(script_t *s) {
+    const bool grid = wh_test_below(3) == 0;
+    const bool worn = wh_test_below(4) == 0;
+    const double height = wh_test_uniform(0.4, 6);
+    const uint32_t patience = 2 + wh_test_below(5);
+    memset(s, 0, sizeof *s);
+    s->config = wh_grasp_config_default();
+    s->config.near_projz = wh_test_below(2) ? WH_REAL(4.5) : WH_REAL(1.5);
+    s->config.near_projxy = wh_test_below(2) ? 100 : 30;
+    s->wafers = wh_test_below(MODEL_WAFERS + 1);
+    s->grippers = 2 + wh_test_below(MODEL_GRIPPERS - 1);
+    for (size_t w = 0; w < s->wafers; ++w) {
+        s->start[w].base_from_wafer = draw_pose(grid, 30, height);
+        if (worn) {
+            wear_out(&s->start[w].base_from_wafer.R);
+        }
+    }
+    for (size_t step = 0; step < STEPS; ++step) {
+        for (size_t g = 0; g < s->grippers; ++g) {
+            wh_gripper_input_t *input = &s->input[step][g];
+            const wh_gripper_input_t *before = step ? &s->input[step - 1][g] : NULL;
+            input->base_from_gripper =
+                before && wh_test_below(2) ? before->base_from_gripper : draw_pose(grid, 40, height);
+            input->valve = before && wh_test_below(patience) ? before->valve : (int32_t)wh_test_below(2);
+            if (worn) {
+                wear_out(&input->base_from_gripper.R);
+            }
+        }
+    }
+    for (size_t step = 0; step < STEPS && wh_test_below(4) == 0; ++step) {
+        spoil(&s->input[step][wh_test_below((uint32_t)s->grippers)]);
+        step += wh_test_below(8);
+    }
+}
+
+static void start(pair_t *p, script_t *s) {
+    memset(p, 0, sizeof *p);
+    memcpy(p->wafer, s->start, sizeof p->wafer);
+    const wh_grasp_storage_t storage = {p->wafer, s->wafers, p->gripper, s->grippers, NULL, 0};
+    assert_int_equal(wh_grasp_init(&p->table, &s->config, &storage), WH_OK);
+    p->list.events = p->event;
+    p->list.capacity = WH_EVENTS_PER_GRIPPER * s->grippers;
+    p->model.config = s->config;
+    p->model.wafers = (int)s->wafers;
+    p->model.grippers = (int)s->grippers;
+    for (size_t w = 0; w < s->wafers; ++w) {
+        p->model.wafer[w] = s->start[w].base_from_wafer;
+        p->model.holder[w] = p->model.let_go_by[w] = -1;
+    }
+    for (size_t g = 0; g < s->grippers; ++g) {
+        p->model.holds[g] = -1;
+        p->model.valve[g] = 1;
+        p->model.gripper[g] = wh_pose_identity();
+        p->model.approach[g].wafer = p->model.contest[g].wafer = -1;
+    }
+}
+
+static bool same_values(const wh_proximity_t *a, const wh_proximity_t *b) {
+    return memcmp(&a->dr, &b->dr, sizeof a->dr) == 0 && a->n1_proj_n2 == b->n1_proj_n2 &&
+           a->dr_proj_z == b->dr_proj_z && memcmp(&a->dr_proj_xy, &b->dr_proj_xy, sizeof a->dr) == 0 &&
+           a->dr_proj_xy_norm == b->dr_proj_xy_norm && a->failed == b->failed && a->ready == b->ready;
+}
+
+static const char *compare_events(const pair_t *p) {
+    const model_t *m = &p->model;
+    if (p->list.count != (size_t)m->events) {
+        return "number of events";
+    }
+    for (size_t i = 0; i < p->list.count; ++i) {
+        const wh_event_t *a = &p->event[i];
+        const wh_event_t *b = NULL;
+        for (int k = 0; k < m->events && !b; ++k) {
+            const wh_event_t *e = &m->event[k];
+            b = e->kind == a->kind && e->wafer == a->wafer && e->gripper == a->gripper ? e : NULL;
+        }
+        if (!b || a->other != b->other || a->slice != b->slice || a->measured_slice != b->measured_slice) {
+            return "an event";
+        }
+        if (!same_values(&a->measured, &b->measured)) {
+            return "an event's values";
+        }
+    }
+    return memcmp(&p->table.counters, &m->counters, sizeof m->counters) ? "counters" : NULL;
+}
+
+static const char *compare_encounter(const wh_encounter_t *a, const wh_encounter_t *b) {
+    if (a->wafer != b->wafer) {
+        return "an encounter's wafer";
+    }
+    const bool same = a->wafer < 0 || (a->slice == b->slice && a->holder == b->holder &&
+                                       same_values(&a->measured, &b->measured));
+    return same ? NULL : "an encounter";
+}
+
+static const char *compare_state(const pair_t *p) {
+    const model_t *m = &p->model;
+    for (int w = 0; w < m->wafers; ++w) {
+        if (p->wafer[w].holder != m->holder[w] || p->wafer[w].released_by != -1) {
+            return "a holder";
+        }
+        if (memcmp(&p->wafer[w].base_from_wafer, &m->wafer[w], sizeof m->wafer[w]) != 0) {
+            return "a wafer's pose";
+        }
+    }
+    for (int g = 0; g < m->grippers; ++g) {
+        const wh_gripper_t *gripper = &p->gripper[g];
+        if (gripper->wafer != m->holds[g]) {
+            return "what a gripper holds";
+        }
+        if (gripper->wafer >= 0 &&
+            memcmp(&gripper->gripper_from_wafer, &m->grasp[g], sizeof m->grasp[g]) != 0) {
+            return "gripper_from_wafer";
+        }
+        const char *wrong = compare_encounter(&gripper->approach, &m->approach[g]);
+        wrong = wrong ? wrong : compare_encounter(&gripper->contest, &m->contest[g]);
+        if (wrong) {
+            return wrong;
+        }
+    }
+    return wh_grasp_hash(&p->table) == model_hash(m) ? NULL : "the hash";
+}
+
+/* What must hold whatever the model says. */
+static const char *check_invariants(const pair_t *p, const pair_t *before) {
+    int holders[MODEL_WAFERS] = {0};
+    for (size_t g = 0; g < p->table.storage.gripper_count; ++g) {
+        const int32_t w = p->gripper[g].wafer;
+        if (w >= 0 && (++holders[w] > 1 || p->wafer[w].holder != (int32_t)g)) {
+            return "one wafer, two holders";
+        }
+        if (w >= 0 && before->gripper[g].wafer == w &&
+            memcmp(&p->gripper[g].gripper_from_wafer, &before->gripper[g].gripper_from_wafer,
+                   sizeof(wh_pose_t)) != 0) {
+            return "a held wafer slipped";
+        }
+    }
+    for (size_t w = 0; w < p->table.storage.wafer_count; ++w) {
+        const wh_pose_t *pose = &p->wafer[w].base_from_wafer;
+        if (before->wafer[w].holder < 0 &&
+            memcmp(pose, &before->wafer[w].base_from_wafer, sizeof *pose) != 0) {
+            return "a resting wafer moved";
+        }
+        if (wh_pose_validate(pose) != WH_OK) {
+            return "a wafer's pose is none";
+        }
+        if ((p->wafer[w].holder >= 0) != (holders[w] == 1)) {
+            return "a holder that holds nothing";
+        }
+    }
+    return NULL;
+}
+
+/* Plays the script's steps; the step at which table and model part, or STEPS. */
+static size_t play(pair_t *p, script_t *s, const char **wrong) {
+    start(p, s);
+    for (size_t step = 0; step < STEPS; ++step) {
+        if (s->skip[step]) {
+            continue;
+        }
+        static pair_t before;
+        memcpy(&before, p, sizeof before);
+        const wh_status_t status = wh_grasp_step(&p->table, s->input[step], &p->list);
+        *wrong = status == model_step(&p->model, s->input[step]) ? NULL : "the status";
+        *wrong = *wrong ? *wrong : compare_state(p);
+        *wrong = *wrong ? *wrong : compare_events(p);
+        *wrong = *wrong ? *wrong : check_invariants(p, &before);
+        if (!*wrong && status != WH_OK &&
+            (memcmp(p->wafer, before.wafer, sizeof p->wafer) != 0 ||
+             memcmp(p->gripper, before.gripper, sizeof p->gripper) != 0)) {
+            *wrong = "a refused step changed something";
+        }
+        if (*wrong) {
+            return step;
+        }
+    }
+    return STEPS;
+}
+
+/* Leaves out each step without which it still fails, and says what is left. */
+static void explain(pair_t *p, script_t *s, unsigned run, size_t step, const char *wrong) {
+    print_error("run %u, step %zu: %s (%zu wafers, %zu grippers)\n", run, step, wrong, s->wafers,
+                s->grippers);
+    size_t left = STEPS;
+    for (size_t k = STEPS; k-- > 0;) {
+        const char *still;
+        s->skip[k] = true;
+        s->skip[k] = play(p, s, &still) != STEPS;
+        left -= s->skip[k];
+    }
+    print_error("it takes %zu steps:", left);
+    for (size_t k = 0; k < STEPS; ++k) {
+        if (!s->skip[k]) {
+            print_error(" %zu", k);
+        }
+    }
+    step = play(p, s, &wrong);
+    print_error("; then at step %zu: %s\n", step, wrong);
+    fail();
+}
+
+static void table_and_model_agree(void **state) {
+    (void)state;
+    static pair_t pair;
+    static script_t script;
+    wh_grasp_counters_t sum = {0};
+    (void)wh_test_seed();
+    for (unsigned run = 0; run < RUNS; ++run) {
+        const char *wrong = NULL;
+        draw_script(&script);
+        const size_t step = play(&pair, &script, &wrong);
+        if (step != STEPS) {
+            explain(&pair, &script, run, step, wrong);
+        }
+        const wh_grasp_counters_t *c = &pair.table.counters;
+        sum.picked += c->picked;
+        sum.released += c->released;
+        sum.handed_over += c->handed_over;
+        sum.near_misses += c->near_misses;
+        sum.contested += c->contested;
+        sum.refused += c->refused;
+    }
+    printf("%d runs: %llu picked, %llu released, %llu handed over, %llu near misses, %llu contested, %llu "
+           "refused\n",
+           RUNS, (unsigned long long)sum.picked, (unsigned long long)sum.released,
+           (unsigned long long)sum.handed_over, (unsigned long long)sum.near_misses,
+           (unsigned long long)sum.contested, (unsigned long long)sum.refused);
+    assert_true(sum.picked > RUNS && sum.released > RUNS / 2 && sum.handed_over > RUNS / 10 &&
+                sum.near_misses > RUNS / 10 && sum.contested > RUNS / 10 && sum.refused > RUNS / 50);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(table_and_model_agree)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
