@@ -22,10 +22,12 @@ typedef struct {
 
 static const struct argp_option options[] = {
     {"json", OPTION_JSON, NULL, 0, "Print the result as one JSON object", 0},
-    {"segments", OPTION_SEGMENTS, "FILE", 0, "Write the motion that was played as C source for a firmware test", 0},
+    {"segments", OPTION_SEGMENTS, "FILE", 0,
+     "Write the motion that was played as C source for a firmware test", 0},
     {"set", OPTION_SET, "NAME=VALUE", 0, "Hand the script a parameter: params.NAME", 0},
     {"trust", OPTION_TRUST, NULL, 0, "Let the script use all of Lua, files and native modules too", 0},
-    {"budget", OPTION_BUDGET, "N", 0, "End the script after N steps of Lua and simulated slices (default 2e9)", 0},
+    {"budget", OPTION_BUDGET, "N", 0,
+     "End the script after N steps of Lua and simulated slices (default 2e9)", 0},
     {"memory", OPTION_MEMORY, "MIB", 0, "Let the script use so many MiB of memory (default 256)", 0},
     {0},
 };
@@ -105,11 +107,15 @@ static int report(const arguments_t *arguments, const wh_run_t *run, wh_run_outc
 
 int wh_app_run(int argc, char **argv) {
     static const struct argp argp = {
-        options, parse, "SCRIPT",
+        options,
+        parse,
+        "SCRIPT",
         "Plays a motion script against the simulator and prints what came of it.\v"
         "Exit status: 0 if all expectations were met, 1 if the script's expectations or the cell failed, "
         "2 for wrong usage or a bad input file.",
-        NULL, NULL, NULL};
+        NULL,
+        NULL,
+        NULL};
     static char name[] = "waferhand run";
     arguments_t arguments = {0};
     arguments.parameters = calloc((size_t)argc + 1, sizeof *arguments.parameters);
