@@ -1,36 +1,32 @@
 #include "motion/move.h"
 
-static wh_status_t plan_each(wh_move_t *move, const wh_limits_t limits[]) {
-    for (size_t axis = 0; axis < move->count; ++axis) {
-        const wh_real_t distance = move->to[axis] - move->from[axis];
-        const wh_status_t status = wh_profile_plan(&move->profile[axis], distance, &limits[axis]);
-        if (status != WH_OK) {
-            return status;
-        }
-        if (wh_profile_duration(&move->profile[axis]) > move->duration) {
-            move->duration = wh_profile_duration(&move->profile[axis]);
-        }
-    }
-    return WH_OK;
-}
-
-static wh_status_t synchronise(wh_move_t *move) {
-    for (size_t axis = 0; axis < move->count; ++axis) {
-        const wh_status_t status = wh_profile_stretch(&move->profile[axis], move->duration);
-        if (status != WH_OK) {
-            return status;
-        }
-    }
-    return WH_OK;
-}
-
-static wh_move_t at_rest(size_t count, const wh_real_t from[], const wh_real_t to[]) {
-    wh_move_t move = {.count = count};
+/* How long the slowest axis takes alone. Plans and forgets, which is cheaper than 1 kB of stack for a second
+ * move. */
+static wh_status_t slowest(size_t count, const wh_real_t from[], const wh_real_t to[],
+                           const wh_limits_t limits[], wh_real_t *duration) {
+    *duration = 0;
     for (size_t axis = 0; axis < count; ++axis) {
-        move.from[axis] = from[axis];
-        move.to[axis] = to[axis];
+        wh_profile_t alone;
+        const wh_status_t status = wh_profile_plan(&alone, to[axis] - from[axis], &limits[axis]);
+        if (status != WH_OK) {
+            return status;
+        }
+        if (wh_profile_duration(&alone) > *duration) {
+            *duration = wh_profile_duration(&alone);
+        }
     }
-    return move;
+    return WH_OK;
+}
+
+/* Cannot fail after `slowest` has planned the same. Reads before it writes: `from` may be move->to. */
+static void plan_axis(wh_move_t *move, size_t axis, wh_real_t from, wh_real_t to, const wh_limits_t *limits) {
+    wh_status_t status = wh_profile_plan(&move->profile[axis], to - from, limits);
+    WH_ASSERT(status == WH_OK);
+    status = wh_profile_stretch(&move->profile[axis], move->duration);
+    WH_ASSERT(status == WH_OK);
+    (void)status;
+    move->from[axis] = from;
+    move->to[axis] = to;
 }
 
 wh_status_t wh_move_plan(wh_move_t *move, size_t count, const wh_real_t from[], const wh_real_t to[],
@@ -41,15 +37,17 @@ wh_status_t wh_move_plan(wh_move_t *move, size_t count, const wh_real_t from[], 
     if (count == 0 || count > WH_AXES) {
         return WH_STATUS_OUT_OF_RANGE;
     }
-    wh_move_t planned = at_rest(count, from, to);
-    wh_status_t status = plan_each(&planned, limits);
-    if (status == WH_OK) {
-        status = synchronise(&planned);
+    wh_real_t duration;
+    const wh_status_t status = slowest(count, from, to, limits, &duration);
+    if (status != WH_OK) {
+        return status;
     }
-    if (status == WH_OK) {
-        *move = planned;
+    move->count = count;
+    move->duration = duration;
+    for (size_t axis = 0; axis < count; ++axis) {
+        plan_axis(move, axis, from[axis], to[axis], &limits[axis]);
     }
-    return status;
+    return WH_OK;
 }
 
 void wh_move_at(const wh_move_t *move, wh_real_t t, wh_real_t position[]) {

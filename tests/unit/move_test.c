@@ -136,6 +136,23 @@ static void a_move_to_nowhere_takes_no_time(void **state) {
     }
 }
 
+static void a_move_goes_on_from_the_last_ones_end(void **state) {
+    (void)state;
+    task_t task = random_task();
+    wh_move_t move = plan(&task);
+    wh_real_t further[WH_AXES] = {1, 2, 3, 4, 5, 6, 7, 8};
+    assert_int_equal(wh_move_plan(&move, task.count, move.to, further, task.limits), WH_OK);
+    memcpy(task.from, task.to, sizeof task.from);
+    memcpy(task.to, further, sizeof task.to);
+    const wh_move_t want = plan(&task);
+    assert_near(move.duration, want.duration, 0);
+    for (size_t axis = 0; axis < task.count; ++axis) {
+        assert_near(move.from[axis], task.from[axis], 0);
+        assert_near(move.to[axis], further[axis], 0);
+        assert_near(move.profile[axis].jerk, want.profile[axis].jerk, 0);
+    }
+}
+
 static void bad_arguments_change_nothing(void **state) {
     (void)state;
     const task_t task = random_task();
@@ -164,6 +181,7 @@ int main(void) {
         cmocka_unit_test(ends_are_exact),
         cmocka_unit_test(axes_stay_between_their_ends),
         cmocka_unit_test(a_move_to_nowhere_takes_no_time),
+        cmocka_unit_test(a_move_goes_on_from_the_last_ones_end),
         cmocka_unit_test(bad_arguments_change_nothing),
     };
     (void)wh_test_seed();
