@@ -63,7 +63,7 @@ wh_status_t wh_robot_validate(const wh_robot_t *robot);
 wh_status_t wh_robot_check_travel(const wh_robot_t *robot, const wh_real_t q[WH_ROBOT_AXES]);
 
 /* base_from_effector at axes q, in travel or not. No pointer may be null. Numbers that are not finite, or
- * angles beyond WH_TRIG_MAX_RAD, give NaN entries. Cost: about 40 ns. */
+ * angles beyond WH_TRIG_MAX_RAD, give NaN entries. Cost: about 60 ns. */
 void wh_robot_forward(const wh_real_t q[WH_ROBOT_AXES], wh_pose_t *base_from_effector);
 
 /* The axes that bring the end-effector to (x, y, z) mm in base with the given heading (rad, any number of
@@ -75,7 +75,7 @@ void wh_robot_forward(const wh_real_t q[WH_ROBOT_AXES], wh_pose_t *base_from_eff
  * wh_robot_forward of the result is the given point to 1e-12 mm (1e-3 in float). Errors:
  * WH_STATUS_NULL_ARGUMENT; WH_STATUS_NOT_FINITE; WH_STATUS_OUT_OF_RANGE (near_q's theta or the heading);
  * WH_STATUS_OUT_OF_REACH (R outside its travel, or a point on base's z axis, where no theta is right);
- * WH_STATUS_LIMIT_EXCEEDED (another axis); q is then unchanged. q may be near_q. Cost: about 40 ns. */
+ * WH_STATUS_LIMIT_EXCEEDED (another axis); q is then unchanged. q may be near_q. Cost: about 60 ns. */
 wh_status_t wh_robot_inverse(const wh_robot_t *robot, wh_real_t x, wh_real_t y, wh_real_t z,
                              wh_real_t heading, const wh_real_t near_q[WH_ROBOT_AXES],
                              wh_real_t q[WH_ROBOT_AXES]);
