@@ -114,8 +114,8 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
  * Refused, and the table left as it was: a null table or inputs (WH_STATUS_NULL_ARGUMENT), a list with room
  * for fewer than WH_EVENTS_PER_GRIPPER events for each gripper (WH_STATUS_BAD_CAPACITY), a pose that does not
  * pass wh_pose_validate, a valve that is neither 0 nor 1; the last two also yield the one event
- * WH_EVENT_BAD_INPUT. Cost: linear in grippers; each open, empty gripper adds a check of every wafer, at
- * about a dozen products each. */
+ * WH_EVENT_BAD_INPUT, the others leave the list empty. Cost: linear in grippers; each open, empty gripper
+ * adds a check of every wafer, at about a dozen products each. */
 wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list);
 
 /* Puts a free wafer somewhere else, as a test or an operator may. Refuses a held wafer (WH_STATUS_HELD), an

@@ -230,6 +230,9 @@ static wh_status_t validate_call(const wh_grasp_t *table, const wh_gripper_input
 }
 
 wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
+    if (list) {
+        list->count = 0;
+    }
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
@@ -237,9 +240,6 @@ wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, w
     if (status != WH_OK) {
         ++table->counters.refused;
         return status;
-    }
-    if (list) {
-        list->count = 0;
     }
     status = validate_inputs(table, inputs, list);
     if (status != WH_OK) {
