@@ -6,8 +6,10 @@
 #include "motion/trig.h"
 #include "script/mcs_internal.h"
 
-/* The budget is charged for slices in portions, so that a long wait can be ended within one. */
+/* The budget is charged for slices in portions, so that a long wait can be ended within one. A slice costs as much time
+ * as some twenty instructions of Lua. */
 #define SLICES_PER_CHARGE 1024
+#define STEPS_PER_SLICE 20
 
 /* ------------------------------------------------------------------------------------------------ the cell
  */
@@ -61,11 +63,13 @@ static int set_up_cell(lua_State *L) {
     const char *name = luaL_checkstring(L, 1);
     wh_sandbox_result_t result;
     if (mcs->layout) {
-        return luaL_error(L, "cell: %s was set up already (expected one cell a script)", mcs->layout->path);
+        lua_pushfstring(L, "cell: %s was set up already (expected one cell a script)", mcs->layout->path);
+        return lua_error(L);
     }
     const char *path = push_layout_path(L, mcs, name);
     if (!wh_sandbox_evaluate(L, path, &result)) {
-        return luaL_error(L, "%s", result.message);
+        lua_pushstring(L, result.message);
+        return lua_error(L);
     }
     set_up(L, mcs, wh_layout_read(L, path));
     lua_pushstring(L, mcs->layout->path);
@@ -188,7 +192,7 @@ static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
         if (status != WH_OK) {
             wh_mcs_raise(L, mcs, status, "the simulator refused a slice");
         }
-        wh_sandbox_charge(L, (uint64_t)(mcs->track.slice - before));
+        wh_sandbox_charge(L, STEPS_PER_SLICE * (uint64_t)(mcs->track.slice - before));
     }
     return state;
 }

@@ -20,13 +20,11 @@ void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file) {
 static void describe(lua_State *L, char *text, size_t size) {
     switch (lua_type(L, -1)) {
     case LUA_TNUMBER:
-    case LUA_TSTRING: {
-        const char *quote = lua_type(L, -1) == LUA_TSTRING ? "\"" : "";
-        lua_pushvalue(L, -1);
-        snprintf(text, size, "%s%.60s%s", quote, lua_tostring(L, -1), quote);
-        lua_pop(L, 1);
+        snprintf(text, size, "%.14g", lua_tonumber(L, -1));
         break;
-    }
+    case LUA_TSTRING:
+        snprintf(text, size, "\"%.60s\"", lua_tostring(L, -1));
+        break;
     case LUA_TBOOLEAN:
         snprintf(text, size, "%s", lua_toboolean(L, -1) ? "true" : "false");
         break;
@@ -49,9 +47,10 @@ void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *ex
     va_end(arguments);
     const bool in_list = field && field[0] == '[';
     const char *dot = reader->depth > 0 && field && !in_list ? "." : "";
-    luaL_error(reader->L, "%s: %s%s%s: %s (expected %s)", reader->file, reader->path, dot, field ? field : "",
-               value, wanted);
-    abort(); /* luaL_error does not return, but its declaration does not say so */
+    lua_pushfstring(reader->L, "%s: %s%s%s: %s (expected %s)", reader->file, reader->path, dot,
+                    field ? field : "", value, wanted);
+    lua_error(reader->L);
+    abort(); /* lua_error does not return, but its declaration does not say so */
 }
 
 static bool is_known(const char *name, const char *known) {
