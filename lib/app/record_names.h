@@ -1,0 +1,12 @@
+/* Names for a record's indices. Every function returns null for WH_NONE, an index out of range and a record
+ * without a layout; the strings are the layout's. */
+#ifndef WH_APP_RECORD_NAMES_H
+#define WH_APP_RECORD_NAMES_H
+
+#include "script/record.h"
+
+const char *wh_record_wafer_name(const wh_record_t *record, int32_t wafer);
+const char *wh_record_gripper_name(const wh_record_t *record, int32_t gripper);
+const char *wh_record_station_name(const wh_record_t *record, int32_t station);
+
+#endif
