@@ -1,4 +1,5 @@
 #include <argp.h>
+#include <locale.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,6 +29,8 @@ static void print_help(FILE *out) {
 }
 
 int main(int argc, char **argv) {
+    /* Only what characters are: numbers and sorting stay those of the "C" locale. */
+    setlocale(LC_CTYPE, "");
     argp_err_exit_status = WH_EXIT_USAGE;
     argp_program_version = "waferhand " WH_VERSION;
     if (argc < 2) {

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "app/app.h"
 #include "app/record_json.h"
@@ -82,7 +83,8 @@ static int print_result(const arguments_t *arguments, const wh_run_t *run) {
     if (arguments->json) {
         return wh_record_print_json(&run->record, stdout);
     }
-    return wh_record_print_table(&run->record, stdout);
+    const wh_style_t style = wh_style_of(stdout);
+    return wh_record_print_table(&run->record, stdout, &style);
 }
 
 static int report(const arguments_t *arguments, const wh_run_t *run, wh_run_outcome_t outcome) {
@@ -99,7 +101,8 @@ static int report(const arguments_t *arguments, const wh_run_t *run, wh_run_outc
         fprintf(stderr, "standard output: %s\n", strerror(errno));
         return WH_EXIT_USAGE;
     }
-    if (run->record.failure) {
+    /* The table ends with it; where that is not on the same screen it would be missed. */
+    if (run->record.failure && (arguments->json || !isatty(STDOUT_FILENO))) {
         fprintf(stderr, "%s\n", run->record.failure);
     }
     return outcome == WH_RUN_MET ? WH_EXIT_MET : WH_EXIT_FAILED;

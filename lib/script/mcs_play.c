@@ -1,6 +1,7 @@
 /* The MCS host's hands: setting up the cell, planning, and playing segments slice by slice. */
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 
 #include "motion/trig.h"
@@ -14,6 +15,28 @@
 /* ------------------------------------------------------------------------------------------------ the cell
  */
 
+static bool is_same_file(const char *a, const char *b) {
+    struct stat one;
+    struct stat two;
+    return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_dev == two.st_dev && one.st_ino == two.st_ino;
+}
+
+/* "lua/examples/../layouts" reads better as "lua/layouts": if that is the same file, symbolic links considered. */
+static const char *push_short_path(lua_State *L, const char *path) {
+    const char *up = strstr(path, "/../");
+    const char *start = up;
+    while (start && start > path && start[-1] != '/') {
+        --start;
+    }
+    if (!up || strncmp(start, "..", 2) == 0) {
+        return lua_pushstring(L, path);
+    }
+    lua_pushlstring(L, path, (size_t)(start - path));
+    lua_pushstring(L, up + 4);
+    lua_concat(L, 2);
+    return is_same_file(path, lua_tostring(L, -1)) ? lua_tostring(L, -1) : lua_pushstring(L, path);
+}
+
 /* The layout's path relative to the script's own folder. */
 static const char *push_layout_path(lua_State *L, const wh_mcs_t *mcs, const char *name) {
     const char *slash = strrchr(mcs->script, '/');
@@ -23,7 +46,7 @@ static const char *push_layout_path(lua_State *L, const wh_mcs_t *mcs, const cha
     lua_pushlstring(L, mcs->script, (size_t)(slash - mcs->script) + 1);
     lua_pushstring(L, name);
     lua_concat(L, 2);
-    return lua_tostring(L, -1);
+    return push_short_path(L, lua_tostring(L, -1));
 }
 
 static void *lua_memory(lua_State *L, size_t bytes) {

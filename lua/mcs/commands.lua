@@ -12,7 +12,7 @@ return function(native, patterns, names)
       return result
     end
     local numbered = type(result) == "table" and math.type(result.number) == "integer"
-    native.finish(numbered and result.number or names.errors.BAD_ARGUMENT.number, tostring(result))
+    native.finish(numbered and result.number or names.errors.BAD_ARGUMENT.number, numbered and result.text or tostring(result))
     error(result, 0)
   end
 

@@ -14,7 +14,7 @@ return function(native)
       for _, slot in ipairs({ 1, station.slots }) do
         local problem = rehearse(name, slot)
         if problem then
-          local reason = type(problem) == "table" and problem.message:gsub("^.*error %d+ ", "") or tostring(problem)
+          local reason = type(problem) == "table" and problem.text or tostring(problem)
           error(("%s: stations.%s: slot %d (expected one in reach: %s)"):format(layout_path, name, slot, reason), 0)
         end
       end
