@@ -1,0 +1,193 @@
+/* The instruction budget: a count hook in every coroutine, charges from C, and the state of having run out.
+ *
+ * An exhausted limit cannot be caught: the hook fires at each instruction from then on, and pcall, xpcall and
+ * the coroutine functions (sandbox_protect.c) pass the error on.
+ */
+#include <inttypes.h>
+#include <string.h>
+
+#include "script/sandbox_internal.h"
+
+/* Levels of the call stack that are searched for a line: a runaway recursion has a hundred thousand. */
+#define SEARCHED_LEVELS 1000
+
+/* Registry keys of the messages, made beforehand: raising must not need memory. */
+static const char message_keys[WH_SANDBOX_UNREADABLE + 1] = {0};
+
+wh_sandbox_t *wh_sandbox_of(lua_State *L) {
+    void *opaque = NULL;
+    return lua_getallocf(L, &opaque) == wh_sandbox_allocate ? opaque : NULL;
+}
+
+void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size) {
+    switch (sandbox->fatal) {
+    case WH_SANDBOX_BUDGET:
+        snprintf(text, size, "instruction budget of %" PRIu64 " spent", sandbox->budget);
+        break;
+    case WH_SANDBOX_MEMORY:
+        if (sandbox->memory_cap >> 20 << 20 == sandbox->memory_cap) {
+            snprintf(text, size, "memory cap of %zu MiB reached", sandbox->memory_cap >> 20);
+        } else {
+            snprintf(text, size, "memory cap of %zu KiB reached", sandbox->memory_cap >> 10);
+        }
+        break;
+    default:
+        snprintf(text, size, "stopped");
+        break;
+    }
+}
+
+int wh_sandbox_line(lua_State *L, const char *path) {
+    lua_Debug frame;
+    for (int level = 0; level < SEARCHED_LEVELS && lua_getstack(L, level, &frame); ++level) {
+        if (lua_getinfo(L, "Sl", &frame) && frame.currentline > 0 && frame.source[0] == '@' &&
+            strcmp(frame.source + 1, path) == 0) {
+            return frame.currentline;
+        }
+    }
+    return 0;
+}
+
+void wh_sandbox_exhaust(lua_State *L, wh_sandbox_reason_t reason) {
+    wh_sandbox_t *const sandbox = wh_sandbox_of(L);
+    if (sandbox->fatal != WH_SANDBOX_OK) {
+        return;
+    }
+    sandbox->fatal = reason;
+    wh_sandbox_job_t *const job = sandbox->job;
+    if (job != NULL && job->path != NULL) {
+        const bool was_refused = reason == WH_SANDBOX_MEMORY && sandbox->refused;
+        job->line = was_refused ? job->refused_line : wh_sandbox_line(L, job->path);
+        job->line_is_final = true;
+    }
+    wh_sandbox_alarm(sandbox);
+}
+
+int wh_sandbox_raise(lua_State *L) {
+    const wh_sandbox_t *const sandbox = wh_sandbox_of(L);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &message_keys[sandbox->fatal]);
+    return lua_error(L);
+}
+
+bool wh_sandbox_is_fatal(lua_State *L, int status) {
+    wh_sandbox_t *const sandbox = wh_sandbox_of(L);
+    /* lauxlib's buffers report a refusal as an ordinary error with this text. */
+    const bool buffer_refused = sandbox->refused && lua_type(L, -1) == LUA_TSTRING &&
+                                strcmp(lua_tostring(L, -1), "not enough memory") == 0;
+    if (status == LUA_ERRMEM || buffer_refused) {
+        wh_sandbox_exhaust(L, WH_SANDBOX_MEMORY);
+    }
+    return sandbox->fatal != WH_SANDBOX_OK;
+}
+
+static void on_count(lua_State *L, lua_Debug *event);
+
+static int raise_power(lua_State *L, wh_sandbox_t *sandbox) {
+    sandbox->power_pending = false;
+    lua_pushfstring(L, "%s:%d: '^' needs a whole-number exponent; got %f", sandbox->power_source,
+                    sandbox->power_line, sandbox->power_exponent);
+    return lua_error(L);
+}
+
+/* Collects what can be collected once the memory stands above the brim; charges for the work. */
+static void check_brim(lua_State *L, wh_sandbox_t *sandbox) {
+    if (!sandbox->brimming) {
+        return;
+    }
+    wh_sandbox_spend(sandbox, sandbox->memory >> 6);
+    lua_gc(L, LUA_GCCOLLECT);
+    sandbox->brimming = false;
+    if (sandbox->memory > wh_sandbox_memory_brim(sandbox)) {
+        sandbox->refused = false; /* it is here, not at an earlier refusal that a collection healed */
+        wh_sandbox_exhaust(L, WH_SANDBOX_MEMORY);
+    }
+}
+
+static void check_limits(lua_State *L, wh_sandbox_t *sandbox) {
+    const int count = lua_gethookcount(L);
+    if (count != WH_SANDBOX_GRANULE) {
+        lua_sethook(L, on_count, LUA_MASKCOUNT, WH_SANDBOX_GRANULE);
+    }
+    wh_sandbox_spend(sandbox, (uint64_t)count);
+    check_brim(L, sandbox);
+    if (sandbox->stop) {
+        wh_sandbox_exhaust(L, WH_SANDBOX_STOPPED);
+    }
+    if (sandbox->spent > sandbox->budget) {
+        wh_sandbox_exhaust(L, WH_SANDBOX_BUDGET);
+    }
+}
+
+static void on_count(lua_State *L, lua_Debug *event) {
+    (void)event;
+    wh_sandbox_t *const sandbox = wh_sandbox_of(L);
+    if (sandbox->fatal == WH_SANDBOX_OK) {
+        check_limits(L, sandbox);
+    }
+    if (sandbox->fatal != WH_SANDBOX_OK) {
+        lua_sethook(L, on_count, LUA_MASKCOUNT, 1);
+        wh_sandbox_raise(L);
+    }
+    if (sandbox->power_pending) {
+        raise_power(L, sandbox);
+    }
+}
+
+void wh_sandbox_alarm(wh_sandbox_t *sandbox) {
+    if (sandbox->running != NULL) {
+        lua_sethook(sandbox->running, on_count, LUA_MASKCOUNT, 1);
+    }
+}
+
+void wh_sandbox_spend(wh_sandbox_t *sandbox, uint64_t steps) {
+    sandbox->spent = steps > UINT64_MAX - sandbox->spent ? UINT64_MAX : sandbox->spent + steps;
+    if (sandbox->spent > sandbox->budget) {
+        wh_sandbox_alarm(sandbox);
+    }
+}
+
+void wh_sandbox_charge(lua_State *L, uint64_t steps) {
+    wh_sandbox_t *const sandbox = wh_sandbox_of(L);
+    if (sandbox == NULL) {
+        return;
+    }
+    wh_sandbox_spend(sandbox, steps);
+    if (sandbox->stop) {
+        wh_sandbox_exhaust(L, WH_SANDBOX_STOPPED);
+    }
+    if (sandbox->spent > sandbox->budget) {
+        wh_sandbox_exhaust(L, WH_SANDBOX_BUDGET);
+    }
+    if (sandbox->fatal != WH_SANDBOX_OK) {
+        wh_sandbox_raise(L);
+    }
+}
+
+void wh_sandbox_renew(wh_sandbox_t *sandbox) {
+    sandbox->spent = 0;
+    sandbox->fatal = WH_SANDBOX_OK;
+    sandbox->stop = 0;
+    lua_sethook(sandbox->main, on_count, LUA_MASKCOUNT, WH_SANDBOX_GRANULE);
+}
+
+void wh_sandbox_stop(wh_sandbox_t *sandbox) {
+    sandbox->stop = 1;
+    wh_sandbox_alarm(sandbox);
+}
+
+uint64_t wh_sandbox_spent(const wh_sandbox_t *sandbox) {
+    return sandbox->spent;
+}
+
+void wh_sandbox_budget_open(lua_State *L) {
+    wh_sandbox_t *const sandbox = wh_sandbox_of(L);
+    for (int reason = WH_SANDBOX_BUDGET; reason <= WH_SANDBOX_STOPPED; ++reason) {
+        char text[100];
+        sandbox->fatal = (wh_sandbox_reason_t)reason;
+        wh_sandbox_fatal_text(sandbox, text, sizeof text);
+        lua_pushstring(L, text);
+        lua_rawsetp(L, LUA_REGISTRYINDEX, &message_keys[reason]);
+    }
+    sandbox->fatal = WH_SANDBOX_OK;
+    lua_sethook(L, on_count, LUA_MASKCOUNT, WH_SANDBOX_GRANULE);
+}

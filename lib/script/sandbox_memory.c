@@ -1,0 +1,72 @@
+/* The sandbox's allocator: a cap, a high-water mark, and a price for large blocks. */
+#include <stdlib.h>
+
+#include "script/sandbox_internal.h"
+
+/* Copying and clearing cost time that no instruction counts: one step per 64 bytes of a long string or large
+ * block. */
+#define STEP_SHIFT 6
+#define LONG_STRING_BYTES 512
+#define LARGE_BLOCK_BYTES ((size_t)64 << 10)
+
+static void charge_block(wh_sandbox_t *sandbox, bool is_string, size_t size) {
+    if (size >= LARGE_BLOCK_BYTES && size > sandbox->largest_block) {
+        sandbox->largest_block = size;
+    }
+    if (size >= (is_string ? LONG_STRING_BYTES : LARGE_BLOCK_BYTES)) {
+        wh_sandbox_spend(sandbox, size >> STEP_SHIFT);
+    }
+}
+
+/* Lua answers a refusal by a full collection and a second try. At the brim each small table would cost a
+ * collection of all the memory: that is charged for, too. */
+static void *refuse(wh_sandbox_t *sandbox) {
+    sandbox->refused = true;
+    wh_sandbox_spend(sandbox, sandbox->memory >> STEP_SHIFT);
+    if (sandbox->running != NULL && sandbox->job != NULL && sandbox->job->path != NULL) {
+        sandbox->job->refused_line = wh_sandbox_line(sandbox->running, sandbox->job->path);
+    }
+    return NULL;
+}
+
+/* Lua passes a new object's type as the old size of a null block, and relies on shrinking never to fail. */
+void *wh_sandbox_allocate(void *opaque, void *block, size_t old_size, size_t new_size) {
+    wh_sandbox_t *const sandbox = opaque;
+    const size_t held = block != NULL ? old_size : 0;
+    if (new_size == 0) {
+        free(block);
+        sandbox->memory -= held;
+        return NULL;
+    }
+    if (new_size > held && new_size - held > sandbox->memory_cap - sandbox->memory) {
+        return refuse(sandbox);
+    }
+    void *const moved = realloc(block, new_size);
+    if (moved == NULL) {
+        return new_size <= held ? block : refuse(sandbox);
+    }
+    sandbox->memory = sandbox->memory - held + new_size;
+    if (new_size > held && sandbox->memory > wh_sandbox_memory_brim(sandbox)) {
+        sandbox->brimming = true;
+        wh_sandbox_alarm(sandbox);
+    }
+    if (sandbox->memory > sandbox->memory_high_water) {
+        sandbox->memory_high_water = sandbox->memory;
+    }
+    if (new_size > held) {
+        charge_block(sandbox, block == NULL && old_size == LUA_TSTRING, new_size);
+    }
+    return moved;
+}
+
+size_t wh_sandbox_memory_brim(const wh_sandbox_t *sandbox) {
+    return sandbox->memory_cap - sandbox->memory_cap / 8;
+}
+
+size_t wh_sandbox_memory(const wh_sandbox_t *sandbox) {
+    return sandbox->memory;
+}
+
+size_t wh_sandbox_memory_high_water(const wh_sandbox_t *sandbox) {
+    return sandbox->memory_high_water;
+}

@@ -1,0 +1,187 @@
+/* pcall, xpcall and coroutines, which pass an exhausted limit on instead of catching it, and keep track of
+ * which coroutine runs. */
+#include "script/sandbox_internal.h"
+
+/* ---- pcall, xpcall: as in Lua's base library, the extra value being the results to leave out. ---- */
+
+static int finish(lua_State *L, int status, lua_KContext left_out) {
+    if (status == LUA_OK || status == LUA_YIELD) {
+        return lua_gettop(L) - (int)left_out;
+    }
+    if (wh_sandbox_is_fatal(L, status)) {
+        return wh_sandbox_raise(L);
+    }
+    lua_pushboolean(L, false);
+    lua_insert(L, -2);
+    return 2;
+}
+
+static int protect_pcall(lua_State *L) {
+    luaL_checkany(L, 1);
+    lua_pushboolean(L, true);
+    lua_insert(L, 1);
+    const int status = lua_pcallk(L, lua_gettop(L) - 2, LUA_MULTRET, 0, 0, finish);
+    return finish(L, status, 0);
+}
+
+/* The handler's result, or the error in the handler, is on top. */
+static int finish_handler(lua_State *L, int status, lua_KContext context) {
+    (void)context;
+    if (status != LUA_OK && status != LUA_YIELD && wh_sandbox_is_fatal(L, status)) {
+        return wh_sandbox_raise(L);
+    }
+    lua_pushboolean(L, false);
+    lua_insert(L, -2);
+    return 2;
+}
+
+/* The handler, at index 2, is called after the stack has been unwound. Lua would call it where the error is;
+ * when that is in the count hook, hooks are off and the handler could loop for ever. */
+static int finish_xpcall(lua_State *L, int status, lua_KContext left_out) {
+    if (status == LUA_OK || status == LUA_YIELD || wh_sandbox_is_fatal(L, status)) {
+        return finish(L, status, left_out);
+    }
+    lua_pushvalue(L, 2);
+    lua_insert(L, -2);
+    const int handled = lua_pcallk(L, 1, 1, 0, 0, finish_handler);
+    return finish_handler(L, handled, 0);
+}
+
+static int protect_xpcall(lua_State *L) {
+    const int arguments = lua_gettop(L) - 2;
+    luaL_checktype(L, 2, LUA_TFUNCTION);
+    lua_pushboolean(L, true);
+    lua_pushvalue(L, 1);
+    lua_rotate(L, 3, 2); /* function, handler, true, function, arguments */
+    const int status = lua_pcallk(L, arguments, LUA_MULTRET, 0, 2, finish_xpcall);
+    return finish_xpcall(L, status, 2);
+}
+
+/* ---- Coroutines ---- */
+
+static int body_finish(lua_State *L, int status, lua_KContext context) {
+    (void)context;
+    if (status == LUA_OK || status == LUA_YIELD) {
+        return lua_gettop(L);
+    }
+    (void)wh_sandbox_is_fatal(L, status);
+    return lua_error(L);
+}
+
+/* The first function of each coroutine calls the script's one protected. An error that the count hook raised
+ * would otherwise leave the coroutine with its hooks off, and closing its variables could then loop for ever;
+ * lua_pcallk switches them on again and closes the variables itself. */
+static int body(lua_State *L) {
+    lua_pushvalue(L, lua_upvalueindex(1));
+    lua_insert(L, 1);
+    const int status = lua_pcallk(L, lua_gettop(L) - 1, LUA_MULTRET, 0, 0, body_finish);
+    return body_finish(L, status, 0);
+}
+
+/* Charged for: up to a granule of a coroutine's instructions goes uncounted. */
+static int coroutine_create(lua_State *L) {
+    luaL_checktype(L, 1, LUA_TFUNCTION);
+    wh_sandbox_charge(L, WH_SANDBOX_GRANULE);
+    lua_State *const co = lua_newthread(L);
+    lua_pushvalue(L, 1);
+    lua_pushcclosure(L, body, 1);
+    lua_xmove(L, co, 1);
+    return 1;
+}
+
+static lua_State *check_coroutine(lua_State *L) {
+    lua_State *const co = lua_tothread(L, 1);
+    luaL_argexpected(L, co != NULL, 1, "coroutine");
+    return co;
+}
+
+int wh_sandbox_resume(lua_State *co, lua_State *from, int arguments, int *results) {
+    wh_sandbox_t *const sandbox = wh_sandbox_of(co);
+    lua_State *const before = sandbox->running;
+    sandbox->running = co;
+    const int status = lua_resume(co, from, arguments, results);
+    sandbox->running = before;
+    if (status != LUA_OK && status != LUA_YIELD && wh_sandbox_is_fatal(co, status)) {
+        wh_sandbox_raise(from);
+    }
+    return status;
+}
+
+/* Moves arguments over and results, or the error's value, back; gives their number, or -1. */
+static int resume(lua_State *L, lua_State *co, int arguments) {
+    if (!lua_checkstack(co, arguments)) {
+        lua_pushliteral(L, "too many arguments to resume");
+        return -1;
+    }
+    lua_xmove(L, co, arguments);
+    int results = 0;
+    const int status = wh_sandbox_resume(co, L, arguments, &results);
+    if (status != LUA_OK && status != LUA_YIELD) {
+        lua_xmove(co, L, 1);
+        return -1;
+    }
+    if (!lua_checkstack(L, results + 1)) {
+        lua_pop(co, results);
+        lua_pushliteral(L, "too many results to resume");
+        return -1;
+    }
+    lua_xmove(co, L, results);
+    return results;
+}
+
+static int coroutine_resume(lua_State *L) {
+    lua_State *const co = check_coroutine(L);
+    const int results = resume(L, co, lua_gettop(L) - 1);
+    lua_pushboolean(L, results >= 0);
+    lua_insert(L, results >= 0 ? -results - 1 : -2);
+    return results >= 0 ? results + 1 : 2;
+}
+
+static int call_wrapped(lua_State *L) {
+    lua_State *const co = lua_tothread(L, lua_upvalueindex(1));
+    const int results = resume(L, co, lua_gettop(L));
+    return results >= 0 ? results : lua_error(L);
+}
+
+static int coroutine_wrap(lua_State *L) {
+    coroutine_create(L);
+    lua_pushcclosure(L, call_wrapped, 1);
+    return 1;
+}
+
+static bool is_active(lua_State *L, lua_State *co) {
+    lua_Debug frame;
+    return co == L || (lua_status(co) == LUA_OK && lua_getstack(co, 0, &frame));
+}
+
+static int coroutine_close(lua_State *L) {
+    wh_sandbox_t *const sandbox = wh_sandbox_of(L);
+    lua_State *const co = check_coroutine(L);
+    if (is_active(L, co)) {
+        return luaL_error(L, "cannot close a %s coroutine", co == L ? "running" : "normal");
+    }
+    lua_State *const before = sandbox->running;
+    sandbox->running = co;
+    const int status = lua_resetthread(co);
+    sandbox->running = before;
+    lua_pushboolean(L, status == LUA_OK);
+    if (status == LUA_OK) {
+        return 1;
+    }
+    lua_xmove(co, L, 1);
+    return wh_sandbox_is_fatal(L, status) ? wh_sandbox_raise(L) : 2;
+}
+
+void wh_library_open_protect(lua_State *L) {
+    static const luaL_Reg base[] = {{"pcall", protect_pcall}, {"xpcall", protect_xpcall}, {NULL, NULL}};
+    static const luaL_Reg coroutines[] = {{"create", coroutine_create},
+                                          {"resume", coroutine_resume},
+                                          {"wrap", coroutine_wrap},
+                                          {"close", coroutine_close},
+                                          {NULL, NULL}};
+    lua_pushglobaltable(L);
+    wh_library_set(L, base);
+    lua_getfield(L, -1, LUA_COLIBNAME);
+    wh_library_set(L, coroutines);
+    lua_pop(L, 2);
+}

@@ -1,0 +1,512 @@
+/* The sandbox holds: whatever a script does, it ends with a reason and a line, and the state stays usable. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include <lauxlib.h>
+
+#include "script/sandbox.h"
+
+typedef struct {
+    const char *script;
+    wh_sandbox_reason_t reason;
+    const char *message; /* a part of it; it begins with "case.lua" when there is one */
+} case_t;
+
+static const case_t cases[] = {
+    {"local x = 1 + 1", WH_SANDBOX_OK, ""},
+    {"#!/usr/bin/waferhand\nassert(1 == 1)", WH_SANDBOX_OK, ""},
+    /* thrown errors of every kind */
+    {"\nlocal x = nil + 1", WH_SANDBOX_ERROR, "case.lua:2: attempt to perform arithmetic on a nil value"},
+    {"\n\nerror('broken')", WH_SANDBOX_ERROR, "case.lua:3: broken"},
+    {"\nerror('broken', 0)", WH_SANDBOX_ERROR, "case.lua:2: broken"},
+    {"error()", WH_SANDBOX_ERROR, "case.lua:1: (error object is a nil value)"},
+    {"error(true)", WH_SANDBOX_ERROR, "case.lua:1: (error object is a boolean value)"},
+    {"error(12)", WH_SANDBOX_ERROR, "case.lua:1: 12"},
+    {"error({})", WH_SANDBOX_ERROR, "case.lua:1: (error object is a table value)"},
+    {"\nerror({ number = 42, message = 'wafer missing' })", WH_SANDBOX_ERROR, "case.lua:2: wafer missing"},
+    {"error(setmetatable({}, { __tostring = function() return 'mine' end }))", WH_SANDBOX_ERROR,
+     "case.lua:1: mine"},
+    {"error(setmetatable({}, { __tostring = function() error('no') end }))", WH_SANDBOX_ERROR,
+     "__tostring failed"},
+    {"error(setmetatable({}, { __tostring = function() return {} end }))", WH_SANDBOX_ERROR,
+     "__tostring failed"},
+    {"error(setmetatable({}, { __tostring = function() while true do end end }))", WH_SANDBOX_BUDGET,
+     "budget"},
+    {"error('a\\0b')", WH_SANDBOX_ERROR, "case.lua:1: a b"},
+    {"error(string.rep('x', 100000))", WH_SANDBOX_ERROR, "xxx..."},
+    {"coroutine.wrap(function() error('inside') end)()", WH_SANDBOX_ERROR, "case.lua:1: inside"},
+    {"x = = 1", WH_SANDBOX_SYNTAX, "case.lua:1: unexpected symbol"},
+    {"\x1bLua", WH_SANDBOX_SYNTAX, "case.lua: attempt to load a binary chunk"},
+    /* loops */
+    {"\nwhile true do end", WH_SANDBOX_BUDGET, "case.lua:2: instruction budget of 1000000 spent"},
+    {"::a:: goto a", WH_SANDBOX_BUDGET, "case.lua:1: instruction budget"},
+    {"repeat until false", WH_SANDBOX_BUDGET, ""},
+    {"while true do pcall(function() while true do end end) end", WH_SANDBOX_BUDGET, ""},
+    {"while true do pcall(error) end", WH_SANDBOX_BUDGET, ""},
+    {"while true do xpcall(function() while true do end end, function() while true do end end) end",
+     WH_SANDBOX_BUDGET, ""},
+    {"xpcall(error, function() while true do end end)", WH_SANDBOX_BUDGET, ""},
+    {"while true do coroutine.wrap(function() while true do end end)() end", WH_SANDBOX_BUDGET, ""},
+    {"while true do pcall(coroutine.wrap(function() while true do end end)) end", WH_SANDBOX_BUDGET, ""},
+    {"while true do coroutine.resume(coroutine.create(function() end)) end", WH_SANDBOX_BUDGET, ""},
+    {"local f = coroutine.wrap(function() while true do coroutine.yield() end end) while true do f() end",
+     WH_SANDBOX_BUDGET, ""},
+    {"local c = { __close = function() while true do end end }\n"
+     "while true do pcall(function() local x <close> = setmetatable({}, c) while true do end end) end",
+     WH_SANDBOX_BUDGET, ""},
+    {"local c = { __close = function() while true do end end }\n"
+     "local f = coroutine.wrap(function() local x <close> = setmetatable({}, c) while true do end end)\n"
+     "while true do pcall(f) end",
+     WH_SANDBOX_BUDGET, ""},
+    {"local c = { __close = function() while true do end end }\n"
+     "local e = 0.5\n"
+     "local co = coroutine.create(function() local x <close> = setmetatable({}, c) local y = 2 ^ e end)\n"
+     "coroutine.resume(co) coroutine.close(co)",
+     WH_SANDBOX_BUDGET, ""},
+    {"local c = { __close = function() while true do end end }\n"
+     "local co = coroutine.create(function() local x <close> = setmetatable({}, c) coroutine.yield() end)\n"
+     "coroutine.resume(co) coroutine.close(co)",
+     WH_SANDBOX_BUDGET, ""},
+    {"local t = setmetatable({}, { __index = function(t, k) return t[k + 1] end }) local x = t[1]",
+     WH_SANDBOX_ERROR, "overflow"},
+    {"local t = {} setmetatable(t, { __index = t }) local x = t[1]", WH_SANDBOX_ERROR, "loop"},
+    {"for i, v in ipairs(setmetatable({}, { __index = function() return 1 end })) do end", WH_SANDBOX_BUDGET,
+     ""},
+    {"table.sort({ 3, 2, 1 }, function() while true do end end)", WH_SANDBOX_BUDGET, ""},
+    {"string.gsub('x', 'x', function() while true do end end)", WH_SANDBOX_BUDGET, ""},
+    {"while true do load('x = 2 ^ 0.5') end", WH_SANDBOX_BUDGET, ""},
+    /* deep recursion */
+    {"local function f() return 1 + f() end f()", WH_SANDBOX_MEMORY, "case.lua:1"},
+    {"local function f() pcall(f) end f()", WH_SANDBOX_OK, ""},
+    {"local function f() local ok, e = pcall(f) if not ok then error(e, 0) end end f()", WH_SANDBOX_ERROR,
+     "overflow"},
+    {"local function f() return (string.gsub('x', 'x', f)) end f()", WH_SANDBOX_ERROR, "C stack overflow"},
+    {"local function f() return coroutine.wrap(f)() end f()", WH_SANDBOX_ERROR, "C stack overflow"},
+    {"local function f() local co = coroutine.create(function()\n"
+     "local x <close> = setmetatable({}, { __close = f }) coroutine.yield() end)\n"
+     "coroutine.resume(co) local ok, e = coroutine.close(co) if not ok then error(e, 0) end end f()",
+     WH_SANDBOX_ERROR, "C stack overflow"},
+    {"local function f() error(setmetatable({}, { __tostring = f })) end f()", WH_SANDBOX_ERROR,
+     "__tostring failed"},
+    {"load(string.rep('(', 1000) .. '1' .. string.rep(')', 1000))()", WH_SANDBOX_ERROR, ""},
+    {"local t = {} for i = 1, 1000 do t = setmetatable({}, { __eq = function() return t == {} end }) end",
+     WH_SANDBOX_OK, ""},
+    /* memory */
+    {"local t = {}\nfor i = 1, 1e9 do t[i] = { nil, nil, nil, nil, nil, nil, nil, nil, nil, nil, nil, nil } "
+     "end",
+     WH_SANDBOX_MEMORY, "case.lua:2: memory cap of 16 MiB reached"},
+    {"local s = 'x'\nwhile true do s = s .. s end", WH_SANDBOX_MEMORY, "case.lua:2: memory cap"},
+    {"local s = ('x'):rep(1e9)", WH_SANDBOX_MEMORY, "case.lua:1: memory cap"},
+    {"while true do pcall(string.rep, 'x', 1e9) end", WH_SANDBOX_MEMORY, ""},
+    {"local t = {} for i = 1, 1e9 do t[i] = 'x' .. i end", WH_SANDBOX_MEMORY, ""},
+    {"local t = {} while true do coroutine.wrap(function() for i = 1, 1e9 do t[i] = { i } end end)() end",
+     WH_SANDBOX_MEMORY, ""},
+    {"local t = {} for i = 1, 1500 do t[i] = ('x'):rep(8000) end t = nil\n"
+     "for i = 1, 100 do local u = ('y'):rep(1000000) end",
+     WH_SANDBOX_OK, ""},
+    /* C functions that loop where no hook sees them */
+    {"local s = string.rep('', 1e18)", WH_SANDBOX_OK, ""},
+    {"assert(string.rep('', 1 << 60) == '') assert(string.rep('ab', 2, ',') == 'ab,ab')", WH_SANDBOX_OK, ""},
+    {"string.rep('a', 40):find(string.rep('a?', 40) .. string.rep('a', 40))", WH_SANDBOX_BUDGET, ""},
+    {"string.rep('a', 500):match(string.rep('.-', 30) .. 'b')", WH_SANDBOX_BUDGET, ""},
+    {"for w in string.rep('a', 500):gmatch(string.rep('a*', 20) .. 'b') do end", WH_SANDBOX_BUDGET, ""},
+    {"string.rep('a', 500):gsub(string.rep('a*', 20) .. 'b', '')", WH_SANDBOX_BUDGET, ""},
+    {"local s = string.rep('a', 4e6) while true do s:find(string.rep('a', 1000) .. 'b', 1, true) end",
+     WH_SANDBOX_BUDGET, ""},
+    {"table.move({}, 1, 1 << 53, 2)", WH_SANDBOX_BUDGET, "case.lua:1: instruction budget"},
+    {"table.concat({}, '', 1, math.maxinteger)", WH_SANDBOX_BUDGET, ""},
+    {"table.unpack({}, 1, 1e8)", WH_SANDBOX_BUDGET, ""},
+    {"table.unpack({}, 1, 1 << 60)", WH_SANDBOX_ERROR, "too many results"},
+    {"table.insert(setmetatable({}, { __len = function() return 1 << 60 end }), 1, 1)", WH_SANDBOX_ERROR,
+     "__len"},
+    {"table.remove(setmetatable({}, { __len = function() return 1 << 60 end }), 1)", WH_SANDBOX_ERROR,
+     "__len"},
+    {"table.concat(setmetatable({}, { __len = function() return 1 << 60 end }))", WH_SANDBOX_ERROR, "__len"},
+    {"table.unpack(setmetatable({}, { __len = function() return 1 << 60 end }))", WH_SANDBOX_ERROR, "__len"},
+    {"table.sort(setmetatable({}, { __len = function() return 1 << 60 end }))", WH_SANDBOX_ERROR, "__len"},
+    {"local t = {} for k = 0, 62 do t[1 << k] = 1 t[(1 << k) + 1] = 1 end t[3] = 1 table.insert(t, 1, 1)",
+     WH_SANDBOX_BUDGET, ""},
+    {"local t = {} for i = 1, 2e5 do t[i] = i end for i = 1, 2e5 do t[i] = nil end while true do next(t) end",
+     WH_SANDBOX_BUDGET, ""},
+    {"local s = ('\\x80'):rep(1e6) local f = utf8.codes(s) while true do pcall(f, s, 1) end",
+     WH_SANDBOX_BUDGET, ""},
+    {"local s = ('a'):rep(1e6) while true do utf8.len(s) end", WH_SANDBOX_BUDGET, ""},
+    {"local s = ('1'):rep(1e6) while true do local x = tonumber(s) end", WH_SANDBOX_BUDGET, ""},
+    {"local s = ('1'):rep(1e6) while true do local x = s + 0 end", WH_SANDBOX_BUDGET, ""},
+    /* ways out that are not there */
+    {"assert(not os and not io and not debug and not package and not require and not dofile and not "
+     "loadfile)\n"
+     "assert(not collectgarbage and not string.dump and not math.exp and not math.log and not math.pow and "
+     "not warn)",
+     WH_SANDBOX_OK, ""},
+    {"load(function() return nil end)", WH_SANDBOX_ERROR, "'load' takes a string"},
+    {"assert(load('\\27Lua', 'x', 'b'))", WH_SANDBOX_ERROR, "attempt to load a binary chunk"},
+    {"assert(load('return 1', 'x', 'b'))", WH_SANDBOX_ERROR, "attempt to load a text chunk"},
+    {"assert(load('return y', 'x', 't', { y = 5 })() == 5)", WH_SANDBOX_OK, ""},
+    {"setmetatable({}, { __gc = function() while true do end end })", WH_SANDBOX_ERROR, "__gc"},
+    {"setmetatable({}, { __gc = false })", WH_SANDBOX_ERROR, "__gc"},
+    {"getmetatable('').__index = nil", WH_SANDBOX_ERROR, "index a boolean value"},
+    {"assert(getmetatable('') == false and getmetatable(1) == nil)", WH_SANDBOX_OK, ""},
+    {"print(string.format('%p', {}))", WH_SANDBOX_ERROR, "'%p' is refused"},
+    {"print(string.format('%-5p', {}))", WH_SANDBOX_ERROR, "'%p' is refused"},
+    {"math.randomseed()", WH_SANDBOX_ERROR, "a seed is needed"},
+    {"math.sin(1e6)", WH_SANDBOX_ERROR, "number from -100000.0 to 100000.0 expected"},
+    {"math.asin(1.5)", WH_SANDBOX_ERROR, "number from -1.0 to 1.0 expected"},
+    /* '^' */
+    {"local e = 0.5\nlocal a = 1\nlocal x = 2 ^ e\nlocal b = 2", WH_SANDBOX_ERROR,
+     "case.lua:3: '^' needs a whole-number exponent; got 0.5"},
+    {"\nlocal x = 2 ^ 0.5\n\nlocal y = 1", WH_SANDBOX_ERROR,
+     "case.lua:2: '^' needs a whole-number exponent; got 0.5"},
+    {"\nreturn 4 ^ .5", WH_SANDBOX_ERROR, "case.lua:2: '^' needs a whole-number exponent; got 0.5"},
+    {"\nlocal x = '2' ^ 0.5", WH_SANDBOX_ERROR, "case.lua:2: '^' needs a whole-number exponent; got 0.5"},
+    {"local x = 2 ^ math.huge", WH_SANDBOX_ERROR, "'^' needs"},
+    {"local e = 0.5\ncoroutine.wrap(function()\nlocal x = 2 ^ e end)()", WH_SANDBOX_ERROR,
+     "case.lua:3: '^' needs"},
+    {"local e = 0.5 local ok, why = pcall(function() return 2 ^ e end) assert(not ok and why:find('whole'))",
+     WH_SANDBOX_OK, ""},
+    {"if false then local x = 2 ^ 0.5 end", WH_SANDBOX_OK, ""},
+    {"load('return 2 ^ 0.5', '=inner')()", WH_SANDBOX_ERROR, "inner:1: '^' needs"},
+    {"assert(2 ^ 10 == 1024 and 2 ^ -2 == 0.25 and (-3) ^ 3 == -27 and 10 ^ -3 == 1e-3 and '2' ^ 3 == 8)\n"
+     "local z, n = 0, -1074 assert(z ^ 0 == 1 and 2 ^ n == 0x1p-1074 and 1 / z ^ 5 == math.huge)\n"
+     "local h = 1e300 assert(2 ^ h == math.huge and 0.5 ^ h == 0 and 1 ^ h == 1 and 2 ^ -h == 0)",
+     WH_SANDBOX_OK, ""},
+};
+
+static wh_sandbox_t *new_with(uint64_t instructions) {
+    static FILE *nowhere = NULL;
+    if (nowhere == NULL) {
+        nowhere = fopen("/dev/null", "w");
+    }
+    const wh_sandbox_limits_t limits = {
+        .memory_bytes = (size_t)16 << 20, .instructions = instructions, .print_to = nowhere};
+    wh_sandbox_t *const sandbox = wh_sandbox_new(&limits);
+    assert_non_null(sandbox);
+    return sandbox;
+}
+
+static wh_sandbox_t *new_small(void) {
+    return new_with(1000000);
+}
+
+static bool evaluate(wh_sandbox_t *sandbox, const char *text, wh_sandbox_result_t *result) {
+    return wh_sandbox_evaluate_text(wh_sandbox_state(sandbox), "case.lua", text, strlen(text), result);
+}
+
+/* A further script runs, as the one before had never been. */
+static void assert_usable(wh_sandbox_t *sandbox) {
+    wh_sandbox_result_t result;
+    wh_sandbox_renew(sandbox);
+    assert_int_equal(lua_gettop(wh_sandbox_state(sandbox)), 0);
+    if (!evaluate(sandbox, "local t = {} for i = 1, 1000 do t[i] = 'x' .. i end return #table.concat(t)",
+                  &result)) {
+        fail_msg("not usable: %s", result.message);
+    }
+    assert_int_equal(lua_tointeger(wh_sandbox_state(sandbox), -1), 3893);
+    lua_pop(wh_sandbox_state(sandbox), 1);
+}
+
+static bool ended_as_told(const case_t *c) {
+    wh_sandbox_result_t result;
+    wh_sandbox_t *const sandbox = new_with(c->reason == WH_SANDBOX_MEMORY ? 5000000 : 1000000);
+    const bool ok = evaluate(sandbox, c->script, &result);
+    const bool as_told = result.status == c->reason && ok == (c->reason == WH_SANDBOX_OK) &&
+                         strstr(result.message, c->message) != NULL &&
+                         (ok || strncmp(result.message, "case.lua", 8) == 0);
+    if (!as_told) {
+        print_error("%s\n  ended with %d, \"%s\", not %d, \"%s\"\n", c->script, (int)result.status,
+                    result.message, (int)c->reason, c->message);
+    }
+    assert_int_equal(wh_sandbox_reason(sandbox), result.status);
+    lua_settop(wh_sandbox_state(sandbox), 0);
+    assert_usable(sandbox);
+    assert_true(wh_sandbox_memory_high_water(sandbox) <= (size_t)16 << 20);
+    wh_sandbox_free(sandbox);
+    return as_told;
+}
+
+static void scripts_end_with_reason_and_line(void **state) {
+    (void)state;
+    int failed = 0;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        failed += !ended_as_told(&cases[i]);
+    }
+    assert_int_equal(failed, 0);
+}
+
+/* The same, with all of them in one sandbox one after the other. */
+static void one_sandbox_survives_them_all(void **state) {
+    (void)state;
+    wh_sandbox_result_t result;
+    wh_sandbox_t *const sandbox = new_small();
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        (void)evaluate(sandbox, cases[i].script, &result);
+        lua_settop(wh_sandbox_state(sandbox), 0);
+        assert_usable(sandbox);
+    }
+    wh_sandbox_free(sandbox);
+}
+
+/* ---- Files ---- */
+
+static char folder[] = "/tmp/wh_sandbox_XXXXXX";
+
+static const char *file_with(const char *name, const char *text, size_t size) {
+    static char path[200];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *const file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, size, file), size);
+    fclose(file);
+    return path;
+}
+
+static void assert_run(const char *path, wh_sandbox_reason_t reason, const char *part) {
+    wh_sandbox_result_t result;
+    wh_sandbox_t *const sandbox = new_small();
+    (void)wh_sandbox_run(sandbox, path, &result);
+    if (result.status != reason || strstr(result.message, part) == NULL ||
+        (reason != WH_SANDBOX_OK && strncmp(result.message, path, strlen(path)) != 0)) {
+        fail_msg("%s ended with %d, \"%s\"", path, (int)result.status, result.message);
+    }
+    wh_sandbox_free(sandbox);
+}
+
+static void files_are_read_or_refused(void **state) {
+    (void)state;
+    assert_run(file_with("ok.lua", "\xEF\xBB\xBF# first\nassert(true)", 23), WH_SANDBOX_OK, "");
+    assert_run(file_with("throws.lua", "\nerror('x')", 11), WH_SANDBOX_ERROR, "throws.lua:2: x");
+    assert_run(file_with("binary.lua", "\x1bLua\0\0", 6), WH_SANDBOX_SYNTAX, "binary chunk");
+    assert_run(file_with("a_name_that_is_longer_than_lua_itself_would_ever_show_in_a_message_of_its_own.lua",
+                         "\n\nlocal x = nil + 1", 19),
+               WH_SANDBOX_ERROR, "of_its_own.lua:3: attempt");
+    assert_run("/nowhere/at/all.lua", WH_SANDBOX_UNREADABLE, "No such file");
+    assert_run(folder, WH_SANDBOX_UNREADABLE, "directory");
+    assert_run("/dev/zero", WH_SANDBOX_UNREADABLE, "no regular file");
+    char fifo[100];
+    snprintf(fifo, sizeof fifo, "%s/fifo", folder);
+    assert_int_equal(mkfifo(fifo, 0600), 0);
+    assert_run(fifo, WH_SANDBOX_UNREADABLE, "no regular file");
+    const char *const large = file_with("large.lua", "", 0);
+    assert_int_equal(truncate(large, (off_t)WH_SANDBOX_FILE_BYTES + 1), 0);
+    assert_run(large, WH_SANDBOX_UNREADABLE, "larger than 16 MiB");
+}
+
+/* ---- The host's side ---- */
+
+static int host_layout(lua_State *L) {
+    wh_sandbox_result_t result;
+    if (!wh_sandbox_evaluate(L, luaL_checkstring(L, 1), &result)) {
+        return luaL_error(L, "%s", result.message);
+    }
+    return 1;
+}
+
+static int host_slices(lua_State *L) {
+    wh_sandbox_charge(L, (uint64_t)luaL_checkinteger(L, 1));
+    return 0;
+}
+
+static wh_sandbox_t *new_with_host(void) {
+    wh_sandbox_t *const sandbox = new_small();
+    lua_register(wh_sandbox_state(sandbox), "layout", host_layout);
+    lua_register(wh_sandbox_state(sandbox), "slices", host_slices);
+    return sandbox;
+}
+
+static void assert_ends(const char *script, wh_sandbox_reason_t reason, const char *part) {
+    wh_sandbox_result_t result;
+    wh_sandbox_t *const sandbox = new_with_host();
+    (void)evaluate(sandbox, script, &result);
+    if (result.status != reason || strstr(result.message, part) == NULL) {
+        fail_msg("%s\n  ended with %d, \"%s\"", script, (int)result.status, result.message);
+    }
+    wh_sandbox_free(sandbox);
+}
+
+static void layouts_are_evaluated_within_scripts(void **state) {
+    (void)state;
+    char script[400];
+    snprintf(script, sizeof script, "assert(layout('%s').slots == 25)",
+             file_with("layout.lua", "return { slots = 25 }", 21));
+    assert_ends(script, WH_SANDBOX_OK, "");
+    snprintf(script, sizeof script, "\npcall(layout, '%s')\n x()",
+             file_with("endless.lua", "while true do end", 17));
+    assert_ends(script, WH_SANDBOX_BUDGET, "case.lua:2: instruction budget");
+    snprintf(script, sizeof script, "layout('%s')", file_with("wrong.lua", "\nreturn 1 + nil", 15));
+    assert_ends(script, WH_SANDBOX_ERROR, "wrong.lua:2: attempt");
+}
+
+static void slices_cost(void **state) {
+    (void)state;
+    assert_ends("slices(999000)", WH_SANDBOX_OK, "");
+    assert_ends("\nslices(2000000)", WH_SANDBOX_BUDGET, "case.lua:2: instruction budget of 1000000 spent");
+    assert_ends("while true do pcall(slices, 1000) end", WH_SANDBOX_BUDGET, "");
+}
+
+static void a_numbered_error_can_be_inspected(void **state) {
+    (void)state;
+    wh_sandbox_result_t result;
+    wh_sandbox_t *const sandbox = new_small();
+    lua_State *const L = wh_sandbox_state(sandbox);
+    assert_false(
+        evaluate(sandbox, "error(setmetatable({ number = 42, name = 'X', message = 'm' }, {}))", &result));
+    wh_sandbox_push_error(L);
+    lua_getfield(L, -1, "number");
+    assert_int_equal(lua_tointeger(L, -1), 42);
+    lua_settop(L, 0);
+    assert_false(evaluate(sandbox, "error()", &result));
+    wh_sandbox_push_error(L);
+    assert_true(lua_isnil(L, -1));
+    lua_settop(L, 0);
+    wh_sandbox_free(sandbox);
+}
+
+static void a_spent_budget_stays_spent(void **state) {
+    (void)state;
+    wh_sandbox_result_t result;
+    wh_sandbox_t *const sandbox = new_small();
+    assert_false(evaluate(sandbox, "while true do end", &result));
+    assert_false(evaluate(sandbox, "x = 1", &result));
+    assert_int_equal(result.status, WH_SANDBOX_BUDGET);
+    wh_sandbox_renew(sandbox);
+    assert_int_equal(wh_sandbox_spent(sandbox), 0);
+    assert_true(evaluate(sandbox, "x = 1", &result));
+    wh_sandbox_free(sandbox);
+}
+
+static wh_sandbox_t *to_stop;
+
+static int host_stop(lua_State *L) {
+    (void)L;
+    wh_sandbox_stop(to_stop);
+    return 0;
+}
+
+static void a_stop_ends_the_script(void **state) {
+    (void)state;
+    wh_sandbox_result_t result;
+    to_stop = new_small();
+    lua_register(wh_sandbox_state(to_stop), "stop", host_stop);
+    assert_false(evaluate(to_stop, "pcall(stop)\nwhile true do end", &result));
+    assert_int_equal(result.status, WH_SANDBOX_STOPPED);
+    lua_settop(wh_sandbox_state(to_stop), 0);
+    assert_usable(to_stop);
+    wh_sandbox_free(to_stop);
+}
+
+static void parameters_take_their_type(void **state) {
+    (void)state;
+    static const char *const good[] = {"n=0x10", "f=2.5", "t=true", "s=1e999",
+                                       "e=",     "q=a=b", "w= 5",   "n2=nan"};
+    static const char *const bad[] = {"", "x", "=1", "1x=2", "a b=1", "end=1", "local x=1", "\xC3\xA4=1"};
+    wh_sandbox_result_t result;
+    wh_sandbox_t *const sandbox = new_small();
+    for (size_t i = 0; i < sizeof good / sizeof *good; ++i) {
+        assert_true(wh_sandbox_set_parameter(sandbox, good[i], &result));
+    }
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
+        assert_false(wh_sandbox_set_parameter(sandbox, bad[i], &result));
+        assert_int_not_equal(result.message[0], '\0');
+    }
+    if (!evaluate(sandbox,
+                  "local p = params assert(p.n == 16 and p.f == 2.5 and p.t == true and p.s == '1e999' and "
+                  "p.e == '' and p.q == 'a=b' and p.w == ' 5' and p.n2 == 'nan')",
+                  &result)) {
+        fail_msg("%s", result.message);
+    }
+    wh_sandbox_free(sandbox);
+}
+
+static void trust_opens_the_libraries(void **state) {
+    (void)state;
+    wh_sandbox_result_t result;
+    const wh_sandbox_limits_t limits = {.trust = true};
+    wh_sandbox_t *const sandbox = wh_sandbox_new(&limits);
+    assert_non_null(sandbox);
+    if (!evaluate(sandbox,
+                  "assert(os.time() and io.write and require and debug and collectgarbage and string.dump)\n"
+                  "assert(tostring({}) == 'table') assert(not pcall(math.randomseed))",
+                  &result)) {
+        fail_msg("%s", result.message);
+    }
+    wh_sandbox_free(sandbox);
+}
+
+static void a_runaway_recursion_ends(void **state) {
+    (void)state;
+    wh_sandbox_result_t result;
+    wh_sandbox_t *const sandbox = wh_sandbox_new(NULL);
+    assert_false(evaluate(sandbox, "local function f() return 1 + f() end f()", &result));
+    assert_int_equal(result.status, WH_SANDBOX_ERROR);
+    assert_non_null(strstr(result.message, "case.lua:1: stack overflow"));
+    assert_usable(sandbox);
+    wh_sandbox_free(sandbox);
+}
+
+static void too_little_memory_is_no_sandbox(void **state) {
+    (void)state;
+    for (size_t bytes = 1000; bytes < 100000; bytes += 1000) {
+        const wh_sandbox_limits_t limits = {.memory_bytes = bytes};
+        wh_sandbox_free(wh_sandbox_new(&limits)); /* null or not: no crash, no leak */
+    }
+}
+
+/* Runs out of memory at every possible place of a script that does a bit of all. */
+static void memory_may_end_anywhere(void **state) {
+    (void)state;
+    static const char script[] =
+        "local t = {} for i = 1, 50 do t['k' .. i] = { i } end\n"
+        "for k, v in pairs(t) do t[k] = pcall(string.format, '%s', v) end\n"
+        "local s = ('ab'):rep(200):gsub('a', function(a) return a .. #t end)\n"
+        "local co = coroutine.wrap(function() coroutine.yield(load('return 1')()) end) co()\n"
+        "table.sort({ 3, 1, 2 }) error({ message = s })";
+    for (size_t bytes = 60000; bytes < 140000; bytes += 200) {
+        const wh_sandbox_limits_t limits = {.memory_bytes = bytes};
+        wh_sandbox_t *const sandbox = wh_sandbox_new(&limits);
+        if (sandbox != NULL) {
+            wh_sandbox_result_t result;
+            assert_false(evaluate(sandbox, script, &result));
+            assert_true(result.status == WH_SANDBOX_MEMORY || result.status == WH_SANDBOX_ERROR);
+            wh_sandbox_free(sandbox);
+        }
+    }
+}
+
+static int make_folder(void **state) {
+    (void)state;
+    return mkdtemp(folder) == NULL;
+}
+
+static int remove_folder(void **state) {
+    char command[100];
+    (void)state;
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    return system(command) != 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(scripts_end_with_reason_and_line),
+        cmocka_unit_test(one_sandbox_survives_them_all),
+        cmocka_unit_test(files_are_read_or_refused),
+        cmocka_unit_test(layouts_are_evaluated_within_scripts),
+        cmocka_unit_test(slices_cost),
+        cmocka_unit_test(a_numbered_error_can_be_inspected),
+        cmocka_unit_test(a_spent_budget_stays_spent),
+        cmocka_unit_test(a_stop_ends_the_script),
+        cmocka_unit_test(parameters_take_their_type),
+        cmocka_unit_test(trust_opens_the_libraries),
+        cmocka_unit_test(a_runaway_recursion_ends),
+        cmocka_unit_test(too_little_memory_is_no_sandbox),
+        cmocka_unit_test(memory_may_end_anywhere),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
