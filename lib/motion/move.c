@@ -3,22 +3,27 @@
 /* How long the slowest axis takes alone. Plans and forgets, which is cheaper than 1 kB of stack for a second
  * move. */
 static wh_status_t slowest(size_t count, const wh_real_t from[], const wh_real_t to[],
-                           const wh_limits_t limits[], wh_real_t *duration) {
-    *duration = 0;
+                           const wh_limits_t limits[], wh_real_t *longest) {
+    wh_real_t shortest = 0;
+    *longest = 0;
     for (size_t axis = 0; axis < count; ++axis) {
         wh_profile_t alone;
         const wh_status_t status = wh_profile_plan(&alone, to[axis] - from[axis], &limits[axis]);
         if (status != WH_OK) {
             return status;
         }
-        if (wh_profile_duration(&alone) > *duration) {
-            *duration = wh_profile_duration(&alone);
+        const wh_real_t duration = wh_profile_duration(&alone);
+        *longest = duration > *longest ? duration : *longest;
+        if (duration > 0 && !(shortest > 0 && shortest <= duration)) {
+            shortest = duration;
         }
     }
-    return WH_OK;
+    /* The largest factor by which an axis is going to be stretched. */
+    return shortest > 0 && !wh_real_is_finite(*longest / shortest) ? WH_STATUS_BAD_LIMITS : WH_OK;
 }
 
-/* Cannot fail after `slowest` has planned the same. Reads before it writes: `from` may be move->to. */
+/* Cannot fail after `slowest` has planned the same and looked at the factor. Reads before it writes: `from`
+ * may be move->to. */
 static void plan_axis(wh_move_t *move, size_t axis, wh_real_t from, wh_real_t to, const wh_limits_t *limits) {
     wh_status_t status = wh_profile_plan(&move->profile[axis], to - from, limits);
     WH_ASSERT(status == WH_OK);

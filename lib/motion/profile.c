@@ -54,6 +54,12 @@ static times_t shortest(wh_real_t d, const wh_limits_t *limits) {
     return times;
 }
 
+/* No phase has got lost to overflow or underflow: from_times can divide. */
+static bool times_are_sound(const times_t *times) {
+    return is_positive(times->jerk) && is_positive(times->rise - times->jerk) &&
+           is_positive(times->duration - times->rise);
+}
+
 /* Everything from the distance and the three times: jerk, acceleration and speed are made to fit them, so
  * that the phases add up to the distance. */
 static wh_profile_t from_times(wh_real_t distance, const times_t *times) {
@@ -96,8 +102,11 @@ wh_status_t wh_profile_plan(wh_profile_t *profile, wh_real_t distance, const wh_
         return WH_OK;
     }
     const times_t times = shortest(wh_real_abs(distance), limits);
+    if (!times_are_sound(&times)) {
+        return WH_STATUS_BAD_LIMITS;
+    }
     const wh_profile_t planned = from_times(distance, &times);
-    if (!is_positive(times.duration) || !is_positive(wh_real_abs(planned.jerk))) {
+    if (!is_positive(wh_real_abs(planned.jerk))) {
         return WH_STATUS_BAD_LIMITS;
     }
     *profile = planned;
@@ -111,16 +120,21 @@ wh_status_t wh_profile_stretch(wh_profile_t *profile, wh_real_t duration) {
     if (!wh_real_is_finite(duration)) {
         return WH_STATUS_NOT_FINITE;
     }
+    if (is_tiny(profile->distance) && duration >= profile->duration) {
+        profile->duration = duration;
+    }
+    if (duration == profile->duration) {
+        return WH_OK;
+    }
     if (duration < profile->duration) {
         return WH_STATUS_OUT_OF_RANGE;
     }
-    if (is_tiny(profile->distance)) {
-        profile->duration = duration;
-    } else if (duration > profile->duration) {
-        const wh_real_t slower = duration / profile->duration;
-        const times_t times = {profile->jerk_end * slower, profile->rise_end * slower, duration};
-        *profile = from_times(profile->distance, &times);
+    const wh_real_t slower = duration / profile->duration;
+    const times_t times = {profile->jerk_end * slower, profile->rise_end * slower, duration};
+    if (!times_are_sound(&times)) {
+        return WH_STATUS_OUT_OF_RANGE;
     }
+    *profile = from_times(profile->distance, &times);
     return WH_OK;
 }
 

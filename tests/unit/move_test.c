@@ -14,8 +14,10 @@
 
 #if defined(WH_FLOAT)
 #define TOLERANCE 5e-6
+#define APART 1e17F
 #else
 #define TOLERANCE 1e-13
+#define APART 1e287
 #endif
 
 typedef struct {
@@ -169,6 +171,9 @@ static void bad_arguments_change_nothing(void **state) {
     assert_int_equal(wh_move_plan(&move, 0, from, to, limits), WH_STATUS_OUT_OF_RANGE);
     assert_int_equal(wh_move_plan(&move, WH_AXES + 1, from, to, limits), WH_STATUS_OUT_OF_RANGE);
     assert_int_equal(wh_move_plan(&move, 3, from, to, limits), WH_STATUS_BAD_LIMITS);
+    const wh_limits_t apart[2] = {{WH_REAL(1e-20), 1, 1}, {WH_REAL(1e20), WH_REAL(1e25), WH_REAL(1e30)}};
+    const wh_real_t far_off[2] = {APART, WH_REAL(1e-9)};
+    assert_int_equal(wh_move_plan(&move, 2, from, far_off, apart), WH_STATUS_BAD_LIMITS);
     to[1] = (wh_real_t)NAN;
     assert_int_equal(wh_move_plan(&move, 2, from, to, limits), WH_STATUS_NOT_FINITE);
     assert_memory_equal(&move, &before, sizeof move);

@@ -17,10 +17,12 @@
 #define DURATION_TOLERANCE 2e-6
 #define LIMIT_TOLERANCE 5e-6
 #define ROUNDING 2e-6
+#define SIZEABLE 3e38F
 #else
 #define DURATION_TOLERANCE 1e-14
 #define LIMIT_TOLERANCE 1e-14
 #define ROUNDING 5e-15
+#define SIZEABLE 1.7e308
 #endif
 
 typedef struct {
@@ -269,6 +271,10 @@ static void stretching_refuses_less_time(void **state) {
     assert_int_equal(wh_profile_plan(&p, 14, &limits), WH_OK);
     const wh_profile_t before = p;
     assert_int_equal(wh_profile_stretch(&p, WH_REAL(9.99)), WH_STATUS_OUT_OF_RANGE);
+    wh_profile_t brief;
+    const wh_limits_t wild = {WH_REAL(1e20), WH_REAL(1e25), WH_REAL(1e30)};
+    assert_int_equal(wh_profile_plan(&brief, WH_REAL(1e-9), &wild), WH_OK);
+    assert_int_equal(wh_profile_stretch(&brief, SIZEABLE), WH_STATUS_OUT_OF_RANGE);
     assert_int_equal(wh_profile_stretch(&p, (wh_real_t)NAN), WH_STATUS_NOT_FINITE);
     assert_int_equal(wh_profile_stretch(&p, (wh_real_t)INFINITY), WH_STATUS_NOT_FINITE);
     assert_int_equal(wh_profile_stretch(NULL, 20), WH_STATUS_NULL_ARGUMENT);
