@@ -78,15 +78,6 @@ static wh_exact_t from_axis(wh_exact_t whole, wh_real_t sign, wh_exact_t angle) 
     return sum;
 }
 
-/* Infinite counts as 1 against 0 where either is infinite; C99 wants the quadrants' middles and axes there.
- */
-static wh_real_t without_infinity(wh_real_t magnitude, bool any_infinite) {
-    if (!any_infinite) {
-        return magnitude;
-    }
-    return wh_real_is_finite(magnitude) ? WH_REAL(0) : WH_REAL(1);
-}
-
 /* The angle in [0, pi/4] to the nearer axis; *cross says 1 when that is the y axis. */
 static wh_exact_t first_quadrant(wh_real_t y, wh_real_t x, wh_real_t *cross) {
     const bool steep = y > x;
@@ -108,14 +99,13 @@ static wh_exact_t first_quadrant(wh_real_t y, wh_real_t x, wh_real_t *cross) {
 }
 
 wh_real_t wh_atan2(wh_real_t y, wh_real_t x) {
-    const bool infinite = !wh_real_is_finite(y) || !wh_real_is_finite(x);
     if (!(y == y) || !(x == x)) {
         return (wh_real_t)NAN;
     }
     wh_real_t steep;
-    const wh_real_t rise = without_infinity(wh_real_abs(y), infinite);
-    const wh_real_t run = without_infinity(wh_real_abs(x), infinite);
-    wh_exact_t angle = first_quadrant(rise, run, &steep);
+    const bool diagonal = !wh_real_is_finite(y) && !wh_real_is_finite(x); /* C99: 45 degrees */
+    wh_exact_t angle =
+        diagonal ? first_quadrant(1, 1, &steep) : first_quadrant(wh_real_abs(y), wh_real_abs(x), &steep);
     const bool back = is_negative(x);
     if (steep != 0) {
         angle = from_axis(quarter_turn, back ? WH_REAL(1) : WH_REAL(-1), angle);

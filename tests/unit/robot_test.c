@@ -195,6 +195,10 @@ static void out_of_travel_is_refused(void **state) {
     robot.travel[WH_AXIS_YAW].max = 1;
     assert_int_equal(inverse(&robot, 700, 0, 900, 1), WH_OK);
     assert_int_equal(inverse(&robot, 700, 0, 900, 1.1), WH_STATUS_LIMIT_EXCEEDED);
+    const double rad_slack = (double)WH_SLACK_RAD;
+    assert_int_equal(inverse(&robot, 700, 0, 900, 1 + rad_slack / 2), WH_OK);
+    assert_int_equal(inverse(&robot, 700, 0, 900, -1 - 2 * rad_slack), WH_STATUS_LIMIT_EXCEEDED);
+    assert_int_equal(inverse(&robot, 700, 0, 900, 2e5), WH_STATUS_OUT_OF_RANGE);
     robot.travel[WH_AXIS_THETA].min = -2;
     robot.travel[WH_AXIS_THETA].max = 2;
     assert_int_equal(inverse(&robot, -700, 0, 900, 3.14), WH_STATUS_LIMIT_EXCEEDED);

@@ -98,6 +98,13 @@ static void out_of_range_is_nan(void **state) {
     }
     assert_near(wh_sin(WH_TRIG_MAX_RAD), sin(1e5), 1e-6);
     assert_near(wh_sin(-WH_TRIG_MAX_RAD), -sin(1e5), 1e-6);
+    assert_near(wh_cos(WH_TRIG_MAX_RAD), cos(1e5), 1e-6);
+    wh_real_t s;
+    wh_real_t c;
+    wh_sin_cos(-WH_TRIG_MAX_RAD, &s, &c);
+    assert_near(c, cos(1e5), 1e-6);
+    wh_sin_cos_deg(WH_TRIG_MAX_DEG, &s, &c); /* 5e6 = 13888 * 360 + 320 */
+    assert_near(c, cos(40 * (double)(PI / 180)), 1e-6);
 }
 
 static void symmetries_are_exact(void **state) {
