@@ -72,7 +72,7 @@ static inline wh_real_t wh_profile_duration(const wh_profile_t *profile) {
 /* Slows the whole profile uniformly to `duration` (s), which is then exactly its duration: with a factor k in
  * time, speeds fall by k, accelerations by k^2, jerks by k^3. Without distance it only waits. Errors:
  * WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, WH_STATUS_OUT_OF_RANGE when `duration` is shorter than the
- * profile's, or so long that the factor cannot be represented; *profile is then unchanged. Cost: about 10 ns.
+ * profile's, or so long that the factor cannot be represented; *profile is then unchanged. Cost: 10 to 25 ns.
  */
 wh_status_t wh_profile_stretch(wh_profile_t *profile, wh_real_t duration);
 
