@@ -50,20 +50,39 @@ static wh_real_t closeness(const wh_tolerance_t *tolerance, const wh_proximity_t
     return z * z + xy * xy;
 }
 
-/* The closest that the gripper came to the wafer in this slice. */
-static void measure_closest(const watch_t *watch, const wh_wafer_t *wafer, wh_proximity_t *closest) {
+static void measure_at(const watch_t *watch, const wh_wafer_t *wafer, wh_real_t t, wh_proximity_t *measured) {
+    wh_tolerance_t tolerance = watch->table->config.tolerance;
+    if (t < 1) {
+        tolerance.projz *= WH_SWEEP_INSIDE;
+    }
+    const wh_pose_t then = wh_sweep_pose_at(&watch->sweep, t);
+    wh_proximity_values(&wafer->base_from_wafer, &then, &tolerance, measured);
+}
+
+/* The closest that the gripper came to the wafer in this slice, judged by the limits that hold there; false
+ * when it did not come near. */
+static bool measure_closest(const watch_t *watch, const wh_wafer_t *wafer, wh_proximity_t *closest) {
     const wh_grasp_config_t *config = &watch->table->config;
     const wh_pose_t *base_from_wafer = &wafer->base_from_wafer;
-    wh_interval_t part;
-    if (watch->swept && wafer->released_by == WH_NONE &&
-        wh_sweep_within(&watch->sweep, base_from_wafer, config->near_projz, config->near_projxy, &part)) {
-        const wh_real_t t = wh_sweep_closest(&watch->sweep, base_from_wafer, &part, config->tolerance.projz,
-                                             config->tolerance.projxy);
-        const wh_pose_t then = wh_sweep_pose_at(&watch->sweep, t);
-        wh_proximity_values(base_from_wafer, &then, &config->tolerance, closest);
-        return;
+    if (!watch->swept || wafer->released_by != WH_NONE) {
+        wh_proximity_values(base_from_wafer, watch->base_from_gripper, &config->tolerance, closest);
+        return is_near(watch, closest);
     }
-    wh_proximity_values(base_from_wafer, watch->base_from_gripper, &config->tolerance, closest);
+    wh_interval_t part;
+    if (!wh_sweep_within(&watch->sweep, base_from_wafer, config->near_projz, config->near_projxy, &part)) {
+        return false;
+    }
+    measure_at(watch, wafer,
+               wh_sweep_closest(&watch->sweep, base_from_wafer, &part, config->tolerance.projz,
+                                config->tolerance.projxy),
+               closest);
+    if (is_near(watch, closest)) {
+        return true;
+    }
+    /* The closest instant may be the one on the neighbourhood's edge; then the middle tells. */
+    wh_proximity_t middle;
+    measure_at(watch, wafer, (part.first + part.last) / 2, &middle);
+    return is_near(watch, &middle);
 }
 
 static void begin_encounter(const watch_t *watch, wh_encounter_t *encounter, size_t wafer,
@@ -83,8 +102,7 @@ static void follow_approach(const watch_t *watch) {
         return;
     }
     wh_proximity_t measured;
-    measure_closest(watch, wafer, &measured);
-    if (is_near(watch, &measured) &&
+    if (measure_closest(watch, wafer, &measured) &&
         closeness(tolerance, &measured) < closeness(tolerance, &approach->measured)) {
         begin_encounter(watch, approach, (size_t)approach->wafer, &measured);
     }
@@ -104,9 +122,9 @@ static void begin_approach(const watch_t *watch) {
             continue;
         }
         wh_proximity_t p;
-        measure_closest(watch, &storage->wafers[w], &p);
-        if (is_near(watch, &p) && (approach->wafer == WH_NONE ||
-                                   wh_real_abs(p.dr_proj_z) < wh_real_abs(approach->measured.dr_proj_z))) {
+        if (measure_closest(watch, &storage->wafers[w], &p) &&
+            (approach->wafer == WH_NONE ||
+             wh_real_abs(p.dr_proj_z) < wh_real_abs(approach->measured.dr_proj_z))) {
             begin_encounter(watch, approach, w, &p);
         }
     }

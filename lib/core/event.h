@@ -16,7 +16,8 @@ typedef enum {
     /* In one step `other` let go of the wafer and `gripper` took it: instead of a release and a pick. */
     WH_EVENT_HANDED_OVER,
     /* A free wafer came into the neighbourhood of an open, empty gripper and left it again, or the valve
-     * closed, without a pick. `measured` is the closest approach, of slice `measured_slice`. Not reported
+     * closed, without a pick. `measured` is the closest approach, of slice `measured_slice`, judged between
+     * slices by 0.998 eps_projz as a swept pick is. Not reported
      * when another gripper took that wafer, or this one another wafer, meanwhile. */
     WH_EVENT_NEAR_MISS,
     /* An open, empty gripper was ready on a wafer that `other` held. Reported once, when it ends without a

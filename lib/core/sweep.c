@@ -1,8 +1,5 @@
 #include "core/sweep_internal.h"
 
-/* The wafer is taken well inside the window, so that rounding cannot put it outside again. */
-#define INSIDE WH_REAL(0.998)
-
 /* Shepperd's way: divide by the largest of the four, so that no digit is lost. */
 static void quaternion_from_rotation(const wh_mat3_t *R, wh_real_t *w, wh_vec3_t *v) {
     const wh_real_t trace = R->m[0][0] + R->m[1][1] + R->m[2][2];
@@ -143,7 +140,8 @@ bool wh_sweep_first_ready(const wh_sweep_t *sweep, const wh_pose_t *base_from_wa
      * later. */
     static const wh_real_t later[] = {0, WH_REAL(1.0 / 1048576), WH_REAL(1.0 / 1024), WH_REAL(0.5)};
     wh_interval_t part;
-    if (!wh_sweep_within(sweep, base_from_wafer, INSIDE * tolerance->projz, tolerance->projxy, &part) ||
+    if (!wh_sweep_within(sweep, base_from_wafer, WH_SWEEP_INSIDE * tolerance->projz, tolerance->projxy,
+                         &part) ||
         !cut_planar(&part, sweep, base_from_wafer, tolerance->planar)) {
         return false;
     }
