@@ -47,6 +47,13 @@ static inline void cell_set(cell_t *cell, int g, double x, double y, double z, i
     cell->input[g].valve = valve;
 }
 
+/* Somewhere level within `reach` of wafer 0 along x and `height` along z; open or closed. */
+static inline void cell_set_randomly(cell_t *cell, int g, double reach, double height) {
+    const double x = wh_test_uniform(-reach, reach);
+    const double z = wh_test_uniform(-height, height);
+    cell_set(cell, g, x, 0, z, (int)wh_test_below(2));
+}
+
 static inline void cell_move(cell_t *cell, int g, double x, double y, double z, int valve) {
     cell_set(cell, g, x, y, z, valve);
     cell_step(cell);

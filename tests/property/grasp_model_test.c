@@ -30,8 +30,8 @@ typedef struct {
 /* Level and on a grid, so that values equal each other and the limits; or tilted a little. */
 static wh_pose_t draw_pose(bool grid, double reach, double height) {
     if (grid) {
-        return wh_test_at((int)wh_test_below(5) * reach / 4, 0,
-                          ((int)wh_test_below(17) - 8) * 0.0625 * height);
+        const double x = (int)wh_test_below(5) * reach / 4;
+        return wh_test_at(x, 0, ((int)wh_test_below(17) - 8) * 0.125);
     }
     wh_pose_t pose = wh_test_random_pose(reach);
     pose.R = wh_test_random_turn(wh_test_below(4) ? 0.09 : 0.2);
@@ -54,15 +54,18 @@ static void wear_out(wh_mat3_t *R) {
 
 static void spoil(wh_gripper_input_t *input) {
     const wh_real_t bad[] = {WH_REAL(NAN), WH_REAL(INFINITY), WH_REAL(-INFINITY)};
+    const wh_real_t spoilt = bad[wh_test_below(3)];
+    wh_real_t *entry = input->base_from_gripper.R.m[wh_test_below(3)];
+    entry += wh_test_below(3);
     switch (wh_test_below(4)) {
     case 0:
-        input->base_from_gripper.R.m[wh_test_below(3)][wh_test_below(3)] = bad[wh_test_below(3)];
+        *entry = spoilt;
         break;
     case 1:
-        input->base_from_gripper.r.y = bad[wh_test_below(3)];
+        input->base_from_gripper.r.y = spoilt;
         break;
     case 2:
-        input->base_from_gripper.R.m[wh_test_below(3)][wh_test_below(3)] += WH_REAL(0.01);
+        *entry += WH_REAL(0.01);
         break;
     default:
         input->valve = wh_test_below(2) ? 2 : -1;

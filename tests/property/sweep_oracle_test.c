@@ -82,7 +82,10 @@ static void draw(slice_t *s) {
     const double half = wh_test_below(3) ? 0.3 : 3;
     const bool about_n2 = wh_test_below(3) == 0;
     const double angle = wh_test_below(8) ? wh_test_uniform(-half, half) : 0;
-    double a[3] = {wh_test_uniform(-1, 1), wh_test_uniform(-1, 1), wh_test_uniform(-1, 1)};
+    double a[3];
+    for (int i = 0; i < 3; ++i) {
+        a[i] = wh_test_uniform(-1, 1);
+    }
     if (about_n2) {
         a[0] = a[1] = 0;
         a[2] = 1;
@@ -96,8 +99,9 @@ static void draw(slice_t *s) {
     const double height = wh_test_below(2) ? 6 : 1;
     wh_pose_t ends[2];
     for (int i = 0; i < 2; ++i) {
-        ends[i] = wh_test_pose(wh_test_random_turn(0.25), wh_test_uniform(-reach, reach),
-                               wh_test_uniform(-reach, reach), 0);
+        ends[i].R = wh_test_random_turn(0.25);
+        ends[i].r.x = WH_REAL(wh_test_uniform(-reach, reach));
+        ends[i].r.y = WH_REAL(wh_test_uniform(-reach, reach));
         ends[i].r.z = WH_REAL(wh_test_uniform(-height, height));
         ends[i] = wh_pose_compose(&s->wafer, &ends[i]);
     }

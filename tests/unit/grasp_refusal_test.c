@@ -134,7 +134,7 @@ static void a_list_changes_nothing(void **state) {
     begin_busy(&without);
     for (int i = 0; i < 50; ++i) {
         for (int g = 0; g < CELL_GRIPPERS; ++g) {
-            cell_set(&with, g, wh_test_uniform(0, 80), 0, wh_test_uniform(-2, 2), (int)wh_test_below(2));
+            cell_set_randomly(&with, g, 80, 2);
             without.input[g] = with.input[g];
         }
         cell_step(&with);

@@ -1,0 +1,110 @@
+/* The core never asks for memory: malloc and its kin are replaced by ones that count, for the whole program.
+ */
+#include "support_grasp.h"
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(thread_sanitizer)
+#define SANITIZED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SANITIZED
+#endif
+
+/* Sanitizers have their own malloc, and only glibc has these names. */
+#if defined(__GLIBC__) && !defined(SANITIZED)
+
+static unsigned long calls;
+
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *memory, size_t size);
+void __libc_free(void *memory);
+
+void *malloc(size_t size) {
+    ++calls;
+    return __libc_malloc(size);
+}
+
+void *calloc(size_t count, size_t size) {
+    ++calls;
+    return __libc_calloc(count, size);
+}
+
+void *realloc(void *memory, size_t size) {
+    ++calls;
+    return __libc_realloc(memory, size);
+}
+
+void free(void *memory) {
+    ++calls;
+    __libc_free(memory);
+}
+
+/* One of everything, through each branch that a run can take. */
+static void exercise(wh_check_t check) {
+    static cell_t cell;
+    wh_grasp_config_t config = wh_grasp_config_default();
+    config.check = check;
+    config.seat = check == WH_CHECK_SWEPT;
+    cell_begin(&cell, &config);
+    for (int i = 0; i < 2000; ++i) {
+        for (int g = 0; g < CELL_GRIPPERS; ++g) {
+            cell_set_randomly(&cell, g, 150, 8);
+        }
+        cell_step(&cell);
+        if (i % 8 == 0 && cell.wafer[0].holder == WH_NONE) {
+            cell_place(&cell, 0, 10, 0, 0);
+        }
+        wh_proximity_t p;
+        assert_int_equal(wh_proximity_measure(&cell.wafer[0].base_from_wafer,
+                                              &cell.gripper[0].base_from_gripper, &config.tolerance, &p),
+                         WH_OK);
+        (void)wh_proximity_rim_gap(&cell.wafer[0].base_from_wafer, &cell.gripper[0].base_from_gripper, 150);
+        (void)wh_grasp_hash(&cell.table);
+    }
+    cell.input[1].valve = 5;
+    assert_int_equal(wh_grasp_step(&cell.table, cell.input, &cell.list), WH_STATUS_BAD_VALVE);
+
+    assert_true(cell.table.counters.picked > 5 && cell.table.counters.near_misses > 2);
+}
+
+static void nothing_is_allocated(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    const unsigned long before = calls;
+    exercise(WH_CHECK_SAMPLED);
+    exercise(WH_CHECK_SWEPT);
+    assert_int_equal(calls - before, 0);
+}
+
+/* The count would show it. */
+static void the_count_counts(void **state) {
+    (void)state;
+    const unsigned long before = calls;
+    void *volatile memory = malloc(1);
+    free(memory);
+    assert_int_equal(calls - before, 2);
+}
+
+#else
+
+static void nothing_is_allocated(void **state) {
+    (void)state;
+    skip();
+}
+
+static void the_count_counts(void **state) {
+    (void)state;
+    skip();
+}
+
+#endif
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_count_counts),
+        cmocka_unit_test(nothing_is_allocated),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
