@@ -35,7 +35,7 @@ static inline uint64_t wh_test_seed(void) {
 }
 
 /* The next 64 bits after *state (splitmix64): the same on every machine. */
-static inline uint64_t wh_test_next(uint64_t *state) {
+static inline uint64_t wh_test_splitmix(uint64_t *state) {
     uint64_t z = (*state += UINT64_C(0x9e3779b97f4a7c15));
     z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
     z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
@@ -47,7 +47,7 @@ static inline uint64_t wh_test_random(void) {
     if (!wh_test_seeded) {
         (void)wh_test_seed();
     }
-    return wh_test_next(&wh_test_state);
+    return wh_test_splitmix(&wh_test_state);
 }
 
 /* In [lo, hi). */

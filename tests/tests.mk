@@ -1,13 +1,13 @@
 # Which tests there are: a new file is found by its name. Programs are built from and named after their
 # source; everything in tests/end_to_end that begins with #! is run as it is.
 
-TEST_SOURCES := $(wildcard tests/unit/*_test.c tests/property/*_test.c tests/property/*_test.cpp)
+TEST_SOURCES := $(wildcard tests/unit/*_test.c tests/property/*_test.c tests/property/*_test.cpp tests/firmware/*_test.c)
 CXX_TESTS := $(basename $(filter %.cpp,$(TEST_SOURCES)))
 
 # A test of the program's parts is linked with them; all others see the library alone, as a firmware does,
 # and are built in float too.
 PROGRAM_TESTS := $(basename $(shell grep -lE '^.include "(script|app)/' $(TEST_SOURCES) /dev/null))
 TESTS := $(basename $(TEST_SOURCES))
-LIBRARY_TESTS := $(filter-out $(PROGRAM_TESTS),$(filter tests/unit/%,$(TESTS)))
+LIBRARY_TESTS := $(filter-out $(PROGRAM_TESTS),$(filter tests/unit/% tests/firmware/%,$(TESTS)))
 
 END_TO_END := $(shell awk 'FNR == 1 && /^.!/ { print FILENAME }' $(wildcard tests/end_to_end/*) /dev/null)

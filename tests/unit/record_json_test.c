@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 #include "app/record_json.h"
-#include "tests/unit/record_fixture.h"
+#include "unit/record_fixture.h"
 
 /* Prints a record and parses it again. */
 static json_t *reread(const wh_record_t *record) {

@@ -11,7 +11,7 @@
 
 #include "app/grid.h"
 #include "app/record_table.h"
-#include "tests/unit/record_fixture.h"
+#include "unit/record_fixture.h"
 
 static const wh_style_t piped = {false, true, 0};
 

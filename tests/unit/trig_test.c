@@ -287,8 +287,8 @@ static void bits_are_the_same_on_every_machine(void **state) {
     uint64_t seed = 1;
     uint64_t hash = UINT64_C(0xCBF29CE484222325);
     for (int i = 0; i < 20000; ++i) {
-        const wh_real_t x = (wh_real_t)((double)(int32_t)(wh_test_next(&seed) >> 32) / 16777216.0);
-        const wh_real_t y = (wh_real_t)((double)(int32_t)(wh_test_next(&seed) >> 32) / 67108864.0);
+        const wh_real_t x = (wh_real_t)((double)(int32_t)(wh_test_splitmix(&seed) >> 32) / 16777216.0);
+        const wh_real_t y = (wh_real_t)((double)(int32_t)(wh_test_splitmix(&seed) >> 32) / 67108864.0);
         const wh_real_t results[] = {wh_sin(x), wh_cos(y), wh_atan2(y, x), wh_cbrt(x), wh_rad_from_deg(y)};
         for (size_t k = 0; k < 5; ++k) {
             hash = (hash ^ bits_of(results[k])) * UINT64_C(0x100000001B3);
