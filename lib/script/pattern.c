@@ -68,71 +68,6 @@ static const char *item_end(pattern_t *m, const char *p) {
     return p + 1;
 }
 
-/* Is c in the class %letter? */
-static bool in_class(int c, int letter) {
-    int is = 0;
-    switch (tolower(letter)) {
-    case 'a':
-        is = isalpha(c);
-        break;
-    case 'c':
-        is = iscntrl(c);
-        break;
-    case 'd':
-        is = isdigit(c);
-        break;
-    case 'g':
-        is = isgraph(c);
-        break;
-    case 'l':
-        is = islower(c);
-        break;
-    case 'p':
-        is = ispunct(c);
-        break;
-    case 's':
-        is = isspace(c);
-        break;
-    case 'u':
-        is = isupper(c);
-        break;
-    case 'w':
-        is = isalnum(c);
-        break;
-    case 'x':
-        is = isxdigit(c);
-        break;
-    default:
-        return letter == c;
-    }
-    return isupper(letter) ? is == 0 : is != 0;
-}
-
-/* p at '[', last at its ']'. */
-static bool in_set(int c, const char *p, const char *last) {
-    bool inside = true;
-    if (p[1] == '^') {
-        inside = false;
-        ++p;
-    }
-    while (++p < last) {
-        if (*p == '%') {
-            ++p;
-            if (in_class(c, (unsigned char)*p)) {
-                return inside;
-            }
-        } else if (p[1] == '-' && p + 2 < last) {
-            if ((unsigned char)p[0] <= c && c <= (unsigned char)p[2]) {
-                return inside;
-            }
-            p += 2;
-        } else if ((unsigned char)*p == c) {
-            return inside;
-        }
-    }
-    return !inside;
-}
-
 /* Does the item [p, end) match the character at s? */
 static bool matches_one(pattern_t *m, const char *s, const char *p, const char *end) {
     count_steps(m, 1 + ((size_t)(end - p) >> 3));
@@ -144,9 +79,9 @@ static bool matches_one(pattern_t *m, const char *s, const char *p, const char *
     case '.':
         return true;
     case '%':
-        return in_class(c, (unsigned char)p[1]);
+        return wh_pattern_in_class(c, (unsigned char)p[1]);
     case '[':
-        return in_set(c, p, end - 1);
+        return wh_pattern_in_set(c, p, end - 1);
     default:
         return (unsigned char)*p == c;
     }
@@ -202,7 +137,8 @@ static next_t match_frontier(pattern_t *m, const char *s, const char *p) {
     const int before = s == m->subject ? 0 : (unsigned char)s[-1];
     const int here = s < m->subject_end ? (unsigned char)*s : 0;
     count_steps(m, 1 + ((size_t)(end - p) >> 2));
-    return !in_set(before, p, end - 1) && in_set(here, p, end - 1) ? go_on(s, end) : done(NULL);
+    return !wh_pattern_in_set(before, p, end - 1) && wh_pattern_in_set(here, p, end - 1) ? go_on(s, end)
+                                                                                         : done(NULL);
 }
 
 /* %1 to %9. */
@@ -354,34 +290,4 @@ const char *wh_pattern_match(pattern_t *m, const char *at, const char *pattern) 
     m->captures = 0;
     m->depth = DEPTH_LIMIT;
     return match(m, at, pattern);
-}
-
-/* ---- Captures ---- */
-
-void wh_pattern_push_capture(pattern_t *m, int index, const char *begin, const char *end) {
-    if (index >= m->captures) {
-        if (index != 0) {
-            luaL_error(m->L, "invalid capture index %%%d", index + 1);
-        }
-        lua_pushlstring(m->L, begin, (size_t)(end - begin));
-        return;
-    }
-    const ptrdiff_t length = m->capture[index].length;
-    if (length == WH_CAPTURE_OPEN) {
-        luaL_error(m->L, "unfinished capture");
-    }
-    if (length == WH_CAPTURE_POSITION) {
-        lua_pushinteger(m->L, m->capture[index].begin - m->subject + 1);
-    } else {
-        lua_pushlstring(m->L, m->capture[index].begin, (size_t)length);
-    }
-}
-
-int wh_pattern_push_captures(pattern_t *m, const char *begin, const char *end) {
-    const int count = m->captures == 0 && begin != NULL ? 1 : m->captures;
-    luaL_checkstack(m->L, count, "too many captures");
-    for (int i = 0; i < count; ++i) {
-        wh_pattern_push_capture(m, i, begin, end);
-    }
-    return count;
 }

@@ -50,4 +50,11 @@ void wh_pattern_push_capture(wh_pattern_t *matcher, int index, const char *begin
 /* Pushes all captures, or the whole match when there is none and begin is not null; returns their number. */
 int wh_pattern_push_captures(wh_pattern_t *matcher, const char *begin, const char *end);
 
+/* Is the character c in the class %letter? An upper-case letter negates; one that names no class is itself.
+ */
+bool wh_pattern_in_class(int c, int letter);
+
+/* Is c in the set whose '[' is at p and whose ']' is at last? */
+bool wh_pattern_in_set(int c, const char *p, const char *last);
+
 #endif

@@ -29,6 +29,9 @@
  * - Functions in C charge the instruction budget for what they do: patterns for each step of the matcher, the
  * table functions for each element, others for the bytes that they read or make.
  *
+ * What is left that could differ between machines: the sign of a NaN in `..`, the native byte order of string.pack, and
+ * a __mode that is put into a metatable after it was set.
+ *
  * What a budget cannot bound is the time of one instruction. The worst known: comparing two equal strings of
  * half the memory cap (10 ms), passing a million varargs on (1 ms), an __index chain of 2000 tables (20 us).
  */

@@ -10,7 +10,7 @@
 
 #include "motion/line.h"
 #include "motion/trig.h"
-#include "tests/support.h"
+#include "support.h"
 
 #define LINES 5000
 #define INSTANTS 20

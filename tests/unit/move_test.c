@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "motion/move.h"
-#include "tests/support.h"
+#include "support.h"
 
 #define MOVES 100000
 

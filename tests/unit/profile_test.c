@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "motion/profile.h"
-#include "tests/support.h"
+#include "support.h"
 
 #define SAMPLES 100000
 

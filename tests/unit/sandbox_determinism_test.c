@@ -28,9 +28,9 @@ static size_t random_below(size_t limit) {
 }
 
 static void random_begin(void) {
-    const char *const wanted = getenv("WH_TEST_SEED");
+    const char *const wanted = getenv("WH_SEED");
     random_state = wanted != NULL ? strtoull(wanted, NULL, 0) : 1;
-    print_message("seed %llu (WH_TEST_SEED)\n", (unsigned long long)random_state);
+    print_message("seed %llu (WH_SEED)\n", (unsigned long long)random_state);
 }
 
 /* ---- What a script prints ---- */

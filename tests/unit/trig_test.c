@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "motion/trig.h"
-#include "tests/support.h"
+#include "support.h"
 
 #define SAMPLES 100000
 #define PI 3.14159265358979323846264338327950288L
