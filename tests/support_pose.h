@@ -15,7 +15,7 @@
 #endif
 
 /* The library's number next to `from` on the way to `to`. */
-static inline wh_real_t wh_test_next(wh_real_t from, wh_real_t to) {
+static inline wh_real_t wh_test_neighbour(wh_real_t from, wh_real_t to) {
 #if defined(WH_FLOAT)
     return nextafterf(from, to);
 #else
@@ -26,10 +26,10 @@ static inline wh_real_t wh_test_next(wh_real_t from, wh_real_t to) {
 /* `steps` numbers further away from zero; negative steps: towards it. */
 static inline wh_real_t wh_test_ulps(wh_real_t from, int steps) {
     for (; steps > 0; --steps) {
-        from = wh_test_next(from, from < 0 ? -WH_REAL(1e30) : WH_REAL(1e30));
+        from = wh_test_neighbour(from, from < 0 ? -WH_REAL(1e30) : WH_REAL(1e30));
     }
     for (; steps < 0; ++steps) {
-        from = wh_test_next(from, 0);
+        from = wh_test_neighbour(from, 0);
     }
     return from;
 }

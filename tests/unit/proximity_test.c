@@ -44,7 +44,7 @@ static void each_limit_itself_fails(void **state) {
             assert_int_equal(at(WH_REAL(sign) * wh_test_ulps(t->projxy, -1), 0, 0, 1, t).failed, 0);
         }
         assert_int_equal(at(x, 0, 0, t->planar, t).failed, WH_FAILED_PLANAR);
-        assert_int_equal(at(x, 0, 0, wh_test_next(t->planar, 1), t).failed, 0);
+        assert_int_equal(at(x, 0, 0, wh_test_neighbour(t->planar, 1), t).failed, 0);
     }
 }
 
