@@ -8,6 +8,8 @@
 #ifndef WAFERHAND_H
 #define WAFERHAND_H
 
+/* In the order of the data flow. */
+/* clang-format off */
 #include "core/config.h"
 #include "core/status.h"
 
@@ -31,5 +33,6 @@
 
 #include "sim/slice.h"
 #include "sim/simulator.h"
+/* clang-format on */
 
 #endif

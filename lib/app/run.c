@@ -28,7 +28,7 @@ static const struct argp_option options[] = {
     {"set", OPTION_SET, "NAME=VALUE", 0, "Hand the script a parameter: params.NAME", 0},
     {"trust", OPTION_TRUST, NULL, 0, "Let the script use all of Lua, files and native modules too", 0},
     {"budget", OPTION_BUDGET, "N", 0,
-     "End the script after N steps of Lua and simulated slices (default 2e9)", 0},
+     "End the script after N steps of Lua and simulated slices (default 1e9)", 0},
     {"memory", OPTION_MEMORY, "MIB", 0, "Let the script use so many MiB of memory (default 256)", 0},
     {0},
 };

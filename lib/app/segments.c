@@ -122,7 +122,9 @@ static void write_wafers(FILE *out, const wh_layout_t *layout) {
         write_pose(out, &layout->start[w].base_from_wafer);
         fputs(",\n", out);
     }
-    fprintf(out, "    {{{{0}}}, {0}}};\nstatic const size_t played_wafer_count = %zu;\n\n",
+    fprintf(out,
+            "    {{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, {0, 0, 0}}};\nstatic const size_t played_wafer_count "
+            "= %zu;\n\n",
             layout->wafer_count);
 }
 

@@ -102,11 +102,10 @@ static void put_reasons(const wh_report_t *report) {
     for (size_t i = 0; i < record->event_count; ++i) {
         complaints += wh_report_is_complaint(record->events[i].event.kind) ? 1 : 0;
     }
-    bool first = true;
-    first &=
-        !put_reason(report->out, first, count_unmet(record), "expectation not met", "expectations not met");
-    first &= !put_reason(report->out, first, errors, "command with an error", "commands with errors");
-    first &= !put_reason(report->out, first, complaints, "complaint", "complaints");
+    bool more =
+        put_reason(report->out, true, count_unmet(record), "expectation not met", "expectations not met");
+    more |= put_reason(report->out, !more, errors, "command with an error", "commands with errors");
+    put_reason(report->out, !more, complaints, "complaint", "complaints");
 }
 
 int wh_report_summary(const wh_report_t *report) {

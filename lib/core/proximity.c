@@ -20,6 +20,19 @@ wh_tolerance_t wh_tolerance_strict(void) {
     return strict;
 }
 
+const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance) {
+    switch (index) {
+    case 0:
+        *tolerance = wh_tolerance_paper();
+        return "paper";
+    case 1:
+        *tolerance = wh_tolerance_strict();
+        return "strict";
+    default:
+        return NULL;
+    }
+}
+
 wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance) {
     const bool good = tolerance->projz > 0 && tolerance->projz <= WH_REAL(1e6) &&
                       tolerance->projxy >= WH_REAL(1e-6) && tolerance->projxy <= WH_REAL(1e6) &&

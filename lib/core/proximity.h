@@ -46,6 +46,11 @@ wh_tolerance_t wh_tolerance_paper(void);
 /* "strict": 0.5 mm, 5 mm, 0.99998; the rim of a 300 mm wafer is out of plane by less than 1 mm. */
 wh_tolerance_t wh_tolerance_strict(void);
 
+/* How many presets there are, and which: `index` is 0 to WH_TOLERANCE_PRESETS - 1, anything else gives null and leaves
+ * `tolerance` as it was. Returns the preset's name, a constant string. */
+#define WH_TOLERANCE_PRESETS 2
+const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance);
+
 /* WH_STATUS_BAD_TOLERANCE when a limit is NaN or out of the range given at wh_tolerance_t. */
 wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance);
 

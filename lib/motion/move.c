@@ -25,11 +25,11 @@ static wh_status_t slowest(size_t count, const wh_real_t from[], const wh_real_t
 /* Cannot fail after `slowest` has planned the same and looked at the factor. Reads before it writes: `from`
  * may be move->to. */
 static void plan_axis(wh_move_t *move, size_t axis, wh_real_t from, wh_real_t to, const wh_limits_t *limits) {
-    wh_status_t status = wh_profile_plan(&move->profile[axis], to - from, limits);
-    WH_ASSERT(status == WH_OK);
-    status = wh_profile_stretch(&move->profile[axis], move->duration);
-    WH_ASSERT(status == WH_OK);
-    (void)status;
+    const wh_status_t planned = wh_profile_plan(&move->profile[axis], to - from, limits);
+    const wh_status_t stretched = wh_profile_stretch(&move->profile[axis], move->duration);
+    WH_ASSERT(planned == WH_OK && stretched == WH_OK);
+    (void)planned;
+    (void)stretched;
     move->from[axis] = from;
     move->to[axis] = to;
 }

@@ -30,7 +30,8 @@ static bool is_angle(size_t axis) {
 }
 
 static bool is_in_travel(const wh_robot_t *robot, size_t axis, wh_real_t position) {
-    const wh_real_t slack = is_angle(axis) ? WH_SLACK_RAD : WH_SLACK_MM;
+    static const wh_real_t slacks[] = {WH_SLACK_MM, WH_SLACK_RAD};
+    const wh_real_t slack = slacks[is_angle(axis) ? 1 : 0];
     return position >= robot->travel[axis].min - slack && position <= robot->travel[axis].max + slack;
 }
 

@@ -78,6 +78,8 @@ $(LIBRARY_OBJECTS): FLAGS = $(LIBRARY_FLAGS)
 $(PROGRAM_OBJECTS): FLAGS = $(PROGRAM_FLAGS)
 $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(LIBRARY_FLAGS) -fPIC
 $(SCRIPT_SOURCES:%.c=$(B)/pic/%.o) $(MODULE_OBJECTS): FLAGS = $(PROGRAM_FLAGS) -fPIC
+# Its pow must not be taken for the one that the compiler knows.
+$(B)/obj/lib/script/pow.o $(B)/pic/lib/script/pow.o: FLAGS += -fno-builtin-pow
 $(B)/obj/tests/%.o: FLAGS = $(TEST_FLAGS)
 $(CXX_TESTS:%=$(B)/obj/%.o): FLAGS = $(CXX_TEST_FLAGS)
 

@@ -39,8 +39,11 @@ static void read_limits(wh_reader_t *reader, wh_tolerance_t *tolerance) {
 }
 
 static void read_tolerance(wh_reader_t *reader, wh_layout_t *layout) {
-    static const char *const presets[] = {"paper", "strict", NULL};
+    const char *presets[WH_TOLERANCE_PRESETS + 1] = {NULL};
     const char *name = "own";
+    for (size_t i = 0; i < WH_TOLERANCE_PRESETS; ++i) {
+        presets[i] = wh_tolerance_preset(i, &layout->grasp.tolerance);
+    }
     layout->grasp.tolerance = wh_tolerance_paper();
     lua_pushliteral(reader->L, "tolerance");
     lua_rawget(reader->L, -2);
@@ -54,8 +57,7 @@ static void read_tolerance(wh_reader_t *reader, wh_layout_t *layout) {
         read_limits(reader, &layout->grasp.tolerance);
     } else {
         const int preset = wh_reader_choice(reader, "tolerance", 0, presets);
-        layout->grasp.tolerance = preset == 0 ? wh_tolerance_paper() : wh_tolerance_strict();
-        name = presets[preset];
+        name = wh_tolerance_preset((size_t)preset, &layout->grasp.tolerance);
     }
     snprintf(layout->tolerance_name, sizeof layout->tolerance_name, "%s", name);
 }

@@ -36,23 +36,28 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t w) {
     read_position(reader, layout, wafer, &layout->start[w].base_from_wafer);
 }
 
+/* What is sorted: wafers stay where they are. */
+typedef struct {
+    const wh_layout_wafer_t *wafer;
+} entry_t;
+
 static int compare_names(const void *a, const void *b) {
-    const wh_layout_wafer_t *const *one = a;
-    const wh_layout_wafer_t *const *two = b;
-    const int order = strcmp((*one)->name, (*two)->name);
-    return order != 0 ? order : (*one < *two ? -1 : 1);
+    const wh_layout_wafer_t *one = ((const entry_t *)a)->wafer;
+    const wh_layout_wafer_t *two = ((const entry_t *)b)->wafer;
+    const int order = strcmp(one->name, two->name);
+    return order != 0 ? order : (one < two ? -1 : 1);
 }
 
 static int compare_slots(const void *a, const void *b) {
-    const wh_layout_wafer_t *const *one = a;
-    const wh_layout_wafer_t *const *two = b;
-    if ((*one)->station != (*two)->station) {
-        return (*one)->station < (*two)->station ? -1 : 1;
+    const wh_layout_wafer_t *one = ((const entry_t *)a)->wafer;
+    const wh_layout_wafer_t *two = ((const entry_t *)b)->wafer;
+    if (one->station != two->station) {
+        return one->station < two->station ? -1 : 1;
     }
-    if ((*one)->slot != (*two)->slot) {
-        return (*one)->slot < (*two)->slot ? -1 : 1;
+    if (one->slot != two->slot) {
+        return one->slot < two->slot ? -1 : 1;
     }
-    return *one < *two ? -1 : 1;
+    return one < two ? -1 : 1;
 }
 
 static void fail_at(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_wafer_t *wafer,
@@ -63,26 +68,25 @@ static void fail_at(wh_reader_t *reader, const wh_layout_t *layout, const wh_lay
 }
 
 /* Sorting puts wafers that share something side by side. */
-static void refuse_same_name(wh_reader_t *reader, const wh_layout_t *layout,
-                             const wh_layout_wafer_t **order) {
+static void refuse_same_name(wh_reader_t *reader, const wh_layout_t *layout, entry_t *order) {
     qsort(order, layout->wafer_count, sizeof *order, compare_names);
     for (size_t i = 1; i < layout->wafer_count; ++i) {
-        if (strcmp(order[i - 1]->name, order[i]->name) == 0) {
-            lua_pushstring(reader->L, order[i]->name);
-            fail_at(reader, layout, order[i], "name", "a name that no other wafer has");
+        if (strcmp(order[i - 1].wafer->name, order[i].wafer->name) == 0) {
+            lua_pushstring(reader->L, order[i].wafer->name);
+            fail_at(reader, layout, order[i].wafer, "name", "a name that no other wafer has");
         }
     }
 }
 
-static void refuse_same_slot(wh_reader_t *reader, const wh_layout_t *layout,
-                             const wh_layout_wafer_t **order) {
+static void refuse_same_slot(wh_reader_t *reader, const wh_layout_t *layout, entry_t *order) {
     qsort(order, layout->wafer_count, sizeof *order, compare_slots);
     for (size_t i = 1; i < layout->wafer_count; ++i) {
-        const wh_layout_wafer_t *wafer = order[i];
-        if (order[i - 1]->station == wafer->station && order[i - 1]->slot == wafer->slot) {
+        const wh_layout_wafer_t *wafer = order[i].wafer;
+        const wh_layout_wafer_t *before = order[i - 1].wafer;
+        if (before->station == wafer->station && before->slot == wafer->slot) {
             char expected[200];
             snprintf(expected, sizeof expected, "a slot of %s of its own; \"%s\" lies in this one",
-                     layout->stations[wafer->station].name, order[i - 1]->name);
+                     layout->stations[wafer->station].name, before->name);
             lua_pushinteger(reader->L, wafer->slot);
             fail_at(reader, layout, wafer, "slot", expected);
         }
@@ -106,9 +110,9 @@ void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout) {
         read_wafer(reader, layout, layout->wafer_count);
         wh_reader_leave(reader);
     }
-    const wh_layout_wafer_t **order = wh_layout_memory(reader->L, count, sizeof *order);
+    entry_t *order = wh_layout_memory(reader->L, count, sizeof *order);
     for (size_t w = 0; w < layout->wafer_count; ++w) {
-        order[w] = &layout->wafers[w];
+        order[w].wafer = &layout->wafers[w];
     }
     refuse_same_name(reader, layout, order);
     refuse_same_slot(reader, layout, order);

@@ -32,17 +32,6 @@ double wh_mcs_now(const wh_mcs_t *mcs) {
 /* ------------------------------------------------------------------------------------------ numbered errors
  */
 
-int wh_mcs_script_line(lua_State *L, const wh_mcs_t *mcs) {
-    lua_Debug at;
-    for (int level = 1; lua_getstack(L, level, &at); ++level) {
-        lua_getinfo(L, "Sl", &at);
-        if (at.source[0] == '@' && strcmp(at.source + 1, mcs->script) == 0) {
-            return at.currentline;
-        }
-    }
-    return 0;
-}
-
 static int numbered_error_text(lua_State *L) {
     lua_getfield(L, 1, "message");
     return 1;
@@ -60,7 +49,7 @@ static void push_numbered_error_metatable(lua_State *L) {
 }
 
 int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *detail) {
-    const int line = wh_mcs_script_line(L, mcs);
+    const int line = wh_sandbox_line(L, mcs->script);
     const char *command = mcs->running == WH_NONE ? "" : mcs->record->commands[mcs->running].text;
     lua_createtable(L, 0, 4);
     lua_pushinteger(L, status);

@@ -17,9 +17,6 @@ wh_mcs_t *wh_mcs_with_layout(lua_State *L);
 int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *detail)
     __attribute__((noreturn));
 
-/* The line of the script that is running in L, or 0. */
-int wh_mcs_script_line(lua_State *L, const wh_mcs_t *mcs);
-
 /* Simulated seconds so far. */
 double wh_mcs_now(const wh_mcs_t *mcs);
 

@@ -8,7 +8,7 @@
 static int begin_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const char *text = luaL_checkstring(L, 1);
-    wh_record_add_command(mcs->record, wh_mcs_script_line(L, mcs), text, wh_mcs_now(mcs));
+    wh_record_add_command(mcs->record, wh_sandbox_line(L, mcs->script), text, wh_mcs_now(mcs));
     mcs->running = (int32_t)mcs->record->command_count - 1;
     return 0;
 }
@@ -30,7 +30,7 @@ static int finish_command(lua_State *L) {
 static int add_expectation(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_of(L);
     const bool ok = lua_toboolean(L, 1) != 0;
-    wh_record_add_expectation(mcs->record, wh_mcs_script_line(L, mcs), luaL_checkstring(L, 2), ok);
+    wh_record_add_expectation(mcs->record, wh_sandbox_line(L, mcs->script), luaL_checkstring(L, 2), ok);
     return 0;
 }
 

@@ -35,10 +35,12 @@ static double power_huge(double x) {
 
 static double power_of_count(double x, uint64_t count) {
     double result = 1;
-    for (double square = x; count != 0; square *= square) {
+    double square = x;
+    while (count != 0) {
         if (count & 1) {
             result *= square;
         }
+        square *= square;
         count >>= 1;
     }
     return result;

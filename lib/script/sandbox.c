@@ -173,7 +173,7 @@ static void abbreviate(wh_sandbox_job_t *job) {
 }
 
 static bool run_text(lua_State *L, wh_sandbox_job_t *job, wh_sandbox_result_t *result) {
-    wh_sandbox_result_t unused;
+    wh_sandbox_result_t unused = {WH_SANDBOX_OK, ""};
     wh_sandbox_result_t *const told = result != NULL ? result : &unused;
     enter(L, job);
     abbreviate(job);

@@ -26,7 +26,7 @@
 #include <lua.h>
 
 #define WH_SANDBOX_MEMORY_BYTES ((size_t)256 << 20)
-#define WH_SANDBOX_INSTRUCTIONS UINT64_C(2000000000)
+#define WH_SANDBOX_INSTRUCTIONS UINT64_C(1000000000)
 #define WH_SANDBOX_MESSAGE_BYTES 1024
 /* A script or layout file may be this long. */
 #define WH_SANDBOX_FILE_BYTES ((size_t)16 << 20)
@@ -35,7 +35,7 @@
 typedef struct {
     size_t memory_bytes; /* cap on all that Lua holds, live data to 7/8 of it; default 256 MiB; below 128 KiB
                             nothing starts */
-    uint64_t instructions; /* budget of the sandbox until it is renewed; default 2e9 */
+    uint64_t instructions; /* budget of the sandbox until it is renewed; default 1e9 */
     bool trust;     /* all of Lua's libraries, native modules too; the deterministic replacements stay */
     FILE *print_to; /* where print writes; borrowed; default stdout */
 } wh_sandbox_limits_t;
@@ -102,6 +102,9 @@ int wh_sandbox_resume(lua_State *co, lua_State *from, int arguments, int *result
 /* Pushes the value that the last failed chunk threw (a numbered error is a table), nil if there was none.
  * Needs one free stack slot. */
 void wh_sandbox_push_error(lua_State *L);
+
+/* The innermost line of the chunk named path on L's call stack; 0 if there is none among the first 1000 levels. */
+int wh_sandbox_line(lua_State *L, const char *path);
 
 /* Why the last chunk ended. */
 wh_sandbox_reason_t wh_sandbox_reason(const wh_sandbox_t *sandbox);

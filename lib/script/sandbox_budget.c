@@ -20,20 +20,15 @@ wh_sandbox_t *wh_sandbox_of(lua_State *L) {
 }
 
 void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size) {
-    switch (sandbox->fatal) {
-    case WH_SANDBOX_BUDGET:
+    const size_t cap = sandbox->memory_cap;
+    const bool in_mib = cap >> 20 << 20 == cap;
+    if (sandbox->fatal == WH_SANDBOX_BUDGET) {
         snprintf(text, size, "instruction budget of %" PRIu64 " spent", sandbox->budget);
-        break;
-    case WH_SANDBOX_MEMORY:
-        if (sandbox->memory_cap >> 20 << 20 == sandbox->memory_cap) {
-            snprintf(text, size, "memory cap of %zu MiB reached", sandbox->memory_cap >> 20);
-        } else {
-            snprintf(text, size, "memory cap of %zu KiB reached", sandbox->memory_cap >> 10);
-        }
-        break;
-    default:
+    } else if (sandbox->fatal == WH_SANDBOX_MEMORY) {
+        snprintf(text, size, "memory cap of %zu %s reached", in_mib ? cap >> 20 : cap >> 10,
+                 in_mib ? "MiB" : "KiB");
+    } else {
         snprintf(text, size, "stopped");
-        break;
     }
 }
 

@@ -73,8 +73,6 @@ void wh_sandbox_exhaust(lua_State *L, wh_sandbox_reason_t reason);
 bool wh_sandbox_is_fatal(lua_State *L, int status);
 /* Raises the exhausted limit's error. */
 int wh_sandbox_raise(lua_State *L);
-/* The innermost line of the chunk named path on L's call stack; 0 if there is none. */
-int wh_sandbox_line(lua_State *L, const char *path);
 /* "instruction budget of N spent" and the like. */
 void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size);
 

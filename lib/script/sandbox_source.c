@@ -63,8 +63,10 @@ static const char *read_open(int file, char **text, size_t *size) {
         free(whole);
         return fault;
     }
-    char *const fitted = realloc(whole, *size + 1);
-    *text = fitted != NULL ? fitted : whole;
+    *text = realloc(whole, *size + 1);
+    if (*text == NULL) {
+        *text = whole;
+    }
     return NULL;
 }
 

@@ -9,7 +9,7 @@
 typedef struct {
     wh_grasp_t table;
     uint64_t unread; /* calls of step and place whose arguments did not get as far as the table */
-    wh_gripper_t grippers[WH_MODULE_GRIPPERS];
+    wh_gripper_t grippers[WH_GRIPPERS];
     wh_wafer_t wafers[];
 } cell_t;
 
@@ -20,7 +20,7 @@ static cell_t *check_cell(lua_State *L) {
 static size_t read_gripper_count(lua_State *L, const wh_field_t *of) {
     const wh_field_t at = wh_lua_field(of, "grippers");
     lua_getfield(L, 1, "grippers");
-    return wh_lua_take_index(L, &at, WH_MODULE_GRIPPERS) + 1;
+    return wh_lua_take_index(L, &at, WH_GRIPPERS) + 1;
 }
 
 /* Leaves the list of wafers on the stack. */
@@ -29,8 +29,8 @@ static size_t push_wafers(lua_State *L, const wh_field_t *at) {
         wh_lua_refuse(L, at, "table expected, got %s", luaL_typename(L, -1));
     }
     const lua_Integer count = luaL_len(L, -1);
-    if (count < 0 || count > WH_MODULE_WAFERS) {
-        wh_lua_refuse(L, at, "%I entries (expected 0 to %d)", (LUAI_UACINT)count, WH_MODULE_WAFERS);
+    if (count < 0 || count > WH_LAYOUT_WAFERS) {
+        wh_lua_refuse(L, at, "%I entries (expected 0 to %d)", (LUAI_UACINT)count, WH_LAYOUT_WAFERS);
     }
     wh_lua_check_list(L, lua_gettop(L), at, count);
     return (size_t)count;
@@ -103,8 +103,8 @@ static int cell_step(lua_State *L) {
     cell_t *cell = check_cell(L);
     const wh_field_t at = wh_lua_argument("inputs", 2);
     const size_t count = cell->table.storage.gripper_count;
-    wh_gripper_input_t inputs[WH_MODULE_GRIPPERS];
-    wh_event_t events[WH_MODULE_GRIPPERS * WH_EVENTS_PER_GRIPPER];
+    wh_gripper_input_t inputs[WH_GRIPPERS];
+    wh_event_t events[WH_GRIPPERS * WH_EVENTS_PER_GRIPPER];
     wh_event_list_t list = {events, sizeof events / sizeof events[0], 0};
     lua_settop(L, 2);
     ++cell->unread;
@@ -161,7 +161,7 @@ static int cell_place(lua_State *L) {
     --cell->unread;
     const wh_status_t status = wh_grasp_place(&cell->table, wafer, &pose);
     if (status == WH_STATUS_HELD) {
-        return wh_lua_refuse(L, &wafer_at, "%I (%s) [%d]", (LUAI_UACINT)(wafer + 1), wh_status_text(status),
+        return wh_lua_refuse(L, &wafer_at, "%I (%s) [%d]", (LUAI_UACINT)wafer + 1, wh_status_text(status),
                              (int)status);
     }
     return status == WH_OK ? 0 : wh_lua_refuse_pose(L, &pose_at, &pose, status);

@@ -6,6 +6,7 @@
 #include <lua.h>
 
 #include "core/grasp.h"
+#include "script/layout.h"
 
 #if defined(WH_FLOAT)
 #error "waferhand: the Lua module's numbers are double; build it and the library without WH_FLOAT"
@@ -13,10 +14,6 @@
 #if LUA_VERSION_NUM != 504 || LUA_FLOAT_TYPE != LUA_FLOAT_DOUBLE
 #error "waferhand: the Lua module needs Lua 5.4 with double numbers"
 #endif
-
-/* The largest cell, as large as the largest layout: WH_GRIPPERS, WH_LAYOUT_WAFERS. */
-#define WH_MODULE_GRIPPERS 8
-#define WH_MODULE_WAFERS 1000000
 
 /* The path of a value within an argument, such as inputs[2].pose.R, as a chain of the callers' locals. */
 typedef struct wh_field {

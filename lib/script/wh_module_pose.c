@@ -2,11 +2,6 @@
 
 #include "script/wh_module_internal.h"
 
-static const struct {
-    const char *name;
-    wh_tolerance_t (*limits)(void);
-} presets[] = {{"paper", wh_tolerance_paper}, {"strict", wh_tolerance_strict}};
-
 static void take_triple(lua_State *L, const wh_field_t *at, wh_real_t triple[3]) {
     const int list = lua_gettop(L);
     wh_lua_check_list(L, list, at, 3);
@@ -58,9 +53,10 @@ void wh_lua_take_valid_pose(lua_State *L, const wh_field_t *at, wh_pose_t *pose)
 
 static wh_tolerance_t find_preset(lua_State *L, const wh_field_t *at) {
     const char *name = lua_tostring(L, -1);
-    for (size_t i = 0; i < sizeof presets / sizeof presets[0]; ++i) {
-        if (strcmp(presets[i].name, name) == 0) {
-            return presets[i].limits();
+    wh_tolerance_t tolerance;
+    for (size_t i = 0; i < WH_TOLERANCE_PRESETS; ++i) {
+        if (strcmp(wh_tolerance_preset(i, &tolerance), name) == 0) {
+            return tolerance;
         }
     }
     wh_lua_refuse(L, at, "\"%s\" (expected \"paper\", \"strict\" or a table)", name);
