@@ -4,8 +4,10 @@
 
 #if defined(WH_FLOAT)
 #define SLACK 2e-3
+#define HALF_TURN (WH_TEST_PI - 1e-2)
 #else
 #define SLACK 1e-8
+#define HALF_TURN (WH_TEST_PI - 1e-5)
 #endif
 
 typedef struct {
@@ -77,20 +79,32 @@ static double closeness(const slice_t *s, const values_t *v) {
     return z * z + xy * xy;
 }
 
-/* A wafer anywhere, and a gripper that passes by it: in the wafer's frame from one point to another. */
-static void draw(slice_t *s) {
-    const double half = wh_test_below(3) ? 0.3 : 3;
-    const bool about_n2 = wh_test_below(3) == 0;
-    const double angle = wh_test_below(8) ? wh_test_uniform(-half, half) : 0;
+/* A turn about any axis or one near n2; small, large, none, or hardly less than half a revolution. */
+static wh_mat3_t draw_turn(quaternion_t *turn) {
+    const double spread = wh_test_below(3) ? 1 : wh_test_uniform(0, 0.3);
+    const uint32_t kind = wh_test_below(8);
+    double angle = wh_test_uniform(-0.3, 0.3);
     double a[3];
     for (int i = 0; i < 3; ++i) {
-        a[i] = wh_test_uniform(-1, 1);
+        a[i] = wh_test_uniform(-1, 1) * (i < 2 ? spread : 1);
     }
-    if (about_n2) {
-        a[0] = a[1] = 0;
-        a[2] = 1;
+    if (kind < 3) {
+        angle *= 10;
+    } else if (kind == 3) {
+        angle = a[0] < 0 ? HALF_TURN : -HALF_TURN;
+    } else if (kind == 4) {
+        angle = 0;
     }
-    const double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) / sin(angle / 2);
+    const double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    turn->w = cos(angle / 2);
+    turn->x = a[0] / length * sin(angle / 2);
+    turn->y = a[1] / length * sin(angle / 2);
+    turn->z = a[2] / length * sin(angle / 2);
+    return wh_test_rotation(a[0], a[1], a[2], angle);
+}
+
+/* A wafer anywhere, and a gripper that passes by it: in the wafer's frame from one point to another. */
+static void draw(slice_t *s) {
     memset(s, 0, sizeof *s);
     s->config = wh_grasp_config_default();
     s->config.check = WH_CHECK_SWEPT;
@@ -105,14 +119,10 @@ static void draw(slice_t *s) {
         ends[i].r.z = WH_REAL(wh_test_uniform(-height, height));
         ends[i] = wh_pose_compose(&s->wafer, &ends[i]);
     }
-    const wh_mat3_t turn = wh_test_rotation(a[0], a[1], a[2], angle);
+    const wh_mat3_t turn = draw_turn(&s->turn);
     s->from = ends[0];
     s->to.R = wh_mat3_multiply(&s->from.R, &turn);
     s->to.r = ends[1].r;
-    s->turn.w = cos(angle / 2);
-    s->turn.x = a[0] / length;
-    s->turn.y = a[1] / length;
-    s->turn.z = a[2] / length;
     s->travel[0] = (double)s->to.r.x - (double)s->from.r.x;
     s->travel[1] = (double)s->to.r.y - (double)s->from.r.y;
     s->travel[2] = (double)s->to.r.z - (double)s->from.r.z;

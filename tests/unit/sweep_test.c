@@ -223,6 +223,23 @@ static void a_graze_is_told_why(void **state) {
     assert_near(e->measured.margin_projz, -0.0005, SAME_PLACE);
 }
 
+/* What is closest at the slice's end has that pose's bits, not those of a sum that comes near it. */
+static void the_end_is_the_pose_that_was_given(void **state) {
+    (void)state;
+    for (int run = 0; run < 100; ++run) {
+        cell_t cell;
+        begin(&cell, WH_CHECK_SWEPT);
+        cell_move(&cell, 0, wh_test_uniform(-300, -200), -7, -9, OPEN);
+        const double x = wh_test_uniform(-20, -10);
+        cell_move(&cell, 0, x, 5, wh_test_uniform(-4, -1), OPEN);
+        const wh_encounter_t *approach = &cell.gripper[0].approach;
+        const wh_vec3_t dr =
+            wh_vec3_subtract(&cell.wafer[0].base_from_wafer.r, &cell.input[0].base_from_gripper.r);
+        assert_int_equal(approach->wafer, 0);
+        assert_memory_equal(&approach->measured.dr, &dr, sizeof dr);
+    }
+}
+
 static void lower_gripper_wins_even_if_later(void **state) {
     (void)state;
     cell_t cell;
@@ -248,6 +265,7 @@ int main(void) {
         cmocka_unit_test(a_seated_wafer_is_drawn_down_in_flight),
         cmocka_unit_test(a_pass_beside_is_a_near_miss_at_its_closest),
         cmocka_unit_test(a_graze_is_told_why),
+        cmocka_unit_test(the_end_is_the_pose_that_was_given),
         cmocka_unit_test(lower_gripper_wins_even_if_later),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
