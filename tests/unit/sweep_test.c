@@ -94,6 +94,26 @@ static void a_turn_picks_at_the_planar_limit(void **state) {
     assert_near(cell.wafer[0].base_from_wafer.R.m[2][2], cos(0.3 + acos(0.99)), 1e-4);
 }
 
+/* n2 goes round a tilted axis: first away from n1, past its farthest point, and then within the limit. */
+static void a_turn_may_lead_away_before_it_leads_in(void **state) {
+    (void)state;
+    cell_t cell;
+    const wh_mat3_t tilt = wh_test_rotation(0, 1, 0, 0.12);
+    begin(&cell, WH_CHECK_SWEPT);
+    for (int end = 0; end < 2; ++end) {
+        const wh_mat3_t spin = wh_test_rotation(0, 0, 1, end ? 1.9 : -1.2);
+        const wh_mat3_t spun = wh_mat3_multiply(&tilt, &spin);
+        cell.input[0].base_from_gripper.R = wh_mat3_multiply(&spun, &tilt);
+        cell.input[0].base_from_gripper.r = wh_vec3(0, 0, 0);
+        cell.input[0].valve = OPEN;
+        cell_step(&cell);
+        assert_int_equal(cell.list.count, end);
+    }
+    const wh_event_t *e = cell_expect(&cell, WH_EVENT_PICKED, 0, 0, WH_NONE);
+    assert_near(e->measured.n1_proj_n2, 0.99, 1e-5);
+    assert_int_equal(e->measured_slice, 2);
+}
+
 static void the_first_wafer_on_the_way_is_taken(void **state) {
     (void)state;
     cell_t cell;
@@ -257,6 +277,7 @@ int main(void) {
         cmocka_unit_test(sampled_misses_and_says_so),
         cmocka_unit_test(a_lateral_pass_picks_at_the_circle),
         cmocka_unit_test(a_turn_picks_at_the_planar_limit),
+        cmocka_unit_test(a_turn_may_lead_away_before_it_leads_in),
         cmocka_unit_test(the_first_wafer_on_the_way_is_taken),
         cmocka_unit_test(ties_go_to_the_nearer_then_the_lower),
         cmocka_unit_test(both_ends_must_be_open),
