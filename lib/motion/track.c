@@ -5,6 +5,13 @@
 #define MAX_SLICE_US 1000000
 #define MAX_SECONDS WH_REAL(1e6)
 
+/* Relative error of a time in seconds counted in slices: three roundings. */
+#if defined(WH_FLOAT)
+#define ROUNDING (4 * FLT_EPSILON)
+#else
+#define ROUNDING (4 * DBL_EPSILON)
+#endif
+
 wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_t slice_us) {
     if (!track) {
         return WH_STATUS_NULL_ARGUMENT;
@@ -46,14 +53,19 @@ wh_segment_t wh_track_blank(const wh_track_t *track) {
     return segment;
 }
 
-/* The least number of whole slices that last at least `seconds`: at most 1e12 of them. */
+/* The least number of whole slices that last at least `seconds`, which are at most MAX_SECONDS: 1e12 of them.
+ * What is above a whole number by rounding alone is that number: 2.007 s are 2007 ms, not 2008. */
 static int64_t slices_for(const wh_track_t *track, wh_real_t seconds) {
     const wh_real_t exact = seconds * WH_REAL(1e6) / (wh_real_t)track->slice_us;
     const int64_t whole = (int64_t)exact;
-    return (wh_real_t)whole < exact ? whole + 1 : whole;
+    return exact - (wh_real_t)whole > ROUNDING * exact ? whole + 1 : whole;
 }
 
-static wh_real_t segment_time(const wh_track_t *track) {
+/* Since the segment began. Its last slice is its end, however the two were rounded. */
+static wh_real_t segment_time(const wh_track_t *track, wh_real_t duration) {
+    if (track->segment_slice == track->segment_slices) {
+        return duration;
+    }
     return (wh_real_t)(track->segment_slice * track->slice_us) / WH_REAL(1e6);
 }
 
@@ -69,6 +81,9 @@ static wh_status_t plan_axes(wh_track_t *track, const wh_segment_t *segment) {
     }
     wh_move_t move;
     const wh_status_t status = wh_move_plan(&move, machine->axis_count, track->axes, segment->target, limits);
+    if (status == WH_OK && wh_move_duration(&move) > MAX_SECONDS) {
+        return WH_STATUS_BAD_SEGMENT;
+    }
     if (status == WH_OK) {
         track->plan.move = move;
         track->segment_slices = slices_for(track, wh_move_duration(&move));
@@ -81,6 +96,9 @@ static wh_status_t plan_line(wh_track_t *track, const wh_segment_t *segment) {
     wh_line_t line;
     const wh_status_t status = wh_line_plan(&line, &track->machine->robot, track->axes, travel->x, travel->y,
                                             travel->z, segment->speed);
+    if (status == WH_OK && wh_line_duration(&line) > MAX_SECONDS) {
+        return WH_STATUS_BAD_SEGMENT;
+    }
     if (status == WH_OK) {
         track->plan.line = line;
         track->segment_slices = slices_for(track, wh_line_duration(&line));
@@ -146,10 +164,10 @@ wh_status_t wh_track_begin(wh_track_t *track, const wh_segment_t *segment) {
 static void apply(wh_track_t *track) {
     switch (track->segment.kind) {
     case WH_SEGMENT_AXES:
-        wh_move_at(&track->plan.move, segment_time(track), track->axes);
+        wh_move_at(&track->plan.move, segment_time(track, wh_move_duration(&track->plan.move)), track->axes);
         break;
     case WH_SEGMENT_LINE:
-        wh_line_at(&track->plan.line, segment_time(track), track->axes);
+        wh_line_at(&track->plan.line, segment_time(track, wh_line_duration(&track->plan.line)), track->axes);
         break;
     case WH_SEGMENT_VALVES:
         for (size_t g = 0; g < track->machine->gripper_count; ++g) {

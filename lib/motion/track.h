@@ -2,8 +2,8 @@
  *
  * Whoever decides (a Lua pattern, a recorded list) hands over one segment at a time; the track plans it when
  * it begins and then yields axes and valves for each slice until it is over. A segment ends on the first
- * slice at or after its duration, where its axes have exactly the target's bits, so the next one starts from
- * a clean state. Before each slice the caller reports which grippers' sensors are on.
+ * slice at or after its duration (to rounding), where its axes have exactly the target's bits, so the next one starts from
+ * a clean state; one of no length (below WH_PROFILE_TINY on every axis) takes no slice and moves nothing. Before each slice the caller reports which grippers' sensors are on.
  *
  *     wh_track_begin(&track, &segment);
  *     while ((state = wh_track_next(&track, sensors)) == WH_TRACK_MOVING) { use track.axes, track.valves }
@@ -64,14 +64,20 @@ wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_
  * axes. */
 wh_segment_t wh_track_blank(const wh_track_t *track);
 
-/* Plans a segment from where the track stands. Refused, the track unchanged: WH_STATUS_BAD_SEGMENT (kind,
- * gripper, valve, speed or seconds out of range), WH_STATUS_NOT_FINITE, WH_STATUS_LIMIT_EXCEEDED (an axis
- * outside its travel), WH_STATUS_OUT_OF_REACH (a line that leaves the arm's reach). Cost: about 1 us for a
- * move, 2 us for a line. */
+/* Plans a segment from where the track stands; one that is still running is given up there, at rest from one
+ * slice to the next. Refused, the track unchanged:
+ *   WH_STATUS_NULL_ARGUMENT
+ *   WH_STATUS_NOT_FINITE      a target, travel, speed or time is NaN or infinite
+ *   WH_STATUS_BAD_SEGMENT     kind, gripper, valve, speed or seconds out of range; a motion of over 1e6 s
+ *   WH_STATUS_LIMIT_EXCEEDED  an axis other than R outside its travel
+ *   WH_STATUS_OUT_OF_REACH    R outside its travel, at the target or anywhere on a line
+ *   WH_STATUS_BAD_LIMITS      limits too extreme to plan with: see wh_profile_plan
+ * Cost: about 1 us for a move, 2 us for a line. */
 wh_status_t wh_track_begin(wh_track_t *track, const wh_segment_t *segment);
 
-/* One slice of the running segment. Bit g of `sensors` says that gripper g's vacuum sensor is on. Cost: four
- * axes of a profile, or a square root and an arc tangent on a line. */
+/* One slice of the running segment. Bit g of `sensors` says that gripper g's vacuum sensor is on; a sensor that
+ * is on already takes no slice. After the end it says so again each time. `track` is not checked. Cost: all axes
+ * of a profile, or a square root and an arc tangent on a line. */
 wh_track_state_t wh_track_next(wh_track_t *track, uint32_t sensors);
 
 /* Jumps to the running segment's end, as if all its slices had been played: for checking a pattern's reach
