@@ -1,0 +1,202 @@
+/* The machine: which descriptions are refused, whose limits an axis has, and where grippers ride. */
+#include "support_pose.h"
+
+#include "motion/machine.h"
+#include "motion/trig.h"
+
+/* The default robot, a gripper on it, and one on a chuck at (-600, 0, 950), turned by 180 degrees. */
+static wh_machine_t machine_with_chuck(void) {
+    wh_machine_t machine;
+    memset(&machine, 0, sizeof machine);
+    wh_robot_default(&machine.robot);
+    machine.chuck_limits = machine.robot.limits[WH_AXIS_YAW];
+    machine.axis_count = 5;
+    machine.gripper_count = 2;
+    machine.mounts[0].axis = WH_NONE;
+    machine.mounts[0].base_from_station = wh_pose_identity();
+    machine.mounts[1].axis = 4;
+    machine.mounts[1].base_from_station.R = wh_mat3_from_rpy_deg(0, 0, 180);
+    machine.mounts[1].base_from_station.r = wh_vec3(-600, 0, 950);
+    return machine;
+}
+
+static void test_a_sound_machine_passes(void **state) {
+    (void)state;
+    const wh_machine_t machine = machine_with_chuck();
+    assert_int_equal(wh_machine_validate(&machine), WH_OK);
+}
+
+static void test_null_is_refused(void **state) {
+    (void)state;
+    assert_int_equal(wh_machine_validate(NULL), WH_STATUS_NULL_ARGUMENT);
+}
+
+static void test_counts_out_of_range_are_refused(void **state) {
+    (void)state;
+    static const size_t axes[] = {0, 3, WH_AXES + 1};
+    static const size_t grippers[] = {0, WH_GRIPPERS + 1};
+    for (size_t i = 0; i < sizeof axes / sizeof axes[0]; ++i) {
+        wh_machine_t machine = machine_with_chuck();
+        machine.axis_count = axes[i];
+        assert_int_equal(wh_machine_validate(&machine), WH_STATUS_OUT_OF_RANGE);
+    }
+    for (size_t i = 0; i < sizeof grippers / sizeof grippers[0]; ++i) {
+        wh_machine_t machine = machine_with_chuck();
+        machine.gripper_count = grippers[i];
+        assert_int_equal(wh_machine_validate(&machine), WH_STATUS_OUT_OF_RANGE);
+    }
+}
+
+static void test_the_greatest_counts_pass(void **state) {
+    (void)state;
+    wh_machine_t machine = machine_with_chuck();
+    machine.axis_count = WH_AXES;
+    machine.gripper_count = WH_GRIPPERS;
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        machine.mounts[g] = machine.mounts[1];
+        machine.mounts[g].axis = WH_AXES - 1;
+    }
+    assert_int_equal(wh_machine_validate(&machine), WH_OK);
+}
+
+static void test_a_mount_on_no_chuck_axis_is_refused(void **state) {
+    (void)state;
+    static const int32_t axes[] = {-2, 0, 3, 5, INT32_MAX, INT32_MIN};
+    for (size_t i = 0; i < sizeof axes / sizeof axes[0]; ++i) {
+        wh_machine_t machine = machine_with_chuck();
+        machine.mounts[1].axis = axes[i];
+        assert_int_equal(wh_machine_validate(&machine), WH_STATUS_OUT_OF_RANGE);
+    }
+}
+
+static void test_a_chuck_that_stands_nowhere_is_refused(void **state) {
+    (void)state;
+    wh_machine_t machine = machine_with_chuck();
+    machine.mounts[1].base_from_station.R.m[0][0] = WH_REAL(-1.1);
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_NOT_A_ROTATION);
+    machine = machine_with_chuck();
+    machine.mounts[1].base_from_station.r.x = (wh_real_t)NAN;
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_NOT_FINITE);
+}
+
+/* The robot's grippers are where the robot is: what stands in their mount does not matter. */
+static void test_the_robots_mount_is_not_looked_at(void **state) {
+    (void)state;
+    wh_machine_t machine = machine_with_chuck();
+    machine.mounts[0].base_from_station.r.x = (wh_real_t)NAN;
+    assert_int_equal(wh_machine_validate(&machine), WH_OK);
+}
+
+static void test_bad_limits_are_refused(void **state) {
+    (void)state;
+    wh_machine_t machine = machine_with_chuck();
+    machine.chuck_limits.jerk = 0;
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_BAD_LIMITS);
+    machine = machine_with_chuck();
+    machine.robot.limits[WH_AXIS_Z].speed = -1;
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_BAD_LIMITS);
+}
+
+static void test_each_axis_has_its_own_limits(void **state) {
+    (void)state;
+    const wh_machine_t machine = machine_with_chuck();
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        assert_ptr_equal(wh_machine_limits(&machine, axis), &machine.robot.limits[axis]);
+    }
+    assert_ptr_equal(wh_machine_limits(&machine, WH_ROBOT_AXES), &machine.chuck_limits);
+    assert_ptr_equal(wh_machine_limits(&machine, WH_AXES - 1), &machine.chuck_limits);
+}
+
+static void test_travel_is_checked_on_every_axis(void **state) {
+    (void)state;
+    const wh_machine_t machine = machine_with_chuck();
+    const wh_real_t home[] = {0, 300, 900, 0, 0};
+    static const struct {
+        size_t axis;
+        wh_real_t position;
+        wh_status_t status;
+    } rows[] = {{0, 0, WH_OK},
+                {WH_AXIS_R, 900, WH_OK},
+                {WH_AXIS_R, 901, WH_STATUS_OUT_OF_REACH},
+                {WH_AXIS_R, 299, WH_STATUS_OUT_OF_REACH},
+                {WH_AXIS_Z, 1301, WH_STATUS_LIMIT_EXCEEDED},
+                {WH_AXIS_THETA, 10, WH_STATUS_LIMIT_EXCEEDED},
+                {WH_AXIS_YAW, -5, WH_STATUS_LIMIT_EXCEEDED},
+                {4, WH_CHUCK_TRAVEL, WH_OK},
+                {4, -WH_CHUCK_TRAVEL, WH_OK},
+                {4, WH_CHUCK_TRAVEL + 1, WH_STATUS_LIMIT_EXCEEDED},
+                {4, -WH_CHUCK_TRAVEL - 1, WH_STATUS_LIMIT_EXCEEDED},
+                {4, (wh_real_t)NAN, WH_STATUS_NOT_FINITE},
+                {4, (wh_real_t)INFINITY, WH_STATUS_NOT_FINITE},
+                {WH_AXIS_YAW, (wh_real_t)NAN, WH_STATUS_NOT_FINITE}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        wh_real_t axes[5];
+        memcpy(axes, home, sizeof axes);
+        axes[rows[i].axis] = rows[i].position;
+        assert_int_equal(wh_machine_check_travel(&machine, axes), rows[i].status);
+    }
+}
+
+static void test_the_robots_gripper_is_the_robots_effector(void **state) {
+    (void)state;
+    const wh_machine_t machine = machine_with_chuck();
+    const wh_real_t axes[] = {WH_REAL(0.7), 512, 1001, WH_REAL(-1.2), 3};
+    wh_pose_t effector;
+    wh_pose_t poses[2];
+    wh_robot_forward(axes, &effector);
+    wh_machine_grippers(&machine, axes, poses);
+    assert_memory_equal(&poses[0], &effector, sizeof effector);
+}
+
+/* Turning by `angle` carries a point on the chuck round its own axis, tilted as the station is. */
+static void test_a_chuck_turns_about_its_own_z(void **state) {
+    (void)state;
+    wh_machine_t machine = machine_with_chuck();
+    wh_pose_t *station = &machine.mounts[1].base_from_station;
+    station->R = wh_test_rotation(1, 2, 3, 0.4);
+    for (int i = -4; i <= 4; ++i) {
+        const double angle = 0.3 * i;
+        const wh_real_t axes[] = {0, 300, 900, 0, (wh_real_t)angle};
+        wh_pose_t poses[2];
+        wh_machine_grippers(&machine, axes, poses);
+        assert_memory_equal(&poses[1].r, &station->r, sizeof station->r);
+        for (size_t row = 0; row < 3; ++row) {
+            const double x = station->R.m[row][0];
+            const double y = station->R.m[row][1];
+            assert_near(poses[1].R.m[row][0], x * cos(angle) + y * sin(angle), 16 * WH_TEST_ROUNDING);
+            assert_near(poses[1].R.m[row][1], y * cos(angle) - x * sin(angle), 16 * WH_TEST_ROUNDING);
+            assert_near(poses[1].R.m[row][2], station->R.m[row][2], 0);
+        }
+    }
+}
+
+/* The chuck's whole travel is within what the sine reduces: a valid pose at both ends. */
+static void test_a_chuck_has_a_pose_over_its_whole_travel(void **state) {
+    (void)state;
+    const wh_machine_t machine = machine_with_chuck();
+    for (int end = -1; end <= 1; end += 2) {
+        const wh_real_t axes[] = {0, 300, 900, 0, (wh_real_t)end * WH_CHUCK_TRAVEL};
+        wh_pose_t poses[2];
+        wh_machine_grippers(&machine, axes, poses);
+        assert_int_equal(wh_pose_validate(&poses[1]), WH_OK);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_sound_machine_passes),
+        cmocka_unit_test(test_null_is_refused),
+        cmocka_unit_test(test_counts_out_of_range_are_refused),
+        cmocka_unit_test(test_the_greatest_counts_pass),
+        cmocka_unit_test(test_a_mount_on_no_chuck_axis_is_refused),
+        cmocka_unit_test(test_a_chuck_that_stands_nowhere_is_refused),
+        cmocka_unit_test(test_the_robots_mount_is_not_looked_at),
+        cmocka_unit_test(test_bad_limits_are_refused),
+        cmocka_unit_test(test_each_axis_has_its_own_limits),
+        cmocka_unit_test(test_travel_is_checked_on_every_axis),
+        cmocka_unit_test(test_the_robots_gripper_is_the_robots_effector),
+        cmocka_unit_test(test_a_chuck_turns_about_its_own_z),
+        cmocka_unit_test(test_a_chuck_has_a_pose_over_its_whole_travel),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
