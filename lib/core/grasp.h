@@ -4,16 +4,17 @@
  * does once per slice, in this order:
  *   1. read all inputs; if one is invalid, refuse the whole step;
  *   2. release: a wafer whose gripper's valve is now closed stays where its gripper, at this slice's pose,
- * carries it;
+ *      carries it;
  *   3. carry: a held wafer is at base_from_gripper * gripper_from_wafer, the second fixed at the pick;
  *   4. pick: each open, empty gripper, in the order of their indices, takes of the ready wafers that nobody
- * holds the one with the smallest |dr_proj_z|, of equal ones the lowest index. gripper_from_wafer is stored
- * as it is: nothing jumps. So a wafer passes from one gripper to the next within the step in which the first
- * closes, and is never free in between.
+ *      holds the one with the smallest |dr_proj_z|, of equal ones the lowest index. gripper_from_wafer is
+ *      stored as it is: nothing jumps.
+ * So a wafer passes from one gripper to the next within the step in which the first closes, and is never free
+ * in between.
  *
  * Checking is `sampled` (the paper's: at the slice's pose) or `swept`: between two slices in which the valve
- * was open and the gripper empty, its position is taken as linear and its rotation as the quaternion (1-t) 1
- * + t q, normalised, with q the turn from the earlier to the later pose, by the shorter way; the wafer is
+ * was open and the gripper empty, its position is taken as linear and its rotation as the quaternion
+ * (1-t) 1 + t q, normalised, with q the turn from the earlier to the later pose, by the shorter way; the wafer is
  * taken at the first instant within 0.998 eps_projz and the other two limits (of several wafers: earliest,
  * then |dr_proj_z|, then index), failing that if it is ready at the slice's end, and is then carried to the
  * slice's end. A wafer released in this slice is checked at its end only.
@@ -39,8 +40,8 @@ typedef struct {
     /* Draw a wafer onto the pads at the pick, as vacuum does: z of gripper_from_wafer becomes 0 and the wafer
      * turns by the smallest rotation that takes n1 to n2. */
     bool seat;
-    /* The neighbourhood for near misses, mm: |dr_proj_z| < near_projz and |dr_proj_xy| < near_projxy; in (0,
-     * 1e6]. */
+    /* The neighbourhood for near misses, mm: |dr_proj_z| < near_projz and |dr_proj_xy| < near_projxy; in
+     * (0, 1e6]. */
     wh_real_t near_projz, near_projxy;
 } wh_grasp_config_t;
 
@@ -135,8 +136,12 @@ wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafe
  * wafer, gripper_from_wafer while it holds one, then approach and contest: wafer, and while there is one also
  * holder, slice and dr, n1_proj_n2, dr_proj_z, dr_proj_xy, dr_proj_xy_norm. Configuration, counters and
  * buckets are left out. Each number enters as a 64-bit word w, reals by the bits of their type, integers in
- * two's complement: h = 0x6a09e667f3bcc908;  for each w:  h = (h ^ w) * 0x9e3779b97f4a7c15;  h = h ^ (h >>
- * 32) Cost: about 2 ns a word, 15 words for each wafer and up to 60 for each gripper. */
+ * two's complement:
+ *
+ *     h = 0x6a09e667f3bcc908
+ *     for each w:  h = (h ^ w) * 0x9e3779b97f4a7c15;  h = h ^ (h >> 32)
+ *
+ * Cost: about 2 ns a word, 13 words for each wafer and up to 50 for each gripper. */
 uint64_t wh_grasp_hash(const wh_grasp_t *table);
 
 #endif

@@ -68,14 +68,20 @@ void wh_robot_forward(const wh_real_t q[WH_ROBOT_AXES], wh_pose_t *base_from_eff
 
 /* The axes that bring the end-effector to (x, y, z) mm in base with the given heading (rad, any number of
  * turns up to WH_TRIG_MAX_RAD), coming from axes near_q, of which only theta counts (also up to
- * WH_TRIG_MAX_RAD): theta  the shorter way round from near_q; half a turn (to WH_SLACK_RAD) goes positive.
- * Where that leaves theta's travel and the other way round does not, the other way; yaw    heading - theta in
- * (-pi, pi]; a value within WH_SLACK_RAD of -pi counts as pi, so that rounding never decides between the two.
+ * WH_TRIG_MAX_RAD):
+ *   theta  the shorter way round from near_q; half a turn (to WH_SLACK_RAD) goes positive. Where that leaves
+ *          theta's travel and the other way round does not, the other way;
+ *   yaw    heading - theta in (-pi, pi]; a value within WH_SLACK_RAD of -pi counts as pi, so that rounding
+ *          never decides between the two.
  * Coming from theta or from theta + 2 pi n, R, Z and the reached point are the same to rounding.
- * wh_robot_forward of the result is the given point to 1e-12 mm (1e-3 in float). Errors:
- * WH_STATUS_NULL_ARGUMENT; WH_STATUS_NOT_FINITE; WH_STATUS_OUT_OF_RANGE (near_q's theta or the heading);
- * WH_STATUS_OUT_OF_REACH (R outside its travel, or a point on base's z axis, where no theta is right);
- * WH_STATUS_LIMIT_EXCEEDED (another axis); q is then unchanged. q may be near_q. Cost: about 60 ns. */
+ * wh_robot_forward of the result is the given point to 1e-12 mm (1e-3 in float).
+ * Errors, q then unchanged:
+ *   WH_STATUS_NULL_ARGUMENT
+ *   WH_STATUS_NOT_FINITE
+ *   WH_STATUS_OUT_OF_RANGE    near_q's theta or the heading
+ *   WH_STATUS_OUT_OF_REACH    R outside its travel, or a point on base's z axis, where no theta is right
+ *   WH_STATUS_LIMIT_EXCEEDED  another axis outside its travel
+ * q may be near_q. Cost: about 60 ns. */
 wh_status_t wh_robot_inverse(const wh_robot_t *robot, wh_real_t x, wh_real_t y, wh_real_t z,
                              wh_real_t heading, const wh_real_t near_q[WH_ROBOT_AXES],
                              wh_real_t q[WH_ROBOT_AXES]);
