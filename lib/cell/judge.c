@@ -3,13 +3,15 @@
 /* How far a wafer is above what is under it: the nearest slot plane below, or base's floor. */
 static wh_real_t height_above_support(const wh_cell_t *cell, const wh_pose_t *base_from_wafer) {
     wh_real_t height = base_from_wafer->r.z;
+    bool found = false;
     for (size_t s = 0; s < cell->count; ++s) {
         const wh_station_t *station = &cell->stations[s];
         for (int32_t slot = 1; slot <= station->slots; ++slot) {
             const wh_place_t place = wh_station_measure(station, slot, base_from_wafer);
             const wh_real_t aside = wh_real_sqrt(place.dx * place.dx + place.dy * place.dy);
-            if (aside < cell->tolerance.projxy && place.dz >= 0 && place.dz < height) {
+            if (aside < cell->tolerance.projxy && place.dz >= 0 && (!found || place.dz < height)) {
                 height = place.dz;
+                found = true;
             }
         }
     }

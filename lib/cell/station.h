@@ -46,11 +46,11 @@ bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_
 
 /* Looks at the releases in a step's events and appends what the cell has to say of them:
  * WH_EVENT_RELEASED_UNSUPPORTED when the wafer lies in no slot, `height` being how far it is above the
- * nearest slot below it within tolerance.projxy, or else above base's z = 0; WH_EVENT_SLOT_OCCUPIED when
- * another wafer, free or held by the station's chuck, lies in the same slot (`other` is its index, the
- * lowest). The list needs room for two events a gripper beyond those of the step, which WH_EVENTS_PER_GRIPPER
- * includes. Returns how many events were appended. Cost: nothing without a release, else linear in wafers
- * times stations. */
+ * nearest slot below it within tolerance.projxy, or else above base's z = 0 (below it: negative);
+ * WH_EVENT_SLOT_OCCUPIED when another wafer, free or held by the station's chuck, lies in the same slot (`other`
+ * is its index, the lowest). All else is the release's. The list needs room for one more event for each release,
+ * which WH_EVENTS_PER_GRIPPER includes. Returns how many events were appended. Arguments are not checked. Cost:
+ * linear in the list without a release; each release adds wafers times stations, or all slots. */
 size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list);
 
 #endif

@@ -10,15 +10,14 @@
 typedef enum {
     /* An open gripper took a free wafer. `measured` is what made it ready. */
     WH_EVENT_PICKED,
-    /* The gripper's valve closed: its wafer stays where it is. `measured` is the wafer against that gripper.
-     */
+    /* The gripper's valve closed: its wafer stays where it is. `measured` is the wafer against it. */
     WH_EVENT_RELEASED,
     /* In one step `other` let go of the wafer and `gripper` took it: instead of a release and a pick. */
     WH_EVENT_HANDED_OVER,
     /* A free wafer came into the neighbourhood of an open, empty gripper and left it again, or the valve
      * closed, without a pick. `measured` is the closest approach, of slice `measured_slice`, judged between
-     * slices by 0.998 eps_projz as a swept pick is. Not reported
-     * when another gripper took that wafer, or this one another wafer, meanwhile. */
+     * slices by 0.998 eps_projz as a swept pick is. Not reported when another gripper took that wafer, or this
+     * one another wafer, meanwhile. */
     WH_EVENT_NEAR_MISS,
     /* An open, empty gripper was ready on a wafer that `other` held. Reported once, when it ends without a
      * hand-over (only then it is known that none follows): `measured` and `measured_slice` are of its
@@ -26,9 +25,10 @@ typedef enum {
     WH_EVENT_CONTESTED,
     /* The step was refused and nothing changed: `status` says why; `gripper` is the input that is wrong. */
     WH_EVENT_BAD_INPUT,
-    /* From the cell: a wafer was let go with no support under it, `height` mm above what is below. */
+    /* From the cell, beside the release and with its values: no support is under the wafer, which is `height` mm
+     * above what is below (negative: below base's z = 0 and above no slot). */
     WH_EVENT_RELEASED_UNSUPPORTED,
-    /* From the cell: a wafer was let go in a slot where wafer `other` lies. */
+    /* From the cell, beside the release and with its values: wafer `other` lies in the same slot. */
     WH_EVENT_SLOT_OCCUPIED
 } wh_event_kind_t;
 
