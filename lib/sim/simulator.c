@@ -10,7 +10,7 @@ static uint64_t hash_by_call(wh_link_t *link) {
 
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
                               const wh_grasp_storage_t *storage, const wh_cell_t *cell) {
-    if (!simulator || !storage || !cell) {
+    if (!simulator || !storage || !cell || (!cell->stations && cell->count > 0)) {
         return WH_STATUS_NULL_ARGUMENT;
     }
     if (storage->gripper_count > WH_GRIPPERS) {
@@ -36,6 +36,7 @@ static uint32_t read_sensors(const wh_grasp_t *table) {
 
 static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *command) {
     if (command->gripper_count != simulator->table.storage.gripper_count) {
+        ++simulator->table.counters.refused;
         simulator->event_count = 0;
         return WH_STATUS_OUT_OF_RANGE;
     }

@@ -15,14 +15,18 @@ typedef struct {
 } wh_simulator_t;
 
 /* Sets up a run: all wafers free where storage->wafers has them. `cell->stations` and the arrays of `storage`
- * must outlive the simulator. Refuses what wh_grasp_init refuses, and more than WH_GRIPPERS grippers
- * (WH_STATUS_BAD_CAPACITY). The simulator must not be moved afterwards. */
+ * must outlive the simulator. Refuses what wh_grasp_init refuses, null stations unless there are none, and more
+ * than WH_GRIPPERS grippers (WH_STATUS_BAD_CAPACITY); simulator and arrays are then unchanged. Stations are not
+ * checked: see wh_station_t for what they must be. The simulator must not be moved afterwards, for `link` and
+ * states point into it. */
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
                               const wh_grasp_storage_t *storage, const wh_cell_t *cell);
 
-/* One slice: steps the table, lets the cell judge the releases, and fills in `state`. A refused command
- * leaves everything as it was and state->status says why; its gripper_count must be the table's
- * (WH_STATUS_OUT_OF_RANGE). Cost: wh_grasp_step and wh_cell_judge. */
+/* One slice: steps the table, lets the cell judge the releases, and fills in `state`. Returns state->status. A
+ * refused command leaves wafers and grippers as they were and table.counters.refused says how often: what
+ * wh_grasp_step refuses, and a gripper_count other than the table's (WH_STATUS_OUT_OF_RANGE, without an event).
+ * With a null pointer (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. `seq` and `utime` are handed
+ * back, not judged. Cost: wh_grasp_step and wh_cell_judge. */
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state);
 
 /* Fills in all of a state but utime, seq and status, without stepping. Cost: linear in grippers. */

@@ -17,13 +17,13 @@ typedef struct {
 
 /* What has become of it: a view of the simulator's own memory, true until the next exchange. */
 typedef struct {
-    int64_t utime, seq;
-    wh_status_t status; /* anything but WH_OK: the command was refused, the rest is as it was */
+    int64_t utime, seq; /* the command's, refused or not */
+    wh_status_t status; /* anything but WH_OK: the command was refused, wafers and grippers are as they were */
     const wh_wafer_t *wafers;
     size_t wafer_count;
     const wh_gripper_t *grippers;
     size_t gripper_count;
-    const wh_event_t *events; /* of this slice */
+    const wh_event_t *events; /* of this slice, or of the refusal */
     size_t event_count;
     uint32_t sensors; /* bit g: gripper g's vacuum sensor is on */
 } wh_state_t;
