@@ -142,10 +142,12 @@ void wh_layout_read_grippers(wh_reader_t *reader, wh_layout_t *layout) {
         lua_pushnil(reader->L);
         wh_reader_fail(reader, "grippers", "a list of grippers");
     }
-    for (lua_Integer i = 1; wh_reader_enter_item(reader, i); ++i) {
-        if (i > WH_GRIPPERS) {
-            wh_reader_fail(reader, NULL, "at most %d grippers", WH_GRIPPERS);
-        }
+    const size_t count = wh_reader_count(reader);
+    if (count > WH_GRIPPERS) {
+        wh_reader_fail(reader, NULL, "at most %d grippers", WH_GRIPPERS);
+    }
+    for (size_t g = 0; g < count; ++g) {
+        wh_reader_enter_item(reader, (lua_Integer)g + 1);
         read_gripper(reader, layout);
         wh_reader_leave(reader);
     }

@@ -97,16 +97,14 @@ void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout) {
     if (!wh_reader_enter(reader, "wafers")) {
         return;
     }
-    const size_t count = lua_rawlen(reader->L, -1);
+    const size_t count = wh_reader_count(reader);
     if (count > WH_LAYOUT_WAFERS) {
         wh_reader_fail(reader, NULL, "at most %d wafers", WH_LAYOUT_WAFERS);
     }
     layout->wafers = wh_layout_memory(reader->L, count, sizeof *layout->wafers);
     layout->start = wh_layout_memory(reader->L, count, sizeof *layout->start);
     for (; layout->wafer_count < count; ++layout->wafer_count) {
-        if (!wh_reader_enter_item(reader, (lua_Integer)layout->wafer_count + 1)) {
-            break;
-        }
+        wh_reader_enter_item(reader, (lua_Integer)layout->wafer_count + 1);
         read_wafer(reader, layout, layout->wafer_count);
         wh_reader_leave(reader);
     }

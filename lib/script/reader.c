@@ -53,9 +53,11 @@ void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *ex
     abort(); /* lua_error does not return, but its declaration does not say so */
 }
 
-static bool is_known(const char *name, const char *known) {
-    const size_t length = strlen(name);
-    for (const char *at = strstr(known, name); at && length > 0; at = strstr(at + 1, name)) {
+static bool is_known(const char *name, size_t length, const char *known) {
+    if (length == 0 || length != strlen(name) || strchr(name, ' ')) {
+        return false;
+    }
+    for (const char *at = strstr(known, name); at; at = strstr(at + 1, name)) {
         const bool begins = at == known || at[-1] == ' ';
         if (begins && (at[length] == ' ' || at[length] == '\0')) {
             return true;
@@ -73,8 +75,9 @@ void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known) {
             lua_pop(L, 1);
             wh_reader_fail(reader, NULL, "only named fields: %s", known);
         }
-        const char *name = lua_tostring(L, -2);
-        if (!is_known(name, known) && (!first || strcmp(name, first) < 0)) {
+        size_t length = 0;
+        const char *name = lua_tolstring(L, -2, &length);
+        if (!is_known(name, length, known) && (!first || strcmp(name, first) < 0)) {
             first = name;
         }
         lua_pop(L, 1);
@@ -130,6 +133,23 @@ void wh_reader_leave(wh_reader_t *reader) {
     WH_ASSERT(reader->depth > 0);
     reader->path[reader->lengths[--reader->depth]] = '\0';
     lua_pop(reader->L, 1);
+}
+
+size_t wh_reader_count(wh_reader_t *reader) {
+    lua_State *L = reader->L;
+    size_t count = 0;
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        ++count;
+    }
+    for (size_t i = 1; i <= count; ++i) {
+        if (lua_rawgeti(L, -1, (lua_Integer)i) == LUA_TNIL) {
+            char entry[32];
+            snprintf(entry, sizeof entry, "[%zu]", i);
+            wh_reader_fail(reader, entry, "a list of tables, without names or gaps");
+        }
+        lua_pop(L, 1);
+    }
+    return count;
 }
 
 /* ---------------------------------------------------------------------------------------------- fields */
