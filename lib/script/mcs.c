@@ -49,8 +49,10 @@ static void push_numbered_error_metatable(lua_State *L) {
 }
 
 int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *detail) {
-    const int line = wh_sandbox_line(L, mcs->script);
-    const char *command = mcs->running == WH_NONE ? "" : mcs->record->commands[mcs->running].text;
+    /* Within a pattern L is the pattern's coroutine, on whose stack the script is not: the command knows. */
+    const bool runs = mcs->running != WH_NONE;
+    const int line = runs ? mcs->record->commands[mcs->running].line : wh_sandbox_line(L, mcs->script);
+    const char *command = runs ? mcs->record->commands[mcs->running].text : "";
     lua_createtable(L, 0, 4);
     lua_pushinteger(L, status);
     lua_setfield(L, -2, "number");

@@ -4,10 +4,28 @@
 
 #include "script/mcs_internal.h"
 
-/* native.begin(text): a command starts; the script's line is found on the stack. */
+/* What an entry of the record costs of the instruction budget. */
+#define STEPS_PER_ENTRY 256
+#define STEPS_PER_BYTE 4
+
+/* The record is outside of Lua's memory cap, so it is paid for from the budget: about as much as a script would
+ * spend on making as much text anew. Raises when the budget is spent. */
+static const char *charged_text(lua_State *L, int argument) {
+    size_t length = 0;
+    const char *text = luaL_checklstring(L, argument, &length);
+    wh_sandbox_charge(L, STEPS_PER_ENTRY + STEPS_PER_BYTE * (uint64_t)length);
+    return text;
+}
+
+/* native.begin(text): a command starts; the script's line is found on the stack. A metamethod of an argument
+ * can get here from within another command. */
 static int begin_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const char *text = luaL_checkstring(L, 1);
+    const char *text = charged_text(L, 1);
+    if (mcs->running != WH_NONE) {
+        return luaL_error(L, "%s: a command within a command (%s)", text,
+                          mcs->record->commands[mcs->running].text);
+    }
     wh_record_add_command(mcs->record, wh_sandbox_line(L, mcs->script), text, wh_mcs_now(mcs));
     mcs->running = (int32_t)mcs->record->command_count - 1;
     return 0;
@@ -16,13 +34,14 @@ static int begin_command(lua_State *L) {
 /* native.finish(number, message): it ended, with an error number unless that is nil. */
 static int finish_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    luaL_argcheck(L, mcs->running != WH_NONE, 1, "no command is running");
     wh_command_record_t *command = &mcs->record->commands[mcs->running];
+    command->end_s = wh_mcs_now(mcs);
+    mcs->running = WH_NONE; /* before anything that may raise */
     command->error = (wh_status_t)luaL_optinteger(L, 1, WH_OK);
     if (command->error != WH_OK) {
-        command->message = wh_record_text(luaL_optstring(L, 2, ""));
+        command->message = wh_record_text(charged_text(L, 2));
     }
-    command->end_s = wh_mcs_now(mcs);
-    mcs->running = WH_NONE;
     return 0;
 }
 
@@ -30,7 +49,8 @@ static int finish_command(lua_State *L) {
 static int add_expectation(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_of(L);
     const bool ok = lua_toboolean(L, 1) != 0;
-    wh_record_add_expectation(mcs->record, wh_sandbox_line(L, mcs->script), luaL_checkstring(L, 2), ok);
+    const char *text = charged_text(L, 2);
+    wh_record_add_expectation(mcs->record, wh_sandbox_line(L, mcs->script), text, ok);
     return 0;
 }
 

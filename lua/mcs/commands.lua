@@ -11,7 +11,7 @@ return function(native, patterns, names)
       native.finish()
       return result
     end
-    local numbered = type(result) == "table" and math.type(result.number) == "integer"
+    local numbered = type(result) == "table" and math.type(result.number) == "integer" and type(result.text) == "string"
     native.finish(numbered and result.number or names.errors.BAD_ARGUMENT.number, numbered and result.text or tostring(result))
     error(result, 0)
   end
