@@ -1,9 +1,10 @@
 /* Tracks: segments played slice by slice, on a host or on a microcontroller.
  *
  * Whoever decides (a Lua pattern, a recorded list) hands over one segment at a time; the track plans it when
- * it begins and then yields axes and valves for each slice until it is over. A segment ends on the first
- * slice at or after its duration (to rounding), where its axes have exactly the target's bits, so the next one starts from
- * a clean state; one of no length (below WH_PROFILE_TINY on every axis) takes no slice and moves nothing. Before each slice the caller reports which grippers' sensors are on.
+ * it begins and then yields axes and valves for each slice until it is over. A segment ends on the first slice
+ * at or after its duration (to rounding), where its axes have exactly the target's bits, so the next one starts
+ * from a clean state. One of no length (below WH_PROFILE_TINY on every axis) takes no slice and moves nothing.
+ * Before each slice the caller reports which grippers' sensors are on.
  *
  *     wh_track_begin(&track, &segment);
  *     while ((state = wh_track_next(&track, sensors)) == WH_TRACK_MOVING) { use track.axes, track.valves }

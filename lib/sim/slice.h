@@ -18,7 +18,7 @@ typedef struct {
 /* What has become of it: a view of the simulator's own memory, true until the next exchange. */
 typedef struct {
     int64_t utime, seq; /* the command's, refused or not */
-    wh_status_t status; /* anything but WH_OK: the command was refused, wafers and grippers are as they were */
+    wh_status_t status; /* not WH_OK: the command was refused, wafers and grippers are as they were */
     const wh_wafer_t *wafers;
     size_t wafer_count;
     const wh_gripper_t *grippers;
