@@ -63,7 +63,8 @@ static void read_tolerance(wh_reader_t *reader, wh_layout_t *layout) {
 }
 
 static void read_near(wh_reader_t *reader, wh_layout_t *layout) {
-    layout->grasp.near_projxy = 2 * layout->grasp.tolerance.projxy;
+    const wh_real_t twice = 2 * layout->grasp.tolerance.projxy;
+    layout->grasp.near_projxy = twice < WH_REAL(1e6) ? twice : WH_REAL(1e6);
     if (wh_reader_enter(reader, "near")) {
         wh_reader_refuse_unknown(reader, "projz projxy");
         layout->grasp.near_projz = wh_reader_number(reader, "projz", layout->grasp.near_projz, 1e-9, 1e6);

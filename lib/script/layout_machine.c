@@ -117,6 +117,12 @@ static void read_gripper(wh_reader_t *reader, wh_layout_t *layout) {
         lua_pushstring(reader->L, gripper->name);
         wh_reader_fail(reader, "name", "a name that no other gripper has");
     }
+    for (size_t other = 0; other < g; ++other) {
+        if (strcmp(layout->grippers[other].valve, gripper->valve) == 0) {
+            lua_pushstring(reader->L, gripper->valve);
+            wh_reader_fail(reader, "valve", "an output that switches no other gripper");
+        }
+    }
     read_mount(reader, layout, g);
     ++layout->machine.gripper_count;
 }

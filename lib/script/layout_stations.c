@@ -77,7 +77,7 @@ static void read_names(wh_reader_t *reader, wh_layout_t *layout) {
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
         size_t length = 0;
         const char *name = lua_type(L, -2) == LUA_TSTRING ? lua_tolstring(L, -2, &length) : "";
-        if (length == 0 || length >= WH_NAME_SIZE || strlen(name) != length) {
+        if (length == 0 || length >= WH_NAME_SIZE || !wh_reader_is_plain(name, length)) {
             lua_pushvalue(L, -2);
             wh_reader_fail(reader, NULL, "stations by name, of 1 to %d bytes", WH_NAME_SIZE - 1);
         }

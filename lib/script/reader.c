@@ -17,10 +17,53 @@ void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file) {
 
 /* ---------------------------------------------------------------------------------------------- errors */
 
+/* The sign of a NaN depends on the machine, and says nothing. */
+static void describe_number(double value, char *text, size_t size) {
+    if (value != value) {
+        snprintf(text, size, "nan");
+    } else {
+        snprintf(text, size, "%.14g", value);
+    }
+}
+
+static bool is_short_list(lua_State *L) {
+    const lua_Integer count = (lua_Integer)lua_rawlen(L, -1);
+    bool numbers = count >= 1 && count <= 4;
+    for (lua_Integer i = 1; numbers && i <= count; ++i) {
+        numbers = lua_rawgeti(L, -1, i) == LUA_TNUMBER;
+        lua_pop(L, 1);
+    }
+    return numbers;
+}
+
+/* { 0, 90, 0 }: a short list of numbers as it was written; of any other table only that it is one. */
+static void describe_table(lua_State *L, char *text, size_t size) {
+    if (!is_short_list(L)) {
+        snprintf(text, size, "a table");
+        return;
+    }
+    const char *before = "{ ";
+    text[0] = '\0';
+    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, -1); ++i) {
+        char number[40];
+        lua_rawgeti(L, -1, i);
+        describe_number(lua_tonumber(L, -1), number, sizeof number);
+        lua_pop(L, 1);
+        const size_t used = strlen(text);
+        snprintf(text + used, size - used, "%s%s", before, number);
+        before = ", ";
+    }
+    const size_t used = strlen(text);
+    snprintf(text + used, size - used, " }");
+}
+
 static void describe(lua_State *L, char *text, size_t size) {
     switch (lua_type(L, -1)) {
     case LUA_TNUMBER:
-        snprintf(text, size, "%.14g", lua_tonumber(L, -1));
+        describe_number(lua_tonumber(L, -1), text, size);
+        break;
+    case LUA_TTABLE:
+        describe_table(L, text, size);
         break;
     case LUA_TSTRING:
         snprintf(text, size, "\"%.60s\"", lua_tostring(L, -1));
@@ -38,7 +81,7 @@ static void describe(lua_State *L, char *text, size_t size) {
 }
 
 void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *expected, ...) {
-    char value[80];
+    char value[200];
     char wanted[512];
     va_list arguments;
     describe(reader->L, value, sizeof value);
@@ -66,14 +109,28 @@ static bool is_known(const char *name, size_t length, const char *known) {
     return false;
 }
 
+/* The key below the top, in brackets unless it is a name. */
+static void name_key(lua_State *L, char *field, size_t size) {
+    lua_pushvalue(L, -2);
+    if (lua_type(L, -1) == LUA_TSTRING) {
+        snprintf(field, size, "%.60s", lua_tostring(L, -1));
+    } else {
+        char key[60];
+        describe(L, key, sizeof key);
+        snprintf(field, size, "[%s]", key);
+    }
+    lua_pop(L, 1);
+}
+
 void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known) {
     lua_State *L = reader->L;
     const char *first = NULL;
     lua_pushnil(L);
     while (lua_next(L, -2) != 0) {
         if (lua_type(L, -2) != LUA_TSTRING) {
-            lua_pop(L, 1);
-            wh_reader_fail(reader, NULL, "only named fields: %s", known);
+            char field[80];
+            name_key(L, field, sizeof field);
+            wh_reader_fail(reader, field, "one of the fields %s", known);
         }
         size_t length = 0;
         const char *name = lua_tolstring(L, -2, &length);
@@ -89,6 +146,45 @@ void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known) {
         lua_rawget(L, -2);
         wh_reader_fail(reader, field, "one of the fields %s", known);
     }
+}
+
+/* Whether the key below the top is that of an entry of a list of `count`. */
+static bool is_entry(lua_State *L, lua_Integer count) {
+    const bool whole = lua_isinteger(L, -2) != 0;
+    return whole && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= count;
+}
+
+/* Pushes the first key that no list of as many entries has, and its value; false when there is none. */
+static bool push_stray(lua_State *L, size_t *count) {
+    *count = 0;
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        ++*count;
+    }
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        if (!is_entry(L, (lua_Integer)*count)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+size_t wh_reader_list(const wh_reader_t *reader) {
+    size_t count = 0;
+    if (push_stray(reader->L, &count)) {
+        char field[80];
+        name_key(reader->L, field, sizeof field);
+        wh_reader_fail(reader, field, "a list: entries 1, 2, ... without names and gaps");
+    }
+    return count;
+}
+
+static bool is_list_of_three(lua_State *L) {
+    size_t count = 0;
+    if (push_stray(L, &count)) {
+        lua_pop(L, 2);
+        return false;
+    }
+    return count == 3;
 }
 
 /* --------------------------------------------------------------------------------------------- nesting */
@@ -171,7 +267,7 @@ static bool push_field(const wh_reader_t *reader, const char *field, bool requir
 wh_real_t wh_reader_number(wh_reader_t *reader, const char *field, wh_real_t fallback, wh_real_t min,
                            wh_real_t max) {
     char expected[80];
-    snprintf(expected, sizeof expected, "a number from %.6g to %.6g", (double)min, (double)max);
+    snprintf(expected, sizeof expected, "a number from %.12g to %.12g", (double)min, (double)max);
     if (!push_field(reader, field, !wh_real_is_finite(fallback), expected)) {
         return fallback;
     }
@@ -226,7 +322,7 @@ wh_vec3_t wh_reader_vector(wh_reader_t *reader, const char *field, const wh_vec3
     if (!push_field(reader, field, !fallback, "a list of three numbers")) {
         return *fallback;
     }
-    if (!lua_istable(reader->L, -1) || lua_rawlen(reader->L, -1) != 3) {
+    if (!lua_istable(reader->L, -1) || !is_list_of_three(reader->L)) {
         wh_reader_fail(reader, field, "a list of three numbers");
     }
     wh_vec3_t vector;
@@ -237,7 +333,7 @@ wh_vec3_t wh_reader_vector(wh_reader_t *reader, const char *field, const wh_vec3
     return vector;
 }
 
-static bool is_plain_text(const char *text, size_t length) {
+bool wh_reader_is_plain(const char *text, size_t length) {
     for (size_t i = 0; i < length; ++i) {
         if ((unsigned char)text[i] < 0x20 || text[i] == 0x7f) {
             return false;
@@ -255,7 +351,7 @@ void wh_reader_text(wh_reader_t *reader, const char *field, const char *fallback
     }
     size_t length = 0;
     const char *value = lua_type(reader->L, -1) == LUA_TSTRING ? lua_tolstring(reader->L, -1, &length) : NULL;
-    if (!value || length >= size || !is_plain_text(value, length)) {
+    if (!value || length >= size || !wh_reader_is_plain(value, length)) {
         wh_reader_fail(reader, field, "%s", expected);
     }
     memcpy(text, value, length + 1);

@@ -33,6 +33,12 @@ void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *ex
  * reported. */
 void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known);
 
+/* The length of the list being read; refuses one that has names or gaps, which would be read past. */
+size_t wh_reader_list(const wh_reader_t *reader);
+
+/* Whether a text is not empty and without control characters. */
+bool wh_reader_is_plain(const char *text, size_t length);
+
 /* Enters the table in a field or list entry, which becomes the table being read; leave with wh_reader_leave.
  * False, and nothing entered, when there is none. */
 bool wh_reader_enter(wh_reader_t *reader, const char *field);

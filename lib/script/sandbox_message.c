@@ -50,6 +50,7 @@ static const char *text_of(lua_State *L, size_t *length) {
     return lua_tolstring(L, -1, length);
 }
 
+/* One line, and none that a terminal would obey. */
 static int describe(lua_State *L) {
     described_t *const described = lua_touserdata(L, 2);
     size_t length = 0;
@@ -57,7 +58,7 @@ static int describe(lua_State *L) {
     char whole[WH_SANDBOX_MESSAGE_BYTES + 1];
     const size_t kept = length < sizeof whole ? length : sizeof whole - 1;
     for (size_t i = 0; i < kept; ++i) {
-        whole[i] = text[i] != '\0' ? text[i] : ' ';
+        whole[i] = iscntrl((unsigned char)text[i]) ? ' ' : text[i];
     }
     whole[kept] = '\0';
     wh_sandbox_clip(described->text, sizeof described->text, whole);
