@@ -43,7 +43,21 @@ static void check_speed(wh_reader_t *reader, const wh_layout_t *layout, double p
     }
 }
 
-static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_station_t *station) {
+/* A stroke that begins below the slot underneath would take the wafer there, and say that all is well. */
+static void check_stroke(wh_reader_t *reader, const wh_station_t *place, const wh_layout_station_t *station) {
+    const double below = station->stroke - station->offset;
+    const double farther = below > station->offset ? below : station->offset;
+    if (place->slots > 1 && !(farther < place->pitch)) {
+        lua_pushnumber(reader->L, station->stroke);
+        wh_reader_fail(
+            reader, "stroke",
+            "one that stays within the pitch of %.12g mm; it goes %.12g below and %.12g above the slot",
+            place->pitch, below, station->offset);
+    }
+}
+
+static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, const wh_station_t *place,
+                       wh_layout_station_t *station) {
     static const char *const handovers[] = {"new_first", "same_slice", NULL};
     const double release = layout->grasp.seat ? 0 : -layout->grasp.tolerance.projz / 2;
     station->stroke = wh_reader_number(reader, "stroke", 6, 0.01, 1000);
@@ -56,6 +70,7 @@ static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, wh_layout
     station->timeout = wh_reader_number(reader, "timeout", 0.25, 0, 3600);
     station->handover = wh_reader_choice(reader, "handover", 0, handovers) == 0 ? WH_HANDOVER_NEW_FIRST
                                                                                 : WH_HANDOVER_SAME_SLICE;
+    check_stroke(reader, place, station);
     check_speed(reader, layout, station->pickup_speed);
 }
 
@@ -93,7 +108,7 @@ static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index)
     wh_reader_refuse_unknown(reader, STATION_FIELDS);
     station->prealigner = wh_reader_choice(reader, "kind", 0, kinds) == 1;
     read_place(reader, layout, station->prealigner, &layout->places[index]);
-    read_moves(reader, layout, station);
+    read_moves(reader, layout, &layout->places[index], station);
     wh_reader_leave(reader);
 }
 

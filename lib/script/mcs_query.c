@@ -31,6 +31,7 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     lua_setfield(L, -2, "index");
     lua_pushinteger(L, layout->places[index].slots);
     lua_setfield(L, -2, "slots");
+    set_number(L, "pitch", layout->places[index].pitch);
     push_index(L, layout->places[index].chuck);
     lua_setfield(L, -2, "chuck");
     set_number(L, "stroke", station->stroke);

@@ -47,11 +47,15 @@ return function(native, patterns, names)
     return options or {}
   end
 
-  local function check_job(job, layout)
+  -- Strokes end where the neighbouring slots begin: a GET from below the next one would take its wafer.
+  local function check_job(job, station, layout)
     local window = layout.tolerance.projz / layout.slice
+    local pitch = station.slots > 1 and station.pitch or math.huge
     local rules = {
       { "stroke", job.stroke > 0, "above 0" },
       { "offset", job.offset >= 0 and job.offset <= job.stroke, "from 0 to the stroke" },
+      { "stroke", math.max(job.stroke - job.offset, job.offset) < pitch,
+        ("within the pitch of %.10g mm below and above the slot"):format(pitch) },
       { "retract", job.retract > 0, "above 0" },
       { "release", job.release >= job.offset - job.stroke and job.release <= job.offset, "within the stroke" },
       { "pickup_speed", job.pickup_speed > 0, "above 0" },
@@ -63,7 +67,7 @@ return function(native, patterns, names)
     }
     for _, rule in ipairs(rules) do
       if not rule[2] then
-        local value = tostring(job[rule[1]])
+        local value = names.quote(job[rule[1]])
         native.fail("BAD_ARGUMENT", ("%s: %s (expected %s)"):format(rule[1], value, rule[3]))
       end
     end
@@ -80,13 +84,17 @@ return function(native, patterns, names)
     for name in pairs(parameters) do
       job[name] = options[name] == nil and station[name] or options[name]
     end
-    return check_job(job, layout)
+    return check_job(job, station, layout)
+  end
+
+  local function number_text(value)
+    return math.type(value) == "float" and value == value and ("%.10g"):format(value) or tostring(value)
   end
 
   local function command_text(word, ...)
     local text = { word }
     for _, value in ipairs({ ... }) do
-      text[#text + 1] = math.type(value) == "float" and ("%.10g"):format(value) or tostring(value)
+      text[#text + 1] = value ~= "" and number_text(value) or nil
     end
     return table.concat(text, " ")
   end
@@ -140,7 +148,7 @@ return function(native, patterns, names)
 
   local function valve(gripper, level)
     if level ~= 0 and level ~= 1 then
-      native.fail("BAD_VALVE", "valve: " .. tostring(level) .. " (expected 0, open, or 1, closed)")
+      native.fail("BAD_VALVE", "valve: " .. names.quote(level) .. " (expected 0, open, or 1, closed)")
     end
     native.play { valves = { [names.gripper(gripper)] = math.tointeger(level) } }
   end
@@ -174,7 +182,7 @@ return function(native, patterns, names)
     local text = {}
     for _, name in ipairs(order) do
       if type(targets) == "table" and targets[name] ~= nil then
-        text[#text + 1] = ("%s=%s"):format(name, command_text(targets[name]))
+        text[#text + 1] = ("%s=%s"):format(name, number_text(targets[name]))
       end
     end
     return table.concat(text, " ")

@@ -9,6 +9,9 @@ return function(native)
 
   -- cell "LAYOUT.lua", relative to the script: every slot's ends must be in reach.
   function cell(path)
+    if type(path) ~= "string" then
+      error(("cell: %s (expected a layout's path)"):format(tostring(path)), 0)
+    end
     local layout_path = native.cell(path)
     for name, station in pairs(native.layout().stations) do
       for _, slot in ipairs({ 1, station.slots }) do

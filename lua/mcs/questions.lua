@@ -35,6 +35,9 @@ return function(native, names)
   -- The wafer lies in that slot with this offset, mm; to 1e-9 mm unless a tolerance follows.
   function questions.expect_offset(wafer, station_name, slot, dx, dy, tolerance)
     tolerance = names.number("tolerance", tolerance == nil and 1e-9 or tolerance)
+    if tolerance <= 0 then
+      native.fail("BAD_ARGUMENT", ("tolerance: %s (expected above 0)"):format(tostring(tolerance)))
+    end
     names.number("dx", dx)
     names.number("dy", dy)
     local index = names.wafer(wafer)
