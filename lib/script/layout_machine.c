@@ -27,6 +27,20 @@ static void read_axis_limits(wh_reader_t *reader, bool turns, wh_limits_t *limit
     limits->jerk = read_quantity(reader, "jerk", turns, limits->jerk, 1e-6, 1e10);
 }
 
+/* Defaults are checked too: a travel of one's own may leave the default home outside. */
+static void check_travel(wh_reader_t *reader, bool turns, const wh_travel_t *travel, wh_real_t home) {
+    const double min = to_layout(turns, travel->min);
+    const double max = to_layout(turns, travel->max);
+    if (!(travel->min < travel->max)) {
+        lua_pushnumber(reader->L, max);
+        wh_reader_fail(reader, "max", "a number above min, which is %.12g", min);
+    }
+    if (!(home >= travel->min && home <= travel->max)) {
+        lua_pushnumber(reader->L, to_layout(turns, home));
+        wh_reader_fail(reader, "home", "a number from %.12g to %.12g", min, max);
+    }
+}
+
 static void read_axis(wh_reader_t *reader, wh_robot_t *robot, size_t axis, const char *name) {
     const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
     const wh_real_t reach = turns ? WH_REAL(1e6) : WH_REAL(1e5);
@@ -39,6 +53,7 @@ static void read_axis(wh_reader_t *reader, wh_robot_t *robot, size_t axis, const
     travel->max = read_quantity(reader, "max", turns, travel->max, to_layout(turns, travel->min), reach);
     robot->home[axis] = read_quantity(reader, "home", turns, robot->home[axis], to_layout(turns, travel->min),
                                       to_layout(turns, travel->max));
+    check_travel(reader, turns, travel, robot->home[axis]);
     read_axis_limits(reader, turns, &robot->limits[axis]);
     wh_reader_leave(reader);
 }
