@@ -163,7 +163,7 @@ void wh_layout_read_grippers(wh_reader_t *reader, wh_layout_t *layout) {
         lua_pushnil(reader->L);
         wh_reader_fail(reader, "grippers", "a list of grippers");
     }
-    const size_t count = wh_reader_count(reader);
+    const size_t count = wh_reader_list(reader);
     if (count > WH_GRIPPERS) {
         wh_reader_fail(reader, NULL, "at most %d grippers", WH_GRIPPERS);
     }

@@ -97,7 +97,7 @@ void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout) {
     if (!wh_reader_enter(reader, "wafers")) {
         return;
     }
-    const size_t count = wh_reader_count(reader);
+    const size_t count = wh_reader_list(reader);
     if (count > WH_LAYOUT_WAFERS) {
         wh_reader_fail(reader, NULL, "at most %d wafers", WH_LAYOUT_WAFERS);
     }

@@ -23,8 +23,9 @@ static int begin_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const char *text = charged_text(L, 1);
     if (mcs->running != WH_NONE) {
-        return luaL_error(L, "%s: a command within a command (%s)", text,
-                          mcs->record->commands[mcs->running].text);
+        lua_pushfstring(L, "%s: a command within another (%s)", text,
+                        mcs->record->commands[mcs->running].text);
+        return lua_error(L);
     }
     wh_record_add_command(mcs->record, wh_sandbox_line(L, mcs->script), text, wh_mcs_now(mcs));
     mcs->running = (int32_t)mcs->record->command_count - 1;

@@ -231,23 +231,6 @@ void wh_reader_leave(wh_reader_t *reader) {
     lua_pop(reader->L, 1);
 }
 
-size_t wh_reader_count(wh_reader_t *reader) {
-    lua_State *L = reader->L;
-    size_t count = 0;
-    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
-        ++count;
-    }
-    for (size_t i = 1; i <= count; ++i) {
-        if (lua_rawgeti(L, -1, (lua_Integer)i) == LUA_TNIL) {
-            char entry[32];
-            snprintf(entry, sizeof entry, "[%zu]", i);
-            wh_reader_fail(reader, entry, "a list of tables, without names or gaps");
-        }
-        lua_pop(L, 1);
-    }
-    return count;
-}
-
 /* ---------------------------------------------------------------------------------------------- fields */
 
 /* Pushes a field; false when it is absent, which is an error when it is required. */

@@ -44,10 +44,6 @@ bool wh_reader_is_plain(const char *text, size_t length);
 bool wh_reader_enter(wh_reader_t *reader, const char *field);
 bool wh_reader_enter_item(wh_reader_t *reader, lua_Integer index);
 
-/* How many entries the list being read has; a name or a gap in it is refused, for what follows would go unseen.
- * Cost: linear. */
-size_t wh_reader_count(wh_reader_t *reader);
-
 /* Enters the table on top of the stack under a name of its own. */
 void wh_reader_enter_top(wh_reader_t *reader, const char *name);
 void wh_reader_leave(wh_reader_t *reader);

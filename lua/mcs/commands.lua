@@ -1,5 +1,9 @@
 -- The operator's words that move something: GET, PUT, ROTATE, VALVE, MOVE, LINE, WAIT.
 
+-- Kept, for a script may set globals of these names.
+local coroutine, error, ipairs, math, pairs, pcall, table = coroutine, error, ipairs, math, pairs, pcall, table
+local tostring, type = tostring, type
+
 return function(native, patterns, names)
   local commands = {}
 

@@ -1,5 +1,8 @@
 -- Makes the operator's words out of what the host offers (`native`) and sets them as globals.
 
+-- Kept, for a script may set globals of these names.
+local error, ipairs, pairs, tostring, type = error, ipairs, pairs, tostring, type
+
 return function(native)
   local names = native.module("mcs/names.lua")(native, wh.errors)
   local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), names)

@@ -1,6 +1,9 @@
 -- From what an operator writes to what the host knows: stations, slots, grippers, wafers, numbers. Each refuses
 -- what it does not know with a numbered error that names it.
 
+-- Kept, for a script may set globals of these names.
+local ipairs, math, pairs, table, tostring, type = ipairs, math, pairs, table, tostring, type
+
 return function(native, errors)
   local names = { errors = errors }
 

@@ -1,5 +1,8 @@
 -- The operator's words that ask and judge: offset, holder, proximity, expect, expect_offset.
 
+-- Kept, for a script may set globals of these names.
+local math, tostring, wh = math, tostring, wh
+
 return function(native, names)
   local questions = {}
 

@@ -175,7 +175,7 @@ static void test_every_field_of_a_station_is_read(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
         "grippers = { { name = 'EE', on = 'robot', valve = 'v[0]' }, { name = 'PA', on = 'P' } }, "
-        "stations = { Q = { at = { 700, 1, 900 }, rpy = { 0, 0, 90 }, slots = 13, pitch = 5, stroke = 8, "
+        "stations = { Q = { at = { 700, 1, 900 }, rpy = { 0, 0, 90 }, slots = 13, pitch = 7, stroke = 8, "
         "offset = 2, retract = 250, pickup_speed = 15, release = -1, vacuum_delay = 0.1, timeout = 0.5, "
         "handover = 'same_slice' }, P = { kind = 'prealigner', at = { -600, 0, 950 } } }");
     assert_string_equal(layout->stations[0].name, "P");
@@ -184,7 +184,7 @@ static void test_every_field_of_a_station_is_read(void **state) {
     const wh_layout_station_t *station = &layout->stations[1];
     assert_string_equal(station->name, "Q");
     assert_int_equal(layout->places[1].slots, 13);
-    assert_near(layout->places[1].pitch, 5, 0);
+    assert_near(layout->places[1].pitch, 7, 0);
     assert_near(layout->places[1].base_from_station.R.m[1][0], 1, 0);
     assert_near(station->stroke, 8, 0);
     assert_near(station->offset, 2, 0);
@@ -232,7 +232,7 @@ static void test_what_is_wrong_is_named(void **state) {
         {GRIPPERS STATIONS "['check slice'] = 1", "check slice: 1 (expected one of"},
         {GRIPPERS STATIONS "['check\\0'] = 'swept'", "expected one of the fields"},
         {GRIPPERS STATIONS "[''] = 1", "expected one of the fields"},
-        {GRIPPERS STATIONS "5", "only named fields"},
+        {GRIPPERS STATIONS "5", "cell.lua: [1]: 5 (expected one of the fields"},
         {GRIPPERS STATIONS "slice = 0.0000015", "slice: 1.5e-06 (expected a whole number of microseconds"},
         {GRIPPERS STATIONS "slice = '0.001'", "slice: \"0.001\" (expected a number"},
         {GRIPPERS STATIONS "slice = 0/0", "(expected a number from"},
@@ -241,7 +241,7 @@ static void test_what_is_wrong_is_named(void **state) {
         {GRIPPERS STATIONS "collision = true", "no collision check"},
         {GRIPPERS STATIONS "robot = { kind = 'SCARA' }", "robot.kind: \"SCARA\" (expected \"TRZY\")"},
         {GRIPPERS STATIONS "robot = { r = { min = 500, max = 400 } }", "robot.r.max: 400"},
-        {GRIPPERS STATIONS "robot = { r = { min = 400 } }", "robot: a table (expected axes"},
+        {GRIPPERS STATIONS "robot = { r = { min = 400 } }", "cell.lua: robot.r.home: 300 (expected a number from 400 to 900)"},
         {GRIPPERS "stations = { A = { at = { 1, 2 } } }", "stations.A.at: a table (expected a list of three"},
         {GRIPPERS "stations = { A = { } }", "stations.A.at: nothing"},
         {GRIPPERS "stations = { A = { at = { 1, 'x', 3 } } }", "stations.A.at[2]: \"x\""},

@@ -42,6 +42,11 @@ static void test_errors_within_a_pattern_name_the_line(void **state) {
     assert_int_equal(run.record.expectation_count, 2);
 }
 
+static void test_a_script_may_use_the_names_of_functions(void **state) {
+    (void)state;
+    assert_int_equal(play("tests/data/globals.lua", 0), WH_RUN_MET);
+}
+
 static void test_the_record_is_paid_for_from_the_budget(void **state) {
     (void)state;
     assert_int_equal(play("tests/data/endless_record.lua", 50000000), WH_RUN_BAD_INPUT);
@@ -53,6 +58,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(test_a_command_within_a_command_is_refused, close_run),
         cmocka_unit_test_teardown(test_errors_within_a_pattern_name_the_line, close_run),
+        cmocka_unit_test_teardown(test_a_script_may_use_the_names_of_functions, close_run),
         cmocka_unit_test_teardown(test_the_record_is_paid_for_from_the_budget, close_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
