@@ -27,6 +27,7 @@
 #include "core/proximity.h"
 #include "core/event.h"
 #include "core/grasp.h"
+#include "core/restore.h"
 #include "core/hash.h"
 
 #include "cell/station.h"

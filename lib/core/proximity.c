@@ -40,7 +40,7 @@ wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance) {
     return good ? WH_OK : WH_STATUS_BAD_TOLERANCE;
 }
 
-static void judge(const wh_tolerance_t *tolerance, wh_proximity_t *p) {
+void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *p) {
     p->margin_projz = tolerance->projz - wh_real_abs(p->dr_proj_z);
     p->margin_projxy = tolerance->projxy - p->dr_proj_xy_norm;
     p->margin_planar = p->n1_proj_n2 - tolerance->planar;
@@ -60,7 +60,7 @@ void wh_proximity_values(const wh_pose_t *base_from_wafer, const wh_pose_t *base
     p->dr_proj_z = wh_vec3_dot(&p->dr, &n1);
     p->dr_proj_xy = wh_mat3_transform_back(&base_from_wafer->R, &p->dr);
     p->dr_proj_xy_norm = wh_real_sqrt(p->dr_proj_xy.x * p->dr_proj_xy.x + p->dr_proj_xy.y * p->dr_proj_xy.y);
-    judge(tolerance, p);
+    wh_proximity_judge(tolerance, p);
 }
 
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,

@@ -67,6 +67,10 @@ wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose
 bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                         const wh_tolerance_t *tolerance);
 
+/* Margins, failed conditions and verdict anew from the values (1)-(5) that `measured` holds, as when they have travelled
+ * in a message. Arguments are not checked; a NaN fails its condition. */
+void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *measured);
+
 /* How far the farthest point of a wafer's rim (radius in mm) is from the gripper's contact plane: the number
  * that the centre's distance (3) hides when the wafer is tilted. Arguments are not checked. Cost: one square
  * root. */

@@ -73,6 +73,10 @@ typedef struct {
  * a sort. */
 const wh_layout_t *wh_layout_read(lua_State *L, const char *path);
 
+/* 64 bits over all that two processes must agree on: slice, tolerances, checking, machine, and of stations, grippers and
+ * wafers the names and places. The path is left out. Cost: linear. */
+uint64_t wh_layout_hash(const wh_layout_t *layout);
+
 /* The index of a name, or WH_NONE. Cost: linear. */
 int32_t wh_layout_find_station(const wh_layout_t *layout, const char *name);
 int32_t wh_layout_find_gripper(const wh_layout_t *layout, const char *name);

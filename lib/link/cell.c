@@ -1,0 +1,88 @@
+/* The cell of a layout as a message. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "link/messages.h"
+
+/* LCM's structs hold plain char pointers, though encoding only reads. */
+static char *borrowed(const char *text) {
+    union {
+        const char *constant;
+        char *plain;
+    } cast = {text};
+    return cast.plain;
+}
+
+static void put_pose(const wh_pose_t *pose, double position[3], double rotation[9]) {
+    const double r[] = {pose->r.x, pose->r.y, pose->r.z};
+    memcpy(position, r, sizeof r);
+    memcpy(rotation, pose->R.m, sizeof pose->R.m);
+}
+
+static bool make_room(const wh_layout_t *layout, waferhand_cell *message) {
+    message->gripper_names = calloc(WH_GRIPPERS, sizeof *message->gripper_names);
+    message->valve_names = calloc(WH_GRIPPERS, sizeof *message->valve_names);
+    message->stations = calloc(layout->station_count + 1, sizeof *message->stations);
+    message->wafer_names = calloc(layout->wafer_count + 1, sizeof *message->wafer_names);
+    message->wafers = calloc(layout->wafer_count + 1, sizeof *message->wafers);
+    return message->gripper_names && message->valve_names && message->stations && message->wafer_names &&
+           message->wafers;
+}
+
+static void put_station(const wh_layout_t *layout, size_t s, waferhand_station *out) {
+    const wh_station_t *place = &layout->places[s];
+    out->name = borrowed(layout->stations[s].name);
+    put_pose(&place->base_from_station, out->position, out->rotation);
+    out->slots = place->slots;
+    out->pitch = place->pitch;
+    out->chuck = place->chuck;
+}
+
+static void put_lists(const wh_layout_t *layout, waferhand_cell *message) {
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        message->gripper_names[g] = borrowed(layout->grippers[g].name);
+        message->valve_names[g] = borrowed(layout->grippers[g].valve);
+    }
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        put_station(layout, s, &message->stations[s]);
+    }
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        message->wafer_names[w] = borrowed(layout->wafers[w].name);
+        put_pose(&layout->start[w].base_from_wafer, message->wafers[w].position, message->wafers[w].rotation);
+        message->wafers[w].holder = WH_NONE;
+    }
+}
+
+bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_t *identity,
+                              waferhand_cell *message) {
+    memset(message, 0, sizeof *message);
+    if (layout->wafer_count > WH_LINK_WAFERS || !make_room(layout, message)) {
+        wh_link_cell_free(message);
+        return false;
+    }
+    message->run = identity->run;
+    message->layout_hash = (int64_t)identity->layout_hash;
+    message->layout = borrowed(layout->path);
+    message->slice_us = layout->slice_us;
+    message->eps_projz = layout->grasp.tolerance.projz;
+    message->eps_projxy = layout->grasp.tolerance.projxy;
+    message->eps_planar = layout->grasp.tolerance.planar;
+    message->near_projz = layout->grasp.near_projz;
+    message->near_projxy = layout->grasp.near_projxy;
+    message->check = layout->grasp.check == WH_CHECK_SWEPT ? 1 : 0;
+    message->seat = layout->grasp.seat ? 1 : 0;
+    message->gripper_count = (int32_t)layout->machine.gripper_count;
+    message->station_count = (int32_t)layout->station_count;
+    message->wafer_count = (int32_t)layout->wafer_count;
+    put_lists(layout, message);
+    return true;
+}
+
+void wh_link_cell_free(waferhand_cell *message) {
+    free(message->gripper_names);
+    free(message->valve_names);
+    free(message->stations);
+    free(message->wafer_names);
+    free(message->wafers);
+    memset(message, 0, sizeof *message);
+}

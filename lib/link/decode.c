@@ -1,0 +1,123 @@
+/* Datagrams, looked at before LCM's generated code sees them: that code trusts counts and lengths. */
+#include <string.h>
+
+#include "link/messages.h"
+
+/* Encoded sizes, which the generated *_encoded_size functions confirm in a test. */
+#define FINGERPRINT 8
+#define HEADER (4 * 8)
+#define WAFER 100
+#define GRIPPER 376
+#define EVENT 108
+#define STATE_COUNTS (FINGERPRINT + HEADER + 4)
+#define STATE_FIXED (STATE_COUNTS + 3 * 4 + 2 * 8 + 4)
+#define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
+#define CELL_FIXED (8 + 5 * 8 + 2 + 3 * 4)
+#define STATION_FIXED (12 * 8 + 4 + 8 + 4)
+
+/* A place in a datagram; `good` falls when something would lie beyond its end. */
+typedef struct {
+    const uint8_t *bytes;
+    size_t size, at;
+    bool good;
+} walk_t;
+
+static void skip(walk_t *walk, size_t bytes) {
+    walk->good = walk->good && bytes <= walk->size - walk->at;
+    walk->at += walk->good ? bytes : 0;
+}
+
+static int32_t take_int(walk_t *walk) {
+    const size_t at = walk->at;
+    skip(walk, 4);
+    if (!walk->good) {
+        return -1;
+    }
+    const uint8_t *b = walk->bytes + at;
+    return (int32_t)((uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | (uint32_t)b[3]);
+}
+
+static size_t take_count(walk_t *walk, int32_t most) {
+    const int32_t count = take_int(walk);
+    walk->good = walk->good && count >= 0 && count <= most;
+    return walk->good ? (size_t)count : 0;
+}
+
+/* A length that counts the terminator, then so many bytes. */
+static void skip_text(walk_t *walk) {
+    const size_t length = take_count(walk, WH_LINK_DATAGRAM);
+    const size_t end = walk->at + length;
+    walk->good = walk->good && length > 0;
+    skip(walk, length);
+    walk->good = walk->good && walk->bytes[end - 1] == '\0' &&
+                 memchr(walk->bytes + end - length, '\0', length) == walk->bytes + end - 1;
+}
+
+static bool ends(const walk_t *walk) {
+    return walk->good && walk->at == walk->size;
+}
+
+static walk_t walk_over(const void *data, size_t size) {
+    const walk_t walk = {data, size, 0, true};
+    return walk;
+}
+
+/* ------------------------------------------------------------------------------------------------- messages */
+
+bool wh_link_decode_command(const void *data, size_t size, waferhand_command *message) {
+    return size <= WH_LINK_DATAGRAM && waferhand_command_decode(data, 0, (int)size, message) == (int)size;
+}
+
+bool wh_link_decode_state(const void *data, size_t size, waferhand_state *message) {
+    walk_t walk = walk_over(data, size);
+    skip(&walk, STATE_COUNTS);
+    const size_t wafers = take_count(&walk, WH_LINK_WAFERS);
+    const size_t grippers = take_count(&walk, WH_GRIPPERS);
+    const size_t events = take_count(&walk, WH_LINK_EVENTS);
+    skip(&walk, STATE_FIXED - STATE_COUNTS - 3 * 4);
+    skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT);
+    return ends(&walk) && waferhand_state_decode(data, 0, (int)size, message) == (int)size;
+}
+
+bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message) {
+    walk_t walk = walk_over(data, size);
+    skip(&walk, MCS_FIXED);
+    skip_text(&walk);
+    skip_text(&walk);
+    return ends(&walk) && waferhand_mcs_decode(data, 0, (int)size, message) == (int)size;
+}
+
+bool wh_link_decode_request(const void *data, size_t size, waferhand_request *message) {
+    walk_t walk = walk_over(data, size);
+    skip(&walk, FINGERPRINT + HEADER);
+    skip_text(&walk);
+    return ends(&walk) && waferhand_request_decode(data, 0, (int)size, message) == (int)size;
+}
+
+static void skip_texts(walk_t *walk, size_t count) {
+    for (size_t i = 0; i < count && walk->good; ++i) {
+        skip_text(walk);
+    }
+}
+
+static void skip_cell(walk_t *walk) {
+    skip(walk, FINGERPRINT + HEADER);
+    skip_text(walk);
+    skip(walk, CELL_FIXED - 3 * 4);
+    const size_t grippers = take_count(walk, WH_GRIPPERS);
+    const size_t stations = take_count(walk, WH_LAYOUT_STATIONS);
+    const size_t wafers = take_count(walk, WH_LINK_WAFERS);
+    skip_texts(walk, 2 * grippers);
+    for (size_t i = 0; i < stations && walk->good; ++i) {
+        skip_text(walk);
+        skip(walk, STATION_FIXED);
+    }
+    skip_texts(walk, wafers);
+    skip(walk, wafers * WAFER);
+}
+
+bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message) {
+    walk_t walk = walk_over(data, size);
+    skip_cell(&walk);
+    return ends(&walk) && waferhand_cell_decode(data, 0, (int)size, message) == (int)size;
+}

@@ -1,0 +1,231 @@
+#include "link/messages.h"
+
+#include <string.h>
+
+/* -------------------------------------------------------------------------------------------------- parts */
+
+static void put_vec3(const wh_vec3_t *v, double out[3]) {
+    out[0] = v->x;
+    out[1] = v->y;
+    out[2] = v->z;
+}
+
+static wh_vec3_t take_vec3(const double in[3]) {
+    return wh_vec3(in[0], in[1], in[2]);
+}
+
+static void put_pose(const wh_pose_t *pose, double position[3], double rotation[9]) {
+    put_vec3(&pose->r, position);
+    for (size_t i = 0; i < 9; ++i) {
+        rotation[i] = pose->R.m[i / 3][i % 3];
+    }
+}
+
+static wh_pose_t take_pose(const double position[3], const double rotation[9]) {
+    wh_pose_t pose;
+    pose.r = take_vec3(position);
+    for (size_t i = 0; i < 9; ++i) {
+        pose.R.m[i / 3][i % 3] = rotation[i];
+    }
+    return pose;
+}
+
+static void put_measured(const wh_proximity_t *p, waferhand_measurement *out) {
+    put_vec3(&p->dr, out->dr);
+    out->n1_proj_n2 = p->n1_proj_n2;
+    out->dr_proj_z = p->dr_proj_z;
+    put_vec3(&p->dr_proj_xy, out->dr_proj_xy);
+    out->dr_proj_xy_norm = p->dr_proj_xy_norm;
+}
+
+static void take_measured(const waferhand_measurement *in, const wh_tolerance_t *tolerance,
+                          wh_proximity_t *p) {
+    p->dr = take_vec3(in->dr);
+    p->n1_proj_n2 = in->n1_proj_n2;
+    p->dr_proj_z = in->dr_proj_z;
+    p->dr_proj_xy = take_vec3(in->dr_proj_xy);
+    p->dr_proj_xy_norm = in->dr_proj_xy_norm;
+    wh_proximity_judge(tolerance, p);
+}
+
+static void put_encounter(const wh_encounter_t *encounter, waferhand_encounter *out) {
+    static const waferhand_encounter none = {.wafer = WH_NONE, .holder = WH_NONE};
+    *out = none;
+    if (encounter->wafer != WH_NONE) {
+        out->wafer = encounter->wafer;
+        out->holder = encounter->holder;
+        out->slice = (int64_t)encounter->slice;
+        put_measured(&encounter->measured, &out->measured);
+    }
+}
+
+static void take_encounter(const waferhand_encounter *in, const wh_tolerance_t *tolerance,
+                           wh_encounter_t *out) {
+    out->wafer = in->wafer;
+    out->holder = in->holder;
+    out->slice = (uint64_t)in->slice;
+    take_measured(&in->measured, tolerance, &out->measured);
+}
+
+/* ------------------------------------------------------------------------------------------------- command */
+
+void wh_link_command_to_message(const wh_command_t *command, const wh_link_identity_t *identity,
+                                bool lockstep, waferhand_command *message) {
+    memset(message, 0, sizeof *message);
+    message->utime = command->utime;
+    message->seq = command->seq;
+    message->run = identity->run;
+    message->layout_hash = (int64_t)identity->layout_hash;
+    message->lockstep = lockstep ? 1 : 0;
+    message->gripper_count = (int32_t)command->gripper_count;
+    message->axis_count = (int32_t)command->axis_count;
+    for (size_t g = 0; g < command->gripper_count; ++g) {
+        put_pose(&command->grippers[g].base_from_gripper, message->gripper_position[g],
+                 message->gripper_rotation[g]);
+        message->valve[g] = command->grippers[g].valve;
+    }
+    memcpy(message->axis_position, command->axes, sizeof message->axis_position);
+}
+
+wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_command_t *command) {
+    if (message->gripper_count < 1 || message->gripper_count > WH_GRIPPERS || message->axis_count < 0 ||
+        message->axis_count > WH_AXES) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    command->utime = message->utime;
+    command->seq = message->seq;
+    command->gripper_count = (size_t)message->gripper_count;
+    command->axis_count = (size_t)message->axis_count;
+    for (size_t g = 0; g < command->gripper_count; ++g) {
+        command->grippers[g].base_from_gripper =
+            take_pose(message->gripper_position[g], message->gripper_rotation[g]);
+        command->grippers[g].valve = message->valve[g];
+    }
+    memcpy(command->axes, message->axis_position, sizeof command->axes);
+    return WH_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------- state */
+
+static void put_gripper(const wh_gripper_t *gripper, waferhand_gripper_state *out) {
+    memset(out, 0, sizeof *out);
+    put_pose(&gripper->base_from_gripper, out->position, out->rotation);
+    put_pose(&gripper->gripper_from_wafer, out->wafer_position, out->wafer_rotation);
+    out->wafer = gripper->wafer;
+    out->valve = gripper->valve;
+    put_encounter(&gripper->approach, &out->approach);
+    put_encounter(&gripper->contest, &out->contest);
+}
+
+static void put_event(const wh_event_t *event, waferhand_event *out) {
+    out->kind = (int32_t)event->kind;
+    out->wafer = event->wafer;
+    out->gripper = event->gripper;
+    out->other = event->other;
+    out->status = (int32_t)event->status;
+    out->measured_slice = (int64_t)event->measured_slice;
+    out->height = event->height;
+    put_measured(&event->measured, &out->measured);
+}
+
+static void put_arrays(const wh_state_t *state, wh_link_state_t *room) {
+    for (size_t w = 0; w < state->wafer_count; ++w) {
+        put_pose(&state->wafers[w].base_from_wafer, room->wafers[w].position, room->wafers[w].rotation);
+        room->wafers[w].holder = state->wafers[w].holder;
+    }
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        put_gripper(&state->grippers[g], &room->grippers[g]);
+    }
+    for (size_t e = 0; e < state->event_count; ++e) {
+        put_event(&state->events[e], &room->events[e]);
+    }
+}
+
+void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t *identity, uint64_t hash,
+                              int64_t missed, wh_link_state_t *room) {
+    waferhand_state *message = &room->message;
+    message->utime = state->utime;
+    message->seq = state->seq;
+    message->run = identity->run;
+    message->layout_hash = (int64_t)identity->layout_hash;
+    message->status = (int32_t)state->status;
+    message->wafer_count = (int32_t)state->wafer_count;
+    message->gripper_count = (int32_t)state->gripper_count;
+    message->event_count = (int32_t)state->event_count;
+    message->hash = (int64_t)hash;
+    message->missed = missed;
+    message->sensors = (int32_t)state->sensors;
+    message->wafers = room->wafers;
+    message->grippers = room->grippers;
+    message->events = room->events;
+    put_arrays(state, room);
+}
+
+static void take_gripper(const waferhand_gripper_state *in, const wh_tolerance_t *tolerance,
+                         wh_gripper_t *out) {
+    out->base_from_gripper = take_pose(in->position, in->rotation);
+    out->gripper_from_wafer = take_pose(in->wafer_position, in->wafer_rotation);
+    out->wafer = in->wafer;
+    out->valve = in->valve;
+    take_encounter(&in->approach, tolerance, &out->approach);
+    take_encounter(&in->contest, tolerance, &out->contest);
+}
+
+static bool take_event(const waferhand_event *in, int64_t seq, const wh_tolerance_t *tolerance,
+                       wh_event_t *out) {
+    out->kind = (wh_event_kind_t)in->kind;
+    out->slice = (uint64_t)seq;
+    out->measured_slice = (uint64_t)in->measured_slice;
+    out->wafer = in->wafer;
+    out->gripper = in->gripper;
+    out->other = in->other;
+    out->status = (wh_status_t)in->status;
+    out->height = in->height;
+    take_measured(&in->measured, tolerance, &out->measured);
+    return in->kind >= WH_EVENT_PICKED && in->kind <= WH_EVENT_SLOT_OCCUPIED;
+}
+
+static bool counts_fit(const waferhand_state *message) {
+    return message->wafer_count >= 0 && message->wafer_count <= WH_LINK_WAFERS &&
+           message->gripper_count >= 0 && message->gripper_count <= WH_GRIPPERS &&
+           message->event_count >= 0 && message->event_count <= WH_LINK_EVENTS;
+}
+
+static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *tolerance,
+                        wh_link_arrays_t *arrays) {
+    bool sound = true;
+    for (int32_t w = 0; w < message->wafer_count; ++w) {
+        arrays->wafers[w].base_from_wafer =
+            take_pose(message->wafers[w].position, message->wafers[w].rotation);
+        arrays->wafers[w].holder = message->wafers[w].holder;
+        arrays->wafers[w].released_by = WH_NONE;
+    }
+    for (int32_t g = 0; g < message->gripper_count; ++g) {
+        take_gripper(&message->grippers[g], tolerance, &arrays->grippers[g]);
+    }
+    for (int32_t e = 0; e < message->event_count; ++e) {
+        const waferhand_event *event = &message->events[e];
+        sound = take_event(event, message->seq, tolerance, &arrays->events[e]) && event->wafer >= WH_NONE &&
+                event->wafer < message->wafer_count && event->gripper >= WH_NONE &&
+                event->gripper < message->gripper_count && sound;
+    }
+    return sound;
+}
+
+wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_tolerance_t *tolerance,
+                                       wh_link_arrays_t *arrays, wh_state_t *state) {
+    if (!counts_fit(message) || !take_arrays(message, tolerance, arrays)) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    state->utime = message->utime;
+    state->seq = message->seq;
+    state->status = (wh_status_t)message->status;
+    state->wafers = arrays->wafers;
+    state->wafer_count = (size_t)message->wafer_count;
+    state->grippers = arrays->grippers;
+    state->gripper_count = (size_t)message->gripper_count;
+    state->events = arrays->events;
+    state->event_count = (size_t)message->event_count;
+    state->sensors = (uint32_t)message->sensors;
+    return WH_OK;
+}

@@ -1,0 +1,87 @@
+/* Between the library's structs and LCM's messages. Nothing here allocates but where it says so. */
+#ifndef WH_LINK_MESSAGES_H
+#define WH_LINK_MESSAGES_H
+
+#include <waferhand_cell.h>
+#include <waferhand_command.h>
+#include <waferhand_mcs.h>
+#include <waferhand_proximity.h>
+#include <waferhand_request.h>
+#include <waferhand_state.h>
+
+#include "script/layout.h"
+#include "sim/slice.h"
+
+/* Channels: lcm_types/README.md says who sends what. */
+#define WH_CHANNEL_COMMAND "WAFERHAND_COMMAND"
+#define WH_CHANNEL_STATE "WAFERHAND_STATE"
+#define WH_CHANNEL_RESTORE "WAFERHAND_RESTORE"
+#define WH_CHANNEL_PROXIMITY "WAFERHAND_PROXIMITY"
+#define WH_CHANNEL_MCS "WAFERHAND_MCS"
+#define WH_CHANNEL_REQUEST "WAFERHAND_REQUEST"
+#define WH_CHANNEL_CELL "WAFERHAND_CELL"
+
+/* A layout for two processes has at most so many wafers, so that a state fits one datagram. */
+#define WH_LINK_WAFERS 256
+#define WH_LINK_EVENTS (WH_GRIPPERS * WH_EVENTS_PER_GRIPPER)
+/* LCM sends what is longer in fragments, which get lost one by one. */
+#define WH_LINK_DATAGRAM 65499
+
+/* More slices than any run has: 285 years of 1 ms, and sums of times stay exact. */
+#define WH_LINK_SLICES (INT64_C(1) << 53)
+
+/* The longest text of a request, with its terminator. */
+#define WH_LINK_LINE 1001
+
+/* Who talks about which run: the first fields of each message after its times. */
+typedef struct {
+    int64_t run;
+    uint64_t layout_hash;
+} wh_link_identity_t;
+
+/* Room for a whole state in the library's structs. */
+typedef struct {
+    wh_wafer_t wafers[WH_LINK_WAFERS];
+    wh_gripper_t grippers[WH_GRIPPERS];
+    wh_event_t events[WH_LINK_EVENTS];
+} wh_link_arrays_t;
+
+/* Room for a whole state as a message; `message` points into the arrays. */
+typedef struct {
+    waferhand_state message;
+    waferhand_wafer_state wafers[WH_LINK_WAFERS];
+    waferhand_gripper_state grippers[WH_GRIPPERS];
+    waferhand_event events[WH_LINK_EVENTS];
+} wh_link_state_t;
+
+/* A command as a message, and back. The latter refuses counts out of range (WH_STATUS_OUT_OF_RANGE); poses and valves
+ * are for the step to judge. */
+void wh_link_command_to_message(const wh_command_t *command, const wh_link_identity_t *identity,
+                                bool lockstep, waferhand_command *message);
+wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_command_t *command);
+
+/* A state as a message. The counts are within the room, which the caller has seen to. */
+void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t *identity, uint64_t hash,
+                              int64_t missed, wh_link_state_t *message);
+
+/* Back: fills `arrays`, and `state` as a view of them. Refuses counts and event kinds out of range
+ * (WH_STATUS_OUT_OF_RANGE). Margins and verdicts of measured values, which do not travel, are made anew from `tolerance`. */
+wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_tolerance_t *tolerance,
+                                       wh_link_arrays_t *arrays, wh_state_t *state);
+
+/* Decodes a datagram, after its size and fingerprint have been compared with what its counts ask for: whatever it
+ * contains, nothing is read beyond it and nothing is allocated for a count that it does not carry. The command needs no
+ * heap; states and texts are decoded into memory of their own: release them with waferhand_*_decode_cleanup. */
+bool wh_link_decode_command(const void *data, size_t size, waferhand_command *message);
+bool wh_link_decode_state(const void *data, size_t size, waferhand_state *message);
+bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message);
+bool wh_link_decode_request(const void *data, size_t size, waferhand_request *message);
+bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message);
+
+/* The cell of a layout, in memory that wh_link_cell_free releases. The texts are the layout's. Returns false when
+ * memory is out. */
+bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_t *identity,
+                              waferhand_cell *message);
+void wh_link_cell_free(waferhand_cell *message);
+
+#endif
