@@ -154,7 +154,7 @@ wh_server_result_t wh_server_command(wh_server_t *server, const waferhand_comman
         ++server->counters.run_over;
         return turn_away(server, message, WH_STATUS_RUN_OVER);
     }
-    if (message->seq == 1 || message->lockstep == 0) {
+    if (message->seq == 1) {
         return begin_run(server, message, valves);
     }
     ++server->counters.unknown_run;

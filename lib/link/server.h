@@ -1,7 +1,8 @@
 /* The simulator's side of the protocol, without a network: a command message goes in, an encoded state comes out.
  *
  * One run at a time. A command with the next seq is stepped; the same seq again is answered again and not stepped; an
- * older one is ignored. A new run begins with seq 1. A run that is not known, or not this far, is answered with
+ * older one is ignored; one further on is stepped only in a free-running run, and what lies between is counted as
+ * missed. A new run begins with seq 1. A run that is not known, or not this far, is answered with
  * UNKNOWN_RUN: then the state comes back as a restore, and the run goes on from it. Used by `sim`, and by `replay`,
  * which so repeats exactly what the simulator did. Nothing is allocated after wh_server_open.
  */

@@ -1,0 +1,117 @@
+#include "link/node.h"
+
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static int64_t now_us(clockid_t clock) {
+    struct timespec now;
+    clock_gettime(clock, &now);
+    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+int64_t wh_node_wall_us(void) {
+    return now_us(CLOCK_REALTIME);
+}
+
+int64_t wh_node_clock_us(void) {
+    return now_us(CLOCK_MONOTONIC);
+}
+
+bool wh_node_open(wh_node_t *node, const char *url) {
+    const char *from_environment = getenv("LCM_DEFAULT_URL");
+    const char *fallback = from_environment && from_environment[0] ? from_environment : WH_NODE_URL;
+    memset(node, 0, sizeof *node);
+    node->lcm = lcm_create(url ? url : fallback);
+    return node->lcm != NULL;
+}
+
+bool wh_node_record(wh_node_t *node, const char *path) {
+    node->log = lcm_eventlog_create(path, "w");
+    return node->log != NULL;
+}
+
+/* The log is lcm-logger's; channel and data are only read. */
+static void record(wh_node_t *node, const char *channel, const void *data, size_t size) {
+    union {
+        const void *constant;
+        void *plain;
+    } bytes = {data};
+    char name[LCM_MAX_CHANNEL_NAME_LENGTH + 1];
+    lcm_eventlog_event_t event;
+    if (!node->log || node->log_failed) {
+        return;
+    }
+    snprintf(name, sizeof name, "%s", channel);
+    event.eventnum = 0;
+    event.timestamp = wh_node_wall_us();
+    event.channellen = (int32_t)strlen(name);
+    event.datalen = (int32_t)size;
+    event.channel = name;
+    event.data = bytes.plain;
+    if (lcm_eventlog_write_event(node->log, &event) != 0) {
+        node->log_failed = true;
+        fprintf(stderr, "record: writing failed; what was written so far stays\n");
+    }
+}
+
+static void receive(const lcm_recv_buf_t *message, const char *channel, void *user) {
+    const wh_node_subscriber_t *subscriber = user;
+    ++subscriber->node->received;
+    record(subscriber->node, channel, message->data, message->data_size);
+    subscriber->handler(subscriber->user, message->data, message->data_size);
+}
+
+bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user) {
+    if (node->subscriber_count == WH_NODE_SUBSCRIPTIONS) {
+        return false;
+    }
+    wh_node_subscriber_t *subscriber = &node->subscribers[node->subscriber_count++];
+    subscriber->node = node;
+    subscriber->handler = handler;
+    subscriber->user = user;
+    lcm_subscription_t *subscription = lcm_subscribe(node->lcm, channel, receive, subscriber);
+    return subscription && lcm_subscription_set_queue_capacity(subscription, 0) == 0;
+}
+
+bool wh_node_publish(wh_node_t *node, const char *channel, const void *data, size_t size) {
+    ++node->published;
+    record(node, channel, data, size);
+    return lcm_publish(node->lcm, channel, data, (unsigned)size) == 0;
+}
+
+int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
+    struct pollfd ready = {.fd = lcm_get_fileno(node->lcm), .events = POLLIN};
+    const int64_t us = timeout_us > 0 ? timeout_us : 0;
+    const struct timespec timeout = {.tv_sec = us / 1000000, .tv_nsec = us % 1000000 * 1000};
+    const int count = ppoll(&ready, 1, &timeout, NULL);
+    if (count <= 0) {
+        return 0;
+    }
+    return lcm_handle_timeout(node->lcm, 0) < 0 ? -1 : 1;
+}
+
+int wh_node_drain(wh_node_t *node, int most) {
+    int handled = 0;
+    while (handled < most && wh_node_wait(node, 0) > 0) {
+        ++handled;
+    }
+    return handled;
+}
+
+int wh_node_descriptor(const wh_node_t *node) {
+    return lcm_get_fileno(node->lcm);
+}
+
+void wh_node_close(wh_node_t *node) {
+    if (node->log) {
+        lcm_eventlog_destroy(node->log);
+        node->log = NULL;
+    }
+    if (node->lcm) {
+        lcm_destroy(node->lcm);
+        node->lcm = NULL;
+    }
+}

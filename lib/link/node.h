@@ -1,0 +1,69 @@
+/* A process on LCM: publishing, subscriptions that drop nothing, a wait with a short time limit, and the record.
+ *
+ * Nothing here allocates while messages are published; receiving allocates in liblcm. One thread per node.
+ */
+#ifndef WH_LINK_NODE_H
+#define WH_LINK_NODE_H
+
+#include <lcm/lcm.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Nothing leaves the host unless another URL is asked for. */
+#define WH_NODE_URL "udpm://239.255.76.67:7667?ttl=0"
+
+#define WH_NODE_SUBSCRIPTIONS 8
+
+typedef struct wh_node wh_node_t;
+
+/* What a datagram is handed to: its bytes, true until the call returns. */
+typedef void wh_node_handler_t(void *user, const void *data, size_t size);
+
+typedef struct {
+    wh_node_t *node;
+    wh_node_handler_t *handler;
+    void *user;
+} wh_node_subscriber_t;
+
+struct wh_node {
+    lcm_t *lcm;
+    lcm_eventlog_t *log; /* null: not recording */
+    bool log_failed;     /* writing stopped: the disk is full, say */
+    uint64_t published, received;
+    wh_node_subscriber_t subscribers[WH_NODE_SUBSCRIPTIONS];
+    size_t subscriber_count;
+};
+
+/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). False when LCM cannot: no multicast
+ * route, a bad URL. The node must not be moved afterwards. */
+bool wh_node_open(wh_node_t *node, const char *url);
+
+/* From now on writes all that is published and received into an event log, as lcm-logger does. False, with errno,
+ * when the file cannot be made. */
+bool wh_node_record(wh_node_t *node, const char *path);
+
+/* Subscribes one channel with a queue without a limit. False when there is no room. */
+bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user);
+
+/* Sends one datagram, of which nothing is kept. False when the network refused it. */
+bool wh_node_publish(wh_node_t *node, const char *channel, const void *data, size_t size);
+
+/* Handles at most one message, waiting up to so many microseconds. Returns 1 when one was handled, 0 when none came,
+ * -1 when LCM failed. Signals end the wait early. */
+int wh_node_wait(wh_node_t *node, int64_t timeout_us);
+
+/* Handles what is there, without waiting, at most `most` messages; returns how many. */
+int wh_node_drain(wh_node_t *node, int most);
+
+/* A descriptor that is readable when a message is there. */
+int wh_node_descriptor(const wh_node_t *node);
+
+/* Completes the record and closes LCM. */
+void wh_node_close(wh_node_t *node);
+
+/* us of wall-clock time, and of a clock that never jumps. */
+int64_t wh_node_wall_us(void);
+int64_t wh_node_clock_us(void);
+
+#endif
