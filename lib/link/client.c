@@ -69,13 +69,13 @@ static void heard(wh_client_t *client) {
 }
 
 /* The hash that the state's own content has. */
-static uint64_t own_hash(const wh_client_t *client, const wh_state_t *state, int64_t missed) {
+static uint64_t own_hash(wh_client_t *client, const wh_state_t *state, int64_t missed) {
     wh_grasp_t table;
     memset(&table, 0, sizeof table);
     table.slice = (uint64_t)(state->seq - missed);
-    table.storage.wafers = (wh_wafer_t *)client->spare.wafers;
+    table.storage.wafers = client->spare.wafers;
     table.storage.wafer_count = state->wafer_count;
-    table.storage.grippers = (wh_gripper_t *)client->spare.grippers;
+    table.storage.grippers = client->spare.grippers;
     table.storage.gripper_count = state->gripper_count;
     return wh_grasp_hash(&table);
 }

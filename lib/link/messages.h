@@ -33,6 +33,16 @@
 /* The longest text of a request, with its terminator. */
 #define WH_LINK_LINE 1001
 
+/* waferhand_mcs.phase. */
+enum {
+    WH_LINK_PHASE_IDLE,
+    WH_LINK_PHASE_BEGINS,
+    WH_LINK_PHASE_GOES_ON,
+    WH_LINK_PHASE_DONE,
+    WH_LINK_PHASE_FAILED,
+    WH_LINK_PHASE_OVER
+};
+
 /* Who talks about which run: the first fields of each message after its times. */
 typedef struct {
     int64_t run;
