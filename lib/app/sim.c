@@ -1,0 +1,134 @@
+/* waferhand sim LAYOUT */
+#include <argp.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "app/link_options.h"
+#include "link/simulation.h"
+#include "script/layout_load.h"
+
+enum { OPTION_URL = 1000, OPTION_RECORD, OPTION_SET };
+
+typedef struct {
+    const char *layout, *url, *record;
+    const char **parameters; /* room for one for each argument */
+    size_t parameter_count;
+} arguments_t;
+
+static const struct argp_option options[] = {
+    {"lcm-url", OPTION_URL, "URL", 0, "Where LCM is (default " WH_NODE_URL ")", 0},
+    {"record", OPTION_RECORD, "FILE", 0, "Write all messages into an LCM event log", 0},
+    {"set", OPTION_SET, "NAME=VALUE", 0, "Hand the layout a parameter: params.NAME", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state) {
+    arguments_t *arguments = state->input;
+    switch (key) {
+    case OPTION_URL:
+        arguments->url = argument;
+        return 0;
+    case OPTION_RECORD:
+        arguments->record = argument;
+        return 0;
+    case OPTION_SET:
+        arguments->parameters[arguments->parameter_count++] = argument;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (arguments->layout) {
+            argp_error(state, "%s: one layout is enough", argument);
+        }
+        arguments->layout = argument;
+        return 0;
+    case ARGP_KEY_NO_ARGS:
+        argp_error(state, "which layout?");
+        return EINVAL;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+static void print_counters(const wh_simulation_t *simulation) {
+    const wh_server_counters_t *c = &simulation->server.counters;
+    fprintf(stderr,
+            "sim: %" PRIu64 " commands: %" PRIu64 " stepped, %" PRIu64 " repeated, %" PRIu64
+            " stale, %" PRIu64 " refused, %" PRIu64 " of unknown runs, %" PRIu64 " of other layouts, %" PRIu64
+            " of runs that were over, %" PRIu64 " malformed\n",
+            c->commands, c->stepped, c->repeated, c->stale, c->refused, c->unknown_run, c->other_layout,
+            c->run_over, c->malformed);
+    fprintf(stderr,
+            "sim: %" PRIu64 " states taken back of %" PRIu64 "; %" PRId64 " slices missed; %" PRIu64
+            " datagrams of garbage, %" PRIu64 " not sent\n",
+            c->restored, c->restores, simulation->server.missed, simulation->counters.garbage,
+            simulation->counters.unsent);
+}
+
+static int serve(wh_node_t *node, const wh_layout_t *layout) {
+    static wh_simulation_t simulation;
+    static char name[] = "sim";
+    const wh_status_t status = wh_simulation_open(&simulation, node, layout, wh_say_line, name);
+    if (status != WH_OK) {
+        fprintf(stderr, "%s: %s (expected at most %d wafers, and a cell that fits one datagram)\n",
+                layout->path, wh_status_text(status), WH_LINK_WAFERS);
+        return WH_EXIT_USAGE;
+    }
+    fprintf(stderr, "sim: %s is ready, layout %016" PRIx64 "\n", layout->path,
+            simulation.server.identity.layout_hash);
+    int handled = 0;
+    while (!wh_stop_requested && handled >= 0) {
+        handled = wh_node_wait(node, 100000);
+        wh_simulation_tick(&simulation);
+    }
+    print_counters(&simulation);
+    wh_simulation_close(&simulation);
+    return handled < 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
+}
+
+static int run(const arguments_t *arguments, wh_sandbox_t *sandbox) {
+    wh_sandbox_result_t result;
+    for (size_t i = 0; i < arguments->parameter_count; ++i) {
+        if (!wh_sandbox_set_parameter(sandbox, arguments->parameters[i], &result)) {
+            fprintf(stderr, "%s\n", result.message);
+            return WH_EXIT_USAGE;
+        }
+    }
+    const wh_layout_t *layout = wh_layout_load(sandbox, arguments->layout, &result);
+    if (!layout) {
+        fprintf(stderr, "%s\n", result.message);
+        return WH_EXIT_USAGE;
+    }
+    wh_node_t node;
+    wh_catch_signals();
+    if (!wh_open_node(&node, arguments->url, arguments->record)) {
+        return WH_EXIT_USAGE;
+    }
+    const int status = serve(&node, layout);
+    wh_node_close(&node);
+    return status;
+}
+
+int wh_app_sim(int argc, char **argv) {
+    static const struct argp argp = {
+        options,  parse,
+        "LAYOUT", "Simulates the layout's cell for whoever sends commands over LCM, until SIGINT or SIGTERM.",
+        NULL,     NULL,
+        NULL};
+    static char name[] = "waferhand sim";
+    arguments_t arguments = {0};
+    arguments.parameters = calloc((size_t)argc + 1, sizeof *arguments.parameters);
+    wh_sandbox_t *sandbox = wh_sandbox_new(NULL);
+    if (!arguments.parameters || !sandbox) {
+        perror("waferhand");
+        return WH_EXIT_USAGE;
+    }
+    argv[0] = name;
+    argp_parse(&argp, argc, argv, 0, NULL, &arguments);
+    const int status = run(&arguments, sandbox);
+    wh_sandbox_free(sandbox);
+    free(arguments.parameters);
+    return status;
+}
