@@ -6,7 +6,7 @@ CXX_TESTS := $(basename $(filter %.cpp,$(TEST_SOURCES)))
 
 # A test of the program's parts is linked with them; all others see the library alone, as a firmware does,
 # and are built in float too.
-PROGRAM_TESTS := $(basename $(shell grep -lE '^.include "(script|app)/' $(TEST_SOURCES) /dev/null))
+PROGRAM_TESTS := $(basename $(shell grep -lE '^.include ("(link|script|app)/|<waferhand_)' $(TEST_SOURCES) /dev/null))
 TESTS := $(basename $(TEST_SOURCES))
 LIBRARY_TESTS := $(filter-out $(PROGRAM_TESTS),$(filter tests/unit/% tests/firmware/%,$(TESTS)))
 

@@ -16,13 +16,16 @@ LIBRARY_PARTS := core motion cell sim
 LIBRARY_SOURCES := $(wildcard $(LIBRARY_PARTS:%=lib/%/*.c))
 MODULE_SOURCES := $(wildcard lib/script/wh_module*.c)
 SCRIPT_SOURCES := $(filter-out $(MODULE_SOURCES),$(wildcard lib/script/*.c))
-PROGRAM_SOURCES := $(SCRIPT_SOURCES) $(MODULE_SOURCES) $(wildcard lib/app/*.c)
+PROGRAM_SOURCES := $(SCRIPT_SOURCES) $(MODULE_SOURCES) $(wildcard lib/link/*.c lib/app/*.c)
+MESSAGES := $(patsubst lcm_types/%.lcm,%,$(wildcard lcm_types/*.lcm))
 LUA_SOURCES := $(sort $(shell find lua -name '*.lua' 2>/dev/null))
 HEADERS := $(wildcard lib/*.h lib/*/*.h lib/*/*.def)
 include tests/tests.mk
 
 LIBRARY_OBJECTS := $(LIBRARY_SOURCES:%.c=$(B)/obj/%.o)
 PROGRAM_OBJECTS := $(PROGRAM_SOURCES:%.c=$(B)/obj/%.o) $(B)/obj/embedded_lua.o
+MESSAGE_SOURCES := $(MESSAGES:%=$(B)/lcm/waferhand_%.c)
+MESSAGE_OBJECTS := $(MESSAGE_SOURCES:$(B)/%.c=$(B)/obj/%.o)
 MODULE_OBJECTS := $(MODULE_SOURCES:%.c=$(B)/pic/%.o)
 MODULE_SUPPORT := $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o) $(SCRIPT_SOURCES:%.c=$(B)/pic/%.o)
 
@@ -40,24 +43,29 @@ BASE := -Ilib -ffp-contract=off -fno-math-errno -ffile-prefix-map=$(CURDIR)=. $(
 LIBRARY_FLAGS := -std=c99 $(BASE) $(C_WARNINGS) $(NUMBER_WARNINGS) -DWH_BUILDING_LIBRARY
 HOST_FLAGS := -std=c99 -D_GNU_SOURCE $(BASE) $(C_WARNINGS)
 
-# Headers of other packages are not ours to warn about.
+# What lcm-gen writes is not clean under our warnings; nor are its headers, and those of other packages, ours to
+# warn about.
+MESSAGE_FLAGS := -std=c99 -D_GNU_SOURCE -ffile-prefix-map=$(CURDIR)=.
+LCM_FLAGS := -isystem $(B)/lcm
 package_flags = $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(1) 2>/dev/null))
 LUA := $(firstword $(foreach name,lua5.4 lua-5.4 lua54 lua,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
-PROGRAM_FLAGS := $(HOST_FLAGS) $(NUMBER_WARNINGS) $(call package_flags,$(LUA) jansson smartcols)
-TEST_FLAGS := $(HOST_FLAGS) $(if $(FLOAT),,$(NUMBER_WARNINGS)) -Itests $(call package_flags,$(LUA) jansson)
+PROGRAM_FLAGS := $(HOST_FLAGS) $(NUMBER_WARNINGS) $(LCM_FLAGS) $(call package_flags,$(LUA) jansson smartcols)
+TEST_FLAGS := $(HOST_FLAGS) $(if $(FLOAT),,$(NUMBER_WARNINGS)) -Itests $(LCM_FLAGS) $(call package_flags,$(LUA) jansson)
 CXX_TEST_FLAGS := -std=c++17 $(BASE) -Itests $(call package_flags,eigen3)
 
 # Lua comes from its static archive, so that its `^` calls the program's own pow and not libm's.
 LUA_ARCHIVE = $(firstword $(filter /%,$(foreach name,liblua5.4.a liblua-5.4.a liblua.a,\
                 $(shell $(CC) -print-file-name=$(name)))))
-PROGRAM_LIBS = $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson smartcols) -ldl -lm
+# LCM's pkg-config file asks for GLib's headers, which its own do not need: hence -llcm.
+PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson smartcols) -llcm -ldl -lm
 
 # Written when its text changes: what depends on it is rebuilt when a flag or the set of files changes.
 STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(LIBRARY_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS) \
-         $(CXX_TEST_FLAGS)
+         $(CXX_TEST_FLAGS) $(MESSAGE_FLAGS)
 $(B)/flags: TEXT = $(STAMP)
 $(B)/sources: TEXT = $(LIBRARY_SOURCES) $(PROGRAM_SOURCES) $(LUA_SOURCES)
-$(B)/flags $(B)/sources: FORCE
+$(B)/messages: TEXT = $(MESSAGES)
+$(B)/flags $(B)/sources $(B)/messages: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' '$(TEXT)' | cmp -s - $@ || printf '%s\n' '$(TEXT)' >$@
 
@@ -99,6 +107,22 @@ $(B)/obj/embedded_lua.o: $(B)/embedded_lua.c $(B)/flags
 $(B)/embedded_lua.c: lib/packaging/embed $(LUA_SOURCES) $(B)/sources
 	@lib/packaging/embed $(LUA_SOURCES) >$@
 
+# All at once, and anew, so that none is left of a message that is gone. waferhand_messages.h gathers the others and
+# lists them: WAFERHAND_MESSAGES(X) is X(cell) X(command) and so on.
+$(B)/lcm/waferhand_messages.h: $(MESSAGES:%=lcm_types/%.lcm) $(B)/messages
+	@echo "  LCM  $(@D)"
+	@rm -rf $(@D) && mkdir -p $(@D)
+	$(Q)lcm-gen -c --c-cpath $(@D) --c-hpath $(@D) $(filter %.lcm,$^)
+	@{ printf '#include <waferhand_%s.h>\n' $(MESSAGES); \
+	    echo '#define WAFERHAND_MESSAGES(X) $(foreach message,$(MESSAGES),X($(message)))'; } >$@
+$(MESSAGE_SOURCES): $(B)/lcm/waferhand_messages.h ;
+$(B)/obj/lcm/%.o: $(B)/lcm/%.c $(B)/flags
+	$(call compile,CC ,$(CC),$(CFLAGS))
+$(MESSAGE_OBJECTS): FLAGS = $(MESSAGE_FLAGS)
+# Compilers leave headers found by -isystem out of the .d files.
+$(filter $(B)/obj/lib/link/% $(B)/obj/lib/app/%,$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o): \
+    $(B)/lcm/waferhand_messages.h
+
 -include $(shell find $(B)/obj $(B)/pic -name '*.d' 2>/dev/null)
 
 # --------------------------------------------------------------------------------------------- linking
@@ -109,13 +133,15 @@ $(Q)rm -f $@ && $(AR) qcsD $@ $(filter %.o,$^)
 endef
 $(B)/libwaferhand.a: $(LIBRARY_OBJECTS) $(B)/sources
 	$(archive)
+$(B)/libwaferhand_lcm.a: $(MESSAGE_OBJECTS) $(B)/messages
+	$(archive)
 $(B)/pic/support.a: $(MODULE_SUPPORT) $(B)/sources
 	$(archive)
 
 LINK = $(Q)$(CC) $(CFLAGS) $(EXTRA) $(LDFLAGS)
 
 # -E: native modules that a trusted script loads look for Lua in the program.
-$(B)/waferhand: $(PROGRAM_OBJECTS) $(B)/libwaferhand.a $(B)/sources
+$(B)/waferhand: $(PROGRAM_OBJECTS) $(B)/libwaferhand.a $(B)/libwaferhand_lcm.a $(B)/sources
 	@echo "  LD   $@"
 	$(LINK) -Wl,-E -o $@ $(PROGRAM_OBJECTS) $(B)/libwaferhand.a $(PROGRAM_LIBS)
 
@@ -126,7 +152,7 @@ $(B)/wh.so: $(MODULE_OBJECTS) $(B)/pic/support.a
 	$(LINK) -shared -Wl,-z,now,--exclude-libs,ALL -o $@ $^ -lm
 
 TEST_SUPPORT := $(patsubst %.c,$(B)/obj/%.o,$(wildcard tests/support/*.c))
-$(PROGRAM_TESTS:%=$(B)/%): $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS))
+$(PROGRAM_TESTS:%=$(B)/%): $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS)) $(B)/libwaferhand_lcm.a
 $(PROGRAM_TESTS:%=$(B)/%): LIBS = $(PROGRAM_LIBS)
 $(CXX_TESTS:%=$(B)/%): LINK = $(Q)$(CXX) $(CXXFLAGS) $(EXTRA) $(LDFLAGS)
 $(B)/tests/%: $(B)/obj/tests/%.o $(TEST_SUPPORT) $(B)/libwaferhand.a

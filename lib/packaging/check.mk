@@ -29,6 +29,7 @@ check-cppcheck:
 
 $(LIBRARY_SOURCES:%.c=$(B)/tidy/%): FLAGS = $(LIBRARY_FLAGS)
 $(PROGRAM_SOURCES:%.c=$(B)/tidy/%): FLAGS = $(PROGRAM_FLAGS)
+$(PROGRAM_SOURCES:%.c=$(B)/tidy/%): $(B)/lcm/waferhand_messages.h
 $(B)/tidy/%: %.c $(HEADERS) .clang-tidy $(B)/flags
 	@mkdir -p $(@D)
 	@echo "  TIDY $<"
