@@ -6,5 +6,6 @@
 enum { WH_EXIT_MET = 0, WH_EXIT_FAILED = 1, WH_EXIT_USAGE = 2 };
 
 int wh_app_run(int argc, char **argv);
+int wh_app_sim(int argc, char **argv);
 
 #endif

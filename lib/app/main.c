@@ -11,6 +11,7 @@ static const struct {
     int (*act)(int argc, char **argv);
 } subcommands[] = {
     {"run", "play a motion script against the simulator", wh_app_run},
+    {"sim", "simulate a cell for whoever sends commands over LCM", wh_app_sim},
 };
 
 #define SUBCOMMANDS (sizeof subcommands / sizeof subcommands[0])
@@ -50,6 +51,6 @@ int main(int argc, char **argv) {
             return subcommands[i].act(argc - 1, argv + 1);
         }
     }
-    fprintf(stderr, "waferhand: %s: no such command (expected run; see waferhand --help)\n", argv[1]);
+    fprintf(stderr, "waferhand: %s: no such command (see waferhand --help)\n", argv[1]);
     return WH_EXIT_USAGE;
 }

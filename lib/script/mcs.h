@@ -12,8 +12,20 @@
 #include "script/sandbox.h"
 #include "sim/simulator.h"
 
-/* Written by lib/script/mcs*.c only. Must not be moved once opened. */
+typedef struct wh_mcs wh_mcs_t;
+
+/* Who else takes part in a run; each function may be null. */
 typedef struct {
+    /* Called once the cell is set up: returns who stands in for the simulator in this process, or null when there is
+     * nobody, which ends the script. */
+    wh_link_t *(*connect)(void *user, wh_mcs_t *mcs);
+    /* A command of the record begins (`ended` false) or has ended. */
+    void (*watch)(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended);
+    void *user;
+} wh_mcs_partners_t;
+
+/* Written by lib/script/mcs*.c only. Must not be moved once opened. */
+struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
     wh_record_t *record;
     const wh_layout_t *layout; /* null until a script names one */
@@ -28,7 +40,8 @@ typedef struct {
     bool keep_segments;   /* collect what is played, for --segments */
     wh_segment_t *segments;
     size_t segment_count, segment_capacity;
-} wh_mcs_t;
+    wh_mcs_partners_t partners;
+};
 
 /* Opens the operator's words in a sandbox for one run of `script`. `mcs` and `record` must outlive the
  * sandbox. False, and the reason in `result`, when the sandbox has no room for it. */

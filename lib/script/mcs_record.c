@@ -17,6 +17,12 @@ static const char *charged_text(lua_State *L, int argument) {
     return text;
 }
 
+static void tell(const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
+    if (mcs->partners.watch) {
+        mcs->partners.watch(mcs->partners.user, mcs, command, ended);
+    }
+}
+
 /* native.begin(text): a command starts; the script's line is found on the stack. A metamethod of an argument
  * can get here from within another command. */
 static int begin_command(lua_State *L) {
@@ -29,6 +35,7 @@ static int begin_command(lua_State *L) {
     }
     wh_record_add_command(mcs->record, wh_sandbox_line(L, mcs->script), text, wh_mcs_now(mcs));
     mcs->running = (int32_t)mcs->record->command_count - 1;
+    tell(mcs, &mcs->record->commands[mcs->running], false);
     return 0;
 }
 
@@ -43,6 +50,7 @@ static int finish_command(lua_State *L) {
     if (command->error != WH_OK) {
         command->message = wh_record_text(charged_text(L, 2));
     }
+    tell(mcs, command, true);
     return 0;
 }
 

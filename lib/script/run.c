@@ -49,6 +49,7 @@ wh_run_outcome_t wh_run_script(wh_run_t *run, const wh_run_options_t *options) {
         return refuse(run, result.message);
     }
     run->mcs.keep_segments = options->keep_segments;
+    run->mcs.partners = options->partners;
     wh_sandbox_run(run->sandbox, options->script, &result);
     return conclude(run, &result);
 }

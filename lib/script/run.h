@@ -9,7 +9,8 @@ typedef struct {
     wh_sandbox_limits_t limits;
     const char *const *parameters; /* NAME=VALUE, as --set hands them over */
     size_t parameter_count;
-    bool keep_segments; /* run->mcs.segments then holds what was played */
+    wh_mcs_partners_t partners; /* all null: the simulator in this process */
+    bool keep_segments;         /* run->mcs.segments then holds what was played */
 } wh_run_options_t;
 
 /* What is left when the script has ended. wh_run_close frees it. */
