@@ -12,7 +12,17 @@
 #include "app/style.h"
 #include "script/run.h"
 
-enum { OPTION_JSON = 1000, OPTION_SEGMENTS, OPTION_SET, OPTION_TRUST, OPTION_BUDGET, OPTION_MEMORY };
+enum {
+    OPTION_JSON = 1000,
+    OPTION_SEGMENTS,
+    OPTION_SET,
+    OPTION_TRUST,
+    OPTION_BUDGET,
+    OPTION_MEMORY,
+    OPTION_LCM,
+    OPTION_URL,
+    OPTION_RECORD
+};
 
 typedef struct {
     wh_run_options_t run;

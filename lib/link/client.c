@@ -271,7 +271,7 @@ bool wh_client_settle(wh_client_t *client, int64_t timeout_us) {
     return true;
 }
 
-static int64_t draw_run(void) {
+int64_t wh_client_draw_run(void) {
     uint64_t bits = 0;
     while (bits == 0) {
         if (getrandom(&bits, sizeof bits, 0) != (ssize_t)sizeof bits) {
@@ -288,7 +288,7 @@ bool wh_client_open(wh_client_t *client, wh_node_t *node, const wh_client_option
     client->link.hash = last_hash;
     client->node = node;
     client->options = *options;
-    client->identity.run = draw_run();
+    client->identity.run = wh_client_draw_run();
     client->identity.layout_hash = wh_layout_hash(options->layout);
     client->resend_us = 4 * RESEND_LEAST_US;
     return wh_node_subscribe(node, WH_CHANNEL_STATE, on_state, client);

@@ -62,6 +62,9 @@ typedef struct {
 /* Subscribes to the states and begins a run with a random number other than 0. False when LCM has no room. */
 bool wh_client_open(wh_client_t *client, wh_node_t *node, const wh_client_options_t *options);
 
+/* A random number for a run, other than 0. */
+int64_t wh_client_draw_run(void);
+
 /* Sends the last command again, so that the simulator knows that we are alive while nothing moves, and notices by the
  * answer whether it is. To be called now and then between commands; handles what has come. */
 void wh_client_heartbeat(wh_client_t *client);

@@ -22,11 +22,14 @@ static void tell(wh_control_t *control, int32_t phase, int line, wh_status_t err
     waferhand_mcs message;
     memset(&message, 0, sizeof message);
     if (control->connected) {
-        message.utime = control->client.command.utime;
-        message.seq = control->client.command.seq;
-        message.run = control->client.identity.run;
-        message.layout_hash = (int64_t)control->client.identity.layout_hash;
+        control->utime = control->client.command.utime;
+        control->seq = control->client.command.seq;
+        control->identity = control->client.identity;
     }
+    message.utime = control->utime;
+    message.seq = control->seq;
+    message.run = control->identity.run;
+    message.layout_hash = (int64_t)control->identity.layout_hash;
     message.phase = phase;
     message.request = control->request;
     message.line = line;
@@ -191,6 +194,13 @@ void wh_control_idle(wh_control_t *control) {
         (void)wh_node_drain(control->node, 64);
     }
     tell(control, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
+}
+
+void wh_control_follow(wh_control_t *control, const wh_link_identity_t *identity,
+                       const wh_command_t *command) {
+    control->identity = *identity;
+    control->utime = command->utime;
+    control->seq = command->seq;
 }
 
 bool wh_control_finish(wh_control_t *control) {

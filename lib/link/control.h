@@ -39,6 +39,8 @@ typedef struct {
     wh_control_options_t options;
     wh_client_t client;
     bool connected;
+    wh_link_identity_t identity; /* of the run; and where it is: */
+    int64_t utime, seq;
     int64_t request; /* seq of the request being executed, or 0 */
     int64_t last_beat_us;
     wh_control_request_t waiting[WH_CONTROL_REQUESTS];
@@ -65,6 +67,10 @@ bool wh_control_next_request(wh_control_t *control, char line[WH_LINK_LINE]);
 
 /* Answers the request being executed: error is 0 or its number, text what an operator would read. */
 void wh_control_answer(wh_control_t *control, wh_status_t error, const char *line, const char *text);
+
+/* Without a client of its own: the run and the slice that what is told belongs to. */
+void wh_control_follow(wh_control_t *control, const wh_link_identity_t *identity,
+                       const wh_command_t *command);
 
 /* Tells that the run is over, having waited for the last slice's state where the run was free-running; false when that
  * did not come within a second. */

@@ -25,6 +25,9 @@ static void say(const wh_simulation_t *simulation, const char *format, ...) {
 /* ------------------------------------------------------------------------------------------------- sending */
 
 static void publish(wh_simulation_t *simulation, const char *channel, const void *data, int size) {
+    if (!simulation->node) {
+        return;
+    }
     if (size <= 0 || size > WH_LINK_DATAGRAM ||
         !wh_node_publish(simulation->node, channel, data, (size_t)size)) {
         ++simulation->counters.unsent;
@@ -94,16 +97,10 @@ static void act_on(wh_simulation_t *simulation, wh_server_result_t result) {
     }
 }
 
-static void on_command(void *user, const void *data, size_t size) {
-    wh_simulation_t *simulation = user;
-    waferhand_command message;
-    if (!wh_link_decode_command(data, size, &message)) {
-        drop(simulation, WH_CHANNEL_COMMAND, size);
-        return;
-    }
+static void handle_command(wh_simulation_t *simulation, const waferhand_command *message) {
     const int64_t missed = simulation->server.missed;
-    const wh_server_result_t result = wh_server_command(&simulation->server, &message, simulation->valves);
-    if (message.run == simulation->server.identity.run) {
+    const wh_server_result_t result = wh_server_command(&simulation->server, message, simulation->valves);
+    if (message->run == simulation->server.identity.run) {
         heard_motion_control(simulation);
     }
     if (simulation->server.missed > missed && missed == 0) {
@@ -111,6 +108,16 @@ static void on_command(void *user, const void *data, size_t size) {
             simulation->server.seq);
     }
     act_on(simulation, result);
+}
+
+static void on_command(void *user, const void *data, size_t size) {
+    wh_simulation_t *simulation = user;
+    waferhand_command message;
+    if (wh_link_decode_command(data, size, &message)) {
+        handle_command(simulation, &message);
+    } else {
+        drop(simulation, WH_CHANNEL_COMMAND, size);
+    }
 }
 
 static void on_restore(void *user, const void *data, size_t size) {
@@ -165,15 +172,28 @@ wh_status_t wh_simulation_open(wh_simulation_t *simulation, wh_node_t *node, con
         wh_link_cell_free(&simulation->cell);
         return WH_STATUS_BAD_CAPACITY;
     }
-    const bool heard = wh_node_subscribe(node, WH_CHANNEL_COMMAND, on_command, simulation) &&
-                       wh_node_subscribe(node, WH_CHANNEL_RESTORE, on_restore, simulation) &&
-                       wh_node_subscribe(node, WH_CHANNEL_MCS, on_mcs, simulation) &&
-                       wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, simulation);
+    const bool heard = !node || (wh_node_subscribe(node, WH_CHANNEL_COMMAND, on_command, simulation) &&
+                                 wh_node_subscribe(node, WH_CHANNEL_RESTORE, on_restore, simulation) &&
+                                 wh_node_subscribe(node, WH_CHANNEL_MCS, on_mcs, simulation) &&
+                                 wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, simulation));
     if (!heard) {
         return WH_STATUS_NO_NETWORK;
     }
     tell_cell(simulation);
     return WH_OK;
+}
+
+void wh_simulation_publish_to(wh_simulation_t *simulation, wh_node_t *node) {
+    simulation->node = node;
+    tell_cell(simulation);
+}
+
+wh_status_t wh_simulation_step(wh_simulation_t *simulation, const waferhand_command *message,
+                               wh_state_t *state) {
+    handle_command(simulation, message);
+    *state = simulation->server.state;
+    state->status = (wh_status_t)simulation->server.room.message.status;
+    return state->status;
 }
 
 void wh_simulation_tick(wh_simulation_t *simulation) {

@@ -34,11 +34,20 @@ typedef struct {
     uint8_t encoded[WH_LINK_DATAGRAM];
 } wh_simulation_t;
 
-/* Subscribes to what the simulator hears and tells the cell. WH_STATUS_BAD_CAPACITY for a layout that does not fit
+/* Subscribes to what the simulator hears and tells the cell; with a null node it hears nothing and is stepped by
+ * wh_simulation_step. WH_STATUS_BAD_CAPACITY for a layout that does not fit
  * messages, WH_STATUS_NO_NETWORK when LCM has no room. `layout`, `node` and `say` (one line for people; may be null)
  * must outlive it. Must not be moved afterwards. */
 wh_status_t wh_simulation_open(wh_simulation_t *simulation, wh_node_t *node, const wh_layout_t *layout,
                                void (*say)(void *user, const char *text), void *user);
+
+/* A node to publish to, for a simulation that was opened without one; tells it the cell. */
+void wh_simulation_publish_to(wh_simulation_t *simulation, wh_node_t *node);
+
+/* Steps a command as if it had come from the network, and publishes what comes of it. Returns the status that the
+ * answer carries; `state` is a view of the simulator's memory. */
+wh_status_t wh_simulation_step(wh_simulation_t *simulation, const waferhand_command *message,
+                               wh_state_t *state);
 
 /* What is due by the clock: the cell, and the silence of motion control. To be called at least every 100 ms. */
 void wh_simulation_tick(wh_simulation_t *simulation);

@@ -1,0 +1,62 @@
+#include "link/broadcast.h"
+
+#include <string.h>
+
+static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
+    wh_broadcast_t *broadcast = (wh_broadcast_t *)link;
+    uint8_t encoded[2048];
+    waferhand_command message;
+    wh_link_command_to_message(command, &broadcast->identity, true, &message);
+    const int size = waferhand_command_encode(encoded, 0, (int)sizeof encoded, &message);
+    if (size > 0) {
+        (void)wh_node_publish(broadcast->node, WH_CHANNEL_COMMAND, encoded, (size_t)size);
+    }
+    wh_control_follow(&broadcast->control, &broadcast->identity, command);
+    return wh_simulation_step(&broadcast->simulation, &message, state);
+}
+
+static uint64_t last_hash(wh_link_t *link) {
+    return wh_server_hash(&((wh_broadcast_t *)link)->simulation.server);
+}
+
+static wh_link_t *connect_simulation(void *user, wh_mcs_t *mcs) {
+    wh_broadcast_t *broadcast = user;
+    const wh_status_t status =
+        wh_simulation_open(&broadcast->simulation, NULL, mcs->layout, broadcast->control.options.say,
+                           broadcast->control.options.user);
+    if (status != WH_OK) {
+        return NULL;
+    }
+    wh_simulation_publish_to(&broadcast->simulation, broadcast->node);
+    broadcast->identity.run = wh_client_draw_run();
+    broadcast->identity.layout_hash = broadcast->simulation.server.identity.layout_hash;
+    broadcast->connected = true;
+    return &broadcast->link;
+}
+
+static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
+    wh_control_t *control = &((wh_broadcast_t *)user)->control;
+    wh_control_partners(control).watch(control, mcs, command, ended);
+}
+
+bool wh_broadcast_open(wh_broadcast_t *broadcast, wh_node_t *node, void (*say)(void *user, const char *text),
+                       void *user) {
+    const wh_control_options_t options = {.say = say, .user = user};
+    memset(broadcast, 0, sizeof *broadcast);
+    broadcast->link.exchange = exchange;
+    broadcast->link.hash = last_hash;
+    broadcast->node = node;
+    return wh_control_open(&broadcast->control, node, &options);
+}
+
+wh_mcs_partners_t wh_broadcast_partners(wh_broadcast_t *broadcast) {
+    const wh_mcs_partners_t partners = {.connect = connect_simulation, .watch = watch, .user = broadcast};
+    return partners;
+}
+
+void wh_broadcast_close(wh_broadcast_t *broadcast) {
+    (void)wh_control_finish(&broadcast->control);
+    if (broadcast->connected) {
+        wh_simulation_close(&broadcast->simulation);
+    }
+}
