@@ -76,7 +76,7 @@ $(B)/flags $(B)/sources $(B)/messages: FORCE
 
 all: library $(B)/waferhand $(B)/wh.so $(B)/waferhand.1
 library: $(B)/libwaferhand.a
-tests: $(TESTS:%=$(B)/%)
+tests: $(TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%)
 	@:
 library-tests: $(LIBRARY_TESTS:%=$(B)/%)
 	@:
@@ -120,7 +120,7 @@ $(B)/obj/lcm/%.o: $(B)/lcm/%.c $(B)/flags
 	$(call compile,CC ,$(CC),$(CFLAGS))
 $(MESSAGE_OBJECTS): FLAGS = $(MESSAGE_FLAGS)
 # Compilers leave headers found by -isystem out of the .d files.
-$(filter $(B)/obj/lib/link/% $(B)/obj/lib/app/%,$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o): \
+$(filter $(B)/obj/lib/link/% $(B)/obj/lib/app/%,$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o) $(TOOLS:%=$(B)/obj/%.o): \
     $(B)/lcm/waferhand_messages.h
 
 -include $(shell find $(B)/obj $(B)/pic -name '*.d' 2>/dev/null)
@@ -152,8 +152,8 @@ $(B)/wh.so: $(MODULE_OBJECTS) $(B)/pic/support.a
 	$(LINK) -shared -Wl,-z,now,--exclude-libs,ALL -o $@ $^ -lm
 
 TEST_SUPPORT := $(patsubst %.c,$(B)/obj/%.o,$(wildcard tests/support/*.c))
-$(PROGRAM_TESTS:%=$(B)/%): $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS)) $(B)/libwaferhand_lcm.a
-$(PROGRAM_TESTS:%=$(B)/%): LIBS = $(PROGRAM_LIBS)
+$(PROGRAM_TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%): $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS)) $(B)/libwaferhand_lcm.a
+$(PROGRAM_TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%): LIBS = $(PROGRAM_LIBS)
 $(CXX_TESTS:%=$(B)/%): LINK = $(Q)$(CXX) $(CXXFLAGS) $(EXTRA) $(LDFLAGS)
 $(B)/tests/%: $(B)/obj/tests/%.o $(TEST_SUPPORT) $(B)/libwaferhand.a
 	@mkdir -p $(@D)
