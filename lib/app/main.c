@@ -11,6 +11,7 @@ static const struct {
     int (*act)(int argc, char **argv);
 } subcommands[] = {
     {"run", "play a motion script against the simulator", wh_app_run},
+    {"mcs", "motion control over LCM, for a script or at a prompt", wh_app_mcs},
     {"sim", "simulate a cell for whoever sends commands over LCM", wh_app_sim},
 };
 

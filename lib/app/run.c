@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "app/app.h"
+#include "app/mcs_link.h"
 #include "app/record_json.h"
 #include "app/record_table.h"
 #include "app/segments.h"
@@ -21,7 +22,8 @@ enum {
     OPTION_MEMORY,
     OPTION_LCM,
     OPTION_URL,
-    OPTION_RECORD
+    OPTION_RECORD,
+    OPTION_RATE
 };
 
 typedef struct {
@@ -29,6 +31,7 @@ typedef struct {
     const char **parameters; /* room for one for each argument */
     const char *segments_path;
     bool json;
+    wh_mcs_link_options_t link;
 } arguments_t;
 
 static const struct argp_option options[] = {
@@ -39,6 +42,9 @@ static const struct argp_option options[] = {
     {"trust", OPTION_TRUST, NULL, 0, "Let the script use all of Lua, files and native modules too", 0},
     {"budget", OPTION_BUDGET, "N", 0,
      "End the script after N steps of Lua and simulated slices (default 1e9)", 0},
+    {"lcm-url", OPTION_URL, "URL", 0, "Where LCM is (default " WH_NODE_URL ")", 0},
+    {"record", OPTION_RECORD, "FILE", 0, "Write all messages into an LCM event log", 0},
+    {"rate", OPTION_RATE, "FACTOR", 0, "Run free at this factor of real time instead of in lockstep", 0},
     {"memory", OPTION_MEMORY, "MIB", 0, "Let the script use so many MiB of memory (default 256)", 0},
     {0},
 };
@@ -68,6 +74,15 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         return 0;
     case OPTION_TRUST:
         arguments->run.limits.trust = true;
+        return 0;
+    case OPTION_URL:
+        arguments->link.url = argument;
+        return 0;
+    case OPTION_RECORD:
+        arguments->link.record = argument;
+        return 0;
+    case OPTION_RATE:
+        arguments->link.rate = strtod(argument, NULL);
         return 0;
     case OPTION_BUDGET:
         arguments->run.limits.instructions = (uint64_t)whole_number(state, "budget", argument, 1e18);
@@ -118,7 +133,7 @@ static int report(const arguments_t *arguments, const wh_run_t *run, wh_run_outc
     return outcome == WH_RUN_MET ? WH_EXIT_MET : WH_EXIT_FAILED;
 }
 
-int wh_app_run(int argc, char **argv) {
+static int play(int argc, char **argv, bool over_lcm) {
     static const struct argp argp = {
         options,
         parse,
@@ -141,10 +156,29 @@ int wh_app_run(int argc, char **argv) {
     arguments.run.parameters = arguments.parameters;
     arguments.run.keep_segments = arguments.segments_path != NULL;
     arguments.run.limits.print_to = arguments.json ? stderr : stdout;
+    static wh_mcs_link_t link;
+    const bool linked = over_lcm;
+    if (linked) {
+        if (!wh_mcs_link_open(&link, &arguments.link)) {
+            return WH_EXIT_USAGE;
+        }
+        arguments.run.partners = wh_control_partners(&link.control);
+    }
     wh_run_t run;
     const wh_run_outcome_t outcome = wh_run_script(&run, &arguments.run);
+    if (linked) {
+        wh_mcs_link_close(&link);
+    }
     const int status = report(&arguments, &run, outcome);
     wh_run_close(&run);
     free(arguments.parameters);
     return status;
+}
+
+int wh_app_run(int argc, char **argv) {
+    return play(argc, argv, false);
+}
+
+int wh_app_mcs(int argc, char **argv) {
+    return play(argc, argv, true);
 }

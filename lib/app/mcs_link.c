@@ -1,0 +1,43 @@
+#include "app/mcs_link.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
+    static char name[] = "mcs";
+    const wh_control_options_t control = {
+        .rate = options->rate, .stop = &wh_stop_requested, .say = wh_say_line, .user = name};
+    wh_catch_signals();
+    if (!wh_open_node(&link->node, options->url, options->record)) {
+        return false;
+    }
+    if (!wh_control_open(&link->control, &link->node, &control)) {
+        fprintf(stderr, "mcs: LCM takes no subscription\n");
+        wh_node_close(&link->node);
+        return false;
+    }
+    return true;
+}
+
+static void print_counters(const wh_control_t *control) {
+    const wh_client_counters_t *c = &control->client.counters;
+    fprintf(stderr,
+            "mcs: %" PRIu64 " slices sent, %" PRIu64 " commands repeated, %" PRIu64 " states taken, %" PRIu64
+            " unasked, %" PRIu64 " malformed; %" PRIu64 " states sent back, %" PRIu64 " silences\n",
+            c->sent, c->repeated, c->answers, c->unasked, c->malformed, c->restored, c->silences);
+    if (control->options.rate > 0) {
+        fprintf(stderr,
+                "mcs: free-running: %" PRId64 " slices missed by the simulator, %" PRIu64 " sent late\n",
+                control->client.missed, c->late);
+    }
+}
+
+void wh_mcs_link_close(wh_mcs_link_t *link) {
+    if (!wh_control_finish(&link->control)) {
+        fprintf(stderr, "mcs: the state of the last slice did not come\n");
+    }
+    if (link->control.connected) {
+        print_counters(&link->control);
+    }
+    wh_node_close(&link->node);
+}
