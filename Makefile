@@ -40,7 +40,7 @@ run: all ## plays the two examples of the paper
 test: ## every test: plain, under sanitizers, in float, and end to end
 	$(NEED) run test
 	$(BUILD) all tests
-	$(BUILD) B=build/sanitize $(SANITIZE) tests
+	$(BUILD) B=build/sanitize $(SANITIZE) tests program
 	$(BUILD) B=build/float FLOAT=1 library-tests
 	@tests/run $(TESTS:%=build/%) $(TESTS:%=build/sanitize/%) $(LIBRARY_TESTS:%=build/float/%) $(END_TO_END)
 

@@ -6,8 +6,12 @@
 #include <string.h>
 #include <sys/random.h>
 
+#include "link/check.h"
+
 #define RESEND_LEAST_US 300
 #define RESEND_MOST_US 50000
+/* So often a command is sent again at the first pace; then, for nobody seems to be there, less and less often. */
+#define RESENDS_AT_FIRST_PACE 20
 /* How long a wait may be, so that silence and a stop are noticed in time. */
 #define WAIT_MOST_US 50000
 
@@ -39,6 +43,7 @@ static void send_command(wh_client_t *client) {
     const int size =
         waferhand_command_encode(client->encoded, 0, (int)sizeof client->encoded, &client->command);
     if (size > 0) {
+        wh_link_seal(client->encoded, (size_t)size);
         (void)wh_node_publish(client->node, WH_CHANNEL_COMMAND, client->encoded, (size_t)size);
     }
 }
@@ -179,6 +184,7 @@ static int64_t clamp(int64_t value, int64_t low, int64_t high) {
 /* Waits for the answer to the last command, sending it again and again. */
 static wh_status_t await_answer(wh_client_t *client) {
     const int64_t begin = wh_node_clock_us();
+    const uint64_t repeated = client->counters.repeated;
     int64_t pause = client->resend_us;
     int64_t due = begin + pause;
     while (!client->answered && client->refusal == WH_OK) {
@@ -195,12 +201,15 @@ static wh_status_t await_answer(wh_client_t *client) {
         }
         if (!client->answered && wh_node_clock_us() >= due) {
             send_again(client);
-            pause = clamp(2 * pause, RESEND_LEAST_US, RESEND_MOST_US);
+            const bool patient = client->counters.repeated - repeated > RESENDS_AT_FIRST_PACE;
+            pause = patient ? clamp(2 * pause, RESEND_LEAST_US, RESEND_MOST_US) : pause;
             due = wh_node_clock_us() + pause;
         }
         notice_silence(client, begin);
     }
-    client->resend_us = clamp(4 * (wh_node_clock_us() - begin), RESEND_LEAST_US, 4 * RESEND_LEAST_US);
+    if (client->counters.repeated == repeated) {
+        client->resend_us = clamp(4 * (wh_node_clock_us() - begin), RESEND_LEAST_US, RESEND_MOST_US);
+    }
     return client->refusal;
 }
 

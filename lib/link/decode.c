@@ -1,6 +1,7 @@
 /* Datagrams, looked at before LCM's generated code sees them: that code trusts counts and lengths. */
 #include <string.h>
 
+#include "link/check.h"
 #include "link/messages.h"
 
 /* Encoded sizes, which the generated *_encoded_size functions confirm in a test. */
@@ -9,6 +10,7 @@
 #define WAFER 100
 #define GRIPPER 376
 #define EVENT 108
+#define CHECK 8
 #define STATE_COUNTS (FINGERPRINT + HEADER + 4)
 #define STATE_FIXED (STATE_COUNTS + 3 * 4 + 2 * 8 + 4)
 #define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
@@ -65,7 +67,8 @@ static walk_t walk_over(const void *data, size_t size) {
 /* ------------------------------------------------------------------------------------------------- messages */
 
 bool wh_link_decode_command(const void *data, size_t size, waferhand_command *message) {
-    return size <= WH_LINK_DATAGRAM && waferhand_command_decode(data, 0, (int)size, message) == (int)size;
+    return size <= WH_LINK_DATAGRAM && wh_link_is_intact(data, size) &&
+           waferhand_command_decode(data, 0, (int)size, message) == (int)size;
 }
 
 bool wh_link_decode_state(const void *data, size_t size, waferhand_state *message) {
@@ -75,8 +78,9 @@ bool wh_link_decode_state(const void *data, size_t size, waferhand_state *messag
     const size_t grippers = take_count(&walk, WH_GRIPPERS);
     const size_t events = take_count(&walk, WH_LINK_EVENTS);
     skip(&walk, STATE_FIXED - STATE_COUNTS - 3 * 4);
-    skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT);
-    return ends(&walk) && waferhand_state_decode(data, 0, (int)size, message) == (int)size;
+    skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT + CHECK);
+    return ends(&walk) && wh_link_is_intact(data, size) &&
+           waferhand_state_decode(data, 0, (int)size, message) == (int)size;
 }
 
 bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message) {

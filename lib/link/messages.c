@@ -158,6 +158,7 @@ void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t 
     message->wafers = room->wafers;
     message->grippers = room->grippers;
     message->events = room->events;
+    message->check = 0;
     put_arrays(state, room);
 }
 

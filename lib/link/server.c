@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/restore.h"
+#include "link/check.h"
 
 static void start_run(wh_server_t *server, int64_t run) {
     const wh_layout_t *layout = server->layout;
@@ -45,6 +46,7 @@ static void encode(wh_server_t *server, const wh_state_t *state, const wh_link_i
     const int size =
         waferhand_state_encode(server->encoded, 0, (int)sizeof server->encoded, &server->room.message);
     server->encoded_size = size > 0 ? (size_t)size : 0;
+    wh_link_seal(server->encoded, server->encoded_size);
 }
 
 /* A command that was not even looked at: its own numbers, the reason, and nothing else. */

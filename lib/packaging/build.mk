@@ -70,12 +70,13 @@ $(B)/flags $(B)/sources $(B)/messages: FORCE
 	@printf '%s\n' '$(TEXT)' | cmp -s - $@ || printf '%s\n' '$(TEXT)' >$@
 
 # ---------------------------------------------------------------------------------------------- targets
-.PHONY: all library tests library-tests install uninstall FORCE
+.PHONY: all library program tests library-tests install uninstall FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
 all: library $(B)/waferhand $(B)/wh.so $(B)/waferhand.1
 library: $(B)/libwaferhand.a
+program: $(B)/waferhand
 tests: $(TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%)
 	@:
 library-tests: $(LIBRARY_TESTS:%=$(B)/%)

@@ -1,0 +1,142 @@
+/* garbage URL COUNT SEED: sends COUNT datagrams that are no messages on all channels that the two processes hear: random
+ * bytes, and real messages that it has overheard, cut short, with flipped bits, with wrong fingerprints, with huge counts,
+ * with NaN, or on the wrong channel. Prints how many of each. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "link/messages.h"
+#include "link/node.h"
+
+#define CHANNELS 6
+#define KINDS 7
+
+static const char *const channels[CHANNELS] = {WH_CHANNEL_COMMAND, WH_CHANNEL_STATE,   WH_CHANNEL_RESTORE,
+                                               WH_CHANNEL_MCS,     WH_CHANNEL_REQUEST, WH_CHANNEL_CELL};
+
+/* The last sound message of each channel. */
+static struct {
+    uint8_t bytes[WH_LINK_DATAGRAM];
+    size_t size;
+} overheard[CHANNELS];
+
+static uint64_t random_state;
+
+/* splitmix64 */
+static uint32_t below(size_t n) {
+    uint64_t z = (random_state += UINT64_C(0x9e3779b97f4a7c15));
+    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return (uint32_t)((uint64_t)((z ^ (z >> 31)) >> 32) * n >> 32);
+}
+
+static void overhear(void *user, const void *data, size_t size) {
+    const size_t channel = (size_t)((const char *const *)user - channels);
+    /* Our own garbage comes back, too: only what has the fingerprint is a message. */
+    if (size >= 8 && overheard[channel].size == 0) {
+        memcpy(overheard[channel].bytes, data, size);
+        overheard[channel].size = size;
+    }
+}
+
+static size_t random_bytes(uint8_t *bytes) {
+    const size_t size = below(2000);
+    for (size_t i = 0; i < size; ++i) {
+        bytes[i] = (uint8_t)below(256);
+    }
+    return size;
+}
+
+static void flip_bits(uint8_t *bytes, size_t size) {
+    for (uint32_t flips = 1 + below(8); flips > 0; --flips) {
+        bytes[below(size)] ^= (uint8_t)(1U << below(8));
+    }
+}
+
+/* Somewhere a number that is none, at a place where a double may be. */
+static void put_nan(uint8_t *bytes, size_t size) {
+    static const uint8_t nan_bytes[8] = {0x7f, 0xf8};
+    if (size > 120) {
+        memcpy(bytes + 56 + 8 * below((size - 64) / 8), nan_bytes, sizeof nan_bytes);
+    }
+}
+
+/* A huge or negative number where a count or a length may be. */
+static void put_count(uint8_t *bytes, size_t size) {
+    static const uint8_t counts[][4] = {
+        {0x7f, 0xff, 0xff, 0xff}, {0xff, 0xff, 0xff, 0xff}, {0, 1, 0, 0}, {0, 0, 1, 1}};
+    if (size > 64) {
+        memcpy(bytes + 40 + 4 * below(6), counts[below(4)], 4);
+    }
+}
+
+/* Makes one datagram of a kind; returns the channel that it goes to. */
+static size_t make(uint32_t kind, uint8_t *bytes, size_t *size) {
+    const size_t source = below(CHANNELS);
+    *size = overheard[source].size;
+    memcpy(bytes, overheard[source].bytes, *size);
+    switch (*size == 0 ? 0 : kind) {
+    case 0:
+        *size = random_bytes(bytes);
+        return below(CHANNELS);
+    case 1:
+        *size = below(*size);
+        return source;
+    case 2:
+        flip_bits(bytes, *size);
+        return source;
+    case 3:
+        bytes[below(8)] ^= (uint8_t)(1 + below(255));
+        return source;
+    case 4:
+        put_count(bytes, *size);
+        return source;
+    case 5:
+        put_nan(bytes, *size);
+        return source;
+    default:
+        return (source + 1 + below(CHANNELS - 1)) % CHANNELS;
+    }
+}
+
+static void listen_a_while(wh_node_t *node) {
+    const int64_t end = wh_node_clock_us() + 300000;
+    while (wh_node_clock_us() < end) {
+        (void)wh_node_wait(node, 10000);
+    }
+}
+
+int main(int argc, char **argv) {
+    static uint8_t bytes[WH_LINK_DATAGRAM];
+    unsigned long long sent[KINDS] = {0};
+    wh_node_t ears;
+    wh_node_t node;
+    if (argc != 4 || !wh_node_open(&ears, argv[1]) || !wh_node_open(&node, argv[1])) {
+        fprintf(stderr, "usage: garbage URL COUNT SEED\n");
+        return 2;
+    }
+    random_state = strtoull(argv[3], NULL, 0);
+    for (size_t i = 0; i < CHANNELS; ++i) {
+        union {
+            const char *const *constant;
+            void *plain;
+        } user = {&channels[i]};
+        if (!wh_node_subscribe(&ears, channels[i], overhear, user.plain)) {
+            return 2;
+        }
+    }
+    listen_a_while(&ears);
+    wh_node_close(&ears);
+    for (unsigned long long left = strtoull(argv[2], NULL, 0); left > 0; --left) {
+        size_t size = 0;
+        const uint32_t kind = below(KINDS);
+        const size_t channel = make(kind, bytes, &size);
+        (void)wh_node_publish(&node, channels[channel], bytes, size);
+        ++sent[kind];
+    }
+    printf("random %llu, cut %llu, flipped %llu, fingerprint %llu, counts %llu, NaN %llu, channel %llu\n",
+           sent[0], sent[1], sent[2], sent[3], sent[4], sent[5], sent[6]);
+    wh_node_close(&node);
+    return 0;
+}
