@@ -23,7 +23,7 @@ SANITIZE = CFLAGS='-O1 -g -DWH_DEBUG' CXXFLAGS='-O1 -g -DWH_DEBUG' \
 
 include tests/tests.mk
 
-.PHONY: all library run test quick check install uninstall clean help
+.PHONY: all library run spy test quick check install uninstall clean help
 
 all: ## the library, the program, the Lua module and the manual page, in build/
 	$(NEED) run
@@ -36,6 +36,11 @@ run: all ## plays the two examples of the paper
 	@for script in 01_transfer 02_prealigner; do \
 	    build/waferhand run "lua/examples/$$script.lua" || exit; \
 	done
+
+spy: ## opens lcm-spy, with our messages decoded and a view of the proximity check
+	$(NEED) spy
+	$(BUILD) spy
+	@lib/link/spy/start build/spy/types.jar
 
 test: ## every test: plain, under sanitizers, in float, and end to end
 	$(NEED) run test

@@ -70,7 +70,7 @@ $(B)/flags $(B)/sources $(B)/messages: FORCE
 	@printf '%s\n' '$(TEXT)' | cmp -s - $@ || printf '%s\n' '$(TEXT)' >$@
 
 # ---------------------------------------------------------------------------------------------- targets
-.PHONY: all library program tests library-tests install uninstall FORCE
+.PHONY: all library program spy tests library-tests install uninstall FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -160,6 +160,20 @@ $(B)/tests/%: $(B)/obj/tests/%.o $(TEST_SUPPORT) $(B)/libwaferhand.a
 	@mkdir -p $(@D)
 	@echo "  LD   $@"
 	$(LINK) -o $@ $(filter %.o,$^) $(B)/libwaferhand.a $(LIBS) -lcmocka -lm
+
+# ------------------------------------------------------------------------------------------------- lcm-spy
+# lcm-gen's classes are not clean under javac's warnings; ours are.
+SPY_SOURCES := $(wildcard lib/link/spy/*.java)
+LCM_JAR = $(firstword $(wildcard /usr/share/java/lcm.jar /usr/local/share/java/lcm.jar))
+$(B)/spy/types.jar: $(MESSAGES:%=lcm_types/%.lcm) $(SPY_SOURCES) $(B)/messages
+	@echo "  JAVA $@"
+	@rm -rf $(@D) && mkdir -p $(@D)/classes
+	$(Q)lcm-gen -j --jpath $(@D) $(filter %.lcm,$^)
+	$(Q)javac -nowarn -cp $(LCM_JAR) -d $(@D)/classes $(@D)/waferhand/*.java
+	$(Q)javac -encoding UTF-8 -Xlint:all $(if $(WERROR),-Werror) -cp $(@D)/classes:$(LCM_JAR) -d $(@D)/classes \
+	    $(SPY_SOURCES)
+	$(Q)jar cf $@ -C $(@D)/classes waferhand
+spy: $(B)/spy/types.jar
 
 # ----------------------------------------------------------------------------------- manual, installing
 # The manual's table of errors is lib/core/status.def.

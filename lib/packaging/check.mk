@@ -1,8 +1,8 @@
 # Static checks; compiling with warnings as errors and with gcc's analyzer is done by the Makefile.
 
 .PHONY: check check-format check-shell check-lua check-manual check-cppcheck
-FORMATTED := $(shell find lib tests -name '*.[ch]' -o -name '*.cpp')
-SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/packaging/* $(wildcard tests/run tests/*/*))
+FORMATTED := $(shell find lib tests -name '*.[ch]' -o -name '*.cpp' -o -name '*.java')
+SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/packaging/* lib/link/spy/start $(wildcard tests/run tests/*/*))
 TIDY := $(LIBRARY_SOURCES:%.c=$(B)/tidy/%) $(PROGRAM_SOURCES:%.c=$(B)/tidy/%)
 
 check: check-format check-shell check-lua check-manual check-cppcheck $(TIDY)

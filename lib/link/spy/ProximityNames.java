@@ -1,0 +1,74 @@
+package waferhand;
+
+import java.io.IOException;
+import java.nio.charset.StandardCharsets;
+import lcm.lcm.LCMDataInputStream;
+
+/**
+ * The names out of a cell message. Read by hand: the generated class believes any count and any length, and asks for
+ * arrays of gigabytes when a message is damaged.
+ */
+final class ProximityNames {
+    final long layout;
+    final String[] grippers, valves, wafers;
+
+    private static final int GRIPPERS = 8;
+    private static final int WAFERS = 256;
+    /** Bytes of a station after its name, and in the message before and after the layout's path. */
+    private static final int STATION = 3 * 8 + 9 * 8 + 4 + 8 + 4, BEFORE_LAYOUT = 3 * 8,
+                             AFTER_PATH = 6 * 8 + 2;
+
+    /** Throws an IOException when the data are not a whole cell. */
+    ProximityNames(LCMDataInputStream data) throws IOException {
+        if (data.readLong() != cell.LCM_FINGERPRINT) {
+            throw new IOException("not a cell");
+        }
+        skip(data, BEFORE_LAYOUT);
+        layout = data.readLong();
+        text(data);
+        skip(data, AFTER_PATH);
+        grippers = new String[count(data, GRIPPERS)];
+        final int stations = count(data, data.available());
+        wafers = new String[count(data, WAFERS)];
+        valves = new String[grippers.length];
+        texts(data, grippers);
+        texts(data, valves);
+        for (int k = 0; k < stations; k++) {
+            text(data);
+            skip(data, STATION);
+        }
+        texts(data, wafers);
+    }
+
+    private static void skip(LCMDataInputStream data, int bytes) throws IOException {
+        if (bytes > data.available()) {
+            throw new IOException("too short");
+        }
+        data.skipBytes(bytes);
+    }
+
+    private static int count(LCMDataInputStream data, int most) throws IOException {
+        final int count = data.readInt();
+        if (count < 0 || count > most) {
+            throw new IOException("a count is out of range");
+        }
+        return count;
+    }
+
+    private static void texts(LCMDataInputStream data, String[] texts) throws IOException {
+        for (int k = 0; k < texts.length; k++) {
+            texts[k] = text(data);
+        }
+    }
+
+    /** Its length in bytes, with the 0 at its end, and then the bytes. */
+    private static String text(LCMDataInputStream data) throws IOException {
+        final int length = data.readInt();
+        if (length < 1 || length > data.available()) {
+            throw new IOException("a text is out of range");
+        }
+        final byte[] bytes = new byte[length];
+        data.readFully(bytes);
+        return new String(bytes, 0, length - 1, StandardCharsets.UTF_8);
+    }
+}

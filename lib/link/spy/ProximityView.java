@@ -1,0 +1,321 @@
+package waferhand;
+
+import java.awt.BasicStroke;
+import java.awt.Color;
+import java.awt.Dimension;
+import java.awt.Font;
+import java.awt.FontMetrics;
+import java.awt.Graphics;
+import java.awt.Graphics2D;
+import java.awt.Rectangle;
+import java.awt.RenderingHints;
+import java.awt.event.ActionEvent;
+import java.awt.event.MouseAdapter;
+import java.awt.event.MouseEvent;
+import java.awt.event.MouseWheelEvent;
+import java.util.Locale;
+import javax.swing.AbstractAction;
+import javax.swing.JComponent;
+import javax.swing.JPanel;
+import javax.swing.KeyStroke;
+import javax.swing.Timer;
+
+/** Each gripper's proximity values over simulated time, as in the paper's Fig. 9, with its valve and what it holds. */
+final class ProximityView extends JPanel {
+    private static final long serialVersionUID = 1;
+    private static final String KEYS = "space pause   + − time span   ← → scroll   L scale";
+    private static final double[] SPANS = {0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200};
+    private static final String[] LANES = {"ready", "vacuum", "holds"};
+    private static final int[] LANE_FLAGS = {ProximityHistory.READY, ProximityHistory.OPEN,
+                                             ProximityHistory.HOLDS};
+    private static final Color[] LANE_COLOURS = {ProximityChart.GOOD, new Color(0x56, 0xb4, 0xe9),
+                                                 new Color(0xe6, 0x9f, 0x00)};
+    private static final int FRAMES_PER_SECOND = 25;
+    /** Without a message for this long, ns, the view says that it is waiting. */
+    private static final long SILENCE = 1_000_000_000L;
+
+    private final transient ProximityHistory live;
+    /** What is painted: live, or while paused a copy. */
+    private transient ProximityHistory shown;
+    private final Timer timer;
+    private int span = 5;
+    /** How far the right end is behind the newest sample, us; 0 unless paused. */
+    private double behind;
+    private boolean logarithmic = true;
+    private int mouse = -1;
+    private long lastSeen;
+    private long lastChange = System.nanoTime();
+
+    ProximityView(ProximityHistory history) {
+        super(null);
+        live = history;
+        shown = history;
+        timer = new Timer(1000 / FRAMES_PER_SECOND, event -> repaint());
+        setBackground(new Color(0xf7, 0xf7, 0xf7));
+        setPreferredSize(new Dimension(1100, 720));
+        bind("SPACE", this::pause);
+        bind("typed +", () -> zoom(-1));
+        bind("typed -", () -> zoom(1));
+        bind("LEFT", () -> scroll(0.25));
+        bind("RIGHT", () -> scroll(-0.25));
+        bind("typed l", () -> logarithmic = !logarithmic);
+        final MouseAdapter listener = new MouseAdapter() {
+            @Override
+            public void mouseMoved(MouseEvent event) {
+                mouse = event.getX();
+            }
+
+            @Override
+            public void mouseExited(MouseEvent event) {
+                mouse = -1;
+            }
+
+            @Override
+            public void mouseWheelMoved(MouseWheelEvent event) {
+                zoom(Integer.signum(event.getWheelRotation()));
+            }
+        };
+        addMouseListener(listener);
+        addMouseMotionListener(listener);
+        addMouseWheelListener(listener);
+    }
+
+    void start() {
+        timer.start();
+    }
+
+    void stop() {
+        timer.stop();
+    }
+
+    // ------------------------------------------------------------------------------------------- commands
+    private void bind(String key, Runnable command) {
+        getInputMap(JComponent.WHEN_IN_FOCUSED_WINDOW).put(KeyStroke.getKeyStroke(key), key);
+        getActionMap().put(key, new AbstractAction() {
+            private static final long serialVersionUID = 1;
+
+            @Override
+            public void actionPerformed(ActionEvent event) {
+                command.run();
+                repaint();
+            }
+        });
+    }
+
+    void pause() {
+        behind = 0;
+        shown = shown == live ? live.copy() : live;
+    }
+
+    void zoom(int by) {
+        span = Math.max(0, Math.min(SPANS.length - 1, span + by));
+    }
+
+    void scroll(double spans) {
+        if (shown == live) {
+            pause();
+        }
+        final ProximityHistory.Summary summary = shown.summary();
+        final double length = Math.max(0, (double)summary.last - summary.first);
+        behind = Math.max(0, Math.min(length, behind + spans * SPANS[span] * 1e6));
+    }
+
+    // ------------------------------------------------------------------------------------------- painting
+    @Override
+    protected void paintComponent(Graphics graphics) {
+        super.paintComponent(graphics);
+        final Graphics2D g = (Graphics2D)graphics.create();
+        g.setRenderingHint(RenderingHints.KEY_ANTIALIASING, RenderingHints.VALUE_ANTIALIAS_ON);
+        g.setRenderingHint(RenderingHints.KEY_TEXT_ANTIALIASING, RenderingHints.VALUE_TEXT_ANTIALIAS_ON);
+        final ProximityHistory.Summary summary = shown.summary();
+        final int columns = summary.grippers > 4 ? (summary.grippers + 1) / 2 : Math.max(1, summary.grippers);
+        final int rows = summary.grippers > 4 ? 2 : 1;
+        g.setFont(font(columns, rows));
+        final int line = g.getFontMetrics().getHeight();
+        final int footer = 2 * line;
+        if (summary.grippers == 0) {
+            centre(g, "Waiting for the first message …");
+        }
+        for (int k = 0; k < summary.grippers; k++) {
+            final int left = getWidth() * (k % columns) / columns;
+            final int right = getWidth() * (k % columns + 1) / columns;
+            final int height = (getHeight() - footer) / rows;
+            paintGripper(g, summary, k, new Rectangle(left, k / columns * height, right - left, height));
+        }
+        paintFooter(g, summary, line);
+        g.dispose();
+    }
+
+    private Font font(int columns, int rows) {
+        final int size = Math.min(getWidth() / columns / 34, getHeight() / rows / 42);
+        return new Font(Font.SANS_SERIF, Font.PLAIN, Math.max(11, Math.min(20, size)));
+    }
+
+    private void centre(Graphics2D g, String text) {
+        g.setColor(ProximityChart.FAINT);
+        g.drawString(text, (getWidth() - g.getFontMetrics().stringWidth(text)) / 2, getHeight() / 2);
+    }
+
+    private void paintGripper(Graphics2D g, ProximityHistory.Summary summary, int gripper, Rectangle area) {
+        final int line = g.getFontMetrics().getHeight();
+        final int axis = g.getFontMetrics().stringWidth("vacuum") + 14;
+        final int left = area.x + axis;
+        final int width = Math.max(20, area.width - axis - line);
+        final double to = summary.last - behind;
+        final double from = to - SPANS[span] * 1e6;
+        // To the right of the newest sample there is nothing, and it lies within.
+        final ProximityHistory.Strip strip = shown.strip(gripper, from, Math.nextUp(to), width);
+        final int x = mouse - left;
+        final boolean pointed = x >= 0 && x < width;
+        final double time = pointed ? from + (to - from) * (x + 1) / width : to;
+        final ProximityHistory.Reading reading = shown.at(time);
+
+        int y = area.y + line / 2;
+        paintHeader(g, summary, gripper, reading, new Rectangle(left, y, width, 3 * line));
+        y += 3 * line;
+        final int lanes = LANES.length * (line + 3);
+        final int each = Math.max(2 * line, (area.y + area.height - y - lanes - 2 * line) / 3);
+        for (int v = 0; v < ProximityHistory.VALUES; v++) {
+            final Rectangle plot = new Rectangle(left, y + line + 6, width, Math.max(4, each - line - 14));
+            final double now = reading == null ? Double.NaN : reading.values[gripper][v];
+            new ProximityChart(v, summary.limits[v], plot, logarithmic).paint(g, strip, now);
+            y += each;
+        }
+        y += 2;
+        for (int k = 0; k < LANES.length; k++) {
+            paintLane(g, strip, k, new Rectangle(left, y, width, line));
+            y += line + 3;
+        }
+        paintTimes(g, from, to, new Rectangle(left, y, width, line));
+        if (pointed) {
+            g.setStroke(new BasicStroke(1));
+            g.setColor(ProximityChart.INK);
+            g.drawLine(mouse, area.y + 3 * line + line / 2, mouse, y);
+        }
+    }
+
+    private void paintHeader(Graphics2D g, ProximityHistory.Summary summary, int gripper,
+                             ProximityHistory.Reading reading, Rectangle area) {
+        final int line = g.getFontMetrics().getHeight();
+        final int flags = reading == null ? 0 : reading.flags[gripper];
+        final boolean ready = (flags & ProximityHistory.READY) != 0;
+        final Font plain = g.getFont();
+        g.setFont(plain.deriveFont(Font.BOLD, plain.getSize2D() * 1.25f));
+        g.setColor(ProximityChart.INK);
+        final String name = summary.names[gripper];
+        final int baseline = area.y + line;
+        g.drawString(name, area.x, baseline);
+
+        g.setFont(plain.deriveFont(Font.BOLD));
+        final FontMetrics metrics = g.getFontMetrics();
+        final String verdict = "isReadyToPick" + (summary.named ? name : "") + "  " + ready;
+        final int x = area.x + area.width - metrics.stringWidth(verdict);
+        g.setColor(ProximityChart.INK);
+        g.drawString(verdict, x, baseline);
+        paintLamp(g, ready, x - line - 4, baseline - metrics.getAscent(), metrics.getAscent());
+
+        g.setFont(plain);
+        final int second = baseline + line + 2;
+        g.setColor(ProximityChart.INK);
+        g.drawString(summary.valves[gripper] +
+                         ((flags & ProximityHistory.OPEN) != 0 ? " = 0  open, vacuum on" : " = 1  closed"),
+                     area.x, second);
+        final String wafer = reading == null ? null : shown.waferName(reading.wafer[gripper]);
+        final String holding = (flags & ProximityHistory.HOLDS) != 0 ? "holds " : "nearest: ";
+        final String text = wafer == null ? "no wafer" : holding + wafer;
+        g.drawString(text, area.x + area.width - g.getFontMetrics().stringWidth(text), second);
+    }
+
+    /** On: a filled disc with rays. Off: a ring. */
+    private static void paintLamp(Graphics2D g, boolean on, int x, int y, int size) {
+        g.setStroke(new BasicStroke(2));
+        if (on) {
+            g.setColor(ProximityChart.GOOD);
+            g.fillOval(x, y, size, size);
+        }
+        g.setColor(on ? ProximityChart.GOOD : ProximityChart.FAINT);
+        g.drawOval(x, y, size, size);
+    }
+
+    private static void paintLane(Graphics2D g, ProximityHistory.Strip strip, int lane, Rectangle area) {
+        final FontMetrics metrics = g.getFontMetrics();
+        g.setColor(ProximityChart.FAINT);
+        g.drawString(LANES[lane], area.x - metrics.stringWidth(LANES[lane]) - 6,
+                     area.y + metrics.getAscent());
+        g.setColor(ProximityChart.GRID);
+        g.fillRect(area.x, area.y + area.height / 2, area.width, 1);
+        g.setColor(LANE_COLOURS[lane]);
+        int before = -1;
+        for (int x = 0; x < area.width; x++) {
+            if (strip.samples[x] == 0) {
+                continue;
+            }
+            if ((strip.flags[x] & LANE_FLAGS[lane]) != 0) {
+                final boolean goesOn =
+                    before >= 0 && strip.joined[x] && (strip.flags[before] & LANE_FLAGS[lane]) != 0;
+                final int from = goesOn ? before : x;
+                g.fillRect(area.x + from, area.y + 2, x + 1 - from, area.height - 4);
+            }
+            before = x;
+        }
+    }
+
+    private static void paintTimes(Graphics2D g, double from, double to, Rectangle area) {
+        final FontMetrics metrics = g.getFontMetrics();
+        final double seconds = (to - from) / 1e6;
+        final double step = ProximityChart.niceStep(seconds * metrics.stringWidth("0000.00") / area.width);
+        g.setColor(ProximityChart.FAINT);
+        for (double tick = Math.ceil(Math.max(0, from) / 1e6 / step) * step; tick * 1e6 <= to; tick += step) {
+            final int x = area.x + (int)Math.round((tick * 1e6 - from) / (to - from) * area.width);
+            final String text = ProximityChart.shortest(tick);
+            g.drawLine(x, area.y, x, area.y + 3);
+            g.drawString(text, x - metrics.stringWidth(text) / 2, area.y + 4 + metrics.getAscent());
+        }
+        final String unit = "s";
+        g.drawString(unit, area.x - metrics.stringWidth(unit) - 6, area.y + 4 + metrics.getAscent());
+    }
+
+    private void paintFooter(Graphics2D g, ProximityHistory.Summary summary, int line) {
+        final int y = getHeight() - line / 2 - 2;
+        g.setColor(ProximityChart.GRID);
+        g.fillRect(0, getHeight() - 2 * line + 4, getWidth(), 1);
+        final FontMetrics metrics = g.getFontMetrics();
+        final int end = getWidth() - metrics.stringWidth(KEYS) - line;
+        g.setColor(ProximityChart.FAINT);
+        final String text = status(summary);
+        g.drawString(text, line, y);
+        if (line + metrics.stringWidth(text) + line < end) {
+            g.drawString(KEYS, end, y);
+        }
+    }
+
+    private String status(ProximityHistory.Summary summary) {
+        final StringBuilder text = new StringBuilder();
+        if (shown != live) {
+            text.append("PAUSED   ");
+        } else if (isSilent(summary)) {
+            text.append("no new messages   ");
+        }
+        text.append(String.format(Locale.ROOT, "%.3f s   run %016x   %d slices seen", summary.last / 1e6,
+                                  summary.run, summary.seen));
+        append(text, summary.unseen, "not seen");
+        append(text, summary.late, "late");
+        append(text, summary.refused, "refused");
+        return text.toString();
+    }
+
+    private static void append(StringBuilder text, long number, String what) {
+        if (number > 0) {
+            text.append(", ").append(number).append(' ').append(what);
+        }
+    }
+
+    private boolean isSilent(ProximityHistory.Summary summary) {
+        final long now = System.nanoTime();
+        if (summary.seen != lastSeen) {
+            lastSeen = summary.seen;
+            lastChange = now;
+        }
+        return summary.grippers > 0 && now - lastChange > SILENCE;
+    }
+}
