@@ -117,22 +117,30 @@ final class ProximityChart {
     private void paintTitle(Graphics2D g, double now) {
         final FontMetrics metrics = g.getFontMetrics();
         final int baseline = plot.y - metrics.getDescent() - 3;
-        int x = plot.x;
         g.setColor(INK);
-        g.drawString(NAMES[value], x, baseline);
+        g.drawString(NAMES[value], plot.x, baseline);
+        final int size = metrics.getAscent();
+        final int left = plot.x + metrics.stringWidth(NAMES[value]) + 2 * size;
         final String limits =
             String.format(Locale.ROOT, "%s %s%s", value == ProximityHistory.PLANAR ? ">" : "<",
                           Double.isNaN(limit) ? "–" : shortest(limit), UNITS[value]);
-        x = plot.x + plot.width - metrics.stringWidth(limits);
-        g.setColor(LIMIT);
-        g.drawString(limits, x, baseline);
         final String text = number(value, now);
-        x -= metrics.stringWidth(text + "  ");
-        g.setColor(LINE);
-        g.drawString(text, x, baseline);
-        if (!Double.isNaN(now)) {
-            final int size = metrics.getAscent();
-            mark(g, holds(value, now, limit), x - size - size / 3, baseline - size + 2, size - 2);
+        // What is not enough room for is left out, the limit first.
+        int x = plot.x + plot.width;
+        if (x - metrics.stringWidth(text + "  " + limits) > left) {
+            x -= metrics.stringWidth(limits);
+            g.setColor(LIMIT);
+            g.drawString(limits, x, baseline);
+            x -= metrics.stringWidth("  ");
+        }
+        if (x - metrics.stringWidth(text) > left) {
+            x -= metrics.stringWidth(text);
+            g.setColor(LINE);
+            g.drawString(text, x, baseline);
+            x -= size / 3;
+        }
+        if (!Double.isNaN(now) && x > left) {
+            mark(g, holds(value, now, limit), x - size, baseline - size + 2, size - 2);
         }
     }
 

@@ -86,8 +86,7 @@ final class ProximityHistory {
         long run, first, last, seen, unseen, late, refused;
         int grippers;
         double[] limits;
-        /** Whether the names are the layout's own. */
-        boolean named;
+        /** As the layout has them; null where it is not known. */
         String[] names, valves;
     }
 
@@ -333,13 +332,12 @@ final class ProximityHistory {
         summary.late = late;
         summary.refused = refused;
         summary.limits = limits.clone();
-        summary.named = isNamed();
         summary.names = new String[grippers];
         summary.valves = new String[grippers];
         for (int g = 0; g < grippers; g++) {
             final boolean known = isNamed() && g < named.grippers.length;
-            summary.names[g] = known ? named.grippers[g] : "gripper " + g;
-            summary.valves[g] = known ? named.valves[g] : "valve";
+            summary.names[g] = known ? named.grippers[g] : null;
+            summary.valves[g] = known ? named.valves[g] : null;
         }
         return summary;
     }

@@ -51,6 +51,7 @@ final class ProximityView extends JPanel {
         live = history;
         shown = history;
         timer = new Timer(1000 / FRAMES_PER_SECOND, event -> repaint());
+        setFocusable(true);
         setBackground(new Color(0xf7, 0xf7, 0xf7));
         setPreferredSize(new Dimension(1100, 720));
         bind("SPACE", this::pause);
@@ -60,6 +61,11 @@ final class ProximityView extends JPanel {
         bind("RIGHT", () -> scroll(-0.25));
         bind("typed l", () -> logarithmic = !logarithmic);
         final MouseAdapter listener = new MouseAdapter() {
+            @Override
+            public void mousePressed(MouseEvent event) {
+                requestFocusInWindow();
+            }
+
             @Override
             public void mouseMoved(MouseEvent event) {
                 mouse = event.getX();
@@ -80,7 +86,9 @@ final class ProximityView extends JPanel {
         addMouseWheelListener(listener);
     }
 
+    /** Begins to follow the history, and takes the keys. */
     void start() {
+        requestFocusInWindow();
         timer.start();
     }
 
@@ -203,30 +211,52 @@ final class ProximityView extends JPanel {
         g.setFont(plain.deriveFont(Font.BOLD, plain.getSize2D() * 1.25f));
         g.setColor(ProximityChart.INK);
         final String name = summary.names[gripper];
+        final String title = name == null ? "gripper " + gripper : name;
         final int baseline = area.y + line;
-        g.drawString(name, area.x, baseline);
+        g.drawString(title, area.x, baseline);
+        final int titleEnd = area.x + g.getFontMetrics().stringWidth(title + " ");
 
         g.setFont(plain.deriveFont(Font.BOLD));
-        final FontMetrics metrics = g.getFontMetrics();
-        final String verdict = "isReadyToPick" + (summary.named ? name : "") + "  " + ready;
-        final int x = area.x + area.width - metrics.stringWidth(verdict);
-        g.setColor(ProximityChart.INK);
-        g.drawString(verdict, x, baseline);
-        paintLamp(g, ready, x - line - 4, baseline - metrics.getAscent(), metrics.getAscent());
+        final int lamp = g.getFontMetrics().getAscent();
+        final String verdict = "isReadyToPick" + (name == null ? "" : name) + "  " + ready;
+        final String answer = fitting(g, area.x + area.width - titleEnd - lamp - 8, verdict, "ready", "");
+        final int x = area.x + area.width - g.getFontMetrics().stringWidth(answer);
+        g.drawString(answer, x, baseline);
+        paintLamp(g, ready, x - lamp - 6, baseline - lamp + 1, lamp);
 
         g.setFont(plain);
-        final int second = baseline + line + 2;
         g.setColor(ProximityChart.INK);
-        g.drawString(summary.valves[gripper] +
-                         ((flags & ProximityHistory.OPEN) != 0 ? " = 0  open, vacuum on" : " = 1  closed"),
-                     area.x, second);
-        final String wafer = reading == null ? null : shown.waferName(reading.wafer[gripper]);
-        final String holding = (flags & ProximityHistory.HOLDS) != 0 ? "holds " : "nearest: ";
-        final String text = wafer == null ? "no wafer" : holding + wafer;
+        final String valve = summary.valves[gripper] == null ? "valve" : summary.valves[gripper];
+        final boolean open = (flags & ProximityHistory.OPEN) != 0;
+        final String position = open ? " = 0  open" : " = 1  closed";
+        final String level = fitting(g, area.width, valve + position + (open ? ", vacuum on" : ""),
+                                     valve + position, open ? "open" : "closed", "");
+        final int second = baseline + line + 2;
+        g.drawString(level, area.x, second);
+        final int room = area.width - g.getFontMetrics().stringWidth(level + "  ");
+        final String wafer = wafer(reading, gripper);
+        final boolean holds = (flags & ProximityHistory.HOLDS) != 0;
+        final String text = wafer == null
+                                ? fitting(g, room, "no wafer", "")
+                                : fitting(g, room, (holds ? "holds " : "nearest: ") + wafer, wafer, "");
         g.drawString(text, area.x + area.width - g.getFontMetrics().stringWidth(text), second);
     }
 
-    /** On: a filled disc with rays. Off: a ring. */
+    private String wafer(ProximityHistory.Reading reading, int gripper) {
+        return reading == null ? null : shown.waferName(reading.wafer[gripper]);
+    }
+
+    /** The first of the texts that is no wider than that, else the last. */
+    static String fitting(Graphics2D g, int width, String... texts) {
+        for (final String text : texts) {
+            if (g.getFontMetrics().stringWidth(text) <= width) {
+                return text;
+            }
+        }
+        return texts[texts.length - 1];
+    }
+
+    /** On: a disc. Off: a ring. */
     private static void paintLamp(Graphics2D g, boolean on, int x, int y, int size) {
         g.setStroke(new BasicStroke(2));
         if (on) {
@@ -263,16 +293,15 @@ final class ProximityView extends JPanel {
     private static void paintTimes(Graphics2D g, double from, double to, Rectangle area) {
         final FontMetrics metrics = g.getFontMetrics();
         final double seconds = (to - from) / 1e6;
-        final double step = ProximityChart.niceStep(seconds * metrics.stringWidth("0000.00") / area.width);
+        final double step =
+            ProximityChart.niceStep(seconds * metrics.stringWidth("0000.00 s") / Math.max(1, area.width));
         g.setColor(ProximityChart.FAINT);
         for (double tick = Math.ceil(Math.max(0, from) / 1e6 / step) * step; tick * 1e6 <= to; tick += step) {
             final int x = area.x + (int)Math.round((tick * 1e6 - from) / (to - from) * area.width);
-            final String text = ProximityChart.shortest(tick);
+            final String text = ProximityChart.shortest(tick) + " s";
             g.drawLine(x, area.y, x, area.y + 3);
             g.drawString(text, x - metrics.stringWidth(text) / 2, area.y + 4 + metrics.getAscent());
         }
-        final String unit = "s";
-        g.drawString(unit, area.x - metrics.stringWidth(unit) - 6, area.y + 4 + metrics.getAscent());
     }
 
     private void paintFooter(Graphics2D g, ProximityHistory.Summary summary, int line) {
