@@ -14,7 +14,7 @@
 #include "support.h"
 
 typedef struct {
-    char folder[64], path[96];
+    char folder[128], path[160];
     wh_outputs_t reader;
     int64_t now_us;
     unsigned reports; /* that updates returned */
@@ -28,9 +28,13 @@ static inline int outputs_remove_one(const char *path, const struct stat *status
     return remove(path);
 }
 
+/* In memory unless TMPDIR says otherwise: these are thousands of files, and a disk begins to write with each. */
 static inline void outputs_setup(outputs_fixture_t *f) {
+    const char *const wanted = getenv("TMPDIR");
+    const char *const usual = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp";
     memset(f, 0, sizeof *f);
-    snprintf(f->folder, sizeof f->folder, "/tmp/outputs_test.XXXXXX");
+    f->reader.fd = -1; /* not open yet */
+    snprintf(f->folder, sizeof f->folder, "%s/outputs_test.XXXXXX", wanted != NULL ? wanted : usual);
     assert_non_null(mkdtemp(f->folder));
     snprintf(f->path, sizeof f->path, "%s/outputs.txt", f->folder);
 }
@@ -42,7 +46,7 @@ static inline void outputs_teardown(outputs_fixture_t *f) {
 
 /* A file of the folder, in memory that the next call but three uses again. */
 static inline const char *outputs_path(const outputs_fixture_t *f, const char *name) {
-    static char paths[4][128];
+    static char paths[4][256];
     static unsigned next;
     char *path = paths[next++ % 4];
     snprintf(path, sizeof paths[0], "%s/%s", f->folder, name);

@@ -58,6 +58,10 @@ static void add_values(line_t *line, const wh_outputs_look_t *look) {
     }
 }
 
+static const char *kind(const wh_outputs_look_t *look) {
+    return look->folder ? "a directory" : "not a regular file";
+}
+
 static void add_found(line_t *line, const wh_outputs_look_t *look) {
     switch (look->condition) {
     case WH_OUTPUTS_MISSING:
@@ -67,7 +71,7 @@ static void add_found(line_t *line, const wh_outputs_look_t *look) {
         add(line, "cannot be read: %s", strerrordesc_np(look->error));
         break;
     case WH_OUTPUTS_NO_FILE:
-        add(line, look->folder ? "a directory" : "not a regular file");
+        add(line, "%s", kind(look));
         break;
     case WH_OUTPUTS_EMPTY:
         add(line, "empty");

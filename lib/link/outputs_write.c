@@ -85,25 +85,30 @@ static int fill(int fd, mode_t mode, const int32_t *valves, size_t count) {
     return error;
 }
 
+static int replace(names_t *names, mode_t mode, const int32_t *valves, size_t count) {
+    const int fd = create_temporary(names);
+    if (fd < 0) {
+        return errno;
+    }
+    int error = fill(fd, mode, valves, count);
+    if (error == 0 && rename(names->temporary, names->target) != 0) {
+        error = errno;
+    }
+    if (error != 0) {
+        (void)unlink(names->temporary);
+    }
+    return error;
+}
+
 int wh_outputs_write(const char *path, const int32_t *valves, size_t count) {
     names_t names;
     mode_t mode = 0;
     int error = wh_outputs_refuse(path, valves, count);
-    error = error != 0 ? error : name_target(&names, path);
-    error = error != 0 ? error : target_mode(&names, &mode);
-    if (error != 0) {
-        return error;
+    if (error == 0) {
+        error = name_target(&names, path);
     }
-    const int fd = create_temporary(&names);
-    if (fd < 0) {
-        return errno;
+    if (error == 0) {
+        error = target_mode(&names, &mode);
     }
-    error = fill(fd, mode, valves, count);
-    if (error == 0 && rename(names.temporary, names.target) != 0) {
-        error = errno;
-    }
-    if (error != 0) {
-        (void)unlink(names.temporary);
-    }
-    return error;
+    return error != 0 ? error : replace(&names, mode, valves, count);
 }

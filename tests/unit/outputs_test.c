@@ -1,4 +1,5 @@
 /* The reader of outputs.txt: every condition, every change of it, and how many reports that makes. */
+#include <poll.h>
 #include <sys/resource.h>
 
 #include "link/outputs.h"
@@ -64,7 +65,7 @@ static void each_bad_content_is_reported_once(void **state) {
     outputs_fixture_t f;
     outputs_begin(&f);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
-        char report[256];
+        char report[512];
         outputs_put(outputs_path(&f, "new"), cases[i].text);
         assert_int_equal(rename(outputs_path(&f, "new"), f.path), 0);
         assert_int_equal(outputs_pass(&f, SETTLE - 1), 0);
@@ -295,7 +296,7 @@ static void a_folder_may_come_go_and_be_exchanged(void **state) {
     (void)state;
     outputs_fixture_t f;
     outputs_setup(&f);
-    char path[128];
+    char path[256];
     snprintf(path, sizeof path, "%s", outputs_path(&f, "in/outputs.txt"));
     outputs_open(&f, path, "11");
     assert_int_equal(outputs_pass(&f, SECOND), WH_OUTPUTS_REPORTED);
@@ -357,6 +358,38 @@ static void without_inotify_the_reader_polls(void **state) {
         assert_int_equal(outputs_pass(&f, WH_OUTPUTS_POLL_US), WH_OUTPUTS_SWITCHED);
     }
     assert_int_equal(outputs_looks(&f.reader), 11);
+    outputs_teardown(&f);
+}
+
+/* On proc, say, inotify tells nothing. */
+static void on_other_file_systems_the_reader_polls(void **state) {
+    (void)state;
+    outputs_fixture_t f;
+    outputs_setup(&f);
+    outputs_open(&f, "/proc/self/outputs.txt", "1");
+    assert_int_equal(outputs_update(&f), 0);
+    f.now_us += SETTLE;
+    assert_int_equal(outputs_update(&f), WH_OUTPUTS_REPORTED);
+    assert_int_equal(wh_outputs_due(&f.reader), f.now_us + WH_OUTPUTS_POLL_US);
+    outputs_teardown(&f);
+}
+
+/* More events than the kernel keeps, and the file's own among the lost ones. Each update takes only some. */
+static void lost_events_lose_nothing(void **state) {
+    (void)state;
+    outputs_fixture_t f;
+    unsigned result = 0, updates = 0;
+    outputs_begin(&f);
+    for (int i = 0; i < 20000; ++i) {
+        outputs_put(outputs_path(&f, i % 2 ? "a" : "b"), "");
+    }
+    outputs_put(f.path, "1 0");
+    struct pollfd waiting = {.fd = wh_outputs_fd(&f.reader), .events = POLLIN};
+    for (; poll(&waiting, 1, 0) == 1; ++updates) {
+        result |= outputs_update(&f);
+    }
+    assert_int_equal(result, WH_OUTPUTS_SWITCHED);
+    assert_true(updates > 1 && outputs_looks(&f.reader) == 2);
     outputs_teardown(&f);
 }
 
@@ -422,6 +455,8 @@ int main(void) {
         cmocka_unit_test(a_folder_may_come_go_and_be_exchanged),
         cmocka_unit_test(a_folder_exchanged_further_up_is_noticed_within_a_second),
         cmocka_unit_test(without_inotify_the_reader_polls),
+        cmocka_unit_test(on_other_file_systems_the_reader_polls),
+        cmocka_unit_test(lost_events_lose_nothing),
         cmocka_unit_test(a_report_is_one_bounded_line_whatever_the_path),
         cmocka_unit_test(a_bare_name_works),
         cmocka_unit_test(conditions_have_names),

@@ -1,0 +1,103 @@
+/* An update never asks for memory, whatever it finds: malloc and its kin are replaced by ones that count. */
+#include "link/outputs.h"
+#include "support.h"
+#include "support_outputs.h"
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(thread_sanitizer)
+#define SANITIZED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SANITIZED
+#endif
+
+/* Sanitizers have their own malloc, and only glibc has these names. */
+#if defined(__GLIBC__) && !defined(SANITIZED)
+
+static unsigned long calls;
+
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *memory, size_t size);
+void __libc_free(void *memory);
+
+void *malloc(size_t size) {
+    ++calls;
+    return __libc_malloc(size);
+}
+
+void *calloc(size_t count, size_t size) {
+    ++calls;
+    return __libc_calloc(count, size);
+}
+
+void *realloc(void *memory, size_t size) {
+    ++calls;
+    return __libc_realloc(memory, size);
+}
+
+void free(void *memory) {
+    ++calls;
+    __libc_free(memory);
+}
+
+/* Updates now and once what is there has settled; only this is counted. */
+static unsigned long calls_while_updating(outputs_fixture_t *f) {
+    const unsigned long before = calls;
+    (void)wh_outputs_update(&f->reader, f->now_us);
+    f->now_us += WH_OUTPUTS_SETTLE_US;
+    (void)wh_outputs_update(&f->reader, f->now_us);
+    return calls - before;
+}
+
+static void nothing_is_allocated(void **state) {
+    (void)state;
+    static const char *const texts[] = {"0 1", "", "1", "1 1 1", "garbage", "1 0"};
+    outputs_fixture_t f;
+    outputs_begin(&f);
+    for (int i = 0; i < 600; ++i) {
+        outputs_put(f.path, texts[i % 6]);
+        assert_int_equal(calls_while_updating(&f), 0);
+    }
+    assert_int_equal(unlink(f.path), 0);
+    assert_int_equal(calls_while_updating(&f), 0);
+    assert_int_equal(symlink("outputs.txt", f.path), 0);
+    assert_int_equal(calls_while_updating(&f), 0);
+    assert_int_equal(unlink(f.path), 0);
+    assert_int_equal(mkdir(f.path, 0777), 0);
+    assert_int_equal(calls_while_updating(&f), 0);
+    assert_int_equal(f.reader.counters.reports, 503);
+    outputs_teardown(&f);
+}
+
+/* The count would show it. */
+static void the_count_counts(void **state) {
+    (void)state;
+    const unsigned long before = calls;
+    void *volatile memory = malloc(1);
+    free(memory);
+    assert_int_equal(calls - before, 2);
+}
+
+#else
+
+static void nothing_is_allocated(void **state) {
+    (void)state;
+    skip();
+}
+
+static void the_count_counts(void **state) {
+    (void)state;
+    skip();
+}
+
+#endif
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_count_counts),
+        cmocka_unit_test(nothing_is_allocated),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
