@@ -28,7 +28,8 @@ static inline int outputs_remove_one(const char *path, const struct stat *status
     return remove(path);
 }
 
-/* In memory unless TMPDIR says otherwise: these are thousands of files, and a disk begins to write with each. */
+/* In memory unless TMPDIR says otherwise: these are thousands of files, and a disk begins to write with
+ * each. */
 static inline void outputs_setup(outputs_fixture_t *f) {
     const char *const wanted = getenv("TMPDIR");
     const char *const usual = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp";

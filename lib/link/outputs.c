@@ -1,4 +1,5 @@
-/* The reader of outputs.txt: when to look, and what a look means for the valves and the condition in force. */
+/* The reader of outputs.txt: when to look, and what a look means for the valves and the condition in force.
+ */
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>

@@ -1,8 +1,8 @@
 /* Any bytes as outputs.txt: valves are set if and only if the parser says good, and then to 0 or 1; what is
  * good stays good, with the same valves, when the white space around the values changes.
  *
- * The first byte chooses the count. Built with -fsanitize=fuzzer,address,undefined and lib/link/outputs_parse.c,
- * lib/core/abi.c. */
+ * The first byte chooses the count. Built with -fsanitize=fuzzer,address,undefined and
+ * lib/link/outputs_parse.c, lib/core/abi.c. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,4 +1,5 @@
-/* The grammar of outputs.txt, against a second reading of it, and random contents against the whole reader. */
+/* The grammar of outputs.txt, against a second reading of it, and random contents against the whole reader.
+ */
 #include "link/outputs.h"
 #include "support.h"
 #include "support_outputs.h"

@@ -27,6 +27,12 @@ static void wrong_arguments_are_refused(void **state) {
     assert_int_equal(wh_outputs_open(&reader, "a/", good, 1), EINVAL);
     assert_int_equal(wh_outputs_open(&reader, path, good, 1), ENAMETOOLONG);
     assert_memory_equal(&reader, &before, sizeof reader);
+    assert_int_equal(wh_outputs_open(&reader, "a", good, 1), 0); /* whatever its memory held */
+    assert_int_equal(reader.condition, WH_OUTPUTS_GOOD);
+    assert_int_equal(reader.counters.spells + reader.counters.looks[0] + reader.suspect, 0);
+    wh_outputs_close(&reader);
+    assert_int_equal(wh_outputs_fd(&reader), -1);
+    wh_outputs_close(&reader);
 }
 
 static void a_good_file_is_taken_at_once_and_says_nothing(void **state) {
@@ -168,6 +174,31 @@ static void an_unreadable_file_is_reported_with_the_reason(void **state) {
     outputs_teardown(&f);
 }
 
+/* Nothing about the file changes, and yet it cannot be opened for a while; nothing is left open by it all. */
+static void running_out_of_descriptors_is_survived(void **state) {
+    (void)state;
+    outputs_fixture_t f;
+    struct rlimit limit, none;
+    outputs_begin(&f);
+    const int next = dup(0);
+    assert_int_equal(close(next), 0);
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &limit), 0);
+    none = limit;
+    none.rlim_cur = 0;
+    assert_int_equal(outputs_pass(&f, SECOND), 0);
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
+    f.now_us += SECOND;
+    const unsigned at_once = outputs_update(&f), later = outputs_pass(&f, SETTLE);
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &limit), 0);
+    assert_int_equal(at_once, 0);
+    assert_int_equal(later, WH_OUTPUTS_REPORTED);
+    assert_non_null(strstr(f.reader.report, ": cannot be read: Too many open files (expected"));
+    assert_int_equal(outputs_pass(&f, SECOND), WH_OUTPUTS_REPORTED);
+    assert_int_equal(dup(0), next);
+    assert_int_equal(close(next), 0);
+    outputs_teardown(&f);
+}
+
 static void a_torn_read_is_counted_not_reported(void **state) {
     (void)state;
     outputs_fixture_t f;
@@ -254,7 +285,7 @@ static void neighbours_make_no_looks(void **state) {
     outputs_fixture_t f;
     outputs_begin(&f);
     assert_int_equal(outputs_looks(&f.reader), 1);
-    assert_true(wh_outputs_due(&f.reader) >= f.now_us + WH_OUTPUTS_POLL_US);
+    assert_int_equal(wh_outputs_due(&f.reader), f.now_us + WH_OUTPUTS_CHECK_US);
     for (int i = 0; i < 100; ++i) {
         outputs_put(outputs_path(&f, "outputs.txt.bak"), "1 1");
         assert_int_equal(outputs_update(&f), 0);
@@ -444,6 +475,7 @@ int main(void) {
         cmocka_unit_test(a_missing_file_is_reported_and_found_when_it_comes),
         cmocka_unit_test(what_is_no_file_is_reported),
         cmocka_unit_test(an_unreadable_file_is_reported_with_the_reason),
+        cmocka_unit_test(running_out_of_descriptors_is_survived),
         cmocka_unit_test(a_torn_read_is_counted_not_reported),
         cmocka_unit_test(a_change_starts_the_settle_time_anew),
         cmocka_unit_test(a_file_that_never_rests_is_reported_after_64_bad_looks),

@@ -132,7 +132,8 @@ static void leftovers_are_stepped_over(void **state) {
     outputs_teardown(&f);
 }
 
-/* ---- beside writers: eight valves, of which only four patterns are ever written, far from each other ---- */
+/* ---- beside writers: eight valves, of which only four patterns are ever written, far from each other ----
+ */
 
 static const int32_t patterns[4][WH_GRIPPERS] = {
     {0, 0, 0, 0, 0, 0, 0, 0}, {1, 1, 1, 1, 0, 0, 0, 0}, {0, 0, 1, 1, 1, 1, 0, 0}, {1, 1, 0, 0, 1, 1, 1, 1}};
