@@ -5,8 +5,11 @@
 
 bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
     static char name[] = "mcs";
-    const wh_control_options_t control = {
-        .rate = options->rate, .stop = &wh_stop_requested, .say = wh_say_line, .user = name};
+    const wh_control_options_t control = {.rate = options->rate,
+                                          .outputs = options->outputs,
+                                          .stop = &wh_stop_requested,
+                                          .say = wh_say_line,
+                                          .user = name};
     wh_catch_signals();
     if (!wh_open_node(&link->node, options->url, options->record)) {
         return false;

@@ -6,8 +6,8 @@
 #include "link/control.h"
 
 typedef struct {
-    const char *url, *record; /* null: the default, and no record */
-    double rate;              /* 0: lockstep */
+    const char *url, *record, *outputs; /* null: the default, no record, no outputs.txt */
+    double rate;                        /* 0: lockstep */
 } wh_mcs_link_options_t;
 
 /* Must not be moved once opened. */

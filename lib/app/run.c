@@ -23,7 +23,8 @@ enum {
     OPTION_LCM,
     OPTION_URL,
     OPTION_RECORD,
-    OPTION_RATE
+    OPTION_RATE,
+    OPTION_OUTPUTS
 };
 
 typedef struct {
@@ -44,6 +45,7 @@ static const struct argp_option options[] = {
      "End the script after N steps of Lua and simulated slices (default 1e9)", 0},
     {"lcm-url", OPTION_URL, "URL", 0, "Where LCM is (default " WH_NODE_URL ")", 0},
     {"record", OPTION_RECORD, "FILE", 0, "Write all messages into an LCM event log", 0},
+    {"outputs", OPTION_OUTPUTS, "FILE", 0, "Write the valves to this file, too", 0},
     {"rate", OPTION_RATE, "FACTOR", 0, "Run free at this factor of real time instead of in lockstep", 0},
     {"memory", OPTION_MEMORY, "MIB", 0, "Let the script use so many MiB of memory (default 256)", 0},
     {0},
@@ -80,6 +82,9 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         return 0;
     case OPTION_RECORD:
         arguments->link.record = argument;
+        return 0;
+    case OPTION_OUTPUTS:
+        arguments->link.outputs = argument;
         return 0;
     case OPTION_RATE:
         arguments->link.rate = strtod(argument, NULL);

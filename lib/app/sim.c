@@ -2,19 +2,22 @@
 #include <argp.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
 #include "app/link_options.h"
+#include "app/style.h"
+#include "link/outputs.h"
 #include "link/simulation.h"
 #include "script/layout_load.h"
 
-enum { OPTION_URL = 1000, OPTION_RECORD, OPTION_SET };
+enum { OPTION_URL = 1000, OPTION_RECORD, OPTION_SET, OPTION_OUTPUTS };
 
 typedef struct {
-    const char *layout, *url, *record;
+    const char *layout, *url, *record, *outputs;
     const char **parameters; /* room for one for each argument */
     size_t parameter_count;
 } arguments_t;
@@ -22,6 +25,8 @@ typedef struct {
 static const struct argp_option options[] = {
     {"lcm-url", OPTION_URL, "URL", 0, "Where LCM is (default " WH_NODE_URL ")", 0},
     {"record", OPTION_RECORD, "FILE", 0, "Write all messages into an LCM event log", 0},
+    {"outputs", OPTION_OUTPUTS, "FILE", 0, "Take the valves from this file, one value per gripper, 0 or 1",
+     0},
     {"set", OPTION_SET, "NAME=VALUE", 0, "Hand the layout a parameter: params.NAME", 0},
     {0},
 };
@@ -34,6 +39,9 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         return 0;
     case OPTION_RECORD:
         arguments->record = argument;
+        return 0;
+    case OPTION_OUTPUTS:
+        arguments->outputs = argument;
         return 0;
     case OPTION_SET:
         arguments->parameters[arguments->parameter_count++] = argument;
@@ -67,8 +75,45 @@ static void print_counters(const wh_simulation_t *simulation) {
             simulation->counters.unsent);
 }
 
-static int serve(wh_node_t *node, const wh_layout_t *layout) {
+/* The file is looked at before each message, so that valves written before a command are in force for it. */
+static void update_valves(wh_outputs_t *outputs, wh_simulation_t *simulation) {
+    if (outputs->count > 0 && (wh_outputs_update(outputs, wh_node_clock_us()) & WH_OUTPUTS_REPORTED) != 0) {
+        char *printable = wh_style_printable(outputs->report);
+        fprintf(stderr, "sim: %s\n", printable ? printable : outputs->report);
+        free(printable);
+    }
+    simulation->valves = outputs->count > 0 ? outputs->valves : NULL;
+}
+
+/* Until a message or the file's folder has something, at most 100 ms. */
+static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_simulation_t *simulation) {
+    struct pollfd ready[] = {{.fd = wh_node_descriptor(node), .events = POLLIN},
+                             {.fd = outputs->count > 0 ? wh_outputs_fd(outputs) : -1, .events = POLLIN}};
+    int64_t wait_ms = 100;
+    if (outputs->count > 0) {
+        const int64_t due_ms = (wh_outputs_due(outputs) - wh_node_clock_us()) / 1000 + 1;
+        wait_ms = due_ms < wait_ms ? due_ms : wait_ms;
+    }
+    (void)poll(ready, 2, wait_ms > 0 ? (int)wait_ms : 0);
+    update_valves(outputs, simulation);
+    return wh_node_wait(node, 0);
+}
+
+static bool open_outputs(wh_outputs_t *outputs, const char *path, size_t count) {
+    static const int32_t closed[WH_GRIPPERS] = {1, 1, 1, 1, 1, 1, 1, 1};
+    if (!path) {
+        return true;
+    }
+    const int problem = wh_outputs_open(outputs, path, closed, count);
+    if (problem != 0) {
+        fprintf(stderr, "%s: %s (expected the path of a file)\n", path, strerror(problem));
+    }
+    return problem == 0;
+}
+
+static int serve(wh_node_t *node, const wh_layout_t *layout, const char *outputs_path) {
     static wh_simulation_t simulation;
+    static wh_outputs_t outputs;
     static char name[] = "sim";
     const wh_status_t status = wh_simulation_open(&simulation, node, layout, wh_say_line, name);
     if (status != WH_OK) {
@@ -76,14 +121,21 @@ static int serve(wh_node_t *node, const wh_layout_t *layout) {
                 layout->path, wh_status_text(status), WH_LINK_WAFERS);
         return WH_EXIT_USAGE;
     }
+    if (!open_outputs(&outputs, outputs_path, layout->machine.gripper_count)) {
+        wh_simulation_close(&simulation);
+        return WH_EXIT_USAGE;
+    }
     fprintf(stderr, "sim: %s is ready, layout %016" PRIx64 "\n", layout->path,
             simulation.server.identity.layout_hash);
     int handled = 0;
     while (!wh_stop_requested && handled >= 0) {
-        handled = wh_node_wait(node, 100000);
+        handled = wait_and_handle(node, &outputs, &simulation);
         wh_simulation_tick(&simulation);
     }
     print_counters(&simulation);
+    if (outputs.count > 0) {
+        wh_outputs_close(&outputs);
+    }
     wh_simulation_close(&simulation);
     return handled < 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
 }
@@ -106,7 +158,7 @@ static int run(const arguments_t *arguments, wh_sandbox_t *sandbox) {
     if (!wh_open_node(&node, arguments->url, arguments->record)) {
         return WH_EXIT_USAGE;
     }
-    const int status = serve(&node, layout);
+    const int status = serve(&node, layout, arguments->outputs);
     wh_node_close(&node);
     return status;
 }

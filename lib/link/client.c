@@ -7,6 +7,7 @@
 #include <sys/random.h>
 
 #include "link/check.h"
+#include "link/outputs.h"
 
 #define RESEND_LEAST_US 300
 #define RESEND_MOST_US 50000
@@ -236,6 +237,22 @@ static wh_status_t await_due_time(wh_client_t *client) {
 
 /* --------------------------------------------------------------------------------------------- the interface */
 
+/* The file is there before the command is sent: a simulator that reads it has the valves in time. */
+static void write_outputs(wh_client_t *client) {
+    const size_t count = (size_t)client->command.gripper_count;
+    if (!client->options.outputs ||
+        memcmp(client->written, client->command.valve, count * sizeof(int32_t)) == 0) {
+        return;
+    }
+    const int problem = wh_outputs_write(client->options.outputs, client->command.valve, count);
+    if (problem == 0) {
+        memcpy(client->written, client->command.valve, count * sizeof(int32_t));
+    } else if (client->counters.unwritten++ == 0) {
+        say(client, "%s: %s (expected a file that can be written)", client->options.outputs,
+            strerror(problem));
+    }
+}
+
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     wh_client_t *client = (wh_client_t *)link;
     const bool free_running = is_free_running(client);
@@ -244,6 +261,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     client->asked_for_state = false;
     client->refusal = WH_OK;
     client->event_count = 0;
+    write_outputs(client);
     ++client->counters.sent;
     send_command(client);
     const wh_status_t status = free_running ? await_due_time(client) : await_answer(client);
@@ -300,5 +318,6 @@ bool wh_client_open(wh_client_t *client, wh_node_t *node, const wh_client_option
     client->identity.run = wh_client_draw_run();
     client->identity.layout_hash = wh_layout_hash(options->layout);
     client->resend_us = 4 * RESEND_LEAST_US;
+    memset(client->written, 0xff, sizeof client->written);
     return wh_node_subscribe(node, WH_CHANNEL_STATE, on_state, client);
 }

@@ -22,11 +22,13 @@ typedef struct {
     uint64_t answers, unasked;   /* states taken; states of other runs and slices */
     uint64_t malformed;          /* datagrams that are no state, or whose hash is wrong */
     uint64_t restored, silences; /* times that the state was sent back; silences reported */
+    uint64_t unwritten;          /* valves that the file could not be made of */
     uint64_t late;               /* free-running: slices sent more than a slice late */
 } wh_client_counters_t;
 
 typedef struct {
     const wh_layout_t *layout;
+    const char *outputs;               /* write the valves to this file, too, before a slice; may be null */
     double rate;                       /* wall-clock rate of a free-running run; 0: lockstep */
     const volatile sig_atomic_t *stop; /* not zero: give up; may be null */
     void (*say)(void *user,
@@ -40,8 +42,9 @@ typedef struct {
     wh_node_t *node;
     wh_client_options_t options;
     wh_link_identity_t identity;
-    waferhand_command command; /* the last one sent */
-    wh_state_t state;          /* the last one taken; status WH_OK */
+    waferhand_command command;    /* the last one sent */
+    wh_state_t state;             /* the last one taken; status WH_OK */
+    int32_t written[WH_GRIPPERS]; /* the valves in the outputs file; -1 before the first */
     bool has_state, answered, asked_for_state;
     wh_status_t refusal; /* why the last command was not stepped */
     int64_t missed;      /* as the simulator counts */

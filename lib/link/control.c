@@ -154,6 +154,7 @@ void wh_control_answer(wh_control_t *control, wh_status_t error, const char *lin
 static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
     wh_control_t *control = user;
     const wh_client_options_t options = {.layout = mcs->layout,
+                                         .outputs = control->options.outputs,
                                          .rate = control->options.rate,
                                          .stop = control->options.stop,
                                          .say = control->options.say,

@@ -27,7 +27,8 @@ typedef struct {
 } wh_control_answer_t;
 
 typedef struct {
-    double rate; /* 0: lockstep */
+    double rate;         /* 0: lockstep */
+    const char *outputs; /* write the valves to this file, too; may be null */
     const volatile sig_atomic_t *stop;
     void (*say)(void *user, const char *text);
     void *user;
