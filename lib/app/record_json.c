@@ -240,6 +240,7 @@ static void put_head(writer_t *writer, json_t *root) {
     put(writer, root, "script", text_or_null(record->script));
     put(writer, root, "layout", text_or_null(record->layout ? record->layout->path : NULL));
     put(writer, root, "slices", json_integer(record->slices));
+    put(writer, root, "missed", json_integer(record->missed));
     put(writer, root, "simulated_s", real(record->simulated_s));
     put(writer, root, "wall_s", real(record->wall_s));
     put(writer, root, "hash", json_string(hash));

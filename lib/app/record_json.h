@@ -1,7 +1,7 @@
 /* A run's record as JSON, for programs.
  *
  * One object, its lists with one element a line. The keys, in this order: format (1), ok, failure (only when
- * the run ended in one), script, layout (path or null), slices, simulated_s, wall_s, hash (16 hex digits),
+ * the run ended in one), script, layout (path or null), slices, missed, simulated_s, wall_s, hash (16 hex digits),
  * and the lists
  *   commands:     line, text, error (0: none), begin_s, end_s; message where there is one
  *   wafers:       name, holder (or null), station, slot, dx, dy, dz (mm), tilt_deg (all six null when it lies

@@ -67,6 +67,9 @@ static void print_times(const wh_report_t *report) {
     put_counted(report->out, (int64_t)record->command_count, "command", "commands");
     fprintf(report->out, ", %.3f s simulated in ", record->simulated_s);
     put_counted(report->out, record->slices, "slice", "slices");
+    if (record->missed > 0) {
+        fprintf(report->out, ", of which the simulator missed %lld", (long long)record->missed);
+    }
     fprintf(report->out, "; %.3f s of wall time", record->wall_s);
     if (record->wall_s > 0 && record->simulated_s > record->wall_s) {
         const double times = record->simulated_s / record->wall_s;

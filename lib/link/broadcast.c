@@ -22,6 +22,11 @@ static uint64_t last_hash(wh_link_t *link) {
     return wh_server_hash(&((wh_broadcast_t *)link)->simulation.server);
 }
 
+static int64_t missed_slices(wh_link_t *link) {
+    (void)link;
+    return 0;
+}
+
 static wh_link_t *connect_simulation(void *user, wh_mcs_t *mcs) {
     wh_broadcast_t *broadcast = user;
     const wh_status_t status =
@@ -48,6 +53,7 @@ bool wh_broadcast_open(wh_broadcast_t *broadcast, wh_node_t *node, void (*say)(v
     memset(broadcast, 0, sizeof *broadcast);
     broadcast->link.exchange = exchange;
     broadcast->link.hash = last_hash;
+    broadcast->link.missed = missed_slices;
     broadcast->node = node;
     return wh_control_open(&broadcast->control, node, &options);
 }
@@ -58,7 +64,7 @@ wh_mcs_partners_t wh_broadcast_partners(wh_broadcast_t *broadcast) {
 }
 
 void wh_broadcast_close(wh_broadcast_t *broadcast) {
-    (void)wh_control_finish(&broadcast->control);
+    wh_control_finish(&broadcast->control);
     if (broadcast->connected) {
         wh_simulation_close(&broadcast->simulation);
     }

@@ -9,6 +9,7 @@
 #include "link/check.h"
 #include "link/outputs.h"
 
+#define SETTLE_US 1000000
 #define RESEND_LEAST_US 300
 #define RESEND_MOST_US 50000
 /* So often a command is sent again at the first pace; then, for nobody seems to be there, less and less often. */
@@ -272,8 +273,18 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     return status;
 }
 
+/* Free-running, the last states may be on their way still. */
 static uint64_t last_hash(wh_link_t *link) {
-    return ((wh_client_t *)link)->hash;
+    wh_client_t *client = (wh_client_t *)link;
+    if (!wh_client_settle(client, SETTLE_US)) {
+        say(client, "the state of the last slice did not come: the hash is of slice %" PRId64,
+            client->state.seq);
+    }
+    return client->hash;
+}
+
+static int64_t missed_slices(wh_link_t *link) {
+    return ((wh_client_t *)link)->missed;
 }
 
 void wh_client_heartbeat(wh_client_t *client) {
@@ -313,6 +324,7 @@ bool wh_client_open(wh_client_t *client, wh_node_t *node, const wh_client_option
     memset(client, 0, sizeof *client);
     client->link.exchange = exchange;
     client->link.hash = last_hash;
+    client->link.missed = missed_slices;
     client->node = node;
     client->options = *options;
     client->identity.run = wh_client_draw_run();

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #define HEARTBEAT_US 200000
-#define SETTLE_US 1000000
 
 /* ------------------------------------------------------------------------------------------------- telling */
 
@@ -204,8 +203,6 @@ void wh_control_follow(wh_control_t *control, const wh_link_identity_t *identity
     control->seq = command->seq;
 }
 
-bool wh_control_finish(wh_control_t *control) {
-    const bool settled = !control->connected || wh_client_settle(&control->client, SETTLE_US);
+void wh_control_finish(wh_control_t *control) {
     tell(control, WH_LINK_PHASE_OVER, 0, WH_OK, "", "");
-    return settled;
 }

@@ -73,8 +73,7 @@ void wh_control_answer(wh_control_t *control, wh_status_t error, const char *lin
 void wh_control_follow(wh_control_t *control, const wh_link_identity_t *identity,
                        const wh_command_t *command);
 
-/* Tells that the run is over, having waited for the last slice's state where the run was free-running; false when that
- * did not come within a second. */
-bool wh_control_finish(wh_control_t *control);
+/* Tells that the run is over. */
+void wh_control_finish(wh_control_t *control);
 
 #endif

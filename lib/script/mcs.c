@@ -160,6 +160,7 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
     record->slices = mcs->track.slice;
     record->simulated_s = wh_mcs_now(mcs);
     record->hash = mcs->link->hash(mcs->link);
+    record->missed = mcs->link->missed(mcs->link);
     record->wafers = calloc(mcs->layout->wafer_count + 1, sizeof *record->wafers);
     for (size_t w = 0; record->wafers && w < mcs->layout->wafer_count; ++w) {
         record_wafer(mcs, w);

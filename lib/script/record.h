@@ -37,6 +37,7 @@ typedef struct {
     bool ok;       /* no command failed uncaught, every expectation was met, the cell had no complaint */
     char *failure; /* the uncaught error's message with file and line, or null */
     int64_t slices;
+    int64_t missed; /* of them, those that a free-running run lost on the way to the simulator */
     double simulated_s, wall_s;
     uint64_t hash;
     wh_command_record_t *commands;

@@ -8,6 +8,11 @@ static uint64_t hash_by_call(wh_link_t *link) {
     return wh_grasp_hash(&((wh_simulator_t *)link)->table);
 }
 
+static int64_t missed_by_call(wh_link_t *link) {
+    (void)link;
+    return 0;
+}
+
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
                               const wh_grasp_storage_t *storage, const wh_cell_t *cell) {
     if (!simulator || !storage || !cell || (!cell->stations && cell->count > 0)) {
@@ -20,6 +25,7 @@ wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t
     if (status == WH_OK) {
         simulator->link.exchange = exchange_by_call;
         simulator->link.hash = hash_by_call;
+        simulator->link.missed = missed_by_call;
         simulator->cell = *cell;
         simulator->event_count = 0;
     }

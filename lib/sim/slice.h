@@ -35,6 +35,8 @@ struct wh_link {
     wh_status_t (*exchange)(wh_link_t *link, const wh_command_t *command, wh_state_t *state);
     /* wh_grasp_hash of the state after the last exchange. */
     uint64_t (*hash)(wh_link_t *link);
+    /* Slices of the run that never reached the simulator: 0 but in a free-running run. */
+    int64_t (*missed)(wh_link_t *link);
 };
 
 #endif

@@ -72,9 +72,9 @@ static void assert_real(json_t *object, const char *key, double value) {
 }
 
 static void test_head(void **state) {
-    static const char *const keys[] = {"format",      "ok",           "script", "layout",   "slices",
-                                       "simulated_s", "wall_s",       "hash",   "commands", "wafers",
-                                       "events",      "expectations", NULL};
+    static const char *const keys[] = {"format", "ok",          "script",       "layout", "slices",
+                                       "missed", "simulated_s", "wall_s",       "hash",   "commands",
+                                       "wafers", "events",      "expectations", NULL};
     static fixture_t f;
     (void)state;
     fixture_transfer(&f);
