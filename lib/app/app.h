@@ -7,6 +7,7 @@ enum { WH_EXIT_MET = 0, WH_EXIT_FAILED = 1, WH_EXIT_USAGE = 2 };
 
 int wh_app_run(int argc, char **argv);
 int wh_app_mcs(int argc, char **argv);
+int wh_app_replay(int argc, char **argv);
 int wh_app_sim(int argc, char **argv);
 
 #endif

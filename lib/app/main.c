@@ -13,6 +13,7 @@ static const struct {
     {"run", "play a motion script against the simulator", wh_app_run},
     {"mcs", "motion control over LCM, for a script or at a prompt", wh_app_mcs},
     {"sim", "simulate a cell for whoever sends commands over LCM", wh_app_sim},
+    {"replay", "step a recording again and compare it", wh_app_replay},
 };
 
 #define SUBCOMMANDS (sizeof subcommands / sizeof subcommands[0])

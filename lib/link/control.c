@@ -169,11 +169,19 @@ static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
     return control->connected ? &control->client.link : NULL;
 }
 
+/* Only for the record, which can then be replayed without the layout. */
+static void on_cell(void *user, const void *data, size_t size) {
+    (void)user;
+    (void)data;
+    (void)size;
+}
+
 bool wh_control_open(wh_control_t *control, wh_node_t *node, const wh_control_options_t *options) {
     memset(control, 0, sizeof *control);
     control->node = node;
     control->options = *options;
-    return wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, control);
+    return wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, control) &&
+           wh_node_subscribe(node, WH_CHANNEL_CELL, on_cell, control);
 }
 
 wh_mcs_partners_t wh_control_partners(wh_control_t *control) {
