@@ -151,7 +151,7 @@ static FILE *open_log(const char *path) {
     FILE *file = fopen(path, "rb");
     const bool opened = file && fstat(fileno(file), &status) == 0;
     if (!opened || S_ISDIR(status.st_mode)) {
-        fprintf(stderr, "%s: %s (expected an LCM event log)\n", path,
+        fprintf(stderr, "%s: %s (expected an LCM event record)\n", path,
                 opened ? strerror(EISDIR) : strerror(errno));
         if (file) {
             fclose(file);
@@ -161,14 +161,14 @@ static FILE *open_log(const char *path) {
     return file;
 }
 
-static wh_log_t log;
+static wh_log_t record;
 
 /* The cell is told once a second: a recording may begin before it, and goes with the first one then. */
 static void find_cell(FILE *file, wh_replay_t *replay) {
-    wh_log_open(&log, file);
-    while (!replay->layout && wh_log_next(&log) == WH_LOG_EVENT) {
-        if (strcmp(log.channel, WH_CHANNEL_CELL) == 0) {
-            wh_replay_event(replay, log.channel, log.data, log.size);
+    wh_log_open(&record, file);
+    while (!replay->layout && wh_log_next(&record) == WH_LOG_EVENT) {
+        if (strcmp(record.channel, WH_CHANNEL_CELL) == 0) {
+            wh_replay_event(replay, record.channel, record.data, record.size);
         }
     }
     rewind(file);
@@ -179,20 +179,20 @@ static void find_cell(FILE *file, wh_replay_t *replay) {
 static ending_t read_all(FILE *file, wh_replay_t *replay) {
     ending_t ending = {.first_garbage = 0};
     find_cell(file, replay);
-    wh_log_open(&log, file);
+    wh_log_open(&record, file);
     do {
-        ending.result = wh_log_next(&log);
-        if (ending.result == WH_LOG_EVENT && log.size > 0) {
+        ending.result = wh_log_next(&record);
+        if (ending.result == WH_LOG_EVENT && record.size > 0) {
             const uint64_t garbage = replay->garbage;
-            wh_replay_event(replay, log.channel, log.data, log.size);
+            wh_replay_event(replay, record.channel, record.data, record.size);
             if (garbage == 0 && replay->garbage > 0) {
-                ending.first_garbage = log.offset;
+                ending.first_garbage = record.offset;
             }
         }
     } while (ending.result == WH_LOG_EVENT);
     wh_replay_finish(replay);
-    ending.offset = log.offset;
-    ending.events = log.count;
+    ending.offset = record.offset;
+    ending.events = record.count;
     return ending;
 }
 
