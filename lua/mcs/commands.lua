@@ -31,11 +31,7 @@ return function(native, patterns, names)
 
   -------------------------------------------------------------------------------- what a command works on
 
-  -- Station parameters that a command may set for itself.
-  local parameters = {
-    stroke = "number", offset = "number", retract = "number", pickup_speed = "number", release = "number",
-    vacuum_delay = "number", timeout = "number", handover = "string",
-  }
+  local parameters = names.parameters
 
   local function check_options(options)
     if options ~= nil and type(options) ~= "table" then
@@ -161,10 +157,8 @@ return function(native, patterns, names)
     run(command_text("VALVE", gripper, level), valve, gripper, level)
   end
 
-  local axis_names = { "theta", "r", "z", "yaw" }
-
   local function axis_of(name)
-    for axis, known in ipairs(axis_names) do
+    for axis, known in ipairs(names.axes) do
       if name == known then
         return axis
       end
@@ -194,10 +188,8 @@ return function(native, patterns, names)
 
   -- move { theta = , r = , z = , yaw = }: degrees and mm; an axis that is not named stays.
   function commands.move(targets)
-    run(command_text("MOVE", text_of(targets, axis_names)), move, targets)
+    run(command_text("MOVE", text_of(targets, names.axes)), move, targets)
   end
-
-  local line_names = { "dx", "dy", "dz", "speed" }
 
   local function line(by)
     local parts = { dx = 0, dy = 0, dz = 0, speed = 0 }
@@ -212,7 +204,7 @@ return function(native, patterns, names)
 
   -- line { dx = , dy = , dz = , speed = }: the end-effector straight by so many mm in base, its heading kept.
   function commands.line(by)
-    run(command_text("LINE", text_of(by, line_names)), line, by)
+    run(command_text("LINE", text_of(by, names.line_fields)), line, by)
   end
 
   local function wait(seconds)

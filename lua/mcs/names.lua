@@ -7,6 +7,14 @@ local ipairs, math, pairs, table, tostring, type = ipairs, math, pairs, table, t
 return function(native, errors)
   local names = { errors = errors }
 
+  -- Station parameters that a command may set for itself, and the fields of MOVE and LINE in order.
+  names.parameters = {
+    stroke = "number", offset = "number", retract = "number", pickup_speed = "number", release = "number",
+    vacuum_delay = "number", timeout = "number", handover = "string",
+  }
+  names.axes = { "theta", "r", "z", "yaw" }
+  names.line_fields = { "dx", "dy", "dz", "speed" }
+
   function names.quote(value)
     return type(value) == "string" and ('"%s"'):format(value) or tostring(value)
   end
