@@ -91,13 +91,28 @@ static int load_module(lua_State *L) {
     return luaL_error(L, "no embedded file %s", name);
 }
 
-static const luaL_Reg module_functions[] = {{"module", load_module}, {NULL, NULL}};
+/* native.connect(): the cell stands; from here on slices go over the caller's link, if it has one. */
+static int connect(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    if (mcs->partners.connect) {
+        mcs->link = mcs->partners.connect(mcs->partners.user, mcs);
+        if (!mcs->link) {
+            return luaL_error(L, "%s: no link to the simulator", mcs->layout->path);
+        }
+    }
+    return 0;
+}
+
+static const luaL_Reg module_functions[] = {{"module", load_module}, {"connect", connect}, {NULL, NULL}};
+
+/* Registry key of what lua/mcs/init.lua returned: it opens the lines. */
+static char lines_key;
 
 /* Runs protected: pushes the native table and hands it to lua/mcs/init.lua, which sets the globals. */
 static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
     const luaL_Reg *const groups[] = {module_functions, wh_mcs_play_functions, wh_mcs_query_functions,
-                                      wh_mcs_record_functions};
+                                      wh_mcs_record_functions, wh_mcs_line_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -108,8 +123,14 @@ static int open_words(lua_State *L) {
         lua_pushlightuserdata(L, mcs);
         luaL_setfuncs(L, groups[i], 1);
     }
-    lua_call(L, 1, 0);
+    lua_call(L, 1, 1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &lines_key);
     return 0;
+}
+
+void wh_mcs_push_lines(lua_State *L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &lines_key);
+    lua_call(L, 0, 2);
 }
 
 bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_record_t *record,
@@ -117,6 +138,7 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
     lua_State *L = wh_sandbox_state(sandbox);
     memset(mcs, 0, sizeof *mcs);
     mcs->script = script;
+    mcs->sandbox = sandbox;
     mcs->record = record;
     mcs->running = WH_NONE;
     record->script = wh_record_text(script);
@@ -138,8 +160,7 @@ static void record_wafer(const wh_mcs_t *mcs, size_t w) {
     }
 }
 
-/* Whether the cell complained: a wafer let go where it should not have been. */
-static bool is_complaint(const wh_event_t *event) {
+bool wh_mcs_is_complaint(const wh_event_t *event) {
     return event->kind == WH_EVENT_RELEASED_UNSUPPORTED || event->kind == WH_EVENT_SLOT_OCCUPIED ||
            event->kind == WH_EVENT_BAD_INPUT;
 }
@@ -151,7 +172,7 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
         record->ok = record->ok && record->expectations[i].ok;
     }
     for (size_t i = 0; i < record->event_count; ++i) {
-        record->ok = record->ok && !is_complaint(&record->events[i].event);
+        record->ok = record->ok && !wh_mcs_is_complaint(&record->events[i].event);
     }
     record->layout = mcs->layout;
     if (!mcs->layout) {

@@ -16,17 +16,19 @@ typedef struct wh_mcs wh_mcs_t;
 
 /* Who else takes part in a run; each function may be null. */
 typedef struct {
-    /* Called once the cell is set up: returns who stands in for the simulator in this process, or null when there is
-     * nobody, which ends the script. */
+    /* Called once, after the cell was set up and found in reach and before the first slice: returns the link that takes
+     * the place of the simulator in this process, or null when there is none to be had, which ends the script. */
     wh_link_t *(*connect)(void *user, wh_mcs_t *mcs);
     /* A command of the record begins (`ended` false) or has ended. */
     void (*watch)(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended);
     void *user;
 } wh_mcs_partners_t;
 
-/* Written by lib/script/mcs*.c only. Must not be moved once opened. */
+/* Written by lib/script/mcs*.c only, but for `partners` and `keep_segments`, which may be set between opening and
+ * the cell. Must not be moved once opened. */
 struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
+    wh_sandbox_t *sandbox;
     wh_record_t *record;
     const wh_layout_t *layout; /* null until a script names one */
     wh_simulator_t simulator;
@@ -47,6 +49,13 @@ struct wh_mcs {
  * sandbox. False, and the reason in `result`, when the sandbox has no room for it. */
 bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_record_t *record,
                  wh_sandbox_result_t *result);
+
+/* Leaves on the stack of L, within a protected call and after `cell`, what executes a typed line and what
+ * completes one: two functions, see lua/mcs/lines.lua and lua/mcs/completion.lua. */
+void wh_mcs_push_lines(lua_State *L);
+
+/* Whether the cell complained: a wafer was let go where it should not have been, or an input was refused. */
+bool wh_mcs_is_complaint(const wh_event_t *event);
 
 /* Closes the record: wafers, slices, hash. The sandbox must still be there. */
 void wh_mcs_finish(wh_mcs_t *mcs);

@@ -27,5 +27,6 @@ int32_t wh_mcs_index(lua_State *L, int argument, size_t count);
 extern const luaL_Reg wh_mcs_play_functions[];
 extern const luaL_Reg wh_mcs_query_functions[];
 extern const luaL_Reg wh_mcs_record_functions[];
+extern const luaL_Reg wh_mcs_line_functions[];
 
 #endif

@@ -78,13 +78,6 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     mcs->command.axis_count = layout->machine.axis_count;
     wh_simulator_view(&mcs->simulator, &mcs->state);
     mcs->layout = layout;
-    if (mcs->partners.connect) {
-        mcs->link = mcs->partners.connect(mcs->partners.user, mcs);
-    }
-    if (!mcs->link) {
-        lua_pushfstring(L, "%s: no simulator to talk to", layout->path);
-        lua_error(L);
-    }
 }
 
 /* native.cell(path): reads the layout and sets up the run; returns the layout's path as it will be named. */

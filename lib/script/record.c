@@ -55,7 +55,7 @@ void wh_record_add_expectation(wh_record_t *record, int line, const char *text, 
     added->ok = ok;
 }
 
-void wh_record_free(wh_record_t *record) {
+void wh_record_forget(wh_record_t *record) {
     for (size_t i = 0; i < record->command_count; ++i) {
         free(record->commands[i].text);
         free(record->commands[i].message);
@@ -63,6 +63,11 @@ void wh_record_free(wh_record_t *record) {
     for (size_t i = 0; i < record->expectation_count; ++i) {
         free(record->expectations[i].text);
     }
+    record->command_count = record->event_count = record->expectation_count = 0;
+}
+
+void wh_record_free(wh_record_t *record) {
+    wh_record_forget(record);
     free(record->commands);
     free(record->events);
     free(record->expectations);

@@ -54,6 +54,9 @@ wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const 
 void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event);
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok);
 
+/* Drops commands, events and expectations; script, layout and the sums stay. For sessions without an end. */
+void wh_record_forget(wh_record_t *record);
+
 /* Room for one more item of `size` bytes, by doubling. */
 void *wh_record_grow(void *items, size_t count, size_t *capacity, size_t size);
 

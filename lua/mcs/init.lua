@@ -1,4 +1,5 @@
--- Makes the operator's words out of what the host offers (`native`) and sets them as globals.
+-- Makes the operator's words out of what the host offers (`native`) and sets them as globals. Returns what makes the
+-- same words of typed lines: a session calls it once the cell is set up, a script's run never does.
 
 -- Kept, for a script may set globals of these names.
 local error, ipairs, pairs, tostring, type = error, ipairs, pairs, tostring, type
@@ -25,11 +26,18 @@ return function(native)
         end
       end
     end
+    native.connect()
   end
 
   for _, group in ipairs({ commands, questions }) do
     for word, action in pairs(group) do
       _G[word] = action
     end
+  end
+
+  return function()
+    local words = native.module("mcs/words.lua")(native)
+    local vocabulary = native.module("mcs/vocabulary.lua")(native, commands, questions, names, words)
+    return native.module("mcs/lines.lua")(native, vocabulary, words, names), native.module("mcs/completion.lua")(vocabulary, words)
   end
 end

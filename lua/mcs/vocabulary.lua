@@ -1,0 +1,215 @@
+-- What can be typed: for each command the arguments that it takes, its options, what it does, and how it is answered.
+--
+-- takes     kinds of the arguments in order; the last one may be left out if `optional`, and repeated if `repeated`
+-- options   kinds of the options by name; with `needs_option` at least one must be there
+-- run       gets the arguments, a list, and the options, a table; returns the answer's values as text or nil
+
+return function(native, commands, questions, names, words)
+  local vocabulary = {}
+
+  -- WHERE stops after so many bytes: an answer is one line.
+  local LONGEST_ANSWER = 60000
+
+  -------------------------------------------------------------------------------------------------- kinds
+
+  local function station_names()
+    local list = {}
+    for name in pairs(native.layout().stations) do
+      list[#list + 1] = name
+    end
+    return list
+  end
+
+  local function gripper_names()
+    local list = {}
+    for index, gripper in ipairs(native.layout().grippers) do
+      list[index] = gripper.name
+    end
+    return list
+  end
+
+  local function command_names()
+    local list = {}
+    for name in pairs(vocabulary.commands) do
+      list[#list + 1] = name
+    end
+    return list
+  end
+
+  -- For each kind of argument the names that there are, or nothing: then it is a number.
+  vocabulary.kinds = {
+    station = station_names, gripper = gripper_names, wafer = native.wafer_names, command = command_names,
+    handover = function() return { "new_first", "same_slice" } end,
+  }
+
+  local station_options = { gripper = "gripper" }
+  for name, kind in pairs(names.parameters) do
+    station_options[name] = kind == "number" and "number" or name
+  end
+
+  local function fields(list)
+    local options = {}
+    for _, name in ipairs(list) do
+      options[name] = "number"
+    end
+    return options
+  end
+
+  ------------------------------------------------------------------------------------------------ answers
+
+  -- Runs a command and returns how long it took.
+  local function timed(action, ...)
+    local begin = native.utime()
+    action(...)
+    return { "seconds", (native.utime() - begin) / 1e6 }
+  end
+
+  local function get(arguments, options)
+    local time = timed(commands.get, arguments[1], arguments[2], options)
+    return words.pairs { { "wafer", native.held(names.effector(options.gripper)) }, time }
+  end
+
+  local function put(arguments, options)
+    local held = {}
+    for index in ipairs(native.layout().grippers) do
+      held[index] = native.held(index)
+    end
+    local time = timed(commands.put, arguments[1], arguments[2], options)
+    return words.pairs { { "wafer", held[names.effector(options.gripper)] }, time }
+  end
+
+  local function offset_text(dx, dy, dz, tilt)
+    return words.pairs { { "dx", dx }, { "dy", dy }, { "dz", dz }, { "tilt_deg", tilt } }
+  end
+
+  local function offset(arguments)
+    return offset_text(questions.offset(arguments[1], arguments[2], arguments[3]))
+  end
+
+  local function proximity(arguments)
+    local p = questions.proximity(arguments[1], arguments[2])
+    local failed = {}
+    for condition in pairs(p.failed) do
+      failed[#failed + 1] = condition
+    end
+    return words.pairs {
+      { "ready", tostring(p.ready) }, { "n1_proj_n2", p.n1_proj_n2 }, { "dr_proj_z", p.dr_proj_z },
+      { "dr_proj_x", p.dr_proj_xy[1] }, { "dr_proj_y", p.dr_proj_xy[2] }, { "dr_proj_xy_norm", p.dr_proj_xy_norm },
+    } .. " failed=" .. (#failed > 0 and table.concat(failed, ",") or "none")
+  end
+
+  local function describe_wafer(layout, name, index)
+    local station, slot = native.locate(index)
+    local holder = native.holder(index)
+    local text = words.pairs { { "wafer", name }, { "holder", holder and layout.grippers[holder].name }, { "station", station } }
+    if station then
+      text = ("%s slot=%d %s"):format(text, slot, offset_text(native.measure(index, layout.stations[station].index, slot)))
+    end
+    return text
+  end
+
+  local function where(arguments)
+    local list, bytes = {}, 0
+    local layout = native.layout()
+    local asked = #arguments > 0 and arguments or native.wafer_names()
+    for place, name in ipairs(asked) do
+      if bytes > LONGEST_ANSWER then
+        list[#list + 1] = ("and %d more"):format(#asked - #list)
+        break
+      end
+      list[#list + 1] = describe_wafer(layout, name, asked == arguments and names.wafer(name) or place)
+      bytes = bytes + #list[#list]
+    end
+    return table.concat(list, "; ")
+  end
+
+  local function axes()
+    local at, list = native.axes(), {}
+    for axis, name in ipairs(names.axes) do
+      local turns = name == "theta" or name == "yaw"
+      list[axis] = { name, turns and math.deg(at[axis]) or at[axis] }
+    end
+    for _, gripper in ipairs(native.layout().grippers) do
+      if gripper.axis then
+        list[#list + 1] = { words.spell(gripper.name), math.deg(at[gripper.axis]) }
+      end
+    end
+    return words.pairs(list)
+  end
+
+  local function stations()
+    local list = {}
+    for name, station in pairs(native.layout().stations) do
+      local chuck = station.chuck and { "chuck", native.layout().grippers[station.chuck].name }
+      list[#list + 1] = words.pairs { { "station", name }, { "slots", station.slots }, chuck }
+    end
+    return table.concat(list, "; ")
+  end
+
+  -- How a command is typed: GET STATION SLOT [option=value ...]; with `all`, every option by name.
+  function vocabulary.usage(name, all)
+    local command = vocabulary.commands[name]
+    local text = { name }
+    for place, kind in ipairs(command.takes) do
+      local word = kind:upper() .. (command.repeated and place == #command.takes and " ..." or "")
+      text[#text + 1] = command.optional and place == #command.takes and "[" .. word .. "]" or word
+    end
+    for option, kind in pairs(all and command.options or {}) do
+      text[#text + 1] = ("[%s=%s]"):format(option, kind:upper())
+    end
+    if command.options and not all then
+      text[#text + 1] = command.needs_option and "option=value ..." or "[option=value ...]"
+    end
+    return table.concat(text, " ")
+  end
+
+  local function help(arguments)
+    local name = arguments[1] and arguments[1]:upper()
+    if not name then
+      return table.concat(command_names(), " ") .. "; HELP COMMAND tells how it is typed"
+    end
+    if not vocabulary.commands[name] then
+      native.fail("NO_SUCH_COMMAND", names.quote(arguments[1]) .. " (HELP lists them)")
+    end
+    return ("%s: %s"):format(vocabulary.usage(name, true), vocabulary.commands[name].does)
+  end
+
+  ----------------------------------------------------------------------------------------------- commands
+
+  -- A command of the scripts that takes its arguments in order, answered with its time.
+  local function moving(action)
+    return function(arguments)
+      return words.pairs { timed(action, arguments[1], arguments[2]) }
+    end
+  end
+
+  -- One that takes a table of named numbers.
+  local function moving_by_name(action)
+    return function(_, options)
+      return words.pairs { timed(action, options) }
+    end
+  end
+
+  vocabulary.commands = {
+    GET = { takes = { "station", "slot" }, options = station_options, run = get, does = "takes the wafer there" },
+    PUT = { takes = { "station", "slot" }, options = station_options, run = put, does = "sets the wafer down there" },
+    ROTATE = { takes = { "station", "degrees" }, run = moving(commands.rotate), does = "turns a prealigner's chuck by so much" },
+    VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve), does = "0 opens it (vacuum on), 1 closes it" },
+    MOVE = { takes = {}, options = fields(names.axes), needs_option = true, run = moving_by_name(commands.move),
+             does = "moves the named axes to these positions, degrees and mm" },
+    LINE = { takes = {}, options = fields(names.line_fields), needs_option = true, run = moving_by_name(commands.line),
+             does = "moves the end-effector straight by so much, mm and mm/s" },
+    WAIT = { takes = { "seconds" }, run = moving(commands.wait), does = "stands still" },
+    OFFSET = { takes = { "wafer", "station", "slot" }, run = offset, does = "where the wafer is in that slot's frame" },
+    HOLDER = { takes = { "wafer" }, does = "the gripper that holds the wafer",
+               run = function(arguments) return words.pairs { { "holder", questions.holder(arguments[1]) } } end },
+    PROXIMITY = { takes = { "wafer", "gripper" }, run = proximity, does = "the check of the wafer against the gripper" },
+    WHERE = { takes = { "wafer" }, optional = true, repeated = true, run = where, does = "where wafers are; without a name, all" },
+    AXES = { takes = {}, run = axes, does = "where the axes stand, degrees and mm" },
+    STATIONS = { takes = {}, run = stations, does = "the stations of the cell" },
+    HELP = { takes = { "command" }, optional = true, run = help, does = "the commands, or how one is typed" },
+    QUIT = { takes = {}, does = "leaves the prompt", run = function() native.fail("NO_SUCH_COMMAND", "QUIT is for the prompt alone") end },
+  }
+
+  return vocabulary
+end
