@@ -192,7 +192,8 @@ static double seconds_now(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Plays up to SLICES_PER_CHARGE slices of the segment. */
+/* Plays up to SLICES_PER_CHARGE slices of the segment; fewer when the sandbox is to stop, for over a link at a
+ * wall-clock rate a portion may take seconds. */
 static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
     wh_track_state_t state = WH_TRACK_MOVING;
     const double begin = seconds_now();
@@ -200,6 +201,9 @@ static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
         state = wh_track_next(&mcs->track, mcs->state.sensors);
         if (state == WH_TRACK_MOVING) {
             *status = exchange(mcs);
+        }
+        if (wh_sandbox_stopping(mcs->sandbox)) {
+            break;
         }
     }
     mcs->record->wall_s += seconds_now() - begin;

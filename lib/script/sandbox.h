@@ -122,6 +122,10 @@ void wh_sandbox_renew(wh_sandbox_t *sandbox);
  * it. */
 void wh_sandbox_stop(wh_sandbox_t *sandbox);
 
+/* Whether wh_sandbox_stop was called and the chunk has not ended yet: for C functions that are long at work
+ * between two charges. */
+bool wh_sandbox_stopping(const wh_sandbox_t *sandbox);
+
 /* Steps taken off the budget so far: VM instructions (counted by the thousand), charges of C functions, and
  * one per 64 bytes of long strings and large blocks. */
 uint64_t wh_sandbox_spent(const wh_sandbox_t *sandbox);

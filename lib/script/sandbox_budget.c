@@ -170,6 +170,10 @@ void wh_sandbox_stop(wh_sandbox_t *sandbox) {
     wh_sandbox_alarm(sandbox);
 }
 
+bool wh_sandbox_stopping(const wh_sandbox_t *sandbox) {
+    return sandbox->stop != 0;
+}
+
 uint64_t wh_sandbox_spent(const wh_sandbox_t *sandbox) {
     return sandbox->spent;
 }
