@@ -1,39 +1,18 @@
 /* waferhand run SCRIPT */
-#include <argp.h>
+#include "app/run.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "app/app.h"
-#include "app/mcs_link.h"
 #include "app/record_json.h"
 #include "app/record_table.h"
 #include "app/segments.h"
 #include "app/style.h"
-#include "script/run.h"
 
-enum {
-    OPTION_JSON = 1000,
-    OPTION_SEGMENTS,
-    OPTION_SET,
-    OPTION_TRUST,
-    OPTION_BUDGET,
-    OPTION_MEMORY,
-    OPTION_LCM,
-    OPTION_URL,
-    OPTION_RECORD,
-    OPTION_RATE,
-    OPTION_OUTPUTS
-};
-
-typedef struct {
-    wh_run_options_t run;
-    const char **parameters; /* room for one for each argument */
-    const char *segments_path;
-    bool json;
-    wh_mcs_link_options_t link;
-} arguments_t;
+enum { OPTION_JSON = 1000, OPTION_SEGMENTS, OPTION_SET, OPTION_TRUST, OPTION_BUDGET, OPTION_MEMORY };
 
 static const struct argp_option options[] = {
     {"json", OPTION_JSON, NULL, 0, "Print the result as one JSON object", 0},
@@ -43,10 +22,6 @@ static const struct argp_option options[] = {
     {"trust", OPTION_TRUST, NULL, 0, "Let the script use all of Lua, files and native modules too", 0},
     {"budget", OPTION_BUDGET, "N", 0,
      "End the script after N steps of Lua and simulated slices (default 1e9)", 0},
-    {"lcm-url", OPTION_URL, "URL", 0, "Where LCM is (default " WH_NODE_URL ")", 0},
-    {"record", OPTION_RECORD, "FILE", 0, "Write all messages into an LCM event log", 0},
-    {"outputs", OPTION_OUTPUTS, "FILE", 0, "Write the valves to this file, too", 0},
-    {"rate", OPTION_RATE, "FACTOR", 0, "Run free at this factor of real time instead of in lockstep", 0},
     {"memory", OPTION_MEMORY, "MIB", 0, "Let the script use so many MiB of memory (default 256)", 0},
     {0},
 };
@@ -63,7 +38,7 @@ static double whole_number(const struct argp_state *state, const char *name, con
 }
 
 static error_t parse(int key, char *argument, struct argp_state *state) {
-    arguments_t *arguments = state->input;
+    wh_run_arguments_t *arguments = state->input;
     switch (key) {
     case OPTION_JSON:
         arguments->json = true;
@@ -77,18 +52,6 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     case OPTION_TRUST:
         arguments->run.limits.trust = true;
         return 0;
-    case OPTION_URL:
-        arguments->link.url = argument;
-        return 0;
-    case OPTION_RECORD:
-        arguments->link.record = argument;
-        return 0;
-    case OPTION_OUTPUTS:
-        arguments->link.outputs = argument;
-        return 0;
-    case OPTION_RATE:
-        arguments->link.rate = strtod(argument, NULL);
-        return 0;
     case OPTION_BUDGET:
         arguments->run.limits.instructions = (uint64_t)whole_number(state, "budget", argument, 1e18);
         return 0;
@@ -101,15 +64,12 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         }
         arguments->run.script = argument;
         return 0;
-    case ARGP_KEY_NO_ARGS:
-        argp_error(state, "which script?");
-        return EINVAL;
     default:
         return ARGP_ERR_UNKNOWN;
     }
 }
 
-static int print_result(const arguments_t *arguments, const wh_run_t *run) {
+static int print_result(const wh_run_arguments_t *arguments, const wh_run_t *run) {
     if (arguments->json) {
         return wh_record_print_json(&run->record, stdout);
     }
@@ -117,7 +77,7 @@ static int print_result(const arguments_t *arguments, const wh_run_t *run) {
     return wh_record_print_table(&run->record, stdout, &style);
 }
 
-static int report(const arguments_t *arguments, const wh_run_t *run, wh_run_outcome_t outcome) {
+static int report(const wh_run_arguments_t *arguments, const wh_run_t *run, wh_run_outcome_t outcome) {
     if (outcome == WH_RUN_BAD_INPUT) {
         fprintf(stderr, "%s\n", run->message);
         return WH_EXIT_USAGE;
@@ -138,52 +98,66 @@ static int report(const arguments_t *arguments, const wh_run_t *run, wh_run_outc
     return outcome == WH_RUN_MET ? WH_EXIT_MET : WH_EXIT_FAILED;
 }
 
-static int play(int argc, char **argv, bool over_lcm) {
+void wh_run_arguments_init(wh_run_arguments_t *arguments, int argc) {
+    arguments->parameters = calloc((size_t)argc + 1, sizeof *arguments->parameters);
+    if (!arguments->parameters) {
+        perror("waferhand");
+        exit(WH_EXIT_USAGE);
+    }
+    arguments->run.parameters = arguments->parameters;
+}
+
+void wh_run_arguments_free(wh_run_arguments_t *arguments) {
+    free(arguments->parameters);
+    arguments->parameters = NULL;
+}
+
+int wh_run_and_report(wh_run_arguments_t *arguments) {
+    wh_run_t run;
+    arguments->run.keep_segments = arguments->segments_path != NULL;
+    arguments->run.limits.print_to = arguments->json ? stderr : stdout;
+    const wh_run_outcome_t outcome = wh_run_script(&run, &arguments->run);
+    const int status = report(arguments, &run, outcome);
+    wh_run_close(&run);
+    return status;
+}
+
+const struct argp wh_run_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
+
+/* ------------------------------------------------------------------------------------------- the subcommand
+ */
+
+static error_t parse_run(int key, char *argument, struct argp_state *state) {
+    const wh_run_arguments_t *arguments = state->input;
+    (void)argument;
+    if (key == ARGP_KEY_INIT) {
+        state->child_inputs[0] = state->input;
+        return 0;
+    }
+    if (key == ARGP_KEY_END && !arguments->run.script) {
+        argp_error(state, "which script?");
+    }
+    return ARGP_ERR_UNKNOWN;
+}
+
+int wh_app_run(int argc, char **argv) {
+    static const struct argp_child children[] = {{&wh_run_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {
-        options,
-        parse,
+        NULL,
+        parse_run,
         "SCRIPT",
         "Plays a motion script against the simulator and prints what came of it.\v"
         "Exit status: 0 if all expectations were met, 1 if the script's expectations or the cell failed, "
         "2 for wrong usage or a bad input file.",
-        NULL,
+        children,
         NULL,
         NULL};
     static char name[] = "waferhand run";
-    arguments_t arguments = {0};
-    arguments.parameters = calloc((size_t)argc + 1, sizeof *arguments.parameters);
-    if (!arguments.parameters) {
-        perror("waferhand");
-        return WH_EXIT_USAGE;
-    }
+    wh_run_arguments_t arguments = {0};
+    wh_run_arguments_init(&arguments, argc);
     argv[0] = name;
     argp_parse(&argp, argc, argv, 0, NULL, &arguments);
-    arguments.run.parameters = arguments.parameters;
-    arguments.run.keep_segments = arguments.segments_path != NULL;
-    arguments.run.limits.print_to = arguments.json ? stderr : stdout;
-    static wh_mcs_link_t link;
-    const bool linked = over_lcm;
-    if (linked) {
-        if (!wh_mcs_link_open(&link, &arguments.link)) {
-            return WH_EXIT_USAGE;
-        }
-        arguments.run.partners = wh_control_partners(&link.control);
-    }
-    wh_run_t run;
-    const wh_run_outcome_t outcome = wh_run_script(&run, &arguments.run);
-    if (linked) {
-        wh_mcs_link_close(&link);
-    }
-    const int status = report(&arguments, &run, outcome);
-    wh_run_close(&run);
-    free(arguments.parameters);
+    const int status = wh_run_and_report(&arguments);
+    wh_run_arguments_free(&arguments);
     return status;
-}
-
-int wh_app_run(int argc, char **argv) {
-    return play(argc, argv, false);
-}
-
-int wh_app_mcs(int argc, char **argv) {
-    return play(argc, argv, true);
 }
