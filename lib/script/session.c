@@ -175,7 +175,8 @@ static void perform(wh_session_t *session, request_t *request) {
     lua_pushlightuserdata(L, request);
     if (!wh_sandbox_call(L, 1, 0, &result)) {
         request->status = status_of(result.status);
-        write_error(request->answer, request->size, request->status, result.message);
+        write_error(request->answer, request->size, request->status,
+                    request->status == WH_STATUS_STOPPED ? "" : result.message);
         close_command(session, request->status, result.message);
     }
     count_complaints(session, events);

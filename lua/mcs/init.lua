@@ -38,6 +38,7 @@ return function(native)
   return function()
     local words = native.module("mcs/words.lua")(native)
     local vocabulary = native.module("mcs/vocabulary.lua")(native, commands, questions, names, words)
-    return native.module("mcs/lines.lua")(native, vocabulary, words, names), native.module("mcs/completion.lua")(vocabulary, words)
+    local execute = native.module("mcs/lines.lua")(native, vocabulary, words, names)
+    return execute, native.module("mcs/completion.lua")(vocabulary, words)
   end
 end

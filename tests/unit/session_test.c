@@ -226,6 +226,7 @@ static void test_line_length(void **state) {
         line, "ERROR 48 BAD_ARGUMENT: a command's argument is out of range or of the wrong kind; the line is "
               "longer than 1000 bytes");
     memset(line, '"', sizeof line - 1);
+    line[sizeof line - 1] = '\0';
     assert_answer(line, "ERROR 48 ");
 }
 
