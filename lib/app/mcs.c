@@ -1,20 +1,29 @@
 /* waferhand mcs [SCRIPT] [--layout FILE] */
 #include <stdio.h>
-#include <string.h>
+#include <stdlib.h>
+#include <sys/timerfd.h>
+#include <unistd.h>
 
 #include "app/app.h"
+#include "app/mcs_link.h"
 #include "app/prompt.h"
 #include "app/run.h"
 
-enum { OPTION_LAYOUT = 2000 };
+enum { OPTION_LAYOUT = 2000, OPTION_URL, OPTION_RECORD, OPTION_RATE, OPTION_OUTPUTS };
 
 typedef struct {
     wh_run_arguments_t run;
+    wh_mcs_link_options_t link;
     const char *layout;
 } arguments_t;
 
 static const struct argp_option options[] = {
-    {"layout", OPTION_LAYOUT, "FILE", 0, "Take commands from a prompt, in the cell of this layout", 0},
+    {"layout", OPTION_LAYOUT, "FILE", 0,
+     "Take commands from a prompt and from WAFERHAND_REQUEST, in the cell of this layout", 0},
+    {"lcm-url", OPTION_URL, "URL", 0, "Where LCM is (default " WH_NODE_URL ")", 0},
+    {"record", OPTION_RECORD, "FILE", 0, "Write all messages into an LCM event log", 0},
+    {"rate", OPTION_RATE, "FACTOR", 0, "Run free at this factor of real time instead of in lockstep", 0},
+    {"outputs", OPTION_OUTPUTS, "FILE", 0, "Write the valves to this file, too, one value per gripper", 0},
     {0},
 };
 
@@ -30,6 +39,15 @@ static void check(const arguments_t *arguments, struct argp_state *state) {
     }
 }
 
+static double take_rate(const struct argp_state *state, const char *text) {
+    char *end = NULL;
+    const double rate = strtod(text, &end);
+    if (end == text || *end != '\0' || !(rate >= 1e-3 && rate <= 1e3)) {
+        argp_error(state, "--rate: %s (expected a number from 0.001 to 1000)", text);
+    }
+    return rate;
+}
+
 static error_t parse(int key, char *argument, struct argp_state *state) {
     arguments_t *arguments = state->input;
     switch (key) {
@@ -39,6 +57,18 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     case OPTION_LAYOUT:
         arguments->layout = argument;
         return 0;
+    case OPTION_URL:
+        arguments->link.url = argument;
+        return 0;
+    case OPTION_RECORD:
+        arguments->link.record = argument;
+        return 0;
+    case OPTION_OUTPUTS:
+        arguments->link.outputs = argument;
+        return 0;
+    case OPTION_RATE:
+        arguments->link.rate = take_rate(state, argument);
+        return 0;
     case ARGP_KEY_END:
         check(arguments, state);
         return 0;
@@ -47,34 +77,94 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     }
 }
 
-static int take_commands(wh_session_t *session) {
+/* --------------------------------------------------------------------------------------------- the prompt */
+
+/* What the prompt looks after besides its input. */
+typedef struct {
+    wh_mcs_link_t *link;
+    wh_session_t *session;
+    int timer;
+} attendance_t;
+
+static void execute_requests(attendance_t *attendance) {
+    static char answer[WH_SESSION_ANSWER_BYTES];
+    char line[WH_LINK_LINE];
+    while (wh_control_next_request(&attendance->link->control, line)) {
+        const wh_status_t status = wh_session_execute(attendance->session, line, answer, sizeof answer);
+        wh_control_answer(&attendance->link->control, status, line, answer);
+    }
+}
+
+static void on_messages(void *user) {
+    attendance_t *attendance = user;
+    (void)wh_node_drain(&attendance->link->node, 64);
+    execute_requests(attendance);
+}
+
+static void on_timer(void *user) {
+    attendance_t *attendance = user;
+    uint64_t expirations;
+    if (read(attendance->timer, &expirations, sizeof expirations) > 0) {
+        wh_control_idle(&attendance->link->control);
+        execute_requests(attendance);
+    }
+}
+
+static int start_timer(void) {
+    static const struct itimerspec tenth = {{0, 100000000}, {0, 100000000}};
+    const int timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+    if (timer >= 0) {
+        (void)timerfd_settime(timer, 0, &tenth, NULL);
+    }
+    return timer;
+}
+
+static int take_commands(wh_session_t *session, wh_mcs_link_t *link) {
+    attendance_t attendance = {link, session, start_timer()};
+    const wh_prompt_watch_t messages = {wh_node_descriptor(&link->node), on_messages, &attendance};
+    const wh_prompt_watch_t timer = {attendance.timer, on_timer, &attendance};
     wh_prompt_t *prompt = wh_prompt_open(session);
-    if (!prompt) {
+    if (!prompt || attendance.timer < 0) {
         perror("waferhand");
         return WH_EXIT_USAGE;
     }
+    (void)wh_prompt_watch(prompt, &messages);
+    (void)wh_prompt_watch(prompt, &timer);
     const int status = wh_prompt_run(prompt);
     wh_prompt_close(prompt);
+    close(attendance.timer);
     return status;
 }
 
-static int run_prompt(const arguments_t *arguments) {
+static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
     static wh_session_t session;
     wh_session_options_t wanted = {
         .layout = arguments->layout,
         .limits = arguments->run.run.limits,
         .parameters = arguments->run.run.parameters,
         .parameter_count = arguments->run.run.parameter_count,
+        .partners = wh_control_partners(&link->control),
     };
     int status = WH_EXIT_USAGE;
     /* Standard output is for answers. */
     wanted.limits.print_to = stderr;
     if (wh_session_open(&session, &wanted)) {
-        status = take_commands(&session);
+        status = take_commands(&session, link);
     } else {
         fprintf(stderr, "%s\n", session.message);
     }
     wh_session_close(&session);
+    return status;
+}
+
+static int run_linked(arguments_t *arguments) {
+    static wh_mcs_link_t link;
+    if (!wh_mcs_link_open(&link, &arguments->link)) {
+        return WH_EXIT_USAGE;
+    }
+    arguments->run.run.partners = wh_control_partners(&link.control);
+    const int status = arguments->layout ? run_prompt(arguments, &link) : wh_run_and_report(&arguments->run);
+    wh_mcs_link_close(&link);
     return status;
 }
 
@@ -84,9 +174,9 @@ int wh_app_mcs(int argc, char **argv) {
         options,
         parse,
         "SCRIPT\n--layout FILE",
-        "Plays a motion script, or takes an operator's commands such as GET A 1 from standard input and "
-        "answers "
-        "each in one line.\v"
+        "Motion control over LCM: plays a script against the simulator, or takes an operator's commands such "
+        "as GET A 1 "
+        "from standard input and WAFERHAND_REQUEST and answers each in one line.\v"
         "Exit status: 0 if all expectations were met or all commands succeeded, 1 if not or if the cell "
         "failed, "
         "2 for wrong usage or a bad input file. At a terminal commands may fail.",
@@ -98,7 +188,7 @@ int wh_app_mcs(int argc, char **argv) {
     wh_run_arguments_init(&arguments.run, argc);
     argv[0] = name;
     argp_parse(&argp, argc, argv, 0, NULL, &arguments);
-    const int status = arguments.layout ? run_prompt(&arguments) : wh_run_and_report(&arguments.run);
+    const int status = run_linked(&arguments);
     wh_run_arguments_free(&arguments.run);
     return status;
 }
