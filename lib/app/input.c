@@ -7,11 +7,13 @@
 #include "app/signals.h"
 
 static void call_watches(wh_input_t *input, const struct pollfd *polled, size_t count) {
+    wh_signals_stop_session(input->session);
     for (size_t i = 0; i < count && i < input->watch_count; ++i) {
         if (polled[i].revents != 0) {
             input->watches[i].ready(input->watches[i].user);
         }
     }
+    wh_signals_stop_session(NULL);
 }
 
 wh_input_event_t wh_input_wait(wh_input_t *input) {
@@ -26,6 +28,9 @@ wh_input_event_t wh_input_wait(wh_input_t *input) {
             return errno == EINTR ? WH_INPUT_SIGNAL : WH_INPUT_BROKEN;
         }
         call_watches(input, polled, count);
+        if (wh_signals_pending()) {
+            return WH_INPUT_SIGNAL;
+        }
         if (polled[count].revents != 0 && !input->leaving) {
             return WH_INPUT_READY;
         }

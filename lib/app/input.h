@@ -11,7 +11,8 @@
 typedef struct {
     wh_prompt_watch_t watches[WH_PROMPT_WATCHES];
     size_t watch_count;
-    bool leaving; /* set by a watch: the wait is to end */
+    wh_session_t *session; /* whose commands the watches may execute, and signals then stop */
+    bool leaving;          /* set by a watch: the wait is to end */
 } wh_input_t;
 
 typedef enum {

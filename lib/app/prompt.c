@@ -29,6 +29,7 @@ wh_prompt_t *wh_prompt_open(wh_session_t *session) {
     }
     const bool terminal = isatty(STDIN_FILENO) && isatty(STDOUT_FILENO);
     prompt->session = session;
+    prompt->input.session = session;
     prompt->plain.input = &prompt->input;
     prompt->style = wh_style_of(stdout);
     wh_signals_hold(terminal);

@@ -21,7 +21,7 @@
 
 /* A descriptor that is none of the prompt's: LCM's, a timer's, a signalfd. `ready` is called when it can be read or
  * has failed, while the prompt waits for input and never during a command; it must read it, or it is called again at
- * once. It may execute commands of the session. */
+ * once. It may execute commands of the session, which signals stop like those of the prompt. */
 typedef struct {
     int fd;
     void (*ready)(void *user);

@@ -3,7 +3,7 @@
  *
  * Held are SIGINT, SIGTERM, SIGHUP, and for a terminal SIGTSTP and SIGWINCH; one that was ignored when the
  * program began stays ignored, one that its caller had blocked (for a signalfd) stays blocked. During a
- * command the first three stop it. One thread, one prompt: the state is the process's.
+ * command the first three stop it, the others wait. One thread, one prompt: the state is the process's.
  */
 #ifndef WH_APP_SIGNALS_H
 #define WH_APP_SIGNALS_H
@@ -22,10 +22,13 @@ void wh_signals_release(void);
 /* The mask to wait with: ppoll then returns with EINTR when a held signal arrives. */
 const sigset_t *wh_signals_waiting(void);
 
+/* Whether a signal has arrived and was not yet taken. */
+bool wh_signals_pending(void);
+
 /* A signal that has arrived and was not yet taken, 0 if there is none. */
 int wh_signals_take(void);
 
-/* Lets signals stop the session's commands; null: holds them again. */
+/* Lets SIGINT, SIGTERM and SIGHUP in, to stop the session's command if one runs; null: holds them again. */
 void wh_signals_stop_session(wh_session_t *session);
 
 #endif

@@ -216,10 +216,11 @@ static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
     while (state == WH_TRACK_MOVING) {
         const int64_t before = mcs->track.slice;
         state = play_portion(mcs, &status);
+        /* First, for a link that gave up waiting because of a stop returns with some status too. */
+        wh_sandbox_charge(L, STEPS_PER_SLICE * (uint64_t)(mcs->track.slice - before));
         if (status != WH_OK) {
             wh_mcs_raise(L, mcs, status, "the simulator refused a slice");
         }
-        wh_sandbox_charge(L, STEPS_PER_SLICE * (uint64_t)(mcs->track.slice - before));
     }
     return state;
 }

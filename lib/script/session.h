@@ -62,7 +62,7 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
 wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *answer, size_t size);
 
 /* Ends the running command with WH_STATUS_STOPPED; without one, nothing. For signal handlers of the thread
- * that executes. Over a link it takes effect when the exchange that is waited for returns. */
+ * that executes. Over a link it takes effect when the exchange that is waited for returns, whatever its status. */
 void wh_session_stop(wh_session_t *session);
 
 /* What the word at the end of a text may become. */

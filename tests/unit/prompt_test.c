@@ -3,6 +3,7 @@
 
 #include <signal.h>
 #include <sys/signalfd.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "app/prompt.h"
@@ -115,6 +116,8 @@ static void test_signalfd(void **state) {
     raise(SIGTERM);
     assert_int_equal(wh_prompt_run(prompt), 1);
     close(signal_descriptor);
+    wh_prompt_close(prompt); /* which brings back the mask from before it */
+    prompt = NULL;
     sigprocmask(SIG_UNBLOCK, &mask, NULL);
 }
 
@@ -131,6 +134,30 @@ static void test_signal_before_the_wait(void **state) {
     assert_true(action.sa_handler == SIG_DFL);
 }
 
+static void take_long_request(void *user) {
+    char byte;
+    (void)user;
+    assert_int_equal(read(other[0], &byte, 1), 1);
+    wh_session_execute(&session, "WAIT 40000", answer, sizeof answer);
+}
+
+/* A signal stops a watch's command, too, and is then the prompt's. */
+static void test_signal_during_a_request(void **state) {
+    const wh_prompt_watch_t watch = {other[0], take_long_request, NULL};
+    const struct itimerspec soon = {{0, 0}, {0, 100000000}};
+    struct sigevent event = {.sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGTERM};
+    timer_t timer;
+    (void)state;
+    prompt = wh_prompt_open(&session);
+    assert_true(wh_prompt_watch(prompt, &watch));
+    put(other[1], "1");
+    assert_int_equal(timer_create(CLOCK_MONOTONIC, &event, &timer), 0);
+    assert_int_equal(timer_settime(timer, 0, &soon, NULL), 0);
+    assert_int_equal(wh_prompt_run(prompt), 1);
+    assert_memory_equal(answer, "ERROR 52 STOPPED", 16);
+    timer_delete(timer);
+}
+
 int main(void) {
 #define IN_PIPES(test) cmocka_unit_test_setup_teardown(test, open_all, close_all)
     const struct CMUnitTest tests[] = {
@@ -139,6 +166,7 @@ int main(void) {
         IN_PIPES(test_only_so_many_watches),
         IN_PIPES(test_signalfd),
         IN_PIPES(test_signal_before_the_wait),
+        IN_PIPES(test_signal_during_a_request),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

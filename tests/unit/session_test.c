@@ -288,6 +288,7 @@ static struct {
     wh_link_t link;
     wh_link_t *simulator;
     int64_t slices, stop_at;
+    bool gives_up;
     wh_status_t nested;
 } between;
 
@@ -297,6 +298,9 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
         char text[100];
         between.nested = wh_session_execute(&session, "AXES", text, sizeof text);
         wh_session_stop(&session);
+        if (between.gives_up) {
+            return WH_STATUS_BUSY; /* as a link may that was waiting for an answer */
+        }
     }
     return between.simulator->exchange(between.simulator, command, out);
 }
@@ -346,6 +350,14 @@ static void test_stop(void **state) {
     wh_session_stop(&session);
     assert_answer("GET A 1", "OK wafer=\"Wafer 1\"");
     assert_answer("PUT B 2", "OK wafer=\"Wafer 1\"");
+}
+
+static void test_stop_of_a_link_that_waits(void **state) {
+    (void)state;
+    between.stop_at = 700;
+    between.gives_up = true;
+    assert_answer("GET A 1", "ERROR 52 STOPPED: ");
+    assert_answer("GET A 1", "OK wafer=\"Wafer 1\"");
 }
 
 static void test_budget_is_for_each_command(void **state) {
@@ -477,6 +489,7 @@ int main(void) {
         IN_PAPER(test_completion),
         IN_BETWEEN(test_another_link),
         IN_BETWEEN(test_stop),
+        IN_BETWEEN(test_stop_of_a_link_that_waits),
         cmocka_unit_test_teardown(test_budget_is_for_each_command, close_session),
         cmocka_unit_test_teardown(test_report, close_session),
         cmocka_unit_test(test_what_cannot_be_opened),
