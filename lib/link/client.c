@@ -190,7 +190,8 @@ static wh_status_t await_answer(wh_client_t *client) {
     int64_t pause = client->resend_us;
     int64_t due = begin + pause;
     while (!client->answered && client->refusal == WH_OK) {
-        if (is_stopped(client)) {
+        /* Whoever has signals of his own stops a wait for a silent simulator by any of them. */
+        if (is_stopped(client) || (client->silent && client->node->interrupted)) {
             return WH_STATUS_STOPPED;
         }
         const int64_t now = wh_node_clock_us();
@@ -254,9 +255,29 @@ static void write_outputs(wh_client_t *client) {
     }
 }
 
+/* A command that was given up may or may not have arrived: it is seen through before the next one. */
+static wh_status_t see_through(wh_client_t *client) {
+    if (!client->pending) {
+        return WH_OK;
+    }
+    send_again(client);
+    const wh_status_t status = await_answer(client);
+    client->pending = !client->answered;
+    return status;
+}
+
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     wh_client_t *client = (wh_client_t *)link;
     const bool free_running = is_free_running(client);
+    client->node->interrupted = false;
+    client->refusal = WH_OK;
+    const wh_status_t before = see_through(client);
+    if (before != WH_OK) {
+        *state = client->state;
+        state->event_count = 0;
+        state->status = before;
+        return before;
+    }
     wh_link_command_to_message(command, &client->identity, !free_running, &client->command);
     client->answered = false;
     client->asked_for_state = false;
@@ -266,6 +287,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     ++client->counters.sent;
     send_command(client);
     const wh_status_t status = free_running ? await_due_time(client) : await_answer(client);
+    client->pending = !free_running && !client->answered && client->refusal == WH_OK;
     *state = client->state;
     state->events = client->events;
     state->event_count = client->event_count;

@@ -45,6 +45,7 @@ typedef struct {
     waferhand_command command;    /* the last one sent */
     wh_state_t state;             /* the last one taken; status WH_OK */
     int32_t written[WH_GRIPPERS]; /* the valves in the outputs file; -1 before the first */
+    bool pending;                 /* the last command was given up before its answer came */
     bool has_state, answered, asked_for_state;
     wh_status_t refusal; /* why the last command was not stepped */
     int64_t missed;      /* as the simulator counts */

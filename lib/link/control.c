@@ -48,8 +48,12 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
         tell(control, WH_LINK_PHASE_BEGINS, command->line, WH_OK, command->text, "");
         return;
     }
+    /* A request is answered with its result, by wh_control_answer. */
+    const int64_t request = control->request;
+    control->request = 0;
     tell(control, command->error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED, command->line,
          command->error, command->text, command->message ? command->message : "");
+    control->request = request;
 }
 
 /* ------------------------------------------------------------------------------------------------- requests */

@@ -88,6 +88,7 @@ int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
     const struct timespec timeout = {.tv_sec = us / 1000000, .tv_nsec = us % 1000000 * 1000};
     const int count = ppoll(&ready, 1, &timeout, NULL);
     if (count <= 0) {
+        node->interrupted = node->interrupted || count < 0;
         return 0;
     }
     return lcm_handle_timeout(node->lcm, 0) < 0 ? -1 : 1;

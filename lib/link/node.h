@@ -29,6 +29,7 @@ typedef struct {
 struct wh_node {
     lcm_t *lcm;
     lcm_eventlog_t *log; /* null: not recording */
+    bool interrupted;    /* a signal ended a wait since this was last cleared */
     bool log_failed;     /* writing stopped: the disk is full, say */
     uint64_t published, received;
     wh_node_subscriber_t subscribers[WH_NODE_SUBSCRIPTIONS];
