@@ -1,4 +1,4 @@
-/* waferhand run SCRIPT */
+/* A script's run, for `run` and `mcs`. */
 #include "app/run.h"
 
 #include <errno.h>
@@ -123,41 +123,3 @@ int wh_run_and_report(wh_run_arguments_t *arguments) {
 }
 
 const struct argp wh_run_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
-
-/* ------------------------------------------------------------------------------------------- the subcommand
- */
-
-static error_t parse_run(int key, char *argument, struct argp_state *state) {
-    const wh_run_arguments_t *arguments = state->input;
-    (void)argument;
-    if (key == ARGP_KEY_INIT) {
-        state->child_inputs[0] = state->input;
-        return 0;
-    }
-    if (key == ARGP_KEY_END && !arguments->run.script) {
-        argp_error(state, "which script?");
-    }
-    return ARGP_ERR_UNKNOWN;
-}
-
-int wh_app_run(int argc, char **argv) {
-    static const struct argp_child children[] = {{&wh_run_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {
-        NULL,
-        parse_run,
-        "SCRIPT",
-        "Plays a motion script against the simulator and prints what came of it.\v"
-        "Exit status: 0 if all expectations were met, 1 if the script's expectations or the cell failed, "
-        "2 for wrong usage or a bad input file.",
-        children,
-        NULL,
-        NULL};
-    static char name[] = "waferhand run";
-    wh_run_arguments_t arguments = {0};
-    wh_run_arguments_init(&arguments, argc);
-    argv[0] = name;
-    argp_parse(&argp, argc, argv, 0, NULL, &arguments);
-    const int status = wh_run_and_report(&arguments);
-    wh_run_arguments_free(&arguments);
-    return status;
-}
