@@ -175,6 +175,7 @@ int wh_app_sim(int argc, char **argv) {
     wh_sandbox_t *sandbox = wh_sandbox_new(NULL);
     if (!arguments.parameters || !sandbox) {
         perror("waferhand");
+        free(arguments.parameters);
         return WH_EXIT_USAGE;
     }
     argv[0] = name;

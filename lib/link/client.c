@@ -10,7 +10,7 @@
 #include "link/outputs.h"
 
 #define SETTLE_US 1000000
-#define RESEND_LEAST_US 300
+#define RESEND_LEAST_US INT64_C(300)
 #define RESEND_MOST_US 50000
 /* So often a command is sent again at the first pace; then, for nobody seems to be there, less and less often. */
 #define RESENDS_AT_FIRST_PACE 20

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/hash.h"
 #include "link/cell_layout.h"
 
 /* ---------------------------------------------------------------------------------------------------- runs */
@@ -37,7 +38,8 @@ static void note_slice(wh_replay_t *replay, wh_replay_run_t *run) {
 
 static bool differs(wh_replay_difference_t *difference, const char *of, const char *what, double recorded,
                     double replayed) {
-    if (memcmp(&recorded, &replayed, sizeof recorded) == 0) {
+    /* By their bits: the hash tells -0 from 0, too. */
+    if (wh_hash_real(WH_HASH_START, recorded) == wh_hash_real(WH_HASH_START, replayed)) {
         return false;
     }
     snprintf(difference->what, sizeof difference->what, "%s, %s", of, what);

@@ -328,8 +328,8 @@ static wh_link_t *connect_nowhere(void *user, wh_mcs_t *mcs) {
 static int open_between(void **state) {
     (void)state;
     memset(&between, 0, sizeof between);
-    const wh_session_options_t options = {
-        .layout = "lua/layouts/paper.lua", .partners = {.connect = connect_between, .user = &between}};
+    const wh_session_options_t options = {.layout = "lua/layouts/paper.lua",
+                                          .partners = {.connect = connect_between, .user = &between}};
     return wh_session_open(&session, &options) ? 0 : -1;
 }
 
@@ -427,7 +427,8 @@ static void test_what_cannot_be_opened(void **state) {
     const wh_session_options_t script = {.layout = "lua/examples/01_transfer.lua"};
     const wh_session_options_t parameter = {
         .layout = "lua/layouts/paper.lua", .parameters = bad, .parameter_count = 1};
-    const wh_session_options_t unconnected = {.layout = "lua/layouts/paper.lua", .partners = {.connect = connect_nowhere}};
+    const wh_session_options_t unconnected = {.layout = "lua/layouts/paper.lua",
+                                              .partners = {.connect = connect_nowhere}};
     assert_refused(&missing, "tests/data/missing.lua: ");
     assert_refused(&script, "lua/examples/01_transfer.lua:");
     assert_refused(&parameter, "no equals sign");
