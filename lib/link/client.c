@@ -255,6 +255,14 @@ static void write_outputs(wh_client_t *client) {
     }
 }
 
+/* What came since the last exchange, while somebody waited for a late state, is still to be handed over. */
+static void forget_delivered_events(wh_client_t *client) {
+    const size_t left = client->event_count - client->events_delivered;
+    memmove(client->events, client->events + client->events_delivered, left * sizeof *client->events);
+    client->event_count = left;
+    client->events_delivered = 0;
+}
+
 /* A command that was given up may or may not have arrived: it is seen through before the next one. */
 static wh_status_t see_through(wh_client_t *client) {
     if (!client->pending) {
@@ -282,7 +290,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     client->answered = false;
     client->asked_for_state = false;
     client->refusal = WH_OK;
-    client->event_count = 0;
+    forget_delivered_events(client);
     write_outputs(client);
     ++client->counters.sent;
     send_command(client);
@@ -291,6 +299,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     *state = client->state;
     state->events = client->events;
     state->event_count = client->event_count;
+    client->events_delivered = client->event_count;
     state->status = status;
     return status;
 }

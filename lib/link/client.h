@@ -57,7 +57,7 @@ typedef struct {
     wh_link_arrays_t arrays;
     wh_link_arrays_t spare;
     wh_event_t events[4 * WH_LINK_EVENTS]; /* of all states since the last exchange */
-    size_t event_count;
+    size_t event_count, events_delivered;
     uint8_t restore[WH_LINK_DATAGRAM]; /* the last state as it came, to be sent back */
     size_t restore_size;
     uint8_t encoded[4096];
@@ -73,7 +73,8 @@ int64_t wh_client_draw_run(void);
  * answer whether it is. To be called now and then between commands; handles what has come. */
 void wh_client_heartbeat(wh_client_t *client);
 
-/* Free-running: waits up to so long for the state of the last command. True in lockstep, or when it came. */
+/* Free-running: waits up to so long for the state of the last command, so that what is asked next is asked of it.
+ * True in lockstep, or when it came. */
 bool wh_client_settle(wh_client_t *client, int64_t timeout_us);
 
 #endif

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #define HEARTBEAT_US 200000
+/* How long the end of a free-running command waits for the state of its last slice. */
+#define COMMAND_SETTLE_US 100000
 
 /* ------------------------------------------------------------------------------------------------- telling */
 
@@ -47,6 +49,9 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
     if (!ended) {
         tell(control, WH_LINK_PHASE_BEGINS, command->line, WH_OK, command->text, "");
         return;
+    }
+    if (control->connected) {
+        (void)wh_client_settle(&control->client, COMMAND_SETTLE_US);
     }
     /* A request is answered with its result, by wh_control_answer. */
     const int64_t request = control->request;
