@@ -263,6 +263,17 @@ static void forget_delivered_events(wh_client_t *client) {
     client->events_delivered = 0;
 }
 
+/* Before the first answer the caller's own view of the beginning stays. */
+static void hand_over(wh_client_t *client, wh_state_t *state, wh_status_t status) {
+    if (client->has_state) {
+        *state = client->state;
+    }
+    state->events = client->events;
+    state->event_count = client->event_count;
+    client->events_delivered = client->event_count;
+    state->status = status;
+}
+
 /* A command that was given up may or may not have arrived: it is seen through before the next one. */
 static wh_status_t see_through(wh_client_t *client) {
     if (!client->pending) {
@@ -281,9 +292,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     client->refusal = WH_OK;
     const wh_status_t before = see_through(client);
     if (before != WH_OK) {
-        *state = client->state;
-        state->event_count = 0;
-        state->status = before;
+        hand_over(client, state, before);
         return before;
     }
     wh_link_command_to_message(command, &client->identity, !free_running, &client->command);
@@ -296,11 +305,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     send_command(client);
     const wh_status_t status = free_running ? await_due_time(client) : await_answer(client);
     client->pending = !free_running && !client->answered && client->refusal == WH_OK;
-    *state = client->state;
-    state->events = client->events;
-    state->event_count = client->event_count;
-    client->events_delivered = client->event_count;
-    state->status = status;
+    hand_over(client, state, status);
     return status;
 }
 
