@@ -24,6 +24,10 @@ bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options)
 
 static void print_counters(const wh_control_t *control) {
     const wh_client_counters_t *c = &control->client.counters;
+    /* A command that was sent twice is nothing to speak of. */
+    if (control->options.rate <= 0 && c->malformed + c->restored + c->silences == 0) {
+        return;
+    }
     fprintf(stderr,
             "mcs: %" PRIu64 " slices sent, %" PRIu64 " commands repeated, %" PRIu64 " states taken, %" PRIu64
             " unasked, %" PRIu64 " malformed; %" PRIu64 " states sent back, %" PRIu64 " silences\n",
