@@ -100,6 +100,7 @@ static wh_server_result_t step(wh_server_t *server, const waferhand_command *mes
     wh_state_t state;
     if (wh_simulator_step(&server->simulator, &command, &state) != WH_OK) {
         ++server->counters.refused;
+        server->state.event_count = 0; /* the simulator's events are now those of the refusal */
         encode(server, &state, &server->identity);
         return WH_SERVER_ANSWERED;
     }
@@ -167,9 +168,10 @@ wh_server_result_t wh_server_command(wh_server_t *server, const waferhand_comman
 
 static bool is_wanted(const wh_server_t *server, const waferhand_state *message) {
     const bool further = message->run != server->identity.run || message->seq > server->seq;
-    return message->run != 0 && message->seq >= 1 && message->seq <= WH_LINK_SLICES &&
-           message->status == WH_OK && (uint64_t)message->layout_hash == server->identity.layout_hash &&
-           further && !is_past(server, message->run);
+    return message->run != 0 && message->missed >= 0 && message->missed < message->seq && message->seq >= 1 &&
+           message->seq <= WH_LINK_SLICES && message->status == WH_OK &&
+           (uint64_t)message->layout_hash == server->identity.layout_hash && further &&
+           !is_past(server, message->run);
 }
 
 /* Whether the state is one that a table like ours could be in, and the one whose hash it carries. */

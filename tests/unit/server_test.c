@@ -123,6 +123,8 @@ static void test_a_refused_command_changes_nothing(void **state) {
     assert_int_equal(wh_server_command(&server, &bad, NULL), WH_SERVER_ANSWERED);
     assert_int_equal(answered_status(&server), WH_STATUS_BAD_VALVE);
     assert_true(wh_server_hash(&server) == hash);
+    assert_int_equal(send(&server, 7, 1), WH_SERVER_ANSWERED);
+    assert_int_equal(server.room.message.event_count, 0);
     assert_int_equal(send(&server, 7, 2), WH_SERVER_STEPPED);
 }
 
@@ -168,9 +170,13 @@ static void drop_wafer(waferhand_state *message) {
     message->wafer_count -= 1;
 }
 
+static void miss_more_than_there_are(waferhand_state *message) {
+    message->missed = INT64_MIN;
+}
+
 static void test_no_other_state_is_taken_over(void **state) {
-    static void (*const changes[])(waferhand_state * message) = {shift_wafer, hold_twice, spoil_rotation,
-                                                                 change_layout, drop_wafer};
+    static void (*const changes[])(waferhand_state * message) = {
+        shift_wafer, hold_twice, spoil_rotation, change_layout, miss_more_than_there_are, drop_wafer};
     (void)state;
     send(&server, 7, 1);
     const uint64_t hash = wh_server_hash(&restarted);
