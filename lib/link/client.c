@@ -10,6 +10,7 @@
 #include "link/outputs.h"
 
 #define SETTLE_US 1000000
+#define TICK_US 1000000
 #define RESEND_LEAST_US INT64_C(300)
 #define RESEND_MOST_US 50000
 /* So often a command is sent again at the first pace; then, for nobody seems to be there, less and less often. */
@@ -285,6 +286,14 @@ static wh_status_t see_through(wh_client_t *client) {
     return status;
 }
 
+static void tick(wh_client_t *client) {
+    const int64_t now = wh_node_clock_us();
+    if (client->options.tick && now - client->last_tick_us >= TICK_US) {
+        client->last_tick_us = now;
+        client->options.tick(client->options.tick_user);
+    }
+}
+
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     wh_client_t *client = (wh_client_t *)link;
     const bool free_running = is_free_running(client);
@@ -303,6 +312,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     write_outputs(client);
     ++client->counters.sent;
     send_command(client);
+    tick(client);
     const wh_status_t status = free_running ? await_due_time(client) : await_answer(client);
     client->pending = !free_running && !client->answered && client->refusal == WH_OK;
     hand_over(client, state, status);

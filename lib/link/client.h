@@ -34,6 +34,8 @@ typedef struct {
     void (*say)(void *user,
                 const char *text); /* one line for people: silence, return, restart; may be null */
     void *user;
+    void (*tick)(void *tick_user); /* called once a second of a long motion; may be null */
+    void *tick_user;
 } wh_client_options_t;
 
 /* Written by client.c. Must not be moved once opened. */
@@ -51,7 +53,7 @@ typedef struct {
     int64_t missed;      /* as the simulator counts */
     uint64_t hash;       /* of the last state */
     int64_t resend_us;   /* how long to wait before sending again */
-    int64_t last_heard_us, start_us;
+    int64_t last_heard_us, start_us, last_tick_us;
     bool silent;
     wh_client_counters_t counters;
     wh_link_arrays_t arrays;

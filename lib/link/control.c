@@ -46,6 +46,8 @@ static void tell(wh_control_t *control, int32_t phase, int line, wh_status_t err
 static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
     wh_control_t *control = user;
     (void)mcs;
+    snprintf(control->running, sizeof control->running, "%s", ended ? "" : command->text);
+    control->running_line = command->line;
     if (!ended) {
         tell(control, WH_LINK_PHASE_BEGINS, command->line, WH_OK, command->text, "");
         return;
@@ -159,6 +161,13 @@ void wh_control_answer(wh_control_t *control, wh_status_t error, const char *lin
 
 /* ------------------------------------------------------------------------------------------------- the run */
 
+static void tell_progress(void *user) {
+    wh_control_t *control = user;
+    if (control->running[0] != '\0') {
+        tell(control, WH_LINK_PHASE_GOES_ON, control->running_line, WH_OK, control->running, "");
+    }
+}
+
 static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
     wh_control_t *control = user;
     const wh_client_options_t options = {.layout = mcs->layout,
@@ -166,7 +175,9 @@ static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
                                          .rate = control->options.rate,
                                          .stop = control->options.stop,
                                          .say = control->options.say,
-                                         .user = control->options.user};
+                                         .user = control->options.user,
+                                         .tick = tell_progress,
+                                         .tick_user = control};
     if (mcs->layout->wafer_count > WH_LINK_WAFERS) {
         if (control->options.say) {
             control->options.say(control->options.user,

@@ -42,6 +42,8 @@ typedef struct {
     bool connected;
     wh_link_identity_t identity; /* of the run; and where it is: */
     int64_t utime, seq;
+    char running[200]; /* the command that goes on; empty: none */
+    int running_line;
     int64_t request; /* seq of the request being executed, or 0 */
     int64_t last_beat_us;
     wh_control_request_t waiting[WH_CONTROL_REQUESTS];
