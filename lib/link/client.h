@@ -15,7 +15,7 @@
 #include "link/node.h"
 
 /* A simulator that has not answered for so long is called silent, us. */
-#define WH_CLIENT_SILENCE_US 700000
+#define WH_CLIENT_SILENCE_US 500000
 
 typedef struct {
     uint64_t sent, repeated;     /* commands, and how many of them once more */

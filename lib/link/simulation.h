@@ -7,7 +7,7 @@
 #include "link/server.h"
 
 /* A motion control that has not sent a command for so long is called silent, us. */
-#define WH_SIMULATION_SILENCE_US 700000
+#define WH_SIMULATION_SILENCE_US 500000
 /* How often the cell is told again, us. */
 #define WH_SIMULATION_CELL_US 1000000
 /* How often the proximity values go out at most, us of wall-clock time; slices with events always tell them. */
