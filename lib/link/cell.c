@@ -4,15 +4,6 @@
 
 #include "link/messages.h"
 
-/* LCM's structs hold plain char pointers, though encoding only reads. */
-static char *borrowed(const char *text) {
-    union {
-        const char *constant;
-        char *plain;
-    } cast = {text};
-    return cast.plain;
-}
-
 static void put_pose(const wh_pose_t *pose, double position[3], double rotation[9]) {
     const double r[] = {pose->r.x, pose->r.y, pose->r.z};
     memcpy(position, r, sizeof r);
@@ -31,7 +22,7 @@ static bool make_room(const wh_layout_t *layout, waferhand_cell *message) {
 
 static void put_station(const wh_layout_t *layout, size_t s, waferhand_station *out) {
     const wh_station_t *place = &layout->places[s];
-    out->name = borrowed(layout->stations[s].name);
+    out->name = wh_link_borrowed(layout->stations[s].name);
     put_pose(&place->base_from_station, out->position, out->rotation);
     out->slots = place->slots;
     out->pitch = place->pitch;
@@ -40,14 +31,14 @@ static void put_station(const wh_layout_t *layout, size_t s, waferhand_station *
 
 static void put_lists(const wh_layout_t *layout, waferhand_cell *message) {
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        message->gripper_names[g] = borrowed(layout->grippers[g].name);
-        message->valve_names[g] = borrowed(layout->grippers[g].valve);
+        message->gripper_names[g] = wh_link_borrowed(layout->grippers[g].name);
+        message->valve_names[g] = wh_link_borrowed(layout->grippers[g].valve);
     }
     for (size_t s = 0; s < layout->station_count; ++s) {
         put_station(layout, s, &message->stations[s]);
     }
     for (size_t w = 0; w < layout->wafer_count; ++w) {
-        message->wafer_names[w] = borrowed(layout->wafers[w].name);
+        message->wafer_names[w] = wh_link_borrowed(layout->wafers[w].name);
         put_pose(&layout->start[w].base_from_wafer, message->wafers[w].position, message->wafers[w].rotation);
         message->wafers[w].holder = WH_NONE;
     }
@@ -62,7 +53,7 @@ bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_
     }
     message->run = identity->run;
     message->layout_hash = (int64_t)identity->layout_hash;
-    message->layout = borrowed(layout->path);
+    message->layout = wh_link_borrowed(layout->path);
     message->slice_us = layout->slice_us;
     message->eps_projz = layout->grasp.tolerance.projz;
     message->eps_projxy = layout->grasp.tolerance.projxy;

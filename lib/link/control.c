@@ -9,15 +9,6 @@
 
 /* ------------------------------------------------------------------------------------------------- telling */
 
-/* LCM's struct holds plain char pointers, though encoding only reads. */
-static char *borrowed(const char *text) {
-    union {
-        const char *constant;
-        char *plain;
-    } cast = {text};
-    return cast.plain;
-}
-
 static void tell(wh_control_t *control, int32_t phase, int line, wh_status_t error, const char *command,
                  const char *text) {
     waferhand_mcs message;
@@ -35,8 +26,8 @@ static void tell(wh_control_t *control, int32_t phase, int line, wh_status_t err
     message.request = control->request;
     message.line = line;
     message.error = (int32_t)error;
-    message.command = borrowed(command);
-    message.text = borrowed(text);
+    message.command = wh_link_borrowed(command);
+    message.text = wh_link_borrowed(text);
     const int size = waferhand_mcs_encode(control->encoded, 0, (int)sizeof control->encoded, &message);
     if (size > 0) {
         (void)wh_node_publish(control->node, WH_CHANNEL_MCS, control->encoded, (size_t)size);

@@ -64,6 +64,15 @@ typedef struct {
     waferhand_event events[WH_LINK_EVENTS];
 } wh_link_state_t;
 
+/* LCM's structs hold plain char pointers, though encoding only reads what they point to. */
+static inline char *wh_link_borrowed(const char *text) {
+    union {
+        const char *constant;
+        char *plain;
+    } cast = {text};
+    return cast.plain;
+}
+
 /* A command as a message, and back. The latter refuses counts out of range (WH_STATUS_OUT_OF_RANGE); poses and valves
  * are for the step to judge. */
 void wh_link_command_to_message(const wh_command_t *command, const wh_link_identity_t *identity,

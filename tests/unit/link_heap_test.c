@@ -1,61 +1,36 @@
 /* A step of the simulator allocates nothing: from the command's bytes to the bytes of the state and of the proximity values.
  * malloc and its kin are replaced by ones that count. What liblcm takes to receive a datagram is its own and not in this. */
 #include "support.h"
+#include "support_heap.h"
 
 #include "link/check.h"
 #include "link/proximity_message.h"
 #include "link/server.h"
 #include "script/run.h"
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define SANITIZED
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__)
-#define SANITIZED
-#endif
-
-static unsigned long calls;
-
-#if defined(__GLIBC__) && !defined(SANITIZED)
-void *__libc_malloc(size_t size);
-void *__libc_calloc(size_t count, size_t size);
-void *__libc_realloc(void *memory, size_t size);
-
-void *malloc(size_t size) {
-    ++calls;
-    return __libc_malloc(size);
-}
-
-void *calloc(size_t count, size_t size) {
-    ++calls;
-    return __libc_calloc(count, size);
-}
-
-void *realloc(void *memory, size_t size) {
-    ++calls;
-    return __libc_realloc(memory, size);
-}
-#else
-#define NOT_COUNTED
-#endif
-
 static wh_server_t server;
 static wh_state_t answer;
 static unsigned long calls_in_steps;
+
+static unsigned long heap_calls(void) {
+#if defined(WH_TEST_COUNTS_HEAP)
+    return calls;
+#else
+    return 0;
+#endif
+}
 
 static void step(const uint8_t *bytes, size_t size) {
     static uint8_t encoded[1024];
     waferhand_command command;
     waferhand_proximity proximity;
-    const unsigned long before = calls;
+    const unsigned long before = heap_calls();
     assert_true(wh_link_decode_command(bytes, size, &command));
     assert_int_not_equal(wh_server_command(&server, &command, NULL), WH_SERVER_IGNORED);
     wh_link_proximity_to_message(&server.state, &server.identity, &server.layout->grasp.tolerance,
                                  &proximity);
     assert_true(waferhand_proximity_encode(encoded, 0, (int)sizeof encoded, &proximity) > 0);
-    calls_in_steps += calls - before;
+    calls_in_steps += heap_calls() - before;
 }
 
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
@@ -95,12 +70,12 @@ static void test_a_step_allocates_nothing(void **state) {
                                       .partners = {.connect = connect_server}};
     wh_run_t run;
     (void)state;
-#if defined(NOT_COUNTED)
+#if !defined(WH_TEST_COUNTS_HEAP)
     skip();
 #endif
     assert_int_equal(wh_run_script(&run, &options), WH_RUN_MET);
     assert_true(server.counters.stepped > 10000);
-    assert_true(calls > 0);
+    assert_true(heap_calls() > 0);
     assert_int_equal(calls_in_steps, 0);
     wh_run_close(&run);
 }

@@ -1,45 +1,9 @@
 /* The core never asks for memory: malloc and its kin are replaced by ones that count, for the whole program.
  */
 #include "support_grasp.h"
+#include "support_heap.h"
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(thread_sanitizer)
-#define SANITIZED
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED
-#endif
-
-/* Sanitizers have their own malloc, and only glibc has these names. */
-#if defined(__GLIBC__) && !defined(SANITIZED)
-
-static unsigned long calls;
-
-void *__libc_malloc(size_t size);
-void *__libc_calloc(size_t count, size_t size);
-void *__libc_realloc(void *memory, size_t size);
-void __libc_free(void *memory);
-
-void *malloc(size_t size) {
-    ++calls;
-    return __libc_malloc(size);
-}
-
-void *calloc(size_t count, size_t size) {
-    ++calls;
-    return __libc_calloc(count, size);
-}
-
-void *realloc(void *memory, size_t size) {
-    ++calls;
-    return __libc_realloc(memory, size);
-}
-
-void free(void *memory) {
-    ++calls;
-    __libc_free(memory);
-}
+#if defined(WH_TEST_COUNTS_HEAP)
 
 /* One of everything, through each branch that a run can take. */
 static void exercise(wh_check_t check) {

@@ -1,46 +1,10 @@
 /* An update never asks for memory, whatever it finds: malloc and its kin are replaced by ones that count. */
 #include "link/outputs.h"
 #include "support.h"
+#include "support_heap.h"
 #include "support_outputs.h"
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(thread_sanitizer)
-#define SANITIZED
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SANITIZED
-#endif
-
-/* Sanitizers have their own malloc, and only glibc has these names. */
-#if defined(__GLIBC__) && !defined(SANITIZED)
-
-static unsigned long calls;
-
-void *__libc_malloc(size_t size);
-void *__libc_calloc(size_t count, size_t size);
-void *__libc_realloc(void *memory, size_t size);
-void __libc_free(void *memory);
-
-void *malloc(size_t size) {
-    ++calls;
-    return __libc_malloc(size);
-}
-
-void *calloc(size_t count, size_t size) {
-    ++calls;
-    return __libc_calloc(count, size);
-}
-
-void *realloc(void *memory, size_t size) {
-    ++calls;
-    return __libc_realloc(memory, size);
-}
-
-void free(void *memory) {
-    ++calls;
-    __libc_free(memory);
-}
+#if defined(WH_TEST_COUNTS_HEAP)
 
 /* Updates now and once what is there has settled; only this is counted. */
 static unsigned long calls_while_updating(outputs_fixture_t *f) {

@@ -1,0 +1,49 @@
+/* Counts what the whole program asks of the heap: malloc and its kin are replaced by ones that count. Include it in one
+ * file of a test. Where sanitizers have their own malloc, or another C library other names, nothing is counted and
+ * WH_TEST_COUNTS_HEAP is not defined. */
+#ifndef WH_TESTS_SUPPORT_HEAP_H
+#define WH_TESTS_SUPPORT_HEAP_H
+
+#include <stddef.h>
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(thread_sanitizer)
+#define WH_TEST_SANITIZED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define WH_TEST_SANITIZED
+#endif
+
+#if defined(__GLIBC__) && !defined(WH_TEST_SANITIZED)
+#define WH_TEST_COUNTS_HEAP
+
+static unsigned long calls;
+
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *memory, size_t size);
+void __libc_free(void *memory);
+
+void *malloc(size_t size) {
+    ++calls;
+    return __libc_malloc(size);
+}
+
+void *calloc(size_t count, size_t size) {
+    ++calls;
+    return __libc_calloc(count, size);
+}
+
+void *realloc(void *memory, size_t size) {
+    ++calls;
+    return __libc_realloc(memory, size);
+}
+
+void free(void *memory) {
+    ++calls;
+    __libc_free(memory);
+}
+#endif
+
+#endif
