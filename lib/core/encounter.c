@@ -1,31 +1,9 @@
 #include "core/encounter_internal.h"
 
+#include "core/grasp_internal.h"
 #include "core/proximity_internal.h"
-#include "core/sweep_internal.h"
 
-/* What one gripper's encounters are judged by in this step. */
-typedef struct {
-    wh_grasp_t *table;
-    wh_gripper_t *gripper;
-    const wh_pose_t *base_from_gripper;
-    int32_t index;
-    bool swept;
-    wh_sweep_t sweep;
-    wh_event_list_t *list;
-} watch_t;
-
-wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind) {
-    static const wh_event_t blank = {.wafer = WH_NONE, .gripper = WH_NONE, .other = WH_NONE};
-    WH_ASSERT(list->count < list->capacity);
-    wh_event_t *event = &list->events[list->count++];
-    *event = blank;
-    event->kind = kind;
-    event->slice = table->slice;
-    event->measured_slice = table->slice;
-    return event;
-}
-
-static void report(const watch_t *watch, wh_encounter_t *encounter, wh_event_kind_t kind) {
+static void report(const wh_watch_t *watch, wh_encounter_t *encounter, wh_event_kind_t kind) {
     if (watch->list) {
         wh_event_t *event = wh_event_append(watch->table, watch->list, kind);
         event->wafer = encounter->wafer;
@@ -38,119 +16,94 @@ static void report(const watch_t *watch, wh_encounter_t *encounter, wh_event_kin
     encounter->holder = WH_NONE;
 }
 
-static bool is_near(const watch_t *watch, const wh_proximity_t *p) {
-    return wh_real_abs(p->dr_proj_z) < watch->table->config.near_projz &&
-           p->dr_proj_xy_norm < watch->table->config.near_projxy;
+bool wh_reach_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
+                      const wh_pose_t *base_from_gripper, wh_reach_t *reach) {
+    const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &base_from_gripper->r);
+    const wh_vec3_t p = wh_mat3_transform_back(&base_from_wafer->R, &dr);
+    reach->z = wh_real_abs(p.z);
+    reach->xy = wh_real_sqrt(p.x * p.x + p.y * p.y);
+    return reach->z < config->near_projz && reach->xy < config->near_projxy;
+}
+
+static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_reach_t *reach) {
+    reach->t = 1;
+    return wh_reach_measure(&watch->table->config, &wafer->base_from_wafer, watch->base_from_gripper, reach);
+}
+
+/* The closest that the gripper came to the wafer in this slice; false when it did not come near. */
+static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_reach_t *closest) {
+    if (watch->sweep && wafer->released_by == WH_NONE) {
+        return wh_reach_swept(watch, &wafer->base_from_wafer, closest);
+    }
+    return is_near_now(watch, wafer, closest);
 }
 
 /* The square that "closest" is measured by: both distances in units of their tolerance. */
-static wh_real_t closeness(const wh_tolerance_t *tolerance, const wh_proximity_t *p) {
-    const wh_real_t z = p->dr_proj_z / tolerance->projz;
-    const wh_real_t xy = p->dr_proj_xy_norm / tolerance->projxy;
+static wh_real_t closeness(const wh_tolerance_t *tolerance, wh_real_t dr_proj_z, wh_real_t dr_proj_xy) {
+    const wh_real_t z = dr_proj_z / tolerance->projz;
+    const wh_real_t xy = dr_proj_xy / tolerance->projxy;
     return z * z + xy * xy;
 }
 
-static void measure_at(const watch_t *watch, const wh_wafer_t *wafer, wh_real_t t, wh_proximity_t *measured) {
-    wh_tolerance_t tolerance = watch->table->config.tolerance;
-    if (t < 1) {
-        tolerance.projz *= WH_SWEEP_INSIDE;
-    }
-    const wh_pose_t then = wh_sweep_pose_at(&watch->sweep, t);
-    wh_proximity_values(&wafer->base_from_wafer, &then, &tolerance, measured);
+static bool is_closer(const wh_tolerance_t *tolerance, const wh_reach_t *reach,
+                      const wh_proximity_t *measured) {
+    return closeness(tolerance, reach->z, reach->xy) <
+           closeness(tolerance, measured->dr_proj_z, measured->dr_proj_xy_norm);
 }
 
-/* The closest that the gripper came to the wafer in this slice, judged by the limits that hold there; false
- * when it did not come near. */
-static bool measure_closest(const watch_t *watch, const wh_wafer_t *wafer, wh_proximity_t *closest) {
-    const wh_grasp_config_t *config = &watch->table->config;
-    const wh_pose_t *base_from_wafer = &wafer->base_from_wafer;
-    if (!watch->swept || wafer->released_by != WH_NONE) {
-        wh_proximity_values(base_from_wafer, watch->base_from_gripper, &config->tolerance, closest);
-        return is_near(watch, closest);
-    }
-    wh_interval_t part;
-    if (!wh_sweep_within(&watch->sweep, base_from_wafer, config->near_projz, config->near_projxy, &part)) {
-        return false;
-    }
-    measure_at(watch, wafer,
-               wh_sweep_closest(&watch->sweep, base_from_wafer, &part, config->tolerance.projz,
-                                config->tolerance.projxy),
-               closest);
-    if (is_near(watch, closest)) {
-        return true;
-    }
-    /* The closest instant may be the one on the neighbourhood's edge; then the middle tells. */
-    wh_proximity_t middle;
-    measure_at(watch, wafer, (part.first + part.last) / 2, &middle);
-    return is_near(watch, &middle);
-}
-
-static void begin_encounter(const watch_t *watch, wh_encounter_t *encounter, size_t wafer,
-                            const wh_proximity_t *measured) {
-    encounter->wafer = (int32_t)wafer;
-    encounter->holder = watch->table->storage.wafers[wafer].holder;
+static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, int32_t w, wh_real_t t) {
+    const wh_wafer_t *wafer = &watch->table->storage.wafers[w];
+    encounter->wafer = w;
+    encounter->holder = wafer->holder;
     encounter->slice = watch->table->slice;
-    encounter->measured = *measured;
+    if (t < 1) {
+        wh_measure_swept(watch, &wafer->base_from_wafer, t, &encounter->measured);
+    } else {
+        wh_proximity_values(&wafer->base_from_wafer, watch->base_from_gripper,
+                            &watch->table->config.tolerance, &encounter->measured);
+    }
 }
 
-static void follow_approach(const watch_t *watch) {
+static void follow_approach(const wh_watch_t *watch) {
     wh_encounter_t *approach = &watch->gripper->approach;
-    const wh_tolerance_t *tolerance = &watch->table->config.tolerance;
     const wh_wafer_t *wafer = &watch->table->storage.wafers[approach->wafer];
     if (wafer->holder != WH_NONE) {
         approach->wafer = WH_NONE;
         return;
     }
-    wh_proximity_t measured;
-    if (measure_closest(watch, wafer, &measured) &&
-        closeness(tolerance, &measured) < closeness(tolerance, &approach->measured)) {
-        begin_encounter(watch, approach, (size_t)approach->wafer, &measured);
+    wh_reach_t reach;
+    if (came_near(watch, wafer, &reach) &&
+        is_closer(&watch->table->config.tolerance, &reach, &approach->measured)) {
+        begin_encounter(watch, approach, approach->wafer, reach.t);
     }
-    wh_proximity_values(&wafer->base_from_wafer, watch->base_from_gripper, tolerance, &measured);
-    if (!is_near(watch, &measured)) {
+    if (!is_near_now(watch, wafer, &reach)) {
         ++watch->table->counters.near_misses;
         report(watch, approach, WH_EVENT_NEAR_MISS);
     }
 }
 
 /* The nearest free wafer in the neighbourhood, if the gripper follows none yet. */
-static void begin_approach(const watch_t *watch) {
-    wh_encounter_t *approach = &watch->gripper->approach;
+static void begin_approach(const wh_watch_t *watch) {
     const wh_grasp_storage_t *storage = &watch->table->storage;
+    int32_t nearest = WH_NONE;
+    wh_real_t least = 0;
+    wh_real_t when = 0;
     for (size_t w = 0; w < storage->wafer_count; ++w) {
-        if (storage->wafers[w].holder != WH_NONE) {
-            continue;
-        }
-        wh_proximity_t p;
-        if (measure_closest(watch, &storage->wafers[w], &p) &&
-            (approach->wafer == WH_NONE ||
-             wh_real_abs(p.dr_proj_z) < wh_real_abs(approach->measured.dr_proj_z))) {
-            begin_encounter(watch, approach, w, &p);
+        wh_reach_t reach;
+        if (storage->wafers[w].holder == WH_NONE && came_near(watch, &storage->wafers[w], &reach) &&
+            (nearest == WH_NONE || reach.z < least)) {
+            nearest = (int32_t)w;
+            least = reach.z;
+            when = reach.t;
         }
     }
-}
-
-/* The wafer that the gripper would take if nobody held it: smallest |dr_proj_z|, then lowest index. */
-static void find_contest(const watch_t *watch, wh_encounter_t *found) {
-    const wh_grasp_storage_t *storage = &watch->table->storage;
-    const wh_tolerance_t *tolerance = &watch->table->config.tolerance;
-    found->wafer = WH_NONE;
-    for (size_t w = 0; w < storage->wafer_count; ++w) {
-        const wh_wafer_t *wafer = &storage->wafers[w];
-        if (wafer->holder == WH_NONE ||
-            !wh_proximity_ready(&wafer->base_from_wafer, watch->base_from_gripper, tolerance)) {
-            continue;
-        }
-        wh_proximity_t p;
-        wh_proximity_values(&wafer->base_from_wafer, watch->base_from_gripper, tolerance, &p);
-        if (found->wafer == WH_NONE || wh_real_abs(p.dr_proj_z) < wh_real_abs(found->measured.dr_proj_z)) {
-            begin_encounter(watch, found, w, &p);
-        }
+    if (nearest != WH_NONE) {
+        begin_encounter(watch, &watch->gripper->approach, nearest, when);
     }
 }
 
 /* A contest that is over is reported unless the wafer went on to another holder. */
-static void end_contest(const watch_t *watch) {
+static void end_contest(const wh_watch_t *watch) {
     wh_encounter_t *contest = &watch->gripper->contest;
     if (contest->wafer == WH_NONE) {
         return;
@@ -164,7 +117,7 @@ static void end_contest(const watch_t *watch) {
     report(watch, contest, WH_EVENT_CONTESTED);
 }
 
-static bool contest_goes_on(const watch_t *watch) {
+static bool contest_goes_on(const wh_watch_t *watch) {
     const wh_encounter_t *contest = &watch->gripper->contest;
     if (contest->wafer == WH_NONE) {
         return false;
@@ -175,23 +128,21 @@ static bool contest_goes_on(const watch_t *watch) {
                               &watch->table->config.tolerance);
 }
 
-/* A contest that goes on is kept even when another held wafer has come nearer: it would be reported each time
- * that the two change places, and before its own hand-over. */
-static void follow_contest(const watch_t *watch) {
+/* The wafer that the gripper would take if nobody held it. A contest that goes on is kept even when another held wafer has
+ * come nearer: it would be reported each time that the two change places, and before its own hand-over. */
+static void follow_contest(const wh_watch_t *watch) {
     if (contest_goes_on(watch)) {
         return;
     }
-    wh_encounter_t *contest = &watch->gripper->contest;
-    wh_encounter_t found;
     end_contest(watch);
-    find_contest(watch, &found);
-    if (found.wafer != WH_NONE) {
-        *contest = found;
+    const int32_t best = wh_grasp_find_ready(watch->table, watch->base_from_gripper, true);
+    if (best != WH_NONE) {
+        begin_encounter(watch, &watch->gripper->contest, best, 1);
     }
 }
 
 /* The gripper closed or took a wafer: what it was watching is over. */
-static void end_encounters(const watch_t *watch, bool closed) {
+static void end_encounters(const wh_watch_t *watch, bool closed) {
     wh_encounter_t *approach = &watch->gripper->approach;
     if (approach->wafer != WH_NONE && closed &&
         watch->table->storage.wafers[approach->wafer].holder == WH_NONE) {
@@ -202,28 +153,26 @@ static void end_encounters(const watch_t *watch, bool closed) {
     end_contest(watch);
 }
 
+void wh_encounter_follow(const wh_watch_t *watch) {
+    if (watch->gripper->approach.wafer == WH_NONE) {
+        begin_approach(watch);
+    }
+    if (watch->gripper->approach.wafer != WH_NONE) {
+        follow_approach(watch);
+    }
+    follow_contest(watch);
+}
+
 void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
-    watch_t watch;
-    watch.table = table;
-    watch.gripper = &table->storage.grippers[gripper];
-    watch.base_from_gripper = &input->base_from_gripper;
-    watch.index = (int32_t)gripper;
-    watch.list = list;
+    wh_watch_t watch = {
+        table, &table->storage.grippers[gripper], &input->base_from_gripper, NULL, list, (int32_t)gripper};
     const bool closed = input->valve == WH_VALVE_CLOSED;
     if (closed || watch.gripper->wafer != WH_NONE) {
         end_encounters(&watch, closed);
-        return;
+    } else if (table->config.check == WH_CHECK_SWEPT && watch.gripper->valve == WH_VALVE_OPEN) {
+        wh_encounter_follow_swept(&watch);
+    } else {
+        wh_encounter_follow(&watch);
     }
-    watch.swept = table->config.check == WH_CHECK_SWEPT && watch.gripper->valve == WH_VALVE_OPEN;
-    if (watch.swept) {
-        watch.sweep = wh_sweep_between(&watch.gripper->base_from_gripper, &input->base_from_gripper);
-    }
-    if (watch.gripper->approach.wafer == WH_NONE) {
-        begin_approach(&watch);
-    }
-    if (watch.gripper->approach.wafer != WH_NONE) {
-        follow_approach(&watch);
-    }
-    follow_contest(&watch);
 }

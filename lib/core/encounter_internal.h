@@ -3,14 +3,45 @@
 #define WH_CORE_ENCOUNTER_INTERNAL_H
 
 #include "core/grasp.h"
+#include "core/sweep_internal.h"
 
-/* A blank event of the running step, appended to the list for the caller to fill in. There is room: the step
- * has looked. */
-wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind);
+/* What one gripper's encounters are judged by in this step. */
+typedef struct {
+    wh_grasp_t *table;
+    wh_gripper_t *gripper;
+    const wh_pose_t *base_from_gripper; /* at the slice's end */
+    const wh_sweep_t *sweep;            /* since the last slice; null where checking is sampled */
+    wh_event_list_t *list;
+    int32_t index;
+} wh_watch_t;
+
+/* How near the gripper is to a wafer, and when: 1 is the slice's end. */
+typedef struct {
+    wh_real_t t;
+    wh_real_t z;  /* |dr_proj_z| */
+    wh_real_t xy; /* |dr_proj_xy| */
+} wh_reach_t;
 
 /* Updates one gripper's approach and contest and reports those that ended. `input` is this slice's, the
  * gripper still has the previous slice's pose and valve. */
 void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_input_t *input,
                          wh_event_list_t *list);
+
+/* Its part for a gripper that was and is open and empty, with or without watch->sweep. */
+void wh_encounter_follow(const wh_watch_t *watch);
+
+/* The same with a sweep since the last slice, which it makes. */
+void wh_encounter_follow_swept(wh_watch_t *watch);
+
+/* Fills in the two distances; whether they are within the neighbourhood for near misses. */
+bool wh_reach_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
+                      const wh_pose_t *base_from_gripper, wh_reach_t *reach);
+
+/* The closest that a gripper with a sweep came to the wafer in this slice; false when it did not come near. */
+bool wh_reach_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_reach_t *closest);
+
+/* The values at an instant before the slice's end, judged by the limits that hold there. */
+void wh_measure_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_real_t t,
+                      wh_proximity_t *measured);
 
 #endif

@@ -21,23 +21,25 @@ static wh_status_t validate_config(const wh_grasp_config_t *config) {
     return near_good ? wh_tolerance_validate(&config->tolerance) : WH_STATUS_BAD_TOLERANCE;
 }
 
-static wh_status_t validate_storage(const wh_grasp_storage_t *storage) {
-    if ((!storage->wafers && storage->wafer_count > 0) ||
-        (!storage->grippers && storage->gripper_count > 0) ||
-        (!storage->buckets && storage->bucket_count > 0)) {
+static wh_status_t validate_array(const void *array, size_t count) {
+    if (!array && count > 0) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (storage->wafer_count > INT32_MAX || storage->gripper_count > INT32_MAX ||
-        storage->bucket_count > INT32_MAX) {
-        return WH_STATUS_BAD_CAPACITY;
+    return count > INT32_MAX ? WH_STATUS_BAD_CAPACITY : WH_OK;
+}
+
+static wh_status_t validate_storage(const wh_grasp_storage_t *storage) {
+    wh_status_t status = validate_array(storage->wafers, storage->wafer_count);
+    if (status == WH_OK) {
+        status = validate_array(storage->grippers, storage->gripper_count);
     }
-    for (size_t w = 0; w < storage->wafer_count; ++w) {
-        const wh_status_t status = wh_pose_validate(&storage->wafers[w].base_from_wafer);
-        if (status != WH_OK) {
-            return status;
-        }
+    if (status == WH_OK) {
+        status = validate_array(storage->buckets, storage->bucket_count);
     }
-    return WH_OK;
+    for (size_t w = 0; w < storage->wafer_count && status == WH_OK; ++w) {
+        status = wh_pose_validate(&storage->wafers[w].base_from_wafer);
+    }
+    return status;
 }
 
 static void clear_gripper(wh_gripper_t *gripper) {

@@ -29,13 +29,32 @@ wh_status_t wh_pose_validate(const wh_pose_t *pose) {
     return orthonormal && wh_vec3_dot(&e1_cross_e2, &e3) > 0 ? WH_OK : WH_STATUS_NOT_A_ROTATION;
 }
 
-wh_mat3_t wh_mat3_orthonormalise(const wh_mat3_t *almost) {
-    wh_mat3_t correction = wh_mat3_multiply_back(almost, almost);
+void wh_pose_compose_to(const wh_pose_t *a_from_b, const wh_pose_t *b_from_c, wh_pose_t *a_from_c) {
+    const wh_vec3_t turned = wh_mat3_transform(&a_from_b->R, &b_from_c->r);
+    a_from_c->r = wh_vec3_add(&turned, &a_from_b->r);
+    wh_mat3_multiply_to(&a_from_b->R, &b_from_c->R, &a_from_c->R);
+}
+
+void wh_pose_relative_to(const wh_pose_t *a_from_b, const wh_pose_t *a_from_c, wh_pose_t *b_from_c) {
+    const wh_vec3_t between = wh_vec3_subtract(&a_from_c->r, &a_from_b->r);
+    b_from_c->r = wh_mat3_transform_back(&a_from_b->R, &between);
+    wh_mat3_multiply_back_to(&a_from_b->R, &a_from_c->R, &b_from_c->R);
+}
+
+void wh_mat3_orthonormalise(wh_mat3_t *R) {
+    wh_mat3_t correction;
+    wh_mat3_multiply_back_to(R, R, &correction);
     for (size_t row = 0; row < 3; ++row) {
         for (size_t column = 0; column < 3; ++column) {
             const wh_real_t identity = row == column ? WH_REAL(3) : WH_REAL(0);
             correction.m[row][column] = (identity - correction.m[row][column]) / 2;
         }
     }
-    return wh_mat3_multiply(almost, &correction);
+    for (size_t row = 0; row < 3; ++row) {
+        const wh_vec3_t almost = wh_mat3_row(R, row);
+        const wh_vec3_t turned = wh_mat3_transform_back(&correction, &almost);
+        R->m[row][0] = turned.x;
+        R->m[row][1] = turned.y;
+        R->m[row][2] = turned.z;
+    }
 }

@@ -2,14 +2,6 @@
 
 #include "core/proximity_internal.h"
 
-/* Squares decide beyond this relative distance from a limit; closer than it the square root does. It is some
- * thousand units in the last place, where the rounding of square, product and root is only a few. */
-#if defined(WH_FLOAT)
-#define CLEAR WH_REAL(1e-5)
-#else
-#define CLEAR WH_REAL(1e-12)
-#endif
-
 wh_tolerance_t wh_tolerance_paper(void) {
     const wh_tolerance_t paper = {WH_REAL(0.5), 50, WH_REAL(0.99)};
     return paper;
@@ -81,34 +73,22 @@ wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose
     return status;
 }
 
-static bool is_within_xy(wh_real_t x, wh_real_t y, wh_real_t limit) {
-    const wh_real_t square = x * x + y * y;
-    const wh_real_t limit_square = limit * limit;
-    if (square < limit_square * (1 - CLEAR)) {
-        return true;
-    }
-    return square <= limit_square * (1 + CLEAR) && wh_real_sqrt(square) < limit;
-}
-
-/* (1)-(8) never look at the gripper's first two axes; a NaN there must not pass for all that. */
-static bool unused_are_numbers(const wh_mat3_t *R) {
-    return wh_real_is_finite(R->m[0][0] + R->m[0][1] + R->m[1][0] + R->m[1][1] + R->m[2][0] + R->m[2][1]);
-}
-
+/* (1)-(8) never look at the gripper's first two axes: a NaN there comes in as what must be zero. */
 bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                         const wh_tolerance_t *tolerance) {
-    const wh_vec3_t n1 = wh_mat3_column(&base_from_wafer->R, 2);
     const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &base_from_gripper->r);
-    if (!(wh_real_abs(wh_vec3_dot(&dr, &n1)) < tolerance->projz)) {
+    const wh_vec3_t p = wh_mat3_transform_back(&base_from_wafer->R, &dr);
+    if (!(wh_real_abs(p.z) < tolerance->projz) ||
+        !(wh_real_sqrt(p.x * p.x + p.y * p.y) < tolerance->projxy)) {
         return false;
     }
-    const wh_vec3_t e1 = wh_mat3_column(&base_from_wafer->R, 0);
-    const wh_vec3_t e2 = wh_mat3_column(&base_from_wafer->R, 1);
-    if (!is_within_xy(wh_vec3_dot(&e1, &dr), wh_vec3_dot(&e2, &dr), tolerance->projxy)) {
-        return false;
+    wh_real_t n1_proj_n2 = p.x - p.x;
+    for (size_t row = 0; row < 3; ++row) {
+        const wh_real_t *axes = base_from_gripper->R.m[row];
+        const wh_real_t unused = axes[0] + axes[1];
+        n1_proj_n2 += base_from_wafer->R.m[row][2] * axes[2] + (unused - unused);
     }
-    const wh_vec3_t n2 = wh_mat3_column(&base_from_gripper->R, 2);
-    return wh_vec3_dot(&n1, &n2) > tolerance->planar && unused_are_numbers(&base_from_gripper->R);
+    return n1_proj_n2 > tolerance->planar;
 }
 
 wh_real_t wh_proximity_rim_gap(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,

@@ -60,10 +60,9 @@ wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance);
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                  const wh_tolerance_t *tolerance, wh_proximity_t *result);
 
-/* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit, found with
- * squares where they are clear. No argument is checked: poses and tolerance must be valid ones, except that a
- * NaN anywhere gives false. Cost: 3 to 12 products; a square root only within 1e-12 (1e-5 in float) of the
- * limit (7). */
+/* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit. No argument is checked:
+ * poses and tolerance must be valid ones, except that a NaN anywhere gives false. Cost: 9 products where the wafer is
+ * too far away, 15 and a square root within the limit (6). */
 bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                         const wh_tolerance_t *tolerance);
 

@@ -36,31 +36,29 @@ static wh_mat3_t rotation_from_quaternion(wh_real_t w, const wh_vec3_t *v) {
     return R;
 }
 
-wh_sweep_t wh_sweep_between(const wh_pose_t *begin, const wh_pose_t *end) {
-    wh_sweep_t sweep;
-    sweep.begin = *begin;
-    sweep.end = *end;
-    sweep.travel = wh_vec3_subtract(&end->r, &begin->r);
-    const wh_mat3_t turn = wh_mat3_multiply_back(&begin->R, &end->R);
-    quaternion_from_rotation(&turn, &sweep.w, &sweep.v);
-    if (sweep.w < 0) {
-        sweep.w = -sweep.w;
-        sweep.v = wh_vec3_scale(-1, &sweep.v);
+void wh_sweep_between(const wh_pose_t *begin, const wh_pose_t *end, wh_sweep_t *sweep) {
+    wh_mat3_t turn;
+    wh_mat3_multiply_back_to(&begin->R, &end->R, &turn);
+    sweep->begin = begin;
+    sweep->end = end;
+    sweep->travel = wh_vec3_subtract(&end->r, &begin->r);
+    quaternion_from_rotation(&turn, &sweep->w, &sweep->v);
+    if (sweep->w < 0) {
+        sweep->w = -sweep->w;
+        sweep->v = wh_vec3_scale(-1, &sweep->v);
     }
-    return sweep;
 }
 
-wh_pose_t wh_sweep_pose_at(const wh_sweep_t *sweep, wh_real_t t) {
+void wh_sweep_pose_at(const wh_sweep_t *sweep, wh_real_t t, wh_pose_t *pose) {
     if (t >= 1) {
-        return sweep->end;
+        *pose = *sweep->end;
+        return;
     }
-    wh_pose_t pose;
     const wh_vec3_t along = wh_vec3_scale(t, &sweep->travel);
     const wh_vec3_t v = wh_vec3_scale(t, &sweep->v);
     const wh_mat3_t turn = rotation_from_quaternion(1 - t + t * sweep->w, &v);
-    pose.r = wh_vec3_add(&sweep->begin.r, &along);
-    pose.R = wh_mat3_multiply(&sweep->begin.R, &turn);
-    return pose;
+    pose->r = wh_vec3_add(&sweep->begin->r, &along);
+    wh_mat3_multiply_to(&sweep->begin->R, &turn, &pose->R);
 }
 
 static bool cut(wh_interval_t *part, wh_real_t first, wh_real_t last) {
@@ -97,7 +95,7 @@ static bool cut_cylinder(wh_interval_t *part, wh_real_t a, wh_real_t b, wh_real_
 
 bool wh_sweep_within(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer, wh_real_t projz,
                      wh_real_t projxy, wh_interval_t *part) {
-    const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &sweep->begin.r);
+    const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &sweep->begin->r);
     const wh_vec3_t p = wh_mat3_transform_back(&base_from_wafer->R, &dr);
     const wh_vec3_t d = wh_mat3_transform_back(&base_from_wafer->R, &sweep->travel);
     part->first = 0;
@@ -112,7 +110,7 @@ bool wh_sweep_within(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer, 
 static bool cut_planar(wh_interval_t *part, const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer,
                        wh_real_t limit) {
     const wh_vec3_t n1 = wh_mat3_column(&base_from_wafer->R, 2);
-    const wh_vec3_t m = wh_mat3_transform_back(&sweep->begin.R, &n1);
+    const wh_vec3_t m = wh_mat3_transform_back(&sweep->begin->R, &n1);
     const wh_vec3_t *v = &sweep->v;
     const wh_real_t k = 1 - sweep->w;
     const wh_real_t a = 2 * (v->y * m.x - v->x * m.y);
@@ -147,7 +145,8 @@ bool wh_sweep_first_ready(const wh_sweep_t *sweep, const wh_pose_t *base_from_wa
     }
     for (size_t i = 0; i < sizeof later / sizeof later[0]; ++i) {
         const wh_real_t instant = part.first + later[i] * (part.last - part.first);
-        const wh_pose_t base_from_gripper = wh_sweep_pose_at(sweep, instant);
+        wh_pose_t base_from_gripper;
+        wh_sweep_pose_at(sweep, instant, &base_from_gripper);
         if (wh_proximity_ready(base_from_wafer, &base_from_gripper, tolerance)) {
             *t = instant;
             return true;
@@ -158,7 +157,7 @@ bool wh_sweep_first_ready(const wh_sweep_t *sweep, const wh_pose_t *base_from_wa
 
 wh_real_t wh_sweep_closest(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer,
                            const wh_interval_t *part, wh_real_t projz, wh_real_t projxy) {
-    const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &sweep->begin.r);
+    const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &sweep->begin->r);
     const wh_vec3_t p = wh_mat3_transform_back(&base_from_wafer->R, &dr);
     const wh_vec3_t d = wh_mat3_transform_back(&base_from_wafer->R, &sweep->travel);
     const wh_real_t z = 1 / (projz * projz);

@@ -14,9 +14,9 @@
 #define WH_SWEEP_INSIDE WH_REAL(0.998)
 
 typedef struct {
-    wh_pose_t begin, end;
-    wh_vec3_t travel; /* end.r - begin.r */
-    wh_real_t w;      /* the turn begin.R^T end.R as a unit quaternion, w >= 0 */
+    const wh_pose_t *begin, *end; /* the caller's */
+    wh_vec3_t travel;             /* end.r - begin.r */
+    wh_real_t w;                  /* the turn begin.R^T end.R as a unit quaternion, w >= 0 */
     wh_vec3_t v;
 } wh_sweep_t;
 
@@ -25,10 +25,10 @@ typedef struct {
     wh_real_t first, last;
 } wh_interval_t;
 
-wh_sweep_t wh_sweep_between(const wh_pose_t *begin, const wh_pose_t *end);
+void wh_sweep_between(const wh_pose_t *begin, const wh_pose_t *end, wh_sweep_t *sweep);
 
 /* The pose at t in [0, 1]; at 1 exactly `end`. */
-wh_pose_t wh_sweep_pose_at(const wh_sweep_t *sweep, wh_real_t t);
+void wh_sweep_pose_at(const wh_sweep_t *sweep, wh_real_t t, wh_pose_t *pose);
 
 /* The part of the slice in which |dr_proj_z| <= projz and |dr_proj_xy| <= projxy; false when there is none.
  */

@@ -20,7 +20,11 @@ typedef struct {
 } wh_mat3_t;
 
 static inline wh_real_t wh_real_abs(wh_real_t a) {
-    return a < 0 ? -a : a;
+#if defined(WH_FLOAT)
+    return fabsf(a);
+#else
+    return fabs(a);
+#endif
 }
 
 /* Correctly rounded, as IEEE 754 asks. */
@@ -93,28 +97,38 @@ static inline wh_vec3_t wh_mat3_transform_back(const wh_mat3_t *a, const wh_vec3
                    a->m[0][2] * v->x + a->m[1][2] * v->y + a->m[2][2] * v->z);
 }
 
-/* a * b */
-static inline wh_mat3_t wh_mat3_multiply(const wh_mat3_t *a, const wh_mat3_t *b) {
-    wh_mat3_t c;
+/* a * b, into memory that neither of them is in. */
+static inline void wh_mat3_multiply_to(const wh_mat3_t *a, const wh_mat3_t *b, wh_mat3_t *product) {
     for (size_t row = 0; row < 3; ++row) {
         for (size_t column = 0; column < 3; ++column) {
-            c.m[row][column] = a->m[row][0] * b->m[0][column] + a->m[row][1] * b->m[1][column] +
-                               a->m[row][2] * b->m[2][column];
+            product->m[row][column] = a->m[row][0] * b->m[0][column] + a->m[row][1] * b->m[1][column] +
+                                      a->m[row][2] * b->m[2][column];
         }
     }
-    return c;
+}
+
+/* transpose(a) * b, into memory that neither of them is in. */
+static inline void wh_mat3_multiply_back_to(const wh_mat3_t *a, const wh_mat3_t *b, wh_mat3_t *product) {
+    for (size_t row = 0; row < 3; ++row) {
+        for (size_t column = 0; column < 3; ++column) {
+            product->m[row][column] = a->m[0][row] * b->m[0][column] + a->m[1][row] * b->m[1][column] +
+                                      a->m[2][row] * b->m[2][column];
+        }
+    }
+}
+
+/* a * b */
+static inline wh_mat3_t wh_mat3_multiply(const wh_mat3_t *a, const wh_mat3_t *b) {
+    wh_mat3_t product;
+    wh_mat3_multiply_to(a, b, &product);
+    return product;
 }
 
 /* transpose(a) * b */
 static inline wh_mat3_t wh_mat3_multiply_back(const wh_mat3_t *a, const wh_mat3_t *b) {
-    wh_mat3_t c;
-    for (size_t row = 0; row < 3; ++row) {
-        for (size_t column = 0; column < 3; ++column) {
-            c.m[row][column] = a->m[0][row] * b->m[0][column] + a->m[1][row] * b->m[1][column] +
-                               a->m[2][row] * b->m[2][column];
-        }
-    }
-    return c;
+    wh_mat3_t product;
+    wh_mat3_multiply_back_to(a, b, &product);
+    return product;
 }
 
 #endif

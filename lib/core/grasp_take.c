@@ -1,0 +1,75 @@
+#include "core/grasp_internal.h"
+#include "core/proximity_internal.h"
+
+wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper) {
+    const wh_vec3_t dr = wh_vec3_subtract(&wafer->base_from_wafer.r, &base_from_gripper->r);
+    const wh_vec3_t n1 = wh_mat3_column(&wafer->base_from_wafer.R, 2);
+    return wh_real_abs(wh_vec3_dot(&dr, &n1));
+}
+
+int32_t wh_grasp_find_ready(const wh_grasp_t *table, const wh_pose_t *base_from_gripper, bool held) {
+    int32_t best = WH_NONE;
+    wh_real_t least = 0;
+    for (size_t w = 0; w < table->storage.wafer_count; ++w) {
+        const wh_wafer_t *wafer = &table->storage.wafers[w];
+        if ((wafer->holder != WH_NONE) == held &&
+            wh_proximity_ready(&wafer->base_from_wafer, base_from_gripper, &table->config.tolerance)) {
+            const wh_real_t distance = wh_grasp_distance(wafer, base_from_gripper);
+            if (best == WH_NONE || distance < least) {
+                best = (int32_t)w;
+                least = distance;
+            }
+        }
+    }
+    return best;
+}
+
+/* The smallest turn of the wafer, in the gripper's frame, that takes n1 to n2 = e3. c > 0 at every pick. */
+static void turn_onto_pads(wh_mat3_t *R) {
+    const wh_vec3_t n1 = wh_mat3_column(R, 2);
+    const wh_real_t a = n1.x;
+    const wh_real_t b = n1.y;
+    const wh_real_t c = n1.z;
+    const wh_real_t f = 1 / (1 + c);
+    const wh_mat3_t turn = {{{1 - f * a * a, -f * a * b, -a}, {-f * a * b, 1 - f * b * b, -b}, {a, b, c}}};
+    for (size_t column = 0; column < 3; ++column) {
+        const wh_vec3_t axis = wh_mat3_column(R, column);
+        const wh_vec3_t turned = wh_mat3_transform(&turn, &axis);
+        R->m[0][column] = turned.x;
+        R->m[1][column] = turned.y;
+        R->m[2][column] = turned.z;
+    }
+}
+
+/* Before the wafer is taken: a seated wafer would no longer show what made it ready. */
+static void report(wh_grasp_t *table, wh_event_list_t *list, size_t g, int32_t w, const wh_pose_t *then) {
+    const wh_wafer_t *wafer = &table->storage.wafers[w];
+    const bool handed_over = wafer->released_by != WH_NONE;
+    *(handed_over ? &table->counters.handed_over : &table->counters.picked) += 1;
+    if (list) {
+        wh_event_t *event =
+            wh_event_append(table, list, handed_over ? WH_EVENT_HANDED_OVER : WH_EVENT_PICKED);
+        event->wafer = w;
+        event->gripper = (int32_t)g;
+        event->other = wafer->released_by;
+        wh_proximity_values(&wafer->base_from_wafer, then, &table->config.tolerance, &event->measured);
+    }
+}
+
+/* The rotation is brought back to orthonormal, so that poses which are so only to WH_ROTATION_TOLERANCE do not add up over
+ * many picks. */
+void wh_grasp_take(wh_grasp_t *table, size_t g, int32_t w, const wh_pose_t *then, wh_event_list_t *list) {
+    wh_gripper_t *gripper = &table->storage.grippers[g];
+    wh_wafer_t *wafer = &table->storage.wafers[w];
+    wh_pose_t *gripper_from_wafer = &gripper->gripper_from_wafer;
+    report(table, list, g, w, then);
+    wafer->holder = (int32_t)g;
+    gripper->wafer = w;
+    wh_pose_relative_to(then, &wafer->base_from_wafer, gripper_from_wafer);
+    wh_mat3_orthonormalise(&gripper_from_wafer->R);
+    if (table->config.seat) {
+        turn_onto_pads(&gripper_from_wafer->R);
+        wh_mat3_orthonormalise(&gripper_from_wafer->R);
+        gripper_from_wafer->r.z = 0;
+    }
+}
