@@ -36,9 +36,11 @@ C_WARNINGS := -Wstrict-prototypes -Wmissing-prototypes
 # Not for a float build's tests, which compare in double on purpose.
 NUMBER_WARNINGS := -Wconversion -Wdouble-promotion
 
-# Contraction to fused multiply-adds would change bits from machine to machine; errno keeps sqrt from being
-# one instruction. The prefix map keeps the folder's name out of what is built.
-BASE := -Ilib -ffp-contract=off -fno-math-errno -ffile-prefix-map=$(CURDIR)=. $(WARNINGS) \
+# Contraction to fused multiply-adds would change bits from machine to machine, and gcc 12's vectoriser of straight code
+# fuses a*b + c*d beside e*f - g*h whatever it was told; errno keeps sqrt from being one instruction. The prefix map keeps
+# the folder's name out of what is built.
+SAME_BITS := -ffp-contract=off -fno-tree-slp-vectorize
+BASE := -Ilib $(SAME_BITS) -fno-math-errno -ffile-prefix-map=$(CURDIR)=. $(WARNINGS) \
         $(if $(WERROR),-Werror) $(if $(FLOAT),-DWH_FLOAT)
 LIBRARY_FLAGS := -std=c99 $(BASE) $(C_WARNINGS) $(NUMBER_WARNINGS) -DWH_BUILDING_LIBRARY
 HOST_FLAGS := -std=c99 -D_GNU_SOURCE $(BASE) $(C_WARNINGS)

@@ -11,7 +11,7 @@ check-format:
 	@clang-format --dry-run --Werror $(FORMATTED)
 
 check-shell:
-	@shellcheck $(SHELL_SCRIPTS)
+	@shellcheck -x $(SHELL_SCRIPTS)
 
 check-lua:
 	@$(foreach file,$(LUA_SOURCES),luac5.4 -p $(file) &&) true

@@ -1,11 +1,11 @@
 #include "sim/simulator.h"
 
 static wh_status_t exchange_by_call(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
-    return wh_simulator_step((wh_simulator_t *)link, command, state);
+    return wh_simulator_step((wh_simulator_t *)(void *)link, command, state);
 }
 
 static uint64_t hash_by_call(wh_link_t *link) {
-    return wh_grasp_hash(&((wh_simulator_t *)link)->table);
+    return wh_grasp_hash(&((wh_simulator_t *)(void *)link)->table);
 }
 
 static int64_t missed_by_call(wh_link_t *link) {

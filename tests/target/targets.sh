@@ -1,0 +1,53 @@
+# The machines that the library is tried on besides the host: how to compile for each, and how to run what was compiled.
+# shellcheck shell=bash disable=SC2034 # what target sets is for the scripts that ask
+
+readonly OPTIONS='-std=c99 -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno -Wall -Wextra -Ilib -Itests'
+readonly M7='-mthumb -mcpu=cortex-m7 -mfpu=fpv5-d16 -mfloat-abi=hard'
+readonly M4='-mthumb -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard'
+
+# Sets COMPILER, FLAGS, LINK, RUN and FLOAT for m7 (Cortex-M7, double), m4f (Cortex-M4F, float), m4 (the same machine,
+# double in software, with an addition of our own: tests/target/soft_double.c says why), rv64, aarch64 and powerpc (big-endian, 32 bits).
+target() {
+    FLOAT='' LINK='' RUN=()
+    case $1 in
+    m7 | m4f | m4)
+        COMPILER=arm-none-eabi-gcc
+        FLAGS="-O2 $M4"
+        [[ $1 != m7 ]] || FLAGS="-O2 $M7"
+        [[ $1 != m4f ]] || FLOAT=1
+        LINK='--specs=rdimon.specs -T tests/target/mps2.ld tests/target/startup.c'
+        [[ $1 != m4 ]] || LINK="tests/target/soft_double.c -Wl,--allow-multiple-definition $LINK"
+        RUN=(qemu-system-arm -M "$([[ $1 == m7 ]] && echo mps2-an500 || echo mps2-an386)" -nographic -monitor none
+            -serial none -semihosting-config "enable=on,target=native" -kernel)
+        ;;
+    rv64)
+        COMPILER=riscv64-unknown-elf-gcc
+        FLAGS='-O2 -march=rv64gc -mabi=lp64d -mcmodel=medany --specs=picolibc.specs'
+        LINK='--oslib=semihost --crt0=hosted -Wl,--defsym=__flash=0x80000000 -Wl,--defsym=__flash_size=4M
+            -Wl,--defsym=__ram=0x80400000 -Wl,--defsym=__ram_size=4M -Wl,--defsym=__stack_size=256K'
+        RUN=(qemu-system-riscv64 -M virt -bios none -nographic -monitor none -serial none
+            -semihosting-config "enable=on,target=native" -kernel)
+        ;;
+    aarch64 | powerpc)
+        COMPILER=$1-linux-gnu-gcc
+        FLAGS='-O2'
+        LINK='-static'
+        RUN=("qemu-${1/powerpc/ppc}")
+        ;;
+    esac
+}
+
+# build_library FOLDER: for the chosen target
+build_library() {
+    local ar=ar
+    [[ $COMPILER != *-gcc ]] || ar=${COMPILER%gcc}ar
+    make -s -j"$(nproc)" library B="$1" CC="$COMPILER" AR="$ar" CFLAGS="$FLAGS" FLOAT="$FLOAT" >/dev/null
+}
+
+# compile FOLDER PROGRAM ARGUMENT...: against the library in FOLDER
+compile() {
+    local folder=$1 program=$2
+    shift 2
+    # shellcheck disable=SC2086 # words
+    "$COMPILER" $FLAGS $OPTIONS ${FLOAT:+-DWH_FLOAT} "$@" "$folder/libwaferhand.a" $LINK -lm -o "$program"
+}
