@@ -23,7 +23,11 @@ SANITIZE = CFLAGS='-O1 -g -DWH_DEBUG' CXXFLAGS='-O1 -g -DWH_DEBUG' \
 
 include tests/tests.mk
 
-.PHONY: all library run spy test quick check install uninstall clean help
+# Checks that need tools of their own; tests/README.md says which claim is checked by which of them.
+CORE_PARTS := symbols footprint instructions bits on_target eva fuzz
+PART := $(CORE_PARTS) wp coverage mutation
+
+.PHONY: all library run spy test quick check verify-core verify install uninstall clean help
 
 all: ## the library, the program, the Lua module and the manual page, in build/
 	$(NEED) run
@@ -60,6 +64,14 @@ check: ## format, warnings as errors, static analysis
 	$(BUILD) B=build/check/float CC=gcc WERROR=1 FLOAT=1 library
 	$(BUILD) B=build/check/analyzer CC=gcc WERROR=1 EXTRA='$(EXTRA) -fanalyzer' library
 	@echo "checked: nothing found"
+
+verify-core: ## what must never rot: bits on targets, no allocation, stack, sizes, proofs of no error, 60 s of fuzzing each
+	-$(NEED) run test verify
+	@FUZZ_SECONDS=$(or $(FUZZ_SECONDS),60) tests/verify/run $(CORE_PARTS)
+
+verify: ## all of it, hours; goes on where it was stopped. PART="wp mutation" for some
+	-$(NEED) run test verify
+	@RESUME=1 FUZZ_SECONDS=$(or $(FUZZ_SECONDS),600) tests/verify/run $(PART)
 
 install: all ## into PREFIX, below DESTDIR
 	$(BUILD) install

@@ -33,7 +33,7 @@ void wh_encounter_follow(const wh_watch_t *watch);
 /* The same with a sweep since the last slice, which it makes. */
 void wh_encounter_follow_swept(wh_watch_t *watch);
 
-/* Fills in the two distances; whether they are within the neighbourhood for near misses. */
+/* Whether a wafer is in the neighbourhood for near misses; if so, fills in the two distances. */
 bool wh_reach_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
                       const wh_pose_t *base_from_gripper, wh_reach_t *reach);
 

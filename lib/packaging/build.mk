@@ -72,7 +72,7 @@ $(B)/flags $(B)/sources $(B)/messages: FORCE
 	@printf '%s\n' '$(TEXT)' | cmp -s - $@ || printf '%s\n' '$(TEXT)' >$@
 
 # ---------------------------------------------------------------------------------------------- targets
-.PHONY: all library program spy tests library-tests install uninstall FORCE
+.PHONY: all library program spy tests library-tests library-test-names install uninstall FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -83,6 +83,8 @@ tests: $(TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%)
 	@:
 library-tests: $(LIBRARY_TESTS:%=$(B)/%)
 	@:
+library-test-names:
+	@echo $(LIBRARY_TESTS)
 
 # ------------------------------------------------------------------------------------------- compiling
 $(LIBRARY_OBJECTS): FLAGS = $(LIBRARY_FLAGS)

@@ -139,6 +139,8 @@ static void whole_quarters_in_degrees_are_exact(void **state) {
 
 static void degrees_are_near_the_oracle(void **state) {
     (void)state;
+    /* Where long double is double the oracle's own roundings count: of the factor, the angle and the sine. */
+    const double own = sizeof(wh_real_t) < sizeof(double) || LDBL_MANT_DIG > DBL_MANT_DIG ? 0 : 2;
     for (int i = 0; i < SAMPLES; ++i) {
         const wh_real_t deg = i % 2 == 0 ? random_real(-400, 400) : random_real(-5e6, 5e6);
         const double quarters = floor((double)deg / 90 + 0.5);
@@ -148,10 +150,10 @@ static void degrees_are_near_the_oracle(void **state) {
         wh_real_t s;
         wh_real_t c;
         wh_sin_cos_deg(deg, &s, &c);
-        assert_ulps(s, cycle[quarter], 0.85);
-        assert_ulps(c, cycle[(quarter + 1) % 4], 0.85);
-        assert_ulps(wh_rad_from_deg(deg), (long double)deg * (PI / 180), 0.51);
-        assert_ulps(wh_deg_from_rad(deg), (long double)deg * (180 / PI), 0.51);
+        assert_ulps(s, cycle[quarter], own + 0.85);
+        assert_ulps(c, cycle[(quarter + 1) % 4], own + 0.85);
+        assert_ulps(wh_rad_from_deg(deg), (long double)deg * (PI / 180), own + 0.51);
+        assert_ulps(wh_deg_from_rad(deg), (long double)deg * (180 / PI), own + 0.51);
     }
     assert_same_bits(wh_rad_from_deg(180), WH_PI);
     assert_same_bits(wh_rad_from_deg(-90), -WH_PI / 2);

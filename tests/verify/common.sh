@@ -21,3 +21,25 @@ fail() {
     echo "failed: $*"
     exit 1
 }
+
+# same_table TABLE KEY FILE: the lines of TABLE that begin with KEY are the ones of FILE. A compiler of another version
+# has figures of its own: they are shown, not judged. ACCEPT=1 puts FILE's lines into TABLE.
+same_table() {
+    local table=$1 key=$2 file=$3
+    if [[ ${ACCEPT:-} ]]; then
+        { grep -v "^$key " "$table" || true; } | sort - "$file" >"$work/table"
+        mv "$work/table" "$table"
+        echo "$table now has these figures"
+    elif ! grep -q "^$key " "$table"; then
+        echo "$table has no figures of $key: these are not judged"
+    elif ! diff <(grep "^$key " "$table") "$file"; then
+        fail "the figures (>) are not the ones of $table (<): explain the change, and accept it with ACCEPT=1 $0"
+    fi
+}
+
+# at_most LIMIT NAME FILE: the figure at the end of the line that ends in "NAME figure"
+at_most() {
+    local figure
+    figure=$(sed -n "s/^.* $2 \([0-9]*\)$/\1/p" "$3")
+    [[ $figure && $figure -le $1 ]] || fail "$2 is ${figure:-missing}, more than $1"
+}
