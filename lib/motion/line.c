@@ -175,7 +175,8 @@ static wh_status_t slow_down(wh_line_t *line, wh_real_t factor) {
         return WH_OK;
     }
     line->slowed = factor;
-    return wh_profile_stretch(&line->path, factor * wh_profile_duration(&line->path));
+    const wh_status_t status = wh_profile_stretch(&line->path, factor * wh_profile_duration(&line->path));
+    return status == WH_OK ? WH_OK : WH_STATUS_BAD_LIMITS;
 }
 
 wh_status_t wh_line_plan(wh_line_t *line, const wh_robot_t *robot, const wh_real_t from_q[WH_ROBOT_AXES],

@@ -32,7 +32,8 @@ typedef struct {
  * Errors: WH_STATUS_NULL_ARGUMENT; WH_STATUS_NOT_FINITE; WH_STATUS_OUT_OF_RANGE (negative speed_cap);
  * WH_STATUS_OUT_OF_REACH (R leaves its travel anywhere on the line, its closest point to base's axis
  * included); WH_STATUS_LIMIT_EXCEEDED (another axis, at either end: they turn and lift one way only);
- * WH_STATUS_BAD_LIMITS (see wh_profile_plan); *line is then unchanged. Cost: about 280 ns. */
+ * WH_STATUS_BAD_LIMITS (see wh_profile_plan, or an axis so slow that the line's duration cannot be represented);
+ * *line is then unchanged. Cost: about 280 ns. */
 wh_status_t wh_line_plan(wh_line_t *line, const wh_robot_t *robot, const wh_real_t from_q[WH_ROBOT_AXES],
                          wh_real_t dx, wh_real_t dy, wh_real_t dz, wh_real_t speed_cap);
 

@@ -419,6 +419,22 @@ static void bad_arguments_change_nothing(void **state) {
     assert_memory_equal(&line, &before, sizeof line);
 }
 
+/* Limits and caps by which the line would take longer than a number can say. */
+static void limits_too_extreme_are_refused(void **state) {
+    (void)state;
+    const wh_real_t least = sizeof(wh_real_t) == 4 ? WH_REAL(1e-45) : WH_REAL(5e-324);
+    wh_robot_t robot = standard();
+    wh_line_t line;
+    memset(&line, 0x5a, sizeof line);
+    const wh_line_t before = line;
+    assert_int_equal(wh_line_plan(&line, &robot, robot.home, 100, 0, 0, least), WH_STATUS_BAD_LIMITS);
+    robot.limits[WH_AXIS_THETA].speed = least;
+    assert_int_equal(wh_robot_validate(&robot), WH_OK);
+    assert_int_equal(wh_line_plan(&line, &robot, robot.home, 0, 100, 0, 0), WH_STATUS_BAD_LIMITS);
+    assert_memory_equal(&line, &before, sizeof line);
+    assert_int_equal(wh_line_plan(&line, &robot, robot.home, 100, 0, 0, 0), WH_OK);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_axis_exceeds_its_limits),      cmocka_unit_test(odd_robots_keep_their_limits),
@@ -426,7 +442,7 @@ int main(void) {
         cmocka_unit_test(travel_is_checked_everywhere),    cmocka_unit_test(simple_lines_are_not_slowed),
         cmocka_unit_test(the_cap_limits_the_speed),        cmocka_unit_test(no_length_takes_no_time),
         cmocka_unit_test(a_line_near_the_axis_is_refused), cmocka_unit_test(other_axes_travel_is_checked),
-        cmocka_unit_test(bad_arguments_change_nothing),
+        cmocka_unit_test(bad_arguments_change_nothing),    cmocka_unit_test(limits_too_extreme_are_refused),
     };
     (void)wh_test_seed();
     return cmocka_run_group_tests(tests, NULL, NULL);
