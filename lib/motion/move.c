@@ -14,7 +14,7 @@ static wh_status_t slowest(size_t count, const wh_real_t from[], const wh_real_t
         }
         const wh_real_t duration = wh_profile_duration(&alone);
         *longest = duration > *longest ? duration : *longest;
-        if (duration > 0 && !(shortest > 0 && shortest <= duration)) {
+        if (duration > 0 && (shortest == 0 || duration < shortest)) {
             shortest = duration;
         }
     }

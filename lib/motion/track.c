@@ -161,23 +161,22 @@ wh_status_t wh_track_begin(wh_track_t *track, const wh_segment_t *segment) {
     return status;
 }
 
+static void switch_valves(wh_track_t *track) {
+    for (size_t g = 0; g < track->machine->gripper_count; ++g) {
+        const int32_t valve = track->segment.valves[g];
+        track->valves[g] = valve == WH_NONE ? track->valves[g] : valve;
+    }
+}
+
+/* Of a segment that only waits: nothing. */
 static void apply(wh_track_t *track) {
-    switch (track->segment.kind) {
-    case WH_SEGMENT_AXES:
+    const wh_segment_kind_t kind = track->segment.kind;
+    if (kind == WH_SEGMENT_AXES) {
         wh_move_at(&track->plan.move, segment_time(track, wh_move_duration(&track->plan.move)), track->axes);
-        break;
-    case WH_SEGMENT_LINE:
+    } else if (kind == WH_SEGMENT_LINE) {
         wh_line_at(&track->plan.line, segment_time(track, wh_line_duration(&track->plan.line)), track->axes);
-        break;
-    case WH_SEGMENT_VALVES:
-        for (size_t g = 0; g < track->machine->gripper_count; ++g) {
-            const int32_t valve = track->segment.valves[g];
-            track->valves[g] = valve == WH_NONE ? track->valves[g] : valve;
-        }
-        break;
-    case WH_SEGMENT_DWELL:
-    case WH_SEGMENT_SENSOR:
-        break;
+    } else if (kind == WH_SEGMENT_VALVES) {
+        switch_valves(track);
     }
 }
 

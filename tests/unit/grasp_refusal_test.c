@@ -201,6 +201,11 @@ static wh_status_t init_with(cell_t *cell, int what) {
         storage.bucket_count = what == 24 ? 1 : 0;
         storage.wafer_count = what == 25 ? (size_t)INT32_MAX + 1 : storage.wafer_count;
         storage.gripper_count = what == 26 ? (size_t)INT32_MAX + 1 : storage.gripper_count;
+        if (what == 27) {
+            static uint32_t bucket;
+            storage.buckets = &bucket;
+            storage.bucket_count = (size_t)INT32_MAX + 1;
+        }
     }
     return wh_grasp_init(&cell->table, &config, &storage);
 }
@@ -211,7 +216,7 @@ static void init_refuses(void **state) {
     cell_t before;
     begin_busy(&cell);
     memcpy(&before, &cell, sizeof before);
-    for (int what = 0; what <= 26; ++what) {
+    for (int what = 0; what <= 27; ++what) {
         const wh_status_t status = init_with(&cell, what);
         assert_int_equal(status, what < 21   ? WH_STATUS_BAD_TOLERANCE
                                  : what < 22 ? WH_STATUS_OUT_OF_RANGE
@@ -228,6 +233,29 @@ static void init_refuses(void **state) {
     memcpy(&cell, &before, sizeof cell);
     assert_int_equal(wh_grasp_init(&cell.table, &config, &storage), WH_STATUS_NOT_FINITE);
     assert_memory_equal(&cell, &before, sizeof cell);
+}
+
+/* Up to INT32_MAX of each: refused for the first wafer's pose, and not for the count. */
+static void init_takes_the_greatest_counts(void **state) {
+    (void)state;
+    cell_t cell;
+    uint32_t bucket;
+    begin_busy(&cell);
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t most[] = {
+        {cell.wafer, INT32_MAX, cell.gripper, CELL_GRIPPERS, NULL, 0},
+        {cell.wafer, CELL_WAFERS, cell.gripper, INT32_MAX, NULL, 0},
+        {cell.wafer, CELL_WAFERS, cell.gripper, CELL_GRIPPERS, &bucket, INT32_MAX},
+        {cell.wafer, 1, NULL, 0, NULL, 0},
+    };
+    const wh_pose_t good = cell.wafer[0].base_from_wafer;
+    cell.wafer[0].base_from_wafer.r.x = WH_REAL(NAN);
+    for (size_t i = 0; i < 4; ++i) {
+        assert_int_equal(wh_grasp_init(&cell.table, &config, &most[i]), WH_STATUS_NOT_FINITE);
+    }
+    cell.wafer[0].base_from_wafer = good;
+    assert_int_equal(wh_grasp_init(&cell.table, &config, &most[2]), WH_OK);
+    assert_int_equal(wh_grasp_init(&cell.table, &config, &most[3]), WH_OK);
 }
 
 static void empty_tables_work(void **state) {
@@ -284,6 +312,7 @@ int main(void) {
         cmocka_unit_test(place_refuses),
         cmocka_unit_test(questions_are_checked),
         cmocka_unit_test(init_refuses),
+        cmocka_unit_test(init_takes_the_greatest_counts),
         cmocka_unit_test(empty_tables_work),
         cmocka_unit_test(huge_numbers_are_far_away),
     };

@@ -264,6 +264,42 @@ static void stretching_slows_everything_alike(void **state) {
     }
 }
 
+/* Limits and distances at which a time or the jerk is more than a number can be. */
+static void what_cannot_be_represented_is_refused(void **state) {
+    (void)state;
+    static const struct {
+        wh_real_t distance;
+        wh_limits_t limits;
+    } rows[] = {
+        {SIZEABLE / WH_REAL(1e8), {SIZEABLE, WH_REAL(1e-10), 1}}, /* the rise */
+        {SIZEABLE, {WH_REAL(1e-10), 1, 1}},                       /* the cruise */
+        {SIZEABLE, {SIZEABLE, SIZEABLE, WH_REAL(1e-30)}},         /* the jerk's time */
+    };
+    wh_profile_t p;
+    memset(&p, 0x5a, sizeof p);
+    const wh_profile_t before = p;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        assert_int_equal(wh_profile_plan(&p, rows[i].distance, &rows[i].limits), WH_STATUS_BAD_LIMITS);
+    }
+    assert_memory_equal(&p, &before, sizeof p);
+}
+
+/* At the largest jerk there is, rounding alone decides whether the profile's own is still a number. */
+static void the_jerk_is_always_a_number(void **state) {
+    (void)state;
+    const wh_real_t most = sizeof(wh_real_t) == 4 ? (wh_real_t)FLT_MAX : (wh_real_t)DBL_MAX;
+    const wh_real_t v = WH_REAL(1e30);
+    const wh_limits_t limits = {v, v, most};
+    int refused = 0;
+    for (int i = 0; i < 1000; ++i) {
+        wh_profile_t p;
+        const wh_status_t status = wh_profile_plan(&p, v * (wh_real_t)wh_test_uniform(2, 9), &limits);
+        assert_true(status == WH_STATUS_BAD_LIMITS || (status == WH_OK && wh_real_is_finite(p.jerk)));
+        refused += status != WH_OK;
+    }
+    assert_true(refused > 0 && refused < 1000);
+}
+
 static void stretching_refuses_less_time(void **state) {
     (void)state;
     const wh_limits_t limits = {2, 1, 1};
@@ -295,6 +331,8 @@ static void no_distance_takes_no_time(void **state) {
         assert_near(wh_profile_duration(&p), 3, 0);
         assert_near(at(&p, 1).position, 0, 0);
         assert_near(at(&p, 3).position, none[i], 0);
+        assert_int_equal(wh_profile_stretch(&p, 2), WH_STATUS_OUT_OF_RANGE);
+        assert_near(wh_profile_duration(&p), 3, 0);
     }
 }
 
@@ -332,6 +370,8 @@ int main(void) {
         cmocka_unit_test(ends_are_exact),
         cmocka_unit_test(a_small_profile_by_hand),
         cmocka_unit_test(stretching_slows_everything_alike),
+        cmocka_unit_test(what_cannot_be_represented_is_refused),
+        cmocka_unit_test(the_jerk_is_always_a_number),
         cmocka_unit_test(stretching_refuses_less_time),
         cmocka_unit_test(no_distance_takes_no_time),
         cmocka_unit_test(bad_arguments_change_nothing),

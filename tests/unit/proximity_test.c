@@ -247,6 +247,20 @@ static void presets_are_the_papers_and_a_stricter_one(void **state) {
     assert_int_equal(wh_tolerance_validate(&strict), WH_OK);
 }
 
+static void presets_have_names(void **state) {
+    (void)state;
+    const wh_tolerance_t want[WH_TOLERANCE_PRESETS] = {wh_tolerance_paper(), wh_tolerance_strict()};
+    static const char *const names[WH_TOLERANCE_PRESETS] = {"paper", "strict"};
+    wh_tolerance_t got;
+    for (size_t i = 0; i < WH_TOLERANCE_PRESETS; ++i) {
+        assert_string_equal(wh_tolerance_preset(i, &got), names[i]);
+        assert_memory_equal(&got, &want[i], sizeof got);
+    }
+    assert_null(wh_tolerance_preset(WH_TOLERANCE_PRESETS, &got));
+    assert_null(wh_tolerance_preset(SIZE_MAX, &got));
+    assert_memory_equal(&got, &want[WH_TOLERANCE_PRESETS - 1], sizeof got);
+}
+
 /* Against the rim itself, walked around in small steps. */
 static void rim_gap_is_the_farthest_point_of_the_rim(void **state) {
     (void)state;
@@ -294,6 +308,7 @@ int main(void) {
         cmocka_unit_test(measure_refuses_what_it_cannot_judge),
         cmocka_unit_test(tolerances_have_ranges),
         cmocka_unit_test(presets_are_the_papers_and_a_stricter_one),
+        cmocka_unit_test(presets_have_names),
         cmocka_unit_test(rim_gap_is_the_farthest_point_of_the_rim),
         cmocka_unit_test(papers_limit_leaves_21_mm_at_the_rim),
     };

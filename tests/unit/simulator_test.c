@@ -201,6 +201,7 @@ static void test_the_link_is_the_simulator(void **state) {
     assert_int_equal(link->exchange(link, &command, &answer), WH_OK);
     assert_int_equal(answer.sensors, 1);
     assert_true(link->hash(link) == wh_grasp_hash(&simulator.table));
+    assert_int_equal(link->missed(link), 0); /* a call is never late */
 }
 
 int main(void) {

@@ -251,6 +251,20 @@ static void test_a_station_below_bases_origin_supports_too(void **state) {
     expect_said(&scene, WH_EVENT_RELEASED_UNSUPPORTED, WH_NONE, 12);
 }
 
+/* Of the slots below a wafer the nearest counts, wherever its station stands in the list. */
+static void test_the_nearest_slot_below_supports(void **state) {
+    (void)state;
+    for (size_t lower = 0; lower < 2; ++lower) {
+        scene_t scene;
+        stations[lower] = station_at(700, 0, 100, 2, WH_NONE);
+        stations[1 - lower] = station_at(700, 30, 300, 2, WH_NONE);
+        const wh_pose_t wafer = wh_test_at(700, 10, 350);
+        let_go(&scene, &wafer);
+        assert_int_equal(judge(&scene), 1);
+        expect_said(&scene, WH_EVENT_RELEASED_UNSUPPORTED, WH_NONE, 40);
+    }
+}
+
 static void test_an_occupied_slot_names_the_lowest_wafer(void **state) {
     (void)state;
     scene_t scene;
@@ -300,6 +314,7 @@ int main(void) {
         cmocka_unit_test_setup(test_only_releases_are_judged, set_up),
         cmocka_unit_test_setup(test_an_unsupported_wafer_and_what_is_below_it, set_up),
         cmocka_unit_test_setup(test_a_station_below_bases_origin_supports_too, set_up),
+        cmocka_unit_test_setup(test_the_nearest_slot_below_supports, set_up),
         cmocka_unit_test_setup(test_an_occupied_slot_names_the_lowest_wafer, set_up),
         cmocka_unit_test_setup(test_a_neighbours_slot_is_not_this_one, set_up),
         cmocka_unit_test_setup(test_a_chucks_wafer_occupies_it_and_a_blades_does_not, set_up),

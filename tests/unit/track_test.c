@@ -5,6 +5,13 @@
 #include "motion/track.h"
 #include "motion/trig.h"
 
+/* The least number there is. */
+#if defined(WH_FLOAT)
+#define TINIEST 1e-45
+#else
+#define TINIEST 5e-324
+#endif
+
 static wh_machine_t machine;
 
 static wh_track_t begin_track(int64_t slice_us) {
@@ -150,6 +157,9 @@ static void test_skipping_equals_playing(void **state) {
     wh_track_skip(&skipped);
     assert_memory_equal(played.axes, skipped.axes, sizeof played.axes);
     assert_int_equal(skipped.slice, 0);
+    const wh_track_t before = skipped;
+    wh_track_skip(&skipped); /* it is over already */
+    assert_memory_equal(&skipped, &before, sizeof skipped);
     assert_int_equal(wh_track_next(&skipped, 0), WH_TRACK_DONE);
 }
 
@@ -164,7 +174,13 @@ static void test_valves_take_one_slice(void **state) {
     segment.valves[1] = WH_NONE;
     segment.valves[0] = WH_VALVE_OPEN;
     assert_int_equal(play(&track, &segment), 1);
+    assert_int_equal(track.valves[0], WH_VALVE_OPEN);
     assert_int_equal(track.valves[1], WH_VALVE_OPEN);
+    segment.valves[1] = WH_VALVE_CLOSED;
+    segment.valves[0] = WH_NONE;
+    assert_int_equal(play(&track, &segment), 1);
+    assert_int_equal(track.valves[0], WH_VALVE_OPEN);
+    assert_int_equal(track.valves[1], WH_VALVE_CLOSED);
 }
 
 static void test_a_sensor_ends_the_wait(void **state) {
@@ -259,6 +275,25 @@ static void no_kind(wh_segment_t *s) {
     s->kind = (wh_segment_kind_t)99;
 }
 
+/* What the machine's limits make of a segment: longer than a segment may be, or nothing that can be planned. */
+static void test_slow_axes_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        double speed;
+        wh_status_t status;
+    } rows[] = {{5e-5, WH_OK}, {9e-6, WH_STATUS_BAD_SEGMENT}, {TINIEST, WH_STATUS_BAD_LIMITS}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        wh_track_t track = begin_track(1000);
+        machine.chuck_limits.speed = (wh_real_t)rows[i].speed;
+        wh_segment_t segment = blank(&track, WH_SEGMENT_AXES);
+        segment.target[4] = 10;
+        wh_track_t before;
+        memcpy(&before, &track, sizeof before);
+        assert_int_equal(wh_track_begin(&track, &segment), rows[i].status);
+        assert_true(rows[i].status == WH_OK || memcmp(&track, &before, sizeof track) == 0);
+    }
+}
+
 /* In the middle of another segment: that one goes on as if nobody had asked. */
 static void test_a_refused_segment_leaves_the_track(void **state) {
     (void)state;
@@ -311,6 +346,7 @@ int main(void) {
         cmocka_unit_test(test_a_sensor_ends_the_wait),
         cmocka_unit_test(test_a_sensor_that_is_on_takes_no_slice),
         cmocka_unit_test(test_a_wait_times_out_after_its_slices),
+        cmocka_unit_test(test_slow_axes_are_refused),
         cmocka_unit_test(test_a_refused_segment_leaves_the_track),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -202,6 +202,19 @@ static void atan2_takes_every_magnitude(void **state) {
     }
 }
 
+/* Where squares and products of the arguments are no numbers any more, or have lost digits. */
+static void atan2_is_near_the_oracle_far_out(void **state) {
+    (void)state;
+    const double most = DIGITS == 24 ? 1e38 : 1e308;
+    const double least = DIGITS == 24 ? 1e-44 : 1e-318;
+    for (int i = 0; i < SAMPLES; ++i) {
+        const wh_real_t x = (wh_real_t)wh_test_decades(least, most);
+        const wh_real_t y = i % 2 == 0 ? (wh_real_t)wh_test_decades(least, most) : x * random_real(0, 1);
+        assert_ulps(wh_atan2(y, -x), atan2l((long double)y, -(long double)x), 0.6);
+        assert_ulps(wh_atan2(-x, y), atan2l(-(long double)x, (long double)y), 0.6);
+    }
+}
+
 /* C99, F.9.1.4: the C library gives these to the letter. */
 static void atan2_has_the_special_values_of_c99(void **state) {
     (void)state;
@@ -311,6 +324,7 @@ int main(void) {
         cmocka_unit_test(a_turn_more_gives_the_same_bits),
         cmocka_unit_test(atan2_is_near_the_oracle),
         cmocka_unit_test(atan2_takes_every_magnitude),
+        cmocka_unit_test(atan2_is_near_the_oracle_far_out),
         cmocka_unit_test(atan2_has_the_special_values_of_c99),
         cmocka_unit_test(cbrt_is_near_the_oracle),
         cmocka_unit_test(cbrt_of_cubes_and_special_values),

@@ -1,0 +1,54 @@
+/* The catalogue of statuses, as a caller sees it: each number its own name and text, anything else none. */
+#include "support.h"
+
+#include "core/status.h"
+
+static const struct {
+    wh_status_t number;
+    const char *name, *text;
+} rows[] = {
+#define WH_STATUS(number, name, text) {WH_STATUS_##name, #name, text},
+#include "core/status.def"
+#undef WH_STATUS
+};
+#define ROWS (sizeof rows / sizeof rows[0])
+
+static void each_number_has_its_name_and_text(void **state) {
+    (void)state;
+    for (size_t i = 0; i < ROWS; ++i) {
+        assert_string_equal(wh_status_name(rows[i].number), rows[i].name);
+        assert_string_equal(wh_status_text(rows[i].number), rows[i].text);
+        for (size_t k = 0; k < i; ++k) {
+            assert_int_not_equal(rows[i].number, rows[k].number);
+            assert_string_not_equal(rows[i].name, rows[k].name);
+        }
+    }
+    assert_int_equal(WH_OK, 0);
+    assert_string_equal(wh_status_name(WH_OK), "OK");
+}
+
+static void texts_are_sentences_without_a_stop(void **state) {
+    (void)state;
+    for (size_t i = 0; i < ROWS; ++i) {
+        const size_t length = strlen(rows[i].text);
+        assert_true(length > 1 && rows[i].text[length - 1] != '.');
+    }
+}
+
+static void other_numbers_are_unknown(void **state) {
+    (void)state;
+    static const int none[] = {-1, 9999, INT32_MAX, INT32_MIN};
+    for (size_t i = 0; i < 4; ++i) {
+        assert_string_equal(wh_status_name((wh_status_t)none[i]), "UNKNOWN");
+        assert_string_equal(wh_status_text((wh_status_t)none[i]), "unknown status");
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_number_has_its_name_and_text),
+        cmocka_unit_test(texts_are_sentences_without_a_stop),
+        cmocka_unit_test(other_numbers_are_unknown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
