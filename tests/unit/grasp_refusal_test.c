@@ -184,80 +184,6 @@ static void questions_are_checked(void **state) {
     assert_int_equal(wh_grasp_wafer(&cell.table, 0, NULL, NULL), WH_OK);
 }
 
-/* What init must refuse, one thing at a time. */
-static wh_status_t init_with(cell_t *cell, int what) {
-    wh_grasp_config_t config = wh_grasp_config_default();
-    wh_grasp_storage_t storage = {cell->wafer, CELL_WAFERS, cell->gripper, CELL_GRIPPERS, NULL, 0};
-    const wh_real_t bad[] = {0, -1, WH_REAL(1.1e6), WH_REAL(NAN), WH_REAL(INFINITY)};
-    wh_real_t *const limit[] = {&config.near_projz, &config.near_projxy, &config.tolerance.projz,
-                                &config.tolerance.projxy};
-    if (what < 20) {
-        *limit[what / 5] = bad[what % 5];
-    } else {
-        config.tolerance.planar = what == 20 ? 1 : config.tolerance.planar;
-        config.check = what == 21 ? (wh_check_t)2 : config.check;
-        storage.wafers = what == 22 ? NULL : storage.wafers;
-        storage.grippers = what == 23 ? NULL : storage.grippers;
-        storage.bucket_count = what == 24 ? 1 : 0;
-        storage.wafer_count = what == 25 ? (size_t)INT32_MAX + 1 : storage.wafer_count;
-        storage.gripper_count = what == 26 ? (size_t)INT32_MAX + 1 : storage.gripper_count;
-        if (what == 27) {
-            static uint32_t bucket;
-            storage.buckets = &bucket;
-            storage.bucket_count = (size_t)INT32_MAX + 1;
-        }
-    }
-    return wh_grasp_init(&cell->table, &config, &storage);
-}
-
-static void init_refuses(void **state) {
-    (void)state;
-    cell_t cell;
-    cell_t before;
-    begin_busy(&cell);
-    memcpy(&before, &cell, sizeof before);
-    for (int what = 0; what <= 27; ++what) {
-        const wh_status_t status = init_with(&cell, what);
-        assert_int_equal(status, what < 21   ? WH_STATUS_BAD_TOLERANCE
-                                 : what < 22 ? WH_STATUS_OUT_OF_RANGE
-                                 : what < 25 ? WH_STATUS_NULL_ARGUMENT
-                                             : WH_STATUS_BAD_CAPACITY);
-        assert_memory_equal(&cell, &before, sizeof cell);
-    }
-    const wh_grasp_config_t config = wh_grasp_config_default();
-    const wh_grasp_storage_t storage = {cell.wafer, CELL_WAFERS, cell.gripper, CELL_GRIPPERS, NULL, 0};
-    assert_int_equal(wh_grasp_init(NULL, &config, &storage), WH_STATUS_NULL_ARGUMENT);
-    assert_int_equal(wh_grasp_init(&cell.table, NULL, &storage), WH_STATUS_NULL_ARGUMENT);
-    assert_int_equal(wh_grasp_init(&cell.table, &config, NULL), WH_STATUS_NULL_ARGUMENT);
-    before.wafer[3].base_from_wafer.R.m[0][0] = WH_REAL(NAN);
-    memcpy(&cell, &before, sizeof cell);
-    assert_int_equal(wh_grasp_init(&cell.table, &config, &storage), WH_STATUS_NOT_FINITE);
-    assert_memory_equal(&cell, &before, sizeof cell);
-}
-
-/* Up to INT32_MAX of each: refused for the first wafer's pose, and not for the count. */
-static void init_takes_the_greatest_counts(void **state) {
-    (void)state;
-    cell_t cell;
-    uint32_t bucket;
-    begin_busy(&cell);
-    const wh_grasp_config_t config = wh_grasp_config_default();
-    const wh_grasp_storage_t most[] = {
-        {cell.wafer, INT32_MAX, cell.gripper, CELL_GRIPPERS, NULL, 0},
-        {cell.wafer, CELL_WAFERS, cell.gripper, INT32_MAX, NULL, 0},
-        {cell.wafer, CELL_WAFERS, cell.gripper, CELL_GRIPPERS, &bucket, INT32_MAX},
-        {cell.wafer, 1, NULL, 0, NULL, 0},
-    };
-    const wh_pose_t good = cell.wafer[0].base_from_wafer;
-    cell.wafer[0].base_from_wafer.r.x = WH_REAL(NAN);
-    for (size_t i = 0; i < 4; ++i) {
-        assert_int_equal(wh_grasp_init(&cell.table, &config, &most[i]), WH_STATUS_NOT_FINITE);
-    }
-    cell.wafer[0].base_from_wafer = good;
-    assert_int_equal(wh_grasp_init(&cell.table, &config, &most[2]), WH_OK);
-    assert_int_equal(wh_grasp_init(&cell.table, &config, &most[3]), WH_OK);
-}
-
 static void empty_tables_work(void **state) {
     (void)state;
     wh_grasp_t table;
@@ -311,8 +237,6 @@ int main(void) {
         cmocka_unit_test(a_list_changes_nothing),
         cmocka_unit_test(place_refuses),
         cmocka_unit_test(questions_are_checked),
-        cmocka_unit_test(init_refuses),
-        cmocka_unit_test(init_takes_the_greatest_counts),
         cmocka_unit_test(empty_tables_work),
         cmocka_unit_test(huge_numbers_are_far_away),
     };

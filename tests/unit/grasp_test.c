@@ -275,20 +275,6 @@ static void worn_rotations_do_not_add_up(void **state) {
     }
 }
 
-static void placing_moves_a_free_wafer(void **state) {
-    (void)state;
-    cell_t cell;
-    cell_begin_default(&cell);
-    const wh_pose_t pose = wh_test_random_pose(1000);
-    assert_int_equal(wh_grasp_place(&cell.table, 3, &pose), WH_OK);
-    wh_pose_t read;
-    int32_t holder;
-    assert_int_equal(wh_grasp_wafer(&cell.table, 3, &read, &holder), WH_OK);
-    same_bits(&read, &pose);
-    assert_int_equal(holder, WH_NONE);
-    assert_int_equal(cell.table.slice, 0);
-}
-
 static void equal_histories_have_equal_hashes(void **state) {
     (void)state;
     cell_t a;
@@ -321,7 +307,6 @@ int main(void) {
         cmocka_unit_test(the_order_is_release_carry_pick),
         cmocka_unit_test(a_seated_wafer_lies_on_the_pads),
         cmocka_unit_test(worn_rotations_do_not_add_up),
-        cmocka_unit_test(placing_moves_a_free_wafer),
         cmocka_unit_test(equal_histories_have_equal_hashes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

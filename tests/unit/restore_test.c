@@ -121,6 +121,9 @@ static void nothing_is_restored_from_nothing(void **state) {
     assert_int_equal(wh_grasp_init(&table, &config, &none), WH_OK);
     assert_int_equal(wh_grasp_restore(&table, 12, NULL, NULL), WH_OK);
     assert_int_equal(table.slice, 12);
+    const wh_grasp_storage_t wafers_alone = {copy.wafer, CELL_WAFERS, NULL, 0, NULL, 0};
+    assert_int_equal(wh_grasp_init(&table, &config, &wafers_alone), WH_OK);
+    assert_int_equal(wh_grasp_restore(&table, 12, copy.wafer, NULL), WH_OK);
 }
 
 /* Indices beside the range, and within it where they contradict each other. */
