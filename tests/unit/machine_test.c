@@ -59,6 +59,55 @@ static void test_the_greatest_counts_pass(void **state) {
     assert_int_equal(wh_machine_validate(&machine), WH_OK);
 }
 
+/* Without a chuck: four axes, one gripper on the robot. */
+static void test_the_least_counts_pass(void **state) {
+    (void)state;
+    wh_machine_t machine = machine_with_chuck();
+    machine.axis_count = WH_ROBOT_AXES;
+    machine.gripper_count = 1;
+    assert_int_equal(wh_machine_validate(&machine), WH_OK);
+    const wh_real_t axes[] = {0, 300, 900, 0, 2 * WH_CHUCK_TRAVEL};
+    assert_int_equal(wh_machine_check_travel(&machine, axes), WH_OK);
+}
+
+static void test_every_mount_is_looked_at(void **state) {
+    (void)state;
+    for (size_t g = 0; g < 2; ++g) {
+        wh_machine_t machine = machine_with_chuck();
+        machine.mounts[g].axis = 9;
+        assert_int_equal(wh_machine_validate(&machine), WH_STATUS_OUT_OF_RANGE);
+    }
+}
+
+/* Two chucks and the robot, in any order; what is beyond the counts is neither read nor written. */
+static void test_each_gripper_has_its_pose(void **state) {
+    (void)state;
+    wh_machine_t machine = machine_with_chuck();
+    machine.axis_count = 6;
+    machine.gripper_count = 3;
+    machine.mounts[2] = machine.mounts[0];
+    machine.mounts[0] = machine.mounts[1];
+    machine.mounts[1].axis = 5;
+    const wh_real_t axes[] = {WH_REAL(0.7), 512, 1001, WH_REAL(-1.2), 1, 2, WH_REAL(NAN)};
+    wh_pose_t effector;
+    wh_pose_t poses[4];
+    memset(poses, 0x5a, sizeof poses);
+    const wh_pose_t untouched = poses[3];
+    wh_robot_forward(axes, &effector);
+    wh_machine_grippers(&machine, axes, poses);
+    for (size_t g = 0; g < 2; ++g) {
+        const wh_mat3_t turn = wh_mat3_about_z(axes[4 + g]);
+        assert_near(poses[g].R.m[0][0], -turn.m[0][0], 1e-6);
+        assert_near(poses[g].R.m[1][0], -turn.m[1][0], 1e-6);
+        assert_memory_equal(&poses[g].r, &machine.mounts[0].base_from_station.r, sizeof poses[g].r);
+    }
+    assert_memory_equal(&poses[2], &effector, sizeof effector);
+    assert_memory_equal(&poses[3], &untouched, sizeof untouched);
+    assert_int_equal(wh_machine_check_travel(&machine, axes), WH_OK);
+    const wh_real_t far[] = {0, 300, 900, 0, 0, 2 * WH_CHUCK_TRAVEL};
+    assert_int_equal(wh_machine_check_travel(&machine, far), WH_STATUS_LIMIT_EXCEEDED);
+}
+
 static void test_a_mount_on_no_chuck_axis_is_refused(void **state) {
     (void)state;
     static const int32_t axes[] = {-2, 0, 3, 5, INT32_MAX, INT32_MIN};
@@ -188,6 +237,9 @@ int main(void) {
         cmocka_unit_test(test_null_is_refused),
         cmocka_unit_test(test_counts_out_of_range_are_refused),
         cmocka_unit_test(test_the_greatest_counts_pass),
+        cmocka_unit_test(test_the_least_counts_pass),
+        cmocka_unit_test(test_every_mount_is_looked_at),
+        cmocka_unit_test(test_each_gripper_has_its_pose),
         cmocka_unit_test(test_a_mount_on_no_chuck_axis_is_refused),
         cmocka_unit_test(test_a_chuck_that_stands_nowhere_is_refused),
         cmocka_unit_test(test_the_robots_mount_is_not_looked_at),

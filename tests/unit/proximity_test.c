@@ -196,6 +196,21 @@ static void nan_is_never_ready(void **state) {
     }
 }
 
+/* How the gripper is turned about its own axis does not matter, whichever of its numbers are zero. */
+static void quarter_turns_are_all_the_same(void **state) {
+    (void)state;
+    static const wh_real_t cosines[] = {1, 0, -1, 0};
+    const wh_tolerance_t tolerance = wh_tolerance_paper();
+    const wh_pose_t wafer = wh_test_at(0, 0, 0);
+    for (size_t k = 0; k < 4; ++k) {
+        const wh_real_t c = cosines[k];
+        const wh_real_t s = cosines[(k + 3) % 4];
+        const wh_mat3_t R = {{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
+        const wh_pose_t gripper = wh_test_pose(R, 1, 2, 0.25);
+        assert_true(wh_proximity_ready(&wafer, &gripper, &tolerance));
+    }
+}
+
 static void measure_refuses_what_it_cannot_judge(void **state) {
     (void)state;
     const wh_tolerance_t paper = wh_tolerance_paper();
@@ -305,6 +320,7 @@ int main(void) {
         cmocka_unit_test(projections_are_onto_the_wafer),
         cmocka_unit_test(verdict_equals_measurement),
         cmocka_unit_test(nan_is_never_ready),
+        cmocka_unit_test(quarter_turns_are_all_the_same),
         cmocka_unit_test(measure_refuses_what_it_cannot_judge),
         cmocka_unit_test(tolerances_have_ranges),
         cmocka_unit_test(presets_are_the_papers_and_a_stricter_one),
