@@ -155,6 +155,31 @@ static void a_move_goes_on_from_the_last_ones_end(void **state) {
     }
 }
 
+/* An axis that takes ages and one that takes no time to speak of cannot go together, in whatever order they stand and
+ * whatever stands between them. */
+static void durations_too_far_apart_are_refused(void **state) {
+    (void)state;
+    enum { AGES, INSTANT, USUAL, STILL, KINDS };
+    static const wh_limits_t kinds[KINDS] = {
+        {WH_REAL(1e-20), 1, 1}, {WH_REAL(1e20), WH_REAL(1e25), WH_REAL(1e30)}, {1, 1, 1}, {1, 1, 1}};
+    static const wh_real_t distances[KINDS] = {APART, WH_REAL(1e-9), 1, 0};
+    for (int order = 0; order < 256; ++order) {
+        const wh_real_t from[4] = {0};
+        wh_real_t to[4];
+        wh_limits_t limits[4];
+        int count[KINDS] = {0};
+        for (int axis = 0; axis < 4; ++axis) {
+            const int kind = order >> (2 * axis) & 3;
+            limits[axis] = kinds[kind];
+            to[axis] = distances[kind];
+            ++count[kind];
+        }
+        wh_move_t move;
+        const bool apart = count[AGES] > 0 && count[INSTANT] > 0;
+        assert_int_equal(wh_move_plan(&move, 4, from, to, limits), apart ? WH_STATUS_BAD_LIMITS : WH_OK);
+    }
+}
+
 static void bad_arguments_change_nothing(void **state) {
     (void)state;
     const task_t task = random_task();
@@ -187,6 +212,7 @@ int main(void) {
         cmocka_unit_test(axes_stay_between_their_ends),
         cmocka_unit_test(a_move_to_nowhere_takes_no_time),
         cmocka_unit_test(a_move_goes_on_from_the_last_ones_end),
+        cmocka_unit_test(durations_too_far_apart_are_refused),
         cmocka_unit_test(bad_arguments_change_nothing),
     };
     (void)wh_test_seed();
