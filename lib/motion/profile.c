@@ -54,10 +54,10 @@ static times_t shortest(wh_real_t d, const wh_limits_t *limits) {
     return times;
 }
 
-/* No phase has got lost to overflow or underflow: from_times can divide. */
+/* No phase has got lost to overflow or underflow, so that from_times can divide: the rise is at least two jerk times, the
+ * duration two rises. */
 static bool times_are_sound(const times_t *times) {
-    return is_positive(times->jerk) && is_positive(times->rise - times->jerk) &&
-           is_positive(times->duration - times->rise);
+    return is_positive(times->jerk) && wh_real_is_finite(times->duration);
 }
 
 /* Everything from the distance and the three times: jerk, acceleration and speed are made to fit them, so

@@ -284,6 +284,27 @@ static void what_cannot_be_represented_is_refused(void **state) {
     assert_memory_equal(&p, &before, sizeof p);
 }
 
+/* Times whose squares, products and quotients are out of range are times for all that. */
+static void what_can_be_represented_is_planned(void **state) {
+    (void)state;
+    const wh_real_t large = sizeof(wh_real_t) == 4 ? WH_REAL(1e18) : WH_REAL(1e153);
+    static const wh_real_t steep = WH_REAL(1e30);
+    const struct {
+        wh_real_t distance;
+        wh_limits_t limits;
+    } rows[] = {
+        {8 * large, {1, 1, 1 / large / large}}, /* jerk and cruise, for ages */
+        {1000, {10, 1, steep}},                 /* as good as no jerk phase */
+        {1000 * steep, {10 * steep, steep, steep * WH_REAL(1e3)}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        wh_profile_t p;
+        assert_int_equal(wh_profile_plan(&p, rows[i].distance, &rows[i].limits), WH_OK);
+        const oracle_t o = optimum((long double)rows[i].distance, &rows[i].limits);
+        assert_relative(wh_profile_duration(&p), o.duration, DURATION_TOLERANCE);
+    }
+}
+
 /* At the largest jerk there is, rounding alone decides whether the profile's own is still a number. */
 static void the_jerk_is_always_a_number(void **state) {
     (void)state;
@@ -371,6 +392,7 @@ int main(void) {
         cmocka_unit_test(a_small_profile_by_hand),
         cmocka_unit_test(stretching_slows_everything_alike),
         cmocka_unit_test(what_cannot_be_represented_is_refused),
+        cmocka_unit_test(what_can_be_represented_is_planned),
         cmocka_unit_test(the_jerk_is_always_a_number),
         cmocka_unit_test(stretching_refuses_less_time),
         cmocka_unit_test(no_distance_takes_no_time),
