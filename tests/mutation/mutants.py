@@ -40,15 +40,21 @@ def strip_comments(text):
 
 
 def goes_on_anyway(lines, number):
-    """Does nothing follow line `number` in its loop's body but closing braces?"""
-    for line in lines[number:]:
-        if line.strip() != "}":
+    """Does nothing follow line `number` in its loop's body but closing braces, and branches not taken?"""
+    while number < len(lines):
+        line = lines[number]
+        indent = line[:-len(line.lstrip())]
+        if line.strip().startswith("} else"):
+            number += 1
+            while not re.match(indent + "}", lines[number]):
+                number += 1
+        elif line.strip() == "}":
+            openers = [opener for opener in lines[:number] if re.match(indent + r"[^\s}]", opener)]
+            if openers and re.match(r"\s*(for|while) ", openers[-1]):
+                return True
+            number += 1
+        else:
             return False
-        indent = line[:line.index("}")]
-        openers = [opener for opener in lines[:number] if re.match(indent + r"[^\s}]", opener)]
-        if openers and re.match(r"\s*(for|while) ", openers[-1]):
-            return True
-        number += 1
     return False
 
 
@@ -57,7 +63,7 @@ def changes_nothing(lines, number, line, text):
     counts up to its end by one."""
     if text == line + " continue;":
         return goes_on_anyway(lines, number)
-    return bool(re.match(r"for \(size_t (\w+) = 0; \1 < [^;]*; \+\+\1\)", line)) and text == line.replace("<", "!=", 1)
+    return bool(re.match(r"for \(size_t (\w+) = \w+; \1 < [^;]*; \+\+\1\)", line)) and text == line.replace("<", "!=", 1)
 
 
 def read(path):

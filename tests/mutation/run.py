@@ -3,6 +3,7 @@ notice. See tests/verify/mutation for what is asked of the numbers and for the s
 
 import json
 import os
+import shutil
 import sys
 import tempfile
 import threading
@@ -65,12 +66,18 @@ class Campaign:
     def key(self, mutant):
         return self.digest[:24] + mutant.key
 
+    def folder_of(self, mutant):
+        return os.path.join(self.folder.name, mutant.key if mutant else "original")
+
     def compile(self, mutant, text=None):
         """Object's hash, or None."""
         entry = self.results.get(self.key(mutant)) if mutant else {}
         if "object" not in entry:
-            with tempfile.TemporaryDirectory(dir=self.folder.name) as folder:
-                entry = {"object": self.builder.build(self.source, text or self.source.changed(mutant), folder)}
+            folder = self.folder_of(mutant)
+            os.makedirs(folder)
+            entry = {"object": self.builder.build(self.source, text or self.source.changed(mutant), folder)}
+            if entry["object"] is None:
+                shutil.rmtree(folder)
             if mutant:
                 self.results.put(self.key(mutant), entry)
         return entry["object"]
@@ -79,12 +86,15 @@ class Campaign:
         entry = self.results.get(self.key(mutant))
         if entry.get("killer") == DOES_NOT_COMPILE or ("killer" in entry and self.judge.current(self.source.path, entry)):
             return entry["killer"]
-        with tempfile.TemporaryDirectory(dir=self.folder.name) as folder:
+        folder = self.folder_of(mutant)
+        if not os.path.exists(folder):  # compiled by an earlier run
+            os.makedirs(folder)
             self.builder.build(self.source, self.source.changed(mutant), folder)
-            if self.builder.finish(self.source, folder):
-                verdict = self.judge.verdict(self.source.path, folder, entry.get("killer"))
-            else:
-                verdict = {"killer": DOES_NOT_COMPILE, "tests": None}
+        if self.builder.finish(self.source, folder):
+            verdict = self.judge.verdict(self.source.path, folder, entry.get("killer"))
+        else:
+            verdict = {"killer": DOES_NOT_COMPILE, "tests": None}
+        shutil.rmtree(folder)
         self.results.put(self.key(mutant), verdict)
         return verdict["killer"]
 
@@ -100,6 +110,8 @@ class Campaign:
                     self.differing.append(mutant)
                     if len(self.differing) == self.sample:
                         return
+                elif found is not None:
+                    shutil.rmtree(self.folder_of(mutant), ignore_errors=True)
 
     def run(self):
         self.distinct()
