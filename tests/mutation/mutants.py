@@ -58,6 +58,26 @@ def goes_on_anyway(lines, number):
     return False
 
 
+def enclosing(lines, number):
+    """The lines that open the blocks around line `number`, innermost first."""
+    depth = len(lines[number - 1]) - len(lines[number - 1].lstrip())
+    for line in reversed(lines[:number - 1]):
+        indent = len(line) - len(line.lstrip())
+        if line.strip() and indent < depth and not line.lstrip().startswith("#"):
+            depth = indent
+            yield line.strip()
+
+
+def cannot_compile(lines, number, line, text):
+    """The greater part of what does not, found without a compiler: numbers have no %, and only loops can be left."""
+    if text.count("%") > line.count("%"):
+        return True
+    if text not in (line + " break;", line + " continue;"):
+        return False
+    kinds = ("for ", "while ") if text.endswith("continue;") else ("for ", "while ", "switch ")
+    return line[-1] not in ";{}" or not any(opener.startswith(kinds) for opener in [line, *enclosing(lines, number)])
+
+
 def changes_nothing(lines, number, line, text):
     """Mutants that need no compiler and no test: `continue` where the loop goes on anyway, and != for < in a loop that
     counts up to its end by one."""
@@ -114,7 +134,8 @@ class Source:
             if number not in mutable:
                 continue
             line, text = self.lines[number - 1].strip(), " ".join(part.strip() for part in text.strip().split("\n"))
-            if changes_nothing(self.lines, number, line, text):
+            where = (self.lines, number, line, text)
+            if cannot_compile(*where) or changes_nothing(*where):
                 continue
             occurrence = seen[line, text] = seen.get((line, text), 0) + 1
             yield Mutant(self.path, number, line, text, occurrence)

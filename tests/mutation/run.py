@@ -120,7 +120,10 @@ class Campaign:
         excused = {self.compile(mutant): mutant for mutant in listed}
         missing = wanted - {(mutant.line, mutant.text) for mutant in listed}
         self.stale += [f"{self.source.path}\n- {line}\n+ {text}" for line, text in sorted(missing)]
-        for mutant, killer in zip(self.differing, self.pool.map(self.judge_one, self.differing)):
+        if self.sample is not None:  # only all of them are worth the time to see whether what is listed still survives
+            self.listed = [mutant for mutant in self.differing if self.compile(mutant) in excused]
+        to_judge = [mutant for mutant in self.differing if mutant not in self.listed]
+        for mutant, killer in zip(to_judge, self.pool.map(self.judge_one, to_judge)):
             is_listed = self.compile(mutant) in excused
             if killer == DOES_NOT_COMPILE:
                 self.unfit += 1

@@ -200,6 +200,7 @@ static void a_contest_ends_when_the_gripper_goes(void **state) {
     contest(&cell);
     cell_move(&cell, 0, 0, 0, -0.5, OPEN);
     expect_contest_of_slice_2(&cell, 1);
+    assert_int_equal(cell.gripper[0].contest.holder, WH_NONE);
     cell_move(&cell, 0, 0, 0, -1, OPEN);
     cell_expect_nothing(&cell);
 }

@@ -166,6 +166,34 @@ static void placing_is_forgotten_by_whom_it_concerns(void **state) {
     assert_int_equal(cell.gripper[2].approach.wafer, WH_NONE);
 }
 
+/* What stands beside the arrays is not looked at: a free wafer there is neither taken nor let go of. */
+static void neighbours_of_the_arrays_are_left_alone(void **state) {
+    (void)state;
+    wh_wafer_t wafers[3];
+    wh_gripper_t grippers[3];
+    wh_event_t events[WH_EVENTS_PER_GRIPPER];
+    wh_event_list_t list = {events, WH_EVENTS_PER_GRIPPER, 0};
+    wh_grasp_t table;
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    memset(grippers, 0, sizeof grippers);
+    for (int i = 0; i < 3; ++i) {
+        wafers[i].base_from_wafer = wh_test_at(1000 * i, 0, 0);
+        wafers[i].holder = wafers[i].released_by = WH_NONE;
+    }
+    const wh_gripper_t beside = grippers[2];
+    const wh_grasp_storage_t storage = {wafers + 1, 1, grippers + 1, 1, NULL, 0};
+    assert_int_equal(wh_grasp_init(&table, &config, &storage), WH_OK);
+    static const double places[] = {0, 2000, 1000};
+    for (int i = 0; i < 6; ++i) {
+        const wh_gripper_input_t input = {wh_test_at(places[i % 3], 0, -0.25), i < 3 ? CLOSED : OPEN};
+        assert_int_equal(wh_grasp_step(&table, &input, &list), WH_OK);
+        assert_int_equal(list.count, i == 5);
+    }
+    assert_int_equal(wafers[0].holder, WH_NONE);
+    assert_int_equal(wafers[2].holder, WH_NONE);
+    assert_memory_equal(&grippers[2], &beside, sizeof beside);
+}
+
 static void indices_far_out_are_refused(void **state) {
     (void)state;
     cell_t cell;
@@ -189,6 +217,7 @@ int main(void) {
         cmocka_unit_test(init_begins_anew),
         cmocka_unit_test(placing_moves_a_free_wafer),
         cmocka_unit_test(placing_is_forgotten_by_whom_it_concerns),
+        cmocka_unit_test(neighbours_of_the_arrays_are_left_alone),
         cmocka_unit_test(indices_far_out_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,6 +18,8 @@ static int set_up(void **state) {
     (void)state;
     cell_begin_default(&origin);
     cell_begin_default(&copy);
+    cell_place(&origin, 1, 1000, 20, 3);
+    cell_place(&origin, 3, 3000, 40, 5);
     cell_move(&origin, 0, 0, 0, -0.3, OPEN);
     cell_set(&origin, 1, 1, 2, -0.2, OPEN);
     cell_move(&origin, 2, 2003, 4, -2, OPEN);
@@ -111,6 +113,9 @@ static void null_is_refused(void **state) {
     assert_int_equal(wh_grasp_restore(&copy.table, 3, saved.wafer, NULL), WH_STATUS_NULL_ARGUMENT);
     assert_int_equal(copy.table.counters.refused, 2);
     assert_int_equal(copy.table.slice, 0);
+    copy.table.storage.wafer_count = copy.table.storage.gripper_count = 1;
+    assert_int_equal(wh_grasp_restore(&copy.table, 3, NULL, saved.gripper), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_grasp_restore(&copy.table, 3, saved.wafer, NULL), WH_STATUS_NULL_ARGUMENT);
 }
 
 static void nothing_is_restored_from_nothing(void **state) {
