@@ -35,8 +35,21 @@ static void texts_are_sentences_without_a_stop(void **state) {
     }
 }
 
+static bool is_in_catalogue(int number) {
+    bool found = false;
+    for (size_t i = 0; i < ROWS; ++i) {
+        found = found || (int)rows[i].number == number;
+    }
+    return found;
+}
+
 static void other_numbers_are_unknown(void **state) {
     (void)state;
+    for (int number = 0; number < 256; ++number) {
+        const bool unknown = strcmp(wh_status_name((wh_status_t)number), "UNKNOWN") == 0;
+        assert_int_equal(unknown, !is_in_catalogue(number));
+        assert_int_equal(unknown, strcmp(wh_status_text((wh_status_t)number), "unknown status") == 0);
+    }
     static const int none[] = {-1, 9999, INT32_MAX, INT32_MIN};
     for (size_t i = 0; i < 4; ++i) {
         assert_string_equal(wh_status_name((wh_status_t)none[i]), "UNKNOWN");
