@@ -53,6 +53,7 @@ static void a_tangent_is_outside(void **state) {
         begin(&cell, false);
         cell_move(&cell, 0, 100, 0, 0, OPEN);
         cell_move(&cell, 0, 100, sign * 10, 0, OPEN);
+        cell_expect_nothing(&cell);
         assert_int_equal(cell.gripper[0].approach.wafer, WH_NONE);
     }
 }
