@@ -358,6 +358,8 @@ static void no_length_takes_no_time(void **state) {
     assert_int_equal(wh_line_plan(&line, &robot, robot.home, 0, 0, 0, 0), WH_OK);
     assert_near(wh_line_duration(&line), 0, 0);
     assert_memory_equal(line.to, robot.home, sizeof line.to);
+    assert_true(line.direction.x == 1 && line.direction.y == 0 && line.direction.z == 0);
+    assert_near(line.slowed, 1, 0);
 }
 
 static void a_line_near_the_axis_is_refused(void **state) {
