@@ -249,6 +249,34 @@ static void travel_is_checked_by_axis(void **state) {
     assert_int_equal(wh_robot_check_travel(&robot, NULL), WH_STATUS_NULL_ARGUMENT);
 }
 
+/* The table in motion/robot.h, angles in degrees. */
+static void the_default_robot_is_the_documented_one(void **state) {
+    (void)state;
+    static const double table[WH_ROBOT_AXES][6] = {
+        {-540, 540, 0, 300, 1000, 10000},
+        {300, 900, 300, 1000, 5000, 50000},
+        {600, 1300, 900, 400, 2000, 20000},
+        {-270, 270, 0, 360, 1500, 15000},
+    };
+    wh_robot_t robot;
+    wh_robot_default(&robot);
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        const wh_limits_t *limits = &robot.limits[axis];
+        const wh_real_t got[] = {robot.travel[axis].min, robot.travel[axis].max, robot.home[axis],
+                                 limits->speed,          limits->acceleration,   limits->jerk};
+        const double unit = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW ? 3.14159265358979323846 / 180 : 1;
+        for (int k = 0; k < 6; ++k) {
+            assert_near(got[k], table[axis][k] * unit, fabs(table[axis][k]) * 1e-7);
+        }
+    }
+    assert_int_equal(wh_robot_validate(&robot), WH_OK);
+    /* An arm may reach to its own column, but not through it. */
+    robot.travel[WH_AXIS_R].min = 0;
+    assert_int_equal(wh_robot_validate(&robot), WH_OK);
+    robot.travel[WH_AXIS_R].min = WH_REAL(-1e-6);
+    assert_int_equal(wh_robot_validate(&robot), WH_STATUS_BAD_LIMITS);
+}
+
 static void unsound_robots_are_refused(void **state) {
     (void)state;
     assert_int_equal(wh_robot_validate(NULL), WH_STATUS_NULL_ARGUMENT);
@@ -283,6 +311,7 @@ int main(void) {
         cmocka_unit_test(out_of_travel_is_refused),
         cmocka_unit_test(bad_numbers_are_refused),
         cmocka_unit_test(travel_is_checked_by_axis),
+        cmocka_unit_test(the_default_robot_is_the_documented_one),
         cmocka_unit_test(unsound_robots_are_refused),
     };
     (void)wh_test_seed();
