@@ -79,7 +79,20 @@ static void test_init_refuses_and_leaves_the_track(void **state) {
 static void test_a_blank_segment_changes_nothing(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
-    const wh_segment_t segment = wh_track_blank(&track);
+    for (size_t axis = 0; axis < WH_AXES; ++axis) {
+        track.axes[axis] += WH_REAL(0.5);
+    }
+    wh_segment_t segment = wh_track_blank(&track);
+    assert_int_equal(segment.kind, WH_SEGMENT_DWELL);
+    assert_true(segment.travel.x == 0 && segment.travel.y == 0 && segment.travel.z == 0);
+    assert_true(segment.speed == 0 && segment.seconds == 0);
+    assert_int_equal(segment.gripper, WH_NONE);
+    assert_memory_equal(segment.target, track.axes, sizeof track.axes);
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        assert_int_equal(segment.valves[g], WH_NONE);
+    }
+    track = begin_track(1000);
+    segment = wh_track_blank(&track);
     assert_int_equal(play(&track, &segment), 0);
     assert_int_equal(track.valves[0], WH_VALVE_CLOSED);
     assert_true(track.axes[WH_AXIS_R] == 300);
@@ -128,6 +141,46 @@ static void test_moves_end_on_the_targets_bits(void **state) {
         const double exact = duration * 1e6 / (double)track.slice_us;
         assert_true(count >= exact * (1 - 1e-6) && count < exact * (1 + 1e-6) + 1);
     }
+}
+
+/* Slice by slice where the move is at that time, and at its end in the last. */
+static void test_each_slice_of_a_move_is_on_its_plan(void **state) {
+    (void)state;
+    wh_track_t track = begin_track(7000);
+    wh_limits_t limits[WH_AXES];
+    for (size_t axis = 0; axis < machine.axis_count; ++axis) {
+        limits[axis] = *wh_machine_limits(&machine, axis);
+    }
+    wh_segment_t segment = blank(&track, WH_SEGMENT_AXES);
+    segment.target[WH_AXIS_THETA] = 1;
+    segment.target[WH_AXIS_R] = 612;
+    segment.target[4] = -2;
+    wh_move_t move;
+    assert_int_equal(wh_move_plan(&move, machine.axis_count, track.axes, segment.target, limits), WH_OK);
+    assert_int_equal(wh_track_begin(&track, &segment), WH_OK);
+    for (int slice = 1; wh_track_next(&track, 0) == WH_TRACK_MOVING; ++slice) {
+        wh_real_t want[WH_AXES];
+        wh_move_at(&move, (wh_real_t)(slice * 7000) / WH_REAL(1e6), want);
+        assert_memory_equal(track.axes, want, machine.axis_count * sizeof want[0]);
+    }
+    assert_int_equal(track.slice, ceil((double)wh_move_duration(&move) / 0.007));
+}
+
+static void test_each_slice_of_a_line_is_on_its_plan(void **state) {
+    (void)state;
+    wh_track_t track = begin_track(7000);
+    wh_segment_t segment = blank(&track, WH_SEGMENT_LINE);
+    segment.travel = wh_vec3(100, 200, 50);
+    segment.speed = 300;
+    wh_line_t line;
+    assert_int_equal(wh_line_plan(&line, &machine.robot, track.axes, 100, 200, 50, 300), WH_OK);
+    assert_int_equal(wh_track_begin(&track, &segment), WH_OK);
+    for (int slice = 1; wh_track_next(&track, 0) == WH_TRACK_MOVING; ++slice) {
+        wh_real_t want[WH_ROBOT_AXES];
+        wh_line_at(&line, (wh_real_t)(slice * 7000) / WH_REAL(1e6), want);
+        assert_memory_equal(track.axes, want, sizeof want);
+    }
+    assert_int_equal(track.slice, ceil((double)wh_line_duration(&line) / 0.007));
 }
 
 static void test_a_line_ends_on_its_end(void **state) {
@@ -340,6 +393,8 @@ int main(void) {
         cmocka_unit_test(test_a_whole_number_of_slices_is_just_that_many),
         cmocka_unit_test(test_a_dwell_is_rounded_up),
         cmocka_unit_test(test_moves_end_on_the_targets_bits),
+        cmocka_unit_test(test_each_slice_of_a_move_is_on_its_plan),
+        cmocka_unit_test(test_each_slice_of_a_line_is_on_its_plan),
         cmocka_unit_test(test_a_line_ends_on_its_end),
         cmocka_unit_test(test_skipping_equals_playing),
         cmocka_unit_test(test_valves_take_one_slice),

@@ -299,6 +299,37 @@ static void rotations_turn_the_right_way(void **state) {
     }
 }
 
+static void times(long double a[3][3], const long double b[3][3]) {
+    long double c[3][3];
+    for (int i = 0; i < 9; ++i) {
+        c[i / 3][i % 3] = a[i / 3][0] * b[0][i % 3] + a[i / 3][1] * b[1][i % 3] + a[i / 3][2] * b[2][i % 3];
+    }
+    memcpy(a, c, sizeof c);
+}
+
+/* Rz(yaw) Ry(pitch) Rx(roll), each written down as in a textbook. */
+static void roll_pitch_and_yaw_are_about_fixed_axes(void **state) {
+    (void)state;
+    for (int i = 0; i < 1000; ++i) {
+        const wh_real_t deg[3] = {random_real(-200, 200), random_real(-200, 200), random_real(-200, 200)};
+        long double s[3];
+        long double c[3];
+        for (int k = 0; k < 3; ++k) {
+            s[k] = sinl((long double)deg[k] * PI / 180);
+            c[k] = cosl((long double)deg[k] * PI / 180);
+        }
+        long double R[3][3] = {{c[2], -s[2], 0}, {s[2], c[2], 0}, {0, 0, 1}};
+        const long double Ry[3][3] = {{c[1], 0, s[1]}, {0, 1, 0}, {-s[1], 0, c[1]}};
+        const long double Rx[3][3] = {{1, 0, 0}, {0, c[0], -s[0]}, {0, s[0], c[0]}};
+        times(R, Ry);
+        times(R, Rx);
+        const wh_mat3_t got = wh_mat3_from_rpy_deg(deg[0], deg[1], deg[2]);
+        for (int k = 0; k < 9; ++k) {
+            assert_near(got.m[k / 3][k % 3], (double)R[k / 3][k % 3], DIGITS == 24 ? 1e-6 : 1e-15);
+        }
+    }
+}
+
 /* One number for all results: a machine or a compiler that rounds otherwise is found out. */
 static void bits_are_the_same_on_every_machine(void **state) {
     (void)state;
@@ -332,6 +363,7 @@ int main(void) {
         cmocka_unit_test(cbrt_is_near_the_oracle),
         cmocka_unit_test(cbrt_of_cubes_and_special_values),
         cmocka_unit_test(rotations_turn_the_right_way),
+        cmocka_unit_test(roll_pitch_and_yaw_are_about_fixed_axes),
         cmocka_unit_test(bits_are_the_same_on_every_machine),
     };
     (void)wh_test_seed();
