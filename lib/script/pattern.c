@@ -214,12 +214,13 @@ static const char *match_shortest(pattern_t *m, const char *s, const char *p, co
     }
 }
 
-static next_t match_item(pattern_t *m, const char *s, const char *p) {
-    const char *const end = item_end(m, p);
-    const char suffix = end < m->pattern_end ? *end : '\0';
-    if (!matches_one(m, s, p, end)) {
-        return suffix == '*' || suffix == '?' || suffix == '-' ? go_on(s, end + 1) : done(NULL);
-    }
+/* The item's character does not match: only a suffix that allows none helps. */
+static next_t match_without(const char *s, const char *end, char suffix) {
+    return suffix == '*' || suffix == '?' || suffix == '-' ? go_on(s, end + 1) : done(NULL);
+}
+
+/* The item's character, at s, matches once at least. */
+static next_t match_with(pattern_t *m, const char *s, const char *p, const char *end, char suffix) {
     const char *found = NULL;
     switch (suffix) {
     case '?':
@@ -234,6 +235,12 @@ static next_t match_item(pattern_t *m, const char *s, const char *p) {
     default:
         return go_on(s + 1, end);
     }
+}
+
+static next_t match_item(pattern_t *m, const char *s, const char *p) {
+    const char *const end = item_end(m, p);
+    const char suffix = end < m->pattern_end ? *end : '\0';
+    return matches_one(m, s, p, end) ? match_with(m, s, p, end, suffix) : match_without(s, end, suffix);
 }
 
 /* '%' begins a class, which is an item, or one of the special ones. */

@@ -4,42 +4,17 @@
 #include "script/pattern.h"
 
 bool wh_pattern_in_class(int c, int letter) {
-    int is = 0;
-    switch (tolower(letter)) {
-    case 'a':
-        is = isalpha(c);
-        break;
-    case 'c':
-        is = iscntrl(c);
-        break;
-    case 'd':
-        is = isdigit(c);
-        break;
-    case 'g':
-        is = isgraph(c);
-        break;
-    case 'l':
-        is = islower(c);
-        break;
-    case 'p':
-        is = ispunct(c);
-        break;
-    case 's':
-        is = isspace(c);
-        break;
-    case 'u':
-        is = isupper(c);
-        break;
-    case 'w':
-        is = isalnum(c);
-        break;
-    case 'x':
-        is = isxdigit(c);
-        break;
-    default:
-        return letter == c;
+    static const struct {
+        char letter;
+        int (*contains)(int c);
+    } classes[] = {{'a', isalpha}, {'c', iscntrl}, {'d', isdigit}, {'g', isgraph}, {'l', islower},
+                   {'p', ispunct}, {'s', isspace}, {'u', isupper}, {'w', isalnum}, {'x', isxdigit}};
+    for (size_t i = 0; i < sizeof classes / sizeof classes[0]; ++i) {
+        if (classes[i].letter == tolower(letter)) {
+            return (classes[i].contains(c) != 0) != (isupper(letter) != 0);
+        }
     }
-    return isupper(letter) ? is == 0 : is != 0;
+    return letter == c;
 }
 
 bool wh_pattern_in_set(int c, const char *p, const char *last) {
