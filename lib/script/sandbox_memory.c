@@ -29,7 +29,33 @@ static void *refuse(wh_sandbox_t *sandbox) {
     return NULL;
 }
 
-/* Lua passes a new object's type as the old size of a null block, and relies on shrinking never to fail. */
+/* Shrinking never fails: Lua relies on it. */
+static void *shrink(wh_sandbox_t *sandbox, void *block, size_t held, size_t size) {
+    void *const moved = realloc(block, size);
+    if (moved == NULL) {
+        return block;
+    }
+    sandbox->memory -= held - size;
+    return moved;
+}
+
+static void *grow(wh_sandbox_t *sandbox, void *block, size_t held, size_t size) {
+    void *const moved = size - held <= sandbox->memory_cap - sandbox->memory ? realloc(block, size) : NULL;
+    if (moved == NULL) {
+        return refuse(sandbox);
+    }
+    sandbox->memory += size - held;
+    if (sandbox->memory > wh_sandbox_memory_brim(sandbox)) {
+        sandbox->brimming = true;
+        wh_sandbox_alarm(sandbox);
+    }
+    if (sandbox->memory > sandbox->memory_high_water) {
+        sandbox->memory_high_water = sandbox->memory;
+    }
+    return moved;
+}
+
+/* Lua passes a new object's type as the old size of a null block. */
 void *wh_sandbox_allocate(void *opaque, void *block, size_t old_size, size_t new_size) {
     wh_sandbox_t *const sandbox = opaque;
     const size_t held = block != NULL ? old_size : 0;
@@ -38,22 +64,11 @@ void *wh_sandbox_allocate(void *opaque, void *block, size_t old_size, size_t new
         sandbox->memory -= held;
         return NULL;
     }
-    if (new_size > held && new_size - held > sandbox->memory_cap - sandbox->memory) {
-        return refuse(sandbox);
+    if (new_size <= held) {
+        return shrink(sandbox, block, held, new_size);
     }
-    void *const moved = realloc(block, new_size);
-    if (moved == NULL) {
-        return new_size <= held ? block : refuse(sandbox);
-    }
-    sandbox->memory = sandbox->memory - held + new_size;
-    if (new_size > held && sandbox->memory > wh_sandbox_memory_brim(sandbox)) {
-        sandbox->brimming = true;
-        wh_sandbox_alarm(sandbox);
-    }
-    if (sandbox->memory > sandbox->memory_high_water) {
-        sandbox->memory_high_water = sandbox->memory;
-    }
-    if (new_size > held) {
+    void *const moved = grow(sandbox, block, held, new_size);
+    if (moved != NULL) {
         charge_block(sandbox, block == NULL && old_size == LUA_TSTRING, new_size);
     }
     return moved;
