@@ -140,7 +140,8 @@ static bool take_line(wh_prompt_t *prompt, const char *line) {
     return fflush(stdout) == 0 && !prompt->input.leaving;
 }
 
-int wh_prompt_run(wh_prompt_t *prompt) {
+/* Reads and executes lines: END or LEAVING, as what ended them. */
+static wh_line_event_t take_lines(wh_prompt_t *prompt) {
     const char *line = NULL;
     wh_line_event_t event = WH_LINE_NONE;
     while (event != WH_LINE_END && event != WH_LINE_LEAVING) {
@@ -149,6 +150,11 @@ int wh_prompt_run(wh_prompt_t *prompt) {
             event = WH_LINE_END;
         }
     }
+    return event;
+}
+
+int wh_prompt_run(wh_prompt_t *prompt) {
+    const wh_line_event_t event = take_lines(prompt);
     if (fflush(stdout) != 0 || ferror(stdout)) {
         fprintf(stderr, "standard output: %s\n", strerror(errno));
         return WH_EXIT_USAGE;

@@ -6,25 +6,31 @@
 #include "app/line_source.h"
 #include "app/signals.h"
 
+/* NONE: there was nothing to read after all. */
+static wh_line_event_t read_bytes(wh_plain_t *plain) {
+    const ssize_t bytes = read(STDIN_FILENO, plain->buffer, sizeof plain->buffer);
+    plain->begin = 0;
+    plain->end = bytes > 0 ? (size_t)bytes : 0;
+    if (bytes > 0) {
+        return WH_LINE_READ;
+    }
+    return bytes < 0 && (errno == EINTR || errno == EAGAIN) ? WH_LINE_NONE : WH_LINE_END;
+}
+
 /* Fills the empty buffer. */
 static wh_line_event_t fill(wh_plain_t *plain) {
-    for (;;) {
+    wh_line_event_t line = WH_LINE_NONE;
+    while (line == WH_LINE_NONE) {
         const wh_input_event_t event = wh_input_wait(plain->input);
         if (event == WH_INPUT_LEAVE || (event == WH_INPUT_SIGNAL && wh_signals_take() != 0)) {
-            return WH_LINE_LEAVING;
-        }
-        if (event == WH_INPUT_BROKEN) {
-            return WH_LINE_END;
-        }
-        if (event == WH_INPUT_READY) {
-            const ssize_t bytes = read(STDIN_FILENO, plain->buffer, sizeof plain->buffer);
-            plain->begin = 0;
-            plain->end = bytes > 0 ? (size_t)bytes : 0;
-            if (bytes >= 0 || (errno != EINTR && errno != EAGAIN)) {
-                return bytes > 0 ? WH_LINE_READ : WH_LINE_END;
-            }
+            line = WH_LINE_LEAVING;
+        } else if (event == WH_INPUT_BROKEN) {
+            line = WH_LINE_END;
+        } else if (event == WH_INPUT_READY) {
+            line = read_bytes(plain);
         }
     }
+    return line;
 }
 
 static wh_line_event_t finish(wh_plain_t *plain, size_t length) {
