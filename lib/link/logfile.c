@@ -49,17 +49,27 @@ static bool read_data(wh_log_t *log, size_t length) {
     return fread(log->data, 1, length, log->file) == length;
 }
 
+static wh_log_result_t read_header(wh_log_t *log, uint8_t header[HEADER]) {
+    const size_t got = fread(header, 1, HEADER, log->file);
+    if (got == 0) {
+        return WH_LOG_END;
+    }
+    if (got >= 4 && big_endian(header, 4) != SYNC) {
+        return WH_LOG_DAMAGED;
+    }
+    return got < HEADER ? WH_LOG_CUT : WH_LOG_EVENT;
+}
+
 wh_log_result_t wh_log_next(wh_log_t *log) {
     uint8_t header[HEADER];
     log->offset = log->next;
-    const size_t got = fread(header, 1, sizeof header, log->file);
-    if (got < sizeof header) {
-        const bool sound = got < 4 || big_endian(header, 4) == SYNC;
-        return got == 0 ? WH_LOG_END : (sound ? WH_LOG_CUT : WH_LOG_DAMAGED);
+    const wh_log_result_t result = read_header(log, header);
+    if (result != WH_LOG_EVENT) {
+        return result;
     }
     const uint64_t channel = big_endian(header + 20, 4);
     const uint64_t data = big_endian(header + 24, 4);
-    if (big_endian(header, 4) != SYNC || channel == 0 || channel > 1000 || data > LONGEST) {
+    if (channel == 0 || channel > 1000 || data > LONGEST) {
         return WH_LOG_DAMAGED;
     }
     log->timestamp_us = (int64_t)big_endian(header + 12, 8);

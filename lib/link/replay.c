@@ -182,6 +182,16 @@ static bool is_new(const wh_replay_t *replay, int64_t run, int64_t seq) {
     return run != replay->server.identity.run || seq > replay->server.seq;
 }
 
+/* Whether it is the command that waits for its state. */
+static bool is_waiting(const wh_replay_t *replay, int64_t run, int64_t seq) {
+    return replay->has_command && replay->command.run == run && replay->command.seq == seq;
+}
+
+/* A state that came before its command. */
+static bool is_held(const wh_replay_t *replay, int64_t run, int64_t seq) {
+    return replay->state_size > 0 && replay->state_run == run && replay->state_seq == seq;
+}
+
 static void on_command(wh_replay_t *replay, const void *data, size_t size) {
     waferhand_command message;
     waferhand_state state;
@@ -194,14 +204,13 @@ static void on_command(wh_replay_t *replay, const void *data, size_t size) {
         ++replay->homeless;
         return;
     }
-    if (!is_new(replay, message.run, message.seq) ||
-        (replay->has_command && replay->command.run == message.run && replay->command.seq == message.seq)) {
+    if (!is_new(replay, message.run, message.seq) || is_waiting(replay, message.run, message.seq)) {
         return;
     }
     wh_replay_finish(replay);
     replay->command = message;
     replay->has_command = true;
-    if (replay->state_size > 0 && replay->state_run == message.run && replay->state_seq == message.seq &&
+    if (is_held(replay, message.run, message.seq) &&
         wh_link_decode_state(replay->state, replay->state_size, &state)) {
         replay->state_size = 0;
         resolve(replay, &state);
@@ -227,8 +236,7 @@ static void on_state(wh_replay_t *replay, const void *data, size_t size) {
         ++replay->homeless;
     } else if (message.status != WH_OK || !is_new(replay, message.run, message.seq)) {
         /* A refusal, or an answer once more. */
-    } else if (replay->has_command && replay->command.run == message.run &&
-               replay->command.seq == message.seq) {
+    } else if (is_waiting(replay, message.run, message.seq)) {
         resolve(replay, &message);
     } else if (message.run == replay->server.identity.run && message.seq == replay->server.seq + 1) {
         hold_state(replay, &message, data, size);
