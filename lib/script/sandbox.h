@@ -71,7 +71,7 @@ void wh_sandbox_free(wh_sandbox_t *sandbox);
  * from within a C function run by wh_sandbox_call. */
 lua_State *wh_sandbox_state(wh_sandbox_t *sandbox);
 
-/* The sandbox that a state or coroutine belongs to; null for a state that is none of ours. */
+/* The sandbox that a state or coroutine belongs to; not for a state that is none of ours. */
 wh_sandbox_t *wh_sandbox_of(lua_State *L);
 
 /* ---- Running ---- */

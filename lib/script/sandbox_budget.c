@@ -16,7 +16,12 @@ static const char message_keys[WH_SANDBOX_UNREADABLE + 1] = {0};
 
 wh_sandbox_t *wh_sandbox_of(lua_State *L) {
     void *opaque = NULL;
-    return lua_getallocf(L, &opaque) == wh_sandbox_allocate ? opaque : NULL;
+    (void)lua_getallocf(L, &opaque);
+    return opaque;
+}
+
+static bool is_ours(lua_State *L) {
+    return lua_getallocf(L, NULL) == wh_sandbox_allocate;
 }
 
 void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size) {
@@ -142,10 +147,10 @@ void wh_sandbox_spend(wh_sandbox_t *sandbox, uint64_t steps) {
 }
 
 void wh_sandbox_charge(lua_State *L, uint64_t steps) {
-    wh_sandbox_t *const sandbox = wh_sandbox_of(L);
-    if (sandbox == NULL) {
+    if (!is_ours(L)) {
         return;
     }
+    wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     wh_sandbox_spend(sandbox, steps);
     if (sandbox->stop) {
         wh_sandbox_exhaust(L, WH_SANDBOX_STOPPED);

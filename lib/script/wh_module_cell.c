@@ -117,9 +117,9 @@ static int cell_step(lua_State *L) {
     --cell->unread;
     const wh_status_t status = wh_grasp_step(&cell->table, inputs, &list);
     if (status != WH_OK) {
-        const wh_field_t entry = wh_lua_entry(&at, (lua_Integer)events[0].gripper + 1);
+        const wh_field_t entry = wh_lua_entry(&at, (lua_Integer)list.events[0].gripper + 1);
         const wh_field_t pose = wh_lua_field(&entry, "pose");
-        return wh_lua_refuse_pose(L, &pose, &inputs[events[0].gripper].base_from_gripper, status);
+        return wh_lua_refuse_pose(L, &pose, &inputs[list.events[0].gripper].base_from_gripper, status);
     }
     push_events(L, &list);
     return 1;
