@@ -38,7 +38,7 @@ typedef struct {
     void *tick_user;
 } wh_client_options_t;
 
-/* Written by client.c. Must not be moved once opened. */
+/* Written by client*.c. Must not be moved once opened. */
 typedef struct {
     wh_link_t link; /* first: &client->link is what the MCS talks to */
     wh_node_t *node;

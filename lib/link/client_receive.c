@@ -1,0 +1,101 @@
+/* What the client takes: states of its run that are sound, refusals of its command. */
+#include <string.h>
+
+#include "link/client_internal.h"
+
+static void heard(wh_client_t *client) {
+    client->last_heard_us = wh_node_clock_us();
+    if (client->silent) {
+        client->silent = false;
+        wh_client_say(client, "the simulator answers again");
+    }
+}
+
+/* The hash that the state's own content has. */
+static uint64_t own_hash(wh_client_t *client, const wh_state_t *state, int64_t missed) {
+    wh_grasp_t table;
+    memset(&table, 0, sizeof table);
+    table.slice = (uint64_t)(state->seq - missed);
+    table.storage.wafers = client->spare.wafers;
+    table.storage.wafer_count = state->wafer_count;
+    table.storage.grippers = client->spare.grippers;
+    table.storage.gripper_count = state->gripper_count;
+    return wh_grasp_hash(&table);
+}
+
+static bool is_sound(wh_client_t *client, const waferhand_state *message, wh_state_t *state) {
+    const wh_layout_t *layout = client->options.layout;
+    return wh_link_state_from_message(message, &layout->grasp.tolerance, &client->spare, state) == WH_OK &&
+           state->wafer_count == layout->wafer_count &&
+           state->gripper_count == layout->machine.gripper_count && message->missed >= 0 &&
+           message->missed < message->seq &&
+           own_hash(client, state, message->missed) == (uint64_t)message->hash;
+}
+
+static void keep_events(wh_client_t *client, const wh_state_t *state) {
+    const size_t room = sizeof client->events / sizeof client->events[0] - client->event_count;
+    const size_t count = state->event_count < room ? state->event_count : room;
+    memcpy(client->events + client->event_count, state->events, count * sizeof *state->events);
+    client->event_count += count;
+}
+
+static void take(wh_client_t *client, const waferhand_state *message, const wh_state_t *state,
+                 const void *data, size_t size) {
+    if (!client->has_state || state->seq != client->state.seq) {
+        keep_events(client, state);
+    }
+    memcpy(client->arrays.wafers, client->spare.wafers, state->wafer_count * sizeof *state->wafers);
+    memcpy(client->arrays.grippers, client->spare.grippers, state->gripper_count * sizeof *state->grippers);
+    client->state = *state;
+    client->state.wafers = client->arrays.wafers;
+    client->state.grippers = client->arrays.grippers;
+    client->has_state = true;
+    client->missed = message->missed;
+    client->hash = (uint64_t)message->hash;
+    memcpy(client->restore, data, size);
+    client->restore_size = size;
+    ++client->counters.answers;
+    client->answered = client->answered || state->seq == client->command.seq;
+}
+
+static void take_refusal(wh_client_t *client, const waferhand_state *message) {
+    if (message->seq != client->command.seq) {
+        ++client->counters.unasked;
+    } else if (message->status == WH_STATUS_UNKNOWN_RUN) {
+        client->asked_for_state = true;
+    } else {
+        client->refusal = (wh_status_t)message->status;
+    }
+}
+
+static void take_message(wh_client_t *client, const waferhand_state *message, const void *data, size_t size) {
+    wh_state_t state;
+    const bool wanted = message->seq == client->command.seq ||
+                        (wh_client_is_free_running(client) && message->seq > client->state.seq &&
+                         message->seq < client->command.seq);
+    if (message->run != client->identity.run) {
+        ++client->counters.unasked;
+        return;
+    }
+    heard(client);
+    if (message->status != WH_OK) {
+        take_refusal(client, message);
+    } else if (!wanted) {
+        ++client->counters.unasked;
+    } else if (!is_sound(client, message, &state)) {
+        ++client->counters.malformed;
+    } else {
+        take(client, message, &state, data, size);
+    }
+}
+
+void wh_client_on_state(void *user, const void *data, size_t size) {
+    wh_client_t *client = user;
+    waferhand_state message;
+    if (!wh_link_decode_state(data, size, &message)) {
+        ++client->counters.malformed;
+        return;
+    }
+    take_message(client, &message, data, size);
+    (void)waferhand_state_decode_cleanup(&message);
+}
