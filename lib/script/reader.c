@@ -1,190 +1,16 @@
 #include "script/reader.h"
 
-#include <lauxlib.h>
-#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/config.h"
+#include "script/reader_internal.h"
 
 void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file) {
     memset(reader, 0, sizeof *reader);
     reader->L = L;
     reader->file = file;
     luaL_checkstack(L, 16, "layout nested too deeply");
-}
-
-/* ---------------------------------------------------------------------------------------------- errors */
-
-/* The sign of a NaN depends on the machine, and says nothing. */
-static void describe_number(double value, char *text, size_t size) {
-    if (value != value) {
-        snprintf(text, size, "nan");
-    } else {
-        snprintf(text, size, "%.14g", value);
-    }
-}
-
-static bool is_short_list(lua_State *L) {
-    const lua_Integer count = (lua_Integer)lua_rawlen(L, -1);
-    bool numbers = count >= 1 && count <= 4;
-    for (lua_Integer i = 1; numbers && i <= count; ++i) {
-        numbers = lua_rawgeti(L, -1, i) == LUA_TNUMBER;
-        lua_pop(L, 1);
-    }
-    return numbers;
-}
-
-/* { 0, 90, 0 }: a short list of numbers as it was written; of any other table only that it is one. */
-static void describe_table(lua_State *L, char *text, size_t size) {
-    if (!is_short_list(L)) {
-        snprintf(text, size, "a table");
-        return;
-    }
-    const char *before = "{ ";
-    text[0] = '\0';
-    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, -1); ++i) {
-        char number[40];
-        lua_rawgeti(L, -1, i);
-        describe_number(lua_tonumber(L, -1), number, sizeof number);
-        lua_pop(L, 1);
-        const size_t used = strlen(text);
-        snprintf(text + used, size - used, "%s%s", before, number);
-        before = ", ";
-    }
-    const size_t used = strlen(text);
-    snprintf(text + used, size - used, " }");
-}
-
-static void describe(lua_State *L, char *text, size_t size) {
-    switch (lua_type(L, -1)) {
-    case LUA_TNUMBER:
-        describe_number(lua_tonumber(L, -1), text, size);
-        break;
-    case LUA_TTABLE:
-        describe_table(L, text, size);
-        break;
-    case LUA_TSTRING:
-        snprintf(text, size, "\"%.60s\"", lua_tostring(L, -1));
-        break;
-    case LUA_TBOOLEAN:
-        snprintf(text, size, "%s", lua_toboolean(L, -1) ? "true" : "false");
-        break;
-    case LUA_TNIL:
-        snprintf(text, size, "nothing");
-        break;
-    default:
-        snprintf(text, size, "a %s", luaL_typename(L, -1));
-        break;
-    }
-}
-
-void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *expected, ...) {
-    char value[200];
-    char wanted[512];
-    va_list arguments;
-    describe(reader->L, value, sizeof value);
-    va_start(arguments, expected);
-    vsnprintf(wanted, sizeof wanted, expected, arguments);
-    va_end(arguments);
-    const bool in_list = field && field[0] == '[';
-    const char *dot = reader->depth > 0 && field && !in_list ? "." : "";
-    lua_pushfstring(reader->L, "%s: %s%s%s: %s (expected %s)", reader->file, reader->path, dot,
-                    field ? field : "", value, wanted);
-    lua_error(reader->L);
-    abort(); /* lua_error does not return, but its declaration does not say so */
-}
-
-static bool is_known(const char *name, size_t length, const char *known) {
-    if (length == 0 || length != strlen(name) || strchr(name, ' ')) {
-        return false;
-    }
-    for (const char *at = strstr(known, name); at; at = strstr(at + 1, name)) {
-        const bool begins = at == known || at[-1] == ' ';
-        if (begins && (at[length] == ' ' || at[length] == '\0')) {
-            return true;
-        }
-    }
-    return false;
-}
-
-/* The key below the top, in brackets unless it is a name. */
-static void name_key(lua_State *L, char *field, size_t size) {
-    lua_pushvalue(L, -2);
-    if (lua_type(L, -1) == LUA_TSTRING) {
-        snprintf(field, size, "%.60s", lua_tostring(L, -1));
-    } else {
-        char key[60];
-        describe(L, key, sizeof key);
-        snprintf(field, size, "[%s]", key);
-    }
-    lua_pop(L, 1);
-}
-
-void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known) {
-    lua_State *L = reader->L;
-    const char *first = NULL;
-    lua_pushnil(L);
-    while (lua_next(L, -2) != 0) {
-        if (lua_type(L, -2) != LUA_TSTRING) {
-            char field[80];
-            name_key(L, field, sizeof field);
-            wh_reader_fail(reader, field, "one of the fields %s", known);
-        }
-        size_t length = 0;
-        const char *name = lua_tolstring(L, -2, &length);
-        if (!is_known(name, length, known) && (!first || strcmp(name, first) < 0)) {
-            first = name;
-        }
-        lua_pop(L, 1);
-    }
-    if (first) {
-        char field[80];
-        snprintf(field, sizeof field, "%.60s", first);
-        lua_pushstring(L, first);
-        lua_rawget(L, -2);
-        wh_reader_fail(reader, field, "one of the fields %s", known);
-    }
-}
-
-/* Whether the key below the top is that of an entry of a list of `count`. */
-static bool is_entry(lua_State *L, lua_Integer count) {
-    const bool whole = lua_isinteger(L, -2) != 0;
-    return whole && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= count;
-}
-
-/* Pushes the first key that no list of as many entries has, and its value; false when there is none. */
-static bool push_stray(lua_State *L, size_t *count) {
-    *count = 0;
-    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
-        ++*count;
-    }
-    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
-        if (!is_entry(L, (lua_Integer)*count)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-size_t wh_reader_list(const wh_reader_t *reader) {
-    size_t count = 0;
-    if (push_stray(reader->L, &count)) {
-        char field[80];
-        name_key(reader->L, field, sizeof field);
-        wh_reader_fail(reader, field, "a list: entries 1, 2, ... without names and gaps");
-    }
-    return count;
-}
-
-static bool is_list_of_three(lua_State *L) {
-    size_t count = 0;
-    if (push_stray(L, &count)) {
-        lua_pop(L, 2);
-        return false;
-    }
-    return count == 3;
 }
 
 /* --------------------------------------------------------------------------------------------- nesting */
@@ -305,7 +131,7 @@ wh_vec3_t wh_reader_vector(wh_reader_t *reader, const char *field, const wh_vec3
     if (!push_field(reader, field, !fallback, "a list of three numbers")) {
         return *fallback;
     }
-    if (!lua_istable(reader->L, -1) || !is_list_of_three(reader->L)) {
+    if (!lua_istable(reader->L, -1) || !wh_reader_is_list_of_three(reader->L)) {
         wh_reader_fail(reader, field, "a list of three numbers");
     }
     wh_vec3_t vector;
