@@ -111,8 +111,9 @@ static char lines_key;
 /* Runs protected: pushes the native table and hands it to lua/mcs/init.lua, which sets the globals. */
 static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
-    const luaL_Reg *const groups[] = {module_functions, wh_mcs_play_functions, wh_mcs_query_functions,
-                                      wh_mcs_record_functions, wh_mcs_line_functions};
+    const luaL_Reg *const groups[] = {module_functions,      wh_mcs_cell_functions,  wh_mcs_plan_functions,
+                                      wh_mcs_play_functions, wh_mcs_query_functions, wh_mcs_record_functions,
+                                      wh_mcs_line_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);

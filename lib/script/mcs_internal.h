@@ -24,6 +24,8 @@ double wh_mcs_now(const wh_mcs_t *mcs);
 int32_t wh_mcs_index(lua_State *L, int argument, size_t count);
 
 /* Functions of the native table, by subject. */
+extern const luaL_Reg wh_mcs_cell_functions[];
+extern const luaL_Reg wh_mcs_plan_functions[];
 extern const luaL_Reg wh_mcs_play_functions[];
 extern const luaL_Reg wh_mcs_query_functions[];
 extern const luaL_Reg wh_mcs_record_functions[];

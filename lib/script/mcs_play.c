@@ -1,163 +1,13 @@
-/* The MCS host's hands: setting up the cell, planning, and playing segments slice by slice. */
-#include <stdio.h>
+/* The MCS host's hands: segments, read and played slice by slice. */
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 
-#include "motion/trig.h"
 #include "script/mcs_internal.h"
 
 /* The budget is charged for slices in portions, so that a long wait can be ended within one. A slice costs as much time
  * as some twenty instructions of Lua. */
 #define SLICES_PER_CHARGE 1024
 #define STEPS_PER_SLICE 20
-
-/* ------------------------------------------------------------------------------------------------ the cell
- */
-
-static bool is_same_file(const char *a, const char *b) {
-    struct stat one;
-    struct stat two;
-    return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_dev == two.st_dev && one.st_ino == two.st_ino;
-}
-
-/* "lua/examples/../layouts" reads better as "lua/layouts": if that is the same file, symbolic links considered. */
-static const char *push_short_path(lua_State *L, const char *path) {
-    const char *up = strstr(path, "/../");
-    const char *start = up;
-    while (start && start > path && start[-1] != '/') {
-        --start;
-    }
-    if (!up || strncmp(start, "..", 2) == 0) {
-        return lua_pushstring(L, path);
-    }
-    lua_pushlstring(L, path, (size_t)(start - path));
-    lua_pushstring(L, up + 4);
-    lua_concat(L, 2);
-    return is_same_file(path, lua_tostring(L, -1)) ? lua_tostring(L, -1) : lua_pushstring(L, path);
-}
-
-/* The layout's path relative to the script's own folder. */
-static const char *push_layout_path(lua_State *L, const wh_mcs_t *mcs, const char *name) {
-    const char *slash = strrchr(mcs->script, '/');
-    if (name[0] == '/' || !slash) {
-        return lua_pushstring(L, name);
-    }
-    lua_pushlstring(L, mcs->script, (size_t)(slash - mcs->script) + 1);
-    lua_pushstring(L, name);
-    lua_concat(L, 2);
-    return push_short_path(L, lua_tostring(L, -1));
-}
-
-static void *lua_memory(lua_State *L, size_t bytes) {
-    void *memory = lua_newuserdatauv(L, bytes > 0 ? bytes : 1, 0);
-    lua_rawsetp(L, LUA_REGISTRYINDEX, memory);
-    return memory;
-}
-
-static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
-    const size_t bytes = layout->wafer_count * sizeof(wh_wafer_t);
-    wh_grasp_storage_t storage = {0};
-    storage.wafers = lua_memory(L, bytes);
-    storage.wafer_count = layout->wafer_count;
-    storage.gripper_count = layout->machine.gripper_count;
-    storage.grippers = lua_memory(L, storage.gripper_count * sizeof(wh_gripper_t));
-    if (bytes > 0) {
-        memcpy(storage.wafers, layout->start, bytes);
-    }
-    const wh_cell_t cell = {layout->places, layout->station_count, layout->grasp.tolerance};
-    wh_status_t status = wh_simulator_init(&mcs->simulator, &layout->grasp, &storage, &cell);
-    if (status == WH_OK) {
-        status = wh_track_init(&mcs->track, &layout->machine, layout->slice_us);
-    }
-    if (status != WH_OK) {
-        luaL_error(L, "%s: %s", layout->path, wh_status_text(status));
-    }
-    mcs->link = &mcs->simulator.link;
-    mcs->command.gripper_count = layout->machine.gripper_count;
-    mcs->command.axis_count = layout->machine.axis_count;
-    wh_simulator_view(&mcs->simulator, &mcs->state);
-    mcs->layout = layout;
-}
-
-/* native.cell(path): reads the layout and sets up the run; returns the layout's path as it will be named. */
-static int set_up_cell(lua_State *L) {
-    wh_mcs_t *mcs = wh_mcs_of(L);
-    const char *name = luaL_checkstring(L, 1);
-    wh_sandbox_result_t result;
-    if (mcs->layout) {
-        lua_pushfstring(L, "cell: %s was set up already (expected one cell a script)", mcs->layout->path);
-        return lua_error(L);
-    }
-    const char *path = push_layout_path(L, mcs, name);
-    if (!wh_sandbox_evaluate(L, path, &result)) {
-        lua_pushstring(L, result.message);
-        return lua_error(L);
-    }
-    set_up(L, mcs, wh_layout_read(L, path));
-    lua_pushstring(L, mcs->layout->path);
-    return 1;
-}
-
-/* ------------------------------------------------------------------------------------------------ planning
- */
-
-static void push_axes(lua_State *L, const wh_mcs_t *mcs, const wh_real_t axes[]) {
-    lua_createtable(L, (int)mcs->layout->machine.axis_count, 0);
-    for (size_t axis = 0; axis < mcs->layout->machine.axis_count; ++axis) {
-        lua_pushnumber(L, axes[axis]);
-        lua_rawseti(L, -2, (lua_Integer)axis + 1);
-    }
-}
-
-/* native.axes(): where all axes stand, rad and mm. */
-static int read_axes(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    push_axes(L, mcs, mcs->track.axes);
-    return 1;
-}
-
-/* native.inverse(x, y, z, heading): the axes with the end-effector there, from where they stand. */
-static int find_axes(lua_State *L) {
-    wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const double x = luaL_checknumber(L, 1);
-    const double y = luaL_checknumber(L, 2);
-    const double z = luaL_checknumber(L, 3);
-    wh_real_t axes[WH_AXES];
-    memcpy(axes, mcs->track.axes, sizeof axes);
-    const wh_status_t status =
-        wh_robot_inverse(&mcs->layout->machine.robot, x, y, z, luaL_checknumber(L, 4), mcs->track.axes, axes);
-    if (status != WH_OK) {
-        char detail[120];
-        snprintf(detail, sizeof detail, "x %.3f, y %.3f, z %.3f mm", x, y, z);
-        wh_mcs_raise(L, mcs, status, detail);
-    }
-    push_axes(L, mcs, axes);
-    return 1;
-}
-
-/* native.slot(station, slot): { x, y, z, dir_x, dir_y, heading }, the way in projected to horizontal. */
-static int find_slot(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
-    const wh_station_t *place = &mcs->layout->places[station];
-    const int32_t slot = wh_mcs_index(L, 2, (size_t)place->slots) + 1;
-    const wh_pose_t base_from_slot = wh_station_slot(place, slot);
-    const wh_real_t x = base_from_slot.R.m[0][0];
-    const wh_real_t y = base_from_slot.R.m[1][0];
-    const wh_real_t length = wh_real_sqrt(x * x + y * y);
-    const struct {
-        const char *name;
-        double value;
-    } fields[] = {{"x", base_from_slot.r.x}, {"y", base_from_slot.r.y}, {"z", base_from_slot.r.z},
-                  {"dir_x", x / length},     {"dir_y", y / length},     {"heading", wh_atan2(y, x)}};
-    lua_createtable(L, 0, 6);
-    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i) {
-        lua_pushnumber(L, fields[i].value);
-        lua_setfield(L, -2, fields[i].name);
-    }
-    return 1;
-}
 
 /* ------------------------------------------------------------------------------------------------- playing
  */
@@ -341,6 +191,4 @@ static int rehearse(lua_State *L) {
     return 0;
 }
 
-const luaL_Reg wh_mcs_play_functions[] = {{"cell", set_up_cell}, {"axes", read_axes}, {"inverse", find_axes},
-                                          {"slot", find_slot},   {"play", play},      {"rehearse", rehearse},
-                                          {NULL, NULL}};
+const luaL_Reg wh_mcs_play_functions[] = {{"play", play}, {"rehearse", rehearse}, {NULL, NULL}};

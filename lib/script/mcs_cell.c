@@ -1,0 +1,91 @@
+/* The MCS host's cell: finding its layout, and memory for what the layout describes. */
+#include <string.h>
+#include <sys/stat.h>
+
+#include "script/mcs_internal.h"
+
+static bool is_same_file(const char *a, const char *b) {
+    struct stat one;
+    struct stat two;
+    return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_dev == two.st_dev && one.st_ino == two.st_ino;
+}
+
+/* "lua/examples/../layouts" reads better as "lua/layouts": if that is the same file, symbolic links considered. */
+static const char *push_short_path(lua_State *L, const char *path) {
+    const char *up = strstr(path, "/../");
+    const char *start = up;
+    while (start && start > path && start[-1] != '/') {
+        --start;
+    }
+    if (!up || strncmp(start, "..", 2) == 0) {
+        return lua_pushstring(L, path);
+    }
+    lua_pushlstring(L, path, (size_t)(start - path));
+    lua_pushstring(L, up + 4);
+    lua_concat(L, 2);
+    return is_same_file(path, lua_tostring(L, -1)) ? lua_tostring(L, -1) : lua_pushstring(L, path);
+}
+
+/* The layout's path relative to the script's own folder. */
+static const char *push_layout_path(lua_State *L, const wh_mcs_t *mcs, const char *name) {
+    const char *slash = strrchr(mcs->script, '/');
+    if (name[0] == '/' || !slash) {
+        return lua_pushstring(L, name);
+    }
+    lua_pushlstring(L, mcs->script, (size_t)(slash - mcs->script) + 1);
+    lua_pushstring(L, name);
+    lua_concat(L, 2);
+    return push_short_path(L, lua_tostring(L, -1));
+}
+
+static void *lua_memory(lua_State *L, size_t bytes) {
+    void *memory = lua_newuserdatauv(L, bytes > 0 ? bytes : 1, 0);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, memory);
+    return memory;
+}
+
+static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
+    const size_t bytes = layout->wafer_count * sizeof(wh_wafer_t);
+    wh_grasp_storage_t storage = {0};
+    storage.wafers = lua_memory(L, bytes);
+    storage.wafer_count = layout->wafer_count;
+    storage.gripper_count = layout->machine.gripper_count;
+    storage.grippers = lua_memory(L, storage.gripper_count * sizeof(wh_gripper_t));
+    if (bytes > 0) {
+        memcpy(storage.wafers, layout->start, bytes);
+    }
+    const wh_cell_t cell = {layout->places, layout->station_count, layout->grasp.tolerance};
+    wh_status_t status = wh_simulator_init(&mcs->simulator, &layout->grasp, &storage, &cell);
+    if (status == WH_OK) {
+        status = wh_track_init(&mcs->track, &layout->machine, layout->slice_us);
+    }
+    if (status != WH_OK) {
+        luaL_error(L, "%s: %s", layout->path, wh_status_text(status));
+    }
+    mcs->link = &mcs->simulator.link;
+    mcs->command.gripper_count = layout->machine.gripper_count;
+    mcs->command.axis_count = layout->machine.axis_count;
+    wh_simulator_view(&mcs->simulator, &mcs->state);
+    mcs->layout = layout;
+}
+
+/* native.cell(path): reads the layout and sets up the run; returns the layout's path as it will be named. */
+static int set_up_cell(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_of(L);
+    const char *name = luaL_checkstring(L, 1);
+    wh_sandbox_result_t result;
+    if (mcs->layout) {
+        lua_pushfstring(L, "cell: %s was set up already (expected one cell a script)", mcs->layout->path);
+        return lua_error(L);
+    }
+    const char *path = push_layout_path(L, mcs, name);
+    if (!wh_sandbox_evaluate(L, path, &result)) {
+        lua_pushstring(L, result.message);
+        return lua_error(L);
+    }
+    set_up(L, mcs, wh_layout_read(L, path));
+    lua_pushstring(L, mcs->layout->path);
+    return 1;
+}
+
+const luaL_Reg wh_mcs_cell_functions[] = {{"cell", set_up_cell}, {NULL, NULL}};
