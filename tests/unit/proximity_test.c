@@ -141,19 +141,31 @@ static void draw_pair(const wh_tolerance_t *t, wh_pose_t *wafer, wh_pose_t *grip
     wafer->r = wh_vec3_add(&gripper->r, &dr);
 }
 
+static bool is_close(const wh_proximity_t *p, const wh_tolerance_t *t) {
+    const double grain = 8 * WH_TEST_ROUNDING;
+    return fabs((double)p->margin_projz) < grain * (double)t->projz ||
+           fabs((double)p->margin_projxy) < grain * (double)t->projxy ||
+           fabs((double)p->margin_planar) < grain;
+}
+
+/* A preset, or one time in four a tolerance of its own. */
+static wh_tolerance_t draw_tolerance(int pair) {
+    wh_tolerance_t t = pair % 2 ? wh_tolerance_paper() : wh_tolerance_strict();
+    if (pair % 4 == 0) {
+        t.projz = WH_REAL(wh_test_uniform(1e-3, 5));
+        t.projxy = WH_REAL(wh_test_uniform(1e-3, 300));
+        t.planar = WH_REAL(wh_test_uniform(0, 0.9999));
+    }
+    return t;
+}
+
 static void verdict_equals_measurement(void **state) {
     (void)state;
     (void)wh_test_seed();
-    const double grain = 8 * WH_TEST_ROUNDING;
     int ready = 0;
     int close = 0;
     for (int pair = 0; pair < PAIRS; ++pair) {
-        wh_tolerance_t t = pair % 2 ? wh_tolerance_paper() : wh_tolerance_strict();
-        if (pair % 4 == 0) {
-            t.projz = WH_REAL(wh_test_uniform(1e-3, 5));
-            t.projxy = WH_REAL(wh_test_uniform(1e-3, 300));
-            t.planar = WH_REAL(wh_test_uniform(0, 0.9999));
-        }
+        const wh_tolerance_t t = draw_tolerance(pair);
         wh_pose_t wafer;
         wh_pose_t gripper;
         draw_pair(&t, &wafer, &gripper);
@@ -164,9 +176,7 @@ static void verdict_equals_measurement(void **state) {
             fail_msg("pair %d: status %d, ready %d, failed %u", pair, status, p.ready, p.failed);
         }
         ready += p.ready;
-        close += fabs((double)p.margin_projz) < grain * (double)t.projz ||
-                 fabs((double)p.margin_projxy) < grain * (double)t.projxy ||
-                 fabs((double)p.margin_planar) < grain;
+        close += is_close(&p, &t);
     }
     printf("%d of %d ready, %d within a few units in the last place of a limit\n", ready, PAIRS, close);
     assert_true(ready > PAIRS / 50 && close > PAIRS / 4);
