@@ -189,36 +189,41 @@ static void model_watch(model_t *m, wh_encounter_t *e, int w, const wh_proximity
     e->measured = *p;
 }
 
+static void model_miss(model_t *m, wh_encounter_t *e, int g) {
+    model_event(m, WH_EVENT_NEAR_MISS, e->wafer, g, -1, e->slice, &e->measured);
+    e->wafer = -1;
+}
+
+static void model_follow(model_t *m, wh_encounter_t *e, int g, const wh_pose_t *by) {
+    const wh_proximity_t p = model_measure(m, e->wafer, by);
+    if (!model_near(m, &p)) {
+        model_miss(m, e, g);
+    } else if (model_far(m, &p) < model_far(m, &e->measured)) {
+        model_watch(m, e, e->wafer, &p);
+    }
+}
+
+static void model_look(model_t *m, wh_encounter_t *e, const wh_pose_t *by) {
+    for (int w = 0; w < m->wafers; ++w) {
+        const wh_proximity_t p = model_measure(m, w, by);
+        if (m->holder[w] < 0 && model_near(m, &p) &&
+            (e->wafer < 0 || model_size(p.dr_proj_z) < model_size(e->measured.dr_proj_z))) {
+            model_watch(m, e, w, &p);
+        }
+    }
+}
+
 static void model_approach(model_t *m, int g, const wh_gripper_input_t *in) {
     wh_encounter_t *e = &m->approach[g];
     const bool busy = m->holds[g] >= 0 && in->valve == 0;
     if (e->wafer >= 0 && (busy || m->holder[e->wafer] >= 0)) {
         e->wafer = -1;
-        return;
-    }
-    if (in->valve == 1) {
-        if (e->wafer >= 0) {
-            model_event(m, WH_EVENT_NEAR_MISS, e->wafer, g, -1, e->slice, &e->measured);
-        }
-        e->wafer = -1;
-        return;
-    }
-    if (e->wafer >= 0) {
-        const wh_proximity_t p = model_measure(m, e->wafer, &in->base_from_gripper);
-        if (!model_near(m, &p)) {
-            model_event(m, WH_EVENT_NEAR_MISS, e->wafer, g, -1, e->slice, &e->measured);
-            e->wafer = -1;
-        } else if (model_far(m, &p) < model_far(m, &e->measured)) {
-            model_watch(m, e, e->wafer, &p);
-        }
-        return;
-    }
-    for (int w = 0; w < m->wafers && !busy; ++w) {
-        const wh_proximity_t p = model_measure(m, w, &in->base_from_gripper);
-        if (m->holder[w] < 0 && model_near(m, &p) &&
-            (e->wafer < 0 || model_size(p.dr_proj_z) < model_size(e->measured.dr_proj_z))) {
-            model_watch(m, e, w, &p);
-        }
+    } else if (e->wafer >= 0 && in->valve == 1) {
+        model_miss(m, e, g);
+    } else if (e->wafer >= 0) {
+        model_follow(m, e, g, &in->base_from_gripper);
+    } else if (in->valve == 0 && !busy) {
+        model_look(m, e, &in->base_from_gripper);
     }
 }
 

@@ -1,6 +1,6 @@
 /* The grasp table beside a slow, obvious model of it: random runs, compared bit for bit after every step. */
 #include "core/grasp.h"
-#include "grasp_model_hash.h"
+#include "grasp_model_compare.h"
 #include "support_pose.h"
 
 #ifndef RUNS
@@ -17,15 +17,6 @@ typedef struct {
     wh_gripper_input_t input[STEPS][MODEL_GRIPPERS];
     bool skip[STEPS];
 } script_t;
-
-typedef struct {
-    wh_grasp_t table;
-    wh_wafer_t wafer[MODEL_WAFERS];
-    wh_gripper_t gripper[MODEL_GRIPPERS];
-    wh_event_t event[WH_EVENTS_PER_GRIPPER * MODEL_GRIPPERS];
-    wh_event_list_t list;
-    model_t model;
-} pair_t;
 
 /* Level and on a grid, so that values equal each other and the limits; or tilted a little. */
 static wh_pose_t draw_pose(bool grid, double reach, double height) {
@@ -72,33 +63,46 @@ static void spoil(wh_gripper_input_t *input) {
     }
 }
 
+/* How a run is drawn. */
+typedef struct {
+    bool grid, worn;
+    double height;
+    uint32_t patience; /* the larger, the rarer a valve is switched */
+} manner_t;
+
+static void draw_input(const manner_t *manner, const wh_gripper_input_t *before, wh_gripper_input_t *input) {
+    input->base_from_gripper =
+        before && wh_test_below(2) ? before->base_from_gripper : draw_pose(manner->grid, 40, manner->height);
+    input->valve = before && wh_test_below(manner->patience) ? before->valve : (int32_t)wh_test_below(2);
+    if (manner->worn) {
+        wear_out(&input->base_from_gripper.R);
+    }
+}
+
+static void draw_start(const manner_t *manner, script_t *s) {
+    for (size_t w = 0; w < s->wafers; ++w) {
+        s->start[w].base_from_wafer = draw_pose(manner->grid, 30, manner->height);
+        if (manner->worn) {
+            wear_out(&s->start[w].base_from_wafer.R);
+        }
+    }
+}
+
 static void draw_script(script_t *s) {
-    const bool grid = wh_test_below(3) == 0;
-    const bool worn = wh_test_below(4) == 0;
-    const double height = wh_test_uniform(0.4, 6);
-    const uint32_t patience = 2 + wh_test_below(5);
+    manner_t manner = {.grid = wh_test_below(3) == 0};
+    manner.worn = wh_test_below(4) == 0;
+    manner.height = wh_test_uniform(0.4, 6);
+    manner.patience = 2 + wh_test_below(5);
     memset(s, 0, sizeof *s);
     s->config = wh_grasp_config_default();
     s->config.near_projz = wh_test_below(2) ? WH_REAL(4.5) : WH_REAL(1.5);
     s->config.near_projxy = wh_test_below(2) ? 100 : 30;
     s->wafers = wh_test_below(MODEL_WAFERS + 1);
     s->grippers = 2 + wh_test_below(MODEL_GRIPPERS - 1);
-    for (size_t w = 0; w < s->wafers; ++w) {
-        s->start[w].base_from_wafer = draw_pose(grid, 30, height);
-        if (worn) {
-            wear_out(&s->start[w].base_from_wafer.R);
-        }
-    }
+    draw_start(&manner, s);
     for (size_t step = 0; step < STEPS; ++step) {
         for (size_t g = 0; g < s->grippers; ++g) {
-            wh_gripper_input_t *input = &s->input[step][g];
-            const wh_gripper_input_t *before = step ? &s->input[step - 1][g] : NULL;
-            input->base_from_gripper =
-                before && wh_test_below(2) ? before->base_from_gripper : draw_pose(grid, 40, height);
-            input->valve = before && wh_test_below(patience) ? before->valve : (int32_t)wh_test_below(2);
-            if (worn) {
-                wear_out(&input->base_from_gripper.R);
-            }
+            draw_input(&manner, step ? &s->input[step - 1][g] : NULL, &s->input[step][g]);
         }
     }
     for (size_t step = 0; step < STEPS && wh_test_below(4) == 0; ++step) {
@@ -129,99 +133,16 @@ static void start(pair_t *p, script_t *s) {
     }
 }
 
-static bool same_values(const wh_proximity_t *a, const wh_proximity_t *b) {
-    return memcmp(&a->dr, &b->dr, sizeof a->dr) == 0 && a->n1_proj_n2 == b->n1_proj_n2 &&
-           a->dr_proj_z == b->dr_proj_z && memcmp(&a->dr_proj_xy, &b->dr_proj_xy, sizeof a->dr) == 0 &&
-           a->dr_proj_xy_norm == b->dr_proj_xy_norm && a->failed == b->failed && a->ready == b->ready;
-}
-
-static const char *compare_events(const pair_t *p) {
-    const model_t *m = &p->model;
-    if (p->list.count != (size_t)m->events) {
-        return "number of events";
-    }
-    for (size_t i = 0; i < p->list.count; ++i) {
-        const wh_event_t *a = &p->event[i];
-        const wh_event_t *b = NULL;
-        for (int k = 0; k < m->events && !b; ++k) {
-            const wh_event_t *e = &m->event[k];
-            b = e->kind == a->kind && e->wafer == a->wafer && e->gripper == a->gripper ? e : NULL;
-        }
-        if (!b || a->other != b->other || a->slice != b->slice || a->measured_slice != b->measured_slice) {
-            return "an event";
-        }
-        if (!same_values(&a->measured, &b->measured)) {
-            return "an event's values";
-        }
-    }
-    return memcmp(&p->table.counters, &m->counters, sizeof m->counters) ? "counters" : NULL;
-}
-
-static const char *compare_encounter(const wh_encounter_t *a, const wh_encounter_t *b) {
-    if (a->wafer != b->wafer) {
-        return "an encounter's wafer";
-    }
-    const bool same = a->wafer < 0 || (a->slice == b->slice && a->holder == b->holder &&
-                                       same_values(&a->measured, &b->measured));
-    return same ? NULL : "an encounter";
-}
-
-static const char *compare_state(const pair_t *p) {
-    const model_t *m = &p->model;
-    for (int w = 0; w < m->wafers; ++w) {
-        if (p->wafer[w].holder != m->holder[w] || p->wafer[w].released_by != -1) {
-            return "a holder";
-        }
-        if (memcmp(&p->wafer[w].base_from_wafer, &m->wafer[w], sizeof m->wafer[w]) != 0) {
-            return "a wafer's pose";
-        }
-    }
-    for (int g = 0; g < m->grippers; ++g) {
-        const wh_gripper_t *gripper = &p->gripper[g];
-        if (gripper->wafer != m->holds[g]) {
-            return "what a gripper holds";
-        }
-        if (gripper->wafer >= 0 &&
-            memcmp(&gripper->gripper_from_wafer, &m->grasp[g], sizeof m->grasp[g]) != 0) {
-            return "gripper_from_wafer";
-        }
-        const char *wrong = compare_encounter(&gripper->approach, &m->approach[g]);
-        wrong = wrong ? wrong : compare_encounter(&gripper->contest, &m->contest[g]);
-        if (wrong) {
-            return wrong;
-        }
-    }
-    return wh_grasp_hash(&p->table) == model_hash(m) ? NULL : "the hash";
-}
-
-/* What must hold whatever the model says. */
-static const char *check_invariants(const pair_t *p, const pair_t *before) {
-    int holders[MODEL_WAFERS] = {0};
-    for (size_t g = 0; g < p->table.storage.gripper_count; ++g) {
-        const int32_t w = p->gripper[g].wafer;
-        if (w >= 0 && (++holders[w] > 1 || p->wafer[w].holder != (int32_t)g)) {
-            return "one wafer, two holders";
-        }
-        if (w >= 0 && before->gripper[g].wafer == w &&
-            memcmp(&p->gripper[g].gripper_from_wafer, &before->gripper[g].gripper_from_wafer,
-                   sizeof(wh_pose_t)) != 0) {
-            return "a held wafer slipped";
-        }
-    }
-    for (size_t w = 0; w < p->table.storage.wafer_count; ++w) {
-        const wh_pose_t *pose = &p->wafer[w].base_from_wafer;
-        if (before->wafer[w].holder < 0 &&
-            memcmp(pose, &before->wafer[w].base_from_wafer, sizeof *pose) != 0) {
-            return "a resting wafer moved";
-        }
-        if (wh_pose_validate(pose) != WH_OK) {
-            return "a wafer's pose is none";
-        }
-        if ((p->wafer[w].holder >= 0) != (holders[w] == 1)) {
-            return "a holder that holds nothing";
-        }
-    }
-    return NULL;
+/* One step of both: what is wrong after it, or null. */
+static const char *take_step(pair_t *p, const wh_gripper_input_t *input) {
+    static pair_t before;
+    memcpy(&before, p, sizeof before);
+    const wh_status_t status = wh_grasp_step(&p->table, input, &p->list);
+    const char *wrong = status == model_step(&p->model, input) ? NULL : "the status";
+    wrong = wrong ? wrong : compare_state(p);
+    wrong = wrong ? wrong : compare_events(p);
+    wrong = wrong ? wrong : check_invariants(p, &before);
+    return wrong || status == WH_OK ? wrong : check_refusal(p, &before);
 }
 
 /* Plays the script's steps; the step at which table and model part, or STEPS. */
@@ -231,18 +152,7 @@ static size_t play(pair_t *p, script_t *s, const char **wrong) {
         if (s->skip[step]) {
             continue;
         }
-        static pair_t before;
-        memcpy(&before, p, sizeof before);
-        const wh_status_t status = wh_grasp_step(&p->table, s->input[step], &p->list);
-        *wrong = status == model_step(&p->model, s->input[step]) ? NULL : "the status";
-        *wrong = *wrong ? *wrong : compare_state(p);
-        *wrong = *wrong ? *wrong : compare_events(p);
-        *wrong = *wrong ? *wrong : check_invariants(p, &before);
-        if (!*wrong && status != WH_OK &&
-            (memcmp(p->wafer, before.wafer, sizeof p->wafer) != 0 ||
-             memcmp(p->gripper, before.gripper, sizeof p->gripper) != 0)) {
-            *wrong = "a refused step changed something";
-        }
+        *wrong = take_step(p, s->input[step]);
         if (*wrong) {
             return step;
         }
