@@ -62,8 +62,6 @@ check: ## format, warnings as errors, static analysis
 	$(NEED) run test check
 	$(BUILD) B=build/check CC=gcc CXX=g++ WERROR=1 all tests check
 	$(BUILD) B=build/check/float CC=gcc WERROR=1 FLOAT=1 library
-	$(BUILD) B=build/check/analyzer CC=gcc WERROR=1 EXTRA='$(EXTRA) -fanalyzer' library
-	@echo "checked: nothing found"
 
 verify-core: ## what must never rot: bits on targets, no allocation, stack, sizes, proofs of no error, 60 s of fuzzing each
 	-$(NEED) run test verify

@@ -123,7 +123,7 @@ static bool is_quit(const char *line) {
 /* A line that was cut may have said something behind its blanks. */
 static bool says_nothing(const char *line) {
     const size_t blanks = strspn(line, " ");
-    return line[blanks] == '#' || (line[blanks] == '\0' && blanks <= WH_SESSION_LINE_BYTES);
+    return line[blanks] == '#' || (blanks <= WH_SESSION_LINE_BYTES && line[blanks] == '\0');
 }
 
 /* Whether the prompt goes on after this line. */

@@ -59,7 +59,8 @@ size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_li
         if (list->events[i].kind == WH_EVENT_RELEASED &&
             judge_release(cell, table, &list->events[i], &said)) {
             WH_ASSERT(list->count < list->capacity);
-            list->events[list->count++] = said;
+            list->events[list->count] = said;
+            ++list->count;
         }
     }
     return list->count - count;

@@ -49,7 +49,7 @@ static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *com
     wh_event_list_t list = {simulator->events, sizeof simulator->events / sizeof simulator->events[0], 0};
     const wh_status_t status = wh_grasp_step(&simulator->table, command->grippers, &list);
     if (status == WH_OK && list.count > 0) {
-        wh_cell_judge(&simulator->cell, &simulator->table, &list);
+        (void)wh_cell_judge(&simulator->cell, &simulator->table, &list);
     }
     simulator->event_count = list.count;
     return status;
