@@ -60,8 +60,8 @@ quick: ## the plain unit and property tests alone, for while you work
 
 check: ## format, warnings as errors, static analysis
 	$(NEED) run test check
-	$(BUILD) B=build/check CC=gcc CXX=g++ WERROR=1 all tests check
 	$(BUILD) B=build/check/float CC=gcc WERROR=1 FLOAT=1 library
+	$(BUILD) B=build/check CC=gcc CXX=g++ WERROR=1 all tests check
 
 verify-core: ## what must never rot: bits on targets, no allocation, stack, sizes, proofs of no error, 60 s of fuzzing each
 	-$(NEED) run test verify
