@@ -19,14 +19,22 @@ static wh_outputs_look_t no_file(mode_t mode) {
     return look;
 }
 
-/* A single read, so that it is all of one moment: where it returns less than there is, the file is short. */
+/* Linux lets a write change what a read is copying, so that one read can be of two moments: what it says counts when a second
+ * read finds the same. Where a read returns less than there is, the file is short. */
 static wh_outputs_look_t read_values(const wh_outputs_t *outputs, int fd, int32_t *valves) {
+    const wh_outputs_look_t caught_in_the_act = {.condition = WH_OUTPUTS_EMPTY};
     char text[WH_OUTPUTS_BYTES + 1];
-    const ssize_t size = read(fd, text, sizeof text);
+    char again[WH_OUTPUTS_BYTES + 1];
+    const ssize_t size = pread(fd, text, sizeof text, 0);
     if (size < 0) {
         return failed(errno);
     }
-    return wh_outputs_parse(text, (size_t)size, outputs->count, valves);
+    const wh_outputs_look_t look = wh_outputs_parse(text, (size_t)size, outputs->count, valves);
+    if (look.condition != WH_OUTPUTS_GOOD) {
+        return look;
+    }
+    const bool same = pread(fd, again, sizeof again, 0) == size && memcmp(text, again, (size_t)size) == 0;
+    return same ? look : caught_in_the_act;
 }
 
 /* The path may have become a fifo since it was examined, hence O_NONBLOCK and another examination. */
