@@ -16,7 +16,7 @@
 /* The same inputs must give the same bits on every machine, which these builds cannot hold. Nor can one that fuses products
  * and sums, which no macro tells: build everything that includes these headers with -ffp-contract=off
  * -fno-tree-slp-vectorize, as `make library` and pkg-config's flags do. */
-#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) ||                   \
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) ||                 \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
 #error                                                                                                       \
     "waferhand: -ffast-math (or a part of it) reorders sums and drops NaN, so verdicts would differ between builds: remove it"
