@@ -36,7 +36,7 @@ static wh_status_t play(const wh_segment_t *segment) {
     return status;
 }
 
-int main(void) {
+static wh_status_t play_all(void) {
     wh_grasp_storage_t storage = {.wafers = wafers,
                                   .wafer_count = played_wafer_count,
                                   .grippers = grippers,
@@ -51,6 +51,11 @@ int main(void) {
     for (size_t i = 0; i < played_segment_count && status == WH_OK; ++i) {
         status = play(&played_segments[i]);
     }
+    return status;
+}
+
+int main(void) {
+    const wh_status_t status = play_all();
     const uint64_t hash = wh_grasp_hash(&table);
     const bool exact = sizeof(wh_real_t) == sizeof(double);
     if (status != WH_OK) {

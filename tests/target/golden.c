@@ -75,6 +75,21 @@ static void draw_inputs(wh_gripper_input_t inputs[GRIPPERS]) {
     }
 }
 
+static void draw_start(wh_wafer_t wafers[WAFERS], wh_gripper_input_t inputs[GRIPPERS]) {
+    for (size_t w = 0; w < WAFERS; ++w) {
+        wafers[w].base_from_wafer = somewhere(60, 2);
+    }
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        inputs[g].base_from_gripper = somewhere(60, 2);
+        inputs[g].valve = WH_VALVE_CLOSED;
+    }
+}
+
+static bool is_lively(const wh_grasp_counters_t *c) {
+    return c->picked > 500 && c->released > 500 && c->handed_over > 30 && c->near_misses > 500 &&
+           c->contested > 50;
+}
+
 /* One way of checking, with seating or without; false when a step was refused. */
 static bool steps(wh_check_t check, bool seat) {
     static wh_wafer_t wafers[WAFERS];
@@ -87,13 +102,7 @@ static bool steps(wh_check_t check, bool seat) {
     wh_gripper_input_t inputs[GRIPPERS];
     wh_event_t events[GRIPPERS * WH_EVENTS_PER_GRIPPER];
     wh_event_list_t list = {events, GRIPPERS * WH_EVENTS_PER_GRIPPER, 0};
-    for (size_t w = 0; w < WAFERS; ++w) {
-        wafers[w].base_from_wafer = somewhere(60, 2);
-    }
-    for (size_t g = 0; g < GRIPPERS; ++g) {
-        inputs[g].base_from_gripper = somewhere(60, 2);
-        inputs[g].valve = WH_VALVE_CLOSED;
-    }
+    draw_start(wafers, inputs);
     bool good = wh_grasp_init(&table, &config, &storage) == WH_OK;
     for (int step = 0; step < STEPS && good; ++step) {
         const size_t w = below(WAFERS);
@@ -108,9 +117,7 @@ static bool steps(wh_check_t check, bool seat) {
         }
         hash = wh_hash_word(hash, wh_grasp_hash(&table));
     }
-    const wh_grasp_counters_t *c = &table.counters;
-    return good && c->picked > 500 && c->released > 500 && c->handed_over > 30 && c->near_misses > 500 &&
-           c->contested > 50;
+    return good && is_lively(&table.counters);
 }
 
 static void trigonometry(void) {
