@@ -52,6 +52,15 @@ static double room(const slice_t *s, double t) {
     return fmin((double)s->projz - fabs(p[2]), (double)s->projxy - sqrt(p[0] * p[0] + p[1] * p[1]));
 }
 
+/* Inside the part there is room, outside there is none. */
+static void check_samples(const slice_t *s, double first, double last) {
+    for (int k = 0; k <= SAMPLES; ++k) {
+        const double t = (double)k / SAMPLES;
+        const double r = room(s, t);
+        assert_true(t < first || t > last ? r < SLACK : r > -SLACK);
+    }
+}
+
 static void the_part_is_where_both_limits_hold(void **state) {
     (void)state;
     int found = 0;
@@ -66,11 +75,7 @@ static void the_part_is_where_both_limits_hold(void **state) {
         const double last = within ? (double)part.last : -1;
         found += within;
         assert_true(!within || (first >= 0 && last <= 1 && first <= last));
-        for (int k = 0; k <= SAMPLES; ++k) {
-            const double t = (double)k / SAMPLES;
-            const double r = room(&s, t);
-            assert_true(t < first || t > last ? r < SLACK : r > -SLACK);
-        }
+        check_samples(&s, first, last);
         assert_true(!within || (room(&s, first) > -SLACK && room(&s, last) > -SLACK));
     }
     assert_true(found > ROUNDS / 5 && found < 4 * ROUNDS / 5);
