@@ -1,6 +1,7 @@
 /* What the client takes: states of its run that are sound, refusals of its command. */
 #include <string.h>
 
+#include "core/restore.h"
 #include "link/client_internal.h"
 
 static void heard(wh_client_t *client) {
@@ -11,16 +12,24 @@ static void heard(wh_client_t *client) {
     }
 }
 
-/* The hash that the state's own content has. */
-static uint64_t own_hash(wh_client_t *client, const wh_state_t *state, int64_t missed) {
+/* A table of the state's counts and slice. */
+static wh_grasp_t table_over(wh_link_arrays_t *arrays, const wh_state_t *state, int64_t missed) {
     wh_grasp_t table;
     memset(&table, 0, sizeof table);
     table.slice = (uint64_t)(state->seq - missed);
-    table.storage.wafers = client->spare.wafers;
+    table.storage.wafers = arrays->wafers;
     table.storage.wafer_count = state->wafer_count;
-    table.storage.grippers = client->spare.grippers;
+    table.storage.grippers = arrays->grippers;
     table.storage.gripper_count = state->gripper_count;
-    return wh_grasp_hash(&table);
+    return table;
+}
+
+/* Whether it is the state whose hash it carries, and one that a table could be in: then it is in client->arrays. */
+static bool take_over(wh_client_t *client, const wh_state_t *state, const waferhand_state *message) {
+    const wh_grasp_t as_told = table_over(&client->spare, state, message->missed);
+    wh_grasp_t table = table_over(&client->arrays, state, message->missed);
+    return wh_grasp_hash(&as_told) == (uint64_t)message->hash &&
+           wh_grasp_restore(&table, as_told.slice, state->wafers, state->grippers) == WH_OK;
 }
 
 static bool is_sound(wh_client_t *client, const waferhand_state *message, wh_state_t *state) {
@@ -28,8 +37,7 @@ static bool is_sound(wh_client_t *client, const waferhand_state *message, wh_sta
     return wh_link_state_from_message(message, &layout->grasp.tolerance, &client->spare, state) == WH_OK &&
            state->wafer_count == layout->wafer_count &&
            state->gripper_count == layout->machine.gripper_count && message->missed >= 0 &&
-           message->missed < message->seq &&
-           own_hash(client, state, message->missed) == (uint64_t)message->hash;
+           message->missed < message->seq && take_over(client, state, message);
 }
 
 static void keep_events(wh_client_t *client, const wh_state_t *state) {
@@ -44,8 +52,6 @@ static void take(wh_client_t *client, const waferhand_state *message, const wh_s
     if (!client->has_state || state->seq != client->state.seq) {
         keep_events(client, state);
     }
-    memcpy(client->arrays.wafers, client->spare.wafers, state->wafer_count * sizeof *state->wafers);
-    memcpy(client->arrays.grippers, client->spare.grippers, state->gripper_count * sizeof *state->grippers);
     client->state = *state;
     client->state.wafers = client->arrays.wafers;
     client->state.grippers = client->arrays.grippers;

@@ -172,7 +172,7 @@ static void take_gripper(const waferhand_gripper_state *in, const wh_tolerance_t
     take_encounter(&in->contest, tolerance, &out->contest);
 }
 
-static bool take_event(const waferhand_event *in, int64_t seq, const wh_tolerance_t *tolerance,
+static void take_event(const waferhand_event *in, int64_t seq, const wh_tolerance_t *tolerance,
                        wh_event_t *out) {
     out->kind = (wh_event_kind_t)in->kind;
     out->slice = (uint64_t)seq;
@@ -183,7 +183,30 @@ static bool take_event(const waferhand_event *in, int64_t seq, const wh_toleranc
     out->status = (wh_status_t)in->status;
     out->height = in->height;
     take_measured(&in->measured, tolerance, &out->measured);
-    return in->kind >= WH_EVENT_PICKED && in->kind <= WH_EVENT_SLOT_OCCUPIED;
+}
+
+static bool is_index(int32_t index, int32_t count) {
+    return index >= 0 && index < count;
+}
+
+/* Whether `other` is what this kind has there. */
+static bool other_fits(const waferhand_event *event, const waferhand_state *message) {
+    if (event->kind == WH_EVENT_HANDED_OVER || event->kind == WH_EVENT_CONTESTED) {
+        return is_index(event->other, message->gripper_count);
+    }
+    if (event->kind == WH_EVENT_SLOT_OCCUPIED) {
+        return is_index(event->other, message->wafer_count);
+    }
+    return event->other == WH_NONE;
+}
+
+/* Whether a step could have yielded it: who reads it takes its indices for good. */
+static bool event_fits(const waferhand_event *event, const waferhand_state *message) {
+    const bool wafer_fits = event->kind == WH_EVENT_BAD_INPUT ? event->wafer == WH_NONE
+                                                              : is_index(event->wafer, message->wafer_count);
+    return event->kind >= WH_EVENT_PICKED && event->kind <= WH_EVENT_SLOT_OCCUPIED && wafer_fits &&
+           is_index(event->gripper, message->gripper_count) && other_fits(event, message) &&
+           event->measured_slice >= 0 && event->measured_slice <= message->seq;
 }
 
 static bool counts_fit(const waferhand_state *message) {
@@ -205,10 +228,8 @@ static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *to
         take_gripper(&message->grippers[g], tolerance, &arrays->grippers[g]);
     }
     for (int32_t e = 0; e < message->event_count; ++e) {
-        const waferhand_event *event = &message->events[e];
-        sound = take_event(event, message->seq, tolerance, &arrays->events[e]) && event->wafer >= WH_NONE &&
-                event->wafer < message->wafer_count && event->gripper >= WH_NONE &&
-                event->gripper < message->gripper_count && sound;
+        take_event(&message->events[e], message->seq, tolerance, &arrays->events[e]);
+        sound = event_fits(&message->events[e], message) && sound;
     }
     return sound;
 }
