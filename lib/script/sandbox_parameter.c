@@ -6,7 +6,8 @@
 
 /* Handed to the protected part. */
 typedef struct {
-    const char *name, *value;
+    const char *name;
+    const char *value; /* null: there is no '=' */
     size_t name_length;
 } assignment_t;
 
@@ -51,6 +52,9 @@ static void push_value(lua_State *L, const char *text) {
 static int assign(lua_State *L) {
     const assignment_t *const assignment = lua_touserdata(L, 1);
     const char *const name = lua_pushlstring(L, assignment->name, assignment->name_length);
+    if (assignment->value == NULL) {
+        return luaL_error(L, "'%s' is no NAME=VALUE", name);
+    }
     if (!looks_like_name(name, assignment->name_length) || is_reserved(L, name)) {
         return luaL_error(L,
                           "'%s' is no name for a parameter: letters, digits and '_', not first a digit, no "
@@ -68,14 +72,11 @@ static int assign(lua_State *L) {
 
 bool wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *text, wh_sandbox_result_t *result) {
     const char *const equals = strchr(text, '=');
-    if (equals == NULL) {
-        if (result != NULL) {
-            result->status = WH_SANDBOX_ERROR;
-            snprintf(result->message, sizeof result->message, "'%.900s' is no NAME=VALUE", text);
-        }
-        return false;
+    assignment_t assignment = {text, NULL, strlen(text)};
+    if (equals != NULL) {
+        assignment.value = equals + 1;
+        assignment.name_length = (size_t)(equals - text);
     }
-    assignment_t assignment = {text, equals + 1, (size_t)(equals - text)};
     lua_pushcfunction(sandbox->main, assign);
     lua_pushlightuserdata(sandbox->main, &assignment);
     return wh_sandbox_call(sandbox->main, 1, 0, result);

@@ -1,5 +1,6 @@
 /* The host's side of the sandbox: files, layouts, charges, parameters, and what is left when a script has
  * ended. */
+#include <ctype.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -200,7 +201,8 @@ static void parameters_take_their_type(void **state) {
     (void)state;
     static const char *const good[] = {"n=0x10", "f=2.5", "t=true", "s=1e999",
                                        "e=",     "q=a=b", "w= 5",   "n2=nan"};
-    static const char *const bad[] = {"", "x", "=1", "1x=2", "a b=1", "end=1", "local x=1", "\xC3\xA4=1"};
+    static const char *const bad[] = {"",          "x",          "=1",      "1x=2",      "a b=1",     "end=1",
+                                      "local x=1", "\xC3\xA4=1", "\x1B[2J", "\x1B[2J=1", "two\nlines"};
     wh_sandbox_result_t result;
     wh_sandbox_t *const sandbox = new_small();
     for (size_t i = 0; i < sizeof good / sizeof *good; ++i) {
@@ -209,6 +211,9 @@ static void parameters_take_their_type(void **state) {
     for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i) {
         assert_false(wh_sandbox_set_parameter(sandbox, bad[i], &result));
         assert_int_not_equal(result.message[0], '\0');
+        for (const char *c = result.message; *c != '\0'; ++c) {
+            assert_false(iscntrl((unsigned char)*c));
+        }
     }
     if (!evaluate(sandbox,
                   "local p = params assert(p.n == 16 and p.f == 2.5 and p.t == true and p.s == '1e999' and "
