@@ -131,6 +131,9 @@ static int execute_line(lua_State *L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &execute_key);
     lua_pushstring(L, request->line);
     lua_call(L, 1, 2);
+    if (!lua_isstring(L, -1)) {
+        return luaL_error(L, "the answer is no text"); /* a layout has changed the string library */
+    }
     request->status = (wh_status_t)lua_tointeger(L, -2);
     write_answer(request->answer, request->size, lua_tostring(L, -1));
     return 0;
@@ -221,10 +224,16 @@ static int complete_line(lua_State *L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &complete_key);
     lua_pushstring(L, completion->before);
     lua_call(L, 1, 2);
-    candidates->start = (size_t)lua_tointeger(L, -2) - 1;
+    const lua_Integer start = lua_tointeger(L, -2);
+    if (start < 1 || (size_t)start > candidates->start + 1) {
+        return luaL_error(L, "the word begins nowhere in the line");
+    }
+    candidates->start = (size_t)start - 1;
+    luaL_checktype(L, -1, LUA_TTABLE);
     const size_t count = lua_rawlen(L, -1);
     for (size_t i = 0; i < count && i < WH_SESSION_CANDIDATES; ++i) {
         lua_rawgeti(L, -1, (lua_Integer)i + 1);
+        luaL_checktype(L, -1, LUA_TSTRING);
         candidates->texts[candidates->count++] = lua_tostring(L, -1);
         lua_pop(L, 1);
     }

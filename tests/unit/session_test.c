@@ -472,6 +472,24 @@ static void test_completion(void **state) {
     assert_candidates("GET \xFF", 4, "");
 }
 
+/* A layout's Lua may do to the libraries what it likes: that spoils the answers, and nothing else. */
+static void test_a_layout_that_spoils_the_strings(void **state) {
+    (void)state;
+    static wh_session_t spoilt;
+    const wh_session_options_t options = {.layout = "tests/data/odd_strings_layout.lua",
+                                          .limits = {.print_to = stderr}};
+    wh_candidates_t candidates;
+    assert_true(wh_session_open(&spoilt, &options));
+    assert_int_equal(wh_session_execute(&spoilt, "FOO", answer, sizeof answer), WH_STATUS_BAD_ARGUMENT);
+    assert_int_equal(strncmp(answer, "ERROR 48 BAD_ARGUMENT", 21), 0);
+    wh_session_complete(&spoilt, "GE", &candidates);
+    assert_true(candidates.start <= 2);
+    for (size_t i = 0; i < candidates.count; ++i) {
+        assert_non_null(candidates.texts[i]);
+    }
+    wh_session_close(&spoilt);
+}
+
 int main(void) {
 #define IN_PAPER(test) cmocka_unit_test_setup_teardown(test, open_paper, close_session)
 #define IN_BETWEEN(test) cmocka_unit_test_setup_teardown(test, open_between, close_session)
@@ -494,6 +512,7 @@ int main(void) {
         cmocka_unit_test_teardown(test_budget_is_for_each_command, close_session),
         cmocka_unit_test_teardown(test_report, close_session),
         cmocka_unit_test(test_what_cannot_be_opened),
+        cmocka_unit_test(test_a_layout_that_spoils_the_strings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
