@@ -1,37 +1,28 @@
 /* Any bytes as outputs.txt: valves are set if and only if the parser says good, and then to 0 or 1; what is
  * good stays good, with the same valves, when the white space around the values changes.
  *
- * The first byte chooses the count. Built with -fsanitize=fuzzer,address,undefined and
- * lib/link/outputs_parse.c, lib/core/abi.c. */
-#include <stdlib.h>
+ * The first byte chooses the count. */
 #include <string.h>
 
+#include "fuzz.h"
 #include "link/outputs.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
 #define UNSET 7
-
-static void require(bool condition) {
-    if (!condition) {
-        abort();
-    }
-}
 
 static void check_valves(const wh_outputs_look_t *look, const int32_t *valves, size_t count) {
     for (size_t i = 0; i < WH_GRIPPERS + 1; ++i) {
         const bool set = look->condition == WH_OUTPUTS_GOOD && i < count;
-        require(set ? valves[i] == WH_VALVE_OPEN || valves[i] == WH_VALVE_CLOSED : valves[i] == UNSET);
+        REQUIRE(set ? valves[i] == WH_VALVE_OPEN || valves[i] == WH_VALVE_CLOSED : valves[i] == UNSET);
     }
 }
 
 static void check_look(const wh_outputs_look_t *look, size_t count, size_t size) {
-    require((unsigned)look->condition < WH_OUTPUTS_CONDITIONS);
-    require(look->condition != WH_OUTPUTS_GOOD || look->found == count);
-    require(look->condition != WH_OUTPUTS_SHORT || (look->found > 0 && look->found < count));
-    require(look->condition != WH_OUTPUTS_LONG || look->found > count || look->oversize);
-    require(look->oversize == (size > WH_OUTPUTS_BYTES && count >= 1 && count <= WH_GRIPPERS));
-    require(memchr(look->text, '\0', sizeof look->text) != NULL);
+    REQUIRE((unsigned)look->condition < WH_OUTPUTS_CONDITIONS);
+    REQUIRE(look->condition != WH_OUTPUTS_GOOD || look->found == count);
+    REQUIRE(look->condition != WH_OUTPUTS_SHORT || (look->found > 0 && look->found < count));
+    REQUIRE(look->condition != WH_OUTPUTS_LONG || look->found > count || look->oversize);
+    REQUIRE(look->oversize == (size > WH_OUTPUTS_BYTES && count >= 1 && count <= WH_GRIPPERS));
+    REQUIRE(memchr(look->text, '\0', sizeof look->text) != NULL);
 }
 
 /* Writes the valves as the program would, and reads them back. */
@@ -42,8 +33,8 @@ static void check_rewritten(const int32_t *valves, size_t count) {
         text[2 * i + 1] = '\n';
     }
     int32_t again[WH_GRIPPERS];
-    require(wh_outputs_parse(text, 2 * count, count, again).condition == WH_OUTPUTS_GOOD);
-    require(memcmp(again, valves, count * sizeof *valves) == 0);
+    REQUIRE(wh_outputs_parse(text, 2 * count, count, again).condition == WH_OUTPUTS_GOOD);
+    REQUIRE(memcmp(again, valves, count * sizeof *valves) == 0);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

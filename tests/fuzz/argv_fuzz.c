@@ -1,0 +1,252 @@
+/* Any words as the program's arguments, one a line, the subcommand first: they are refused, or the options that the
+ * subcommand would go on with are in their ranges. Nothing is run, opened or written.
+ *
+ * The linker puts __wrap_... in the place of what would end the process or begin the work: see tests/fuzz/fuzz.mk. */
+#include <argp.h>
+#include <setjmp.h>
+#include <string.h>
+
+#include "app/app.h"
+#include "app/mcs_link.h"
+#include "app/run.h"
+#include "fuzz.h"
+#include "script/layout_load.h"
+
+#define WORDS 24
+
+static bool initialised;
+static bool refused;  /* by the parser */
+static bool finished; /* parsing */
+static bool reached;  /* the work */
+static int word_count;
+
+/* ------------------------------------------------------------------------------------------------- parsing */
+
+/* argp_error ends the process; here it ends the parser's call, which then fails. */
+static jmp_buf parser_call;
+static argp_parser_t own_parser;
+static argp_parser_t child_parser;
+
+static error_t guard(argp_parser_t parser, int key, char *argument, struct argp_state *state) {
+    if (setjmp(parser_call) != 0) {
+        return EINVAL;
+    }
+    return parser(key, argument, state);
+}
+
+static error_t parse_own(int key, char *argument, struct argp_state *state) {
+    return guard(own_parser, key, argument, state);
+}
+
+static error_t parse_child(int key, char *argument, struct argp_state *state) {
+    return guard(child_parser, key, argument, state);
+}
+
+void __wrap_argp_error(const struct argp_state *state, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+error_t __real_argp_parse(const struct argp *argp, int argc, char **argv, unsigned flags, int *end,
+                          void *input);
+error_t __wrap_argp_parse(const struct argp *argp, int argc, char **argv, unsigned flags, int *end,
+                          void *input);
+
+void __wrap_argp_error(const struct argp_state *state, const char *format, ...) {
+    char text[400];
+    va_list arguments;
+    (void)state;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    REQUIRE(!finished);
+    refused = true;
+    longjmp(parser_call, 1);
+}
+
+error_t __wrap_argp_parse(const struct argp *argp, int argc, char **argv, unsigned flags, int *end,
+                          void *input) {
+    struct argp own = *argp;
+    struct argp child;
+    struct argp_child children[2] = {{0}};
+    own_parser = argp->parser;
+    own.parser = parse_own;
+    if (argp->children) {
+        REQUIRE(argp->children[0].argp != NULL && argp->children[1].argp == NULL);
+        child = *argp->children[0].argp;
+        child_parser = child.parser;
+        child.parser = parse_child;
+        children[0] = argp->children[0];
+        children[0].argp = &child;
+        own.children = children;
+    }
+    const error_t error =
+        __real_argp_parse(&own, argc, argv, flags | ARGP_NO_EXIT | ARGP_NO_ERRS, end, input);
+    refused = refused || error != 0;
+    finished = true;
+    return error;
+}
+
+/* ------------------------------------------------------------------------------------- where the work begins */
+
+int __wrap_wh_run_and_report(wh_run_arguments_t *arguments);
+bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
+bool __wrap_wh_open_node(wh_node_t *node, const char *url, const char *record_path);
+wh_sandbox_t *__wrap_wh_sandbox_new(const wh_sandbox_limits_t *limits);
+wh_sandbox_t *__real_wh_sandbox_new(const wh_sandbox_limits_t *limits);
+void __wrap_wh_sandbox_free(wh_sandbox_t *sandbox);
+const wh_layout_t *__wrap_wh_layout_load(wh_sandbox_t *sandbox, const char *path,
+                                         wh_sandbox_result_t *result);
+bool __real_wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *assignment,
+                                     wh_sandbox_result_t *result);
+bool __wrap_wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *assignment,
+                                     wh_sandbox_result_t *result);
+FILE *__real_fopen(const char *path, const char *mode);
+FILE *__wrap_fopen(const char *path, const char *mode);
+
+static void check_parameters(const char *const *parameters, size_t count) {
+    REQUIRE(count <= (size_t)word_count);
+    for (size_t i = 0; i < count; ++i) {
+        REQUIRE(parameters[i] != NULL);
+    }
+}
+
+static void check_run(const wh_run_options_t *run) {
+    check_parameters(run->parameters, run->parameter_count);
+    REQUIRE(run->limits.instructions <= UINT64_C(1000000000000000000));
+    REQUIRE(run->limits.memory_bytes == 0 || run->limits.memory_bytes >= (size_t)1 << 20);
+    REQUIRE(run->limits.memory_bytes <= (size_t)1000000 << 20);
+}
+
+int __wrap_wh_run_and_report(wh_run_arguments_t *arguments) {
+    reached = true;
+    if (!refused) {
+        REQUIRE(arguments->run.script != NULL);
+        check_run(&arguments->run);
+    }
+    return WH_EXIT_USAGE;
+}
+
+bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
+    (void)link;
+    reached = true;
+    REQUIRE(refused || options->rate == 0 || (options->rate >= 1e-3 && options->rate <= 1e3));
+    return false;
+}
+
+bool __wrap_wh_open_node(wh_node_t *node, const char *url, const char *record_path) {
+    (void)node;
+    (void)url;
+    (void)record_path;
+    reached = true;
+    return false;
+}
+
+/* `sim` hands its parameters to a sandbox before it reads the layout: one serves a thousand inputs. */
+static wh_sandbox_t *shared;
+static unsigned uses;
+
+void __real_wh_sandbox_free(wh_sandbox_t *sandbox);
+
+wh_sandbox_t *__wrap_wh_sandbox_new(const wh_sandbox_limits_t *limits) {
+    if (++uses % 1000 == 0) {
+        __real_wh_sandbox_free(shared);
+        shared = NULL;
+    }
+    if (!shared) {
+        shared = __real_wh_sandbox_new(limits);
+    }
+    return shared;
+}
+
+void __wrap_wh_sandbox_free(wh_sandbox_t *sandbox) {
+    REQUIRE(sandbox == shared);
+}
+
+const wh_layout_t *__wrap_wh_layout_load(wh_sandbox_t *sandbox, const char *path,
+                                         wh_sandbox_result_t *result) {
+    (void)sandbox;
+    reached = true;
+    REQUIRE(refused || path != NULL);
+    snprintf(result->message, sizeof result->message, "not read");
+    return NULL;
+}
+
+FILE *__wrap_fopen(const char *path, const char *mode) {
+    if (!initialised) {
+        return __real_fopen(path, mode);
+    }
+    reached = true;
+    REQUIRE(refused || path != NULL);
+    errno = ENOENT;
+    return NULL;
+}
+
+/* The real one: what it refuses it says in one line. */
+bool __wrap_wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *assignment,
+                                     wh_sandbox_result_t *result) {
+    const bool set = __real_wh_sandbox_set_parameter(sandbox, assignment, result);
+    reached = true;
+    REQUIRE(set == (result->message[0] == '\0') && fuzz_is_one_line(result->message));
+    return set;
+}
+
+int LLVMFuzzerInitialize(int *argc, char ***argv) {
+    (void)argc;
+    (void)argv;
+    fuzz_silence();
+    initialised = true;
+    return 0;
+}
+
+/* ------------------------------------------------------------------------------------------------- the words */
+
+/* argp's own hidden option, which sleeps for an hour: it is abbreviated by its first letters, too. */
+static bool sleeps(const char *word) {
+    return strncmp(word, "--H", 3) == 0;
+}
+
+static char *split(const uint8_t *data, size_t size, char **argv) {
+    char *const text = malloc(size + 1);
+    REQUIRE(text != NULL);
+    for (size_t i = 0; i < size; ++i) {
+        text[i] = (char)(unsigned char)data[i];
+    }
+    text[size] = '\0';
+    char *at = text;
+    for (word_count = 0; word_count < WORDS && at; ++word_count) {
+        argv[word_count] = at;
+        at = strchr(at, '\n');
+        if (at) {
+            *at++ = '\0';
+        }
+    }
+    argv[word_count] = NULL;
+    return text;
+}
+
+static int act(int argc, char **argv) {
+    static int (*const subcommands[])(int argc, char **argv) = {wh_app_run, wh_app_mcs, wh_app_sim,
+                                                                wh_app_replay};
+    static const char *const names[] = {"run", "mcs", "sim", "replay"};
+    for (size_t i = 0; i < 4; ++i) {
+        if (strcmp(argv[0], names[i]) == 0) {
+            return subcommands[i](argc, argv);
+        }
+    }
+    finished = refused = true;
+    return WH_EXIT_USAGE;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    char *argv[WORDS + 1];
+    char *const text = split(data, size, argv);
+    refused = finished = reached = false;
+    bool slow = false;
+    for (int i = 0; i < word_count; ++i) {
+        slow = slow || sleeps(argv[i]);
+    }
+    if (!slow) {
+        REQUIRE(act(word_count, argv) == WH_EXIT_USAGE);
+        REQUIRE(finished && (refused || reached));
+    }
+    free(text);
+    return 0;
+}

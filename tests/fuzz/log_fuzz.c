@@ -1,0 +1,177 @@
+/* Any bytes as a recording, read and stepped again as `waferhand replay` does it: the reader's places add up, the counts of
+ * each run too, the exit status says what was found, and --json prints JSON.
+ *
+ * Mutation goes event by event: lengths and sync words of a log are right more often than chance would have it. */
+#include <fcntl.h>
+#include <jansson.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include "app/app.h"
+#include "fuzz.h"
+#include "link/check.h"
+#include "link/replay.h"
+
+#define HEADER 28
+
+static int file = -1;
+static char path[64];
+
+int LLVMFuzzerInitialize(int *argc, char ***argv) {
+    (void)argc;
+    (void)argv;
+    file = memfd_create("log", 0);
+    snprintf(path, sizeof path, "/proc/self/fd/%d", file);
+    REQUIRE(file >= 0);
+    fuzz_silence();
+    return 0;
+}
+
+static void put_file(const uint8_t *data, size_t size) {
+    REQUIRE(ftruncate(file, 0) == 0);
+    REQUIRE(pwrite(file, data, size, 0) == (ssize_t)size);
+}
+
+/* ------------------------------------------------------------------------------------------------- replaying */
+
+static void check_runs(const wh_replay_t *replay) {
+    REQUIRE(replay->run_count <= WH_REPLAY_RUNS && !replay->has_command);
+    for (size_t i = 0; i < replay->run_count; ++i) {
+        const wh_replay_run_t *const run = &replay->runs[i];
+        REQUIRE(run->compared >= 0 && run->unanswered >= 0 && run->outside_valves >= 0 && run->taken_up >= 0);
+        REQUIRE(!run->differs || run->compared > 0);
+        REQUIRE(!run->differs || memchr(run->difference.what, '\0', sizeof run->difference.what) != NULL);
+        REQUIRE(run->first_slice <= run->last_slice);
+        for (size_t other = 0; other < i; ++other) {
+            REQUIRE(replay->runs[other].run != run->run);
+        }
+    }
+}
+
+/* Reads the whole log; returns how it ended, and whether a run differed or a slice was compared. */
+static wh_log_result_t read_log(size_t size, bool *differs, bool *compared) {
+    static wh_replay_t replay;
+    static wh_log_t log;
+    FILE *const in = fopen(path, "rb");
+    REQUIRE(in != NULL);
+    wh_replay_open(&replay);
+    wh_log_open(&log, in);
+    wh_log_result_t result = wh_log_next(&log);
+    for (uint64_t count = 1; result == WH_LOG_EVENT; ++count, result = wh_log_next(&log)) {
+        REQUIRE(log.count == count && log.offset + HEADER < log.next && log.next <= size);
+        REQUIRE(log.size <= sizeof log.data && strlen(log.channel) < sizeof log.channel);
+        wh_replay_event(&replay, log.channel, log.data, log.size);
+    }
+    REQUIRE(result != WH_LOG_END || log.offset == size);
+    wh_replay_finish(&replay);
+    check_runs(&replay);
+    *differs = *compared = false;
+    for (size_t i = 0; i < replay.run_count; ++i) {
+        *differs = *differs || replay.runs[i].differs;
+        *compared = *compared || replay.runs[i].compared > 0;
+    }
+    wh_replay_close(&replay);
+    fclose(in);
+    return result;
+}
+
+/* ---------------------------------------------------------------------------------------------- the program */
+
+/* Runs a subcommand with standard output in memory, to be freed. */
+static char *print(int *status, int argc, char **argv) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *const real = stdout;
+    FILE *const out = open_memstream(&text, &size);
+    REQUIRE(out != NULL);
+    stdout = out;
+    *status = wh_app_replay(argc, argv);
+    stdout = real;
+    fclose(out);
+    return text;
+}
+
+static void check_program(wh_log_result_t result, bool differs, bool compared) {
+    static char name[] = "replay";
+    static char option[] = "--json";
+    char *with_json[] = {name, option, path, NULL};
+    char *without[] = {name, path, NULL};
+    int status = 0;
+    int again = 0;
+    char *const text = print(&status, 3, with_json);
+    free(print(&again, 2, without));
+    REQUIRE(status == again);
+    REQUIRE(status >= WH_EXIT_MET && status <= WH_EXIT_USAGE);
+    /* The program looks for the cell first, so it may see more than one pass does, but not less. */
+    REQUIRE(!compared || status != WH_EXIT_USAGE || result != WH_LOG_END);
+    REQUIRE(status != WH_EXIT_MET || (!differs && result == WH_LOG_END));
+    json_t *const json = json_loads(text, 0, NULL);
+    REQUIRE(json != NULL || text[0] == '\0');
+    json_decref(json);
+    free(text);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    bool differs = false;
+    bool compared = false;
+    put_file(data, size);
+    const wh_log_result_t result = read_log(size, &differs, &compared);
+    check_program(result, differs, compared);
+    return 0;
+}
+
+/* ------------------------------------------------------------------------------------------------- mutation */
+
+static uint32_t number_at(const uint8_t *data, size_t at) {
+    return (uint32_t)data[at] << 24 | (uint32_t)data[at + 1] << 16 | (uint32_t)data[at + 2] << 8 |
+           data[at + 3];
+}
+
+static void put_number(uint8_t *data, size_t at, uint32_t value) {
+    for (size_t i = 0; i < 4; ++i) {
+        data[at + i] = (uint8_t)(value >> (24 - 8 * i) & 0xffU);
+    }
+}
+
+/* The length of the event at the beginning of so many bytes, 0 if there is none. */
+static size_t event_length(const uint8_t *data, size_t left) {
+    if (left < HEADER) {
+        return 0;
+    }
+    const uint64_t length = (uint64_t)HEADER + number_at(data, 20) + number_at(data, 24);
+    return length <= left ? (size_t)length : 0;
+}
+
+/* Changes one event's data, puts its length and check right. Returns the log's new size. */
+static size_t mutate_event(uint8_t *data, size_t at, size_t size, size_t max_size, bool seal) {
+    static uint8_t rest[1 << 16];
+    const size_t begin = at + HEADER + number_at(data, at + 20);
+    const size_t old_size = number_at(data, at + 24);
+    const size_t behind = size - begin - old_size;
+    if (behind > sizeof rest || begin + behind >= max_size) {
+        return LLVMFuzzerMutate(data, size, max_size);
+    }
+    memcpy(rest, data + begin + old_size, behind);
+    const size_t new_size = LLVMFuzzerMutate(data + begin, old_size, max_size - begin - behind);
+    put_number(data, at + 24, (uint32_t)new_size);
+    if (seal) {
+        wh_link_seal(data + begin, new_size);
+    }
+    memcpy(data + begin + new_size, rest, behind);
+    return begin + new_size + behind;
+}
+
+size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max_size, unsigned int seed) {
+    size_t starts[64];
+    size_t count = 0;
+    size_t at = 0;
+    for (size_t length = event_length(data, size); length > 0 && count < sizeof starts / sizeof starts[0];
+         length = event_length(data + at, size - at)) {
+        starts[count++] = at;
+        at += length;
+    }
+    if (count == 0 || seed % 8 == 0) {
+        return LLVMFuzzerMutate(data, size, max_size);
+    }
+    return mutate_event(data, starts[seed / 16 % count], size, max_size, (seed & 8) != 0);
+}

@@ -1,0 +1,24 @@
+/* What holds of a cell after any script and any line. */
+#ifndef WH_TESTS_FUZZ_SOUND_CELL_H
+#define WH_TESTS_FUZZ_SOUND_CELL_H
+
+#include "core/restore.h"
+#include "fuzz.h"
+#include "script/mcs.h"
+
+/* Its state is one that another table may take over, its axes are within their travel, its slices are all there. */
+static inline void fuzz_check_cell(const wh_mcs_t *mcs) {
+    wh_wafer_t wafers[16];
+    wh_gripper_t grippers[WH_GRIPPERS];
+    const wh_grasp_t *const table = &mcs->simulator.table;
+    wh_grasp_t copy = *table;
+    REQUIRE(table->storage.wafer_count <= sizeof wafers / sizeof wafers[0]);
+    copy.storage.wafers = wafers;
+    copy.storage.grippers = grippers;
+    REQUIRE(wh_grasp_restore(&copy, table->slice, table->storage.wafers, table->storage.grippers) == WH_OK);
+    REQUIRE(wh_grasp_hash(&copy) == wh_grasp_hash(table));
+    REQUIRE(wh_machine_check_travel(&mcs->layout->machine, mcs->track.axes) == WH_OK);
+    REQUIRE(mcs->track.slice == (int64_t)table->slice);
+}
+
+#endif
