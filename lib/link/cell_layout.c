@@ -18,6 +18,11 @@ static bool take_pose(const double position[3], const double rotation[9], wh_pos
     return wh_pose_validate(pose) == WH_OK;
 }
 
+/* The range that a layout's file has for tolerances and neighbourhoods. */
+static bool is_limit(double mm) {
+    return mm >= 1e-9 && mm <= 1e6;
+}
+
 static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_grasp_config_t *grasp = &layout->grasp;
     grasp->tolerance.projz = cell->eps_projz;
@@ -28,9 +33,9 @@ static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     grasp->check = cell->check != 0 ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED;
     grasp->seat = cell->seat != 0;
     layout->slice_us = cell->slice_us;
-    return wh_tolerance_validate(&grasp->tolerance) == WH_OK && cell->near_projz > 0 &&
-           cell->near_projz <= 1e6 && cell->near_projxy > 0 && cell->near_projxy <= 1e6 &&
-           cell->slice_us >= 1 && cell->slice_us <= 1000000;
+    return wh_tolerance_validate(&grasp->tolerance) == WH_OK && is_limit(cell->eps_projz) &&
+           is_limit(cell->near_projz) && is_limit(cell->near_projxy) && cell->slice_us >= 1 &&
+           cell->slice_us <= 1000000;
 }
 
 static bool take_station(const waferhand_station *from, size_t grippers, wh_layout_station_t *station,

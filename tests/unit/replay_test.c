@@ -1,6 +1,7 @@
 /* Recordings in memory: what is the same, what differs and how that is named, what is not there. */
 #include "support.h"
 
+#include "link/cell_layout.h"
 #include "link/check.h"
 #include "link/replay.h"
 #include "script/layout_load.h"
@@ -199,6 +200,35 @@ static void test_a_hole_is_bridged(void **state) {
     assert_int_equal(only_run()->last_slice, 9);
 }
 
+static void narrow_projz(waferhand_cell *cell) {
+    cell->eps_projz = 1e-200;
+}
+
+static void narrow_near_projz(waferhand_cell *cell) {
+    cell->near_projz = 1e-200;
+}
+
+static void narrow_near_projxy(waferhand_cell *cell) {
+    cell->near_projxy = 1e-200;
+}
+
+/* Numbers that a layout's file would be refused for, too: their squares are zero, and something divides by them. */
+static void test_cells_that_no_layout_describes(void **state) {
+    static void (*const changes[])(waferhand_cell * cell) = {narrow_projz, narrow_near_projz,
+                                                             narrow_near_projxy};
+    (void)state;
+    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; ++i) {
+        waferhand_cell cell;
+        assert_true(wh_link_cell_from_layout(layout, &server.identity, &cell));
+        wh_layout_t *const good = wh_link_layout_from_cell(&cell);
+        assert_non_null(good);
+        wh_link_layout_free(good);
+        changes[i](&cell);
+        assert_null(wh_link_layout_from_cell(&cell));
+        wh_link_cell_free(&cell);
+    }
+}
+
 static void test_garbage_is_counted(void **state) {
     (void)state;
     memset(bytes, 0x5a, 1000);
@@ -218,6 +248,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_another_command_is_found_out, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_valves_from_outside_are_followed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_a_hole_is_bridged, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_cells_that_no_layout_describes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_garbage_is_counted, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
