@@ -181,6 +181,26 @@ static bool next_message(wh_node_t *to) {
     return true;
 }
 
+static bool is_index(int32_t index, size_t count) {
+    return index >= 0 && (size_t)index < count;
+}
+
+/* As core/event.h has it: whoever explains an event looks its wafer and grippers up. */
+static void check_event(const wh_event_t *event, int64_t seq) {
+    const size_t wafers = layout->wafer_count;
+    const size_t grippers = layout->machine.gripper_count;
+    const bool refusal = event->kind == WH_EVENT_BAD_INPUT;
+    REQUIRE(strcmp(wh_event_name(event->kind), "unknown") != 0);
+    REQUIRE(refusal ? event->wafer == WH_NONE : is_index(event->wafer, wafers));
+    REQUIRE(is_index(event->gripper, grippers));
+    REQUIRE(event->measured_slice <= (uint64_t)seq);
+    if (event->kind == WH_EVENT_SLOT_OCCUPIED) {
+        REQUIRE(is_index(event->other, wafers));
+    } else if (event->kind == WH_EVENT_HANDED_OVER || event->kind == WH_EVENT_CONTESTED) {
+        REQUIRE(is_index(event->other, grippers));
+    }
+}
+
 /* The events of the states that were taken, as a run's report has them. */
 static void check_report(void) {
     static const wh_style_t style = {.utf8 = true, .width = 80};
@@ -247,6 +267,7 @@ static void run_motion_control(fuzz_frames_t *frames, bool free_running) {
         const wh_status_t status = link->exchange(link, &command, &state);
         REQUIRE(status != WH_OK || free_running || (state.seq == seq && state.status == WH_OK));
         for (size_t i = 0; i < state.event_count; ++i) {
+            check_event(&state.events[i], seq);
             wh_record_add_event(&record, state.utime, WH_NONE, &state.events[i]);
         }
         wh_control_idle(&control);
