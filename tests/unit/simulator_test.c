@@ -73,6 +73,32 @@ static void test_init_refuses_what_it_cannot_use(void **state) {
     assert_memory_equal(&simulator, &before, sizeof simulator);
 }
 
+/* As many grippers as a command carries, all of which let go at once, each in the air. */
+static void test_all_grippers_at_once(void **state) {
+    (void)state;
+    static wh_wafer_t many_wafers[WH_GRIPPERS];
+    static wh_gripper_t many_grippers[WH_GRIPPERS];
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = {many_wafers, WH_GRIPPERS, many_grippers, WH_GRIPPERS, NULL, 0};
+    const wh_cell_t cell = cell_here();
+    command.gripper_count = WH_GRIPPERS;
+    for (int g = 0; g < WH_GRIPPERS; ++g) {
+        many_wafers[g].base_from_wafer = wh_test_at(0, 1000 * g, 0);
+        command.grippers[g].base_from_gripper = many_wafers[g].base_from_wafer;
+        command.grippers[g].valve = OPEN;
+    }
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_OK);
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+    assert_int_equal(answer.event_count, WH_GRIPPERS);
+    assert_int_equal(answer.sensors, 255);
+    for (int g = 0; g < WH_GRIPPERS; ++g) {
+        command.grippers[g].valve = CLOSED;
+    }
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+    assert_int_equal(answer.event_count, 2 * WH_GRIPPERS);
+    assert_int_equal(answer.sensors, 0);
+}
+
 static void test_a_cell_without_stations_is_allowed(void **state) {
     (void)state;
     const wh_grasp_config_t config = wh_grasp_config_default();
@@ -207,6 +233,7 @@ static void test_the_link_is_the_simulator(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_init_refuses_what_it_cannot_use, set_up),
+        cmocka_unit_test_setup(test_all_grippers_at_once, set_up),
         cmocka_unit_test_setup(test_a_cell_without_stations_is_allowed, set_up),
         cmocka_unit_test_setup(test_the_view_before_the_first_slice, set_up),
         cmocka_unit_test_setup(test_a_state_answers_its_command, set_up),
