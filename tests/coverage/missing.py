@@ -1,5 +1,5 @@
-"""missing.py EXPORT SOURCE...: from llvm-cov's export, whether the tests have taken each branch both ways and shown that
-each condition decides alone (MC/DC). Prints the numbers and what is missing; exit 1 if anything is that
+"""missing.py EXPORT SOURCE...: from llvm-cov's export, whether the tests have taken each branch both ways and shown
+that each condition decides alone (MC/DC). Prints the numbers and what is missing; exit 1 if anything is that
 tests/coverage/infeasible does not list, or if that lists too much."""
 
 import json

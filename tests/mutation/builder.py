@@ -18,6 +18,8 @@ class Builder:
     def __init__(self, folder, compiler, flags):
         self.compile_command = [compiler, *flags.split(), "-O2", "-g0", "-fPIC", "-w", "-c"]
         self.link_command = [compiler, "-shared"]
+        version = subprocess.run([compiler, "--version"], capture_output=True, check=True, text=True).stdout
+        self.identity = version.split("\n")[0] + flags
         self.originals = os.path.join(folder, "originals")
         self.sources = sorted(glob.glob("lib/core/*.c") + glob.glob("lib/motion/*.c") +
                               glob.glob("lib/cell/*.c") + glob.glob("lib/sim/*.c"))

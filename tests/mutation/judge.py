@@ -8,6 +8,7 @@ import subprocess
 import threading
 
 GIGABYTE = 1 << 30
+DOES_NOT_COMPILE = "compiler"  # a header's mutant alone does, but not where it is included
 
 
 class Test:
@@ -52,6 +53,8 @@ class Judge:
 
     def current(self, path, verdict):
         """Does a verdict from an earlier run still hold with these tests?"""
+        if verdict["killer"] == DOES_NOT_COMPILE:
+            return True
         if verdict["killer"] is None:
             return verdict["tests"] == digest_of(self.relevant(path))
         return any(test.name == verdict["killer"] and test.digest == verdict["tests"] for test in self.tests)

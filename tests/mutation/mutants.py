@@ -83,7 +83,8 @@ def changes_nothing(lines, number, line, text):
     counts up to its end by one."""
     if text == line + " continue;":
         return goes_on_anyway(lines, number)
-    return bool(re.match(r"for \(size_t (\w+) = \w+; \1 < [^;]*; \+\+\1\)", line)) and text == line.replace("<", "!=", 1)
+    counts_up = re.match(r"for \(size_t (\w+) = \w+; \1 < [^;]*; \+\+\1\)", line)
+    return counts_up is not None and text == line.replace("<", "!=", 1)
 
 
 def read(path):
@@ -108,10 +109,10 @@ class Source:
         self.lines = [line.rstrip().replace("{-", "{ -") + "\n" for line in read(path).split("\n")]
         self.is_header = path.endswith(".h")
 
-    def digest(self):
+    def digest(self, compiler):
         """The same as long as only comments, blanks and empty lines change, here and in what it includes."""
         words = " ".join(" ".join(read(path).split()) for path in with_headers(self.path))
-        return hashlib.sha256(words.encode()).hexdigest()
+        return hashlib.sha256((compiler + words).encode()).hexdigest()[:24]
 
     def mutable(self):
         """The numbers of the lines to change: of a header only functions, as the tests are compiled with the

@@ -1,0 +1,116 @@
+"""All mutants of one file: compiled, sorted out, judged."""
+
+import os
+import shutil
+import tempfile
+from random import Random
+
+from judge import DOES_NOT_COMPILE
+from mutants import Source
+
+HEADER_SHARE = 3  # a header's mutants take the whole library to compile: a third of them is sampled
+MEMORY = "/dev/shm"
+
+
+class Campaign:
+    """All mutants of one file."""
+
+    def __init__(self, path, tools, sample, seed):
+        self.source = Source(path)
+        self.builder, self.judge, self.results, self.list, self.pool = tools
+        self.mutants = list(self.source.mutants())
+        self.digest = self.source.digest(self.builder.identity)
+        self.generated = len(self.mutants)
+        self.sample = sample
+        if sample is not None and self.source.is_header:
+            self.sample = -(-sample // HEADER_SHARE)
+        if sample is not None:
+            Random(f"{seed} {path}").shuffle(self.mutants)
+        self.folder = tempfile.TemporaryDirectory(prefix="mutation.", dir=MEMORY if os.path.isdir(MEMORY) else None)
+        self.compiled = self.unfit = self.killed = 0
+        self.differing = []
+        self.survivors = []
+        self.listed = []
+        self.stale = []  # what the list has in vain
+
+    def key(self, mutant):
+        return self.digest + mutant.key
+
+    def folder_of(self, mutant):
+        return os.path.join(self.folder.name, mutant.key if mutant else "original")
+
+    def compile(self, mutant, text=None):
+        """Object's hash, or None."""
+        entry = self.results.get(self.key(mutant)) if mutant else {}
+        if "object" not in entry:
+            folder = self.folder_of(mutant)
+            os.makedirs(folder)
+            entry = {"object": self.builder.build(self.source, text or self.source.changed(mutant), folder)}
+            if entry["object"] is None:
+                shutil.rmtree(folder)
+            if mutant:
+                self.results.put(self.key(mutant), entry)
+        return entry["object"]
+
+    def killer_of(self, mutant):
+        """The test's name, or None."""
+        entry = self.results.get(self.key(mutant))
+        if "killer" in entry and self.judge.current(self.source.path, entry):
+            return entry["killer"]
+        folder = self.folder_of(mutant)
+        if not os.path.exists(folder):  # compiled by an earlier run
+            os.makedirs(folder)
+            self.builder.build(self.source, self.source.changed(mutant), folder)
+        if self.builder.finish(self.source, folder):
+            verdict = self.judge.verdict(self.source.path, folder, entry.get("killer"))
+        else:
+            verdict = {"killer": DOES_NOT_COMPILE, "tests": None}
+        shutil.rmtree(folder)
+        self.results.put(self.key(mutant), verdict)
+        return verdict["killer"]
+
+    def distinct(self):
+        """Those that compile and differ from the original and from each other, as many as the sample asks for."""
+        seen = {self.compile(None, "".join(self.source.lines))}
+        for begin in range(0, len(self.mutants), 64):
+            part = self.mutants[begin:begin + 64]
+            for mutant, found in zip(part, self.pool.map(self.compile, part)):
+                self.compiled += found is not None
+                if found is not None and found not in seen:
+                    seen.add(found)
+                    self.differing.append(mutant)
+                    if len(self.differing) == self.sample:
+                        return
+                elif found is not None:
+                    shutil.rmtree(self.folder_of(mutant), ignore_errors=True)
+
+    def judge_all(self, mutants, excused):
+        for mutant, killer in zip(mutants, self.pool.map(self.killer_of, mutants)):
+            if killer == DOES_NOT_COMPILE:
+                self.unfit += 1
+            elif killer is not None:
+                self.killed += 1
+            elif self.compile(mutant) in excused or self.list.part_of(mutant.line, mutant.text):
+                self.listed.append(mutant)
+            else:
+                self.survivors.append(mutant)
+
+    def run(self):
+        self.distinct()
+        wanted = self.list.of(self.source.path)
+        listed = [mutant for mutant in self.mutants if (mutant.line, mutant.text) in wanted]
+        excused = {self.compile(mutant) for mutant in listed}
+        missing = wanted - {(mutant.line, mutant.text) for mutant in listed}
+        self.stale = [f"{self.source.path}\n- {line}\n+ {text}" for line, text in sorted(missing)]
+        if self.sample is not None:
+            # Only a run of all is worth the time to see whether what is listed still survives.
+            self.listed = [mutant for mutant in self.differing if self.compile(mutant) in excused]
+        self.judge_all([mutant for mutant in self.differing if mutant not in self.listed], excused)
+        if self.sample is None:
+            surviving = {self.compile(mutant) for mutant in self.listed}
+            self.stale += [mutant.show() for mutant in listed if self.compile(mutant) not in surviving]
+        self.folder.cleanup()
+
+    def numbers(self):
+        return (self.generated, self.compiled - self.unfit, len(self.differing) - self.unfit, self.killed,
+                len(self.listed))
