@@ -29,12 +29,8 @@ static wh_outputs_look_t read_values(const wh_outputs_t *outputs, int fd, int32_
     if (size < 0) {
         return failed(errno);
     }
-    const wh_outputs_look_t look = wh_outputs_parse(text, (size_t)size, outputs->count, valves);
-    if (look.condition != WH_OUTPUTS_GOOD) {
-        return look;
-    }
     const bool same = pread(fd, again, sizeof again, 0) == size && memcmp(text, again, (size_t)size) == 0;
-    return same ? look : caught_in_the_act;
+    return same ? wh_outputs_parse(text, (size_t)size, outputs->count, valves) : caught_in_the_act;
 }
 
 /* The path may have become a fifo since it was examined, hence O_NONBLOCK and another examination. */
