@@ -1,5 +1,5 @@
-/* The parts of a slice that lie within the limits, against their definition: inside at both ends and in between, outside
- * before and after. And which of several wafers is taken. */
+/* The parts of a slice that lie within the limits, against their definition: inside at both ends and in between,
+ * outside before and after. And which of several wafers is taken. */
 #include "support_grasp.h"
 
 #include "core/sweep_internal.h"
@@ -18,6 +18,7 @@ static void draw(slice_t *s) {
     const uint32_t kind = wh_test_below(5);
     const bool climbs = kind != 1 && kind != 2;
     const bool slides = kind != 0 && kind != 2;
+    const double far = wh_test_below(2) ? 120 : wh_test_decades(1e-3, 10);
     const double x = wh_test_uniform(-60, 60);
     const double y = wh_test_uniform(-60, 60);
     const double z = wh_test_uniform(-3, 3);
@@ -25,8 +26,8 @@ static void draw(slice_t *s) {
     s->wafer = kind == 4 ? wh_test_random_pose(100) : level;
     wh_pose_t wafer_from = wh_test_at(x, y, z);
     s->from = wh_pose_compose(&s->wafer, &wafer_from);
-    wafer_from.r.x += slides ? WH_REAL(wh_test_uniform(-120, 120)) : 0;
-    wafer_from.r.y += slides ? WH_REAL(wh_test_uniform(-120, 120)) : 0;
+    wafer_from.r.x += slides ? WH_REAL(wh_test_uniform(-far, far)) : 0;
+    wafer_from.r.y += slides ? WH_REAL(wh_test_uniform(-far, far)) : 0;
     wafer_from.r.z += climbs ? WH_REAL(wh_test_uniform(-6, 6)) : 0;
     s->to = wh_pose_compose(&s->wafer, &wafer_from);
     s->projz = WH_REAL(wh_test_uniform(0.3, 2));
@@ -123,17 +124,23 @@ static void a_creeping_turn_is_found_soon(void **state) {
     }
 }
 
-/* Gripper 0 waits open below wafers that are about to be passed; some stand at the same height. */
+/* Gripper 0 passes the wafers from below, some of which lie at one height, or sideways, some of which come within its reach
+ * at once but at different heights. */
 static void draw_wafers(cell_t *cell) {
     wh_grasp_config_t config = wh_grasp_config_default();
     config.check = WH_CHECK_SWEPT;
+    const bool sideways = wh_test_below(2);
     cell_begin(cell, &config);
-    cell_move(cell, 0, 0, 0, 500, OPEN);
+    cell_move(cell, 0, sideways ? -90 : 0, 5000, 0, OPEN);
     for (size_t w = 0; w < CELL_WAFERS; ++w) {
-        const double z = 501 + (int)wh_test_below(5) + (wh_test_below(2) ? 0 : wh_test_uniform(-0.1, 0.1));
-        cell_place(cell, w, wh_test_uniform(-20, 20), wh_test_below(4) ? 0 : 300, z);
+        if (sideways) {
+            cell_place(cell, w, 20 * (int)wh_test_below(3), 5000, wh_test_uniform(-0.45, 0.45));
+        } else {
+            const double z = 1 + (int)wh_test_below(5) + (wh_test_below(2) ? 0 : wh_test_uniform(-0.1, 0.1));
+            cell_place(cell, w, wh_test_uniform(-20, 20), wh_test_below(4) ? 5000 : 5300, z);
+        }
     }
-    cell_set(cell, 0, wh_test_uniform(-9, 9), 0, 500 + wh_test_uniform(0, 6), OPEN);
+    cell_set(cell, 0, sideways ? 90 : 9, 5000, sideways ? 0 : wh_test_uniform(0, 6), OPEN);
 }
 
 typedef struct {

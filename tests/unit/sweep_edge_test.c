@@ -1,5 +1,5 @@
-/* Swept checking on its edges: a pick at the slice's very end, a pass that only touches, a gripper that stands still, and
- * two limits met at one instant. */
+/* Swept checking on its edges: a pick at the very end, a pass that only touches, a gripper that stands still, and two
+ * limits met at one instant. */
 #include "support_grasp.h"
 
 #include "core/sweep_internal.h"
