@@ -16,7 +16,8 @@ def run(command, **options):
 
 class Builder:
     def __init__(self, folder, compiler, flags):
-        self.compile_command = [compiler, *flags.split(), "-O2", "-g0", "-fPIC", "-w", "-c"]
+        self.compiler = compiler
+        self.flags = [*flags.split(), "-O2", "-g0", "-fPIC", "-w", "-c"]
         self.link_command = [compiler, "-shared"]
         version = subprocess.run([compiler, "--version"], capture_output=True, check=True, text=True).stdout
         self.identity = version.split("\n")[0] + flags
@@ -36,7 +37,8 @@ class Builder:
 
     def compile(self, source, target, options):
         try:
-            return run([*self.compile_command, *options, "-Ilib", "-o", target, source], timeout=60)
+            # The options first: among them is the folder of a mutated header, which hides the library's own.
+            return run([self.compiler, *options, *self.flags, "-o", target, source], timeout=60)
         except subprocess.TimeoutExpired:
             return False
 
