@@ -50,10 +50,13 @@ static void other_numbers_are_unknown(void **state) {
         assert_int_equal(unknown, !is_in_catalogue(number));
         assert_int_equal(unknown, strcmp(wh_status_text((wh_status_t)number), "unknown status") == 0);
     }
+    /* Where the compiler gives an enumeration no more bytes than it needs, some of these become other numbers. */
     static const int none[] = {-1, 9999, INT32_MAX, INT32_MIN};
     for (size_t i = 0; i < 4; ++i) {
-        assert_string_equal(wh_status_name((wh_status_t)none[i]), "UNKNOWN");
-        assert_string_equal(wh_status_text((wh_status_t)none[i]), "unknown status");
+        const wh_status_t status = (wh_status_t)none[i];
+        const bool unknown = !is_in_catalogue((int)status);
+        assert_int_equal(unknown, strcmp(wh_status_name(status), "UNKNOWN") == 0);
+        assert_int_equal(unknown, strcmp(wh_status_text(status), "unknown status") == 0);
     }
 }
 
