@@ -1,7 +1,11 @@
 #include "core/restore.h"
 
 static bool is_index(int32_t index, size_t count) {
-    return index == WH_NONE || (index >= 0 && (size_t)index < count);
+    return index >= 0 && (size_t)index < count;
+}
+
+static bool is_index_or_none(int32_t index, size_t count) {
+    return index == WH_NONE || is_index(index, count);
 }
 
 /* Every number finite: a sum of differences that are each zero, or NaN. */
@@ -21,7 +25,7 @@ static wh_status_t check_encounter(const wh_grasp_t *table, const wh_encounter_t
         return WH_OK;
     }
     if (!is_index(encounter->wafer, table->storage.wafer_count) ||
-        !is_index(encounter->holder, table->storage.gripper_count) || encounter->slice > slice) {
+        !is_index_or_none(encounter->holder, table->storage.gripper_count) || encounter->slice > slice) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     return measured_is_finite(&encounter->measured) ? WH_OK : WH_STATUS_NOT_FINITE;
@@ -30,7 +34,7 @@ static wh_status_t check_encounter(const wh_grasp_t *table, const wh_encounter_t
 static wh_status_t check_wafer(const wh_grasp_t *table, size_t w, const wh_wafer_t wafers[],
                                const wh_gripper_t grippers[]) {
     const int32_t holder = wafers[w].holder;
-    if (!is_index(holder, table->storage.gripper_count) ||
+    if (!is_index_or_none(holder, table->storage.gripper_count) ||
         (holder != WH_NONE && grippers[holder].wafer != (int32_t)w)) {
         return WH_STATUS_OUT_OF_RANGE;
     }
@@ -67,19 +71,35 @@ static wh_status_t check_gripper(const wh_grasp_t *table, size_t g, const wh_waf
     return status;
 }
 
+static wh_status_t check_grippers(const wh_grasp_t *table, uint64_t slice, const wh_wafer_t wafers[],
+                                  const wh_gripper_t grippers[]) {
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        const wh_status_t status = check_gripper(table, g, wafers, &grippers[g], slice);
+        if (status != WH_OK) {
+            return status;
+        }
+    }
+    return WH_OK;
+}
+
+static wh_status_t check_wafers(const wh_grasp_t *table, const wh_wafer_t wafers[],
+                                const wh_gripper_t grippers[]) {
+    for (size_t w = 0; w < table->storage.wafer_count; ++w) {
+        const wh_status_t status = check_wafer(table, w, wafers, grippers);
+        if (status != WH_OK) {
+            return status;
+        }
+    }
+    return WH_OK;
+}
+
 static wh_status_t check_all(const wh_grasp_t *table, uint64_t slice, const wh_wafer_t wafers[],
                              const wh_gripper_t grippers[]) {
-    wh_status_t status = WH_OK;
     if ((!wafers && table->storage.wafer_count > 0) || (!grippers && table->storage.gripper_count > 0)) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    for (size_t g = 0; g < table->storage.gripper_count && status == WH_OK; ++g) {
-        status = check_gripper(table, g, wafers, &grippers[g], slice);
-    }
-    for (size_t w = 0; w < table->storage.wafer_count && status == WH_OK; ++w) {
-        status = check_wafer(table, w, wafers, grippers);
-    }
-    return status;
+    const wh_status_t status = check_grippers(table, slice, wafers, grippers);
+    return status == WH_OK ? check_wafers(table, wafers, grippers) : status;
 }
 
 wh_status_t wh_grasp_restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t wafers[],
