@@ -1,0 +1,227 @@
+/* The program that Eva analyses: it calls every public function of the core, in every order, with every bit pattern.
+ * Eva takes what is read from a volatile object for any value of its type, NaN and infinities among them.
+ *
+ * Assumed, as the headers ask: pointers are null only where a function refuses null; arrays have as many elements as
+ * their counts say, GRIPPERS and WAFERS; a bool is 0 or 1; a table is only handed on once wh_grasp_init accepted it.
+ * What the arrays hold, before and between the calls, is otherwise up to the library.
+ */
+#include "core/restore.h"
+
+#define GRIPPERS 2
+#define WAFERS 3
+#define EVENTS (GRIPPERS * WH_EVENTS_PER_GRIPPER)
+
+static volatile wh_real_t real;
+static volatile int32_t integer;
+static volatile uint64_t word;
+static volatile size_t size;
+
+static bool any_bool(void) {
+    return (integer & 1) != 0;
+}
+
+static wh_pose_t any_pose(void) {
+    wh_pose_t pose;
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            pose.R.m[i][j] = real;
+        }
+    }
+    pose.r = wh_vec3(real, real, real);
+    return pose;
+}
+
+static wh_tolerance_t any_tolerance(void) {
+    const wh_tolerance_t tolerance = {real, real, real};
+    return tolerance;
+}
+
+static wh_proximity_t any_proximity(void) {
+    wh_proximity_t p;
+    p.dr = wh_vec3(real, real, real);
+    p.n1_proj_n2 = real;
+    p.dr_proj_z = real;
+    p.dr_proj_xy = wh_vec3(real, real, real);
+    p.dr_proj_xy_norm = real;
+    p.margin_projz = real;
+    p.margin_projxy = real;
+    p.margin_planar = real;
+    p.failed = (unsigned)integer;
+    p.ready = any_bool();
+    return p;
+}
+
+static wh_encounter_t any_encounter(void) {
+    wh_encounter_t encounter = {.wafer = integer, .holder = integer, .slice = word};
+    encounter.measured = any_proximity();
+    return encounter;
+}
+
+static wh_wafer_t any_wafer(void) {
+    wh_wafer_t wafer = {.holder = integer, .released_by = integer};
+    wafer.base_from_wafer = any_pose();
+    return wafer;
+}
+
+static wh_gripper_t any_gripper(void) {
+    wh_gripper_t gripper = {.wafer = integer, .valve = integer};
+    gripper.base_from_gripper = any_pose();
+    gripper.gripper_from_wafer = any_pose();
+    gripper.approach = any_encounter();
+    gripper.contest = any_encounter();
+    return gripper;
+}
+
+static wh_grasp_config_t any_config(void) {
+    wh_grasp_config_t config;
+    config.tolerance = any_tolerance();
+    config.check = (wh_check_t)integer;
+    config.seat = any_bool();
+    config.near_projz = real;
+    config.near_projxy = real;
+    return config;
+}
+
+static wh_event_t any_event(void) {
+    wh_event_t event = {.kind = (wh_event_kind_t)integer, .slice = word, .measured_slice = word};
+    event.wafer = integer;
+    event.gripper = integer;
+    event.other = integer;
+    event.status = (wh_status_t)integer;
+    event.height = real;
+    event.measured = any_proximity();
+    return event;
+}
+
+static void call_names(void) {
+    (void)wh_status_text((wh_status_t)integer);
+    (void)wh_status_name((wh_status_t)integer);
+    (void)wh_event_name((wh_event_kind_t)integer);
+}
+
+static void call_values(void) {
+    const wh_pose_t a = any_pose();
+    const wh_pose_t b = any_pose();
+    (void)wh_pose_validate(&a);
+    (void)wh_mat3_orthonormalise(&a.R);
+    const wh_pose_t c = wh_pose_compose(&a, &b);
+    (void)wh_pose_relative(&a, &c);
+}
+
+static void call_proximity(void) {
+    const wh_pose_t wafer = any_pose();
+    const wh_pose_t gripper = any_pose();
+    wh_tolerance_t tolerance = any_tolerance();
+    wh_proximity_t measured = any_proximity();
+    (void)wh_proximity_ready(&wafer, &gripper, &tolerance);
+    (void)wh_proximity_rim_gap(&wafer, &gripper, real);
+    wh_proximity_judge(&tolerance, &measured);
+    (void)wh_proximity_measure(any_bool() ? &wafer : NULL, any_bool() ? &gripper : NULL,
+                               any_bool() ? &tolerance : NULL, any_bool() ? &measured : NULL);
+    (void)wh_tolerance_validate(&tolerance);
+    (void)wh_tolerance_preset(size, &tolerance);
+    (void)wh_tolerance_paper();
+    (void)wh_tolerance_strict();
+}
+
+static void call_step(wh_grasp_t *table, size_t gripper_count) {
+    wh_gripper_input_t inputs[GRIPPERS];
+    wh_event_t events[EVENTS];
+    wh_event_list_t list = {events, any_bool() ? 4 * gripper_count : 4 * gripper_count - 1, size};
+    for (size_t i = 0; i < EVENTS; ++i) {
+        events[i] = any_event();
+    }
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        inputs[g].base_from_gripper = any_pose();
+        inputs[g].valve = integer;
+    }
+    if (any_bool()) {
+        list.events = NULL;
+        list.capacity = 0;
+    }
+    (void)wh_grasp_step(any_bool() ? table : NULL, any_bool() ? inputs : NULL, any_bool() ? &list : NULL);
+}
+
+static void call_place(wh_grasp_t *table) {
+    const wh_pose_t pose = any_pose();
+    (void)wh_grasp_place(any_bool() ? table : NULL, size, any_bool() ? &pose : NULL);
+}
+
+static void call_restore(wh_grasp_t *table) {
+    wh_wafer_t wafers[WAFERS];
+    wh_gripper_t grippers[GRIPPERS];
+    for (size_t w = 0; w < WAFERS; ++w) {
+        wafers[w] = any_wafer();
+    }
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        grippers[g] = any_gripper();
+    }
+    (void)wh_grasp_restore(any_bool() ? table : NULL, word, any_bool() ? wafers : NULL, any_bool() ? grippers : NULL);
+}
+
+static void call_questions(const wh_grasp_t *table) {
+    wh_pose_t pose;
+    int32_t index;
+    (void)wh_grasp_wafer(any_bool() ? table : NULL, size, any_bool() ? &pose : NULL, any_bool() ? &index : NULL);
+    (void)wh_grasp_held(any_bool() ? table : NULL, size, any_bool() ? &index : NULL);
+    (void)wh_grasp_hash(table);
+}
+
+/* Any calls in any order, without end. */
+static void use(wh_grasp_t *table, size_t gripper_count) {
+    while (any_bool()) {
+        switch (integer) {
+        case 0:
+            call_step(table, gripper_count);
+            break;
+        case 1:
+            call_place(table);
+            break;
+        case 2:
+            call_restore(table);
+            break;
+        default:
+            call_questions(table);
+            break;
+        }
+    }
+}
+
+static void call_refused_init(wh_wafer_t wafers[], wh_gripper_t grippers[]) {
+    wh_grasp_t table;
+    const wh_grasp_config_t config = any_config();
+    const wh_grasp_storage_t storage = {any_bool() ? wafers : NULL,   any_bool() ? WAFERS : (size_t)INT32_MAX + 1,
+                                        any_bool() ? grippers : NULL, any_bool() ? GRIPPERS : SIZE_MAX,
+                                        NULL,                         size};
+    (void)wh_grasp_init(any_bool() ? &table : NULL, any_bool() ? &config : NULL, any_bool() ? &storage : NULL);
+}
+
+static void call_empty(void) {
+    wh_grasp_t table;
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = {NULL, 0, NULL, 0, NULL, 0};
+    if (wh_grasp_init(&table, &config, &storage) == WH_OK) {
+        use(&table, 0);
+    }
+}
+
+int main(void) {
+    wh_grasp_t table;
+    wh_wafer_t wafers[WAFERS];
+    wh_gripper_t grippers[GRIPPERS];
+    for (size_t w = 0; w < WAFERS; ++w) {
+        wafers[w] = any_wafer();
+    }
+    call_names();
+    call_values();
+    call_proximity();
+    call_refused_init(wafers, grippers);
+    call_empty();
+
+    const wh_grasp_config_t config = any_config();
+    const wh_grasp_storage_t storage = {wafers, WAFERS, grippers, GRIPPERS, NULL, 0};
+    if (wh_grasp_init(&table, &config, &storage) == WH_OK) {
+        use(&table, GRIPPERS);
+    }
+    return 0;
+}
