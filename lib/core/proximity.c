@@ -83,6 +83,7 @@ bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_
         return false;
     }
     wh_real_t n1_proj_n2 = p.x - p.x;
+    /*@ loop assigns row, n1_proj_n2; loop variant 3 - row; */
     for (size_t row = 0; row < 3; ++row) {
         const wh_real_t *axes = base_from_gripper->R.m[row];
         const wh_real_t unused = axes[0] + axes[1];
