@@ -7,11 +7,37 @@
 #define WH_CORE_CONTRACTS_H
 
 /*@
+  predicate wh_storage_memory{L}(wh_grasp_storage_t *s) =
+    \valid_read(s) &&
+    (s->wafers == \null || \valid(s->wafers + (0 .. s->wafer_count - 1))) &&
+    (s->grippers == \null || \valid(s->grippers + (0 .. s->gripper_count - 1)));
+
+  predicate wh_storage_apart{L}(wh_grasp_storage_t *s, wh_grasp_t *t) =
+    \separated(s, t, s->wafers + (0 .. s->wafer_count - 1), s->grippers + (0 .. s->gripper_count - 1));
+
+  // What wh_grasp_init has looked at.
+  predicate wh_storage_good{L}(wh_grasp_storage_t *s) =
+    s->wafer_count <= INT32_MAX && s->gripper_count <= INT32_MAX &&
+    (s->wafers != \null || s->wafer_count == 0) && (s->grippers != \null || s->gripper_count == 0);
+
   predicate wh_table_memory{L}(wh_grasp_t *t) =
     \valid(t) && t->storage.wafer_count <= INT32_MAX && t->storage.gripper_count <= INT32_MAX &&
     \valid(t->storage.wafers + (0 .. t->storage.wafer_count - 1)) &&
     \valid(t->storage.grippers + (0 .. t->storage.gripper_count - 1)) &&
     \separated(t, t->storage.wafers + (0 .. t->storage.wafer_count - 1),
+               t->storage.grippers + (0 .. t->storage.gripper_count - 1));
+
+  // A state to be restored.
+  predicate wh_state_memory{L}(wh_wafer_t *ws, integer wafer_count, wh_gripper_t *gs, integer gripper_count) =
+    (ws == \null || \valid_read(ws + (0 .. wafer_count - 1))) &&
+    (gs == \null || \valid_read(gs + (0 .. gripper_count - 1)));
+
+  predicate wh_state_apart{L}(wh_wafer_t *ws, wh_gripper_t *gs, wh_grasp_t *t) =
+    \separated(ws + (0 .. t->storage.wafer_count - 1), t,
+               t->storage.wafers + (0 .. t->storage.wafer_count - 1),
+               t->storage.grippers + (0 .. t->storage.gripper_count - 1)) &&
+    \separated(gs + (0 .. t->storage.gripper_count - 1), t,
+               t->storage.wafers + (0 .. t->storage.wafer_count - 1),
                t->storage.grippers + (0 .. t->storage.gripper_count - 1));
 
   // A list may be null; then it has no elements and no count.
@@ -29,10 +55,26 @@
                                t->storage.wafers + (0 .. t->storage.wafer_count - 1),
                                t->storage.grippers + (0 .. t->storage.gripper_count - 1)));
 
-  predicate wh_inputs_apart{L}(wh_gripper_input_t *in, wh_grasp_t *t, wh_event_list_t *l) =
-    \separated(in + (0 .. t->storage.gripper_count - 1), t, l,
+  // Room for n more events.
+  predicate wh_list_ready{L}(wh_event_list_t *l, integer n) =
+    l != \null ==> \valid(l) && \valid(l->events + (0 .. l->capacity - 1)) &&
+                   \separated(l, l->events + (0 .. l->capacity - 1)) && l->count + n <= l->capacity;
+
+  predicate wh_list_grown{K, L}(wh_event_list_t *l, integer n) =
+    l != \null ==> \at(l->count, L) <= \at(l->count, K) + n && \at(l->capacity, K) == \at(l->capacity, L) &&
+                   \at(l->events, K) == \at(l->events, L);
+
+  predicate wh_apart_from_arrays{L}(wh_gripper_input_t *in, wh_grasp_t *t) =
+    \separated(in, t->storage.wafers + (0 .. t->storage.wafer_count - 1),
+               t->storage.grippers + (0 .. t->storage.gripper_count - 1));
+
+  predicate wh_inputs_apart{L}(wh_gripper_input_t *in, wh_grasp_t *t) =
+    \separated(in + (0 .. t->storage.gripper_count - 1), t,
                t->storage.wafers + (0 .. t->storage.wafer_count - 1),
-               t->storage.grippers + (0 .. t->storage.gripper_count - 1)) &&
+               t->storage.grippers + (0 .. t->storage.gripper_count - 1));
+
+  predicate wh_inputs_apart_list{L}(wh_gripper_input_t *in, wh_grasp_t *t, wh_event_list_t *l) =
+    \separated(in + (0 .. t->storage.gripper_count - 1), l) &&
     (l != \null ==> \separated(in + (0 .. t->storage.gripper_count - 1), l->events + (0 .. l->capacity - 1)));
 
   logic integer wh_holder{L}(wh_grasp_t *t, integer w) = t->storage.wafers[w].holder;
@@ -49,19 +91,35 @@
     (\forall integer g; wh_is_gripper(t, g) && wh_held(t, g) != WH_NONE ==>
        wh_is_wafer(t, wh_held(t, g)) && wh_holder(t, wh_held(t, g)) == g);
 
+  // Who holds what has not changed.
+  predicate wh_same_holders{K, L}(wh_grasp_t *t) =
+    \forall integer w; wh_is_wafer{K}(t, w) ==> wh_holder{K}(t, w) == wh_holder{L}(t, w);
+  predicate wh_same_releases{K, L}(wh_grasp_t *t) =
+    \forall integer w; wh_is_wafer{K}(t, w) ==> wh_released_by{K}(t, w) == wh_released_by{L}(t, w);
+  predicate wh_same_held{K, L}(wh_grasp_t *t) =
+    \forall integer g; wh_is_gripper{K}(t, g) ==> wh_held{K}(t, g) == wh_held{L}(t, g);
+
   predicate wh_encounters{L}(wh_grasp_t *t) =
     \forall integer g; wh_is_gripper(t, g) ==>
       WH_NONE <= t->storage.grippers[g].approach.wafer < t->storage.wafer_count &&
       WH_NONE <= t->storage.grippers[g].contest.wafer < t->storage.wafer_count;
 
+  predicate wh_cleared{L}(wh_gripper_t *g) =
+    g->wafer == WH_NONE && g->approach.wafer == WH_NONE && g->contest.wafer == WH_NONE;
+
+  predicate wh_none_released{L}(wh_grasp_t *t) =
+    \forall integer w; wh_is_wafer(t, w) ==> wh_released_by(t, w) == WH_NONE;
+
   // What holds between two calls, for every table that wh_grasp_init accepted.
   predicate wh_consistent{L}(wh_grasp_t *t) =
-    wh_paired(t) && wh_encounters(t) &&
-    \forall integer w; wh_is_wafer(t, w) ==> wh_released_by(t, w) == WH_NONE;
+    wh_paired(t) && wh_encounters(t) && wh_none_released(t);
 
   // Within a step: gripper g's valve is closed in this slice and it has let go, but still names its wafer.
   predicate wh_lets_go{L}(wh_gripper_input_t *in, integer g, integer from, integer to) =
     from <= g < to && in[g].valve == WH_VALVE_CLOSED;
+
+  predicate wh_valves_good{L}(wh_gripper_input_t *in, integer count) =
+    \forall integer g; 0 <= g < count ==> in[g].valve == WH_VALVE_OPEN || in[g].valve == WH_VALVE_CLOSED;
 
   predicate wh_stepping{L}(wh_grasp_t *t, wh_gripper_input_t *in, integer from, integer to) =
     (\forall integer w; wh_is_wafer(t, w) && wh_holder(t, w) != WH_NONE ==>
@@ -81,23 +139,68 @@
   predicate wh_same_grip{K, L}(wh_grasp_t *t, integer g) =
     \at(t->storage.grippers[g].gripper_from_wafer, K) == \at(t->storage.grippers[g].gripper_from_wafer, L);
 
+  predicate wh_same_watched{K, L}(wh_grasp_t *t) =
+    \forall integer g; wh_is_gripper{K}(t, g) ==>
+      \at(t->storage.grippers[g].approach.wafer, K) == \at(t->storage.grippers[g].approach.wafer, L) &&
+      \at(t->storage.grippers[g].contest.wafer, K) == \at(t->storage.grippers[g].contest.wafer, L);
+
+  predicate wh_same_size{K, L}(wh_grasp_t *t) =
+    \at(t->storage.wafer_count, K) == \at(t->storage.wafer_count, L) &&
+    \at(t->storage.gripper_count, K) == \at(t->storage.gripper_count, L) &&
+    \at(t->storage.wafers, K) == \at(t->storage.wafers, L) &&
+    \at(t->storage.grippers, K) == \at(t->storage.grippers, L);
+
+  // Gripper g, which was empty, took wafer w, which nobody held; the others are as they were.
+  predicate wh_took{K, L}(wh_grasp_t *t, integer g, integer w) =
+    wh_is_wafer{K}(t, w) && wh_holder{K}(t, w) == WH_NONE && wh_held{K}(t, g) == WH_NONE &&
+    wh_holder{L}(t, w) == g && wh_held{L}(t, g) == w;
+
+  predicate wh_other_holders{K, L}(wh_grasp_t *t, integer w) =
+    \forall integer i; wh_is_wafer{K}(t, i) && i != w ==> wh_holder{K}(t, i) == wh_holder{L}(t, i);
+  predicate wh_other_held{K, L}(wh_grasp_t *t, integer g) =
+    \forall integer i; wh_is_gripper{K}(t, i) && i != g ==> wh_held{K}(t, i) == wh_held{L}(t, i);
+  predicate wh_other_poses{K, L}(wh_grasp_t *t, integer w) =
+    \forall integer i; wh_is_wafer{K}(t, i) && i != w ==> wh_same_pose{K, L}(t, i);
+  predicate wh_other_grips{K, L}(wh_grasp_t *t, integer g) =
+    \forall integer i; wh_is_gripper{K}(t, i) && i != g ==> wh_same_grip{K, L}(t, i);
+
   // A wafer that nobody held, and that nobody took since, has not moved.
   predicate wh_free_at_rest{K, L}(wh_grasp_t *t) =
     \forall integer w; wh_is_wafer{K}(t, w) && wh_holder{K}(t, w) == WH_NONE &&
       wh_holder{L}(t, w) == WH_NONE ==> wh_same_pose{K, L}(t, w);
 
+  // Nor has a held one.
+  predicate wh_held_at_rest{K, L}(wh_grasp_t *t) =
+    \forall integer w; wh_is_wafer{K}(t, w) && wh_holder{K}(t, w) != WH_NONE ==> wh_same_pose{K, L}(t, w);
+
   // How a gripper held its wafer has not changed.
   predicate wh_grips_kept{K, L}(wh_grasp_t *t) =
     \forall integer g; wh_is_gripper{K}(t, g) && wh_held{K}(t, g) != WH_NONE ==> wh_same_grip{K, L}(t, g);
 
-  // Nothing but counters has changed.
+  predicate wh_same_wafer{K, L}(wh_wafer_t *w) =
+    \at(w->base_from_wafer, K) == \at(w->base_from_wafer, L) && \at(w->holder, K) == \at(w->holder, L) &&
+    \at(w->released_by, K) == \at(w->released_by, L);
+
+  predicate wh_same_encounter{K, L}(wh_encounter_t *e) =
+    \at(e->wafer, K) == \at(e->wafer, L) && \at(e->holder, K) == \at(e->holder, L) &&
+    \at(e->slice, K) == \at(e->slice, L) && \at(e->measured, K) == \at(e->measured, L);
+
+  predicate wh_same_gripper{K, L}(wh_gripper_t *g) =
+    \at(g->base_from_gripper, K) == \at(g->base_from_gripper, L) &&
+    \at(g->gripper_from_wafer, K) == \at(g->gripper_from_wafer, L) &&
+    \at(g->wafer, K) == \at(g->wafer, L) && \at(g->valve, K) == \at(g->valve, L) &&
+    wh_same_encounter{K, L}(\at(&g->approach, K)) &&
+    wh_same_encounter{K, L}(\at(&g->contest, K));
+
+  // Nothing has changed in the arrays.
+  predicate wh_same_arrays{K, L}(wh_grasp_t *t) =
+    (\forall integer w; wh_is_wafer{K}(t, w) ==> wh_same_wafer{K, L}(\at(t->storage.wafers, K) + w)) &&
+    (\forall integer g; wh_is_gripper{K}(t, g) ==> wh_same_gripper{K, L}(\at(t->storage.grippers, K) + g));
+
+  // Nothing has changed but counters.
   predicate wh_unchanged{K, L}(wh_grasp_t *t) =
     \at(t->config, K) == \at(t->config, L) && \at(t->storage, K) == \at(t->storage, L) &&
-    \at(t->slice, K) == \at(t->slice, L) &&
-    (\forall integer w; wh_is_wafer{K}(t, w) ==>
-       \at(t->storage.wafers[w], K) == \at(t->storage.wafers[w], L)) &&
-    (\forall integer g; wh_is_gripper{K}(t, g) ==>
-       \at(t->storage.grippers[g], K) == \at(t->storage.grippers[g], L));
+    \at(t->slice, K) == \at(t->slice, L) && wh_same_arrays{K, L}(t);
 */
 
 #endif

@@ -3,6 +3,12 @@
 #include "core/grasp_internal.h"
 #include "core/proximity_internal.h"
 
+/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && \valid(encounter);
+    requires \separated(encounter, watch, watch->table, watch->list);
+    requires watch->list != \null ==> \separated(encounter, watch->list->events + (0 .. watch->list->capacity - 1));
+    assigns encounter->wafer, encounter->holder,
+            watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
+    ensures encounter->wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 1); */
 static void report(const wh_watch_t *watch, wh_encounter_t *encounter, wh_event_kind_t kind) {
     if (watch->list) {
         wh_event_t *event = wh_event_append(watch->table, watch->list, kind);
@@ -28,12 +34,16 @@ bool wh_reach_measure(const wh_grasp_config_t *config, const wh_pose_t *base_fro
     return reach->xy < config->near_projxy;
 }
 
+/*@ requires wh_watch_memory(watch) && \valid_read(wafer) && \valid(reach);
+    assigns *reach; */
 static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_reach_t *reach) {
     reach->t = 1;
     return wh_reach_measure(&watch->table->config, &wafer->base_from_wafer, watch->base_from_gripper, reach);
 }
 
 /* The closest that the gripper came to the wafer in this slice; false when it did not come near. */
+/*@ requires wh_watch_memory(watch) && \valid_read(wafer) && \valid(closest);
+    assigns *closest; */
 static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_reach_t *closest) {
     if (watch->sweep && wafer->released_by == WH_NONE) {
         return wh_reach_swept(watch, &wafer->base_from_wafer, closest);
@@ -42,18 +52,24 @@ static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_reach
 }
 
 /* The square that "closest" is measured by: both distances in units of their tolerance. */
+/*@ requires \valid_read(tolerance); assigns \nothing; */
 static wh_real_t closeness(const wh_tolerance_t *tolerance, wh_real_t dr_proj_z, wh_real_t dr_proj_xy) {
     const wh_real_t z = dr_proj_z / tolerance->projz;
     const wh_real_t xy = dr_proj_xy / tolerance->projxy;
     return z * z + xy * xy;
 }
 
+/*@ requires \valid_read(tolerance) && \valid_read(reach) && \valid_read(measured); assigns \nothing; */
 static bool is_closer(const wh_tolerance_t *tolerance, const wh_reach_t *reach,
                       const wh_proximity_t *measured) {
     return closeness(tolerance, reach->z, reach->xy) <
            closeness(tolerance, measured->dr_proj_z, measured->dr_proj_xy_norm);
 }
 
+/*@ requires wh_watch_memory(watch) && \valid(encounter) && wh_is_wafer(watch->table, w) && (watch->sweep != \null || t >= 1);
+    requires \separated(encounter, watch, watch->table);
+    assigns *encounter;
+    ensures encounter->wafer == w; */
 static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, int32_t w, wh_real_t t) {
     const wh_wafer_t *wafer = &watch->table->storage.wafers[w];
     encounter->wafer = w;
@@ -67,6 +83,9 @@ static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, 
     }
 }
 
+/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_is_wafer(watch->table, watch->gripper->approach.wafer);
+    assigns watch->gripper->approach, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
+    ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_list_grown{Pre, Post}(watch->list, 1); */
 static void follow_approach(const wh_watch_t *watch) {
     wh_encounter_t *approach = &watch->gripper->approach;
     const wh_wafer_t *wafer = &watch->table->storage.wafers[approach->wafer];
@@ -86,11 +105,17 @@ static void follow_approach(const wh_watch_t *watch) {
 }
 
 /* The nearest free wafer in the neighbourhood, if the gripper follows none yet. */
+/*@ requires wh_watch_memory(watch) && watch->gripper->approach.wafer == WH_NONE;
+    assigns watch->gripper->approach;
+    ensures wh_watched(watch, watch->gripper->approach.wafer); */
 static void begin_approach(const wh_watch_t *watch) {
     const wh_grasp_storage_t *storage = &watch->table->storage;
     int32_t nearest = WH_NONE;
     wh_real_t least = 0;
     wh_real_t when = 0;
+    /*@ loop invariant 0 <= w <= storage->wafer_count && (nearest == WH_NONE || 0 <= nearest < w);
+        loop assigns w, nearest, least, when;
+        loop variant storage->wafer_count - w; */
     for (size_t w = 0; w < storage->wafer_count; ++w) {
         wh_reach_t reach;
         if (storage->wafers[w].holder == WH_NONE && came_near(watch, &storage->wafers[w], &reach) &&
@@ -106,6 +131,9 @@ static void begin_approach(const wh_watch_t *watch) {
 }
 
 /* A contest that is over is reported unless the wafer went on to another holder. */
+/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_watched(watch, watch->gripper->contest.wafer);
+    assigns watch->gripper->contest, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
+    ensures watch->gripper->contest.wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 1); */
 static void end_contest(const wh_watch_t *watch) {
     wh_encounter_t *contest = &watch->gripper->contest;
     if (contest->wafer == WH_NONE) {
@@ -120,6 +148,9 @@ static void end_contest(const wh_watch_t *watch) {
     report(watch, contest, WH_EVENT_CONTESTED);
 }
 
+/*@ requires wh_watch_memory(watch) && wh_watched(watch, watch->gripper->contest.wafer);
+    assigns \nothing;
+    ensures \result ==> watch->gripper->contest.wafer != WH_NONE; */
 static bool contest_goes_on(const wh_watch_t *watch) {
     const wh_encounter_t *contest = &watch->gripper->contest;
     if (contest->wafer == WH_NONE) {
@@ -133,6 +164,9 @@ static bool contest_goes_on(const wh_watch_t *watch) {
 
 /* The wafer that the gripper would take if nobody held it. A contest that goes on is kept even when another held wafer has
  * come nearer: it would be reported each time that the two change places, and before its own hand-over. */
+/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_watched(watch, watch->gripper->contest.wafer);
+    assigns watch->gripper->contest, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
+    ensures wh_watched(watch, watch->gripper->contest.wafer) && wh_list_grown{Pre, Post}(watch->list, 1); */
 static void follow_contest(const wh_watch_t *watch) {
     if (contest_goes_on(watch)) {
         return;
@@ -145,6 +179,10 @@ static void follow_contest(const wh_watch_t *watch) {
 }
 
 /* The gripper closed or took a wafer: what it was watching is over. */
+/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2) && wh_watched(watch, watch->gripper->approach.wafer) &&
+             wh_watched(watch, watch->gripper->contest.wafer);
+    assigns watch->gripper->approach, watch->gripper->contest, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
+    ensures watch->gripper->approach.wafer == WH_NONE && watch->gripper->contest.wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 2); */
 static void end_encounters(const wh_watch_t *watch, bool closed) {
     wh_encounter_t *approach = &watch->gripper->approach;
     if (approach->wafer != WH_NONE && closed &&

@@ -22,25 +22,63 @@ typedef struct {
     wh_real_t xy; /* |dr_proj_xy| */
 } wh_reach_t;
 
+/*@
+  predicate wh_watch_memory{L}(wh_watch_t *w) =
+    \valid(w) && wh_table_memory(w->table) && wh_is_gripper(w->table, w->index) &&
+    w->gripper == w->table->storage.grippers + w->index && \valid_read(w->base_from_gripper) &&
+    (w->sweep == \null || wh_sweep_memory(w->sweep)) && wh_list_apart(w->list, w->table) &&
+    \separated(w, w->list, w->table, w->table->storage.wafers + (0 .. w->table->storage.wafer_count - 1),
+               w->table->storage.grippers + (0 .. w->table->storage.gripper_count - 1)) &&
+    (w->list != \null ==> \separated(w, w->list->events + (0 .. w->list->capacity - 1)));
+
+  predicate wh_watched{L}(wh_watch_t *w, integer i) = i == WH_NONE || wh_is_wafer(w->table, i);
+*/
 /* Updates one gripper's approach and contest and reports those that ended. `input` is this slice's, the
  * gripper still has the previous slice's pose and valve. */
+/*@ requires wh_table_memory(table) && wh_list_ready(list, 2) && wh_list_apart(list, table);
+    requires wh_is_gripper(table, gripper) && \valid_read(input);
+    requires WH_NONE <= table->storage.grippers[gripper].approach.wafer < table->storage.wafer_count;
+    requires WH_NONE <= table->storage.grippers[gripper].contest.wafer < table->storage.wafer_count;
+    assigns table->storage.grippers[gripper].approach, table->storage.grippers[gripper].contest, table->counters,
+            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+    ensures WH_NONE <= table->storage.grippers[gripper].approach.wafer < table->storage.wafer_count;
+    ensures WH_NONE <= table->storage.grippers[gripper].contest.wafer < table->storage.wafer_count;
+    ensures wh_list_grown{Pre, Post}(list, 2) && wh_same_size{Pre, Post}(table); */
 void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_input_t *input,
                          wh_event_list_t *list);
 
 /* Its part for a gripper that was and is open and empty, with or without watch->sweep. */
+/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2);
+    requires wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
+    assigns watch->gripper->approach, watch->gripper->contest, watch->table->counters,
+            watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
+    ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
+    ensures wh_list_grown{Pre, Post}(watch->list, 2) && wh_same_size{Pre, Post}(watch->table); */
 void wh_encounter_follow(const wh_watch_t *watch);
 
 /* The same with a sweep since the last slice, which it makes. */
+/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2);
+    requires wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
+    assigns watch->sweep, watch->gripper->approach, watch->gripper->contest, watch->table->counters,
+            watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
+    ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
+    ensures wh_list_grown{Pre, Post}(watch->list, 2) && wh_same_size{Pre, Post}(watch->table); */
 void wh_encounter_follow_swept(wh_watch_t *watch);
 
 /* Whether a wafer is in the neighbourhood for near misses; if so, fills in the two distances. */
+/*@ requires \valid_read(config) && \valid_read(base_from_wafer) && \valid_read(base_from_gripper) && \valid(reach);
+    assigns reach->z, reach->xy; */
 bool wh_reach_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
                       const wh_pose_t *base_from_gripper, wh_reach_t *reach);
 
 /* The closest that a gripper with a sweep came to the wafer in this slice; false when it did not come near. */
+/*@ requires wh_watch_memory(watch) && watch->sweep != \null && \valid_read(base_from_wafer) && \valid(closest);
+    assigns *closest; */
 bool wh_reach_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_reach_t *closest);
 
 /* The values at an instant before the slice's end, judged by the limits that hold there. */
+/*@ requires wh_watch_memory(watch) && watch->sweep != \null && \valid_read(base_from_wafer) && \valid(measured);
+    assigns *measured; */
 void wh_measure_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_real_t t,
                       wh_proximity_t *measured);
 

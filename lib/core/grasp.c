@@ -12,6 +12,7 @@ wh_grasp_config_t wh_grasp_config_default(void) {
     return config;
 }
 
+/*@ requires \valid_read(config); assigns \nothing; */
 static wh_status_t validate_config(const wh_grasp_config_t *config) {
     const bool near_good = config->near_projz > 0 && config->near_projz <= WH_REAL(1e6) &&
                            config->near_projxy > 0 && config->near_projxy <= WH_REAL(1e6);
@@ -21,35 +22,96 @@ static wh_status_t validate_config(const wh_grasp_config_t *config) {
     return near_good ? wh_tolerance_validate(&config->tolerance) : WH_STATUS_BAD_TOLERANCE;
 }
 
-static wh_status_t validate_array(const void *array, size_t count) {
-    if (!array && count > 0) {
+/*@ assigns \nothing;
+    ensures \result == WH_OK ==> count <= INT32_MAX && (given || count == 0); */
+static wh_status_t validate_array(bool given, size_t count) {
+    if (!given && count > 0) {
         return WH_STATUS_NULL_ARGUMENT;
     }
     return count > INT32_MAX ? WH_STATUS_BAD_CAPACITY : WH_OK;
 }
 
+/*@ requires wh_storage_memory(storage);
+    assigns \nothing;
+    ensures \result == WH_OK ==> wh_storage_good(storage); */
 static wh_status_t validate_storage(const wh_grasp_storage_t *storage) {
-    wh_status_t status = validate_array(storage->wafers, storage->wafer_count);
+    wh_status_t status = validate_array(storage->wafers != NULL, storage->wafer_count);
     if (status == WH_OK) {
-        status = validate_array(storage->grippers, storage->gripper_count);
+        status = validate_array(storage->grippers != NULL, storage->gripper_count);
     }
     if (status == WH_OK) {
-        status = validate_array(storage->buckets, storage->bucket_count);
+        status = validate_array(storage->buckets != NULL, storage->bucket_count);
     }
+    /*@ loop invariant status == WH_OK ==> wh_storage_good(storage);
+        loop assigns w, status;
+        loop variant storage->wafer_count - w; */
     for (size_t w = 0; w < storage->wafer_count && status == WH_OK; ++w) {
         status = wh_pose_validate(&storage->wafers[w].base_from_wafer);
     }
     return status;
 }
 
+/*@ requires \valid(encounter);
+    assigns *encounter;
+    ensures encounter->wafer == WH_NONE; */
+static void clear_encounter(wh_encounter_t *encounter) {
+    static const wh_encounter_t zero = {0};
+    *encounter = zero;
+    encounter->wafer = WH_NONE;
+    encounter->holder = WH_NONE;
+}
+
+/*@ requires \valid(gripper);
+    assigns *gripper;
+    ensures wh_cleared(gripper); */
 static void clear_gripper(wh_gripper_t *gripper) {
-    static const wh_gripper_t empty = {.wafer = WH_NONE,
-                                       .valve = WH_VALVE_CLOSED,
-                                       .approach = {.wafer = WH_NONE, .holder = WH_NONE},
-                                       .contest = {.wafer = WH_NONE, .holder = WH_NONE}};
-    *gripper = empty;
     gripper->base_from_gripper = wh_pose_identity();
     gripper->gripper_from_wafer = wh_pose_identity();
+    clear_encounter(&gripper->approach);
+    clear_encounter(&gripper->contest);
+    gripper->wafer = WH_NONE;
+    gripper->valve = WH_VALVE_CLOSED;
+}
+
+/*@ requires \valid(grippers + (0 .. count - 1));
+    assigns grippers[0 .. count - 1];
+    ensures \forall integer g; 0 <= g < count ==> wh_cleared(grippers + g); */
+static void clear_grippers(wh_gripper_t grippers[], size_t count) {
+    /*@ loop invariant 0 <= g <= count;
+        loop invariant \forall integer i; 0 <= i < g ==> wh_cleared(grippers + i);
+        loop assigns g, grippers[0 .. count - 1];
+        loop variant count - g; */
+    for (size_t g = 0; g < count; ++g) {
+        clear_gripper(&grippers[g]);
+    }
+}
+
+/*@ requires \valid(wafers + (0 .. count - 1));
+    assigns wafers[0 .. count - 1];
+    ensures \forall integer w; 0 <= w < count ==>
+              wafers[w].holder == WH_NONE && wafers[w].released_by == WH_NONE; */
+static void free_wafers(wh_wafer_t wafers[], size_t count) {
+    /*@ loop invariant 0 <= w <= count;
+        loop invariant \forall integer i; 0 <= i < w ==>
+                         wafers[i].holder == WH_NONE && wafers[i].released_by == WH_NONE;
+        loop assigns w, wafers[0 .. count - 1];
+        loop variant count - w; */
+    for (size_t w = 0; w < count; ++w) {
+        wafers[w].holder = WH_NONE;
+        wafers[w].released_by = WH_NONE;
+    }
+}
+
+/*@ requires \valid(table) && \valid_read(config) && \valid_read(storage) && \separated(table, storage);
+    assigns *table;
+    ensures table->storage.wafers == storage->wafers && table->storage.wafer_count == storage->wafer_count;
+    ensures table->storage.grippers == storage->grippers && table->storage.gripper_count == storage->gripper_count; */
+static void begin(wh_grasp_t *table, const wh_grasp_config_t *config, const wh_grasp_storage_t *storage) {
+    static const wh_grasp_counters_t none = {0};
+    table->config = *config;
+    table->slice = 0;
+    table->counters = none;
+    table->storage = *storage;
 }
 
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
@@ -64,21 +126,27 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
     if (status != WH_OK) {
         return status;
     }
-    static const wh_grasp_counters_t none = {0};
-    table->config = *config;
-    table->storage = *storage;
-    table->slice = 0;
-    table->counters = none;
-    for (size_t w = 0; w < storage->wafer_count; ++w) {
-        storage->wafers[w].holder = WH_NONE;
-        storage->wafers[w].released_by = WH_NONE;
-    }
-    for (size_t g = 0; g < storage->gripper_count; ++g) {
-        clear_gripper(&storage->grippers[g]);
-    }
+    begin(table, config, storage);
+    free_wafers(storage->wafers, storage->wafer_count);
+    /*@ assert \forall integer w; wh_is_wafer(table, w) ==> wh_holder(table, w) == WH_NONE; */
+    /*@ assert \forall integer w; wh_is_wafer(table, w) ==> wh_released_by(table, w) == WH_NONE; */
+    clear_grippers(storage->grippers, storage->gripper_count);
+    /*@ assert table->storage.wafer_count == \at(storage->wafer_count, Pre) &&
+               table->storage.gripper_count == \at(storage->gripper_count, Pre); */
+    /*@ assert table->storage.wafers == \at(storage->wafers, Pre) &&
+               table->storage.grippers == \at(storage->grippers, Pre); */
+    /*@ assert wh_table_memory(table); */
+    /*@ assert \forall integer g; wh_is_gripper(table, g) ==> wh_cleared(table->storage.grippers + g); */
+    /*@ assert \forall integer w; wh_is_wafer(table, w) ==> wh_holder(table, w) == WH_NONE; */
+    /*@ assert \forall integer w; wh_is_wafer(table, w) ==> wh_released_by(table, w) == WH_NONE; */
     return WH_OK;
 }
 
+/*@ requires wh_table_memory(table);
+    requires base_from_wafer == \null || \valid_read(base_from_wafer);
+    assigns \nothing;
+    ensures \result == WH_OK ==> base_from_wafer != \null && wh_is_wafer(table, wafer) &&
+                                  wh_holder(table, wafer) == WH_NONE; */
 static wh_status_t may_place(const wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer) {
     if (!base_from_wafer) {
         return WH_STATUS_NULL_ARGUMENT;
@@ -92,22 +160,44 @@ static wh_status_t may_place(const wh_grasp_t *table, size_t wafer, const wh_pos
     return wh_pose_validate(base_from_wafer);
 }
 
+/*@ requires \valid(table);
+    assigns table->counters.refused; */
+static void count_refusal(wh_grasp_t *table) {
+    ++table->counters.refused;
+}
+
+/*@ requires \valid(approach);
+    assigns approach->wafer;
+    ensures approach->wafer == WH_NONE || approach->wafer == \old(approach->wafer); */
+static void forget(wh_encounter_t *approach, int32_t wafer) {
+    if (approach->wafer == wafer) {
+        approach->wafer = WH_NONE;
+    }
+}
+
 wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer) {
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
     const wh_status_t status = may_place(table, wafer, base_from_wafer);
     if (status != WH_OK) {
-        ++table->counters.refused;
+        count_refusal(table);
         return status;
     }
     table->storage.wafers[wafer].base_from_wafer = *base_from_wafer;
+    /*@ assert \forall integer w; wh_is_wafer(table, w) && w != wafer ==> wh_same_pose{Pre, Here}(table, w); */
+    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
+        loop invariant wh_same_holders{Pre, Here}(table);
+        loop invariant wh_same_releases{Pre, Here}(table);
+        loop invariant wh_same_held{Pre, Here}(table);
+        loop invariant wh_encounters(table);
+        loop assigns g, table->storage.grippers[0 .. table->storage.gripper_count - 1].approach.wafer;
+        loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        wh_encounter_t *approach = &table->storage.grippers[g].approach;
-        if (approach->wafer == (int32_t)wafer) {
-            approach->wafer = WH_NONE;
-        }
+        forget(&table->storage.grippers[g].approach, (int32_t)wafer);
     }
+    /*@ assert wh_paired(table); */
+    /*@ assert wh_none_released(table); */
     return WH_OK;
 }
 
@@ -139,6 +229,7 @@ wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafe
     return WH_OK;
 }
 
+/*@ requires \valid_read(encounter); assigns \nothing; */
 static uint64_t hash_encounter(uint64_t hash, const wh_encounter_t *encounter) {
     hash = wh_hash_int(hash, encounter->wafer);
     if (encounter->wafer == WH_NONE) {
@@ -154,6 +245,7 @@ static uint64_t hash_encounter(uint64_t hash, const wh_encounter_t *encounter) {
     return wh_hash_real(hash, p->dr_proj_xy_norm);
 }
 
+/*@ requires \valid_read(gripper); assigns \nothing; */
 static uint64_t hash_gripper(uint64_t hash, const wh_gripper_t *gripper) {
     hash = wh_hash_pose(hash, &gripper->base_from_gripper);
     hash = wh_hash_int(hash, gripper->valve);
@@ -167,10 +259,12 @@ static uint64_t hash_gripper(uint64_t hash, const wh_gripper_t *gripper) {
 
 uint64_t wh_grasp_hash(const wh_grasp_t *table) {
     uint64_t hash = wh_hash_word(WH_HASH_START, table->slice);
+    /*@ loop assigns w, hash; loop variant table->storage.wafer_count - w; */
     for (size_t w = 0; w < table->storage.wafer_count; ++w) {
         hash = wh_hash_pose(hash, &table->storage.wafers[w].base_from_wafer);
         hash = wh_hash_int(hash, table->storage.wafers[w].holder);
     }
+    /*@ loop assigns g, hash; loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         hash = hash_gripper(hash, &table->storage.grippers[g]);
     }

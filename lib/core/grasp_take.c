@@ -10,6 +10,10 @@ wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_
 int32_t wh_grasp_find_ready(const wh_grasp_t *table, const wh_pose_t *base_from_gripper, bool held) {
     int32_t best = WH_NONE;
     wh_real_t least = 0;
+    /*@ loop invariant 0 <= w <= table->storage.wafer_count;
+        loop invariant best == WH_NONE || 0 <= best < w && (held <==> wh_holder(table, best) != WH_NONE);
+        loop assigns w, best, least;
+        loop variant table->storage.wafer_count - w; */
     for (size_t w = 0; w < table->storage.wafer_count; ++w) {
         const wh_wafer_t *wafer = &table->storage.wafers[w];
         if ((wafer->holder != WH_NONE) == held &&
@@ -25,6 +29,7 @@ int32_t wh_grasp_find_ready(const wh_grasp_t *table, const wh_pose_t *base_from_
 }
 
 /* The smallest turn of the wafer, in the gripper's frame, that takes n1 to n2 = e3. c > 0 at every pick. */
+/*@ requires \valid(R); assigns *R; */
 static void turn_onto_pads(wh_mat3_t *R) {
     const wh_vec3_t n1 = wh_mat3_column(R, 2);
     const wh_real_t a = n1.x;
@@ -32,6 +37,7 @@ static void turn_onto_pads(wh_mat3_t *R) {
     const wh_real_t c = n1.z;
     const wh_real_t f = 1 / (1 + c);
     const wh_mat3_t turn = {{{1 - f * a * a, -f * a * b, -a}, {-f * a * b, 1 - f * b * b, -b}, {a, b, c}}};
+    /*@ loop assigns column, *R; loop variant 3 - column; */
     for (size_t column = 0; column < 3; ++column) {
         const wh_vec3_t axis = wh_mat3_column(R, column);
         const wh_vec3_t turned = wh_mat3_transform(&turn, &axis);
@@ -42,6 +48,10 @@ static void turn_onto_pads(wh_mat3_t *R) {
 }
 
 /* Before the wafer is taken: a seated wafer would no longer show what made it ready. */
+/*@ requires wh_table_memory(table) && wh_list_ready(list, 1) && wh_list_apart(list, table);
+    requires wh_is_gripper(table, g) && wh_is_wafer(table, w) && \valid_read(then);
+    assigns table->counters, list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+    ensures wh_list_grown{Pre, Post}(list, 1); */
 static void report(wh_grasp_t *table, wh_event_list_t *list, size_t g, int32_t w, const wh_pose_t *then) {
     const wh_wafer_t *wafer = &table->storage.wafers[w];
     const bool handed_over = wafer->released_by != WH_NONE;
@@ -56,20 +66,49 @@ static void report(wh_grasp_t *table, wh_event_list_t *list, size_t g, int32_t w
     }
 }
 
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && wh_is_wafer(table, w);
+    requires wh_holder(table, w) == WH_NONE && wh_held(table, g) == WH_NONE;
+    assigns table->storage.wafers[w].holder, table->storage.grippers[g].wafer;
+    ensures wh_took{Pre, Post}(table, g, w);
+    ensures wh_other_holders{Pre, Post}(table, w);
+    ensures wh_other_held{Pre, Post}(table, g);
+    ensures wh_same_releases{Pre, Post}(table);
+    ensures wh_same_watched{Pre, Post}(table); */
+static void pair(wh_grasp_t *table, size_t g, int32_t w) {
+    table->storage.wafers[w].holder = (int32_t)g;
+    table->storage.grippers[g].wafer = w;
+}
+
 /* The rotation is brought back to orthonormal, so that poses which are so only to WH_ROTATION_TOLERANCE do not add up over
  * many picks. */
-void wh_grasp_take(wh_grasp_t *table, size_t g, int32_t w, const wh_pose_t *then, wh_event_list_t *list) {
-    wh_gripper_t *gripper = &table->storage.grippers[g];
-    wh_wafer_t *wafer = &table->storage.wafers[w];
-    wh_pose_t *gripper_from_wafer = &gripper->gripper_from_wafer;
-    report(table, list, g, w, then);
-    wafer->holder = (int32_t)g;
-    gripper->wafer = w;
-    wh_pose_relative_to(then, &wafer->base_from_wafer, gripper_from_wafer);
+/*@ requires \valid(gripper_from_wafer) && \valid_read(then) && \valid_read(base_from_wafer);
+    requires \separated(gripper_from_wafer, then) && \separated(gripper_from_wafer, base_from_wafer);
+    assigns *gripper_from_wafer; */
+static void grip(wh_pose_t *gripper_from_wafer, const wh_pose_t *then, const wh_pose_t *base_from_wafer,
+                 bool seat) {
+    wh_pose_relative_to(then, base_from_wafer, gripper_from_wafer);
     wh_mat3_orthonormalise(&gripper_from_wafer->R);
-    if (table->config.seat) {
+    if (seat) {
         turn_onto_pads(&gripper_from_wafer->R);
         wh_mat3_orthonormalise(&gripper_from_wafer->R);
         gripper_from_wafer->r.z = 0;
     }
+}
+
+void wh_grasp_take(wh_grasp_t *table, size_t g, int32_t w, const wh_pose_t *then, wh_event_list_t *list) {
+    report(table, list, g, w, then);
+    /*@ assert wh_same_size{Pre, Here}(table); */
+    /*@ assert wh_same_holders{Pre, Here}(table); */
+    /*@ assert wh_same_held{Pre, Here}(table); */
+    /*@ assert wh_same_releases{Pre, Here}(table); */
+    /*@ assert wh_same_watched{Pre, Here}(table); */
+    /*@ assert wh_other_poses{Pre, Here}(table, WH_NONE); */
+    /*@ assert wh_other_grips{Pre, Here}(table, WH_NONE); */
+    pair(table, g, w);
+    /*@ assert wh_other_holders{Pre, Here}(table, w); */
+    /*@ assert wh_other_held{Pre, Here}(table, g); */
+    /*@ assert wh_same_releases{Pre, Here}(table); */
+    /*@ assert wh_same_watched{Pre, Here}(table); */
+    grip(&table->storage.grippers[g].gripper_from_wafer, then, &table->storage.wafers[w].base_from_wafer,
+         table->config.seat);
 }

@@ -9,6 +9,8 @@ typedef struct {
 } candidate_t;
 
 /* Earliest instant, then smallest |dr_proj_z|; of equal ones the first, which has the lowest index. */
+/*@ requires \valid(best) && \valid_read(other); assigns *best; ensures best->wafer == \old(best->wafer) || best->wafer == \old(other->wafer);
+    ensures \old(best->wafer) == WH_NONE ==> best->wafer == \old(other->wafer); */
 static void keep_better(candidate_t *best, const candidate_t *other) {
     if (best->wafer == WH_NONE || other->t < best->t ||
         (other->t == best->t && other->distance < best->distance)) {
@@ -16,8 +18,16 @@ static void keep_better(candidate_t *best, const candidate_t *other) {
     }
 }
 
+/*@ requires wh_table_memory(table) && wh_sweep_memory(sweep);
+    assigns \nothing;
+    ensures \result.wafer == WH_NONE ||
+            wh_is_wafer(table, \result.wafer) && wh_holder(table, \result.wafer) == WH_NONE; */
 static candidate_t find_ready(const wh_grasp_t *table, const wh_sweep_t *sweep) {
     candidate_t best = {.wafer = WH_NONE};
+    /*@ loop invariant 0 <= w <= table->storage.wafer_count;
+        loop invariant best.wafer == WH_NONE || 0 <= best.wafer < w && wh_holder(table, best.wafer) == WH_NONE;
+        loop assigns w, best;
+        loop variant table->storage.wafer_count - w; */
     for (size_t w = 0; w < table->storage.wafer_count; ++w) {
         const wh_wafer_t *wafer = &table->storage.wafers[w];
         candidate_t here = {.wafer = (int32_t)w};
