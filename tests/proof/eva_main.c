@@ -157,13 +157,15 @@ static void call_restore(wh_grasp_t *table) {
     for (size_t g = 0; g < GRIPPERS; ++g) {
         grippers[g] = any_gripper();
     }
-    (void)wh_grasp_restore(any_bool() ? table : NULL, word, any_bool() ? wafers : NULL, any_bool() ? grippers : NULL);
+    (void)wh_grasp_restore(any_bool() ? table : NULL, word, any_bool() ? wafers : NULL,
+                           any_bool() ? grippers : NULL);
 }
 
 static void call_questions(const wh_grasp_t *table) {
     wh_pose_t pose;
     int32_t index;
-    (void)wh_grasp_wafer(any_bool() ? table : NULL, size, any_bool() ? &pose : NULL, any_bool() ? &index : NULL);
+    (void)wh_grasp_wafer(any_bool() ? table : NULL, size, any_bool() ? &pose : NULL,
+                         any_bool() ? &index : NULL);
     (void)wh_grasp_held(any_bool() ? table : NULL, size, any_bool() ? &index : NULL);
     (void)wh_grasp_hash(table);
 }
@@ -191,10 +193,14 @@ static void use(wh_grasp_t *table, size_t gripper_count) {
 static void call_refused_init(wh_wafer_t wafers[], wh_gripper_t grippers[]) {
     wh_grasp_t table;
     const wh_grasp_config_t config = any_config();
-    const wh_grasp_storage_t storage = {any_bool() ? wafers : NULL,   any_bool() ? WAFERS : (size_t)INT32_MAX + 1,
-                                        any_bool() ? grippers : NULL, any_bool() ? GRIPPERS : SIZE_MAX,
-                                        NULL,                         size};
-    (void)wh_grasp_init(any_bool() ? &table : NULL, any_bool() ? &config : NULL, any_bool() ? &storage : NULL);
+    const wh_grasp_storage_t storage = {any_bool() ? wafers : NULL,
+                                        any_bool() ? WAFERS : (size_t)INT32_MAX + 1,
+                                        any_bool() ? grippers : NULL,
+                                        any_bool() ? GRIPPERS : SIZE_MAX,
+                                        NULL,
+                                        size};
+    (void)wh_grasp_init(any_bool() ? &table : NULL, any_bool() ? &config : NULL,
+                        any_bool() ? &storage : NULL);
 }
 
 static void call_empty(void) {
