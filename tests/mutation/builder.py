@@ -1,5 +1,6 @@
 """Compiles mutants and links them with the rest of the library; the tests are built already."""
 
+import filecmp
 import glob
 import hashlib
 import os
@@ -66,6 +67,9 @@ class Builder:
         objects = [replaced.get(source) or self.object_of(source, self.originals) for source in self.sources]
         return run([*self.link_command, "-o", os.path.join(folder, LIBRARY), *objects])
 
+    def is_original(self, path, target):
+        return filecmp.cmp(self.object_of(path, self.originals), target, shallow=False)
+
     def build(self, source, text, folder):
         """The hash of what the mutated file compiles to, or None; then its objects are in the folder."""
         name = os.path.join(folder, source.path if source.is_header else os.path.basename(source.path))
@@ -82,11 +86,13 @@ class Builder:
 
     def finish(self, source, folder):
         """Links what build() has compiled; of a header everything that includes it is compiled first. False: it
-        does not compile or link there."""
+        does not compile or link there, or all is the same, as no file uses the function."""
         replaced = {source.path: os.path.join(folder, "mutant.o")}
         if source.is_header:
             replaced = {path: self.object_of(path, folder) for path in self.sources}
             options = ["-I" + os.path.join(folder, "lib")]
             if not all(self.compile(path, target, options) for path, target in replaced.items()):
+                return False
+            if all(self.is_original(path, target) for path, target in replaced.items()):
                 return False
         return self.link(folder, replaced)

@@ -5,7 +5,7 @@ import shutil
 import tempfile
 from random import Random
 
-from judge import DOES_NOT_COMPILE
+from judge import UNFIT
 from mutants import Source
 
 HEADER_SHARE = 3  # a header's mutants take the whole library to compile: a third of them is sampled
@@ -64,7 +64,7 @@ class Campaign:
         if self.builder.finish(self.source, folder):
             verdict = self.judge.verdict(self.source.path, folder, entry.get("killer"))
         else:
-            verdict = {"killer": DOES_NOT_COMPILE, "tests": None}
+            verdict = {"killer": UNFIT, "tests": None}
         shutil.rmtree(folder)
         self.results.put(self.key(mutant), verdict)
         return verdict["killer"]
@@ -86,7 +86,7 @@ class Campaign:
 
     def judge_all(self, mutants, excused):
         for mutant, killer in zip(mutants, self.pool.map(self.killer_of, mutants)):
-            if killer == DOES_NOT_COMPILE:
+            if killer == UNFIT:
                 self.unfit += 1
             elif killer is not None:
                 self.killed += 1

@@ -8,7 +8,7 @@ import subprocess
 import threading
 
 GIGABYTE = 1 << 30
-DOES_NOT_COMPILE = "compiler"  # a header's mutant alone does, but not where it is included
+UNFIT = "nobody"  # a header's mutant that alone compiles and differs, but not where the library includes it
 
 
 class Test:
@@ -53,7 +53,7 @@ class Judge:
 
     def current(self, path, verdict):
         """Does a verdict from an earlier run still hold with these tests?"""
-        if verdict["killer"] == DOES_NOT_COMPILE:
+        if verdict["killer"] == UNFIT:
             return True
         if verdict["killer"] is None:
             return verdict["tests"] == digest_of(self.relevant(path))

@@ -34,6 +34,7 @@ static int set_up(void **state) {
     station.chuck = WH_NONE;
     wafers[0].base_from_wafer = wh_test_at(700, 0, 900);
     wafers[1].base_from_wafer = wh_test_at(-700, 0, 900);
+    memset(&simulator, 0x5a, sizeof simulator);
     assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_OK);
     memset(&command, 0, sizeof command);
     command.gripper_count = GRIPPERS;
