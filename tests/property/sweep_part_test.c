@@ -130,11 +130,15 @@ static void draw_wafers(cell_t *cell) {
     wh_grasp_config_t config = wh_grasp_config_default();
     config.check = WH_CHECK_SWEPT;
     const bool sideways = wh_test_below(2);
+    const double begin = wh_test_below(2) ? -90 : -10;
     cell_begin(cell, &config);
-    cell_move(cell, 0, sideways ? -90 : 0, 5000, 0, OPEN);
+    cell_move(cell, 0, sideways ? begin : 0, 5000, 0, OPEN);
     for (size_t w = 0; w < CELL_WAFERS; ++w) {
         if (sideways) {
-            cell_place(cell, w, 20 * (int)wh_test_below(3), 5000, wh_test_uniform(-0.45, 0.45));
+            const double z = wh_test_uniform(-0.45, 0.45);
+            const wh_mat3_t tilt = wh_test_random_turn(0.1);
+            const wh_pose_t leaning = wh_test_pose(tilt, 10 * (int)wh_test_below(3), 5000, z);
+            assert_int_equal(wh_grasp_place(&cell->table, w, &leaning), WH_OK);
         } else {
             const double z = 1 + (int)wh_test_below(5) + (wh_test_below(2) ? 0 : wh_test_uniform(-0.1, 0.1));
             cell_place(cell, w, wh_test_uniform(-20, 20), wh_test_below(4) ? 5000 : 5300, z);
@@ -160,7 +164,9 @@ static double instant(const cell_t *cell, int w, double *distance) {
     if (between) {
         wh_sweep_pose_at(&sweep, t, &then);
     }
-    *distance = fabs((double)(wafer->r.z - then.r.z));
+    const wh_vec3_t dr = wh_vec3_subtract(&wafer->r, &then.r);
+    const wh_vec3_t n1 = wh_mat3_column(&wafer->R, 2);
+    *distance = fabs((double)wh_vec3_dot(&dr, &n1));
     return between ? (double)t : wh_proximity_ready(wafer, &then, tolerance) ? 2 : 3;
 }
 

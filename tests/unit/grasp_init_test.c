@@ -167,14 +167,14 @@ static void placing_is_forgotten_by_whom_it_concerns(void **state) {
 }
 
 /* What stands beside the arrays is not looked at: a free wafer there is neither taken nor let go of. */
-static void neighbours_of_the_arrays_are_left_alone(void **state) {
-    (void)state;
+static void play_beside_neighbours(wh_check_t check) {
     wh_wafer_t wafers[3];
     wh_gripper_t grippers[3];
     wh_event_t events[WH_EVENTS_PER_GRIPPER];
     wh_event_list_t list = {events, WH_EVENTS_PER_GRIPPER, 0};
     wh_grasp_t table;
-    const wh_grasp_config_t config = wh_grasp_config_default();
+    wh_grasp_config_t config = wh_grasp_config_default();
+    config.check = check;
     memset(grippers, 0, sizeof grippers);
     for (int i = 0; i < 3; ++i) {
         wafers[i].base_from_wafer = wh_test_at(1000 * i, 0, 0);
@@ -184,14 +184,20 @@ static void neighbours_of_the_arrays_are_left_alone(void **state) {
     const wh_grasp_storage_t storage = {wafers + 1, 1, grippers + 1, 1, NULL, 0};
     assert_int_equal(wh_grasp_init(&table, &config, &storage), WH_OK);
     static const double places[] = {0, 2000, 1000};
-    for (int i = 0; i < 6; ++i) {
-        const wh_gripper_input_t input = {wh_test_at(places[i % 3], 0, -0.25), i < 3 ? CLOSED : OPEN};
+    for (int i = 0; i < 12; ++i) {
+        const wh_gripper_input_t input = {wh_test_at(places[i / 4], 0, -0.25), i % 4 < 2 ? CLOSED : OPEN};
         assert_int_equal(wh_grasp_step(&table, &input, &list), WH_OK);
-        assert_int_equal(list.count, i == 5);
+        assert_int_equal(list.count, i == 10);
     }
     assert_int_equal(wafers[0].holder, WH_NONE);
     assert_int_equal(wafers[2].holder, WH_NONE);
     assert_memory_equal(&grippers[2], &beside, sizeof beside);
+}
+
+static void neighbours_of_the_arrays_are_left_alone(void **state) {
+    (void)state;
+    play_beside_neighbours(WH_CHECK_SAMPLED);
+    play_beside_neighbours(WH_CHECK_SWEPT);
 }
 
 static void indices_far_out_are_refused(void **state) {

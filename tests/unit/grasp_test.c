@@ -252,15 +252,27 @@ static void a_seated_wafer_lies_on_the_pads(void **state) {
 
 /* A gripper's rotation worn to the limit carries a wafer to a pose that the library still accepts, whatever
  * the direction in which the errors meet. */
+/* The largest entry of |R^T R - I|. */
+static double wear(const wh_mat3_t *R) {
+    const wh_mat3_t square = wh_mat3_multiply_back(R, R);
+    double most = 0;
+    for (int i = 0; i < 9; ++i) {
+        most = fmax(most, fabs((double)square.m[i / 3][i % 3] - (i % 4 == 0)));
+    }
+    return most;
+}
+
 static void worn_rotations_do_not_add_up(void **state) {
     (void)state;
+    wh_grasp_config_t config = wh_grasp_config_default();
     wh_mat3_t worn = wh_mat3_identity();
     for (int i = 0; i < 9; ++i) {
         worn.m[i / 3][i % 3] += WH_REAL(0.49) * WH_ROTATION_TOLERANCE;
     }
     for (int degree = 0; degree < 360; ++degree) {
         cell_t cell;
-        cell_begin_default(&cell);
+        config.seat = degree % 2 == 0;
+        cell_begin(&cell, &config);
         const wh_pose_t pose = {wh_test_rotation(0, 0, 1, degree * WH_TEST_PI / 180), {0, 0, 0}};
         assert_int_equal(wh_grasp_place(&cell.table, 0, &pose), WH_OK);
         cell.input[0].base_from_gripper.R = worn;
@@ -268,6 +280,10 @@ static void worn_rotations_do_not_add_up(void **state) {
         cell.input[0].valve = OPEN;
         cell_step(&cell);
         cell_expect_held(&cell, 0, 0);
+        /* One step of mending squares the wear; a seated wafer has had two. */
+        const double square = pow(6 * (double)WH_ROTATION_TOLERANCE, 2);
+        assert_near(wear(&cell.gripper[0].gripper_from_wafer.R), 0,
+                    (config.seat ? 0 : square) + 64 * WH_TEST_ROUNDING);
         cell_step(&cell);
         assert_int_equal(wh_pose_validate(&cell.wafer[0].base_from_wafer), WH_OK);
         assert_near(wh_test_difference_R(&cell.wafer[0].base_from_wafer, &pose), 0,
