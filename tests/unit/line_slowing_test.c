@@ -67,10 +67,11 @@ static wh_robot_t random_robot(void) {
     wh_robot_t robot;
     wh_robot_default(&robot);
     robot.travel[WH_AXIS_R].min = 0;
-    robot.limits[WH_AXIS_R] = random_limits(1000);
-    robot.limits[WH_AXIS_Z] = random_limits(400);
-    robot.limits[WH_AXIS_THETA] = random_limits(4);
-    robot.limits[WH_AXIS_YAW] = random_limits(6);
+    const double pace = wh_test_decades(1e-5, 1);
+    robot.limits[WH_AXIS_R] = random_limits(1000 * pace);
+    robot.limits[WH_AXIS_Z] = random_limits(400 * pace);
+    robot.limits[WH_AXIS_THETA] = random_limits(4 * pace);
+    robot.limits[WH_AXIS_YAW] = random_limits(6 * pace);
     return robot;
 }
 
