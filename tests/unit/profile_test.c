@@ -155,6 +155,10 @@ static void states_are_the_sum_of_the_phases(void **state) {
                 assert_near(m.position, (double)x[0], 4 * d * ROUNDING + v * t_round);
                 assert_near(m.speed, (double)x[1], 4 * v * ROUNDING + a * t_round);
                 assert_near(m.acceleration, (double)x[2], 4 * a * ROUNDING + (double)limits.jerk * t_round);
+                if (half == 0 && lengths[phase] > 1e-3L * o.duration) {
+                    const double jerk = (double)sign * signs[phase] * (double)wh_profile_peak_jerk(&profile);
+                    assert_near(m.jerk, jerk, 0);
+                }
             }
         }
         assert_near(d, (double)(x[0] * sign), d * 1e-12);
@@ -342,6 +346,9 @@ static void stretching_refuses_less_time(void **state) {
 static void no_distance_takes_no_time(void **state) {
     (void)state;
     const wh_limits_t limits = {2, 1, 1};
+    wh_profile_t least;
+    assert_int_equal(wh_profile_plan(&least, WH_PROFILE_TINY, &limits), WH_OK);
+    assert_true(wh_profile_duration(&least) > 0);
     static const wh_real_t none[] = {0, WH_PROFILE_TINY / 2, -WH_PROFILE_TINY / 2};
     for (size_t i = 0; i < 3; ++i) {
         wh_profile_t p;
