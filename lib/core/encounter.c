@@ -27,6 +27,7 @@ bool wh_reach_measure(const wh_grasp_config_t *config, const wh_pose_t *base_fro
     const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &base_from_gripper->r);
     const wh_vec3_t p = wh_mat3_transform_back(&base_from_wafer->R, &dr);
     reach->z = wh_real_abs(p.z);
+    reach->xy = 0;
     if (reach->z < config->near_projz) {
         reach->xy = wh_real_sqrt(p.x * p.x + p.y * p.y);
         if (reach->xy < config->near_projxy) {
