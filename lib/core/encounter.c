@@ -12,12 +12,15 @@
 static void report(const wh_watch_t *watch, wh_encounter_t *encounter, wh_event_kind_t kind) {
     if (watch->list) {
         wh_event_t *event = wh_event_append(watch->table, watch->list, kind);
+        /*@ assert \separated(event, watch, watch->table, watch->list, encounter); */
+        /*@ assert wh_list_grown{Pre, Here}(watch->list, 1); */
         event->wafer = encounter->wafer;
         event->gripper = watch->index;
         event->other = encounter->holder;
         event->measured = encounter->measured;
         event->measured_slice = encounter->slice;
     }
+    /*@ assert wh_list_grown{Pre, Here}(watch->list, 1); */
     encounter->wafer = WH_NONE;
     encounter->holder = WH_NONE;
 }
@@ -38,7 +41,9 @@ bool wh_reach_measure(const wh_grasp_config_t *config, const wh_pose_t *base_fro
 }
 
 /*@ requires wh_watch_memory(watch) && \valid_read(wafer) && \valid(reach);
-    assigns *reach; */
+    requires \separated(reach, watch, watch->table);
+    assigns *reach;
+    ensures reach->t == 1; */
 static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_reach_t *reach) {
     reach->t = 1;
     return wh_reach_measure(&watch->table->config, &wafer->base_from_wafer, watch->base_from_gripper, reach);
@@ -46,7 +51,9 @@ static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_rea
 
 /* The closest that the gripper came to the wafer in this slice; false when it did not come near. */
 /*@ requires wh_watch_memory(watch) && \valid_read(wafer) && \valid(closest);
-    assigns *closest; */
+    requires \separated(closest, watch, watch->table);
+    assigns *closest;
+    ensures watch->sweep == \null ==> closest->t == 1; */
 static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_reach_t *closest) {
     if (watch->sweep && wafer->released_by == WH_NONE) {
         return wh_reach_swept(watch, &wafer->base_from_wafer, closest);
@@ -70,7 +77,7 @@ static bool is_closer(const wh_tolerance_t *tolerance, const wh_reach_t *reach,
 }
 
 /*@ requires wh_watch_memory(watch) && \valid(encounter) && wh_is_wafer(watch->table, w) && (watch->sweep != \null || t >= 1);
-    requires \separated(encounter, watch, watch->table);
+    requires \separated(encounter, watch, watch->table, watch->list);
     assigns *encounter;
     ensures encounter->wafer == w; */
 static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, int32_t w, wh_real_t t) {
@@ -78,6 +85,7 @@ static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, 
     encounter->wafer = w;
     encounter->holder = wafer->holder;
     encounter->slice = watch->table->slice;
+    /*@ assert wh_watch_memory(watch); */
     if (t < 1) {
         wh_measure_swept(watch, &wafer->base_from_wafer, t, &encounter->measured);
     } else {
@@ -101,6 +109,7 @@ static void follow_approach(const wh_watch_t *watch) {
         is_closer(&watch->table->config.tolerance, &reach, &approach->measured)) {
         begin_encounter(watch, approach, approach->wafer, reach.t);
     }
+    /*@ assert wh_watch_memory(watch) && wh_list_ready(watch->list, 1); */
     if (!is_near_now(watch, wafer, &reach)) {
         ++watch->table->counters.near_misses;
         report(watch, approach, WH_EVENT_NEAR_MISS);
@@ -117,6 +126,7 @@ static void begin_approach(const wh_watch_t *watch) {
     wh_real_t least = 0;
     wh_real_t when = 0;
     /*@ loop invariant 0 <= w <= storage->wafer_count && (nearest == WH_NONE || 0 <= nearest < w);
+        loop invariant nearest == WH_NONE || watch->sweep != \null || when == 1;
         loop assigns w, nearest, least, when;
         loop variant storage->wafer_count - w; */
     for (size_t w = 0; w < storage->wafer_count; ++w) {
