@@ -28,7 +28,8 @@ static wh_status_t validate_input(const wh_gripper_input_t *input) {
 /*@ requires wh_table_memory(table) && wh_list_ready(list, 1) && wh_list_apart(list, table);
     requires status != WH_OK && gripper < table->storage.gripper_count;
     assigns table->counters.refused, list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
-    ensures \result == status; */
+    ensures \result == status;
+    ensures wh_same_size{Pre, Post}(table) && wh_same_arrays{Pre, Post}(table); */
 static wh_status_t refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripper, wh_status_t status) {
     ++table->counters.refused;
     if (list) {
@@ -38,6 +39,7 @@ static wh_status_t refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripp
         event->gripper = (int32_t)gripper;
         event->status = status;
     }
+    /*@ assert wh_same_size{Pre, Here}(table) && wh_same_arrays{Pre, Here}(table); */
     return status;
 }
 
@@ -47,7 +49,8 @@ static wh_status_t refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripp
              wh_inputs_apart_list(inputs, table, list);
     assigns table->counters.refused, list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
     ensures \result == WH_OK ==> list == \null || list->count == \old(list->count);
-    ensures \result == WH_OK ==> wh_valves_good(inputs, table->storage.gripper_count); */
+    ensures \result == WH_OK ==> wh_valves_good(inputs, table->storage.gripper_count);
+    ensures wh_same_size{Pre, Post}(table) && wh_same_arrays{Pre, Post}(table); */
 static wh_status_t validate_inputs(wh_grasp_t *table, const wh_gripper_input_t *inputs,
                                    wh_event_list_t *list) {
     /*@ loop invariant 0 <= g <= table->storage.gripper_count && wh_valves_good(inputs, g);
@@ -358,12 +361,17 @@ wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, w
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    /*@ assert wh_same_size{Pre, Here}(table) && wh_same_arrays{Pre, Here}(table); */
+    /*@ assert wh_table_memory(table) && wh_consistent(table); */
     wh_status_t status = validate_call(table, inputs, list);
     if (status != WH_OK) {
         count_refusal(table);
+        /*@ assert wh_same_size{Pre, Here}(table) && wh_same_arrays{Pre, Here}(table); */
         return status;
     }
     status = validate_inputs(table, inputs, list);
+    /*@ assert wh_same_size{Pre, Here}(table) && wh_same_arrays{Pre, Here}(table); */
+    /*@ assert wh_table_memory(table) && wh_consistent(table); */
     if (status != WH_OK) {
         return status;
     }
