@@ -169,7 +169,7 @@ static void put_unmeasured(writer_t *writer, json_t *object) {
 
 /* What only this kind of event has. */
 static void put_particulars(writer_t *writer, json_t *object, const wh_event_t *event) {
-    switch (event->kind) {
+    switch ((int)event->kind) {
     case WH_EVENT_HANDED_OVER:
         put(writer, object, "from", text_or_null(wh_record_gripper_name(writer->record, event->other)));
         break;
@@ -186,9 +186,15 @@ static void put_particulars(writer_t *writer, json_t *object, const wh_event_t *
         put(writer, object, "status", json_integer((json_int_t)event->status));
         put(writer, object, "message", json_string(wh_status_text(event->status)));
         break;
-    case WH_EVENT_PICKED:
-    case WH_EVENT_RELEASED:
-    case WH_EVENT_NEAR_MISS:
+    case WH_EVENT_PLACED_OFF_CENTRE:
+    case WH_EVENT_PLACED_ASKEW:
+    case WH_EVENT_SETTLED:
+    case WH_EVENT_SLIPPED:
+    case WH_EVENT_VACUUM_LOST:
+        put(writer, object, "value", real((double)event->value));
+        put(writer, object, "limit", real((double)event->limit));
+        break;
+    default:
         break;
     }
 }

@@ -138,10 +138,16 @@ void wh_report_measured(const wh_report_t *report, wh_grid_t *grid, size_t first
 }
 
 bool wh_report_is_miss(wh_event_kind_t kind) {
-    return kind == WH_EVENT_NEAR_MISS || wh_report_is_complaint(kind);
+    static const uint32_t others = 1U << WH_EVENT_NEAR_MISS | 1U << WH_EVENT_PLACED_OFF_CENTRE |
+                                   1U << WH_EVENT_PLACED_ASKEW | 1U << WH_EVENT_VACUUM_LOST |
+                                   1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
+    return (others >> (unsigned)kind & 1U) != 0 || wh_report_is_complaint(kind);
 }
 
 bool wh_report_is_complaint(wh_event_kind_t kind) {
-    return kind == WH_EVENT_CONTESTED || kind == WH_EVENT_BAD_INPUT ||
-           kind == WH_EVENT_RELEASED_UNSUPPORTED || kind == WH_EVENT_SLOT_OCCUPIED;
+    static const uint32_t complaints = 1U << WH_EVENT_CONTESTED | 1U << WH_EVENT_BAD_INPUT |
+                                       1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED |
+                                       1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED |
+                                       1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED;
+    return (complaints >> (unsigned)kind & 1U) != 0;
 }

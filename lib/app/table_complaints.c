@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "app/table_internal.h"
+#include "motion/trig.h"
 
 enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_REPORT_MEASURED_COLUMNS };
 
@@ -97,7 +98,7 @@ static void say_failed(const wh_report_t *report, wh_grid_t *grid, double at, co
 }
 
 static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const wh_event_t *event) {
-    switch (event->kind) {
+    switch ((int)event->kind) {
     case WH_EVENT_CONTESTED:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "ready, but %s holds it",
                      wh_report_gripper(report, event->other));
@@ -117,9 +118,16 @@ static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const
             say_failed(report, grid, at, &event->measured);
         }
         break;
-    case WH_EVENT_PICKED:
-    case WH_EVENT_RELEASED:
-    case WH_EVENT_HANDED_OVER:
+    case WH_EVENT_PLACED_OFF_CENTRE:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%.3f mm beside the centre (limit %g mm)",
+                     (double)event->value, (double)event->limit);
+        break;
+    case WH_EVENT_PLACED_ASKEW:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "tilted by %.3f%s (limit %g%s)", wh_deg_from_rad(event->value),
+                     wh_style_degree(report->style), wh_deg_from_rad(event->limit),
+                     wh_style_degree(report->style));
+        break;
+    default:
         break;
     }
 }

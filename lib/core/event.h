@@ -29,8 +29,31 @@ typedef enum {
      * above what is below (negative: below base's z = 0 and above no slot). */
     WH_EVENT_RELEASED_UNSUPPORTED,
     /* From the cell, beside the release and with its values: wafer `other` lies in the same slot. */
-    WH_EVENT_SLOT_OCCUPIED
+    WH_EVENT_SLOT_OCCUPIED,
+    /* From the cell, beside the release and with its values: it lies in a slot or on a chuck, but `value` mm beside its
+     * centre, which is above `limit`. */
+    WH_EVENT_PLACED_OFF_CENTRE,
+    /* The same, but tilted against it by `value` rad, which is above `limit`. */
+    WH_EVENT_PLACED_ASKEW,
+    /* From the cell: the wafer was let go above its support and came to lie on it, its centre `value` mm lower. */
+    WH_EVENT_SETTLED,
+    /* From the collision check: parts[0] and parts[1] touch each other where they must not; `at` is the place. */
+    WH_EVENT_HIT,
+    /* The same, where the check could not decide whether they do. */
+    WH_EVENT_UNDECIDED,
+    /* From the collision check: the gap of a watched pair, `value` mm, fell below the `limit` that the layout sets. */
+    WH_EVENT_TOO_CLOSE,
+    /* The gripper's motion asks for more than its pads carry, mm/s^2: `value` against `limit`. */
+    WH_EVENT_SLIPPED,
+    /* The vacuum under a held wafer fell below the sensor's threshold: `value` of the full one, 0 to 1. */
+    WH_EVENT_VACUUM_LOST,
+    /* A fault on purpose begins or ends to act; parts[0] is its index. */
+    WH_EVENT_FAULT_ARMED,
+    WH_EVENT_FAULT_CLEARED
 } wh_event_kind_t;
+
+/* How many kinds there are. */
+#define WH_EVENT_KINDS 18
 
 typedef struct {
     wh_event_kind_t kind;
@@ -41,6 +64,9 @@ typedef struct {
     int32_t other;           /* a second gripper or wafer where the kind names one, else WH_NONE */
     wh_status_t status;      /* WH_OK but for WH_EVENT_BAD_INPUT */
     wh_real_t height;        /* mm; 0 where the kind has none */
+    wh_real_t value, limit;  /* what was found and what it was held against; 0 where the kind has none */
+    int32_t parts[2];        /* parts of the collision world, or a fault's index; else WH_NONE */
+    wh_vec3_t at;            /* a contact's place in base, mm; 0 where the kind has none */
     wh_proximity_t measured; /* all zero where the kind has none */
 } wh_event_t;
 

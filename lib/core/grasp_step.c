@@ -3,7 +3,8 @@
 #include "core/proximity_internal.h"
 
 wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind) {
-    static const wh_event_t blank = {.wafer = WH_NONE, .gripper = WH_NONE, .other = WH_NONE};
+    static const wh_event_t blank = {
+        .wafer = WH_NONE, .gripper = WH_NONE, .other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
     WH_ASSERT(list->count < list->capacity);
     wh_event_t *event = &list->events[list->count++];
     *event = blank;

@@ -9,7 +9,7 @@
 #define HEADER (4 * 8)
 #define WAFER 100
 #define GRIPPER 376
-#define EVENT 108
+#define EVENT 156
 #define CHECK 8
 #define STATE_COUNTS (FINGERPRINT + HEADER + 4)
 #define STATE_FIXED (STATE_COUNTS + 3 * 4 + 2 * 8 + 4)

@@ -125,6 +125,10 @@ static void put_event(const wh_event_t *event, waferhand_event *out) {
     out->status = (int32_t)event->status;
     out->measured_slice = (int64_t)event->measured_slice;
     out->height = event->height;
+    out->value = event->value;
+    out->limit = event->limit;
+    memcpy(out->parts, event->parts, sizeof out->parts);
+    put_vec3(&event->at, out->at);
     put_measured(&event->measured, &out->measured);
 }
 
@@ -182,6 +186,10 @@ static void take_event(const waferhand_event *in, int64_t seq, const wh_toleranc
     out->other = in->other;
     out->status = (wh_status_t)in->status;
     out->height = in->height;
+    out->value = in->value;
+    out->limit = in->limit;
+    memcpy(out->parts, in->parts, sizeof out->parts);
+    out->at = take_vec3(in->at);
     take_measured(&in->measured, tolerance, &out->measured);
 }
 
@@ -200,13 +208,34 @@ static bool other_fits(const waferhand_event *event, const waferhand_state *mess
     return event->other == WH_NONE;
 }
 
+/* Whether wafer and gripper are what this kind has. The collision check and the faults may name none. */
+static bool names_fit(const waferhand_event *event, const waferhand_state *message) {
+    const bool wafer_fits = is_index(event->wafer, message->wafer_count);
+    const bool gripper_fits = is_index(event->gripper, message->gripper_count);
+    switch (event->kind) {
+    case WH_EVENT_BAD_INPUT:
+        return event->wafer == WH_NONE && gripper_fits;
+    case WH_EVENT_HIT:
+    case WH_EVENT_UNDECIDED:
+    case WH_EVENT_TOO_CLOSE:
+    case WH_EVENT_FAULT_ARMED:
+    case WH_EVENT_FAULT_CLEARED:
+        return (wafer_fits || event->wafer == WH_NONE) && (gripper_fits || event->gripper == WH_NONE);
+    default:
+        return wafer_fits && gripper_fits;
+    }
+}
+
+static bool parts_fit(const waferhand_event *event) {
+    return event->parts[0] >= WH_NONE && event->parts[0] < WH_LINK_PARTS && event->parts[1] >= WH_NONE &&
+           event->parts[1] < WH_LINK_PARTS;
+}
+
 /* Whether a step could have yielded it: who reads it takes its indices for good. */
 static bool event_fits(const waferhand_event *event, const waferhand_state *message) {
-    const bool wafer_fits = event->kind == WH_EVENT_BAD_INPUT ? event->wafer == WH_NONE
-                                                              : is_index(event->wafer, message->wafer_count);
-    return event->kind >= WH_EVENT_PICKED && event->kind <= WH_EVENT_SLOT_OCCUPIED && wafer_fits &&
-           is_index(event->gripper, message->gripper_count) && other_fits(event, message) &&
-           event->measured_slice >= 0 && event->measured_slice <= message->seq;
+    return event->kind >= 0 && event->kind < WH_EVENT_KINDS && names_fit(event, message) &&
+           other_fits(event, message) && parts_fit(event) && event->measured_slice >= 0 &&
+           event->measured_slice <= message->seq;
 }
 
 static bool counts_fit(const waferhand_state *message) {

@@ -23,7 +23,9 @@
 
 /* A layout for two processes has at most so many wafers, so that a state fits one datagram. */
 #define WH_LINK_WAFERS 256
-#define WH_LINK_EVENTS (WH_GRIPPERS * WH_EVENTS_PER_GRIPPER)
+#define WH_LINK_EVENTS WH_SLICE_EVENTS
+/* Parts of a collision world, with which an event's must do. */
+#define WH_LINK_PARTS (1 << 20)
 /* LCM sends what is longer in fragments, which get lost one by one. */
 #define WH_LINK_DATAGRAM 65499
 

@@ -10,7 +10,7 @@ typedef struct {
     wh_link_t link; /* first: &simulator->link is the call version of the interface */
     wh_grasp_t table;
     wh_cell_t cell;
-    wh_event_t events[WH_GRIPPERS * WH_EVENTS_PER_GRIPPER];
+    wh_event_t events[WH_SLICE_EVENTS];
     size_t event_count;
 } wh_simulator_t;
 

@@ -6,6 +6,10 @@
 #include "core/grasp.h"
 #include "motion/machine.h"
 
+/* At most so many events in one slice: those of the grasp table, then what the cell, the vacuum, the faults and the
+ * collision check have to say. What does not fit is not reported. */
+#define WH_SLICE_EVENTS 64
+
 /* What the machine does in slice `seq`. Entries beyond gripper_count and axis_count are not looked at. */
 typedef struct {
     int64_t utime; /* us of simulated time: seq times the slice's length */

@@ -189,10 +189,13 @@ static bool is_index(int32_t index, size_t count) {
 static void check_event(const wh_event_t *event, int64_t seq) {
     const size_t wafers = layout->wafer_count;
     const size_t grippers = layout->machine.gripper_count;
-    const bool refusal = event->kind == WH_EVENT_BAD_INPUT;
+    const bool of_parts = event->kind == WH_EVENT_HIT || event->kind == WH_EVENT_UNDECIDED ||
+                          event->kind == WH_EVENT_TOO_CLOSE || event->kind == WH_EVENT_FAULT_ARMED ||
+                          event->kind == WH_EVENT_FAULT_CLEARED;
+    const bool no_wafer = event->kind == WH_EVENT_BAD_INPUT || of_parts;
     REQUIRE(strcmp(wh_event_name(event->kind), "unknown") != 0);
-    REQUIRE(refusal ? event->wafer == WH_NONE : is_index(event->wafer, wafers));
-    REQUIRE(is_index(event->gripper, grippers));
+    REQUIRE((no_wafer && event->wafer == WH_NONE) || is_index(event->wafer, wafers));
+    REQUIRE((of_parts && event->gripper == WH_NONE) || is_index(event->gripper, grippers));
     REQUIRE(event->measured_slice <= (uint64_t)seq);
     if (event->kind == WH_EVENT_SLOT_OCCUPIED) {
         REQUIRE(is_index(event->other, wafers));
