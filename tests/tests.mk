@@ -8,9 +8,11 @@ CXX_TESTS := $(basename $(filter %.cpp,$(TEST_SOURCES)))
 # and are built in float too.
 PROGRAM_TESTS := $(basename $(shell grep -lE '^.include ("(link|script|app)/|<waferhand_)' $(TEST_SOURCES) /dev/null))
 TESTS := $(basename $(TEST_SOURCES))
+# Those of collision are linked with it, and there is no float build of it.
+COLLISION_TESTS := $(basename $(shell grep -lE '^.include "collision/' $(TEST_SOURCES) /dev/null))
 
 # Programs that end-to-end tests use: built with the tests, not run by themselves.
 TOOLS := $(basename $(wildcard tests/tools/*.c))
-LIBRARY_TESTS := $(filter-out $(PROGRAM_TESTS),$(filter tests/unit/% tests/firmware/%,$(TESTS)))
+LIBRARY_TESTS := $(filter-out $(PROGRAM_TESTS) $(COLLISION_TESTS),$(filter tests/unit/% tests/firmware/%,$(TESTS)))
 
 END_TO_END := $(shell awk 'FNR == 1 && /^.!/ { print FILENAME }' $(wildcard tests/end_to_end/*) /dev/null)

@@ -14,6 +14,8 @@ VERSION := $(shell sed -n 's/^.define WH_VERSION "\(.*\)"/\1/p' lib/core/config.
 # ---------------------------------------------------------------------------------------------- sources
 LIBRARY_PARTS := core motion cell sim
 LIBRARY_SOURCES := $(wildcard $(LIBRARY_PARTS:%=lib/%/*.c))
+# Over libccd and in double only: not for `make library`, which needs nothing but a C compiler.
+COLLISION_SOURCES := $(wildcard lib/collision/*.c)
 MODULE_SOURCES := $(wildcard lib/script/wh_module*.c)
 SCRIPT_SOURCES := $(filter-out $(MODULE_SOURCES),$(wildcard lib/script/*.c))
 PROGRAM_SOURCES := $(SCRIPT_SOURCES) $(MODULE_SOURCES) $(wildcard lib/link/*.c lib/app/*.c)
@@ -23,11 +25,12 @@ HEADERS := $(wildcard lib/*.h lib/*/*.h lib/*/*.def)
 include tests/tests.mk
 
 LIBRARY_OBJECTS := $(LIBRARY_SOURCES:%.c=$(B)/obj/%.o)
+COLLISION_OBJECTS := $(COLLISION_SOURCES:%.c=$(B)/obj/%.o)
 PROGRAM_OBJECTS := $(PROGRAM_SOURCES:%.c=$(B)/obj/%.o) $(B)/obj/embedded_lua.o
 MESSAGE_SOURCES := $(MESSAGES:%=$(B)/lcm/waferhand_%.c)
 MESSAGE_OBJECTS := $(MESSAGE_SOURCES:$(B)/%.c=$(B)/obj/%.o)
 MODULE_OBJECTS := $(MODULE_SOURCES:%.c=$(B)/pic/%.o)
-MODULE_SUPPORT := $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o) $(SCRIPT_SOURCES:%.c=$(B)/pic/%.o)
+MODULE_SUPPORT := $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o) $(COLLISION_SOURCES:%.c=$(B)/pic/%.o) $(SCRIPT_SOURCES:%.c=$(B)/pic/%.o)
 
 # ------------------------------------------------------------------------------------------------ flags
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wundef -Wcast-align -Wcast-qual -Wformat=2 -Wvla -Wswitch-enum \
@@ -43,6 +46,7 @@ SAME_BITS := -ffp-contract=off -fno-tree-slp-vectorize
 BASE := -Ilib $(SAME_BITS) -fno-math-errno -ffile-prefix-map=$(CURDIR)=. $(WARNINGS) \
         $(if $(WERROR),-Werror) $(if $(FLOAT),-DWH_FLOAT)
 LIBRARY_FLAGS := -std=c99 $(BASE) $(C_WARNINGS) $(NUMBER_WARNINGS) -DWH_BUILDING_LIBRARY
+COLLISION_FLAGS = $(LIBRARY_FLAGS) $(call package_flags,ccd)
 HOST_FLAGS := -std=c99 -D_GNU_SOURCE $(BASE) $(C_WARNINGS)
 
 # What lcm-gen writes is not clean under our warnings; nor are its headers, and those of other packages, ours to
@@ -59,25 +63,28 @@ CXX_TEST_FLAGS := -std=c++17 $(BASE) -Itests $(call package_flags,eigen3)
 LUA_ARCHIVE = $(firstword $(filter /%,$(foreach name,liblua5.4.a liblua-5.4.a liblua.a,\
                 $(shell $(CC) -print-file-name=$(name)))))
 # LCM's pkg-config file asks for GLib's headers, which its own do not need: hence -llcm.
+# Before libwaferhand.a, which it uses.
+COLLISION_LIBS = $(B)/libwaferhand_collision.a -Wl,--as-needed $(shell $(PKG_CONFIG) --libs-only-l ccd) -Wl,--no-as-needed
 PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson smartcols libedit) -llcm -ldl -lm
 
 # Written when its text changes: what depends on it is rebuilt when a flag or the set of files changes.
-STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(LIBRARY_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS) \
+STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(COLLISION_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS) \
          $(CXX_TEST_FLAGS) $(MESSAGE_FLAGS)
 $(B)/flags: TEXT = $(STAMP)
-$(B)/sources: TEXT = $(LIBRARY_SOURCES) $(PROGRAM_SOURCES) $(LUA_SOURCES)
+$(B)/sources: TEXT = $(LIBRARY_SOURCES) $(COLLISION_SOURCES) $(PROGRAM_SOURCES) $(LUA_SOURCES)
 $(B)/messages: TEXT = $(MESSAGES)
 $(B)/flags $(B)/sources $(B)/messages: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' '$(TEXT)' | cmp -s - $@ || printf '%s\n' '$(TEXT)' >$@
 
 # ---------------------------------------------------------------------------------------------- targets
-.PHONY: all library program spy tests library-tests library-test-names install uninstall FORCE
+.PHONY: all library collision program spy tests library-tests library-test-names install uninstall FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: library $(B)/waferhand $(B)/wh.so $(B)/waferhand.1
+all: library collision $(B)/waferhand $(B)/wh.so $(B)/waferhand.1
 library: $(B)/libwaferhand.a
+collision: $(B)/libwaferhand_collision.a
 program: $(B)/waferhand
 tests: $(TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%)
 	@:
@@ -88,8 +95,10 @@ library-test-names:
 
 # ------------------------------------------------------------------------------------------- compiling
 $(LIBRARY_OBJECTS): FLAGS = $(LIBRARY_FLAGS)
+$(COLLISION_OBJECTS): FLAGS = $(COLLISION_FLAGS)
 $(PROGRAM_OBJECTS): FLAGS = $(PROGRAM_FLAGS)
 $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(LIBRARY_FLAGS) -fPIC
+$(COLLISION_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(COLLISION_FLAGS) -fPIC
 $(SCRIPT_SOURCES:%.c=$(B)/pic/%.o) $(MODULE_OBJECTS): FLAGS = $(PROGRAM_FLAGS) -fPIC
 # Its pow must not be taken for the one that the compiler knows.
 $(B)/obj/lib/script/pow.o $(B)/pic/lib/script/pow.o: FLAGS += -fno-builtin-pow
@@ -138,6 +147,8 @@ $(Q)rm -f $@ && $(AR) qcsD $@ $(filter %.o,$^)
 endef
 $(B)/libwaferhand.a: $(LIBRARY_OBJECTS) $(B)/sources
 	$(archive)
+$(B)/libwaferhand_collision.a: $(COLLISION_OBJECTS) $(B)/sources
+	$(archive)
 $(B)/libwaferhand_lcm.a: $(MESSAGE_OBJECTS) $(B)/messages
 	$(archive)
 $(B)/pic/support.a: $(MODULE_SUPPORT) $(B)/sources
@@ -146,24 +157,27 @@ $(B)/pic/support.a: $(MODULE_SUPPORT) $(B)/sources
 LINK = $(Q)$(CC) $(CFLAGS) $(EXTRA) $(LDFLAGS)
 
 # -E: native modules that a trusted script loads look for Lua in the program.
-$(B)/waferhand: $(PROGRAM_OBJECTS) $(B)/libwaferhand.a $(B)/libwaferhand_lcm.a $(B)/sources
+$(B)/waferhand: $(PROGRAM_OBJECTS) $(B)/libwaferhand.a $(B)/libwaferhand_collision.a $(B)/libwaferhand_lcm.a $(B)/sources
 	@echo "  LD   $@"
-	$(LINK) -Wl,-E -o $@ $(PROGRAM_OBJECTS) $(B)/libwaferhand.a $(PROGRAM_LIBS)
+	$(LINK) -Wl,-E -o $@ $(PROGRAM_OBJECTS) $(COLLISION_LIBS) $(B)/libwaferhand.a $(PROGRAM_LIBS)
 
 # Lua's own symbols come from the interpreter that loads it, hence -z now: a missing one shows at once. Only
 # the module's own symbols go out.
 $(B)/wh.so: $(MODULE_OBJECTS) $(B)/pic/support.a
 	@echo "  LD   $@"
-	$(LINK) -shared -Wl,-z,now,--exclude-libs,ALL -o $@ $^ -lm
+	$(LINK) -shared -Wl,-z,now,--exclude-libs,ALL,--as-needed -o $@ $^ $(shell $(PKG_CONFIG) --libs-only-l ccd) -lm
 
 TEST_SUPPORT := $(patsubst %.c,$(B)/obj/%.o,$(wildcard tests/support/*.c))
 $(PROGRAM_TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%): $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS)) $(B)/libwaferhand_lcm.a
 $(PROGRAM_TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%): LIBS = $(PROGRAM_LIBS)
+COLLISION_USERS := $(PROGRAM_TESTS:%=$(B)/%) $(COLLISION_TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%)
+$(COLLISION_USERS): $(B)/libwaferhand_collision.a
+$(COLLISION_USERS): COLLISION = $(COLLISION_LIBS)
 $(CXX_TESTS:%=$(B)/%): LINK = $(Q)$(CXX) $(CXXFLAGS) $(EXTRA) $(LDFLAGS)
 $(B)/tests/%: $(B)/obj/tests/%.o $(TEST_SUPPORT) $(B)/libwaferhand.a
 	@mkdir -p $(@D)
 	@echo "  LD   $@"
-	$(LINK) -o $@ $(filter %.o,$^) $(B)/libwaferhand.a $(LIBS) -lcmocka -lm
+	$(LINK) -o $@ $(filter %.o,$^) $(COLLISION) $(B)/libwaferhand.a $(LIBS) -lcmocka -lm
 
 # ------------------------------------------------------------------------------------------------- lcm-spy
 # lcm-gen's classes are not clean under javac's warnings; ours are.

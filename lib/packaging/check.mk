@@ -22,9 +22,10 @@ check-manual: $(B)/waferhand.1
 	@groff -man -Tutf8 -ww -z $< 2>&1 | awk '{ print } END { exit NR > 0 }'
 
 # ---------------------------------------------------------------------------------- one log a source and tool
-SOURCES := $(LIBRARY_SOURCES) $(PROGRAM_SOURCES)
+SOURCES := $(LIBRARY_SOURCES) $(COLLISION_SOURCES) $(PROGRAM_SOURCES)
 SOURCE_LOGS := $(foreach tool,tidy scan analyzer,$(SOURCES:%.c=$(B)/$(tool)/%.log))
 $(foreach tool,tidy scan analyzer,$(LIBRARY_SOURCES:%.c=$(B)/$(tool)/%.log)): FLAGS = $(filter-out -Werror,$(LIBRARY_FLAGS))
+$(foreach tool,tidy scan analyzer,$(COLLISION_SOURCES:%.c=$(B)/$(tool)/%.log)): FLAGS = $(filter-out -Werror,$(COLLISION_FLAGS))
 $(foreach tool,tidy scan analyzer,$(PROGRAM_SOURCES:%.c=$(B)/$(tool)/%.log)): FLAGS = $(filter-out -Werror,$(PROGRAM_FLAGS))
 $(SOURCE_LOGS): $(HEADERS) $(B)/flags $(B)/lcm/waferhand_messages.h
 
@@ -48,8 +49,8 @@ $(B)/analyzer/%.log: %.c
 CPPCHECK = cppcheck --quiet --std=c99 --library=posix,gnu --suppress=missingIncludeSystem -Ilib -DFLT_EVAL_METHOD=0 \
     --template='{file}:{line}:{column}: {severity}: {message} [{id}]'
 CPPCHECK_PROGRAM = $(CPPCHECK) --enable=warning,performance,portability,information -D_GNU_SOURCE \
-    -DLUA_VERSION_NUM=504 -DLUA_FLOAT_TYPE=2 -DLUA_FLOAT_DOUBLE=2 $(PROGRAM_SOURCES)
-$(B)/log/program: $(PROGRAM_SOURCES) $(HEADERS) lib/packaging/check.mk
+    -DLUA_VERSION_NUM=504 -DLUA_FLOAT_TYPE=2 -DLUA_FLOAT_DOUBLE=2 $(COLLISION_SOURCES) $(PROGRAM_SOURCES)
+$(B)/log/program: $(COLLISION_SOURCES) $(PROGRAM_SOURCES) $(HEADERS) lib/packaging/check.mk
 	$(call look,CPPCHECK,$(CPPCHECK_PROGRAM))
 
 # In double and in float. The addon writes beside the sources unless there is a build folder; that one remembers, so it is

@@ -1,22 +1,23 @@
 # Where things go on a system.
 
-PLACES := $(PREFIX)/bin/waferhand $(LIBDIR)/libwaferhand.a $(LIBDIR)/lua/5.4/wh.so $(LIBDIR)/pkgconfig/waferhand.pc \
+PLACES := $(PREFIX)/bin/waferhand $(LIBDIR)/libwaferhand.a $(LIBDIR)/libwaferhand_collision.a \
+          $(LIBDIR)/lua/5.4/wh.so $(LIBDIR)/pkgconfig/waferhand.pc $(LIBDIR)/pkgconfig/waferhand_collision.pc \
           $(PREFIX)/share/man/man1/waferhand.1
 INCLUDES := $(PREFIX)/include/waferhand
-PUBLIC := $(filter-out %_internal.h,$(wildcard lib/waferhand.h $(foreach part,$(LIBRARY_PARTS),lib/$(part)/*.h lib/$(part)/*.def)))
+PUBLIC := $(filter-out %_internal.h,$(wildcard lib/waferhand.h $(foreach part,$(LIBRARY_PARTS) collision,lib/$(part)/*.h lib/$(part)/*.def)))
 SHARE := $(PREFIX)/share/waferhand
 SHARED := $(filter lua/layouts/% lua/examples/%,$(LUA_SOURCES))
 
 # $(call place,FILE,PLACE): a step of a chain of commands that stops at the first failure
 place = install -D -m $(if $(filter %/bin/waferhand,$(2)),755,644) $(1) '$(DESTDIR)$(2)' &&
 
-install: $(B)/waferhand.pc
+install: $(B)/waferhand.pc $(B)/waferhand_collision.pc
 	@$(foreach to,$(PLACES),$(call place,$(B)/$(notdir $(to)),$(to))) \
 	    $(foreach file,$(PUBLIC),$(call place,$(file),$(INCLUDES)/$(file:lib/%=%))) \
 	    $(foreach file,$(SHARED),$(call place,$(file),$(SHARE)/$(file:lua/%=%))) \
 	    echo 'installed into $(DESTDIR)$(PREFIX)'
 
-$(B)/waferhand.pc: lib/packaging/waferhand.pc.in FORCE
+$(B)/waferhand.pc $(B)/waferhand_collision.pc: $(B)/%.pc: lib/packaging/%.pc.in FORCE
 	@sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(LIBDIR)|' -e 's|@version@|$(VERSION)|' \
 	    -e 's|@defines@|$(if $(FLOAT),-DWH_FLOAT)|' $< >$@
 

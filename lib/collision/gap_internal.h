@@ -1,0 +1,35 @@
+/* How gap.c and nearest.c share their work. Not installed. */
+#ifndef WH_COLLISION_GAP_INTERNAL_H
+#define WH_COLLISION_GAP_INTERNAL_H
+
+#include "collision/convex_internal.h"
+#include "collision/gap.h"
+
+/* The two shapes, and by how much b is thought to be moved. */
+typedef struct {
+    const wh_convex_t *a, *b;
+    const wh_pose_t *base_from_a, *base_from_b;
+    wh_vec3_t shift;
+} wh_gap_pair_t;
+
+/* What is known of a pair: lower <= signed gap <= upper, each with what proves it. */
+typedef struct {
+    wh_real_t lower, upper;
+    wh_vec3_t axis; /* unit: lower = wh_gap_along it */
+    wh_vec3_t at;   /* between the points that upper is the distance of */
+} wh_gap_bounds_t;
+
+/* How much may be spent: steps of wh_nearest_bounds, and libccd's calls of the support function. */
+typedef struct {
+    int steps, supports;
+} wh_gap_budget_t;
+
+/* Narrows `bounds` from their axis on until they are WH_GAP_TIGHT, or lower is above `enough`, or no step helps any more.
+ * bounds->axis must be a unit vector; bounds->upper may be infinite. */
+void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds);
+
+/* wh_gap_measure within a budget, for tests. */
+void wh_gap_measure_within(const wh_gap_pair_t *pair, wh_real_t enough, wh_vec3_t guess,
+                           const wh_gap_budget_t *budget, wh_gap_t *gap);
+
+#endif

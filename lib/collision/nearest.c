@@ -1,0 +1,201 @@
+#include "collision/gap_internal.h"
+
+/* A point of each kernel; `between` is from a's to b's. */
+typedef struct {
+    wh_vec3_t on_a, on_b, between;
+} pair_point_t;
+
+/* Up to four of them, and the weights by which they add up to the point nearest to the origin. */
+typedef struct {
+    pair_point_t points[4];
+    wh_real_t weights[4];
+    size_t count;
+} simplex_t;
+
+/* In base. */
+static wh_vec3_t kernel_point(const wh_convex_t *shape, const wh_pose_t *pose, const wh_vec3_t *direction) {
+    const wh_vec3_t d = wh_mat3_transform_back(&pose->R, direction);
+    const wh_vec3_t point = wh_convex_kernel_support(shape, &d);
+    const wh_vec3_t turned = wh_mat3_transform(&pose->R, &point);
+    return wh_vec3_add(&turned, &pose->r);
+}
+
+/* The point of a farthest along the axis, and the one of b farthest against it. */
+static pair_point_t support(const wh_gap_pair_t *pair, const wh_vec3_t *axis) {
+    const wh_vec3_t back = wh_vec3_scale(-1, axis);
+    pair_point_t point;
+    point.on_a = kernel_point(pair->a, pair->base_from_a, axis);
+    point.on_b = kernel_point(pair->b, pair->base_from_b, &back);
+    point.on_b = wh_vec3_add(&point.on_b, &pair->shift);
+    point.between = wh_vec3_subtract(&point.on_b, &point.on_a);
+    return point;
+}
+
+/* ------------------------------------------------------------------- the origin in the plane of a few points */
+
+static bool weigh_line(const wh_vec3_t *a, const wh_vec3_t *b, wh_real_t weights[4]) {
+    const wh_vec3_t along = wh_vec3_subtract(b, a);
+    const wh_real_t length = wh_vec3_dot(&along, &along);
+    weights[0] = wh_vec3_dot(b, &along);
+    weights[1] = -wh_vec3_dot(a, &along);
+    return length > 0 && weights[0] > 0 && weights[1] > 0;
+}
+
+static wh_real_t volume(const wh_vec3_t *a, const wh_vec3_t *b, const wh_vec3_t *c) {
+    const wh_vec3_t cross = wh_vec3_cross(b, c);
+    return wh_vec3_dot(a, &cross);
+}
+
+static bool weigh_triangle(const wh_vec3_t *a, const wh_vec3_t *b, const wh_vec3_t *c, wh_real_t weights[4]) {
+    const wh_vec3_t ab = wh_vec3_subtract(b, a);
+    const wh_vec3_t ac = wh_vec3_subtract(c, a);
+    const wh_vec3_t normal = wh_vec3_cross(&ab, &ac);
+    weights[0] = volume(&normal, b, c);
+    weights[1] = volume(&normal, c, a);
+    weights[2] = volume(&normal, a, b);
+    return weights[0] > 0 && weights[1] > 0 && weights[2] > 0;
+}
+
+static bool weigh_tetrahedron(const wh_vec3_t *const p[4], wh_real_t weights[4]) {
+    weights[0] = volume(p[1], p[2], p[3]);
+    weights[1] = -volume(p[0], p[2], p[3]);
+    weights[2] = volume(p[0], p[1], p[3]);
+    weights[3] = -volume(p[0], p[1], p[2]);
+    if (weights[0] < 0) {
+        for (size_t i = 0; i < 4; ++i) {
+            weights[i] = -weights[i];
+        }
+    }
+    return weights[0] > 0 && weights[1] > 0 && weights[2] > 0 && weights[3] > 0;
+}
+
+/* Some points of a simplex, and what lies nearest to the origin in the line, plane or space through them. */
+typedef struct {
+    size_t count;
+    size_t index[4];
+    wh_real_t weights[4]; /* adding up to 1 */
+    wh_vec3_t nearest;
+    wh_real_t squared; /* its distance */
+} part_t;
+
+/* False unless the nearest lies within the points. */
+static bool weigh(const simplex_t *simplex, part_t *part) {
+    const wh_vec3_t *p[4] = {NULL, NULL, NULL, NULL};
+    for (size_t i = 0; i < part->count; ++i) {
+        p[i] = &simplex->points[part->index[i]].between;
+    }
+    bool within = true;
+    part->weights[0] = 1;
+    if (part->count == 2) {
+        within = weigh_line(p[0], p[1], part->weights);
+    } else if (part->count == 3) {
+        within = weigh_triangle(p[0], p[1], p[2], part->weights);
+    } else if (part->count == 4) {
+        within = weigh_tetrahedron(p, part->weights);
+    }
+    if (!within) {
+        return false;
+    }
+    wh_real_t sum = 0;
+    for (size_t i = 0; i < part->count; ++i) {
+        sum += part->weights[i];
+    }
+    part->nearest = wh_vec3(0, 0, 0);
+    for (size_t i = 0; i < part->count; ++i) {
+        part->weights[i] /= sum;
+        const wh_vec3_t term = wh_vec3_scale(part->weights[i], p[i]);
+        part->nearest = wh_vec3_add(&part->nearest, &term);
+    }
+    part->squared = part->count == 4 ? 0 : wh_vec3_dot(&part->nearest, &part->nearest);
+    return true;
+}
+
+/* The points whose bits are set in `chosen`, and the last one. */
+static void choose(part_t *part, unsigned chosen, size_t last) {
+    part->count = 0;
+    for (size_t i = 0; i < last; ++i) {
+        if ((chosen >> i & 1U) != 0) {
+            part->index[part->count++] = i;
+        }
+    }
+    part->index[part->count++] = last;
+}
+
+/* The nearest of all is looked for in each part that has the last point, for the others have been looked at before; the
+ * simplex becomes that part. Returns its squared distance. */
+static wh_real_t reduce(simplex_t *simplex, wh_vec3_t *nearest) {
+    const size_t last = simplex->count - 1;
+    part_t best;
+    choose(&best, 0, last);
+    (void)weigh(simplex, &best);
+    for (unsigned chosen = 1; chosen < 1U << last; ++chosen) {
+        part_t part;
+        choose(&part, chosen, last);
+        if (weigh(simplex, &part) && part.squared < best.squared) {
+            best = part;
+        }
+    }
+    for (size_t i = 0; i < best.count; ++i) {
+        simplex->points[i] = simplex->points[best.index[i]]; /* index[i] >= i */
+        simplex->weights[i] = best.weights[i];
+    }
+    simplex->count = best.count;
+    *nearest = best.nearest;
+    return best.squared;
+}
+
+/* ---------------------------------------------------------------------------------------------- step by step */
+
+static bool has(const simplex_t *simplex, const pair_point_t *point) {
+    for (size_t i = 0; i < simplex->count; ++i) {
+        const wh_vec3_t *there = &simplex->points[i].between;
+        if (there->x == point->between.x && there->y == point->between.y && there->z == point->between.z) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* In the middle between the two surfaces, given the points of the kernels and a unit axis between them. */
+static wh_vec3_t middle(const wh_gap_pair_t *pair, const simplex_t *simplex, const wh_vec3_t *axis) {
+    wh_vec3_t sum = {0, 0, 0};
+    for (size_t i = 0; i < simplex->count; ++i) {
+        wh_vec3_t both = wh_vec3_add(&simplex->points[i].on_a, &simplex->points[i].on_b);
+        both = wh_vec3_scale(simplex->weights[i] / 2, &both);
+        sum = wh_vec3_add(&sum, &both);
+    }
+    const wh_vec3_t out = wh_vec3_scale((wh_convex_round(pair->a) - wh_convex_round(pair->b)) / 2, axis);
+    return wh_vec3_add(&sum, &out);
+}
+
+void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds) {
+    const wh_real_t round = wh_convex_round(pair->a) + wh_convex_round(pair->b);
+    simplex_t simplex = {.count = 0};
+    wh_vec3_t axis = bounds->axis;
+    for (int step = 0; step < steps; ++step) {
+        const pair_point_t point = support(pair, &axis);
+        const wh_real_t lower = wh_vec3_dot(&point.between, &axis) - round;
+        if (!(lower <= bounds->lower)) {
+            bounds->lower = lower;
+            bounds->axis = axis;
+        }
+        if (bounds->lower > enough || bounds->upper - bounds->lower <= WH_GAP_TIGHT ||
+            has(&simplex, &point)) {
+            return;
+        }
+        simplex.points[simplex.count++] = point;
+        wh_vec3_t nearest;
+        const wh_real_t distance = wh_real_sqrt(reduce(&simplex, &nearest));
+        if (distance > 0) {
+            axis = wh_vec3_scale(1 / distance, &nearest);
+        }
+        if (!(distance - round < bounds->upper)) {
+            return;
+        }
+        bounds->upper = distance - round;
+        bounds->at = middle(pair, &simplex, &axis);
+        if (simplex.count == 4 || !(distance > 0)) {
+            return;
+        }
+    }
+}
