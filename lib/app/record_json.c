@@ -158,6 +158,13 @@ static void put_measured(writer_t *writer, json_t *object, const wh_event_t *eve
     put(writer, object, "measured_utime", measured_utime(writer, event));
 }
 
+static bool is_unmeasured(wh_event_kind_t kind) {
+    static const uint32_t kinds = 1U << WH_EVENT_BAD_INPUT | 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED |
+                                  1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED | 1U << WH_EVENT_VACUUM_LOST |
+                                  1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
+    return (kinds >> (unsigned)kind & 1U) != 0;
+}
+
 /* The same keys for an event that measured nothing. */
 static void put_unmeasured(writer_t *writer, json_t *object) {
     static const char *const keys[] = {"dr_proj_z", "dr_proj_xy", "dr_proj_xy_norm", "n1_proj_n2",
@@ -165,6 +172,15 @@ static void put_unmeasured(writer_t *writer, json_t *object) {
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; ++i) {
         put(writer, object, keys[i], json_null());
     }
+}
+
+static json_t *part_names(writer_t *writer, const int32_t parts[2]) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < 2; ++i) {
+        const wh_layout_t *layout = writer->record->layout;
+        append(writer, list, text_or_null(layout ? wh_layout_part_name(layout, parts[i]) : NULL));
+    }
+    return list;
 }
 
 /* What only this kind of event has. */
@@ -194,6 +210,17 @@ static void put_particulars(writer_t *writer, json_t *object, const wh_event_t *
         put(writer, object, "value", real((double)event->value));
         put(writer, object, "limit", real((double)event->limit));
         break;
+    case WH_EVENT_HIT:
+    case WH_EVENT_UNDECIDED:
+        put(writer, object, "parts", part_names(writer, event->parts));
+        put(writer, object, "at", vector(writer, event->at));
+        break;
+    case WH_EVENT_TOO_CLOSE:
+        put(writer, object, "parts", part_names(writer, event->parts));
+        put(writer, object, "at", vector(writer, event->at));
+        put(writer, object, "value", real((double)event->value));
+        put(writer, object, "limit", real((double)event->limit));
+        break;
     default:
         break;
     }
@@ -206,7 +233,7 @@ static json_t *event(writer_t *writer, size_t i) {
     put(writer, object, "kind", json_string(wh_event_name(from->event.kind)));
     put(writer, object, "wafer", text_or_null(wh_record_wafer_name(writer->record, from->event.wafer)));
     put(writer, object, "gripper", text_or_null(wh_record_gripper_name(writer->record, from->event.gripper)));
-    if (from->event.kind == WH_EVENT_BAD_INPUT) {
+    if (is_unmeasured(from->event.kind)) {
         put_unmeasured(writer, object);
     } else {
         put_measured(writer, object, &from->event);
@@ -252,12 +279,31 @@ static void put_head(writer_t *writer, json_t *root) {
     put(writer, root, "hash", json_string(hash));
 }
 
+/* One kind's smallest gap; nulls where nothing came near. */
+static json_t *clearance(writer_t *writer, size_t kind) {
+    const wh_clearance_t *from = &writer->record->clearances[kind];
+    const wh_layout_t *layout = writer->record->layout;
+    const wh_real_t limit = layout->world.limits[kind];
+    const bool found = from->parts[0] != WH_NONE;
+    json_t *object = json_object();
+    put(writer, object, "kind", json_string(wh_clearance_name((wh_clearance_kind_t)kind)));
+    put(writer, object, "gap", found ? real((double)from->gap) : json_null());
+    put(writer, object, "limit", limit > 0 ? real((double)limit) : json_null());
+    put(writer, object, "utime", found ? json_integer((json_int_t)from->slice * layout->slice_us) : json_null());
+    put(writer, object, "parts", found ? part_names(writer, from->parts) : json_null());
+    put(writer, object, "at", found ? vector(writer, from->at) : json_null());
+    return object;
+}
+
 static void put_lists(writer_t *writer, json_t *root) {
     const wh_record_t *record = writer->record;
     const size_t wafers = record->layout ? record->layout->wafer_count : 0;
     put(writer, root, "commands", list_of(writer, command, record->command_count));
     put(writer, root, "wafers", list_of(writer, wafer, wafers));
     put(writer, root, "events", list_of(writer, event, record->event_count));
+    if (record->checked) {
+        put(writer, root, "clearances", list_of(writer, clearance, WH_CLEARANCES));
+    }
     put(writer, root, "expectations", list_of(writer, expectation, record->expectation_count));
 }
 

@@ -42,6 +42,7 @@ int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t
     status |= wh_report_errors(&report);
     status |= wh_report_handovers(&report);
     status |= wh_report_complaints(&report);
+    status |= wh_report_clearances(&report);
     status |= wh_report_wafers(&report);
     status |= wh_report_expectations(&report);
     status |= wh_report_summary(&report);

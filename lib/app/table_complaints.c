@@ -97,6 +97,12 @@ static void say_failed(const wh_report_t *report, wh_grid_t *grid, double at, co
     }
 }
 
+static const char *part_name(const wh_report_t *report, int32_t part) {
+    const wh_layout_t *layout = report->record->layout;
+    const char *name = layout ? wh_layout_part_name(layout, part) : NULL;
+    return name ? name : "more than can be looked at";
+}
+
 static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const wh_event_t *event) {
     switch ((int)event->kind) {
     case WH_EVENT_CONTESTED:
@@ -117,6 +123,20 @@ static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const
         if (report->record->layout) {
             say_failed(report, grid, at, &event->measured);
         }
+        break;
+    case WH_EVENT_HIT:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s and %s touch at %.3f, %.3f, %.3f mm",
+                     part_name(report, event->parts[0]), part_name(report, event->parts[1]),
+                     (double)event->at.x, (double)event->at.y, (double)event->at.z);
+        break;
+    case WH_EVENT_UNDECIDED:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "whether %s and %s touch could not be decided",
+                     part_name(report, event->parts[0]), part_name(report, event->parts[1]));
+        break;
+    case WH_EVENT_TOO_CLOSE:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s and %s: %.3f mm apart (limit %g mm)",
+                     part_name(report, event->parts[0]), part_name(report, event->parts[1]),
+                     (double)event->value, (double)event->limit);
         break;
     case WH_EVENT_PLACED_OFF_CENTRE:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "%.3f mm beside the centre (limit %g mm)",

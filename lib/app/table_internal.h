@@ -17,6 +17,7 @@ int wh_report_commands(const wh_report_t *report);
 int wh_report_errors(const wh_report_t *report);
 int wh_report_handovers(const wh_report_t *report);
 int wh_report_complaints(const wh_report_t *report);
+int wh_report_clearances(const wh_report_t *report);
 int wh_report_wafers(const wh_report_t *report);
 int wh_report_expectations(const wh_report_t *report);
 int wh_report_summary(const wh_report_t *report);

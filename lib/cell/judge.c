@@ -36,31 +36,64 @@ static int32_t find_other(const wh_cell_t *cell, const wh_grasp_t *table, int32_
     return WH_NONE;
 }
 
-/* What the cell has to say of one release: true when there is something, then in `said`. */
-static bool judge_release(const wh_cell_t *cell, const wh_grasp_t *table, const wh_event_t *release,
-                          wh_event_t *said) {
-    const wh_pose_t *base_from_wafer = &table->storage.wafers[release->wafer].base_from_wafer;
-    wh_place_t place;
-    *said = *release;
-    if (!wh_cell_locate(cell, base_from_wafer, &place)) {
-        said->kind = WH_EVENT_RELEASED_UNSUPPORTED;
-        said->height = height_above_support(cell, base_from_wafer);
-        return true;
+/* A copy of the release as another kind; null when the list is full. */
+static wh_event_t *append(wh_event_list_t *list, size_t release, wh_event_kind_t kind) {
+    if (list->count >= list->capacity) {
+        return NULL;
     }
-    said->kind = WH_EVENT_SLOT_OCCUPIED;
-    said->other = find_other(cell, table, release->wafer, &place);
-    return said->other != WH_NONE;
+    wh_event_t *said = &list->events[list->count++];
+    *said = list->events[release];
+    said->kind = kind;
+    return said;
+}
+
+static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
+                              size_t release) {
+    const int32_t wafer = list->events[release].wafer;
+    wh_event_t *said = append(list, release, WH_EVENT_RELEASED_UNSUPPORTED);
+    if (said) {
+        said->height = height_above_support(cell, &table->storage.wafers[wafer].base_from_wafer);
+    }
+}
+
+static void judge_occupied(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
+                           size_t release, const wh_place_t *place) {
+    const int32_t other = find_other(cell, table, list->events[release].wafer, place);
+    wh_event_t *said = other == WH_NONE ? NULL : append(list, release, WH_EVENT_SLOT_OCCUPIED);
+    if (said) {
+        said->other = other;
+    }
+}
+
+/* Says that `found` is above a limit that is set. */
+static void judge_limit(wh_event_list_t *list, size_t release, wh_event_kind_t kind, wh_real_t found,
+                        wh_real_t limit) {
+    wh_event_t *said = limit > 0 && found > limit ? append(list, release, kind) : NULL;
+    if (said) {
+        said->value = found;
+        said->limit = limit;
+    }
+}
+
+static void judge_release(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
+                          size_t release) {
+    const int32_t wafer = list->events[release].wafer;
+    wh_place_t place;
+    if (!wh_cell_locate(cell, &table->storage.wafers[wafer].base_from_wafer, &place)) {
+        judge_unsupported(cell, table, list, release);
+        return;
+    }
+    judge_occupied(cell, table, list, release, &place);
+    const wh_real_t aside = wh_real_sqrt(place.dx * place.dx + place.dy * place.dy);
+    judge_limit(list, release, WH_EVENT_PLACED_OFF_CENTRE, aside, cell->off_centre);
+    judge_limit(list, release, WH_EVENT_PLACED_ASKEW, place.tilt, cell->askew);
 }
 
 size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list) {
     const size_t count = list->count;
     for (size_t i = 0; i < count; ++i) {
-        wh_event_t said;
-        if (list->events[i].kind == WH_EVENT_RELEASED &&
-            judge_release(cell, table, &list->events[i], &said)) {
-            WH_ASSERT(list->count < list->capacity);
-            list->events[list->count] = said;
-            ++list->count;
+        if (list->events[i].kind == WH_EVENT_RELEASED) {
+            judge_release(cell, table, list, i);
         }
     }
     return list->count - count;

@@ -22,6 +22,9 @@ typedef struct {
     const wh_station_t *stations;
     size_t count;
     wh_tolerance_t tolerance; /* projxy and planar bound what still lies in a slot */
+    wh_real_t off_centre;     /* a wafer set down farther beside a slot's centre is reported, mm; 0: none is */
+    wh_real_t askew;          /* one tilted more against it, rad; 0: none is */
+    bool settle;              /* a wafer let go comes to lie on its support: see wh_cell_settle */
 } wh_cell_t;
 
 /* Where a wafer lies: in slot `slot` (from 1) of station `station` (from 0), measured in that slot's frame.
@@ -48,9 +51,17 @@ bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_
  * WH_EVENT_RELEASED_UNSUPPORTED when the wafer lies in no slot, `height` being how far it is above the
  * nearest slot below it within tolerance.projxy, or else above base's z = 0 (below it: negative);
  * WH_EVENT_SLOT_OCCUPIED when another wafer, free or held by the station's chuck, lies in the same slot (`other`
- * is its index, the lowest). All else is the release's. The list needs room for one more event for each release,
- * which WH_EVENTS_PER_GRIPPER includes. Returns how many events were appended. Arguments are not checked. Cost:
- * linear in the list without a release; each release adds wafers times stations, or all slots. */
+ * is its index, the lowest); WH_EVENT_PLACED_OFF_CENTRE and WH_EVENT_PLACED_ASKEW when it lies in one beyond the cell's
+ * limits. All else is the release's. Three at most for each release are appended while the list has room. Returns how
+ * many were. Arguments are not checked. Cost: linear in the list without a release; each release adds wafers times
+ * stations, or all slots. */
 size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list);
+
+/* With cell->settle, after wh_cell_judge: each wafer that a release in the list left above the plane of the slot that it
+ * lies in comes to lie on it: its centre moves down along the slot's z to the plane, and it turns by the smallest
+ * rotation that takes its normal to z. WH_EVENT_SETTLED, with the release's values and `value` the way down, is
+ * appended while the list has room. One that lies in no slot, or below the plane, stays. Cost: linear in the list;
+ * each such wafer adds the stations and wh_grasp_place. */
+void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list);
 
 #endif

@@ -62,6 +62,9 @@ bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_
     message->near_projxy = layout->grasp.near_projxy;
     message->check = layout->grasp.check == WH_CHECK_SWEPT ? 1 : 0;
     message->seat = layout->grasp.seat ? 1 : 0;
+    message->settle = layout->cell.settle ? 1 : 0;
+    message->off_centre = layout->cell.off_centre;
+    message->askew = layout->cell.askew;
     message->gripper_count = (int32_t)layout->machine.gripper_count;
     message->station_count = (int32_t)layout->station_count;
     message->wafer_count = (int32_t)layout->wafer_count;

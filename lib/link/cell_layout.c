@@ -32,10 +32,14 @@ static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     grasp->near_projxy = cell->near_projxy;
     grasp->check = cell->check != 0 ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED;
     grasp->seat = cell->seat != 0;
+    layout->cell.settle = cell->settle != 0;
+    layout->cell.off_centre = cell->off_centre;
+    layout->cell.askew = cell->askew;
     layout->slice_us = cell->slice_us;
     return wh_tolerance_validate(&grasp->tolerance) == WH_OK && is_limit(cell->eps_projz) &&
            is_limit(cell->near_projz) && is_limit(cell->near_projxy) && cell->slice_us >= 1 &&
-           cell->slice_us <= 1000000;
+           cell->slice_us <= 1000000 && cell->off_centre >= 0 && cell->off_centre <= 1e6 && cell->askew >= 0 &&
+           cell->askew <= 10;
 }
 
 static bool take_station(const waferhand_station *from, size_t grippers, wh_layout_station_t *station,
@@ -87,6 +91,9 @@ wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell) {
         wh_link_layout_free(layout);
         return NULL;
     }
+    layout->cell.stations = layout->places;
+    layout->cell.count = layout->station_count;
+    layout->cell.tolerance = layout->grasp.tolerance;
     return layout;
 }
 

@@ -14,7 +14,7 @@
 #define STATE_COUNTS (FINGERPRINT + HEADER + 4)
 #define STATE_FIXED (STATE_COUNTS + 3 * 4 + 2 * 8 + 4)
 #define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
-#define CELL_FIXED (8 + 5 * 8 + 2 + 3 * 4)
+#define CELL_FIXED (8 + 7 * 8 + 3 + 3 * 4)
 #define STATION_FIXED (12 * 8 + 4 + 8 + 4)
 
 /* A place in a datagram; `good` falls when something would lie beyond its end. */

@@ -1,5 +1,6 @@
 #include "link/server.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/restore.h"
@@ -7,7 +8,6 @@
 
 static void start_run(wh_server_t *server, int64_t run) {
     const wh_layout_t *layout = server->layout;
-    const wh_cell_t cell = {layout->places, layout->station_count, layout->grasp.tolerance};
     wh_grasp_storage_t storage = {.wafers = server->arrays.wafers,
                                   .wafer_count = layout->wafer_count,
                                   .grippers = server->arrays.grippers,
@@ -15,7 +15,10 @@ static void start_run(wh_server_t *server, int64_t run) {
     if (layout->wafer_count > 0) {
         memcpy(server->arrays.wafers, layout->start, layout->wafer_count * sizeof *layout->start);
     }
-    (void)wh_simulator_init(&server->simulator, &layout->grasp, &storage, &cell);
+    (void)wh_simulator_init(&server->simulator, &layout->grasp, &storage, &layout->cell);
+    if (server->collision_memory) {
+        wh_collision_attach(&server->collision, layout, &server->simulator, server->collision_memory);
+    }
     memset(&server->state, 0, sizeof server->state);
     wh_simulator_view(&server->simulator, &server->state);
     server->identity.run = run;
@@ -31,8 +34,19 @@ wh_status_t wh_server_open(wh_server_t *server, const wh_layout_t *layout) {
     memset(server, 0, sizeof *server);
     server->layout = layout;
     server->identity.layout_hash = wh_layout_hash(layout);
+    if (layout->collision) {
+        server->collision_memory = malloc(wh_collision_bytes(layout));
+        if (!server->collision_memory) {
+            return WH_STATUS_BAD_CAPACITY;
+        }
+    }
     start_run(server, 0);
     return WH_OK;
+}
+
+void wh_server_close(wh_server_t *server) {
+    free(server->collision_memory);
+    server->collision_memory = NULL;
 }
 
 uint64_t wh_server_hash(const wh_server_t *server) {
@@ -192,6 +206,9 @@ static bool take_over(wh_server_t *server, const waferhand_state *message, const
     if (wh_grasp_restore(&server->simulator.table, (uint64_t)(message->seq - message->missed), state->wafers,
                          state->grippers) != WH_OK) {
         return false;
+    }
+    if (server->collision_memory) {
+        wh_collision_attach(&server->collision, server->layout, &server->simulator, server->collision_memory);
     }
     memcpy(server->simulator.events, state->events, state->event_count * sizeof *state->events);
     server->simulator.event_count = state->event_count;

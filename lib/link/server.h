@@ -10,6 +10,7 @@
 #define WH_LINK_SERVER_H
 
 #include "link/messages.h"
+#include "script/collision.h"
 #include "sim/simulator.h"
 
 /* Runs that ended lately, so that their late commands do not start them again. */
@@ -27,6 +28,8 @@ typedef struct {
     const wh_layout_t *layout;   /* borrowed */
     wh_link_identity_t identity; /* identity.run is 0 before the first run */
     wh_simulator_t simulator;
+    wh_collision_t collision;
+    void *collision_memory; /* null: the layout asks for no check */
     wh_state_t state; /* after the last step */
     int64_t seq;      /* of the last step; 0: none yet */
     int64_t missed;   /* slices that never came, in a free-running run */
@@ -53,6 +56,9 @@ typedef enum {
 /* Ready for a first run. WH_STATUS_BAD_CAPACITY for a layout of more than WH_LINK_WAFERS wafers. `layout` must outlive
  * the server, which must not be moved afterwards. */
 wh_status_t wh_server_open(wh_server_t *server, const wh_layout_t *layout);
+
+/* Frees what a layout with a collision check needed; else there is nothing to free. */
+void wh_server_close(wh_server_t *server);
 
 /* With `valves`, they replace the command's (outputs.txt); null: the command's own. */
 wh_server_result_t wh_server_command(wh_server_t *server, const waferhand_command *message,

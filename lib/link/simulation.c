@@ -211,5 +211,6 @@ void wh_simulation_tick(wh_simulation_t *simulation) {
 }
 
 void wh_simulation_close(wh_simulation_t *simulation) {
+    wh_server_close(&simulation->server);
     wh_link_cell_free(&simulation->cell);
 }

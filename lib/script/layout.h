@@ -8,7 +8,9 @@
 #include <lua.h>
 
 #include "cell/station.h"
+#include "collision/world.h"
 #include "motion/machine.h"
+#include "script/shapes.h"
 
 /* Longest name of a station, gripper, wafer or valve, with its terminator. */
 #define WH_NAME_SIZE 64
@@ -17,6 +19,10 @@
 #define WH_LAYOUT_WAFERS 1000000
 #define WH_LAYOUT_STATIONS 1000
 #define WH_LAYOUT_SLOTS 1000
+
+/* How many parts a collision check may have, and how many of them a layout may add by itself. */
+#define WH_LAYOUT_PARTS 100000
+#define WH_LAYOUT_OBSTACLES 1000
 
 typedef struct {
     char name[WH_NAME_SIZE];
@@ -34,6 +40,7 @@ typedef enum {
 typedef struct {
     char name[WH_NAME_SIZE];
     bool prealigner;
+    bool foup;              /* with walls and a load port around its slots */
     wh_real_t stroke;       /* from entry below the wafer to exit above it */
     wh_real_t offset;       /* how far above the slot a GET leaves and a PUT starts */
     wh_real_t retract;      /* how far before the slot the end-effector enters the line */
@@ -64,6 +71,11 @@ typedef struct {
     size_t wafer_count;
     wh_layout_wafer_t *wafers;
     wh_wafer_t *start; /* where each wafer is when a run begins */
+    wh_cell_t cell; /* places, with the tolerance and how wafers are set down */
+    bool collision; /* check it while stepping */
+    wh_shapes_t shapes;
+    wh_world_config_t world; /* whether it is checked or not; without parts when they are too many */
+    const char (*part_names)[WH_PART_NAME_SIZE];
 } wh_layout_t;
 
 /* Reads the table on top of L's stack (what the layout file returned, which is left there), fills in the
@@ -76,6 +88,9 @@ const wh_layout_t *wh_layout_read(lua_State *L, const char *path);
 /* 64 bits over all that two processes must agree on: slice, tolerances, checking, machine, and of stations, grippers and
  * wafers the names and places. The path is left out. Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);
+
+/* What a part of the collision world is called, a wafer's number among them; null when there is none. */
+const char *wh_layout_part_name(const wh_layout_t *layout, int32_t part);
 
 /* The index of a name, or WH_NONE. Cost: linear. */
 int32_t wh_layout_find_station(const wh_layout_t *layout, const char *name);

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "motion/trig.h"
 #include "script/layout_internal.h"
 
 static double default_thickness(double diameter) {
@@ -84,10 +85,14 @@ static void read_slice(wh_reader_t *reader, wh_layout_t *layout) {
     }
 }
 
-static void refuse_collision(wh_reader_t *reader) {
-    if (wh_reader_boolean(reader, "collision", false)) {
-        lua_pushboolean(reader->L, 1);
-        wh_reader_fail(reader, "collision", "false: this version has no collision check");
+/* How a wafer that was let go comes to lie, and from when on that is worth a word. */
+static void read_placing(wh_reader_t *reader, wh_cell_t *cell) {
+    cell->settle = wh_reader_boolean(reader, "settle", false);
+    if (wh_reader_enter(reader, "placing")) {
+        wh_reader_refuse_unknown(reader, "off_centre askew");
+        cell->off_centre = wh_reader_number(reader, "off_centre", 0, 0, 1000);
+        cell->askew = wh_rad_from_deg(wh_reader_number(reader, "askew", 0, 0, 90));
+        wh_reader_leave(reader);
     }
 }
 
@@ -98,8 +103,8 @@ void wh_layout_read_checks(wh_reader_t *reader, wh_layout_t *layout) {
     read_tolerance(reader, layout);
     read_near(reader, layout);
     read_slice(reader, layout);
-    refuse_collision(reader);
     layout->grasp.check =
         wh_reader_choice(reader, "check", 0, checks) == 0 ? WH_CHECK_SAMPLED : WH_CHECK_SWEPT;
     layout->grasp.seat = wh_reader_boolean(reader, "seat", false);
+    read_placing(reader, &layout->cell);
 }

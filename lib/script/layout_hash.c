@@ -60,6 +60,16 @@ static uint64_t hash_stations(uint64_t hash, const wh_layout_t *layout) {
     return hash;
 }
 
+/* Only what is set, so that layouts without it keep their hash. */
+static uint64_t hash_placing(uint64_t hash, const wh_cell_t *cell) {
+    if (cell->settle || cell->off_centre > 0 || cell->askew > 0) {
+        hash = wh_hash_int(hash, cell->settle ? 1 : 0);
+        hash = wh_hash_real(hash, cell->off_centre);
+        hash = wh_hash_real(hash, cell->askew);
+    }
+    return hash;
+}
+
 uint64_t wh_layout_hash(const wh_layout_t *layout) {
     uint64_t hash = hash_checks(WH_HASH_START, layout);
     hash = hash_machine(hash, layout);
@@ -69,5 +79,5 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
         hash = hash_text(hash, layout->wafers[w].name);
         hash = wh_hash_pose(hash, &layout->start[w].base_from_wafer);
     }
-    return hash;
+    return hash_placing(hash, &layout->cell);
 }

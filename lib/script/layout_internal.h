@@ -3,6 +3,7 @@
 #define WH_SCRIPT_LAYOUT_INTERNAL_H
 
 #include "script/layout.h"
+#include "script/layout_obstacles.h"
 #include "script/reader.h"
 
 /* Memory for `count` items that lives as long as the state, zeroed. */
@@ -14,5 +15,10 @@ void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_grippers(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout);
+
+/* What the layout adds by itself, for wh_layout_read_world. */
+void wh_layout_read_obstacles(wh_reader_t *reader, const wh_layout_t *layout, wh_obstacles_t *obstacles);
 
 #endif

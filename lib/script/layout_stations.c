@@ -16,12 +16,13 @@ static double default_pitch(double wafer_diameter) {
     return wafer_diameter <= 200 ? 6.35 : 10;
 }
 
-static void read_place(wh_reader_t *reader, const wh_layout_t *layout, bool prealigner, wh_station_t *place) {
+static void read_place(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_station_t *station,
+                       wh_station_t *place) {
     static const wh_vec3_t level = {0, 0, 0};
     const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", &level);
     place->base_from_station.r = wh_reader_vector(reader, "at", NULL);
     place->base_from_station.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
-    place->slots = wh_reader_whole(reader, "slots", 1, 1, prealigner ? 1 : WH_LAYOUT_SLOTS);
+    place->slots = wh_reader_whole(reader, "slots", station->foup ? 25 : 1, 1, station->prealigner ? 1 : WH_LAYOUT_SLOTS);
     place->pitch = wh_reader_number(reader, "pitch", default_pitch(layout->wafer_diameter), 0.1, 1000);
     place->chuck = WH_NONE;
     if (place->base_from_station.R.m[2][2] < WH_REAL(0.7)) {
@@ -102,12 +103,14 @@ static void read_names(wh_reader_t *reader, wh_layout_t *layout) {
 }
 
 static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
-    static const char *const kinds[] = {"slots", "prealigner", NULL};
+    static const char *const kinds[] = {"slots", "prealigner", "foup", NULL};
     wh_layout_station_t *station = &layout->stations[index];
     wh_reader_enter(reader, station->name);
     wh_reader_refuse_unknown(reader, STATION_FIELDS);
-    station->prealigner = wh_reader_choice(reader, "kind", 0, kinds) == 1;
-    read_place(reader, layout, station->prealigner, &layout->places[index]);
+    const int kind = wh_reader_choice(reader, "kind", 0, kinds);
+    station->prealigner = kind == 1;
+    station->foup = kind == 2;
+    read_place(reader, layout, station, &layout->places[index]);
     read_moves(reader, layout, &layout->places[index], station);
     wh_reader_leave(reader);
 }
@@ -121,5 +124,8 @@ void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout) {
     for (size_t s = 0; s < layout->station_count; ++s) {
         read_station(reader, layout, s);
     }
+    layout->cell.stations = layout->places;
+    layout->cell.count = layout->station_count;
+    layout->cell.tolerance = layout->grasp.tolerance;
     wh_reader_leave(reader);
 }

@@ -186,6 +186,10 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
     record->simulated_s = wh_mcs_now(mcs);
     record->hash = mcs->link->hash(mcs->link);
     record->missed = mcs->link->missed(mcs->link);
+    record->checked = mcs->collision.world != NULL && mcs->link == &mcs->simulator.link;
+    if (record->checked) {
+        memcpy(record->clearances, wh_world_clearances(mcs->collision.world), sizeof record->clearances);
+    }
     record->wafers = calloc(mcs->layout->wafer_count + 1, sizeof *record->wafers);
     for (size_t w = 0; record->wafers && w < mcs->layout->wafer_count; ++w) {
         record_wafer(mcs, w);

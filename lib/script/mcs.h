@@ -8,6 +8,7 @@
 #define WH_SCRIPT_MCS_H
 
 #include "motion/track.h"
+#include "script/collision.h"
 #include "script/record.h"
 #include "script/sandbox.h"
 #include "sim/simulator.h"
@@ -32,6 +33,7 @@ struct wh_mcs {
     wh_record_t *record;
     const wh_layout_t *layout; /* null until a script names one */
     wh_simulator_t simulator;
+    wh_collision_t collision;
     wh_link_t *link; /* the simulator's, or whoever stands in for it */
     wh_track_t track;
     wh_command_t command; /* the last one sent */

@@ -54,13 +54,15 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     if (bytes > 0) {
         memcpy(storage.wafers, layout->start, bytes);
     }
-    const wh_cell_t cell = {layout->places, layout->station_count, layout->grasp.tolerance};
-    wh_status_t status = wh_simulator_init(&mcs->simulator, &layout->grasp, &storage, &cell);
+    wh_status_t status = wh_simulator_init(&mcs->simulator, &layout->grasp, &storage, &layout->cell);
     if (status == WH_OK) {
         status = wh_track_init(&mcs->track, &layout->machine, layout->slice_us);
     }
     if (status != WH_OK) {
         luaL_error(L, "%s: %s", layout->path, wh_status_text(status));
+    }
+    if (layout->collision) {
+        wh_collision_attach(&mcs->collision, layout, &mcs->simulator, lua_memory(L, wh_collision_bytes(layout)));
     }
     mcs->link = &mcs->simulator.link;
     mcs->command.gripper_count = layout->machine.gripper_count;

@@ -47,6 +47,8 @@ typedef struct {
     wh_expectation_record_t *expectations;
     size_t expectation_count, expectation_capacity;
     wh_wafer_record_t *wafers; /* layout->wafer_count of them */
+    bool checked;              /* for collisions: then these are the smallest gaps */
+    wh_clearance_t clearances[WH_CLEARANCES];
 } wh_record_t;
 
 /* Appending; texts are copied. A program that runs out of memory here aborts. */

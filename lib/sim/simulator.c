@@ -28,6 +28,7 @@ wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t
         simulator->link.missed = missed_by_call;
         simulator->cell = *cell;
         simulator->event_count = 0;
+        simulator->observer = (wh_observer_t){NULL, NULL};
     }
     return status;
 }
@@ -50,6 +51,10 @@ static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *com
     const wh_status_t status = wh_grasp_step(&simulator->table, command->grippers, &list);
     if (status == WH_OK && list.count > 0) {
         (void)wh_cell_judge(&simulator->cell, &simulator->table, &list);
+        wh_cell_settle(&simulator->cell, &simulator->table, &list);
+    }
+    if (status == WH_OK && simulator->observer.look) {
+        simulator->observer.look(simulator->observer.user, command, &simulator->table, &list);
     }
     simulator->event_count = list.count;
     return status;

@@ -6,12 +6,20 @@
 #include "cell/station.h"
 #include "sim/slice.h"
 
+/* Looks at each accepted step when table and cell are done with it, and may append events; null: nobody does. It must not
+ * change anything that a step depends on. */
+typedef struct {
+    void (*look)(void *user, const wh_command_t *command, const wh_grasp_t *table, wh_event_list_t *list);
+    void *user;
+} wh_observer_t;
+
 typedef struct {
     wh_link_t link; /* first: &simulator->link is the call version of the interface */
     wh_grasp_t table;
     wh_cell_t cell;
     wh_event_t events[WH_SLICE_EVENTS];
     size_t event_count;
+    wh_observer_t observer; /* the caller's to set after wh_simulator_init */
 } wh_simulator_t;
 
 /* Sets up a run: all wafers free where storage->wafers has them. `cell->stations` and the arrays of `storage`

@@ -58,7 +58,7 @@ static void check_names(const wh_layout_t *layout) {
 }
 
 static void check_set_up(const wh_layout_t *layout) {
-    const wh_cell_t cell = {layout->places, layout->station_count, layout->grasp.tolerance};
+    const wh_cell_t cell = layout->cell;
     wh_gripper_t grippers[WH_GRIPPERS];
     wh_simulator_t simulator;
     wh_track_t track;

@@ -162,7 +162,8 @@ static void test_impossible_states_are_not(void **state) {
         miss_no_wafer,         pick_by_nobody,          hand_over_from_nobody, lie_below_no_such_wafer,
         measure_in_the_future, measure_before_the_run,  refuse_a_wafer};
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; ++i) {
-        if (malformed_after(changes[i]) != 1) {
+        /* More than once where the machine was so busy that the client asked again. */
+        if (malformed_after(changes[i]) == 0) {
             fail_msg("change %zu was taken", i);
         }
         assert_int_equal(client.event_count, 0);

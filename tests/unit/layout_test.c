@@ -238,7 +238,7 @@ static void test_what_is_wrong_is_named(void **state) {
         {GRIPPERS STATIONS "slice = 0/0", "(expected a number from"},
         {GRIPPERS STATIONS "tolerance = 'loose'", "tolerance: \"loose\" (expected \"paper\" or \"strict\")"},
         {GRIPPERS STATIONS "tolerance = 3", "tolerance: 3 (expected"},
-        {GRIPPERS STATIONS "collision = true", "no collision check"},
+        {GRIPPERS STATIONS "collision = 1", "true or false"},
         {GRIPPERS STATIONS "robot = { kind = 'SCARA' }", "robot.kind: \"SCARA\" (expected \"TRZY\")"},
         {GRIPPERS STATIONS "robot = { r = { min = 500, max = 400 } }", "robot.r.max: 400"},
         {GRIPPERS STATIONS "robot = { r = { min = 400 } }",

@@ -18,7 +18,7 @@ static wh_grasp_storage_t storage_here(void) {
 }
 
 static wh_cell_t cell_here(void) {
-    const wh_cell_t cell = {&station, 1, wh_tolerance_paper()};
+    const wh_cell_t cell = {.stations = &station, .count = 1, .tolerance = wh_tolerance_paper()};
     return cell;
 }
 
@@ -61,7 +61,7 @@ static void test_init_refuses_what_it_cannot_use(void **state) {
     const wh_simulator_t before = simulator;
     wh_grasp_storage_t large = storage;
     large.gripper_count = WH_GRIPPERS + 1;
-    const wh_cell_t nowhere = {NULL, 1, cell.tolerance};
+    const wh_cell_t nowhere = {.stations = NULL, .count = 1, .tolerance = cell.tolerance};
     wh_grasp_config_t wide = config;
     wide.tolerance.projz = -1;
     assert_int_equal(wh_simulator_init(NULL, &config, &storage, &cell), WH_STATUS_NULL_ARGUMENT);
@@ -104,7 +104,7 @@ static void test_a_cell_without_stations_is_allowed(void **state) {
     (void)state;
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t storage = storage_here();
-    const wh_cell_t empty = {NULL, 0, config.tolerance};
+    const wh_cell_t empty = {.stations = NULL, .count = 0, .tolerance = config.tolerance};
     assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &empty), WH_OK);
     assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
 }

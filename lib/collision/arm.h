@@ -1,0 +1,37 @@
+/* Where the links of a TRZY robot's arm are: what theta, R, Z and yaw leave to the builder, the elbow.
+ *
+ * The arm is of the usual kind: a column that is lifted and turns, an upper arm and a forearm of equal length that fold
+ * over each other, and a wrist that carries the end-effector, `reach` behind its origin. The wrist is where the
+ * end-effector's pose puts it, and the elbow at the point from which both links reach, on the left seen from the column
+ * (on the right with `right_handed`). All links are level; mm in base. No heap, no trigonometry.
+ */
+#ifndef WH_COLLISION_ARM_H
+#define WH_COLLISION_ARM_H
+
+#include "core/pose.h"
+
+/* The bodies of the robot, in the order in which they hang on each other. */
+typedef enum {
+    WH_ARM_BASE,    /* base itself: the column's foot */
+    WH_ARM_LIFT,    /* at (0, 0, Z), not turned */
+    WH_ARM_UPPER,   /* at (0, 0, Z), x along the upper arm to the elbow */
+    WH_ARM_FOREARM, /* at the elbow, height Z, x to the wrist */
+    WH_ARM_HAND,    /* at the wrist, height Z, x as the end-effector's */
+    WH_ARM_BODIES
+} wh_arm_body_t;
+
+typedef struct {
+    wh_real_t reach; /* from the wrist to the end-effector's origin, mm, >= 0 */
+    wh_real_t link;  /* length of each of the two links, mm, > 0 */
+    bool right_handed;
+} wh_arm_t;
+
+/* Whether both links together reach the wrist of this end-effector's pose. */
+bool wh_arm_reaches(const wh_arm_t *arm, const wh_pose_t *base_from_effector);
+
+/* bodies[WH_ARM_BODIES]: base_from_body. Where the links are too short they point at the wrist; where the wrist is above
+ * the column's axis (to 1e-9 mm) the arm folds along the end-effector's x. Arguments are not checked. Cost: three square
+ * roots. */
+void wh_arm_place(const wh_arm_t *arm, const wh_pose_t *base_from_effector, wh_pose_t bodies[]);
+
+#endif

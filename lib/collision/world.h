@@ -1,0 +1,134 @@
+/* The cell's bodies and what of them comes near to what, slice by slice.
+ *
+ * A world is made of convex parts. Fixed ones (FOUPs, ledges, walls) stand in base; the robot's hang on its arm, the
+ * grippers' on the grippers; each wafer is one more. After each step of the grasp table the world is told where everything is
+ * now. It then says whether anything touched what it must not, between the last slice and this one as well, and keeps
+ * the smallest gap of each watched kind of pair with the slice in which it occurred.
+ *
+ * Between two slices each body's origin goes straight and the body turns at a constant rate about it. Nothing tunnels: a
+ * pair counts as apart only when a plane between the two, or the gaps at both ends against the way that their points went,
+ * prove it for the whole slice; else the slice is divided until it is proved, contact is found, or the check gives up
+ * and says so (WH_EVENT_UNDECIDED). Contact is collision/gap.h's: touching within 1e-3 mm is no hit.
+ *
+ * What may touch: a gripper's parts and the wafer that it holds, or is about to take or has just let go (within the table's
+ * tolerance sideways and near_projz in height, with an open valve, and until it has gone 1 mm sideways); a wafer and the
+ * ledges of the slot, or the chuck, that it lies in; neighbours in the chain of the arm; parts that do not move against
+ * each other. Nothing else.
+ *
+ * No heap; the memory is the caller's. A world is judged by, and never changes, wafers and grippers.
+ */
+#ifndef WH_COLLISION_WORLD_H
+#define WH_COLLISION_WORLD_H
+
+#include "cell/station.h"
+#include "collision/arm.h"
+#include "collision/convex.h"
+#include "collision/tree.h"
+
+/* Grippers and parts on them, of one world. */
+#define WH_WORLD_GRIPPERS 8
+#define WH_WORLD_MOVING 64 /* parts of robot and grippers together */
+
+/* What a part is to the rules of who may touch whom. */
+typedef enum {
+    WH_PART_FIXED, /* walls, tables, shells; `owner` is not looked at */
+    WH_PART_LEDGE, /* of station `owner`, slot `slot` */
+    WH_PART_ARM,   /* of the robot's body `owner`, a wh_arm_body_t */
+    WH_PART_BLADE, /* of gripper `owner`, which is on the robot */
+    WH_PART_CHUCK, /* of gripper `owner`, which is a chuck */
+    WH_PART_WAFER  /* wafer `owner` */
+} wh_part_kind_t;
+
+/* Its convex.body_from_shape is in base for fixed parts and ledges, else in the frame of what it hangs on. */
+typedef struct {
+    wh_part_kind_t kind;
+    int32_t owner;
+    int32_t slot; /* of a ledge, from 1 */
+    wh_convex_t convex;
+} wh_part_t;
+
+/* Kinds of pairs whose smallest gap is kept. */
+typedef enum {
+    WH_CLEARANCE_BLADE_WAFER_ABOVE, /* a blade and a wafer above it that it does not hold, nor is about to take */
+    WH_CLEARANCE_BLADE_WAFER_BELOW,
+    WH_CLEARANCE_BLADE_OTHER,  /* a blade and ledges, chucks or fixed parts */
+    WH_CLEARANCE_WAFER_WAFER,  /* a held wafer and another one */
+    WH_CLEARANCE_WAFER_LEDGE,  /* a held wafer and a ledge of a slot that it does not lie in */
+    WH_CLEARANCE_WAFER_OTHER,  /* a held wafer and fixed parts, chucks, or another gripper's blade */
+    WH_CLEARANCE_ARM_OTHER,    /* the arm and fixed parts, ledges, chucks or wafers */
+    WH_CLEARANCE_ARM_ITSELF,   /* the arm and its own blades and held wafers */
+    WH_CLEARANCES
+} wh_clearance_kind_t;
+
+/* Gaps are kept from this one down, mm: what is farther is not near. */
+#define WH_CLEARANCE_RANGE WH_REAL(20.0)
+
+/* The smallest gap of one kind so far. `gap` is WH_CLEARANCE_RANGE until something was nearer. Exact to 1e-3 mm at the ends
+ * of slices; 0 when touching or hit. */
+typedef struct {
+    wh_real_t gap;
+    uint64_t slice;
+    int32_t parts[2]; /* WH_NONE until then */
+    wh_vec3_t at;     /* between the two, base */
+} wh_clearance_t;
+
+/* A description; immutable while a world uses it. */
+typedef struct {
+    const wh_part_t *parts; /* fixed ones and ledges first, then those that hang on something */
+    size_t part_count;
+    wh_convex_t wafer; /* in a wafer's frame; wafer w is part part_count + w */
+    wh_arm_t arm;
+    size_t gripper_count, wafer_count;
+    const wh_cell_t *cell;
+    wh_real_t limits[WH_CLEARANCES]; /* WH_EVENT_TOO_CLOSE below; 0: none */
+} wh_world_config_t;
+
+typedef struct wh_world wh_world_t;
+
+/* The kind's name, such as "blade_wafer_above": a constant, never null. */
+const char *wh_clearance_name(wh_clearance_kind_t kind);
+
+/* WH_OK, or what is wrong with the description: WH_STATUS_NULL_ARGUMENT; WH_STATUS_BAD_CAPACITY for too many grippers or
+ * parts that hang on something; WH_STATUS_OUT_OF_RANGE for an owner, a slot or parts out of order; else what
+ * wh_convex_validate says. `part` (may be null) is then the index of the part, or WH_NONE. */
+wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part);
+
+/* Bytes that wh_world_init needs. */
+size_t wh_world_bytes(const wh_world_config_t *config);
+
+/* Sets a world up in `memory`, aligned as malloc's, from where everything is when a run begins: base_from_effector, the
+ * grippers' poses, the table's wafers. `config`, which has passed wh_world_validate, and `memory` must outlive it. Returns null when
+ * `bytes` are too few. Cost: n log n in fixed parts and wafers. */
+wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_grasp_t *table,
+                          const wh_pose_t *base_from_effector, const wh_pose_t base_from_grippers[],
+                          void *memory, size_t bytes);
+
+/* One slice: what moved since the last call, and what came of it. `table` is as its step left it. Appends to `list` while
+ * there is room (it may be null): at most one WH_EVENT_HIT or WH_EVENT_UNDECIDED in a run, the first, after which contact is judged no
+ * more, and one WH_EVENT_TOO_CLOSE for each kind of clearance. Cost: a few nanoseconds for each pair that is near,
+ * some tens of microseconds for one that has to be measured; flat in what rests elsewhere. */
+void wh_world_step(wh_world_t *world, const wh_grasp_t *table, const wh_pose_t *base_from_effector,
+                   const wh_pose_t base_from_grippers[], wh_event_list_t *list);
+
+/* Tells the world that a wafer which nobody holds was put elsewhere between two steps. */
+void wh_world_place(wh_world_t *world, const wh_grasp_t *table, int32_t wafer);
+
+/* The smallest gaps so far, by kind: WH_CLEARANCES of them. */
+const wh_clearance_t *wh_world_clearances(const wh_world_t *world);
+
+/* How many slices' pairs were looked at in which way, for those who ask where the time goes. */
+typedef struct {
+    uint64_t pairs;     /* near enough to be on a list */
+    uint64_t planes;    /* decided by a plane between the two */
+    uint64_t measured;  /* measured */
+    uint64_t divided;   /* slices divided */
+    uint64_t relisted;  /* lists made anew */
+} wh_world_counters_t;
+
+const wh_world_counters_t *wh_world_counters(const wh_world_t *world);
+
+/* Looks at everything that rests, as `waferhand layout` does before a run: the first two parts that touch or cut each other and
+ * must not, to `parts`; false when there are none. Cost: n log n. */
+bool wh_world_check_rest(wh_world_t *world, const wh_grasp_t *table, int32_t parts[2]);
+
+#endif

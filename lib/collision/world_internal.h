@@ -1,0 +1,134 @@
+/* Within the collision world: bodies that move (world_move.c), lists of what is near (world_near.c), the judgement of
+ * one pair (world_pair.c), who may touch whom (world_rules.c).
+ */
+#ifndef WH_COLLISION_WORLD_INTERNAL_H
+#define WH_COLLISION_WORLD_INTERNAL_H
+
+#include "collision/gap.h"
+#include "collision/world.h"
+
+/* How far from a moving part things are put on its list at first, mm; less where too many are there. */
+#define WH_NEAR_MARGIN WH_REAL(40.0)
+#define WH_NEAR_LEAST WH_REAL(0.1)
+#define WH_NEAR_CAPACITY 128
+
+/* After so many wafers have been set down elsewhere the tree is built anew. */
+#define WH_REST_REBUILD 32
+
+/* Something that moves, at both ends of the slice. */
+typedef struct {
+    wh_pose_t before, now; /* base_from_body */
+    wh_real_t way;         /* of its origin, mm */
+    wh_real_t turn;        /* about it, rad: never less than it was */
+} wh_body_t;
+
+/* What is known of a pair: the gap is at least `slack`, as of the last slice, and `axis` (zero: none yet) parted them. */
+typedef struct {
+    int32_t other; /* an item of the tree, or a mover */
+    wh_real_t slack;
+    wh_vec3_t axis;
+} wh_near_t;
+
+/* A convex part that moves: one that hangs on a body, or the wafer that a gripper holds. */
+typedef struct {
+    int32_t part;  /* WH_NONE: this gripper holds none */
+    int32_t body;  /* index in world->bodies */
+    wh_pose_t before, now; /* base_from_shape */
+    wh_real_t radius; /* of the ball about the body's origin that holds it */
+    wh_real_t motion; /* no point of it went farther in this slice, mm */
+    wh_real_t bulge;  /* nor farther from its straight way */
+    wh_near_t *near;  /* things that rest, WH_NEAR_CAPACITY of them */
+    size_t near_count;
+    wh_real_t reach; /* how much farther it may go before the list must be made anew */
+    bool crowded;    /* more than the list can hold */
+} wh_mover_t;
+
+/* A pair of movers. */
+typedef struct {
+    int32_t a, b;
+    wh_near_t near;
+} wh_mover_pair_t;
+
+/* The wafer that a blade let go last, until the blade has gone sideways from there. */
+typedef struct {
+    int32_t wafer;
+    wh_vec3_t at;
+} wh_left_t;
+
+struct wh_world {
+    const wh_world_config_t *config;
+    size_t fixed_count; /* parts that hang on nothing: items 0 .. of the tree; then the wafers */
+    wh_tree_t tree;
+    wh_box_t *boxes;         /* of the tree's items, when it is built */
+    wh_pose_t *wafers;       /* base_from_wafer, as of the last slice */
+    size_t set_down;         /* since the tree was built */
+    wh_body_t bodies[WH_ARM_BODIES + 2 * WH_WORLD_GRIPPERS]; /* arm, grippers, what each holds */
+    wh_mover_t *movers;
+    size_t mover_count;
+    wh_mover_pair_t *pairs;
+    size_t pair_count;
+    wh_near_t *near;
+    int32_t held[WH_WORLD_GRIPPERS];
+    wh_left_t left[WH_WORLD_GRIPPERS];
+    wh_clearance_t clearances[WH_CLEARANCES];
+    bool too_close[WH_CLEARANCES]; /* reported */
+    bool struck;                   /* contact was reported and is judged no more */
+    wh_world_counters_t counters;
+};
+
+/* One of a pair, as the judgement sees it. */
+typedef struct {
+    int32_t part;
+    wh_part_kind_t kind;
+    int32_t owner, slot;
+    const wh_convex_t *convex;
+    const wh_body_t *body; /* null: it rests */
+    wh_pose_t before, now; /* base_from_shape */
+    wh_real_t motion, bulge;
+} wh_side_t;
+
+/* What a step works on. */
+typedef struct {
+    wh_world_t *world;
+    const wh_grasp_t *table;
+    wh_event_list_t *list;
+} wh_look_t;
+
+/* The tree's items and the parts' numbers: fixed parts, then (behind those that hang) wafers. */
+int32_t wh_world_part_of_item(const wh_world_t *world, int32_t item);
+int32_t wh_world_item_of_wafer(const wh_world_t *world, int32_t wafer);
+const wh_convex_t *wh_world_convex(const wh_world_t *world, int32_t part);
+
+/* Body index of what gripper g is, and of what it holds. */
+int32_t wh_world_gripper_body(size_t gripper);
+int32_t wh_world_held_body(size_t gripper);
+
+wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *mover);
+wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item);
+
+/* Takes over where everything is now. Wafers that were taken or let go change between mover and tree. */
+void wh_world_move(const wh_look_t *look, const wh_pose_t *base_from_effector,
+                   const wh_pose_t base_from_grippers[]);
+
+/* After the pairs were judged: what was let go rests. */
+void wh_world_settle(const wh_look_t *look);
+
+/* Makes the mover's list anew if it went as far as the list reaches. */
+void wh_world_list_near(wh_world_t *world, wh_mover_t *mover);
+
+/* More is near to this mover than its list can hold: contact is undecided. */
+void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a);
+
+/* Judges one pair for this slice. */
+void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_near_t *near);
+
+/* Two parts that never move against each other, or are neighbours by design. */
+bool wh_world_belong_together(const wh_part_t *a, const wh_part_t *b);
+
+/* Whether they may touch as things are. */
+bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b);
+
+/* Which clearance the pair counts for, or WH_CLEARANCES: none. */
+wh_clearance_kind_t wh_world_clearance_of(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b);
+
+#endif

@@ -1,0 +1,218 @@
+/* Where everything is now, and what of it rests. */
+#include "collision/world_internal.h"
+
+int32_t wh_world_gripper_body(size_t gripper) {
+    return (int32_t)(WH_ARM_BODIES + gripper);
+}
+
+int32_t wh_world_held_body(size_t gripper) {
+    return (int32_t)(WH_ARM_BODIES + WH_WORLD_GRIPPERS + gripper);
+}
+
+int32_t wh_world_part_of_item(const wh_world_t *world, int32_t item) {
+    const size_t wafer = (size_t)item - world->fixed_count;
+    return (size_t)item < world->fixed_count ? item : (int32_t)(world->config->part_count + wafer);
+}
+
+int32_t wh_world_item_of_wafer(const wh_world_t *world, int32_t wafer) {
+    return (int32_t)(world->fixed_count + (size_t)wafer);
+}
+
+const wh_convex_t *wh_world_convex(const wh_world_t *world, int32_t part) {
+    const wh_world_config_t *config = world->config;
+    return (size_t)part < config->part_count ? &config->parts[part].convex : &config->wafer;
+}
+
+/* ---------------------------------------------------------------------------------------------------- motion */
+
+/* The angle between two rotations, never less: the matrices' difference has the Frobenius norm 2 sqrt(2) sin(angle / 2), and
+ * asin(s) <= s (1 + (pi/2 - 1) s^2) for s from 0 to 1, both sides agreeing at the ends. */
+static wh_real_t angle_between(const wh_mat3_t *a, const wh_mat3_t *b) {
+    wh_real_t sum = 0;
+    for (size_t i = 0; i < 9; ++i) {
+        const wh_real_t d = a->m[i / 3][i % 3] - b->m[i / 3][i % 3];
+        sum += d * d;
+    }
+    const wh_real_t s = wh_real_sqrt(sum / 8);
+    return s < 1 ? 2 * s * (1 + WH_REAL(0.5708) * s * s) : WH_REAL(3.1416);
+}
+
+static void move_body(wh_body_t *body, const wh_pose_t *now) {
+    body->before = body->now;
+    body->now = *now;
+    const wh_vec3_t way = wh_vec3_subtract(&body->now.r, &body->before.r);
+    body->way = wh_vec3_norm(&way);
+    body->turn = angle_between(&body->now.R, &body->before.R);
+}
+
+static void move_mover(wh_world_t *world, wh_mover_t *mover) {
+    const wh_body_t *body = &world->bodies[mover->body];
+    if (mover->part == WH_NONE) {
+        return;
+    }
+    const wh_convex_t *convex = wh_world_convex(world, mover->part);
+    mover->before = wh_pose_compose(&body->before, &convex->body_from_shape);
+    mover->now = wh_pose_compose(&body->now, &convex->body_from_shape);
+    mover->motion = body->way + body->turn * mover->radius;
+    mover->bulge = body->turn * body->turn * mover->radius / 8;
+    mover->reach -= mover->motion;
+}
+
+/* ------------------------------------------------------------------------------------------ taken and let go */
+
+static wh_mover_t *mover_of_gripper(wh_world_t *world, size_t gripper) {
+    const size_t hanging = world->config->part_count - world->fixed_count;
+    return &world->movers[hanging + gripper];
+}
+
+/* Nothing is known any more of what this mover is near to. */
+static void forget_pairs(wh_world_t *world, const wh_mover_t *mover) {
+    const int32_t index = (int32_t)(mover - world->movers);
+    for (size_t i = 0; i < world->pair_count; ++i) {
+        if (world->pairs[i].a == index || world->pairs[i].b == index) {
+            world->pairs[i].near.slack = 0;
+            world->pairs[i].near.axis = wh_vec3(0, 0, 0);
+        }
+    }
+}
+
+static void relist_all(wh_world_t *world) {
+    for (size_t i = 0; i < world->mover_count; ++i) {
+        world->movers[i].reach = -1;
+    }
+}
+
+static void begin_to_carry(wh_world_t *world, size_t gripper, int32_t wafer) {
+    wh_mover_t *mover = mover_of_gripper(world, gripper);
+    const wh_box_t nothing = wh_box_empty();
+    world->held[gripper] = wafer;
+    mover->part = (int32_t)(world->config->part_count + (size_t)wafer);
+    world->bodies[mover->body].now = world->wafers[wafer];
+    wh_tree_set(&world->tree, wh_world_item_of_wafer(world, wafer), &nothing);
+    mover->near_count = 0;
+    forget_pairs(world, mover);
+    relist_all(world);
+}
+
+static void carry_no_more(wh_world_t *world, size_t gripper) {
+    world->held[gripper] = WH_NONE;
+    mover_of_gripper(world, gripper)->part = WH_NONE;
+}
+
+/* What lists knew of a wafer that was elsewhere is not true any more. */
+static void forget_item(wh_world_t *world, int32_t item) {
+    for (size_t m = 0; m < world->mover_count; ++m) {
+        wh_mover_t *mover = &world->movers[m];
+        for (size_t i = 0; i < mover->near_count; ++i) {
+            if (mover->near[i].other == item) {
+                mover->near[i].slack = 0;
+                mover->near[i].axis = wh_vec3(0, 0, 0);
+            }
+        }
+    }
+}
+
+/* A wafer lies down where the table has it. */
+static void lay_down(wh_world_t *world, int32_t wafer) {
+    wh_box_t box;
+    const wh_pose_t base_from_shape =
+        wh_pose_compose(&world->wafers[wafer], &world->config->wafer.body_from_shape);
+    wh_convex_bounds(&world->config->wafer, &base_from_shape, &box.low, &box.high);
+    world->boxes[wh_world_item_of_wafer(world, wafer)] = box;
+    wh_tree_set(&world->tree, wh_world_item_of_wafer(world, wafer), &box);
+    forget_item(world, wh_world_item_of_wafer(world, wafer));
+    relist_all(world);
+}
+
+static bool is_carried(const wh_world_t *world, int32_t wafer) {
+    for (size_t g = 0; g < world->config->gripper_count; ++g) {
+        if (world->held[g] == wafer) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void rebuild(wh_world_t *world) {
+    for (size_t i = 0; i < world->tree.count; ++i) {
+        world->boxes[i] = wh_tree_box(&world->tree, (int32_t)i);
+    }
+    wh_tree_build(&world->tree, world->boxes);
+    world->set_down = 0;
+}
+
+void wh_world_settle(const wh_look_t *look) {
+    wh_world_t *world = look->world;
+    for (size_t g = 0; g < world->config->gripper_count; ++g) {
+        const int32_t wafer = world->held[g];
+        if (wafer != WH_NONE && look->table->storage.grippers[g].wafer != wafer) {
+            carry_no_more(world, g);
+            world->left[g].wafer = wafer;
+            world->left[g].at = world->bodies[wh_world_gripper_body(g)].now.r;
+            if (!is_carried(world, wafer)) {
+                lay_down(world, wafer);
+                ++world->set_down;
+            }
+        }
+    }
+    if (world->set_down >= WH_REST_REBUILD) {
+        rebuild(world);
+    }
+}
+
+void wh_world_place(wh_world_t *world, const wh_grasp_t *table, int32_t wafer) {
+    if (!is_carried(world, wafer)) {
+        world->wafers[wafer] = table->storage.wafers[wafer].base_from_wafer;
+        lay_down(world, wafer);
+        ++world->set_down;
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------- the slice */
+
+static void take_wafers(const wh_look_t *look) {
+    wh_world_t *world = look->world;
+    for (size_t g = 0; g < world->config->gripper_count; ++g) {
+        const int32_t wafer = look->table->storage.grippers[g].wafer;
+        if (wafer == WH_NONE || wafer == world->held[g]) {
+            continue;
+        }
+        for (size_t other = 0; other < world->config->gripper_count; ++other) {
+            if (world->held[other] == wafer) {
+                carry_no_more(world, other);
+                world->left[other].wafer = wafer;
+                world->left[other].at = world->bodies[wh_world_gripper_body(other)].now.r;
+            }
+        }
+        begin_to_carry(world, g, wafer);
+    }
+}
+
+static void move_held(const wh_look_t *look) {
+    wh_world_t *world = look->world;
+    for (size_t g = 0; g < world->config->gripper_count; ++g) {
+        const int32_t wafer = world->held[g];
+        if (wafer != WH_NONE) {
+            world->wafers[wafer] = look->table->storage.wafers[wafer].base_from_wafer;
+            move_body(&world->bodies[wh_world_held_body(g)], &world->wafers[wafer]);
+        }
+    }
+}
+
+void wh_world_move(const wh_look_t *look, const wh_pose_t *base_from_effector,
+                   const wh_pose_t base_from_grippers[]) {
+    wh_world_t *world = look->world;
+    wh_pose_t arm[WH_ARM_BODIES];
+    wh_arm_place(&world->config->arm, base_from_effector, arm);
+    for (size_t i = 0; i < WH_ARM_BODIES; ++i) {
+        move_body(&world->bodies[i], &arm[i]);
+    }
+    for (size_t g = 0; g < world->config->gripper_count; ++g) {
+        move_body(&world->bodies[wh_world_gripper_body(g)], &base_from_grippers[g]);
+    }
+    take_wafers(look);
+    move_held(look);
+    for (size_t i = 0; i < world->mover_count; ++i) {
+        move_mover(world, &world->movers[i]);
+    }
+}

@@ -1,0 +1,108 @@
+/* What rests near a moving part: a list that is good until the part has gone as far as it reaches. */
+#include "collision/world_internal.h"
+
+wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *mover) {
+    const size_t part = (size_t)mover->part;
+    const wh_world_config_t *config = world->config;
+    wh_side_t side = {.part = mover->part, .kind = WH_PART_WAFER, .convex = &config->wafer};
+    if (part < config->part_count) {
+        side.kind = config->parts[part].kind;
+        side.owner = config->parts[part].owner;
+        side.convex = &config->parts[part].convex;
+    } else {
+        side.owner = (int32_t)(part - config->part_count);
+    }
+    side.body = &world->bodies[mover->body];
+    side.before = mover->before;
+    side.now = mover->now;
+    side.motion = mover->motion;
+    side.bulge = mover->bulge;
+    return side;
+}
+
+wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item) {
+    const wh_world_config_t *config = world->config;
+    wh_side_t side = {.part = wh_world_part_of_item(world, item), .kind = WH_PART_WAFER};
+    if ((size_t)item < world->fixed_count) {
+        side.kind = config->parts[item].kind;
+        side.owner = config->parts[item].owner;
+        side.slot = config->parts[item].slot;
+        side.convex = &config->parts[item].convex;
+        side.now = side.convex->body_from_shape;
+    } else {
+        side.owner = item - (int32_t)world->fixed_count;
+        side.convex = &config->wafer;
+        side.now = wh_pose_compose(&world->wafers[side.owner], &config->wafer.body_from_shape);
+    }
+    side.before = side.now;
+    return side;
+}
+
+/* How far two boxes are apart along base's axes, and along which. */
+static wh_real_t box_gap(const wh_box_t *a, const wh_box_t *b, wh_vec3_t *axis) {
+    const wh_real_t gaps[6] = {b->low.x - a->high.x, a->low.x - b->high.x, b->low.y - a->high.y,
+                               a->low.y - b->high.y, b->low.z - a->high.z, a->low.z - b->high.z};
+    size_t best = 0;
+    for (size_t i = 1; i < 6; ++i) {
+        best = gaps[i] > gaps[best] ? i : best;
+    }
+    const wh_real_t sign = best % 2 == 0 ? 1 : -1;
+    *axis = wh_vec3(best / 2 == 0 ? sign : 0, best / 2 == 1 ? sign : 0, best / 2 == 2 ? sign : 0);
+    return gaps[best];
+}
+
+static wh_box_t box_before(const wh_world_t *world, const wh_mover_t *mover) {
+    wh_box_t box;
+    wh_convex_bounds(wh_world_convex(world, mover->part), &mover->before, &box.low, &box.high);
+    return box;
+}
+
+/* Finds what is near, within a margin that is halved until all of it has room. */
+static size_t find_near(wh_world_t *world, wh_mover_t *mover, const wh_box_t *box, int32_t found[]) {
+    wh_real_t margin = mover->motion > WH_NEAR_MARGIN ? mover->motion : WH_NEAR_MARGIN;
+    const wh_real_t least = mover->motion + WH_NEAR_LEAST + WH_GAP_TOUCH;
+    for (;;) {
+        const wh_box_t grown = wh_box_grown(box, margin);
+        const size_t count = wh_tree_find(&world->tree, &grown, found, WH_NEAR_CAPACITY);
+        mover->reach = margin - mover->motion - WH_GAP_TOUCH;
+        mover->crowded = count > WH_NEAR_CAPACITY;
+        if (!mover->crowded || margin <= least) {
+            return mover->crowded ? WH_NEAR_CAPACITY : count;
+        }
+        margin = margin / 2 > least ? margin / 2 : least;
+    }
+}
+
+/* What the old list knew of a thing is known still. */
+static bool take_over(const wh_near_t known[], size_t count, wh_near_t *near) {
+    for (size_t i = 0; i < count; ++i) {
+        if (known[i].other == near->other) {
+            *near = known[i];
+            return true;
+        }
+    }
+    return false;
+}
+
+void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
+    int32_t found[WH_NEAR_CAPACITY];
+    wh_near_t known[WH_NEAR_CAPACITY];
+    if (mover->reach > 0) {
+        return;
+    }
+    const wh_box_t box = box_before(world, mover);
+    const size_t known_count = mover->near_count;
+    for (size_t i = 0; i < known_count; ++i) {
+        known[i] = mover->near[i];
+    }
+    mover->near_count = find_near(world, mover, &box, found);
+    for (size_t i = 0; i < mover->near_count; ++i) {
+        wh_near_t *near = &mover->near[i];
+        near->other = found[i];
+        if (!take_over(known, known_count, near)) {
+            const wh_box_t other = wh_tree_box(&world->tree, found[i]);
+            near->slack = box_gap(&box, &other, &near->axis);
+        }
+    }
+    ++world->counters.relisted;
+}

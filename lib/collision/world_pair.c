@@ -1,0 +1,192 @@
+/* The judgement of one pair for one slice: apart by a plane, by gaps against ways, or by dividing the slice. */
+#include "collision/world_internal.h"
+
+/* A slice is divided into at most so many steps before the check gives up. */
+#define MOST_STEPS 256
+
+/* Gaps are known better than this, mm: one that is not smaller by more is no new minimum. */
+#define SAME_GAP WH_REAL(1e-4)
+
+/* --------------------------------------------------------------------------------------------- between slices */
+
+/* base_from_shape at t of the slice, 0 to 1. */
+static wh_pose_t shape_at(const wh_side_t *side, wh_real_t t) {
+    if (!side->body) {
+        return side->now;
+    }
+    const wh_body_t *body = side->body;
+    wh_pose_t pose = body->now;
+    for (size_t i = 0; i < 9; ++i) {
+        const wh_real_t from = body->before.R.m[i / 3][i % 3];
+        pose.R.m[i / 3][i % 3] = from + t * (body->now.R.m[i / 3][i % 3] - from);
+    }
+    wh_mat3_orthonormalise(&pose.R);
+    wh_mat3_orthonormalise(&pose.R);
+    const wh_vec3_t way = wh_vec3_subtract(&body->now.r, &body->before.r);
+    const wh_vec3_t gone = wh_vec3_scale(t, &way);
+    pose.r = wh_vec3_add(&body->before.r, &gone);
+    return wh_pose_compose(&pose, &side->convex->body_from_shape);
+}
+
+/* Goes through the slice by steps that cannot reach contact, for as long as there is a gap. */
+static wh_gap_state_t divide(wh_world_t *world, const wh_side_t *a, const wh_side_t *b, wh_real_t motion,
+                             wh_gap_t *gap) {
+    wh_real_t t = 0;
+    ++world->counters.divided;
+    for (int step = 0; step < MOST_STEPS; ++step) {
+        const wh_pose_t at_a = shape_at(a, t);
+        const wh_pose_t at_b = shape_at(b, t);
+        wh_gap_measure(a->convex, &at_a, b->convex, &at_b, motion, gap->axis, gap);
+        if (gap->state == WH_GAP_HIT || gap->state == WH_GAP_UNDECIDED || t >= 1) {
+            return gap->state;
+        }
+        t += (gap->gap > WH_GAP_TOUCH ? gap->gap : WH_GAP_TOUCH) / motion;
+        t = t < 1 ? t : 1;
+    }
+    return WH_GAP_UNDECIDED;
+}
+
+/* Whether the pair kept apart within the slice, given its gap at the end. */
+static wh_gap_state_t judge_between(wh_world_t *world, const wh_side_t *a, const wh_side_t *b,
+                                    const wh_gap_t *end, wh_gap_t *worst) {
+    const wh_real_t motion = a->motion + b->motion;
+    const wh_real_t bulge = a->bulge + b->bulge;
+    *worst = *end;
+    if (!(motion > WH_GAP_TOUCH)) {
+        return end->state;
+    }
+    if (end->state == WH_GAP_CLEAR || end->state == WH_GAP_TOUCHING) {
+        const wh_real_t start = wh_gap_along(a->convex, &a->before, b->convex, &b->before, end->axis);
+        const wh_real_t stop = wh_gap_along(a->convex, &a->now, b->convex, &b->now, end->axis);
+        if (start - bulge > -WH_GAP_TOUCH && stop - bulge > -WH_GAP_TOUCH) {
+            return end->state;
+        }
+    }
+    wh_gap_t begin;
+    wh_gap_measure(a->convex, &a->before, b->convex, &b->before, motion, end->axis, &begin);
+    if (begin.state == WH_GAP_CLEAR && begin.gap + end->gap > motion) {
+        return end->state;
+    }
+    worst->axis = begin.axis;
+    return divide(world, a, b, motion, worst);
+}
+
+/* ------------------------------------------------------------------------------------------------ what came of it */
+
+static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_side_t *a, const wh_side_t *b) {
+    static const wh_event_t blank = {.wafer = WH_NONE, .gripper = WH_NONE, .other = WH_NONE};
+    if (!look->list || look->list->count >= look->list->capacity) {
+        return NULL;
+    }
+    wh_event_t *event = &look->list->events[look->list->count++];
+    *event = blank;
+    event->kind = kind;
+    event->slice = event->measured_slice = look->table->slice;
+    event->parts[0] = a->part;
+    event->parts[1] = b->part;
+    for (int i = 0; i < 2; ++i) {
+        const wh_side_t *side = i == 0 ? a : b;
+        if (side->kind == WH_PART_WAFER && event->wafer == WH_NONE) {
+            event->wafer = side->owner;
+        } else if (side->kind == WH_PART_BLADE || side->kind == WH_PART_CHUCK) {
+            event->gripper = side->owner;
+        }
+    }
+    return event;
+}
+
+static void report_contact(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b,
+                           const wh_gap_t *gap, wh_gap_state_t state) {
+    const wh_event_kind_t kind = state == WH_GAP_HIT ? WH_EVENT_HIT : WH_EVENT_UNDECIDED;
+    look->world->struck = true;
+    wh_event_t *event = append(look, kind, a, b);
+    if (event) {
+        event->at = gap->at;
+    }
+}
+
+void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a) {
+    if (!look->world->struck) {
+        const wh_gap_t nowhere = {.at = a->now.r};
+        const wh_side_t nothing = {.part = WH_NONE, .kind = WH_PART_FIXED};
+        report_contact(look, a, &nothing, &nowhere, WH_GAP_UNDECIDED);
+    }
+}
+
+static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, const wh_side_t *a,
+                           const wh_side_t *b, const wh_gap_t *gap) {
+    wh_world_t *world = look->world;
+    wh_clearance_t *least = &world->clearances[kind];
+    const wh_real_t limit = world->config->limits[kind];
+    const wh_real_t found = gap->state == WH_GAP_CLEAR ? gap->gap : 0;
+    if (!(found < least->gap)) {
+        return;
+    }
+    least->gap = found;
+    least->slice = look->table->slice;
+    least->parts[0] = a->part;
+    least->parts[1] = b->part;
+    least->at = gap->at;
+    if (found < limit && !world->too_close[kind]) {
+        wh_event_t *event = append(look, WH_EVENT_TOO_CLOSE, a, b);
+        world->too_close[kind] = true;
+        if (event) {
+            event->value = found;
+            event->limit = limit;
+            event->at = gap->at;
+        }
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- judgement */
+
+/* By the plane that parted them last. */
+static bool is_parted(const wh_side_t *a, const wh_side_t *b, wh_real_t needed, wh_near_t *near) {
+    const wh_vec3_t axis = near->axis;
+    if (axis.x == 0 && axis.y == 0 && axis.z == 0) {
+        return false;
+    }
+    const wh_real_t bulge = a->bulge + b->bulge;
+    const wh_real_t begin = wh_gap_along(a->convex, &a->before, b->convex, &b->before, axis);
+    const wh_real_t end = wh_gap_along(a->convex, &a->now, b->convex, &b->now, axis);
+    const bool apart = begin - bulge > 0 && end - bulge > 0 && end >= needed;
+    if (apart) {
+        near->slack = end;
+    }
+    return apart;
+}
+
+static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_clearance_kind_t kind,
+                    wh_near_t *near) {
+    wh_world_t *world = look->world;
+    wh_gap_t gap;
+    wh_gap_t worst;
+    const wh_real_t enough = 2 * (a->motion + b->motion) + WH_REAL(5.0);
+    const wh_real_t wanted = kind == WH_CLEARANCES ? 0 : world->clearances[kind].gap;
+    wh_gap_measure(a->convex, &a->now, b->convex, &b->now, enough > wanted ? enough : wanted, near->axis, &gap);
+    ++world->counters.measured;
+    near->slack = gap.state == WH_GAP_CLEAR ? gap.gap : 0;
+    near->axis = gap.axis;
+    if (kind != WH_CLEARANCES) {
+        keep_clearance(look, kind, a, b, &gap);
+    }
+    if (!world->struck) {
+        const wh_gap_state_t state = judge_between(world, a, b, &gap, &worst);
+        if (state == WH_GAP_HIT || state == WH_GAP_UNDECIDED) {
+            report_contact(look, a, b, &worst, state);
+        }
+    }
+}
+
+void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_near_t *near) {
+    wh_world_t *world = look->world;
+    const wh_clearance_kind_t kind = wh_world_clearance_of(look, a, b);
+    const wh_real_t least = kind == WH_CLEARANCES ? 0 : world->clearances[kind].gap;
+    if ((world->struck && kind == WH_CLEARANCES) || is_parted(a, b, least - SAME_GAP, near)) {
+        ++world->counters.planes;
+    } else if (wh_world_may_touch(look, a, b)) {
+        near->slack = 0;
+    } else {
+        measure(look, a, b, kind, near);
+    }
+}

@@ -1,0 +1,25 @@
+/* The collision check of a run: a world made from a layout, looking at each step of a simulator. */
+#ifndef WH_SCRIPT_COLLISION_H
+#define WH_SCRIPT_COLLISION_H
+
+#include "script/layout.h"
+#include "sim/simulator.h"
+
+/* Must not be moved once attached. All zero: no check. */
+typedef struct {
+    const wh_layout_t *layout;
+    void *memory;
+    wh_world_t *world;            /* null before the first step */
+    wh_pose_t base_from_effector; /* the last that was a pose */
+} wh_collision_t;
+
+/* Bytes that wh_collision_attach needs. */
+size_t wh_collision_bytes(const wh_layout_t *layout);
+
+/* Makes the check the simulator's observer. From where the first step that it sees has brought everything, it judges
+ * the others: also after a restore, when it is to be attached anew. `memory` is aligned as malloc's; layout, simulator
+ * and memory must outlive the check. */
+void wh_collision_attach(wh_collision_t *collision, const wh_layout_t *layout, wh_simulator_t *simulator,
+                         void *memory);
+
+#endif
