@@ -7,8 +7,8 @@
 #include "collision/gap.h"
 #include "collision/world.h"
 
-/* How far from a moving part things are put on its list at first, mm; less where too many are there. */
-#define WH_NEAR_MARGIN WH_REAL(40.0)
+/* How far beyond the range of clearances things are put on a moving part's list, mm; less where too many are there. */
+#define WH_NEAR_MARGIN WH_REAL(20.0)
 #define WH_NEAR_LEAST WH_REAL(0.1)
 #define WH_NEAR_CAPACITY 128
 

@@ -28,6 +28,24 @@ static wh_pose_t shape_at(const wh_side_t *side, wh_real_t t) {
     return wh_pose_compose(&pose, &side->convex->body_from_shape);
 }
 
+/* How far on from t, where they are a gap apart along its axis, the pair stays apart: as far as the axis still parts
+ * them, by halves, but at least as far as their points need to close the gap. */
+static wh_real_t safe_step(const wh_side_t *a, const wh_side_t *b, wh_real_t t, wh_real_t motion,
+                           const wh_gap_t *gap) {
+    const wh_real_t least = (gap->gap > WH_GAP_TOUCH ? gap->gap : WH_GAP_TOUCH) / motion;
+    const wh_real_t bulge = a->bulge + b->bulge;
+    for (wh_real_t step = 1 - t; step > least; step /= 2) {
+        const wh_pose_t at_a = shape_at(a, t + step);
+        const wh_pose_t at_b = shape_at(b, t + step);
+        const wh_real_t end = wh_gap_along(a->convex, &at_a, b->convex, &at_b, gap->axis);
+        const wh_real_t apart = end < gap->gap ? end : gap->gap;
+        if (apart - bulge * step * step > -WH_GAP_TOUCH) {
+            return step;
+        }
+    }
+    return least;
+}
+
 /* Goes through the slice by steps that cannot reach contact, for as long as there is a gap. */
 static wh_gap_state_t divide(wh_world_t *world, const wh_side_t *a, const wh_side_t *b, wh_real_t motion,
                              wh_gap_t *gap) {
@@ -40,7 +58,7 @@ static wh_gap_state_t divide(wh_world_t *world, const wh_side_t *a, const wh_sid
         if (gap->state == WH_GAP_HIT || gap->state == WH_GAP_UNDECIDED || t >= 1) {
             return gap->state;
         }
-        t += (gap->gap > WH_GAP_TOUCH ? gap->gap : WH_GAP_TOUCH) / motion;
+        t += safe_step(a, b, t, motion, gap);
         t = t < 1 ? t : 1;
     }
     return WH_GAP_UNDECIDED;
