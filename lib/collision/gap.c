@@ -10,7 +10,7 @@
 static const wh_gap_budget_t usual = {500, 2000};
 /* Turns of the axis of a shallow overlap; each is a search of its own. */
 static const int turns = 30;
-/* More than any sum of lengths here. */
+/* More than any length here. */
 static const wh_real_t far_away = 1e30;
 
 /* ------------------------------------------------------------------------------------------ along an axis */
@@ -228,7 +228,9 @@ static wh_gap_state_t contact(const wh_gap_pair_t *pair, const wh_gap_budget_t *
 
 static wh_gap_state_t measure(const wh_gap_pair_t *pair, wh_real_t enough, const wh_gap_budget_t *budget,
                               wh_gap_bounds_t *bounds) {
-    try_easy_axes(pair, bounds);
+    if (!(bounds->lower > WH_GAP_TOUCH)) {
+        try_easy_axes(pair, bounds);
+    }
     if (bounds->lower > enough) {
         bounds->at = middle_along(pair, &bounds->axis);
         return WH_GAP_CLEAR;
@@ -238,6 +240,10 @@ static wh_gap_state_t measure(const wh_gap_pair_t *pair, wh_real_t enough, const
         return WH_GAP_CLEAR;
     }
     return contact(pair, budget, bounds);
+}
+
+static bool is_pose(const wh_pose_t *pose) {
+    return wh_pose_validate(pose) == WH_OK && wh_vec3_norm(&pose->r) <= WH_GAP_FARTHEST;
 }
 
 void wh_gap_measure_within(const wh_gap_pair_t *pair, wh_real_t enough, wh_vec3_t guess,
@@ -254,7 +260,7 @@ void wh_gap_measure_within(const wh_gap_pair_t *pair, wh_real_t enough, wh_vec3_
     if (bounds.lower > above && bounds.lower < far_away) {
         gap->state = WH_GAP_CLEAR;
         bounds.at = middle_along(pair, &bounds.axis);
-    } else if (wh_pose_validate(pair->base_from_a) == WH_OK && wh_pose_validate(pair->base_from_b) == WH_OK) {
+    } else if (is_pose(pair->base_from_a) && is_pose(pair->base_from_b)) {
         gap->state = measure(pair, above, budget, &bounds);
     } else {
         return;

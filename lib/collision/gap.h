@@ -38,8 +38,10 @@
 
 /* Within this of 0, shapes touch. */
 #define WH_GAP_TOUCH 1e-3
-/* The gap of CLEAR is this close to the true one, for poses within 1e4 mm of base's origin. */
+/* The gap of CLEAR is this close to the true one, for shapes within 1e4 mm of base's origin and of each other. */
 #define WH_GAP_TIGHT 5e-7
+/* No pose may be farther from base's origin. */
+#define WH_GAP_FARTHEST 1e6
 /* What is taken off each shape to prove a HIT at all: 2 * sqrt(3) of it are still less than WH_GAP_TOUCH. */
 #define WH_GAP_CORE 0.28e-3
 

@@ -49,10 +49,11 @@ static wh_real_t volume(const wh_vec3_t *a, const wh_vec3_t *b, const wh_vec3_t 
 static bool weigh_triangle(const wh_vec3_t *a, const wh_vec3_t *b, const wh_vec3_t *c, wh_real_t weights[4]) {
     const wh_vec3_t ab = wh_vec3_subtract(b, a);
     const wh_vec3_t ac = wh_vec3_subtract(c, a);
+    const wh_vec3_t bc = wh_vec3_subtract(c, b);
     const wh_vec3_t normal = wh_vec3_cross(&ab, &ac);
-    weights[0] = volume(&normal, b, c);
-    weights[1] = volume(&normal, c, a);
-    weights[2] = volume(&normal, a, b);
+    weights[0] = volume(&normal, b, &bc);
+    weights[1] = -volume(&normal, a, &ac);
+    weights[2] = volume(&normal, a, &ab);
     return weights[0] > 0 && weights[1] > 0 && weights[2] > 0;
 }
 
@@ -156,6 +157,31 @@ static bool has(const simplex_t *simplex, const pair_point_t *point) {
     return false;
 }
 
+/* The direction of the nearest point: what is left of it across the line or plane that the points span. Weights have
+ * rounding errors along long thin triangles that would turn it. */
+static wh_vec3_t across(const simplex_t *simplex, const wh_vec3_t *nearest) {
+    if (simplex->count != 2 && simplex->count != 3) {
+        return *nearest;
+    }
+    const wh_vec3_t *first = &simplex->points[0].between;
+    const wh_vec3_t along = wh_vec3_subtract(&simplex->points[1].between, first);
+    wh_vec3_t normal;
+    if (simplex->count == 3) {
+        const wh_vec3_t beside = wh_vec3_subtract(&simplex->points[2].between, first);
+        normal = wh_vec3_cross(&along, &beside);
+    } else {
+        const wh_vec3_t side = wh_vec3_cross(&along, nearest);
+        normal = wh_vec3_cross(&side, &along);
+    }
+    const wh_real_t squared = wh_vec3_dot(&normal, &normal);
+    const wh_real_t part = wh_vec3_dot(&normal, nearest);
+    const wh_real_t whole = wh_vec3_dot(nearest, nearest);
+    if (!(part * part > squared * whole / 2)) {
+        return *nearest;
+    }
+    return wh_vec3_scale(part / squared, &normal);
+}
+
 /* In the middle between the two surfaces, given the points of the kernels and a unit axis between them. */
 static wh_vec3_t middle(const wh_gap_pair_t *pair, const simplex_t *simplex, const wh_vec3_t *axis) {
     wh_vec3_t sum = {0, 0, 0};
@@ -187,7 +213,8 @@ void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, w
         wh_vec3_t nearest;
         const wh_real_t distance = wh_real_sqrt(reduce(&simplex, &nearest));
         if (distance > 0) {
-            axis = wh_vec3_scale(1 / distance, &nearest);
+            axis = across(&simplex, &nearest);
+            axis = wh_vec3_scale(1 / wh_vec3_norm(&axis), &axis);
         }
         if (!(distance - round < bounds->upper)) {
             return;
