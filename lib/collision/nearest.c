@@ -182,16 +182,21 @@ static wh_vec3_t across(const simplex_t *simplex, const wh_vec3_t *nearest) {
     return wh_vec3_scale(part / squared, &normal);
 }
 
-/* In the middle between the two surfaces, given the points of the kernels and a unit axis between them. */
-static wh_vec3_t middle(const wh_gap_pair_t *pair, const simplex_t *simplex, const wh_vec3_t *axis) {
-    wh_vec3_t sum = {0, 0, 0};
+/* In the middle between the two surfaces, or of their overlap, given a unit axis between the points of the kernels and
+ * the distance of these. */
+static wh_vec3_t middle(const wh_gap_pair_t *pair, const simplex_t *simplex, const wh_vec3_t *axis,
+                        wh_real_t distance) {
+    wh_vec3_t on_a = {0, 0, 0};
     for (size_t i = 0; i < simplex->count; ++i) {
-        wh_vec3_t both = wh_vec3_add(&simplex->points[i].on_a, &simplex->points[i].on_b);
-        both = wh_vec3_scale(simplex->weights[i] / 2, &both);
-        sum = wh_vec3_add(&sum, &both);
+        const wh_vec3_t term = wh_vec3_scale(simplex->weights[i], &simplex->points[i].on_a);
+        on_a = wh_vec3_add(&on_a, &term);
     }
-    const wh_vec3_t out = wh_vec3_scale((wh_convex_round(pair->a) - wh_convex_round(pair->b)) / 2, axis);
-    return wh_vec3_add(&sum, &out);
+    const wh_real_t of_a = wh_convex_round(pair->a);
+    const wh_real_t of_b = wh_convex_round(pair->b);
+    const wh_real_t first = distance - of_b > -of_a ? distance - of_b : -of_a;
+    const wh_real_t last = distance + of_b < of_a ? distance + of_b : of_a;
+    const wh_vec3_t out = wh_vec3_scale((first + last) / 2, axis);
+    return wh_vec3_add(&on_a, &out);
 }
 
 void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds) {
@@ -220,7 +225,7 @@ void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, w
             return;
         }
         bounds->upper = distance - round;
-        bounds->at = middle(pair, &simplex, &axis);
+        bounds->at = middle(pair, &simplex, &axis, distance);
         if (simplex.count == 4 || !(distance > 0)) {
             return;
         }
