@@ -3,17 +3,26 @@
 #include "core/grasp_internal.h"
 #include "core/proximity_internal.h"
 
-/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && \valid(encounter);
-    requires \separated(encounter, watch, watch->table, watch->list);
-    requires watch->list != \null ==> \separated(encounter, watch->list->events + (0 .. watch->list->capacity - 1));
+/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1);
+    requires encounter == &watch->gripper->approach || encounter == &watch->gripper->contest;
     assigns encounter->wafer, encounter->holder,
             watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
-    ensures encounter->wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 1); */
+    ensures encounter->wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 1);
+    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table);
+    ensures encounter == &watch->gripper->approach || wh_same_approach{Pre, Post}(watch);
+    ensures encounter == &watch->gripper->contest || wh_same_contest{Pre, Post}(watch); */
 static void report(const wh_watch_t *watch, wh_encounter_t *encounter, wh_event_kind_t kind) {
+    /*@ assert \valid(encounter) && \separated(encounter, watch, watch->table, watch->list); */
+    /*@ assert watch->list != \null ==> \separated(watch->gripper, watch->list->events + (0 .. watch->list->capacity - 1)); */
     if (watch->list) {
         wh_event_t *event = wh_event_append(watch->table, watch->list, kind);
-        /*@ assert \separated(event, watch, watch->table, watch->list, encounter); */
+        /*@ assert \separated(event, watch, watch->table, watch->list, encounter) &&
+                   \separated(event, watch->gripper); */
         /*@ assert wh_list_grown{Pre, Here}(watch->list, 1); */
+        /*@ assert wh_same_size{Pre, Here}(watch->table) && watch->index == \at(watch->index, Pre); */
+        /*@ assert wh_same_approach{Pre, Here}(watch) && wh_same_contest{Pre, Here}(watch); */
+        /*@ assert wh_table_memory(watch->table) && wh_list_apart(watch->list, watch->table); */
+        /*@ assert wh_watch_memory(watch); */
         event->wafer = encounter->wafer;
         event->gripper = watch->index;
         event->other = encounter->holder;
@@ -21,8 +30,13 @@ static void report(const wh_watch_t *watch, wh_encounter_t *encounter, wh_event_
         event->measured_slice = encounter->slice;
     }
     /*@ assert wh_list_grown{Pre, Here}(watch->list, 1); */
+    /*@ assert wh_same_size{Pre, Here}(watch->table) && watch->index == \at(watch->index, Pre); */
+    /*@ assert wh_same_approach{Pre, Here}(watch) && wh_same_contest{Pre, Here}(watch); */
+    /*@ assert wh_table_memory(watch->table) && wh_list_apart(watch->list, watch->table); */
+    /*@ assert wh_watch_memory(watch); */
     encounter->wafer = WH_NONE;
     encounter->holder = WH_NONE;
+    /*@ assert watch->index == \at(watch->index, Pre); */
 }
 
 bool wh_reach_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
@@ -76,11 +90,14 @@ static bool is_closer(const wh_tolerance_t *tolerance, const wh_reach_t *reach,
            closeness(tolerance, measured->dr_proj_z, measured->dr_proj_xy_norm);
 }
 
-/*@ requires wh_watch_memory(watch) && \valid(encounter) && wh_is_wafer(watch->table, w) && (watch->sweep != \null || t >= 1);
-    requires \separated(encounter, watch, watch->table, watch->list);
+/*@ requires wh_watch_memory(watch) && wh_is_wafer(watch->table, w) && (watch->sweep != \null || t >= 1);
+    requires encounter == &watch->gripper->approach || encounter == &watch->gripper->contest;
     assigns *encounter;
-    ensures encounter->wafer == w; */
+    ensures encounter->wafer == w && wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table);
+    ensures encounter == &watch->gripper->approach || wh_same_approach{Pre, Post}(watch);
+    ensures encounter == &watch->gripper->contest || wh_same_contest{Pre, Post}(watch); */
 static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, int32_t w, wh_real_t t) {
+    /*@ assert \valid(encounter) && \separated(encounter, watch, watch->table, watch->list); */
     const wh_wafer_t *wafer = &watch->table->storage.wafers[w];
     encounter->wafer = w;
     encounter->holder = wafer->holder;
@@ -96,12 +113,14 @@ static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, 
 
 /*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_is_wafer(watch->table, watch->gripper->approach.wafer);
     assigns watch->gripper->approach, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
-    ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_list_grown{Pre, Post}(watch->list, 1); */
+    ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_list_grown{Pre, Post}(watch->list, 1);
+    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_contest{Pre, Post}(watch); */
 static void follow_approach(const wh_watch_t *watch) {
     wh_encounter_t *approach = &watch->gripper->approach;
     const wh_wafer_t *wafer = &watch->table->storage.wafers[approach->wafer];
     if (wafer->holder != WH_NONE) {
         approach->wafer = WH_NONE;
+        /*@ assert wh_watch_memory(watch) && wh_watched(watch, watch->gripper->approach.wafer); */
         return;
     }
     wh_reach_t reach;
@@ -109,7 +128,9 @@ static void follow_approach(const wh_watch_t *watch) {
         is_closer(&watch->table->config.tolerance, &reach, &approach->measured)) {
         begin_encounter(watch, approach, approach->wafer, reach.t);
     }
-    /*@ assert wh_watch_memory(watch) && wh_list_ready(watch->list, 1); */
+    /*@ assert wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_list_grown{Pre, Here}(watch->list, 0); */
+    /*@ assert wh_same_size{Pre, Here}(watch->table) && wh_same_contest{Pre, Here}(watch); */
+    /*@ assert wh_is_wafer(watch->table, watch->gripper->approach.wafer); */
     if (!is_near_now(watch, wafer, &reach)) {
         ++watch->table->counters.near_misses;
         report(watch, approach, WH_EVENT_NEAR_MISS);
@@ -119,7 +140,8 @@ static void follow_approach(const wh_watch_t *watch) {
 /* The nearest free wafer in the neighbourhood, if the gripper follows none yet. */
 /*@ requires wh_watch_memory(watch) && watch->gripper->approach.wafer == WH_NONE;
     assigns watch->gripper->approach;
-    ensures wh_watched(watch, watch->gripper->approach.wafer); */
+    ensures wh_watched(watch, watch->gripper->approach.wafer);
+    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_contest{Pre, Post}(watch); */
 static void begin_approach(const wh_watch_t *watch) {
     const wh_grasp_storage_t *storage = &watch->table->storage;
     int32_t nearest = WH_NONE;
@@ -146,7 +168,8 @@ static void begin_approach(const wh_watch_t *watch) {
 /* A contest that is over is reported unless the wafer went on to another holder. */
 /*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_watched(watch, watch->gripper->contest.wafer);
     assigns watch->gripper->contest, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
-    ensures watch->gripper->contest.wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 1); */
+    ensures watch->gripper->contest.wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 1);
+    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_approach{Pre, Post}(watch); */
 static void end_contest(const wh_watch_t *watch) {
     wh_encounter_t *contest = &watch->gripper->contest;
     if (contest->wafer == WH_NONE) {
@@ -179,7 +202,8 @@ static bool contest_goes_on(const wh_watch_t *watch) {
  * come nearer: it would be reported each time that the two change places, and before its own hand-over. */
 /*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_watched(watch, watch->gripper->contest.wafer);
     assigns watch->gripper->contest, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
-    ensures wh_watched(watch, watch->gripper->contest.wafer) && wh_list_grown{Pre, Post}(watch->list, 1); */
+    ensures wh_watched(watch, watch->gripper->contest.wafer) && wh_list_grown{Pre, Post}(watch->list, 1);
+    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_approach{Pre, Post}(watch); */
 static void follow_contest(const wh_watch_t *watch) {
     if (contest_goes_on(watch)) {
         return;
@@ -195,7 +219,8 @@ static void follow_contest(const wh_watch_t *watch) {
 /*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2) && wh_watched(watch, watch->gripper->approach.wafer) &&
              wh_watched(watch, watch->gripper->contest.wafer);
     assigns watch->gripper->approach, watch->gripper->contest, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
-    ensures watch->gripper->approach.wafer == WH_NONE && watch->gripper->contest.wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 2); */
+    ensures watch->gripper->approach.wafer == WH_NONE && watch->gripper->contest.wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 2);
+    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table); */
 static void end_encounters(const wh_watch_t *watch, bool closed) {
     wh_encounter_t *approach = &watch->gripper->approach;
     if (approach->wafer != WH_NONE && closed &&
@@ -217,16 +242,33 @@ void wh_encounter_follow(const wh_watch_t *watch) {
     follow_contest(watch);
 }
 
+/* Said of `watch` below, so that it is kept for the provers that it has no sweep. */
+/*@ predicate sweep_at{L}(wh_sweep_t **place, wh_sweep_t *sweep) = *place == sweep; */
 void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
     wh_watch_t watch = {
         table, &table->storage.grippers[gripper], &input->base_from_gripper, NULL, list, (int32_t)gripper};
+    /*@ assert wh_table_memory(table) && wh_list_ready(list, 2); */
+    /*@ assert sweep_at(&watch.sweep, \null); */
+    /*@ assert \separated(&watch, list, table, table->storage.wafers + (0 .. table->storage.wafer_count - 1),
+                          table->storage.grippers + (0 .. table->storage.gripper_count - 1)); */
+    /*@ assert list != \null ==> \separated(&watch, list->events + (0 .. list->capacity - 1)); */
+    /*@ assert wh_watch_memory(&watch); */
     const bool closed = input->valve == WH_VALVE_CLOSED;
     if (closed || watch.gripper->wafer != WH_NONE) {
         end_encounters(&watch, closed);
+        /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
+        /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&
+                   wh_watched(&watch, table->storage.grippers[gripper].contest.wafer); */
     } else if (table->config.check == WH_CHECK_SWEPT && watch.gripper->valve == WH_VALVE_OPEN) {
         wh_encounter_follow_swept(&watch);
+        /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
+        /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&
+                   wh_watched(&watch, table->storage.grippers[gripper].contest.wafer); */
     } else {
         wh_encounter_follow(&watch);
+        /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
+        /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&
+                   wh_watched(&watch, table->storage.grippers[gripper].contest.wafer); */
     }
 }

@@ -32,6 +32,11 @@ typedef struct {
     (w->list != \null ==> \separated(w, w->list->events + (0 .. w->list->capacity - 1)));
 
   predicate wh_watched{L}(wh_watch_t *w, integer i) = i == WH_NONE || wh_is_wafer(w->table, i);
+
+  predicate wh_same_approach{K, L}(wh_watch_t *w) =
+    \at(w->gripper->approach.wafer, K) == \at(w->gripper->approach.wafer, L);
+  predicate wh_same_contest{K, L}(wh_watch_t *w) =
+    \at(w->gripper->contest.wafer, K) == \at(w->gripper->contest.wafer, L);
 */
 /* Updates one gripper's approach and contest and reports those that ended. `input` is this slice's, the
  * gripper still has the previous slice's pose and valve. */
