@@ -237,10 +237,22 @@ static void count_refusal(wh_grasp_t *table) {
             table->storage.grippers[0 .. table->storage.gripper_count - 1];
     ensures wh_consistent(table); */
 static void take_over(wh_grasp_t *table, const wh_wafer_t wafers[], const wh_gripper_t grippers[]) {
+    /*@ assert \forall integer w; wh_is_wafer(table, w) && wafers[w].holder != WH_NONE ==>
+                 good_wafer(wafers, grippers, table->storage.gripper_count, w) &&
+                 wh_is_gripper(table, wafers[w].holder) && grippers[wafers[w].holder].wafer == w; */
+    /*@ assert \forall integer g; wh_is_gripper(table, g) && grippers[g].wafer != WH_NONE ==>
+                 good_gripper(wafers, table->storage.wafer_count, grippers, g) &&
+                 wh_is_wafer(table, grippers[g].wafer) && wafers[grippers[g].wafer].holder == g; */
+    /*@ assert \forall integer g; wh_is_gripper(table, g) ==>
+                 good_gripper(wafers, table->storage.wafer_count, grippers, g) &&
+                 WH_NONE <= grippers[g].approach.wafer < table->storage.wafer_count &&
+                 WH_NONE <= grippers[g].contest.wafer < table->storage.wafer_count; */
     copy_wafers(table->storage.wafers, wafers, table->storage.wafer_count);
-    /*@ assert good_grippers(\at(wafers, Pre), table->storage.wafer_count, grippers, table->storage.gripper_count); */
     /*@ assert \forall integer w; wh_is_wafer(table, w) ==> wh_holder(table, w) == \at(wafers[w].holder, Pre); */
     /*@ assert wh_none_released(table); */
+    /*@ assert \forall integer g; wh_is_gripper(table, g) ==> grippers[g].wafer == \at(grippers[g].wafer, Pre) &&
+                 grippers[g].approach.wafer == \at(grippers[g].approach.wafer, Pre) &&
+                 grippers[g].contest.wafer == \at(grippers[g].contest.wafer, Pre); */
     copy_grippers(table->storage.grippers, grippers, table->storage.gripper_count);
     /*@ assert table->storage.wafer_count == \at(table->storage.wafer_count, Pre) &&
                table->storage.gripper_count == \at(table->storage.gripper_count, Pre); */
