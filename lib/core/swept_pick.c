@@ -46,6 +46,8 @@ bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *
                          wh_event_list_t *list) {
     wh_sweep_t sweep;
     wh_sweep_between(&table->storage.grippers[g].base_from_gripper, &input->base_from_gripper, &sweep);
+    /*@ assert wh_other_poses{Pre, Here}(table, WH_NONE); */
+    /*@ assert wh_other_grips{Pre, Here}(table, WH_NONE); */
     const candidate_t best = find_ready(table, &sweep);
     if (best.wafer == WH_NONE) {
         return false;
@@ -53,9 +55,13 @@ bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *
     wh_pose_t then;
     wh_sweep_pose_at(&sweep, best.t, &then);
     wh_grasp_take(table, g, best.wafer, &then, list);
+    /*@ assert wh_other_poses{Pre, Here}(table, best.wafer); */
+    /*@ assert wh_other_grips{Pre, Here}(table, g); */
     if (table->config.seat || best.t < 1) {
         wh_grasp_carry(&table->storage.wafers[best.wafer], &input->base_from_gripper,
                        &table->storage.grippers[g].gripper_from_wafer);
+        /*@ assert wh_other_poses{Pre, Here}(table, best.wafer); */
+        /*@ assert wh_other_grips{Pre, Here}(table, g); */
     }
     return true;
 }
