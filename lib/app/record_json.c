@@ -160,8 +160,9 @@ static void put_measured(writer_t *writer, json_t *object, const wh_event_t *eve
 
 static bool is_unmeasured(wh_event_kind_t kind) {
     static const uint32_t kinds = 1U << WH_EVENT_BAD_INPUT | 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED |
-                                  1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED | 1U << WH_EVENT_VACUUM_LOST |
-                                  1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
+                                  1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED |
+                                  1U << WH_EVENT_VACUUM_LOST | 1U << WH_EVENT_FAULT_ARMED |
+                                  1U << WH_EVENT_FAULT_CLEARED;
     return (kinds >> (unsigned)kind & 1U) != 0;
 }
 
@@ -289,7 +290,8 @@ static json_t *clearance(writer_t *writer, size_t kind) {
     put(writer, object, "kind", json_string(wh_clearance_name((wh_clearance_kind_t)kind)));
     put(writer, object, "gap", found ? real((double)from->gap) : json_null());
     put(writer, object, "limit", limit > 0 ? real((double)limit) : json_null());
-    put(writer, object, "utime", found ? json_integer((json_int_t)from->slice * layout->slice_us) : json_null());
+    put(writer, object, "utime",
+        found ? json_integer((json_int_t)from->slice * layout->slice_us) : json_null());
     put(writer, object, "parts", found ? part_names(writer, from->parts) : json_null());
     put(writer, object, "at", found ? vector(writer, from->at) : json_null());
     return object;

@@ -5,9 +5,8 @@ enum { PAIR, GAP, LIMIT, AT, BETWEEN };
 
 static const char *describe(size_t kind) {
     static const char *const texts[WH_CLEARANCES] = {
-        "blade to the wafer above", "blade to the wafer below", "blade to the cell",
-        "held wafer to another",    "held wafer to a ledge",    "held wafer to the cell",
-        "arm to the cell",          "arm to itself"};
+        "blade to the wafer above", "blade to the wafer below", "blade to the cell", "held wafer to another",
+        "held wafer to a ledge",    "held wafer to the cell",   "arm to the cell",   "arm to itself"};
     return texts[kind];
 }
 

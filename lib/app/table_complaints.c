@@ -139,8 +139,8 @@ static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const
                      (double)event->value, (double)event->limit);
         break;
     case WH_EVENT_PLACED_OFF_CENTRE:
-        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%.3f mm beside the centre (limit %g mm)",
-                     (double)event->value, (double)event->limit);
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%.3f mm beside the centre (limit %g mm)", (double)event->value,
+                     (double)event->limit);
         break;
     case WH_EVENT_PLACED_ASKEW:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "tilted by %.3f%s (limit %g%s)", wh_deg_from_rad(event->value),

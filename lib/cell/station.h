@@ -22,9 +22,9 @@ typedef struct {
     const wh_station_t *stations;
     size_t count;
     wh_tolerance_t tolerance; /* projxy and planar bound what still lies in a slot */
-    wh_real_t off_centre;     /* a wafer set down farther beside a slot's centre is reported, mm; 0: none is */
-    wh_real_t askew;          /* one tilted more against it, rad; 0: none is */
-    bool settle;              /* a wafer let go comes to lie on its support: see wh_cell_settle */
+    wh_real_t off_centre; /* a wafer set down farther beside a slot's centre is reported, mm; 0: none is */
+    wh_real_t askew;      /* one tilted more against it, rad; 0: none is */
+    bool settle;          /* a wafer let go comes to lie on its support: see wh_cell_settle */
 } wh_cell_t;
 
 /* Where a wafer lies: in slot `slot` (from 1) of station `station` (from 0), measured in that slot's frame.

@@ -122,8 +122,7 @@ void wh_tree_build(wh_tree_t *tree, const wh_box_t boxes[]) {
     }
     sort(tree);
     for (size_t leaf = 0; leaf < tree->leaves; ++leaf) {
-        tree->nodes[tree->leaves + leaf] =
-            leaf < tree->count ? boxes[tree->order[leaf]] : wh_box_empty();
+        tree->nodes[tree->leaves + leaf] = leaf < tree->count ? boxes[tree->order[leaf]] : wh_box_empty();
         if (leaf < tree->count) {
             tree->leaf_of[tree->order[leaf]] = (int32_t)leaf;
         }

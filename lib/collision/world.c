@@ -6,9 +6,9 @@
 #include "collision/world_internal.h"
 
 const char *wh_clearance_name(wh_clearance_kind_t kind) {
-    static const char *const names[WH_CLEARANCES] = {
-        "blade_wafer_above", "blade_wafer_below", "blade_other", "wafer_wafer",
-        "wafer_ledge",       "wafer_other",       "arm_other",   "arm_itself"};
+    static const char *const names[WH_CLEARANCES] = {"blade_wafer_above", "blade_wafer_below", "blade_other",
+                                                     "wafer_wafer",       "wafer_ledge",       "wafer_other",
+                                                     "arm_other",         "arm_itself"};
     return (unsigned)kind < WH_CLEARANCES ? names[kind] : "unknown";
 }
 
@@ -148,8 +148,7 @@ static void set_up_boxes(wh_world_t *world, const wh_grasp_t *table) {
     }
     for (size_t w = 0; w < config->wafer_count; ++w) {
         world->wafers[w] = table->storage.wafers[w].base_from_wafer;
-        const wh_pose_t base_from_shape =
-            wh_pose_compose(&world->wafers[w], &config->wafer.body_from_shape);
+        const wh_pose_t base_from_shape = wh_pose_compose(&world->wafers[w], &config->wafer.body_from_shape);
         wh_box_t *box = &world->boxes[world->fixed_count + w];
         wh_convex_bounds(&config->wafer, &base_from_shape, &box->low, &box->high);
     }

@@ -51,12 +51,12 @@ typedef struct {
 typedef enum {
     WH_CLEARANCE_BLADE_WAFER_ABOVE, /* a blade and a wafer above it that it does not hold, nor is about to take */
     WH_CLEARANCE_BLADE_WAFER_BELOW,
-    WH_CLEARANCE_BLADE_OTHER,  /* a blade and ledges, chucks or fixed parts */
-    WH_CLEARANCE_WAFER_WAFER,  /* a held wafer and another one */
-    WH_CLEARANCE_WAFER_LEDGE,  /* a held wafer and a ledge of a slot that it does not lie in */
-    WH_CLEARANCE_WAFER_OTHER,  /* a held wafer and fixed parts, chucks, or another gripper's blade */
-    WH_CLEARANCE_ARM_OTHER,    /* the arm and fixed parts, ledges, chucks or wafers */
-    WH_CLEARANCE_ARM_ITSELF,   /* the arm and its own blades and held wafers */
+    WH_CLEARANCE_BLADE_OTHER, /* a blade and ledges, chucks or fixed parts */
+    WH_CLEARANCE_WAFER_WAFER, /* a held wafer and another one */
+    WH_CLEARANCE_WAFER_LEDGE, /* a held wafer and a ledge of a slot that it does not lie in */
+    WH_CLEARANCE_WAFER_OTHER, /* a held wafer and fixed parts, chucks, or another gripper's blade */
+    WH_CLEARANCE_ARM_OTHER,   /* the arm and fixed parts, ledges, chucks or wafers */
+    WH_CLEARANCE_ARM_ITSELF,  /* the arm and its own blades and held wafers */
     WH_CLEARANCES
 } wh_clearance_kind_t;
 
@@ -118,11 +118,11 @@ const wh_clearance_t *wh_world_clearances(const wh_world_t *world);
 
 /* How many slices' pairs were looked at in which way, for those who ask where the time goes. */
 typedef struct {
-    uint64_t pairs;     /* near enough to be on a list */
-    uint64_t planes;    /* decided by a plane between the two */
-    uint64_t measured;  /* measured */
-    uint64_t divided;   /* slices divided */
-    uint64_t relisted;  /* lists made anew */
+    uint64_t pairs;    /* near enough to be on a list */
+    uint64_t planes;   /* decided by a plane between the two */
+    uint64_t measured; /* measured */
+    uint64_t divided;  /* slices divided */
+    uint64_t relisted; /* lists made anew */
 } wh_world_counters_t;
 
 const wh_world_counters_t *wh_world_counters(const wh_world_t *world);

@@ -31,13 +31,13 @@ typedef struct {
 
 /* A convex part that moves: one that hangs on a body, or the wafer that a gripper holds. */
 typedef struct {
-    int32_t part;  /* WH_NONE: this gripper holds none */
-    int32_t body;  /* index in world->bodies */
+    int32_t part;          /* WH_NONE: this gripper holds none */
+    int32_t body;          /* index in world->bodies */
     wh_pose_t before, now; /* base_from_shape */
-    wh_real_t radius; /* of the ball about the body's origin that holds it */
-    wh_real_t motion; /* no point of it went farther in this slice, mm */
-    wh_real_t bulge;  /* nor farther from its straight way */
-    wh_near_t *near;  /* things that rest, WH_NEAR_CAPACITY of them */
+    wh_real_t radius;      /* of the ball about the body's origin that holds it */
+    wh_real_t motion;      /* no point of it went farther in this slice, mm */
+    wh_real_t bulge;       /* nor farther from its straight way */
+    wh_near_t *near;       /* things that rest, WH_NEAR_CAPACITY of them */
     size_t near_count;
     wh_real_t reach; /* how much farther it may go before the list must be made anew */
     bool crowded;    /* more than the list can hold */
@@ -59,9 +59,9 @@ struct wh_world {
     const wh_world_config_t *config;
     size_t fixed_count; /* parts that hang on nothing: items 0 .. of the tree; then the wafers */
     wh_tree_t tree;
-    wh_box_t *boxes;         /* of the tree's items, when it is built */
-    wh_pose_t *wafers;       /* base_from_wafer, as of the last slice */
-    size_t set_down;         /* since the tree was built */
+    wh_box_t *boxes;                                         /* of the tree's items, when it is built */
+    wh_pose_t *wafers;                                       /* base_from_wafer, as of the last slice */
+    size_t set_down;                                         /* since the tree was built */
     wh_body_t bodies[WH_ARM_BODIES + 2 * WH_WORLD_GRIPPERS]; /* arm, grippers, what each holds */
     wh_mover_t *movers;
     size_t mover_count;

@@ -1,6 +1,9 @@
 /* Where everything is now, and what of it rests. */
 #include "collision/world_internal.h"
 
+/* A gripper has left the wafer that it let go once it has gone so far sideways, mm. */
+#define LEFT_BEHIND WH_REAL(1.0)
+
 int32_t wh_world_gripper_body(size_t gripper) {
     return (int32_t)(WH_ARM_BODIES + gripper);
 }
@@ -199,6 +202,17 @@ static void move_held(const wh_look_t *look) {
     }
 }
 
+/* A gripper that has gone sideways from where it let a wafer go has nothing to do with it any more. */
+static void leave_behind(wh_world_t *world, size_t gripper) {
+    const wh_vec3_t *r = &world->bodies[wh_world_gripper_body(gripper)].now.r;
+    wh_left_t *left = &world->left[gripper];
+    const wh_real_t dx = r->x - left->at.x;
+    const wh_real_t dy = r->y - left->at.y;
+    if (dx * dx + dy * dy > LEFT_BEHIND * LEFT_BEHIND) {
+        left->wafer = WH_NONE;
+    }
+}
+
 void wh_world_move(const wh_look_t *look, const wh_pose_t *base_from_effector,
                    const wh_pose_t base_from_grippers[]) {
     wh_world_t *world = look->world;
@@ -209,6 +223,7 @@ void wh_world_move(const wh_look_t *look, const wh_pose_t *base_from_effector,
     }
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
         move_body(&world->bodies[wh_world_gripper_body(g)], &base_from_grippers[g]);
+        leave_behind(world, g);
     }
     take_wafers(look);
     move_held(look);

@@ -91,7 +91,8 @@ static wh_gap_state_t judge_between(wh_world_t *world, const wh_side_t *a, const
 
 /* ------------------------------------------------------------------------------------------------ what came of it */
 
-static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_side_t *a, const wh_side_t *b) {
+static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_side_t *a,
+                          const wh_side_t *b) {
     static const wh_event_t blank = {.wafer = WH_NONE, .gripper = WH_NONE, .other = WH_NONE};
     if (!look->list || look->list->count >= look->list->capacity) {
         return NULL;
@@ -113,8 +114,8 @@ static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_
     return event;
 }
 
-static void report_contact(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b,
-                           const wh_gap_t *gap, wh_gap_state_t state) {
+static void report_contact(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, const wh_gap_t *gap,
+                           wh_gap_state_t state) {
     const wh_event_kind_t kind = state == WH_GAP_HIT ? WH_EVENT_HIT : WH_EVENT_UNDECIDED;
     look->world->struck = true;
     wh_event_t *event = append(look, kind, a, b);
@@ -181,7 +182,8 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     wh_gap_t worst;
     const wh_real_t enough = 2 * (a->motion + b->motion) + WH_REAL(5.0);
     const wh_real_t wanted = kind == WH_CLEARANCES ? 0 : world->clearances[kind].gap;
-    wh_gap_measure(a->convex, &a->now, b->convex, &b->now, enough > wanted ? enough : wanted, near->axis, &gap);
+    wh_gap_measure(a->convex, &a->now, b->convex, &b->now, enough > wanted ? enough : wanted, near->axis,
+                   &gap);
     ++world->counters.measured;
     near->slack = gap.state == WH_GAP_CLEAR ? gap.gap : 0;
     near->axis = gap.axis;

@@ -1,9 +1,6 @@
 /* Who may touch whom, and which clearance a pair counts for. */
 #include "collision/world_internal.h"
 
-/* A blade has left the wafer that it set down once it has gone so far sideways, mm. */
-#define LEFT_BEHIND WH_REAL(1.0)
-
 static bool is_on_robot(const wh_part_t *part) {
     return part->kind == WH_PART_ARM || part->kind == WH_PART_BLADE;
 }
@@ -32,11 +29,11 @@ static const wh_wafer_t *wafer_of(const wh_look_t *look, const wh_side_t *side) 
     return &look->table->storage.wafers[side->owner];
 }
 
-/* Whether a wafer lies in this slot, or on the chuck of this gripper. */
-static bool lies_in(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *support) {
+/* Whether a wafer there lies in this slot, or on the chuck of this gripper, and not below its plane. */
+static bool is_upon(const wh_look_t *look, const wh_pose_t *base_from_wafer, const wh_side_t *support) {
     const wh_cell_t *cell = look->world->config->cell;
     wh_place_t place;
-    if (!wh_cell_locate(cell, &wafer_of(look, wafer)->base_from_wafer, &place)) {
+    if (!wh_cell_locate(cell, base_from_wafer, &place) || place.dz < -cell->tolerance.projz) {
         return false;
     }
     if (support->kind == WH_PART_LEDGE) {
@@ -45,21 +42,18 @@ static bool lies_in(const wh_look_t *look, const wh_side_t *wafer, const wh_side
     return support->kind == WH_PART_CHUCK && cell->stations[place.station].chuck == support->owner;
 }
 
+/* At both ends of the slice: what comes through from below does not lie there. */
+static bool lies_in(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *support) {
+    const wh_pose_t *now = &look->world->wafers[wafer->owner];
+    return is_upon(look, now, support) && (!wafer->body || is_upon(look, &wafer->body->before, support));
+}
+
 /* Puts the wafer of a pair first, then the gripper: rules are told once. */
 static void put_in_order(const wh_side_t **a, const wh_side_t **b) {
     const bool swap = (*b)->kind == WH_PART_WAFER && (*a)->kind != WH_PART_WAFER;
     const wh_side_t *const first = swap ? *b : *a;
     *b = swap ? *a : *b;
     *a = first;
-}
-
-/* Whether this blade has just let go of the wafer, and is still where it did. */
-static bool has_just_left(const wh_look_t *look, int32_t gripper, int32_t wafer) {
-    const wh_left_t *left = &look->world->left[gripper];
-    const wh_vec3_t r = look->table->storage.grippers[gripper].base_from_gripper.r;
-    const wh_real_t dx = r.x - left->at.x;
-    const wh_real_t dy = r.y - left->at.y;
-    return left->wafer == wafer && dx * dx + dy * dy < LEFT_BEHIND * LEFT_BEHIND;
 }
 
 /* Whether gripper and wafer are meant to come together: within reach, and one takes or gives. */
@@ -75,7 +69,7 @@ static bool do_business(const wh_look_t *look, const wh_side_t *wafer, const wh_
         return false;
     }
     return state->valve == WH_VALVE_OPEN || w->holder != WH_NONE || gripper->kind == WH_PART_CHUCK ||
-           has_just_left(look, gripper->owner, wafer->owner);
+           look->world->left[gripper->owner].wafer == wafer->owner;
 }
 
 bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b) {

@@ -38,8 +38,8 @@ static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     layout->slice_us = cell->slice_us;
     return wh_tolerance_validate(&grasp->tolerance) == WH_OK && is_limit(cell->eps_projz) &&
            is_limit(cell->near_projz) && is_limit(cell->near_projxy) && cell->slice_us >= 1 &&
-           cell->slice_us <= 1000000 && cell->off_centre >= 0 && cell->off_centre <= 1e6 && cell->askew >= 0 &&
-           cell->askew <= 10;
+           cell->slice_us <= 1000000 && cell->off_centre >= 0 && cell->off_centre <= 1e6 &&
+           cell->askew >= 0 && cell->askew <= 10;
 }
 
 static bool take_station(const waferhand_station *from, size_t grippers, wh_layout_station_t *station,

@@ -15,9 +15,15 @@ static void look(void *user, const wh_command_t *command, const wh_grasp_t *tabl
     if (collision->world) {
         wh_world_step(collision->world, table, &collision->base_from_effector, grippers, list);
     } else {
-        collision->world =
-            wh_world_init(&collision->layout->world, table, &collision->base_from_effector, grippers,
-                          collision->memory, wh_collision_bytes(collision->layout));
+        collision->world = wh_world_init(&collision->layout->world, table, &collision->base_from_effector,
+                                         grippers, collision->memory, wh_collision_bytes(collision->layout));
+    }
+}
+
+static void placed(void *user, const wh_grasp_t *table, int32_t wafer) {
+    wh_collision_t *collision = user;
+    if (collision->world) {
+        wh_world_place(collision->world, table, wafer);
     }
 }
 
@@ -31,5 +37,5 @@ void wh_collision_attach(wh_collision_t *collision, const wh_layout_t *layout, w
     collision->memory = memory;
     collision->world = NULL;
     wh_robot_forward(layout->machine.robot.home, &collision->base_from_effector);
-    simulator->observer = (wh_observer_t){look, collision};
+    simulator->observer = (wh_observer_t){look, placed, collision};
 }

@@ -31,7 +31,9 @@ static void read_round(wh_reader_t *reader, const char *field, wh_convex_kind_t 
     wh_reader_refuse_unknown(reader, "radius height");
     convex->kind = kind;
     convex->half.x = wh_reader_number(reader, "radius", WH_REAL(NAN), WH_CONVEX_THINNEST, 1e4);
-    convex->half.z = wh_reader_number(reader, "height", WH_REAL(NAN), kind == WH_CONVEX_CAPSULE ? 0 : WH_CONVEX_THINNEST, 1e4) / 2;
+    convex->half.z = wh_reader_number(reader, "height", WH_REAL(NAN),
+                                      kind == WH_CONVEX_CAPSULE ? 0 : WH_CONVEX_THINNEST, 1e4) /
+                     2;
     wh_reader_leave(reader);
 }
 
@@ -127,12 +129,14 @@ static void read_mount(wh_reader_t *reader, const wh_layout_t *layout, wh_part_t
     part->owner = wh_layout_find_gripper(layout, on);
     if (part->owner == WH_NONE) {
         lua_pushstring(reader->L, on);
-        wh_reader_fail(reader, "on", "\"base\", \"lift\", \"upper arm\", \"forearm\", \"hand\" or a gripper's name");
+        wh_reader_fail(reader, "on",
+                       "\"base\", \"lift\", \"upper arm\", \"forearm\", \"hand\" or a gripper's name");
     }
     part->kind = layout->grippers[part->owner].station == WH_NONE ? WH_PART_BLADE : WH_PART_CHUCK;
 }
 
-static void read_obstacle(wh_reader_t *reader, const wh_layout_t *layout, size_t index, wh_obstacle_t *obstacle) {
+static void read_obstacle(wh_reader_t *reader, const wh_layout_t *layout, size_t index,
+                          wh_obstacle_t *obstacle) {
     static const wh_vec3_t level = {0, 0, 0};
     char fallback[WH_NAME_SIZE];
     wh_convex_t *convex = &obstacle->part.convex;
@@ -147,8 +151,8 @@ static void read_obstacle(wh_reader_t *reader, const wh_layout_t *layout, size_t
     const wh_status_t status = wh_convex_validate(convex);
     if (status != WH_OK) {
         lua_pushstring(reader->L, obstacle->name);
-        wh_reader_fail(reader, NULL, "a shape of at least %g mm in each direction: %s", (double)WH_CONVEX_THINNEST,
-                       wh_status_text(status));
+        wh_reader_fail(reader, NULL, "a shape of at least %g mm in each direction: %s",
+                       (double)WH_CONVEX_THINNEST, wh_status_text(status));
     }
 }
 

@@ -10,8 +10,9 @@ static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
     wh_reader_refuse_unknown(reader, "thickness half_width finger length palm");
     blade->thickness = wh_reader_number(reader, "thickness", blade->thickness, 0.1, 50);
     blade->half_width = wh_reader_number(reader, "half_width", blade->half_width, 1, 500);
-    blade->finger = wh_reader_number(reader, "finger", blade->finger < blade->half_width ? blade->finger : blade->half_width / 2, 0.1,
-                                     0.99 * blade->half_width);
+    blade->finger = wh_reader_number(
+        reader, "finger", blade->finger < blade->half_width ? blade->finger : blade->half_width / 2, 0.1,
+        0.99 * blade->half_width);
     blade->length = wh_reader_number(reader, "length", blade->length, 1, 1000);
     blade->palm = wh_reader_number(reader, "palm", blade->palm, blade->finger, 1000);
     wh_reader_leave(reader);
@@ -34,7 +35,9 @@ static void read_ledge(wh_reader_t *reader, wh_ledge_t *ledge) {
     }
     wh_reader_refuse_unknown(reader, "inner outer thickness length");
     ledge->outer = wh_reader_number(reader, "outer", ledge->outer, 1, 2000);
-    ledge->inner = wh_reader_number(reader, "inner", ledge->inner < ledge->outer ? ledge->inner : 0.9 * ledge->outer, 0, 0.999 * ledge->outer);
+    ledge->inner =
+        wh_reader_number(reader, "inner", ledge->inner < ledge->outer ? ledge->inner : 0.9 * ledge->outer, 0,
+                         0.999 * ledge->outer);
     ledge->thickness = wh_reader_number(reader, "thickness", ledge->thickness, 0.05, 100);
     ledge->length = wh_reader_number(reader, "length", ledge->length, 0.1, 2000);
     wh_reader_leave(reader);
@@ -135,7 +138,8 @@ void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout) {
     if (capacity > WH_LAYOUT_PARTS) {
         lua_pushinteger(reader->L, (lua_Integer)capacity);
         if (layout->collision) {
-            wh_reader_fail(reader, "collision", "false with more than %d parts, ledges included", WH_LAYOUT_PARTS);
+            wh_reader_fail(reader, "collision", "false with more than %d parts, ledges included",
+                           WH_LAYOUT_PARTS);
         }
         lua_pop(reader->L, 1);
         return;

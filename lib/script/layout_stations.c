@@ -22,7 +22,8 @@ static void read_place(wh_reader_t *reader, const wh_layout_t *layout, const wh_
     const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", &level);
     place->base_from_station.r = wh_reader_vector(reader, "at", NULL);
     place->base_from_station.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
-    place->slots = wh_reader_whole(reader, "slots", station->foup ? 25 : 1, 1, station->prealigner ? 1 : WH_LAYOUT_SLOTS);
+    place->slots = wh_reader_whole(reader, "slots", station->foup ? 25 : 1, 1,
+                                   station->prealigner ? 1 : WH_LAYOUT_SLOTS);
     place->pitch = wh_reader_number(reader, "pitch", default_pitch(layout->wafer_diameter), 0.1, 1000);
     place->chuck = WH_NONE;
     if (place->base_from_station.R.m[2][2] < WH_REAL(0.7)) {

@@ -162,10 +162,9 @@ static void record_wafer(const wh_mcs_t *mcs, size_t w) {
 }
 
 bool wh_mcs_is_complaint(const wh_event_t *event) {
-    static const uint32_t complaints = 1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED |
-                                       1U << WH_EVENT_BAD_INPUT | 1U << WH_EVENT_HIT |
-                                       1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE |
-                                       1U << WH_EVENT_SLIPPED;
+    static const uint32_t complaints =
+        1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED | 1U << WH_EVENT_BAD_INPUT |
+        1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED;
     return (complaints >> (unsigned)event->kind & 1U) != 0;
 }
 

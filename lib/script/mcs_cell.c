@@ -62,7 +62,8 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
         luaL_error(L, "%s: %s", layout->path, wh_status_text(status));
     }
     if (layout->collision) {
-        wh_collision_attach(&mcs->collision, layout, &mcs->simulator, lua_memory(L, wh_collision_bytes(layout)));
+        wh_collision_attach(&mcs->collision, layout, &mcs->simulator,
+                            lua_memory(L, wh_collision_bytes(layout)));
     }
     mcs->link = &mcs->simulator.link;
     mcs->command.gripper_count = layout->machine.gripper_count;

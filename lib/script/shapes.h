@@ -28,8 +28,8 @@ typedef struct {
 
 /* The shell of a FOUP around its slots, open towards the robot. mm. */
 typedef struct {
-    wh_real_t room; /* between a centred wafer's rim and the walls, at the sides and behind */
-    wh_real_t wall; /* thickness */
+    wh_real_t room;        /* between a centred wafer's rim and the walls, at the sides and behind */
+    wh_real_t wall;        /* thickness */
     wh_real_t floor, roof; /* from the first slot's plane down, from the last one's up, to the inside */
 } wh_shell_t;
 
@@ -38,7 +38,7 @@ typedef enum { WH_STAND_LEDGES, WH_STAND_FOUP, WH_STAND_CHUCK, WH_STAND_NOTHING 
 
 typedef struct {
     wh_real_t wafer_radius, wafer_thickness;
-    wh_real_t scale; /* wafer diameter / 300 */
+    wh_real_t scale;  /* wafer diameter / 300 */
     wh_real_t lowest; /* of the robot's Z travel */
     wh_arm_t arm;
     wh_blade_t blade;

@@ -28,7 +28,7 @@ wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t
         simulator->link.missed = missed_by_call;
         simulator->cell = *cell;
         simulator->event_count = 0;
-        simulator->observer = (wh_observer_t){NULL, NULL};
+        simulator->observer = (wh_observer_t){NULL, NULL, NULL};
     }
     return status;
 }

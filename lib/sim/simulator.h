@@ -10,6 +10,8 @@
  * change anything that a step depends on. */
 typedef struct {
     void (*look)(void *user, const wh_command_t *command, const wh_grasp_t *table, wh_event_list_t *list);
+    /* A wafer that nobody holds was put elsewhere, by a fault; not for those that settle. */
+    void (*placed)(void *user, const wh_grasp_t *table, int32_t wafer);
     void *user;
 } wh_observer_t;
 

@@ -60,7 +60,8 @@ static void set_up_scene(void) {
     const wh_grasp_storage_t storage = {wafers, WAFERS, grippers, 1, NULL, 0};
     assert_int_equal(wh_grasp_init(&table, &grasp, &storage), WH_OK);
     cell.tolerance = grasp.tolerance;
-    config = (wh_world_config_t){.parts = parts, .part_count = PARTS, .gripper_count = 1, .wafer_count = WAFERS};
+    config =
+        (wh_world_config_t){.parts = parts, .part_count = PARTS, .gripper_count = 1, .wafer_count = WAFERS};
     config.cell = &cell;
     config.arm.link = 300;
     config.wafer = (wh_convex_t){.kind = WH_CONVEX_CYLINDER, .half = {150, 0, 0.3875}};
@@ -77,7 +78,8 @@ static wh_pose_t between(const wh_pose_t *a, const wh_pose_t *b, double t) {
     for (int i = 0; i < 3; ++i) {
         wh_mat3_orthonormalise(&pose.R);
     }
-    pose.r = wh_vec3((1 - t) * a->r.x + t * b->r.x, (1 - t) * a->r.y + t * b->r.y, (1 - t) * a->r.z + t * b->r.z);
+    pose.r =
+        wh_vec3((1 - t) * a->r.x + t * b->r.x, (1 - t) * a->r.y + t * b->r.y, (1 - t) * a->r.z + t * b->r.z);
     return pose;
 }
 
@@ -141,7 +143,8 @@ typedef struct {
 
 static wh_pose_t next_pose(const wh_pose_t *pose, const manner_t *manner) {
     wh_pose_t next = *pose;
-    const wh_mat3_t turn = wh_mat3_from_rpy_deg(draw(-1, 1) * manner->tilt, draw(-1, 1) * manner->tilt, draw(-6, 6));
+    const wh_mat3_t turn =
+        wh_mat3_from_rpy_deg(draw(-1, 1) * manner->tilt, draw(-1, 1) * manner->tilt, draw(-6, 6));
     next.R = wh_mat3_multiply(&pose->R, &turn);
     wh_mat3_orthonormalise(&next.R);
     next.r.x += draw(-1, 1) * manner->reach - 0.05 * pose->r.x;

@@ -230,6 +230,110 @@ static void test_a_chucks_wafer_occupies_it_and_a_blades_does_not(void **state) 
     assert_int_equal(judge(&scene), 0);
 }
 
+/* ---------------------------------------------------------------------------------------------- limits of placing */
+
+static void test_limits_of_placing(void **state) {
+    (void)state;
+    scene_t scene;
+    cell.off_centre = 5;
+    cell.askew = WH_REAL(0.01);
+    const wh_pose_t centred = wh_test_at(703, 4, 900);
+    let_go(&scene, &centred);
+    assert_int_equal(judge(&scene), 0); /* at the limit is within it */
+    const wh_pose_t aside = wh_test_at(703, 4.01, 900);
+    let_go(&scene, &aside);
+    assert_int_equal(judge(&scene), 1);
+    assert_int_equal(scene.events[1].kind, WH_EVENT_PLACED_OFF_CENTRE);
+    assert_near(scene.events[1].limit, 5, 0);
+    assert_true(scene.events[1].value > 5 && scene.events[1].value < 5.02);
+    wh_pose_t tilted = wh_test_at(700, 6, 900);
+    tilted.R = wh_mat3_from_rpy_deg(1, 0, 0);
+    let_go(&scene, &tilted);
+    assert_int_equal(judge(&scene), 2);
+    assert_int_equal(scene.events[2].kind, WH_EVENT_PLACED_ASKEW);
+    assert_near(scene.events[2].value, wh_rad_from_deg(1), 64 * WH_TEST_ROUNDING);
+    cell.off_centre = cell.askew = 0;
+    let_go(&scene, &tilted);
+    assert_int_equal(judge(&scene), 0);
+}
+
+static void test_a_full_list_takes_no_more(void **state) {
+    (void)state;
+    scene_t scene;
+    cell.off_centre = 1;
+    const wh_pose_t aside = wh_test_at(710, 0, 900);
+    let_go(&scene, &aside);
+    scene.list.capacity = 1;
+    assert_int_equal(judge(&scene), 0);
+    assert_int_equal(scene.list.count, 1);
+    const wh_pose_t nowhere = wh_test_at(0, 0, 100);
+    let_go(&scene, &nowhere);
+    scene.list.capacity = 1;
+    assert_int_equal(judge(&scene), 0);
+    cell.off_centre = 0;
+}
+
+/* ------------------------------------------------------------------------------------------------------ settling */
+
+/* Lets go there and settles; returns how many events that made. */
+static size_t settle(scene_t *scene, const wh_pose_t *base_from_wafer) {
+    let_go(scene, base_from_wafer);
+    cell.settle = true;
+    wh_cell_settle(&cell, &scene->table, &scene->list);
+    cell.settle = false;
+    return scene->list.count - 1;
+}
+
+static void test_a_wafer_comes_to_lie_on_its_slot(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t base_from_slot = wh_station_slot(&stations[1], 3);
+    wh_pose_t slot_from_wafer = wh_test_at(3, -2, 0.4);
+    slot_from_wafer.R = wh_mat3_from_rpy_deg(1.5, -0.7, 40);
+    const wh_pose_t start = wh_pose_compose(&base_from_slot, &slot_from_wafer);
+    assert_int_equal(settle(&scene, &start), 1);
+    assert_int_equal(scene.events[1].kind, WH_EVENT_SETTLED);
+    assert_near(scene.events[1].value, 0.4, 4096 * WH_TEST_ROUNDING);
+    const wh_place_t place = wh_station_measure(&stations[1], 3, &scene.wafers[0].base_from_wafer);
+    assert_near(place.dx, 3, 4096 * WH_TEST_ROUNDING);
+    assert_near(place.dy, -2, 4096 * WH_TEST_ROUNDING);
+    assert_near(place.dz, 0, 4096 * WH_TEST_ROUNDING);
+    /* The smallest turn: of the angle between the normals, so nothing is left of the tilt, and x stays where it was to within it. */
+    const wh_vec3_t n = wh_mat3_column(&scene.wafers[0].base_from_wafer.R, 2);
+    const wh_vec3_t up = wh_mat3_column(&base_from_slot.R, 2);
+    assert_near(wh_vec3_dot(&n, &up), 1, 64 * WH_TEST_ROUNDING);
+    const wh_vec3_t from = wh_mat3_column(&start.R, 2);
+    wh_real_t trace = 0;
+    for (size_t column = 0; column < 3; ++column) {
+        const wh_vec3_t a = wh_mat3_column(&start.R, column);
+        const wh_vec3_t b = wh_mat3_column(&scene.wafers[0].base_from_wafer.R, column);
+        trace += wh_vec3_dot(&a, &b);
+    }
+    assert_near((trace - 1) / 2, wh_vec3_dot(&from, &up), 64 * WH_TEST_ROUNDING);
+    assert_int_equal(wh_pose_validate(&scene.wafers[0].base_from_wafer), WH_OK);
+}
+
+static void test_what_does_not_settle(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t above = wh_test_at(700, 0, 900.3);
+    let_go(&scene, &above);
+    wh_cell_settle(&cell, &scene.table, &scene.list); /* not asked for */
+    assert_int_equal(scene.list.count, 1);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 900.3, 0);
+    const wh_pose_t below = wh_test_at(700, 0, 899.9);
+    assert_int_equal(settle(&scene, &below), 0);
+    const wh_pose_t outside = wh_test_at(800, 0, 900.3);
+    assert_int_equal(settle(&scene, &outside), 0);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 900.3, 0);
+    let_go(&scene, &above);
+    scene.events[0].kind = WH_EVENT_HANDED_OVER;
+    cell.settle = true;
+    wh_cell_settle(&cell, &scene.table, &scene.list);
+    cell.settle = false;
+    assert_int_equal(scene.list.count, 1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_a_release_in_a_free_slot_is_fine, set_up),
@@ -243,6 +347,10 @@ int main(void) {
         cmocka_unit_test_setup(test_an_occupied_slot_names_the_lowest_wafer, set_up),
         cmocka_unit_test_setup(test_a_neighbours_slot_is_not_this_one, set_up),
         cmocka_unit_test_setup(test_a_chucks_wafer_occupies_it_and_a_blades_does_not, set_up),
+        cmocka_unit_test_setup(test_limits_of_placing, set_up),
+        cmocka_unit_test_setup(test_a_full_list_takes_no_more, set_up),
+        cmocka_unit_test_setup(test_a_wafer_comes_to_lie_on_its_slot, set_up),
+        cmocka_unit_test_setup(test_what_does_not_settle, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
