@@ -13,6 +13,9 @@ COLLISION_TESTS := $(basename $(shell grep -lE '^.include "collision/' $(TEST_SO
 
 # Programs that end-to-end tests use: built with the tests, not run by themselves.
 TOOLS := $(basename $(wildcard tests/tools/*.c))
+
+# Programs that measure, to be run by hand: built with the tests too.
+BENCHES := $(basename $(wildcard tests/bench/*.c))
 LIBRARY_TESTS := $(filter-out $(PROGRAM_TESTS) $(COLLISION_TESTS),$(filter tests/unit/% tests/firmware/%,$(TESTS)))
 
 END_TO_END := $(shell awk 'FNR == 1 && /^.!/ { print FILENAME }' $(wildcard tests/end_to_end/*) /dev/null)

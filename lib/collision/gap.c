@@ -15,35 +15,32 @@ static const wh_real_t far_away = 1e30;
 
 /* ------------------------------------------------------------------------------------------ along an axis */
 
-static wh_real_t along(const wh_gap_pair_t *pair, const wh_vec3_t *axis) {
+/* Returns what the axis proves; `at`: in the middle between the two points that are farthest along it. */
+static wh_real_t along(const wh_gap_pair_t *pair, const wh_vec3_t *axis, wh_vec3_t *at) {
     const wh_vec3_t back = wh_vec3_scale(-1, axis);
     const wh_vec3_t on_a = wh_convex_support(pair->a, pair->base_from_a, *axis);
     const wh_vec3_t on_b = wh_convex_support(pair->b, pair->base_from_b, back);
     const wh_vec3_t between = wh_vec3_subtract(&on_b, &on_a);
+    *at = wh_vec3_scale(WH_REAL(0.5), &between);
+    *at = wh_vec3_add(&on_a, at);
     return wh_vec3_dot(&between, axis);
 }
 
 wh_real_t wh_gap_along(const wh_convex_t *a, const wh_pose_t *base_from_a, const wh_convex_t *b,
                        const wh_pose_t *base_from_b, wh_vec3_t axis) {
     const wh_gap_pair_t pair = {a, b, base_from_a, base_from_b, {0, 0, 0}};
-    return along(&pair, &axis);
-}
-
-/* In the middle between the two points that are farthest along the axis. */
-static wh_vec3_t middle_along(const wh_gap_pair_t *pair, const wh_vec3_t *axis) {
-    const wh_vec3_t back = wh_vec3_scale(-1, axis);
-    const wh_vec3_t on_a = wh_convex_support(pair->a, pair->base_from_a, *axis);
-    const wh_vec3_t on_b = wh_convex_support(pair->b, pair->base_from_b, back);
-    const wh_vec3_t both = wh_vec3_add(&on_a, &on_b);
-    return wh_vec3_scale(WH_REAL(0.5), &both);
+    wh_vec3_t at;
+    return along(&pair, &axis, &at);
 }
 
 /* Keeps the axis when it proves more than the one before. */
 static void try_axis(const wh_gap_pair_t *pair, const wh_vec3_t *axis, wh_gap_bounds_t *bounds) {
-    const wh_real_t lower = along(pair, axis);
+    wh_vec3_t at;
+    const wh_real_t lower = along(pair, axis, &at);
     if (lower > bounds->lower) {
         bounds->lower = lower;
         bounds->axis = *axis;
+        bounds->at = bounds->upper < far_away ? bounds->at : at;
     }
 }
 
@@ -232,7 +229,6 @@ static wh_gap_state_t measure(const wh_gap_pair_t *pair, wh_real_t enough, const
         try_easy_axes(pair, bounds);
     }
     if (bounds->lower > enough) {
-        bounds->at = middle_along(pair, &bounds->axis);
         return WH_GAP_CLEAR;
     }
     wh_nearest_bounds(pair, enough, budget->steps, bounds);
@@ -259,7 +255,6 @@ void wh_gap_measure_within(const wh_gap_pair_t *pair, wh_real_t enough, wh_vec3_
     }
     if (bounds.lower > above && bounds.lower < far_away) {
         gap->state = WH_GAP_CLEAR;
-        bounds.at = middle_along(pair, &bounds.axis);
     } else if (is_pose(pair->base_from_a) && is_pose(pair->base_from_b)) {
         gap->state = measure(pair, above, budget, &bounds);
     } else {

@@ -122,18 +122,18 @@ static void choose(part_t *part, unsigned chosen, size_t last) {
     part->index[part->count++] = last;
 }
 
-/* The nearest of all is looked for in each part that has the last point, for the others have been looked at before; the
- * simplex becomes that part. Returns its squared distance. */
+/* The nearest of all is looked for in each part that has the last point, for the others have been looked at before, but
+ * in none that is part of one whose nearest lies within; the simplex becomes that part. Returns its squared distance. */
 static wh_real_t reduce(simplex_t *simplex, wh_vec3_t *nearest) {
     const size_t last = simplex->count - 1;
-    part_t best;
-    choose(&best, 0, last);
-    (void)weigh(simplex, &best);
-    for (unsigned chosen = 1; chosen < 1U << last; ++chosen) {
+    part_t best = {.count = 0};
+    unsigned within = 0;
+    for (unsigned chosen = 1U << last; chosen-- > 0;) {
         part_t part;
         choose(&part, chosen, last);
-        if (weigh(simplex, &part) && part.squared < best.squared) {
-            best = part;
+        if ((best.count == 0 || (chosen & ~within) != 0) && weigh(simplex, &part)) {
+            within = best.count == 0 || part.squared < best.squared ? chosen : within;
+            best = within == chosen ? part : best;
         }
     }
     for (size_t i = 0; i < best.count; ++i) {

@@ -86,7 +86,7 @@ all: library collision $(B)/waferhand $(B)/wh.so $(B)/waferhand.1
 library: $(B)/libwaferhand.a
 collision: $(B)/libwaferhand_collision.a
 program: $(B)/waferhand
-tests: $(TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%)
+tests: $(TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%) $(BENCHES:%=$(B)/%)
 	@:
 library-tests: $(LIBRARY_TESTS:%=$(B)/%)
 	@:
@@ -170,7 +170,7 @@ $(B)/wh.so: $(MODULE_OBJECTS) $(B)/pic/support.a
 TEST_SUPPORT := $(patsubst %.c,$(B)/obj/%.o,$(wildcard tests/support/*.c))
 $(PROGRAM_TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%): $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS)) $(B)/libwaferhand_lcm.a
 $(PROGRAM_TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%): LIBS = $(PROGRAM_LIBS)
-COLLISION_USERS := $(PROGRAM_TESTS:%=$(B)/%) $(COLLISION_TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%)
+COLLISION_USERS := $(foreach user,$(PROGRAM_TESTS) $(COLLISION_TESTS) $(TOOLS) $(BENCHES),$(B)/$(user))
 $(COLLISION_USERS): $(B)/libwaferhand_collision.a
 $(COLLISION_USERS): COLLISION = $(COLLISION_LIBS)
 $(CXX_TESTS:%=$(B)/%): LINK = $(Q)$(CXX) $(CXXFLAGS) $(EXTRA) $(LDFLAGS)
