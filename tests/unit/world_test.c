@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "collision/world.h"
+#include "support_heap.h"
 #include "support_station.h"
 
 enum { WAFERS = 3, FIXED = 5, PARTS = FIXED + 4, EVENTS = 8 };
@@ -253,6 +254,28 @@ static void test_cost_is_flat_in_what_rests_elsewhere(void **state) {
     assert_true(counters[0].pairs > 0 && counters[0].measured > 0);
 }
 
+static void test_stepping_allocates_nothing(void **state) {
+    (void)state;
+#if defined(WH_TEST_COUNTS_HEAP)
+    begin();
+    const unsigned long before = calls;
+    for (int step = 0; step < 300; ++step) {
+        (void)go(400 + step, 0, 897, WH_VALVE_CLOSED);
+    }
+    for (int step = 0; step < 60; ++step) {
+        (void)go(700, 0, 897 + 0.1 * step, WH_VALVE_OPEN);
+    }
+    assert_int_equal(grippers[0].wafer, 0);
+    for (int step = 0; step < 300; ++step) {
+        (void)go(700 - step, 0, 903 + 0.05 * step, WH_VALVE_OPEN); /* into the ledges of the next slot */
+    }
+    assert_true(wh_world_counters(world)->measured > 50 && wh_world_counters(world)->relisted > 5);
+    assert_int_equal(calls - before, 0);
+#else
+    skip();
+#endif
+}
+
 /* ------------------------------------------------------------------------------------------------ before a run */
 
 static void test_what_touches_before_a_run_is_found(void **state) {
@@ -312,6 +335,7 @@ int main(void) {
         TEST(test_a_limit_is_reported_once),
         TEST(test_a_full_list_loses_events_but_no_figures),
         TEST(test_cost_is_flat_in_what_rests_elsewhere),
+        TEST(test_stepping_allocates_nothing),
         TEST(test_what_touches_before_a_run_is_found),
         TEST(test_bad_descriptions_are_refused),
     };
