@@ -55,6 +55,8 @@ static void write_machine(FILE *out, const wh_machine_t *machine) {
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         fprintf(out, "        {%" PRId32 ", ", machine->mounts[g].axis);
         write_pose(out, &machine->mounts[g].base_from_station);
+        fputs(machine->mounts[g].is_shifted ? ", true, " : ", false, ", out);
+        write_pose(out, &machine->mounts[g].effector_from_gripper);
         fputs("},\n", out);
     }
     fputs("    }};\n\n", out);
@@ -76,8 +78,9 @@ static void write_segment(FILE *out, const wh_segment_t *segment) {
         write_numbers(out, segment->target, WH_AXES);
         break;
     case WH_SEGMENT_LINE:
-        fprintf(out, "    {.kind = WH_SEGMENT_LINE, .travel = {%a, %a, %a}, .speed = %a", segment->travel.x,
-                segment->travel.y, segment->travel.z, segment->speed);
+        fprintf(out, "    {.kind = WH_SEGMENT_LINE, .travel = {%a, %a, %a}, .speed = %a, .acceleration = %a",
+                segment->travel.x, segment->travel.y, segment->travel.z, segment->speed,
+                segment->acceleration);
         break;
     case WH_SEGMENT_VALVES:
         fputs("    {.kind = WH_SEGMENT_VALVES, ", out);

@@ -128,28 +128,34 @@ static wh_real_t binding(wh_real_t R_limit, wh_real_t horizontal, wh_real_t Z_li
     return R_limit * vertical <= Z_limit * horizontal ? R_limit / horizontal : Z_limit / vertical;
 }
 
-static wh_limits_t path_limits(const wh_robot_t *robot, wh_real_t share, wh_real_t up, wh_real_t speed_cap) {
+static wh_limits_t path_limits(const wh_robot_t *robot, wh_real_t share, wh_real_t up,
+                               const wh_line_caps_t *caps) {
     const wh_limits_t *R = &robot->limits[WH_AXIS_R];
     const wh_limits_t *Z = &robot->limits[WH_AXIS_Z];
     const wh_real_t rise = wh_real_abs(up);
     wh_limits_t limits = {binding(R->speed, share, Z->speed, rise),
                           binding(R->acceleration, share, Z->acceleration, rise),
                           binding(R->jerk, share, Z->jerk, rise)};
-    if (speed_cap > 0 && speed_cap < limits.speed) {
-        limits.speed = speed_cap;
+    if (caps->speed > 0 && caps->speed < limits.speed) {
+        limits.speed = caps->speed;
+    }
+    if (caps->acceleration > 0 && caps->acceleration < limits.acceleration) {
+        limits.acceleration = caps->acceleration;
     }
     return limits;
 }
 
 static wh_status_t check_arguments(const wh_line_t *line, const wh_robot_t *robot, const wh_real_t from_q[],
-                                   const wh_vec3_t *step, wh_real_t speed_cap) {
-    if (line == NULL || robot == NULL || from_q == NULL) {
+                                   const wh_vec3_t *step, const wh_line_caps_t *caps) {
+    if (line == NULL || robot == NULL || from_q == NULL || step == NULL || caps == NULL) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (!wh_real_is_finite(wh_vec3_dot(step, step)) || !wh_real_is_finite(speed_cap)) {
+    if (!wh_real_is_finite(wh_vec3_dot(step, step)) || !wh_real_is_finite(caps->speed) ||
+        !wh_real_is_finite(caps->acceleration)) {
         return WH_STATUS_NOT_FINITE;
     }
-    return speed_cap < 0 ? WH_STATUS_OUT_OF_RANGE : wh_robot_check_travel(robot, from_q);
+    return caps->speed < 0 || caps->acceleration < 0 ? WH_STATUS_OUT_OF_RANGE
+                                                     : wh_robot_check_travel(robot, from_q);
 }
 
 /* The step in base as the arm sees it at the start. */
@@ -181,18 +187,26 @@ static wh_status_t slow_down(wh_line_t *line, wh_real_t factor) {
 
 wh_status_t wh_line_plan(wh_line_t *line, const wh_robot_t *robot, const wh_real_t from_q[WH_ROBOT_AXES],
                          wh_real_t dx, wh_real_t dy, wh_real_t dz, wh_real_t speed_cap) {
-    const wh_vec3_t step = wh_vec3(dx, dy, dz);
-    wh_status_t status = check_arguments(line, robot, from_q, &step, speed_cap);
+    const wh_vec3_t travel = wh_vec3(dx, dy, dz);
+    const wh_line_caps_t caps = {speed_cap, 0};
+    return wh_line_plan_capped(line, robot, from_q, &travel, &caps);
+}
+
+wh_status_t wh_line_plan_capped(wh_line_t *line, const wh_robot_t *robot,
+                                const wh_real_t from_q[WH_ROBOT_AXES], const wh_vec3_t *travel,
+                                const wh_line_caps_t *caps) {
+    wh_status_t status = check_arguments(line, robot, from_q, travel, caps);
     if (status != WH_OK) {
         return status;
     }
     wh_line_t planned;
-    const wh_vec3_t seen = seen_from_arm(from_q[WH_AXIS_THETA], &step);
-    const wh_real_t length = wh_vec3_norm(&step);
+    const wh_vec3_t seen = seen_from_arm(from_q[WH_AXIS_THETA], travel);
+    const wh_real_t length = wh_vec3_norm(travel);
     /* A line without length is planned as one outward, of length 0. */
     const bool moves = length > 0;
     planned.direction = moves ? wh_vec3(seen.x / length, seen.y / length, seen.z / length) : wh_vec3(1, 0, 0);
-    const wh_real_t share = moves ? wh_real_sqrt(dx * dx + dy * dy) / length : WH_REAL(1);
+    const wh_real_t share =
+        moves ? wh_real_sqrt(travel->x * travel->x + travel->y * travel->y) / length : WH_REAL(1);
     memcpy(planned.from, from_q, sizeof planned.from);
     axes_after(from_q, &seen, planned.to);
     const passage_t passage = passage_of(&planned, share, length);
@@ -200,7 +214,7 @@ wh_status_t wh_line_plan(wh_line_t *line, const wh_robot_t *robot, const wh_real
     if (status != WH_OK) {
         return status;
     }
-    const wh_limits_t limits = path_limits(robot, share, planned.direction.z, speed_cap);
+    const wh_limits_t limits = path_limits(robot, share, planned.direction.z, caps);
     status = wh_profile_plan(&planned.path, length, &limits);
     if (status == WH_OK) {
         status = slow_down(&planned, slowing_of_line(&planned, &passage, share, robot));

@@ -37,6 +37,18 @@ typedef struct {
 wh_status_t wh_line_plan(wh_line_t *line, const wh_robot_t *robot, const wh_real_t from_q[WH_ROBOT_AXES],
                          wh_real_t dx, wh_real_t dy, wh_real_t dz, wh_real_t speed_cap);
 
+/* Limits of a line beyond those of the axes; 0 is none. */
+typedef struct {
+    wh_real_t speed;        /* along it, mm/s */
+    wh_real_t acceleration; /* along it, mm/s^2 */
+} wh_line_caps_t;
+
+/* The same over `travel` (base, mm) with two caps, neither negative nor, unless 0, so small that no profile comes of
+ * it: wh_line_plan is this without a cap of acceleration, bit for bit. */
+wh_status_t wh_line_plan_capped(wh_line_t *line, const wh_robot_t *robot,
+                                const wh_real_t from_q[WH_ROBOT_AXES], const wh_vec3_t *travel,
+                                const wh_line_caps_t *caps);
+
 /* s, never negative. */
 static inline wh_real_t wh_line_duration(const wh_line_t *line) {
     return wh_profile_duration(&line->path);

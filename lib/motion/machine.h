@@ -6,6 +6,8 @@
 #ifndef WH_MOTION_MACHINE_H
 #define WH_MOTION_MACHINE_H
 
+#include <stdbool.h>
+
 #include "motion/move.h"
 #include "motion/robot.h"
 
@@ -15,10 +17,13 @@
 /* Chucks turn without a stop, up to this many radians from zero. */
 #define WH_CHUCK_TRAVEL WH_REAL(1e4)
 
-/* What a gripper is fixed to. */
+/* What a gripper is fixed to. All zero but the axis and one of the poses is fine. */
 typedef struct {
     int32_t axis;                /* the chuck's axis (4 and up), or WH_NONE: the robot's end-effector */
     wh_pose_t base_from_station; /* of a chuck: where its contact plane is at angle 0 */
+    bool is_shifted; /* on the robot: effector_from_gripper counts; false: the gripper's frame is the
+                                  * end-effector's own, to the last bit */
+    wh_pose_t effector_from_gripper; /* level: a place and a turn about z alone, as of one blade of two */
 } wh_mount_t;
 
 typedef struct {
@@ -29,8 +34,9 @@ typedef struct {
     wh_mount_t mounts[WH_GRIPPERS];
 } wh_machine_t;
 
-/* WH_OK, or WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE (a count or a mount's axis), or what
- * wh_robot_validate and wh_pose_validate say. Cost: linear in the grippers. */
+/* WH_OK, or WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE (a count or a mount's axis), WH_STATUS_NOT_LEVEL (a
+ * shifted gripper whose z is not the end-effector's, to the last bit), or what wh_robot_validate and
+ * wh_pose_validate say. Cost: linear in the grippers. */
 wh_status_t wh_machine_validate(const wh_machine_t *machine);
 
 /* The limits of one axis; `axis` is not checked. */
@@ -41,7 +47,16 @@ const wh_limits_t *wh_machine_limits(const wh_machine_t *machine, size_t axis);
 wh_status_t wh_machine_check_travel(const wh_machine_t *machine, const wh_real_t axes[]);
 
 /* Where each gripper is: poses[0 .. gripper_count - 1] from axes[0 .. axis_count - 1]. No argument is
- * checked. Cost: a sine and cosine for the robot and for each chuck. */
+ * checked. Cost: a sine and cosine for the robot and for each chuck, a product of poses for each shifted gripper.
+ */
 void wh_machine_grippers(const wh_machine_t *machine, const wh_real_t axes[], wh_pose_t poses[]);
+
+/* The axes that bring gripper `gripper`, which is on the robot, to the point `at` (base, mm) with its x along `heading`:
+ * wh_robot_inverse of where the end-effector then is, with its errors and what it leaves unchanged. On a level
+ * arm the end-effector's straight lines at constant heading are the gripper's. `machine` and `gripper` are not
+ * checked. */
+wh_status_t wh_machine_inverse(const wh_machine_t *machine, size_t gripper, const wh_vec3_t *at,
+                               wh_real_t heading, const wh_real_t near_q[WH_ROBOT_AXES],
+                               wh_real_t q[WH_ROBOT_AXES]);
 
 #endif

@@ -42,6 +42,7 @@ wh_segment_t wh_track_blank(const wh_track_t *track) {
     segment.kind = WH_SEGMENT_DWELL;
     segment.travel = wh_vec3(0, 0, 0);
     segment.speed = 0;
+    segment.acceleration = 0;
     segment.seconds = 0;
     segment.gripper = WH_NONE;
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
@@ -92,10 +93,10 @@ static wh_status_t plan_axes(wh_track_t *track, const wh_segment_t *segment) {
 }
 
 static wh_status_t plan_line(wh_track_t *track, const wh_segment_t *segment) {
-    const wh_vec3_t *travel = &segment->travel;
+    const wh_line_caps_t caps = {segment->speed, segment->acceleration};
     wh_line_t line;
-    const wh_status_t status = wh_line_plan(&line, &track->machine->robot, track->axes, travel->x, travel->y,
-                                            travel->z, segment->speed);
+    const wh_status_t status =
+        wh_line_plan_capped(&line, &track->machine->robot, track->axes, &segment->travel, &caps);
     if (status == WH_OK && wh_line_duration(&line) > MAX_SECONDS) {
         return WH_STATUS_BAD_SEGMENT;
     }

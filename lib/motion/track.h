@@ -30,6 +30,7 @@ typedef struct {
     wh_real_t target[WH_AXES];   /* AXES: every axis of the machine, rad or mm */
     wh_vec3_t travel;            /* LINE: base, mm */
     wh_real_t speed;             /* LINE: at most this, mm/s; 0: the axes' own limits */
+    wh_real_t acceleration;      /* LINE: at most this, mm/s^2; 0: the axes' own limits */
     wh_real_t seconds;           /* DWELL, SENSOR: 0 to 1e6 */
     int32_t valves[WH_GRIPPERS]; /* VALVES: WH_VALVE_OPEN, WH_VALVE_CLOSED or WH_NONE: as it was */
     int32_t gripper;             /* SENSOR */
@@ -69,7 +70,8 @@ wh_segment_t wh_track_blank(const wh_track_t *track);
  * slice to the next. Refused, the track unchanged:
  *   WH_STATUS_NULL_ARGUMENT
  *   WH_STATUS_NOT_FINITE      a target, travel, speed or time is NaN or infinite
- *   WH_STATUS_BAD_SEGMENT     kind, gripper, valve, speed or seconds out of range; a motion of over 1e6 s
+ *   WH_STATUS_BAD_SEGMENT     kind, gripper, valve, speed, acceleration or seconds out of range; a motion of over
+ *                             1e6 s
  *   WH_STATUS_LIMIT_EXCEEDED  an axis other than R outside its travel
  *   WH_STATUS_OUT_OF_REACH    R outside its travel, at the target or anywhere on a line
  *   WH_STATUS_BAD_LIMITS      limits too extreme to plan with: see wh_profile_plan

@@ -43,6 +43,9 @@ static uint64_t hash_machine(uint64_t hash, const wh_layout_t *layout) {
         hash = hash_text(hash, layout->grippers[g].name);
         hash = wh_hash_int(hash, machine->mounts[g].axis);
         hash = wh_hash_pose(hash, &machine->mounts[g].base_from_station);
+        if (machine->mounts[g].is_shifted) {
+            hash = wh_hash_pose(hash, &machine->mounts[g].effector_from_gripper);
+        }
     }
     return hash;
 }

@@ -107,13 +107,54 @@ static void mount_on_chuck(wh_reader_t *reader, wh_layout_t *layout, size_t g, i
     machine->mounts[g].base_from_station = layout->places[station].base_from_station;
 }
 
+static bool has_field(const wh_reader_t *reader, const char *field) {
+    lua_pushstring(reader->L, field);
+    const bool there = lua_rawget(reader->L, -2) != LUA_TNIL;
+    lua_pop(reader->L, 1);
+    return there;
+}
+
+static void fail_at_vector(wh_reader_t *reader, const char *field, const char *expected) {
+    lua_pushstring(reader->L, field);
+    lua_rawget(reader->L, -2);
+    wh_reader_fail(reader, field, "%s", expected);
+}
+
+/* Where a blade of several sits on the end-effector. One that says nothing of it is the end-effector itself. */
+static void read_shift(wh_reader_t *reader, wh_mount_t *mount) {
+    static const wh_vec3_t none = {0, 0, 0};
+    const wh_vec3_t at = wh_reader_vector(reader, "at", &none);
+    const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", &none);
+    if (wh_real_abs(rpy.x) > 0 || wh_real_abs(rpy.y) > 0) {
+        fail_at_vector(reader, "rpy", "{ 0, 0, yaw }: a blade is as level as the arm");
+    }
+    mount->is_shifted = wh_real_abs(rpy.z) > 0 || wh_vec3_dot(&at, &at) > 0;
+    if (mount->is_shifted) {
+        mount->effector_from_gripper.r = at;
+        mount->effector_from_gripper.R = wh_mat3_from_rpy_deg(0, 0, rpy.z);
+    }
+}
+
+static void refuse_shift(wh_reader_t *reader) {
+    static const char *const fields[] = {"at", "rpy"};
+    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i) {
+        if (has_field(reader, fields[i])) {
+            fail_at_vector(reader, fields[i], "nothing: a chuck sits where its station is");
+        }
+    }
+}
+
 static void read_mount(wh_reader_t *reader, wh_layout_t *layout, size_t g) {
     char on[WH_NAME_SIZE];
     wh_reader_text(reader, "on", "robot", on, sizeof on);
     layout->grippers[g].station = WH_NONE;
     layout->machine.mounts[g].axis = WH_NONE;
     layout->machine.mounts[g].base_from_station = wh_pose_identity();
-    if (strcmp(on, "robot") != 0) {
+    layout->machine.mounts[g].effector_from_gripper = wh_pose_identity();
+    if (strcmp(on, "robot") == 0) {
+        read_shift(reader, &layout->machine.mounts[g]);
+    } else {
+        refuse_shift(reader);
         lua_pushstring(reader->L, on);
         mount_on_chuck(reader, layout, g, wh_layout_find_station(layout, on));
         lua_pop(reader->L, 1);
@@ -124,7 +165,7 @@ static void read_gripper(wh_reader_t *reader, wh_layout_t *layout) {
     const size_t g = layout->machine.gripper_count;
     wh_layout_gripper_t *gripper = &layout->grippers[g];
     char valve[WH_NAME_SIZE];
-    wh_reader_refuse_unknown(reader, "name on valve");
+    wh_reader_refuse_unknown(reader, "name on valve at rpy");
     wh_reader_text(reader, "name", NULL, gripper->name, sizeof gripper->name);
     snprintf(valve, sizeof valve, "%.40s.valve", gripper->name);
     wh_reader_text(reader, "valve", valve, gripper->valve, sizeof gripper->valve);

@@ -20,19 +20,18 @@ static int read_axes(lua_State *L) {
     return 1;
 }
 
-/* native.inverse(x, y, z, heading): the axes with the end-effector there, from where they stand. */
+/* native.inverse(x, y, z, heading, gripper): the axes with that gripper of the robot there, from where they stand. */
 static int find_axes(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const double x = luaL_checknumber(L, 1);
-    const double y = luaL_checknumber(L, 2);
-    const double z = luaL_checknumber(L, 3);
+    const wh_vec3_t at = wh_vec3(luaL_checknumber(L, 1), luaL_checknumber(L, 2), luaL_checknumber(L, 3));
+    const int32_t gripper = wh_mcs_index(L, 5, mcs->layout->machine.gripper_count);
     wh_real_t axes[WH_AXES];
     memcpy(axes, mcs->track.axes, sizeof axes);
-    const wh_status_t status =
-        wh_robot_inverse(&mcs->layout->machine.robot, x, y, z, luaL_checknumber(L, 4), mcs->track.axes, axes);
+    const wh_status_t status = wh_machine_inverse(&mcs->layout->machine, (size_t)gripper, &at,
+                                                  luaL_checknumber(L, 4), mcs->track.axes, axes);
     if (status != WH_OK) {
         char detail[120];
-        snprintf(detail, sizeof detail, "x %.3f, y %.3f, z %.3f mm", x, y, z);
+        snprintf(detail, sizeof detail, "x %.3f, y %.3f, z %.3f mm", at.x, at.y, at.z);
         wh_mcs_raise(L, mcs, status, detail);
     }
     push_axes(L, mcs, axes);

@@ -97,7 +97,9 @@ static void read_line_field(lua_State *L, wh_segment_t *segment) {
     }
     lua_getfield(L, 1, "speed");
     segment->speed = luaL_optnumber(L, -1, 0);
-    lua_pop(L, 1);
+    lua_getfield(L, 1, "acceleration");
+    segment->acceleration = luaL_optnumber(L, -1, 0);
+    lua_pop(L, 2);
 }
 
 static void read_valves_field(lua_State *L, wh_segment_t *segment) {

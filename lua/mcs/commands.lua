@@ -78,9 +78,12 @@ return function(native, patterns, names)
     local layout = native.layout()
     local station = names.station(station_name)
     options = check_options(options)
-    local job = { inverse = native.inverse, chuck = station.chuck }
+    local job = { chuck = station.chuck }
     job.place = native.slot(station.index, names.slot(station, slot))
     job.gripper = names.effector(options.gripper)
+    function job.inverse(x, y, z, heading)
+      return native.inverse(x, y, z, heading, job.gripper)
+    end
     for name in pairs(parameters) do
       job[name] = options[name] == nil and station[name] or options[name]
     end

@@ -204,6 +204,31 @@ static void test_every_field_of_a_station_is_read(void **state) {
     assert_int_equal(wh_layout_find_gripper(layout, "PA"), 1);
 }
 
+/* One that says nothing of its place, or that it has none, is the end-effector: its layout's hash is as ever. */
+static void test_a_blade_of_two_sits_where_it_says(void **state) {
+    (void)state;
+    const wh_layout_t *layout =
+        read_sound(STATIONS "grippers = { { name = 'LOWER', at = { 0, 0, 0 }, rpy = { 0, 0, 0 } }, "
+                            "{ name = 'UPPER', at = { 1, 2, 15 }, rpy = { 0, 0, 180 } } }");
+    const wh_mount_t *upper = &layout->machine.mounts[1];
+    assert_false(layout->machine.mounts[0].is_shifted);
+    assert_true(upper->is_shifted);
+    assert_near(upper->effector_from_gripper.r.z, 15, 0);
+    assert_near(upper->effector_from_gripper.R.m[0][0], -1, 0);
+    assert_int_equal(wh_machine_validate(&layout->machine), WH_OK);
+}
+
+static void test_a_blades_place_is_in_the_hash(void **state) {
+    (void)state;
+    const uint64_t plain = wh_layout_hash(read_sound(STATIONS "grippers = { { name = 'EE' } }"));
+    const uint64_t nowhere =
+        wh_layout_hash(read_sound(STATIONS "grippers = { { name = 'EE', at = { 0, 0, 0 } } }"));
+    const uint64_t above =
+        wh_layout_hash(read_sound(STATIONS "grippers = { { name = 'EE', at = { 0, 0, 1 } } }"));
+    assert_true(plain == nowhere);
+    assert_true(plain != above);
+}
+
 static void test_wafers_lie_where_the_slots_frame_says(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
@@ -287,6 +312,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_degrees_become_radians_and_lengths_stay, open_sandbox,
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(test_every_field_of_a_station_is_read, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_a_blade_of_two_sits_where_it_says, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_a_blades_place_is_in_the_hash, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(test_wafers_lie_where_the_slots_frame_says, open_sandbox,
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(test_what_is_wrong_is_named, open_sandbox, close_sandbox),

@@ -351,6 +351,31 @@ static void the_cap_limits_the_speed(void **state) {
     assert_near(wh_profile_peak_speed(&line.path), 1000, 1e-2);
 }
 
+static void the_cap_limits_the_acceleration(void **state) {
+    (void)state;
+    const wh_robot_t robot = standard();
+    const wh_vec3_t up = wh_vec3(0, 0, 10);
+    const wh_line_caps_t speed_alone = {20, 0};
+    const wh_line_caps_t both = {20, 100};
+    const wh_line_caps_t high = {20, 1e5};
+    const wh_line_caps_t negative = {20, -1};
+    const wh_line_caps_t nan = {20, (wh_real_t)NAN};
+    wh_line_t line;
+    wh_line_t plain;
+    assert_int_equal(wh_line_plan(&plain, &robot, robot.home, 0, 0, 10, 20), WH_OK);
+    assert_int_equal(wh_line_plan_capped(&line, &robot, robot.home, &up, &speed_alone), WH_OK);
+    assert_true(wh_line_duration(&line) == wh_line_duration(&plain));
+    assert_int_equal(wh_line_plan_capped(&line, &robot, robot.home, &up, &high), WH_OK);
+    assert_true(wh_line_duration(&line) == wh_line_duration(&plain));
+    assert_int_equal(wh_line_plan_capped(&line, &robot, robot.home, &up, &both), WH_OK);
+    assert_near(wh_profile_peak_acceleration(&line.path), 100, 1e-3);
+    assert_true(wh_line_duration(&line) > wh_line_duration(&plain));
+    assert_int_equal(wh_line_plan_capped(&line, &robot, robot.home, &up, &negative), WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(wh_line_plan_capped(&line, &robot, robot.home, &up, &nan), WH_STATUS_NOT_FINITE);
+    assert_int_equal(wh_line_plan_capped(&line, &robot, robot.home, &up, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_line_plan_capped(&line, &robot, robot.home, NULL, &both), WH_STATUS_NULL_ARGUMENT);
+}
+
 static void no_length_takes_no_time(void **state) {
     (void)state;
     const wh_robot_t robot = standard();
@@ -439,12 +464,13 @@ static void limits_too_extreme_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_axis_exceeds_its_limits),      cmocka_unit_test(odd_robots_keep_their_limits),
-        cmocka_unit_test(the_effector_keeps_to_the_line),  cmocka_unit_test(ends_are_exact),
-        cmocka_unit_test(travel_is_checked_everywhere),    cmocka_unit_test(simple_lines_are_not_slowed),
-        cmocka_unit_test(the_cap_limits_the_speed),        cmocka_unit_test(no_length_takes_no_time),
-        cmocka_unit_test(a_line_near_the_axis_is_refused), cmocka_unit_test(other_axes_travel_is_checked),
-        cmocka_unit_test(bad_arguments_change_nothing),    cmocka_unit_test(limits_too_extreme_are_refused),
+        cmocka_unit_test(no_axis_exceeds_its_limits),     cmocka_unit_test(odd_robots_keep_their_limits),
+        cmocka_unit_test(the_effector_keeps_to_the_line), cmocka_unit_test(ends_are_exact),
+        cmocka_unit_test(travel_is_checked_everywhere),   cmocka_unit_test(simple_lines_are_not_slowed),
+        cmocka_unit_test(the_cap_limits_the_speed),       cmocka_unit_test(the_cap_limits_the_acceleration),
+        cmocka_unit_test(no_length_takes_no_time),        cmocka_unit_test(a_line_near_the_axis_is_refused),
+        cmocka_unit_test(other_axes_travel_is_checked),   cmocka_unit_test(bad_arguments_change_nothing),
+        cmocka_unit_test(limits_too_extreme_are_refused),
     };
     (void)wh_test_seed();
     return cmocka_run_group_tests(tests, NULL, NULL);

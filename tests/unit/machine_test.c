@@ -231,8 +231,107 @@ static void test_a_chuck_has_a_pose_over_its_whole_travel(void **state) {
     }
 }
 
+/* Two blades back to back, one above the other. */
+static wh_machine_t machine_with_two_blades(void) {
+    wh_machine_t machine = machine_with_chuck();
+    machine.mounts[1] = machine.mounts[0];
+    machine.mounts[1].is_shifted = true;
+    machine.mounts[1].effector_from_gripper.r = wh_vec3(-40, 5, 12);
+    machine.mounts[1].effector_from_gripper.R = wh_mat3_from_rpy_deg(0, 0, 180);
+    machine.axis_count = WH_ROBOT_AXES;
+    return machine;
+}
+
+static void test_a_shifted_gripper_sits_beside_the_effector(void **state) {
+    (void)state;
+    const wh_machine_t machine = machine_with_two_blades();
+    const wh_real_t axes[] = {WH_PI / 2, 500, 1000, 0};
+    wh_pose_t poses[2];
+    assert_int_equal(wh_machine_validate(&machine), WH_OK);
+    wh_machine_grippers(&machine, axes, poses);
+    assert_near(poses[0].r.y, 500, 1e-3);
+    assert_near(poses[1].r.x, -5, 1e-3);
+    assert_near(poses[1].r.y, 460, 1e-3);
+    assert_near(poses[1].r.z, 1012, 1e-3);
+    assert_near(poses[1].R.m[1][0], -1, 1e-6);
+}
+
+/* A flag that is not set leaves every bit alone, whatever stands in the pose. */
+static void test_a_gripper_that_is_not_shifted_is_the_effector(void **state) {
+    (void)state;
+    wh_machine_t machine = machine_with_two_blades();
+    const wh_real_t axes[] = {WH_REAL(0.7), 512, 1001, WH_REAL(-1.2)};
+    wh_pose_t poses[2];
+    machine.mounts[1].is_shifted = false;
+    machine.mounts[1].effector_from_gripper.r.x = (wh_real_t)NAN;
+    assert_int_equal(wh_machine_validate(&machine), WH_OK);
+    wh_machine_grippers(&machine, axes, poses);
+    assert_memory_equal(&poses[1], &poses[0], sizeof poses[0]);
+}
+
+static void test_a_tilted_or_broken_shift_is_refused(void **state) {
+    (void)state;
+    wh_machine_t machine = machine_with_two_blades();
+    machine.mounts[1].effector_from_gripper.R = wh_mat3_from_rpy_deg(0, WH_REAL(0.01), 90);
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_NOT_LEVEL);
+    machine.mounts[1].effector_from_gripper.R = wh_mat3_from_rpy_deg(180, 0, 0);
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_NOT_LEVEL);
+    machine = machine_with_two_blades();
+    machine.mounts[1].effector_from_gripper.r.z = (wh_real_t)NAN;
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_NOT_FINITE);
+    machine = machine_with_two_blades();
+    machine.mounts[1].effector_from_gripper.R.m[0][0] = 0;
+    assert_int_equal(wh_machine_validate(&machine), WH_STATUS_NOT_A_ROTATION);
+}
+
+/* Each gripper comes to the point, with its own x along the heading; the plain one by the robot's own inverse. */
+static void test_the_inverse_brings_each_gripper_there(void **state) {
+    (void)state;
+    const wh_machine_t machine = machine_with_two_blades();
+    const wh_vec3_t at = wh_vec3(350, -420, 1015);
+    for (int turn = -3; turn <= 3; ++turn) {
+        const wh_real_t heading = WH_REAL(0.9) * (wh_real_t)turn;
+        wh_real_t plain[WH_ROBOT_AXES];
+        wh_real_t axes[WH_ROBOT_AXES];
+        wh_pose_t poses[2];
+        assert_int_equal(
+            wh_robot_inverse(&machine.robot, at.x, at.y, at.z, heading, machine.robot.home, plain), WH_OK);
+        assert_int_equal(wh_machine_inverse(&machine, 0, &at, heading, machine.robot.home, axes), WH_OK);
+        assert_memory_equal(axes, plain, sizeof axes);
+        assert_int_equal(wh_machine_inverse(&machine, 1, &at, heading, machine.robot.home, axes), WH_OK);
+        wh_machine_grippers(&machine, axes, poses);
+        assert_near(poses[1].r.x, at.x, 1e3 * 16 * WH_TEST_ROUNDING);
+        assert_near(poses[1].r.y, at.y, 1e3 * 16 * WH_TEST_ROUNDING);
+        assert_near(poses[1].r.z, at.z, 1e3 * 16 * WH_TEST_ROUNDING);
+        assert_near(poses[1].R.m[0][0], cos((double)heading), 64 * WH_TEST_ROUNDING);
+        assert_near(poses[1].R.m[1][0], sin((double)heading), 64 * WH_TEST_ROUNDING);
+    }
+}
+
+static void test_the_inverse_refuses_what_the_robots_does(void **state) {
+    (void)state;
+    const wh_machine_t machine = machine_with_two_blades();
+    const wh_vec3_t at = wh_vec3(350, -420, 1015);
+    const wh_vec3_t far = wh_vec3(3500, -420, 1015);
+    const wh_real_t untouched[WH_ROBOT_AXES] = {1, 2, 3, 4};
+    const wh_real_t *home = machine.robot.home;
+    wh_real_t q[WH_ROBOT_AXES] = {1, 2, 3, 4};
+    for (size_t g = 0; g < 2; ++g) {
+        assert_int_equal(wh_machine_inverse(&machine, g, &far, 0, home, q), WH_STATUS_OUT_OF_REACH);
+        assert_int_equal(wh_machine_inverse(&machine, g, &at, (wh_real_t)NAN, home, q), WH_STATUS_NOT_FINITE);
+        assert_int_equal(wh_machine_inverse(&machine, g, &at, 2 * WH_TRIG_MAX_RAD, home, q),
+                         WH_STATUS_OUT_OF_RANGE);
+        assert_memory_equal(q, untouched, sizeof q);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_shifted_gripper_sits_beside_the_effector),
+        cmocka_unit_test(test_a_gripper_that_is_not_shifted_is_the_effector),
+        cmocka_unit_test(test_a_tilted_or_broken_shift_is_refused),
+        cmocka_unit_test(test_the_inverse_brings_each_gripper_there),
+        cmocka_unit_test(test_the_inverse_refuses_what_the_robots_does),
         cmocka_unit_test(test_a_sound_machine_passes),
         cmocka_unit_test(test_null_is_refused),
         cmocka_unit_test(test_counts_out_of_range_are_refused),
