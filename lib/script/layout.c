@@ -39,12 +39,13 @@ const wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
         wh_reader_fail(&reader, "what the file returns", "a table");
     }
     wh_reader_refuse_unknown(
-        &reader, "wafer tolerance near check slice seat settle placing collision robot chuck grippers "
+        &reader, "wafer tolerance near check slice seat settle placing collision robot homed chuck grippers "
                  "stations wafers shapes obstacles clearance");
     wh_layout_read_checks(&reader, layout);
     wh_layout_read_robot(&reader, layout);
     wh_layout_read_stations(&reader, layout);
     wh_layout_read_grippers(&reader, layout);
+    wh_layout_read_effectors(&reader, layout);
     wh_layout_read_wafers(&reader, layout);
     wh_layout_read_shapes(&reader, layout);
     wh_layout_read_world(&reader, layout);

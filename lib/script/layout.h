@@ -36,6 +36,14 @@ typedef enum {
     WH_HANDOVER_SAME_SLICE
 } wh_handover_t;
 
+/* Whose success the vacuum sensor decides; a command whose it does not goes through its motions and trusts them. */
+typedef enum {
+    WH_VACUUM_CHECK_BOTH,
+    WH_VACUUM_CHECK_GET,
+    WH_VACUUM_CHECK_PUT,
+    WH_VACUUM_CHECK_NONE
+} wh_vacuum_check_t;
+
 /* The station parameters that GET and PUT use; geometry is in wh_layout_t.places at the same index. */
 typedef struct {
     char name[WH_NAME_SIZE];
@@ -49,6 +57,14 @@ typedef struct {
     wh_real_t vacuum_delay; /* after the stroke before the sensor is asked, s */
     wh_real_t timeout;      /* how long the sensor is then waited for, s */
     wh_handover_t handover;
+    bool taught;                   /* false: every command at it is refused */
+    bool check_map;                /* GET and PUT need a MAP first */
+    wh_vacuum_check_t check;       /* which commands the sensor decides */
+    wh_real_t pickup_acceleration; /* of the strokes, mm/s^2; 0: the axes' own */
+    wh_real_t wait;                /* in the station before the stroke, s */
+    wh_real_t map_speed;           /* of a MAP's sweep, mm/s */
+    int32_t retries;               /* how often a GET that took nothing goes up again */
+    int32_t effector; /* the gripper on the robot that serves it unless a command says otherwise */
 } wh_layout_station_t;
 
 typedef struct {
@@ -64,6 +80,7 @@ typedef struct {
     wh_grasp_config_t grasp;
     int64_t slice_us;
     wh_machine_t machine; /* machine.gripper_count is the number of grippers */
+    bool homed;           /* false: HOME comes before whatever counts on where the arm stands */
     wh_layout_gripper_t grippers[WH_GRIPPERS];
     size_t station_count;
     wh_layout_station_t *stations; /* sorted by name */

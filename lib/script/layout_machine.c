@@ -81,6 +81,7 @@ void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout) {
     machine->axis_count = WH_ROBOT_AXES;
     machine->chuck_limits = machine->robot.limits[WH_AXIS_YAW];
     read_robot(reader, &machine->robot);
+    layout->homed = wh_reader_boolean(reader, "homed", true);
     if (wh_reader_enter(reader, "chuck")) {
         wh_reader_refuse_unknown(reader, "speed acceleration jerk");
         read_axis_limits(reader, true, &machine->chuck_limits);

@@ -7,7 +7,9 @@
 #include "script/layout_internal.h"
 
 #define STATION_FIELDS                                                                                       \
-    "kind at rpy slots pitch stroke offset retract pickup_speed release vacuum_delay timeout handover"
+    "kind at rpy taught slots pitch effector stroke offset retract pickup_speed pickup_acceleration "        \
+    "release "                                                                                               \
+    "vacuum_delay vacuum_check timeout retries wait map_speed check_map handover"
 
 static double default_pitch(double wafer_diameter) {
     if (wafer_diameter <= 150) {
@@ -72,8 +74,19 @@ static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, const wh_
     station->timeout = wh_reader_number(reader, "timeout", 0.25, 0, 3600);
     station->handover = wh_reader_choice(reader, "handover", 0, handovers) == 0 ? WH_HANDOVER_NEW_FIRST
                                                                                 : WH_HANDOVER_SAME_SLICE;
+    station->pickup_acceleration = wh_reader_number(reader, "pickup_acceleration", 0, 0, 1e8);
+    station->wait = wh_reader_number(reader, "wait", 0, 0, 3600);
     check_stroke(reader, place, station);
     check_speed(reader, layout, station->pickup_speed);
+}
+
+static void read_checks(wh_reader_t *reader, wh_layout_station_t *station) {
+    static const char *const modes[] = {"both", "get", "put", "none", NULL};
+    station->taught = wh_reader_boolean(reader, "taught", true);
+    station->check = (wh_vacuum_check_t)wh_reader_choice(reader, "vacuum_check", WH_VACUUM_CHECK_BOTH, modes);
+    station->retries = wh_reader_whole(reader, "retries", 0, 0, 100);
+    station->check_map = wh_reader_boolean(reader, "check_map", false);
+    station->map_speed = wh_reader_number(reader, "map_speed", 100, 0.001, 10000);
 }
 
 static int compare_names(const void *a, const void *b) {
@@ -113,6 +126,7 @@ static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index)
     station->foup = kind == 2;
     read_place(reader, layout, station, &layout->places[index]);
     read_moves(reader, layout, &layout->places[index], station);
+    read_checks(reader, station);
     wh_reader_leave(reader);
 }
 
@@ -128,5 +142,35 @@ void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout) {
     layout->cell.stations = layout->places;
     layout->cell.count = layout->station_count;
     layout->cell.tolerance = layout->grasp.tolerance;
+    wh_reader_leave(reader);
+}
+
+static int32_t first_on_robot(const wh_layout_t *layout) {
+    int32_t gripper = 0;
+    while (layout->grippers[gripper].station != WH_NONE) {
+        ++gripper;
+    }
+    return gripper;
+}
+
+static void read_effector(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_station_t *station) {
+    char name[WH_NAME_SIZE];
+    station->effector = first_on_robot(layout);
+    wh_reader_text(reader, "effector", layout->grippers[station->effector].name, name, sizeof name);
+    const int32_t gripper = wh_layout_find_gripper(layout, name);
+    if (gripper == WH_NONE || layout->grippers[gripper].station != WH_NONE) {
+        lua_pushstring(reader->L, name);
+        wh_reader_fail(reader, "effector", "the name of a gripper on = \"robot\"");
+    }
+    station->effector = gripper;
+}
+
+void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout) {
+    wh_reader_enter(reader, "stations");
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        wh_reader_enter(reader, layout->stations[s].name);
+        read_effector(reader, layout, &layout->stations[s]);
+        wh_reader_leave(reader);
+    }
     wh_reader_leave(reader);
 }

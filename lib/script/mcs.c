@@ -113,7 +113,7 @@ static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
     const luaL_Reg *const groups[] = {module_functions,      wh_mcs_cell_functions,  wh_mcs_plan_functions,
                                       wh_mcs_play_functions, wh_mcs_query_functions, wh_mcs_record_functions,
-                                      wh_mcs_line_functions};
+                                      wh_mcs_line_functions, wh_mcs_scan_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -142,6 +142,7 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
     mcs->sandbox = sandbox;
     mcs->record = record;
     mcs->running = WH_NONE;
+    mcs->stop_slice = INT64_MAX;
     record->script = wh_record_text(script);
     lua_pushcfunction(L, open_words);
     lua_pushlightuserdata(L, mcs);

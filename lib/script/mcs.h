@@ -25,8 +25,14 @@ typedef struct {
     void *user;
 } wh_mcs_partners_t;
 
-/* Written by lib/script/mcs*.c only, but for `partners` and `keep_segments`, which may be set between opening and
- * the cell. Must not be moved once opened. */
+/* Judges a segment before a command moves: it was planned from where mcs->track stands, nothing of the command has been
+ * played, and track.valves are as the segments before it leave them. True when it would collide; `reason`, of
+ * WH_MCS_REASON_BYTES, then says with what. A copy of the track may be stepped, mcs must be left alone. */
+#define WH_MCS_REASON_BYTES 200
+typedef bool wh_mcs_ahead_t(void *user, const wh_mcs_t *mcs, const wh_segment_t *segment, char *reason);
+
+/* Written by lib/script/mcs*.c only, but for `partners`, `keep_segments` and `ahead`, which may be set between opening
+ * and the cell. Must not be moved once opened. */
 struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
     wh_sandbox_t *sandbox;
@@ -36,12 +42,17 @@ struct wh_mcs {
     wh_collision_t collision;
     wh_link_t *link; /* the simulator's, or whoever stands in for it */
     wh_track_t track;
-    wh_command_t command; /* the last one sent */
-    wh_state_t state;     /* the answer to it */
-    int32_t running;      /* index of the running command in the record, or WH_NONE */
-    bool rehearsing;      /* segments are planned and skipped, not played */
-    wh_track_t kept;      /* the track from before the rehearsal */
-    bool keep_segments;   /* collect what is played, for --segments */
+    wh_command_t command;  /* the last one sent */
+    wh_state_t state;      /* the answer to it */
+    int32_t running;       /* index of the running command in the record, or WH_NONE */
+    bool rehearsing;       /* segments are planned and skipped, not played */
+    bool judging;          /* and `ahead` is asked */
+    wh_track_t kept;       /* the track from before the rehearsal */
+    wh_mcs_ahead_t *ahead; /* null: nobody looks ahead */
+    void *ahead_user;
+    int64_t stop_slice; /* at which a STOP comes; INT64_MAX: none */
+    uint32_t was_off;   /* bit g: gripper g's sensor was off in a slice of the running segment */
+    bool keep_segments; /* collect what is played, for --segments */
     wh_segment_t *segments;
     size_t segment_count, segment_capacity;
     wh_mcs_partners_t partners;

@@ -17,6 +17,9 @@ wh_mcs_t *wh_mcs_with_layout(lua_State *L);
 int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *detail)
     __attribute__((noreturn));
 
+/* Ends a rehearsal that is under way, if one is: everything is where it was. */
+void wh_mcs_end_rehearsal(wh_mcs_t *mcs);
+
 /* Simulated seconds so far. */
 double wh_mcs_now(const wh_mcs_t *mcs);
 
@@ -30,5 +33,6 @@ extern const luaL_Reg wh_mcs_play_functions[];
 extern const luaL_Reg wh_mcs_query_functions[];
 extern const luaL_Reg wh_mcs_record_functions[];
 extern const luaL_Reg wh_mcs_line_functions[];
+extern const luaL_Reg wh_mcs_scan_functions[];
 
 #endif

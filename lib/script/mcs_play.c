@@ -1,4 +1,5 @@
 /* The MCS host's hands: segments, read and played slice by slice. */
+#include <math.h>
 #include <string.h>
 #include <time.h>
 
@@ -42,6 +43,10 @@ static double seconds_now(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+static bool stop_has_come(const wh_mcs_t *mcs) {
+    return mcs->track.slice >= mcs->stop_slice;
+}
+
 /* Plays up to SLICES_PER_CHARGE slices of the segment; fewer when the sandbox is to stop, for over a link at a
  * wall-clock rate a portion may take seconds. */
 static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
@@ -51,8 +56,9 @@ static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
         state = wh_track_next(&mcs->track, mcs->state.sensors);
         if (state == WH_TRACK_MOVING) {
             *status = exchange(mcs);
+            mcs->was_off |= ~mcs->state.sensors;
         }
-        if (wh_sandbox_stopping(mcs->sandbox)) {
+        if (wh_sandbox_stopping(mcs->sandbox) || stop_has_come(mcs)) {
             break;
         }
     }
@@ -71,8 +77,41 @@ static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
         if (status != WH_OK) {
             wh_mcs_raise(L, mcs, status, "the simulator refused a slice");
         }
+        if (stop_has_come(mcs)) {
+            mcs->stop_slice = INT64_MAX;
+            wh_mcs_raise(L, mcs, WH_STATUS_STOPPED, "by stop_in");
+        }
     }
     return state;
+}
+
+/* ------------------------------------------------------------------------------------------------ watching
+ */
+
+/* Whether a gripper goes anywhere in a segment: with the arm in each, with its chuck where that turns. */
+static bool is_carried(const wh_mcs_t *mcs, const wh_segment_t *segment, size_t g) {
+    const int32_t axis = mcs->layout->machine.mounts[g].axis;
+    return axis == WH_NONE || (segment->kind == WH_SEGMENT_AXES &&
+                               wh_real_abs(segment->target[axis] - mcs->track.axes[axis]) > 0);
+}
+
+/* Of the grippers whose sensor is on, those that a wafer could be lost from. */
+static uint32_t watch(const wh_mcs_t *mcs, const wh_segment_t *segment) {
+    uint32_t watched = 0;
+    for (size_t g = 0; g < mcs->state.gripper_count; ++g) {
+        watched |= is_carried(mcs, segment, g) ? 1U << g : 0;
+    }
+    return watched & mcs->state.sensors;
+}
+
+/* The first of the watched whose sensor went off though its valve is open, or WH_NONE. */
+static int32_t find_lost(const wh_mcs_t *mcs, uint32_t watched) {
+    for (size_t g = 0; g < mcs->state.gripper_count; ++g) {
+        if ((watched & mcs->was_off & 1U << g) != 0 && mcs->track.valves[g] == WH_VALVE_OPEN) {
+            return (int32_t)g;
+        }
+    }
+    return WH_NONE;
 }
 
 /* ------------------------------------------------------------------------------------------------ segments
@@ -159,38 +198,73 @@ static void keep_segment(wh_mcs_t *mcs, const wh_segment_t *segment) {
     mcs->segments[mcs->segment_count++] = *segment;
 }
 
-/* native.play(segment): true when it ran to its end, false when its sensor did not come on in time. */
+static void look_ahead(lua_State *L, wh_mcs_t *mcs, const wh_segment_t *segment) {
+    char reason[WH_MCS_REASON_BYTES] = "";
+    if (mcs->judging && mcs->ahead && mcs->ahead(mcs->ahead_user, mcs, segment, reason)) {
+        wh_mcs_raise(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
+    }
+}
+
+static wh_track_state_t play_now(lua_State *L, wh_mcs_t *mcs, const wh_segment_t *segment) {
+    if (mcs->keep_segments) {
+        keep_segment(mcs, segment);
+    }
+    mcs->was_off = 0;
+    return play_through(L, mcs);
+}
+
+/* native.play(segment): true when it ran to its end, false when its sensor did not come on in time; then the gripper that
+ * lost its wafer meanwhile, or nil. */
 static int play(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_segment_t segment = read_segment(L, mcs);
+    const uint32_t watched = watch(mcs, &segment);
     const wh_status_t status = wh_track_begin(&mcs->track, &segment);
     if (status != WH_OK) {
         wh_mcs_raise(L, mcs, status, NULL);
     }
-    wh_track_state_t state = WH_TRACK_DONE;
     if (mcs->rehearsing) {
+        look_ahead(L, mcs, &segment);
         wh_track_skip(&mcs->track);
-    } else {
-        if (mcs->keep_segments) {
-            keep_segment(mcs, &segment);
-        }
-        state = play_through(L, mcs);
+        lua_pushboolean(L, 1);
+        return 1;
     }
-    lua_pushboolean(L, state == WH_TRACK_DONE);
-    return 1;
+    lua_pushboolean(L, play_now(L, mcs, &segment) == WH_TRACK_DONE);
+    const int32_t lost = find_lost(mcs, watched);
+    if (lost == WH_NONE) {
+        return 1;
+    }
+    lua_pushinteger(L, lost + 1);
+    return 2;
 }
 
-/* native.rehearse(on): from now on segments are only planned; off: everything is where it was. */
+void wh_mcs_end_rehearsal(wh_mcs_t *mcs) {
+    if (mcs->rehearsing) {
+        mcs->track = mcs->kept;
+        mcs->rehearsing = false;
+    }
+}
+
+/* native.rehearse(on, judged): from now on segments are only planned, and shown to `ahead` if judged; off: everything is
+ * where it was. */
 static int rehearse(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const bool on = lua_toboolean(L, 1) != 0;
-    if (on) {
+    wh_mcs_end_rehearsal(mcs);
+    if (lua_toboolean(L, 1)) {
         mcs->kept = mcs->track;
-    } else if (mcs->rehearsing) {
-        mcs->track = mcs->kept;
+        mcs->rehearsing = true;
+        mcs->judging = lua_toboolean(L, 2) != 0;
     }
-    mcs->rehearsing = on;
     return 0;
 }
 
-const luaL_Reg wh_mcs_play_functions[] = {{"play", play}, {"rehearse", rehearse}, {NULL, NULL}};
+/* native.stop_in(seconds): a STOP comes at the first slice at or after so many simulated seconds from now. */
+static int stop_in(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const double slices = ceil(luaL_checknumber(L, 1) * 1e6 / (double)mcs->track.slice_us);
+    mcs->stop_slice = mcs->track.slice + (int64_t)slices;
+    return 0;
+}
+
+const luaL_Reg wh_mcs_play_functions[] = {
+    {"play", play}, {"rehearse", rehearse}, {"stop_in", stop_in}, {NULL, NULL}};

@@ -10,6 +10,11 @@ static void set_number(lua_State *L, const char *name, double value) {
     lua_setfield(L, -2, name);
 }
 
+static void set_boolean(lua_State *L, const char *name, bool value) {
+    lua_pushboolean(L, value);
+    lua_setfield(L, -2, name);
+}
+
 /* Gripper and wafer indices go to Lua from 1; none is nil. */
 static void push_index(lua_State *L, int32_t index) {
     if (index == WH_NONE) {
@@ -24,7 +29,8 @@ static void push_index(lua_State *L, int32_t index) {
 
 static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) {
     const wh_layout_station_t *station = &layout->stations[index];
-    lua_createtable(L, 0, 12);
+    static const char *const modes[] = {"both", "get", "put", "none"};
+    lua_createtable(L, 0, 24);
     lua_pushstring(L, station->name);
     lua_setfield(L, -2, "name");
     lua_pushinteger(L, (lua_Integer)index + 1);
@@ -41,6 +47,16 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     set_number(L, "release", station->release);
     set_number(L, "vacuum_delay", station->vacuum_delay);
     set_number(L, "timeout", station->timeout);
+    set_number(L, "pickup_acceleration", station->pickup_acceleration);
+    set_number(L, "wait", station->wait);
+    set_number(L, "map_speed", station->map_speed);
+    set_number(L, "retries", station->retries);
+    set_boolean(L, "taught", station->taught);
+    set_boolean(L, "check_map", station->check_map);
+    push_index(L, station->effector);
+    lua_setfield(L, -2, "effector");
+    lua_pushstring(L, modes[station->check]);
+    lua_setfield(L, -2, "vacuum_check");
     lua_pushstring(L, station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
     lua_setfield(L, -2, "handover");
 }
@@ -67,7 +83,7 @@ static void push_grippers(lua_State *L, const wh_layout_t *layout) {
     }
 }
 
-/* native.layout(): { stations by name, grippers in order, tolerance, slice, sampled }. */
+/* native.layout(): { stations by name, grippers in order, tolerance, slice, sampled, homed, home: the robot's axes }. */
 static int describe_layout(lua_State *L) {
     const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
     lua_createtable(L, 0, 5);
@@ -81,8 +97,14 @@ static int describe_layout(lua_State *L) {
     set_number(L, "planar", layout->grasp.tolerance.planar);
     lua_setfield(L, -2, "tolerance");
     set_number(L, "slice", (double)layout->slice_us / 1e6);
-    lua_pushboolean(L, layout->grasp.check == WH_CHECK_SAMPLED);
-    lua_setfield(L, -2, "sampled");
+    set_boolean(L, "sampled", layout->grasp.check == WH_CHECK_SAMPLED);
+    set_boolean(L, "homed", layout->homed);
+    lua_createtable(L, WH_ROBOT_AXES, 0);
+    for (int axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        lua_pushnumber(L, layout->machine.robot.home[axis]);
+        lua_rawseti(L, -2, axis + 1);
+    }
+    lua_setfield(L, -2, "home");
     return 1;
 }
 
@@ -105,6 +127,14 @@ static int read_sensor(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     lua_pushboolean(L, (mcs->state.sensors >> gripper & 1U) != 0);
+    return 1;
+}
+
+/* native.is_open(gripper): whether its valve is. */
+static int read_valve(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    lua_pushboolean(L, mcs->track.valves[gripper] == WH_VALVE_OPEN);
     return 1;
 }
 
@@ -181,6 +211,7 @@ static int read_gripper_pose(lua_State *L) {
 const luaL_Reg wh_mcs_query_functions[] = {{"layout", describe_layout},
                                            {"wafer", find_wafer},
                                            {"sensor", read_sensor},
+                                           {"is_open", read_valve},
                                            {"holder", find_holder},
                                            {"measure", measure},
                                            {"locate", locate},

@@ -29,10 +29,10 @@ static int begin_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const char *text = charged_text(L, 1);
     if (mcs->running != WH_NONE) {
-        lua_pushfstring(L, "%s: a command within another (%s)", text,
-                        mcs->record->commands[mcs->running].text);
-        return lua_error(L);
+        lua_pushfstring(L, "%s is a command within another", text);
+        wh_mcs_raise(L, mcs, WH_STATUS_BUSY, lua_tostring(L, -1));
     }
+    wh_mcs_end_rehearsal(mcs); /* of a command that was cut short */
     wh_record_add_command(mcs->record, wh_sandbox_line(L, mcs->script), text, wh_mcs_now(mcs));
     mcs->running = (int32_t)mcs->record->command_count - 1;
     tell(mcs, &mcs->record->commands[mcs->running], false);

@@ -18,7 +18,7 @@ return function(native)
     end
     local layout_path = native.cell(path)
     for name, station in pairs(native.layout().stations) do
-      for _, slot in ipairs({ 1, station.slots }) do
+      for _, slot in ipairs(station.taught and { 1, station.slots } or {}) do
         local problem = rehearse(name, slot)
         if problem then
           local reason = type(problem) == "table" and problem.text or tostring(problem)

@@ -9,10 +9,14 @@ return function(native, vocabulary, words, names)
   -- A word as its kind wants it. A name that is not known passes: the command refuses it by its own number.
   local function convert(what, kind, word)
     local known = vocabulary.kinds[kind]
-    if known then
-      return words.match(word.text, known())
+    if not known then
+      return words.number(what, word)
     end
-    return words.number(what, word)
+    local text = words.match(word.text, known())
+    if kind == "switch" and (text == "true" or text == "false") then
+      return text == "true"
+    end
+    return text
   end
 
   local function take_option(name, command, options, word)

@@ -7,11 +7,14 @@ local ipairs, math, pairs, table, tostring, type = ipairs, math, pairs, table, t
 return function(native, errors)
   local names = { errors = errors }
 
-  -- Station parameters that a command may set for itself, and the fields of MOVE and LINE in order.
+  -- Station parameters that a command may set for itself, what else it may say, and the fields of MOVE and LINE in
+  -- order.
   names.parameters = {
-    stroke = "number", offset = "number", retract = "number", pickup_speed = "number", release = "number",
-    vacuum_delay = "number", timeout = "number", handover = "string",
+    stroke = "number", offset = "number", retract = "number", pickup_speed = "number", pickup_acceleration = "number",
+    release = "number", vacuum_delay = "number", vacuum_check = "string", timeout = "number", retries = "number",
+    wait = "number", map_speed = "number", check_map = "boolean", handover = "string",
   }
+  names.options = { gripper = "string", force = "boolean" }
   names.axes = { "theta", "r", "z", "yaw" }
   names.line_fields = { "dx", "dy", "dz", "speed" }
 
@@ -55,8 +58,8 @@ return function(native, errors)
     native.fail("NO_SUCH_GRIPPER", ("%s (expected %s)"):format(names.quote(name), table.concat(known, ", ")))
   end
 
-  -- A gripper on the robot: the named one, or the first.
-  function names.effector(name)
+  -- A gripper on the robot: the named one, the one with the index `otherwise`, or the first.
+  function names.effector(name, otherwise)
     local grippers = native.layout().grippers
     if name ~= nil then
       local index = names.gripper(name)
@@ -64,6 +67,9 @@ return function(native, errors)
         native.fail("NO_SUCH_GRIPPER", names.quote(name) .. " (expected one on the robot)")
       end
       return index
+    end
+    if otherwise then
+      return otherwise
     end
     for index, gripper in ipairs(grippers) do
       if gripper.on_robot then
@@ -92,6 +98,21 @@ return function(native, errors)
       native.fail("BAD_ARGUMENT", ("%s: %s (expected a table)"):format(what, names.quote(value)))
     end
     return value
+  end
+
+  ---------------------------------------------------------------------------------------- a command's text
+
+  function names.number_text(value)
+    return math.type(value) == "float" and value == value and ("%.10g"):format(value) or tostring(value)
+  end
+
+  -- The command as the record has it: its word and its arguments.
+  function names.command(word, ...)
+    local text = { word }
+    for _, value in ipairs({ ... }) do
+      text[#text + 1] = value ~= "" and names.number_text(value) or nil
+    end
+    return table.concat(text, " ")
   end
 
   return names

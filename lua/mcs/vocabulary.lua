@@ -40,11 +40,14 @@ return function(native, commands, questions, names, words)
   vocabulary.kinds = {
     station = station_names, gripper = gripper_names, wafer = native.wafer_names, command = command_names,
     handover = function() return { "new_first", "same_slice" } end,
+    vacuum_check = function() return { "both", "get", "put", "none" } end,
+    switch = function() return { "true", "false" } end,
   }
 
-  local station_options = { gripper = "gripper" }
+  local station_options = { gripper = "gripper", force = "switch" }
+  local kind_of = { number = "number", boolean = "switch" }
   for name, kind in pairs(names.parameters) do
-    station_options[name] = kind == "number" and "number" or name
+    station_options[name] = kind_of[kind] or name
   end
 
   local function fields(list)
@@ -64,18 +67,46 @@ return function(native, commands, questions, names, words)
     return { "seconds", (native.utime() - begin) / 1e6 }
   end
 
-  local function get(arguments, options)
-    local time = timed(commands.get, arguments[1], arguments[2], options)
-    return words.pairs { { "wafer", native.held(names.effector(options.gripper)) }, time }
-  end
-
-  local function put(arguments, options)
+  local function held_wafers()
     local held = {}
     for index in ipairs(native.layout().grippers) do
       held[index] = native.held(index)
     end
+    return held
+  end
+
+  local function effector_for(arguments, options)
+    return names.effector(options.gripper, names.station(arguments[1]).effector)
+  end
+
+  local function get(arguments, options)
+    local time = timed(commands.get, arguments[1], arguments[2], options)
+    return words.pairs { { "wafer", native.held(effector_for(arguments, options)) }, time }
+  end
+
+  local function put(arguments, options)
+    local held = held_wafers()
     local time = timed(commands.put, arguments[1], arguments[2], options)
-    return words.pairs { { "wafer", held[names.effector(options.gripper)] }, time }
+    return words.pairs { { "wafer", held[effector_for(arguments, options)] }, time }
+  end
+
+  -- What it took, and what it put.
+  local function swap(arguments, options)
+    local before = held_wafers()
+    local time = timed(commands.swap, arguments[1], arguments[2], options)
+    local after = held_wafers()
+    local taken, put_down
+    for index, gripper in ipairs(native.layout().grippers) do
+      taken = taken or gripper.on_robot and not before[index] and after[index]
+      put_down = put_down or gripper.on_robot and not after[index] and before[index]
+    end
+    return words.pairs { { "wafer", taken or nil }, { "put", put_down or nil }, time }
+  end
+
+  local function map(arguments, options)
+    local codes
+    local time = timed(function() codes = commands.map(arguments[1], options) end)
+    return ("codes=%s %s"):format(table.concat(codes), words.pairs { time })
   end
 
   local function offset_text(dx, dy, dz, tilt)
@@ -178,9 +209,13 @@ return function(native, commands, questions, names, words)
 
   -- A command of the scripts that takes its arguments in order, answered with its time.
   local function moving(action)
-    return function(arguments)
-      return words.pairs { timed(action, arguments[1], arguments[2]) }
+    return function(arguments, options)
+      return words.pairs { timed(action, arguments[1], arguments[2], options) }
     end
+  end
+
+  -- STOP comes past the queue where a command runs: here none does.
+  local function stop()
   end
 
   -- One that takes a table of named numbers.
@@ -193,6 +228,15 @@ return function(native, commands, questions, names, words)
   vocabulary.commands = {
     GET = { takes = { "station", "slot" }, options = station_options, run = get, does = "takes the wafer there" },
     PUT = { takes = { "station", "slot" }, options = station_options, run = put, does = "sets the wafer down there" },
+    SWAP = { takes = { "station", "slot" }, options = station_options, run = swap,
+             does = "takes the wafer there with the empty gripper and puts down the other's" },
+    READY = { takes = { "station", "slot" }, options = station_options, run = moving(commands.ready),
+              does = "goes in front of the slot, to where GET or PUT enters" },
+    MAP = { takes = { "station" }, options = station_options, run = map,
+            does = "sweeps over the slots: 0 empty, 1 single, 2 double, 4 crossed" },
+    HOME = { takes = {}, run = moving(commands.home), does = "out of the station if the arm stands in one, then home" },
+    RECOVER = { takes = {}, run = moving(commands.recover), does = "straight out of the station that the arm stands in" },
+    STOP = { takes = {}, run = stop, does = "ends the command that runs" },
     ROTATE = { takes = { "station", "degrees" }, run = moving(commands.rotate), does = "turns a prealigner's chuck by so much" },
     VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve), does = "0 opens it (vacuum on), 1 closes it" },
     MOVE = { takes = {}, options = fields(names.axes), needs_option = true, run = moving_by_name(commands.move),

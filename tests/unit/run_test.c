@@ -100,6 +100,21 @@ static void test_missed_pick_run(void **state) {
     assert_int_equal(count_events(WH_EVENT_NEAR_MISS), 1);
 }
 
+/* The arm stands before the station when the map is known, and is there still after the refusals. */
+static void test_cross_slotted_run(void **state) {
+    (void)state;
+    assert_int_equal(play("lua/examples/06_cross_slotted.lua"), WH_RUN_MET);
+    assert_string_equal(run.record.commands[0].text, "MAP A");
+    for (size_t c = 1; c <= 4; ++c) {
+        assert_int_equal(run.record.commands[c].error, WH_STATUS_BAD_SLOT);
+        assert_near(run.record.commands[c].end_s, run.record.commands[0].end_s, 0);
+    }
+    assert_int_equal(wafer("Crossed")->holder, WH_NONE);
+    assert_near(wafer("Crossed")->base_from_wafer.r.z, 935, 0);
+    assert_int_equal(count_events(WH_EVENT_PICKED), 2);
+    assert_int_equal(run.record.event_count, 4);
+}
+
 static void test_same_script_gives_same_hash(void **state) {
     (void)state;
     assert_int_equal(play("lua/examples/01_transfer.lua"), WH_RUN_MET);
@@ -114,6 +129,7 @@ int main(void) {
         cmocka_unit_test_teardown(test_transfer_run, close_run),
         cmocka_unit_test_teardown(test_prealigner_run, close_run),
         cmocka_unit_test_teardown(test_missed_pick_run, close_run),
+        cmocka_unit_test_teardown(test_cross_slotted_run, close_run),
         cmocka_unit_test_teardown(test_same_script_gives_same_hash, close_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -348,6 +348,9 @@ static void test_stop(void **state) {
     assert_int_equal(session.record.commands[0].error, WH_STATUS_STOPPED);
     assert_near(session.record.commands[0].end_s, 0.7, 1e-9);
     wh_session_stop(&session);
+    assert_answer("GET A 1",
+                  "ERROR 52 STOPPED: the command was stopped before its end; the arm stands in A: RECOVER");
+    assert_answer("RECOVER", "OK seconds=");
     assert_answer("GET A 1", "OK wafer=\"Wafer 1\"");
     assert_answer("PUT B 2", "OK wafer=\"Wafer 1\"");
 }
@@ -357,6 +360,7 @@ static void test_stop_of_a_link_that_waits(void **state) {
     between.stop_at = 700;
     between.gives_up = true;
     assert_answer("GET A 1", "ERROR 52 STOPPED: ");
+    assert_answer("HOME", "OK seconds=");
     assert_answer("GET A 1", "OK wafer=\"Wafer 1\"");
 }
 
@@ -453,7 +457,7 @@ static void assert_candidates(const char *before, size_t start, const char *expe
 static void test_completion(void **state) {
     (void)state;
     assert_candidates("GE", 0, "GET|");
-    assert_candidates("  h", 2, "HELP|HOLDER|");
+    assert_candidates("  h", 2, "HELP|HOLDER|HOME|");
     assert_candidates("GET ", 4, "A|B|P|");
     assert_candidates("get b", 4, "B|");
     assert_candidates("GET A ", 6, "");
