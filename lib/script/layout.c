@@ -38,9 +38,9 @@ const wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     if (!lua_istable(L, -1)) {
         wh_reader_fail(&reader, "what the file returns", "a table");
     }
-    wh_reader_refuse_unknown(
-        &reader, "wafer tolerance near check slice seat settle placing collision robot homed chuck grippers "
-                 "stations wafers shapes obstacles clearance");
+    wh_reader_refuse_unknown(&reader, "wafer tolerance near check slice seat settle placing collision "
+                                      "look_ahead robot homed chuck grippers "
+                                      "stations wafers shapes obstacles clearance");
     wh_layout_read_checks(&reader, layout);
     wh_layout_read_robot(&reader, layout);
     wh_layout_read_stations(&reader, layout);

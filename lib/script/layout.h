@@ -90,6 +90,7 @@ typedef struct {
     wh_wafer_t *start; /* where each wafer is when a run begins */
     wh_cell_t cell;    /* places, with the tolerance and how wafers are set down */
     bool collision;    /* check it while stepping */
+    bool look_ahead;   /* and before each command that moves */
     wh_shapes_t shapes;
     wh_world_config_t world; /* whether it is checked or not; without parts when they are too many */
     const char (*part_names)[WH_PART_NAME_SIZE];

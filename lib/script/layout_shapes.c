@@ -135,11 +135,12 @@ void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout) {
     read_limits(reader, layout);
     const size_t capacity = count_parts(layout, obstacles.count);
     layout->collision = wh_reader_boolean(reader, "collision", false);
+    layout->look_ahead = wh_reader_boolean(reader, "look_ahead", false);
     if (capacity > WH_LAYOUT_PARTS) {
         lua_pushinteger(reader->L, (lua_Integer)capacity);
-        if (layout->collision) {
-            wh_reader_fail(reader, "collision", "false with more than %d parts, ledges included",
-                           WH_LAYOUT_PARTS);
+        if (layout->collision || layout->look_ahead) {
+            wh_reader_fail(reader, layout->collision ? "collision" : "look_ahead",
+                           "false with more than %d parts, ledges included", WH_LAYOUT_PARTS);
         }
         lua_pop(reader->L, 1);
         return;

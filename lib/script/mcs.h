@@ -47,6 +47,7 @@ struct wh_mcs {
     int32_t running;       /* index of the running command in the record, or WH_NONE */
     bool rehearsing;       /* segments are planned and skipped, not played */
     bool judging;          /* and `ahead` is asked */
+    size_t judged;         /* how many segments of this rehearsal it was asked about before */
     wh_track_t kept;       /* the track from before the rehearsal */
     wh_mcs_ahead_t *ahead; /* null: nobody looks ahead */
     void *ahead_user;

@@ -2,6 +2,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "script/ahead.h"
 #include "script/mcs_internal.h"
 
 static bool is_same_file(const char *a, const char *b) {
@@ -64,6 +65,12 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     if (layout->collision) {
         wh_collision_attach(&mcs->collision, layout, &mcs->simulator,
                             lua_memory(L, wh_collision_bytes(layout)));
+    }
+    if (layout->look_ahead && !mcs->ahead) {
+        wh_ahead_t *ahead = lua_memory(L, sizeof *ahead);
+        wh_ahead_init(ahead, layout, lua_memory(L, wh_ahead_bytes(layout)));
+        mcs->ahead = wh_ahead_judge;
+        mcs->ahead_user = ahead;
     }
     mcs->link = &mcs->simulator.link;
     mcs->command.gripper_count = layout->machine.gripper_count;

@@ -200,8 +200,12 @@ static void keep_segment(wh_mcs_t *mcs, const wh_segment_t *segment) {
 
 static void look_ahead(lua_State *L, wh_mcs_t *mcs, const wh_segment_t *segment) {
     char reason[WH_MCS_REASON_BYTES] = "";
-    if (mcs->judging && mcs->ahead && mcs->ahead(mcs->ahead_user, mcs, segment, reason)) {
-        wh_mcs_raise(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
+    if (mcs->judging && mcs->ahead) {
+        if (mcs->ahead(mcs->ahead_user, mcs, segment, reason)) {
+            wh_mcs_raise(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
+        }
+        wh_sandbox_charge(L, STEPS_PER_SLICE * (uint64_t)mcs->track.segment_slices);
+        ++mcs->judged;
     }
 }
 
@@ -254,6 +258,7 @@ static int rehearse(lua_State *L) {
         mcs->kept = mcs->track;
         mcs->rehearsing = true;
         mcs->judging = lua_toboolean(L, 2) != 0;
+        mcs->judged = 0;
     }
     return 0;
 }
