@@ -28,6 +28,8 @@
 #include "core/event.h"
 #include "core/grasp.h"
 #include "core/restore.h"
+#include "core/vacuum.h"
+#include "core/hold.h"
 #include "core/hash.h"
 
 #include "cell/station.h"

@@ -5,6 +5,7 @@
  * their counts say, GRIPPERS and WAFERS; a bool is 0 or 1; a table is only handed on once wh_grasp_init accepted it.
  * What the arrays hold, before and between the calls, is otherwise up to the library.
  */
+#include "core/hold.h"
 #include "core/restore.h"
 
 #define GRIPPERS 2
@@ -125,6 +126,42 @@ static void call_proximity(void) {
     (void)wh_tolerance_strict();
 }
 
+static void call_vacuum(void) {
+    wh_vacuum_config_t config = any_bool() ? wh_vacuum_ideal() : wh_vacuum_delayed();
+    config.build = real;
+    config.vent = real;
+    config.idle = real;
+    config.on = real;
+    config.off = real;
+    config.release = real;
+    (void)wh_vacuum_validate(any_bool() ? &config : NULL);
+    wh_vacuum_upset_t upset = wh_vacuum_sound();
+    upset.full = real;
+    upset.build = real;
+    wh_vacuum_t vacuum = wh_vacuum_start();
+    vacuum.level = real;
+    vacuum.on = any_bool();
+    (void)wh_vacuum_before(&config, &upset, integer, any_bool(), real, &vacuum);
+    (void)wh_vacuum_after(&config, &upset, any_bool(), real, &vacuum);
+}
+
+static void call_holding(void) {
+    wh_pads_t pads = wh_pads_none();
+    pads.friction = real;
+    pads.force = real;
+    pads.mass = any_bool() ? real : wh_wafer_mass(real, real);
+    pads.gravity = real;
+    (void)wh_pads_validate(any_bool() ? &pads : NULL);
+    const wh_pose_t gripper = any_pose();
+    const wh_vec3_t place = wh_vec3(real, real, real);
+    (void)wh_hold_judge(&pads, real, &gripper.R, &place);
+    wh_carry_t carry = {{place, place}, 0, any_bool()};
+    wh_hold_t hold;
+    while (any_bool()) {
+        (void)wh_carry_update(&carry, &pads, real, &gripper.R, any_bool() ? &place : NULL, real, &hold);
+    }
+}
+
 static void call_step(wh_grasp_t *table, size_t gripper_count) {
     wh_gripper_input_t inputs[GRIPPERS];
     wh_event_t events[EVENTS];
@@ -222,6 +259,8 @@ int main(void) {
     call_names();
     call_values();
     call_proximity();
+    call_vacuum();
+    call_holding();
     call_refused_init(wafers, grippers);
     call_empty();
 
