@@ -34,6 +34,8 @@
 
 #include "cell/station.h"
 
+#include "sim/faults.h"
+#include "sim/condition.h"
 #include "sim/slice.h"
 #include "sim/simulator.h"
 /* clang-format on */

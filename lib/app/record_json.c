@@ -6,6 +6,7 @@
 
 #include "app/record_names.h"
 #include "motion/trig.h"
+#include "sim/faults.h"
 
 /* The format's number: goes up when a key changes its meaning or leaves. */
 #define FORMAT 1
@@ -221,6 +222,11 @@ static void put_particulars(writer_t *writer, json_t *object, const wh_event_t *
         put(writer, object, "at", vector(writer, event->at));
         put(writer, object, "value", real((double)event->value));
         put(writer, object, "limit", real((double)event->limit));
+        break;
+    case WH_EVENT_FAULT_ARMED:
+    case WH_EVENT_FAULT_CLEARED:
+        put(writer, object, "fault", json_integer(event->parts[0] + 1));
+        put(writer, object, "fault_kind", json_string(wh_fault_name((wh_fault_kind_t)event->parts[1])));
         break;
     default:
         break;

@@ -3,6 +3,7 @@
 
 #include "app/table_internal.h"
 #include "motion/trig.h"
+#include "sim/faults.h"
 
 enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_REPORT_MEASURED_COLUMNS };
 
@@ -103,6 +104,27 @@ static const char *part_name(const wh_report_t *report, int32_t part) {
     return name ? name : "more than can be looked at";
 }
 
+/* Vacuum, holding, faults on purpose. */
+static void say_physics(wh_grid_t *grid, const wh_event_t *event) {
+    switch ((int)event->kind) {
+    case WH_EVENT_SLIPPED:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "the motion asks for %.0f mm/s^2, the pads carry %.0f",
+                     (double)event->value, (double)event->limit);
+        break;
+    case WH_EVENT_VACUUM_LOST:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%.0f %% of the full vacuum, the sensor wants %.0f",
+                     100 * (double)event->value, 100 * (double)event->limit);
+        break;
+    case WH_EVENT_FAULT_ARMED:
+    case WH_EVENT_FAULT_CLEARED:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s, fault %d", wh_fault_name((wh_fault_kind_t)event->parts[1]),
+                     (int)event->parts[0] + 1);
+        break;
+    default:
+        break;
+    }
+}
+
 static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const wh_event_t *event) {
     switch ((int)event->kind) {
     case WH_EVENT_CONTESTED:
@@ -148,6 +170,7 @@ static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const
                      wh_style_degree(report->style));
         break;
     default:
+        say_physics(grid, event);
         break;
     }
 }

@@ -47,7 +47,8 @@ typedef enum {
     WH_EVENT_SLIPPED,
     /* The vacuum under a held wafer fell below the sensor's threshold: `value` of the full one, 0 to 1. */
     WH_EVENT_VACUUM_LOST,
-    /* A fault on purpose begins or ends to act; parts[0] is its index. */
+    /* A fault on purpose begins or ends to act; parts[0] is its index, parts[1] its kind
+     * (sim/faults.h). */
     WH_EVENT_FAULT_ARMED,
     WH_EVENT_FAULT_CLEARED
 } wh_event_kind_t;
@@ -65,7 +66,7 @@ typedef struct {
     wh_status_t status;      /* WH_OK but for WH_EVENT_BAD_INPUT */
     wh_real_t height;        /* mm; 0 where the kind has none */
     wh_real_t value, limit;  /* what was found and what it was held against; 0 where the kind has none */
-    int32_t parts[2];        /* parts of the collision world, or a fault's index; else WH_NONE */
+    int32_t parts[2];        /* parts of the collision world, or a fault's index and kind; else WH_NONE */
     wh_vec3_t at;            /* a contact's place in base, mm; 0 where the kind has none */
     wh_proximity_t measured; /* all zero where the kind has none */
 } wh_event_t;

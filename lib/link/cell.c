@@ -2,13 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "link/fault_message.h"
 #include "link/messages.h"
-
-static void put_pose(const wh_pose_t *pose, double position[3], double rotation[9]) {
-    const double r[] = {pose->r.x, pose->r.y, pose->r.z};
-    memcpy(position, r, sizeof r);
-    memcpy(rotation, pose->R.m, sizeof pose->R.m);
-}
 
 static bool make_room(const wh_layout_t *layout, waferhand_cell *message) {
     message->gripper_names = calloc(WH_GRIPPERS, sizeof *message->gripper_names);
@@ -16,14 +11,15 @@ static bool make_room(const wh_layout_t *layout, waferhand_cell *message) {
     message->stations = calloc(layout->station_count + 1, sizeof *message->stations);
     message->wafer_names = calloc(layout->wafer_count + 1, sizeof *message->wafer_names);
     message->wafers = calloc(layout->wafer_count + 1, sizeof *message->wafers);
+    message->faults = calloc(WH_FAULTS, sizeof *message->faults);
     return message->gripper_names && message->valve_names && message->stations && message->wafer_names &&
-           message->wafers;
+           message->wafers && message->faults;
 }
 
 static void put_station(const wh_layout_t *layout, size_t s, waferhand_station *out) {
     const wh_station_t *place = &layout->places[s];
     out->name = wh_link_borrowed(layout->stations[s].name);
-    put_pose(&place->base_from_station, out->position, out->rotation);
+    wh_link_put_pose(&place->base_from_station, out->position, out->rotation);
     out->slots = place->slots;
     out->pitch = place->pitch;
     out->chuck = place->chuck;
@@ -39,9 +35,27 @@ static void put_lists(const wh_layout_t *layout, waferhand_cell *message) {
     }
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         message->wafer_names[w] = wh_link_borrowed(layout->wafers[w].name);
-        put_pose(&layout->start[w].base_from_wafer, message->wafers[w].position, message->wafers[w].rotation);
+        wh_link_put_pose(&layout->start[w].base_from_wafer, message->wafers[w].position,
+                         message->wafers[w].rotation);
         message->wafers[w].holder = WH_NONE;
     }
+    for (size_t i = 0; i < layout->physics.fault_count; ++i) {
+        wh_link_put_fault(&layout->physics.faults[i], &message->faults[i]);
+    }
+}
+
+static void put_physics(const wh_physics_t *physics, waferhand_cell *message) {
+    message->vacuum_build = physics->vacuum.build;
+    message->vacuum_vent = physics->vacuum.vent;
+    message->vacuum_idle = physics->vacuum.idle;
+    message->vacuum_sensor_on = physics->vacuum.on;
+    message->vacuum_sensor_off = physics->vacuum.off;
+    message->vacuum_release = physics->vacuum.release;
+    message->pads_friction = physics->pads.friction;
+    message->pads_force = physics->pads.force;
+    message->pads_mass = physics->pads.mass;
+    message->pads_gravity = physics->pads.gravity;
+    message->fault_count = (int32_t)physics->fault_count;
 }
 
 bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_t *identity,
@@ -68,6 +82,7 @@ bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_
     message->gripper_count = (int32_t)layout->machine.gripper_count;
     message->station_count = (int32_t)layout->station_count;
     message->wafer_count = (int32_t)layout->wafer_count;
+    put_physics(&layout->physics, message);
     put_lists(layout, message);
     return true;
 }
@@ -78,5 +93,6 @@ void wh_link_cell_free(waferhand_cell *message) {
     free(message->stations);
     free(message->wafer_names);
     free(message->wafers);
+    free(message->faults);
     memset(message, 0, sizeof *message);
 }

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "link/fault_message.h"
+
 static bool take_name(const char *from, char to[WH_NAME_SIZE]) {
     const size_t length = strlen(from);
     if (length == 0 || length >= WH_NAME_SIZE) {
@@ -72,6 +74,22 @@ static bool take_lists(const waferhand_cell *cell, wh_layout_t *layout) {
     return sound;
 }
 
+/* Times are in s here, slices in us there: as lib/script/layout_physics.c has it. */
+static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
+    wh_physics_t *physics = &layout->physics;
+    const wh_vacuum_config_t vacuum = {cell->vacuum_build,     cell->vacuum_vent,       cell->vacuum_idle,
+                                       cell->vacuum_sensor_on, cell->vacuum_sensor_off, cell->vacuum_release};
+    const wh_pads_t pads = {cell->pads_friction, cell->pads_force, cell->pads_mass, cell->pads_gravity};
+    physics->slice_s = (wh_real_t)cell->slice_us / 1e6;
+    physics->vacuum = vacuum;
+    physics->pads = pads;
+    physics->fault_count = (size_t)cell->fault_count;
+    for (size_t i = 0; i < physics->fault_count; ++i) {
+        physics->faults[i] = wh_link_take_fault(&cell->faults[i]);
+    }
+    return wh_physics_validate(physics, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
+}
+
 static bool make_room(const waferhand_cell *cell, wh_layout_t *layout) {
     layout->machine.gripper_count = (size_t)cell->gripper_count;
     layout->station_count = (size_t)cell->station_count;
@@ -87,7 +105,7 @@ static bool make_room(const waferhand_cell *cell, wh_layout_t *layout) {
 wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell) {
     wh_layout_t *layout = calloc(1, sizeof *layout);
     if (!layout || cell->gripper_count < 1 || !make_room(cell, layout) || !take_checks(cell, layout) ||
-        !take_lists(cell, layout)) {
+        !take_lists(cell, layout) || !take_physics(cell, layout)) {
         wh_link_layout_free(layout);
         return NULL;
     }

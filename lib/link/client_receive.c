@@ -28,7 +28,8 @@ static wh_grasp_t table_over(wh_link_arrays_t *arrays, const wh_state_t *state, 
 static bool take_over(wh_client_t *client, const wh_state_t *state, const waferhand_state *message) {
     const wh_grasp_t as_told = table_over(&client->spare, state, message->missed);
     wh_grasp_t table = table_over(&client->arrays, state, message->missed);
-    return wh_grasp_hash(&as_told) == (uint64_t)message->hash &&
+    return wh_condition_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
+           wh_condition_hash(state->condition, &as_told) == (uint64_t)message->hash &&
            wh_grasp_restore(&table, as_told.slice, state->wafers, state->grippers) == WH_OK;
 }
 
@@ -55,6 +56,8 @@ static void take(wh_client_t *client, const waferhand_state *message, const wh_s
     client->state = *state;
     client->state.wafers = client->arrays.wafers;
     client->state.grippers = client->arrays.grippers;
+    client->arrays.condition = *state->condition;
+    client->state.condition = &client->arrays.condition;
     client->has_state = true;
     client->missed = message->missed;
     client->hash = (uint64_t)message->hash;

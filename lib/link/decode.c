@@ -8,13 +8,15 @@
 #define FINGERPRINT 8
 #define HEADER (4 * 8)
 #define WAFER 100
-#define GRIPPER 376
+#define GRIPPER 446
 #define EVENT 156
+#define FAULT 132
+#define FAULT_SLOT 328
 #define CHECK 8
 #define STATE_COUNTS (FINGERPRINT + HEADER + 4)
-#define STATE_FIXED (STATE_COUNTS + 3 * 4 + 2 * 8 + 4)
+#define STATE_FIXED (STATE_COUNTS + 4 * 4 + 2 * 8 + 4)
 #define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
-#define CELL_FIXED (8 + 7 * 8 + 3 + 3 * 4)
+#define CELL_FIXED (8 + 7 * 8 + 3 + 10 * 8)
 #define STATION_FIXED (12 * 8 + 4 + 8 + 4)
 
 /* A place in a datagram; `good` falls when something would lie beyond its end. */
@@ -77,8 +79,9 @@ bool wh_link_decode_state(const void *data, size_t size, waferhand_state *messag
     const size_t wafers = take_count(&walk, WH_LINK_WAFERS);
     const size_t grippers = take_count(&walk, WH_GRIPPERS);
     const size_t events = take_count(&walk, WH_LINK_EVENTS);
-    skip(&walk, STATE_FIXED - STATE_COUNTS - 3 * 4);
-    skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT + CHECK);
+    const size_t faults = take_count(&walk, WH_FAULTS);
+    skip(&walk, STATE_FIXED - STATE_COUNTS - 4 * 4);
+    skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT + faults * FAULT_SLOT + CHECK);
     return ends(&walk) && wh_link_is_intact(data, size) &&
            waferhand_state_decode(data, 0, (int)size, message) == (int)size;
 }
@@ -107,17 +110,18 @@ static void skip_texts(walk_t *walk, size_t count) {
 static void skip_cell(walk_t *walk) {
     skip(walk, FINGERPRINT + HEADER);
     skip_text(walk);
-    skip(walk, CELL_FIXED - 3 * 4);
+    skip(walk, CELL_FIXED);
     const size_t grippers = take_count(walk, WH_GRIPPERS);
     const size_t stations = take_count(walk, WH_LAYOUT_STATIONS);
     const size_t wafers = take_count(walk, WH_LINK_WAFERS);
+    const size_t faults = take_count(walk, WH_FAULTS);
     skip_texts(walk, 2 * grippers);
     for (size_t i = 0; i < stations && walk->good; ++i) {
         skip_text(walk);
         skip(walk, STATION_FIXED);
     }
     skip_texts(walk, wafers);
-    skip(walk, wafers * WAFER);
+    skip(walk, wafers * WAFER + faults * FAULT);
 }
 
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message) {

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "link/fault_message.h"
+
 /* -------------------------------------------------------------------------------------------------- parts */
 
 static void put_vec3(const wh_vec3_t *v, double out[3]) {
@@ -12,22 +14,6 @@ static void put_vec3(const wh_vec3_t *v, double out[3]) {
 
 static wh_vec3_t take_vec3(const double in[3]) {
     return wh_vec3(in[0], in[1], in[2]);
-}
-
-static void put_pose(const wh_pose_t *pose, double position[3], double rotation[9]) {
-    put_vec3(&pose->r, position);
-    for (size_t i = 0; i < 9; ++i) {
-        rotation[i] = pose->R.m[i / 3][i % 3];
-    }
-}
-
-static wh_pose_t take_pose(const double position[3], const double rotation[9]) {
-    wh_pose_t pose;
-    pose.r = take_vec3(position);
-    for (size_t i = 0; i < 9; ++i) {
-        pose.R.m[i / 3][i % 3] = rotation[i];
-    }
-    return pose;
 }
 
 static void put_measured(const wh_proximity_t *p, waferhand_measurement *out) {
@@ -80,16 +66,22 @@ void wh_link_command_to_message(const wh_command_t *command, const wh_link_ident
     message->gripper_count = (int32_t)command->gripper_count;
     message->axis_count = (int32_t)command->axis_count;
     for (size_t g = 0; g < command->gripper_count; ++g) {
-        put_pose(&command->grippers[g].base_from_gripper, message->gripper_position[g],
-                 message->gripper_rotation[g]);
+        wh_link_put_pose(&command->grippers[g].base_from_gripper, message->gripper_position[g],
+                         message->gripper_rotation[g]);
         message->valve[g] = command->grippers[g].valve;
     }
     memcpy(message->axis_position, command->axes, sizeof message->axis_position);
+    message->fault_count = (int32_t)command->fault_count;
+    for (size_t i = 0; i < command->fault_count; ++i) {
+        message->fault_index[i] = command->faults[i].index;
+        wh_link_put_fault(&command->faults[i].fault, &message->faults[i]);
+    }
 }
 
 wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_command_t *command) {
     if (message->gripper_count < 1 || message->gripper_count > WH_GRIPPERS || message->axis_count < 0 ||
-        message->axis_count > WH_AXES) {
+        message->axis_count > WH_AXES || message->fault_count < 0 ||
+        message->fault_count > WH_COMMAND_FAULTS) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     command->utime = message->utime;
@@ -98,10 +90,15 @@ wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_co
     command->axis_count = (size_t)message->axis_count;
     for (size_t g = 0; g < command->gripper_count; ++g) {
         command->grippers[g].base_from_gripper =
-            take_pose(message->gripper_position[g], message->gripper_rotation[g]);
+            wh_link_take_pose(message->gripper_position[g], message->gripper_rotation[g]);
         command->grippers[g].valve = message->valve[g];
     }
     memcpy(command->axes, message->axis_position, sizeof command->axes);
+    command->fault_count = (size_t)message->fault_count;
+    for (size_t i = 0; i < command->fault_count; ++i) {
+        command->faults[i].index = message->fault_index[i];
+        command->faults[i].fault = wh_link_take_fault(&message->faults[i]);
+    }
     return WH_OK;
 }
 
@@ -109,12 +106,23 @@ wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_co
 
 static void put_gripper(const wh_gripper_t *gripper, waferhand_gripper_state *out) {
     memset(out, 0, sizeof *out);
-    put_pose(&gripper->base_from_gripper, out->position, out->rotation);
-    put_pose(&gripper->gripper_from_wafer, out->wafer_position, out->wafer_rotation);
+    wh_link_put_pose(&gripper->base_from_gripper, out->position, out->rotation);
+    wh_link_put_pose(&gripper->gripper_from_wafer, out->wafer_position, out->wafer_rotation);
     out->wafer = gripper->wafer;
     out->valve = gripper->valve;
     put_encounter(&gripper->approach, &out->approach);
     put_encounter(&gripper->contest, &out->contest);
+}
+
+static void put_condition(const wh_condition_t *condition, size_t g, waferhand_gripper_state *out) {
+    out->valve_command = condition->vacuum[g].command;
+    out->valve_told = condition->told[g];
+    out->vacuum_level = condition->vacuum[g].level;
+    out->vacuum_on = condition->vacuum[g].on ? 1 : 0;
+    out->slips = condition->carry[g].slips ? 1 : 0;
+    out->positions_known = condition->carry[g].known;
+    put_vec3(&condition->carry[g].before[0], out->wafer_before[0]);
+    put_vec3(&condition->carry[g].before[1], out->wafer_before[1]);
 }
 
 static void put_event(const wh_event_t *event, waferhand_event *out) {
@@ -134,14 +142,19 @@ static void put_event(const wh_event_t *event, waferhand_event *out) {
 
 static void put_arrays(const wh_state_t *state, wh_link_state_t *room) {
     for (size_t w = 0; w < state->wafer_count; ++w) {
-        put_pose(&state->wafers[w].base_from_wafer, room->wafers[w].position, room->wafers[w].rotation);
+        wh_link_put_pose(&state->wafers[w].base_from_wafer, room->wafers[w].position,
+                         room->wafers[w].rotation);
         room->wafers[w].holder = state->wafers[w].holder;
     }
     for (size_t g = 0; g < state->gripper_count; ++g) {
         put_gripper(&state->grippers[g], &room->grippers[g]);
+        put_condition(state->condition, g, &room->grippers[g]);
     }
     for (size_t e = 0; e < state->event_count; ++e) {
         put_event(&state->events[e], &room->events[e]);
+    }
+    for (size_t i = 0; i < (size_t)room->message.fault_count; ++i) {
+        wh_link_put_slot(&state->condition->faults.slots[i], &room->faults[i]);
     }
 }
 
@@ -156,24 +169,37 @@ void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t 
     message->wafer_count = (int32_t)state->wafer_count;
     message->gripper_count = (int32_t)state->gripper_count;
     message->event_count = (int32_t)state->event_count;
+    message->fault_count = state->condition ? (int32_t)state->condition->faults.count : 0;
     message->hash = (int64_t)hash;
     message->missed = missed;
     message->sensors = (int32_t)state->sensors;
     message->wafers = room->wafers;
     message->grippers = room->grippers;
     message->events = room->events;
+    message->faults = room->faults;
     message->check = 0;
     put_arrays(state, room);
 }
 
 static void take_gripper(const waferhand_gripper_state *in, const wh_tolerance_t *tolerance,
                          wh_gripper_t *out) {
-    out->base_from_gripper = take_pose(in->position, in->rotation);
-    out->gripper_from_wafer = take_pose(in->wafer_position, in->wafer_rotation);
+    out->base_from_gripper = wh_link_take_pose(in->position, in->rotation);
+    out->gripper_from_wafer = wh_link_take_pose(in->wafer_position, in->wafer_rotation);
     out->wafer = in->wafer;
     out->valve = in->valve;
     take_encounter(&in->approach, tolerance, &out->approach);
     take_encounter(&in->contest, tolerance, &out->contest);
+}
+
+static void take_condition(const waferhand_gripper_state *in, size_t g, wh_condition_t *condition) {
+    condition->vacuum[g].command = in->valve_command;
+    condition->told[g] = in->valve_told;
+    condition->vacuum[g].level = in->vacuum_level;
+    condition->vacuum[g].on = in->vacuum_on != 0;
+    condition->carry[g].slips = in->slips != 0;
+    condition->carry[g].known = in->positions_known;
+    condition->carry[g].before[0] = take_vec3(in->wafer_before[0]);
+    condition->carry[g].before[1] = take_vec3(in->wafer_before[1]);
 }
 
 static void take_event(const waferhand_event *in, int64_t seq, const wh_tolerance_t *tolerance,
@@ -241,7 +267,8 @@ static bool event_fits(const waferhand_event *event, const waferhand_state *mess
 static bool counts_fit(const waferhand_state *message) {
     return message->wafer_count >= 0 && message->wafer_count <= WH_LINK_WAFERS &&
            message->gripper_count >= 0 && message->gripper_count <= WH_GRIPPERS &&
-           message->event_count >= 0 && message->event_count <= WH_LINK_EVENTS;
+           message->event_count >= 0 && message->event_count <= WH_LINK_EVENTS && message->fault_count >= 0 &&
+           message->fault_count <= WH_FAULTS;
 }
 
 static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *tolerance,
@@ -249,16 +276,22 @@ static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *to
     bool sound = true;
     for (int32_t w = 0; w < message->wafer_count; ++w) {
         arrays->wafers[w].base_from_wafer =
-            take_pose(message->wafers[w].position, message->wafers[w].rotation);
+            wh_link_take_pose(message->wafers[w].position, message->wafers[w].rotation);
         arrays->wafers[w].holder = message->wafers[w].holder;
         arrays->wafers[w].released_by = WH_NONE;
     }
     for (int32_t g = 0; g < message->gripper_count; ++g) {
         take_gripper(&message->grippers[g], tolerance, &arrays->grippers[g]);
+        take_condition(&message->grippers[g], (size_t)g, &arrays->condition);
     }
     for (int32_t e = 0; e < message->event_count; ++e) {
         take_event(&message->events[e], message->seq, tolerance, &arrays->events[e]);
         sound = event_fits(&message->events[e], message) && sound;
+    }
+    wh_faults_clear(&arrays->condition.faults);
+    arrays->condition.faults.count = (size_t)message->fault_count;
+    for (int32_t i = 0; i < message->fault_count; ++i) {
+        arrays->condition.faults.slots[i] = wh_link_take_slot(&message->faults[i]);
     }
     return sound;
 }
@@ -278,5 +311,6 @@ wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_
     state->events = arrays->events;
     state->event_count = (size_t)message->event_count;
     state->sensors = (uint32_t)message->sensors;
+    state->condition = &arrays->condition;
     return WH_OK;
 }

@@ -56,6 +56,7 @@ typedef struct {
     wh_wafer_t wafers[WH_LINK_WAFERS];
     wh_gripper_t grippers[WH_GRIPPERS];
     wh_event_t events[WH_LINK_EVENTS];
+    wh_condition_t condition;
 } wh_link_arrays_t;
 
 /* Room for a whole state as a message; `message` points into the arrays. */
@@ -64,6 +65,7 @@ typedef struct {
     waferhand_wafer_state wafers[WH_LINK_WAFERS];
     waferhand_gripper_state grippers[WH_GRIPPERS];
     waferhand_event events[WH_LINK_EVENTS];
+    waferhand_fault_slot faults[WH_FAULTS];
 } wh_link_state_t;
 
 /* LCM's structs hold plain char pointers, though encoding only reads what they point to. */
@@ -75,18 +77,19 @@ static inline char *wh_link_borrowed(const char *text) {
     return cast.plain;
 }
 
-/* A command as a message, and back. The latter refuses counts out of range (WH_STATUS_OUT_OF_RANGE); poses and valves
- * are for the step to judge. */
+/* A command as a message, and back. The latter refuses counts out of range (WH_STATUS_OUT_OF_RANGE); poses, valves
+ * and faults are for the step to judge. */
 void wh_link_command_to_message(const wh_command_t *command, const wh_link_identity_t *identity,
                                 bool lockstep, waferhand_command *message);
 wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_command_t *command);
 
-/* A state as a message. The counts are within the room, which the caller has seen to. */
+/* A state as a message. The counts are within the room, which the caller has seen to; the condition may be null where there
+ * is no gripper. */
 void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t *identity, uint64_t hash,
                               int64_t missed, wh_link_state_t *message);
 
 /* Back: fills `arrays`, and `state` as a view of them. Refuses counts out of range and events that no step yields
- * (WH_STATUS_OUT_OF_RANGE); wafers and grippers are for wh_grasp_restore to judge. Margins and verdicts of measured values, which do not travel, are made anew from `tolerance`. */
+ * (WH_STATUS_OUT_OF_RANGE); wafers and grippers are for wh_grasp_restore to judge, the condition for wh_condition_validate. Margins and verdicts of measured values, which do not travel, are made anew from `tolerance`. */
 wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_tolerance_t *tolerance,
                                        wh_link_arrays_t *arrays, wh_state_t *state);
 

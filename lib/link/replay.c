@@ -74,6 +74,14 @@ static bool gripper_differs(wh_replay_difference_t *difference, const char *of, 
             pose_differs(difference, held, &recorded->gripper_from_wafer, &replayed->gripper_from_wafer));
 }
 
+static bool condition_differs(wh_replay_difference_t *difference, const char *of, size_t g,
+                              const wh_condition_t *recorded, const wh_condition_t *replayed) {
+    return differs(difference, of, "vacuum level", recorded->vacuum[g].level, replayed->vacuum[g].level) ||
+           differs(difference, of, "valve's command", recorded->vacuum[g].command,
+                   replayed->vacuum[g].command) ||
+           differs(difference, of, "vacuum sensor", recorded->vacuum[g].on, replayed->vacuum[g].on);
+}
+
 static void name_difference(wh_replay_t *replay, const wh_state_t *recorded,
                             wh_replay_difference_t *difference) {
     const wh_grasp_storage_t *storage = &replay->server.simulator.table.storage;
@@ -89,12 +97,14 @@ static void name_difference(wh_replay_t *replay, const wh_state_t *recorded,
     }
     for (size_t g = 0; g < storage->gripper_count; ++g) {
         if (gripper_differs(difference, replay->layout->grippers[g].name, &recorded->grippers[g],
-                            &storage->grippers[g])) {
+                            &storage->grippers[g]) ||
+            condition_differs(difference, replay->layout->grippers[g].name, g, recorded->condition,
+                              &replay->server.simulator.condition)) {
             return;
         }
     }
     snprintf(difference->what, sizeof difference->what,
-             "the closest approaches, the contests or the slices' count");
+             "the closest approaches, the contests, the faults or the slices' count");
 }
 
 /* ------------------------------------------------------------------------------------------------- stepping */
@@ -143,7 +153,7 @@ static void resolve(wh_replay_t *replay, const waferhand_state *message) {
     bool outside = false;
     wh_replay_run_t *run = NULL;
     for (int32_t g = 0; g < message->gripper_count && g < command->gripper_count; ++g) {
-        valves[g] = message->grippers[g].valve;
+        valves[g] = message->grippers[g].valve_told;
         outside = outside || valves[g] != command->valve[g];
     }
     if (!step(replay, outside ? valves : NULL, &run)) {

@@ -16,6 +16,7 @@ static void start_run(wh_server_t *server, int64_t run) {
         memcpy(server->arrays.wafers, layout->start, layout->wafer_count * sizeof *layout->start);
     }
     (void)wh_simulator_init(&server->simulator, &layout->grasp, &storage, &layout->cell);
+    (void)wh_simulator_set_physics(&server->simulator, &layout->physics);
     if (server->collision_memory) {
         wh_collision_attach(&server->collision, layout, &server->simulator, server->collision_memory);
     }
@@ -50,7 +51,7 @@ void wh_server_close(wh_server_t *server) {
 }
 
 uint64_t wh_server_hash(const wh_server_t *server) {
-    return wh_grasp_hash(&server->simulator.table);
+    return wh_simulator_hash(&server->simulator);
 }
 
 /* -------------------------------------------------------------------------------------------------- answers */
@@ -199,7 +200,8 @@ static bool is_sound(wh_server_t *server, const waferhand_state *message, wh_sta
     as_told.slice = (uint64_t)(message->seq - message->missed);
     as_told.storage.wafers = server->spare.wafers;
     as_told.storage.grippers = server->spare.grippers;
-    return wh_grasp_hash(&as_told) == (uint64_t)message->hash;
+    return wh_condition_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
+           wh_condition_hash(state->condition, &as_told) == (uint64_t)message->hash;
 }
 
 static bool take_over(wh_server_t *server, const waferhand_state *message, const wh_state_t *state) {
@@ -210,6 +212,7 @@ static bool take_over(wh_server_t *server, const waferhand_state *message, const
     if (server->collision_memory) {
         wh_collision_attach(&server->collision, server->layout, &server->simulator, server->collision_memory);
     }
+    server->simulator.condition = *state->condition;
     memcpy(server->simulator.events, state->events, state->event_count * sizeof *state->events);
     server->simulator.event_count = state->event_count;
     server->state.utime = state->utime;

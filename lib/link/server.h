@@ -68,7 +68,7 @@ wh_server_result_t wh_server_command(wh_server_t *server, const waferhand_comman
  * the one that it says. */
 wh_server_result_t wh_server_restore(wh_server_t *server, const waferhand_state *message);
 
-/* wh_grasp_hash of the table. */
+/* wh_simulator_hash. */
 uint64_t wh_server_hash(const wh_server_t *server);
 
 #endif

@@ -1,17 +1,33 @@
 #include "script/collision.h"
 
-static void look(void *user, const wh_command_t *command, const wh_grasp_t *table, wh_event_list_t *list) {
+/* The end-effector is where a gripper on it says: a fault may keep it from where the axes should have brought it. */
+static void place_effector(wh_collision_t *collision, const wh_gripper_input_t inputs[]) {
+    const wh_machine_t *machine = &collision->layout->machine;
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        const wh_mount_t *mount = &machine->mounts[g];
+        if (mount->axis != WH_NONE) {
+            continue;
+        }
+        collision->base_from_effector = inputs[g].base_from_gripper;
+        if (mount->is_shifted) {
+            const wh_pose_t identity = wh_pose_identity();
+            const wh_pose_t gripper_from_effector =
+                wh_pose_relative(&mount->effector_from_gripper, &identity);
+            collision->base_from_effector =
+                wh_pose_compose(&inputs[g].base_from_gripper, &gripper_from_effector);
+        }
+        return;
+    }
+}
+
+static void look(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
+                 wh_event_list_t *list) {
     wh_collision_t *collision = user;
     wh_pose_t grippers[WH_GRIPPERS];
-    wh_pose_t effector;
-    for (size_t g = 0; g < command->gripper_count; ++g) {
-        grippers[g] = command->grippers[g].base_from_gripper;
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        grippers[g] = inputs[g].base_from_gripper;
     }
-    /* The table has judged the grippers' poses, but nobody the axes. */
-    wh_robot_forward(command->axes, &effector);
-    if (wh_pose_validate(&effector) == WH_OK) {
-        collision->base_from_effector = effector;
-    }
+    place_effector(collision, inputs);
     if (collision->world) {
         wh_world_step(collision->world, table, &collision->base_from_effector, grippers, list);
     } else {

@@ -9,8 +9,8 @@
 typedef struct {
     const wh_layout_t *layout;
     void *memory;
-    wh_world_t *world;            /* null before the first step */
-    wh_pose_t base_from_effector; /* the last that was a pose */
+    wh_world_t *world; /* null before the first step */
+    wh_pose_t base_from_effector;
 } wh_collision_t;
 
 /* Bytes that wh_collision_attach needs. */

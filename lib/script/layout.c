@@ -38,10 +38,12 @@ const wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     if (!lua_istable(L, -1)) {
         wh_reader_fail(&reader, "what the file returns", "a table");
     }
-    wh_reader_refuse_unknown(&reader, "wafer tolerance near check slice seat settle placing collision "
-                                      "look_ahead robot homed chuck grippers "
-                                      "stations wafers shapes obstacles clearance");
+    wh_reader_refuse_unknown(&reader,
+                             "wafer tolerance near check slice seat settle placing collision "
+                             "look_ahead robot homed chuck grippers stations wafers shapes obstacles "
+                             "clearance vacuum pads faults");
     wh_layout_read_checks(&reader, layout);
+    wh_layout_read_physics(&reader, layout);
     wh_layout_read_robot(&reader, layout);
     wh_layout_read_stations(&reader, layout);
     wh_layout_read_grippers(&reader, layout);
@@ -49,6 +51,7 @@ const wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_layout_read_wafers(&reader, layout);
     wh_layout_read_shapes(&reader, layout);
     wh_layout_read_world(&reader, layout);
+    wh_layout_read_faults(&reader, layout);
     return layout;
 }
 

@@ -11,6 +11,7 @@
 #include "collision/world.h"
 #include "motion/machine.h"
 #include "script/shapes.h"
+#include "sim/condition.h"
 
 /* Longest name of a station, gripper, wafer or valve, with its terminator. */
 #define WH_NAME_SIZE 64
@@ -79,6 +80,7 @@ typedef struct {
     double wafer_diameter, wafer_thickness;
     wh_grasp_config_t grasp;
     int64_t slice_us;
+    wh_physics_t physics; /* vacuum, pads, faults from the beginning */
     wh_machine_t machine; /* machine.gripper_count is the number of grippers */
     bool homed;           /* false: HOME comes before whatever counts on where the arm stands */
     wh_layout_gripper_t grippers[WH_GRIPPERS];
@@ -103,7 +105,7 @@ typedef struct {
  * a sort. */
 const wh_layout_t *wh_layout_read(lua_State *L, const char *path);
 
-/* 64 bits over all that two processes must agree on: slice, tolerances, checking, machine, and of stations, grippers and
+/* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults, machine, and of stations, grippers and
  * wafers the names and places. The path is left out. Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);
 

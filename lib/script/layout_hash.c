@@ -73,6 +73,42 @@ static uint64_t hash_placing(uint64_t hash, const wh_cell_t *cell) {
     return hash;
 }
 
+/* Only what differs from the paper's gripper, so that a layout without these sections keeps its hash. */
+static uint64_t hash_vacuum(uint64_t hash, const wh_vacuum_config_t *vacuum) {
+    const wh_vacuum_config_t ideal = wh_vacuum_ideal();
+    const wh_real_t values[] = {vacuum->build, vacuum->vent, vacuum->idle,
+                                vacuum->on,    vacuum->off,  vacuum->release};
+    const wh_real_t usual[] = {ideal.build, ideal.vent, ideal.idle, ideal.on, ideal.off, ideal.release};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i) {
+        if (values[i] != usual[i]) {
+            hash = wh_hash_real(hash_text(hash, "vacuum"), values[i]);
+            hash = wh_hash_word(hash, i);
+        }
+    }
+    return hash;
+}
+
+static uint64_t hash_pads(uint64_t hash, const wh_pads_t *pads) {
+    if (pads->mass > 0) {
+        hash = hash_text(hash, "pads");
+        hash = wh_hash_real(hash, pads->friction);
+        hash = wh_hash_real(hash, pads->force);
+        hash = wh_hash_real(hash, pads->mass);
+        hash = wh_hash_real(hash, pads->gravity);
+    }
+    return hash;
+}
+
+static uint64_t hash_fault(uint64_t hash, const wh_fault_t *fault) {
+    hash = hash_text(hash, wh_fault_name(fault->kind));
+    hash = wh_hash_int(hash, fault->target);
+    hash = wh_hash_int(hash, fault->other);
+    hash = wh_hash_real(hash, fault->value);
+    hash = wh_hash_pose(hash, &fault->offset);
+    hash = wh_hash_word(hash, (uint64_t)fault->from);
+    return wh_hash_word(hash, (uint64_t)fault->until);
+}
+
 uint64_t wh_layout_hash(const wh_layout_t *layout) {
     uint64_t hash = hash_checks(WH_HASH_START, layout);
     hash = hash_machine(hash, layout);
@@ -81,6 +117,11 @@ uint64_t wh_layout_hash(const wh_layout_t *layout) {
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         hash = hash_text(hash, layout->wafers[w].name);
         hash = wh_hash_pose(hash, &layout->start[w].base_from_wafer);
+    }
+    hash = hash_vacuum(hash, &layout->physics.vacuum);
+    hash = hash_pads(hash, &layout->physics.pads);
+    for (size_t i = 0; i < layout->physics.fault_count; ++i) {
+        hash = hash_fault(hash, &layout->physics.faults[i]);
     }
     return hash_placing(hash, &layout->cell);
 }

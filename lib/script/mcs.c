@@ -113,7 +113,7 @@ static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
     const luaL_Reg *const groups[] = {module_functions,      wh_mcs_cell_functions,  wh_mcs_plan_functions,
                                       wh_mcs_play_functions, wh_mcs_query_functions, wh_mcs_record_functions,
-                                      wh_mcs_line_functions, wh_mcs_scan_functions};
+                                      wh_mcs_line_functions, wh_mcs_scan_functions,  wh_mcs_fault_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);

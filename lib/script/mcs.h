@@ -51,8 +51,10 @@ struct wh_mcs {
     wh_track_t kept;       /* the track from before the rehearsal */
     wh_mcs_ahead_t *ahead; /* null: nobody looks ahead */
     void *ahead_user;
-    int64_t stop_slice; /* at which a STOP comes; INT64_MAX: none */
-    uint32_t was_off;   /* bit g: gripper g's sensor was off in a slice of the running segment */
+    int64_t stop_slice;           /* at which a STOP comes; INT64_MAX: none */
+    uint32_t was_off;             /* bit g: gripper g's sensor was off in a slice of the running segment */
+    wh_fault_t faults[WH_FAULTS]; /* by slot, as the simulator has them or is about to */
+    size_t fault_count;
     bool keep_segments; /* collect what is played, for --segments */
     wh_segment_t *segments;
     size_t segment_count, segment_capacity;

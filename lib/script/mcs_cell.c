@@ -57,6 +57,9 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     }
     wh_status_t status = wh_simulator_init(&mcs->simulator, &layout->grasp, &storage, &layout->cell);
     if (status == WH_OK) {
+        status = wh_simulator_set_physics(&mcs->simulator, &layout->physics);
+    }
+    if (status == WH_OK) {
         status = wh_track_init(&mcs->track, &layout->machine, layout->slice_us);
     }
     if (status != WH_OK) {
@@ -77,6 +80,7 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     mcs->command.axis_count = layout->machine.axis_count;
     wh_simulator_view(&mcs->simulator, &mcs->state);
     mcs->layout = layout;
+    wh_mcs_start_faults(mcs);
 }
 
 /* native.cell(path): reads the layout and sets up the run; returns the layout's path as it will be named. */

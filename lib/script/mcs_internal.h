@@ -26,6 +26,9 @@ double wh_mcs_now(const wh_mcs_t *mcs);
 /* Index (from 0) of a wafer, gripper or station given from 1 by lua/mcs. */
 int32_t wh_mcs_index(lua_State *L, int argument, size_t count);
 
+/* The layout's faults, once it is read. */
+void wh_mcs_start_faults(wh_mcs_t *mcs);
+
 /* Functions of the native table, by subject. */
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_plan_functions[];
@@ -34,5 +37,6 @@ extern const luaL_Reg wh_mcs_query_functions[];
 extern const luaL_Reg wh_mcs_record_functions[];
 extern const luaL_Reg wh_mcs_line_functions[];
 extern const luaL_Reg wh_mcs_scan_functions[];
+extern const luaL_Reg wh_mcs_fault_functions[];
 
 #endif

@@ -31,6 +31,7 @@ static wh_status_t exchange(wh_mcs_t *mcs) {
     command->seq = mcs->track.slice;
     command->utime = mcs->track.slice * mcs->track.slice_us;
     const wh_status_t status = mcs->link->exchange(mcs->link, command, &mcs->state);
+    command->fault_count = 0;
     if (mcs->state.event_count > 0) {
         keep_events(mcs);
     }

@@ -1,16 +1,25 @@
 #include "sim/simulator.h"
 
+#include <string.h>
+
 static wh_status_t exchange_by_call(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     return wh_simulator_step((wh_simulator_t *)(void *)link, command, state);
 }
 
 static uint64_t hash_by_call(wh_link_t *link) {
-    return wh_grasp_hash(&((wh_simulator_t *)(void *)link)->table);
+    return wh_simulator_hash((const wh_simulator_t *)(const void *)link);
 }
 
 static int64_t missed_by_call(wh_link_t *link) {
     (void)link;
     return 0;
+}
+
+static void take_physics(wh_simulator_t *simulator, const wh_physics_t *physics) {
+    simulator->slice_s = physics->slice_s;
+    simulator->vacuum = physics->vacuum;
+    simulator->pads = physics->pads;
+    wh_condition_start(&simulator->condition, physics);
 }
 
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
@@ -23,41 +32,195 @@ wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t
     }
     const wh_status_t status = wh_grasp_init(&simulator->table, config, storage);
     if (status == WH_OK) {
+        const wh_physics_t physics = wh_physics_default();
         simulator->link.exchange = exchange_by_call;
         simulator->link.hash = hash_by_call;
         simulator->link.missed = missed_by_call;
         simulator->cell = *cell;
         simulator->event_count = 0;
         simulator->observer = (wh_observer_t){NULL, NULL, NULL};
+        take_physics(simulator, &physics);
     }
     return status;
 }
 
-static uint32_t read_sensors(const wh_grasp_t *table) {
-    uint32_t sensors = 0;
-    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        sensors |= table->storage.grippers[g].wafer == WH_NONE ? 0U : 1U << g;
+wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics_t *physics) {
+    if (!simulator || !physics) {
+        return WH_STATUS_NULL_ARGUMENT;
     }
-    return sensors;
-}
-
-static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *command) {
-    if (command->gripper_count != simulator->table.storage.gripper_count) {
-        ++simulator->table.counters.refused;
-        simulator->event_count = 0;
+    const wh_grasp_storage_t *storage = &simulator->table.storage;
+    if (simulator->table.slice > 0) {
         return WH_STATUS_OUT_OF_RANGE;
     }
-    wh_event_list_t list = {simulator->events, sizeof simulator->events / sizeof simulator->events[0], 0};
-    const wh_status_t status = wh_grasp_step(&simulator->table, command->grippers, &list);
+    const wh_status_t status = wh_physics_validate(physics, storage->gripper_count, storage->wafer_count);
+    if (status == WH_OK) {
+        take_physics(simulator, physics);
+    }
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------ events */
+
+/* Null when there is no room. */
+static wh_event_t *add_event(wh_simulator_t *simulator, wh_event_kind_t kind, int32_t wafer,
+                             int32_t gripper) {
+    static const wh_event_t blank = {.other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
+    if (simulator->event_count == WH_SLICE_EVENTS) {
+        return NULL;
+    }
+    wh_event_t *event = &simulator->events[simulator->event_count++];
+    *event = blank;
+    event->kind = kind;
+    event->slice = simulator->table.slice;
+    event->measured_slice = simulator->table.slice;
+    event->wafer = wafer;
+    event->gripper = gripper;
+    return event;
+}
+
+static void add_measured(wh_simulator_t *simulator, wh_event_kind_t kind, size_t g, wh_real_t value,
+                         wh_real_t limit) {
+    wh_event_t *event = add_event(simulator, kind, simulator->table.storage.grippers[g].wafer, (int32_t)g);
+    if (event) {
+        event->value = value;
+        event->limit = limit;
+    }
+}
+
+static void report_faults(wh_simulator_t *simulator, uint32_t slots, wh_event_kind_t kind) {
+    for (size_t i = 0; i < WH_FAULTS; ++i) {
+        if ((slots >> i & 1U) == 0) {
+            continue;
+        }
+        const wh_fault_t *fault = &simulator->condition.faults.slots[i].fault;
+        const bool of_wafer = wh_fault_is_of_wafer(fault->kind);
+        wh_event_t *event = add_event(simulator, kind, of_wafer ? fault->target : WH_NONE,
+                                      of_wafer ? WH_NONE : fault->target);
+        if (event) {
+            event->parts[0] = (int32_t)i;
+            event->parts[1] = (int32_t)fault->kind;
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- stepping */
+
+/* Faults may overrule an input, so each is looked at before; the grasp table then says what is wrong. */
+static bool are_valid(const wh_command_t *command) {
+    bool good = true;
+    for (size_t g = 0; g < command->gripper_count; ++g) {
+        const wh_gripper_input_t *input = &command->grippers[g];
+        good = good && (input->valve == WH_VALVE_OPEN || input->valve == WH_VALVE_CLOSED) &&
+               wh_pose_validate(&input->base_from_gripper) == WH_OK;
+    }
+    return good;
+}
+
+static wh_fault_changes_t apply_faults(wh_simulator_t *simulator, const wh_command_t *command) {
+    wh_fault_changes_t changes = {0, 0};
+    wh_faults_t *faults = &simulator->condition.faults;
+    if (faults->count + command->fault_count > 0 && are_valid(command)) {
+        wh_faults_take(faults, command->faults, command->fault_count);
+        changes = wh_faults_advance(faults, &simulator->table, command->seq);
+        wh_faults_overrule(faults, &simulator->table, simulator->condition.vacuum, simulator->inputs);
+    }
+    return changes;
+}
+
+static bool holds(const wh_simulator_t *simulator, size_t g) {
+    return simulator->table.storage.grippers[g].wafer != WH_NONE;
+}
+
+/* What the valves do. Into `vacuum`, for the step may yet be refused. */
+static void switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
+    for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
+        const wh_vacuum_upset_t upset = wh_faults_upset(&simulator->condition.faults, g);
+        vacuum[g] = simulator->condition.vacuum[g];
+        simulator->inputs[g].valve = wh_vacuum_before(&simulator->vacuum, &upset, simulator->inputs[g].valve,
+                                                      holds(simulator, g), simulator->slice_s, &vacuum[g]);
+    }
+}
+
+static void update_vacuum(wh_simulator_t *simulator, const wh_command_t *command,
+                          const wh_vacuum_t vacuum[]) {
+    for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
+        const wh_vacuum_upset_t upset = wh_faults_upset(&simulator->condition.faults, g);
+        wh_vacuum_t *now = &simulator->condition.vacuum[g];
+        *now = vacuum[g];
+        simulator->condition.told[g] = command->grippers[g].valve;
+        if (wh_vacuum_after(&simulator->vacuum, &upset, holds(simulator, g), simulator->slice_s, now)) {
+            add_measured(simulator, WH_EVENT_VACUUM_LOST, g, now->level, simulator->vacuum.off);
+        }
+    }
+}
+
+static void watch_holding(wh_simulator_t *simulator) {
+    const wh_grasp_storage_t *storage = &simulator->table.storage;
+    for (size_t g = 0; simulator->pads.mass > 0 && g < storage->gripper_count; ++g) {
+        const wh_gripper_t *gripper = &storage->grippers[g];
+        const wh_vec3_t *centre =
+            gripper->wafer == WH_NONE ? NULL : &storage->wafers[gripper->wafer].base_from_wafer.r;
+        wh_hold_t hold;
+        if (wh_carry_update(&simulator->condition.carry[g], &simulator->pads,
+                            simulator->condition.vacuum[g].level, &gripper->base_from_gripper.R, centre,
+                            simulator->slice_s, &hold)) {
+            add_measured(simulator, WH_EVENT_SLIPPED, g, hold.asked, hold.carried);
+        }
+    }
+}
+
+/* To the observer: the wafers that faults have moved, then the step. */
+static void show(wh_simulator_t *simulator, uint32_t changed, wh_event_list_t *list) {
+    const wh_observer_t *observer = &simulator->observer;
+    const wh_faults_t *faults = &simulator->condition.faults;
+    for (size_t i = 0; observer->placed && i < faults->count; ++i) {
+        const wh_fault_t *fault = &faults->slots[i].fault;
+        if ((changed >> i & 1U) != 0 && wh_fault_is_of_wafer(fault->kind)) {
+            observer->placed(observer->user, &simulator->table, fault->target);
+        }
+    }
+    if (observer->look) {
+        observer->look(observer->user, simulator->inputs, &simulator->table, list);
+    }
+}
+
+static wh_status_t step_grippers(wh_simulator_t *simulator, const wh_command_t *command) {
+    wh_vacuum_t vacuum[WH_GRIPPERS];
+    memcpy(simulator->inputs, command->grippers, command->gripper_count * sizeof command->grippers[0]);
+    const wh_fault_changes_t changes = apply_faults(simulator, command);
+    switch_valves(simulator, vacuum);
+    wh_event_list_t list = {simulator->events, WH_SLICE_EVENTS, 0};
+    const wh_status_t status = wh_grasp_step(&simulator->table, simulator->inputs, &list);
     if (status == WH_OK && list.count > 0) {
         (void)wh_cell_judge(&simulator->cell, &simulator->table, &list);
         wh_cell_settle(&simulator->cell, &simulator->table, &list);
     }
-    if (status == WH_OK && simulator->observer.look) {
-        simulator->observer.look(simulator->observer.user, command, &simulator->table, &list);
+    if (status == WH_OK) {
+        show(simulator, changes.armed | changes.cleared, &list);
     }
     simulator->event_count = list.count;
+    if (status == WH_OK) {
+        update_vacuum(simulator, command, vacuum);
+        watch_holding(simulator);
+        report_faults(simulator, changes.armed, WH_EVENT_FAULT_ARMED);
+        report_faults(simulator, changes.cleared, WH_EVENT_FAULT_CLEARED);
+    }
     return status;
+}
+
+static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *command) {
+    const wh_grasp_storage_t *storage = &simulator->table.storage;
+    wh_status_t status = WH_STATUS_OUT_OF_RANGE;
+    if (command->gripper_count == storage->gripper_count && command->fault_count <= WH_COMMAND_FAULTS) {
+        status = wh_faults_check(&simulator->condition.faults, command->faults, command->fault_count,
+                                 storage->gripper_count, storage->wafer_count);
+    }
+    if (status != WH_OK) {
+        ++simulator->table.counters.refused;
+        simulator->event_count = 0;
+        return status;
+    }
+    return step_grippers(simulator, command);
 }
 
 void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) {
@@ -68,7 +231,8 @@ void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) {
     state->gripper_count = table->storage.gripper_count;
     state->events = simulator->events;
     state->event_count = simulator->event_count;
-    state->sensors = read_sensors(table);
+    state->sensors = wh_condition_sensors(&simulator->condition, table->storage.gripper_count);
+    state->condition = &simulator->condition;
 }
 
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state) {
@@ -80,4 +244,8 @@ wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *com
     state->seq = command->seq;
     wh_simulator_view(simulator, state);
     return state->status;
+}
+
+uint64_t wh_simulator_hash(const wh_simulator_t *simulator) {
+    return wh_condition_hash(&simulator->condition, &simulator->table);
 }

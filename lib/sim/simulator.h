@@ -6,10 +6,12 @@
 #include "cell/station.h"
 #include "sim/slice.h"
 
-/* Looks at each accepted step when table and cell are done with it, and may append events; null: nobody does. It must not
+/* Looks at each accepted step when table and cell are done with it, and may append events; null: nobody does. `inputs` are
+ * the step's own, as faults and vacuum made them. It must not
  * change anything that a step depends on. */
 typedef struct {
-    void (*look)(void *user, const wh_command_t *command, const wh_grasp_t *table, wh_event_list_t *list);
+    void (*look)(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
+                 wh_event_list_t *list);
     /* A wafer that nobody holds was put elsewhere, by a fault; not for those that settle. */
     void (*placed)(void *user, const wh_grasp_t *table, int32_t wafer);
     void *user;
@@ -19,6 +21,11 @@ typedef struct {
     wh_link_t link; /* first: &simulator->link is the call version of the interface */
     wh_grasp_t table;
     wh_cell_t cell;
+    wh_real_t slice_s;
+    wh_vacuum_config_t vacuum;
+    wh_pads_t pads;
+    wh_condition_t condition;
+    wh_gripper_input_t inputs[WH_GRIPPERS]; /* of the running step, as faults and vacuum make them */
     wh_event_t events[WH_SLICE_EVENTS];
     size_t event_count;
     wh_observer_t observer; /* the caller's to set after wh_simulator_init */
@@ -32,14 +39,22 @@ typedef struct {
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
                               const wh_grasp_storage_t *storage, const wh_cell_t *cell);
 
-/* One slice: steps the table, lets the cell judge the releases, and fills in `state`. Returns state->status. A
- * refused command leaves wafers and grippers as they were and table.counters.refused says how often: what
- * wh_grasp_step refuses, and a gripper_count other than the table's (WH_STATUS_OUT_OF_RANGE, without an event).
+/* Replaces wh_physics_default, with which wh_simulator_init begins. Refuses what wh_physics_validate does, and a run that
+ * has begun (WH_STATUS_OUT_OF_RANGE); the simulator is then unchanged. */
+wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics_t *physics);
+
+/* One slice: lets faults and vacuum make of the command what reaches the grippers, steps the table, lets the cell judge
+ * the releases, looks at vacuum and holding, and fills in `state`. Returns state->status. A
+ * refused command leaves everything as it was and table.counters.refused says how often: what
+ * wh_grasp_step refuses, and without an event a gripper_count other than the table's and what wh_faults_check refuses.
  * With a null pointer (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. `seq` and `utime` are handed
- * back, not judged. Cost: wh_grasp_step and wh_cell_judge. */
+ * back; faults go by `seq`. Cost: wh_grasp_step and wh_cell_judge. */
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state);
 
 /* Fills in all of a state but utime, seq and status, without stepping. Cost: linear in grippers. */
 void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state);
+
+/* wh_condition_hash of it. */
+uint64_t wh_simulator_hash(const wh_simulator_t *simulator);
 
 #endif

@@ -4,19 +4,24 @@
 #define WH_SIM_SLICE_H
 
 #include "core/grasp.h"
-#include "motion/machine.h"
+#include "sim/condition.h"
 
 /* At most so many events in one slice: those of the grasp table, then what the cell, the vacuum, the faults and the
  * collision check have to say. What does not fit is not reported. */
 #define WH_SLICE_EVENTS 64
 
-/* What the machine does in slice `seq`. Entries beyond gripper_count and axis_count are not looked at. */
+/* So many faults a command can bring. */
+#define WH_COMMAND_FAULTS 4
+
+/* What the machine does in slice `seq`. Entries beyond gripper_count, axis_count and fault_count are not looked at. */
 typedef struct {
     int64_t utime; /* us of simulated time: seq times the slice's length */
     int64_t seq;   /* 1 for the first slice */
     size_t gripper_count, axis_count;
     wh_gripper_input_t grippers[WH_GRIPPERS];
     wh_real_t axes[WH_AXES]; /* rad or mm, as in motion/machine.h */
+    size_t fault_count;
+    wh_fault_request_t faults[WH_COMMAND_FAULTS]; /* faults on purpose that begin or get another end */
 } wh_command_t;
 
 /* What has become of it: a view of the simulator's own memory, true until the next exchange. */
@@ -30,6 +35,7 @@ typedef struct {
     const wh_event_t *events; /* of this slice, or of the refusal */
     size_t event_count;
     uint32_t sensors; /* bit g: gripper g's vacuum sensor is on */
+    const wh_condition_t *condition;
 } wh_state_t;
 
 /* One side's view of the other: by a call within the process, or by messages. */
@@ -37,7 +43,7 @@ typedef struct wh_link wh_link_t;
 struct wh_link {
     /* Steps one slice. Returns state->status, or what kept the answer from coming. */
     wh_status_t (*exchange)(wh_link_t *link, const wh_command_t *command, wh_state_t *state);
-    /* wh_grasp_hash of the state after the last exchange. */
+    /* wh_condition_hash of the state after the last exchange. */
     uint64_t (*hash)(wh_link_t *link);
     /* Slices of the run that never reached the simulator: 0 but in a free-running run. */
     int64_t (*missed)(wh_link_t *link);

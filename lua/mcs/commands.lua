@@ -144,5 +144,6 @@ return function(native, patterns, names)
     native.stop_in(seconds)
   end
 
+  commands.run = run
   return commands
 end

@@ -8,8 +8,9 @@ return function(native)
   local names = native.module("mcs/names.lua")(native, wh.errors)
   local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), names)
   local questions = native.module("mcs/questions.lua")(native, names)
-  local rehearse = commands.rehearse
-  commands.rehearse = nil
+  local rehearse, run = commands.rehearse, commands.run
+  commands.rehearse, commands.run = nil, nil
+  native.module("mcs/faults.lua")(native, commands, run, names)
 
   -- cell "LAYOUT.lua", relative to the script: every slot's ends must be in reach.
   function cell(path)

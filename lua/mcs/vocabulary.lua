@@ -39,6 +39,7 @@ return function(native, commands, questions, names, words)
   -- For each kind of argument the names that there are, or nothing: then it is a number.
   vocabulary.kinds = {
     station = station_names, gripper = gripper_names, wafer = native.wafer_names, command = command_names,
+    fault = native.fault_kinds,
     handover = function() return { "new_first", "same_slice" } end,
     vacuum_check = function() return { "both", "get", "put", "none" } end,
     switch = function() return { "true", "false" } end,
@@ -205,6 +206,28 @@ return function(native, commands, questions, names, words)
     return ("%s: %s"):format(vocabulary.usage(name, true), vocabulary.commands[name].does)
   end
 
+  -- What a turn is called in a line, and the fault's options.
+  local TURNS = { "rx", "ry", "rz" }
+  local fault_options = { gripper = "gripper", wafer = "wafer", onto = "wafer" }
+  for _, name in ipairs({ "value", "dx", "dy", "dz", "rx", "ry", "rz", "after", "lasting" }) do
+    fault_options[name] = "number"
+  end
+
+  local function fault(arguments, options)
+    local description = { kind = arguments[1] }
+    for place, name in ipairs(TURNS) do
+      if options[name] then
+        description.rpy = description.rpy or { 0, 0, 0 }
+        description.rpy[place] = options[name]
+        options[name] = nil
+      end
+    end
+    for name, value in pairs(options) do
+      description[name] = value
+    end
+    return words.pairs { { "fault", commands.fault(description) } }
+  end
+
   ----------------------------------------------------------------------------------------------- commands
 
   -- A command of the scripts that takes its arguments in order, answered with its time.
@@ -244,6 +267,9 @@ return function(native, commands, questions, names, words)
     LINE = { takes = {}, options = fields(names.line_fields), needs_option = true, run = moving_by_name(commands.line),
              does = "moves the end-effector straight by so much, mm and mm/s" },
     WAIT = { takes = { "seconds" }, run = moving(commands.wait), does = "stands still" },
+    FAULT = { takes = { "fault" }, options = fault_options, run = fault, does = "lets a fault begin, and tells its number" },
+    CLEAR = { takes = { "number" }, does = "ends the fault of this number",
+              run = function(arguments) commands.clear_fault(arguments[1]) end },
     OFFSET = { takes = { "wafer", "station", "slot" }, run = offset, does = "where the wafer is in that slot's frame" },
     HOLDER = { takes = { "wafer" }, does = "the gripper that holds the wafer",
                run = function(arguments) return words.pairs { { "holder", questions.holder(arguments[1]) } } end },

@@ -72,6 +72,7 @@ static void check_set_up(const wh_layout_t *layout) {
                                         .grippers = grippers,
                                         .gripper_count = layout->machine.gripper_count};
     REQUIRE(wh_simulator_init(&simulator, &layout->grasp, &storage, &cell) == WH_OK);
+    REQUIRE(wh_simulator_set_physics(&simulator, &layout->physics) == WH_OK);
     REQUIRE(wh_track_init(&track, &layout->machine, layout->slice_us) == WH_OK);
     free(wafers);
 }

@@ -49,11 +49,11 @@ uint64_t fuzz_hash_of(const waferhand_state *message) {
     table.storage.wafer_count = state.wafer_count;
     table.storage.grippers = arrays.grippers;
     table.storage.gripper_count = state.gripper_count;
-    return wh_grasp_hash(&table);
+    return wh_condition_hash(&arrays.condition, &table);
 }
 
-/* Where the hash stands: fingerprint, four words, status and three counts before it. */
-#define HASH_AT (8 + 4 * 8 + 4 * 4)
+/* Where the hash stands: fingerprint, four words, status and four counts before it. */
+#define HASH_AT (8 + 4 * 8 + 5 * 4)
 
 static void put_hash(fuzz_frame_t *frame) {
     waferhand_state message;

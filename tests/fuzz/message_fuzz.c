@@ -53,8 +53,8 @@ static void stay_silent(void *user, const char *text) {
 }
 
 /* Both arrays in a table that takes over only what is sound. */
-static void check_sound(const wh_wafer_t *wafers, const wh_gripper_t *grippers, uint64_t slice,
-                        uint64_t hash) {
+static void check_sound(const wh_wafer_t *wafers, const wh_gripper_t *grippers,
+                        const wh_condition_t *condition, uint64_t slice, uint64_t hash) {
     static wh_link_arrays_t arrays;
     wh_grasp_t table;
     memset(&table, 0, sizeof table);
@@ -63,7 +63,9 @@ static void check_sound(const wh_wafer_t *wafers, const wh_gripper_t *grippers, 
     table.storage.grippers = arrays.grippers;
     table.storage.gripper_count = layout->machine.gripper_count;
     REQUIRE(wh_grasp_restore(&table, slice, wafers, grippers) == WH_OK);
-    REQUIRE(wh_grasp_hash(&table) == hash);
+    REQUIRE(wh_condition_validate(condition, table.storage.gripper_count, table.storage.wafer_count) ==
+            WH_OK);
+    REQUIRE(wh_condition_hash(condition, &table) == hash);
 }
 
 /* ------------------------------------------------------------------------------------------------- any cell */
@@ -129,7 +131,8 @@ static void deliver_to_simulator(const fuzz_frame_t *frame) {
         REQUIRE(wh_server_hash(server) == hash && server->seq == seq);
     }
     const wh_grasp_storage_t *const storage = &server->simulator.table.storage;
-    check_sound(storage->wafers, storage->grippers, server->simulator.table.slice, wh_server_hash(server));
+    check_sound(storage->wafers, storage->grippers, &server->simulator.condition,
+                server->simulator.table.slice, wh_server_hash(server));
     REQUIRE(server->seq == (int64_t)server->simulator.table.slice + server->missed);
 }
 
@@ -175,7 +178,7 @@ static bool next_message(wh_node_t *to) {
     fuzz_deliver(to, frame.channel, frame.bytes, frame.size);
     const wh_client_t *const client = &control.client;
     if (client->has_state) {
-        check_sound(client->state.wafers, client->state.grippers,
+        check_sound(client->state.wafers, client->state.grippers, client->state.condition,
                     (uint64_t)(client->state.seq - client->missed), client->hash);
     }
     return true;

@@ -31,7 +31,7 @@ static int tear_down(void **state) {
     return 0;
 }
 
-/* wh_grasp_hash of what the message says. */
+/* wh_condition_hash of what the message says. */
 static int64_t hash_of(const waferhand_state *message) {
     static wh_link_arrays_t arrays;
     wh_grasp_t table;
@@ -43,7 +43,7 @@ static int64_t hash_of(const waferhand_state *message) {
     table.storage.wafer_count = (size_t)message->wafer_count;
     table.storage.grippers = arrays.grippers;
     table.storage.gripper_count = (size_t)message->gripper_count;
-    return (int64_t)wh_grasp_hash(&table);
+    return (int64_t)wh_condition_hash(&arrays.condition, &table);
 }
 
 static void tell_changed_state(void) {

@@ -5,7 +5,7 @@
 
 /* What one UDP datagram carries of an LCM message: the longest one less LCM's header and the channel's name.
  * LCM sends longer messages in fragments, which get lost one by one. */
-enum { DATAGRAM = 65499, WAFERS = 256, GRIPPERS = 8, EVENTS = 64, NAME = 64 };
+enum { DATAGRAM = 65499, WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16, NAME = 64 };
 
 typedef struct {
     const char *name;
@@ -32,17 +32,21 @@ static void test_largest_state_fits(void **state) {
     static waferhand_wafer_state wafers[WAFERS];
     static waferhand_gripper_state grippers[GRIPPERS];
     static waferhand_event events[EVENTS];
+    static waferhand_fault_slot faults[FAULTS];
     (void)state;
     const waferhand_state message = {.wafer_count = WAFERS,
                                      .gripper_count = GRIPPERS,
                                      .event_count = EVENTS,
+                                     .fault_count = FAULTS,
                                      .wafers = wafers,
                                      .grippers = grippers,
-                                     .events = events};
+                                     .events = events,
+                                     .faults = faults};
     const int size = waferhand_state_encoded_size(&message);
     print_message("state of %d wafers: %d bytes\n", WAFERS, size);
-    /* Computed by hand: a header of 76, a check of 8, wafers of 100, grippers of 376 and events of 156 bytes. */
-    assert_int_equal(size, 84 + WAFERS * 100 + GRIPPERS * 376 + EVENTS * 156);
+    /* Computed by hand: a header of 80, a check of 8, wafers of 100, grippers of 446, events of 156 and slots of
+     * faults of 328 bytes. */
+    assert_int_equal(size, 88 + WAFERS * 100 + GRIPPERS * 446 + EVENTS * 156 + FAULTS * 328);
     assert_true(size <= DATAGRAM);
 }
 
@@ -78,7 +82,7 @@ static void test_fixed_sizes(void **state) {
     (void)state;
     const waferhand_command command = {0};
     const waferhand_proximity proximity = {0};
-    assert_int_equal(waferhand_command_encoded_size(&command), 921);
+    assert_int_equal(waferhand_command_encoded_size(&command), 1469);
     assert_int_equal(waferhand_proximity_encoded_size(&proximity), 508);
 }
 

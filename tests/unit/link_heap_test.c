@@ -37,7 +37,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     static const int64_t run = 4711;
     const wh_link_identity_t identity = {run, server.identity.layout_hash};
     waferhand_command message;
-    uint8_t bytes[1024];
+    uint8_t bytes[4096];
     (void)link;
     wh_link_command_to_message(command, &identity, true, &message);
     const int size = waferhand_command_encode(bytes, 0, (int)sizeof bytes, &message);

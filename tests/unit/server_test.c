@@ -189,7 +189,7 @@ static void test_no_other_state_is_taken_over(void **state) {
 /* Of a sealed message, no other bits pass; cut short, it does not either. */
 static void test_flipped_bits_are_seen(void **state) {
     (void)state;
-    uint8_t bytes[1024];
+    uint8_t bytes[2048];
     waferhand_command message = command(7, 1);
     const int size = waferhand_command_encode(bytes, 0, (int)sizeof bytes, &message);
     assert_true(wh_link_decode_command(bytes, (size_t)size, &message)); /* not sealed: nobody checks */

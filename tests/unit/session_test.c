@@ -72,7 +72,7 @@ static void test_every_command(void **state) {
         {"WAIT 0.5", "OK seconds=0.5"},
         {"WHERE \"Wafer 2\"", "OK wafer=\"Wafer 2\" holder=PA station=P slot=1 dx="},
         {"STATIONS", "OK station=A slots=25; station=B slots=25; station=P slots=1 chuck=PA"},
-        {"HELP", "OK AXES GET HELP"},
+        {"HELP", "OK AXES CLEAR FAULT GET HELP"},
         {"HELP WAIT", "OK WAIT SECONDS: stands still"},
     };
     ASSERT_DIALOGUE(dialogue);

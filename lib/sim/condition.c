@@ -1,0 +1,140 @@
+#include "sim/condition.h"
+
+#include <string.h>
+
+#include "core/hash.h"
+
+wh_physics_t wh_physics_default(void) {
+    wh_physics_t physics;
+    memset(&physics, 0, sizeof physics);
+    physics.slice_s = WH_REAL(0.001);
+    physics.vacuum = wh_vacuum_ideal();
+    physics.pads = wh_pads_none();
+    return physics;
+}
+
+wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count) {
+    wh_status_t status = wh_vacuum_validate(&physics->vacuum);
+    if (status == WH_OK) {
+        status = wh_pads_validate(&physics->pads);
+    }
+    if (status == WH_OK &&
+        (!(physics->slice_s > 0 && physics->slice_s <= 1) || physics->fault_count > WH_FAULTS)) {
+        status = WH_STATUS_OUT_OF_RANGE;
+    }
+    for (size_t i = 0; status == WH_OK && i < physics->fault_count; ++i) {
+        status = wh_fault_validate(&physics->faults[i], gripper_count, wafer_count);
+    }
+    return status;
+}
+
+void wh_condition_start(wh_condition_t *condition, const wh_physics_t *physics) {
+    memset(condition, 0, sizeof *condition);
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        condition->vacuum[g] = wh_vacuum_start();
+        condition->told[g] = WH_VALVE_CLOSED;
+    }
+    for (size_t i = 0; i < physics->fault_count; ++i) {
+        const wh_fault_request_t request = {(int32_t)i, physics->faults[i]};
+        wh_faults_take(&condition->faults, &request, 1);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- validity */
+
+static bool is_valve(int32_t valve) {
+    return valve == WH_VALVE_OPEN || valve == WH_VALVE_CLOSED;
+}
+
+static bool is_place(const wh_vec3_t *place) {
+    return wh_real_is_finite(place->x) && wh_real_is_finite(place->y) && wh_real_is_finite(place->z);
+}
+
+static wh_status_t check_gripper(const wh_condition_t *condition, size_t g) {
+    const wh_vacuum_t *vacuum = &condition->vacuum[g];
+    const wh_carry_t *carry = &condition->carry[g];
+    if (!is_valve(vacuum->command) || !is_valve(condition->told[g])) {
+        return WH_STATUS_BAD_VALVE;
+    }
+    if (!is_place(&carry->before[0]) || !is_place(&carry->before[1])) {
+        return WH_STATUS_NOT_FINITE;
+    }
+    const bool good = vacuum->level >= 0 && vacuum->level <= 1 && carry->known >= 0 && carry->known <= 2;
+    return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
+}
+
+wh_status_t wh_condition_validate(const wh_condition_t *condition, size_t gripper_count, size_t wafer_count) {
+    for (size_t g = 0; g < gripper_count; ++g) {
+        const wh_status_t status = check_gripper(condition, g);
+        if (status != WH_OK) {
+            return status;
+        }
+    }
+    return wh_faults_validate(&condition->faults, gripper_count, wafer_count);
+}
+
+uint32_t wh_condition_sensors(const wh_condition_t *condition, size_t gripper_count) {
+    uint32_t sensors = 0;
+    for (size_t g = 0; g < gripper_count; ++g) {
+        sensors |= condition->vacuum[g].on ? 1U << g : 0U;
+    }
+    return wh_faults_sensors(&condition->faults, sensors);
+}
+
+/* --------------------------------------------------------------------------------------------------------- hash */
+
+static uint64_t hash_head(uint64_t hash, int32_t section, size_t index) {
+    return wh_hash_int(wh_hash_int(hash, section), (int32_t)index);
+}
+
+static bool is_plain(const wh_vacuum_t *vacuum, const wh_gripper_t *gripper) {
+    const bool holds = gripper->wafer != WH_NONE;
+    return vacuum->command == gripper->valve && vacuum->on == holds && vacuum->level == (holds ? 1 : 0);
+}
+
+static uint64_t hash_vacuum(uint64_t hash, const wh_vacuum_t *vacuum) {
+    hash = wh_hash_real(hash, vacuum->level);
+    hash = wh_hash_int(hash, vacuum->command);
+    return wh_hash_int(hash, vacuum->on ? 1 : 0);
+}
+
+static uint64_t hash_carry(uint64_t hash, const wh_carry_t *carry) {
+    hash = wh_hash_int(hash, carry->known);
+    hash = wh_hash_vec3(hash, &carry->before[0]);
+    hash = wh_hash_vec3(hash, &carry->before[1]);
+    return wh_hash_int(hash, carry->slips ? 1 : 0);
+}
+
+static uint64_t hash_slot(uint64_t hash, const wh_fault_slot_t *slot) {
+    const wh_fault_t *fault = &slot->fault;
+    hash = wh_hash_int(hash, (int32_t)slot->phase);
+    hash = wh_hash_int(hash, (int32_t)fault->kind);
+    hash = wh_hash_int(hash, fault->target);
+    hash = wh_hash_int(hash, fault->other);
+    hash = wh_hash_real(hash, fault->value);
+    hash = wh_hash_pose(hash, &fault->offset);
+    hash = wh_hash_word(hash, (uint64_t)fault->from);
+    hash = wh_hash_word(hash, (uint64_t)fault->until);
+    hash = wh_hash_pose(hash, &slot->before);
+    return wh_hash_pose(hash, &slot->placed);
+}
+
+uint64_t wh_condition_hash(const wh_condition_t *condition, const wh_grasp_t *table) {
+    uint64_t hash = wh_grasp_hash(table);
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        if (!is_plain(&condition->vacuum[g], &table->storage.grippers[g])) {
+            hash = hash_vacuum(hash_head(hash, 1, g), &condition->vacuum[g]);
+        }
+    }
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        if (condition->carry[g].known > 0) {
+            hash = hash_carry(hash_head(hash, 2, g), &condition->carry[g]);
+        }
+    }
+    for (size_t i = 0; i < condition->faults.count; ++i) {
+        if (condition->faults.slots[i].phase != WH_FAULT_FREE) {
+            hash = hash_slot(hash_head(hash, 3, i), &condition->faults.slots[i]);
+        }
+    }
+    return hash;
+}

@@ -1,0 +1,50 @@
+/* What a step of the simulator depends on beside the grasp table: vacuum, motion of held wafers, faults. */
+#ifndef WH_SIM_CONDITION_H
+#define WH_SIM_CONDITION_H
+
+#include "core/hold.h"
+#include "sim/faults.h"
+
+/* What does not change during a run. */
+typedef struct {
+    wh_real_t slice_s; /* length of a slice, s, above 0, up to 1 */
+    wh_vacuum_config_t vacuum;
+    wh_pads_t pads;
+    wh_fault_t faults[WH_FAULTS]; /* from the beginning */
+    size_t fault_count;
+} wh_physics_t;
+
+/* As the last slice left it; entries beyond the gripper count are not looked at. */
+typedef struct {
+    wh_vacuum_t vacuum[WH_GRIPPERS];
+    wh_carry_t carry[WH_GRIPPERS]; /* all zero without pads */
+    int32_t
+        told[WH_GRIPPERS]; /* valves as the last command had them, before faults; no step depends on them */
+    wh_faults_t faults;
+} wh_condition_t;
+
+/* Slices of 1 ms, ideal vacuum, no pads, no faults. */
+wh_physics_t wh_physics_default(void);
+
+/* WH_OK, or what is wrong with it for a cell of so many grippers and wafers. */
+wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count);
+
+/* Before the first slice; `faults` of the physics wait in the first slots. */
+void wh_condition_start(wh_condition_t *condition, const wh_physics_t *physics);
+
+/* Whether a simulator could have left it so: WH_OK, WH_STATUS_NOT_FINITE, WH_STATUS_BAD_VALVE or
+ * WH_STATUS_OUT_OF_RANGE. */
+wh_status_t wh_condition_validate(const wh_condition_t *condition, size_t gripper_count, size_t wafer_count);
+
+/* What the vacuum sensors say: bit g for gripper g. */
+uint32_t wh_condition_sensors(const wh_condition_t *condition, size_t gripper_count);
+
+/* 64 bits over all that the next step depends on. It is wh_grasp_hash(table), continued by wh_hash_word (core/hash.h):
+ * for each gripper whose vacuum is not plain, the words 1, its index, level, command and on (a plain one's command is the
+ * valve that the table says, its level is 1 and its sensor on while it holds a wafer, and 0 and off while it holds
+ * none); for each gripper with positions known, 2, its index, known, before[0], before[1] and slips; for each slot in
+ * use, 3, its index, phase, kind, target, other, value, offset, from, until, before and placed. So a run with ideal
+ * vacuum, without pads and faults, has the table's hash. */
+uint64_t wh_condition_hash(const wh_condition_t *condition, const wh_grasp_t *table);
+
+#endif

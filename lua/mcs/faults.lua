@@ -1,0 +1,44 @@
+-- The words for faults on purpose: fault { kind = , ... } and clear_fault(number).
+
+-- Kept, for a script may set globals of these names.
+local ipairs, math, pairs, table, tostring, type = ipairs, math, pairs, table, tostring, type
+
+return function(native, commands, run, names)
+  local function text_of(value)
+    if type(value) == "table" then
+      local parts = {}
+      for place, part in ipairs(value) do
+        parts[place] = tostring(part)
+      end
+      return table.concat(parts, ",")
+    end
+    return type(value) == "string" and value:find("[^%w_.-]") and names.quote(value) or tostring(value)
+  end
+
+  local function describe(description)
+    local text = { "FAULT", type(description) == "table" and tostring(description.kind) or tostring(description) }
+    for name, value in pairs(type(description) == "table" and description or {}) do
+      if name ~= "kind" then
+        text[#text + 1] = ("%s=%s"):format(tostring(name), text_of(value))
+      end
+    end
+    return table.concat(text, " ")
+  end
+
+  -- Begins with the next slice, or `after` seconds later, and lasts `lasting` seconds or until it is cleared.
+  -- Returns its number.
+  function commands.fault(description)
+    return run(describe(description), function() return native.fault(names.table("fault", description)) end)
+  end
+
+  -- It ends with the next slice.
+  function commands.clear_fault(number)
+    local whole = type(number) == "number" and math.tointeger(number)
+    run("CLEAR " .. tostring(whole or number), function()
+      if not whole then
+        native.fail("BAD_ARGUMENT", "fault: " .. names.quote(number) .. " (expected its number)")
+      end
+      native.clear_fault(whole)
+    end)
+  end
+end
