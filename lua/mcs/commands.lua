@@ -144,6 +144,6 @@ return function(native, patterns, names)
     native.stop_in(seconds)
   end
 
-  commands.run = run
+  commands.run = arm.run
   return commands
 end

@@ -16,7 +16,7 @@ static int set_up(void **state) {
     (void)state;
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t storage = {wafers, WAFERS, grippers, GRIPPERS, NULL, 0};
-    const wh_cell_t cell = {NULL, 0, wh_tolerance_paper()};
+    const wh_cell_t cell = {.tolerance = wh_tolerance_paper()};
     wafers[0].base_from_wafer = wh_test_at(700, 0, 900);
     wafers[1].base_from_wafer = wh_test_at(700, 0, 910);
     assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_OK);

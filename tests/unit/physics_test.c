@@ -24,7 +24,7 @@ static int set_up(void **state) {
     (void)state;
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t storage = place_wafers(wafers, grippers);
-    const wh_cell_t cell = {NULL, 0, wh_tolerance_paper()};
+    const wh_cell_t cell = {.tolerance = wh_tolerance_paper()};
     assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_OK);
     physics = wh_physics_default();
     memset(&command, 0, sizeof command);
