@@ -118,20 +118,32 @@
   predicate wh_lets_go{L}(wh_gripper_input_t *in, integer g, integer from, integer to) =
     from <= g < to && in[g].valve == WH_VALVE_CLOSED;
 
+  predicate wh_same_inputs{K, L}(wh_gripper_input_t *in, integer count) =
+    \forall integer g; 0 <= g < count ==> \at(in[g].valve, K) == \at(in[g].valve, L);
+
   predicate wh_valves_good{L}(wh_gripper_input_t *in, integer count) =
     \forall integer g; 0 <= g < count ==> in[g].valve == WH_VALVE_OPEN || in[g].valve == WH_VALVE_CLOSED;
 
+  predicate wh_stepping_holders{L}(wh_grasp_t *t, wh_gripper_input_t *in, integer from, integer to) =
+    \forall integer w; wh_is_wafer(t, w) && wh_holder(t, w) != WH_NONE ==>
+      wh_is_gripper(t, wh_holder(t, w)) && wh_held(t, wh_holder(t, w)) == w &&
+      !wh_lets_go(in, wh_holder(t, w), from, to);
+  predicate wh_stepping_releases{L}(wh_grasp_t *t, wh_gripper_input_t *in, integer from, integer to) =
+    \forall integer w; wh_is_wafer(t, w) && wh_released_by(t, w) != WH_NONE ==>
+      wh_is_gripper(t, wh_released_by(t, w)) && wh_held(t, wh_released_by(t, w)) == w &&
+      wh_lets_go(in, wh_released_by(t, w), from, to);
+  predicate wh_stepping_held{L}(wh_grasp_t *t, wh_gripper_input_t *in, integer from, integer to) =
+    \forall integer g; wh_is_gripper(t, g) && wh_held(t, g) != WH_NONE ==>
+      wh_is_wafer(t, wh_held(t, g)) &&
+      (wh_lets_go(in, g, from, to) ? wh_released_by(t, wh_held(t, g)) == g
+                                   : wh_holder(t, wh_held(t, g)) == g);
   predicate wh_stepping{L}(wh_grasp_t *t, wh_gripper_input_t *in, integer from, integer to) =
-    (\forall integer w; wh_is_wafer(t, w) && wh_holder(t, w) != WH_NONE ==>
-       wh_is_gripper(t, wh_holder(t, w)) && wh_held(t, wh_holder(t, w)) == w &&
-       !wh_lets_go(in, wh_holder(t, w), from, to)) &&
-    (\forall integer w; wh_is_wafer(t, w) && wh_released_by(t, w) != WH_NONE ==>
-       wh_is_gripper(t, wh_released_by(t, w)) && wh_held(t, wh_released_by(t, w)) == w &&
-       wh_lets_go(in, wh_released_by(t, w), from, to)) &&
-    (\forall integer g; wh_is_gripper(t, g) && wh_held(t, g) != WH_NONE ==>
-       wh_is_wafer(t, wh_held(t, g)) &&
-       (wh_lets_go(in, g, from, to) ? wh_released_by(t, wh_held(t, g)) == g
-                                    : wh_holder(t, wh_held(t, g)) == g));
+    wh_stepping_holders(t, in, from, to) && wh_stepping_releases(t, in, from, to) &&
+    wh_stepping_held(t, in, from, to);
+
+  // Number by number: what a struct's equality means, in words that provers need not unfold.
+  predicate wh_equal_vec3{K, L}(wh_vec3_t *p, wh_vec3_t *q) =
+    \at(p->x, K) == \at(q->x, L) && \at(p->y, K) == \at(q->y, L) && \at(p->z, K) == \at(q->z, L);
 
   predicate wh_same_pose{K, L}(wh_grasp_t *t, integer w) =
     \at(t->storage.wafers[w].base_from_wafer, K) == \at(t->storage.wafers[w].base_from_wafer, L);
@@ -144,6 +156,11 @@
       \at(t->storage.grippers[g].approach.wafer, K) == \at(t->storage.grippers[g].approach.wafer, L) &&
       \at(t->storage.grippers[g].contest.wafer, K) == \at(t->storage.grippers[g].contest.wafer, L);
 
+  predicate wh_other_watched{K, L}(wh_grasp_t *t, integer g) =
+    \forall integer i; wh_is_gripper{K}(t, i) && i != g ==>
+      \at(t->storage.grippers[i].approach.wafer, K) == \at(t->storage.grippers[i].approach.wafer, L) &&
+      \at(t->storage.grippers[i].contest.wafer, K) == \at(t->storage.grippers[i].contest.wafer, L);
+
   predicate wh_same_size{K, L}(wh_grasp_t *t) =
     \at(t->storage.wafer_count, K) == \at(t->storage.wafer_count, L) &&
     \at(t->storage.gripper_count, K) == \at(t->storage.gripper_count, L) &&
@@ -155,8 +172,14 @@
     wh_is_wafer{K}(t, w) && wh_holder{K}(t, w) == WH_NONE && wh_held{K}(t, g) == WH_NONE &&
     wh_holder{L}(t, w) == g && wh_held{L}(t, g) == w;
 
+  // Nobody lets go.
+  predicate wh_holders_kept{K, L}(wh_grasp_t *t) =
+    \forall integer w; wh_is_wafer{K}(t, w) && wh_holder{K}(t, w) != WH_NONE ==> wh_holder{K}(t, w) == wh_holder{L}(t, w);
+
   predicate wh_other_holders{K, L}(wh_grasp_t *t, integer w) =
     \forall integer i; wh_is_wafer{K}(t, i) && i != w ==> wh_holder{K}(t, i) == wh_holder{L}(t, i);
+  predicate wh_other_releases{K, L}(wh_grasp_t *t, integer w) =
+    \forall integer i; wh_is_wafer{K}(t, i) && i != w ==> wh_released_by{K}(t, i) == wh_released_by{L}(t, i);
   predicate wh_other_held{K, L}(wh_grasp_t *t, integer g) =
     \forall integer i; wh_is_gripper{K}(t, i) && i != g ==> wh_held{K}(t, i) == wh_held{L}(t, i);
   predicate wh_other_poses{K, L}(wh_grasp_t *t, integer w) =
@@ -169,33 +192,60 @@
     \forall integer w; wh_is_wafer{K}(t, w) && wh_holder{K}(t, w) == WH_NONE &&
       wh_holder{L}(t, w) == WH_NONE ==> wh_same_pose{K, L}(t, w);
 
+  // Nobody took one either.
+  predicate wh_free_stay{K, L}(wh_grasp_t *t) =
+    \forall integer w; wh_is_wafer{K}(t, w) && wh_holder{K}(t, w) == WH_NONE ==>
+      wh_holder{L}(t, w) == WH_NONE && wh_same_pose{K, L}(t, w);
+
   // Nor has a held one.
   predicate wh_held_at_rest{K, L}(wh_grasp_t *t) =
     \forall integer w; wh_is_wafer{K}(t, w) && wh_holder{K}(t, w) != WH_NONE ==> wh_same_pose{K, L}(t, w);
+
+  // Who held a wafer still holds it, in the same way.
+  predicate wh_hold_kept{K, L}(wh_grasp_t *t) =
+    \forall integer g; wh_is_gripper{K}(t, g) && wh_held{K}(t, g) != WH_NONE ==>
+      wh_held{K}(t, g) == wh_held{L}(t, g) && wh_same_grip{K, L}(t, g);
 
   // How a gripper held its wafer has not changed.
   predicate wh_grips_kept{K, L}(wh_grasp_t *t) =
     \forall integer g; wh_is_gripper{K}(t, g) && wh_held{K}(t, g) != WH_NONE ==> wh_same_grip{K, L}(t, g);
 
-  predicate wh_same_wafer{K, L}(wh_wafer_t *w) =
-    \at(w->base_from_wafer, K) == \at(w->base_from_wafer, L) && \at(w->holder, K) == \at(w->holder, L) &&
-    \at(w->released_by, K) == \at(w->released_by, L);
+  predicate wh_same_values{K, L}(wh_proximity_t *p) =
+    wh_equal_vec3{K, L}(\at(&p->dr, K), \at(&p->dr, L)) && wh_equal_vec3{K, L}(\at(&p->dr_proj_xy, K), \at(&p->dr_proj_xy, L)) &&
+    \at(p->n1_proj_n2, K) == \at(p->n1_proj_n2, L) && \at(p->dr_proj_z, K) == \at(p->dr_proj_z, L) &&
+    \at(p->dr_proj_xy_norm, K) == \at(p->dr_proj_xy_norm, L) && \at(p->margin_projz, K) == \at(p->margin_projz, L) &&
+    \at(p->margin_projxy, K) == \at(p->margin_projxy, L) && \at(p->margin_planar, K) == \at(p->margin_planar, L) &&
+    \at(p->failed, K) == \at(p->failed, L) && \at(p->ready, K) == \at(p->ready, L);
 
-  predicate wh_same_encounter{K, L}(wh_encounter_t *e) =
+  // Which wafer, whose, and since when.
+  predicate wh_same_event{K, L}(wh_encounter_t *e) =
     \at(e->wafer, K) == \at(e->wafer, L) && \at(e->holder, K) == \at(e->holder, L) &&
-    \at(e->slice, K) == \at(e->slice, L) && \at(e->measured, K) == \at(e->measured, L);
+    \at(e->slice, K) == \at(e->slice, L);
 
-  predicate wh_same_gripper{K, L}(wh_gripper_t *g) =
-    \at(g->base_from_gripper, K) == \at(g->base_from_gripper, L) &&
-    \at(g->gripper_from_wafer, K) == \at(g->gripper_from_wafer, L) &&
-    \at(g->wafer, K) == \at(g->wafer, L) && \at(g->valve, K) == \at(g->valve, L) &&
-    wh_same_encounter{K, L}(\at(&g->approach, K)) &&
-    wh_same_encounter{K, L}(\at(&g->contest, K));
+  predicate wh_same_poses{K, L}(wh_grasp_t *t) =
+    \forall integer w; wh_is_wafer{K}(t, w) ==> wh_same_pose{K, L}(t, w);
+  predicate wh_same_grips{K, L}(wh_grasp_t *t) =
+    \forall integer g; wh_is_gripper{K}(t, g) ==> wh_same_grip{K, L}(t, g);
+  predicate wh_same_stands{K, L}(wh_grasp_t *t) =
+    \forall integer g; wh_is_gripper{K}(t, g) ==>
+      \at(t->storage.grippers[g].base_from_gripper, K) == \at(t->storage.grippers[g].base_from_gripper, L);
+  predicate wh_same_valves{K, L}(wh_grasp_t *t) =
+    \forall integer g; wh_is_gripper{K}(t, g) ==>
+      \at(t->storage.grippers[g].valve, K) == \at(t->storage.grippers[g].valve, L);
+  predicate wh_same_encounters{K, L}(wh_grasp_t *t) =
+    \forall integer g; wh_is_gripper{K}(t, g) ==>
+      wh_same_event{K, L}(\at(&t->storage.grippers[g].approach, K)) &&
+      wh_same_event{K, L}(\at(&t->storage.grippers[g].contest, K));
+  predicate wh_same_measured{K, L}(wh_grasp_t *t) =
+    \forall integer g; wh_is_gripper{K}(t, g) ==>
+      wh_same_values{K, L}(\at(&t->storage.grippers[g].approach.measured, K)) &&
+      wh_same_values{K, L}(\at(&t->storage.grippers[g].contest.measured, K));
 
   // Nothing has changed in the arrays.
   predicate wh_same_arrays{K, L}(wh_grasp_t *t) =
-    (\forall integer w; wh_is_wafer{K}(t, w) ==> wh_same_wafer{K, L}(\at(t->storage.wafers, K) + w)) &&
-    (\forall integer g; wh_is_gripper{K}(t, g) ==> wh_same_gripper{K, L}(\at(t->storage.grippers, K) + g));
+    wh_same_poses{K, L}(t) && wh_same_holders{K, L}(t) && wh_same_releases{K, L}(t) && wh_same_held{K, L}(t) &&
+    wh_same_grips{K, L}(t) && wh_same_stands{K, L}(t) && wh_same_valves{K, L}(t) && wh_same_encounters{K, L}(t) &&
+    wh_same_measured{K, L}(t);
 
   // Nothing has changed but counters.
   predicate wh_unchanged{K, L}(wh_grasp_t *t) =

@@ -45,10 +45,13 @@ typedef struct {
     requires WH_NONE <= table->storage.grippers[gripper].approach.wafer < table->storage.wafer_count;
     requires WH_NONE <= table->storage.grippers[gripper].contest.wafer < table->storage.wafer_count;
     assigns table->storage.grippers[gripper].approach, table->storage.grippers[gripper].contest, table->counters,
-            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+            list->count, list->events[0 .. wh_room(list) - 1];
     ensures WH_NONE <= table->storage.grippers[gripper].approach.wafer < table->storage.wafer_count;
     ensures WH_NONE <= table->storage.grippers[gripper].contest.wafer < table->storage.wafer_count;
-    ensures wh_list_grown{Pre, Post}(list, 2) && wh_same_size{Pre, Post}(table); */
+    ensures wh_list_grown{Pre, Post}(list, 2) && wh_same_size{Pre, Post}(table);
+    ensures wh_same_held{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table);
+    ensures wh_other_watched{Pre, Post}(table, gripper); */
 void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_input_t *input,
                          wh_event_list_t *list);
 
@@ -56,7 +59,7 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
 /*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2);
     requires wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
     assigns watch->gripper->approach, watch->gripper->contest, watch->table->counters,
-            watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
+            watch->list->count, watch->list->events[0 .. wh_room(watch->list) - 1];
     ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
     ensures wh_list_grown{Pre, Post}(watch->list, 2) && wh_same_size{Pre, Post}(watch->table); */
 void wh_encounter_follow(const wh_watch_t *watch);
@@ -65,7 +68,7 @@ void wh_encounter_follow(const wh_watch_t *watch);
 /*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2);
     requires wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
     assigns watch->sweep, watch->gripper->approach, watch->gripper->contest, watch->table->counters,
-            watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
+            watch->list->count, watch->list->events[0 .. wh_room(watch->list) - 1];
     ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
     ensures wh_list_grown{Pre, Post}(watch->list, 2) && wh_same_size{Pre, Post}(watch->table); */
 void wh_encounter_follow_swept(wh_watch_t *watch);

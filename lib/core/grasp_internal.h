@@ -43,7 +43,7 @@ int32_t wh_grasp_find_ready(const wh_grasp_t *table, const wh_pose_t *base_from_
     requires wh_holder(table, wafer) == WH_NONE && wh_held(table, g) == WH_NONE;
     requires \valid_read(then) && \separated(then, table->storage.grippers + (0 .. table->storage.gripper_count - 1));
     assigns table->counters, table->storage.wafers[wafer].holder, table->storage.grippers[g].wafer,
-            table->storage.grippers[g].gripper_from_wafer, list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+            table->storage.grippers[g].gripper_from_wafer, list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_list_grown{Pre, Post}(list, 1);
     ensures wh_same_size{Pre, Post}(table);
     ensures wh_took{Pre, Post}(table, g, wafer);
@@ -61,9 +61,11 @@ void wh_grasp_take(wh_grasp_t *table, size_t g, int32_t wafer, const wh_pose_t *
     requires \valid_read(input) && wh_apart_from_arrays(input, table);
     assigns table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[g].wafer, table->storage.grippers[g].gripper_from_wafer,
-            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+            list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_list_grown{Pre, Post}(list, \result ? 1 : 0);
     ensures wh_same_size{Pre, Post}(table);
+    ensures !\result ==> wh_same_holders{Pre, Post}(table) && wh_same_held{Pre, Post}(table);
+    ensures !\result ==> wh_same_poses{Pre, Post}(table) && wh_same_grips{Pre, Post}(table);
     ensures \result ? wh_took{Pre, Post}(table, g, wh_held(table, g)) : wh_held(table, g) == WH_NONE;
     ensures wh_other_holders{Pre, Post}(table, wh_held(table, g));
     ensures wh_other_held{Pre, Post}(table, g);

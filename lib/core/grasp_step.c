@@ -2,6 +2,48 @@
 #include "core/grasp_internal.h"
 #include "core/proximity_internal.h"
 
+/*@
+  lemma wh_poses_through{K, M, L}: \forall wh_grasp_t *t, integer w;
+    wh_same_size{K, M}(t) && wh_same_poses{K, M}(t) && wh_other_poses{M, L}(t, w) ==> wh_other_poses{K, L}(t, w);
+  lemma wh_grips_through{K, M, L}: \forall wh_grasp_t *t, integer g;
+    wh_same_size{K, M}(t) && wh_same_grips{K, M}(t) && wh_other_grips{M, L}(t, g) ==> wh_other_grips{K, L}(t, g);
+  lemma wh_same_grips_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_grips{K, M}(t) && wh_same_grips{M, L}(t) ==> wh_same_grips{K, L}(t);
+  lemma wh_hold_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_hold_kept{K, M}(t) && wh_hold_kept{M, L}(t) ==> wh_hold_kept{K, L}(t);
+  lemma wh_rest_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_free_at_rest{K, M}(t) && wh_holders_kept{M, L}(t) && wh_free_at_rest{M, L}(t) ==>
+    wh_free_at_rest{K, L}(t);
+  lemma wh_rest_from{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_free_stay{K, M}(t) && wh_free_at_rest{M, L}(t) ==> wh_free_at_rest{K, L}(t);
+  lemma wh_rest_until{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_free_at_rest{K, M}(t) && wh_same_holders{M, L}(t) && wh_same_poses{M, L}(t) ==>
+    wh_free_at_rest{K, L}(t);
+  lemma wh_hold_until{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_hold_kept{K, M}(t) && wh_same_held{M, L}(t) && wh_same_grips{M, L}(t) ==>
+    wh_hold_kept{K, L}(t);
+  lemma wh_grips_until{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_hold_kept{K, M}(t) && wh_same_grips{M, L}(t) ==> wh_grips_kept{K, L}(t);
+  lemma wh_watched_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_watched{K, M}(t) && wh_same_watched{M, L}(t) ==> wh_same_watched{K, L}(t);
+  lemma wh_same_held_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_held{K, M}(t) && wh_same_held{M, L}(t) ==> wh_same_held{K, L}(t);
+  lemma wh_same_holders_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_holders{K, M}(t) && wh_same_holders{M, L}(t) ==> wh_same_holders{K, L}(t);
+  lemma wh_same_poses_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_poses{K, M}(t) && wh_same_poses{M, L}(t) ==> wh_same_poses{K, L}(t);
+  lemma wh_encounters_same{K, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, L}(t) && wh_same_watched{K, L}(t) && wh_encounters{K}(t) ==> wh_encounters{L}(t);
+  lemma wh_stepping_same{K, L}: \forall wh_grasp_t *t, wh_gripper_input_t *in, integer from, integer to;
+    wh_same_size{K, L}(t) && wh_same_inputs{K, L}(in, \at(t->storage.gripper_count, K)) && wh_same_holders{K, L}(t) &&
+    wh_same_releases{K, L}(t) && wh_same_held{K, L}(t) && wh_stepping{K}(t, in, from, to) ==> wh_stepping{L}(t, in, from, to);
+  lemma wh_stepping_took{K, L}: \forall wh_grasp_t *t, wh_gripper_input_t *in, integer g, integer from, integer to;
+    wh_is_gripper{K}(t, g) && !wh_lets_go{K}(in, g, from, to) &&
+    wh_same_size{K, L}(t) && wh_same_inputs{K, L}(in, \at(t->storage.gripper_count, K)) && wh_took{K, L}(t, g, wh_held{L}(t, g)) &&
+    wh_other_holders{K, L}(t, wh_held{L}(t, g)) && wh_same_releases{K, L}(t) && wh_other_held{K, L}(t, g) &&
+    wh_stepping{K}(t, in, from, to) ==> wh_stepping{L}(t, in, from, to);
+*/
+
 wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind) {
     static const wh_event_t blank = {
         .wafer = WH_NONE, .gripper = WH_NONE, .other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
@@ -28,17 +70,29 @@ static wh_status_t validate_input(const wh_gripper_input_t *input) {
 
 /*@ requires wh_table_memory(table) && wh_list_ready(list, 1) && wh_list_apart(list, table);
     requires status != WH_OK && gripper < table->storage.gripper_count;
-    assigns table->counters.refused, list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+    assigns table->counters.refused, list->count, list->events[0 .. wh_room(list) - 1];
     ensures \result == status;
     ensures wh_same_size{Pre, Post}(table) && wh_same_arrays{Pre, Post}(table); */
 static wh_status_t refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripper, wh_status_t status) {
     ++table->counters.refused;
+    /*@ assert wh_same_size{Pre, Here}(table) && wh_same_arrays{Pre, Here}(table); */
     if (list) {
         wh_event_t *event = wh_event_append(table, list, WH_EVENT_BAD_INPUT);
         event->slice = table->slice + 1;
         event->measured_slice = table->slice + 1;
         event->gripper = (int32_t)gripper;
         event->status = status;
+        /*@ assert wh_same_size{Pre, Here}(table); */
+        /*@ assert wh_same_poses{Pre, Here}(table); */
+        /*@ assert wh_same_holders{Pre, Here}(table); */
+        /*@ assert wh_same_releases{Pre, Here}(table); */
+        /*@ assert wh_same_held{Pre, Here}(table); */
+        /*@ assert wh_same_grips{Pre, Here}(table); */
+        /*@ assert wh_same_stands{Pre, Here}(table); */
+        /*@ assert wh_same_valves{Pre, Here}(table); */
+        /*@ assert wh_same_encounters{Pre, Here}(table); */
+        /*@ assert wh_same_measured{Pre, Here}(table); */
+        /*@ assert wh_same_arrays{Pre, Here}(table); */
     }
     /*@ assert wh_same_size{Pre, Here}(table) && wh_same_arrays{Pre, Here}(table); */
     return status;
@@ -48,7 +102,7 @@ static wh_status_t refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripp
     requires table->storage.gripper_count > 0 ==> wh_list_ready(list, 1);
     requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table) &&
              wh_inputs_apart_list(inputs, table, list);
-    assigns table->counters.refused, list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+    assigns table->counters.refused, list->count, list->events[0 .. wh_room(list) - 1];
     ensures \result == WH_OK ==> list == \null || list->count == \old(list->count);
     ensures \result == WH_OK ==> wh_valves_good(inputs, table->storage.gripper_count);
     ensures wh_same_size{Pre, Post}(table) && wh_same_arrays{Pre, Post}(table); */
@@ -81,23 +135,41 @@ void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
     requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table);
     assigns table->storage.wafers[0 .. table->storage.wafer_count - 1];
     ensures wh_stepping(table, inputs, 0, table->storage.gripper_count);
-    ensures wh_free_at_rest{Pre, Post}(table); */
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_same_held{Pre, Post}(table);
+    ensures wh_same_watched{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table);
+    ensures wh_free_stay{Pre, Post}(table); */
 static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
-    /*@ loop invariant 0 <= g <= table->storage.gripper_count && wh_stepping(table, inputs, 0, g);
-        loop invariant \forall integer w; wh_is_wafer(table, w) && wh_holder{Pre}(table, w) == WH_NONE ==>
-                         wh_holder(table, w) == WH_NONE && wh_same_pose{Pre, Here}(table, w);
+    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
+        loop invariant wh_same_held{Pre, Here}(table);
+        loop invariant wh_stepping_holders(table, inputs, 0, g);
+        loop invariant wh_stepping_releases(table, inputs, 0, g);
+        loop invariant wh_stepping_held(table, inputs, 0, g);
+        loop invariant wh_free_stay{Pre, Here}(table);
         loop assigns g, table->storage.wafers[0 .. table->storage.wafer_count - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         wh_gripper_t *gripper = &table->storage.grippers[g];
         if (gripper->wafer == WH_NONE) {
+            /*@ assert wh_stepping(table, inputs, 0, g + 1); */
             continue;
         }
         wh_wafer_t *wafer = &table->storage.wafers[gripper->wafer];
+        /*@ assert wh_is_wafer(table, gripper->wafer) && wh_holder(table, gripper->wafer) == g; */
+        /*@ assert \forall integer i; wh_is_gripper(table, i) && wh_held(table, i) == gripper->wafer ==> i == g; */
         wh_grasp_carry(wafer, &inputs[g].base_from_gripper, &gripper->gripper_from_wafer);
+        /*@ assert inputs[g].valve != WH_VALVE_CLOSED ==> wh_stepping(table, inputs, 0, g + 1); */
         if (inputs[g].valve == WH_VALVE_CLOSED) {
+            /*@ assert \separated(wafer, table->storage.grippers + (0 .. table->storage.gripper_count - 1)); */
             wafer->holder = WH_NONE;
             wafer->released_by = (int32_t)g;
+            /*@ assert wh_same_held{Pre, Here}(table); */
+            /*@ assert wh_other_holders{LoopCurrent, Here}(table, gripper->wafer); */
+            /*@ assert wh_other_releases{LoopCurrent, Here}(table, gripper->wafer); */
+            /*@ assert wh_stepping_holders(table, inputs, 0, g + 1); */
+            /*@ assert wh_stepping_releases(table, inputs, 0, g + 1); */
+            /*@ assert wh_stepping_held(table, inputs, 0, g + 1); */
         }
     }
 }
@@ -107,7 +179,7 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
     requires \valid_read(input) && wh_apart_from_arrays(input, table);
     assigns table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[g].wafer, table->storage.grippers[g].gripper_from_wafer,
-            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+            list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_list_grown{Pre, Post}(list, 1);
     ensures wh_same_size{Pre, Post}(table);
     ensures wh_held(table, g) != wh_held{Pre}(table, g) ==> wh_took{Pre, Post}(table, g, wh_held(table, g));
@@ -116,8 +188,8 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
     ensures wh_other_held{Pre, Post}(table, g);
     ensures wh_same_releases{Pre, Post}(table);
     ensures wh_same_watched{Pre, Post}(table);
-    ensures wh_free_at_rest{Pre, Post}(table);
-    ensures wh_grips_kept{Pre, Post}(table); */
+    ensures wh_other_poses{Pre, Post}(table, wh_held(table, g));
+    ensures wh_other_grips{Pre, Post}(table, g); */
 static void pick_sampled(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
     const int32_t w = wh_grasp_find_ready(table, &input->base_from_gripper, false);
@@ -128,7 +200,11 @@ static void pick_sampled(wh_grasp_t *table, size_t g, const wh_gripper_input_t *
     if (table->config.seat) {
         wh_grasp_carry(&table->storage.wafers[w], &input->base_from_gripper,
                        &table->storage.grippers[g].gripper_from_wafer);
+        /*@ assert wh_other_poses{Pre, Here}(table, w); */
+        /*@ assert wh_other_grips{Pre, Here}(table, g); */
     }
+    /*@ assert wh_other_poses{Pre, Here}(table, w); */
+    /*@ assert wh_other_grips{Pre, Here}(table, g); */
 }
 
 /* Part 4 for one gripper. */
@@ -137,33 +213,58 @@ static void pick_sampled(wh_grasp_t *table, size_t g, const wh_gripper_input_t *
     requires \valid_read(input) && wh_apart_from_arrays(input, table);
     assigns table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[g].wafer, table->storage.grippers[g].gripper_from_wafer,
-            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+            list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_list_grown{Pre, Post}(list, 1);
     ensures wh_same_size{Pre, Post}(table);
     ensures wh_held(table, g) != wh_held{Pre}(table, g) ==> wh_took{Pre, Post}(table, g, wh_held(table, g));
     ensures wh_held(table, g) == wh_held{Pre}(table, g) ==> wh_same_holders{Pre, Post}(table);
+    ensures \old(input->valve) == WH_VALVE_CLOSED ==> wh_held(table, g) == wh_held{Pre}(table, g);
     ensures wh_other_holders{Pre, Post}(table, wh_held(table, g));
     ensures wh_other_held{Pre, Post}(table, g);
     ensures wh_same_releases{Pre, Post}(table);
     ensures wh_same_watched{Pre, Post}(table);
+    ensures wh_holders_kept{Pre, Post}(table);
+    ensures wh_other_poses{Pre, Post}(table, wh_held(table, g));
+    ensures wh_other_grips{Pre, Post}(table, g);
     ensures wh_free_at_rest{Pre, Post}(table);
-    ensures wh_grips_kept{Pre, Post}(table); */
+    ensures wh_hold_kept{Pre, Post}(table); */
 static void pick(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input, wh_event_list_t *list) {
     const wh_gripper_t *gripper = &table->storage.grippers[g];
     if (input->valve == WH_VALVE_CLOSED || gripper->wafer != WH_NONE) {
+        /*@ assert wh_other_poses{Pre, Here}(table, wh_held(table, g)); */
+        /*@ assert wh_other_grips{Pre, Here}(table, g); */
+        /*@ assert wh_free_at_rest{Pre, Here}(table); */
+        /*@ assert wh_hold_kept{Pre, Here}(table); */
+        /*@ assert wh_holders_kept{Pre, Here}(table); */
         return;
     }
     const bool swept = table->config.check == WH_CHECK_SWEPT && gripper->valve == WH_VALVE_OPEN;
     if (!swept || !wh_grasp_pick_swept(table, g, input, list)) {
+        /*@ assert wh_same_holders{Pre, Here}(table) && wh_same_held{Pre, Here}(table); */
+        /*@ assert wh_same_poses{Pre, Here}(table); */
+        /*@ assert wh_same_grips{Pre, Here}(table); */
         pick_sampled(table, g, input, list);
+        /*@ assert wh_other_poses{Pre, Here}(table, wh_held(table, g)); */
+        /*@ assert wh_other_grips{Pre, Here}(table, g); */
     }
+    /*@ assert wh_held(table, g) != wh_held{Pre}(table, g) ==> wh_took{Pre, Here}(table, g, wh_held(table, g)); */
+    /*@ assert wh_held(table, g) == wh_held{Pre}(table, g) ==> wh_same_holders{Pre, Here}(table); */
+    /*@ assert wh_other_holders{Pre, Here}(table, wh_held(table, g)); */
+    /*@ assert wh_other_held{Pre, Here}(table, g); */
+    /*@ assert wh_same_releases{Pre, Here}(table); */
+    /*@ assert wh_same_watched{Pre, Here}(table); */
+    /*@ assert wh_other_poses{Pre, Here}(table, wh_held(table, g)); */
+    /*@ assert wh_other_grips{Pre, Here}(table, g); */
+    /*@ assert wh_free_at_rest{Pre, Here}(table); */
+    /*@ assert wh_hold_kept{Pre, Here}(table); */
+    /*@ assert wh_holders_kept{Pre, Here}(table); */
 }
 
 /* A wafer that was let go and that nobody took. */
 /*@ requires wh_table_memory(table) && wh_list_ready(list, 1) && wh_list_apart(list, table);
     requires wh_is_gripper(table, g) && \valid_read(input);
     requires wh_held(table, g) == WH_NONE || wh_is_wafer(table, wh_held(table, g));
-    assigns table->counters.released, list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+    assigns table->counters.released, list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_list_grown{Pre, Post}(list, 1); */
 static void report_release(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                            wh_event_list_t *list) {
@@ -185,14 +286,16 @@ static void report_release(wh_grasp_t *table, size_t g, const wh_gripper_input_t
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(input);
     requires wh_held(table, g) == WH_NONE || wh_is_wafer(table, wh_held(table, g));
     requires wh_apart_from_arrays(input, table);
-    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1].released_by, table->storage.grippers[g].wafer,
+    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1], table->storage.grippers[g].wafer,
             table->storage.grippers[g].base_from_gripper, table->storage.grippers[g].valve;
     ensures wh_held(table, g) == (input->valve == WH_VALVE_CLOSED ? WH_NONE : wh_held{Pre}(table, g));
     ensures \forall integer w; wh_is_wafer(table, w) ==> wh_released_by(table, w) ==
               (input->valve == WH_VALVE_CLOSED && w == wh_held{Pre}(table, g) ? WH_NONE : wh_released_by{Pre}(table, w));
     ensures wh_other_held{Pre, Post}(table, g);
     ensures wh_same_watched{Pre, Post}(table);
-    ensures wh_same_holders{Pre, Post}(table); */
+    ensures wh_same_holders{Pre, Post}(table);
+    ensures wh_same_poses{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table); */
 static void remember(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
     wh_gripper_t *gripper = &table->storage.grippers[g];
     if (input->valve == WH_VALVE_CLOSED && gripper->wafer != WH_NONE) {
@@ -226,13 +329,13 @@ static wh_status_t validate_call(const wh_grasp_t *table, const wh_gripper_input
     requires wh_stepping(table, inputs, 0, table->storage.gripper_count);
     assigns table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[0 .. table->storage.gripper_count - 1],
-            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+            list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_stepping(table, inputs, 0, table->storage.gripper_count);
     ensures wh_list_grown{Pre, Post}(list, table->storage.gripper_count);
     ensures wh_same_size{Pre, Post}(table);
     ensures wh_same_watched{Pre, Post}(table);
     ensures wh_free_at_rest{Pre, Post}(table);
-    ensures wh_grips_kept{Pre, Post}(table); */
+    ensures wh_hold_kept{Pre, Post}(table); */
 static void pick_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     /*@ loop invariant 0 <= g <= table->storage.gripper_count;
         loop invariant wh_same_size{Pre, Here}(table);
@@ -240,14 +343,19 @@ static void pick_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_eve
         loop invariant wh_list_grown{Pre, Here}(list, g);
         loop invariant wh_same_watched{Pre, Here}(table);
         loop invariant wh_free_at_rest{Pre, Here}(table);
-        loop invariant \forall integer i; wh_is_gripper(table, i) && wh_held{Pre}(table, i) != WH_NONE ==>
-                         wh_held(table, i) == wh_held{Pre}(table, i) && wh_same_grip{Pre, Here}(table, i);
-        loop assigns g, table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
-            table->storage.grippers[0 .. table->storage.gripper_count - 1],
-            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+        loop invariant wh_hold_kept{Pre, Here}(table);
+        loop assigns g, table->counters, table->storage.wafers[0 .. \at(table->storage.wafer_count, Pre) - 1],
+            table->storage.grippers[0 .. \at(table->storage.gripper_count, Pre) - 1],
+            list->count, list->events[0 .. wh_room{Pre}(list) - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        /*@ assert wh_inputs_apart(inputs, table); */
+        /*@ assert wh_inputs_apart_list(inputs, table, list); */
         pick(table, g, &inputs[g], list);
+        /*@ assert wh_same_size{LoopCurrent, Here}(table); */
+        /*@ assert wh_same_inputs{LoopCurrent, Here}(inputs, table->storage.gripper_count); */
+        /*@ assert wh_held(table, g) == wh_held{LoopCurrent}(table, g) ==> wh_same_held{LoopCurrent, Here}(table); */
+        /*@ assert wh_stepping(table, inputs, 0, table->storage.gripper_count); */
     }
 }
 
@@ -256,13 +364,21 @@ static void pick_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_eve
              wh_inputs_apart_list(inputs, table, list);
     requires wh_stepping(table, inputs, 0, table->storage.gripper_count);
     assigns table->counters.released,
-            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
-    ensures wh_list_grown{Pre, Post}(list, table->storage.gripper_count); */
+            list->count, list->events[0 .. wh_room(list) - 1];
+    ensures wh_list_grown{Pre, Post}(list, table->storage.gripper_count);
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_same_inputs{Pre, Post}(inputs, table->storage.gripper_count);
+    ensures wh_same_holders{Pre, Post}(table);
+    ensures wh_same_releases{Pre, Post}(table);
+    ensures wh_same_held{Pre, Post}(table);
+    ensures wh_same_watched{Pre, Post}(table);
+    ensures wh_same_poses{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table); */
 static void report_releases(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     /*@ loop invariant 0 <= g <= table->storage.gripper_count;
         loop invariant wh_list_grown{Pre, Here}(list, g);
         loop assigns g, table->counters.released,
-            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+            list->count, list->events[0 .. wh_room{Pre}(list) - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         report_release(table, g, &inputs[g], list);
@@ -274,24 +390,32 @@ static void report_releases(wh_grasp_t *table, const wh_gripper_input_t *inputs,
              wh_inputs_apart_list(inputs, table, list);
     requires wh_encounters(table);
     assigns table->counters, table->storage.grippers[0 .. table->storage.gripper_count - 1],
-            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+            list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_same_size{Pre, Post}(table);
     ensures wh_same_held{Pre, Post}(table);
     ensures wh_list_grown{Pre, Post}(list, 2 * table->storage.gripper_count);
     ensures wh_encounters(table);
-    ensures wh_other_grips{Pre, Post}(table, WH_NONE); */
+    ensures wh_same_inputs{Pre, Post}(inputs, table->storage.gripper_count);
+    ensures wh_same_holders{Pre, Post}(table);
+    ensures wh_same_releases{Pre, Post}(table);
+    ensures wh_same_poses{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table); */
 static void watch_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     /*@ loop invariant 0 <= g <= table->storage.gripper_count;
         loop invariant wh_same_size{Pre, Here}(table);
         loop invariant wh_same_held{Pre, Here}(table);
         loop invariant wh_list_grown{Pre, Here}(list, 2 * g);
         loop invariant wh_encounters(table);
-        loop invariant wh_other_grips{Pre, Here}(table, WH_NONE);
-        loop assigns g, table->counters, table->storage.grippers[0 .. table->storage.gripper_count - 1],
-            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+        loop invariant wh_same_grips{Pre, Here}(table);
+        loop assigns g, table->counters, table->storage.grippers[0 .. \at(table->storage.gripper_count, Pre) - 1],
+            list->count, list->events[0 .. wh_room{Pre}(list) - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         wh_encounter_update(table, g, &inputs[g], list);
+        /*@ assert wh_same_size{LoopCurrent, Here}(table); */
+        /*@ assert wh_same_held{LoopCurrent, Here}(table); */
+        /*@ assert wh_same_grips{LoopCurrent, Here}(table); */
+        /*@ assert wh_encounters(table); */
     }
 }
 
@@ -299,20 +423,33 @@ static void watch_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_ev
     requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table);
     requires wh_stepping(table, inputs, 0, table->storage.gripper_count);
     requires wh_encounters(table);
-    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1].released_by, table->storage.grippers[0 .. table->storage.gripper_count - 1];
+    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1],
+            table->storage.grippers[0 .. table->storage.gripper_count - 1];
     ensures wh_same_size{Pre, Post}(table);
     ensures wh_consistent(table);
-    ensures wh_other_grips{Pre, Post}(table, WH_NONE); */
+    ensures wh_same_holders{Pre, Post}(table);
+    ensures wh_same_poses{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table); */
 static void remember_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     /*@ loop invariant 0 <= g <= table->storage.gripper_count;
         loop invariant wh_same_size{Pre, Here}(table);
         loop invariant wh_encounters(table);
         loop invariant wh_stepping(table, inputs, g, table->storage.gripper_count);
-        loop invariant wh_other_grips{Pre, Here}(table, WH_NONE);
-        loop assigns g, table->storage.wafers[0 .. table->storage.wafer_count - 1].released_by, table->storage.grippers[0 .. table->storage.gripper_count - 1];
+        loop invariant wh_same_holders{Pre, Here}(table);
+        loop invariant wh_same_poses{Pre, Here}(table);
+        loop invariant wh_same_grips{Pre, Here}(table);
+        loop assigns g, table->storage.wafers[0 .. \at(table->storage.wafer_count, Pre) - 1],
+                     table->storage.grippers[0 .. \at(table->storage.gripper_count, Pre) - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        /*@ assert wh_inputs_apart(inputs, table); */
         remember(table, g, &inputs[g]);
+        /*@ assert wh_same_size{LoopCurrent, Here}(table); */
+        /*@ assert wh_same_inputs{LoopCurrent, Here}(inputs, table->storage.gripper_count); */
+        /*@ assert wh_encounters(table); */
+        /*@ assert wh_stepping_holders(table, inputs, g + 1, table->storage.gripper_count); */
+        /*@ assert wh_stepping_releases(table, inputs, g + 1, table->storage.gripper_count); */
+        /*@ assert wh_stepping_held(table, inputs, g + 1, table->storage.gripper_count); */
     }
 }
 
@@ -328,7 +465,7 @@ static void count_refusal(wh_grasp_t *table) {
              wh_inputs_apart_list(inputs, table, list);
     assigns table->slice, table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[0 .. table->storage.gripper_count - 1],
-            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+            list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_consistent(table);
     ensures wh_free_at_rest{Pre, Post}(table);
     ensures wh_grips_kept{Pre, Post}(table); */
@@ -339,20 +476,38 @@ static void advance(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_even
     /*@ assert wh_none_released(table); */
     /*@ assert wh_encounters(table); */
     carry_and_release(table, inputs);
+    /*@ assert wh_same_size{Pre, Here}(table); */
     /*@ assert wh_encounters(table); */
+    /*@ assert wh_free_stay{Pre, Here}(table); */
+    /*@ assert wh_hold_kept{Pre, Here}(table); */
     pick_all(table, inputs, list);
     /*@ assert wh_same_size{Pre, Here}(table); */
     /*@ assert wh_encounters(table); */
     /*@ assert wh_list_grown{Pre, Here}(list, table->storage.gripper_count); */
+    /*@ assert wh_free_at_rest{Pre, Here}(table); */
+    /*@ assert wh_hold_kept{Pre, Here}(table); */
+    /*@ assert wh_room(list) == wh_room{Pre}(list); */
     report_releases(table, inputs, list);
     /*@ assert wh_same_size{Pre, Here}(table); */
     /*@ assert wh_stepping(table, inputs, 0, table->storage.gripper_count); */
     /*@ assert wh_encounters(table); */
     /*@ assert wh_list_grown{Pre, Here}(list, 2 * table->storage.gripper_count); */
+    /*@ assert wh_free_at_rest{Pre, Here}(table); */
+    /*@ assert wh_hold_kept{Pre, Here}(table); */
+    /*@ assert wh_room(list) == wh_room{Pre}(list); */
+    /*@ assert wh_table_memory(table) && wh_list_ready(list, 2 * table->storage.gripper_count); */
+    /*@ assert wh_list_apart(list, table); */
+    /*@ assert wh_inputs_apart(inputs, table); */
+    /*@ assert wh_inputs_apart_list(inputs, table, list); */
     watch_all(table, inputs, list);
     /*@ assert wh_same_size{Pre, Here}(table); */
     /*@ assert wh_stepping(table, inputs, 0, table->storage.gripper_count); */
+    /*@ assert wh_free_at_rest{Pre, Here}(table); */
+    /*@ assert wh_hold_kept{Pre, Here}(table); */
+    /*@ assert wh_inputs_apart(inputs, table); */
     remember_all(table, inputs);
+    /*@ assert wh_free_at_rest{Pre, Here}(table); */
+    /*@ assert wh_grips_kept{Pre, Here}(table); */
 }
 
 wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
