@@ -18,3 +18,14 @@ const char *wh_record_station_name(const wh_record_t *record, int32_t station) {
     const wh_layout_t *layout = record->layout;
     return layout && is_index(station, layout->station_count) ? layout->stations[station].name : NULL;
 }
+
+const char *wh_record_rank_text(wh_rank_t rank) {
+    static const char *const texts[] = {
+        [WH_RANK_NONE] = NULL,
+        [WH_RANK_PREALIGNER] = "puts onto prealigners",
+        [WH_RANK_SINGLE] = "puts into stations with one slot",
+        [WH_RANK_SEVERAL] = "puts into stations with several slots",
+        [WH_RANK_FOUP] = "puts into FOUPs",
+    };
+    return texts[rank];
+}

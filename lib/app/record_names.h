@@ -3,10 +3,13 @@
 #ifndef WH_APP_RECORD_NAMES_H
 #define WH_APP_RECORD_NAMES_H
 
-#include "script/record.h"
+#include "script/figures.h"
 
 const char *wh_record_wafer_name(const wh_record_t *record, int32_t wafer);
 const char *wh_record_gripper_name(const wh_record_t *record, int32_t gripper);
 const char *wh_record_station_name(const wh_record_t *record, int32_t station);
+
+/* Which puts count as wafers, in words; null when there are none. */
+const char *wh_record_rank_text(wh_rank_t rank);
 
 #endif

@@ -36,6 +36,11 @@ static int print_heading(const wh_report_t *report) {
 }
 
 int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t *style) {
+    return wh_record_print_table_with(record, out, style, 0);
+}
+
+int wh_record_print_table_with(const wh_record_t *record, FILE *out, const wh_style_t *style,
+                               unsigned sections) {
     const wh_report_t report = {record, style, out};
     int status = print_heading(&report);
     status |= wh_report_commands(&report);
@@ -44,6 +49,8 @@ int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t
     status |= wh_report_complaints(&report);
     status |= wh_report_clearances(&report);
     status |= wh_report_wafers(&report);
+    status |= sections & WH_TABLE_GANTT ? wh_report_gantt(&report) | wh_report_times(&report) : 0;
+    status |= sections & WH_TABLE_MARGINS ? wh_report_margins(&report) : 0;
     status |= wh_report_expectations(&report);
     status |= wh_report_summary(&report);
     return status != 0 || fflush(out) != 0 || ferror(out) ? -1 : 0;

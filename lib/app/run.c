@@ -12,10 +12,23 @@
 #include "app/segments.h"
 #include "app/style.h"
 
-enum { OPTION_JSON = 1000, OPTION_SEGMENTS, OPTION_SET, OPTION_TRUST, OPTION_BUDGET, OPTION_MEMORY };
+enum {
+    OPTION_JSON = 1000,
+    OPTION_SEGMENTS,
+    OPTION_SET,
+    OPTION_TRUST,
+    OPTION_BUDGET,
+    OPTION_MEMORY,
+    OPTION_GANTT,
+    OPTION_MARGINS
+};
 
 static const struct argp_option options[] = {
     {"json", OPTION_JSON, NULL, 0, "Print the result as one JSON object", 0},
+    {"gantt", OPTION_GANTT, NULL, 0, "Also print who was busy when, and what each command's time went into",
+     0},
+    {"margins", OPTION_MARGINS, NULL, 0,
+     "Also print how near the axes come to the ends of their travel at each station", 0},
     {"segments", OPTION_SEGMENTS, "FILE", 0,
      "Write the motion that was played as C source for a firmware test", 0},
     {"set", OPTION_SET, "NAME=VALUE", 0, "Hand the script a parameter: params.NAME", 0},
@@ -42,6 +55,12 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     switch (key) {
     case OPTION_JSON:
         arguments->json = true;
+        return 0;
+    case OPTION_GANTT:
+        arguments->sections |= WH_TABLE_GANTT;
+        return 0;
+    case OPTION_MARGINS:
+        arguments->sections |= WH_TABLE_MARGINS;
         return 0;
     case OPTION_SEGMENTS:
         arguments->segments_path = argument;
@@ -74,7 +93,7 @@ static int print_result(const wh_run_arguments_t *arguments, const wh_run_t *run
         return wh_record_print_json(&run->record, stdout);
     }
     const wh_style_t style = wh_style_of(stdout);
-    return wh_record_print_table(&run->record, stdout, &style);
+    return wh_record_print_table_with(&run->record, stdout, &style, arguments->sections);
 }
 
 static int report(const wh_run_arguments_t *arguments, const wh_run_t *run, wh_run_outcome_t outcome) {

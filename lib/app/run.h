@@ -12,6 +12,7 @@ typedef struct {
     const char **parameters;
     const char *segments_path;
     bool json;
+    unsigned sections; /* WH_TABLE_* */
 } wh_run_arguments_t;
 
 /* The options and the script, as a child of a subcommand's parser; its input is a wh_run_arguments_t that

@@ -20,7 +20,13 @@ int wh_report_complaints(const wh_report_t *report);
 int wh_report_clearances(const wh_report_t *report);
 int wh_report_wafers(const wh_report_t *report);
 int wh_report_expectations(const wh_report_t *report);
+int wh_report_gantt(const wh_report_t *report);
+int wh_report_times(const wh_report_t *report);
+int wh_report_margins(const wh_report_t *report);
 int wh_report_summary(const wh_report_t *report);
+
+/* The summary's line of wafers per hour, when there are any. */
+void wh_report_throughput(const wh_report_t *report);
 
 /* A part's title, after a blank line. */
 void wh_report_title(const wh_report_t *report, const char *title);

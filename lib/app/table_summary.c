@@ -82,7 +82,9 @@ static void print_times(const wh_report_t *report) {
         }
         fputs(" times faster than real time", report->out);
     }
-    fprintf(report->out, "\nhash %016" PRIx64 "\n", record->hash);
+    fputc('\n', report->out);
+    wh_report_throughput(report);
+    fprintf(report->out, "hash %016" PRIx64 "\n", record->hash);
 }
 
 /* A reason for the verdict; true when there is one. */

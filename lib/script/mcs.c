@@ -111,9 +111,10 @@ static char lines_key;
 /* Runs protected: pushes the native table and hands it to lua/mcs/init.lua, which sets the globals. */
 static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
-    const luaL_Reg *const groups[] = {module_functions,      wh_mcs_cell_functions,  wh_mcs_plan_functions,
-                                      wh_mcs_play_functions, wh_mcs_query_functions, wh_mcs_record_functions,
-                                      wh_mcs_line_functions, wh_mcs_scan_functions,  wh_mcs_fault_functions};
+    const luaL_Reg *const groups[] = {module_functions,       wh_mcs_cell_functions,  wh_mcs_plan_functions,
+                                      wh_mcs_play_functions,  wh_mcs_query_functions, wh_mcs_record_functions,
+                                      wh_mcs_line_functions,  wh_mcs_scan_functions,  wh_mcs_fault_functions,
+                                      wh_mcs_figure_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -183,6 +184,7 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
         return;
     }
     record->slices = mcs->track.slice;
+    wh_activity_end(&record->activity, record->slices);
     record->simulated_s = wh_mcs_now(mcs);
     record->hash = mcs->link->hash(mcs->link);
     record->missed = mcs->link->missed(mcs->link);

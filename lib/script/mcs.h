@@ -56,6 +56,10 @@ struct wh_mcs {
     wh_fault_t faults[WH_FAULTS]; /* by slot, as the simulator has them or is about to */
     size_t fault_count;
     bool keep_segments; /* collect what is played, for --segments */
+    /* Of the running segment. */
+    wh_task_t task;
+    /* Where the rehearsal goes in; slot 0: nobody wants to know. */
+    int32_t reach_station, reach_slot;
     wh_segment_t *segments;
     size_t segment_count, segment_capacity;
     wh_mcs_partners_t partners;

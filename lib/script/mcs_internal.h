@@ -28,6 +28,14 @@ int32_t wh_mcs_index(lua_State *L, int argument, size_t count);
 
 /* The layout's faults, once it is read. */
 void wh_mcs_start_faults(wh_mcs_t *mcs);
+/* What the segment table at stack index 1, read as `segment`, asks of the machine. */
+wh_task_t wh_mcs_task(lua_State *L, const wh_mcs_t *mcs, const wh_segment_t *segment);
+
+/* Counts the slice that was just exchanged; the wafers that the running command, which succeeded, has put; and, where
+ * a rehearsed segment ends, how near the axes came to their ends. */
+void wh_mcs_count_slice(wh_mcs_t *mcs);
+void wh_mcs_count_puts(wh_mcs_t *mcs);
+void wh_mcs_look_at_reach(wh_mcs_t *mcs);
 
 /* Functions of the native table, by subject. */
 extern const luaL_Reg wh_mcs_cell_functions[];
@@ -38,5 +46,6 @@ extern const luaL_Reg wh_mcs_record_functions[];
 extern const luaL_Reg wh_mcs_line_functions[];
 extern const luaL_Reg wh_mcs_scan_functions[];
 extern const luaL_Reg wh_mcs_fault_functions[];
+extern const luaL_Reg wh_mcs_figure_functions[];
 
 #endif

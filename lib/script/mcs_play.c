@@ -58,6 +58,7 @@ static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
         if (state == WH_TRACK_MOVING) {
             *status = exchange(mcs);
             mcs->was_off |= ~mcs->state.sensors;
+            wh_mcs_count_slice(mcs);
         }
         if (wh_sandbox_stopping(mcs->sandbox) || stop_has_come(mcs)) {
             break;
@@ -224,6 +225,7 @@ static int play(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_segment_t segment = read_segment(L, mcs);
     const uint32_t watched = watch(mcs, &segment);
+    mcs->task = wh_mcs_task(L, mcs, &segment);
     const wh_status_t status = wh_track_begin(&mcs->track, &segment);
     if (status != WH_OK) {
         wh_mcs_raise(L, mcs, status, NULL);
@@ -231,6 +233,7 @@ static int play(lua_State *L) {
     if (mcs->rehearsing) {
         look_ahead(L, mcs, &segment);
         wh_track_skip(&mcs->track);
+        wh_mcs_look_at_reach(mcs);
         lua_pushboolean(L, 1);
         return 1;
     }

@@ -45,6 +45,9 @@ static int finish_command(lua_State *L) {
     luaL_argcheck(L, mcs->running != WH_NONE, 1, "no command is running");
     wh_command_record_t *command = &mcs->record->commands[mcs->running];
     command->end_s = wh_mcs_now(mcs);
+    if (lua_isnoneornil(L, 1)) {
+        wh_mcs_count_puts(mcs);
+    }
     mcs->running = WH_NONE; /* before anything that may raise */
     command->error = (wh_status_t)luaL_optinteger(L, 1, WH_OK);
     if (command->error != WH_OK) {

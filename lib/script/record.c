@@ -34,6 +34,7 @@ wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const 
     command->message = NULL;
     command->begin_s = begin_s;
     command->end_s = begin_s;
+    memset(command->shares, 0, sizeof command->shares);
     return command;
 }
 
@@ -55,6 +56,21 @@ void wh_record_add_expectation(wh_record_t *record, int line, const char *text, 
     added->ok = ok;
 }
 
+void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put) {
+    record->puts =
+        wh_record_grow(record->puts, record->put_count, &record->put_capacity, sizeof *record->puts);
+    record->puts[record->put_count++] = *put;
+}
+
+void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin) {
+    record->cycles =
+        wh_record_grow(record->cycles, record->cycle_count, &record->cycle_capacity, sizeof *record->cycles);
+    wh_cycle_record_t *added = &record->cycles[record->cycle_count++];
+    added->line = line;
+    added->name = wh_record_text(name);
+    added->begin = begin;
+}
+
 void wh_record_forget(wh_record_t *record) {
     for (size_t i = 0; i < record->command_count; ++i) {
         free(record->commands[i].text);
@@ -63,7 +79,12 @@ void wh_record_forget(wh_record_t *record) {
     for (size_t i = 0; i < record->expectation_count; ++i) {
         free(record->expectations[i].text);
     }
+    for (size_t i = 0; i < record->cycle_count; ++i) {
+        free(record->cycles[i].name);
+    }
     record->command_count = record->event_count = record->expectation_count = 0;
+    record->put_count = record->cycle_count = 0;
+    wh_activity_forget(&record->activity);
 }
 
 void wh_record_free(wh_record_t *record) {
@@ -71,7 +92,11 @@ void wh_record_free(wh_record_t *record) {
     free(record->commands);
     free(record->events);
     free(record->expectations);
+    free(record->puts);
+    free(record->cycles);
+    free(record->reach);
     free(record->wafers);
+    wh_activity_free(&record->activity);
     free(record->script);
     free(record->failure);
     memset(record, 0, sizeof *record);

@@ -11,6 +11,7 @@ return function(native)
   local rehearse, run = commands.rehearse, commands.run
   commands.rehearse, commands.run = nil, nil
   native.module("mcs/faults.lua")(native, commands, run, names)
+  local figures = native.module("mcs/cycle.lua")(native, names)
 
   -- cell "LAYOUT.lua", relative to the script: every slot's ends must be in reach.
   function cell(path)
@@ -20,6 +21,7 @@ return function(native)
     local layout_path = native.cell(path)
     for name, station in pairs(native.layout().stations) do
       for _, slot in ipairs(station.taught and { 1, station.slots } or {}) do
+        native.reach(station.index, slot)
         local problem = rehearse(name, slot)
         if problem then
           local reason = type(problem) == "table" and problem.text or tostring(problem)
@@ -27,10 +29,11 @@ return function(native)
         end
       end
     end
+    native.reach()
     native.connect()
   end
 
-  for _, group in ipairs({ commands, questions }) do
+  for _, group in ipairs({ commands, questions, figures }) do
     for word, action in pairs(group) do
       _G[word] = action
     end

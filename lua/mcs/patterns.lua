@@ -5,7 +5,7 @@
 --   line   = { dx, dy, dz }                       straight, at constant heading, mm in base; speed = mm/s and
 --                                                 acceleration = mm/s^2 limit it
 --   valves = { [gripper] = 0 open or 1 closed }   lasts one slice
---   dwell  = seconds
+--   dwell  = seconds, vacuum = true               `vacuum`: the time counts as waiting for vacuum
 --   sensor = gripper, timeout = seconds           answered with true or false
 -- of which `enters = job` begins the way into a station and `leaves = true` ends the way out. It returns what became of
 -- the wafer, a word, as the sensors tell.
@@ -55,7 +55,7 @@ end
 
 local function holds(job, gripper)
   if job.vacuum_delay > 0 then
-    yield { dwell = job.vacuum_delay }
+    yield { dwell = job.vacuum_delay, vacuum = true }
   end
   return not job.asks or yield { sensor = gripper, timeout = job.timeout }
 end

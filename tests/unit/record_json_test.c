@@ -72,9 +72,10 @@ static void assert_real(json_t *object, const char *key, double value) {
 }
 
 static void test_head(void **state) {
-    static const char *const keys[] = {"format", "ok",          "script",       "layout", "slices",
-                                       "missed", "simulated_s", "wall_s",       "hash",   "commands",
-                                       "wafers", "events",      "expectations", NULL};
+    static const char *const keys[] = {"format", "ok",          "script", "layout", "slices",
+                                       "missed", "simulated_s", "wall_s", "hash",   "throughput",
+                                       "split",  "commands",    "wafers", "events", "expectations",
+                                       "cycles", "gantt",       "reach",  NULL};
     static fixture_t f;
     (void)state;
     fixture_transfer(&f);
@@ -107,8 +108,9 @@ static void test_empty(void **state) {
 }
 
 static void test_failure_and_commands(void **state) {
-    static const char *const keys[] = {"line", "text", "error", "begin_s", "end_s", NULL};
-    static const char *const keys_failed[] = {"line", "text", "error", "begin_s", "end_s", "message", NULL};
+    static const char *const keys[] = {"line", "text", "error", "begin_s", "end_s", "split", NULL};
+    static const char *const keys_failed[] = {"line",  "text",  "error",   "begin_s",
+                                              "end_s", "split", "message", NULL};
     static fixture_t f;
     (void)state;
     fixture_failed(&f);
