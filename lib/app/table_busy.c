@@ -44,6 +44,9 @@ static int print_scale(wh_gantt_t *gantt) {
 /* ------------------------------------------------------------------------------------------------- commands */
 
 static int64_t slice_at(const wh_record_t *record, double seconds) {
+    if (!(seconds > 0 && seconds < record->simulated_s)) {
+        return seconds > 0 ? record->slices : 0;
+    }
     return (int64_t)(seconds * 1e6 / (double)record->layout->slice_us + 0.5);
 }
 
