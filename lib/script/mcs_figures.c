@@ -89,7 +89,7 @@ static int begin_cycle(lua_State *L) {
     size_t length = 0;
     const char *name = luaL_checklstring(L, 1, &length);
     if (mcs->running != WH_NONE) {
-        wh_mcs_raise(L, wh_mcs_of(L), WH_STATUS_BAD_ARGUMENT, "a cycle that begins within a command");
+        wh_mcs_raise(L, wh_mcs_of(L), WH_STATUS_BUSY, "a cycle within a command");
     }
     wh_sandbox_charge(L, STEPS_PER_CYCLE + STEPS_PER_BYTE * (uint64_t)length);
     wh_record_add_cycle(mcs->record, wh_sandbox_line(L, mcs->script), name, mcs->track.slice);

@@ -288,6 +288,43 @@ static void test_reach(void **state) {
                  true, 1);
 }
 
+static void test_refused_marks(void **state) {
+    (void)state;
+    const wh_record_t *record = play("tests/data/figures_errors.lua", WH_RUN_MET);
+    assert_int_equal(record->expectation_count, 3);
+    /* The level's name is asked for before the command begins, too. */
+    assert_int_equal(record->cycle_count, 1);
+}
+
+/* What a session forgets, and what goes on meanwhile. */
+static void test_forgetting(void **state) {
+    (void)state;
+    static wh_record_t record;
+    static const wh_put_record_t put = {0, 1, 1, 5};
+    static wh_gripper_t gripper = {.wafer = 7};
+    static wh_machine_t machine = {.axis_count = 4, .gripper_count = 1};
+    static wh_track_t track;
+    const wh_state_t answer = {.grippers = &gripper, .gripper_count = 1};
+    const wh_task_t moving = {WH_SHARE_WAITING, true, true, 1};
+    const wh_task_t standing = {WH_SHARE_WAITING, false, true, 0};
+    machine.mounts[0].axis = WH_NONE;
+    track.machine = &machine;
+    track.slice = 1;
+    assert_int_equal(wh_activity_count(&record.activity, &moving, &track, &answer), WH_SHARE_LOADED);
+    track.slice = 2;
+    assert_int_equal(wh_activity_count(&record.activity, &standing, &track, &answer), WH_SHARE_WAITING);
+    wh_record_add_put(&record, &put);
+    wh_record_add_cycle(&record, 1, "name", 0);
+    assert_int_equal(record.activity.interval_count, 1);
+    wh_record_forget(&record);
+    assert_int_equal(record.put_count + record.cycle_count + record.activity.interval_count, 0);
+    assert_shares(record.activity.shares, 1, 0, 0, 0, 1);
+    wh_activity_end(&record.activity, 2);
+    assert_interval(interval(&record, WH_BUSY_ROBOT, WH_NONE, 0), 1 + WH_SHARE_WAITING, 1, 2);
+    assert_interval(interval(&record, WH_BUSY_WAFER, 0, 0), 1 + 7, 0, 2);
+    wh_record_free(&record);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_record_of_nothing),
@@ -302,6 +339,8 @@ int main(void) {
         cmocka_unit_test_teardown(test_intervals, close_run),
         cmocka_unit_test_teardown(test_prealigner_and_drop, close_run),
         cmocka_unit_test_teardown(test_reach, close_run),
+        cmocka_unit_test_teardown(test_refused_marks, close_run),
+        cmocka_unit_test(test_forgetting),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
