@@ -170,8 +170,9 @@ static void put_particulars(wh_json_writer_t *writer, json_t *object, const wh_e
         break;
     case WH_EVENT_FAULT_ARMED:
     case WH_EVENT_FAULT_CLEARED:
-        put(writer, object, "fault", json_integer(event->parts[0] + 1));
-        put(writer, object, "fault_kind", json_string(wh_fault_name((wh_fault_kind_t)event->parts[1])));
+        wh_json_put(writer, object, "fault", json_integer(event->parts[0] + 1));
+        wh_json_put(writer, object, "fault_kind",
+                    json_string(wh_fault_name((wh_fault_kind_t)event->parts[1])));
         break;
     default:
         break;
