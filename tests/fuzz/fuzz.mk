@@ -17,7 +17,8 @@ $(B)/tests/fuzz/message_fuzz: $(B)/obj/tests/fuzz/fake_node.o $(B)/obj/tests/fuz
 $(B)/tests/fuzz/argv_fuzz: LINK += $(foreach name,argp_parse argp_error fopen wh_run_and_report wh_mcs_link_open wh_open_node \
     wh_layout_load wh_sandbox_new wh_sandbox_free wh_sandbox_set_parameter,-Wl,--wrap=$(name))
 
-$(FUZZERS:%=$(B)/%): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/fuzz_parts.a $(B)/libwaferhand.a $(B)/libwaferhand_lcm.a
+$(FUZZERS:%=$(B)/%): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/fuzz_parts.a $(B)/libwaferhand_collision.a \
+    $(B)/libwaferhand.a $(B)/libwaferhand_lcm.a
 	@mkdir -p $(@D)
 	@echo "  LD   $@"
-	$(LINK) -fsanitize=fuzzer -o $@ $(filter %.o,$^) $(B)/fuzz_parts.a $(B)/libwaferhand.a $(PROGRAM_LIBS)
+	$(LINK) -fsanitize=fuzzer -o $@ $(filter %.o,$^) $(B)/fuzz_parts.a $(COLLISION_LIBS) $(B)/libwaferhand.a $(PROGRAM_LIBS)
