@@ -5,7 +5,7 @@
 
 #include "support.h"
 
-enum { ROOM = 1 << 16 };
+enum { ROOM = 1 << 17 };
 
 static char bytes[ROOM];
 static size_t length;
