@@ -44,42 +44,48 @@ static inline wh_vec3_t wh_test_direction(void) {
     return wh_mat3_column(&R, wh_test_below(3));
 }
 
-static inline double wh_test_sign(double a) {
-    return a < 0 ? -1 : 1;
+/* Half an extent with the sign of d; anywhere between the ends where d is as good as zero. */
+static inline double wh_test_end(double half, double d, double flat) {
+    if (fabs(d) < flat) {
+        return wh_test_uniform(-half, half);
+    }
+    return d < 0 ? -half : half;
 }
 
-/* The point of a shape farthest along `direction`, both in the shape's frame; where many are, one drawn at random: within
- * `flat` of the right angle a face or an edge counts as lying across. */
-static inline wh_vec3_t wh_test_farthest(const wh_convex_t *shape, const wh_vec3_t *direction, double flat) {
-    const double d[3] = {direction->x, direction->y, direction->z};
-    double half[3] = {shape->half.x, shape->half.y, shape->half.z};
-    double p[3] = {0, 0, 0};
-    const double across = hypot(d[0], d[1]);
-    if (shape->kind == WH_CONVEX_MESH) {
-        size_t best = 0;
-        double most = -HUGE_VAL;
-        for (size_t i = 0; i < shape->point_count; ++i) {
-            const wh_vec3_t *q = &shape->points[i];
-            const double height = d[0] * q->x + d[1] * q->y + d[2] * q->z;
-            best = height > most ? i : best;
-            most = fmax(height, most);
-        }
-        return shape->points[best];
+static inline wh_vec3_t wh_test_farthest_point(const wh_convex_t *mesh, const wh_vec3_t *d) {
+    size_t best = 0;
+    double most = -HUGE_VAL;
+    for (size_t i = 0; i < mesh->point_count; ++i) {
+        const wh_vec3_t *q = &mesh->points[i];
+        const double height = d->x * q->x + d->y * q->y + d->z * q->z;
+        best = height > most ? i : best;
+        most = fmax(height, most);
     }
-    for (int i = shape->kind == WH_CONVEX_BOX ? 0 : 2; i < 3; ++i) {
-        p[i] = half[i] * (fabs(d[i]) < flat ? wh_test_uniform(-1, 1) : wh_test_sign(d[i]));
+    return mesh->points[best];
+}
+
+/* The point of a shape farthest along the unit vector d, both in the shape's frame; where many are, one drawn at random:
+ * faces and edges within `flat` of a right angle to d count as lying across. */
+static inline wh_vec3_t wh_test_farthest(const wh_convex_t *shape, const wh_vec3_t *d, double flat) {
+    const wh_vec3_t *half = &shape->half;
+    if (shape->kind == WH_CONVEX_MESH) {
+        return wh_test_farthest_point(shape, d);
+    }
+    const double z = wh_test_end(half->z, d->z, flat);
+    if (shape->kind == WH_CONVEX_BOX) {
+        const double x = wh_test_end(half->x, d->x, flat);
+        return wh_vec3(x, wh_test_end(half->y, d->y, flat), z);
     }
     if (shape->kind == WH_CONVEX_CAPSULE) {
-        for (int i = 0; i < 3; ++i) {
-            p[i] += half[0] * d[i];
-        }
-    } else if (shape->kind == WH_CONVEX_CYLINDER) {
-        const double angle = wh_test_uniform(-WH_TEST_PI, WH_TEST_PI);
-        const double radius = half[0] * sqrt(wh_test_uniform(0, 1));
-        p[0] = across < flat ? radius * cos(angle) : half[0] * d[0] / across;
-        p[1] = across < flat ? radius * sin(angle) : half[0] * d[1] / across;
+        return wh_vec3(half->x * d->x, half->x * d->y, z + half->x * d->z);
     }
-    return wh_vec3(p[0], p[1], p[2]);
+    const double across = hypot(d->x, d->y);
+    if (across < flat) {
+        const double angle = wh_test_uniform(-WH_TEST_PI, WH_TEST_PI);
+        const double radius = half->x * sqrt(wh_test_uniform(0, 1));
+        return wh_vec3(radius * cos(angle), radius * sin(angle), z);
+    }
+    return wh_vec3(half->x * d->x / across, half->x * d->y / across, z);
 }
 
 #endif
