@@ -47,6 +47,27 @@ static void test_a_script_may_use_the_names_of_functions(void **state) {
     assert_int_equal(play("tests/data/globals.lua", 0), WH_RUN_MET);
 }
 
+/* Whenever a STOP comes, no wafer is dropped on the way out, and work goes on after HOME. */
+static void test_a_stop_may_come_at_any_time(void **state) {
+    (void)state;
+    static const char *const targets[] = {"to=A", "to=B", "to=P"};
+    for (size_t t = 0; t < sizeof targets / sizeof targets[0]; ++t) {
+        for (int step = 1; step <= 78; ++step) {
+            char at[30];
+            snprintf(at, sizeof at, "at=%.3f", 0.05 * step);
+            const char *const parameters[] = {at, targets[t]};
+            const wh_run_options_t options = {.script = "tests/data/stop_anywhere.lua",
+                                              .limits = {.print_to = stderr},
+                                              .parameters = parameters,
+                                              .parameter_count = 2};
+            if (wh_run_script(&run, &options) != WH_RUN_MET) {
+                fail_msg("%s %s: %s", at, targets[t], run.record.failure ? run.record.failure : run.message);
+            }
+            wh_run_close(&run);
+        }
+    }
+}
+
 static void test_the_record_is_paid_for_from_the_budget(void **state) {
     (void)state;
     assert_int_equal(play("tests/data/endless_record.lua", 50000000), WH_RUN_BAD_INPUT);
@@ -59,6 +80,7 @@ int main(void) {
         cmocka_unit_test_teardown(test_a_command_within_a_command_is_refused, close_run),
         cmocka_unit_test_teardown(test_errors_within_a_pattern_name_the_line, close_run),
         cmocka_unit_test_teardown(test_a_script_may_use_the_names_of_functions, close_run),
+        cmocka_unit_test(test_a_stop_may_come_at_any_time),
         cmocka_unit_test_teardown(test_the_record_is_paid_for_from_the_budget, close_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,2 @@
+cell "cell.lua"
+get("A", 1, { vacuum_check = "sometimes" })

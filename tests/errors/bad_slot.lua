@@ -1,0 +1,3 @@
+cell "cell.lua"
+map("C")
+get("C", 2)

@@ -1,0 +1,2 @@
+cell "cell.lua"
+move { z = 2000 }

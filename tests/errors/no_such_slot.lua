@@ -1,0 +1,2 @@
+cell "cell.lua"
+put("A", 6)

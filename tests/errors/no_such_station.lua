@@ -1,0 +1,2 @@
+cell "cell.lua"
+get("Q", 1)

@@ -1,0 +1,2 @@
+cell "cell.lua"
+rotate("A", 90)

@@ -1,0 +1,2 @@
+cell "cell.lua"
+swap("A", 1)

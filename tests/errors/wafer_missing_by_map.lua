@@ -1,0 +1,3 @@
+cell "cell.lua"
+map("B")
+get("B", 1)

@@ -1,0 +1,3 @@
+cell "cell.lua"
+get("A", 1)
+get("A", 2)
