@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #define HEARTBEAT_US 200000
 /* How long the end of a free-running command waits for the state of its last slice. */
@@ -82,6 +83,36 @@ static void tell_answer(wh_control_t *control, const wh_control_answer_t *answer
     control->request = executing;
 }
 
+static void remember(wh_control_t *control, int64_t seq, wh_status_t error, const char *line,
+                     const char *text) {
+    wh_control_answer_t *answer = &control->answered[control->answered_count++ % WH_CONTROL_ANSWERED];
+    answer->seq = seq;
+    answer->error = (int32_t)error;
+    snprintf(answer->line, sizeof answer->line, "%s", line);
+    snprintf(answer->text, sizeof answer->text, "%s", text);
+    tell_answer(control, answer);
+}
+
+/* STOP, and nothing else but blanks, in any case. */
+static bool is_stop(const char *line) {
+    const size_t blanks = strspn(line, " ");
+    return strncasecmp(line + blanks, "STOP", 4) == 0 &&
+           line[blanks + 4 + strspn(line + blanks + 4, " ")] == '\0';
+}
+
+/* Ends the command that runs; those that wait behind it are not begun. */
+static void stop_all(wh_control_t *control, const waferhand_request *message) {
+    char line[WH_LINK_LINE];
+    const int64_t executing = control->request;
+    wh_sandbox_stop(control->sandbox);
+    control->node->interrupted = true; /* also a wait for a simulator that is silent */
+    while (wh_control_next_request(control, line)) {
+        remember(control, control->request, WH_STATUS_STOPPED, line, wh_status_text(WH_STATUS_STOPPED));
+    }
+    control->request = executing;
+    remember(control, message->seq, WH_OK, message->command_line, "OK");
+}
+
 static void enqueue(wh_control_t *control, const waferhand_request *message) {
     if (control->waiting_count == WH_CONTROL_REQUESTS) {
         wh_control_answer_t busy = {.seq = message->seq, .error = WH_STATUS_BUSY};
@@ -121,6 +152,8 @@ static void on_request(void *user, const void *data, size_t size) {
         const wh_control_answer_t *answer = find_answer(control, message.seq);
         if (answer) {
             tell_answer(control, answer);
+        } else if (control->running[0] != '\0' && is_stop(message.command_line)) {
+            stop_all(control, &message);
         } else {
             enqueue(control, &message);
         }
@@ -141,13 +174,9 @@ bool wh_control_next_request(wh_control_t *control, char line[WH_LINK_LINE]) {
 }
 
 void wh_control_answer(wh_control_t *control, wh_status_t error, const char *line, const char *text) {
-    wh_control_answer_t *answer = &control->answered[control->answered_count++ % WH_CONTROL_ANSWERED];
-    answer->seq = control->request;
-    answer->error = (int32_t)error;
-    snprintf(answer->line, sizeof answer->line, "%s", line);
-    snprintf(answer->text, sizeof answer->text, "%s", text);
+    const int64_t seq = control->request;
     control->request = 0;
-    tell_answer(control, answer);
+    remember(control, seq, error, line, text);
 }
 
 /* ------------------------------------------------------------------------------------------------- the run */
@@ -176,6 +205,7 @@ static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
         }
         return NULL;
     }
+    control->sandbox = mcs->sandbox;
     control->connected = wh_client_open(&control->client, control->node, &options);
     return control->connected ? &control->client.link : NULL;
 }

@@ -1,7 +1,8 @@
 /* Motion control as a process: a client for the slices, and what it tells all about its commands.
  *
  * Made to be the partners of a run (script/mcs.h): connect opens the client once the layout is known, watch tells the
- * commands on WAFERHAND_MCS. Requests from others are kept until somebody has time for them.
+ * commands on WAFERHAND_MCS. Requests from others are kept until somebody has time for them, but for STOP: while a command
+ * runs it is answered at once, the command and the requests that wait end with WH_STATUS_STOPPED.
  */
 #ifndef WH_LINK_CONTROL_H
 #define WH_LINK_CONTROL_H
@@ -40,6 +41,7 @@ typedef struct {
     wh_control_options_t options;
     wh_client_t client;
     bool connected;
+    wh_sandbox_t *sandbox; /* of the run or session, while connected */
     wh_link_identity_t identity; /* of the run; and where it is: */
     int64_t utime, seq;
     char running[200]; /* the command that goes on; empty: none */

@@ -158,6 +158,9 @@ static void close_command(wh_session_t *session, wh_status_t status, const char 
     command->message = wh_record_text(message);
     command->end_s = (double)(mcs->track.slice * mcs->track.slice_us) / 1e6;
     mcs->running = WH_NONE;
+    if (mcs->partners.watch) {
+        mcs->partners.watch(mcs->partners.user, mcs, command, true);
+    }
 }
 
 static void count_complaints(wh_session_t *session, size_t from) {
