@@ -3,6 +3,7 @@
 #define WH_APP_JSON_INTERNAL_H
 
 #include <jansson.h>
+#include <stdio.h>
 
 #include "script/record.h"
 
@@ -19,12 +20,19 @@ void wh_json_append(wh_json_writer_t *writer, json_t *list, json_t *value);
 /* A number, or null for what JSON has not. */
 json_t *wh_json_real(double value);
 
+/* How long the valid UTF-8 character at `text` is: 0 when there is none. */
+size_t wh_utf8_bytes(const char *text);
+
 /* A text, repaired where it is no UTF-8; null for null. */
 json_t *wh_json_text(const char *text);
 
 /* A list of what `element` makes of 0 to count - 1. */
 typedef json_t *wh_json_element_t(wh_json_writer_t *writer, size_t i);
 json_t *wh_json_list(wh_json_writer_t *writer, wh_json_element_t *element, size_t count);
+
+/* Prints an object: its members a line each and its lists' elements a line each, for grep, diff and the eye. 0, or -1 when
+ * `out` does not take it. */
+int wh_json_print(json_t *root, FILE *out);
 
 /* The figures: throughput and split in the head; cycles, gantt and reach among the lists; a command's split. */
 void wh_json_put_sums(wh_json_writer_t *writer, json_t *root);

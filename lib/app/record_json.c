@@ -255,43 +255,12 @@ static void put_lists(wh_json_writer_t *writer, json_t *root) {
     wh_json_put_figures(writer, root);
 }
 
-static int dump(const json_t *value, FILE *out) {
-    return json_dumpf(value, out, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
-}
-
-static int dump_list(const json_t *list, FILE *out) {
-    size_t i;
-    json_t *element;
-    int status = 0;
-    fputs("[", out);
-    json_array_foreach(list, i, element) {
-        fputs(i == 0 ? "\n    " : ",\n    ", out);
-        status |= dump(element, out);
-    }
-    fputs(json_array_size(list) > 0 ? "\n  ]" : "]", out);
-    return status;
-}
-
-/* Root's members a line each and its lists' elements a line each: for grep, diff and the eye. */
-static int dump_root(json_t *root, FILE *out) {
-    const char *key, *before = "{\n  ";
-    json_t *value;
-    int status = 0;
-    json_object_foreach(root, key, value) {
-        fprintf(out, "%s\"%s\": ", before, key);
-        status |= json_is_array(value) ? dump_list(value, out) : dump(value, out);
-        before = ",\n  ";
-    }
-    fputs("\n}\n", out);
-    return status != 0 || fflush(out) != 0 || ferror(out) ? -1 : 0;
-}
-
 int wh_record_print_json(const wh_record_t *record, FILE *out) {
     wh_json_writer_t writer = {record, false};
     json_t *root = json_object();
     put_head(&writer, root);
     put_lists(&writer, root);
-    const int status = writer.failed ? -1 : dump_root(root, out);
+    const int status = writer.failed ? -1 : wh_json_print(root, out);
     json_decref(root);
     return status;
 }

@@ -31,7 +31,7 @@
 
 /* What a part is to the rules of who may touch whom. */
 typedef enum {
-    WH_PART_FIXED, /* walls, tables, shells; `owner` is not looked at */
+    WH_PART_FIXED, /* walls, tables, shells; `owner` is not looked at: the caller's */
     WH_PART_LEDGE, /* of station `owner`, slot `slot` */
     WH_PART_ARM,   /* of the robot's body `owner`, a wh_arm_body_t */
     WH_PART_BLADE, /* of gripper `owner`, which is on the robot */

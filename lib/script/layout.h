@@ -96,6 +96,7 @@ typedef struct {
     wh_shapes_t shapes;
     wh_world_config_t world; /* whether it is checked or not; without parts when they are too many */
     const char (*part_names)[WH_PART_NAME_SIZE];
+    size_t hung_count; /* of the world's parts the last so many: obstacles on the robot and on grippers */
 } wh_layout_t;
 
 /* Reads the table on top of L's stack (what the layout file returned, which is left there), fills in the

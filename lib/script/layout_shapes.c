@@ -117,7 +117,9 @@ static void add_parts(wh_layout_t *layout, wh_part_list_t *list, const wh_obstac
         wh_shapes_add_gripper(list, &layout->shapes, (int32_t)g, layout->grippers[g].station == WH_NONE,
                               layout->grippers[g].name);
     }
+    layout->hung_count = list->count;
     wh_obstacles_add(list, obstacles, false);
+    layout->hung_count = list->count - layout->hung_count;
 }
 
 static void check_world(wh_reader_t *reader, const wh_layout_t *layout) {

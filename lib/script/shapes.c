@@ -148,16 +148,16 @@ static void add_ledges(wh_part_list_t *list, const wh_ledge_t *ledge, const wh_s
     }
 }
 
-static void add_fixed(wh_part_list_t *list, const wh_station_t *station, wh_convex_t convex, const char *name,
-                      const char *what) {
-    wh_part_t part = {.kind = WH_PART_FIXED, .owner = WH_NONE};
+static void add_fixed(wh_part_list_t *list, const wh_station_t *station, int32_t index, wh_convex_t convex,
+                      const char *name, const char *what) {
+    wh_part_t part = {.kind = WH_PART_FIXED, .owner = index};
     place(&part, &station->base_from_station, &convex);
     wh_shapes_add(list, &part, "%s %s", name, what);
 }
 
 /* Walls, roof and floor, open towards the robot, and the load port's table down to the cell's floor. */
 static void add_foup(wh_part_list_t *list, const wh_shapes_t *shapes, const wh_station_t *station,
-                     const char *name) {
+                     int32_t index, const char *name) {
     const wh_shell_t *s = &shapes->shell;
     const wh_real_t front = -shapes->wafer_radius - s->room;
     const wh_real_t inside = shapes->wafer_radius + s->room;
@@ -165,14 +165,14 @@ static void add_foup(wh_part_list_t *list, const wh_shapes_t *shapes, const wh_s
     const wh_real_t top = (wh_real_t)(station->slots - 1) * station->pitch + s->roof;
     const wh_real_t bottom = -s->floor;
     const wh_real_t ground = -station->base_from_station.r.z;
-    add_fixed(list, station, box(front, out, inside, out, bottom, top), name, "wall left");
-    add_fixed(list, station, box(front, out, -out, -inside, bottom, top), name, "wall right");
-    add_fixed(list, station, box(inside, out, -inside, inside, bottom, top), name, "wall behind");
-    add_fixed(list, station, box(front, out, -out, out, top, top + s->wall), name, "roof");
-    add_fixed(list, station, box(front, out, -out, out, bottom - s->wall, bottom), name, "floor");
+    add_fixed(list, station, index, box(front, out, inside, out, bottom, top), name, "wall left");
+    add_fixed(list, station, index, box(front, out, -out, -inside, bottom, top), name, "wall right");
+    add_fixed(list, station, index, box(inside, out, -inside, inside, bottom, top), name, "wall behind");
+    add_fixed(list, station, index, box(front, out, -out, out, top, top + s->wall), name, "roof");
+    add_fixed(list, station, index, box(front, out, -out, out, bottom - s->wall, bottom), name, "floor");
     if (ground < bottom - s->wall - 20) {
-        add_fixed(list, station, box(front, out + 50, -out - 10, out + 10, ground, bottom - s->wall), name,
-                  "load port");
+        add_fixed(list, station, index, box(front, out + 50, -out - 10, out + 10, ground, bottom - s->wall),
+                  name, "load port");
     }
 }
 
@@ -184,10 +184,10 @@ void wh_shapes_add_station(wh_part_list_t *list, const wh_shapes_t *shapes, cons
         break;
     case WH_STAND_FOUP:
         add_ledges(list, &shapes->ledge, station, index, name);
-        add_foup(list, shapes, station, name);
+        add_foup(list, shapes, station, index, name);
         break;
     case WH_STAND_CHUCK:
-        add_fixed(list, station, cylinder(60 * shapes->scale, -220, -21), name, "body");
+        add_fixed(list, station, index, cylinder(60 * shapes->scale, -220, -21), name, "body");
         break;
     case WH_STAND_NOTHING:
         break;

@@ -61,7 +61,7 @@ size_t wh_shapes_count_station(wh_stand_t stand, int32_t slots);
 #define WH_SHAPES_ROBOT 5
 #define WH_SHAPES_GRIPPER 5
 
-/* A station's ledges, shell and load port, or its prealigner's body: parts that are fixed. */
+/* A station's ledges, shell and load port, or its prealigner's body: parts that are fixed, `owner` being `index`. */
 void wh_shapes_add_station(wh_part_list_t *list, const wh_shapes_t *shapes, const wh_station_t *station,
                            int32_t index, wh_stand_t stand, const char *name);
 
