@@ -34,6 +34,9 @@ json_t *wh_json_list(wh_json_writer_t *writer, wh_json_element_t *element, size_
  * `out` does not take it. */
 int wh_json_print(json_t *root, FILE *out);
 
+/* How the smallest gaps went over time: clearance_curves among the lists, for the kinds that were ever near. */
+void wh_json_put_curves(wh_json_writer_t *writer, json_t *root);
+
 /* The figures: throughput and split in the head; cycles, gantt and reach among the lists; a command's split. */
 void wh_json_put_sums(wh_json_writer_t *writer, json_t *root);
 void wh_json_put_figures(wh_json_writer_t *writer, json_t *root);

@@ -26,27 +26,35 @@ typedef struct {
     wh_pose_t pose;
 } corner_t;
 
-static bool reaches_by_axes(const wh_robot_t *robot, const corner_t *corner, wh_real_t height,
-                            wh_status_t *status) {
-    const wh_vec3_t *r = &corner->pose.r;
+/* The end-effector's pose, from which the wrist follows. */
+static wh_status_t find_effector(const wh_layout_t *layout, const corner_t *corner, wh_real_t height,
+                                 wh_pose_t *base_from_effector) {
+    const wh_machine_t *machine = &layout->machine;
+    const wh_real_t heading = wh_atan2(corner->pose.R.m[1][0], corner->pose.R.m[0][0]);
+    wh_vec3_t at = corner->pose.r;
     wh_real_t axes[WH_ROBOT_AXES];
-    *status = wh_robot_inverse(robot, r->x, r->y, r->z + height,
-                               wh_atan2(corner->pose.R.m[1][0], corner->pose.R.m[0][0]), robot->home, axes);
-    return *status == WH_OK;
+    at.z += height;
+    const wh_status_t status = wh_machine_inverse(machine, (size_t)layout->stations[corner->station].effector,
+                                                  &at, heading, machine->robot.home, axes);
+    if (status == WH_OK) {
+        wh_robot_forward(axes, base_from_effector);
+    }
+    return status;
 }
 
 static void check_corner(wh_layout_check_t *check, const corner_t *corner) {
     const wh_layout_t *layout = check->layout;
     const wh_layout_station_t *station = &layout->stations[corner->station];
-    const wh_robot_t *robot = &layout->machine.robot;
     const char *where = corner->before ? "the way into " : "";
-    wh_status_t status;
-    if (!reaches_by_axes(robot, corner, station->offset, &status) ||
-        !reaches_by_axes(robot, corner, station->offset - station->stroke, &status)) {
+    wh_pose_t base_from_effector;
+    wh_status_t status = find_effector(layout, corner, station->offset, &base_from_effector);
+    if (status == WH_OK) {
+        status = find_effector(layout, corner, station->offset - station->stroke, &base_from_effector);
+    }
+    if (status != WH_OK) {
         (void)wh_layout_check_add(check, WH_FINDING_REACH, (int32_t)corner->station, "%s%s slot %d: %s",
                                   where, station->name, (int)corner->slot, wh_status_text(status));
-    }
-    if (!wh_arm_reaches(&layout->shapes.arm, &corner->pose)) {
+    } else if (!wh_arm_reaches(&layout->shapes.arm, &base_from_effector)) {
         (void)wh_layout_check_add(check, WH_FINDING_LINKS, (int32_t)corner->station,
                                   "%s%s slot %d: two links of %.4g mm do not reach the wrist", where,
                                   station->name, (int)corner->slot, (double)layout->shapes.arm.link);
@@ -56,6 +64,9 @@ static void check_corner(wh_layout_check_t *check, const corner_t *corner) {
 void wh_layout_check_reach(wh_layout_check_t *check, size_t station) {
     const wh_station_t *place = &check->layout->places[station];
     const wh_real_t retract = check->layout->stations[station].retract;
+    if (!check->layout->stations[station].taught) {
+        return;
+    }
     for (int32_t slot = 1; slot <= place->slots; slot += place->slots > 1 ? place->slots - 1 : 1) {
         for (int before = 0; before < 2; ++before) {
             corner_t corner = {station, slot, before == 1, wh_layout_check_entry(place, slot)};
@@ -74,6 +85,7 @@ void wh_layout_check_reach(wh_layout_check_t *check, size_t station) {
 /* The least gap found so far, between a blade's part and something at rest. */
 typedef struct {
     const wh_layout_t *layout;
+    int32_t gripper; /* that serves the station */
     wh_pose_t base_from_gripper;
     wh_real_t least;
     bool found;
@@ -90,22 +102,30 @@ static void measure_part(room_t *room, const wh_part_t *blade, const wh_convex_t
     room->found = true;
 }
 
-/* Between each blade on the robot and one thing. */
+/* Between the blade and one thing. */
 static void measure(room_t *room, const wh_convex_t *other, const wh_pose_t *base_from_other) {
     const wh_world_config_t *world = &room->layout->world;
     for (size_t i = 0; i < world->part_count; ++i) {
-        if (world->parts[i].kind == WH_PART_BLADE) {
+        if (world->parts[i].kind == WH_PART_BLADE && world->parts[i].owner == room->gripper) {
             measure_part(room, &world->parts[i], other, base_from_other);
         }
     }
 }
 
-static bool measure_wafer(const wh_layout_t *layout, const wh_station_t *place, int32_t entry_slot,
-                          wh_real_t height, int32_t wafer_slot, wh_real_t *found) {
-    room_t room = {.layout = layout, .base_from_gripper = wh_layout_check_entry(place, entry_slot)};
-    const wh_pose_t base_from_slot = wh_station_slot(place, wafer_slot);
-    const wh_pose_t base_from_wafer = wh_pose_compose(&base_from_slot, &layout->world.wafer.body_from_shape);
+static room_t enter(const wh_layout_t *layout, size_t station, int32_t slot, wh_real_t height) {
+    room_t room = {.layout = layout, .gripper = layout->stations[station].effector};
+    room.base_from_gripper = wh_layout_check_entry(&layout->places[station], slot);
     room.base_from_gripper.r.z += height;
+    return room;
+}
+
+/* Entered below slot `slot`, to a wafer in slot `other`. */
+static bool measure_wafer(const wh_layout_t *layout, size_t station, int32_t slot, int32_t other,
+                          wh_real_t *found) {
+    const wh_layout_station_t *s = &layout->stations[station];
+    room_t room = enter(layout, station, slot, s->offset - s->stroke);
+    const wh_pose_t base_from_slot = wh_station_slot(&layout->places[station], other);
+    const wh_pose_t base_from_wafer = wh_pose_compose(&base_from_slot, &layout->world.wafer.body_from_shape);
     measure(&room, &layout->world.wafer, &base_from_wafer);
     *found = room.least;
     return room.found;
@@ -115,7 +135,7 @@ static bool measure_wafer(const wh_layout_t *layout, const wh_station_t *place, 
 static bool measure_support(const wh_layout_check_t *check, size_t station, wh_real_t *found) {
     const wh_layout_t *layout = check->layout;
     const wh_station_t *place = &layout->places[station];
-    room_t room = {.layout = layout, .base_from_gripper = wh_layout_check_entry(place, 1)};
+    room_t room = enter(layout, station, 1, 0);
     for (size_t i = 0; i < layout->world.part_count; ++i) {
         const wh_part_t *part = &layout->world.parts[i];
         const bool ledge = part->kind == WH_PART_LEDGE && part->owner == (int32_t)station && part->slot == 1;
@@ -143,11 +163,10 @@ void wh_layout_check_room(wh_layout_check_t *check, size_t station) {
     const wh_layout_t *layout = check->layout;
     const wh_station_t *place = &layout->places[station];
     const wh_layout_station_t *s = &layout->stations[station];
-    const wh_real_t height = s->offset - s->stroke;
     wh_entry_t *entry = &check->entries[station];
-    entry->has_above = measure_wafer(layout, place, 1, height, 1, &entry->above);
+    entry->has_above = measure_wafer(layout, station, 1, 1, &entry->above);
     if (place->slots > 1) {
-        entry->has_below = measure_wafer(layout, place, 2, height, 1, &entry->below);
+        entry->has_below = measure_wafer(layout, station, 2, 1, &entry->below);
     }
     entry->has_beside = measure_support(check, station, &entry->beside);
     if (entry->has_above && !(entry->above > 0)) {

@@ -68,6 +68,9 @@ static json_t *gripper(writer_t *writer, size_t i) {
     put(writer, object, "on",
         wh_json_text(from->station == WH_NONE ? "robot" : layout->stations[from->station].name));
     put(writer, object, "valve", wh_json_text(from->valve));
+    if (layout->machine.mounts[i].is_shifted) {
+        put_pose(writer, object, &layout->machine.mounts[i].effector_from_gripper);
+    }
     return object;
 }
 
@@ -93,6 +96,8 @@ static json_t *station(writer_t *writer, size_t i) {
     put_real(writer, object, "offset", from->offset);
     put_real(writer, object, "retract", from->retract);
     put_real(writer, object, "pickup_speed", from->pickup_speed);
+    put(writer, object, "taught", json_boolean(from->taught));
+    put(writer, object, "effector", wh_json_text(layout->grippers[from->effector].name));
     put(writer, object, "wafers", json_integer((json_int_t)entry->wafers));
     put_gap(writer, room, "above", entry->has_above, entry->above);
     put_gap(writer, room, "below", entry->has_below, entry->below);

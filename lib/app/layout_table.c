@@ -59,6 +59,8 @@ static int print_grippers(const listing_t *listing) {
     wh_grid_text_column(grid, "gripper");
     wh_grid_text_column(grid, "on");
     wh_grid_text_column(grid, "valve");
+    wh_grid_text_column(grid, "at mm");
+    wh_grid_number_column(grid, "turned deg", whole);
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         const wh_layout_gripper_t *gripper = &layout->grippers[g];
         wh_grid_row(grid);
@@ -66,6 +68,13 @@ static int print_grippers(const listing_t *listing) {
         wh_grid_text(grid, 1, WH_INK_PLAIN, "%s",
                      gripper->station == WH_NONE ? "robot" : layout->stations[gripper->station].name);
         wh_grid_text(grid, 2, WH_INK_PLAIN, "%s", gripper->valve);
+        if (layout->machine.mounts[g].is_shifted) {
+            const wh_pose_t *shift = &layout->machine.mounts[g].effector_from_gripper;
+            wh_grid_text(grid, 3, WH_INK_PLAIN, "%g, %g, %g", (double)shift->r.x, (double)shift->r.y,
+                         (double)shift->r.z);
+            wh_grid_number(grid, 4, WH_INK_PLAIN,
+                           (double)wh_deg_from_rad(wh_atan2(shift->R.m[1][0], shift->R.m[0][0])));
+        }
     }
     return finish(listing, "Grippers", grid);
 }
@@ -82,7 +91,8 @@ static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
     const char *kind = station->foup ? "foup" : "slots";
     wh_grid_row(grid);
     wh_grid_text(grid, NAME, WH_INK_PLAIN, "%s", station->name);
-    wh_grid_text(grid, KIND, WH_INK_PLAIN, "%s", station->prealigner ? "prealigner" : kind);
+    wh_grid_text(grid, KIND, WH_INK_PLAIN, "%s%s", station->prealigner ? "prealigner" : kind,
+                 station->taught ? "" : ", not taught");
     wh_grid_number(grid, X, WH_INK_PLAIN, (double)place->base_from_station.r.x);
     wh_grid_number(grid, Y, WH_INK_PLAIN, (double)place->base_from_station.r.y);
     wh_grid_number(grid, Z, WH_INK_PLAIN, (double)place->base_from_station.r.z);

@@ -251,6 +251,9 @@ static void put_lists(wh_json_writer_t *writer, json_t *root) {
     if (record->checked) {
         wh_json_put(writer, root, "clearances", wh_json_list(writer, clearance, WH_CLEARANCES));
     }
+    if (record->checked && record->curves) {
+        wh_json_put_curves(writer, root);
+    }
     wh_json_put(writer, root, "expectations", wh_json_list(writer, expectation, record->expectation_count));
     wh_json_put_figures(writer, root);
 }

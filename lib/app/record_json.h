@@ -17,6 +17,10 @@
  *                 from (handed_over: the gripper that let go), holder (contested), other (slot_occupied: the
  *                 wafer that lies there), height (released_unsupported, mm), status and message (bad_input,
  *                 whose measured values are null)
+ *   clearances:   kind, gap, limit, utime, parts [2], at [3] (null where nothing was near; limit null: none): the smallest
+ *                 gaps of a run whose collisions were checked
+ *   clearance_curves: kind, times_s, gaps (mm; null: wider than 20): for the kinds that were ever near, the smallest gap
+ *                 in each of at most 600 stretches of time, by when it ends; measured then, and the run's smallest
  *   expectations: line, text, ok
  *   cycles:       line, name (or null), begin_s, end_s, wafers: those that the script marked
  *   gantt:        resource ("robot", or "gripper", "valve" or "chuck" of a gripper), gripper (name or null), from_s,

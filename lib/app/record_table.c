@@ -48,6 +48,7 @@ int wh_record_print_table_with(const wh_record_t *record, FILE *out, const wh_st
     status |= wh_report_handovers(&report);
     status |= wh_report_complaints(&report);
     status |= wh_report_clearances(&report);
+    status |= wh_report_curves(&report);
     status |= wh_report_wafers(&report);
     status |= sections & WH_TABLE_GANTT ? wh_report_gantt(&report) | wh_report_times(&report) : 0;
     status |= sections & WH_TABLE_MARGINS ? wh_report_margins(&report) : 0;

@@ -3,7 +3,7 @@
 
 enum { PAIR, GAP, LIMIT, AT, BETWEEN };
 
-static const char *describe(size_t kind) {
+const char *wh_report_clearance(size_t kind) {
     static const char *const texts[WH_CLEARANCES] = {
         "blade to the wafer above", "blade to the wafer below", "blade to the cell", "held wafer to another",
         "held wafer to a ledge",    "held wafer to the cell",   "arm to the cell",   "arm to itself"};
@@ -36,7 +36,7 @@ static void add_row(const wh_report_t *report, wh_grid_t *grid, size_t kind) {
         return;
     }
     wh_grid_row(grid);
-    wh_grid_text(grid, PAIR, WH_INK_PLAIN, "%s", describe(kind));
+    wh_grid_text(grid, PAIR, WH_INK_PLAIN, "%s", wh_report_clearance(kind));
     if (limit > 0) {
         wh_grid_text(grid, LIMIT, kept ? WH_INK_GOOD : WH_INK_BAD, "%g %s", (double)limit,
                      kept ? "kept" : "not kept");

@@ -18,6 +18,7 @@ int wh_report_errors(const wh_report_t *report);
 int wh_report_handovers(const wh_report_t *report);
 int wh_report_complaints(const wh_report_t *report);
 int wh_report_clearances(const wh_report_t *report);
+int wh_report_curves(const wh_report_t *report);
 int wh_report_wafers(const wh_report_t *report);
 int wh_report_expectations(const wh_report_t *report);
 int wh_report_gantt(const wh_report_t *report);
@@ -37,6 +38,9 @@ int wh_report_put(const wh_report_t *report, const char *text);
 /* Names, never null: a dash for what has none. */
 const char *wh_report_wafer(const wh_report_t *report, int32_t wafer);
 const char *wh_report_gripper(const wh_report_t *report, int32_t gripper);
+
+/* What a kind of clearance is between, in words: a constant of at most 24 letters. */
+const char *wh_report_clearance(size_t kind);
 
 /* The columns of (3), the rim gap, (5) and (2), from `first` on; headings with their limits. */
 enum { WH_REPORT_MEASURED_COLUMNS = 4 };

@@ -5,6 +5,9 @@
 
 #include "collision/world_internal.h"
 
+/* Slices in a bin of the curves, to begin with. */
+#define FIRST_BIN 10
+
 const char *wh_clearance_name(wh_clearance_kind_t kind) {
     static const char *const names[WH_CLEARANCES] = {"blade_wafer_above", "blade_wafer_below", "blade_other",
                                                      "wafer_wafer",       "wafer_ledge",       "wafer_other",
@@ -213,6 +216,8 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_grasp_t *tab
         world->clearances[kind].gap = WH_CLEARANCE_RANGE;
         world->clearances[kind].parts[0] = world->clearances[kind].parts[1] = WH_NONE;
     }
+    world->curves.first = table->slice;
+    world->curves.slices = FIRST_BIN;
     set_up_boxes(world, table);
     set_up_movers(world);
     set_up_pairs(world);
@@ -224,6 +229,10 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_grasp_t *tab
 
 const wh_clearance_t *wh_world_clearances(const wh_world_t *world) {
     return world->clearances;
+}
+
+const wh_curves_t *wh_world_curves(const wh_world_t *world) {
+    return &world->curves;
 }
 
 const wh_world_counters_t *wh_world_counters(const wh_world_t *world) {

@@ -116,6 +116,20 @@ void wh_world_place(wh_world_t *world, const wh_grasp_t *table, int32_t wafer);
 /* The smallest gaps so far, by kind: WH_CLEARANCES of them. */
 const wh_clearance_t *wh_world_clearances(const wh_world_t *world);
 
+/* The smallest gaps over time. A run is divided into bins of so many slices, whose number doubles whenever all bins are full, two
+ * becoming one. Gaps are measured at the ends of bins, and the run's smallest one is in its bin whenever it occurred. */
+#define WH_CURVE_BINS 600
+
+typedef struct {
+    uint64_t
+        first; /* the table's slice before the first bin: bin i ends with slice first + (i + 1) * slices */
+    uint64_t slices;                              /* in a bin */
+    size_t count;                                 /* bins that are over */
+    wh_real_t gaps[WH_CLEARANCES][WH_CURVE_BINS]; /* WH_CLEARANCE_RANGE: nothing nearer */
+} wh_curves_t;
+
+const wh_curves_t *wh_world_curves(const wh_world_t *world);
+
 /* How many slices' pairs were looked at in which way, for those who ask where the time goes. */
 typedef struct {
     uint64_t pairs;    /* near enough to be on a list */

@@ -73,6 +73,7 @@ struct wh_world {
     wh_clearance_t clearances[WH_CLEARANCES];
     bool too_close[WH_CLEARANCES]; /* reported */
     bool struck;                   /* contact was reported and is judged no more */
+    wh_curves_t curves;
     wh_world_counters_t counters;
 };
 
@@ -121,6 +122,9 @@ void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a);
 
 /* Judges one pair for this slice. */
 void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_near_t *near);
+
+/* At the end of a bin: keeps the smallest gaps of its kinds. Changes nothing else. */
+void wh_world_draw_curves(const wh_look_t *look);
 
 /* Two parts that never move against each other, or are neighbours by design. */
 bool wh_world_belong_together(const wh_part_t *a, const wh_part_t *b);

@@ -111,10 +111,10 @@ static char lines_key;
 /* Runs protected: pushes the native table and hands it to lua/mcs/init.lua, which sets the globals. */
 static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
-    const luaL_Reg *const groups[] = {module_functions,       wh_mcs_cell_functions,  wh_mcs_plan_functions,
-                                      wh_mcs_play_functions,  wh_mcs_query_functions, wh_mcs_record_functions,
-                                      wh_mcs_line_functions,  wh_mcs_scan_functions,  wh_mcs_fault_functions,
-                                      wh_mcs_figure_functions};
+    const luaL_Reg *const groups[] = {
+        module_functions,       wh_mcs_cell_functions,   wh_mcs_plan_functions,     wh_mcs_play_functions,
+        wh_mcs_query_functions, wh_mcs_record_functions, wh_mcs_line_functions,     wh_mcs_scan_functions,
+        wh_mcs_fault_functions, wh_mcs_figure_functions, wh_mcs_collision_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -191,6 +191,7 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
     record->checked = mcs->collision.world != NULL && mcs->link == &mcs->simulator.link;
     if (record->checked) {
         memcpy(record->clearances, wh_world_clearances(mcs->collision.world), sizeof record->clearances);
+        wh_record_keep_curves(record, wh_world_curves(mcs->collision.world));
     }
     record->wafers = calloc(mcs->layout->wafer_count + 1, sizeof *record->wafers);
     for (size_t w = 0; record->wafers && w < mcs->layout->wafer_count; ++w) {

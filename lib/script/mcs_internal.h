@@ -39,6 +39,7 @@ void wh_mcs_look_at_reach(wh_mcs_t *mcs);
 
 /* Functions of the native table, by subject. */
 extern const luaL_Reg wh_mcs_cell_functions[];
+extern const luaL_Reg wh_mcs_collision_functions[];
 extern const luaL_Reg wh_mcs_plan_functions[];
 extern const luaL_Reg wh_mcs_play_functions[];
 extern const luaL_Reg wh_mcs_query_functions[];

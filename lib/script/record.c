@@ -71,6 +71,14 @@ void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_
     added->begin = begin;
 }
 
+void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves) {
+    record->curves = record->curves ? record->curves : malloc(sizeof *curves);
+    if (!record->curves) {
+        abort();
+    }
+    *record->curves = *curves;
+}
+
 void wh_record_forget(wh_record_t *record) {
     for (size_t i = 0; i < record->command_count; ++i) {
         free(record->commands[i].text);
@@ -97,6 +105,7 @@ void wh_record_free(wh_record_t *record) {
     free(record->reach);
     free(record->wafers);
     wh_activity_free(&record->activity);
+    free(record->curves);
     free(record->script);
     free(record->failure);
     memset(record, 0, sizeof *record);

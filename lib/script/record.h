@@ -82,6 +82,7 @@ typedef struct {
     wh_wafer_record_t *wafers; /* layout->wafer_count of them */
     bool checked;              /* for collisions: then these are the smallest gaps */
     wh_clearance_t clearances[WH_CLEARANCES];
+    wh_curves_t *curves; /* and how they went over time; null unless checked */
 } wh_record_t;
 
 /* Appending; texts are copied. A program that runs out of memory here aborts. */
@@ -90,6 +91,9 @@ void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, co
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok);
 void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put);
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin);
+
+/* Keeps a copy of the curves. */
+void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves);
 
 /* Drops commands, events, expectations, puts, cycles and intervals; script, layout, reach and the sums stay. For
  * sessions without an end. */

@@ -24,6 +24,22 @@ return function(native, names)
     return wh.proximity(native.wafer_pose(names.wafer(wafer)), native.gripper_pose(names.gripper(gripper)), tolerance)
   end
 
+  -- What hit what so far: a list of { kind = "hit" or "undecided", parts = both names, at = { x, y, z }, time = s }.
+  function questions.hits()
+    return native.hits()
+  end
+
+  -- The smallest gap of a kind so far, mm, its limit or nil, when (s), and both parts' names; nil for a gap that never was
+  -- within range, and in a cell that is not checked here.
+  function questions.clearance(kind)
+    local found = native.clearance(tostring(kind))
+    if found == false then
+      native.fail("BAD_ARGUMENT", ("%s (expected a kind of clearance)"):format(names.quote(kind)))
+    end
+    found = found or {}
+    return found.gap, found.limit ~= 0 and found.limit or nil, found.time, found.parts
+  end
+
   -- States what should be so; the run fails if it is not, and goes on. Returns the condition.
   function questions.expect(condition, text)
     native.expect(condition, text == nil and "an expectation without words" or tostring(text))

@@ -1,0 +1,83 @@
+/* The smallest gaps over time. Everything near is measured anew at the end of a bin, beside the lists of what is near: those
+ * are the judgement's, and what it finds must not depend on who looks on. */
+#include "collision/world_internal.h"
+
+static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_vec3_t guess,
+                    wh_real_t least[]) {
+    const wh_clearance_kind_t kind = wh_world_clearance_of(look, a, b);
+    wh_gap_t gap;
+    if (kind == WH_CLEARANCES || wh_world_may_touch(look, a, b)) {
+        return;
+    }
+    wh_gap_measure(a->convex, &a->now, b->convex, &b->now, least[kind], guess, &gap);
+    const wh_real_t found = gap.state == WH_GAP_CLEAR ? gap.gap : 0;
+    least[kind] = found < least[kind] ? found : least[kind];
+}
+
+static void measure_rest(const wh_look_t *look, const wh_mover_t *mover, wh_real_t least[]) {
+    int32_t found[WH_NEAR_CAPACITY];
+    wh_box_t box;
+    if (mover->part == WH_NONE) {
+        return;
+    }
+    const wh_side_t a = wh_world_side_of_mover(look->world, mover);
+    wh_convex_bounds(a.convex, &a.now, &box.low, &box.high);
+    box = wh_box_grown(&box, WH_CLEARANCE_RANGE);
+    const size_t count = wh_tree_find(&look->world->tree, &box, found, WH_NEAR_CAPACITY);
+    for (size_t i = 0; i < count && i < WH_NEAR_CAPACITY; ++i) {
+        const wh_side_t b = wh_world_side_of_item(look->world, found[i]);
+        measure(look, &a, &b, wh_vec3(0, 0, 1), least);
+    }
+}
+
+static void measure_pair(const wh_look_t *look, const wh_mover_pair_t *pair, wh_real_t least[]) {
+    const wh_mover_t *a = &look->world->movers[pair->a];
+    const wh_mover_t *b = &look->world->movers[pair->b];
+    if (a->part != WH_NONE && b->part != WH_NONE && pair->near.slack < WH_CLEARANCE_RANGE) {
+        const wh_side_t one = wh_world_side_of_mover(look->world, a);
+        const wh_side_t two = wh_world_side_of_mover(look->world, b);
+        measure(look, &one, &two, pair->near.axis, least);
+    }
+}
+
+/* Two bins become one. */
+static void halve(wh_curves_t *curves) {
+    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+        wh_real_t *gaps = curves->gaps[kind];
+        for (size_t bin = 0; bin < WH_CURVE_BINS / 2; ++bin) {
+            const wh_real_t first = gaps[2 * bin];
+            const wh_real_t second = gaps[2 * bin + 1];
+            gaps[bin] = first < second ? first : second;
+        }
+    }
+    curves->count = WH_CURVE_BINS / 2;
+    curves->slices *= 2;
+}
+
+void wh_world_draw_curves(const wh_look_t *look) {
+    wh_world_t *world = look->world;
+    wh_curves_t *curves = &world->curves;
+    wh_real_t least[WH_CLEARANCES];
+    const uint64_t begin = curves->first + curves->count * curves->slices;
+    if (look->table->slice < begin + curves->slices) {
+        return;
+    }
+    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+        const wh_clearance_t *of_run = &world->clearances[kind];
+        const bool in_bin = of_run->parts[0] != WH_NONE && of_run->slice > begin;
+        least[kind] = in_bin ? of_run->gap : WH_CLEARANCE_RANGE;
+    }
+    for (size_t i = 0; i < world->mover_count; ++i) {
+        measure_rest(look, &world->movers[i], least);
+    }
+    for (size_t i = 0; i < world->pair_count; ++i) {
+        measure_pair(look, &world->pairs[i], least);
+    }
+    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+        curves->gaps[kind][curves->count] = least[kind];
+    }
+    ++curves->count;
+    if (curves->count == WH_CURVE_BINS) {
+        halve(curves);
+    }
+}
