@@ -51,6 +51,6 @@ void wh_world_step(wh_world_t *world, const wh_grasp_t *table, const wh_pose_t *
     for (size_t i = 0; i < world->pair_count; ++i) {
         judge_movers(&look, &world->pairs[i]);
     }
-    wh_world_draw_curves(&look);
     wh_world_settle(&look);
+    wh_world_draw_curves(&look);
 }
