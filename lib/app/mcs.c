@@ -34,8 +34,9 @@ static void check(const arguments_t *arguments, struct argp_state *state) {
     if (arguments->run.run.script && arguments->layout) {
         argp_error(state, "--layout: %s (a script names its layout itself)", arguments->layout);
     }
-    if (arguments->layout && (arguments->run.json || arguments->run.segments_path)) {
-        argp_error(state, "--json and --segments go with a script");
+    if (arguments->layout &&
+        (arguments->run.json || arguments->run.sections || arguments->run.segments_path)) {
+        argp_error(state, "--json, --gantt, --margins and --segments go with a script");
     }
 }
 

@@ -50,26 +50,34 @@ static double whole_number(const struct argp_state *state, const char *name, con
     return value;
 }
 
-static error_t parse(int key, char *argument, struct argp_state *state) {
-    wh_run_arguments_t *arguments = state->input;
+/* An option without an argument; false when it is none. */
+static bool take_flag(wh_run_arguments_t *arguments, int key) {
     switch (key) {
     case OPTION_JSON:
         arguments->json = true;
-        return 0;
+        return true;
     case OPTION_GANTT:
         arguments->sections |= WH_TABLE_GANTT;
-        return 0;
+        return true;
     case OPTION_MARGINS:
         arguments->sections |= WH_TABLE_MARGINS;
-        return 0;
+        return true;
+    case OPTION_TRUST:
+        arguments->run.limits.trust = true;
+        return true;
+    default:
+        return false;
+    }
+}
+
+static error_t parse(int key, char *argument, struct argp_state *state) {
+    wh_run_arguments_t *arguments = state->input;
+    switch (key) {
     case OPTION_SEGMENTS:
         arguments->segments_path = argument;
         return 0;
     case OPTION_SET:
         arguments->parameters[arguments->run.parameter_count++] = argument;
-        return 0;
-    case OPTION_TRUST:
-        arguments->run.limits.trust = true;
         return 0;
     case OPTION_BUDGET:
         arguments->run.limits.instructions = (uint64_t)whole_number(state, "budget", argument, 1e18);
@@ -84,7 +92,7 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         arguments->run.script = argument;
         return 0;
     default:
-        return ARGP_ERR_UNKNOWN;
+        return take_flag(arguments, key) ? 0 : ARGP_ERR_UNKNOWN;
     }
 }
 

@@ -60,7 +60,7 @@ typedef struct {
 wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment, bool for_vacuum);
 
 /* Counts slice track->slice, which the track has yielded and `state` answers, and returns its share. Aborts when memory
- * is out. Cost: 5 ns for two grippers. */
+ * is out. Cost: 6 ns for two grippers. */
 wh_share_t wh_activity_count(wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
                              const wh_state_t *state);
 

@@ -1,6 +1,4 @@
 /* The MCS host's figures: what the time goes into, wafers put, cycles, and how near the axes come to their ends. */
-#include <stdlib.h>
-
 #include "script/mcs_internal.h"
 
 /* What a marked cycle costs of the instruction budget, being outside of Lua's memory cap. */
@@ -140,12 +138,7 @@ static int look_at_station(lua_State *L) {
     mcs->reach_slot = (int32_t)luaL_optinteger(L, 2, 0);
     if (mcs->reach_slot != 0) {
         mcs->reach_station = wh_mcs_index(L, 1, stations);
-        if (!mcs->record->reach) {
-            mcs->record->reach = calloc(stations + 1, sizeof *mcs->record->reach);
-        }
-        if (!mcs->record->reach) {
-            return luaL_error(L, "no memory");
-        }
+        wh_record_begin_reach(mcs->record, stations);
     }
     return 0;
 }

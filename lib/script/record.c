@@ -79,6 +79,15 @@ void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves) {
     *record->curves = *curves;
 }
 
+void wh_record_begin_reach(wh_record_t *record, size_t stations) {
+    if (!record->reach) {
+        record->reach = calloc(stations + 1, sizeof *record->reach);
+    }
+    if (!record->reach) {
+        abort();
+    }
+}
+
 void wh_record_forget(wh_record_t *record) {
     for (size_t i = 0; i < record->command_count; ++i) {
         free(record->commands[i].text);

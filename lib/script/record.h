@@ -90,6 +90,7 @@ wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const 
 void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event);
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok);
 void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put);
+void wh_record_begin_reach(wh_record_t *record, size_t stations); /* once; then nothing */
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin);
 
 /* Keeps a copy of the curves. */
