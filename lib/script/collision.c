@@ -43,6 +43,41 @@ static void placed(void *user, const wh_grasp_t *table, int32_t wafer) {
     }
 }
 
+/* A table that is nothing but a view of a state, which is never written to. */
+static wh_grasp_t view_of(const wh_layout_t *layout, const wh_state_t *state) {
+    union {
+        const wh_wafer_t *constant;
+        wh_wafer_t *plain;
+    } wafers = {state->wafers};
+    union {
+        const wh_gripper_t *constant;
+        wh_gripper_t *plain;
+    } grippers = {state->grippers};
+    wh_grasp_t view = {.config = layout->grasp, .slice = (uint64_t)state->seq};
+    view.storage.wafers = wafers.plain;
+    view.storage.wafer_count = state->wafer_count;
+    view.storage.grippers = grippers.plain;
+    view.storage.gripper_count = state->gripper_count;
+    return view;
+}
+
+void wh_collision_follow(wh_collision_t *collision, const wh_state_t *state) {
+    const wh_grasp_t view = view_of(collision->layout, state);
+    wh_gripper_input_t inputs[WH_GRIPPERS];
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        inputs[g].base_from_gripper = state->grippers[g].base_from_gripper;
+        inputs[g].valve = state->grippers[g].valve;
+    }
+    for (size_t i = 0; i < state->event_count; ++i) {
+        const wh_event_t *event = &state->events[i];
+        const bool by_fault = event->kind == WH_EVENT_FAULT_ARMED || event->kind == WH_EVENT_FAULT_CLEARED;
+        if (by_fault && event->wafer != WH_NONE) {
+            placed(collision, &view, event->wafer);
+        }
+    }
+    look(collision, inputs, &view, NULL);
+}
+
 size_t wh_collision_bytes(const wh_layout_t *layout) {
     return wh_world_bytes(&layout->world);
 }

@@ -22,4 +22,8 @@ size_t wh_collision_bytes(const wh_layout_t *layout);
 void wh_collision_attach(wh_collision_t *collision, const wh_layout_t *layout, wh_simulator_t *simulator,
                          void *memory);
 
+/* For who is not the simulator, and hears of each step by its state alone: judges the same, and keeps clearances and curves;
+ * what it finds is reported by the simulator. `layout` and `memory` as above. */
+void wh_collision_follow(wh_collision_t *collision, const wh_state_t *state);
+
 #endif

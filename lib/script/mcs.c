@@ -188,7 +188,7 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
     record->simulated_s = wh_mcs_now(mcs);
     record->hash = mcs->link->hash(mcs->link);
     record->missed = mcs->link->missed(mcs->link);
-    record->checked = mcs->collision.world != NULL && mcs->link == &mcs->simulator.link;
+    record->checked = mcs->collision.world != NULL;
     if (record->checked) {
         memcpy(record->clearances, wh_world_clearances(mcs->collision.world), sizeof record->clearances);
         wh_record_keep_curves(record, wh_world_curves(mcs->collision.world));

@@ -65,7 +65,7 @@ static int find_clearance(lua_State *L) {
         lua_pushboolean(L, 0);
         return 1;
     }
-    if (!mcs->collision.world || mcs->link != &mcs->simulator.link) {
+    if (!mcs->collision.world) {
         return 0;
     }
     const wh_clearance_t *least = &wh_world_clearances(mcs->collision.world)[kind];

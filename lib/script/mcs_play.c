@@ -35,6 +35,9 @@ static wh_status_t exchange(wh_mcs_t *mcs) {
     if (mcs->state.event_count > 0) {
         keep_events(mcs);
     }
+    if (status == WH_OK && mcs->collision.memory && mcs->link != &mcs->simulator.link) {
+        wh_collision_follow(&mcs->collision, &mcs->state);
+    }
     return status;
 }
 
