@@ -1,6 +1,7 @@
 -- The cell of the errors: two blades, a station that nobody has taught, one wafer far aside, one FOUP as it should not be.
 return {
   homed = params.homed ~= "no",
+  vacuum = params.vacuum,
   grippers = {
     { name = "FRONT" },
     { name = "BACK", at = { 0, 0, 10 }, rpy = { 0, 0, 180 } },
