@@ -14,19 +14,31 @@ static bool is_within(wh_real_t value, wh_real_t most) {
     return value >= 0 && value <= most;
 }
 
+/*@ requires \valid_read(pads); assigns \nothing; */
+static bool is_finite(const wh_pads_t *pads) {
+    return wh_real_is_finite(pads->friction) && wh_real_is_finite(pads->force) &&
+           wh_real_is_finite(pads->mass) && wh_real_is_finite(pads->gravity);
+}
+
+/*@ requires \valid_read(pads); assigns \nothing; */
+static bool are_pads(const wh_pads_t *pads) {
+    return is_within(pads->friction, 100) && is_within(pads->force, WH_REAL(1e6)) &&
+           is_within(pads->gravity, 1000) && is_within(pads->mass, 1000) && pads->mass >= WH_REAL(1e-6);
+}
+
+/*@ requires \valid_read(pads); assigns \nothing; */
+static bool is_none(const wh_pads_t *pads) {
+    return pads->mass == 0 && pads->friction == 0 && pads->force == 0 && pads->gravity == 0;
+}
+
 wh_status_t wh_pads_validate(const wh_pads_t *pads) {
     if (!pads) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (!wh_real_is_finite(pads->friction) || !wh_real_is_finite(pads->force) ||
-        !wh_real_is_finite(pads->mass) || !wh_real_is_finite(pads->gravity)) {
+    if (!is_finite(pads)) {
         return WH_STATUS_NOT_FINITE;
     }
-    const bool others = is_within(pads->friction, 100) && is_within(pads->force, WH_REAL(1e6)) &&
-                        is_within(pads->gravity, 1000);
-    const bool weighs = pads->mass >= WH_REAL(1e-6) && pads->mass <= 1000;
-    const bool none = pads->mass == 0 && pads->friction == 0 && pads->force == 0 && pads->gravity == 0;
-    return (others && weighs) || none ? WH_OK : WH_STATUS_OUT_OF_RANGE;
+    return are_pads(pads) || is_none(pads) ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
 wh_real_t wh_wafer_mass(wh_real_t diameter, wh_real_t thickness) {

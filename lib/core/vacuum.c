@@ -32,6 +32,12 @@ static bool is_finite(const wh_vacuum_config_t *config) {
            wh_real_is_finite(config->off) && wh_real_is_finite(config->release);
 }
 
+/*@ requires \valid_read(config); assigns \nothing; */
+static bool are_thresholds(const wh_vacuum_config_t *config) {
+    return is_share(config->off) && is_share(config->release) && config->off <= config->on &&
+           config->on <= 1 && config->idle >= 0 && config->idle < config->off;
+}
+
 wh_status_t wh_vacuum_validate(const wh_vacuum_config_t *config) {
     if (!config) {
         return WH_STATUS_NULL_ARGUMENT;
@@ -39,9 +45,8 @@ wh_status_t wh_vacuum_validate(const wh_vacuum_config_t *config) {
     if (!is_finite(config)) {
         return WH_STATUS_NOT_FINITE;
     }
-    const bool thresholds = is_share(config->off) && is_share(config->release) && config->off <= config->on &&
-                            config->on <= 1 && config->idle >= 0 && config->idle < config->off;
-    return thresholds && is_time(config->build) && is_time(config->vent) ? WH_OK : WH_STATUS_OUT_OF_RANGE;
+    const bool good = are_thresholds(config) && is_time(config->build) && is_time(config->vent);
+    return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
 wh_vacuum_upset_t wh_vacuum_sound(void) {
