@@ -49,7 +49,7 @@ $(B)/analyzer/%.log: %.c
 CPPCHECK = cppcheck --quiet --std=c99 --library=posix,gnu --suppress=missingIncludeSystem -Ilib -DFLT_EVAL_METHOD=0 \
     --template='{file}:{line}:{column}: {severity}: {message} [{id}]'
 CPPCHECK_PROGRAM = $(CPPCHECK) --enable=warning,performance,portability,information -D_GNU_SOURCE \
-    -DLUA_VERSION_NUM=504 -DLUA_FLOAT_TYPE=2 -DLUA_FLOAT_DOUBLE=2 $(COLLISION_SOURCES) $(PROGRAM_SOURCES)
+    -DLUA_VERSION_NUM=504 -DLUA_FLOAT_TYPE=2 -DLUA_FLOAT_DOUBLE=2 -DCCD_DOUBLE $(COLLISION_SOURCES) $(PROGRAM_SOURCES)
 $(B)/log/program: $(COLLISION_SOURCES) $(PROGRAM_SOURCES) $(HEADERS) lib/packaging/check.mk
 	$(call look,CPPCHECK,$(CPPCHECK_PROGRAM))
 
