@@ -205,6 +205,34 @@ static void test_every_field_of_a_station_is_read(void **state) {
 }
 
 /* One that says nothing of its place, or that it has none, is the end-effector: its layout's hash is as ever. */
+static void test_what_a_station_asks_of_a_command_is_read(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        "homed = false, grippers = { { name = 'PA', on = 'P' }, { name = 'LOW' }, { name = 'HIGH' } }, "
+        "stations = { P = { kind = 'prealigner', at = { -600, 0, 950 } }, "
+        "Q = { at = { 700, 0, 900 }, taught = false, effector = 'HIGH', pickup_acceleration = 250, "
+        "vacuum_check = 'put', retries = 3, wait = 0.5, map_speed = 80, check_map = true } }");
+    const wh_layout_station_t *plain = &layout->stations[0];
+    const wh_layout_station_t *station = &layout->stations[1];
+    assert_false(layout->homed);
+    assert_true(plain->taught);
+    assert_false(plain->check_map);
+    assert_int_equal(plain->effector, 1);
+    assert_int_equal(plain->check, WH_VACUUM_CHECK_BOTH);
+    assert_int_equal(plain->retries, 0);
+    assert_near(plain->pickup_acceleration, 0, 0);
+    assert_near(plain->wait, 0, 0);
+    assert_near(plain->map_speed, 100, 0);
+    assert_false(station->taught);
+    assert_true(station->check_map);
+    assert_int_equal(station->effector, 2);
+    assert_int_equal(station->check, WH_VACUUM_CHECK_PUT);
+    assert_int_equal(station->retries, 3);
+    assert_near(station->pickup_acceleration, 250, 0);
+    assert_near(station->wait, 0.5, 0);
+    assert_near(station->map_speed, 80, 0);
+}
+
 static void test_a_blade_of_two_sits_where_it_says(void **state) {
     (void)state;
     const wh_layout_t *layout =
@@ -312,6 +340,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_degrees_become_radians_and_lengths_stay, open_sandbox,
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(test_every_field_of_a_station_is_read, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_what_a_station_asks_of_a_command_is_read, open_sandbox,
+                                        close_sandbox),
         cmocka_unit_test_setup_teardown(test_a_blade_of_two_sits_where_it_says, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(test_a_blades_place_is_in_the_hash, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(test_wafers_lie_where_the_slots_frame_says, open_sandbox,
