@@ -7,7 +7,7 @@ static wh_status_t exchange_by_call(wh_link_t *link, const wh_command_t *command
 }
 
 static uint64_t hash_by_call(wh_link_t *link) {
-    return wh_simulator_hash((const wh_simulator_t *)(const void *)link);
+    return wh_simulator_hash((wh_simulator_t *)(void *)link);
 }
 
 static int64_t missed_by_call(wh_link_t *link) {
@@ -68,7 +68,8 @@ static wh_event_t *add_event(wh_simulator_t *simulator, wh_event_kind_t kind, in
     if (simulator->event_count == WH_SLICE_EVENTS) {
         return NULL;
     }
-    wh_event_t *event = &simulator->events[simulator->event_count++];
+    wh_event_t *event = &simulator->events[simulator->event_count];
+    ++simulator->event_count;
     *event = blank;
     event->kind = kind;
     event->slice = simulator->table.slice;
