@@ -259,6 +259,22 @@ static void test_prealigner_and_drop(void **state) {
     }
 }
 
+/* A SWAP puts one wafer on its way while another comes back: one wafer a cycle, not two. */
+static void test_swap(void **state) {
+    (void)state;
+    const wh_record_t *record = play("tests/data/figures_swap.lua", WH_RUN_MET);
+    assert_int_equal(record->put_count, 5);
+    size_t *wafers = wh_figures_cycle_wafers(record, WH_RANK_SEVERAL);
+    assert_int_equal(wafers[0], 1);
+    assert_int_equal(wafers[1], 1);
+    free(wafers);
+    const wh_throughput_t found = wh_figures_throughput(record);
+    assert_int_equal(found.wafers, 1);
+    assert_int_equal(found.first, 2);
+    const double seconds = record->commands[7].end_s - record->commands[5].begin_s;
+    assert_near(found.wafers_per_hour, 3600 / seconds, 1e-9);
+}
+
 /* -------------------------------------------------------------------------------------------------- reach */
 
 static const wh_reach_t *reach(const wh_record_t *record, const char *station, size_t axis) {
@@ -338,6 +354,7 @@ int main(void) {
         cmocka_unit_test_teardown(test_throughput_of_cycles, close_run),
         cmocka_unit_test_teardown(test_intervals, close_run),
         cmocka_unit_test_teardown(test_prealigner_and_drop, close_run),
+        cmocka_unit_test_teardown(test_swap, close_run),
         cmocka_unit_test_teardown(test_reach, close_run),
         cmocka_unit_test_teardown(test_refused_marks, close_run),
         cmocka_unit_test(test_forgetting),
