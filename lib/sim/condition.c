@@ -14,13 +14,11 @@ wh_physics_t wh_physics_default(void) {
 }
 
 wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count) {
-    wh_status_t status = wh_vacuum_validate(&physics->vacuum);
+    const bool sliced = physics->slice_s > 0 && physics->slice_s <= 1;
+    const bool fits = sliced && physics->fault_count <= WH_FAULTS;
+    wh_status_t status = fits ? wh_vacuum_validate(&physics->vacuum) : WH_STATUS_OUT_OF_RANGE;
     if (status == WH_OK) {
         status = wh_pads_validate(&physics->pads);
-    }
-    if (status == WH_OK &&
-        (!(physics->slice_s > 0 && physics->slice_s <= 1) || physics->fault_count > WH_FAULTS)) {
-        status = WH_STATUS_OUT_OF_RANGE;
     }
     for (size_t i = 0; status == WH_OK && i < physics->fault_count; ++i) {
         status = wh_fault_validate(&physics->faults[i], gripper_count, wafer_count);

@@ -174,7 +174,7 @@ static void test_slots(void **state) {
     bring(3, &f);
     step(880, CLOSED);
     /* Taken now, but for the very same fault with another end. */
-    wh_fault_t others[6] = {f, f, f, f, f, f};
+    wh_fault_t others[10] = {f, f, f, f, f, f, f, f, f, f};
     others[0].kind = WH_FAULT_SENSOR_OFF;
     others[1].target = 1;
     others[2].from += 1;
@@ -182,7 +182,11 @@ static void test_slots(void **state) {
     others[3].other = 1;
     others[4].offset.r.y = 1;
     others[5].offset.R = wh_test_rotation(0, 0, 1, 0.1);
-    for (size_t i = 0; i < 6; ++i) {
+    others[6].offset.r.x = 1;
+    others[7].offset.r.z = 1;
+    others[8].other = 1;
+    others[9].value = 1;
+    for (size_t i = 0; i < 10; ++i) {
         bring(3, &others[i]);
         assert_int_equal(try_step(880, CLOSED), WH_STATUS_OUT_OF_RANGE);
     }
@@ -190,11 +194,15 @@ static void test_slots(void **state) {
     bring(3, &f);
     step(880, CLOSED);
     expect_event(WH_EVENT_FAULT_CLEARED, WH_NONE, 0, 3);
-    /* Over: free for another. */
+    /* Over: free for another; so is one below that was never used. */
     others[0].from = command.seq + 1;
     bring(3, &others[0]);
     step(880, CLOSED);
     expect_event(WH_EVENT_FAULT_ARMED, WH_NONE, 0, 3);
+    others[0].from = command.seq + 1;
+    bring(1, &others[0]);
+    step(880, CLOSED);
+    expect_event(WH_EVENT_FAULT_ARMED, WH_NONE, 0, 1);
 }
 
 /* Neither the fault nor the input that it would overrule. */
@@ -392,6 +400,22 @@ static void test_a_wafer_is_moved_and_put_back(void **state) {
     assert_true(answer.wafers[0].base_from_wafer.R.m[2][1] == 0);
 }
 
+/* Two rotations that each just pass, but not their product. */
+static void test_a_turn_that_just_passes_is_mended(void **state) {
+    (void)state;
+    wh_pose_t worn = wh_test_at(700, 0, 900);
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_TILTED, 0);
+    for (size_t i = 0; i < 3; ++i) {
+        worn.R.m[i][i] += WH_REAL(0.4) * WH_ROTATION_TOLERANCE;
+        f.offset.R.m[i][i] = worn.R.m[i][i];
+    }
+    assert_int_equal(wh_grasp_place(&simulator.table, 0, &worn), WH_OK);
+    bring(0, &f);
+    step(880, CLOSED);
+    assert_int_equal(wh_pose_validate(&answer.wafers[0].base_from_wafer), WH_OK);
+    assert_non_null(find(WH_EVENT_FAULT_ARMED));
+}
+
 static void test_doubled_is_onto_the_other(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_WAFER_DOUBLED, 0);
@@ -451,8 +475,8 @@ static void test_conditions_that_no_simulator_leaves(void **state) {
     bring(0, &f);
     step(880, CLOSED);
     const wh_condition_t good = simulator.condition;
-    wh_condition_t bad[12];
-    for (size_t i = 0; i < 12; ++i) {
+    wh_condition_t bad[13];
+    for (size_t i = 0; i < 13; ++i) {
         bad[i] = good;
     }
     bad[0].vacuum[1].command = 2;
@@ -467,13 +491,18 @@ static void test_conditions_that_no_simulator_leaves(void **state) {
     bad[9].faults.slots[0].placed.r.x = (wh_real_t)NAN;
     bad[10].faults.slots[0].before.R.m[0][0] = 2;
     bad[11].faults.slots[0].phase = (wh_fault_phase_t)4;
+    bad[12].carry[0].before[0].y = (wh_real_t)INFINITY;
     assert_int_equal(wh_condition_validate(&good, GRIPPERS, WAFERS), WH_OK);
-    for (size_t i = 0; i < 12; ++i) {
+    for (size_t i = 0; i < 13; ++i) {
         assert_int_not_equal(wh_condition_validate(&bad[i], GRIPPERS, WAFERS), WH_OK);
     }
     wh_condition_t more = good;
     more.faults.count = WH_FAULTS + 1;
     assert_int_not_equal(wh_condition_validate(&more, GRIPPERS, WAFERS), WH_OK);
+    more = good;
+    more.vacuum[0].command = OPEN;
+    more.told[0] = OPEN;
+    assert_int_equal(wh_condition_validate(&more, GRIPPERS, WAFERS), WH_OK);
     more = good;
     more.vacuum[GRIPPERS].level = 7; /* beyond those that there are */
     more.faults.count = 2;           /* a free slot */
@@ -526,6 +555,11 @@ static void test_without_any_it_is_the_tables_hash(void **state) {
     assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
     simulator.condition.faults.count = 1; /* a free slot is none */
     assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
+    bring_kind(WH_FAULT_SENSOR_ON, 0);
+    step(880, CLOSED);
+    assert_true(wh_simulator_hash(&simulator) != wh_grasp_hash(&simulator.table));
+    wh_faults_clear(&simulator.condition.faults);
+    assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
 }
 
 int main(void) {
@@ -546,6 +580,7 @@ int main(void) {
         cmocka_unit_test_setup(test_a_command_lost, set_up),
         cmocka_unit_test_setup(test_in_the_first_slice_nothing_was_before, set_up),
         cmocka_unit_test_setup(test_a_wafer_is_moved_and_put_back, set_up),
+        cmocka_unit_test_setup(test_a_turn_that_just_passes_is_mended, set_up),
         cmocka_unit_test_setup(test_doubled_is_onto_the_other, set_up),
         cmocka_unit_test_setup(test_a_wafer_that_was_taken_is_not_put_back, set_up),
         cmocka_unit_test_setup(test_a_held_wafer_is_waited_for, set_up),

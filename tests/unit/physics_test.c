@@ -187,6 +187,69 @@ static void test_all_slots_at_once(void **state) {
     assert_int_equal(answer.sensors, 1);
 }
 
+/* What the layout has from the beginning. */
+static void test_a_fault_from_the_beginning(void **state) {
+    (void)state;
+    wh_fault_t *fault = &physics.faults[0];
+    fault->kind = WH_FAULT_WAFER_SHIFTED;
+    fault->other = WH_NONE;
+    fault->offset = wh_test_at(7, 0, 0);
+    fault->from = 2;
+    fault->until = WH_FAULT_FOREVER;
+    physics.fault_count = 1;
+    use();
+    step(0, -10, CLOSED);
+    assert_true(answer.wafers[0].base_from_wafer.r.x == 0);
+    step(0, -10, CLOSED);
+    assert_true(answer.wafers[0].base_from_wafer.r.x == 7);
+    assert_int_equal(count(WH_EVENT_FAULT_ARMED), 1);
+}
+
+/* An observer that leaves no room for what comes after it, and counts the wafers that faults move. */
+static void fill(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
+                 wh_event_list_t *list) {
+    (void)user;
+    (void)inputs;
+    (void)table;
+    while (list->count < list->capacity) {
+        memset(&list->events[list->count], 0, sizeof list->events[0]);
+        list->events[list->count++].kind = WH_EVENT_HIT;
+    }
+}
+
+static void count_placed(void *user, const wh_grasp_t *table, int32_t wafer) {
+    int *placed = user;
+    assert_ptr_equal(table, &simulator.table);
+    assert_int_equal(wafer, 1);
+    ++*placed;
+}
+
+static void test_what_does_not_fit_is_not_told(void **state) {
+    (void)state;
+    int placed = 0;
+    use();
+    simulator.observer.look = fill;
+    simulator.observer.placed = count_placed;
+    simulator.observer.user = &placed;
+    step(0, 0, OPEN);
+    wh_fault_t fault = {.kind = WH_FAULT_LEAK, .other = WH_NONE, .from = 1, .until = WH_FAULT_FOREVER};
+    fault.offset = wh_pose_identity();
+    command.faults[0].fault = fault;
+    fault.kind = WH_FAULT_WAFER_SHIFTED;
+    fault.target = 1;
+    command.faults[1].fault = fault;
+    command.faults[1].index = 1;
+    command.fault_count = 2;
+    step(0, 0, OPEN);
+    command.fault_count = 0;
+    assert_int_equal(answer.event_count, WH_SLICE_EVENTS);
+    assert_int_equal(count(WH_EVENT_HIT), WH_SLICE_EVENTS);
+    assert_int_equal(answer.sensors, 0); /* it was lost all the same */
+    assert_int_equal(placed, 1);
+    step(0, 0, OPEN);
+    assert_int_equal(placed, 1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_what_is_refused, set_up),
@@ -194,6 +257,8 @@ int main(void) {
         cmocka_unit_test_setup(test_delayed_goes_its_own_way, set_up),
         cmocka_unit_test_setup(test_a_wafer_that_would_slip_is_named, set_up),
         cmocka_unit_test_setup(test_all_slots_at_once, set_up),
+        cmocka_unit_test_setup(test_a_fault_from_the_beginning, set_up),
+        cmocka_unit_test_setup(test_what_does_not_fit_is_not_told, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
