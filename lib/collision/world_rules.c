@@ -68,8 +68,10 @@ static bool do_business(const wh_look_t *look, const wh_side_t *wafer, const wh_
     if (beside || wh_real_abs(local.z) > table->config.near_projz) {
         return false;
     }
+    /* Let go in this slice: the world holds it until the slice is over. */
+    const bool released = look->world->held[gripper->owner] == wafer->owner;
     return state->valve == WH_VALVE_OPEN || w->holder != WH_NONE || gripper->kind == WH_PART_CHUCK ||
-           look->world->left[gripper->owner].wafer == wafer->owner;
+           released || look->world->left[gripper->owner].wafer == wafer->owner;
 }
 
 bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b) {

@@ -177,6 +177,19 @@ static void test_a_wafer_let_go_rests_where_it_is(void **state) {
     assert_int_equal(events[0].wafer, 0);
 }
 
+static void test_letting_go_on_the_way_is_no_contact(void **state) {
+    (void)state;
+    config.limits[WH_CLEARANCE_BLADE_WAFER_ABOVE] = 1;
+    begin();
+    go(700, 0, 899.7, WH_VALVE_OPEN);
+    go(700, 0, 903, WH_VALVE_OPEN);
+    go(400, 0, 903, WH_VALVE_OPEN);
+    assert_int_equal(go(400.2, 0, 902.9, WH_VALVE_CLOSED), 0);
+    assert_int_equal(grippers[0].wafer, WH_NONE);
+    assert_int_equal(go(400.2, 0, 899, WH_VALVE_CLOSED), 0);
+    assert_near(least(WH_CLEARANCE_BLADE_WAFER_ABOVE)->gap, WH_CLEARANCE_RANGE, 0);
+}
+
 static void test_a_wafer_that_was_put_elsewhere_is_there(void **state) {
     (void)state;
     begin();
@@ -330,6 +343,7 @@ int main(void) {
         TEST(test_a_blade_takes_its_wafer_without_a_hit),
         TEST(test_a_held_wafer_hits_a_ledge_of_another_slot),
         TEST(test_a_wafer_let_go_rests_where_it_is),
+        TEST(test_letting_go_on_the_way_is_no_contact),
         TEST(test_a_wafer_that_was_put_elsewhere_is_there),
         TEST(test_links_of_the_arm_are_neighbours),
         TEST(test_a_limit_is_reported_once),
