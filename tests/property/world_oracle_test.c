@@ -21,6 +21,8 @@ static wh_gripper_t grippers[1];
 /* What the plain loop found. */
 typedef struct {
     wh_real_t least[WH_CLEARANCES]; /* at the slices' ends */
+    wh_real_t now[WH_CLEARANCES];   /* at this slice's end */
+    wh_real_t bin[WH_CLEARANCES];   /* at the ends of the slices of this bin of the curves */
     wh_real_t deepest;              /* the smallest gap at any instant; -1: a hit */
     bool undecided;
 } oracle_t;
@@ -114,6 +116,9 @@ static void look_at_instant(const wh_pose_t *gripper, bool end, oracle_t *oracle
             if (end && found < oracle->least[kind]) {
                 oracle->least[kind] = found < 0 ? 0 : found;
             }
+            if (end && found < oracle->now[kind]) {
+                oracle->now[kind] = found < 0 ? 0 : found;
+            }
         }
     }
 }
@@ -125,6 +130,9 @@ static bool play_slice(wh_world_t *world, const wh_pose_t *from, const wh_pose_t
     wh_event_list_t list = {events, 8, 0};
     const wh_gripper_input_t input = {*to, WH_VALVE_CLOSED};
     assert_int_equal(wh_grasp_step(&table, &input, &steps), WH_OK);
+    for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
+        oracle->now[kind] = WH_CLEARANCE_RANGE;
+    }
     for (int i = 1; i <= INSTANTS; ++i) {
         const wh_pose_t at = between(from, to, (double)i / INSTANTS);
         look_at_instant(i == INSTANTS ? to : &at, i == INSTANTS, oracle);
@@ -159,13 +167,31 @@ static void compare_clearances(const wh_world_t *world, const oracle_t *oracle) 
     }
 }
 
+/* At the end of a bin the curves have what is near then, or the run's smallest gap when it is in the bin. */
+static void compare_curves(const wh_world_t *world, oracle_t *oracle) {
+    const wh_curves_t *curves = wh_world_curves(world);
+    for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
+        oracle->bin[kind] = oracle->now[kind] < oracle->bin[kind] ? oracle->now[kind] : oracle->bin[kind];
+        if (table.slice % curves->slices != 0) {
+            continue;
+        }
+        const wh_real_t found = curves->gaps[kind][curves->count - 1];
+        assert_true(found < oracle->now[kind] + 1e-3 && found > oracle->bin[kind] - 1e-3);
+        if (oracle->bin[kind] < oracle->least[kind] + 1e-9) {
+            assert_near(found, oracle->least[kind], 1e-3);
+        }
+        oracle->bin[kind] = WH_CLEARANCE_RANGE;
+    }
+    assert_int_equal(curves->count, table.slice / curves->slices);
+}
+
 /* Counts: contact in both; none in both. */
 static void play_run(int run, int counts[2]) {
     static unsigned char memory[1 << 20] __attribute__((aligned(16)));
     oracle_t oracle = {.deepest = 1e9};
     set_up_scene();
     for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
-        oracle.least[kind] = WH_CLEARANCE_RANGE;
+        oracle.least[kind] = oracle.bin[kind] = WH_CLEARANCE_RANGE;
     }
     static const manner_t manners[] = {{60, 0.1, 1}, {8, 0.1, 1}, {8, 0.001, 0.005}};
     const manner_t *manner = &manners[run % 3];
@@ -185,6 +211,7 @@ static void play_run(int run, int counts[2]) {
             return;
         }
         compare_clearances(world, &oracle);
+        compare_curves(world, &oracle);
         if (struck || oracle.deepest < 0) {
             /* What only grazes between two instants is the world's to find. */
             assert_true(struck);
