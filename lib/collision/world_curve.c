@@ -54,6 +54,17 @@ static void halve(wh_curves_t *curves) {
     curves->slices *= 2;
 }
 
+static void close_bin(wh_curves_t *curves, const wh_real_t least[]) {
+    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+        curves->gaps[kind][curves->count] = least[kind];
+    }
+    ++curves->count;
+    if (curves->count == WH_CURVE_BINS) {
+        halve(curves);
+    }
+}
+
+/* Slices that nobody saw, as a free-running run may lose some, are in bins that show what came after them. */
 void wh_world_draw_curves(const wh_look_t *look) {
     wh_world_t *world = look->world;
     wh_curves_t *curves = &world->curves;
@@ -73,11 +84,7 @@ void wh_world_draw_curves(const wh_look_t *look) {
     for (size_t i = 0; i < world->pair_count; ++i) {
         measure_pair(look, &world->pairs[i], least);
     }
-    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
-        curves->gaps[kind][curves->count] = least[kind];
-    }
-    ++curves->count;
-    if (curves->count == WH_CURVE_BINS) {
-        halve(curves);
+    while (look->table->slice >= curves->first + (curves->count + 1) * curves->slices) {
+        close_bin(curves, least);
     }
 }

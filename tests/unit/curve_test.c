@@ -114,10 +114,26 @@ static void test_full_bins_become_half_as_many(void **state) {
     assert_int_equal(curves->slices, 40);
 }
 
+static void test_lost_slices_leave_no_gap(void **state) {
+    (void)state;
+    const wh_curves_t *curves = wh_world_curves(world);
+    step_to(20);
+    table.slice = 54;
+    step_to(55);
+    assert_int_equal(curves->count, 5);
+    for (size_t bin = 2; bin < 5; ++bin) {
+        assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][bin], height_in(55), 1e-6);
+    }
+    step_to(60);
+    assert_int_equal(curves->count, 6);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][5], height_in(60), 1e-6);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_bins_hold_the_gaps_at_their_ends, open_world, close_world),
         cmocka_unit_test_setup_teardown(test_smallest_gap_is_in_its_bin, open_world, close_world),
+        cmocka_unit_test_setup_teardown(test_lost_slices_leave_no_gap, open_world, close_world),
         cmocka_unit_test_setup_teardown(test_full_bins_become_half_as_many, open_world, close_world),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
