@@ -223,9 +223,9 @@ static char *split(const uint8_t *data, size_t size, char **argv) {
 
 static int act(int argc, char **argv) {
     static int (*const subcommands[])(int argc, char **argv) = {wh_app_run, wh_app_mcs, wh_app_sim,
-                                                                wh_app_replay};
-    static const char *const names[] = {"run", "mcs", "sim", "replay"};
-    for (size_t i = 0; i < 4; ++i) {
+                                                                wh_app_replay, wh_app_layout};
+    static const char *const names[] = {"run", "mcs", "sim", "replay", "layout"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(argv[0], names[i]) == 0) {
             return subcommands[i](argc, argv);
         }
