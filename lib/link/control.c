@@ -37,7 +37,7 @@ static void tell(wh_control_t *control, int32_t phase, int line, wh_status_t err
 
 static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
     wh_control_t *control = user;
-    (void)mcs;
+    control->sandbox = mcs->sandbox;
     snprintf(control->running, sizeof control->running, "%s", ended ? "" : command->text);
     control->running_line = command->line;
     if (!ended) {
@@ -205,7 +205,6 @@ static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
         }
         return NULL;
     }
-    control->sandbox = mcs->sandbox;
     control->connected = wh_client_open(&control->client, control->node, &options);
     return control->connected ? &control->client.link : NULL;
 }

@@ -41,7 +41,7 @@ typedef struct {
     wh_control_options_t options;
     wh_client_t client;
     bool connected;
-    wh_sandbox_t *sandbox;       /* of the run or session, while connected */
+    wh_sandbox_t *sandbox;       /* of the run or session; null before its first command */
     wh_link_identity_t identity; /* of the run; and where it is: */
     int64_t utime, seq;
     char running[200]; /* the command that goes on; empty: none */

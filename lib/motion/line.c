@@ -145,17 +145,23 @@ static wh_limits_t path_limits(const wh_robot_t *robot, wh_real_t share, wh_real
     return limits;
 }
 
+static wh_status_t check_caps(const wh_line_caps_t *caps) {
+    if (!wh_real_is_finite(caps->speed) || !wh_real_is_finite(caps->acceleration)) {
+        return WH_STATUS_NOT_FINITE;
+    }
+    return caps->speed < 0 || caps->acceleration < 0 ? WH_STATUS_OUT_OF_RANGE : WH_OK;
+}
+
 static wh_status_t check_arguments(const wh_line_t *line, const wh_robot_t *robot, const wh_real_t from_q[],
                                    const wh_vec3_t *step, const wh_line_caps_t *caps) {
     if (line == NULL || robot == NULL || from_q == NULL || step == NULL || caps == NULL) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (!wh_real_is_finite(wh_vec3_dot(step, step)) || !wh_real_is_finite(caps->speed) ||
-        !wh_real_is_finite(caps->acceleration)) {
+    if (!wh_real_is_finite(wh_vec3_dot(step, step))) {
         return WH_STATUS_NOT_FINITE;
     }
-    return caps->speed < 0 || caps->acceleration < 0 ? WH_STATUS_OUT_OF_RANGE
-                                                     : wh_robot_check_travel(robot, from_q);
+    const wh_status_t status = check_caps(caps);
+    return status == WH_OK ? wh_robot_check_travel(robot, from_q) : status;
 }
 
 /* The step in base as the arm sees it at the start. */

@@ -63,23 +63,25 @@ static int code_with(int before, bool crossed) {
     return before == CODE_EMPTY ? CODE_SINGLE : CODE_DOUBLE;
 }
 
+static void mark_range(int codes[], int one, int other, bool crossed) {
+    const int low = one < other ? one : other;
+    const int high = one < other ? other : one;
+    for (int slot = low; slot <= high; ++slot) {
+        codes[slot] = code_with(codes[slot], crossed);
+    }
+}
+
 static void mark_wafer(const wh_station_t *place, const sight_t *sight, int codes[]) {
     int slots[2];
     for (int beam = 0; beam < 2; ++beam) {
         slots[beam] = sight->seen[beam] ? nearest_slot(place, sight->height[beam]) : -1;
     }
-    const bool both = slots[0] >= 0 && slots[1] >= 0;
-    const double apart = both ? sight->height[1] - sight->height[0] : 0;
-    const bool crossed = !both || apart * apart >= place->pitch * place->pitch / 4;
-    int low = both ? slots[0] : slots[slots[0] >= 0 ? 0 : 1];
-    int high = both ? slots[1] : low;
-    if (low > high) {
-        const int swapped = low;
-        low = high;
-        high = swapped;
-    }
-    for (int slot = low; slot >= 0 && slot <= high; ++slot) {
-        codes[slot] = code_with(codes[slot], crossed);
+    if (slots[0] >= 0 && slots[1] >= 0) {
+        const double apart = sight->height[1] - sight->height[0];
+        mark_range(codes, slots[0], slots[1], apart * apart >= place->pitch * place->pitch / 4);
+    } else if (slots[0] >= 0 || slots[1] >= 0) {
+        const int slot = slots[slots[0] >= 0 ? 0 : 1];
+        mark_range(codes, slot, slot, true);
     }
 }
 
