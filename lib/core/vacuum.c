@@ -63,6 +63,9 @@ wh_vacuum_t wh_vacuum_start(void) {
 /*@ requires \valid_read(config) && \valid_read(upset); assigns \nothing; */
 static wh_real_t approach(const wh_vacuum_config_t *config, const wh_vacuum_upset_t *upset, wh_real_t level,
                           wh_real_t target, wh_real_t dt) {
+    if (level == target) {
+        return target;
+    }
     const wh_real_t up = config->build > upset->build ? config->build : upset->build;
     const wh_real_t tau = target > level ? up : config->vent;
     const wh_real_t next = level + (target - level) * (dt / (tau + dt));

@@ -89,7 +89,7 @@ static void add_measured(wh_simulator_t *simulator, wh_event_kind_t kind, size_t
 }
 
 static void report_faults(wh_simulator_t *simulator, uint32_t slots, wh_event_kind_t kind) {
-    for (size_t i = 0; i < WH_FAULTS; ++i) {
+    for (size_t i = 0; slots >> i != 0; ++i) {
         if ((slots >> i & 1U) == 0) {
             continue;
         }
