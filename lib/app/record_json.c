@@ -127,6 +127,30 @@ static json_t *part_names(wh_json_writer_t *writer, const int32_t parts[2]) {
     return list;
 }
 
+/* What was found against which limit, between which parts, by which fault. */
+static void put_found(wh_json_writer_t *writer, json_t *object, const wh_event_t *event) {
+    static const uint32_t with_parts =
+        1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE;
+    static const uint32_t with_values = 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_PLACED_OFF_CENTRE |
+                                        1U << WH_EVENT_PLACED_ASKEW | 1U << WH_EVENT_SETTLED |
+                                        1U << WH_EVENT_SLIPPED | 1U << WH_EVENT_VACUUM_LOST;
+    static const uint32_t of_faults = 1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
+    const uint32_t kind = 1U << (unsigned)event->kind;
+    if (kind & with_parts) {
+        wh_json_put(writer, object, "parts", part_names(writer, event->parts));
+        wh_json_put(writer, object, "at", vector(writer, event->at));
+    }
+    if (kind & with_values) {
+        wh_json_put(writer, object, "value", wh_json_real((double)event->value));
+        wh_json_put(writer, object, "limit", wh_json_real((double)event->limit));
+    }
+    if (kind & of_faults) {
+        wh_json_put(writer, object, "fault", json_integer(event->parts[0] + 1));
+        wh_json_put(writer, object, "fault_kind",
+                    json_string(wh_fault_name((wh_fault_kind_t)event->parts[1])));
+    }
+}
+
 /* What only this kind of event has. */
 static void put_particulars(wh_json_writer_t *writer, json_t *object, const wh_event_t *event) {
     switch ((int)event->kind) {
@@ -149,32 +173,8 @@ static void put_particulars(wh_json_writer_t *writer, json_t *object, const wh_e
         wh_json_put(writer, object, "status", json_integer((json_int_t)event->status));
         wh_json_put(writer, object, "message", json_string(wh_status_text(event->status)));
         break;
-    case WH_EVENT_PLACED_OFF_CENTRE:
-    case WH_EVENT_PLACED_ASKEW:
-    case WH_EVENT_SETTLED:
-    case WH_EVENT_SLIPPED:
-    case WH_EVENT_VACUUM_LOST:
-        wh_json_put(writer, object, "value", wh_json_real((double)event->value));
-        wh_json_put(writer, object, "limit", wh_json_real((double)event->limit));
-        break;
-    case WH_EVENT_HIT:
-    case WH_EVENT_UNDECIDED:
-        wh_json_put(writer, object, "parts", part_names(writer, event->parts));
-        wh_json_put(writer, object, "at", vector(writer, event->at));
-        break;
-    case WH_EVENT_TOO_CLOSE:
-        wh_json_put(writer, object, "parts", part_names(writer, event->parts));
-        wh_json_put(writer, object, "at", vector(writer, event->at));
-        wh_json_put(writer, object, "value", wh_json_real((double)event->value));
-        wh_json_put(writer, object, "limit", wh_json_real((double)event->limit));
-        break;
-    case WH_EVENT_FAULT_ARMED:
-    case WH_EVENT_FAULT_CLEARED:
-        wh_json_put(writer, object, "fault", json_integer(event->parts[0] + 1));
-        wh_json_put(writer, object, "fault_kind",
-                    json_string(wh_fault_name((wh_fault_kind_t)event->parts[1])));
-        break;
     default:
+        put_found(writer, object, event);
         break;
     }
 }

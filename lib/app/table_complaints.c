@@ -125,27 +125,9 @@ static void say_physics(wh_grid_t *grid, const wh_event_t *event) {
     }
 }
 
-static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const wh_event_t *event) {
+/* Contact and clearances, how a wafer was set down. */
+static void say_of_cell(const wh_report_t *report, wh_grid_t *grid, const wh_event_t *event) {
     switch ((int)event->kind) {
-    case WH_EVENT_CONTESTED:
-        wh_grid_text(grid, WHY, WH_INK_PLAIN, "ready, but %s holds it",
-                     wh_report_gripper(report, event->other));
-        break;
-    case WH_EVENT_BAD_INPUT:
-        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s", wh_status_text(event->status));
-        break;
-    case WH_EVENT_RELEASED_UNSUPPORTED:
-        wh_grid_text(grid, WHY, WH_INK_PLAIN, "in no slot, %.3f mm above what is below",
-                     (double)event->height);
-        break;
-    case WH_EVENT_SLOT_OCCUPIED:
-        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s lies in that slot", wh_report_wafer(report, event->other));
-        break;
-    case WH_EVENT_NEAR_MISS:
-        if (report->record->layout) {
-            say_failed(report, grid, at, &event->measured);
-        }
-        break;
     case WH_EVENT_HIT:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s and %s touch at %.3f, %.3f, %.3f mm",
                      part_name(report, event->parts[0]), part_name(report, event->parts[1]),
@@ -171,6 +153,33 @@ static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const
         break;
     default:
         say_physics(grid, event);
+        break;
+    }
+}
+
+static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const wh_event_t *event) {
+    switch ((int)event->kind) {
+    case WH_EVENT_CONTESTED:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "ready, but %s holds it",
+                     wh_report_gripper(report, event->other));
+        break;
+    case WH_EVENT_BAD_INPUT:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s", wh_status_text(event->status));
+        break;
+    case WH_EVENT_RELEASED_UNSUPPORTED:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "in no slot, %.3f mm above what is below",
+                     (double)event->height);
+        break;
+    case WH_EVENT_SLOT_OCCUPIED:
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s lies in that slot", wh_report_wafer(report, event->other));
+        break;
+    case WH_EVENT_NEAR_MISS:
+        if (report->record->layout) {
+            say_failed(report, grid, at, &event->measured);
+        }
+        break;
+    default:
+        say_of_cell(report, grid, event);
         break;
     }
 }

@@ -21,18 +21,22 @@ static bool hangs(const wh_part_t *part) {
     return part->kind != WH_PART_FIXED && part->kind != WH_PART_LEDGE;
 }
 
+static bool is_index(int32_t index, size_t count) {
+    return index >= 0 && (size_t)index < count;
+}
+
 static bool owner_fits(const wh_world_config_t *config, const wh_part_t *part) {
     switch (part->kind) {
     case WH_PART_FIXED:
         return true;
     case WH_PART_LEDGE:
-        return part->owner >= 0 && (size_t)part->owner < config->cell->count && part->slot >= 1 &&
-               part->slot <= config->cell->stations[part->owner].slots;
+        return is_index(part->owner, config->cell->count) &&
+               is_index(part->slot - 1, (size_t)config->cell->stations[part->owner].slots);
     case WH_PART_ARM:
-        return part->owner >= 0 && part->owner < (int32_t)WH_ARM_BODIES;
+        return is_index(part->owner, WH_ARM_BODIES);
     case WH_PART_BLADE:
     case WH_PART_CHUCK:
-        return part->owner >= 0 && (size_t)part->owner < config->gripper_count;
+        return is_index(part->owner, config->gripper_count);
     case WH_PART_WAFER:
         break;
     }
@@ -64,6 +68,11 @@ static wh_status_t validate_parts(const wh_world_config_t *config, int32_t *part
     return WH_OK;
 }
 
+static bool exceeds_capacity(const wh_world_config_t *config) {
+    return config->gripper_count > WH_WORLD_GRIPPERS || count_hanging(config) > WH_WORLD_MOVING ||
+           config->part_count > 1000000 || config->wafer_count > 1000000;
+}
+
 wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part) {
     int32_t unused = WH_NONE;
     int32_t *const where = part ? part : &unused;
@@ -71,8 +80,7 @@ wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part) {
     if (!config || !config->cell || (!config->parts && config->part_count > 0)) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (config->gripper_count > WH_WORLD_GRIPPERS || count_hanging(config) > WH_WORLD_MOVING ||
-        config->part_count > 1000000 || config->wafer_count > 1000000) {
+    if (exceeds_capacity(config)) {
         return WH_STATUS_BAD_CAPACITY;
     }
     const wh_status_t status = validate_parts(config, where);

@@ -34,14 +34,17 @@ static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     grasp->near_projxy = cell->near_projxy;
     grasp->check = cell->check != 0 ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED;
     grasp->seat = cell->seat != 0;
-    layout->cell.settle = cell->settle != 0;
-    layout->cell.off_centre = cell->off_centre;
-    layout->cell.askew = cell->askew;
     layout->slice_us = cell->slice_us;
     return wh_tolerance_validate(&grasp->tolerance) == WH_OK && is_limit(cell->eps_projz) &&
            is_limit(cell->near_projz) && is_limit(cell->near_projxy) && cell->slice_us >= 1 &&
-           cell->slice_us <= 1000000 && cell->off_centre >= 0 && cell->off_centre <= 1e6 &&
-           cell->askew >= 0 && cell->askew <= 10;
+           cell->slice_us <= 1000000;
+}
+
+static bool take_placing(const waferhand_cell *from, wh_cell_t *cell) {
+    cell->settle = from->settle != 0;
+    cell->off_centre = from->off_centre;
+    cell->askew = from->askew;
+    return from->off_centre >= 0 && from->off_centre <= 1e6 && from->askew >= 0 && from->askew <= 10;
 }
 
 static bool take_station(const waferhand_station *from, size_t grippers, wh_layout_station_t *station,
@@ -105,7 +108,7 @@ static bool make_room(const waferhand_cell *cell, wh_layout_t *layout) {
 wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell) {
     wh_layout_t *layout = calloc(1, sizeof *layout);
     if (!layout || cell->gripper_count < 1 || !make_room(cell, layout) || !take_checks(cell, layout) ||
-        !take_lists(cell, layout) || !take_physics(cell, layout)) {
+        !take_placing(cell, &layout->cell) || !take_lists(cell, layout) || !take_physics(cell, layout)) {
         wh_link_layout_free(layout);
         return NULL;
     }

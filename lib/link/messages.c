@@ -236,20 +236,13 @@ static bool other_fits(const waferhand_event *event, const waferhand_state *mess
 
 /* Whether wafer and gripper are what this kind has. The collision check and the faults may name none. */
 static bool names_fit(const waferhand_event *event, const waferhand_state *message) {
-    const bool wafer_fits = is_index(event->wafer, message->wafer_count);
-    const bool gripper_fits = is_index(event->gripper, message->gripper_count);
-    switch (event->kind) {
-    case WH_EVENT_BAD_INPUT:
-        return event->wafer == WH_NONE && gripper_fits;
-    case WH_EVENT_HIT:
-    case WH_EVENT_UNDECIDED:
-    case WH_EVENT_TOO_CLOSE:
-    case WH_EVENT_FAULT_ARMED:
-    case WH_EVENT_FAULT_CLEARED:
-        return (wafer_fits || event->wafer == WH_NONE) && (gripper_fits || event->gripper == WH_NONE);
-    default:
-        return wafer_fits && gripper_fits;
-    }
+    static const uint32_t any = 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE |
+                                1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
+    const bool may_lack = (any >> (uint32_t)event->kind & 1U) != 0;
+    const bool no_wafer = event->wafer == WH_NONE && (may_lack || event->kind == WH_EVENT_BAD_INPUT);
+    const bool wafer_fits = event->kind != WH_EVENT_BAD_INPUT && is_index(event->wafer, message->wafer_count);
+    const bool no_gripper = event->gripper == WH_NONE && may_lack;
+    return (no_wafer || wafer_fits) && (no_gripper || is_index(event->gripper, message->gripper_count));
 }
 
 static bool parts_fit(const waferhand_event *event) {

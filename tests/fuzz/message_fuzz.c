@@ -192,9 +192,10 @@ static bool is_index(int32_t index, size_t count) {
 static void check_event(const wh_event_t *event, int64_t seq) {
     const size_t wafers = layout->wafer_count;
     const size_t grippers = layout->machine.gripper_count;
-    const bool of_parts = event->kind == WH_EVENT_HIT || event->kind == WH_EVENT_UNDECIDED ||
-                          event->kind == WH_EVENT_TOO_CLOSE || event->kind == WH_EVENT_FAULT_ARMED ||
-                          event->kind == WH_EVENT_FAULT_CLEARED;
+    static const uint32_t nameless = 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED |
+                                     1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_FAULT_ARMED |
+                                     1U << WH_EVENT_FAULT_CLEARED;
+    const bool of_parts = (nameless >> (unsigned)event->kind & 1U) != 0;
     const bool no_wafer = event->kind == WH_EVENT_BAD_INPUT || of_parts;
     REQUIRE(strcmp(wh_event_name(event->kind), "unknown") != 0);
     REQUIRE((no_wafer && event->wafer == WH_NONE) || is_index(event->wafer, wafers));

@@ -101,24 +101,29 @@ static wh_clearance_kind_t kind_of(int other, const wh_pose_t *blade, const wh_p
     return shape->r.z > blade->r.z ? WH_CLEARANCE_BLADE_WAFER_ABOVE : WH_CLEARANCE_BLADE_WAFER_BELOW;
 }
 
+/* Blade part p against another thing. */
+static void look_at_pair(const wh_pose_t *gripper, int p, int other, bool end, oracle_t *oracle) {
+    const wh_pose_t blade = wh_pose_compose(gripper, &parts[p].convex.body_from_shape);
+    wh_pose_t shape;
+    wh_gap_t gap;
+    const wh_convex_t *convex = other_of(other, &shape);
+    wh_gap_measure(&parts[p].convex, &blade, convex, &shape, 20, wh_vec3(0, 0, 0), &gap);
+    const wh_real_t found = gap.state == WH_GAP_HIT ? -1 : gap.gap;
+    const wh_clearance_kind_t kind = kind_of(other, &blade, &shape);
+    oracle->undecided = oracle->undecided || gap.state == WH_GAP_UNDECIDED;
+    oracle->deepest = found < oracle->deepest ? found : oracle->deepest;
+    if (end && found < oracle->least[kind]) {
+        oracle->least[kind] = found < 0 ? 0 : found;
+    }
+    if (end && found < oracle->now[kind]) {
+        oracle->now[kind] = found < 0 ? 0 : found;
+    }
+}
+
 static void look_at_instant(const wh_pose_t *gripper, bool end, oracle_t *oracle) {
     for (int p = FIXED; p < PARTS; ++p) {
-        const wh_pose_t blade = wh_pose_compose(gripper, &parts[p].convex.body_from_shape);
         for (int other = 0; other < FIXED + WAFERS; ++other) {
-            wh_pose_t shape;
-            wh_gap_t gap;
-            const wh_convex_t *convex = other_of(other, &shape);
-            wh_gap_measure(&parts[p].convex, &blade, convex, &shape, 20, wh_vec3(0, 0, 0), &gap);
-            const wh_real_t found = gap.state == WH_GAP_HIT ? -1 : gap.gap;
-            const wh_clearance_kind_t kind = kind_of(other, &blade, &shape);
-            oracle->undecided = oracle->undecided || gap.state == WH_GAP_UNDECIDED;
-            oracle->deepest = found < oracle->deepest ? found : oracle->deepest;
-            if (end && found < oracle->least[kind]) {
-                oracle->least[kind] = found < 0 ? 0 : found;
-            }
-            if (end && found < oracle->now[kind]) {
-                oracle->now[kind] = found < 0 ? 0 : found;
-            }
+            look_at_pair(gripper, p, other, end, oracle);
         }
     }
 }
