@@ -316,16 +316,16 @@ static void test_a_wafer_comes_to_lie_on_its_slot(void **state) {
 static void test_what_does_not_settle(void **state) {
     (void)state;
     scene_t scene;
-    const wh_pose_t above = wh_test_at(700, 0, 900.3);
+    const wh_pose_t above = wh_test_at(700, 0, 900.25);
     let_go(&scene, &above);
     wh_cell_settle(&cell, &scene.table, &scene.list); /* not asked for */
     assert_int_equal(scene.list.count, 1);
-    assert_near(scene.wafers[0].base_from_wafer.r.z, 900.3, 0);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 900.25, 0);
     const wh_pose_t below = wh_test_at(700, 0, 899.9);
     assert_int_equal(settle(&scene, &below), 0);
-    const wh_pose_t outside = wh_test_at(800, 0, 900.3);
+    const wh_pose_t outside = wh_test_at(800, 0, 900.25);
     assert_int_equal(settle(&scene, &outside), 0);
-    assert_near(scene.wafers[0].base_from_wafer.r.z, 900.3, 0);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 900.25, 0);
     let_go(&scene, &above);
     scene.events[0].kind = WH_EVENT_HANDED_OVER;
     cell.settle = true;
