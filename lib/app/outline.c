@@ -120,7 +120,7 @@ static void keep_hull(wh_outline_t *outline) {
 }
 
 static bool make_room(wh_outline_t *outline, const wh_convex_t *convex) {
-    const size_t points = convex->kind == WH_CONVEX_MESH ? convex->point_count : 2 * CIRCLE_CORNERS;
+    const size_t points = convex->kind == WH_CONVEX_MESH ? convex->point_count : 2 * (size_t)CIRCLE_CORNERS;
     const size_t needed = 3 * points + 2; /* the spots, and a hull that visits each twice at most */
     if (needed > outline->capacity) {
         wh_spot_t *grown = realloc(outline->spots, needed * sizeof *grown);
