@@ -209,6 +209,8 @@ static void put_checks(writer_t *writer, json_t *root) {
     json_t *tolerance = json_object();
     put(writer, root, "wafer_diameter", json_real(layout->wafer_diameter));
     put(writer, root, "wafer_thickness", json_real(layout->wafer_thickness));
+    put(writer, root, "notch_deg", json_real((double)wh_deg_from_rad((wh_real_t)layout->notch)));
+    put(writer, root, "notch_depth", json_real(layout->notch_depth));
     put(writer, tolerance, "name", json_string(layout->tolerance_name));
     put_real(writer, tolerance, "projz", layout->grasp.tolerance.projz);
     put_real(writer, tolerance, "projxy", layout->grasp.tolerance.projxy);

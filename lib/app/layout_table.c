@@ -268,8 +268,9 @@ static int print_heading(const listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
     const wh_tolerance_t *limits = &layout->grasp.tolerance;
     const int status = put(listing, layout->path);
-    fprintf(listing->out, "\n%zu wafer%s of %g mm, %g mm thick\n", layout->wafer_count,
-            layout->wafer_count == 1 ? "" : "s", layout->wafer_diameter, layout->wafer_thickness);
+    fprintf(listing->out, "\n%zu wafer%s of %g mm, %g mm thick, notch at %g%s\n", layout->wafer_count,
+            layout->wafer_count == 1 ? "" : "s", layout->wafer_diameter, layout->wafer_thickness,
+            (double)wh_deg_from_rad((wh_real_t)layout->notch), wh_style_degree(listing->style));
     fprintf(listing->out, "tolerance %s: %g mm, %g mm, %.10g; checked %s %g ms\n", layout->tolerance_name,
             (double)limits->projz, (double)limits->projxy, (double)limits->planar,
             layout->grasp.check == WH_CHECK_SWEPT ? "along the whole of each slice of"

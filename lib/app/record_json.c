@@ -54,12 +54,27 @@ static void put_place(wh_json_writer_t *writer, json_t *object, const wh_place_t
                 lies ? wh_json_real((double)wh_deg_from_rad(place->tilt)) : json_null());
 }
 
+/* Where the notch points, about the station's z from its x; about base's for a wafer in no slot. */
+static double notch_deg(const wh_layout_t *layout, const wh_wafer_record_t *wafer) {
+    wh_real_t sine = 0;
+    wh_real_t cosine = 1;
+    wh_sin_cos((wh_real_t)layout->notch, &sine, &cosine);
+    const wh_vec3_t notch = {cosine, sine, 0};
+    wh_vec3_t direction = wh_mat3_transform(&wafer->base_from_wafer.R, &notch);
+    if (wafer->place.station != WH_NONE) {
+        direction =
+            wh_mat3_transform_back(&layout->places[wafer->place.station].base_from_station.R, &direction);
+    }
+    return (double)wh_deg_from_rad(wh_atan2(direction.y, direction.x));
+}
+
 static json_t *wafer(wh_json_writer_t *writer, size_t i) {
     const wh_wafer_record_t *from = &writer->record->wafers[i];
     json_t *object = json_object();
     wh_json_put(writer, object, "name", wh_json_text(wh_record_wafer_name(writer->record, (int32_t)i)));
     wh_json_put(writer, object, "holder", wh_json_text(wh_record_gripper_name(writer->record, from->holder)));
     put_place(writer, object, &from->place);
+    wh_json_put(writer, object, "notch_deg", wh_json_real(notch_deg(writer->record->layout, from)));
     wh_json_put(writer, object, "position", vector(writer, from->base_from_wafer.r));
     wh_json_put(writer, object, "rotation", matrix(writer, &from->base_from_wafer.R));
     return object;

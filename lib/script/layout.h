@@ -78,6 +78,8 @@ typedef struct {
     const char *path;        /* as it was asked for */
     char tolerance_name[16]; /* the preset's, or "own" */
     double wafer_diameter, wafer_thickness;
+    double notch,
+        notch_depth; /* its direction in the wafer's frame, rad about e3 from e1, and how deep, mm */
     wh_grasp_config_t grasp;
     int64_t slice_us;
     wh_physics_t physics; /* vacuum, pads, faults from the beginning */

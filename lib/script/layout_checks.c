@@ -18,14 +18,26 @@ static double default_thickness(double diameter) {
     return standard[4].thickness;
 }
 
+/* A mark of the wafer by which people and prealigners tell how it is turned; its shape stays a disc. */
+static void read_notch(wh_reader_t *reader, wh_layout_t *layout) {
+    if (wh_reader_enter(reader, "notch")) {
+        wh_reader_refuse_unknown(reader, "at depth");
+        layout->notch = wh_rad_from_deg(wh_reader_number(reader, "at", 0, -360, 360));
+        layout->notch_depth = wh_reader_number(reader, "depth", 1, 0, layout->wafer_diameter / 4);
+        wh_reader_leave(reader);
+    }
+}
+
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout) {
     layout->wafer_diameter = 300;
     layout->wafer_thickness = default_thickness(300);
+    layout->notch_depth = 1;
     if (wh_reader_enter(reader, "wafer")) {
-        wh_reader_refuse_unknown(reader, "diameter thickness");
+        wh_reader_refuse_unknown(reader, "diameter thickness notch");
         layout->wafer_diameter = wh_reader_number(reader, "diameter", 300, 1, 1000);
         layout->wafer_thickness =
             wh_reader_number(reader, "thickness", default_thickness(layout->wafer_diameter), 0.01, 100);
+        read_notch(reader, layout);
         wh_reader_leave(reader);
     }
 }

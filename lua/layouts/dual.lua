@@ -1,8 +1,10 @@
 -- Two blades back to back on one wrist, two stations and a prealigner.
 return {
+  robot = { r = { min = 50, max = 700, home = 150 } }, -- to the wrist, which is between the blades
+  shapes = { arm = { reach = 0, link = 360 } },
   grippers = {
-    { name = "FRONT" },
-    { name = "BACK", at = { 0, 0, 10 }, rpy = { 0, 0, 180 } },
+    { name = "FRONT", at = { 250, 0, 0 } },
+    { name = "BACK", at = { -250, 0, 10 }, rpy = { 0, 0, 180 } },
     { name = "PA", on = "P" },
   },
   stations = {

@@ -129,8 +129,8 @@ static void test_failure_and_commands(void **state) {
 }
 
 static void test_wafers(void **state) {
-    static const char *const keys[] = {"name", "holder",   "station",  "slot",     "dx", "dy",
-                                       "dz",   "tilt_deg", "position", "rotation", NULL};
+    static const char *const keys[] = {"name", "holder",   "station",   "slot",     "dx",       "dy",
+                                       "dz",   "tilt_deg", "notch_deg", "position", "rotation", NULL};
     static const char *const nulls[] = {"holder", "station", "slot", "dx", "dy", "dz", "tilt_deg"};
     static fixture_t f;
     (void)state;
@@ -146,6 +146,7 @@ static void test_wafers(void **state) {
     assert_int_equal(json_integer_value(json_object_get(held, "slot")), 1);
     assert_real(held, "dx", 13.794);
     assert_real(held, "tilt_deg", 0);
+    assert_real(held, "notch_deg", 0);
     json_t *position = json_object_get(held, "position");
     assert_int_equal(json_array_size(position), 3);
     assert_true(bits_of(json_real_value(json_array_get(position, 1))) == bits_of(-0.0));

@@ -232,7 +232,7 @@ static void test_a_collision_ahead(void **state) {
                   "ERROR 61 COLLISION_AHEAD: the motion would collide; the blade would meet the moon");
     assert_int_equal(session.mcs.track.slice, 0);
     assert_int_equal(liar.slices, 0);
-    assert_answer("AXES", "OK theta=0 r=300 z=900 yaw=0 ");
+    assert_answer("AXES", "OK theta=0 r=150 z=900 yaw=0 ");
     judge.asked = 0;
     assert_answer("GET A 1", "OK");
     assert_int_equal(judge.asked, 6);
