@@ -37,7 +37,7 @@ static int32_t find_other(const wh_cell_t *cell, const wh_grasp_t *table, int32_
 }
 
 /* A copy of the release as another kind; null when the list is full. */
-static wh_event_t *append(wh_event_list_t *list, size_t release, wh_event_kind_t kind) {
+static wh_event_t *append(size_t release, wh_event_list_t *list, wh_event_kind_t kind) {
     if (list->count >= list->capacity) {
         return NULL;
     }
@@ -50,8 +50,8 @@ static wh_event_t *append(wh_event_list_t *list, size_t release, wh_event_kind_t
 static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
                               size_t release) {
     const int32_t wafer = list->events[release].wafer;
-    wh_event_t *said = append(list, release, WH_EVENT_RELEASED_UNSUPPORTED);
-    if (said) {
+    wh_event_t *said = append(release, list, WH_EVENT_RELEASED_UNSUPPORTED);
+    if (said != NULL) {
         said->height = height_above_support(cell, &table->storage.wafers[wafer].base_from_wafer);
     }
 }
@@ -59,8 +59,8 @@ static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh
 static void judge_occupied(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
                            size_t release, const wh_place_t *place) {
     const int32_t other = find_other(cell, table, list->events[release].wafer, place);
-    wh_event_t *said = other == WH_NONE ? NULL : append(list, release, WH_EVENT_SLOT_OCCUPIED);
-    if (said) {
+    wh_event_t *said = other == WH_NONE ? NULL : append(release, list, WH_EVENT_SLOT_OCCUPIED);
+    if (said != NULL) {
         said->other = other;
     }
 }
@@ -68,8 +68,8 @@ static void judge_occupied(const wh_cell_t *cell, const wh_grasp_t *table, wh_ev
 /* Says that `found` is above a limit that is set. */
 static void judge_limit(wh_event_list_t *list, size_t release, wh_event_kind_t kind, wh_real_t found,
                         wh_real_t limit) {
-    wh_event_t *said = limit > 0 && found > limit ? append(list, release, kind) : NULL;
-    if (said) {
+    wh_event_t *said = limit > 0 && found > limit ? append(release, list, kind) : NULL;
+    if (said != NULL) {
         said->value = found;
         said->limit = limit;
     }

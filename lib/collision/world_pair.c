@@ -4,6 +4,9 @@
 /* A slice is divided into at most so many steps before the check gives up. */
 #define MOST_STEPS 256
 
+/* Halves of a slice that are tried at most: shorter ones are shorter than any way that matters. */
+#define MOST_HALVINGS 40
+
 /* Gaps are known better than this, mm: one that is not smaller by more is no new minimum. */
 #define SAME_GAP WH_REAL(1e-4)
 
@@ -34,7 +37,8 @@ static wh_real_t safe_step(const wh_side_t *a, const wh_side_t *b, wh_real_t t, 
                            const wh_gap_t *gap) {
     const wh_real_t least = (gap->gap > WH_GAP_TOUCH ? gap->gap : WH_GAP_TOUCH) / motion;
     const wh_real_t bulge = a->bulge + b->bulge;
-    for (wh_real_t step = 1 - t; step > least; step /= 2) {
+    wh_real_t step = 1 - t;
+    for (int halvings = 0; halvings < MOST_HALVINGS && step > least; ++halvings) {
         const wh_pose_t at_a = shape_at(a, t + step);
         const wh_pose_t at_b = shape_at(b, t + step);
         const wh_real_t end = wh_gap_along(a->convex, &at_a, b->convex, &at_b, gap->axis);
@@ -42,6 +46,7 @@ static wh_real_t safe_step(const wh_side_t *a, const wh_side_t *b, wh_real_t t, 
         if (apart - bulge * step * step > -WH_GAP_TOUCH) {
             return step;
         }
+        step /= 2;
     }
     return least;
 }

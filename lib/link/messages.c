@@ -148,7 +148,9 @@ static void put_arrays(const wh_state_t *state, wh_link_state_t *room) {
     }
     for (size_t g = 0; g < state->gripper_count; ++g) {
         put_gripper(&state->grippers[g], &room->grippers[g]);
-        put_condition(state->condition, g, &room->grippers[g]);
+        if (state->condition) {
+            put_condition(state->condition, g, &room->grippers[g]);
+        }
     }
     for (size_t e = 0; e < state->event_count; ++e) {
         put_event(&state->events[e], &room->events[e]);

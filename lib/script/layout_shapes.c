@@ -1,4 +1,5 @@
 /* A layout's shapes for the collision check: defaults by wafer size, changed where the layout says so. */
+#include <stdio.h>
 #include <string.h>
 
 #include "script/layout_internal.h"
@@ -74,8 +75,10 @@ void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout) {
 
 static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
     char known[256] = "";
-    for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
-        strcat(strcat(known, kind > 0 ? " " : ""), wh_clearance_name((wh_clearance_kind_t)kind));
+    size_t length = 0;
+    for (int kind = 0; kind < WH_CLEARANCES && length < sizeof known; ++kind) {
+        length += (size_t)snprintf(known + length, sizeof known - length, "%s%s", kind > 0 ? " " : "",
+                                   wh_clearance_name((wh_clearance_kind_t)kind));
     }
     if (!wh_reader_enter(reader, "clearance")) {
         return;
