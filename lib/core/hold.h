@@ -62,7 +62,9 @@ wh_hold_t wh_hold_judge(const wh_pads_t *pads, wh_real_t level, const wh_mat3_t 
 /*@ requires \valid_read(pads) && \valid_read(base_from_gripper) && \valid(carry) && \valid(hold);
     requires centre == \null || \valid_read(centre);
     requires \separated(carry, hold) && \separated(carry, centre) && \separated(carry, base_from_gripper);
-    assigns *carry, *hold; */
+    requires 0 <= carry->known <= 2;
+    assigns *carry, *hold;
+    ensures 0 <= carry->known <= 2; */
 bool wh_carry_update(wh_carry_t *carry, const wh_pads_t *pads, wh_real_t level,
                      const wh_mat3_t *base_from_gripper, const wh_vec3_t *centre, wh_real_t dt,
                      wh_hold_t *hold);
