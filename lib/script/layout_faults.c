@@ -122,9 +122,9 @@ static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault
 
 static wh_real_t read_value(wh_reader_t *reader, wh_fault_kind_t kind) {
     if (kind == WH_FAULT_SLOW_VACUUM) {
-        return wh_reader_number(reader, "value", NAN, 0, 3600);
+        return wh_reader_number(reader, "value", WH_REAL(NAN), 0, 3600);
     }
-    return kind == WH_FAULT_LEAK ? wh_reader_number(reader, "value", NAN, 0, 1) : 0;
+    return kind == WH_FAULT_LEAK ? wh_reader_number(reader, "value", WH_REAL(NAN), 0, 1) : 0;
 }
 
 static int64_t slices_of(const wh_layout_t *layout, wh_real_t seconds) {

@@ -50,8 +50,8 @@ static void read_pads(wh_reader_t *reader, const wh_layout_t *layout, wh_pads_t 
         return;
     }
     wh_reader_refuse_unknown(reader, "friction force mass gravity");
-    pads->friction = wh_reader_number(reader, "friction", NAN, 0, 100);
-    pads->force = wh_reader_number(reader, "force", NAN, 0, 1e6);
+    pads->friction = wh_reader_number(reader, "friction", WH_REAL(NAN), 0, 100);
+    pads->force = wh_reader_number(reader, "force", WH_REAL(NAN), 0, 1e6);
     pads->mass = wh_reader_number(reader, "mass", mass, 1e-6, 1000);
     pads->gravity = wh_reader_number(reader, "gravity", 9.81, 0, 1000);
     wh_reader_leave(reader);
