@@ -1,51 +1,38 @@
 /* waferhand layout LAYOUT */
-#include <argp.h>
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
+#include "app/layout_arguments.h"
 #include "app/layout_report.h"
 #include "app/layout_svg.h"
-#include "script/layout_load.h"
 
-enum { OPTION_JSON = 1000, OPTION_SVG, OPTION_SET };
+enum { OPTION_JSON = 1000, OPTION_SVG };
 
 typedef struct {
-    const char *layout, *svg;
-    const char **parameters; /* room for one for each argument */
-    size_t parameter_count;
+    wh_layout_arguments_t layout;
+    const char *svg;
     bool json;
 } arguments_t;
 
 static const struct argp_option options[] = {
     {"json", OPTION_JSON, NULL, 0, "Print one JSON object instead of tables", 0},
     {"svg", OPTION_SVG, "FILE", 0, "Also draw the cell into FILE, from above and from the side", 0},
-    {"set", OPTION_SET, "NAME=VALUE", 0, "Hand the layout a parameter: params.NAME", 0},
     {0},
 };
 
 static error_t parse(int key, char *argument, struct argp_state *state) {
     arguments_t *arguments = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &arguments->layout;
+        return 0;
     case OPTION_JSON:
         arguments->json = true;
         return 0;
     case OPTION_SVG:
         arguments->svg = argument;
         return 0;
-    case OPTION_SET:
-        arguments->parameters[arguments->parameter_count++] = argument;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (arguments->layout) {
-            argp_error(state, "%s: one layout is enough", argument);
-        }
-        arguments->layout = argument;
-        return 0;
-    case ARGP_KEY_NO_ARGS:
-        argp_error(state, "which layout?");
-        return EINVAL;
     default:
         return ARGP_ERR_UNKNOWN;
     }
@@ -86,46 +73,29 @@ static int look_at(const arguments_t *arguments, const wh_layout_t *layout) {
     return status;
 }
 
-static int run(const arguments_t *arguments, wh_sandbox_t *sandbox) {
-    wh_sandbox_result_t result;
-    for (size_t i = 0; i < arguments->parameter_count; ++i) {
-        if (!wh_sandbox_set_parameter(sandbox, arguments->parameters[i], &result)) {
-            fprintf(stderr, "%s\n", result.message);
-            return WH_EXIT_USAGE;
-        }
-    }
-    const wh_layout_t *layout = wh_layout_load(sandbox, arguments->layout, &result);
-    if (!layout) {
-        fprintf(stderr, "%s\n", result.message);
-        return WH_EXIT_USAGE;
-    }
-    return look_at(arguments, layout);
+static int run(const arguments_t *arguments) {
+    const wh_layout_t *layout = wh_layout_arguments_load(&arguments->layout);
+    return layout ? look_at(arguments, layout) : WH_EXIT_USAGE;
 }
 
 int wh_app_layout(int argc, char **argv) {
+    static const struct argp_child children[] = {{&wh_layout_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {
         options,
         parse,
-        "LAYOUT",
+        NULL,
         "Lists what a layout describes, checks it before anything moves, and draws it.\v"
         "Exit status: 0 if nothing is wrong with it, 1 if something is, 2 for wrong usage or a "
         "bad input file.",
-        NULL,
+        children,
         NULL,
         NULL};
     static char name[] = "waferhand layout";
     arguments_t arguments = {0};
-    arguments.parameters = calloc((size_t)argc + 1, sizeof *arguments.parameters);
-    wh_sandbox_t *sandbox = wh_sandbox_new(NULL);
-    if (!arguments.parameters || !sandbox) {
-        perror("waferhand");
-        free(arguments.parameters);
-        return WH_EXIT_USAGE;
-    }
+    wh_layout_arguments_init(&arguments.layout, argc);
     argv[0] = name;
     argp_parse(&argp, argc, argv, 0, NULL, &arguments);
-    const int status = run(&arguments, sandbox);
-    wh_sandbox_free(sandbox);
-    free(arguments.parameters);
+    const int status = run(&arguments);
+    wh_layout_arguments_free(&arguments.layout);
     return status;
 }

@@ -1,6 +1,4 @@
 /* waferhand sim LAYOUT */
-#include <argp.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <poll.h>
 #include <stdio.h>
@@ -8,18 +6,17 @@
 #include <string.h>
 
 #include "app/app.h"
+#include "app/layout_arguments.h"
 #include "app/link_options.h"
 #include "app/style.h"
 #include "link/outputs.h"
 #include "link/simulation.h"
-#include "script/layout_load.h"
 
-enum { OPTION_URL = 1000, OPTION_RECORD, OPTION_SET, OPTION_OUTPUTS };
+enum { OPTION_URL = 1000, OPTION_RECORD, OPTION_OUTPUTS };
 
 typedef struct {
-    const char *layout, *url, *record, *outputs;
-    const char **parameters; /* room for one for each argument */
-    size_t parameter_count;
+    wh_layout_arguments_t layout;
+    const char *url, *record, *outputs;
 } arguments_t;
 
 static const struct argp_option options[] = {
@@ -27,13 +24,15 @@ static const struct argp_option options[] = {
     {"record", OPTION_RECORD, "FILE", 0, "Write all messages into an LCM event log", 0},
     {"outputs", OPTION_OUTPUTS, "FILE", 0, "Take the valves from this file, one value per gripper, 0 or 1",
      0},
-    {"set", OPTION_SET, "NAME=VALUE", 0, "Hand the layout a parameter: params.NAME", 0},
     {0},
 };
 
 static error_t parse(int key, char *argument, struct argp_state *state) {
     arguments_t *arguments = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &arguments->layout;
+        return 0;
     case OPTION_URL:
         arguments->url = argument;
         return 0;
@@ -43,18 +42,6 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     case OPTION_OUTPUTS:
         arguments->outputs = argument;
         return 0;
-    case OPTION_SET:
-        arguments->parameters[arguments->parameter_count++] = argument;
-        return 0;
-    case ARGP_KEY_ARG:
-        if (arguments->layout) {
-            argp_error(state, "%s: one layout is enough", argument);
-        }
-        arguments->layout = argument;
-        return 0;
-    case ARGP_KEY_NO_ARGS:
-        argp_error(state, "which layout?");
-        return EINVAL;
     default:
         return ARGP_ERR_UNKNOWN;
     }
@@ -140,17 +127,9 @@ static int serve(wh_node_t *node, const wh_layout_t *layout, const char *outputs
     return handled < 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
 }
 
-static int run(const arguments_t *arguments, wh_sandbox_t *sandbox) {
-    wh_sandbox_result_t result;
-    for (size_t i = 0; i < arguments->parameter_count; ++i) {
-        if (!wh_sandbox_set_parameter(sandbox, arguments->parameters[i], &result)) {
-            fprintf(stderr, "%s\n", result.message);
-            return WH_EXIT_USAGE;
-        }
-    }
-    const wh_layout_t *layout = wh_layout_load(sandbox, arguments->layout, &result);
+static int run(const arguments_t *arguments) {
+    const wh_layout_t *layout = wh_layout_arguments_load(&arguments->layout);
     if (!layout) {
-        fprintf(stderr, "%s\n", result.message);
         return WH_EXIT_USAGE;
     }
     wh_node_t node;
@@ -164,24 +143,18 @@ static int run(const arguments_t *arguments, wh_sandbox_t *sandbox) {
 }
 
 int wh_app_sim(int argc, char **argv) {
+    static const struct argp_child children[] = {{&wh_layout_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {
         options,  parse,
-        "LAYOUT", "Simulates the layout's cell for whoever sends commands over LCM, until SIGINT or SIGTERM.",
-        NULL,     NULL,
+        NULL,     "Simulates the layout's cell for whoever sends commands over LCM, until SIGINT or SIGTERM.",
+        children, NULL,
         NULL};
     static char name[] = "waferhand sim";
     arguments_t arguments = {0};
-    arguments.parameters = calloc((size_t)argc + 1, sizeof *arguments.parameters);
-    wh_sandbox_t *sandbox = wh_sandbox_new(NULL);
-    if (!arguments.parameters || !sandbox) {
-        perror("waferhand");
-        free(arguments.parameters);
-        return WH_EXIT_USAGE;
-    }
+    wh_layout_arguments_init(&arguments.layout, argc);
     argv[0] = name;
     argp_parse(&argp, argc, argv, 0, NULL, &arguments);
-    const int status = run(&arguments, sandbox);
-    wh_sandbox_free(sandbox);
-    free(arguments.parameters);
+    const int status = run(&arguments);
+    wh_layout_arguments_free(&arguments.layout);
     return status;
 }
