@@ -1,63 +1,15 @@
 /* A layout's parts for the collision check: defaults by wafer size, obstacles, and what is refused. */
 #include <unistd.h>
 
-#include "support.h"
+#include "support_layout.h"
 
 #include "script/layout.h"
-#include "script/sandbox.h"
 
 #define GRIPPERS "grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } }, "
 #define PREALIGNER "P = { kind = 'prealigner', at = { -600, 0, 950 }, rpy = { 0, 0, 180 } }, "
 #define FOUP "F = { kind = 'foup', at = { 760, 0, 900 } }, "
 #define STATIONS "stations = { " FOUP PREALIGNER "}, "
 #define CELL GRIPPERS STATIONS
-
-static wh_sandbox_t *sandbox;
-static wh_sandbox_result_t result;
-
-static int open_sandbox(void **state) {
-    (void)state;
-    sandbox = wh_sandbox_new(NULL);
-    return sandbox ? 0 : -1;
-}
-
-static int close_sandbox(void **state) {
-    (void)state;
-    wh_sandbox_free(sandbox);
-    return 0;
-}
-
-static int read_here(lua_State *L) {
-    lua_pushlightuserdata(L, (void *)(uintptr_t)wh_layout_read(L, "cell.lua"));
-    return 1;
-}
-
-static const wh_layout_t *read_layout(const char *fields) {
-    lua_State *L = wh_sandbox_state(sandbox);
-    char text[4096];
-    lua_settop(L, 0);
-    const int length = snprintf(text, sizeof text, "return { %s }", fields);
-    lua_pushcfunction(L, read_here);
-    assert_true(wh_sandbox_evaluate_text(L, "cell.lua", text, (size_t)length, &result));
-    return wh_sandbox_call(L, 1, 1, &result) ? lua_touserdata(L, -1) : NULL;
-}
-
-static const wh_layout_t *read_sound(const char *fields) {
-    const wh_layout_t *layout = read_layout(fields);
-    if (!layout) {
-        fail_msg("%s", result.message);
-    }
-    return layout;
-}
-
-static void expect_refused(const char *fields, const char *message) {
-    if (read_layout(fields)) {
-        fail_msg("accepted: %s", fields);
-    }
-    if (!strstr(result.message, message)) {
-        fail_msg("\"%s\" is not in \"%s\"", message, result.message);
-    }
-}
 
 static int32_t find(const wh_layout_t *layout, const char *name) {
     for (size_t i = 0; i < layout->world.part_count; ++i) {

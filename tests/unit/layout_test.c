@@ -1,61 +1,12 @@
 /* Layouts: every field's default and unit, what is refused and how that is said. */
-#include "support.h"
+#include "support_layout.h"
 
 #include "core/status.h"
 #include "motion/trig.h"
 #include "script/layout.h"
-#include "script/sandbox.h"
 
 #define GRIPPERS "grippers = { { name = 'EE' } }, "
 #define STATIONS "stations = { A = { at = { 700, 0, 900 } } }, "
-
-static wh_sandbox_t *sandbox;
-static wh_sandbox_result_t result;
-
-static int open_sandbox(void **state) {
-    (void)state;
-    sandbox = wh_sandbox_new(NULL);
-    return sandbox ? 0 : -1;
-}
-
-static int close_sandbox(void **state) {
-    (void)state;
-    wh_sandbox_free(sandbox);
-    return 0;
-}
-
-static int read_here(lua_State *L) {
-    lua_pushlightuserdata(L, (void *)(uintptr_t)wh_layout_read(L, "cell.lua"));
-    return 1;
-}
-
-/* What the table describes; null when it is refused, then `result.message` tells. */
-static const wh_layout_t *read_layout(const char *fields) {
-    lua_State *L = wh_sandbox_state(sandbox);
-    char text[4096];
-    lua_settop(L, 0);
-    const int length = snprintf(text, sizeof text, "return { %s }", fields);
-    lua_pushcfunction(L, read_here);
-    assert_true(wh_sandbox_evaluate_text(L, "cell.lua", text, (size_t)length, &result));
-    return wh_sandbox_call(L, 1, 1, &result) ? lua_touserdata(L, -1) : NULL;
-}
-
-static const wh_layout_t *read_sound(const char *fields) {
-    const wh_layout_t *layout = read_layout(fields);
-    if (!layout) {
-        fail_msg("%s", result.message);
-    }
-    return layout;
-}
-
-static void expect_refused(const char *fields, const char *message) {
-    if (read_layout(fields)) {
-        fail_msg("accepted: %s", fields);
-    }
-    if (!strstr(result.message, message)) {
-        fail_msg("\"%s\" is not in \"%s\"", message, result.message);
-    }
-}
 
 static void test_defaults_of_the_cell(void **state) {
     (void)state;
