@@ -1,10 +1,10 @@
 /* Counts what the whole program asks of the heap: malloc and its kin are replaced by ones that count. Include it in one
- * file of a test. Where sanitizers have their own malloc, or another C library other names, nothing is counted and
+ * file of a test and run its own test too. Where sanitizers have their own malloc, or another C library other names, nothing is counted and
  * WH_TEST_COUNTS_HEAP is not defined. */
 #ifndef WH_TESTS_SUPPORT_HEAP_H
 #define WH_TESTS_SUPPORT_HEAP_H
 
-#include <stddef.h>
+#include "support.h"
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(memory_sanitizer) || __has_feature(thread_sanitizer)
@@ -43,6 +43,20 @@ void *realloc(void *memory, size_t size) {
 void free(void *memory) {
     ++calls;
     __libc_free(memory);
+}
+
+/* The count would show it. */
+static void the_count_counts(void **state) {
+    (void)state;
+    const unsigned long before = calls;
+    void *volatile memory = malloc(1);
+    free(memory);
+    assert_int_equal(calls - before, 2);
+}
+#else
+static void the_count_counts(void **state) {
+    (void)state;
+    skip();
 }
 #endif
 

@@ -112,9 +112,7 @@ wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell) {
         wh_link_layout_free(layout);
         return NULL;
     }
-    layout->cell.stations = layout->places;
-    layout->cell.count = layout->station_count;
-    layout->cell.tolerance = layout->grasp.tolerance;
+    wh_layout_place(layout);
     return layout;
 }
 

@@ -55,6 +55,12 @@ const wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     return layout;
 }
 
+void wh_layout_place(wh_layout_t *layout) {
+    layout->cell.stations = layout->places;
+    layout->cell.count = layout->station_count;
+    layout->cell.tolerance = layout->grasp.tolerance;
+}
+
 int32_t wh_layout_find_station(const wh_layout_t *layout, const char *name) {
     for (size_t s = 0; s < layout->station_count; ++s) {
         if (strcmp(layout->stations[s].name, name) == 0) {

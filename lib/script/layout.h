@@ -108,6 +108,9 @@ typedef struct {
  * a sort. */
 const wh_layout_t *wh_layout_read(lua_State *L, const char *path);
 
+/* Makes `cell` of the places and the tolerance, which are read by then. */
+void wh_layout_place(wh_layout_t *layout);
+
 /* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults, machine, and of stations, grippers and
  * wafers the names and places. The path is left out. Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);

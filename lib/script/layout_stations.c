@@ -139,9 +139,7 @@ void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout) {
     for (size_t s = 0; s < layout->station_count; ++s) {
         read_station(reader, layout, s);
     }
-    layout->cell.stations = layout->places;
-    layout->cell.count = layout->station_count;
-    layout->cell.tolerance = layout->grasp.tolerance;
+    wh_layout_place(layout);
     wh_reader_leave(reader);
 }
 

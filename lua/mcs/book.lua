@@ -54,28 +54,34 @@ return function(native)
     end
   end
 
-  function book.check_get(job)
-    local entry = page(job.station)
-    if job.force then
-      return
+  -- Whether the blade may go in, and what is known of the slot; `force` asks nothing of the book.
+  local function check_entry(job, judge)
+    if not job.force then
+      check_mapped(job)
+      local entry = page(job.station)
+      check_way(job, entry.codes)
+      judge(job, entry)
     end
-    check_mapped(job)
-    check_way(job, entry.codes)
+  end
+
+  local function is_there(job, entry)
     if entry.mapped and entry.codes[job.slot] == EMPTY then
       native.fail("WAFER_MISSING", ("%s slot %d is empty in the map"):format(job.station, job.slot))
     end
   end
 
-  function book.check_put(job)
-    local entry = page(job.station)
-    if job.force then
-      return
-    end
-    check_mapped(job)
-    check_way(job, entry.codes)
+  local function is_room(job, entry)
     if entry.codes[job.slot] == SINGLE or job.chuck and native.sensor(job.chuck) then
       native.fail("WAFER_ALREADY_THERE", ("%s slot %d"):format(job.station, job.slot))
     end
+  end
+
+  function book.check_get(job)
+    check_entry(job, is_there)
+  end
+
+  function book.check_put(job)
+    check_entry(job, is_room)
   end
 
   return book

@@ -253,6 +253,7 @@ static void nothing_is_allocated(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_count_counts),
         cmocka_unit_test(balls_are_as_far_as_their_centres),
         cmocka_unit_test(a_box_above_another_is_between_them),
         cmocka_unit_test(what_touches_says_where),

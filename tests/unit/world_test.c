@@ -338,6 +338,7 @@ static void test_bad_descriptions_are_refused(void **state) {
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, open_world, close_world)
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_count_counts),
         TEST(test_nothing_tunnels_through_a_thin_wall),
         TEST(test_a_blade_that_scrapes_a_wafer_is_named),
         TEST(test_a_blade_takes_its_wafer_without_a_hit),
