@@ -1,0 +1,231 @@
+/* What faults on purpose do to signals, axes and wafers. */
+#include "support_faults.h"
+
+/* ----------------------------------------------------------------------------------------------------- signals */
+
+static void test_no_vacuum(void **state) {
+    (void)state;
+    bring_kind(WH_FAULT_NO_VACUUM, 0);
+    pick();
+    assert_int_equal(answer.sensors, 0);
+    step(905, OPEN);
+    assert_true(answer.wafers[0].base_from_wafer.r.z == 905); /* it rests on the blade */
+    step(905, CLOSED);
+    assert_int_equal(answer.grippers[0].wafer, WH_NONE);
+}
+
+static void test_leak(void **state) {
+    (void)state;
+    pick();
+    assert_int_equal(answer.sensors, 1);
+    wh_fault_t f = fault_of(WH_FAULT_LEAK, 0);
+    f.value = WH_REAL(0.25);
+    bring(0, &f);
+    step(900, OPEN);
+    expect_event(WH_EVENT_FAULT_ARMED, WH_NONE, 0, 0);
+    const wh_event_t *lost = find(WH_EVENT_VACUUM_LOST);
+    assert_non_null(lost);
+    assert_true(lost->value == f.value && lost->limit == wh_vacuum_ideal().off);
+    assert_int_equal(lost->wafer, 0);
+    assert_int_equal(lost->gripper, 0);
+    assert_int_equal(answer.sensors, 0);
+    step(905, OPEN);
+    assert_null(find(WH_EVENT_VACUUM_LOST));
+    assert_int_equal(answer.grippers[0].wafer, 0);
+}
+
+/* The worst of several counts. */
+static void test_several_at_one_gripper(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_LEAK, 0);
+    f.value = WH_REAL(0.6);
+    bring(0, &f);
+    f.value = WH_REAL(0.8);
+    bring(1, &f);
+    f = fault_of(WH_FAULT_SLOW_VACUUM, 0);
+    f.value = WH_REAL(0.009);
+    bring(2, &f);
+    f.value = WH_REAL(0.001);
+    bring(3, &f);
+    step(900, OPEN);
+    assert_true(fabs((double)answer.condition->vacuum[0].level - 0.06) < 1e-6);
+    for (int i = 0; i < 200; ++i) {
+        step(900, OPEN);
+    }
+    assert_true(answer.condition->vacuum[0].level == WH_REAL(0.6));
+    assert_int_equal(answer.sensors, 1);
+}
+
+static void test_sensor_off(void **state) {
+    (void)state;
+    bring_kind(WH_FAULT_SENSOR_OFF, 0);
+    pick();
+    assert_int_equal(answer.sensors, 0);
+    assert_true(answer.condition->vacuum[0].on);
+    assert_null(find(WH_EVENT_VACUUM_LOST));
+}
+
+static void test_a_valve_stuck(void **state) {
+    (void)state;
+    bring_kind(WH_FAULT_VALVE_STUCK, 0);
+    step(900, OPEN);
+    assert_int_equal(answer.grippers[0].wafer, WH_NONE);
+    assert_int_equal(answer.condition->told[0], OPEN);
+    wh_fault_t f = simulator.condition.faults.slots[0].fault;
+    f.until = command.seq + 1;
+    bring(0, &f);
+    step(900, OPEN);
+    assert_int_equal(answer.grippers[0].wafer, 0);
+    bring_kind(WH_FAULT_VALVE_STUCK, 0);
+    step(905, CLOSED);
+    assert_int_equal(answer.grippers[0].wafer, 0);
+    assert_int_equal(answer.grippers[0].valve, OPEN);
+    assert_int_equal(answer.condition->told[0], CLOSED);
+}
+
+static void test_axes_stopped(void **state) {
+    (void)state;
+    step(880, OPEN);
+    bring_kind(WH_FAULT_AXIS_STOPPED, 0);
+    command.grippers[1].base_from_gripper.r.x = 0;
+    step(900, OPEN);
+    assert_true(answer.grippers[0].base_from_gripper.r.z == 880);
+    assert_true(answer.grippers[1].base_from_gripper.r.x == 0);
+    assert_int_equal(answer.grippers[0].wafer, WH_NONE);
+}
+
+static void test_a_command_lost(void **state) {
+    (void)state;
+    step(880, OPEN);
+    wh_fault_t f = fault_of(WH_FAULT_COMMAND_LOST, WH_NONE);
+    f.until = f.from + 1;
+    bring(0, &f);
+    command.grippers[1].base_from_gripper.r.x = 0;
+    step(900, CLOSED);
+    expect_event(WH_EVENT_FAULT_ARMED, WH_NONE, WH_NONE, 0);
+    assert_true(answer.grippers[0].base_from_gripper.r.z == 880);
+    assert_true(answer.grippers[1].base_from_gripper.r.x == 700);
+    assert_int_equal(answer.grippers[0].valve, OPEN);
+    step(900, OPEN);
+    assert_int_equal(answer.grippers[0].wafer, 0);
+}
+
+static void test_in_the_first_slice_nothing_was_before(void **state) {
+    (void)state;
+    bring_kind(WH_FAULT_AXIS_STOPPED, 0);
+    step(890, OPEN);
+    assert_true(answer.grippers[0].base_from_gripper.r.z == 890);
+    step(900, OPEN);
+    assert_true(answer.grippers[0].base_from_gripper.r.z == 890);
+}
+
+/* ------------------------------------------------------------------------------------------------------ wafers */
+
+static void clear_slot(int32_t index) {
+    wh_fault_t f = simulator.condition.faults.slots[index].fault;
+    f.until = command.seq + 1;
+    bring(index, &f);
+}
+
+static void test_a_wafer_is_moved_and_put_back(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
+    f.offset = wh_test_at(3, -4, 5);
+    f.offset.R = wh_test_rotation(1, 0, 0, 0.1);
+    bring(0, &f);
+    step(880, CLOSED);
+    expect_event(WH_EVENT_FAULT_ARMED, 0, WH_NONE, 0);
+    assert_true(answer.wafers[0].base_from_wafer.r.x == 703 && answer.wafers[0].base_from_wafer.r.z == 905);
+    assert_true(answer.wafers[0].base_from_wafer.R.m[2][1] == f.offset.R.m[2][1]);
+    clear_slot(0);
+    step(880, CLOSED);
+    expect_event(WH_EVENT_FAULT_CLEARED, 0, WH_NONE, 0);
+    assert_true(answer.wafers[0].base_from_wafer.r.x == 700 && answer.wafers[0].base_from_wafer.r.z == 900);
+    assert_true(answer.wafers[0].base_from_wafer.R.m[2][1] == 0);
+}
+
+/* Two rotations that each just pass, but not their product. */
+static void test_a_turn_that_just_passes_is_mended(void **state) {
+    (void)state;
+    wh_pose_t worn = wh_test_at(700, 0, 900);
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_TILTED, 0);
+    for (size_t i = 0; i < 3; ++i) {
+        worn.R.m[i][i] += WH_REAL(0.4) * WH_ROTATION_TOLERANCE;
+        f.offset.R.m[i][i] = worn.R.m[i][i];
+    }
+    assert_int_equal(wh_grasp_place(&simulator.table, 0, &worn), WH_OK);
+    bring(0, &f);
+    step(880, CLOSED);
+    assert_int_equal(wh_pose_validate(&answer.wafers[0].base_from_wafer), WH_OK);
+    assert_non_null(find(WH_EVENT_FAULT_ARMED));
+}
+
+static void test_doubled_is_onto_the_other(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_DOUBLED, 0);
+    f.other = 1;
+    f.offset = wh_test_at(0, 0, 1);
+    bring(0, &f);
+    step(880, CLOSED);
+    assert_true(answer.wafers[0].base_from_wafer.r.z == 911);
+}
+
+/* A wafer that somebody took meanwhile stays where it came to. */
+static void test_a_wafer_that_was_taken_is_not_put_back(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
+    f.offset = wh_test_at(3, 0, 0);
+    bring(0, &f);
+    step(880, CLOSED);
+    step(900, OPEN);
+    clear_slot(0);
+    step(902, OPEN);
+    expect_event(WH_EVENT_FAULT_CLEARED, 0, WH_NONE, 0);
+    assert_true(answer.wafers[0].base_from_wafer.r.x == 703 && answer.wafers[0].base_from_wafer.r.z == 902);
+    assert_int_equal(answer.grippers[0].wafer, 0);
+    /* The same again, let go somewhere else before it is cleared. */
+    f = fault_of(WH_FAULT_WAFER_SHIFTED, 1);
+    f.offset = wh_test_at(0, 0, 3);
+    bring(0, &f);
+    step(902, CLOSED);
+    f = fault_of(WH_FAULT_WAFER_MISSING, 1);
+    f.offset = wh_test_at(0, 0, -100);
+    bring(1, &f);
+    step(902, CLOSED);
+    clear_slot(0);
+    step(902, CLOSED);
+    assert_true(answer.wafers[1].base_from_wafer.r.z == 813);
+}
+
+static void test_a_held_wafer_is_waited_for(void **state) {
+    (void)state;
+    pick();
+    bring_kind(WH_FAULT_WAFER_MISSING, 0);
+    command.faults[0].fault.offset = wh_test_at(0, 0, -1000);
+    step(901, OPEN);
+    assert_null(find(WH_EVENT_FAULT_ARMED));
+    step(901, CLOSED);
+    assert_null(find(WH_EVENT_FAULT_ARMED));
+    step(880, CLOSED);
+    expect_event(WH_EVENT_FAULT_ARMED, 0, WH_NONE, 0);
+    assert_true(answer.wafers[0].base_from_wafer.r.z == -99);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(test_no_vacuum, set_up),
+        cmocka_unit_test_setup(test_leak, set_up),
+        cmocka_unit_test_setup(test_several_at_one_gripper, set_up),
+        cmocka_unit_test_setup(test_sensor_off, set_up),
+        cmocka_unit_test_setup(test_a_valve_stuck, set_up),
+        cmocka_unit_test_setup(test_axes_stopped, set_up),
+        cmocka_unit_test_setup(test_a_command_lost, set_up),
+        cmocka_unit_test_setup(test_in_the_first_slice_nothing_was_before, set_up),
+        cmocka_unit_test_setup(test_a_wafer_is_moved_and_put_back, set_up),
+        cmocka_unit_test_setup(test_a_turn_that_just_passes_is_mended, set_up),
+        cmocka_unit_test_setup(test_doubled_is_onto_the_other, set_up),
+        cmocka_unit_test_setup(test_a_wafer_that_was_taken_is_not_put_back, set_up),
+        cmocka_unit_test_setup(test_a_held_wafer_is_waited_for, set_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
