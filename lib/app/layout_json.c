@@ -178,6 +178,48 @@ static json_t *wafer(writer_t *writer, size_t i) {
     return object;
 }
 
+static void put_physics(writer_t *writer, json_t *root) {
+    const wh_vacuum_config_t *from = &writer->check->layout->physics.vacuum;
+    const wh_pads_t *pads = &writer->check->layout->physics.pads;
+    json_t *vacuum = json_object();
+    put_real(writer, vacuum, "build", from->build);
+    put_real(writer, vacuum, "vent", from->vent);
+    put_real(writer, vacuum, "idle", from->idle);
+    put_real(writer, vacuum, "sensor_on", from->on);
+    put_real(writer, vacuum, "sensor_off", from->off);
+    put_real(writer, vacuum, "release", from->release);
+    put(writer, root, "vacuum", vacuum);
+    if (pads->mass > 0) {
+        json_t *object = json_object();
+        put_real(writer, object, "friction", pads->friction);
+        put_real(writer, object, "force", pads->force);
+        put_real(writer, object, "mass", pads->mass);
+        put_real(writer, object, "gravity", pads->gravity);
+        put(writer, root, "pads", object);
+    } else {
+        put(writer, root, "pads", json_null());
+    }
+}
+
+static json_t *fault(writer_t *writer, size_t i) {
+    const wh_layout_t *layout = writer->check->layout;
+    const wh_fault_t *from = &layout->physics.faults[i];
+    const double slice_s = (double)layout->slice_us / 1e6;
+    const bool endless = from->until == WH_FAULT_FOREVER;
+    const bool targeted = from->target != WH_NONE;
+    const bool of_wafer = wh_fault_is_of_wafer(from->kind);
+    json_t *object = json_object();
+    put(writer, object, "kind", json_string(wh_fault_name(from->kind)));
+    put(writer, object, "gripper",
+        wh_json_text(targeted && !of_wafer ? layout->grippers[from->target].name : NULL));
+    put(writer, object, "wafer",
+        wh_json_text(targeted && of_wafer ? layout->wafers[from->target].name : NULL));
+    put(writer, object, "from_s", json_real((double)(from->from - 1) * slice_s));
+    put(writer, object, "until_s", endless ? json_null() : json_real((double)(from->until - 1) * slice_s));
+    put_real(writer, object, "value", from->value);
+    return object;
+}
+
 static json_t *finding(writer_t *writer, size_t i) {
     const wh_layout_t *layout = writer->check->layout;
     const wh_finding_t *from = &writer->check->findings[i];
@@ -235,6 +277,8 @@ int wh_layout_print_json(const wh_layout_check_t *check, FILE *out) {
     put_list(&writer, root, "grippers", gripper, layout->machine.gripper_count);
     put_list(&writer, root, "stations", station, layout->station_count);
     put_list(&writer, root, "wafers", wafer, layout->wafer_count);
+    put_physics(&writer, root);
+    put_list(&writer, root, "faults", fault, layout->physics.fault_count);
     put(&writer, root, "shapes", shapes(&writer));
     put_list(&writer, root, "parts", part, layout->world.part_count);
     put(&writer, root, "clearance", clearances(&writer));

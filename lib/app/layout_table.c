@@ -1,21 +1,12 @@
 #include <stdlib.h>
 
-#include "app/grid.h"
-#include "app/layout_report.h"
+#include "app/layout_table_internal.h"
 #include "motion/trig.h"
-
-/* What every part of the listing is given. */
-typedef struct {
-    const wh_layout_check_t *check;
-    const wh_layout_t *layout;
-    const wh_style_t *style;
-    FILE *out;
-} listing_t;
 
 static const wh_grid_digits_t whole = {0, 6, false, 0};
 static const wh_grid_digits_t fine = {3, 3, false, 0};
 
-static int finish(const listing_t *listing, const char *title, wh_grid_t *grid) {
+int wh_listing_finish(const wh_listing_t *listing, const char *title, wh_grid_t *grid) {
     if (wh_grid_rows(grid) == 0) {
         return wh_grid_discard(grid);
     }
@@ -27,7 +18,7 @@ static int finish(const listing_t *listing, const char *title, wh_grid_t *grid) 
 
 /* ------------------------------------------------------------------------------------------------ the machine */
 
-static int print_axes(const listing_t *listing) {
+static int print_axes(const wh_listing_t *listing) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
     static const char *const headings[] = {"from", "to", "home", "speed", "acceleration", "jerk"};
     const wh_robot_t *robot = &listing->layout->machine.robot;
@@ -50,10 +41,10 @@ static int print_axes(const listing_t *listing) {
         }
         wh_grid_text(grid, 7, WH_INK_DIM, turns ? "deg, s" : "mm, s");
     }
-    return finish(listing, "Robot", grid);
+    return wh_listing_finish(listing, "Robot", grid);
 }
 
-static int print_grippers(const listing_t *listing) {
+static int print_grippers(const wh_listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
     wh_grid_t *grid = wh_grid_new(listing->style, 1);
     wh_grid_text_column(grid, "gripper");
@@ -76,14 +67,14 @@ static int print_grippers(const listing_t *listing) {
                            (double)wh_deg_from_rad(wh_atan2(shift->R.m[1][0], shift->R.m[0][0])));
         }
     }
-    return finish(listing, "Grippers", grid);
+    return wh_listing_finish(listing, "Grippers", grid);
 }
 
 /* --------------------------------------------------------------------------------------------------- stations */
 
 enum { NAME, KIND, X, Y, Z, HEADING, TILT, SLOTS, PITCH, STROKE, OFFSET, RETRACT, WAFERS };
 
-static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
+static void add_station(const wh_listing_t *listing, wh_grid_t *grid, size_t s) {
     const wh_layout_station_t *station = &listing->layout->stations[s];
     const wh_station_t *place = &listing->layout->places[s];
     const wh_mat3_t *R = &place->base_from_station.R;
@@ -106,7 +97,7 @@ static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
     wh_grid_number(grid, WAFERS, WH_INK_PLAIN, (double)listing->check->entries[s].wafers);
 }
 
-static int print_stations(const listing_t *listing) {
+static int print_stations(const wh_listing_t *listing) {
     static const char *const headings[] = {"x",     "y",      "z",      "heading deg", "tilt deg", "slots",
                                            "pitch", "stroke", "offset", "retract",     "wafers"};
     wh_grid_t *grid = wh_grid_new(listing->style, 1);
@@ -118,7 +109,7 @@ static int print_stations(const listing_t *listing) {
     for (size_t s = 0; s < listing->layout->station_count; ++s) {
         add_station(listing, grid, s);
     }
-    return finish(listing, "Stations", grid);
+    return wh_listing_finish(listing, "Stations", grid);
 }
 
 static void add_gap(wh_grid_t *grid, size_t column, bool has, wh_real_t gap) {
@@ -127,7 +118,7 @@ static void add_gap(wh_grid_t *grid, size_t column, bool has, wh_real_t gap) {
     }
 }
 
-static int print_room(const listing_t *listing) {
+static int print_room(const wh_listing_t *listing) {
     wh_grid_t *grid = wh_grid_new(listing->style, 1);
     wh_grid_text_column(grid, "blade entered at");
     wh_grid_number_column(grid, "to the wafer above", fine);
@@ -141,12 +132,12 @@ static int print_room(const listing_t *listing) {
         add_gap(grid, 2, entry->has_below, entry->below);
         add_gap(grid, 3, entry->has_beside, entry->beside);
     }
-    return finish(listing, "Room", grid);
+    return wh_listing_finish(listing, "Room", grid);
 }
 
 /* ------------------------------------------------------------------------------------------------------ shapes */
 
-static int print_shapes(const listing_t *listing) {
+static int print_shapes(const wh_listing_t *listing) {
     const wh_shapes_t *s = &listing->layout->shapes;
     wh_grid_t *grid = wh_grid_new(listing->style, 1);
     wh_grid_text_column(grid, "shape");
@@ -170,7 +161,7 @@ static int print_shapes(const listing_t *listing) {
     wh_grid_text(grid, 1, WH_INK_PLAIN,
                  "walls of %g, %g from the wafer; floor %g below, roof %g above the slots",
                  (double)s->shell.wall, (double)s->shell.room, (double)s->shell.floor, (double)s->shell.roof);
-    return finish(listing, "Shapes, mm", grid);
+    return wh_listing_finish(listing, "Shapes, mm", grid);
 }
 
 static void describe_size(wh_grid_t *grid, size_t column, const wh_convex_t *convex) {
@@ -200,7 +191,7 @@ static const char *carrier_of(const wh_layout_t *layout, const wh_part_t *part) 
     return part->kind == WH_PART_ARM ? bodies[part->owner] : layout->grippers[part->owner].name;
 }
 
-static int print_obstacles(const listing_t *listing) {
+static int print_obstacles(const wh_listing_t *listing) {
     const wh_world_config_t *world = &listing->layout->world;
     wh_grid_t *grid = wh_grid_new(listing->style, 1);
     wh_grid_text_column(grid, "obstacle");
@@ -222,10 +213,10 @@ static int print_obstacles(const listing_t *listing) {
             wh_grid_number(grid, 5, WH_INK_PLAIN, (double)part->convex.body_from_shape.r.z);
         }
     }
-    return finish(listing, "Obstacles, mm", grid);
+    return wh_listing_finish(listing, "Obstacles, mm", grid);
 }
 
-static int print_limits(const listing_t *listing) {
+static int print_limits(const wh_listing_t *listing) {
     wh_grid_t *grid = wh_grid_new(listing->style, 1);
     wh_grid_text_column(grid, "clearance");
     wh_grid_number_column(grid, "at least mm", whole);
@@ -236,19 +227,19 @@ static int print_limits(const listing_t *listing) {
             wh_grid_number(grid, 1, WH_INK_PLAIN, (double)listing->layout->world.limits[kind]);
         }
     }
-    return finish(listing, "Clearances", grid);
+    return wh_listing_finish(listing, "Clearances", grid);
 }
 
 /* --------------------------------------------------------------------------------------------------- findings */
 
-static int put(const listing_t *listing, const char *text) {
+static int put(const wh_listing_t *listing, const char *text) {
     char *printable = wh_style_printable(text);
     fputs(printable ? printable : "", listing->out);
     free(printable);
     return printable ? 0 : -1;
 }
 
-static int print_findings(const listing_t *listing) {
+static int print_findings(const wh_listing_t *listing) {
     int status = 0;
     fputc('\n', listing->out);
     if (listing->check->count == 0) {
@@ -264,7 +255,7 @@ static int print_findings(const listing_t *listing) {
     return status;
 }
 
-static int print_heading(const listing_t *listing) {
+static int print_heading(const wh_listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
     const wh_tolerance_t *limits = &layout->grasp.tolerance;
     const int status = put(listing, layout->path);
@@ -284,12 +275,13 @@ static int print_heading(const listing_t *listing) {
 }
 
 int wh_layout_print_table(const wh_layout_check_t *check, FILE *out, const wh_style_t *style) {
-    const listing_t listing = {check, check->layout, style, out};
+    const wh_listing_t listing = {check, check->layout, style, out};
     int status = print_heading(&listing);
     status |= print_axes(&listing);
     status |= print_grippers(&listing);
     status |= print_stations(&listing);
     status |= print_room(&listing);
+    status |= wh_listing_print_physics(&listing);
     status |= print_shapes(&listing);
     status |= print_obstacles(&listing);
     status |= print_limits(&listing);
