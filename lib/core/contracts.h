@@ -10,20 +10,28 @@
   predicate wh_storage_memory{L}(wh_grasp_storage_t *s) =
     \valid_read(s) &&
     (s->wafers == \null || \valid(s->wafers + (0 .. s->wafer_count - 1))) &&
-    (s->grippers == \null || \valid(s->grippers + (0 .. s->gripper_count - 1)));
+    (s->grippers == \null || \valid(s->grippers + (0 .. s->gripper_count - 1))) &&
+    (s->buckets == \null || \valid(s->buckets + (0 .. s->bucket_count - 1)));
 
   predicate wh_storage_apart{L}(wh_grasp_storage_t *s, wh_grasp_t *t) =
     \separated(s, t, s->wafers + (0 .. s->wafer_count - 1), s->grippers + (0 .. s->gripper_count - 1));
 
+  // None, or what wh_grasp_buckets says.
+  predicate wh_enough_buckets{L}(wh_grasp_storage_t *s) =
+    s->bucket_count == 0 ||
+    6 + 4 * s->gripper_count + 5 * s->wafer_count <= s->bucket_count <= INT32_MAX;
+
   // What wh_grasp_init has looked at.
   predicate wh_storage_good{L}(wh_grasp_storage_t *s) =
     s->wafer_count <= INT32_MAX && s->gripper_count <= INT32_MAX &&
-    (s->wafers != \null || s->wafer_count == 0) && (s->grippers != \null || s->gripper_count == 0);
+    (s->wafers != \null || s->wafer_count == 0) && (s->grippers != \null || s->gripper_count == 0) &&
+    (s->buckets != \null || s->bucket_count == 0) && wh_enough_buckets(s);
 
   predicate wh_table_memory{L}(wh_grasp_t *t) =
     \valid(t) && t->storage.wafer_count <= INT32_MAX && t->storage.gripper_count <= INT32_MAX &&
     \valid(t->storage.wafers + (0 .. t->storage.wafer_count - 1)) &&
     \valid(t->storage.grippers + (0 .. t->storage.gripper_count - 1)) &&
+    wh_enough_buckets(&t->storage) && \valid(t->storage.buckets + (0 .. t->storage.bucket_count - 1)) &&
     \separated(t, t->storage.wafers + (0 .. t->storage.wafer_count - 1),
                t->storage.grippers + (0 .. t->storage.gripper_count - 1));
 
@@ -165,7 +173,9 @@
     \at(t->storage.wafer_count, K) == \at(t->storage.wafer_count, L) &&
     \at(t->storage.gripper_count, K) == \at(t->storage.gripper_count, L) &&
     \at(t->storage.wafers, K) == \at(t->storage.wafers, L) &&
-    \at(t->storage.grippers, K) == \at(t->storage.grippers, L);
+    \at(t->storage.grippers, K) == \at(t->storage.grippers, L) &&
+    \at(t->storage.bucket_count, K) == \at(t->storage.bucket_count, L) &&
+    \at(t->storage.buckets, K) == \at(t->storage.buckets, L);
 
   // Gripper g, which was empty, took wafer w, which nobody held; the others are as they were.
   predicate wh_took{K, L}(wh_grasp_t *t, integer g, integer w) =

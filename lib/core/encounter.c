@@ -1,6 +1,7 @@
 #include "core/encounter_internal.h"
 
 #include "core/grasp_internal.h"
+#include "core/horizon_internal.h"
 #include "core/proximity_internal.h"
 
 /*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1);
@@ -137,24 +138,39 @@ static void follow_approach(const wh_watch_t *watch) {
     }
 }
 
-/* The nearest free wafer in the neighbourhood, if the gripper follows none yet. */
+/* The pick has measured the horizon where it was left. */
+/*@ requires wh_watch_memory(watch); assigns \nothing; */
+static bool is_within_horizon(const wh_watch_t *watch) {
+    const size_t g = (size_t)watch->index;
+    return wh_horizon_covers(watch->table, g, &watch->base_from_gripper->r) &&
+           (!watch->sweep || wh_horizon_covers(watch->table, g, &watch->sweep->begin->r));
+}
+
+/* The nearest free wafer in the neighbourhood, then lowest index, if the gripper follows none yet. */
 /*@ requires wh_watch_memory(watch) && watch->gripper->approach.wafer == WH_NONE;
-    assigns watch->gripper->approach;
+    assigns watch->gripper->approach,
+            watch->table->storage.buckets[0 .. watch->table->storage.bucket_count - 1];
     ensures wh_watched(watch, watch->gripper->approach.wafer);
     ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_contest{Pre, Post}(watch); */
 static void begin_approach(const wh_watch_t *watch) {
-    const wh_grasp_storage_t *storage = &watch->table->storage;
+    if (is_within_horizon(watch)) {
+        return;
+    }
+    const wh_vec3_t *end = &watch->base_from_gripper->r;
+    const wh_near_t near = wh_index_near(watch->table, watch->sweep ? &watch->sweep->begin->r : end, end, 0);
     int32_t nearest = WH_NONE;
     wh_real_t least = 0;
     wh_real_t when = 0;
-    /*@ loop invariant 0 <= w <= storage->wafer_count && (nearest == WH_NONE || 0 <= nearest < w);
+    /*@ loop invariant 0 <= i <= near.count && (nearest == WH_NONE || wh_is_wafer(watch->table, nearest));
         loop invariant nearest == WH_NONE || watch->sweep != \null || when == 1;
-        loop assigns w, nearest, least, when;
-        loop variant storage->wafer_count - w; */
-    for (size_t w = 0; w < storage->wafer_count; ++w) {
+        loop assigns i, nearest, least, when;
+        loop variant near.count - i; */
+    for (size_t i = 0; i < near.count; ++i) {
+        const size_t w = wh_index_wafer(watch->table, &near, i);
+        const wh_wafer_t *wafer = &watch->table->storage.wafers[w];
         wh_reach_t reach;
-        if (storage->wafers[w].holder == WH_NONE && came_near(watch, &storage->wafers[w], &reach) &&
-            (nearest == WH_NONE || reach.z < least)) {
+        if (wafer->holder == WH_NONE && came_near(watch, wafer, &reach) &&
+            (nearest == WH_NONE || reach.z < least || (reach.z == least && (int32_t)w < nearest))) {
             nearest = (int32_t)w;
             least = reach.z;
             when = reach.t;
@@ -209,7 +225,7 @@ static void follow_contest(const wh_watch_t *watch) {
         return;
     }
     end_contest(watch);
-    const int32_t best = wh_grasp_find_ready(watch->table, watch->base_from_gripper, true);
+    const int32_t best = wh_grasp_find_held(watch->table, watch->base_from_gripper);
     if (best != WH_NONE) {
         begin_encounter(watch, &watch->gripper->contest, best, 1);
     }
@@ -230,6 +246,15 @@ static void end_encounters(const wh_watch_t *watch, bool closed) {
     }
     approach->wafer = WH_NONE;
     end_contest(watch);
+}
+
+/* Nothing between the slices can be near, and an approach that goes on is none that a sweep could tell of. */
+/*@ requires wh_watch_memory(watch); assigns \nothing; */
+static bool needs_no_sweep(const wh_watch_t *watch) {
+    const size_t g = (size_t)watch->index;
+    return watch->gripper->approach.wafer == WH_NONE &&
+           wh_horizon_covers(watch->table, g, &watch->gripper->base_from_gripper.r) &&
+           wh_horizon_covers(watch->table, g, &watch->base_from_gripper->r);
 }
 
 void wh_encounter_follow(const wh_watch_t *watch) {
@@ -260,7 +285,8 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
         /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
         /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&
                    wh_watched(&watch, table->storage.grippers[gripper].contest.wafer); */
-    } else if (table->config.check == WH_CHECK_SWEPT && watch.gripper->valve == WH_VALVE_OPEN) {
+    } else if (table->config.check == WH_CHECK_SWEPT && watch.gripper->valve == WH_VALVE_OPEN &&
+               !needs_no_sweep(&watch)) {
         wh_encounter_follow_swept(&watch);
         /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
         /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&

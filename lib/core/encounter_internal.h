@@ -45,6 +45,7 @@ typedef struct {
     requires WH_NONE <= table->storage.grippers[gripper].approach.wafer < table->storage.wafer_count;
     requires WH_NONE <= table->storage.grippers[gripper].contest.wafer < table->storage.wafer_count;
     assigns table->storage.grippers[gripper].approach, table->storage.grippers[gripper].contest, table->counters,
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
             list->count, list->events[0 .. wh_room(list) - 1];
     ensures WH_NONE <= table->storage.grippers[gripper].approach.wafer < table->storage.wafer_count;
     ensures WH_NONE <= table->storage.grippers[gripper].contest.wafer < table->storage.wafer_count;
@@ -59,6 +60,7 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
 /*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2);
     requires wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
     assigns watch->gripper->approach, watch->gripper->contest, watch->table->counters,
+            watch->table->storage.buckets[0 .. watch->table->storage.bucket_count - 1],
             watch->list->count, watch->list->events[0 .. wh_room(watch->list) - 1];
     ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
     ensures wh_list_grown{Pre, Post}(watch->list, 2) && wh_same_size{Pre, Post}(watch->table); */
@@ -68,6 +70,7 @@ void wh_encounter_follow(const wh_watch_t *watch);
 /*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2);
     requires wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
     assigns watch->sweep, watch->gripper->approach, watch->gripper->contest, watch->table->counters,
+            watch->table->storage.buckets[0 .. watch->table->storage.bucket_count - 1],
             watch->list->count, watch->list->events[0 .. wh_room(watch->list) - 1];
     ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
     ensures wh_list_grown{Pre, Post}(watch->list, 2) && wh_same_size{Pre, Post}(watch->table); */

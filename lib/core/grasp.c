@@ -1,6 +1,7 @@
 #include "core/grasp.h"
 
 #include "core/hash.h"
+#include "core/index_internal.h"
 
 wh_grasp_config_t wh_grasp_config_default(void) {
     wh_grasp_config_t config;
@@ -31,6 +32,18 @@ static wh_status_t validate_array(bool given, size_t count) {
     return count > INT32_MAX ? WH_STATUS_BAD_CAPACITY : WH_OK;
 }
 
+/*@ requires \valid_read(storage);
+    assigns \nothing;
+    ensures \result == WH_OK ==> wh_enough_buckets(storage) && (storage->buckets != \null || storage->bucket_count == 0); */
+static wh_status_t validate_buckets(const wh_grasp_storage_t *storage) {
+    const size_t needed = wh_grasp_buckets(storage->wafer_count, storage->gripper_count);
+    const wh_status_t status = validate_array(storage->buckets != NULL, storage->bucket_count);
+    if (status != WH_OK || storage->bucket_count == 0) {
+        return status;
+    }
+    return needed > 0 && needed <= storage->bucket_count ? WH_OK : WH_STATUS_BAD_CAPACITY;
+}
+
 /*@ requires wh_storage_memory(storage);
     assigns \nothing;
     ensures \result == WH_OK ==> wh_storage_good(storage); */
@@ -40,7 +53,7 @@ static wh_status_t validate_storage(const wh_grasp_storage_t *storage) {
         status = validate_array(storage->grippers != NULL, storage->gripper_count);
     }
     if (status == WH_OK) {
-        status = validate_array(storage->buckets != NULL, storage->bucket_count);
+        status = validate_buckets(storage);
     }
     /*@ loop invariant status == WH_OK ==> wh_storage_good(storage);
         loop assigns w, status;
@@ -105,7 +118,8 @@ static void free_wafers(wh_wafer_t wafers[], size_t count) {
 /*@ requires \valid(table) && \valid_read(config) && \valid_read(storage) && \separated(table, storage);
     assigns *table;
     ensures table->storage.wafers == storage->wafers && table->storage.wafer_count == storage->wafer_count;
-    ensures table->storage.grippers == storage->grippers && table->storage.gripper_count == storage->gripper_count; */
+    ensures table->storage.grippers == storage->grippers && table->storage.gripper_count == storage->gripper_count;
+    ensures table->storage.buckets == storage->buckets && table->storage.bucket_count == storage->bucket_count; */
 static void begin(wh_grasp_t *table, const wh_grasp_config_t *config, const wh_grasp_storage_t *storage) {
     static const wh_grasp_counters_t none = {0};
     table->config = *config;
@@ -139,6 +153,7 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
     /*@ assert \forall integer g; wh_is_gripper(table, g) ==> wh_cleared(table->storage.grippers + g); */
     /*@ assert \forall integer w; wh_is_wafer(table, w) ==> wh_holder(table, w) == WH_NONE; */
     /*@ assert \forall integer w; wh_is_wafer(table, w) ==> wh_released_by(table, w) == WH_NONE; */
+    wh_index_build(table);
     return WH_OK;
 }
 
@@ -196,6 +211,7 @@ wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *bas
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         forget(&table->storage.grippers[g].approach, (int32_t)wafer);
     }
+    wh_index_move(table, wafer);
     /*@ assert wh_paired(table); */
     /*@ assert wh_none_released(table); */
     return WH_OK;

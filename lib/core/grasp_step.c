@@ -1,5 +1,6 @@
 #include "core/encounter_internal.h"
 #include "core/grasp_internal.h"
+#include "core/index_internal.h"
 #include "core/proximity_internal.h"
 
 /*@
@@ -133,7 +134,8 @@ void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
 /* Parts 2 and 3: held wafers go where their grippers carry them; a closed valve lets go of them there. */
 /*@ requires wh_table_memory(table) && wh_consistent(table);
     requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table);
-    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1];
+    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures wh_stepping(table, inputs, 0, table->storage.gripper_count);
     ensures wh_same_size{Pre, Post}(table);
     ensures wh_same_held{Pre, Post}(table);
@@ -147,7 +149,8 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
         loop invariant wh_stepping_releases(table, inputs, 0, g);
         loop invariant wh_stepping_held(table, inputs, 0, g);
         loop invariant wh_free_stay{Pre, Here}(table);
-        loop assigns g, table->storage.wafers[0 .. table->storage.wafer_count - 1];
+        loop assigns g, table->storage.wafers[0 .. table->storage.wafer_count - 1],
+                     table->storage.buckets[0 .. table->storage.bucket_count - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         wh_gripper_t *gripper = &table->storage.grippers[g];
@@ -164,6 +167,7 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
             /*@ assert \separated(wafer, table->storage.grippers + (0 .. table->storage.gripper_count - 1)); */
             wafer->holder = WH_NONE;
             wafer->released_by = (int32_t)g;
+            wh_index_move(table, (size_t)gripper->wafer);
             /*@ assert wh_same_held{Pre, Here}(table); */
             /*@ assert wh_other_holders{LoopCurrent, Here}(table, gripper->wafer); */
             /*@ assert wh_other_releases{LoopCurrent, Here}(table, gripper->wafer); */
@@ -179,6 +183,7 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
     requires \valid_read(input) && wh_apart_from_arrays(input, table);
     assigns table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[g].wafer, table->storage.grippers[g].gripper_from_wafer,
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
             list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_list_grown{Pre, Post}(list, 1);
     ensures wh_same_size{Pre, Post}(table);
@@ -192,7 +197,7 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
     ensures wh_other_grips{Pre, Post}(table, g); */
 static void pick_sampled(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
-    const int32_t w = wh_grasp_find_ready(table, &input->base_from_gripper, false);
+    const int32_t w = wh_grasp_find_ready(table, g, &input->base_from_gripper);
     if (w == WH_NONE) {
         return;
     }
@@ -213,6 +218,7 @@ static void pick_sampled(wh_grasp_t *table, size_t g, const wh_gripper_input_t *
     requires \valid_read(input) && wh_apart_from_arrays(input, table);
     assigns table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[g].wafer, table->storage.grippers[g].gripper_from_wafer,
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
             list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_list_grown{Pre, Post}(list, 1);
     ensures wh_same_size{Pre, Post}(table);
@@ -329,6 +335,7 @@ static wh_status_t validate_call(const wh_grasp_t *table, const wh_gripper_input
     requires wh_stepping(table, inputs, 0, table->storage.gripper_count);
     assigns table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
             list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_stepping(table, inputs, 0, table->storage.gripper_count);
     ensures wh_list_grown{Pre, Post}(list, table->storage.gripper_count);
@@ -346,6 +353,7 @@ static void pick_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_eve
         loop invariant wh_hold_kept{Pre, Here}(table);
         loop assigns g, table->counters, table->storage.wafers[0 .. \at(table->storage.wafer_count, Pre) - 1],
             table->storage.grippers[0 .. \at(table->storage.gripper_count, Pre) - 1],
+            table->storage.buckets[0 .. \at(table->storage.bucket_count, Pre) - 1],
             list->count, list->events[0 .. wh_room{Pre}(list) - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
@@ -390,6 +398,7 @@ static void report_releases(wh_grasp_t *table, const wh_gripper_input_t *inputs,
              wh_inputs_apart_list(inputs, table, list);
     requires wh_encounters(table);
     assigns table->counters, table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
             list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_same_size{Pre, Post}(table);
     ensures wh_same_held{Pre, Post}(table);
@@ -408,6 +417,7 @@ static void watch_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_ev
         loop invariant wh_encounters(table);
         loop invariant wh_same_grips{Pre, Here}(table);
         loop assigns g, table->counters, table->storage.grippers[0 .. \at(table->storage.gripper_count, Pre) - 1],
+            table->storage.buckets[0 .. \at(table->storage.bucket_count, Pre) - 1],
             list->count, list->events[0 .. wh_room{Pre}(list) - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
@@ -465,6 +475,7 @@ static void count_refusal(wh_grasp_t *table) {
              wh_inputs_apart_list(inputs, table, list);
     assigns table->slice, table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
             list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_consistent(table);
     ensures wh_free_at_rest{Pre, Post}(table);

@@ -1,4 +1,5 @@
 #include "core/grasp_internal.h"
+#include "core/horizon_internal.h"
 #include "core/proximity_internal.h"
 
 wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper) {
@@ -7,25 +8,68 @@ wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_
     return wh_real_abs(wh_vec3_dot(&dr, &n1));
 }
 
-int32_t wh_grasp_find_ready(const wh_grasp_t *table, const wh_pose_t *base_from_gripper, bool held) {
-    int32_t best = WH_NONE;
-    wh_real_t least = 0;
-    /*@ loop invariant 0 <= w <= table->storage.wafer_count;
-        loop invariant best == WH_NONE || 0 <= best < w && (held <==> wh_holder(table, best) != WH_NONE);
-        loop assigns w, best, least;
-        loop variant table->storage.wafer_count - w; */
-    for (size_t w = 0; w < table->storage.wafer_count; ++w) {
+/* The best wafer so far. */
+typedef struct {
+    int32_t wafer; /* WH_NONE: none */
+    wh_real_t distance;
+} candidate_t;
+
+/*@ requires \valid(best) && \valid_read(wafer) && \valid_read(base_from_gripper) && w <= INT32_MAX;
+    requires \separated(best, wafer) && \separated(best, base_from_gripper);
+    assigns *best;
+    ensures best->wafer == \old(best->wafer) || best->wafer == w;
+    ensures \old(best->wafer) == WH_NONE ==> best->wafer == w; */
+static void keep_better(candidate_t *best, size_t w, const wh_wafer_t *wafer,
+                        const wh_pose_t *base_from_gripper) {
+    const candidate_t here = {(int32_t)w, wh_grasp_distance(wafer, base_from_gripper)};
+    if (best->wafer == WH_NONE || here.distance < best->distance ||
+        (here.distance == best->distance && here.wafer < best->wafer)) {
+        *best = here;
+    }
+}
+
+int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper) {
+    if (wh_horizon_covers(table, g, &base_from_gripper->r)) {
+        return WH_NONE;
+    }
+    const wh_real_t margin = wh_horizon_margin(table, g, &base_from_gripper->r);
+    const wh_near_t near = wh_index_near(table, &base_from_gripper->r, &base_from_gripper->r, margin);
+    wh_horizon_t horizon = wh_horizon_begin(table, g, &near, margin);
+    candidate_t best = {.wafer = WH_NONE};
+    /*@ loop invariant 0 <= i <= near.count;
+        loop invariant best.wafer == WH_NONE ||
+                       wh_is_wafer(table, best.wafer) && wh_holder(table, best.wafer) == WH_NONE;
+        loop assigns i, best, horizon.gap;
+        loop variant near.count - i; */
+    for (size_t i = 0; i < near.count; ++i) {
+        const size_t w = wh_index_wafer(table, &near, i);
         const wh_wafer_t *wafer = &table->storage.wafers[w];
-        if ((wafer->holder != WH_NONE) == held &&
+        if (wafer->holder == WH_NONE &&
+            !wh_horizon_passes(&horizon, &wafer->base_from_wafer, &base_from_gripper->r) &&
             wh_proximity_ready(&wafer->base_from_wafer, base_from_gripper, &table->config.tolerance)) {
-            const wh_real_t distance = wh_grasp_distance(wafer, base_from_gripper);
-            if (best == WH_NONE || distance < least) {
-                best = (int32_t)w;
-                least = distance;
-            }
+            keep_better(&best, w, wafer, base_from_gripper);
         }
     }
-    return best;
+    wh_horizon_keep(table, g, &base_from_gripper->r, &horizon);
+    return best.wafer;
+}
+
+int32_t wh_grasp_find_held(const wh_grasp_t *table, const wh_pose_t *base_from_gripper) {
+    candidate_t best = {.wafer = WH_NONE};
+    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
+        loop invariant best.wafer == WH_NONE ||
+                       wh_is_wafer(table, best.wafer) && wh_holder(table, best.wafer) != WH_NONE;
+        loop assigns g, best;
+        loop variant table->storage.gripper_count - g; */
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        const size_t w = (size_t)table->storage.grippers[g].wafer;
+        if (w < table->storage.wafer_count && table->storage.wafers[w].holder == (int32_t)g &&
+            wh_proximity_ready(&table->storage.wafers[w].base_from_wafer, base_from_gripper,
+                               &table->config.tolerance)) {
+            keep_better(&best, w, &table->storage.wafers[w], base_from_gripper);
+        }
+    }
+    return best.wafer;
 }
 
 /* The smallest turn of the wafer, in the gripper's frame, that takes n1 to n2 = e3. c > 0 at every pick. */

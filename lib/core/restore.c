@@ -1,5 +1,7 @@
 #include "core/restore.h"
 
+#include "core/index_internal.h"
+
 /*@
   predicate good_encounter{L}(wh_encounter_t *e, integer wafer_count) = WH_NONE <= e->wafer < wafer_count;
 
@@ -279,5 +281,6 @@ wh_status_t wh_grasp_restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t
     }
     table->slice = slice;
     take_over(table, wafers, grippers);
+    wh_index_build(table);
     return WH_OK;
 }

@@ -16,7 +16,8 @@
                wh_state_memory(wafers, table->storage.wafer_count, grippers, table->storage.gripper_count) &&
                wh_state_apart(wafers, grippers, table);
     assigns table->counters.refused, table->slice, table->storage.wafers[0 .. table->storage.wafer_count - 1],
-            table->storage.grippers[0 .. table->storage.gripper_count - 1];
+            table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures table != \null ==> wh_consistent(table);
     ensures table != \null && \result == WH_OK ==> table->slice == slice;
     ensures table != \null && \result != WH_OK ==> \at(table->config, Pre) == table->config;

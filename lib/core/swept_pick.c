@@ -1,4 +1,5 @@
 #include "core/grasp_internal.h"
+#include "core/horizon_internal.h"
 #include "core/sweep_internal.h"
 
 /* The best wafer so far. */
@@ -8,30 +9,48 @@ typedef struct {
     wh_real_t distance;
 } candidate_t;
 
-/* Earliest instant, then smallest |dr_proj_z|; of equal ones the first, which has the lowest index. */
+/*@ requires \valid_read(best) && \valid_read(other); assigns \nothing; */
+static bool is_better(const candidate_t *best, const candidate_t *other) {
+    if (other->t != best->t) {
+        return other->t < best->t;
+    }
+    return other->distance < best->distance ||
+           (other->distance == best->distance && other->wafer < best->wafer);
+}
+
+/* Earliest instant, then smallest |dr_proj_z|, then lowest index. */
 /*@ requires \valid(best) && \valid_read(other); assigns *best; ensures best->wafer == \old(best->wafer) || best->wafer == \old(other->wafer);
     ensures \old(best->wafer) == WH_NONE ==> best->wafer == \old(other->wafer); */
 static void keep_better(candidate_t *best, const candidate_t *other) {
-    if (best->wafer == WH_NONE || other->t < best->t ||
-        (other->t == best->t && other->distance < best->distance)) {
+    if (best->wafer == WH_NONE || is_better(best, other)) {
         *best = *other;
     }
 }
 
-/*@ requires wh_table_memory(table) && wh_sweep_memory(sweep);
-    assigns \nothing;
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && wh_sweep_memory(sweep);
+    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures \result.wafer == WH_NONE ||
             wh_is_wafer(table, \result.wafer) && wh_holder(table, \result.wafer) == WH_NONE; */
-static candidate_t find_ready(const wh_grasp_t *table, const wh_sweep_t *sweep) {
+static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *sweep) {
+    const wh_vec3_t *place = &sweep->end->r;
+    const wh_real_t margin = wh_horizon_margin(table, g, place);
+    const wh_near_t near = wh_index_near(table, &sweep->begin->r, place, margin);
+    wh_horizon_t horizon = wh_horizon_begin(table, g, &near, margin);
     candidate_t best = {.wafer = WH_NONE};
-    /*@ loop invariant 0 <= w <= table->storage.wafer_count;
-        loop invariant best.wafer == WH_NONE || 0 <= best.wafer < w && wh_holder(table, best.wafer) == WH_NONE;
-        loop assigns w, best;
-        loop variant table->storage.wafer_count - w; */
-    for (size_t w = 0; w < table->storage.wafer_count; ++w) {
+    /*@ loop invariant 0 <= i <= near.count;
+        loop invariant best.wafer == WH_NONE ||
+                       wh_is_wafer(table, best.wafer) && wh_holder(table, best.wafer) == WH_NONE;
+        loop assigns i, best, horizon.gap;
+        loop variant near.count - i; */
+    for (size_t i = 0; i < near.count; ++i) {
+        const size_t w = wh_index_wafer(table, &near, i);
         const wh_wafer_t *wafer = &table->storage.wafers[w];
+        if (wafer->holder != WH_NONE) {
+            continue;
+        }
         candidate_t here = {.wafer = (int32_t)w};
-        if (wafer->holder == WH_NONE && wafer->released_by == WH_NONE &&
+        (void)wh_horizon_passes(&horizon, &wafer->base_from_wafer, place);
+        if (wafer->released_by == WH_NONE &&
             wh_sweep_first_ready(sweep, &wafer->base_from_wafer, &table->config.tolerance, &here.t)) {
             wh_pose_t then;
             wh_sweep_pose_at(sweep, here.t, &then);
@@ -39,16 +58,21 @@ static candidate_t find_ready(const wh_grasp_t *table, const wh_sweep_t *sweep) 
             keep_better(&best, &here);
         }
     }
+    wh_horizon_keep(table, g, place, &horizon);
     return best;
 }
 
 bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
+    const wh_pose_t *begin = &table->storage.grippers[g].base_from_gripper;
+    if (wh_horizon_covers(table, g, &begin->r) && wh_horizon_covers(table, g, &input->base_from_gripper.r)) {
+        return false;
+    }
     wh_sweep_t sweep;
-    wh_sweep_between(&table->storage.grippers[g].base_from_gripper, &input->base_from_gripper, &sweep);
+    wh_sweep_between(begin, &input->base_from_gripper, &sweep);
     /*@ assert wh_other_poses{Pre, Here}(table, WH_NONE); */
     /*@ assert wh_other_grips{Pre, Here}(table, WH_NONE); */
-    const candidate_t best = find_ready(table, &sweep);
+    const candidate_t best = find_ready(table, g, &sweep);
     if (best.wafer == WH_NONE) {
         return false;
     }

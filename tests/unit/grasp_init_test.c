@@ -25,10 +25,11 @@ static wh_status_t init_with(cell_t *cell, int what) {
         storage.bucket_count = what == 24 ? 1 : 0;
         storage.wafer_count = what == 25 ? (size_t)INT32_MAX + 1 : storage.wafer_count;
         storage.gripper_count = what == 26 ? (size_t)INT32_MAX + 1 : storage.gripper_count;
-        if (what == 27) {
-            static uint32_t bucket;
-            storage.buckets = &bucket;
-            storage.bucket_count = (size_t)INT32_MAX + 1;
+        if (what >= 27) {
+            static uint32_t buckets[6 + 4 * CELL_GRIPPERS + 5 * CELL_WAFERS];
+            storage.buckets = buckets;
+            storage.bucket_count =
+                what == 27 ? (size_t)INT32_MAX + 1 : sizeof buckets / sizeof buckets[0] - 1;
         }
     }
     return wh_grasp_init(&cell->table, &config, &storage);
@@ -40,7 +41,7 @@ static void init_refuses(void **state) {
     cell_t before;
     begin_busy(&cell);
     memcpy(&before, &cell, sizeof before);
-    for (int what = 0; what <= 27; ++what) {
+    for (int what = 0; what <= 28; ++what) {
         const wh_status_t status = init_with(&cell, what);
         assert_int_equal(status, what < 21   ? WH_STATUS_BAD_TOLERANCE
                                  : what < 22 ? WH_STATUS_OUT_OF_RANGE
@@ -63,13 +64,13 @@ static void init_refuses(void **state) {
 static void init_takes_the_greatest_counts(void **state) {
     (void)state;
     cell_t cell;
-    uint32_t bucket;
+    uint32_t buckets[6 + 4 * CELL_GRIPPERS + 5 * CELL_WAFERS];
     begin_busy(&cell);
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t most[] = {
         {cell.wafer, INT32_MAX, cell.gripper, CELL_GRIPPERS, NULL, 0},
         {cell.wafer, CELL_WAFERS, cell.gripper, INT32_MAX, NULL, 0},
-        {cell.wafer, CELL_WAFERS, cell.gripper, CELL_GRIPPERS, &bucket, INT32_MAX},
+        {cell.wafer, CELL_WAFERS, cell.gripper, CELL_GRIPPERS, buckets, INT32_MAX},
         {cell.wafer, 1, NULL, 0, NULL, 0},
     };
     const wh_pose_t good = cell.wafer[0].base_from_wafer;

@@ -1,0 +1,118 @@
+#include "core/horizon_internal.h"
+
+/* A gripper farther out has no horizon: 33 km. */
+#define FAR WH_REAL(2147483520.0)
+/* The longest that a word holds. */
+#define LONGEST WH_REAL(1073741824.0)
+
+/* Taken off: what the measurement may be wrong by beyond rounding, mm, and for rotations. */
+#if defined(WH_FLOAT)
+#define SLACK WH_REAL(1e-2)
+#else
+#define SLACK WH_REAL(1e-9)
+#endif
+#define STRETCH (1 + 3 * WH_ROTATION_TOLERANCE)
+
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && table->storage.bucket_count > 0;
+    assigns \nothing;
+    ensures \result == table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g); */
+static uint32_t *words_of(const wh_grasp_t *table, size_t g) {
+    return table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g);
+}
+
+/* Two's complement, whatever the compiler does with a cast. */
+/*@ assigns \nothing; */
+static wh_real_t signed_of(uint32_t word) {
+    return (wh_real_t)(word > INT32_MAX ? -1 - (int32_t)(UINT32_MAX - word) : (int32_t)word);
+}
+
+/*@ requires \valid_read(words + (0 .. 2)) && \valid_read(place); assigns \nothing; */
+static wh_real_t squared_way(const uint32_t *words, const wh_vec3_t *place) {
+    const wh_real_t x = WH_INDEX_UNITS * place->x - signed_of(words[0]);
+    const wh_real_t y = WH_INDEX_UNITS * place->y - signed_of(words[1]);
+    const wh_real_t z = WH_INDEX_UNITS * place->z - signed_of(words[2]);
+    return x * x + y * y + z * z;
+}
+
+bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
+    if (table->storage.bucket_count == 0) {
+        return false;
+    }
+    const uint32_t *words = words_of(table, g);
+    const wh_real_t reach = (wh_real_t)(words[3] >> 1);
+    const bool for_this = (words[3] & 1) == 0 || table->storage.grippers[g].approach.wafer != WH_NONE;
+    return for_this && squared_way(words, place) < reach * reach;
+}
+
+wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
+    const wh_limits_t limits = wh_index_limits(table);
+    const wh_vec3_t way = wh_vec3_subtract(place, &table->storage.grippers[g].base_from_gripper.r);
+    const wh_real_t moved = wh_real_abs(way.x) + wh_real_abs(way.y) + wh_real_abs(way.z);
+    const wh_real_t half = (limits.projz + limits.projxy) / 2;
+    const wh_real_t most = half > 8 ? half : 8;
+    const wh_real_t least = most / 32;
+    if (moved > most / 2 || moved < least / 32) {
+        return least;
+    }
+    return 32 * moved < most ? 32 * moved : most;
+}
+
+wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_near_t *near, wh_real_t margin) {
+    wh_horizon_t horizon = {.limits = wh_index_limits(table), .measured = table->storage.bucket_count > 0};
+    if (table->storage.grippers[g].approach.wafer != WH_NONE) {
+        horizon.limits.projz = table->config.tolerance.projz;
+        horizon.limits.projxy = table->config.tolerance.projxy;
+    }
+    horizon.gap = near->listed ? margin : LONGEST;
+    return horizon;
+}
+
+/* The distance in units, rounded down, for twice which there is room in a word; 0 where none is left. */
+/*@ assigns \nothing; ensures \result <= INT32_MAX; */
+static uint32_t reach_of(wh_real_t units) {
+    if (!(units > 0)) {
+        return 0;
+    }
+    return units < LONGEST ? (uint32_t)units : (uint32_t)LONGEST;
+}
+
+/*@ assigns \nothing; */
+static bool is_far(wh_real_t units) {
+    return !(units > -FAR && units < FAR);
+}
+
+/* The place is rounded towards zero, by less than two units in all. */
+void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon) {
+    if (!horizon->measured) {
+        return;
+    }
+    uint32_t *words = words_of(table, g);
+    const wh_real_t x = WH_INDEX_UNITS * place->x;
+    const wh_real_t y = WH_INDEX_UNITS * place->y;
+    const wh_real_t z = WH_INDEX_UNITS * place->z;
+    words[3] = 0;
+    if (is_far(x) || is_far(y) || is_far(z)) {
+        return;
+    }
+    const wh_limits_t limits = wh_index_limits(table);
+    const wh_real_t size =
+        wh_real_abs(place->x) + wh_real_abs(place->y) + wh_real_abs(place->z) + limits.projz + limits.projxy;
+    const wh_real_t sure = (horizon->gap - SLACK - WH_INDEX_ROUNDING * size) / STRETCH;
+    words[0] = (uint32_t)(int32_t)x;
+    words[1] = (uint32_t)(int32_t)y;
+    words[2] = (uint32_t)(int32_t)z;
+    words[3] = 2 * reach_of(WH_INDEX_UNITS * sure - 2) +
+               (table->storage.grippers[g].approach.wafer != WH_NONE ? 1U : 0U);
+}
+
+void wh_horizon_reset(wh_grasp_t *table) {
+    if (table->storage.bucket_count == 0) {
+        return;
+    }
+    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
+        loop assigns g, table->storage.buckets[0 .. table->storage.bucket_count - 1];
+        loop variant table->storage.gripper_count - g; */
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        words_of(table, g)[3] = 0;
+    }
+}

@@ -1,0 +1,83 @@
+/* Within the core: a grid over the wafers in the caller's buckets, so that a step looks only at those around a gripper.
+ *
+ * All of it lives in wh_grasp_storage_t.buckets, in this order:
+ *   3 words   how far along base's x, y and z any wafer's neighbourhood reaches from its origin, in units of 1/64 mm;
+ *   3 words   the edges of a cell along them, as powers of two of the unit;
+ *   4 words   for each gripper: its horizon (horizon_internal.h);
+ *   2 words   for each wafer: the heads of the cells' lists, found by hashing the cell's place;
+ *   2 words   for each wafer: the next in its list, and its cell's key;
+ *   1 word    for each wafer: what the last search found.
+ * A wafer keeps its cell while a gripper holds it. Whatever stands in a word, no search leaves the arrays or goes on for
+ * ever.
+ */
+#ifndef WH_CORE_INDEX_INTERNAL_H
+#define WH_CORE_INDEX_INTERNAL_H
+
+#include "core/grasp.h"
+
+#define WH_INDEX_EXTENTS ((size_t)0)
+#define WH_INDEX_SHIFTS ((size_t)3)
+#define WH_INDEX_HORIZONS ((size_t)6)
+#define WH_HORIZON_WORDS ((size_t)4)
+#define WH_INDEX_WAFER_WORDS ((size_t)5)
+
+/* Units of the index per mm. */
+#define WH_INDEX_UNITS WH_REAL(64)
+
+#if defined(WH_FLOAT)
+#define WH_INDEX_ROUNDING (16 * WH_REAL(FLT_EPSILON))
+#else
+#define WH_INDEX_ROUNDING (16 * WH_REAL(DBL_EPSILON))
+#endif
+
+/* Where a wafer may be taken or watched: within these limits of |dr_proj_z| and |dr_proj_xy|. */
+typedef struct {
+    wh_real_t projz, projxy;
+} wh_limits_t;
+
+/* What a search found: wafers' indices in no order, or all wafers where `listed` is null. */
+typedef struct {
+    const uint32_t *listed;
+    size_t count;
+} wh_near_t;
+
+/* Anew for all wafers, where the table has buckets. No gripper has a horizon then. */
+/*@ requires wh_table_memory(table);
+    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
+void wh_index_build(wh_grasp_t *table);
+
+/* This wafer lies somewhere else from now on. No gripper has a horizon then. */
+/*@ requires wh_table_memory(table) && wafer < table->storage.wafer_count;
+    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
+void wh_index_move(wh_grasp_t *table, size_t wafer);
+
+/* The wafers in whose neighbourhood a gripper comes between `from` and `to` or, along one of base's axes, may come by
+ * moving less than `margin` from there; and others. All of them where the table has no buckets or as many cells would have
+ * to be looked at. */
+/*@ requires wh_table_memory(table) && \valid_read(from) && \valid_read(to);
+    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
+    ensures \result.count <= table->storage.wafer_count;
+    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
+wh_near_t wh_index_near(wh_grasp_t *table, const wh_vec3_t *from, const wh_vec3_t *to, wh_real_t margin);
+
+/* The i-th wafer that was found. */
+/*@ requires wh_table_memory(table) && \valid_read(near) && i < near->count <= table->storage.wafer_count;
+    requires near->listed == \null || \valid_read(near->listed + (0 .. near->count - 1));
+    assigns \nothing;
+    ensures wh_is_wafer(table, \result); */
+static inline size_t wh_index_wafer(const wh_grasp_t *table, const wh_near_t *near, size_t i) {
+    const size_t wafer = near->listed ? near->listed[i] : i;
+    return wafer < table->storage.wafer_count ? wafer : 0;
+}
+
+/* The neighbourhood, which every ready wafer is in. */
+/*@ requires \valid_read(table); assigns \nothing; */
+static inline wh_limits_t wh_index_limits(const wh_grasp_t *table) {
+    const wh_grasp_config_t *config = &table->config;
+    const wh_limits_t limits = {
+        config->near_projz > config->tolerance.projz ? config->near_projz : config->tolerance.projz,
+        config->near_projxy > config->tolerance.projxy ? config->near_projxy : config->tolerance.projxy};
+    return limits;
+}
+
+#endif
