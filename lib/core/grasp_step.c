@@ -35,6 +35,32 @@
     wh_same_size{K, M}(t) && wh_same_poses{K, M}(t) && wh_same_poses{M, L}(t) ==> wh_same_poses{K, L}(t);
   lemma wh_encounters_same{K, L}: \forall wh_grasp_t *t;
     wh_same_size{K, L}(t) && wh_same_watched{K, L}(t) && wh_encounters{K}(t) ==> wh_encounters{L}(t);
+  lemma wh_paired_same{K, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, L}(t) && wh_same_holders{K, L}(t) && wh_same_held{K, L}(t) && wh_paired{K}(t) ==> wh_paired{L}(t);
+  lemma wh_none_released_same{K, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, L}(t) && wh_same_releases{K, L}(t) && wh_none_released{K}(t) ==> wh_none_released{L}(t);
+  lemma wh_encounters_as_before{K, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, L}(t) && wh_same_encounters{K, L}(t) && wh_encounters{K}(t) ==> wh_encounters{L}(t);
+  lemma wh_rest_after{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_holders{K, M}(t) && wh_same_poses{K, M}(t) && wh_free_at_rest{M, L}(t) ==>
+    wh_free_at_rest{K, L}(t);
+  lemma wh_grips_after{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_held{K, M}(t) && wh_same_grips{K, M}(t) && wh_grips_kept{M, L}(t) ==>
+    wh_grips_kept{K, L}(t);
+  lemma wh_same_releases_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_releases{K, M}(t) && wh_same_releases{M, L}(t) ==> wh_same_releases{K, L}(t);
+  lemma wh_same_stands_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_stands{K, M}(t) && wh_same_stands{M, L}(t) ==> wh_same_stands{K, L}(t);
+  lemma wh_same_valves_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_valves{K, M}(t) && wh_same_valves{M, L}(t) ==> wh_same_valves{K, L}(t);
+  lemma wh_same_encounters_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_encounters{K, M}(t) && wh_same_encounters{M, L}(t) ==> wh_same_encounters{K, L}(t);
+  lemma wh_same_measured_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_measured{K, M}(t) && wh_same_measured{M, L}(t) ==> wh_same_measured{K, L}(t);
+  lemma wh_same_arrays_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_same_arrays{K, M}(t) && wh_same_arrays{M, L}(t) ==> wh_same_arrays{K, L}(t);
+  lemma wh_consistent_same{K, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, L}(t) && wh_same_arrays{K, L}(t) && wh_consistent{K}(t) ==> wh_consistent{L}(t);
   lemma wh_stepping_same{K, L}: \forall wh_grasp_t *t, wh_gripper_input_t *in, integer from, integer to;
     wh_same_size{K, L}(t) && wh_same_inputs{K, L}(in, \at(t->storage.gripper_count, K)) && wh_same_holders{K, L}(t) &&
     wh_same_releases{K, L}(t) && wh_same_held{K, L}(t) && wh_stepping{K}(t, in, from, to) ==> wh_stepping{L}(t, in, from, to);
@@ -521,6 +547,51 @@ static void advance(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_even
     /*@ assert wh_grips_kept{Pre, Here}(table); */
 }
 
+/* Part 1. A refused call changes nothing but counters and the list. */
+/*@ requires wh_table_memory(table) && wh_list_memory(list) && wh_list_apart(list, table);
+    requires inputs != \null ==> \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) &&
+             wh_inputs_apart(inputs, table) && wh_inputs_apart_list(inputs, table, list);
+    requires list != \null ==> list->count == 0;
+    assigns table->counters.refused, list->count, list->events[0 .. wh_room(list) - 1];
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_same_arrays{Pre, Post}(table);
+    ensures \result == WH_OK ==> wh_list_ready(list, 4 * table->storage.gripper_count);
+    ensures \result == WH_OK ==> \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) &&
+             wh_inputs_apart(inputs, table) && wh_inputs_apart_list(inputs, table, list); */
+static wh_status_t validate(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
+    const wh_status_t status = validate_call(table, inputs, list);
+    if (status != WH_OK) {
+        count_refusal(table);
+        return status;
+    }
+    return validate_inputs(table, inputs, list);
+}
+
+/* The step of a table that there is, with an empty list. */
+/*@ requires wh_table_memory(table) && wh_consistent(table);
+    requires wh_list_memory(list) && wh_list_apart(list, table);
+    requires inputs != \null ==> \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) &&
+             wh_inputs_apart(inputs, table) && wh_inputs_apart_list(inputs, table, list);
+    requires list != \null ==> list->count == 0;
+    assigns table->slice, table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
+            table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            list->count, list->events[0 .. wh_room(list) - 1];
+    ensures wh_consistent(table);
+    ensures wh_free_at_rest{Pre, Post}(table);
+    ensures wh_grips_kept{Pre, Post}(table);
+    ensures \result != WH_OK ==> \at(table->slice, Pre) == table->slice;
+    ensures \result != WH_OK ==> wh_same_arrays{Pre, Post}(table); */
+static wh_status_t step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
+    const wh_status_t status = validate(table, inputs, list);
+    /*@ assert wh_table_memory(table); */
+    /*@ assert wh_same_size{Pre, Here}(table) && wh_room(list) == wh_room{Pre}(list); */
+    /*@ assert wh_consistent(table); */
+    if (status == WH_OK) {
+        advance(table, inputs, list);
+    }
+    return status;
+}
+
 wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     if (list) {
         list->count = 0;
@@ -528,20 +599,10 @@ wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, w
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    /*@ assert wh_same_size{Pre, Here}(table) && wh_same_arrays{Pre, Here}(table); */
-    /*@ assert wh_table_memory(table) && wh_consistent(table); */
-    wh_status_t status = validate_call(table, inputs, list);
-    if (status != WH_OK) {
-        count_refusal(table);
-        /*@ assert wh_same_size{Pre, Here}(table) && wh_same_arrays{Pre, Here}(table); */
-        return status;
-    }
-    status = validate_inputs(table, inputs, list);
-    /*@ assert wh_same_size{Pre, Here}(table) && wh_same_arrays{Pre, Here}(table); */
-    /*@ assert wh_table_memory(table) && wh_consistent(table); */
-    if (status != WH_OK) {
-        return status;
-    }
-    advance(table, inputs, list);
-    return WH_OK;
+    /*@ assert wh_same_size{Pre, Here}(table); */
+    /*@ assert wh_same_encounters{Pre, Here}(table); */
+    /*@ assert wh_same_arrays{Pre, Here}(table); */
+    /*@ assert wh_table_memory(table); */
+    /*@ assert wh_consistent(table); */
+    return step(table, inputs, list);
 }
