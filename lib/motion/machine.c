@@ -1,5 +1,7 @@
 #include "motion/machine.h"
 
+#include <string.h>
+
 #include "motion/trig.h"
 
 /* A tilt, however slight, shows in one of these; rounding leaves none of it in a turn about z alone. */
@@ -67,20 +69,82 @@ wh_status_t wh_machine_check_travel(const wh_machine_t *machine, const wh_real_t
     return WH_OK;
 }
 
+/* ------------------------------------------------------------------------------------------------------- poses */
+
+/* One on the robot. */
+static void place_on_robot(const wh_mount_t *mount, const wh_pose_t *base_from_effector, wh_pose_t *pose) {
+    if (mount->is_shifted) {
+        wh_pose_compose_to(base_from_effector, &mount->effector_from_gripper, pose);
+    } else {
+        *pose = *base_from_effector;
+    }
+}
+
+static void place_on_chuck(const wh_mount_t *mount, wh_real_t angle, wh_pose_t *pose) {
+    const wh_mat3_t turn = wh_mat3_about_z(angle);
+    wh_mat3_multiply_to(&mount->base_from_station.R, &turn, &pose->R);
+    pose->r = mount->base_from_station.r;
+}
+
 void wh_machine_grippers(const wh_machine_t *machine, const wh_real_t axes[], wh_pose_t poses[]) {
     wh_pose_t base_from_effector;
     wh_robot_forward(axes, &base_from_effector);
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         const wh_mount_t *mount = &machine->mounts[g];
         if (mount->axis == WH_NONE) {
-            poses[g] = mount->is_shifted ? wh_pose_compose(&base_from_effector, &mount->effector_from_gripper)
-                                         : base_from_effector;
+            place_on_robot(mount, &base_from_effector, &poses[g]);
         } else {
-            const wh_mat3_t turn = wh_mat3_about_z(axes[mount->axis]);
-            poses[g].R = wh_mat3_multiply(&mount->base_from_station.R, &turn);
-            poses[g].r = mount->base_from_station.r;
+            place_on_chuck(mount, axes[mount->axis], &poses[g]);
         }
     }
+}
+
+/* By bits: 0 and -0 differ, and NaN is the same as itself. */
+static bool is_same(const wh_real_t *a, const wh_real_t *b) {
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
+/* Bit a: axis a moved since the stance was taken. */
+static uint32_t take_axes(const wh_machine_t *machine, const wh_real_t axes[], wh_stance_t *stance) {
+    uint32_t moved = 0;
+    for (size_t axis = 0; axis < machine->axis_count; ++axis) {
+        moved |= stance->is_taken && is_same(&axes[axis], &stance->axes[axis]) ? 0 : 1U << axis;
+        stance->axes[axis] = axes[axis];
+    }
+    return moved;
+}
+
+/* wh_robot_forward, with the sines that are known. */
+static void move_effector(const wh_real_t q[], uint32_t moved, wh_stance_t *stance) {
+    const wh_real_t heading = q[WH_AXIS_THETA] + q[WH_AXIS_YAW];
+    wh_pose_t *effector = &stance->base_from_effector;
+    if ((moved >> WH_AXIS_THETA & 1U) != 0) {
+        wh_sin_cos(q[WH_AXIS_THETA], &stance->sine, &stance->cosine);
+    }
+    effector->r = wh_vec3(q[WH_AXIS_R] * stance->cosine, q[WH_AXIS_R] * stance->sine, q[WH_AXIS_Z]);
+    if (!stance->is_taken || !is_same(&heading, &stance->heading)) {
+        effector->R = is_same(&heading, &q[WH_AXIS_THETA]) ? wh_mat3_turn_z(stance->sine, stance->cosine)
+                                                           : wh_mat3_about_z(heading);
+    }
+    stance->heading = heading;
+}
+
+void wh_machine_follow(const wh_machine_t *machine, const wh_real_t axes[], wh_stance_t *stance,
+                       wh_gripper_input_t grippers[]) {
+    const uint32_t moved = take_axes(machine, axes, stance);
+    const bool robot = (moved & ((1U << WH_ROBOT_AXES) - 1)) != 0;
+    if (robot) {
+        move_effector(axes, moved, stance);
+    }
+    for (size_t g = 0; moved != 0 && g < machine->gripper_count; ++g) {
+        const wh_mount_t *mount = &machine->mounts[g];
+        if (mount->axis != WH_NONE && (moved >> mount->axis & 1U) != 0) {
+            place_on_chuck(mount, axes[mount->axis], &grippers[g].base_from_gripper);
+        } else if (mount->axis == WH_NONE && robot) {
+            place_on_robot(mount, &stance->base_from_effector, &grippers[g].base_from_gripper);
+        }
+    }
+    stance->is_taken = true;
 }
 
 wh_status_t wh_machine_inverse(const wh_machine_t *machine, size_t gripper, const wh_vec3_t *at,

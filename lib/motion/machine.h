@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 
+#include "core/grasp.h"
 #include "motion/move.h"
 #include "motion/robot.h"
 
@@ -34,6 +35,16 @@ typedef struct {
     wh_mount_t mounts[WH_GRIPPERS];
 } wh_machine_t;
 
+/* Where the machine stood when wh_machine_follow was last called: what it need not compute again. All zero before the first
+ * call; written by it only. */
+typedef struct {
+    bool is_taken; /* the rest is of `axes` */
+    wh_real_t axes[WH_AXES];
+    wh_real_t sine, cosine; /* of theta */
+    wh_real_t heading;      /* theta + yaw */
+    wh_pose_t base_from_effector;
+} wh_stance_t;
+
 /* WH_OK, or WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE (a count or a mount's axis), WH_STATUS_NOT_LEVEL (a
  * shifted gripper whose z is not the end-effector's, to the last bit), or what wh_robot_validate and
  * wh_pose_validate say. Cost: linear in the grippers. */
@@ -50,6 +61,12 @@ wh_status_t wh_machine_check_travel(const wh_machine_t *machine, const wh_real_t
  * checked. Cost: a sine and cosine for the robot and for each chuck, a product of poses for each shifted gripper.
  */
 void wh_machine_grippers(const wh_machine_t *machine, const wh_real_t axes[], wh_pose_t poses[]);
+
+/* The same, bit for bit, for one slice after another: writes base_from_gripper of the grippers that have moved since the
+ * last call with this stance; those of the others must be as that call left them. `machine` must be the same in all of
+ * them. Cost: what has moved, of the above; a comparison of all axes for one that stands still. */
+void wh_machine_follow(const wh_machine_t *machine, const wh_real_t axes[], wh_stance_t *stance,
+                       wh_gripper_input_t grippers[]);
 
 /* The axes that bring gripper `gripper`, which is on the robot, to the point `at` (base, mm) with its x along `heading`:
  * wh_robot_inverse of where the end-effector then is, with its errors and what it leaves unchanged. On a level

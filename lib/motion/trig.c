@@ -149,8 +149,7 @@ wh_mat3_t wh_mat3_about_z(wh_real_t angle) {
     wh_real_t s;
     wh_real_t c;
     wh_sin_cos(angle, &s, &c);
-    wh_mat3_t R = {{{c, 0 - s, 0}, {s, c, 0}, {0, 0, 1}}};
-    return R;
+    return wh_mat3_turn_z(s, c);
 }
 
 wh_mat3_t wh_mat3_from_rpy_deg(wh_real_t roll, wh_real_t pitch, wh_real_t yaw) {

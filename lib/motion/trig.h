@@ -52,6 +52,12 @@ wh_real_t wh_deg_from_rad(wh_real_t rad);
 /* The rotation by `angle` rad about z, counter-clockwise seen from +z. Entries NaN where wh_sin is. */
 wh_mat3_t wh_mat3_about_z(wh_real_t angle);
 
+/* The same from sin and cos of the angle. */
+static inline wh_mat3_t wh_mat3_turn_z(wh_real_t sine, wh_real_t cosine) {
+    const wh_mat3_t R = {{{cosine, 0 - sine, 0}, {sine, cosine, 0}, {0, 0, 1}}};
+    return R;
+}
+
 /* R = Rz(yaw) * Ry(pitch) * Rx(roll), in degrees about base's fixed axes: a layout's `rpy`. Multiples of 90
  * give exact entries. Entries NaN where wh_sin_cos_deg is. */
 wh_mat3_t wh_mat3_from_rpy_deg(wh_real_t roll, wh_real_t pitch, wh_real_t yaw);

@@ -39,21 +39,6 @@ static bool begin(wh_ahead_t *ahead, const wh_mcs_t *mcs) {
     return true;
 }
 
-static void fill_command(const wh_ahead_t *ahead, const wh_track_t *track, wh_command_t *command) {
-    const wh_machine_t *machine = &ahead->layout->machine;
-    wh_pose_t poses[WH_GRIPPERS];
-    wh_machine_grippers(machine, track->axes, poses);
-    memset(command, 0, sizeof *command);
-    command->gripper_count = machine->gripper_count;
-    command->axis_count = machine->axis_count;
-    command->seq = track->slice;
-    memcpy(command->axes, track->axes, sizeof command->axes);
-    for (size_t g = 0; g < command->gripper_count; ++g) {
-        command->grippers[g].base_from_gripper = poses[g];
-        command->grippers[g].valve = track->valves[g];
-    }
-}
-
 static const wh_event_t *find_hit(const wh_state_t *state) {
     for (size_t i = 0; i < state->event_count; ++i) {
         if (state->events[i].kind == WH_EVENT_HIT || state->events[i].kind == WH_EVENT_UNDECIDED) {
@@ -73,13 +58,14 @@ static void describe(const wh_ahead_t *ahead, const wh_event_t *hit, char *reaso
 bool wh_ahead_judge(void *user, const wh_mcs_t *mcs, const wh_segment_t *segment, char *reason) {
     wh_ahead_t *ahead = user;
     wh_track_t track = mcs->track;
-    wh_command_t command;
+    wh_command_t command = {.fault_count = 0};
+    wh_stance_t stance = {.is_taken = false};
     wh_state_t state;
     if (segment->kind == WH_SEGMENT_SENSOR || (mcs->judged == 0 && !begin(ahead, mcs))) {
         return false;
     }
     while (wh_track_next(&track, 0) == WH_TRACK_MOVING) {
-        fill_command(ahead, &track, &command);
+        wh_command_follow(&command, &stance, &track);
         (void)wh_simulator_step(&ahead->simulator, &command, &state);
         const wh_event_t *hit = find_hit(&state);
         if (hit) {

@@ -43,6 +43,7 @@ struct wh_mcs {
     wh_link_t *link; /* the simulator's, or whoever stands in for it */
     wh_track_t track;
     wh_command_t command;  /* the last one sent */
+    wh_stance_t stance;    /* and what it was made of */
     wh_state_t state;      /* the answer to it */
     int32_t running;       /* index of the running command in the record, or WH_NONE */
     bool rehearsing;       /* segments are planned and skipped, not played */

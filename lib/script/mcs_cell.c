@@ -76,8 +76,6 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
         mcs->ahead_user = ahead;
     }
     mcs->link = &mcs->simulator.link;
-    mcs->command.gripper_count = layout->machine.gripper_count;
-    mcs->command.axis_count = layout->machine.axis_count;
     wh_simulator_view(&mcs->simulator, &mcs->state);
     mcs->layout = layout;
     wh_mcs_start_faults(mcs);

@@ -1,6 +1,5 @@
 /* The MCS host's hands: segments, read and played slice by slice. */
 #include <math.h>
-#include <string.h>
 #include <time.h>
 
 #include "script/mcs_internal.h"
@@ -21,15 +20,7 @@ static void keep_events(wh_mcs_t *mcs) {
 
 static wh_status_t exchange(wh_mcs_t *mcs) {
     wh_command_t *command = &mcs->command;
-    wh_pose_t poses[WH_GRIPPERS];
-    wh_machine_grippers(&mcs->layout->machine, mcs->track.axes, poses);
-    for (size_t g = 0; g < command->gripper_count; ++g) {
-        command->grippers[g].base_from_gripper = poses[g];
-        command->grippers[g].valve = mcs->track.valves[g];
-    }
-    memcpy(command->axes, mcs->track.axes, sizeof command->axes);
-    command->seq = mcs->track.slice;
-    command->utime = mcs->track.slice * mcs->track.slice_us;
+    wh_command_follow(command, &mcs->stance, &mcs->track);
     const wh_status_t status = mcs->link->exchange(mcs->link, command, &mcs->state);
     command->fault_count = 0;
     if (mcs->state.event_count > 0) {

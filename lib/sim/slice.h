@@ -3,7 +3,7 @@
 #ifndef WH_SIM_SLICE_H
 #define WH_SIM_SLICE_H
 
-#include "core/grasp.h"
+#include "motion/track.h"
 #include "sim/condition.h"
 
 /* At most so many events in one slice: those of the grasp table, then what the cell, the vacuum, the faults and the
@@ -23,6 +23,10 @@ typedef struct {
     size_t fault_count;
     wh_fault_request_t faults[WH_COMMAND_FAULTS]; /* faults on purpose that begin or get another end */
 } wh_command_t;
+
+/* Makes it what the machine does in the slice that the track yielded last; faults are left alone. Of a command that is not
+ * all zero, and its stance, nothing else may have been written to by others since. Cost: wh_machine_follow. */
+void wh_command_follow(wh_command_t *command, wh_stance_t *stance, const wh_track_t *track);
 
 /* What has become of it: a view of the simulator's own memory, true until the next exchange. */
 typedef struct {
