@@ -117,6 +117,14 @@ static bool are_valid(const wh_command_t *command) {
     return good;
 }
 
+/* Whether nothing comes between a command and the grippers, and after the step the vacuum is what wafers make of it: no
+ * slot has a fault, or gets one, and no level takes its time or is any but 0 and 1, whatever it was before. */
+static bool is_direct(const wh_simulator_t *simulator, const wh_command_t *command) {
+    const wh_vacuum_config_t *vacuum = &simulator->vacuum;
+    return simulator->condition.faults.count + command->fault_count == 0 &&
+           vacuum->build + vacuum->vent + vacuum->idle == 0;
+}
+
 static wh_fault_changes_t apply_faults(wh_simulator_t *simulator, const wh_command_t *command) {
     wh_fault_changes_t changes = {0, 0};
     wh_faults_t *faults = &simulator->condition.faults;
@@ -155,6 +163,18 @@ static void update_vacuum(wh_simulator_t *simulator, const wh_command_t *command
     }
 }
 
+/* The same where is_direct. */
+static void take_vacuum(wh_simulator_t *simulator, const wh_command_t *command) {
+    wh_condition_t *condition = &simulator->condition;
+    for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
+        const bool on = holds(simulator, g);
+        condition->vacuum[g].level = on ? 1 : 0;
+        condition->vacuum[g].command = command->grippers[g].valve;
+        condition->vacuum[g].on = on;
+        condition->told[g] = command->grippers[g].valve;
+    }
+}
+
 static void watch_holding(wh_simulator_t *simulator) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
     for (size_t g = 0; simulator->pads.mass > 0 && g < storage->gripper_count; ++g) {
@@ -171,7 +191,8 @@ static void watch_holding(wh_simulator_t *simulator) {
 }
 
 /* To the observer: the wafers that faults have moved, then the step. */
-static void show(wh_simulator_t *simulator, uint32_t changed, wh_event_list_t *list) {
+static void show(wh_simulator_t *simulator, const wh_gripper_input_t inputs[], uint32_t changed,
+                 wh_event_list_t *list) {
     const wh_observer_t *observer = &simulator->observer;
     const wh_faults_t *faults = &simulator->condition.faults;
     for (size_t i = 0; observer->placed && i < faults->count; ++i) {
@@ -181,25 +202,39 @@ static void show(wh_simulator_t *simulator, uint32_t changed, wh_event_list_t *l
         }
     }
     if (observer->look) {
-        observer->look(observer->user, simulator->inputs, &simulator->table, list);
+        observer->look(observer->user, inputs, &simulator->table, list);
     }
 }
 
-static wh_status_t step_grippers(wh_simulator_t *simulator, const wh_command_t *command) {
-    wh_vacuum_t vacuum[WH_GRIPPERS];
-    memcpy(simulator->inputs, command->grippers, command->gripper_count * sizeof command->grippers[0]);
-    const wh_fault_changes_t changes = apply_faults(simulator, command);
-    switch_valves(simulator, vacuum);
+static wh_status_t step_cell(wh_simulator_t *simulator, const wh_gripper_input_t inputs[], uint32_t changed) {
     wh_event_list_t list = {simulator->events, WH_SLICE_EVENTS, 0};
-    const wh_status_t status = wh_grasp_step(&simulator->table, simulator->inputs, &list);
+    const wh_status_t status = wh_grasp_step(&simulator->table, inputs, &list);
     if (status == WH_OK && list.count > 0) {
         (void)wh_cell_judge(&simulator->cell, &simulator->table, &list);
         wh_cell_settle(&simulator->cell, &simulator->table, &list);
     }
     if (status == WH_OK) {
-        show(simulator, changes.armed | changes.cleared, &list);
+        show(simulator, inputs, changed, &list);
     }
     simulator->event_count = list.count;
+    return status;
+}
+
+static wh_status_t step_direct(wh_simulator_t *simulator, const wh_command_t *command) {
+    const wh_status_t status = step_cell(simulator, command->grippers, 0);
+    if (status == WH_OK) {
+        take_vacuum(simulator, command);
+        watch_holding(simulator);
+    }
+    return status;
+}
+
+static wh_status_t step_upset(wh_simulator_t *simulator, const wh_command_t *command) {
+    wh_vacuum_t vacuum[WH_GRIPPERS];
+    memcpy(simulator->inputs, command->grippers, command->gripper_count * sizeof command->grippers[0]);
+    const wh_fault_changes_t changes = apply_faults(simulator, command);
+    switch_valves(simulator, vacuum);
+    const wh_status_t status = step_cell(simulator, simulator->inputs, changes.armed | changes.cleared);
     if (status == WH_OK) {
         update_vacuum(simulator, command, vacuum);
         watch_holding(simulator);
@@ -221,7 +256,7 @@ static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *com
         simulator->event_count = 0;
         return status;
     }
-    return step_grippers(simulator, command);
+    return is_direct(simulator, command) ? step_direct(simulator, command) : step_upset(simulator, command);
 }
 
 void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) {

@@ -25,7 +25,7 @@ typedef struct {
     wh_vacuum_config_t vacuum;
     wh_pads_t pads;
     wh_condition_t condition;
-    wh_gripper_input_t inputs[WH_GRIPPERS]; /* of the running step, as faults and vacuum make them */
+    wh_gripper_input_t inputs[WH_GRIPPERS]; /* of the running step, where faults and vacuum make them */
     wh_event_t events[WH_SLICE_EVENTS];
     size_t event_count;
     wh_observer_t observer; /* the caller's to set after wh_simulator_init */
