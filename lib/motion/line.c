@@ -26,7 +26,9 @@ typedef struct {
 static void axes_after(const wh_real_t from[WH_ROBOT_AXES], const wh_vec3_t *step,
                        wh_real_t q[WH_ROBOT_AXES]) {
     const wh_real_t outward = from[WH_AXIS_R] + step->x;
-    const wh_real_t turned = wh_atan2(step->y, outward);
+    /* Straight outward or up: the arc tangent of a zero, whose sign it keeps. */
+    const bool straight = step->y == 0 && outward > 0;
+    const wh_real_t turned = straight ? step->y : wh_atan2(step->y, outward);
     q[WH_AXIS_THETA] = from[WH_AXIS_THETA] + turned;
     q[WH_AXIS_R] = wh_real_sqrt(outward * outward + step->y * step->y);
     q[WH_AXIS_Z] = from[WH_AXIS_Z] + step->z;
@@ -237,9 +239,7 @@ void wh_line_at(const wh_line_t *line, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]) 
     } else if (!(t > 0)) {
         memcpy(q, line->from, sizeof line->from);
     } else {
-        wh_motion_t motion;
-        wh_profile_at(&line->path, t, &motion);
-        const wh_vec3_t step = wh_vec3_scale(motion.position, &line->direction);
+        const wh_vec3_t step = wh_vec3_scale(wh_profile_position(&line->path, t), &line->direction);
         axes_after(line->from, &step, q);
     }
 }

@@ -60,9 +60,7 @@ void wh_move_at(const wh_move_t *move, wh_real_t t, wh_real_t position[]) {
         if (t >= move->duration) {
             position[axis] = move->to[axis];
         } else {
-            wh_motion_t motion;
-            wh_profile_at(&move->profile[axis], t, &motion);
-            position[axis] = move->from[axis] + motion.position;
+            position[axis] = move->from[axis] + wh_profile_position(&move->profile[axis], t);
         }
     }
 }

@@ -139,7 +139,7 @@ wh_status_t wh_profile_stretch(wh_profile_t *profile, wh_real_t duration) {
 }
 
 /* The first half of the profile, 0 < s <= duration/2, up to the middle of the cruise. */
-static wh_motion_t first_half(const wh_profile_t *p, wh_real_t s) {
+static inline wh_motion_t first_half(const wh_profile_t *p, wh_real_t s) {
     wh_motion_t m;
     if (s < p->jerk_end) {
         m.jerk = p->jerk;
@@ -187,4 +187,16 @@ void wh_profile_at(const wh_profile_t *profile, wh_real_t t, wh_motion_t *motion
     *motion = first_half(profile, left);
     motion->position = profile->distance - motion->position;
     motion->acceleration = -motion->acceleration;
+}
+
+wh_real_t wh_profile_position(const wh_profile_t *profile, wh_real_t t) {
+    if (t >= profile->duration) {
+        return profile->distance;
+    }
+    if (!(t > 0)) {
+        return 0;
+    }
+    const wh_real_t left = profile->duration - t;
+    return t <= left ? first_half(profile, t).position
+                     : profile->distance - first_half(profile, left).position;
 }

@@ -82,6 +82,9 @@ wh_status_t wh_profile_stretch(wh_profile_t *profile, wh_real_t duration);
  * about 10 ns. */
 void wh_profile_at(const wh_profile_t *profile, wh_real_t t, wh_motion_t *motion);
 
+/* The position alone, bit for bit. Cost: about 5 ns. */
+wh_real_t wh_profile_position(const wh_profile_t *profile, wh_real_t t);
+
 /* The largest magnitudes over the whole profile, analytically. */
 static inline wh_real_t wh_profile_peak_speed(const wh_profile_t *profile) {
     return profile->speed < 0 ? -profile->speed : profile->speed;

@@ -78,6 +78,8 @@ static void assert_relative(wh_real_t got, long double want, double tolerance) {
 static wh_motion_t at(const wh_profile_t *profile, wh_real_t t) {
     wh_motion_t motion;
     wh_profile_at(profile, t, &motion);
+    const wh_real_t position = wh_profile_position(profile, t);
+    assert_memory_equal(&position, &motion.position, sizeof position);
     return motion;
 }
 
