@@ -244,13 +244,20 @@ static wh_status_t step_upset(wh_simulator_t *simulator, const wh_command_t *com
     return status;
 }
 
-static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *command) {
+static wh_status_t check_faults(const wh_simulator_t *simulator, const wh_command_t *command) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
-    wh_status_t status = WH_STATUS_OUT_OF_RANGE;
-    if (command->gripper_count == storage->gripper_count && command->fault_count <= WH_COMMAND_FAULTS) {
-        status = wh_faults_check(&simulator->condition.faults, command->faults, command->fault_count,
-                                 storage->gripper_count, storage->wafer_count);
+    if (command->fault_count == 0) {
+        return WH_OK;
     }
+    return command->fault_count > WH_COMMAND_FAULTS
+               ? WH_STATUS_OUT_OF_RANGE
+               : wh_faults_check(&simulator->condition.faults, command->faults, command->fault_count,
+                                 storage->gripper_count, storage->wafer_count);
+}
+
+static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *command) {
+    const bool fits = command->gripper_count == simulator->table.storage.gripper_count;
+    const wh_status_t status = fits ? check_faults(simulator, command) : WH_STATUS_OUT_OF_RANGE;
     if (status != WH_OK) {
         ++simulator->table.counters.refused;
         simulator->event_count = 0;
