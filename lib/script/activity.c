@@ -86,8 +86,21 @@ static void note_gripper(wh_activity_t *activity, size_t g, const wh_task_t *tas
     note(activity, first + 2, track->valves[g] == WH_VALVE_OPEN ? 1 : 0, track->slice);
 }
 
-wh_share_t wh_activity_count(wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
-                             const wh_state_t *state) {
+/* Whether the slice is like the one counted last. */
+static bool goes_on(const wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
+                    const wh_state_t *state) {
+    const wh_task_t *last = &activity->last.task;
+    bool same = activity->last.is_known && task->share == last->share && task->moves == last->moves &&
+                task->robot == last->robot && task->carried == last->carried;
+    for (size_t g = 0; same && g < state->gripper_count; ++g) {
+        same = state->grippers[g].wafer == activity->last.held[g] &&
+               track->valves[g] == activity->last.valves[g];
+    }
+    return same;
+}
+
+static void note_all(wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
+                     const wh_state_t *state) {
     wh_share_t share = task->moves ? WH_SHARE_EMPTY : task->share;
     for (size_t g = 0; g < state->gripper_count; ++g) {
         const int32_t held = state->grippers[g].wafer;
@@ -95,16 +108,29 @@ wh_share_t wh_activity_count(wh_activity_t *activity, const wh_task_t *task, con
         if (held != WH_NONE && (task->carried >> g & 1U) != 0) {
             share = WH_SHARE_LOADED;
         }
+        activity->last.held[g] = held;
+        activity->last.valves[g] = track->valves[g];
     }
     note(activity, 0, task->robot ? 1 + (int32_t)share : 0, track->slice);
-    ++activity->shares[share];
-    return share;
+    activity->last.task = *task;
+    activity->last.share = share;
+    activity->last.is_known = true;
+}
+
+wh_share_t wh_activity_count(wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
+                             const wh_state_t *state) {
+    if (!goes_on(activity, task, track, state)) {
+        note_all(activity, task, track, state);
+    }
+    ++activity->shares[activity->last.share];
+    return activity->last.share;
 }
 
 void wh_activity_end(wh_activity_t *activity, int64_t slice) {
     for (size_t resource = 0; resource < WH_RESOURCES; ++resource) {
         note(activity, resource, 0, slice + 1);
     }
+    activity->last.is_known = false;
 }
 
 void wh_activity_forget(wh_activity_t *activity) {
