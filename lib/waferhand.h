@@ -34,6 +34,8 @@
 
 #include "cell/station.h"
 
+#include "batch/batch.h"
+
 #include "sim/faults.h"
 #include "sim/condition.h"
 #include "sim/slice.h"

@@ -73,23 +73,22 @@ wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose
     return status;
 }
 
-/* (1)-(8) never look at the gripper's first two axes: a NaN there comes in as what must be zero. */
-bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
-                        const wh_tolerance_t *tolerance) {
-    const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &base_from_gripper->r);
-    const wh_vec3_t p = wh_mat3_transform_back(&base_from_wafer->R, &dr);
-    if (!(wh_real_abs(p.z) < tolerance->projz) ||
-        !(wh_real_sqrt(p.x * p.x + p.y * p.y) < tolerance->projxy)) {
-        return false;
+bool wh_proximity_ready_within(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
+                               const wh_tolerance_t *tolerance, wh_real_t dx, wh_real_t dy, wh_real_t dz) {
+    const wh_mat3_t *w = &base_from_wafer->R;
+    const wh_mat3_t *g = &base_from_gripper->R;
+    wh_real_t squares[2];
+    /*@ loop assigns i, squares[0 .. 1]; loop variant 2 - i; */
+    for (size_t i = 0; i < 2; ++i) {
+        const wh_real_t along = w->m[0][i] * dx + w->m[1][i] * dy + w->m[2][i] * dz;
+        /* (1)-(8) never look at the gripper's first two axes: a NaN there comes in as what must be zero. */
+        const wh_real_t unused = g->m[0][i] + g->m[1][i] + g->m[2][i];
+        squares[i] = along * along + (unused - unused);
     }
-    wh_real_t n1_proj_n2 = p.x - p.x;
-    /*@ loop assigns row, n1_proj_n2; loop variant 3 - row; */
-    for (size_t row = 0; row < 3; ++row) {
-        const wh_real_t *axes = base_from_gripper->R.m[row];
-        const wh_real_t unused = axes[0] + axes[1];
-        n1_proj_n2 += base_from_wafer->R.m[row][2] * axes[2] + (unused - unused);
-    }
-    return n1_proj_n2 > tolerance->planar;
+    const wh_vec3_t n1 = wh_mat3_column(w, 2);
+    const wh_vec3_t n2 = wh_mat3_column(g, 2);
+    return wh_real_sqrt(squares[0] + squares[1]) < tolerance->projxy &&
+           wh_vec3_dot(&n1, &n2) > tolerance->planar;
 }
 
 wh_real_t wh_proximity_rim_gap(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,

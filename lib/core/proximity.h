@@ -74,13 +74,25 @@ wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance);
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                  const wh_tolerance_t *tolerance, wh_proximity_t *result);
 
-/* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit. No argument is checked:
- * poses and tolerance must be valid ones, except that a NaN anywhere gives false. Cost: 9 products where the wafer is
- * too far away, 15 and a square root within the limit (6). */
+/* The second half of wh_proximity_ready: (7), (8) and NaN, with dr of (1). Not to be called by itself. */
 /*@ requires \valid_read(base_from_wafer) && \valid_read(base_from_gripper) && \valid_read(tolerance);
     assigns \nothing; */
-bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
-                        const wh_tolerance_t *tolerance);
+bool wh_proximity_ready_within(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
+                               const wh_tolerance_t *tolerance, wh_real_t dx, wh_real_t dy, wh_real_t dz);
+
+/* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit. No argument is checked:
+ * poses and tolerance must be valid ones, except that a NaN anywhere gives false. Cost: 3 products where the wafer is
+ * too high or too low, which is found out here, in the caller's loop; 14 and a square root within the limit (6). For a
+ * thousand wafers and more see batch/batch.h. */
+/*@ requires \valid_read(base_from_wafer) && \valid_read(base_from_gripper) && \valid_read(tolerance);
+    assigns \nothing; */
+static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
+                                      const wh_tolerance_t *tolerance) {
+    const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &base_from_gripper->r);
+    const wh_vec3_t n1 = wh_mat3_column(&base_from_wafer->R, 2);
+    return wh_real_abs(wh_vec3_dot(&n1, &dr)) < tolerance->projz &&
+           wh_proximity_ready_within(base_from_wafer, base_from_gripper, tolerance, dr.x, dr.y, dr.z);
+}
 
 /* Margins, failed conditions and verdict anew from the values (1)-(5) that `measured` holds, as when they have travelled
  * in a message. Arguments are not checked; a NaN fails its condition. */

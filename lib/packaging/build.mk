@@ -12,7 +12,7 @@ Q := $(if $(V),,@)
 VERSION := $(shell sed -n 's/^.define WH_VERSION "\(.*\)"/\1/p' lib/core/config.h)
 
 # ---------------------------------------------------------------------------------------------- sources
-LIBRARY_PARTS := core motion cell sim
+LIBRARY_PARTS := core motion cell batch sim
 LIBRARY_SOURCES := $(wildcard $(LIBRARY_PARTS:%=lib/%/*.c))
 # Over libccd and in double only: not for `make library`, which needs nothing but a C compiler.
 COLLISION_SOURCES := $(wildcard lib/collision/*.c)
