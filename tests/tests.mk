@@ -16,6 +16,6 @@ TOOLS := $(basename $(wildcard tests/tools/*.c))
 
 # Programs that measure, to be run by hand: built with the tests too.
 BENCHES := $(basename $(wildcard tests/bench/*.c))
-LIBRARY_TESTS := $(filter-out $(PROGRAM_TESTS) $(COLLISION_TESTS),$(filter tests/unit/% tests/firmware/%,$(TESTS)))
+LIBRARY_TESTS := $(filter-out $(PROGRAM_TESTS) $(COLLISION_TESTS),$(filter tests/unit/% tests/firmware/% tests/property/horizon_test,$(TESTS)))
 
 END_TO_END := $(shell awk 'FNR == 1 && /^.!/ { print FILENAME }' $(wildcard tests/end_to_end/*) /dev/null)

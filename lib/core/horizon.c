@@ -5,13 +5,12 @@
 /* The longest that a word holds. */
 #define LONGEST WH_REAL(1073741824.0)
 
-/* Taken off: what the measurement may be wrong by beyond rounding, mm, and for rotations. */
-#if defined(WH_FLOAT)
-#define SLACK WH_REAL(1e-2)
-#else
-#define SLACK WH_REAL(1e-9)
-#endif
-#define STRETCH (1 + 3 * WH_ROTATION_TOLERANCE)
+/* Taken off: a place rounded to units is less than 1.74 of them away, and what is left is far more than the rounding of a
+ * neighbourhood's distances. */
+#define TAKEN_OFF WH_REAL(2)
+
+/* No column of a rotation is longer, so no distance changes by more than this times the gripper's way. */
+#define LONGEST_COLUMN (1 + 3 * WH_ROTATION_TOLERANCE)
 
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && table->storage.bucket_count > 0;
     assigns \nothing;
@@ -81,7 +80,6 @@ static bool is_far(wh_real_t units) {
     return !(units > -FAR && units < FAR);
 }
 
-/* The place is rounded towards zero, by less than two units in all. */
 void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon) {
     if (!horizon->measured) {
         return;
@@ -97,11 +95,11 @@ void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const 
     const wh_limits_t limits = wh_index_limits(table);
     const wh_real_t size =
         wh_real_abs(place->x) + wh_real_abs(place->y) + wh_real_abs(place->z) + limits.projz + limits.projxy;
-    const wh_real_t sure = (horizon->gap - SLACK - WH_INDEX_ROUNDING * size) / STRETCH;
+    const wh_real_t sure = (horizon->gap - WH_INDEX_ROUNDING * size) / LONGEST_COLUMN;
     words[0] = (uint32_t)(int32_t)x;
     words[1] = (uint32_t)(int32_t)y;
     words[2] = (uint32_t)(int32_t)z;
-    words[3] = 2 * reach_of(WH_INDEX_UNITS * sure - 2) +
+    words[3] = 2 * reach_of(WH_INDEX_UNITS * sure - TAKEN_OFF) +
                (table->storage.grippers[g].approach.wafer != WH_NONE ? 1U : 0U);
 }
 

@@ -3,7 +3,7 @@
  *
  * Assumed, as the headers ask: pointers are null only where a function refuses null; arrays have as many elements as
  * their counts say, GRIPPERS and WAFERS; a bool is 0 or 1; a table is only handed on once wh_grasp_init accepted it.
- * What the arrays hold, before and between the calls, is otherwise up to the library.
+ * What the arrays hold, before and between the calls, is otherwise up to the library; what buckets hold is anything.
  */
 #include "core/hold.h"
 #include "core/restore.h"
@@ -11,11 +11,13 @@
 #define GRIPPERS 2
 #define WAFERS 3
 #define EVENTS (GRIPPERS * WH_EVENTS_PER_GRIPPER)
+#define BUCKETS (6 + 4 * GRIPPERS + 5 * WAFERS)
 
 static volatile wh_real_t real;
 static volatile int32_t integer;
 static volatile uint64_t word;
 static volatile size_t size;
+static volatile uint32_t bits;
 
 static bool any_bool(void) {
     return (integer & 1) != 0;
@@ -98,6 +100,7 @@ static void call_names(void) {
     (void)wh_status_text((wh_status_t)integer);
     (void)wh_status_name((wh_status_t)integer);
     (void)wh_event_name((wh_event_kind_t)integer);
+    (void)wh_grasp_buckets(size, size);
 }
 
 static void call_values(void) {
@@ -210,6 +213,9 @@ static void call_questions(const wh_grasp_t *table) {
 /* Any calls in any order, without end. */
 static void use(wh_grasp_t *table, size_t gripper_count) {
     while (any_bool()) {
+        for (size_t i = 0; i < table->storage.bucket_count; ++i) {
+            table->storage.buckets[i] = bits;
+        }
         switch (integer) {
         case 0:
             call_step(table, gripper_count);
@@ -253,6 +259,7 @@ int main(void) {
     wh_grasp_t table;
     wh_wafer_t wafers[WAFERS];
     wh_gripper_t grippers[GRIPPERS];
+    uint32_t buckets[BUCKETS];
     for (size_t w = 0; w < WAFERS; ++w) {
         wafers[w] = any_wafer();
     }
@@ -265,7 +272,8 @@ int main(void) {
     call_empty();
 
     const wh_grasp_config_t config = any_config();
-    const wh_grasp_storage_t storage = {wafers, WAFERS, grippers, GRIPPERS, NULL, 0};
+    const wh_grasp_storage_t storage = {wafers,   WAFERS,  grippers,
+                                        GRIPPERS, buckets, any_bool() ? BUCKETS : 0};
     if (wh_grasp_init(&table, &config, &storage) == WH_OK) {
         use(&table, GRIPPERS);
     }
