@@ -1,9 +1,11 @@
 #include "motion/move.h"
 
-/* How long the slowest axis takes alone. Plans and forgets, which is cheaper than 1 kB of stack for a second
- * move. */
-static wh_status_t slowest(size_t count, const wh_real_t from[], const wh_real_t to[],
-                           const wh_limits_t limits[], wh_real_t *longest) {
+#include "motion/profile_internal.h"
+
+/* Each axis's own times, and how long the slowest takes. Of the profiles the rest is forgotten, which is cheaper than 1 kB
+ * of stack for a second move. */
+static wh_status_t plan_alone(size_t count, const wh_real_t from[], const wh_real_t to[],
+                              const wh_limits_t limits[], wh_profile_times_t times[], wh_real_t *longest) {
     wh_real_t shortest = 0;
     *longest = 0;
     for (size_t axis = 0; axis < count; ++axis) {
@@ -17,19 +19,16 @@ static wh_status_t slowest(size_t count, const wh_real_t from[], const wh_real_t
         if (duration > 0 && (shortest == 0 || duration < shortest)) {
             shortest = duration;
         }
+        times[axis] = wh_profile_times(&alone);
     }
     /* The largest factor by which an axis is going to be stretched. */
     return shortest > 0 && !wh_real_is_finite(*longest / shortest) ? WH_STATUS_BAD_LIMITS : WH_OK;
 }
 
-/* Cannot fail after `slowest` has planned the same and looked at the factor. Reads before it writes: `from`
- * may be move->to. */
-static void plan_axis(wh_move_t *move, size_t axis, wh_real_t from, wh_real_t to, const wh_limits_t *limits) {
-    const wh_status_t planned = wh_profile_plan(&move->profile[axis], to - from, limits);
-    const wh_status_t stretched = wh_profile_stretch(&move->profile[axis], move->duration);
-    WH_ASSERT(planned == WH_OK && stretched == WH_OK);
-    (void)planned;
-    (void)stretched;
+/* Reads before it writes: `from` may be move->to. */
+static void plan_axis(wh_move_t *move, size_t axis, wh_real_t from, wh_real_t to,
+                      const wh_profile_times_t *times) {
+    wh_profile_shape(&move->profile[axis], to - from, times, move->duration);
     move->from[axis] = from;
     move->to[axis] = to;
 }
@@ -42,15 +41,16 @@ wh_status_t wh_move_plan(wh_move_t *move, size_t count, const wh_real_t from[], 
     if (count == 0 || count > WH_AXES) {
         return WH_STATUS_OUT_OF_RANGE;
     }
+    wh_profile_times_t times[WH_AXES];
     wh_real_t duration;
-    const wh_status_t status = slowest(count, from, to, limits, &duration);
+    const wh_status_t status = plan_alone(count, from, to, limits, times, &duration);
     if (status != WH_OK) {
         return status;
     }
     move->count = count;
     move->duration = duration;
     for (size_t axis = 0; axis < count; ++axis) {
-        plan_axis(move, axis, from[axis], to[axis], &limits[axis]);
+        plan_axis(move, axis, from[axis], to[axis], &times[axis]);
     }
     return WH_OK;
 }

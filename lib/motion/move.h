@@ -29,7 +29,7 @@ typedef struct {
  * (motion/robot.h). Errors: WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE (count 0 or above WH_AXES),
  * WH_STATUS_NOT_FINITE (a position, or a distance too large to represent), WH_STATUS_BAD_LIMITS (see
  * wh_profile_plan, or axes' durations too far apart); *move is then unchanged. `from` may be move->to, to go
- * on from where a move ended. Cost: about 350 ns for four axes.
+ * on from where a move ended. Cost: about 200 ns for four axes.
  */
 wh_status_t wh_move_plan(wh_move_t *move, size_t count, const wh_real_t from[], const wh_real_t to[],
                          const wh_limits_t limits[]);
@@ -42,7 +42,7 @@ static inline wh_real_t wh_move_duration(const wh_move_t *move) {
 /* Writes the `count` positions at `t` seconds after the start: exactly `from` for t <= 0 (and NaN), exactly
  * `to` from the duration on; in between each axis is within [from, to] to rounding, and an axis without
  * distance is at `from`. A move of duration 0 is at `to` from t = 0 on. No pointer may be null. Cost: about
- * 40 ns for four axes. */
+ * 20 ns for four axes. */
 void wh_move_at(const wh_move_t *move, wh_real_t t, wh_real_t position[]);
 
 #endif

@@ -1,11 +1,5 @@
-#include "motion/profile.h"
-
+#include "motion/profile_internal.h"
 #include "motion/trig.h"
-
-/* The three times that fix a profile's shape. */
-typedef struct {
-    wh_real_t jerk, rise, duration;
-} times_t;
 
 static bool is_positive(wh_real_t x) {
     return x > 0 && wh_real_is_finite(x);
@@ -21,8 +15,8 @@ wh_status_t wh_limits_validate(const wh_limits_t *limits) {
 }
 
 /* Without cruise: with constant acceleration if there is room for it, else jerk only. */
-static times_t shortest_without_cruise(wh_real_t d, const wh_limits_t *limits) {
-    times_t times;
+static wh_profile_times_t shortest_without_cruise(wh_real_t d, const wh_limits_t *limits) {
+    wh_profile_times_t times;
     const wh_real_t full = limits->acceleration / limits->jerk;
     if (d >= 2 * limits->acceleration * full * full) {
         times.jerk = full;
@@ -35,8 +29,8 @@ static times_t shortest_without_cruise(wh_real_t d, const wh_limits_t *limits) {
     return times;
 }
 
-static times_t shortest(wh_real_t d, const wh_limits_t *limits) {
-    times_t times;
+static wh_profile_times_t shortest(wh_real_t d, const wh_limits_t *limits) {
+    wh_profile_times_t times;
     const wh_real_t full = limits->acceleration / limits->jerk;
     const wh_real_t ramp = limits->speed / limits->acceleration;
     if (ramp >= full) {
@@ -56,13 +50,13 @@ static times_t shortest(wh_real_t d, const wh_limits_t *limits) {
 
 /* No phase has got lost to overflow or underflow, so that from_times can divide: the rise is at least two jerk times, the
  * duration two rises. */
-static bool times_are_sound(const times_t *times) {
+static bool times_are_sound(const wh_profile_times_t *times) {
     return is_positive(times->jerk) && wh_real_is_finite(times->duration);
 }
 
 /* Everything from the distance and the three times: jerk, acceleration and speed are made to fit them, so
  * that the phases add up to the distance. */
-static wh_profile_t from_times(wh_real_t distance, const times_t *times) {
+static wh_profile_t from_times(wh_real_t distance, const wh_profile_times_t *times) {
     wh_profile_t p;
     p.distance = distance;
     p.duration = times->duration;
@@ -101,7 +95,7 @@ wh_status_t wh_profile_plan(wh_profile_t *profile, wh_real_t distance, const wh_
         *profile = at_once(distance, 0);
         return WH_OK;
     }
-    const times_t times = shortest(wh_real_abs(distance), limits);
+    const wh_profile_times_t times = shortest(wh_real_abs(distance), limits);
     if (!times_are_sound(&times)) {
         return WH_STATUS_BAD_LIMITS;
     }
@@ -111,6 +105,24 @@ wh_status_t wh_profile_plan(wh_profile_t *profile, wh_real_t distance, const wh_
     }
     *profile = planned;
     return WH_OK;
+}
+
+static wh_profile_times_t slowed(const wh_profile_times_t *times, wh_real_t duration) {
+    const wh_real_t slower = duration / times->duration;
+    const wh_profile_times_t stretched = {times->jerk * slower, times->rise * slower, duration};
+    return stretched;
+}
+
+void wh_profile_shape(wh_profile_t *profile, wh_real_t distance, const wh_profile_times_t *times,
+                      wh_real_t duration) {
+    if (is_tiny(distance)) {
+        *profile = at_once(distance, duration);
+    } else if (duration == times->duration) {
+        *profile = from_times(distance, times);
+    } else {
+        const wh_profile_times_t stretched = slowed(times, duration);
+        *profile = from_times(distance, &stretched);
+    }
 }
 
 wh_status_t wh_profile_stretch(wh_profile_t *profile, wh_real_t duration) {
@@ -129,8 +141,8 @@ wh_status_t wh_profile_stretch(wh_profile_t *profile, wh_real_t duration) {
     if (duration < profile->duration) {
         return WH_STATUS_OUT_OF_RANGE;
     }
-    const wh_real_t slower = duration / profile->duration;
-    const times_t times = {profile->jerk_end * slower, profile->rise_end * slower, duration};
+    const wh_profile_times_t own = wh_profile_times(profile);
+    const wh_profile_times_t times = slowed(&own, duration);
     if (!times_are_sound(&times)) {
         return WH_STATUS_OUT_OF_RANGE;
     }

@@ -67,6 +67,26 @@ static void the_slowest_axis_decides(void **state) {
     }
 }
 
+/* To the last bit, axes that do not move or hardly so among them. */
+static void each_axis_is_planned_alone_and_stretched(void **state) {
+    (void)state;
+    for (int i = 0; i < MOVES; ++i) {
+        task_t task = random_task();
+        if (i % 8 == 0) {
+            task.from[0] = 0;
+            task.to[0] = WH_PROFILE_TINY / 2;
+        }
+        const wh_move_t move = plan(&task);
+        for (size_t axis = 0; axis < task.count; ++axis) {
+            wh_profile_t alone;
+            assert_int_equal(wh_profile_plan(&alone, task.to[axis] - task.from[axis], &task.limits[axis]),
+                             WH_OK);
+            assert_int_equal(wh_profile_stretch(&alone, wh_move_duration(&move)), WH_OK);
+            assert_memory_equal(&move.profile[axis], &alone, sizeof alone);
+        }
+    }
+}
+
 static void no_axis_exceeds_its_limits(void **state) {
     (void)state;
     for (int i = 0; i < MOVES; ++i) {
@@ -207,6 +227,7 @@ static void bad_arguments_change_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_slowest_axis_decides),
+        cmocka_unit_test(each_axis_is_planned_alone_and_stretched),
         cmocka_unit_test(no_axis_exceeds_its_limits),
         cmocka_unit_test(ends_are_exact),
         cmocka_unit_test(axes_stay_between_their_ends),

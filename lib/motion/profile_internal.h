@@ -1,0 +1,22 @@
+/* Within lib/motion: what a profile needs to be made again, slower. */
+#ifndef WH_MOTION_PROFILE_INTERNAL_H
+#define WH_MOTION_PROFILE_INTERNAL_H
+
+#include "motion/profile.h"
+
+/* The three times that fix a profile's shape. */
+typedef struct {
+    wh_real_t jerk, rise, duration;
+} wh_profile_times_t;
+
+static inline wh_profile_times_t wh_profile_times(const wh_profile_t *profile) {
+    const wh_profile_times_t times = {profile->jerk_end, profile->rise_end, profile->duration};
+    return times;
+}
+
+/* The profile over `distance` whose own times are these, stretched to `duration`: wh_profile_plan and then
+ * wh_profile_stretch, bit for bit, where neither refuses. */
+void wh_profile_shape(wh_profile_t *profile, wh_real_t distance, const wh_profile_times_t *times,
+                      wh_real_t duration);
+
+#endif
