@@ -1,22 +1,19 @@
 #include "app/record_names.h"
 
-static bool is_index(int32_t index, size_t count) {
-    return index >= 0 && (size_t)index < count;
-}
-
 const char *wh_record_wafer_name(const wh_record_t *record, int32_t wafer) {
     const wh_layout_t *layout = record->layout;
-    return layout && is_index(wafer, layout->wafer_count) ? layout->wafers[wafer].name : NULL;
+    return layout && wh_is_index(wafer, layout->wafer_count) ? layout->wafers[wafer].name : NULL;
 }
 
 const char *wh_record_gripper_name(const wh_record_t *record, int32_t gripper) {
     const wh_layout_t *layout = record->layout;
-    return layout && is_index(gripper, layout->machine.gripper_count) ? layout->grippers[gripper].name : NULL;
+    return layout && wh_is_index(gripper, layout->machine.gripper_count) ? layout->grippers[gripper].name
+                                                                         : NULL;
 }
 
 const char *wh_record_station_name(const wh_record_t *record, int32_t station) {
     const wh_layout_t *layout = record->layout;
-    return layout && is_index(station, layout->station_count) ? layout->stations[station].name : NULL;
+    return layout && wh_is_index(station, layout->station_count) ? layout->stations[station].name : NULL;
 }
 
 const char *wh_record_rank_text(wh_rank_t rank) {

@@ -19,7 +19,7 @@ static void link_events(const wh_record_t *record, const chains_t *chains) {
     for (size_t i = record->event_count; i-- > 0;) {
         const wh_event_record_t *event = &record->events[i];
         if (is_shown(event->event.kind)) {
-            const bool fits = event->command >= 0 && (size_t)event->command < record->command_count;
+            const bool fits = wh_is_index(event->command, record->command_count);
             const size_t chain = fits ? (size_t)event->command : record->command_count;
             chains->next[i] = chains->first[chain];
             chains->first[chain] = i + 1;

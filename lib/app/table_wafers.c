@@ -18,7 +18,7 @@ typedef struct {
 } history_t;
 
 static bool is_end_effector(const wh_layout_t *layout, int32_t gripper) {
-    return gripper >= 0 && (size_t)gripper < layout->machine.gripper_count &&
+    return wh_is_index(gripper, layout->machine.gripper_count) &&
            layout->grippers[gripper].station == WH_NONE;
 }
 

@@ -21,22 +21,18 @@ static bool hangs(const wh_part_t *part) {
     return part->kind != WH_PART_FIXED && part->kind != WH_PART_LEDGE;
 }
 
-static bool is_index(int32_t index, size_t count) {
-    return index >= 0 && (size_t)index < count;
-}
-
 static bool owner_fits(const wh_world_config_t *config, const wh_part_t *part) {
     switch (part->kind) {
     case WH_PART_FIXED:
         return true;
     case WH_PART_LEDGE:
-        return is_index(part->owner, config->cell->count) &&
-               is_index(part->slot - 1, (size_t)config->cell->stations[part->owner].slots);
+        return wh_is_index(part->owner, config->cell->count) &&
+               wh_is_index(part->slot - 1, (size_t)config->cell->stations[part->owner].slots);
     case WH_PART_ARM:
-        return is_index(part->owner, WH_ARM_BODIES);
+        return wh_is_index(part->owner, WH_ARM_BODIES);
     case WH_PART_BLADE:
     case WH_PART_CHUCK:
-        return is_index(part->owner, config->gripper_count);
+        return wh_is_index(part->owner, config->gripper_count);
     case WH_PART_WAFER:
         break;
     }

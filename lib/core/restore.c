@@ -19,14 +19,9 @@
     \forall integer w; 0 <= w < wafer_count ==> good_wafer(ws, gs, gripper_count, w);
 */
 
-/*@ assigns \nothing; ensures \result <==> 0 <= index < count; */
-static bool is_index(int32_t index, size_t count) {
-    return index >= 0 && (size_t)index < count;
-}
-
 /*@ assigns \nothing; ensures \result <==> index == WH_NONE || 0 <= index < count; */
 static bool is_index_or_none(int32_t index, size_t count) {
-    return index == WH_NONE || is_index(index, count);
+    return index == WH_NONE || wh_is_index(index, count);
 }
 
 /* Every number finite: a sum of differences that are each zero, or NaN. */
@@ -50,7 +45,7 @@ static wh_status_t check_encounter(const wh_grasp_t *table, const wh_encounter_t
     if (encounter->wafer == WH_NONE) {
         return WH_OK;
     }
-    if (!is_index(encounter->wafer, table->storage.wafer_count) ||
+    if (!wh_is_index(encounter->wafer, table->storage.wafer_count) ||
         !is_index_or_none(encounter->holder, table->storage.gripper_count) || encounter->slice > slice) {
         return WH_STATUS_OUT_OF_RANGE;
     }
@@ -82,7 +77,7 @@ static wh_status_t check_held(const wh_grasp_t *table, size_t g, const wh_wafer_
     if (gripper->wafer == WH_NONE) {
         return WH_OK;
     }
-    if (!is_index(gripper->wafer, table->storage.wafer_count) || gripper->valve != WH_VALVE_OPEN ||
+    if (!wh_is_index(gripper->wafer, table->storage.wafer_count) || gripper->valve != WH_VALVE_OPEN ||
         wafers[gripper->wafer].holder != (int32_t)g) {
         return WH_STATUS_OUT_OF_RANGE;
     }

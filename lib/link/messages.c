@@ -221,17 +221,13 @@ static void take_event(const waferhand_event *in, int64_t seq, const wh_toleranc
     take_measured(&in->measured, tolerance, &out->measured);
 }
 
-static bool is_index(int32_t index, int32_t count) {
-    return index >= 0 && index < count;
-}
-
 /* Whether `other` is what this kind has there. */
 static bool other_fits(const waferhand_event *event, const waferhand_state *message) {
     if (event->kind == WH_EVENT_HANDED_OVER || event->kind == WH_EVENT_CONTESTED) {
-        return is_index(event->other, message->gripper_count);
+        return wh_is_index(event->other, (size_t)message->gripper_count);
     }
     if (event->kind == WH_EVENT_SLOT_OCCUPIED) {
-        return is_index(event->other, message->wafer_count);
+        return wh_is_index(event->other, (size_t)message->wafer_count);
     }
     return event->other == WH_NONE;
 }
@@ -242,9 +238,11 @@ static bool names_fit(const waferhand_event *event, const waferhand_state *messa
                                 1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
     const bool may_lack = (any >> (uint32_t)event->kind & 1U) != 0;
     const bool no_wafer = event->wafer == WH_NONE && (may_lack || event->kind == WH_EVENT_BAD_INPUT);
-    const bool wafer_fits = event->kind != WH_EVENT_BAD_INPUT && is_index(event->wafer, message->wafer_count);
+    const bool wafer_fits =
+        event->kind != WH_EVENT_BAD_INPUT && wh_is_index(event->wafer, (size_t)message->wafer_count);
     const bool no_gripper = event->gripper == WH_NONE && may_lack;
-    return (no_wafer || wafer_fits) && (no_gripper || is_index(event->gripper, message->gripper_count));
+    return (no_wafer || wafer_fits) &&
+           (no_gripper || wh_is_index(event->gripper, (size_t)message->gripper_count));
 }
 
 static bool parts_fit(const waferhand_event *event) {

@@ -16,19 +16,15 @@ bool wh_fault_is_of_wafer(wh_fault_kind_t kind) {
     return kind >= WH_FAULT_WAFER_MISSING;
 }
 
-static bool is_index(int32_t index, size_t count) {
-    return index >= 0 && (size_t)index < count;
-}
-
 static bool names_fit(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count) {
     if (fault->kind == WH_FAULT_COMMAND_LOST) {
         return fault->target == WH_NONE && fault->other == WH_NONE;
     }
-    if (!is_index(fault->target, wh_fault_is_of_wafer(fault->kind) ? wafer_count : gripper_count)) {
+    if (!wh_is_index(fault->target, wh_fault_is_of_wafer(fault->kind) ? wafer_count : gripper_count)) {
         return false;
     }
     return fault->kind == WH_FAULT_WAFER_DOUBLED
-               ? is_index(fault->other, wafer_count) && fault->other != fault->target
+               ? wh_is_index(fault->other, wafer_count) && fault->other != fault->target
                : fault->other == WH_NONE;
 }
 
@@ -89,7 +85,7 @@ static bool is_same(const wh_fault_t *a, const wh_fault_t *b) {
 }
 
 static bool may_take(const wh_faults_t *faults, const wh_fault_request_t *request) {
-    if (!is_index(request->index, WH_FAULTS)) {
+    if (!wh_is_index(request->index, WH_FAULTS)) {
         return false;
     }
     const wh_fault_slot_t *slot = &faults->slots[request->index];
