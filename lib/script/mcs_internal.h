@@ -28,6 +28,11 @@ int32_t wh_mcs_index(lua_State *L, int argument, size_t count);
 
 /* The layout's faults, once it is read. */
 void wh_mcs_start_faults(wh_mcs_t *mcs);
+
+/* The segment table at stack index 1: one of axes, line (with speed and acceleration), valves, dwell, sensor (with timeout).
+ * Raises when it is none. */
+wh_segment_t wh_mcs_read_segment(lua_State *L, const wh_mcs_t *mcs);
+
 /* What the segment table at stack index 1, read as `segment`, asks of the machine. */
 wh_task_t wh_mcs_task(lua_State *L, const wh_mcs_t *mcs, const wh_segment_t *segment);
 

@@ -1,4 +1,4 @@
-/* The MCS host's hands: segments, read and played slice by slice. */
+/* The MCS host's hands: segments, played slice by slice. */
 #include <math.h>
 #include <time.h>
 
@@ -9,8 +9,7 @@
 #define SLICES_PER_CHARGE 1024
 #define STEPS_PER_SLICE 20
 
-/* ------------------------------------------------------------------------------------------------- playing
- */
+/* ---------------------------------------------------------------------------------------------------------- playing */
 
 static void keep_events(wh_mcs_t *mcs) {
     for (size_t i = 0; i < mcs->state.event_count; ++i) {
@@ -81,8 +80,7 @@ static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
     return state;
 }
 
-/* ------------------------------------------------------------------------------------------------ watching
- */
+/* --------------------------------------------------------------------------------------------------------- watching */
 
 /* Whether a gripper goes anywhere in a segment: with the arm in each, with its chuck where that turns. */
 static bool is_carried(const wh_mcs_t *mcs, const wh_segment_t *segment, size_t g) {
@@ -110,83 +108,7 @@ static int32_t find_lost(const wh_mcs_t *mcs, uint32_t watched) {
     return WH_NONE;
 }
 
-/* ------------------------------------------------------------------------------------------------ segments
- */
-
-static void read_axes_field(lua_State *L, const wh_mcs_t *mcs, wh_segment_t *segment) {
-    segment->kind = WH_SEGMENT_AXES;
-    for (size_t axis = 0; axis < mcs->layout->machine.axis_count; ++axis) {
-        lua_rawgeti(L, -1, (lua_Integer)axis + 1);
-        segment->target[axis] = luaL_checknumber(L, -1);
-        lua_pop(L, 1);
-    }
-}
-
-static void read_line_field(lua_State *L, wh_segment_t *segment) {
-    wh_real_t *const parts[] = {&segment->travel.x, &segment->travel.y, &segment->travel.z};
-    segment->kind = WH_SEGMENT_LINE;
-    for (int i = 0; i < 3; ++i) {
-        lua_rawgeti(L, -1, i + 1);
-        *parts[i] = luaL_checknumber(L, -1);
-        lua_pop(L, 1);
-    }
-    lua_getfield(L, 1, "speed");
-    segment->speed = luaL_optnumber(L, -1, 0);
-    lua_getfield(L, 1, "acceleration");
-    segment->acceleration = luaL_optnumber(L, -1, 0);
-    lua_pop(L, 2);
-}
-
-static void read_valves_field(lua_State *L, wh_segment_t *segment) {
-    segment->kind = WH_SEGMENT_VALVES;
-    for (int g = 0; g < WH_GRIPPERS; ++g) {
-        lua_rawgeti(L, -1, g + 1);
-        segment->valves[g] = (int32_t)luaL_optinteger(L, -1, WH_NONE);
-        lua_pop(L, 1);
-    }
-}
-
-static void read_sensor_field(lua_State *L, wh_segment_t *segment) {
-    segment->kind = WH_SEGMENT_SENSOR;
-    segment->gripper = (int32_t)luaL_checkinteger(L, -1) - 1;
-    lua_getfield(L, 1, "timeout");
-    segment->seconds = luaL_checknumber(L, -1);
-    lua_pop(L, 1);
-}
-
-/* The segment table at stack index 1: one of axes, line (with speed), valves, dwell, sensor (with timeout).
- */
-static wh_segment_t read_segment(lua_State *L, const wh_mcs_t *mcs) {
-    static const char *const kinds[] = {"axes", "line", "valves", "dwell", "sensor"};
-    wh_segment_t segment = wh_track_blank(&mcs->track);
-    size_t kind = 0;
-    luaL_checktype(L, 1, LUA_TTABLE);
-    while (kind < 5 && lua_getfield(L, 1, kinds[kind]) == LUA_TNIL) {
-        lua_pop(L, 1);
-        ++kind;
-    }
-    switch (kind) {
-    case 0:
-        read_axes_field(L, mcs, &segment);
-        break;
-    case 1:
-        read_line_field(L, &segment);
-        break;
-    case 2:
-        read_valves_field(L, &segment);
-        break;
-    case 3:
-        segment.seconds = luaL_checknumber(L, -1);
-        break;
-    case 4:
-        read_sensor_field(L, &segment);
-        break;
-    default:
-        luaL_error(L, "a segment needs one of axes, line, valves, dwell, sensor");
-    }
-    lua_settop(L, 1);
-    return segment;
-}
+/* --------------------------------------------------------------------------------------------------------- segments */
 
 static void keep_segment(wh_mcs_t *mcs, const wh_segment_t *segment) {
     mcs->segments =
@@ -217,7 +139,7 @@ static wh_track_state_t play_now(lua_State *L, wh_mcs_t *mcs, const wh_segment_t
  * lost its wafer meanwhile, or nil. */
 static int play(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_segment_t segment = read_segment(L, mcs);
+    const wh_segment_t segment = wh_mcs_read_segment(L, mcs);
     const uint32_t watched = watch(mcs, &segment);
     mcs->task = wh_mcs_task(L, mcs, &segment);
     const wh_status_t status = wh_track_begin(&mcs->track, &segment);
