@@ -1,5 +1,5 @@
 /* What was let go above its support comes to lie on it. */
-#include "cell/station.h"
+#include "cell/cell_internal.h"
 
 /* Turns R by the smallest rotation that takes its third column to n, which is less than a right angle away. */
 static void turn_towards(wh_mat3_t *R, const wh_vec3_t *n) {
@@ -29,10 +29,9 @@ static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *li
     const wh_vec3_t down = wh_vec3_scale(place.dz, &up);
     pose.r = wh_vec3_subtract(&pose.r, &down);
     turn_towards(&pose.R, &up);
-    if (wh_grasp_place(table, (size_t)wafer, &pose) == WH_OK && list->count < list->capacity) {
-        wh_event_t *said = &list->events[list->count++];
-        *said = list->events[release];
-        said->kind = WH_EVENT_SETTLED;
+    const bool moved = wh_grasp_place(table, (size_t)wafer, &pose) == WH_OK;
+    wh_event_t *said = moved ? wh_cell_append(list, release, WH_EVENT_SETTLED) : NULL;
+    if (said != NULL) {
         said->value = place.dz;
     }
 }
