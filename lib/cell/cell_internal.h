@@ -4,7 +4,7 @@
 
 #include "cell/station.h"
 
-/* A copy of events[release] as another kind, appended to the list; null when that is full. */
-wh_event_t *wh_cell_append(wh_event_list_t *list, size_t release, wh_event_kind_t kind);
+/* A copy of the list's events[release] as another kind, appended to it; null when it is full. */
+wh_event_t *wh_cell_append(size_t release, wh_event_list_t *list, wh_event_kind_t kind);
 
 #endif

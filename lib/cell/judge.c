@@ -36,7 +36,7 @@ static int32_t find_other(const wh_cell_t *cell, const wh_grasp_t *table, int32_
     return WH_NONE;
 }
 
-wh_event_t *wh_cell_append(wh_event_list_t *list, size_t release, wh_event_kind_t kind) {
+wh_event_t *wh_cell_append(size_t release, wh_event_list_t *list, wh_event_kind_t kind) {
     if (list->count >= list->capacity) {
         return NULL;
     }
@@ -49,7 +49,7 @@ wh_event_t *wh_cell_append(wh_event_list_t *list, size_t release, wh_event_kind_
 static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
                               size_t release) {
     const int32_t wafer = list->events[release].wafer;
-    wh_event_t *said = wh_cell_append(list, release, WH_EVENT_RELEASED_UNSUPPORTED);
+    wh_event_t *said = wh_cell_append(release, list, WH_EVENT_RELEASED_UNSUPPORTED);
     if (said != NULL) {
         said->height = height_above_support(cell, &table->storage.wafers[wafer].base_from_wafer);
     }
@@ -58,7 +58,7 @@ static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh
 static void judge_occupied(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
                            size_t release, const wh_place_t *place) {
     const int32_t other = find_other(cell, table, list->events[release].wafer, place);
-    wh_event_t *said = other == WH_NONE ? NULL : wh_cell_append(list, release, WH_EVENT_SLOT_OCCUPIED);
+    wh_event_t *said = other == WH_NONE ? NULL : wh_cell_append(release, list, WH_EVENT_SLOT_OCCUPIED);
     if (said != NULL) {
         said->other = other;
     }
@@ -67,7 +67,7 @@ static void judge_occupied(const wh_cell_t *cell, const wh_grasp_t *table, wh_ev
 /* Says that `found` is above a limit that is set. */
 static void judge_limit(wh_event_list_t *list, size_t release, wh_event_kind_t kind, wh_real_t found,
                         wh_real_t limit) {
-    wh_event_t *said = limit > 0 && found > limit ? wh_cell_append(list, release, kind) : NULL;
+    wh_event_t *said = limit > 0 && found > limit ? wh_cell_append(release, list, kind) : NULL;
     if (said != NULL) {
         said->value = found;
         said->limit = limit;

@@ -30,7 +30,7 @@ static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *li
     pose.r = wh_vec3_subtract(&pose.r, &down);
     turn_towards(&pose.R, &up);
     const bool moved = wh_grasp_place(table, (size_t)wafer, &pose) == WH_OK;
-    wh_event_t *said = moved ? wh_cell_append(list, release, WH_EVENT_SETTLED) : NULL;
+    wh_event_t *said = moved ? wh_cell_append(release, list, WH_EVENT_SETTLED) : NULL;
     if (said != NULL) {
         said->value = place.dz;
     }

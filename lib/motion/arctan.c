@@ -1,7 +1,5 @@
 /* wh_atan2: the ratio is brought to |t| <= 1/4 about one of three angles, and everything but one small
  * polynomial is carried in two numbers, so that one rounding decides the result. */
-#include <string.h>
-
 #include "motion/exact.h"
 #include "motion/trig.h"
 
@@ -20,7 +18,6 @@ static const wh_real_t big = 0x1p+40F;
 static const wh_real_t small = 0x1p-40F;
 static const wh_real_t scale = 0x1p+80F;
 static const wh_real_t flat = 0x1p-60F;
-typedef uint32_t bits_t;
 #else
 #define TERMS 9
 static const wh_real_t terms[TERMS] = {-0x1.5555555555553p-2, 0x1.9999999998d7cp-3,  -0x1.24924923ea273p-3,
@@ -34,14 +31,11 @@ static const wh_real_t big = 0x1p+400;
 static const wh_real_t small = 0x1p-400;
 static const wh_real_t scale = 0x1p+700;
 static const wh_real_t flat = 0x1p-500;
-typedef uint64_t bits_t;
 #endif
 
-/* The sign bit, of zeros too. The one place in lib/motion that looks at a number's bits. */
+/* The sign bit, of zeros too. */
 static bool is_negative(wh_real_t x) {
-    bits_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits >> (8 * sizeof bits - 1) != 0;
+    return wh_bits(x) >> (8 * sizeof(wh_bits_t) - 1) != 0;
 }
 
 /* 0, 1/2 or 1, in halves: the centre nearest to low/high. high - centre * low and its like are then exact. */

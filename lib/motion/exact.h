@@ -1,4 +1,4 @@
-/* Sums and products without rounding error, and rounding to whole numbers: private to lib/motion.
+/* Sums and products without rounding error, rounding to whole numbers, and bits: private to lib/motion.
  *
  * A value is kept as hi + lo, hi being the rounded result and lo what rounding took away (Knuth's two-sum and
  * Dekker's product with Veltkamp's split, which need round-to-nearest and no fused multiply-add). Exact
@@ -6,6 +6,8 @@
  */
 #ifndef WH_MOTION_EXACT_H
 #define WH_MOTION_EXACT_H
+
+#include <string.h>
 
 #include "core/config.h"
 
@@ -19,6 +21,19 @@ typedef struct {
 #else
 #define WH_EXACT_SPLIT 134217729.0
 #endif
+
+/* A number's bits: what tells zeros apart by their sign. */
+#if defined(WH_FLOAT)
+typedef uint32_t wh_bits_t;
+#else
+typedef uint64_t wh_bits_t;
+#endif
+
+static inline wh_bits_t wh_bits(wh_real_t x) {
+    wh_bits_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
 
 /* a + b; six sums, any order of magnitudes. */
 static inline wh_exact_t wh_exact_sum(wh_real_t a, wh_real_t b) {

@@ -1,7 +1,6 @@
 #include "motion/machine.h"
 
-#include <string.h>
-
+#include "motion/exact.h"
 #include "motion/trig.h"
 
 /* A tilt, however slight, shows in one of these; rounding leaves none of it in a turn about z alone. */
@@ -99,16 +98,16 @@ void wh_machine_grippers(const wh_machine_t *machine, const wh_real_t axes[], wh
     }
 }
 
-/* By bits: 0 and -0 differ, and NaN is the same as itself. */
-static bool is_same(const wh_real_t *a, const wh_real_t *b) {
-    return memcmp(a, b, sizeof *a) == 0;
+/* 0 and -0 differ, and NaN is the same as itself. */
+static bool is_same(wh_real_t a, wh_real_t b) {
+    return wh_bits(a) == wh_bits(b);
 }
 
 /* Bit a: axis a moved since the stance was taken. */
 static uint32_t take_axes(const wh_machine_t *machine, const wh_real_t axes[], wh_stance_t *stance) {
     uint32_t moved = 0;
     for (size_t axis = 0; axis < machine->axis_count; ++axis) {
-        moved |= stance->is_taken && is_same(&axes[axis], &stance->axes[axis]) ? 0 : 1U << axis;
+        moved |= stance->is_taken && is_same(axes[axis], stance->axes[axis]) ? 0 : 1U << axis;
         stance->axes[axis] = axes[axis];
     }
     return moved;
@@ -122,9 +121,9 @@ static void move_effector(const wh_real_t q[], uint32_t moved, wh_stance_t *stan
         wh_sin_cos(q[WH_AXIS_THETA], &stance->sine, &stance->cosine);
     }
     effector->r = wh_vec3(q[WH_AXIS_R] * stance->cosine, q[WH_AXIS_R] * stance->sine, q[WH_AXIS_Z]);
-    if (!stance->is_taken || !is_same(&heading, &stance->heading)) {
-        effector->R = is_same(&heading, &q[WH_AXIS_THETA]) ? wh_mat3_turn_z(stance->sine, stance->cosine)
-                                                           : wh_mat3_about_z(heading);
+    if (!stance->is_taken || !is_same(heading, stance->heading)) {
+        effector->R = is_same(heading, q[WH_AXIS_THETA]) ? wh_mat3_turn_z(stance->sine, stance->cosine)
+                                                         : wh_mat3_about_z(heading);
     }
     stance->heading = heading;
 }
