@@ -48,7 +48,7 @@ static void sizes_are_looked_at(void **state) {
 static void the_place_is_looked_at(void **state) {
     (void)state;
     wh_convex_t box = wh_test_shape(WH_CONVEX_BOX, 1, 2, 3);
-    box.body_from_shape.r.x = NAN;
+    box.body_from_shape.r.x = (double)NAN;
     assert_int_equal(wh_convex_validate(&box), WH_STATUS_NOT_FINITE);
     box.body_from_shape.r.x = -1.1 * WH_CONVEX_LARGEST;
     assert_int_equal(wh_convex_validate(&box), WH_STATUS_OUT_OF_RANGE);
@@ -74,7 +74,7 @@ static void meshes_are_looked_at(void **state) {
     assert_int_equal(wh_convex_validate(&mesh), WH_OK);
     points[1] = points[2] = points[3] = points[4] = points[0];
     assert_int_equal(wh_convex_validate(&mesh), WH_STATUS_OUT_OF_RANGE);
-    points[0].z = -INFINITY;
+    points[0].z = -(double)INFINITY;
     assert_int_equal(wh_convex_validate(&mesh), WH_STATUS_NOT_FINITE);
     points[0].z = 1.1 * WH_CONVEX_LARGEST;
     assert_int_equal(wh_convex_validate(&mesh), WH_STATUS_OUT_OF_RANGE);

@@ -143,7 +143,7 @@ static void a_guess_that_is_enough_ends_it(void **state) {
     assert_int_equal(gap.state, WH_GAP_TOUCHING);
     wh_gap_measure(&ball, &here, &ball, &near, -1, wh_vec3(5, 0, 0), &gap);
     assert_int_equal(gap.state, WH_GAP_TOUCHING);
-    wh_gap_measure(&ball, &here, &ball, &there, NAN, wh_vec3(NAN, 0, INFINITY), &gap);
+    wh_gap_measure(&ball, &here, &ball, &there, (double)NAN, wh_vec3((double)NAN, 0, (double)INFINITY), &gap);
     assert_int_equal(gap.state, WH_GAP_CLEAR);
     assert_true(gap.gap > 0 && gap.gap <= 48);
 }
