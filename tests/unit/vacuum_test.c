@@ -51,7 +51,7 @@ static void test_what_is_out_of_range_is_refused(void **state) {
     (void)state;
     assert_int_equal(wh_vacuum_validate(NULL), WH_STATUS_NULL_ARGUMENT);
     for (size_t i = 0; i < 6; ++i) {
-        refuse(i, NAN, WH_STATUS_NOT_FINITE);
+        refuse(i, (double)NAN, WH_STATUS_NOT_FINITE);
         refuse(i, (double)INFINITY, WH_STATUS_NOT_FINITE);
         refuse(i, bad[i][0], WH_STATUS_OUT_OF_RANGE);
         refuse(i, bad[i][1], WH_STATUS_OUT_OF_RANGE);
