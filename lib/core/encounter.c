@@ -138,12 +138,13 @@ static void follow_approach(const wh_watch_t *watch) {
     }
 }
 
-/* The pick has measured the horizon where it was left. */
-/*@ requires wh_watch_memory(watch); assigns \nothing; */
-static bool is_within_horizon(const wh_watch_t *watch) {
-    const size_t g = (size_t)watch->index;
-    return wh_horizon_covers(watch->table, g, &watch->base_from_gripper->r) &&
-           (!watch->sweep || wh_horizon_covers(watch->table, g, &watch->sweep->begin->r));
+/* Nothing that rests came near in this slice. */
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g); assigns \nothing; */
+static bool is_within_horizon(const wh_grasp_t *table, size_t g) {
+    const wh_gripper_t *gripper = &table->storage.grippers[g];
+    const bool sampled = table->config.check == WH_CHECK_SAMPLED || gripper->valve == WH_VALVE_CLOSED;
+    return wh_horizon_holds(table, g) &&
+           (sampled || wh_horizon_covers(table, g, &gripper->base_from_gripper.r));
 }
 
 /* The nearest free wafer in the neighbourhood, then lowest index, if the gripper follows none yet. */
@@ -153,7 +154,7 @@ static bool is_within_horizon(const wh_watch_t *watch) {
     ensures wh_watched(watch, watch->gripper->approach.wafer);
     ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_contest{Pre, Post}(watch); */
 static void begin_approach(const wh_watch_t *watch) {
-    if (is_within_horizon(watch)) {
+    if (is_within_horizon(watch->table, (size_t)watch->index)) {
         return;
     }
     const wh_vec3_t *end = &watch->base_from_gripper->r;
@@ -214,6 +215,33 @@ static bool contest_goes_on(const wh_watch_t *watch) {
                               &watch->table->config.tolerance);
 }
 
+/* Of the held wafers that are ready the one with the smallest |dr_proj_z|, then lowest index; WH_NONE: none. */
+/*@ requires wh_watch_memory(watch);
+    assigns \nothing;
+    ensures \result == WH_NONE || wh_is_wafer(watch->table, \result) && wh_holder(watch->table, \result) != WH_NONE; */
+static int32_t find_held(const wh_watch_t *watch) {
+    const wh_grasp_storage_t *storage = &watch->table->storage;
+    int32_t best = WH_NONE;
+    wh_real_t least = 0;
+    /*@ loop invariant 0 <= g <= storage->gripper_count;
+        loop invariant best == WH_NONE || wh_is_wafer(watch->table, best) && wh_holder(watch->table, best) != WH_NONE;
+        loop assigns g, best, least;
+        loop variant storage->gripper_count - g; */
+    for (size_t g = 0; g < storage->gripper_count; ++g) {
+        const size_t w = (size_t)storage->grippers[g].wafer;
+        if (w < storage->wafer_count && storage->wafers[w].holder == (int32_t)g &&
+            wh_proximity_ready(&storage->wafers[w].base_from_wafer, watch->base_from_gripper,
+                               &watch->table->config.tolerance)) {
+            const wh_real_t distance = wh_grasp_distance(&storage->wafers[w], watch->base_from_gripper);
+            if (best == WH_NONE || distance < least || (distance == least && (int32_t)w < best)) {
+                best = (int32_t)w;
+                least = distance;
+            }
+        }
+    }
+    return best;
+}
+
 /* The wafer that the gripper would take if nobody held it. A contest that goes on is kept even when another held wafer has
  * come nearer: it would be reported each time that the two change places, and before its own hand-over. */
 /*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_watched(watch, watch->gripper->contest.wafer);
@@ -225,7 +253,7 @@ static void follow_contest(const wh_watch_t *watch) {
         return;
     }
     end_contest(watch);
-    const int32_t best = wh_grasp_find_held(watch->table, watch->base_from_gripper);
+    const int32_t best = find_held(watch);
     if (best != WH_NONE) {
         begin_encounter(watch, &watch->gripper->contest, best, 1);
     }
@@ -248,15 +276,6 @@ static void end_encounters(const wh_watch_t *watch, bool closed) {
     end_contest(watch);
 }
 
-/* Nothing between the slices can be near, and an approach that goes on is none that a sweep could tell of. */
-/*@ requires wh_watch_memory(watch); assigns \nothing; */
-static bool needs_no_sweep(const wh_watch_t *watch) {
-    const size_t g = (size_t)watch->index;
-    return watch->gripper->approach.wafer == WH_NONE &&
-           wh_horizon_covers(watch->table, g, &watch->gripper->base_from_gripper.r) &&
-           wh_horizon_covers(watch->table, g, &watch->base_from_gripper->r);
-}
-
 void wh_encounter_follow(const wh_watch_t *watch) {
     if (watch->gripper->approach.wafer == WH_NONE) {
         begin_approach(watch);
@@ -267,10 +286,33 @@ void wh_encounter_follow(const wh_watch_t *watch) {
     follow_contest(watch);
 }
 
+/*@ requires wh_table_memory(table); assigns \nothing; */
+static bool is_any_held(const wh_grasp_t *table) {
+    bool held = false;
+    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
+        loop assigns g, held;
+        loop variant table->storage.gripper_count - g; */
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        held = held || table->storage.grippers[g].wafer != WH_NONE;
+    }
+    return held;
+}
+
+/* It watches nothing, nothing that rests is near, and there is nothing to contest. */
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g); assigns \nothing; */
+static bool is_idle(const wh_grasp_t *table, size_t g) {
+    const wh_gripper_t *gripper = &table->storage.grippers[g];
+    return gripper->approach.wafer == WH_NONE && gripper->contest.wafer == WH_NONE &&
+           gripper->wafer == WH_NONE && is_within_horizon(table, g) && !is_any_held(table);
+}
+
 /* Said of `watch` below, so that it is kept for the provers that it has no sweep. */
 /*@ predicate sweep_at{L}(wh_sweep_t **place, wh_sweep_t *sweep) = *place == sweep; */
 void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
+    if (is_idle(table, gripper)) {
+        return;
+    }
     wh_watch_t watch = {
         table, &table->storage.grippers[gripper], &input->base_from_gripper, NULL, list, (int32_t)gripper};
     /*@ assert wh_table_memory(table) && wh_list_ready(list, 2); */
@@ -286,7 +328,7 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
         /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&
                    wh_watched(&watch, table->storage.grippers[gripper].contest.wafer); */
     } else if (table->config.check == WH_CHECK_SWEPT && watch.gripper->valve == WH_VALVE_OPEN &&
-               !needs_no_sweep(&watch)) {
+               !(watch.gripper->approach.wafer == WH_NONE && is_within_horizon(table, gripper))) {
         wh_encounter_follow_swept(&watch);
         /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
         /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&

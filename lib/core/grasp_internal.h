@@ -29,17 +29,11 @@ void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
 wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper);
 
 /* Of the ready wafers that nobody holds the one that gripper g would take at this pose: smallest |dr_proj_z|, then lowest
- * index; WH_NONE: none. Measures the gripper's horizon anew where it has left it. */
+ * index; WH_NONE: none. Measures the gripper's horizon anew. */
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(base_from_gripper);
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures \result == WH_NONE || wh_is_wafer(table, \result) && wh_holder(table, \result) == WH_NONE; */
 int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper);
-
-/* The same of the wafers that are held. */
-/*@ requires wh_table_memory(table) && \valid_read(base_from_gripper);
-    assigns \nothing;
-    ensures \result == WH_NONE || wh_is_wafer(table, \result) && wh_holder(table, \result) != WH_NONE; */
-int32_t wh_grasp_find_held(const wh_grasp_t *table, const wh_pose_t *base_from_gripper);
 
 /* Gives gripper g, at `then`, this wafer and reports it. Where the gripper moves on within the slice, or the wafer was
  * drawn onto its pads, the wafer still has to be carried there. */

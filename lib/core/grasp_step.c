@@ -1,6 +1,6 @@
 #include "core/encounter_internal.h"
 #include "core/grasp_internal.h"
-#include "core/index_internal.h"
+#include "core/horizon_internal.h"
 #include "core/proximity_internal.h"
 
 /*@
@@ -83,11 +83,29 @@ wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_e
     return event;
 }
 
-/*@ requires \valid_read(input);
+/* False where a number is not finite. */
+/*@ requires \valid_read(a) && \valid_read(b); assigns \nothing; */
+static bool is_same(const wh_mat3_t *a, const wh_mat3_t *b) {
+    return a->m[0][0] == b->m[0][0] && a->m[0][1] == b->m[0][1] && a->m[0][2] == b->m[0][2] &&
+           a->m[1][0] == b->m[1][0] && a->m[1][1] == b->m[1][1] && a->m[1][2] == b->m[1][2] &&
+           a->m[2][0] == b->m[2][0] && a->m[2][1] == b->m[2][1] && a->m[2][2] == b->m[2][2];
+}
+
+/* A gripper that has not turned since the last slice needs no second look at its rotation. */
+/*@ requires \valid_read(gripper) && \valid_read(base_from_gripper); assigns \nothing; */
+static wh_status_t validate_pose(const wh_gripper_t *gripper, const wh_pose_t *base_from_gripper) {
+    if (is_same(&gripper->base_from_gripper.R, &base_from_gripper->R) &&
+        wh_vec3_is_finite(&base_from_gripper->r)) {
+        return WH_OK;
+    }
+    return wh_pose_validate(base_from_gripper);
+}
+
+/*@ requires \valid_read(gripper) && \valid_read(input);
     assigns \nothing;
     ensures \result == WH_OK ==> input->valve == WH_VALVE_OPEN || input->valve == WH_VALVE_CLOSED; */
-static wh_status_t validate_input(const wh_gripper_input_t *input) {
-    const wh_status_t status = wh_pose_validate(&input->base_from_gripper);
+static wh_status_t validate_input(const wh_gripper_t *gripper, const wh_gripper_input_t *input) {
+    const wh_status_t status = validate_pose(gripper, &input->base_from_gripper);
     if (status != WH_OK) {
         return status;
     }
@@ -139,7 +157,7 @@ static wh_status_t validate_inputs(wh_grasp_t *table, const wh_gripper_input_t *
         loop assigns g;
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        const wh_status_t status = validate_input(&inputs[g]);
+        const wh_status_t status = validate_input(&table->storage.grippers[g], &inputs[g]);
         if (status != WH_OK) {
             return refuse(table, list, g, status);
         }
@@ -223,6 +241,10 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
     ensures wh_other_grips{Pre, Post}(table, g); */
 static void pick_sampled(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
+    if (wh_horizon_covers(table, g, &input->base_from_gripper.r)) {
+        wh_horizon_note(table, g);
+        return;
+    }
     const int32_t w = wh_grasp_find_ready(table, g, &input->base_from_gripper);
     if (w == WH_NONE) {
         return;

@@ -29,9 +29,6 @@ static void keep_better(candidate_t *best, size_t w, const wh_wafer_t *wafer,
 }
 
 int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper) {
-    if (wh_horizon_covers(table, g, &base_from_gripper->r)) {
-        return WH_NONE;
-    }
     const wh_real_t margin = wh_horizon_margin(table, g, &base_from_gripper->r);
     const wh_near_t near = wh_index_near(table, &base_from_gripper->r, &base_from_gripper->r, margin);
     wh_horizon_t horizon = wh_horizon_begin(table, g, &near, margin);
@@ -51,24 +48,6 @@ int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_f
         }
     }
     wh_horizon_keep(table, g, &base_from_gripper->r, &horizon);
-    return best.wafer;
-}
-
-int32_t wh_grasp_find_held(const wh_grasp_t *table, const wh_pose_t *base_from_gripper) {
-    candidate_t best = {.wafer = WH_NONE};
-    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
-        loop invariant best.wafer == WH_NONE ||
-                       wh_is_wafer(table, best.wafer) && wh_holder(table, best.wafer) != WH_NONE;
-        loop assigns g, best;
-        loop variant table->storage.gripper_count - g; */
-    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        const size_t w = (size_t)table->storage.grippers[g].wafer;
-        if (w < table->storage.wafer_count && table->storage.wafers[w].holder == (int32_t)g &&
-            wh_proximity_ready(&table->storage.wafers[w].base_from_wafer, base_from_gripper,
-                               &table->config.tolerance)) {
-            keep_better(&best, w, &table->storage.wafers[w], base_from_gripper);
-        }
-    }
     return best.wafer;
 }
 

@@ -3,7 +3,7 @@
 /* A gripper farther out has no horizon: 33 km. */
 #define FAR WH_REAL(2147483520.0)
 /* The longest that a word holds. */
-#define LONGEST WH_REAL(1073741824.0)
+#define LONGEST WH_REAL(536870912.0)
 
 /* Taken off: a place rounded to units is less than 1.74 of them away, and what is left is far more than the rounding of a
  * neighbourhood's distances. */
@@ -11,37 +11,6 @@
 
 /* No column of a rotation is longer, so no distance changes by more than this times the gripper's way. */
 #define LONGEST_COLUMN (1 + 3 * WH_ROTATION_TOLERANCE)
-
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && table->storage.bucket_count > 0;
-    assigns \nothing;
-    ensures \result == table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g); */
-static uint32_t *words_of(const wh_grasp_t *table, size_t g) {
-    return table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g);
-}
-
-/* Two's complement, whatever the compiler does with a cast. */
-/*@ assigns \nothing; */
-static wh_real_t signed_of(uint32_t word) {
-    return (wh_real_t)(word > INT32_MAX ? -1 - (int32_t)(UINT32_MAX - word) : (int32_t)word);
-}
-
-/*@ requires \valid_read(words + (0 .. 2)) && \valid_read(place); assigns \nothing; */
-static wh_real_t squared_way(const uint32_t *words, const wh_vec3_t *place) {
-    const wh_real_t x = WH_INDEX_UNITS * place->x - signed_of(words[0]);
-    const wh_real_t y = WH_INDEX_UNITS * place->y - signed_of(words[1]);
-    const wh_real_t z = WH_INDEX_UNITS * place->z - signed_of(words[2]);
-    return x * x + y * y + z * z;
-}
-
-bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
-    if (table->storage.bucket_count == 0) {
-        return false;
-    }
-    const uint32_t *words = words_of(table, g);
-    const wh_real_t reach = (wh_real_t)(words[3] >> 1);
-    const bool for_this = (words[3] & 1) == 0 || table->storage.grippers[g].approach.wafer != WH_NONE;
-    return for_this && squared_way(words, place) < reach * reach;
-}
 
 wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
     const wh_limits_t limits = wh_index_limits(table);
@@ -66,8 +35,8 @@ wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_near_t
     return horizon;
 }
 
-/* The distance in units, rounded down, for twice which there is room in a word; 0 where none is left. */
-/*@ assigns \nothing; ensures \result <= INT32_MAX; */
+/* The distance in units, rounded down, for four times which there is room in a word; 0 where none is left. */
+/*@ assigns \nothing; ensures \result <= INT32_MAX / 4; */
 static uint32_t reach_of(wh_real_t units) {
     if (!(units > 0)) {
         return 0;
@@ -84,7 +53,7 @@ void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const 
     if (!horizon->measured) {
         return;
     }
-    uint32_t *words = words_of(table, g);
+    uint32_t *words = wh_horizon_words(table, g);
     const wh_real_t x = WH_INDEX_UNITS * place->x;
     const wh_real_t y = WH_INDEX_UNITS * place->y;
     const wh_real_t z = WH_INDEX_UNITS * place->z;
@@ -99,8 +68,13 @@ void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const 
     words[0] = (uint32_t)(int32_t)x;
     words[1] = (uint32_t)(int32_t)y;
     words[2] = (uint32_t)(int32_t)z;
-    words[3] = 2 * reach_of(WH_INDEX_UNITS * sure - TAKEN_OFF) +
-               (table->storage.grippers[g].approach.wafer != WH_NONE ? 1U : 0U);
+    words[3] = 4 * reach_of(WH_INDEX_UNITS * sure - TAKEN_OFF);
+    if (table->storage.grippers[g].approach.wafer != WH_NONE) {
+        words[3] |= WH_HORIZON_OF_TOLERANCE;
+    }
+    if (words[3] >= 4 * ((uint32_t)TAKEN_OFF)) {
+        words[3] |= WH_HORIZON_HOLDS;
+    }
 }
 
 void wh_horizon_reset(wh_grasp_t *table) {
@@ -111,6 +85,6 @@ void wh_horizon_reset(wh_grasp_t *table) {
         loop assigns g, table->storage.buckets[0 .. table->storage.bucket_count - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        words_of(table, g)[3] = 0;
+        wh_horizon_words(table, g)[3] = 0;
     }
 }

@@ -5,8 +5,8 @@
  * need not look at any. While it follows a wafer's approach it looks for ready wafers only, and the tolerance takes the
  * neighbourhood's place. Rounding, and rotations that are orthonormal to WH_ROTATION_TOLERANCE only, are taken off.
  *
- * Four words for each gripper: a place in base in units of 1/64 mm, as three signed numbers, and twice the distance from
- * there in the same unit, plus 1 when it was measured against the tolerance. A distance of 0: none is known.
+ * Four words for each gripper: a place in base in units of 1/64 mm, as three signed numbers, and four times the distance
+ * from there in the same unit, plus WH_HORIZON_* bits. A distance of 0: none is known.
  */
 #ifndef WH_CORE_HORIZON_INTERNAL_H
 #define WH_CORE_HORIZON_INTERNAL_H
@@ -20,10 +20,53 @@ typedef struct {
     bool measured; /* false: there are no buckets to keep it in */
 } wh_horizon_t;
 
+/* It was measured against the tolerance; the gripper's pick in this step found that it is within it. */
+enum { WH_HORIZON_OF_TOLERANCE = 1, WH_HORIZON_HOLDS = 2 };
+
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && table->storage.bucket_count > 0;
+    assigns \nothing;
+    ensures \result == table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g); */
+static inline uint32_t *wh_horizon_words(const wh_grasp_t *table, size_t g) {
+    return table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g);
+}
+
+/* The way from a place that a word keeps, along one axis, in units. Two's complement, whatever a cast makes of it. */
+/*@ assigns \nothing; */
+static inline wh_real_t wh_horizon_way(uint32_t word, wh_real_t place) {
+    const int32_t from = word > INT32_MAX ? -1 - (int32_t)(UINT32_MAX - word) : (int32_t)word;
+    return WH_INDEX_UNITS * place - (wh_real_t)from;
+}
+
 /* No wafer that nobody holds matters to gripper g at `place`. */
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place);
     assigns \nothing; */
-bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh_vec3_t *place);
+static inline bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
+    if (table->storage.bucket_count == 0) {
+        return false;
+    }
+    const uint32_t *words = wh_horizon_words(table, g);
+    if ((words[3] & WH_HORIZON_OF_TOLERANCE) != 0 && table->storage.grippers[g].approach.wafer == WH_NONE) {
+        return false;
+    }
+    const wh_real_t x = wh_horizon_way(words[0], place->x);
+    const wh_real_t y = wh_horizon_way(words[1], place->y);
+    const wh_real_t z = wh_horizon_way(words[2], place->z);
+    const wh_real_t reach = (wh_real_t)(int32_t)(words[3] >> 2);
+    return x * x + y * y + z * z < reach * reach;
+}
+
+/* The same at the slice's end, after the gripper's pick has found it out. */
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g); assigns \nothing; */
+static inline bool wh_horizon_holds(const wh_grasp_t *table, size_t g) {
+    return table->storage.bucket_count > 0 && (wh_horizon_words(table, g)[3] & WH_HORIZON_HOLDS) != 0;
+}
+
+/* That it covers the slice's end. */
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && table->storage.bucket_count > 0;
+    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
+static inline void wh_horizon_note(wh_grasp_t *table, size_t g) {
+    wh_horizon_words(table, g)[3] |= WH_HORIZON_HOLDS;
+}
 
 /* How far around `place` it pays to look: many times the way of this slice, or little when the gripper jumps. */
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place);

@@ -19,18 +19,25 @@ static bool near(wh_real_t value, wh_real_t wanted) {
     return wh_real_abs(value - wanted) <= WH_ROTATION_TOLERANCE;
 }
 
-wh_status_t wh_pose_validate(const wh_pose_t *pose) {
-    if (!pose_is_finite(pose)) {
-        return WH_STATUS_NOT_FINITE;
-    }
-    const wh_vec3_t e1 = wh_mat3_column(&pose->R, 0);
-    const wh_vec3_t e2 = wh_mat3_column(&pose->R, 1);
-    const wh_vec3_t e3 = wh_mat3_column(&pose->R, 2);
-    const wh_vec3_t e1_cross_e2 = wh_vec3_cross(&e1, &e2);
+/* False for numbers that are not finite. */
+/*@ requires \valid_read(R); assigns \nothing; */
+static bool is_rotation(const wh_mat3_t *R) {
+    const wh_vec3_t e1 = wh_mat3_column(R, 0);
+    const wh_vec3_t e2 = wh_mat3_column(R, 1);
+    const wh_vec3_t e3 = wh_mat3_column(R, 2);
     const bool orthonormal = near(wh_vec3_dot(&e1, &e1), 1) && near(wh_vec3_dot(&e2, &e2), 1) &&
                              near(wh_vec3_dot(&e3, &e3), 1) && near(wh_vec3_dot(&e1, &e2), 0) &&
                              near(wh_vec3_dot(&e1, &e3), 0) && near(wh_vec3_dot(&e2, &e3), 0);
-    return orthonormal && wh_vec3_dot(&e1_cross_e2, &e3) > 0 ? WH_OK : WH_STATUS_NOT_A_ROTATION;
+    const wh_vec3_t e1_cross_e2 = wh_vec3_cross(&e1, &e2);
+    return orthonormal && wh_vec3_dot(&e1_cross_e2, &e3) > 0;
+}
+
+/* A rotation's numbers need not be looked at one by one. */
+wh_status_t wh_pose_validate(const wh_pose_t *pose) {
+    if (is_rotation(&pose->R)) {
+        return wh_vec3_is_finite(&pose->r) ? WH_OK : WH_STATUS_NOT_FINITE;
+    }
+    return pose_is_finite(pose) ? WH_STATUS_NOT_A_ROTATION : WH_STATUS_NOT_FINITE;
 }
 
 void wh_pose_compose_to(const wh_pose_t *a_from_b, const wh_pose_t *b_from_c, wh_pose_t *a_from_c) {

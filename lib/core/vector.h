@@ -80,6 +80,12 @@ static inline wh_real_t wh_vec3_norm(const wh_vec3_t *a) {
     return wh_real_sqrt(wh_vec3_dot(a, a));
 }
 
+/* All three are. */
+/*@ requires \valid_read(a); assigns \nothing; */
+static inline bool wh_vec3_is_finite(const wh_vec3_t *a) {
+    return (a->x - a->x) + (a->y - a->y) + (a->z - a->z) == 0;
+}
+
 /*@ assigns \nothing; */
 static inline wh_mat3_t wh_mat3_identity(void) {
     wh_mat3_t i = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
