@@ -73,24 +73,6 @@ wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose
     return status;
 }
 
-bool wh_proximity_ready_within(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
-                               const wh_tolerance_t *tolerance, wh_real_t dx, wh_real_t dy, wh_real_t dz) {
-    const wh_mat3_t *w = &base_from_wafer->R;
-    const wh_mat3_t *g = &base_from_gripper->R;
-    wh_real_t squares[2];
-    /*@ loop assigns i, squares[0 .. 1]; loop variant 2 - i; */
-    for (size_t i = 0; i < 2; ++i) {
-        const wh_real_t along = w->m[0][i] * dx + w->m[1][i] * dy + w->m[2][i] * dz;
-        /* (1)-(8) never look at the gripper's first two axes: a NaN there comes in as what must be zero. */
-        const wh_real_t unused = g->m[0][i] + g->m[1][i] + g->m[2][i];
-        squares[i] = along * along + (unused - unused);
-    }
-    const wh_vec3_t n1 = wh_mat3_column(w, 2);
-    const wh_vec3_t n2 = wh_mat3_column(g, 2);
-    return wh_real_sqrt(squares[0] + squares[1]) < tolerance->projxy &&
-           wh_vec3_dot(&n1, &n2) > tolerance->planar;
-}
-
 wh_real_t wh_proximity_rim_gap(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                wh_real_t radius) {
     const wh_vec3_t n1 = wh_mat3_column(&base_from_wafer->R, 2);

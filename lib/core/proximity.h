@@ -74,24 +74,31 @@ wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance);
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                  const wh_tolerance_t *tolerance, wh_proximity_t *result);
 
-/* The second half of wh_proximity_ready: (7), (8) and NaN, with dr of (1). Not to be called by itself. */
-/*@ requires \valid_read(base_from_wafer) && \valid_read(base_from_gripper) && \valid_read(tolerance);
-    assigns \nothing; */
-bool wh_proximity_ready_within(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
-                               const wh_tolerance_t *tolerance, wh_real_t dx, wh_real_t dy, wh_real_t dz);
-
 /* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit. No argument is checked:
  * poses and tolerance must be valid ones, except that a NaN anywhere gives false. Cost: 3 products where the wafer is
- * too high or too low, which is found out here, in the caller's loop; 14 and a square root within the limit (6). For a
- * thousand wafers and more see batch/batch.h. */
+ * too high or too low, 15 within the limit (6), and a square root near the limit (7). It stands here so that compilers
+ * put it into the caller's loop; for hundreds of wafers and more at once see batch/batch.h. */
 /*@ requires \valid_read(base_from_wafer) && \valid_read(base_from_gripper) && \valid_read(tolerance);
     assigns \nothing; */
 static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                       const wh_tolerance_t *tolerance) {
+    const wh_mat3_t *w = &base_from_wafer->R;
+    const wh_mat3_t *g = &base_from_gripper->R;
     const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &base_from_gripper->r);
-    const wh_vec3_t n1 = wh_mat3_column(&base_from_wafer->R, 2);
-    return wh_real_abs(wh_vec3_dot(&n1, &dr)) < tolerance->projz &&
-           wh_proximity_ready_within(base_from_wafer, base_from_gripper, tolerance, dr.x, dr.y, dr.z);
+    const wh_vec3_t n1 = wh_mat3_column(w, 2);
+    if (!(wh_real_abs(wh_vec3_dot(&dr, &n1)) < tolerance->projz)) {
+        return false;
+    }
+    wh_real_t square = 0;
+    /*@ loop invariant 0 <= i <= 2; loop assigns i, square; loop variant 2 - i; */
+    for (size_t i = 0; i < 2; ++i) {
+        const wh_real_t along = w->m[0][i] * dr.x + w->m[1][i] * dr.y + w->m[2][i] * dr.z;
+        /* (1)-(8) never look at the gripper's first two axes: a NaN there comes in as what must be zero. */
+        const wh_real_t unused = g->m[0][i] + g->m[1][i] + g->m[2][i];
+        square += along * along + (unused - unused);
+    }
+    const wh_vec3_t n2 = wh_mat3_column(g, 2);
+    return wh_real_root_below(square, tolerance->projxy) && wh_vec3_dot(&n1, &n2) > tolerance->planar;
 }
 
 /* Margins, failed conditions and verdict anew from the values (1)-(5) that `measured` holds, as when they have travelled

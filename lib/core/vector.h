@@ -38,6 +38,18 @@ static inline wh_real_t wh_real_sqrt(wh_real_t a) {
 #endif
 }
 
+/* Whether the square root, rounded as above, is less than a limit in [1e-6, 1e6]: only near the limit it takes the root,
+ * which costs a processor with doubles more than the two products. */
+/*@ assigns \nothing; */
+static inline bool wh_real_root_below(wh_real_t square, wh_real_t limit) {
+#if !defined(WH_FLOAT)
+    if (square < limit * limit * WH_REAL(0.999)) {
+        return true;
+    }
+#endif
+    return wh_real_sqrt(square) < limit;
+}
+
 /* Neither NaN nor infinite. */
 /*@ assigns \nothing; */
 static inline bool wh_real_is_finite(wh_real_t a) {

@@ -36,11 +36,17 @@ static wh_pose_t at(wh_real_t x, wh_real_t y, wh_real_t z) {
     return pose;
 }
 
+/* Not put into its caller, where the poses are known beforehand. */
+static __attribute__((noinline)) bool check(const wh_pose_t *wafer, const wh_pose_t *gripper,
+                                            const wh_tolerance_t *tolerance) {
+    return wh_proximity_ready(wafer, gripper, tolerance);
+}
+
 static void count_check(const char *name, const wh_pose_t *gripper, bool wanted) {
     const wh_pose_t wafer = at(0, 0, 0);
     const wh_tolerance_t tolerance = wh_tolerance_paper();
     start();
-    const bool ready = wh_proximity_ready(&wafer, gripper, &tolerance);
+    const bool ready = check(&wafer, gripper, &tolerance);
     const uint32_t count = stop();
     printf("check %s %u%s\n", name, (unsigned)count, ready == wanted ? "" : " WRONG");
 }
