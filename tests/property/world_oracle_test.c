@@ -139,7 +139,7 @@ static bool play_slice(wh_world_t *world, const wh_pose_t *from, const wh_pose_t
         oracle->now[kind] = WH_CLEARANCE_RANGE;
     }
     for (int i = 1; i <= INSTANTS; ++i) {
-        const wh_pose_t at = between(from, to, (double)i / INSTANTS);
+        const wh_pose_t at = between(from, to, (double)i / (double)INSTANTS);
         look_at_instant(i == INSTANTS ? to : &at, i == INSTANTS, oracle);
     }
     wh_world_step(world, &table, to, to, &list);
