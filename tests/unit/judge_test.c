@@ -334,6 +334,25 @@ static void test_what_does_not_settle(void **state) {
     assert_int_equal(scene.list.count, 1);
 }
 
+/* It comes to lie even where nothing more can be said; and what a gripper holds stays in its hand. */
+static void test_settling_without_room_or_while_held(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t above = wh_test_at(700, 0, 900.25);
+    cell.settle = true;
+    let_go(&scene, &above);
+    scene.list.capacity = 1;
+    wh_cell_settle(&cell, &scene.table, &scene.list);
+    assert_int_equal(scene.list.count, 1);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 900, 4096 * WH_TEST_ROUNDING);
+    let_go(&scene, &above);
+    scene.wafers[0].holder = 0;
+    wh_cell_settle(&cell, &scene.table, &scene.list);
+    assert_int_equal(scene.list.count, 1);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 900.25, 0);
+    cell.settle = false;
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_a_release_in_a_free_slot_is_fine, set_up),
@@ -351,6 +370,7 @@ int main(void) {
         cmocka_unit_test_setup(test_a_full_list_takes_no_more, set_up),
         cmocka_unit_test_setup(test_a_wafer_comes_to_lie_on_its_slot, set_up),
         cmocka_unit_test_setup(test_what_does_not_settle, set_up),
+        cmocka_unit_test_setup(test_settling_without_room_or_while_held, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -284,6 +284,17 @@ static void test_a_tilted_or_broken_shift_is_refused(void **state) {
     assert_int_equal(wh_machine_validate(&machine), WH_STATUS_NOT_A_ROTATION);
 }
 
+/* As slight as that, and seen in any one entry. */
+static void test_the_slightest_tilt_shows(void **state) {
+    static const size_t places[][2] = {{0, 2}, {1, 2}, {2, 0}, {2, 1}, {2, 2}};
+    (void)state;
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; ++i) {
+        wh_machine_t machine = machine_with_two_blades();
+        machine.mounts[1].effector_from_gripper.R.m[places[i][0]][places[i][1]] += WH_REAL(2e-7);
+        assert_int_equal(wh_machine_validate(&machine), WH_STATUS_NOT_LEVEL);
+    }
+}
+
 /* Each gripper comes to the point, with its own x along the heading; the plain one by the robot's own inverse. */
 static void test_the_inverse_brings_each_gripper_there(void **state) {
     (void)state;
@@ -330,6 +341,7 @@ int main(void) {
         cmocka_unit_test(test_a_shifted_gripper_sits_beside_the_effector),
         cmocka_unit_test(test_a_gripper_that_is_not_shifted_is_the_effector),
         cmocka_unit_test(test_a_tilted_or_broken_shift_is_refused),
+        cmocka_unit_test(test_the_slightest_tilt_shows),
         cmocka_unit_test(test_the_inverse_brings_each_gripper_there),
         cmocka_unit_test(test_the_inverse_refuses_what_the_robots_does),
         cmocka_unit_test(test_a_sound_machine_passes),
