@@ -194,7 +194,8 @@ static wh_vec3_t draw_way(const wh_pose_t *wafer, const wh_vec3_t *place) {
     const double length = wh_test_below(2) ? lengths[wh_test_below(6)] : wh_test_decades(1e-4, 100);
     wh_vec3_t towards = wh_vec3_subtract(&wafer->r, place);
     const wh_real_t distance = wh_vec3_norm(&towards);
-    if (wh_test_below(3) == 0 || !(distance > 0 && distance < WH_REAL(1e15))) {
+    const bool has_direction = distance > 0 && distance < WH_REAL(1e15);
+    if (wh_test_below(3) == 0 || !has_direction) {
         const wh_mat3_t R = wh_test_random_turn(WH_TEST_PI);
         towards = wh_vec3_scale(WH_REAL(length), &(wh_vec3_t){R.m[0][0], R.m[0][1], R.m[0][2]});
         return towards;
