@@ -107,6 +107,7 @@ wh_status_t wh_profile_plan(wh_profile_t *profile, wh_real_t distance, const wh_
     return WH_OK;
 }
 
+/* Times that last as long already are the same to the last bit: the factor is 1. */
 static wh_profile_times_t slowed(const wh_profile_times_t *times, wh_real_t duration) {
     const wh_real_t slower = duration / times->duration;
     const wh_profile_times_t stretched = {times->jerk * slower, times->rise * slower, duration};
@@ -117,8 +118,6 @@ void wh_profile_shape(wh_profile_t *profile, wh_real_t distance, const wh_profil
                       wh_real_t duration) {
     if (is_tiny(distance)) {
         *profile = at_once(distance, duration);
-    } else if (duration == times->duration) {
-        *profile = from_times(distance, times);
     } else {
         const wh_profile_times_t stretched = slowed(times, duration);
         *profile = from_times(distance, &stretched);
