@@ -113,33 +113,47 @@ static wh_status_t validate_input(const wh_gripper_t *gripper, const wh_gripper_
     return good ? WH_OK : WH_STATUS_BAD_VALVE;
 }
 
+/*@ requires \valid(table);
+    assigns table->counters.refused; */
+static void count_refusal(wh_grasp_t *table) {
+    ++table->counters.refused;
+}
+
+/*@ requires \valid_read(table) && list != \null && wh_list_ready(list, 1) && wh_list_apart(list, table);
+    requires gripper < table->storage.gripper_count <= INT32_MAX;
+    assigns list->count, list->events[0 .. list->capacity - 1]; */
+static void report_refusal(const wh_grasp_t *table, wh_event_list_t *list, size_t gripper,
+                           wh_status_t status) {
+    wh_event_t *event = wh_event_append(table, list, WH_EVENT_BAD_INPUT);
+    event->slice = table->slice + 1;
+    event->measured_slice = table->slice + 1;
+    event->gripper = (int32_t)gripper;
+    event->status = status;
+}
+
 /*@ requires wh_table_memory(table) && wh_list_ready(list, 1) && wh_list_apart(list, table);
     requires status != WH_OK && gripper < table->storage.gripper_count;
     assigns table->counters.refused, list->count, list->events[0 .. wh_room(list) - 1];
     ensures \result == status;
-    ensures wh_same_size{Pre, Post}(table) && wh_same_arrays{Pre, Post}(table); */
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_same_poses{Pre, Post}(table);
+    ensures wh_same_holders{Pre, Post}(table);
+    ensures wh_same_releases{Pre, Post}(table);
+    ensures wh_same_held{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table);
+    ensures wh_same_stands{Pre, Post}(table);
+    ensures wh_same_valves{Pre, Post}(table);
+    ensures wh_same_encounters{Pre, Post}(table);
+    ensures wh_same_measured{Pre, Post}(table); */
 static wh_status_t refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripper, wh_status_t status) {
-    ++table->counters.refused;
-    /*@ assert wh_same_size{Pre, Here}(table) && wh_same_arrays{Pre, Here}(table); */
     if (list) {
-        wh_event_t *event = wh_event_append(table, list, WH_EVENT_BAD_INPUT);
-        event->slice = table->slice + 1;
-        event->measured_slice = table->slice + 1;
-        event->gripper = (int32_t)gripper;
-        event->status = status;
-        /*@ assert wh_same_size{Pre, Here}(table); */
-        /*@ assert wh_same_poses{Pre, Here}(table); */
-        /*@ assert wh_same_holders{Pre, Here}(table); */
-        /*@ assert wh_same_releases{Pre, Here}(table); */
-        /*@ assert wh_same_held{Pre, Here}(table); */
-        /*@ assert wh_same_grips{Pre, Here}(table); */
-        /*@ assert wh_same_stands{Pre, Here}(table); */
-        /*@ assert wh_same_valves{Pre, Here}(table); */
-        /*@ assert wh_same_encounters{Pre, Here}(table); */
-        /*@ assert wh_same_measured{Pre, Here}(table); */
-        /*@ assert wh_same_arrays{Pre, Here}(table); */
+        /*@ assert \forall integer g; wh_is_gripper(table, g) ==>
+              \separated(&table->storage.grippers[g], list->events + (0 .. list->capacity - 1)); */
+        /*@ assert \forall integer w; wh_is_wafer(table, w) ==>
+              \separated(&table->storage.wafers[w], list->events + (0 .. list->capacity - 1)); */
+        report_refusal(table, list, gripper, status);
     }
-    /*@ assert wh_same_size{Pre, Here}(table) && wh_same_arrays{Pre, Here}(table); */
+    count_refusal(table);
     return status;
 }
 
@@ -150,7 +164,8 @@ static wh_status_t refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripp
     assigns table->counters.refused, list->count, list->events[0 .. wh_room(list) - 1];
     ensures \result == WH_OK ==> list == \null || list->count == \old(list->count);
     ensures \result == WH_OK ==> wh_valves_good(inputs, table->storage.gripper_count);
-    ensures wh_same_size{Pre, Post}(table) && wh_same_arrays{Pre, Post}(table); */
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_same_arrays{Pre, Post}(table); */
 static wh_status_t validate_inputs(wh_grasp_t *table, const wh_gripper_input_t *inputs,
                                    wh_event_list_t *list) {
     /*@ loop invariant 0 <= g <= table->storage.gripper_count && wh_valves_good(inputs, g);
@@ -509,12 +524,6 @@ static void remember_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
         /*@ assert wh_stepping_releases(table, inputs, g + 1, table->storage.gripper_count); */
         /*@ assert wh_stepping_held(table, inputs, g + 1, table->storage.gripper_count); */
     }
-}
-
-/*@ requires \valid(table);
-    assigns table->counters.refused; */
-static void count_refusal(wh_grasp_t *table) {
-    ++table->counters.refused;
 }
 
 /*@ requires wh_table_memory(table) && wh_consistent(table) && wh_list_apart(list, table);
