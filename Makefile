@@ -27,7 +27,7 @@ include tests/tests.mk
 CORE_PARTS := symbols footprint instructions bits on_target eva fuzz
 PART := $(CORE_PARTS) wp coverage mutation
 
-.PHONY: all library run spy test quick check verify-core verify install uninstall clean help
+.PHONY: all library run spy test quick bench check verify-core verify install uninstall clean help
 
 all: ## the library, the program, the Lua module and the manual page, in build/
 	$(NEED) run
@@ -57,6 +57,12 @@ quick: ## the plain unit and property tests alone, for while you work
 	$(NEED) run test
 	$(BUILD) tests
 	@tests/run $(TESTS:%=build/%)
+
+bench: ## how fast, against peers in the same process: minutes. BENCH=step for one subject or row, JSON=1
+	$(NEED) run test bench
+	@tests/bench/wheels
+	$(BUILD) all bench
+	@tests/bench/run $(if $(JSON),--json)
 
 check: ## format, warnings as errors, static analysis
 	$(NEED) run test check

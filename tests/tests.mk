@@ -14,8 +14,8 @@ COLLISION_TESTS := $(basename $(shell grep -lE '^.include "collision/' $(TEST_SO
 # Programs that end-to-end tests use: built with the tests, not run by themselves.
 TOOLS := $(basename $(wildcard tests/tools/*.c))
 
-# Programs that measure, to be run by hand: built with the tests too.
-BENCHES := $(basename $(wildcard tests/bench/*.c))
+# Programs that measure, to be run by hand: built with the tests too. Those of `make bench` are in tests/bench/bench.mk.
+BENCHES := tests/bench/gap tests/bench/counts
 LIBRARY_TESTS := $(filter-out $(PROGRAM_TESTS) $(COLLISION_TESTS),$(filter tests/unit/% tests/firmware/% tests/property/horizon_test,$(TESTS)))
 
 END_TO_END := $(shell awk 'FNR == 1 && /^.!/ { print FILENAME }' $(wildcard tests/end_to_end/*) /dev/null)

@@ -199,4 +199,4 @@ $(B)/waferhand.1: lib/packaging/waferhand.1.in lib/core/status.def lib/core/conf
 	@sed -n 's/^WH_STATUS(\([1-9][0-9]*\), \([A-Z_]*\), "\(.*\)")$$/.TP\n.B \1 \2\n\3/p' lib/core/status.def >$@.errors
 	@sed -e 's/@version@/$(VERSION)/' -e '/@errors@/{r $@.errors' -e 'd}' lib/packaging/waferhand.1.in >$@
 
-include lib/packaging/install.mk lib/packaging/check.mk tests/fuzz/fuzz.mk
+include lib/packaging/install.mk lib/packaging/check.mk tests/fuzz/fuzz.mk tests/bench/bench.mk

@@ -1,0 +1,57 @@
+/* What a peer must be able to do to be raced: peer_NAME.so exports one of these as `bench_peer`. A peer takes its own copy
+ * of the wafers into whatever structure is best for it, outside of what is timed. */
+#ifndef WH_TESTS_BENCH_PEERS_H
+#define WH_TESTS_BENCH_PEERS_H
+
+#include <waferhand.h>
+
+#ifdef __cplusplus
+#define BENCH_PEER extern "C" __attribute__((visibility("default"))) const
+#else
+#define BENCH_PEER __attribute__((visibility("default"))) const
+#endif
+
+enum { BENCH_VARIANTS = 8 };
+
+/* The check, or what stands for it. `count` says how many pairs of wafer and gripper are ready (in contact). */
+typedef struct {
+    const char *name;
+    void *(*build)(const wh_pose_t *wafers, size_t count, const wh_tolerance_t *tolerance);
+    uint64_t (*count)(void *built, const wh_pose_t *grippers, size_t gripper_count);
+    void (*drop)(void *built);
+} bench_check_variant_t;
+
+/* Variants end with one that has no name. */
+typedef struct {
+    bench_check_variant_t variants[BENCH_VARIANTS];
+} bench_check_peer_t;
+
+/* How many wafers are near each gripper, and how many ready: 2^32 a ready one, 1 a near one. */
+typedef struct {
+    const char *name;
+    void *(*build)(const wh_pose_t *wafers, size_t count, const wh_grasp_config_t *config);
+    uint64_t (*look)(void *built, const wh_pose_t *grippers, size_t gripper_count);
+    void (*drop)(void *built);
+} bench_index_peer_t;
+
+/* A slice of a world in which `wafers` discs lie apart from each other, and one gripper that moves. */
+typedef struct {
+    const char *name;
+    void *(*build)(size_t wafers);
+    uint64_t (*step)(void *world, const wh_pose_t *gripper);
+    void (*drop)(void *world);
+} bench_world_t;
+
+typedef struct {
+    bench_world_t worlds[BENCH_VARIANTS];
+} bench_step_peer_t;
+
+/* The duration of a synchronised move from rest to rest of `axes` axes. */
+typedef struct {
+    const char *name;
+    void *(*build)(size_t axes, const wh_limits_t limits[]);
+    double (*plan)(void *planner, const double from[], const double to[]);
+    void (*drop)(void *planner);
+} bench_profile_peer_t;
+
+#endif
