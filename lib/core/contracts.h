@@ -19,7 +19,7 @@
   // None, or what wh_grasp_buckets says.
   predicate wh_enough_buckets{L}(wh_grasp_storage_t *s) =
     s->bucket_count == 0 ||
-    6 + 4 * s->gripper_count + 5 * s->wafer_count <= s->bucket_count <= INT32_MAX;
+    8 + 4 * s->gripper_count + 5 * s->wafer_count <= s->bucket_count <= INT32_MAX;
 
   // What wh_grasp_init has looked at.
   predicate wh_storage_good{L}(wh_grasp_storage_t *s) =

@@ -141,10 +141,9 @@ static void follow_approach(const wh_watch_t *watch) {
 /* Nothing that rests came near in this slice. */
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g); assigns \nothing; */
 static bool is_within_horizon(const wh_grasp_t *table, size_t g) {
-    const wh_gripper_t *gripper = &table->storage.grippers[g];
-    const bool sampled = table->config.check == WH_CHECK_SAMPLED || gripper->valve == WH_VALVE_CLOSED;
     return wh_horizon_holds(table, g) &&
-           (sampled || wh_horizon_covers(table, g, &gripper->base_from_gripper.r));
+           (!wh_grasp_is_swept(table, g) ||
+            wh_horizon_covers(table, g, &table->storage.grippers[g].base_from_gripper.r));
 }
 
 /* The nearest free wafer in the neighbourhood, then lowest index, if the gripper follows none yet. */
@@ -158,7 +157,8 @@ static void begin_approach(const wh_watch_t *watch) {
         return;
     }
     const wh_vec3_t *end = &watch->base_from_gripper->r;
-    const wh_near_t near = wh_index_near(watch->table, watch->sweep ? &watch->sweep->begin->r : end, end, 0);
+    const wh_near_t near =
+        wh_index_again(watch->table, (size_t)watch->index, watch->sweep ? &watch->sweep->begin->r : end, end);
     int32_t nearest = WH_NONE;
     wh_real_t least = 0;
     wh_real_t when = 0;
@@ -327,7 +327,7 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
         /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
         /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&
                    wh_watched(&watch, table->storage.grippers[gripper].contest.wafer); */
-    } else if (table->config.check == WH_CHECK_SWEPT && watch.gripper->valve == WH_VALVE_OPEN &&
+    } else if (wh_grasp_is_swept(table, gripper) &&
                !(watch.gripper->approach.wafer == WH_NONE && is_within_horizon(table, gripper))) {
         wh_encounter_follow_swept(&watch);
         /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */

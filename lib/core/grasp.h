@@ -107,11 +107,11 @@ typedef struct {
 #if defined(__FRAMAC__)
 #include "core/contracts.h"
 #endif
-/* How many buckets a table of these counts needs: 5 for each wafer, 4 for each gripper and 6. 0 above INT32_MAX / 16
+/* How many buckets a table of these counts needs: 5 for each wafer, 4 for each gripper and 8. 0 above INT32_MAX / 16
  * wafers or grippers: such a table can have none. */
 /*@ assigns \nothing;
     ensures wafer_count <= INT32_MAX / 16 && gripper_count <= INT32_MAX / 16 ?
-              \result == 6 + 4 * gripper_count + 5 * wafer_count : \result == 0; */
+              \result == 8 + 4 * gripper_count + 5 * wafer_count : \result == 0; */
 size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count);
 
 /* The paper's tolerance, sampled, no seating; neighbourhood 4.5 mm and 2 eps_projxy. */

@@ -28,6 +28,12 @@ void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
 /*@ requires \valid_read(wafer) && \valid_read(base_from_gripper); assigns \nothing; */
 wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper);
 
+/* What an open gripper passes between the last slice and this one counts; its entry is still the last slice's. */
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g); assigns \nothing; */
+static inline bool wh_grasp_is_swept(const wh_grasp_t *table, size_t g) {
+    return table->config.check == WH_CHECK_SWEPT && table->storage.grippers[g].valve == WH_VALVE_OPEN;
+}
+
 /* Of the ready wafers that nobody holds the one that gripper g would take at this pose: smallest |dr_proj_z|, then lowest
  * index; WH_NONE: none. Measures the gripper's horizon anew. */
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(base_from_gripper);

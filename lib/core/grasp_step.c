@@ -307,8 +307,7 @@ static void pick(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input, w
         /*@ assert wh_holders_kept{Pre, Here}(table); */
         return;
     }
-    const bool swept = table->config.check == WH_CHECK_SWEPT && gripper->valve == WH_VALVE_OPEN;
-    if (!swept || !wh_grasp_pick_swept(table, g, input, list)) {
+    if (!wh_grasp_is_swept(table, g) || !wh_grasp_pick_swept(table, g, input, list)) {
         /*@ assert wh_same_holders{Pre, Here}(table) && wh_same_held{Pre, Here}(table); */
         /*@ assert wh_same_poses{Pre, Here}(table); */
         /*@ assert wh_same_grips{Pre, Here}(table); */

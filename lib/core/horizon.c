@@ -5,6 +5,12 @@
 /* The longest that a word holds. */
 #define LONGEST WH_REAL(536870912.0)
 
+#if defined(WH_FLOAT)
+#define ROUNDING (16 * WH_REAL(FLT_EPSILON))
+#else
+#define ROUNDING (16 * WH_REAL(DBL_EPSILON))
+#endif
+
 /* Taken off: a place rounded to units is less than 1.74 of them away, and what is left is far more than the rounding of a
  * neighbourhood's distances. */
 #define TAKEN_OFF WH_REAL(2)
@@ -64,7 +70,7 @@ void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const 
     const wh_limits_t limits = wh_index_limits(table);
     const wh_real_t size =
         wh_real_abs(place->x) + wh_real_abs(place->y) + wh_real_abs(place->z) + limits.projz + limits.projxy;
-    const wh_real_t sure = (horizon->gap - WH_INDEX_ROUNDING * size) / LONGEST_COLUMN;
+    const wh_real_t sure = (horizon->gap - ROUNDING * size) / LONGEST_COLUMN;
     words[0] = (uint32_t)(int32_t)x;
     words[1] = (uint32_t)(int32_t)y;
     words[2] = (uint32_t)(int32_t)z;

@@ -3,7 +3,7 @@
 #define NO_WAFER UINT32_MAX
 
 /* Beyond this, 33 km, all places are one. */
-#define FAR WH_REAL(2147483520.0)
+#define FAR 2147483520
 
 /* A cell's shortest edge as a power of two of the unit: 16 mm. */
 #define SMALLEST 10U
@@ -39,14 +39,16 @@ static uint32_t units_of(wh_real_t mm) {
     return units > 0 ? (uint32_t)units : 0;
 }
 
-/* A place along an axis in units, so that a larger place never has a smaller number. */
+/* A place along an axis in units, upwards from 2^31 below zero: the farther, the larger the number, and of two places no
+ * farther apart than they are, but for the rounding to units. */
 /*@ assigns \nothing; */
 static uint32_t place_of(wh_real_t mm) {
     const wh_real_t units = WH_INDEX_UNITS * mm;
-    if (!(units > -FAR)) {
-        return 0;
+    const uint32_t zero = UINT32_C(1) << 31;
+    if (!(units > -(wh_real_t)FAR)) {
+        return zero - FAR;
     }
-    return units < FAR ? (uint32_t)INT32_MAX + 1 + (uint32_t)(int32_t)units : UINT32_MAX;
+    return units < (wh_real_t)FAR ? zero + (uint32_t)(int32_t)units : zero + FAR;
 }
 
 /*@ assigns \nothing; */
@@ -153,6 +155,7 @@ void wh_index_build(wh_grasp_t *table) {
     storage->buckets[0] = 0;
     storage->buckets[1] = 0;
     storage->buckets[2] = 0;
+    storage->buckets[WH_INDEX_FOUND] = UINT32_MAX;
     /*@ loop invariant 0 <= w <= storage->wafer_count;
         loop assigns w, table->storage.buckets[0 .. table->storage.bucket_count - 1];
         loop variant storage->wafer_count - w; */
@@ -187,19 +190,20 @@ typedef struct {
     uint32_t first[3], count[3];
 } box_t;
 
-/* False when the cells along this axis are more than `most`. */
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && axis < 3 && \valid(box);
+/* False when the cells along this axis are more than `most`. Two units for what the two places were rounded by. */
+/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && axis < 3 && margin <= 1 << 30 && \valid(box);
     assigns box->first[axis], box->count[axis];
     ensures \result ==> box->count[axis] <= most; */
 static bool span(const wh_grasp_t *table, box_t *box, size_t axis, wh_real_t from, wh_real_t to,
-                 wh_real_t margin, size_t most) {
-    const wh_real_t extent = (wh_real_t)table->storage.buckets[WH_INDEX_EXTENTS + axis] / WH_INDEX_UNITS;
-    const wh_real_t rounding = WH_INDEX_ROUNDING * (wh_real_abs(from) + wh_real_abs(to) + extent + margin);
-    const wh_real_t half = extent + margin + rounding;
+                 uint32_t margin, size_t most) {
+    const uint32_t extent = table->storage.buckets[WH_INDEX_EXTENTS + axis] & INT32_MAX;
+    const uint32_t half = extent + margin + 2;
     const uint32_t shift = shift_of(table, axis);
-    const uint32_t first = place_of((from < to ? from : to) - half) >> shift;
-    const uint32_t last = place_of((from < to ? to : from) + half) >> shift;
-    if (last < first || last - first >= most) {
+    const uint32_t least = place_of(from < to ? from : to);
+    const uint32_t greatest = from == to ? least : place_of(from < to ? to : from);
+    const uint32_t first = (least > half ? least - half : 0) >> shift;
+    const uint32_t last = (greatest < UINT32_MAX - half ? greatest + half : UINT32_MAX) >> shift;
+    if (last - first >= most) {
         return false;
     }
     box->first[axis] = first;
@@ -215,9 +219,10 @@ static bool span(const wh_grasp_t *table, box_t *box, size_t axis, wh_real_t fro
 static bool enclose(const wh_grasp_t *table, const wh_vec3_t *from, const wh_vec3_t *to, wh_real_t margin,
                     box_t *box) {
     const size_t most = table->storage.wafer_count;
-    return span(table, box, 0, from->x, to->x, margin, most) &&
-           span(table, box, 1, from->y, to->y, margin, most / box->count[0]) &&
-           span(table, box, 2, from->z, to->z, margin, most / box->count[0] / box->count[1]);
+    const uint32_t units = units_of(margin);
+    return span(table, box, 0, from->x, to->x, units, most) &&
+           span(table, box, 1, from->y, to->y, units, most / box->count[0]) &&
+           span(table, box, 2, from->z, to->z, units, most / box->count[0] / box->count[1]);
 }
 
 /* Appends the cell's wafers to the `count` that were found; returns how many that makes, one more than all for too
@@ -281,16 +286,34 @@ static size_t list_box(wh_grasp_t *table, const box_t *box) {
     return count;
 }
 
-wh_near_t wh_index_near(wh_grasp_t *table, const wh_vec3_t *from, const wh_vec3_t *to, wh_real_t margin) {
+/* What the last search found. */
+/*@ requires wh_table_memory(table);
+    assigns \nothing;
+    ensures \result.count <= table->storage.wafer_count;
+    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
+static wh_near_t found(const wh_grasp_t *table) {
     wh_near_t near = {NULL, table->storage.wafer_count};
-    box_t box;
-    if (table->storage.bucket_count == 0 || !enclose(table, from, to, margin, &box)) {
-        return near;
-    }
-    const size_t count = list_box(table, &box);
-    if (count <= near.count) {
+    if (table->storage.bucket_count > 0 && table->storage.buckets[WH_INDEX_FOUND + 1] <= near.count) {
         near.listed = heads_of(table) + 4 * near.count;
-        near.count = count;
+        near.count = table->storage.buckets[WH_INDEX_FOUND + 1];
     }
     return near;
+}
+
+wh_near_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
+                        wh_real_t margin) {
+    box_t box;
+    if (table->storage.bucket_count > 0) {
+        const bool small = enclose(table, from, to, margin, &box);
+        table->storage.buckets[WH_INDEX_FOUND] = (uint32_t)g;
+        table->storage.buckets[WH_INDEX_FOUND + 1] = small ? (uint32_t)list_box(table, &box) : UINT32_MAX;
+    }
+    return found(table);
+}
+
+wh_near_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to) {
+    if (table->storage.bucket_count > 0 && table->storage.buckets[WH_INDEX_FOUND] == g) {
+        return found(table);
+    }
+    return wh_index_near(table, g, from, to, 0);
 }

@@ -3,6 +3,7 @@
  * All of it lives in wh_grasp_storage_t.buckets, in this order:
  *   3 words   how far along base's x, y and z any wafer's neighbourhood reaches from its origin, in units of 1/64 mm;
  *   3 words   the edges of a cell along them, as powers of two of the unit;
+ *   2 words   the gripper that searched last, and how many wafers it found, more than there are for all;
  *   4 words   for each gripper: its horizon (horizon_internal.h);
  *   2 words   for each wafer: the heads of the cells' lists, found by hashing the cell's place;
  *   2 words   for each wafer: the next in its list, and its cell's key;
@@ -17,18 +18,13 @@
 
 #define WH_INDEX_EXTENTS ((size_t)0)
 #define WH_INDEX_SHIFTS ((size_t)3)
-#define WH_INDEX_HORIZONS ((size_t)6)
+#define WH_INDEX_FOUND ((size_t)6)
+#define WH_INDEX_HORIZONS ((size_t)8)
 #define WH_HORIZON_WORDS ((size_t)4)
 #define WH_INDEX_WAFER_WORDS ((size_t)5)
 
 /* Units of the index per mm. */
 #define WH_INDEX_UNITS WH_REAL(64)
-
-#if defined(WH_FLOAT)
-#define WH_INDEX_ROUNDING (16 * WH_REAL(FLT_EPSILON))
-#else
-#define WH_INDEX_ROUNDING (16 * WH_REAL(DBL_EPSILON))
-#endif
 
 /* Where a wafer may be taken or watched: within these limits of |dr_proj_z| and |dr_proj_xy|. */
 typedef struct {
@@ -51,14 +47,23 @@ void wh_index_build(wh_grasp_t *table);
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 void wh_index_move(wh_grasp_t *table, size_t wafer);
 
-/* The wafers in whose neighbourhood a gripper comes between `from` and `to` or, along one of base's axes, may come by
+/* The wafers in whose neighbourhood gripper g comes between `from` and `to` or, along one of base's axes, may come by
  * moving less than `margin` from there; and others. All of them where the table has no buckets or as many cells would have
  * to be looked at. */
-/*@ requires wh_table_memory(table) && \valid_read(from) && \valid_read(to);
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(from) && \valid_read(to);
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures \result.count <= table->storage.wafer_count;
     ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
-wh_near_t wh_index_near(wh_grasp_t *table, const wh_vec3_t *from, const wh_vec3_t *to, wh_real_t margin);
+wh_near_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
+                        wh_real_t margin);
+
+/* The same without a margin, for a gripper that has searched there in this step: what it found then, unless another one
+ * has searched since. */
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(from) && \valid_read(to);
+    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
+    ensures \result.count <= table->storage.wafer_count;
+    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
+wh_near_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to);
 
 /* The i-th wafer that was found. */
 /*@ requires wh_table_memory(table) && \valid_read(near) && i < near->count <= table->storage.wafer_count;

@@ -24,7 +24,7 @@ typedef struct {
     wh_gripper_t gripper[GRIPPERS];
 } kept_t;
 
-static uint32_t buckets[6 + 4 * GRIPPERS + 5 * WAFERS + GUARDS];
+static uint32_t buckets[8 + 4 * GRIPPERS + 5 * WAFERS + GUARDS];
 
 /* How often there was something to save, over all runs: that the test is about what it says. */
 static struct { unsigned long long looks, covered, listed, all; } tally;
@@ -64,13 +64,13 @@ static const char *difference(const side_t *a, const side_t *b) {
     return memcmp(a->gripper, b->gripper, sizeof a->gripper) != 0 ? "a gripper" : NULL;
 }
 
-static void count_looks(const side_t *side, const wh_gripper_input_t input[]) {
-    const wh_grasp_t *table = &side->table;
+static void count_looks(side_t *side, const wh_gripper_input_t input[]) {
+    wh_grasp_t *table = &side->table;
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         if (input[g].valve == WH_VALVE_OPEN && table->storage.grippers[g].wafer == WH_NONE) {
             const wh_vec3_t *place = &input[g].base_from_gripper.r;
             const bool covered = wh_horizon_covers(table, g, place);
-            const wh_near_t near = wh_index_near((wh_grasp_t *)(uintptr_t)table, place, place, 0);
+            const wh_near_t near = wh_index_near(table, g, place, place, 0);
             ++tally.looks;
             tally.covered += covered;
             *(near.listed ? &tally.listed : &tally.all) += !covered;
