@@ -220,9 +220,13 @@ static bool enclose(const wh_grasp_t *table, const wh_vec3_t *from, const wh_vec
                     box_t *box) {
     const size_t most = table->storage.wafer_count;
     const uint32_t units = units_of(margin);
-    return span(table, box, 0, from->x, to->x, units, most) &&
-           span(table, box, 1, from->y, to->y, units, most / box->count[0]) &&
-           span(table, box, 2, from->z, to->z, units, most / box->count[0] / box->count[1]);
+    if (!span(table, box, 0, from->x, to->x, units, most) ||
+        !span(table, box, 1, from->y, to->y, units, most) ||
+        !span(table, box, 2, from->z, to->z, units, most)) {
+        return false;
+    }
+    const uint64_t level = (uint64_t)box->count[0] * box->count[1];
+    return level <= most && level * box->count[2] <= most;
 }
 
 /* Appends the cell's wafers to the `count` that were found; returns how many that makes, one more than all for too
