@@ -1,9 +1,7 @@
 #include "core/horizon_internal.h"
 
-/* A gripper farther out has no horizon: 33 km. */
-#define FAR WH_REAL(2147483520.0)
 /* The longest that a word holds. */
-#define LONGEST WH_REAL(536870912.0)
+#define LONGEST 536870912
 
 #if defined(WH_FLOAT)
 #define ROUNDING (16 * WH_REAL(FLT_EPSILON))
@@ -37,22 +35,24 @@ wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_near_t
         horizon.limits.projz = table->config.tolerance.projz;
         horizon.limits.projxy = table->config.tolerance.projxy;
     }
-    horizon.gap = near->listed ? margin : LONGEST;
+    horizon.gap = near->listed ? margin : (wh_real_t)LONGEST;
     return horizon;
 }
 
 /* The distance in units, rounded down, for four times which there is room in a word; 0 where none is left. */
-/*@ assigns \nothing; ensures \result <= INT32_MAX / 4; */
+/*@ assigns \nothing; ensures \result <= LONGEST; */
 static uint32_t reach_of(wh_real_t units) {
-    if (!(units > 0)) {
+    const int32_t reach = wh_index_whole(units);
+    if (reach < 0) {
         return 0;
     }
-    return units < LONGEST ? (uint32_t)units : (uint32_t)LONGEST;
+    return reach < LONGEST ? (uint32_t)reach : LONGEST;
 }
 
+/* A gripper that is has no horizon. */
 /*@ assigns \nothing; */
-static bool is_far(wh_real_t units) {
-    return !(units > -FAR && units < FAR);
+static bool is_far(int32_t units) {
+    return units == WH_INDEX_FAR || units == -WH_INDEX_FAR;
 }
 
 void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon) {
@@ -60,9 +60,9 @@ void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const 
         return;
     }
     uint32_t *words = wh_horizon_words(table, g);
-    const wh_real_t x = WH_INDEX_UNITS * place->x;
-    const wh_real_t y = WH_INDEX_UNITS * place->y;
-    const wh_real_t z = WH_INDEX_UNITS * place->z;
+    const int32_t x = wh_index_whole(WH_INDEX_UNITS * place->x);
+    const int32_t y = wh_index_whole(WH_INDEX_UNITS * place->y);
+    const int32_t z = wh_index_whole(WH_INDEX_UNITS * place->z);
     words[3] = 0;
     if (is_far(x) || is_far(y) || is_far(z)) {
         return;
@@ -71,9 +71,9 @@ void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const 
     const wh_real_t size =
         wh_real_abs(place->x) + wh_real_abs(place->y) + wh_real_abs(place->z) + limits.projz + limits.projxy;
     const wh_real_t sure = (horizon->gap - ROUNDING * size) / LONGEST_COLUMN;
-    words[0] = (uint32_t)(int32_t)x;
-    words[1] = (uint32_t)(int32_t)y;
-    words[2] = (uint32_t)(int32_t)z;
+    words[0] = (uint32_t)x;
+    words[1] = (uint32_t)y;
+    words[2] = (uint32_t)z;
     words[3] = 4 * reach_of(WH_INDEX_UNITS * sure - TAKEN_OFF);
     if (table->storage.grippers[g].approach.wafer != WH_NONE) {
         words[3] |= WH_HORIZON_OF_TOLERANCE;

@@ -2,9 +2,6 @@
 
 #define NO_WAFER UINT32_MAX
 
-/* Beyond this, 33 km, all places are one. */
-#define FAR 2147483520
-
 /* A cell's shortest edge as a power of two of the unit: 16 mm. */
 #define SMALLEST 10U
 
@@ -29,26 +26,19 @@ static uint32_t *node_of(const wh_grasp_t *table, size_t w) {
     return heads_of(table) + 2 * (table->storage.wafer_count + w);
 }
 
-/* A distance in units, at most half of a word. */
+/* A distance in units, rounded up, at most half of a word. */
 /*@ assigns \nothing; ensures \result <= 1 << 30; */
 static uint32_t units_of(wh_real_t mm) {
-    const wh_real_t units = WH_INDEX_UNITS * mm + 1;
-    if (!(units < (wh_real_t)(1 << 30))) {
-        return 1U << 30;
-    }
-    return units > 0 ? (uint32_t)units : 0;
+    const uint32_t most = UINT32_C(1) << 30;
+    const uint32_t units = (uint32_t)wh_index_whole(WH_INDEX_UNITS * mm + 1);
+    return units < most ? units : most;
 }
 
 /* A place along an axis in units, upwards from 2^31 below zero: the farther, the larger the number, and of two places no
  * farther apart than they are, but for the rounding to units. */
 /*@ assigns \nothing; */
 static uint32_t place_of(wh_real_t mm) {
-    const wh_real_t units = WH_INDEX_UNITS * mm;
-    const uint32_t zero = UINT32_C(1) << 31;
-    if (!(units > -(wh_real_t)FAR)) {
-        return zero - FAR;
-    }
-    return units < (wh_real_t)FAR ? zero + (uint32_t)(int32_t)units : zero + FAR;
+    return (UINT32_C(1) << 31) + (uint32_t)wh_index_whole(WH_INDEX_UNITS * mm);
 }
 
 /*@ assigns \nothing; */

@@ -26,6 +26,18 @@
 /* Units of the index per mm. */
 #define WH_INDEX_UNITS WH_REAL(64)
 
+/* Beyond this, 33 km, all places are one. */
+#define WH_INDEX_FAR 2147483520
+
+/* Rounded towards zero, at most WH_INDEX_FAR from it; a NaN, which is not equal to itself, to that below zero. */
+/*@ assigns \nothing; ensures -WH_INDEX_FAR <= \result <= WH_INDEX_FAR; */
+static inline int32_t wh_index_whole(wh_real_t units) {
+    if (units == units && units > -(wh_real_t)WH_INDEX_FAR && units < (wh_real_t)WH_INDEX_FAR) {
+        return (int32_t)units;
+    }
+    return units > 0 ? WH_INDEX_FAR : -WH_INDEX_FAR;
+}
+
 /* Where a wafer may be taken or watched: within these limits of |dr_proj_z| and |dr_proj_xy|. */
 typedef struct {
     wh_real_t projz, projxy;
