@@ -114,6 +114,10 @@ typedef struct {
               \result == 8 + 4 * gripper_count + 5 * wafer_count : \result == 0; */
 size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count);
 
+/* The same as a constant, for an array. */
+#define WH_GRASP_BUCKETS(wafer_count, gripper_count)                                                         \
+    (8 + 4 * (size_t)(gripper_count) + 5 * (size_t)(wafer_count))
+
 /* The paper's tolerance, sampled, no seating; neighbourhood 4.5 mm and 2 eps_projxy. */
 /*@ assigns \nothing; */
 wh_grasp_config_t wh_grasp_config_default(void);

@@ -10,7 +10,7 @@ size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) {
     if (wafer_count > most || gripper_count > most) {
         return 0;
     }
-    return WH_INDEX_HORIZONS + WH_HORIZON_WORDS * gripper_count + WH_INDEX_WAFER_WORDS * wafer_count;
+    return WH_GRASP_BUCKETS(wafer_count, gripper_count);
 }
 
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0;

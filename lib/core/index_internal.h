@@ -21,7 +21,6 @@
 #define WH_INDEX_FOUND ((size_t)6)
 #define WH_INDEX_HORIZONS ((size_t)8)
 #define WH_HORIZON_WORDS ((size_t)4)
-#define WH_INDEX_WAFER_WORDS ((size_t)5)
 
 /* Units of the index per mm. */
 #define WH_INDEX_UNITS WH_REAL(64)

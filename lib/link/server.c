@@ -11,7 +11,9 @@ static void start_run(wh_server_t *server, int64_t run) {
     wh_grasp_storage_t storage = {.wafers = server->arrays.wafers,
                                   .wafer_count = layout->wafer_count,
                                   .grippers = server->arrays.grippers,
-                                  .gripper_count = layout->machine.gripper_count};
+                                  .gripper_count = layout->machine.gripper_count,
+                                  .buckets = server->buckets,
+                                  .bucket_count = sizeof server->buckets / sizeof server->buckets[0]};
     if (layout->wafer_count > 0) {
         memcpy(server->arrays.wafers, layout->start, layout->wafer_count * sizeof *layout->start);
     }

@@ -38,7 +38,8 @@ typedef struct {
     size_t past_count;
     wh_server_counters_t counters;
     wh_link_arrays_t arrays; /* the table's memory */
-    wh_link_arrays_t spare;  /* a restore is tried here first */
+    uint32_t buckets[WH_GRASP_BUCKETS(WH_LINK_WAFERS, WH_GRIPPERS)];
+    wh_link_arrays_t spare; /* a restore is tried here first */
     wh_link_state_t room;
     uint8_t encoded[WH_LINK_DATAGRAM]; /* the answer */
     size_t encoded_size;

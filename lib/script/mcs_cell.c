@@ -52,6 +52,8 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     storage.wafer_count = layout->wafer_count;
     storage.gripper_count = layout->machine.gripper_count;
     storage.grippers = lua_memory(L, storage.gripper_count * sizeof(wh_gripper_t));
+    storage.bucket_count = wh_grasp_buckets(storage.wafer_count, storage.gripper_count);
+    storage.buckets = lua_memory(L, storage.bucket_count * sizeof(uint32_t));
     if (bytes > 0) {
         memcpy(storage.wafers, layout->start, bytes);
     }

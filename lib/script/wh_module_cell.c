@@ -67,10 +67,15 @@ int wh_lua_cell(lua_State *L) {
     const wh_grasp_config_t config = wh_lua_read_config(L, &argument);
     wh_grasp_storage_t storage = {.gripper_count = read_gripper_count(L, &argument)};
     storage.wafer_count = push_wafers(L, &wafers);
-    cell_t *cell = lua_newuserdatauv(L, sizeof *cell + storage.wafer_count * sizeof cell->wafers[0], 0);
+    storage.bucket_count = wh_grasp_buckets(storage.wafer_count, storage.gripper_count);
+    cell_t *cell = lua_newuserdatauv(L,
+                                     sizeof *cell + storage.wafer_count * sizeof cell->wafers[0] +
+                                         storage.bucket_count * sizeof storage.buckets[0],
+                                     0);
     read_wafers(L, &wafers, cell, storage.wafer_count);
     storage.wafers = cell->wafers;
     storage.grippers = cell->grippers;
+    storage.buckets = (uint32_t *)(cell->wafers + storage.wafer_count);
     init_cell(L, &argument, cell, &config, &storage);
     luaL_setmetatable(L, CELL_TYPE);
     return 1;

@@ -11,7 +11,7 @@
 #define GRIPPERS 2
 #define WAFERS 3
 #define EVENTS (GRIPPERS * WH_EVENTS_PER_GRIPPER)
-#define BUCKETS (8 + 4 * GRIPPERS + 5 * WAFERS)
+#define BUCKETS WH_GRASP_BUCKETS(WAFERS, GRIPPERS)
 
 static volatile wh_real_t real;
 static volatile int32_t integer;

@@ -24,7 +24,7 @@ typedef struct {
     wh_gripper_t gripper[GRIPPERS];
 } kept_t;
 
-static uint32_t buckets[8 + 4 * GRIPPERS + 5 * WAFERS + GUARDS];
+static uint32_t buckets[WH_GRASP_BUCKETS(WAFERS, GRIPPERS) + GUARDS];
 
 /* How often there was something to save, over all runs: that the test is about what it says. */
 static struct { unsigned long long looks, covered, listed, all; } tally;

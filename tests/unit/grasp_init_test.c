@@ -26,7 +26,7 @@ static wh_status_t init_with(cell_t *cell, int what) {
         storage.wafer_count = what == 25 ? (size_t)INT32_MAX + 1 : storage.wafer_count;
         storage.gripper_count = what == 26 ? (size_t)INT32_MAX + 1 : storage.gripper_count;
         if (what >= 27) {
-            static uint32_t buckets[8 + 4 * CELL_GRIPPERS + 5 * CELL_WAFERS];
+            static uint32_t buckets[WH_GRASP_BUCKETS(CELL_WAFERS, CELL_GRIPPERS)];
             storage.buckets = buckets;
             storage.bucket_count =
                 what == 27 ? (size_t)INT32_MAX + 1 : sizeof buckets / sizeof buckets[0] - 1;
@@ -64,7 +64,7 @@ static void init_refuses(void **state) {
 static void init_takes_the_greatest_counts(void **state) {
     (void)state;
     cell_t cell;
-    uint32_t buckets[8 + 4 * CELL_GRIPPERS + 5 * CELL_WAFERS];
+    uint32_t buckets[WH_GRASP_BUCKETS(CELL_WAFERS, CELL_GRIPPERS)];
     begin_busy(&cell);
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t most[] = {
