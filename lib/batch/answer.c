@@ -1,22 +1,18 @@
 #include "batch/batch_internal.h"
 
-static wh_vec3_t vector_at(const wh_real_t *numbers) {
-    return wh_vec3(numbers[0], numbers[WH_BATCH_BLOCK], numbers[2 * WH_BATCH_BLOCK]);
-}
-
 /* wh_proximity_ready, from numbers that stand WH_BATCH_BLOCK apart. */
 static bool is_ready(const wh_real_t *near, const wh_real_t *far, const wh_batch_question_t *question) {
-    const wh_vec3_t n1 = vector_at(near);
-    const wh_vec3_t r = vector_at(near + 3 * WH_BATCH_BLOCK);
+    const wh_vec3_t n1 = wh_batch_vector(near);
+    const wh_vec3_t r = wh_batch_vector(near + 3 * WH_BATCH_BLOCK);
     const wh_vec3_t dr = wh_vec3_subtract(&r, &question->r);
     if (!(wh_real_abs(wh_vec3_dot(&n1, &dr)) < question->limits.projz)) {
         return false;
     }
-    const wh_vec3_t e1 = vector_at(far);
-    const wh_vec3_t e2 = vector_at(far + 3 * WH_BATCH_BLOCK);
+    const wh_vec3_t e1 = wh_batch_vector(far);
+    const wh_vec3_t e2 = wh_batch_vector(far + 3 * WH_BATCH_BLOCK);
     const wh_real_t x = wh_vec3_dot(&e1, &dr);
     const wh_real_t y = wh_vec3_dot(&e2, &dr);
-    return wh_real_sqrt(x * x + y * y) < question->limits.projxy &&
+    return wh_real_root_below(x * x + y * y, question->limits.projxy) &&
            wh_vec3_dot(&n1, &question->n2) > question->limits.planar;
 }
 

@@ -1,6 +1,5 @@
 #include "batch/batch_internal.h"
 
-/* --------------------------------------------------------------------------------------------- the memory */
 /* A wafer's first number in each half; the others follow at steps of WH_BATCH_BLOCK. */
 static size_t near_half(size_t wafer) {
     return wafer / WH_BATCH_BLOCK * WH_BATCH_HALF + wafer % WH_BATCH_BLOCK;
@@ -14,10 +13,6 @@ static void put(wh_real_t *numbers, const wh_vec3_t *v) {
     numbers[0] = v->x;
     numbers[WH_BATCH_BLOCK] = v->y;
     numbers[2 * WH_BATCH_BLOCK] = v->z;
-}
-
-static wh_vec3_t get(const wh_real_t *numbers) {
-    return wh_vec3(numbers[0], numbers[WH_BATCH_BLOCK], numbers[2 * WH_BATCH_BLOCK]);
 }
 
 static void put_pose(const wh_batch_t *batch, size_t wafer, const wh_pose_t *pose) {
@@ -35,11 +30,11 @@ static void put_pose(const wh_batch_t *batch, size_t wafer, const wh_pose_t *pos
 static wh_pose_t get_pose(const wh_batch_t *batch, size_t wafer) {
     const wh_real_t *near = batch->numbers + near_half(wafer);
     const wh_real_t *far = batch->numbers + far_half(batch, wafer);
-    const wh_vec3_t n1 = get(near);
-    const wh_vec3_t e1 = get(far);
-    const wh_vec3_t e2 = get(far + 3 * WH_BATCH_BLOCK);
+    const wh_vec3_t n1 = wh_batch_vector(near);
+    const wh_vec3_t e1 = wh_batch_vector(far);
+    const wh_vec3_t e2 = wh_batch_vector(far + 3 * WH_BATCH_BLOCK);
     const wh_pose_t pose = {{{{e1.x, e2.x, n1.x}, {e1.y, e2.y, n1.y}, {e1.z, e2.z, n1.z}}},
-                            get(near + 3 * WH_BATCH_BLOCK)};
+                            wh_batch_vector(near + 3 * WH_BATCH_BLOCK)};
     return pose;
 }
 
@@ -56,16 +51,18 @@ wh_status_t wh_batch_init(wh_batch_t *batch, const wh_pose_t *base_from_wafers, 
     if (!batch || (wafer_count != 0 && (!base_from_wafers || !numbers))) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (wafer_count > INT32_MAX || number_count < WH_BATCH_NUMBERS(wafer_count)) {
+    /* the other way round, the product might not fit */
+    if (wafer_count > INT32_MAX ||
+        number_count / WH_BATCH_NUMBERS(1) < (wafer_count + WH_BATCH_BLOCK - 1) / WH_BATCH_BLOCK) {
         return WH_STATUS_BAD_CAPACITY;
     }
     batch->numbers = numbers;
     batch->wafer_count = wafer_count;
     batch->code = has_avx2() ? WH_BATCH_AVX2 : WH_BATCH_PORTABLE;
-    const size_t last_block = wafer_count / WH_BATCH_BLOCK * WH_BATCH_HALF;
-    for (size_t i = last_block; i < WH_BATCH_NUMBERS(wafer_count) / 2; ++i) {
+    const size_t half = WH_BATCH_NUMBERS(wafer_count) / 2;
+    for (size_t i = wafer_count / WH_BATCH_BLOCK * WH_BATCH_HALF; i < half; ++i) {
         numbers[i] = (wh_real_t)NAN;
-        numbers[WH_BATCH_NUMBERS(wafer_count) / 2 + i] = (wh_real_t)NAN;
+        numbers[half + i] = (wh_real_t)NAN;
     }
     for (size_t w = 0; w < wafer_count; ++w) {
         put_pose(batch, w, &base_from_wafers[w]);

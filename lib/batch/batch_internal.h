@@ -20,6 +20,11 @@ typedef struct {
     size_t block_count; /* 1 to WH_BATCH_TILE / WH_BATCH_BLOCK */
 } wh_batch_tile_t;
 
+/* Three numbers of a wafer's. */
+static inline wh_vec3_t wh_batch_vector(const wh_real_t *numbers) {
+    return wh_vec3(numbers[0], numbers[WH_BATCH_BLOCK], numbers[2 * WH_BATCH_BLOCK]);
+}
+
 /* The tile's ready wafers, from the first word's lowest bit on; the last word's bits of no block are 0. */
 void wh_batch_answer_portable(const wh_batch_tile_t *tile, const wh_batch_question_t *question,
                               uint32_t *words);

@@ -1,6 +1,6 @@
 #include "batch/batch_internal.h"
 
-/* The first `gripper_count` times `wafer_count` verdicts, tile by tile. */
+/* As many wafers as grippers go over in turns. */
 typedef struct {
     size_t first; /* the index of its first wafer */
     size_t word_count;
@@ -25,8 +25,8 @@ static tile_t tile_at(const wh_batch_t *batch, size_t first) {
 static void answer(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
                    uint32_t *words) {
     wh_batch_question_t question = {gripper->r, wh_mat3_column(&gripper->R, 2), *tolerance};
-    for (size_t row = 0; row < 3; ++row) {
-        const wh_real_t unused = gripper->R.m[row][0] + gripper->R.m[row][1];
+    for (size_t i = 0; i < 2; ++i) {
+        const wh_real_t unused = gripper->R.m[0][i] + gripper->R.m[1][i] + gripper->R.m[2][i];
         question.n2.x += unused - unused;
     }
 #if WH_BATCH_HAS_AVX2
@@ -96,24 +96,26 @@ size_t wh_batch_list(const wh_batch_t *batch, const wh_pose_t *base_from_gripper
 }
 
 static wh_real_t distance(const wh_batch_t *batch, size_t wafer, const wh_vec3_t *gripper) {
-    const wh_real_t *at = batch->numbers + wafer / WH_BATCH_BLOCK * WH_BATCH_HALF + wafer % WH_BATCH_BLOCK;
-    const wh_vec3_t n1 = wh_vec3(at[0], at[WH_BATCH_BLOCK], at[2 * WH_BATCH_BLOCK]);
-    at += 3 * WH_BATCH_BLOCK;
-    const wh_vec3_t r = wh_vec3(at[0], at[WH_BATCH_BLOCK], at[2 * WH_BATCH_BLOCK]);
+    const wh_real_t *near = batch->numbers + wafer / WH_BATCH_BLOCK * WH_BATCH_HALF + wafer % WH_BATCH_BLOCK;
+    const wh_vec3_t n1 = wh_batch_vector(near);
+    const wh_vec3_t r = wh_batch_vector(near + 3 * WH_BATCH_BLOCK);
     const wh_vec3_t dr = wh_vec3_subtract(&r, gripper);
     return wh_real_abs(wh_vec3_dot(&dr, &n1));
 }
 
-/* The best of `best` and of the tile's. */
+/* The best of `best`, from the tiles before, and of the tile's. */
 static int32_t better(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
                       int32_t best) {
+    const wh_batch_t *batch = tile->batch;
     uint32_t words[WH_BATCH_TILE / 32];
     answer(tile, gripper, tolerance, words);
-    const wh_batch_t *batch = tile->batch;
+    wh_real_t least = best == WH_NONE ? tolerance->projz : distance(batch, (size_t)best, &gripper->r);
     for (size_t w = next_ready(tile, words, tile->first); w < batch->wafer_count;
          w = next_ready(tile, words, w + 1)) {
-        if (best == WH_NONE || distance(batch, w, &gripper->r) < distance(batch, (size_t)best, &gripper->r)) {
+        const wh_real_t here = distance(batch, w, &gripper->r);
+        if (here < least) {
             best = (int32_t)w;
+            least = here;
         }
     }
     return best;
@@ -132,7 +134,7 @@ size_t wh_batch_best(const wh_batch_t *batch, const wh_pose_t *base_from_gripper
     }
     size_t found = 0;
     for (size_t g = 0; g < gripper_count; ++g) {
-        found += best[g] != WH_NONE;
+        found += best[g] != WH_NONE ? 1U : 0U;
     }
     return found;
 }

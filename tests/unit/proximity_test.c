@@ -1,7 +1,7 @@
 /* The proximity check at its limits: strict comparisons, reasons, margins, and one verdict from two
  * functions. */
 #include "core/proximity.h"
-#include "support_pose.h"
+#include "support_proximity.h"
 
 #define PAIRS 1000000
 
@@ -110,53 +110,11 @@ static bool literal(const wh_pose_t *w, const wh_pose_t *g, const wh_tolerance_t
     return z < t->projz && z > -t->projz && wh_real_sqrt(x * x + y * y) < t->projxy && n > t->planar;
 }
 
-/* A number on a limit, a few units beside it, or anywhere. */
-static wh_real_t about(wh_real_t limit) {
-    const int where = (int)wh_test_below(4);
-    const wh_real_t sign = wh_test_below(2) ? -1 : 1;
-    if (where < 2) {
-        return sign * wh_test_ulps(limit, (int)wh_test_below(9) - 4);
-    }
-    return sign * limit * WH_REAL(where == 2 ? wh_test_uniform(0, 1) : wh_test_uniform(0.99, 1.01));
-}
-
-/* A gripper, and a wafer beside it at a point of its own frame that is on or about the limits. */
-static void draw_pair(const wh_tolerance_t *t, wh_pose_t *wafer, wh_pose_t *gripper) {
-    const bool turned = wh_test_below(2) != 0;
-    const bool far = wh_test_below(2) != 0;
-    const double heading = wh_test_uniform(0, 2 * WH_TEST_PI);
-    const wh_real_t radius = about(t->projxy);
-    const bool on_axis = wh_test_below(2) != 0;
-    const double tilt = acos((double)t->planar) * (wh_test_below(2) ? 1 : wh_test_uniform(0, 1.01));
-    wafer->R = turned ? wh_test_random_turn(WH_TEST_PI) : wh_mat3_identity();
-    const wh_mat3_t tip = wh_test_rotation(cos(heading), sin(heading), 0, tilt);
-    gripper->R = wh_mat3_multiply(&wafer->R, &tip);
-    gripper->r = wh_vec3(0, 0, 0);
-    if (far) {
-        gripper->r = wh_test_random_pose(1000).r;
-    }
-    const wh_vec3_t beside = wh_vec3(on_axis ? radius : radius * WH_REAL(cos(heading)),
-                                     on_axis ? 0 : radius * WH_REAL(sin(heading)), about(t->projz));
-    const wh_vec3_t dr = wh_mat3_transform(&wafer->R, &beside);
-    wafer->r = wh_vec3_add(&gripper->r, &dr);
-}
-
 static bool is_close(const wh_proximity_t *p, const wh_tolerance_t *t) {
     const double grain = 8 * WH_TEST_ROUNDING;
     return fabs((double)p->margin_projz) < grain * (double)t->projz ||
            fabs((double)p->margin_projxy) < grain * (double)t->projxy ||
            fabs((double)p->margin_planar) < grain;
-}
-
-/* A preset, or one time in four a tolerance of its own. */
-static wh_tolerance_t draw_tolerance(int pair) {
-    wh_tolerance_t t = pair % 2 ? wh_tolerance_paper() : wh_tolerance_strict();
-    if (pair % 4 == 0) {
-        t.projz = WH_REAL(wh_test_uniform(1e-3, 5));
-        t.projxy = WH_REAL(wh_test_uniform(1e-3, 300));
-        t.planar = WH_REAL(wh_test_uniform(0, 0.9999));
-    }
-    return t;
 }
 
 static void verdict_equals_measurement(void **state) {
@@ -165,10 +123,10 @@ static void verdict_equals_measurement(void **state) {
     int ready = 0;
     int close = 0;
     for (int pair = 0; pair < PAIRS; ++pair) {
-        const wh_tolerance_t t = draw_tolerance(pair);
+        const wh_tolerance_t t = wh_test_tolerance(pair);
         wh_pose_t wafer;
         wh_pose_t gripper;
-        draw_pair(&t, &wafer, &gripper);
+        wh_test_pair(&t, &wafer, &gripper);
         wh_proximity_t p;
         const wh_status_t status = wh_proximity_measure(&wafer, &gripper, &t, &p);
         if (status != WH_OK || p.ready != wh_proximity_ready(&wafer, &gripper, &t) ||

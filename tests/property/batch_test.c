@@ -1,0 +1,139 @@
+/* A batch against the check itself, pair by pair: on the limits and anywhere, with NaN and infinities, with as many wafers as
+ * leave a rest of every length, with each code that the processor has. */
+#include "batch/batch.h"
+#include "support_proximity.h"
+
+enum { ROUNDS = 3000, MOST = 1100, GRIPPERS = 5 };
+
+static wh_pose_t wafers[MOST];
+static wh_pose_t grippers[GRIPPERS];
+static wh_real_t numbers[WH_BATCH_NUMBERS(MOST) + 1];
+static uint32_t bits[GRIPPERS * WH_BATCH_WORDS(MOST)];
+static int32_t list[MOST];
+static size_t ready_pairs, spoiled_poses;
+
+/* One time in ten one of its numbers is none. */
+static void spoil(wh_pose_t *pose) {
+    if (wh_test_below(10) == 0) {
+        const wh_real_t none[] = {(wh_real_t)NAN, (wh_real_t)INFINITY, -(wh_real_t)INFINITY};
+        const uint32_t at = wh_test_below(12);
+        wh_real_t *number = at < 9     ? &pose->R.m[at / 3][at % 3]
+                            : at == 9  ? &pose->r.x
+                            : at == 10 ? &pose->r.y
+                                       : &pose->r.z;
+        *number = none[wh_test_below(3)];
+        ++spoiled_poses;
+    }
+}
+
+/* Some wafers lie beside a gripper, on its limits, the others beside one that is not asked for. */
+static void draw(size_t count, const wh_tolerance_t *tolerance) {
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        wh_pose_t wafer;
+        wh_test_pair(tolerance, &wafer, &grippers[g]);
+    }
+    for (size_t w = 0; w < count; ++w) {
+        const size_t g = wh_test_below(2 * GRIPPERS);
+        wh_pose_t gripper;
+        wh_test_pair(tolerance, &wafers[w], &gripper);
+        if (g < GRIPPERS) {
+            const wh_pose_t gripper_from_wafer = wh_pose_relative(&gripper, &wafers[w]);
+            wafers[w] = wh_pose_compose(&grippers[g], &gripper_from_wafer);
+        }
+        spoil(&wafers[w]);
+    }
+    /* one pair is on its limits to the last bit */
+    if (count > 0) {
+        wh_test_pair(tolerance, &wafers[wh_test_below((uint32_t)count)], &grippers[0]);
+    }
+    spoil(&grippers[wh_test_below(GRIPPERS)]);
+}
+
+static wh_real_t distance(size_t w, size_t g) {
+    const wh_vec3_t dr = wh_vec3_subtract(&wafers[w].r, &grippers[g].r);
+    const wh_vec3_t n1 = wh_mat3_column(&wafers[w].R, 2);
+    return wh_real_abs(wh_vec3_dot(&dr, &n1));
+}
+
+/* What the plain loop says about one gripper: its ready wafers in `list`, the best of them. */
+static size_t expect(size_t count, size_t g, const wh_tolerance_t *tolerance, int32_t *best) {
+    size_t ready = 0;
+    *best = WH_NONE;
+    for (size_t w = 0; w < count; ++w) {
+        if (wh_proximity_ready(&wafers[w], &grippers[g], tolerance)) {
+            list[ready++] = (int32_t)w;
+            if (*best == WH_NONE || distance(w, g) < distance((size_t)*best, g)) {
+                *best = (int32_t)w;
+            }
+        }
+    }
+    return ready;
+}
+
+static void compare_gripper(const wh_batch_t *batch, size_t g, const wh_tolerance_t *tolerance, int32_t best,
+                            size_t *total) {
+    int32_t wanted = 0;
+    const size_t ready = expect(batch->wafer_count, g, tolerance, &wanted);
+    int32_t got[MOST];
+    assert_int_equal(wh_batch_list(batch, &grippers[g], tolerance, got, MOST), ready);
+    assert_memory_equal(got, list, ready * sizeof *list);
+    assert_int_equal(best, wanted);
+    const uint32_t *words = bits + g * WH_BATCH_WORDS(batch->wafer_count);
+    size_t next = 0;
+    for (size_t w = 0; w < 32 * WH_BATCH_WORDS(batch->wafer_count); ++w) {
+        const bool is_listed = next < ready && list[next] == (int32_t)w;
+        assert_int_equal(words[w / 32] >> w % 32 & 1U, is_listed);
+        next += is_listed ? 1 : 0;
+    }
+    *total += ready;
+}
+
+static void compare(const wh_batch_t *batch, const wh_tolerance_t *tolerance) {
+    int32_t best[GRIPPERS];
+    memset(bits, 0xff, sizeof bits);
+    const size_t ready = wh_batch_ready(batch, grippers, GRIPPERS, tolerance, bits);
+    const size_t found = wh_batch_best(batch, grippers, GRIPPERS, tolerance, best);
+    size_t total = 0;
+    size_t some = 0;
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        compare_gripper(batch, g, tolerance, best[g], &total);
+        some += best[g] != WH_NONE ? 1 : 0;
+    }
+    assert_int_equal(ready, total);
+    assert_int_equal(found, some);
+    ready_pairs += ready;
+}
+
+static void verdicts_are_the_checks(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    for (int round = 0; round < ROUNDS; ++round) {
+        const wh_tolerance_t tolerance = wh_test_tolerance(round);
+        const size_t count = wh_test_below(round % 20 ? 80 : MOST);
+        draw(count, &tolerance);
+        wh_batch_t batch;
+        /* at any alignment */
+        wh_real_t *memory = numbers + wh_test_below(2);
+        assert_int_equal(wh_batch_init(&batch, wafers, count, memory, WH_BATCH_NUMBERS(count)), WH_OK);
+        compare(&batch, &tolerance);
+        if (count > 0) {
+            const size_t moved = wh_test_below((uint32_t)count);
+            wh_test_pair(&tolerance, &wafers[moved], &grippers[1]);
+            assert_int_equal(wh_batch_place(&batch, moved, &wafers[moved]), WH_OK);
+        }
+        assert_int_equal(wh_batch_use(&batch, WH_BATCH_PORTABLE), WH_OK);
+        compare(&batch, &tolerance);
+        if (wh_batch_use(&batch, WH_BATCH_AVX2) == WH_OK) {
+            compare(&batch, &tolerance);
+        }
+    }
+    printf("%lu ready pairs, %lu spoiled poses\n", (unsigned long)ready_pairs, (unsigned long)spoiled_poses);
+    assert_true(ready_pairs > 10000 && spoiled_poses > 10000);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(verdicts_are_the_checks),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,188 @@
+/* A batch's memory, what it refuses, and its questions on a few wafers whose answers are plain to see. */
+#include "batch/batch.h"
+#include "support_pose.h"
+
+enum { WAFERS = 41 };
+
+static wh_pose_t wafers[WAFERS];
+static wh_real_t numbers[WH_BATCH_NUMBERS(WAFERS)];
+
+/* A stack at a pitch of 10 mm: wafer w is at z = 10 w. */
+static wh_batch_t stack(size_t count) {
+    for (size_t w = 0; w < WAFERS; ++w) {
+        wafers[w] = wh_test_at(0, 0, 10.0 * (double)w);
+    }
+    wh_batch_t batch;
+    assert_int_equal(wh_batch_init(&batch, wafers, count, numbers, WH_BATCH_NUMBERS(count)), WH_OK);
+    return batch;
+}
+
+static void sizes_are_whole_blocks(void **state) {
+    (void)state;
+    assert_int_equal(WH_BATCH_NUMBERS(0), 0);
+    assert_int_equal(WH_BATCH_NUMBERS(1), 96);
+    assert_int_equal(WH_BATCH_NUMBERS(8), 96);
+    assert_int_equal(WH_BATCH_NUMBERS(9), 192);
+    assert_int_equal(WH_BATCH_WORDS(0), 0);
+    assert_int_equal(WH_BATCH_WORDS(32), 1);
+    assert_int_equal(WH_BATCH_WORDS(33), 2);
+}
+
+/* The layout that the header shows; behind the last wafer stand NaN. */
+static void numbers_stand_where_the_header_says(void **state) {
+    (void)state;
+    wh_pose_t poses[9];
+    for (size_t w = 0; w < 9; ++w) {
+        for (size_t i = 0; i < 9; ++i) {
+            poses[w].R.m[i / 3][i % 3] = WH_REAL(100 * w + 10 * (i / 3) + i % 3);
+        }
+        poses[w].r = wh_vec3(WH_REAL(100 * w + 3), WH_REAL(100 * w + 13), WH_REAL(100 * w + 23));
+    }
+    wh_batch_t batch;
+    assert_int_equal(wh_batch_init(&batch, poses, 9, numbers, WH_BATCH_NUMBERS(9)), WH_OK);
+    const int columns[] = {2, 3, 0, 1}; /* n1, the position; e1, e2 */
+    for (size_t i = 0; i < WH_BATCH_NUMBERS(9); ++i) {
+        const size_t w = i / 48 % 2 * 8 + i % 8;
+        const double wanted =
+            100.0 * (double)w + 10.0 * (double)(i / 8 % 3) + columns[i / 96 * 2 + i / 24 % 2];
+        if (w < 9) {
+            assert_near(numbers[i], wanted, 0);
+        } else {
+            assert_true(isnan((double)numbers[i]));
+        }
+    }
+    for (size_t w = 0; w < 9; ++w) {
+        wh_pose_t pose;
+        assert_int_equal(wh_batch_wafer(&batch, w, &pose), WH_OK);
+        assert_memory_equal(&pose, &poses[w], sizeof pose);
+    }
+}
+
+static void init_refuses_and_changes_nothing(void **state) {
+    (void)state;
+    wh_batch_t batch = stack(9);
+    const wh_batch_t before = batch;
+    wh_real_t was[WH_BATCH_NUMBERS(WAFERS)];
+    memcpy(was, numbers, sizeof was);
+    wafers[0].r.x = 1;
+    const size_t room = WH_BATCH_NUMBERS(9);
+    assert_int_equal(wh_batch_init(NULL, wafers, 9, numbers, room), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_batch_init(&batch, NULL, 9, numbers, room), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_batch_init(&batch, wafers, 9, NULL, room), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_batch_init(&batch, wafers, 9, numbers, room - 1), WH_STATUS_BAD_CAPACITY);
+    assert_int_equal(wh_batch_init(&batch, wafers, 1, numbers, 0), WH_STATUS_BAD_CAPACITY);
+    assert_int_equal(wh_batch_init(&batch, wafers, (size_t)INT32_MAX + 1, numbers, SIZE_MAX),
+                     WH_STATUS_BAD_CAPACITY);
+    assert_int_equal(wh_batch_init(&batch, wafers, INT32_MAX, numbers, room), WH_STATUS_BAD_CAPACITY);
+    assert_memory_equal(&batch, &before, sizeof batch);
+    assert_memory_equal(was, numbers, sizeof was);
+}
+
+static void calls_on_one_wafer_refuse(void **state) {
+    (void)state;
+    wh_batch_t batch = stack(9);
+    wh_pose_t pose = wh_pose_identity();
+    assert_int_equal(wh_batch_place(NULL, 0, &pose), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_batch_place(&batch, 0, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_batch_place(&batch, 9, &pose), WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(wh_batch_wafer(NULL, 0, &pose), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_batch_wafer(&batch, 0, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_batch_wafer(&batch, 9, &pose), WH_STATUS_OUT_OF_RANGE);
+    assert_near(pose.r.z, 0, 0);
+    assert_int_equal(wh_batch_wafer(&batch, 8, &pose), WH_OK);
+    assert_near(pose.r.z, 80, 0);
+}
+
+static void code_is_chosen_or_asked_for(void **state) {
+    (void)state;
+    wh_batch_t batch = stack(9);
+    const wh_batch_code_t chosen = batch.code;
+    assert_int_equal(wh_batch_use(NULL, WH_BATCH_PORTABLE), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_batch_use(&batch, (wh_batch_code_t)2), WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(batch.code, chosen);
+    const wh_status_t avx2 = wh_batch_use(&batch, WH_BATCH_AVX2);
+    assert_int_equal(avx2, chosen == WH_BATCH_AVX2 ? WH_OK : WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(wh_batch_use(&batch, WH_BATCH_PORTABLE), WH_OK);
+    assert_int_equal(batch.code, WH_BATCH_PORTABLE);
+}
+
+static void no_wafer_is_no_answer(void **state) {
+    (void)state;
+    wh_batch_t batch;
+    assert_int_equal(wh_batch_init(&batch, NULL, 0, NULL, 0), WH_OK);
+    const wh_pose_t gripper = wh_pose_identity();
+    const wh_tolerance_t paper = wh_tolerance_paper();
+    uint32_t bits = 7;
+    int32_t best = 7;
+    assert_int_equal(wh_batch_ready(&batch, &gripper, 1, &paper, &bits), 0);
+    assert_int_equal(wh_batch_list(&batch, &gripper, &paper, &best, 1), 0);
+    assert_int_equal(bits, 7);
+    assert_int_equal(best, 7);
+    assert_int_equal(wh_batch_best(&batch, &gripper, 1, &paper, &best), 0);
+    assert_int_equal(best, WH_NONE);
+}
+
+static void each_gripper_finds_its_wafer(void **state) {
+    (void)state;
+    wh_batch_t batch = stack(WAFERS);
+    const wh_tolerance_t paper = wh_tolerance_paper();
+    for (int code = 0; code < 2; ++code) {
+        wh_pose_t grippers[WAFERS + 1];
+        uint32_t bits[(WAFERS + 1) * WH_BATCH_WORDS(WAFERS)];
+        int32_t best[WAFERS + 1];
+        memcpy(grippers, wafers, sizeof wafers);
+        grippers[WAFERS] = wh_test_at(0, 0, 5);
+        assert_int_equal(wh_batch_ready(&batch, grippers, WAFERS + 1, &paper, bits), WAFERS);
+        assert_int_equal(wh_batch_best(&batch, grippers, WAFERS + 1, &paper, best), WAFERS);
+        for (size_t g = 0; g <= WAFERS; ++g) {
+            assert_int_equal(bits[2 * g], g < 32 ? UINT32_C(1) << g : 0);
+            assert_int_equal(bits[2 * g + 1], g >= 32 && g < WAFERS ? UINT32_C(1) << (g - 32) : 0);
+            assert_int_equal(best[g], g < WAFERS ? (int32_t)g : WH_NONE);
+        }
+        assert_int_equal(wh_batch_use(&batch, WH_BATCH_PORTABLE), WH_OK);
+    }
+}
+
+/* Of the nearest two, at either side of the gripper, the lower index; a list that is too short is cut. */
+static void best_is_the_nearest_then_the_first(void **state) {
+    (void)state;
+    wh_batch_t batch = stack(WAFERS);
+    const wh_tolerance_t paper = wh_tolerance_paper();
+    const double heights[] = {100.25, 99.875, 100.125, 99.75};
+    for (size_t i = 0; i < 4; ++i) {
+        const wh_pose_t pose = wh_test_at(20, 0, heights[i]);
+        assert_int_equal(wh_batch_place(&batch, 7 + 10 * i, &pose), WH_OK);
+    }
+    const wh_pose_t gripper = wh_test_at(0, 0, 100);
+    const int32_t ready[] = {7, 10, 17, 27, 37};
+    int32_t list[6] = {-2, -2, -2, -2, -2, -2};
+    int32_t best = 0;
+    assert_int_equal(wh_batch_best(&batch, &gripper, 1, &paper, &best), 1);
+    assert_int_equal(best, 10);
+    const wh_pose_t away = wh_test_at(200, 0, 100);
+    assert_int_equal(wh_batch_place(&batch, 10, &away), WH_OK);
+    assert_int_equal(wh_batch_best(&batch, &gripper, 1, &paper, &best), 1);
+    assert_int_equal(best, 17);
+    assert_int_equal(wh_batch_place(&batch, 10, &gripper), WH_OK);
+    assert_int_equal(wh_batch_list(&batch, &gripper, &paper, list, 3), 5);
+    assert_memory_equal(list, ready, 3 * sizeof *list);
+    assert_int_equal(list[3], -2);
+    assert_int_equal(wh_batch_list(&batch, &gripper, &paper, NULL, 0), 5);
+    assert_int_equal(wh_batch_list(&batch, &gripper, &paper, list, 6), 5);
+    assert_memory_equal(list, ready, sizeof ready);
+    assert_int_equal(list[5], -2);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sizes_are_whole_blocks),
+        cmocka_unit_test(numbers_stand_where_the_header_says),
+        cmocka_unit_test(init_refuses_and_changes_nothing),
+        cmocka_unit_test(calls_on_one_wafer_refuse),
+        cmocka_unit_test(code_is_chosen_or_asked_for),
+        cmocka_unit_test(no_wafer_is_no_answer),
+        cmocka_unit_test(each_gripper_finds_its_wafer),
+        cmocka_unit_test(best_is_the_nearest_then_the_first),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
