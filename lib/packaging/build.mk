@@ -17,7 +17,7 @@ LIBRARY_SOURCES := $(wildcard $(LIBRARY_PARTS:%=lib/%/*.c))
 # Over libccd and in double only: not for `make library`, which needs nothing but a C compiler.
 COLLISION_SOURCES := $(wildcard lib/collision/*.c)
 MODULE_SOURCES := $(wildcard lib/script/wh_module*.c)
-SCRIPT_SOURCES := $(filter-out $(MODULE_SOURCES),$(wildcard lib/script/*.c))
+SCRIPT_SOURCES := $(filter-out $(MODULE_SOURCES),$(wildcard lib/script/*.c lib/study/*.c))
 PROGRAM_SOURCES := $(SCRIPT_SOURCES) $(MODULE_SOURCES) $(wildcard lib/link/*.c lib/app/*.c)
 MESSAGES := $(patsubst lcm_types/%.lcm,%,$(wildcard lcm_types/*.lcm))
 LUA_SOURCES := $(sort $(shell find lua -name '*.lua' 2>/dev/null))

@@ -30,7 +30,7 @@ static char *copy_text(lua_State *L, const char *text) {
     return copy;
 }
 
-const wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
+wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_reader_t reader;
     wh_layout_t *layout = wh_layout_memory(L, 1, sizeof *layout);
     layout->path = copy_text(L, path);
@@ -41,7 +41,7 @@ const wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_reader_refuse_unknown(&reader,
                              "wafer tolerance near check slice seat settle placing collision "
                              "look_ahead robot homed chuck grippers stations wafers shapes obstacles "
-                             "clearance vacuum pads faults");
+                             "clearance vacuum pads faults study");
     wh_layout_read_checks(&reader, layout);
     wh_layout_read_physics(&reader, layout);
     wh_layout_read_robot(&reader, layout);
@@ -52,6 +52,7 @@ const wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_layout_read_shapes(&reader, layout);
     wh_layout_read_world(&reader, layout);
     wh_layout_read_faults(&reader, layout);
+    wh_layout_read_study(&reader, layout);
     return layout;
 }
 
@@ -59,6 +60,22 @@ void wh_layout_place(wh_layout_t *layout) {
     layout->cell.stations = layout->places;
     layout->cell.count = layout->station_count;
     layout->cell.tolerance = layout->grasp.tolerance;
+}
+
+void wh_layout_read_reality(lua_State *L, wh_layout_t *reality) {
+    wh_reader_t reader;
+    wh_reader_start(&reader, L, reality->path);
+    wh_layout_read_world(&reader, reality);
+}
+
+void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layout) {
+    wh_reader_t reader;
+    lua_createtable(L, 0, 1);
+    lua_pushvalue(L, -2);
+    lua_setfield(L, -2, "study");
+    wh_reader_start(&reader, L, path);
+    wh_layout_read_study(&reader, layout);
+    lua_pop(L, 1);
 }
 
 int32_t wh_layout_find_station(const wh_layout_t *layout, const char *name) {

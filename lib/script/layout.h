@@ -12,6 +12,7 @@
 #include "motion/machine.h"
 #include "script/shapes.h"
 #include "sim/condition.h"
+#include "study/errors.h"
 
 /* Longest name of a station, gripper, wafer or valve, with its terminator. */
 #define WH_NAME_SIZE 64
@@ -24,6 +25,9 @@
 /* How many parts a collision check may have, and how many of them a layout may add by itself. */
 #define WH_LAYOUT_PARTS 100000
 #define WH_LAYOUT_OBSTACLES 1000
+
+/* A valve acts at most so many slices late in a trial of a study. */
+#define WH_STUDY_LAG_SLICES 8000
 
 typedef struct {
     char name[WH_NAME_SIZE];
@@ -98,6 +102,7 @@ typedef struct {
     wh_shapes_t shapes;
     wh_world_config_t world; /* whether it is checked or not; without parts when they are too many */
     const char (*part_names)[WH_PART_NAME_SIZE];
+    wh_errors_t *errors; /* what a study draws; null: the layout has no `study` */
     size_t hung_count; /* of the world's parts the last so many: obstacles on the robot and on grippers */
 } wh_layout_t;
 
@@ -106,7 +111,14 @@ typedef struct {
  * rides where, strokes against slices. Raises a Lua error that names file, field path, value and what was
  * expected. The layout's memory is Lua's; the reference is kept in the registry. Cost: linear in wafers, plus
  * a sort. */
-const wh_layout_t *wh_layout_read(lua_State *L, const char *path);
+wh_layout_t *wh_layout_read(lua_State *L, const char *path);
+
+/* Reads anew, for a copy of a layout whose stations stand elsewhere, what the collision check knows of them. The layout's
+ * table is on top of the stack; the copy must outlive the state. Raises what wh_layout_read does. */
+void wh_layout_read_reality(lua_State *L, wh_layout_t *reality);
+
+/* Reads `study` from the table on top of the stack, which the script `path` holds, in place of the layout's own. */
+void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layout);
 
 /* Makes `cell` of the places and the tolerance, which are read by then. */
 void wh_layout_place(wh_layout_t *layout);

@@ -19,6 +19,7 @@ void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout);
 
 /* What the layout adds by itself, for wh_layout_read_world. */
 void wh_layout_read_obstacles(wh_reader_t *reader, const wh_layout_t *layout, wh_obstacles_t *obstacles);

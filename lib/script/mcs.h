@@ -9,8 +9,10 @@
 
 #include "motion/track.h"
 #include "script/collision.h"
+#include "script/reality.h"
 #include "script/record.h"
 #include "script/sandbox.h"
+#include "script/tape.h"
 #include "sim/simulator.h"
 
 typedef struct wh_mcs wh_mcs_t;
@@ -31,13 +33,16 @@ typedef struct {
 #define WH_MCS_REASON_BYTES 200
 typedef bool wh_mcs_ahead_t(void *user, const wh_mcs_t *mcs, const wh_segment_t *segment, char *reason);
 
-/* Written by lib/script/mcs*.c only, but for `partners`, `keep_segments` and `ahead`, which may be set between opening
- * and the cell. Must not be moved once opened. */
+/* Written by lib/script/mcs*.c only, but for `partners`, `keep_segments`, `trial`, `tape` and `ahead`, which may be set between
+ * opening and the cell. Must not be moved once opened. */
 struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
     wh_sandbox_t *sandbox;
     wh_record_t *record;
     const wh_layout_t *layout; /* null until a script names one */
+    const wh_trial_t *trial; /* of a study, whose errors the cell then has; null: the cell is as its layout says */
+    wh_reality_t *reality;   /* the trial's; null without one */
+    wh_tape_t *tape;         /* keeps what is commanded and read back; null: nobody does */
     wh_simulator_t simulator;
     wh_collision_t collision;
     wh_link_t *link; /* the simulator's, or whoever stands in for it */

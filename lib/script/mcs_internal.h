@@ -17,6 +17,9 @@ wh_mcs_t *wh_mcs_with_layout(lua_State *L);
 int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *detail)
     __attribute__((noreturn));
 
+/* The cell as it really is: the trial's, or the layout's. */
+const wh_layout_t *wh_mcs_real(const wh_mcs_t *mcs);
+
 /* Ends a rehearsal that is under way, if one is: everything is where it was. */
 void wh_mcs_end_rehearsal(wh_mcs_t *mcs);
 

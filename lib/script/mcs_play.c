@@ -20,6 +20,7 @@ static void keep_events(wh_mcs_t *mcs) {
 static wh_status_t exchange(wh_mcs_t *mcs) {
     wh_command_t *command = &mcs->command;
     wh_command_follow(command, &mcs->stance, &mcs->track);
+    wh_tape_slice(mcs->tape, command);
     const wh_status_t status = mcs->link->exchange(mcs->link, command, &mcs->state);
     command->fault_count = 0;
     if (mcs->state.event_count > 0) {
@@ -89,13 +90,13 @@ static bool is_carried(const wh_mcs_t *mcs, const wh_segment_t *segment, size_t 
                                wh_real_abs(segment->target[axis] - mcs->track.axes[axis]) > 0);
 }
 
-/* Of the grippers whose sensor is on, those that a wafer could be lost from. */
+/* The grippers that a wafer could be lost from, if their sensor is on. */
 static uint32_t watch(const wh_mcs_t *mcs, const wh_segment_t *segment) {
     uint32_t watched = 0;
     for (size_t g = 0; g < mcs->state.gripper_count; ++g) {
         watched |= is_carried(mcs, segment, g) ? 1U << g : 0;
     }
-    return watched & mcs->state.sensors;
+    return watched;
 }
 
 /* The first of the watched whose sensor went off though its valve is open, or WH_NONE. */
@@ -140,7 +141,8 @@ static wh_track_state_t play_now(lua_State *L, wh_mcs_t *mcs, const wh_segment_t
 static int play(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_segment_t segment = wh_mcs_read_segment(L, mcs);
-    const uint32_t watched = watch(mcs, &segment);
+    const uint32_t carried = watch(mcs, &segment);
+    const uint32_t watched = carried & mcs->state.sensors;
     mcs->task = wh_mcs_task(L, mcs, &segment);
     const wh_status_t status = wh_track_begin(&mcs->track, &segment);
     if (status != WH_OK) {
@@ -153,8 +155,11 @@ static int play(lua_State *L) {
         lua_pushboolean(L, 1);
         return 1;
     }
-    lua_pushboolean(L, play_now(L, mcs, &segment) == WH_TRACK_DONE);
+    wh_tape_begin(mcs->tape, &segment, carried);
+    const bool done = play_now(L, mcs, &segment) == WH_TRACK_DONE;
     const int32_t lost = find_lost(mcs, watched);
+    wh_tape_end(mcs->tape, done, lost);
+    lua_pushboolean(L, done);
     if (lost == WH_NONE) {
         return 1;
     }

@@ -126,7 +126,9 @@ static const wh_wafer_t *wafer_argument(lua_State *L, const wh_mcs_t *mcs, int a
 static int read_sensor(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
-    lua_pushboolean(L, (mcs->state.sensors >> gripper & 1U) != 0);
+    const bool on = (mcs->state.sensors >> gripper & 1U) != 0;
+    wh_tape_ask(mcs->tape, WH_TAPE_SENSOR, gripper, on);
+    lua_pushboolean(L, on);
     return 1;
 }
 
@@ -141,7 +143,10 @@ static int read_valve(lua_State *L) {
 /* native.holder(wafer): the gripper's index, or nil. */
 static int find_holder(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    push_index(L, wafer_argument(L, mcs, 1)->holder);
+    const int32_t wafer = wh_mcs_index(L, 1, mcs->state.wafer_count);
+    const int32_t holder = mcs->state.wafers[wafer].holder;
+    wh_tape_ask(mcs->tape, WH_TAPE_HOLDER, wafer, holder);
+    push_index(L, holder);
     return 1;
 }
 
@@ -149,8 +154,9 @@ static int find_holder(lua_State *L) {
 static int measure(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_wafer_t *wafer = wafer_argument(L, mcs, 1);
-    const wh_station_t *station = &mcs->layout->places[wh_mcs_index(L, 2, mcs->layout->station_count)];
+    const wh_station_t *station = &wh_mcs_real(mcs)->places[wh_mcs_index(L, 2, mcs->layout->station_count)];
     const int32_t slot = wh_mcs_index(L, 3, (size_t)station->slots) + 1;
+    wh_tape_measured(mcs->tape, "offset");
     const wh_place_t place = wh_station_measure(station, slot, &wafer->base_from_wafer);
     lua_pushnumber(L, place.dx);
     lua_pushnumber(L, place.dy);
@@ -163,12 +169,40 @@ static int measure(lua_State *L) {
 static int locate(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_place_t place;
+    wh_tape_measured(mcs->tape, "where a wafer lies");
     if (!wh_cell_locate(&mcs->simulator.cell, &wafer_argument(L, mcs, 1)->base_from_wafer, &place)) {
         return 0;
     }
     lua_pushstring(L, mcs->layout->stations[place.station].name);
     lua_pushinteger(L, place.slot);
     return 2;
+}
+
+/* native.lies(wafer, station, slot, dx, dy, tolerance): 0 when it does not lie in that slot, 1 when it does, 2 when with that
+ * offset, too; its offset there; and the name of the station and the slot that it lies in, or nothing. The first decides, the
+ * others are for telling. */
+static int judge_place(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_tape_claim_t claim;
+    claim.wafer = wh_mcs_index(L, 1, mcs->state.wafer_count);
+    claim.station = wh_mcs_index(L, 2, mcs->layout->station_count);
+    claim.slot = wh_mcs_index(L, 3, (size_t)mcs->layout->places[claim.station].slots) + 1;
+    claim.dx = luaL_checknumber(L, 4);
+    claim.dy = luaL_checknumber(L, 5);
+    claim.tolerance = luaL_checknumber(L, 6);
+    const int32_t verdict = wh_tape_judge(&claim, &mcs->simulator.cell, mcs->state.wafers);
+    wh_tape_claim(mcs->tape, &claim, verdict);
+    const wh_pose_t *base_from_wafer = &mcs->state.wafers[claim.wafer].base_from_wafer;
+    wh_place_t place = wh_station_measure(&mcs->simulator.cell.stations[claim.station], claim.slot, base_from_wafer);
+    lua_pushinteger(L, verdict);
+    lua_pushnumber(L, place.dx);
+    lua_pushnumber(L, place.dy);
+    if (!wh_cell_locate(&mcs->simulator.cell, base_from_wafer, &place)) {
+        return 3;
+    }
+    lua_pushstring(L, mcs->layout->stations[place.station].name);
+    lua_pushinteger(L, place.slot);
+    return 5;
 }
 
 static void push_list(lua_State *L, const double values[], int count) {
@@ -196,6 +230,7 @@ static int push_pose(lua_State *L, const wh_pose_t *pose) {
 /* native.wafer_pose(wafer): { r, R }, as the module wh takes it. */
 static int read_wafer_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_tape_measured(mcs->tape, "a wafer's pose");
     return push_pose(L, &wafer_argument(L, mcs, 1)->base_from_wafer);
 }
 
@@ -204,7 +239,10 @@ static int read_gripper_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     wh_pose_t poses[WH_GRIPPERS];
-    wh_machine_grippers(&mcs->layout->machine, mcs->track.axes, poses);
+    if (mcs->layout->grippers[gripper].station != WH_NONE) {
+        wh_tape_measured(mcs->tape, "a chuck's pose");
+    }
+    wh_machine_grippers(&wh_mcs_real(mcs)->machine, mcs->track.axes, poses);
     return push_pose(L, &poses[gripper]);
 }
 
@@ -215,6 +253,7 @@ const luaL_Reg wh_mcs_query_functions[] = {{"layout", describe_layout},
                                            {"holder", find_holder},
                                            {"measure", measure},
                                            {"locate", locate},
+                                           {"lies", judge_place},
                                            {"wafer_pose", read_wafer_pose},
                                            {"gripper_pose", read_gripper_pose},
                                            {NULL, NULL}};

@@ -33,6 +33,14 @@ return function(native)
     native.connect()
   end
 
+  -- study { placement = { dx = 0.3 }, ... }, before cell: what a study draws, in place of the layout's own.
+  function study(errors)
+    if type(errors) ~= "table" then
+      error(("study: %s (expected a table)"):format(tostring(errors)), 0)
+    end
+    native.study(errors)
+  end
+
   for _, group in ipairs({ commands, questions, figures }) do
     for word, action in pairs(group) do
       _G[word] = action

@@ -46,8 +46,7 @@ return function(native, names)
     return condition
   end
 
-  local function where(wafer)
-    local station, slot = native.locate(wafer)
+  local function where(station, slot)
     return station and ("lies in %s slot %d"):format(station, slot) or "lies in no slot"
   end
 
@@ -59,18 +58,15 @@ return function(native, names)
     end
     names.number("dx", dx)
     names.number("dy", dy)
-    local index = names.wafer(wafer)
-    local x, y = questions.offset(wafer, station_name, slot)
-    local station, at = native.locate(index)
-    local lies_there = station == station_name and at == math.tointeger(slot)
-    local met = lies_there and math.abs(x - dx) < tolerance and math.abs(y - dy) < tolerance
+    local index, station = names.wafer(wafer), names.station(station_name)
+    local verdict, x, y, found, at = native.lies(index, station.index, names.slot(station, slot), dx, dy, tolerance)
     local text = ("%s in %s slot %d with dX %.10g, dY %.10g to %.3g mm"):format(wafer, station_name, slot, dx, dy, tolerance)
-    if not lies_there then
-      text = ("%s; it %s"):format(text, where(index))
-    elseif not met then
+    if verdict == 0 then
+      text = ("%s; it %s"):format(text, where(found, at))
+    elseif verdict == 1 then
       text = ("%s; found dX %.12g, dY %.12g"):format(text, x, y)
     end
-    return questions.expect(met, text)
+    return questions.expect(verdict == 2, text)
   end
 
   return questions

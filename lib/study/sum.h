@@ -1,0 +1,47 @@
+/* What a measured quantity does over many trials: mean, standard deviation, extremes, quantiles.
+ *
+ * Values are kept as whole multiples of 2^-30 (about 1e-9 mm or degrees) in exact integer sums, and counted in bins that are the
+ * same for every study. So adding is commutative and associative to the last bit: whatever threads and machines shared
+ * the trials, in whatever order their sums came together, the result is the same.
+ */
+#ifndef WH_STUDY_SUM_H
+#define WH_STUDY_SUM_H
+
+#include <stdint.h>
+
+__extension__ typedef __int128 wh_int128_t;
+__extension__ typedef unsigned __int128 wh_uint128_t;
+
+/* Values beyond are counted as these, in units of 2^-30. */
+#define WH_SUM_MOST (INT64_C(1) << 43)
+
+/* Per sign one bin for each whole number below 128, then 64 for each doubling up to 2^44. */
+#define WH_SUM_SIDE (128 + 37 * 64)
+#define WH_SUM_BINS (2 * WH_SUM_SIDE)
+
+/* To be zeroed. */
+typedef struct {
+    uint64_t count;
+    wh_int128_t sum;
+    wh_uint128_t squares;
+    int64_t least, most; /* meaningful when count > 0 */
+    uint64_t bins[WH_SUM_BINS];
+} wh_sum_t;
+
+/* One more value; it must be finite. At most 2^40 of them. Cost: about 5 ns. */
+void wh_sum_add(wh_sum_t *sum, double value);
+
+/* All that another has counted. */
+void wh_sum_merge(wh_sum_t *sum, const wh_sum_t *other);
+
+/* 0 when nothing was counted; the deviation (n - 1 under the root) 0 below two. */
+double wh_sum_mean(const wh_sum_t *sum);
+double wh_sum_deviation(const wh_sum_t *sum);
+double wh_sum_least(const wh_sum_t *sum);
+double wh_sum_most(const wh_sum_t *sum);
+
+/* The value that a share of `permille` / 1000 of the values does not exceed: the smallest whose rank is at least that, as the
+ * middle of its bin, which is within 1/128 of the value, and within least and most. 0 when nothing was counted. */
+double wh_sum_quantile(const wh_sum_t *sum, uint32_t permille);
+
+#endif
