@@ -10,5 +10,6 @@ int wh_app_mcs(int argc, char **argv);
 int wh_app_replay(int argc, char **argv);
 int wh_app_sim(int argc, char **argv);
 int wh_app_layout(int argc, char **argv);
+int wh_app_study(int argc, char **argv);
 
 #endif

@@ -15,6 +15,7 @@ static const struct {
     {"sim", "simulate a cell for whoever sends commands over LCM", wh_app_sim},
     {"replay", "step a recording again and compare it", wh_app_replay},
     {"layout", "list, check and draw a cell", wh_app_layout},
+    {"study", "play a script many times, each time a little off", wh_app_study},
 };
 
 #define SUBCOMMANDS (sizeof subcommands / sizeof subcommands[0])

@@ -62,10 +62,14 @@ CXX_TEST_FLAGS := -std=c++17 $(BASE) -Itests $(call package_flags,eigen3)
 # Lua comes from its static archive, so that its `^` calls the program's own pow and not libm's.
 LUA_ARCHIVE = $(firstword $(filter /%,$(foreach name,liblua5.4.a liblua-5.4.a liblua.a,\
                 $(shell $(CC) -print-file-name=$(name)))))
+# Open MPI, where it is.
+MPI := $(firstword $(foreach name,ompi-c ompi,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
+RANKS := $(if $(MPI),$(B)/waferhand_mpi.so)
+
 # LCM's pkg-config file asks for GLib's headers, which its own do not need: hence -llcm.
 # Before libwaferhand.a, which it uses.
 COLLISION_LIBS = $(B)/libwaferhand_collision.a -Wl,--as-needed $(shell $(PKG_CONFIG) --libs-only-l ccd) -Wl,--no-as-needed
-PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson smartcols libedit) -llcm -ldl -lm
+PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --libs jansson smartcols libedit) -llcm -ldl -lpthread -lm
 
 # Written when its text changes: what depends on it is rebuilt when a flag or the set of files changes.
 STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(COLLISION_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS) \
@@ -78,14 +82,15 @@ $(B)/flags $(B)/sources $(B)/messages: FORCE
 	@printf '%s\n' '$(TEXT)' | cmp -s - $@ || printf '%s\n' '$(TEXT)' >$@
 
 # ---------------------------------------------------------------------------------------------- targets
-.PHONY: all library collision program spy tests library-tests library-test-names install uninstall FORCE
+.PHONY: all library collision program ranks spy tests library-tests library-test-names install uninstall FORCE
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: library collision $(B)/waferhand $(B)/wh.so $(B)/waferhand.1
+all: library collision $(B)/waferhand $(B)/wh.so $(B)/waferhand.1 ranks
 library: $(B)/libwaferhand.a
 collision: $(B)/libwaferhand_collision.a
 program: $(B)/waferhand
+ranks: $(RANKS)
 tests: $(TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%) $(BENCHES:%=$(B)/%)
 	@:
 library-tests: $(LIBRARY_TESTS:%=$(B)/%)
@@ -160,6 +165,12 @@ LINK = $(Q)$(CC) $(CFLAGS) $(EXTRA) $(LDFLAGS)
 $(B)/waferhand: $(PROGRAM_OBJECTS) $(B)/libwaferhand.a $(B)/libwaferhand_collision.a $(B)/libwaferhand_lcm.a $(B)/sources
 	@echo "  LD   $@"
 	$(LINK) -Wl,-E -o $@ $(PROGRAM_OBJECTS) $(COLLISION_LIBS) $(B)/libwaferhand.a $(PROGRAM_LIBS)
+
+# What speaks MPI is apart, so that the program does not depend on it: loaded under mpirun only, built where MPI is.
+$(B)/pic/lib/ranks/ranks_mpi.o: FLAGS = $(HOST_FLAGS) -fPIC $(NUMBER_WARNINGS) $(call package_flags,$(MPI))
+$(B)/waferhand_mpi.so: $(B)/pic/lib/ranks/ranks_mpi.o
+	@echo "  LD   $@"
+	$(LINK) -shared -o $@ $< $(shell $(PKG_CONFIG) --libs $(MPI))
 
 # Lua's own symbols come from the interpreter that loads it, hence -z now: a missing one shows at once. Only
 # the module's own symbols go out.

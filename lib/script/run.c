@@ -50,6 +50,8 @@ wh_run_outcome_t wh_run_script(wh_run_t *run, const wh_run_options_t *options) {
     }
     run->mcs.keep_segments = options->keep_segments;
     run->mcs.partners = options->partners;
+    run->mcs.trial = options->trial;
+    run->mcs.tape = options->tape;
     wh_sandbox_run(run->sandbox, options->script, &result);
     return conclude(run, &result);
 }
