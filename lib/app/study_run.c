@@ -13,7 +13,7 @@
 #include "app/study_state.h"
 
 /* What is done is kept every so many seconds. */
-#define KEEP_S 2.0
+#define KEEP_S 1.0
 
 #define MOST_THREADS 1024
 

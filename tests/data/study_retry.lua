@@ -1,0 +1,26 @@
+-- Catches what fails and goes another way: half of the trials are not commanded as the run without errors is.
+cell "study_cell.lua"
+
+local function try(command, ...)
+  local ok, problem = pcall(command, ...)
+  return ok, problem and problem.name
+end
+
+local taken, why = try(get, "A", 1)
+if not taken then
+  expect(why == "WAFER_MISSING", "a GET fails for a wafer missing alone, not for " .. tostring(why))
+  taken = try(get, "A", 1, { offset = 3.4, stroke = 6.8 })
+end
+if taken and holder("Wafer 1") == "EE" then
+  put("P", 1)
+  rotate("P", 90)
+  local back = try(get, "P", 1)
+  expect(back, "the chuck gives its wafer back")
+  if back then
+    put("B", 1)
+  end
+end
+expect_offset("Wafer 1", "B", 1, 0, 0, 3)
+get("A", 2)
+put("B", 3)
+expect_offset("Wafer 2", "B", 3, 0.25, 0, 1.5)
