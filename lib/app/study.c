@@ -40,20 +40,22 @@ static const struct argp_option options[] = {
     {"trial", OPTION_TRIAL, "T", 0, "Play this one trial alone and print it as run does", 0},
     {"threads", OPTION_THREADS, "N", 0, "On so many threads (default: one for each processor)", 0},
     {"state", OPTION_STATE, "FILE", 0,
-     "Keep what is done in FILE, and go on from there (default: a place of its own, until the study is done)", 0},
+     "Keep what is done in FILE, and go on from there (default: a place of its own, until the study is done)",
+     0},
     {"require", OPTION_REQUIRE, "RATE", 0,
      "Exit with 1 unless the success rate is at least RATE, 0 to 1, with 95 % confidence", 0},
     {"worst", OPTION_WORST, "K", 0, "Tell the K worst trials (default 10)", 0},
     {"json", OPTION_JSON, NULL, 0, "Print the result as one JSON object", 0},
     {"set", OPTION_SET, "NAME=VALUE", 0, "Hand script and layout a parameter: params.NAME", 0},
-    {"budget", OPTION_BUDGET, "N", 0, "End a trial's script after N steps of Lua and simulated slices (default 1e9)",
-     0},
+    {"budget", OPTION_BUDGET, "N", 0,
+     "End a trial's script after N steps of Lua and simulated slices (default 1e9)", 0},
     {"memory", OPTION_MEMORY, "MIB", 0, "Let a script use so many MiB of memory (default 256)", 0},
     {0},
 };
 
 /* A number as it must be, 1000000 or 1e6. */
-static double number(const struct argp_state *state, const char *name, const char *text, double min, double max) {
+static double number(const struct argp_state *state, const char *name, const char *text, double min,
+                     double max) {
     char *end = NULL;
     errno = 0;
     const double value = strtod(text, &end);
@@ -63,7 +65,8 @@ static double number(const struct argp_state *state, const char *name, const cha
     return value;
 }
 
-static uint64_t whole(const struct argp_state *state, const char *name, const char *text, double min, double max) {
+static uint64_t whole(const struct argp_state *state, const char *name, const char *text, double min,
+                      double max) {
     const double value = number(state, name, text, min, max);
     if ((double)(uint64_t)value < value) {
         argp_error(state, "--%s: %s (expected a whole number)", name, text);
@@ -210,17 +213,19 @@ static int play_one(arguments_t *arguments) {
 }
 
 int wh_app_study(int argc, char **argv) {
-    static const struct argp argp = {
-        options,
-        parse,
-        "SCRIPT",
-        "Plays a script many times, each time with wafers, stations, valves and vacuum a little off as the layout's `study` "
-        "says, and tells how often all goes well and where the wafers end up. Under mpirun the ranks share the trials.\v"
-        "Exit status: 0 if the study was finished and what is required is kept, 1 if not, 2 for wrong usage or a bad "
-        "input file; with --trial as for run.",
-        NULL,
-        NULL,
-        NULL};
+    static const struct argp argp = {options,
+                                     parse,
+                                     "SCRIPT",
+                                     "Plays a script many times, each time with wafers, stations, valves and "
+                                     "vacuum a little off as the layout's `study` "
+                                     "says, and tells how often all goes well and where the wafers end up. "
+                                     "Under mpirun the ranks share the trials.\v"
+                                     "Exit status: 0 if the study was finished and what is required is kept, "
+                                     "1 if not, 2 for wrong usage or a bad "
+                                     "input file; with --trial as for run.",
+                                     NULL,
+                                     NULL,
+                                     NULL};
     static char name[] = "waferhand study";
     arguments_t arguments = {.trials = 1000, .seed = 1, .worst = 10};
     wh_run_arguments_init(&arguments.run, argc);

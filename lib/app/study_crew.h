@@ -35,9 +35,9 @@ typedef struct {
     pthread_cond_t changed;
     uint64_t *queue; /* blocks to be played, `from` up to `to` */
     size_t from, to;
-    bool closed;          /* nothing more will be queued */
-    bool failed;          /* a trial was not usable */
-    size_t working;       /* hands that are not waiting */
+    bool closed;    /* nothing more will be queued */
+    bool failed;    /* a trial was not usable */
+    size_t working; /* hands that are not waiting */
     wh_progress_t progress;
     char message[WH_SANDBOX_MESSAGE_BYTES + 64];
     bool stop;       /* leave everything and end: see wh_crew_stop */

@@ -37,7 +37,8 @@ static void put_rate(wh_json_writer_t *writer, json_t *object, uint64_t hits, ui
 }
 
 static void put_trial(wh_json_writer_t *writer, json_t *object, const char *key, uint64_t trial) {
-    wh_json_put(writer, object, key, trial == WH_TALLY_NO_TRIAL ? json_null() : json_integer((json_int_t)trial));
+    wh_json_put(writer, object, key,
+                trial == WH_TALLY_NO_TRIAL ? json_null() : json_integer((json_int_t)trial));
 }
 
 /* --------------------------------------------------------------------------------------------------------- rows */
@@ -96,7 +97,8 @@ static json_t *figures(wh_json_writer_t *writer, const wh_sum_t *sum, double nom
     static const struct {
         const char *key;
         uint32_t permille;
-    } quantiles[] = {{"p0_1", 1}, {"p1", 10}, {"p5", 50}, {"p50", 500}, {"p95", 950}, {"p99", 990}, {"p99_9", 999}};
+    } quantiles[] = {{"p0_1", 1},  {"p1", 10},   {"p5", 50},    {"p50", 500},
+                     {"p95", 950}, {"p99", 990}, {"p99_9", 999}};
     json_t *object = json_object();
     put_real(writer, object, "mean", nominal + wh_sum_mean(sum));
     put_real(writer, object, "deviation", wh_sum_deviation(sum));
@@ -118,12 +120,14 @@ static json_t *wafer(wh_json_writer_t *writer, size_t i) {
     put_text(writer, object, "name", all->layout->wafers[end->wafer].name);
     put_text(writer, object, "station", lies ? all->layout->stations[end->place.station].name : NULL);
     wh_json_put(writer, object, "slot", lies ? json_integer(end->place.slot) : json_null());
-    put_text(writer, object, "holder", end->holder == WH_NONE ? NULL : all->layout->grippers[end->holder].name);
+    put_text(writer, object, "holder",
+             end->holder == WH_NONE ? NULL : all->layout->grippers[end->holder].name);
     put_count(writer, object, "elsewhere", tally->elsewhere);
     put_count(writer, object, "count", tally->of[0].count);
     for (size_t q = 0; q < WH_TALLY_QUANTITIES; ++q) {
         wh_json_put(writer, object, keys[q],
-                    tally->of[q].count > 0 ? figures(writer, &tally->of[q], wh_study_nominal(end, q)) : json_null());
+                    tally->of[q].count > 0 ? figures(writer, &tally->of[q], wh_study_nominal(end, q))
+                                           : json_null());
     }
     return object;
 }
@@ -240,9 +244,11 @@ int wh_study_print_json(const wh_study_report_t *report, FILE *out) {
     writer_t all = {{&report->study->nominal.record, false}, report, report->tally, report->study->layout};
     wh_json_writer_t *writer = &all.base;
     json_t *root = json_object();
-    const size_t worst = report->worst < report->tally->worst_count ? report->worst : report->tally->worst_count;
+    const size_t worst =
+        report->worst < report->tally->worst_count ? report->worst : report->tally->worst_count;
     put_head(writer, root);
-    wh_json_put(writer, root, "expectations", wh_json_list(writer, expectation, report->tally->expectations.count));
+    wh_json_put(writer, root, "expectations",
+                wh_json_list(writer, expectation, report->tally->expectations.count));
     wh_json_put(writer, root, "errors", wh_json_list(writer, error, report->tally->errors.count));
     wh_json_put(writer, root, "events", events(writer));
     wh_json_put(writer, root, "wafers", wh_json_list(writer, wafer, report->tally->wafer_count));

@@ -77,8 +77,8 @@ bool wh_study_open(wh_study_t *study) {
         return refuse(study->run.script, "no cell (expected cell \"LAYOUT.lua\")");
     }
     if (!study->layout->errors) {
-        return refuse(study->layout->path,
-                      "study: nil (expected what is drawn, as study = { placement = { dx = 0.3 } }, here or in the script)");
+        return refuse(study->layout->path, "study: nil (expected what is drawn, as study = { placement = { "
+                                           "dx = 0.3 } }, here or in the script)");
     }
     study->whole = why_whole(study);
     choose_wafers(study);

@@ -60,7 +60,8 @@ bool wh_ranks_open(wh_ranks_t *ranks) {
     ranks->calls = ranks->library ? dlsym(ranks->library, "wh_ranks_calls") : NULL;
     if (!ranks->calls || ranks->calls->version != WH_RANKS_VERSION) {
         fprintf(stderr, "waferhand study: started by mpirun, but " LIBRARY
-                        " is not there (expected it beside the program: libopenmpi-dev must be installed when it is built)\n");
+                        " is not there (expected it beside the program: libopenmpi-dev must be installed "
+                        "when it is built)\n");
         return false;
     }
     if (ranks->calls->open(&ranks->rank, &ranks->size) != 0) {

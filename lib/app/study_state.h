@@ -13,8 +13,8 @@ char *wh_state_text(const wh_study_t *study, const wh_progress_t *progress);
 
 /* Adds what the text has to `progress`, which is unchanged on failure: then `message` says what is wrong, "of another study: its
  * seed is 2 (expected 1)" or "damaged". */
-bool wh_state_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress, char *message,
-                   size_t message_size);
+bool wh_state_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress,
+                   char *message, size_t message_size);
 
 /* Replaces the file at once: whoever opens it sees the old text or the new one, also after a crash. False, with errno, when that is
  * not possible. */

@@ -123,7 +123,8 @@ static bool is_same(const json_t *found, json_t *expected, char *message, size_t
     return true;
 }
 
-static bool take(const wh_study_t *study, const json_t *root, wh_progress_t *progress, char *message, size_t size) {
+static bool take(const wh_study_t *study, const json_t *root, wh_progress_t *progress, char *message,
+                 size_t size) {
     json_t *identity = wh_state_identity(study);
     if (!identity || !json_is_object(root) || json_integer_value(json_object_get(root, "format")) != 1) {
         snprintf(message, size, "damaged (expected a study's state)");
@@ -147,8 +148,8 @@ static bool take(const wh_study_t *study, const json_t *root, wh_progress_t *pro
     return sound;
 }
 
-bool wh_state_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress, char *message,
-                   size_t message_size) {
+bool wh_state_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress,
+                   char *message, size_t message_size) {
     json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
     const bool taken = take(study, root, progress, message, message_size);
     json_decref(root);

@@ -60,7 +60,8 @@ static bool take_bins(const json_t *bins, wh_sum_t *sum) {
 
 static bool take_sum(const json_t *root, wh_sum_t *sum) {
     wh_uint128_t wide = 0;
-    const bool sound = take_key(root, "count", &sum->count) && take_wide(json_object_get(root, "sum"), &wide) &&
+    const bool sound = take_key(root, "count", &sum->count) &&
+                       take_wide(json_object_get(root, "sum"), &wide) &&
                        take_wide(json_object_get(root, "squares"), &sum->squares);
     sum->sum = (wh_int128_t)wide;
     sum->least = json_integer_value(json_object_get(root, "least"));
@@ -91,9 +92,9 @@ static json_t *put_rows(const wh_tally_rows_t *rows) {
     json_t *list = json_array();
     for (size_t i = 0; i < rows->count; ++i) {
         const wh_tally_row_t *row = &rows->rows[i];
-        json_array_append_new(list, json_pack("[i, i, o, o, o, o, I]", row->line, row->place, wh_json_text(row->text),
-                                              count(row->named), count(row->seen), count(row->bad),
-                                              (json_int_t)row->first));
+        json_array_append_new(list, json_pack("[i, i, o, o, o, o, I]", row->line, row->place,
+                                              wh_json_text(row->text), count(row->named), count(row->seen),
+                                              count(row->bad), (json_int_t)row->first));
     }
     return list;
 }
@@ -126,7 +127,8 @@ static json_t *put_worst(const wh_tally_t *tally) {
     json_t *list = json_array();
     for (size_t i = 0; i < tally->worst_count; ++i) {
         const wh_tally_trial_t *trial = &tally->worst[i];
-        json_array_append_new(list, json_pack("[o, b, o]", count(trial->trial), trial->met, wh_json_real(trial->off)));
+        json_array_append_new(
+            list, json_pack("[o, b, o]", count(trial->trial), trial->met, wh_json_real(trial->off)));
     }
     return list;
 }
@@ -181,7 +183,8 @@ bool wh_state_take_tally(const json_t *root, wh_tally_t *tally) {
     const json_t *wafers = json_object_get(root, "wafers");
     bool sound = json_array_size(wafers) == tally->wafer_count && take_key(root, "trials", &tally->trials) &&
                  take_key(root, "met", &tally->met) && take_key(root, "ended", &tally->ended) &&
-                 take_key(root, "whole", &tally->whole) && take_events(json_object_get(root, "events"), tally);
+                 take_key(root, "whole", &tally->whole) &&
+                 take_events(json_object_get(root, "events"), tally);
     for (size_t w = 0; sound && w < tally->wafer_count; ++w) {
         sound = take_wafer(json_array_get(wafers, w), &tally->wafers[w]);
     }

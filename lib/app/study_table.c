@@ -120,7 +120,8 @@ static int print_events(const table_t *table) {
         if (event->trials > 0) {
             const bool bad = wh_report_is_complaint((wh_event_kind_t)kind);
             wh_grid_row(grid);
-            wh_grid_text(grid, 0, bad ? WH_INK_BAD : WH_INK_PLAIN, "%s", wh_event_name((wh_event_kind_t)kind));
+            wh_grid_text(grid, 0, bad ? WH_INK_BAD : WH_INK_PLAIN, "%s",
+                         wh_event_name((wh_event_kind_t)kind));
             wh_grid_number(grid, 1, WH_INK_PLAIN, (double)event->trials);
             put_rate(grid, 2, WH_INK_PLAIN, event->trials, table->tally->trials);
             wh_grid_number(grid, 4, WH_INK_PLAIN, (double)event->total);
@@ -161,7 +162,8 @@ static void add_wafer(const table_t *table, wh_grid_t *grid, size_t index) {
 }
 
 static int print_wafers(const table_t *table) {
-    static const char *const headings[] = {"mean", "deviation", "min", "0.1 %", "5 %", "50 %", "95 %", "99.9 %", "max"};
+    static const char *const headings[] = {"mean", "deviation", "min",    "0.1 %", "5 %",
+                                           "50 %", "95 %",      "99.9 %", "max"};
     wh_grid_t *grid = wh_grid_new(table->frame.style, 3);
     wh_grid_text_column(grid, "wafer");
     wh_grid_text_column(grid, "in");
@@ -178,8 +180,9 @@ static int print_wafers(const table_t *table) {
         if (tally->elsewhere > 0) {
             char count[WH_REPORT_NUMBER_SIZE];
             wh_report_count(count, (int64_t)tally->elsewhere);
-            status |= wh_report_put(&table->frame,
-                                    table->study->study->layout->wafers[table->study->study->wafers[w].wafer].name);
+            status |=
+                wh_report_put(&table->frame,
+                              table->study->study->layout->wafers[table->study->study->wafers[w].wafer].name);
             fprintf(table->frame.out, " ends elsewhere in %s %s, which are not in these figures\n", count,
                     tally->elsewhere == 1 ? "trial" : "trials");
         }
@@ -194,8 +197,8 @@ static int print_worst(const table_t *table) {
     wh_grid_number_column(grid, "trial", whole);
     wh_grid_text_column(grid, "result");
     wh_grid_number_column(grid, "off mm", fine);
-    const size_t count = table->study->worst < table->tally->worst_count ? table->study->worst
-                                                                           : table->tally->worst_count;
+    const size_t count =
+        table->study->worst < table->tally->worst_count ? table->study->worst : table->tally->worst_count;
     for (size_t i = 0; i < count; ++i) {
         const wh_tally_trial_t *trial = &table->tally->worst[i];
         wh_grid_row(grid);
@@ -221,7 +224,8 @@ static int print_head(const table_t *table) {
     wh_report_count(trials, (int64_t)table->tally->trials);
     fprintf(table->frame.out, "\n%s trials of seed %llu\n", trials, (unsigned long long)study->seed);
     if (!study->nominal.record.ok) {
-        wh_style_print(table->frame.style, table->frame.out, WH_INK_WARN, "without any errors the script fails already");
+        wh_style_print(table->frame.style, table->frame.out, WH_INK_WARN,
+                       "without any errors the script fails already");
         fputc('\n', table->frame.out);
     }
     return status;
@@ -232,11 +236,12 @@ static void print_how(const table_t *table) {
     char count[WH_REPORT_NUMBER_SIZE];
     wh_report_count(count, (int64_t)table->tally->whole);
     if (study->whole) {
-        fprintf(table->frame.out, "each trial ran the script whole, for in the run without errors this was read: %s\n",
+        fprintf(table->frame.out,
+                "each trial ran the script whole, for in the run without errors this was read: %s\n",
                 study->whole);
     } else {
-        fprintf(table->frame.out, "%s trials ran the script whole, the others are the run without errors, replayed\n",
-                count);
+        fprintf(table->frame.out,
+                "%s trials ran the script whole, the others are the run without errors, replayed\n", count);
     }
 }
 
@@ -250,10 +255,11 @@ static void print_summary(const table_t *table) {
     wh_report_count(trials, (int64_t)table->tally->trials);
     fputc('\n', out);
     print_how(table);
-    wh_style_print(table->frame.style, out, table->tally->met == table->tally->trials ? WH_INK_GOOD : WH_INK_BAD,
-                   "%s of %s trials ok", met, trials);
-    fprintf(out, ": %.4f %%, 95 %% sure from %.4f to %.4f %% (Wilson)\n", 100 * success.rate, 100 * success.low,
-            100 * success.high);
+    wh_style_print(table->frame.style, out,
+                   table->tally->met == table->tally->trials ? WH_INK_GOOD : WH_INK_BAD, "%s of %s trials ok",
+                   met, trials);
+    fprintf(out, ": %.4f %%, 95 %% sure from %.4f to %.4f %% (Wilson)\n", 100 * success.rate,
+            100 * success.low, 100 * success.high);
     if (report->require > 0) {
         const bool kept = wh_study_is_kept(report);
         wh_style_print(table->frame.style, out, kept ? WH_INK_GOOD : WH_INK_BAD, "%s",

@@ -65,7 +65,8 @@ wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const c
     if (!row) {
         rows->rows = wh_record_grow(rows->rows, rows->count, &rows->capacity, sizeof *rows->rows);
         row = &rows->rows[rows->count++];
-        *row = (wh_tally_row_t){line,  place, NULL, WH_TALLY_NO_TRIAL, 0, 0, WH_TALLY_NO_TRIAL, WH_TALLY_NO_TRIAL};
+        *row = (wh_tally_row_t){
+            line, place, NULL, WH_TALLY_NO_TRIAL, 0, 0, WH_TALLY_NO_TRIAL, WH_TALLY_NO_TRIAL};
     }
     if (!row->text || named < row->named) {
         free(row->text);
@@ -115,8 +116,8 @@ static void add_errors(wh_tally_t *tally, const wh_outcome_t *outcome) {
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
         if (command->error != WH_OK) {
-            wh_tally_row_t *row = wh_tally_row(&tally->errors, command->line, (int)command->error, command->text,
-                                               outcome->trial);
+            wh_tally_row_t *row = wh_tally_row(&tally->errors, command->line, (int)command->error,
+                                               command->text, outcome->trial);
             count_row(row, outcome->trial, row->last != outcome->trial);
         }
     }
@@ -160,7 +161,8 @@ static bool is_there(const wh_study_wafer_t *wafer, const wh_study_wafer_t *nomi
 }
 
 /* How far it ends off, infinite when it is elsewhere. */
-static double add_wafer(wh_tally_wafer_t *tally, const wh_study_wafer_t *wafer, const wh_study_wafer_t *nominal) {
+static double add_wafer(wh_tally_wafer_t *tally, const wh_study_wafer_t *wafer,
+                        const wh_study_wafer_t *nominal) {
     if (!is_there(wafer, nominal)) {
         ++tally->elsewhere;
         return (double)INFINITY;
@@ -175,7 +177,8 @@ static double add_wafer(wh_tally_wafer_t *tally, const wh_study_wafer_t *wafer, 
     wh_sum_add(&tally->of[WH_TALLY_DX], dx);
     wh_sum_add(&tally->of[WH_TALLY_DY], dy);
     wh_sum_add(&tally->of[WH_TALLY_DZ], place->dz - nominal->place.dz);
-    wh_sum_add(&tally->of[WH_TALLY_TILT], wh_deg_from_rad(place->tilt) - wh_deg_from_rad(nominal->place.tilt));
+    wh_sum_add(&tally->of[WH_TALLY_TILT],
+               wh_deg_from_rad(place->tilt) - wh_deg_from_rad(nominal->place.tilt));
     wh_sum_add(&tally->of[WH_TALLY_OFF], off);
     return off;
 }

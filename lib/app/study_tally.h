@@ -11,7 +11,8 @@ typedef enum { WH_TALLY_DX, WH_TALLY_DY, WH_TALLY_DZ, WH_TALLY_TILT, WH_TALLY_OF
 #define WH_TALLY_QUANTITIES 5
 
 typedef struct {
-    uint64_t elsewhere; /* trials that leave it in another slot, in none, or with another holder: not in the sums */
+    uint64_t
+        elsewhere; /* trials that leave it in another slot, in none, or with another holder: not in the sums */
     wh_sum_t of[WH_TALLY_QUANTITIES];
 } wh_tally_wafer_t;
 
@@ -49,8 +50,8 @@ typedef struct {
 /* To be zeroed, then given its wafers. */
 typedef struct {
     uint64_t trials, met;
-    uint64_t ended;    /* by an error that the script did not catch */
-    uint64_t whole;    /* ran the script whole: Lua and all */
+    uint64_t ended; /* by an error that the script did not catch */
+    uint64_t whole; /* ran the script whole: Lua and all */
     wh_tally_event_t events[WH_EVENT_KINDS];
     wh_tally_rows_t expectations, errors;
     size_t wafer_count;
@@ -63,7 +64,8 @@ typedef struct {
 typedef struct {
     uint64_t trial;
     bool met, whole;
-    const wh_record_t *record; /* commands, expectations and failure are this run's; events and wafers are not looked at */
+    const wh_record_t
+        *record; /* commands, expectations and failure are this run's; events and wafers are not looked at */
     uint32_t events[WH_EVENT_KINDS];
     wh_study_wafer_t wafers[WH_STUDY_WAFERS];
 } wh_outcome_t;

@@ -81,7 +81,8 @@ static bool replay(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
     watcher_t watcher = {&worker->outcome, false};
     begin(worker, trial);
     wh_reality_fill(&worker->reality, study->layout, &name, worker->places, worker->start);
-    if (!set_up(worker) || !wh_tape_play(&study->tape, &worker->reality, &worker->simulator, watch, &watcher)) {
+    if (!set_up(worker) ||
+        !wh_tape_play(&study->tape, &worker->reality, &worker->simulator, watch, &watcher)) {
         return false;
     }
     worker->outcome.record = record;

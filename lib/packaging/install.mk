@@ -2,7 +2,7 @@
 
 PLACES := $(PREFIX)/bin/waferhand $(LIBDIR)/libwaferhand.a $(LIBDIR)/libwaferhand_collision.a \
           $(LIBDIR)/lua/5.4/wh.so $(LIBDIR)/pkgconfig/waferhand.pc $(LIBDIR)/pkgconfig/waferhand_collision.pc \
-          $(PREFIX)/share/man/man1/waferhand.1
+          $(PREFIX)/share/man/man1/waferhand.1 $(if $(RANKS),$(LIBDIR)/waferhand/waferhand_mpi.so)
 INCLUDES := $(PREFIX)/include/waferhand
 PUBLIC := $(filter-out %_internal.h,$(wildcard lib/waferhand.h $(foreach part,$(LIBRARY_PARTS) collision,lib/$(part)/*.h lib/$(part)/*.def)))
 SHARE := $(PREFIX)/share/waferhand

@@ -40,8 +40,9 @@ static int look(int *from, size_t *size) {
 }
 
 static int receive(int from, void *bytes, size_t size) {
-    return size > INT_MAX ? -1
-                          : MPI_Recv(bytes, (int)size, MPI_BYTE, from, TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    return size > INT_MAX
+               ? -1
+               : MPI_Recv(bytes, (int)size, MPI_BYTE, from, TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
 }
 
 static void close_ranks(void) {
@@ -52,4 +53,5 @@ static void quit(int status) {
     MPI_Abort(MPI_COMM_WORLD, status);
 }
 
-const wh_ranks_calls_t wh_ranks_calls = {WH_RANKS_VERSION, open_ranks, send_bytes, look, receive, close_ranks, quit};
+const wh_ranks_calls_t wh_ranks_calls = {WH_RANKS_VERSION, open_ranks,  send_bytes, look,
+                                         receive,          close_ranks, quit};

@@ -103,7 +103,7 @@ typedef struct {
     wh_world_config_t world; /* whether it is checked or not; without parts when they are too many */
     const char (*part_names)[WH_PART_NAME_SIZE];
     wh_errors_t *errors; /* what a study draws; null: the layout has no `study` */
-    size_t hung_count; /* of the world's parts the last so many: obstacles on the robot and on grippers */
+    size_t hung_count;   /* of the world's parts the last so many: obstacles on the robot and on grippers */
 } wh_layout_t;
 
 /* Reads the table on top of L's stack (what the layout file returned, which is left there), fills in the

@@ -40,9 +40,10 @@ struct wh_mcs {
     wh_sandbox_t *sandbox;
     wh_record_t *record;
     const wh_layout_t *layout; /* null until a script names one */
-    const wh_trial_t *trial; /* of a study, whose errors the cell then has; null: the cell is as its layout says */
-    wh_reality_t *reality;   /* the trial's; null without one */
-    wh_tape_t *tape;         /* keeps what is commanded and read back; null: nobody does */
+    const wh_trial_t
+        *trial; /* of a study, whose errors the cell then has; null: the cell is as its layout says */
+    wh_reality_t *reality; /* the trial's; null without one */
+    wh_tape_t *tape;       /* keeps what is commanded and read back; null: nobody does */
     wh_simulator_t simulator;
     wh_collision_t collision;
     wh_link_t *link; /* the simulator's, or whoever stands in for it */

@@ -99,8 +99,7 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
         luaL_error(L, "%s: %s", layout->path, wh_status_text(status));
     }
     if (layout->collision) {
-        wh_collision_attach(&mcs->collision, real, &mcs->simulator,
-                            lua_memory(L, wh_collision_bytes(real)));
+        wh_collision_attach(&mcs->collision, real, &mcs->simulator, lua_memory(L, wh_collision_bytes(real)));
     }
     if (layout->look_ahead && !mcs->ahead) {
         wh_ahead_t *ahead = lua_memory(L, sizeof *ahead);
@@ -156,5 +155,4 @@ static int set_up_cell(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_cell_functions[] = {
-    {"cell", set_up_cell}, {"study", set_study}, {NULL, NULL}};
+const luaL_Reg wh_mcs_cell_functions[] = {{"cell", set_up_cell}, {"study", set_study}, {NULL, NULL}};

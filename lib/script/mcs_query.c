@@ -193,7 +193,8 @@ static int judge_place(lua_State *L) {
     const int32_t verdict = wh_tape_judge(&claim, &mcs->simulator.cell, mcs->state.wafers);
     wh_tape_claim(mcs->tape, &claim, verdict);
     const wh_pose_t *base_from_wafer = &mcs->state.wafers[claim.wafer].base_from_wafer;
-    wh_place_t place = wh_station_measure(&mcs->simulator.cell.stations[claim.station], claim.slot, base_from_wafer);
+    wh_place_t place =
+        wh_station_measure(&mcs->simulator.cell.stations[claim.station], claim.slot, base_from_wafer);
     lua_pushinteger(L, verdict);
     lua_pushnumber(L, place.dx);
     lua_pushnumber(L, place.dy);

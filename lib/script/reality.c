@@ -51,7 +51,8 @@ static void place_wafers(wh_reality_t *reality, const wh_layout_t *layout, const
         const wh_layout_wafer_t *lies = &layout->wafers[w];
         const wh_displacement_t drawn = wh_errors_draw_wafer(layout->errors, &reality->trial, w);
         start[w] = layout->start[w];
-        if (!wh_displacement_is_any(&drawn) && !is_moved(&places[lies->station], &layout->places[lies->station])) {
+        if (!wh_displacement_is_any(&drawn) &&
+            !is_moved(&places[lies->station], &layout->places[lies->station])) {
             continue;
         }
         const wh_pose_t taught = wh_station_slot(&layout->places[lies->station], lies->slot);
@@ -69,8 +70,8 @@ static int64_t lag_of(const wh_reality_t *reality, wh_real_t seconds) {
     return slices < WH_STUDY_LAG_SLICES ? (int64_t)slices : WH_STUDY_LAG_SLICES;
 }
 
-void wh_reality_fill(wh_reality_t *reality, const wh_layout_t *layout, const wh_trial_t *trial, wh_station_t *places,
-                     wh_wafer_t *start) {
+void wh_reality_fill(wh_reality_t *reality, const wh_layout_t *layout, const wh_trial_t *trial,
+                     wh_station_t *places, wh_wafer_t *start) {
     reality->trial = *trial;
     reality->layout = *layout;
     reality->chucks_moved = false;

@@ -17,7 +17,8 @@ static void *enlarge(void *memory, size_t bytes) {
 /* ------------------------------------------------------------------------------------------------------- slices */
 
 static bool make_room(wh_tape_t *tape, const wh_command_t *command) {
-    const size_t bytes = command->gripper_count * sizeof *tape->poses + command->axis_count * sizeof *tape->axes;
+    const size_t bytes =
+        command->gripper_count * sizeof *tape->poses + command->axis_count * sizeof *tape->axes;
     if (tape->slice_count < tape->slice_capacity) {
         return true;
     }
@@ -101,7 +102,8 @@ void wh_tape_claim(wh_tape_t *tape, const wh_tape_claim_t *claim, int32_t verdic
     if (tape) {
         const wh_tape_entry_t entry = {
             .kind = WH_TAPE_CLAIM, .index = (int32_t)tape->claim_count, .answer = verdict};
-        tape->claims = wh_record_grow(tape->claims, tape->claim_count, &tape->claim_capacity, sizeof *tape->claims);
+        tape->claims =
+            wh_record_grow(tape->claims, tape->claim_count, &tape->claim_capacity, sizeof *tape->claims);
         tape->claims[tape->claim_count++] = *claim;
         add_entry(tape, &entry);
     }
@@ -121,7 +123,8 @@ int32_t wh_tape_judge(const wh_tape_claim_t *claim, const wh_cell_t *cell, const
         return 0;
     }
     place = wh_station_measure(&cell->stations[claim->station], claim->slot, base_from_wafer);
-    return fabs(place.dx - claim->dx) < claim->tolerance && fabs(place.dy - claim->dy) < claim->tolerance ? 2 : 1;
+    return fabs(place.dx - claim->dx) < claim->tolerance && fabs(place.dy - claim->dy) < claim->tolerance ? 2
+                                                                                                          : 1;
 }
 
 void wh_tape_free(wh_tape_t *tape) {

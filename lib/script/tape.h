@@ -16,8 +16,8 @@
 #define WH_TAPE_BYTES ((size_t)512 << 20)
 
 typedef enum {
-    WH_TAPE_BEGIN,  /* a segment: `index` is the gripper whose sensor it waits for, or WH_NONE; `mask` may lose wafers */
-    WH_TAPE_END,    /* of it: `index` is the gripper that lost its wafer, or WH_NONE; `mask` 1: it ran to its end */
+    WH_TAPE_BEGIN, /* a segment: `index` is the gripper whose sensor it waits for, or WH_NONE; `mask` may lose wafers */
+    WH_TAPE_END, /* of it: `index` is the gripper that lost its wafer, or WH_NONE; `mask` 1: it ran to its end */
     WH_TAPE_SENSOR, /* of gripper `index` was `answer` */
     WH_TAPE_HELD,   /* by gripper `index` was wafer `answer` */
     WH_TAPE_HOLDER, /* of wafer `index` was gripper `answer` */
@@ -85,7 +85,7 @@ typedef void wh_tape_watch_t(void *user, const wh_event_t events[], size_t count
  * for that trial would leave it, and `watch` has seen each event. False where something was read differently, or the simulator
  * refused a slice: all is then void. Slices in which nothing can happen are skipped: with a plain vacuum, no pads, no faults
  * and nobody looking, those in which each gripper keeps its valve and either is closed or holds a wafer. */
-bool wh_tape_play(const wh_tape_t *tape, const wh_reality_t *reality, wh_simulator_t *simulator, wh_tape_watch_t *watch,
-                  void *user);
+bool wh_tape_play(const wh_tape_t *tape, const wh_reality_t *reality, wh_simulator_t *simulator,
+                  wh_tape_watch_t *watch, void *user);
 
 #endif

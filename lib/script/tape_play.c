@@ -178,8 +178,8 @@ static void start(player_t *player) {
     wh_simulator_view(player->simulator, &player->state);
 }
 
-bool wh_tape_play(const wh_tape_t *tape, const wh_reality_t *reality, wh_simulator_t *simulator, wh_tape_watch_t *watch,
-                  void *user) {
+bool wh_tape_play(const wh_tape_t *tape, const wh_reality_t *reality, wh_simulator_t *simulator,
+                  wh_tape_watch_t *watch, void *user) {
     player_t player = {
         .tape = tape, .reality = reality, .simulator = simulator, .watch = watch, .user = user};
     start(&player);

@@ -1,7 +1,13 @@
 #include "study/errors.h"
 
 /* What a number is drawn for: the first word of its counter. Never to be renumbered, or seeds would mean other trials. */
-enum { FIELD_PLACEMENT = 0x100, FIELD_TILT_Y = 0x1FF, FIELD_TEACHING = 0x200, FIELD_VALVE = 0x300, FIELD_VACUUM = 0x400 };
+enum {
+    FIELD_PLACEMENT = 0x100,
+    FIELD_TILT_Y = 0x1FF,
+    FIELD_TEACHING = 0x200,
+    FIELD_VALVE = 0x300,
+    FIELD_VACUUM = 0x400
+};
 
 static wh_real_t draw(const wh_spread_t *spread, const wh_trial_t *trial, uint32_t field, size_t index) {
     if (!(spread->width > 0)) {
@@ -32,7 +38,8 @@ wh_displacement_t wh_errors_draw_station(const wh_errors_t *errors, const wh_tri
     drawn.moved.y = draw(&of[WH_TEACHING_Y], trial, FIELD_TEACHING + WH_TEACHING_Y, station);
     drawn.moved.z = draw(&of[WH_TEACHING_Z], trial, FIELD_TEACHING + WH_TEACHING_Z, station);
     for (uint32_t i = 0; i < 3; ++i) {
-        drawn.turn[i] = draw(&of[WH_TEACHING_ROLL + i], trial, FIELD_TEACHING + WH_TEACHING_ROLL + i, station);
+        drawn.turn[i] =
+            draw(&of[WH_TEACHING_ROLL + i], trial, FIELD_TEACHING + WH_TEACHING_ROLL + i, station);
     }
     return drawn;
 }

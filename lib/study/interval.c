@@ -15,6 +15,6 @@ wh_confidence_t wh_interval_wilson(uint64_t hits, uint64_t trials) {
     const double reach = Z * sqrt(p * (1 - p) / n + Z * Z / (4 * n * n));
     const double scale = 1 + Z * Z / n;
     const wh_confidence_t interval = {p, hits == 0 ? 0 : (centre - reach) / scale,
-                                    hits == trials ? 1 : (centre + reach) / scale};
+                                      hits == trials ? 1 : (centre + reach) / scale};
     return interval;
 }

@@ -1,6 +1,6 @@
 -- Two stations, and how well they are taught, wafers placed and valves timed: what `waferhand study` draws.
 return {
-  tolerance = { projz = 0.5, projxy = 2.5, planar = 0.99998 },
+  tolerance = { projz = 0.5, projxy = 2.2, planar = 0.99998 },
   grippers = { { name = "EE", valve = "eeVacValve[0]" } },
   stations = {
     A = { at = { 700, 0, 900 }, slots = 25 },

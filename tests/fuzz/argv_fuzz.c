@@ -9,6 +9,7 @@
 #include "app/app.h"
 #include "app/mcs_link.h"
 #include "app/run.h"
+#include "app/study.h"
 #include "fuzz.h"
 #include "script/layout_load.h"
 
@@ -87,6 +88,7 @@ error_t __wrap_argp_parse(const struct argp *argp, int argc, char **argv, unsign
 
 int __wrap_wh_run_and_report(wh_run_arguments_t *arguments);
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
+bool __wrap_wh_study_open(wh_study_t *study);
 bool __wrap_wh_open_node(wh_node_t *node, const char *url, const char *record_path);
 wh_sandbox_t *__wrap_wh_sandbox_new(const wh_sandbox_limits_t *limits);
 wh_sandbox_t *__real_wh_sandbox_new(const wh_sandbox_limits_t *limits);
@@ -121,6 +123,16 @@ int __wrap_wh_run_and_report(wh_run_arguments_t *arguments) {
         check_run(&arguments->run);
     }
     return WH_EXIT_USAGE;
+}
+
+bool __wrap_wh_study_open(wh_study_t *study) {
+    reached = true;
+    if (!refused) {
+        REQUIRE(study->run.script != NULL);
+        check_run(&study->run);
+        REQUIRE(study->trials >= 1 && study->trials <= 1000000000);
+    }
+    return false;
 }
 
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
@@ -222,9 +234,9 @@ static char *split(const uint8_t *data, size_t size, char **argv) {
 }
 
 static int act(int argc, char **argv) {
-    static int (*const subcommands[])(int argc, char **argv) = {wh_app_run, wh_app_mcs, wh_app_sim,
-                                                                wh_app_replay, wh_app_layout};
-    static const char *const names[] = {"run", "mcs", "sim", "replay", "layout"};
+    static int (*const subcommands[])(int argc, char **argv) = {wh_app_run,    wh_app_mcs,    wh_app_sim,
+                                                                wh_app_replay, wh_app_layout, wh_app_study};
+    static const char *const names[] = {"run", "mcs", "sim", "replay", "layout", "study"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(argv[0], names[i]) == 0) {
             return subcommands[i](argc, argv);

@@ -46,13 +46,14 @@ static void compare_trial(wh_worker_t *worker, comparison_t *comparison, uint64_
 }
 
 /* Of so many trials at least `least` and at most `most` are replayed. */
-static void compare(const char *script, const char *const parameters[], size_t parameter_count, uint64_t least,
-                    uint64_t most) {
+static void compare(const char *script, const char *const parameters[], size_t parameter_count,
+                    uint64_t least, uint64_t most) {
     static wh_study_t study;
     static wh_worker_t worker;
     comparison_t comparison = {.replays = 0};
     memset(&study, 0, sizeof study);
-    study.run = (wh_run_options_t){.script = script, .parameters = parameters, .parameter_count = parameter_count};
+    study.run =
+        (wh_run_options_t){.script = script, .parameters = parameters, .parameter_count = parameter_count};
     study.run.limits.print_to = stderr;
     study.seed = 5;
     study.trials = TRIALS;
@@ -97,7 +98,7 @@ static void late_valves_and_vacuum(void **state) {
 
 static void an_example(void **state) {
     (void)state;
-    compare("lua/examples/07_study.lua", NULL, 0, 95, TRIALS);
+    compare("lua/examples/07_study.lua", NULL, 0, 140, TRIALS);
 }
 
 static void a_script_that_measures_is_never_replayed(void **state) {

@@ -50,7 +50,8 @@ static void the_logarithm_is_libms_to_the_last_digits(void **state) {
 static void a_deviate_depends_on_its_name(void **state) {
     (void)state;
     const wh_trial_t trial = {7, 11};
-    const wh_trial_t others[] = {{8, 11}, {7, 12}, {7 + (UINT64_C(1) << 32), 11}, {7, 11 + (UINT64_C(1) << 32)}};
+    const wh_trial_t others[] = {
+        {8, 11}, {7, 12}, {7 + (UINT64_C(1) << 32), 11}, {7, 11 + (UINT64_C(1) << 32)}};
     const double u = wh_deviate_uniform(&trial, 3, 5);
     const double n = wh_deviate_normal(&trial, 3, 5);
     for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
@@ -107,7 +108,8 @@ static void deviates_keep_their_bits(void **state) {
 /* Wilson's limits are the roots p of (rate - p)^2 = z^2 p (1 - p) / n. */
 static void wilsons_limits_solve_his_equation(void **state) {
     (void)state;
-    static const uint64_t cases[][2] = {{0, 1}, {1, 1}, {0, 10}, {10, 10}, {7, 10}, {999, 1000}, {500, 1000}, {123456, 1000000}};
+    static const uint64_t cases[][2] = {{0, 1},  {1, 1},      {0, 10},     {10, 10},
+                                        {7, 10}, {999, 1000}, {500, 1000}, {123456, 1000000}};
     const double z = 1.959963984540054;
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         const double n = (double)cases[i][1];
@@ -178,7 +180,8 @@ static void sums_have_mean_deviation_and_quantiles(void **state) {
     qsort(values, VALUES, sizeof values[0], compare);
     assert_true(fabs(wh_sum_mean(&sum) - mean) < 1e-9);
     assert_true(fabs(wh_sum_deviation(&sum) - sqrt(squares / (VALUES - 1))) < 1e-9);
-    assert_true(fabs(wh_sum_least(&sum) - values[0]) < 1e-9 && fabs(wh_sum_most(&sum) - values[VALUES - 1]) < 1e-9);
+    assert_true(fabs(wh_sum_least(&sum) - values[0]) < 1e-9 &&
+                fabs(wh_sum_most(&sum) - values[VALUES - 1]) < 1e-9);
     check_quantiles(&sum, values, VALUES);
 }
 
@@ -213,7 +216,8 @@ static void sums_bear_extremes(void **state) {
     wh_sum_add(&sum, 0);
     assert_true(wh_sum_mean(&sum) == 0 && wh_sum_most(&sum) == 8192 && wh_sum_least(&sum) == -8192);
     assert_true(fabs(wh_sum_deviation(&sum) - 8192) < 1e-9);
-    assert_true(wh_sum_quantile(&sum, 500) == 0 && wh_sum_quantile(&sum, 1) == -8192 && wh_sum_quantile(&sum, 1000) == 8192);
+    assert_true(wh_sum_quantile(&sum, 500) == 0 && wh_sum_quantile(&sum, 1) == -8192 &&
+                wh_sum_quantile(&sum, 1000) == 8192);
 }
 
 int main(void) {
