@@ -191,17 +191,26 @@ static bool take_blocks(const wh_ranks_t *ranks, wh_crew_t *crew, bool *wanting,
     return sound;
 }
 
+/* Asks for more in time, and takes what comes. */
+static bool go_on(const wh_ranks_t *ranks, wh_crew_t *crew, bool *wanting, bool *more) {
+    bool sound = true;
+    if (*more && !*wanting && wh_crew_queued(crew) <= 2 * crew->hand_count) {
+        sound = tell_progress(ranks, crew, WANTS_MORE);
+        *wanting = true;
+    }
+    if (sound && *wanting) {
+        sound = take_blocks(ranks, crew, wanting, more);
+    }
+    wh_crew_wait(crew, *wanting ? 2 : 20);
+    return sound;
+}
+
 bool wh_ranks_help(wh_ranks_t *ranks, wh_crew_t *crew, bool (*interrupted)(void)) {
     bool wanting = false;
     bool more = true;
     bool sound = true;
-    while (sound && !interrupted() && !wh_crew_failed(crew) && (more || !wh_crew_is_idle(crew))) {
-        if (more && !wanting && wh_crew_queued(crew) <= 2 * crew->hand_count) {
-            sound = tell_progress(ranks, crew, WANTS_MORE);
-            wanting = true;
-        }
-        sound = sound && (!wanting || take_blocks(ranks, crew, &wanting, &more));
-        wh_crew_wait(crew, wanting ? 2 : 20);
+    while (sound && !interrupted() && (more || !wh_crew_is_idle(crew))) {
+        sound = !wh_crew_failed(crew) && go_on(ranks, crew, &wanting, &more);
     }
     if (wh_crew_failed(crew)) {
         tell(ranks, HAS_FAILED, crew->message);

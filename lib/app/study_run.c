@@ -137,16 +137,22 @@ static bool is_over(wh_crew_t *crew, const wh_ranks_t *ranks) {
     return wh_crew_is_idle(crew) && ranks->ended == ranks->size - 1;
 }
 
+static bool keep_now_and_then(keeper_t *keeper, wh_crew_t *crew) {
+    return seconds_now() - keeper->kept < KEEP_S || keep(keeper, crew);
+}
+
+static wh_study_end_t how_it_ended(wh_crew_t *crew, const wh_ranks_t *ranks) {
+    return is_interrupted() && !is_over(crew, ranks) ? WH_STUDY_INTERRUPTED : WH_STUDY_DONE;
+}
+
 static wh_study_end_t lead(wh_crew_t *crew, wh_ranks_t *ranks, keeper_t *keeper) {
     wh_bar_t bar;
-    wh_study_end_t end = WH_STUDY_DONE;
+    bool sound = true;
     queue_rest(crew);
     wh_bar_open(&bar, stderr, crew->study->trials, trials_done(crew));
-    while (end == WH_STUDY_DONE && !wh_crew_failed(crew) && !is_interrupted() && !is_over(crew, ranks)) {
+    while (sound && !wh_crew_failed(crew) && !is_interrupted() && !is_over(crew, ranks)) {
         wh_crew_wait(crew, 50);
-        if (!wh_ranks_serve(ranks, crew) || (seconds_now() - keeper->kept > KEEP_S && !keep(keeper, crew))) {
-            end = WH_STUDY_FAILED;
-        }
+        sound = wh_ranks_serve(ranks, crew) && keep_now_and_then(keeper, crew);
         wh_bar_show(&bar, trials_done(crew));
     }
     wh_bar_close(&bar);
@@ -154,7 +160,7 @@ static wh_study_end_t lead(wh_crew_t *crew, wh_ranks_t *ranks, keeper_t *keeper)
         fprintf(stderr, "%s\n", crew->message);
         return WH_STUDY_FAILED;
     }
-    return end == WH_STUDY_DONE && is_interrupted() && !is_over(crew, ranks) ? WH_STUDY_INTERRUPTED : end;
+    return sound ? how_it_ended(crew, ranks) : WH_STUDY_FAILED;
 }
 
 static void tell_interruption(const keeper_t *keeper, wh_crew_t *crew) {

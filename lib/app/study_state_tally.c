@@ -179,16 +179,23 @@ json_t *wh_state_put_tally(const wh_tally_t *tally) {
                      put_rows(&tally->errors), "wafers", wafers, "worst", put_worst(tally));
 }
 
-bool wh_state_take_tally(const json_t *root, wh_tally_t *tally) {
-    const json_t *wafers = json_object_get(root, "wafers");
-    bool sound = json_array_size(wafers) == tally->wafer_count && take_key(root, "trials", &tally->trials) &&
-                 take_key(root, "met", &tally->met) && take_key(root, "ended", &tally->ended) &&
-                 take_key(root, "whole", &tally->whole) &&
-                 take_events(json_object_get(root, "events"), tally);
+static bool take_counts(const json_t *root, wh_tally_t *tally) {
+    return take_key(root, "trials", &tally->trials) && take_key(root, "met", &tally->met) &&
+           take_key(root, "ended", &tally->ended) && take_key(root, "whole", &tally->whole);
+}
+
+static bool take_wafers(const json_t *list, wh_tally_t *tally) {
+    bool sound = json_array_size(list) == tally->wafer_count;
     for (size_t w = 0; sound && w < tally->wafer_count; ++w) {
-        sound = take_wafer(json_array_get(wafers, w), &tally->wafers[w]);
+        sound = take_wafer(json_array_get(list, w), &tally->wafers[w]);
     }
-    return sound && take_rows(json_object_get(root, "expectations"), &tally->expectations) &&
+    return sound;
+}
+
+bool wh_state_take_tally(const json_t *root, wh_tally_t *tally) {
+    return take_counts(root, tally) && take_events(json_object_get(root, "events"), tally) &&
+           take_wafers(json_object_get(root, "wafers"), tally) &&
+           take_rows(json_object_get(root, "expectations"), &tally->expectations) &&
            take_rows(json_object_get(root, "errors"), &tally->errors) &&
            take_worst(json_object_get(root, "worst"), tally);
 }
