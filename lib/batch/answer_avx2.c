@@ -30,7 +30,7 @@ AVX2 static inline lanes_t load(const wh_real_t *numbers) {
 }
 
 AVX2 static inline vectors_t vectors_at(const wh_real_t *numbers) {
-    const vectors_t v = {load(numbers), load(numbers + WH_BATCH_BLOCK), load(numbers + 2 * WH_BATCH_BLOCK)};
+    const vectors_t v = {load(numbers), load(&numbers[WH_BATCH_BLOCK]), load(&numbers[2 * WH_BATCH_BLOCK])};
     return v;
 }
 
@@ -45,7 +45,7 @@ AVX2 static inline uint32_t bits_of(masks_t masks) {
 /* (6), one bit for each lane; of the wafer as seen from the gripper or the other way round, which is the same number. */
 AVX2 static inline uint32_t near_of_lanes(const wh_real_t *near, const wh_batch_question_t *question) {
     const vectors_t n1 = vectors_at(near);
-    const vectors_t r = vectors_at(near + 3 * WH_BATCH_BLOCK);
+    const vectors_t r = vectors_at(&near[3 * WH_BATCH_BLOCK]);
     const vectors_t dr = {question->r.x - r.x, question->r.y - r.y, question->r.z - r.z};
     const lanes_t distance = (lanes_t)((masks_t)dot(&n1, &dr) & WITHOUT_SIGN);
     return bits_of(distance < question->limits.projz);
@@ -55,10 +55,10 @@ AVX2 static inline uint32_t near_of_lanes(const wh_real_t *near, const wh_batch_
 AVX2 static uint32_t ready_of_lanes(const wh_real_t *near, const wh_real_t *far,
                                     const wh_batch_question_t *question) {
     const vectors_t n1 = vectors_at(near);
-    const vectors_t r = vectors_at(near + 3 * WH_BATCH_BLOCK);
+    const vectors_t r = vectors_at(&near[3 * WH_BATCH_BLOCK]);
     const vectors_t dr = {r.x - question->r.x, r.y - question->r.y, r.z - question->r.z};
     const vectors_t e1 = vectors_at(far);
-    const vectors_t e2 = vectors_at(far + 3 * WH_BATCH_BLOCK);
+    const vectors_t e2 = vectors_at(&far[3 * WH_BATCH_BLOCK]);
     const lanes_t x = dot(&e1, &dr);
     const lanes_t y = dot(&e2, &dr);
     const lanes_t square = x * x + y * y;
@@ -76,10 +76,10 @@ AVX2 static inline uint32_t near_of_word(const wh_real_t *near, size_t block_cou
                                          const wh_batch_question_t *question) {
     uint32_t bits = 0;
     for (size_t b = 0; b < block_count; ++b) {
-        const wh_real_t *block = near + b * WH_BATCH_HALF;
+        const wh_real_t *block = &near[b * WH_BATCH_HALF];
         bits |= near_of_lanes(block, question) << b * WH_BATCH_BLOCK;
         if (LANES < WH_BATCH_BLOCK) {
-            bits |= near_of_lanes(block + LANES % WH_BATCH_BLOCK, question) << (b * WH_BATCH_BLOCK + LANES);
+            bits |= near_of_lanes(&block[LANES % WH_BATCH_BLOCK], question) << (b * WH_BATCH_BLOCK + LANES);
         }
     }
     return bits;
@@ -93,7 +93,7 @@ AVX2 static uint32_t ready_of_word(const wh_real_t *near, const wh_real_t *far, 
         const size_t at = lane / WH_BATCH_BLOCK * WH_BATCH_HALF + lane % WH_BATCH_BLOCK;
         const uint32_t asked = bits >> lane & ((1U << LANES) - 1);
         if (asked != 0) {
-            ready |= (asked & ready_of_lanes(near + at, far + at, question)) << lane;
+            ready |= (asked & ready_of_lanes(&near[at], &far[at], question)) << lane;
         }
     }
     return ready;
@@ -102,12 +102,12 @@ AVX2 static uint32_t ready_of_word(const wh_real_t *near, const wh_real_t *far, 
 AVX2 void wh_batch_answer_avx2(const wh_batch_tile_t *tile, const wh_batch_question_t *question,
                                uint32_t *words) {
     for (size_t b = 0; b < tile->block_count; b += WH_BATCH_WORD) {
-        const wh_real_t *near = tile->near + b * WH_BATCH_HALF;
+        const wh_real_t *near = &tile->near[b * WH_BATCH_HALF];
         const size_t rest = tile->block_count - b;
         const uint32_t bits =
             near_of_word(near, rest < WH_BATCH_WORD ? rest : (size_t)WH_BATCH_WORD, question);
         words[b / WH_BATCH_WORD] =
-            bits == 0 ? 0 : ready_of_word(near, tile->far + b * WH_BATCH_HALF, bits, question);
+            bits == 0 ? 0 : ready_of_word(near, &tile->far[b * WH_BATCH_HALF], bits, question);
     }
 }
 #endif

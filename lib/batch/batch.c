@@ -16,34 +16,35 @@ static void put(wh_real_t *numbers, const wh_vec3_t *v) {
 }
 
 static void put_pose(const wh_batch_t *batch, size_t wafer, const wh_pose_t *pose) {
-    wh_real_t *at = batch->numbers + near_half(wafer);
+    wh_real_t *at = &batch->numbers[near_half(wafer)];
     const wh_vec3_t e1 = wh_mat3_column(&pose->R, 0);
     const wh_vec3_t e2 = wh_mat3_column(&pose->R, 1);
     const wh_vec3_t n1 = wh_mat3_column(&pose->R, 2);
     put(at, &n1);
-    put(at + 3 * WH_BATCH_BLOCK, &pose->r);
-    at = batch->numbers + far_half(batch, wafer);
+    put(&at[3 * WH_BATCH_BLOCK], &pose->r);
+    at = &batch->numbers[far_half(batch, wafer)];
     put(at, &e1);
-    put(at + 3 * WH_BATCH_BLOCK, &e2);
+    put(&at[3 * WH_BATCH_BLOCK], &e2);
 }
 
 static wh_pose_t get_pose(const wh_batch_t *batch, size_t wafer) {
-    const wh_real_t *near = batch->numbers + near_half(wafer);
-    const wh_real_t *far = batch->numbers + far_half(batch, wafer);
+    const wh_real_t *near = &batch->numbers[near_half(wafer)];
+    const wh_real_t *far = &batch->numbers[far_half(batch, wafer)];
     const wh_vec3_t n1 = wh_batch_vector(near);
     const wh_vec3_t e1 = wh_batch_vector(far);
-    const wh_vec3_t e2 = wh_batch_vector(far + 3 * WH_BATCH_BLOCK);
+    const wh_vec3_t e2 = wh_batch_vector(&far[3 * WH_BATCH_BLOCK]);
     const wh_pose_t pose = {{{{e1.x, e2.x, n1.x}, {e1.y, e2.y, n1.y}, {e1.z, e2.z, n1.z}}},
-                            wh_batch_vector(near + 3 * WH_BATCH_BLOCK)};
+                            wh_batch_vector(&near[3 * WH_BATCH_BLOCK])};
     return pose;
 }
 
-static bool has_avx2(void) {
+static wh_batch_code_t fastest(void) {
 #if WH_BATCH_HAS_AVX2
-    return __builtin_cpu_supports("avx2") != 0;
-#else
-    return false;
+    if (__builtin_cpu_supports("avx2")) {
+        return WH_BATCH_AVX2;
+    }
 #endif
+    return WH_BATCH_PORTABLE;
 }
 
 wh_status_t wh_batch_init(wh_batch_t *batch, const wh_pose_t *base_from_wafers, size_t wafer_count,
@@ -58,7 +59,7 @@ wh_status_t wh_batch_init(wh_batch_t *batch, const wh_pose_t *base_from_wafers, 
     }
     batch->numbers = numbers;
     batch->wafer_count = wafer_count;
-    batch->code = has_avx2() ? WH_BATCH_AVX2 : WH_BATCH_PORTABLE;
+    batch->code = fastest();
     const size_t half = WH_BATCH_NUMBERS(wafer_count) / 2;
     for (size_t i = wafer_count / WH_BATCH_BLOCK * WH_BATCH_HALF; i < half; ++i) {
         numbers[i] = (wh_real_t)NAN;
@@ -74,7 +75,7 @@ wh_status_t wh_batch_use(wh_batch_t *batch, wh_batch_code_t code) {
     if (!batch) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (code != WH_BATCH_PORTABLE && !(code == WH_BATCH_AVX2 && has_avx2())) {
+    if ((unsigned)code > (unsigned)fastest()) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     batch->code = code;

@@ -25,7 +25,7 @@
  * Layout: for each block 8 x of n1, 8 y, 8 z, 8 x of the position, 8 y, 8 z; after all of these, for each block likewise
  * e1 and e2, the other two columns of R. What no wafer fills is NaN. Any alignment of wh_real_t will do; to 64 bytes is the
  * fastest. */
-#define WH_BATCH_BLOCK 8
+#define WH_BATCH_BLOCK ((size_t)8)
 #define WH_BATCH_NUMBERS(wafer_count) (((wafer_count) + (size_t)7) / 8 * 96)
 
 /* How many words a set of wafers takes: wafer w is bit w % 32 of word w / 32; bits beyond the last wafer are 0. */

@@ -16,7 +16,8 @@ typedef struct {
 
 /* Blocks that follow one another: where their numbers begin in either half. */
 typedef struct {
-    const wh_real_t *near, *far;
+    const wh_real_t *near;
+    const wh_real_t *far;
     size_t block_count; /* 1 to WH_BATCH_TILE / WH_BATCH_BLOCK */
 } wh_batch_tile_t;
 

@@ -11,20 +11,23 @@ typedef struct {
 static tile_t tile_at(const wh_batch_t *batch, size_t first) {
     const size_t rest = batch->wafer_count - first;
     const size_t wafers = rest < WH_BATCH_TILE ? rest : (size_t)WH_BATCH_TILE;
-    const wh_real_t *near = batch->numbers + first / WH_BATCH_BLOCK * WH_BATCH_HALF;
-    const tile_t tile = {
-        first,
-        WH_BATCH_WORDS(wafers),
-        {near, near + WH_BATCH_NUMBERS(batch->wafer_count) / 2,
-         (wafers + WH_BATCH_BLOCK - 1) / WH_BATCH_BLOCK},
-        batch,
-    };
+    const wh_real_t *near = &batch->numbers[first / WH_BATCH_BLOCK * WH_BATCH_HALF];
+    tile_t tile;
+    tile.first = first;
+    tile.word_count = WH_BATCH_WORDS(wafers);
+    tile.numbers.near = near;
+    tile.numbers.far = &near[WH_BATCH_NUMBERS(batch->wafer_count) / 2];
+    tile.numbers.block_count = (wafers + WH_BATCH_BLOCK - 1) / WH_BATCH_BLOCK;
+    tile.batch = batch;
     return tile;
 }
 
 static void answer(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
                    uint32_t *words) {
-    wh_batch_question_t question = {gripper->r, wh_mat3_column(&gripper->R, 2), *tolerance};
+    wh_batch_question_t question;
+    question.r = gripper->r;
+    question.n2 = wh_mat3_column(&gripper->R, 2);
+    question.limits = *tolerance;
     for (size_t i = 0; i < 2; ++i) {
         const wh_real_t unused = gripper->R.m[0][i] + gripper->R.m[1][i] + gripper->R.m[2][i];
         question.n2.x += unused - unused;
@@ -54,7 +57,7 @@ size_t wh_batch_ready(const wh_batch_t *batch, const wh_pose_t *base_from_grippe
     for (size_t first = 0; first < batch->wafer_count; first += WH_BATCH_TILE) {
         const tile_t tile = tile_at(batch, first);
         for (size_t g = 0; g < gripper_count; ++g) {
-            uint32_t *words = bits + g * WH_BATCH_WORDS(batch->wafer_count) + first / 32;
+            uint32_t *words = &bits[g * WH_BATCH_WORDS(batch->wafer_count) + first / 32];
             answer(&tile, &base_from_grippers[g], tolerance, words);
             ready += count_bits(words, tile.word_count);
         }
@@ -96,19 +99,20 @@ size_t wh_batch_list(const wh_batch_t *batch, const wh_pose_t *base_from_gripper
 }
 
 static wh_real_t distance(const wh_batch_t *batch, size_t wafer, const wh_vec3_t *gripper) {
-    const wh_real_t *near = batch->numbers + wafer / WH_BATCH_BLOCK * WH_BATCH_HALF + wafer % WH_BATCH_BLOCK;
+    const wh_real_t *near = &batch->numbers[wafer / WH_BATCH_BLOCK * WH_BATCH_HALF + wafer % WH_BATCH_BLOCK];
     const wh_vec3_t n1 = wh_batch_vector(near);
-    const wh_vec3_t r = wh_batch_vector(near + 3 * WH_BATCH_BLOCK);
+    const wh_vec3_t r = wh_batch_vector(&near[3 * WH_BATCH_BLOCK]);
     const wh_vec3_t dr = wh_vec3_subtract(&r, gripper);
     return wh_real_abs(wh_vec3_dot(&dr, &n1));
 }
 
-/* The best of `best`, from the tiles before, and of the tile's. */
+/* The best of `before`, from the tiles before, and of the tile's. */
 static int32_t better(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
-                      int32_t best) {
+                      int32_t before) {
     const wh_batch_t *batch = tile->batch;
     uint32_t words[WH_BATCH_TILE / 32];
     answer(tile, gripper, tolerance, words);
+    int32_t best = before;
     wh_real_t least = best == WH_NONE ? tolerance->projz : distance(batch, (size_t)best, &gripper->r);
     for (size_t w = next_ready(tile, words, tile->first); w < batch->wafer_count;
          w = next_ready(tile, words, w + 1)) {
