@@ -113,11 +113,15 @@ static uint32_t take_axes(const wh_machine_t *machine, const wh_real_t axes[], w
     return moved;
 }
 
+static bool has_moved(uint32_t moved, size_t axis) {
+    return (moved >> axis & 1U) != 0;
+}
+
 /* wh_robot_forward, with the sines that are known. */
 static void move_effector(const wh_real_t q[], uint32_t moved, wh_stance_t *stance) {
     const wh_real_t heading = q[WH_AXIS_THETA] + q[WH_AXIS_YAW];
     wh_pose_t *effector = &stance->base_from_effector;
-    if ((moved >> WH_AXIS_THETA & 1U) != 0) {
+    if (has_moved(moved, WH_AXIS_THETA)) {
         wh_sin_cos(q[WH_AXIS_THETA], &stance->sine, &stance->cosine);
     }
     effector->r = wh_vec3(q[WH_AXIS_R] * stance->cosine, q[WH_AXIS_R] * stance->sine, q[WH_AXIS_Z]);
@@ -137,7 +141,7 @@ void wh_machine_follow(const wh_machine_t *machine, const wh_real_t axes[], wh_s
     }
     for (size_t g = 0; moved != 0 && g < machine->gripper_count; ++g) {
         const wh_mount_t *mount = &machine->mounts[g];
-        if (mount->axis != WH_NONE && (moved >> mount->axis & 1U) != 0) {
+        if (mount->axis != WH_NONE && has_moved(moved, (size_t)mount->axis)) {
             place_on_chuck(mount, axes[mount->axis], &grippers[g].base_from_gripper);
         } else if (mount->axis == WH_NONE && robot) {
             place_on_robot(mount, &stance->base_from_effector, &grippers[g].base_from_gripper);
