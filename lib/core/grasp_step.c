@@ -69,6 +69,28 @@
     wh_same_size{K, L}(t) && wh_same_inputs{K, L}(in, \at(t->storage.gripper_count, K)) && wh_took{K, L}(t, g, wh_held{L}(t, g)) &&
     wh_other_holders{K, L}(t, wh_held{L}(t, g)) && wh_same_releases{K, L}(t) && wh_other_held{K, L}(t, g) &&
     wh_stepping{K}(t, in, from, to) ==> wh_stepping{L}(t, in, from, to);
+
+  // Gripper g no longer names a wafer that it has let go.
+  predicate wh_remembers{K, L}(wh_grasp_t *t, integer g, integer valve) =
+    wh_held{L}(t, g) == (valve == WH_VALVE_CLOSED ? WH_NONE : wh_held{K}(t, g)) &&
+    \forall integer w; wh_is_wafer{K}(t, w) ==> wh_released_by{L}(t, w) ==
+      (valve == WH_VALVE_CLOSED && w == wh_held{K}(t, g) ? WH_NONE : wh_released_by{K}(t, w));
+
+  lemma wh_holders_remembered{K, L}: \forall wh_grasp_t *t, wh_gripper_input_t *in, integer g, integer to;
+    wh_is_gripper{K}(t, g) && to == \at(t->storage.gripper_count, K) && wh_same_size{K, L}(t) &&
+    wh_same_inputs{K, L}(in, to) && wh_same_holders{K, L}(t) && wh_other_held{K, L}(t, g) &&
+    wh_remembers{K, L}(t, g, \at(in[g].valve, K)) && wh_stepping_holders{K}(t, in, g, to) ==>
+    wh_stepping_holders{L}(t, in, g + 1, to);
+  lemma wh_releases_remembered{K, L}: \forall wh_grasp_t *t, wh_gripper_input_t *in, integer g, integer to;
+    wh_is_gripper{K}(t, g) && to == \at(t->storage.gripper_count, K) && wh_same_size{K, L}(t) &&
+    wh_same_inputs{K, L}(in, to) && wh_same_holders{K, L}(t) && wh_other_held{K, L}(t, g) &&
+    wh_remembers{K, L}(t, g, \at(in[g].valve, K)) && wh_stepping_releases{K}(t, in, g, to) ==>
+    wh_stepping_releases{L}(t, in, g + 1, to);
+  lemma wh_held_remembered{K, L}: \forall wh_grasp_t *t, wh_gripper_input_t *in, integer g, integer to;
+    wh_is_gripper{K}(t, g) && to == \at(t->storage.gripper_count, K) && wh_same_size{K, L}(t) &&
+    wh_same_inputs{K, L}(in, to) && wh_same_holders{K, L}(t) && wh_other_held{K, L}(t, g) &&
+    wh_remembers{K, L}(t, g, \at(in[g].valve, K)) && wh_stepping{K}(t, in, g, to) ==>
+    wh_stepping_held{L}(t, in, g + 1, to);
 */
 
 wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind) {
@@ -351,27 +373,50 @@ static void report_release(wh_grasp_t *table, size_t g, const wh_gripper_input_t
 }
 
 /* A gripper that let go still names its wafer up to here. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(input);
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g);
     requires wh_held(table, g) == WH_NONE || wh_is_wafer(table, wh_held(table, g));
-    requires wh_apart_from_arrays(input, table);
-    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1], table->storage.grippers[g].wafer,
-            table->storage.grippers[g].base_from_gripper, table->storage.grippers[g].valve;
-    ensures wh_held(table, g) == (input->valve == WH_VALVE_CLOSED ? WH_NONE : wh_held{Pre}(table, g));
-    ensures \forall integer w; wh_is_wafer(table, w) ==> wh_released_by(table, w) ==
-              (input->valve == WH_VALVE_CLOSED && w == wh_held{Pre}(table, g) ? WH_NONE : wh_released_by{Pre}(table, w));
+    requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table);
+    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1],
+            table->storage.grippers[g].wafer, table->storage.grippers[g].valve;
+    ensures wh_same_inputs{Pre, Post}(inputs, table->storage.gripper_count);
+    ensures wh_remembers{Pre, Post}(table, g, \old(inputs[g].valve));
     ensures wh_other_held{Pre, Post}(table, g);
     ensures wh_same_watched{Pre, Post}(table);
     ensures wh_same_holders{Pre, Post}(table);
     ensures wh_same_poses{Pre, Post}(table);
     ensures wh_same_grips{Pre, Post}(table); */
-static void remember(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
+static void remember_valve(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs) {
     wh_gripper_t *gripper = &table->storage.grippers[g];
-    if (input->valve == WH_VALVE_CLOSED && gripper->wafer != WH_NONE) {
+    /*@ assert \forall integer i; wh_is_gripper(table, i) ==> \separated(inputs + i, gripper); */
+    /*@ assert \forall integer i; wh_is_gripper(table, i) ==>
+          \separated(inputs + i, table->storage.wafers + (0 .. table->storage.wafer_count - 1)); */
+    if (inputs[g].valve == WH_VALVE_CLOSED && gripper->wafer != WH_NONE) {
         table->storage.wafers[gripper->wafer].released_by = WH_NONE;
         gripper->wafer = WH_NONE;
     }
-    gripper->base_from_gripper = input->base_from_gripper;
-    gripper->valve = input->valve;
+    gripper->valve = inputs[g].valve;
+}
+
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g);
+    requires wh_held(table, g) == WH_NONE || wh_is_wafer(table, wh_held(table, g));
+    requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table);
+    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1],
+            table->storage.grippers[0 .. table->storage.gripper_count - 1];
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_same_inputs{Pre, Post}(inputs, table->storage.gripper_count);
+    ensures wh_remembers{Pre, Post}(table, g, \old(inputs[g].valve));
+    ensures wh_other_held{Pre, Post}(table, g);
+    ensures wh_same_watched{Pre, Post}(table);
+    ensures wh_same_holders{Pre, Post}(table);
+    ensures wh_same_poses{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table); */
+static void remember(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs) {
+    /*@ assert \forall integer w; wh_is_wafer(table, w) ==>
+          \separated(table->storage.wafers + w, table->storage.grippers + g); */
+    table->storage.grippers[g].base_from_gripper = inputs[g].base_from_gripper;
+    /*@ assert wh_same_poses{Pre, Here}(table); */
+    /*@ assert wh_same_grips{Pre, Here}(table); */
+    remember_valve(table, g, inputs);
 }
 
 /*@ requires wh_table_memory(table) && wh_list_memory(list);
@@ -391,6 +436,39 @@ static wh_status_t validate_call(const wh_grasp_t *table, const wh_gripper_input
     return room ? WH_OK : WH_STATUS_BAD_CAPACITY;
 }
 
+/*@ requires wh_table_memory(table) && wh_list_ready(list, 1) && wh_list_apart(list, table);
+    requires wh_is_gripper(table, g);
+    requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table) &&
+             wh_inputs_apart_list(inputs, table, list);
+    requires wh_stepping(table, inputs, 0, table->storage.gripper_count);
+    assigns table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
+            table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            list->count, list->events[0 .. wh_room(list) - 1];
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_list_grown{Pre, Post}(list, 1);
+    ensures wh_same_inputs{Pre, Post}(inputs, table->storage.gripper_count);
+    ensures wh_stepping(table, inputs, 0, table->storage.gripper_count);
+    ensures wh_same_watched{Pre, Post}(table);
+    ensures wh_holders_kept{Pre, Post}(table);
+    ensures wh_free_at_rest{Pre, Post}(table);
+    ensures wh_hold_kept{Pre, Post}(table); */
+static void pick_next(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
+    /*@ assert \forall integer i; wh_is_gripper(table, i) ==>
+          \separated(inputs + i, table->storage.wafers + (0 .. table->storage.wafer_count - 1)); */
+    /*@ assert \forall integer i; wh_is_gripper(table, i) ==> \separated(inputs + i, table->storage.grippers + g); */
+    /*@ assert \forall integer i; wh_is_gripper(table, i) ==>
+          \separated(inputs + i, list->events + (0 .. wh_room(list) - 1)); */
+    pick(table, g, &inputs[g], list);
+    /*@ assert wh_same_inputs{Pre, Here}(inputs, \at(table->storage.gripper_count, Pre)); */
+    /*@ assert wh_held(table, g) == wh_held{Pre}(table, g) ==> wh_same_held{Pre, Here}(table); */
+    /*@ assert wh_held(table, g) == wh_held{Pre}(table, g) ==>
+          wh_stepping(table, inputs, 0, \at(table->storage.gripper_count, Pre)); */
+    /*@ assert wh_held(table, g) != wh_held{Pre}(table, g) ==>
+          !wh_lets_go{Pre}(inputs, g, 0, \at(table->storage.gripper_count, Pre)); */
+    /*@ assert wh_held(table, g) != wh_held{Pre}(table, g) ==>
+          wh_stepping(table, inputs, 0, \at(table->storage.gripper_count, Pre)); */
+}
+
 /*@ requires wh_table_memory(table) && wh_list_apart(list, table) && wh_list_ready(list, table->storage.gripper_count);
     requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table) &&
              wh_inputs_apart_list(inputs, table, list);
@@ -407,6 +485,9 @@ static wh_status_t validate_call(const wh_grasp_t *table, const wh_gripper_input
     ensures wh_hold_kept{Pre, Post}(table); */
 static void pick_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     /*@ loop invariant 0 <= g <= table->storage.gripper_count;
+        loop invariant table->storage.wafer_count == \at(table->storage.wafer_count, Pre);
+        loop invariant table->storage.gripper_count == \at(table->storage.gripper_count, Pre);
+        loop invariant wh_room(list) == wh_room{Pre}(list);
         loop invariant wh_same_size{Pre, Here}(table);
         loop invariant wh_stepping(table, inputs, 0, table->storage.gripper_count);
         loop invariant wh_list_grown{Pre, Here}(list, g);
@@ -419,13 +500,10 @@ static void pick_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_eve
             list->count, list->events[0 .. wh_room{Pre}(list) - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        /*@ assert wh_table_memory(table) && wh_list_apart(list, table) && wh_list_ready(list, 1); */
         /*@ assert wh_inputs_apart(inputs, table); */
         /*@ assert wh_inputs_apart_list(inputs, table, list); */
-        pick(table, g, &inputs[g], list);
-        /*@ assert wh_same_size{LoopCurrent, Here}(table); */
-        /*@ assert wh_same_inputs{LoopCurrent, Here}(inputs, table->storage.gripper_count); */
-        /*@ assert wh_held(table, g) == wh_held{LoopCurrent}(table, g) ==> wh_same_held{LoopCurrent, Here}(table); */
-        /*@ assert wh_stepping(table, inputs, 0, table->storage.gripper_count); */
+        pick_next(table, g, inputs, list);
     }
 }
 
@@ -473,6 +551,8 @@ static void report_releases(wh_grasp_t *table, const wh_gripper_input_t *inputs,
     ensures wh_same_grips{Pre, Post}(table); */
 static void watch_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     /*@ loop invariant 0 <= g <= table->storage.gripper_count;
+        loop invariant table->storage.wafer_count == \at(table->storage.wafer_count, Pre);
+        loop invariant table->storage.gripper_count == \at(table->storage.gripper_count, Pre);
         loop invariant wh_same_size{Pre, Here}(table);
         loop invariant wh_same_held{Pre, Here}(table);
         loop invariant wh_list_grown{Pre, Here}(list, 2 * g);
@@ -504,6 +584,8 @@ static void watch_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_ev
     ensures wh_same_grips{Pre, Post}(table); */
 static void remember_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     /*@ loop invariant 0 <= g <= table->storage.gripper_count;
+        loop invariant table->storage.wafer_count == \at(table->storage.wafer_count, Pre);
+        loop invariant table->storage.gripper_count == \at(table->storage.gripper_count, Pre);
         loop invariant wh_same_size{Pre, Here}(table);
         loop invariant wh_encounters(table);
         loop invariant wh_stepping(table, inputs, g, table->storage.gripper_count);
@@ -515,13 +597,12 @@ static void remember_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         /*@ assert wh_inputs_apart(inputs, table); */
-        remember(table, g, &inputs[g]);
-        /*@ assert wh_same_size{LoopCurrent, Here}(table); */
-        /*@ assert wh_same_inputs{LoopCurrent, Here}(inputs, table->storage.gripper_count); */
+        remember(table, g, inputs);
         /*@ assert wh_encounters(table); */
         /*@ assert wh_stepping_holders(table, inputs, g + 1, table->storage.gripper_count); */
         /*@ assert wh_stepping_releases(table, inputs, g + 1, table->storage.gripper_count); */
         /*@ assert wh_stepping_held(table, inputs, g + 1, table->storage.gripper_count); */
+        /*@ assert wh_stepping(table, inputs, g + 1, table->storage.gripper_count); */
     }
 }
 
