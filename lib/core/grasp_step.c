@@ -154,9 +154,8 @@ static void report_refusal(const wh_grasp_t *table, wh_event_list_t *list, size_
 }
 
 /*@ requires wh_table_memory(table) && wh_list_ready(list, 1) && wh_list_apart(list, table);
-    requires status != WH_OK && gripper < table->storage.gripper_count;
+    requires gripper < table->storage.gripper_count;
     assigns table->counters.refused, list->count, list->events[0 .. wh_room(list) - 1];
-    ensures \result == status;
     ensures wh_same_size{Pre, Post}(table);
     ensures wh_same_poses{Pre, Post}(table);
     ensures wh_same_holders{Pre, Post}(table);
@@ -167,7 +166,7 @@ static void report_refusal(const wh_grasp_t *table, wh_event_list_t *list, size_
     ensures wh_same_valves{Pre, Post}(table);
     ensures wh_same_encounters{Pre, Post}(table);
     ensures wh_same_measured{Pre, Post}(table); */
-static wh_status_t refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripper, wh_status_t status) {
+static void refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripper, wh_status_t status) {
     if (list) {
         /*@ assert \forall integer g; wh_is_gripper(table, g) ==>
               \separated(&table->storage.grippers[g], list->events + (0 .. list->capacity - 1)); */
@@ -176,7 +175,6 @@ static wh_status_t refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripp
         report_refusal(table, list, gripper, status);
     }
     count_refusal(table);
-    return status;
 }
 
 /*@ requires wh_table_memory(table) && wh_list_apart(list, table);
@@ -196,9 +194,12 @@ static wh_status_t validate_inputs(wh_grasp_t *table, const wh_gripper_input_t *
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         const wh_status_t status = validate_input(&table->storage.grippers[g], &inputs[g]);
         if (status != WH_OK) {
-            return refuse(table, list, g, status);
+            refuse(table, list, g, status);
+            /*@ assert wh_same_arrays{Pre, Here}(table); */
+            return status;
         }
     }
+    /*@ assert wh_same_arrays{Pre, Here}(table); */
     return WH_OK;
 }
 
@@ -606,6 +607,43 @@ static void remember_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     }
 }
 
+/* What else there is to tell after the picks. */
+/*@ requires wh_table_memory(table) && wh_list_apart(list, table) && wh_list_ready(list, 3 * table->storage.gripper_count);
+    requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table) &&
+             wh_inputs_apart_list(inputs, table, list);
+    requires wh_stepping(table, inputs, 0, table->storage.gripper_count);
+    requires wh_encounters(table);
+    assigns table->counters, table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
+            list->count, list->events[0 .. wh_room(list) - 1];
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_stepping(table, inputs, 0, table->storage.gripper_count);
+    ensures wh_encounters(table);
+    ensures wh_same_held{Pre, Post}(table);
+    ensures wh_same_holders{Pre, Post}(table);
+    ensures wh_same_poses{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table); */
+static void report_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
+    report_releases(table, inputs, list);
+    /*@ assert wh_same_size{Pre, Here}(table); */
+    /*@ assert table->storage.wafer_count == \at(table->storage.wafer_count, Pre) &&
+               table->storage.gripper_count == \at(table->storage.gripper_count, Pre) &&
+               table->storage.bucket_count == \at(table->storage.bucket_count, Pre); */
+    /*@ assert wh_room(list) == wh_room{Pre}(list); */
+    /*@ assert wh_stepping(table, inputs, 0, table->storage.gripper_count); */
+    /*@ assert wh_encounters(table); */
+    /*@ assert wh_table_memory(table); */
+    /*@ assert wh_list_ready(list, 2 * table->storage.gripper_count); */
+    /*@ assert wh_list_apart(list, table); */
+    /*@ assert wh_inputs_apart(inputs, table); */
+    /*@ assert wh_inputs_apart_list(inputs, table, list); */
+    watch_all(table, inputs, list);
+    /*@ assert table->storage.wafer_count == \at(table->storage.wafer_count, Pre) &&
+               table->storage.gripper_count == \at(table->storage.gripper_count, Pre) &&
+               table->storage.bucket_count == \at(table->storage.bucket_count, Pre); */
+    /*@ assert wh_same_size{Pre, Here}(table); */
+}
+
 /*@ requires wh_table_memory(table) && wh_consistent(table) && wh_list_apart(list, table);
     requires wh_list_ready(list, 4 * table->storage.gripper_count);
     requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table) &&
@@ -630,28 +668,25 @@ static void advance(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_even
     /*@ assert wh_hold_kept{Pre, Here}(table); */
     pick_all(table, inputs, list);
     /*@ assert wh_same_size{Pre, Here}(table); */
+    /*@ assert table->storage.wafer_count == \at(table->storage.wafer_count, Pre) &&
+               table->storage.gripper_count == \at(table->storage.gripper_count, Pre) &&
+               table->storage.bucket_count == \at(table->storage.bucket_count, Pre); */
+    /*@ assert wh_room(list) == wh_room{Pre}(list); */
     /*@ assert wh_encounters(table); */
-    /*@ assert wh_list_grown{Pre, Here}(list, table->storage.gripper_count); */
     /*@ assert wh_free_at_rest{Pre, Here}(table); */
     /*@ assert wh_hold_kept{Pre, Here}(table); */
-    /*@ assert wh_room(list) == wh_room{Pre}(list); */
-    report_releases(table, inputs, list);
-    /*@ assert wh_same_size{Pre, Here}(table); */
-    /*@ assert wh_stepping(table, inputs, 0, table->storage.gripper_count); */
-    /*@ assert wh_encounters(table); */
-    /*@ assert wh_list_grown{Pre, Here}(list, 2 * table->storage.gripper_count); */
-    /*@ assert wh_free_at_rest{Pre, Here}(table); */
-    /*@ assert wh_hold_kept{Pre, Here}(table); */
-    /*@ assert wh_room(list) == wh_room{Pre}(list); */
-    /*@ assert wh_table_memory(table) && wh_list_ready(list, 2 * table->storage.gripper_count); */
+    /*@ assert wh_table_memory(table); */
+    /*@ assert wh_list_ready(list, 3 * table->storage.gripper_count); */
     /*@ assert wh_list_apart(list, table); */
     /*@ assert wh_inputs_apart(inputs, table); */
     /*@ assert wh_inputs_apart_list(inputs, table, list); */
-    watch_all(table, inputs, list);
+    report_all(table, inputs, list);
     /*@ assert wh_same_size{Pre, Here}(table); */
-    /*@ assert wh_stepping(table, inputs, 0, table->storage.gripper_count); */
+    /*@ assert table->storage.wafer_count == \at(table->storage.wafer_count, Pre) &&
+               table->storage.gripper_count == \at(table->storage.gripper_count, Pre); */
     /*@ assert wh_free_at_rest{Pre, Here}(table); */
     /*@ assert wh_hold_kept{Pre, Here}(table); */
+    /*@ assert wh_table_memory(table); */
     /*@ assert wh_inputs_apart(inputs, table); */
     remember_all(table, inputs);
     /*@ assert wh_free_at_rest{Pre, Here}(table); */
