@@ -18,7 +18,7 @@ enum { WANTS_MORE = 'M', HAS_ENDED = 'E', HAS_FAILED = 'F' };
 
 static int number_of(const char *variable, int fallback) {
     const char *text = getenv(variable);
-    return text ? atoi(text) : fallback;
+    return text ? (int)strtol(text, NULL, 10) : fallback;
 }
 
 int wh_ranks_named(void) {

@@ -41,7 +41,14 @@ static void place_stations(wh_reality_t *reality, const wh_layout_t *layout, wh_
 }
 
 static bool is_moved(const wh_station_t *one, const wh_station_t *other) {
-    return memcmp(&one->base_from_station, &other->base_from_station, sizeof one->base_from_station) != 0;
+    const wh_pose_t *a = &one->base_from_station;
+    const wh_pose_t *b = &other->base_from_station;
+    wh_real_t apart =
+        wh_real_abs(a->r.x - b->r.x) + wh_real_abs(a->r.y - b->r.y) + wh_real_abs(a->r.z - b->r.z);
+    for (size_t i = 0; i < 9; ++i) {
+        apart += wh_real_abs(a->R.m[i / 3][i % 3] - b->R.m[i / 3][i % 3]);
+    }
+    return apart > 0;
 }
 
 /* The wafer in its slot as the layout has it, then what was drawn: about its own centre, along the slot's axes. */

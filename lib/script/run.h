@@ -11,8 +11,9 @@ typedef struct {
     size_t parameter_count;
     wh_mcs_partners_t partners; /* all null: the simulator in this process */
     bool keep_segments;         /* run->mcs.segments then holds what was played */
-    const wh_trial_t *trial;    /* of a study: the cell then has its errors, if its layout or script says which */
-    wh_tape_t *tape;            /* all zero: then keeps what is commanded and read back; null: nobody does */
+    const wh_trial_t
+        *trial;      /* of a study: the cell then has its errors, if its layout or script says which */
+    wh_tape_t *tape; /* all zero: then keeps what is commanded and read back; null: nobody does */
 } wh_run_options_t;
 
 /* What is left when the script has ended. wh_run_close frees it. */
