@@ -286,6 +286,13 @@ void wh_encounter_follow(const wh_watch_t *watch) {
     follow_contest(watch);
 }
 
+/* Of an approach that goes on, or of one that may begin. */
+/*@ requires wh_watch_memory(watch); assigns \nothing; */
+static bool is_sweep_needed(const wh_watch_t *watch) {
+    return watch->gripper->approach.wafer != WH_NONE ||
+           !is_within_horizon(watch->table, (size_t)watch->index);
+}
+
 /*@ requires wh_table_memory(table); assigns \nothing; */
 static bool is_any_held(const wh_grasp_t *table) {
     bool held = false;
@@ -327,8 +334,7 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
         /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
         /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&
                    wh_watched(&watch, table->storage.grippers[gripper].contest.wafer); */
-    } else if (wh_grasp_is_swept(table, gripper) &&
-               !(watch.gripper->approach.wafer == WH_NONE && is_within_horizon(table, gripper))) {
+    } else if (wh_grasp_is_swept(table, gripper) && is_sweep_needed(&watch)) {
         wh_encounter_follow_swept(&watch);
         /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
         /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&
