@@ -84,9 +84,6 @@ void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const 
 }
 
 void wh_horizon_reset(wh_grasp_t *table) {
-    if (table->storage.bucket_count == 0) {
-        return;
-    }
     /*@ loop invariant 0 <= g <= table->storage.gripper_count;
         loop assigns g, table->storage.buckets[0 .. table->storage.bucket_count - 1];
         loop variant table->storage.gripper_count - g; */

@@ -105,7 +105,7 @@ static inline bool wh_horizon_passes(wh_horizon_t *horizon, const wh_pose_t *bas
 void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon);
 
 /* No gripper has one, until it looks again. */
-/*@ requires wh_table_memory(table);
+/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0;
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 void wh_horizon_reset(wh_grasp_t *table);
 

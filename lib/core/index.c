@@ -99,11 +99,11 @@ static void choose_edges(wh_grasp_t *table, const wh_limits_t *limits) {
     for (size_t axis = 0; axis < 3; ++axis) {
         const uint32_t extent = table->storage.buckets[WH_INDEX_EXTENTS + axis];
         uint32_t shift = SMALLEST;
-        /*@ loop invariant SMALLEST <= shift <= 31;
-            loop assigns shift;
-            loop variant 31 - shift; */
-        while (shift < 31 && ((1U << shift) / 2 < extent || (1U << shift) < large)) {
-            ++shift;
+        /*@ loop invariant SMALLEST <= edge <= 31 && SMALLEST <= shift <= edge;
+            loop assigns edge, shift;
+            loop variant 31 - edge; */
+        for (uint32_t edge = SMALLEST; edge < 31; ++edge) {
+            shift += (1U << edge) / 2 < extent || (1U << edge) < large ? 1 : 0;
         }
         table->storage.buckets[WH_INDEX_SHIFTS + axis] = shift;
     }

@@ -86,6 +86,8 @@ static void search_finds_what_is_around(void **state) {
     assert_non_null(near.listed);
     assert_int_equal(near.count, 1);
     assert_int_equal(wh_index_wafer(&indexed.cell.table, &near, 0), 2 * 8 + 3);
+    indexed.buckets[near.listed - indexed.buckets] = MANY;
+    assert_int_equal(wh_index_wafer(&indexed.cell.table, &near, 0), 0);
     near = look(&indexed, 3500, 2500, 3, 0);
     assert_non_null(near.listed);
     assert_int_equal(near.count, 0);
