@@ -153,9 +153,6 @@ static bool is_within_horizon(const wh_grasp_t *table, size_t g) {
     ensures wh_watched(watch, watch->gripper->approach.wafer);
     ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_contest{Pre, Post}(watch); */
 static void begin_approach(const wh_watch_t *watch) {
-    if (is_within_horizon(watch->table, (size_t)watch->index)) {
-        return;
-    }
     const wh_vec3_t *end = &watch->base_from_gripper->r;
     const wh_near_t near =
         wh_index_again(watch->table, (size_t)watch->index, watch->sweep ? &watch->sweep->begin->r : end, end);
@@ -277,7 +274,7 @@ static void end_encounters(const wh_watch_t *watch, bool closed) {
 }
 
 void wh_encounter_follow(const wh_watch_t *watch) {
-    if (watch->gripper->approach.wafer == WH_NONE) {
+    if (watch->gripper->approach.wafer == WH_NONE && !is_within_horizon(watch->table, (size_t)watch->index)) {
         begin_approach(watch);
     }
     if (watch->gripper->approach.wafer != WH_NONE) {

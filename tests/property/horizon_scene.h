@@ -225,6 +225,20 @@ static void meet(const scene_t *scene, wh_gripper_input_t inputs[]) {
     }
 }
 
+static wh_pose_t draw_next(const scene_t *scene, doing_t *doing, const wh_pose_t *wafer, wh_pose_t pose,
+                           bool first) {
+    if (doing->kind == EDGE) {
+        return first ? draw_edge(scene, wafer, &doing->next) : doing->next;
+    }
+    if (doing->kind == JUMP || (doing->kind == JUMP_AND_GO && first)) {
+        return jump(scene, wafer);
+    }
+    if (doing->kind != STAND) {
+        pose.r = wh_vec3_add(&pose.r, &doing->way);
+    }
+    return pose;
+}
+
 /* The next slice's inputs. */
 static void draw_inputs(scene_t *scene, const wh_wafer_t wafers[], const wh_gripper_t grippers[],
                         wh_gripper_input_t inputs[]) {
@@ -235,16 +249,8 @@ static void draw_inputs(scene_t *scene, const wh_wafer_t wafers[], const wh_grip
             draw_doing(scene, wafers, &grippers[g], doing);
         }
         --doing->left;
-        wh_pose_t pose = grippers[g].base_from_gripper;
         const wh_pose_t *wafer = &wafers[wh_test_below((uint32_t)scene->wafers)].base_from_wafer;
-        if (doing->kind == EDGE) {
-            pose = first ? draw_edge(scene, wafer, &doing->next) : doing->next;
-        } else if (doing->kind == JUMP || (doing->kind == JUMP_AND_GO && first)) {
-            pose = jump(scene, wafer);
-        } else if (doing->kind != STAND) {
-            pose.r = wh_vec3_add(&pose.r, &doing->way);
-        }
-        inputs[g].base_from_gripper = pose;
+        inputs[g].base_from_gripper = draw_next(scene, doing, wafer, grippers[g].base_from_gripper, first);
         inputs[g].valve = doing->kind == JUMP && wh_test_below(4) == 0 ? WH_VALVE_CLOSED : doing->valve;
     }
     if (wh_test_below(6) == 0) {
