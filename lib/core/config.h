@@ -59,6 +59,14 @@ static const char *const wh_abi_check __attribute__((used)) = &WH_ABI_SYMBOL;
 #endif
 #endif
 
+/* Keeps a function's memory off its callers' stack: what one part of a step needs, the next one need not carry. Costs a
+ * call; changes no result. */
+#if defined(__GNUC__)
+#define WH_OUT_OF_LINE __attribute__((noinline))
+#else
+#define WH_OUT_OF_LINE
+#endif
+
 /* "No wafer", "no gripper": the index that none has. */
 #define WH_NONE (-1)
 

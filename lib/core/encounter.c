@@ -116,7 +116,7 @@ static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, 
     assigns watch->gripper->approach, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
     ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_list_grown{Pre, Post}(watch->list, 1);
     ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_contest{Pre, Post}(watch); */
-static void follow_approach(const wh_watch_t *watch) {
+WH_OUT_OF_LINE static void follow_approach(const wh_watch_t *watch) {
     wh_encounter_t *approach = &watch->gripper->approach;
     const wh_wafer_t *wafer = &watch->table->storage.wafers[approach->wafer];
     if (wafer->holder != WH_NONE) {
@@ -152,7 +152,7 @@ static bool is_within_horizon(const wh_grasp_t *table, size_t g) {
             watch->table->storage.buckets[0 .. watch->table->storage.bucket_count - 1];
     ensures wh_watched(watch, watch->gripper->approach.wafer);
     ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_contest{Pre, Post}(watch); */
-static void begin_approach(const wh_watch_t *watch) {
+WH_OUT_OF_LINE static void begin_approach(const wh_watch_t *watch) {
     const wh_vec3_t *end = &watch->base_from_gripper->r;
     const wh_near_t near =
         wh_index_again(watch->table, (size_t)watch->index, watch->sweep ? &watch->sweep->begin->r : end, end);
@@ -216,7 +216,7 @@ static bool contest_goes_on(const wh_watch_t *watch) {
 /*@ requires wh_watch_memory(watch);
     assigns \nothing;
     ensures \result == WH_NONE || wh_is_wafer(watch->table, \result) && wh_holder(watch->table, \result) != WH_NONE; */
-static int32_t find_held(const wh_watch_t *watch) {
+WH_OUT_OF_LINE static int32_t find_held(const wh_watch_t *watch) {
     const wh_grasp_storage_t *storage = &watch->table->storage;
     int32_t best = WH_NONE;
     wh_real_t least = 0;
@@ -245,7 +245,7 @@ static int32_t find_held(const wh_watch_t *watch) {
     assigns watch->gripper->contest, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
     ensures wh_watched(watch, watch->gripper->contest.wafer) && wh_list_grown{Pre, Post}(watch->list, 1);
     ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_approach{Pre, Post}(watch); */
-static void follow_contest(const wh_watch_t *watch) {
+WH_OUT_OF_LINE static void follow_contest(const wh_watch_t *watch) {
     if (contest_goes_on(watch)) {
         return;
     }

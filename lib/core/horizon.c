@@ -55,10 +55,7 @@ static bool is_far(int32_t units) {
     return units == WH_INDEX_FAR || units == -WH_INDEX_FAR;
 }
 
-void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon) {
-    if (!horizon->measured) {
-        return;
-    }
+void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon) {
     uint32_t *words = wh_horizon_words(table, g);
     const int32_t x = wh_index_whole(WH_INDEX_UNITS * place->x);
     const int32_t y = wh_index_whole(WH_INDEX_UNITS * place->y);

@@ -99,10 +99,21 @@ static inline bool wh_horizon_passes(wh_horizon_t *horizon, const wh_pose_t *bas
     return gap > 0;
 }
 
+/* What wh_horizon_keep does where the table has buckets. */
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place) && \valid_read(horizon);
+    requires table->storage.bucket_count > 0;
+    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
+void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon);
+
 /* Keeps it, where there are buckets, for gripper g at `place`. */
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place) && \valid_read(horizon);
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
-void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon);
+static inline void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place,
+                                   const wh_horizon_t *horizon) {
+    if (table->storage.bucket_count > 0) {
+        wh_horizon_store(table, g, place, horizon);
+    }
+}
 
 /* No gripper has one, until it looks again. */
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0;

@@ -280,34 +280,20 @@ static size_t list_box(wh_grasp_t *table, const box_t *box) {
     return count;
 }
 
-/* What the last search found. */
-/*@ requires wh_table_memory(table);
-    assigns \nothing;
-    ensures \result.count <= table->storage.wafer_count;
-    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
-static wh_near_t found(const wh_grasp_t *table) {
-    wh_near_t near = {NULL, table->storage.wafer_count};
-    if (table->storage.bucket_count > 0 && table->storage.buckets[WH_INDEX_FOUND + 1] <= near.count) {
+wh_near_t wh_index_found(const wh_grasp_t *table) {
+    wh_near_t near = wh_index_all(table);
+    if (table->storage.buckets[WH_INDEX_FOUND + 1] <= near.count) {
         near.listed = heads_of(table) + 4 * near.count;
         near.count = table->storage.buckets[WH_INDEX_FOUND + 1];
     }
     return near;
 }
 
-wh_near_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
-                        wh_real_t margin) {
+wh_near_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
+                          wh_real_t margin) {
     box_t box;
-    if (table->storage.bucket_count > 0) {
-        const bool small = enclose(table, from, to, margin, &box);
-        table->storage.buckets[WH_INDEX_FOUND] = (uint32_t)g;
-        table->storage.buckets[WH_INDEX_FOUND + 1] = small ? (uint32_t)list_box(table, &box) : UINT32_MAX;
-    }
-    return found(table);
-}
-
-wh_near_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to) {
-    if (table->storage.bucket_count > 0 && table->storage.buckets[WH_INDEX_FOUND] == g) {
-        return found(table);
-    }
-    return wh_index_near(table, g, from, to, 0);
+    const bool small = enclose(table, from, to, margin, &box);
+    table->storage.buckets[WH_INDEX_FOUND] = (uint32_t)g;
+    table->storage.buckets[WH_INDEX_FOUND + 1] = small ? (uint32_t)list_box(table, &box) : UINT32_MAX;
+    return wh_index_found(table);
 }

@@ -58,15 +58,43 @@ void wh_index_build(wh_grasp_t *table);
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 void wh_index_move(wh_grasp_t *table, size_t wafer);
 
+/* All wafers. */
+/*@ requires wh_table_memory(table);
+    assigns \nothing;
+    ensures \result.listed == \null && \result.count == table->storage.wafer_count; */
+static inline wh_near_t wh_index_all(const wh_grasp_t *table) {
+    const wh_near_t near = {NULL, table->storage.wafer_count};
+    return near;
+}
+
+/* What wh_index_near does where the table has buckets. */
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(from) && \valid_read(to);
+    requires table->storage.bucket_count > 0;
+    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
+    ensures \result.count <= table->storage.wafer_count;
+    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
+wh_near_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
+                          wh_real_t margin);
+
+/* What the last search found, by whichever gripper. */
+/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0;
+    assigns \nothing;
+    ensures \result.count <= table->storage.wafer_count;
+    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
+wh_near_t wh_index_found(const wh_grasp_t *table);
+
 /* The wafers in whose neighbourhood gripper g comes between `from` and `to` or, along one of base's axes, may come by
  * moving less than `margin` from there; and others. All of them where the table has no buckets or as many cells would have
- * to be looked at. */
+ * to be looked at. A step without buckets never has the search's memory on its stack. */
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(from) && \valid_read(to);
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures \result.count <= table->storage.wafer_count;
     ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
-wh_near_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
-                        wh_real_t margin);
+static inline wh_near_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
+                                      wh_real_t margin) {
+    return table->storage.bucket_count > 0 ? wh_index_search(table, g, from, to, margin)
+                                           : wh_index_all(table);
+}
 
 /* The same without a margin, for a gripper that has searched there in this step: what it found then, unless another one
  * has searched since. */
@@ -74,7 +102,13 @@ wh_near_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from, cons
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures \result.count <= table->storage.wafer_count;
     ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
-wh_near_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to);
+static inline wh_near_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
+                                       const wh_vec3_t *to) {
+    if (table->storage.bucket_count > 0 && table->storage.buckets[WH_INDEX_FOUND] == g) {
+        return wh_index_found(table);
+    }
+    return wh_index_near(table, g, from, to, 0);
+}
 
 /* The i-th wafer that was found. */
 /*@ requires wh_table_memory(table) && \valid_read(near) && i < near->count <= table->storage.wafer_count;
