@@ -260,6 +260,17 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
     }
 }
 
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(base_from_gripper);
+    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
+    ensures \result == WH_NONE || wh_is_wafer(table, \result) && wh_holder(table, \result) == WH_NONE; */
+static int32_t find_sampled(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper) {
+    if (wh_horizon_covers(table, g, &base_from_gripper->r)) {
+        wh_horizon_note(table, g);
+        return WH_NONE;
+    }
+    return wh_grasp_find_ready(table, g, base_from_gripper);
+}
+
 /*@ requires wh_table_memory(table) && wh_list_ready(list, 1) && wh_list_apart(list, table);
     requires wh_is_gripper(table, g) && wh_held(table, g) == WH_NONE;
     requires \valid_read(input) && wh_apart_from_arrays(input, table);
@@ -279,12 +290,9 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
     ensures wh_other_grips{Pre, Post}(table, g); */
 static void pick_sampled(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
-    if (wh_horizon_covers(table, g, &input->base_from_gripper.r)) {
-        wh_horizon_note(table, g);
-        return;
-    }
-    const int32_t w = wh_grasp_find_ready(table, g, &input->base_from_gripper);
+    const int32_t w = find_sampled(table, g, &input->base_from_gripper);
     if (w == WH_NONE) {
+        /*@ assert wh_other_poses{Pre, Here}(table, wh_held(table, g)); */
         return;
     }
     wh_grasp_take(table, g, w, &input->base_from_gripper, list);
@@ -296,6 +304,7 @@ static void pick_sampled(wh_grasp_t *table, size_t g, const wh_gripper_input_t *
     }
     /*@ assert wh_other_poses{Pre, Here}(table, w); */
     /*@ assert wh_other_grips{Pre, Here}(table, g); */
+    /*@ assert wh_other_poses{Pre, Here}(table, wh_held(table, g)); */
 }
 
 /* Part 4 for one gripper. */

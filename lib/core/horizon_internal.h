@@ -39,7 +39,8 @@ static inline wh_real_t wh_horizon_way(uint32_t word, wh_real_t place) {
 
 /* No wafer that nobody holds matters to gripper g at `place`. */
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place);
-    assigns \nothing; */
+    assigns \nothing;
+    ensures \result ==> table->storage.bucket_count > 0; */
 static inline bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
     if (table->storage.bucket_count == 0) {
         return false;
