@@ -9,6 +9,7 @@ int wh_app_run(int argc, char **argv);
 int wh_app_mcs(int argc, char **argv);
 int wh_app_replay(int argc, char **argv);
 int wh_app_sim(int argc, char **argv);
+int wh_app_report(int argc, char **argv);
 int wh_app_layout(int argc, char **argv);
 int wh_app_study(int argc, char **argv);
 

@@ -5,6 +5,7 @@
 #include <jansson.h>
 #include <stdio.h>
 
+#include "report/utf8.h"
 #include "script/record.h"
 
 /* What is being written, and whether any value could not be made. */
@@ -19,12 +20,6 @@ void wh_json_append(wh_json_writer_t *writer, json_t *list, json_t *value);
 
 /* A number, or null for what JSON has not. */
 json_t *wh_json_real(double value);
-
-/* How long the valid UTF-8 character at `text` is: 0 when there is none. */
-size_t wh_utf8_bytes(const char *text);
-
-/* A text, repaired where it is no UTF-8; null for null. */
-json_t *wh_json_text(const char *text);
 
 /* A list of what `element` makes of 0 to count - 1. */
 typedef json_t *wh_json_element_t(wh_json_writer_t *writer, size_t i);

@@ -14,6 +14,7 @@ static const struct {
     {"mcs", "motion control over LCM, for a script or at a prompt", wh_app_mcs},
     {"sim", "simulate a cell for whoever sends commands over LCM", wh_app_sim},
     {"replay", "step a recording again and compare it", wh_app_replay},
+    {"report", "make a page of a run: the cell in motion, plots, tables", wh_app_report},
     {"layout", "list, check and draw a cell", wh_app_layout},
     {"study", "play a script many times, each time a little off", wh_app_study},
 };

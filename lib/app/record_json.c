@@ -273,12 +273,21 @@ static void put_lists(wh_json_writer_t *writer, json_t *root) {
     wh_json_put_figures(writer, root);
 }
 
-int wh_record_print_json(const wh_record_t *record, FILE *out) {
+json_t *wh_record_to_json(const wh_record_t *record) {
     wh_json_writer_t writer = {record, false};
     json_t *root = json_object();
     put_head(&writer, root);
     put_lists(&writer, root);
-    const int status = writer.failed ? -1 : wh_json_print(root, out);
+    if (writer.failed) {
+        json_decref(root);
+        return NULL;
+    }
+    return root;
+}
+
+int wh_record_print_json(const wh_record_t *record, FILE *out) {
+    json_t *root = wh_record_to_json(record);
+    const int status = root ? wh_json_print(root, out) : -1;
     json_decref(root);
     return status;
 }

@@ -38,6 +38,7 @@
 #ifndef WH_APP_RECORD_JSON_H
 #define WH_APP_RECORD_JSON_H
 
+#include <jansson.h>
 #include <stdio.h>
 
 #include "script/record.h"
@@ -45,5 +46,8 @@
 /* 0, or -1 when memory is out (nothing is then printed) or writing failed. Needs LC_NUMERIC "C" no more than
  * any other locale. Cost: linear in the record, all of it in memory once more. */
 int wh_record_print_json(const wh_record_t *record, FILE *out);
+
+/* The object itself, to be released by the caller; null when memory is out. */
+json_t *wh_record_to_json(const wh_record_t *record);
 
 #endif

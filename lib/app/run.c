@@ -73,6 +73,9 @@ static bool take_flag(wh_run_arguments_t *arguments, int key) {
 static error_t parse(int key, char *argument, struct argp_state *state) {
     wh_run_arguments_t *arguments = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &arguments->files;
+        return 0;
     case OPTION_SEGMENTS:
         arguments->segments_path = argument;
         return 0;
@@ -100,18 +103,56 @@ static int print_result(const wh_run_arguments_t *arguments, const wh_run_t *run
     if (arguments->json) {
         return wh_record_print_json(&run->record, stdout);
     }
+    if (arguments->quiet) {
+        return 0;
+    }
     const wh_style_t style = wh_style_of(stdout);
     return wh_record_print_table_with(&run->record, stdout, &style, arguments->sections);
 }
 
-static int report(const wh_run_arguments_t *arguments, const wh_run_t *run, wh_run_outcome_t outcome) {
+static bool write_segments(const wh_run_arguments_t *arguments, const wh_run_t *run) {
+    if (arguments->segments_path && wh_segments_write(&run->mcs, arguments->segments_path) != 0) {
+        fprintf(stderr, "%s: %s (expected a file that can be written)\n", arguments->segments_path,
+                strerror(errno));
+        return false;
+    }
+    return true;
+}
+
+static bool write_report(const wh_run_arguments_t *arguments, const wh_run_t *run, wh_trace_t *trace) {
+    const wh_run_options_t *script = &arguments->run;
+    if (!wh_report_files_wanted(&arguments->files)) {
+        return true;
+    }
+    if (!run->record.layout) {
+        fprintf(stderr, "%s: no cell (expected a script that names a layout: there is nothing to show)\n",
+                script->script);
+        return false;
+    }
+    if (!trace->layout) {
+        wh_trace_begin(trace, run->record.layout, true);
+    }
+    wh_trace_finish(trace);
+    char *command = wh_report_command(script->script, script->parameters, script->parameter_count);
+    const wh_document_t document = {.title = script->script,
+                                    .reproduce = command,
+                                    .source = "run",
+                                    .parameters = script->parameters,
+                                    .parameter_count = script->parameter_count,
+                                    .record = &run->record,
+                                    .trace = trace};
+    const bool written = wh_report_files_write(&arguments->files, &document);
+    free(command);
+    return written;
+}
+
+static int report(const wh_run_arguments_t *arguments, const wh_run_t *run, wh_trace_t *trace,
+                  wh_run_outcome_t outcome) {
     if (outcome == WH_RUN_BAD_INPUT) {
         fprintf(stderr, "%s\n", run->message);
         return WH_EXIT_USAGE;
     }
-    if (arguments->segments_path && wh_segments_write(&run->mcs, arguments->segments_path) != 0) {
-        fprintf(stderr, "%s: %s (expected a file that can be written)\n", arguments->segments_path,
-                strerror(errno));
+    if (!write_segments(arguments, run) || !write_report(arguments, run, trace)) {
         return WH_EXIT_USAGE;
     }
     if (print_result(arguments, run) != 0 || fflush(stdout) != 0) {
@@ -141,12 +182,18 @@ void wh_run_arguments_free(wh_run_arguments_t *arguments) {
 
 int wh_run_and_report(wh_run_arguments_t *arguments) {
     wh_run_t run;
+    wh_trace_t trace = {0};
+    if (wh_report_files_wanted(&arguments->files)) {
+        arguments->run.listener = wh_report_listener(&trace);
+    }
     arguments->run.keep_segments = arguments->segments_path != NULL;
     arguments->run.limits.print_to = arguments->json ? stderr : stdout;
     const wh_run_outcome_t outcome = wh_run_script(&run, &arguments->run);
-    const int status = report(arguments, &run, outcome);
+    const int status = report(arguments, &run, &trace, outcome);
+    wh_trace_close(&trace);
     wh_run_close(&run);
     return status;
 }
 
-const struct argp wh_run_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
+static const struct argp_child children[] = {{&wh_report_files_argp, 0, NULL, 0}, {0}};
+const struct argp wh_run_argp = {options, parse, NULL, NULL, children, NULL, NULL};

@@ -4,6 +4,7 @@
 
 #include <argp.h>
 
+#include "app/report_files.h"
 #include "script/run.h"
 
 /* Zero it to begin with; wh_run_arguments_free frees what parsing took. */
@@ -13,6 +14,8 @@ typedef struct {
     const char *segments_path;
     bool json;
     unsigned sections; /* WH_TABLE_* */
+    bool quiet;        /* print neither tables nor, without `json`, anything else */
+    wh_report_files_t files;
 } wh_run_arguments_t;
 
 /* The options and the script, as a child of a subcommand's parser; its input is a wh_run_arguments_t that

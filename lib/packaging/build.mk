@@ -6,6 +6,7 @@ CXXFLAGS ?= -O2 -g
 PKG_CONFIG ?= pkg-config
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
+JAVASCRIPT ?= /usr/share/javascript
 WERROR ?= $(if $(CI),1)
 Q := $(if $(V),,@)
 
@@ -18,15 +19,16 @@ LIBRARY_SOURCES := $(wildcard $(LIBRARY_PARTS:%=lib/%/*.c))
 COLLISION_SOURCES := $(wildcard lib/collision/*.c)
 MODULE_SOURCES := $(wildcard lib/script/wh_module*.c)
 SCRIPT_SOURCES := $(filter-out $(MODULE_SOURCES),$(wildcard lib/script/*.c lib/study/*.c))
-PROGRAM_SOURCES := $(SCRIPT_SOURCES) $(MODULE_SOURCES) $(wildcard lib/link/*.c lib/app/*.c)
+PROGRAM_SOURCES := $(SCRIPT_SOURCES) $(MODULE_SOURCES) $(wildcard lib/link/*.c lib/report/*.c lib/app/*.c)
 MESSAGES := $(patsubst lcm_types/%.lcm,%,$(wildcard lcm_types/*.lcm))
 LUA_SOURCES := $(sort $(shell find lua -name '*.lua' 2>/dev/null))
+PAGE_SOURCES := $(sort $(wildcard lib/report/page/*))
 HEADERS := $(wildcard lib/*.h lib/*/*.h lib/*/*.def)
 include tests/tests.mk
 
 LIBRARY_OBJECTS := $(LIBRARY_SOURCES:%.c=$(B)/obj/%.o)
 COLLISION_OBJECTS := $(COLLISION_SOURCES:%.c=$(B)/obj/%.o)
-PROGRAM_OBJECTS := $(PROGRAM_SOURCES:%.c=$(B)/obj/%.o) $(B)/obj/embedded_lua.o
+PROGRAM_OBJECTS := $(PROGRAM_SOURCES:%.c=$(B)/obj/%.o) $(B)/obj/embedded_lua.o $(B)/obj/embedded_page.o
 MESSAGE_SOURCES := $(MESSAGES:%=$(B)/lcm/waferhand_%.c)
 MESSAGE_OBJECTS := $(MESSAGE_SOURCES:$(B)/%.c=$(B)/obj/%.o)
 MODULE_OBJECTS := $(MODULE_SOURCES:%.c=$(B)/pic/%.o)
@@ -73,9 +75,9 @@ PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --li
 
 # Written when its text changes: what depends on it is rebuilt when a flag or the set of files changes.
 STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(COLLISION_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS) \
-         $(CXX_TEST_FLAGS) $(MESSAGE_FLAGS)
+         $(CXX_TEST_FLAGS) $(MESSAGE_FLAGS) $(JAVASCRIPT)
 $(B)/flags: TEXT = $(STAMP)
-$(B)/sources: TEXT = $(LIBRARY_SOURCES) $(COLLISION_SOURCES) $(PROGRAM_SOURCES) $(LUA_SOURCES)
+$(B)/sources: TEXT = $(LIBRARY_SOURCES) $(COLLISION_SOURCES) $(PROGRAM_SOURCES) $(LUA_SOURCES) $(PAGE_SOURCES)
 $(B)/messages: TEXT = $(MESSAGES)
 $(B)/flags $(B)/sources $(B)/messages: FORCE
 	@mkdir -p $(@D)
@@ -105,6 +107,7 @@ $(PROGRAM_OBJECTS): FLAGS = $(PROGRAM_FLAGS)
 $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(LIBRARY_FLAGS) -fPIC
 $(COLLISION_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(COLLISION_FLAGS) -fPIC
 $(SCRIPT_SOURCES:%.c=$(B)/pic/%.o) $(MODULE_OBJECTS): FLAGS = $(PROGRAM_FLAGS) -fPIC
+$(B)/obj/lib/report/page.o: FLAGS += -DWH_JAVASCRIPT='"$(JAVASCRIPT)"'
 # Its pow must not be taken for the one that the compiler knows.
 $(B)/obj/lib/script/pow.o $(B)/pic/lib/script/pow.o: FLAGS += -fno-builtin-pow
 $(B)/obj/tests/%.o: FLAGS = $(TEST_FLAGS)
@@ -121,10 +124,12 @@ $(B)/pic/%.o: %.c $(B)/flags
 	$(call compile,PIC,$(CC),$(CFLAGS))
 $(B)/obj/%.o: %.cpp $(B)/flags
 	$(call compile,CXX,$(CXX),$(CXXFLAGS))
-$(B)/obj/embedded_lua.o: $(B)/embedded_lua.c $(B)/flags
+$(B)/obj/embedded_lua.o $(B)/obj/embedded_page.o: $(B)/obj/%.o: $(B)/%.c $(B)/flags
 	$(call compile,CC ,$(CC),$(CFLAGS))
 $(B)/embedded_lua.c: lib/packaging/embed $(LUA_SOURCES) $(B)/sources
-	@lib/packaging/embed $(LUA_SOURCES) >$@
+	@lib/packaging/embed wh_embedded lua/ $(LUA_SOURCES) >$@
+$(B)/embedded_page.c: lib/packaging/embed $(PAGE_SOURCES) $(B)/sources
+	@lib/packaging/embed wh_embedded_page lib/report/page/ $(PAGE_SOURCES) >$@
 
 # All at once, and anew, so that none is left of a message that is gone. waferhand_messages.h gathers the others and
 # lists them: WAFERHAND_MESSAGES(X) is X(cell) X(command) and so on.
@@ -139,7 +144,7 @@ $(B)/obj/lcm/%.o: $(B)/lcm/%.c $(B)/flags
 	$(call compile,CC ,$(CC),$(CFLAGS))
 $(MESSAGE_OBJECTS): FLAGS = $(MESSAGE_FLAGS)
 # Compilers leave headers found by -isystem out of the .d files.
-$(filter $(B)/obj/lib/link/% $(B)/obj/lib/app/%,$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o) $(TOOLS:%=$(B)/obj/%.o): \
+$(filter $(B)/obj/lib/link/% $(B)/obj/lib/report/% $(B)/obj/lib/app/%,$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o) $(TOOLS:%=$(B)/obj/%.o): \
     $(B)/lcm/waferhand_messages.h
 
 -include $(shell find $(B)/obj $(B)/pic -name '*.d' 2>/dev/null)

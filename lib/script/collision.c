@@ -1,23 +1,22 @@
 #include "script/collision.h"
 
-/* The end-effector is where a gripper on it says: a fault may keep it from where the axes should have brought it. */
-static void place_effector(wh_collision_t *collision, const wh_gripper_input_t inputs[]) {
-    const wh_machine_t *machine = &collision->layout->machine;
+bool wh_collision_effector(const wh_machine_t *machine, const wh_pose_t base_from_grippers[],
+                           wh_pose_t *base_from_effector) {
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         const wh_mount_t *mount = &machine->mounts[g];
         if (mount->axis != WH_NONE) {
             continue;
         }
-        collision->base_from_effector = inputs[g].base_from_gripper;
+        *base_from_effector = base_from_grippers[g];
         if (mount->is_shifted) {
             const wh_pose_t identity = wh_pose_identity();
             const wh_pose_t gripper_from_effector =
                 wh_pose_relative(&mount->effector_from_gripper, &identity);
-            collision->base_from_effector =
-                wh_pose_compose(&inputs[g].base_from_gripper, &gripper_from_effector);
+            *base_from_effector = wh_pose_compose(&base_from_grippers[g], &gripper_from_effector);
         }
-        return;
+        return true;
     }
+    return false;
 }
 
 static void look(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
@@ -27,7 +26,7 @@ static void look(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         grippers[g] = inputs[g].base_from_gripper;
     }
-    place_effector(collision, inputs);
+    (void)wh_collision_effector(&collision->layout->machine, grippers, &collision->base_from_effector);
     if (collision->world) {
         wh_world_step(collision->world, table, &collision->base_from_effector, grippers, list);
     } else {

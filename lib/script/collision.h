@@ -26,4 +26,9 @@ void wh_collision_attach(wh_collision_t *collision, const wh_layout_t *layout, w
  * what it finds is reported by the simulator. `layout` and `memory` as above. */
 void wh_collision_follow(wh_collision_t *collision, const wh_state_t *state);
 
+/* The end-effector is where a gripper on it says: a fault may keep it from where the axes should have brought it. False,
+ * and nothing written, when no gripper is on the robot. */
+bool wh_collision_effector(const wh_machine_t *machine, const wh_pose_t base_from_grippers[],
+                           wh_pose_t *base_from_effector);
+
 #endif

@@ -1,11 +1,11 @@
-/* The Lua files below lua/, built into the program: made by lib/packaging/embed. */
+/* Files built into the program, made by lib/packaging/embed: the Lua files below lua/, and the page of a report. */
 #ifndef WH_SCRIPT_EMBEDDED_H
 #define WH_SCRIPT_EMBEDDED_H
 
 #include <stddef.h>
 
 typedef struct {
-    const char *name;          /* the path below lua/, such as "mcs/patterns.lua" */
+    const char *name;          /* the path below its folder, such as "mcs/patterns.lua" of lua/ */
     const unsigned char *text; /* `size` bytes, and a zero after them */
     size_t size;
 } wh_embedded_t;
@@ -13,5 +13,9 @@ typedef struct {
 /* Sorted by name. */
 extern const wh_embedded_t wh_embedded[];
 extern const size_t wh_embedded_count;
+
+/* Those of lib/report/page. */
+extern const wh_embedded_t wh_embedded_page[];
+extern const size_t wh_embedded_page_count;
 
 #endif

@@ -27,13 +27,22 @@ typedef struct {
     void *user;
 } wh_mcs_partners_t;
 
+/* Who listens to a run, whoever its partners are; each function may be null. */
+typedef struct {
+    /* A slice was accepted: mcs->command and mcs->state are what went in and came out. */
+    void (*slice)(void *user, const wh_mcs_t *mcs);
+    /* A command of the record begins or has ended. */
+    void (*boundary)(void *user, const wh_mcs_t *mcs);
+    void *user;
+} wh_mcs_listener_t;
+
 /* Judges a segment before a command moves: it was planned from where mcs->track stands, nothing of the command has been
  * played, and track.valves are as the segments before it leave them. True when it would collide; `reason`, of
  * WH_MCS_REASON_BYTES, then says with what. A copy of the track may be stepped, mcs must be left alone. */
 #define WH_MCS_REASON_BYTES 200
 typedef bool wh_mcs_ahead_t(void *user, const wh_mcs_t *mcs, const wh_segment_t *segment, char *reason);
 
-/* Written by lib/script/mcs*.c only, but for `partners`, `keep_segments`, `trial`, `tape` and `ahead`, which may be set between
+/* Written by lib/script/mcs*.c only, but for `partners`, `listener`, `keep_segments`, `trial`, `tape` and `ahead`, which may be set between
  * opening and the cell. Must not be moved once opened. */
 struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
@@ -70,6 +79,7 @@ struct wh_mcs {
     wh_segment_t *segments;
     size_t segment_count, segment_capacity;
     wh_mcs_partners_t partners;
+    wh_mcs_listener_t listener;
 };
 
 /* Opens the operator's words in a sandbox for one run of `script`. `mcs` and `record` must outlive the

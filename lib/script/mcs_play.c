@@ -29,6 +29,9 @@ static wh_status_t exchange(wh_mcs_t *mcs) {
     if (status == WH_OK && mcs->collision.memory && mcs->link != &mcs->simulator.link) {
         wh_collision_follow(&mcs->collision, &mcs->state);
     }
+    if (status == WH_OK && mcs->listener.slice) {
+        mcs->listener.slice(mcs->listener.user, mcs);
+    }
     return status;
 }
 

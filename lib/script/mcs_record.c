@@ -21,6 +21,9 @@ static void tell(const wh_mcs_t *mcs, const wh_command_record_t *command, bool e
     if (mcs->partners.watch) {
         mcs->partners.watch(mcs->partners.user, mcs, command, ended);
     }
+    if (mcs->listener.boundary) {
+        mcs->listener.boundary(mcs->listener.user, mcs);
+    }
 }
 
 /* native.begin(text): a command starts; the script's line is found on the stack. A metamethod of an argument

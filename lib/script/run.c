@@ -52,6 +52,7 @@ wh_run_outcome_t wh_run_script(wh_run_t *run, const wh_run_options_t *options) {
     run->mcs.partners = options->partners;
     run->mcs.trial = options->trial;
     run->mcs.tape = options->tape;
+    run->mcs.listener = options->listener;
     wh_sandbox_run(run->sandbox, options->script, &result);
     return conclude(run, &result);
 }

@@ -10,6 +10,7 @@ typedef struct {
     const char *const *parameters; /* NAME=VALUE, as --set hands them over */
     size_t parameter_count;
     wh_mcs_partners_t partners; /* all null: the simulator in this process */
+    wh_mcs_listener_t listener; /* all null: nobody listens */
     bool keep_segments;         /* run->mcs.segments then holds what was played */
     const wh_trial_t
         *trial;      /* of a study: the cell then has its errors, if its layout or script says which */

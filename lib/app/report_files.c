@@ -1,0 +1,177 @@
+#include "app/report_files.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/record_json.h"
+#include "report/output.h"
+#include "report/page.h"
+#include "report/scene.h"
+#include "script/record.h"
+
+enum { OPTION_GLTF = 4000, OPTION_DATA };
+
+static const struct argp_option options[] = {
+    {"report", 'o', "FILE", 0, "Write a page to look at and to mail: the cell in motion, plots and tables",
+     0},
+    {"gltf", OPTION_GLTF, "FILE", 0, "Write the cell in motion as glTF 2.0, for Blender and other viewers",
+     0},
+    {"data", OPTION_DATA, "FILE", 0, "Write the page's data alone, as JSON", 0},
+    {0},
+};
+
+static error_t parse(int key, char *argument, struct argp_state *state) {
+    wh_report_files_t *files = state->input;
+    switch (key) {
+    case 'o':
+        files->page = argument;
+        return 0;
+    case OPTION_GLTF:
+        files->scene = argument;
+        return 0;
+    case OPTION_DATA:
+        files->document = argument;
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const struct argp wh_report_files_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
+
+bool wh_report_files_wanted(const wh_report_files_t *files) {
+    return files->page || files->scene || files->document;
+}
+
+/* ------------------------------------------------------------------------------------------------- listening */
+
+static void on_slice(void *user, const wh_mcs_t *mcs) {
+    wh_trace_t *trace = user;
+    if (!trace->layout) {
+        wh_trace_begin(trace, mcs->layout, true);
+    }
+    wh_trace_slice(trace, mcs->command.axes, mcs->command.axis_count, &mcs->state);
+}
+
+static void on_boundary(void *user, const wh_mcs_t *mcs) {
+    (void)mcs;
+    wh_trace_mark(user);
+}
+
+wh_mcs_listener_t wh_report_listener(wh_trace_t *trace) {
+    const wh_mcs_listener_t listener = {on_slice, on_boundary, trace};
+    return listener;
+}
+
+/* -------------------------------------------------------------------------------------------------- command */
+
+/* As a shell reads it back. */
+static void write_word(FILE *out, const char *word) {
+    const char *plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=+,:@%";
+    if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
+        fputs(word, out);
+        return;
+    }
+    fputc('\'', out);
+    for (const char *c = word; *c; ++c) {
+        if (*c == '\'') {
+            fputs("'\\''", out);
+        } else {
+            fputc((unsigned char)*c, out);
+        }
+    }
+    fputc('\'', out);
+}
+
+char *wh_report_command(const char *script, const char *const parameters[], size_t count) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out) {
+        return NULL;
+    }
+    fputs("waferhand run ", out);
+    write_word(out, script);
+    for (size_t i = 0; i < count; ++i) {
+        fputs(" --set ", out);
+        write_word(out, parameters[i]);
+    }
+    (void)fclose(out);
+    return text;
+}
+
+/* --------------------------------------------------------------------------------------------------- writing */
+
+typedef struct {
+    const wh_document_t *document;
+    const char *text; /* the document's */
+    size_t size;
+} content_t;
+
+/* Writes one of the files; false and `message`, or errno and an empty one. */
+typedef bool writer_t(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]);
+
+static bool write_page(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]) {
+    return wh_page_write(out, content->document->title, content->text, content->size, message);
+}
+
+static bool write_scene(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]) {
+    (void)message;
+    json_t *scene = wh_scene_make(content->document->trace, content->document->title, true);
+    const bool written = json_dumpf(scene, out, JSON_COMPACT | JSON_REAL_PRECISION(9)) == 0;
+    json_decref(scene);
+    return written && fputc('\n', out) != EOF;
+}
+
+static bool write_document(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]) {
+    (void)message;
+    return fwrite(content->text, 1, content->size, out) == content->size;
+}
+
+static bool write_file(const content_t *content, const char *path, writer_t *writer) {
+    char message[WH_PAGE_MESSAGE_BYTES] = "";
+    wh_output_t output = {0};
+    if (!path) {
+        return true;
+    }
+    const bool written =
+        wh_output_open(&output, path) && writer(content, output.file, message) && wh_output_commit(&output);
+    const int reason = errno;
+    wh_output_drop(&output);
+    if (!written && message[0] != '\0') {
+        fprintf(stderr, "%s: not written: %s\n", path, message);
+    } else if (!written) {
+        fprintf(stderr, "%s: %s (expected a file that can be written)\n", path, strerror(reason));
+    }
+    return written;
+}
+
+/* The document as text, to be freed; null when memory is out. */
+static char *text_of(const wh_document_t *document, size_t *size) {
+    char *text = NULL;
+    FILE *out = open_memstream(&text, size);
+    const bool written = out && wh_document_write(document, out) == 0;
+    if (out && (fclose(out) != 0 || !written)) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+bool wh_report_files_write(const wh_report_files_t *files, const wh_document_t *document) {
+    wh_document_t whole = *document;
+    whole.run = wh_record_to_json(document->record);
+    content_t content = {.document = &whole};
+    char *text = whole.run ? text_of(&whole, &content.size) : NULL;
+    content.text = text;
+    if (!text) {
+        fprintf(stderr, "%s: no memory for the report\n", document->title);
+    }
+    const bool written = text && write_file(&content, files->document, write_document) &&
+                         write_file(&content, files->scene, write_scene) &&
+                         write_file(&content, files->page, write_page);
+    free(text);
+    json_decref(whole.run);
+    return written;
+}

@@ -1,0 +1,180 @@
+#include "report/document.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/config.h"
+#include "report/document_internal.h"
+#include "report/quaternion.h"
+#include "report/scene.h"
+#include "report/utf8.h"
+
+#define FORMAT 1
+
+double wh_document_seconds(const wh_trace_t *trace, int64_t slice) {
+    return (double)(slice * trace->layout->slice_us) / 1e6;
+}
+
+static void put_text(wh_json_text_t *text, const char *key, const char *value) {
+    wh_json_text_value(text, key, wh_json_text(value));
+}
+
+static void put_exact(wh_json_text_t *text, const char *key, double value) {
+    wh_json_text_number(text, key, value, 0, true);
+}
+
+void wh_document_put_pose(wh_json_text_t *text, const wh_pose_t *pose) {
+    double q[4];
+    wh_quaternion_from_matrix(&pose->R, NULL, q);
+    wh_json_text_begin(text, "r", '[');
+    put_exact(text, NULL, pose->r.x);
+    put_exact(text, NULL, pose->r.y);
+    put_exact(text, NULL, pose->r.z);
+    wh_json_text_end(text, ']');
+    wh_json_text_begin(text, "q", '[');
+    for (size_t i = 0; i < 4; ++i) {
+        put_exact(text, NULL, q[i]);
+    }
+    wh_json_text_end(text, ']');
+}
+
+/* ---------------------------------------------------------------------------------------------------- head */
+
+static void put_parameters(wh_json_text_t *text, const wh_document_t *document) {
+    json_t *object = json_object();
+    for (size_t i = 0; i < document->parameter_count; ++i) {
+        const char *parameter = document->parameters[i];
+        const size_t name = strcspn(parameter, "=");
+        char key[256];
+        (void)snprintf(key, sizeof key, "%.*s", (int)name, parameter);
+        (void)json_object_set_new(object, key, wh_json_text(parameter[name] ? parameter + name + 1 : ""));
+    }
+    wh_json_text_value(text, "parameters", object);
+}
+
+static void put_notes(wh_json_text_t *text, const wh_document_t *document) {
+    wh_json_text_begin(text, "notes", '[');
+    for (size_t i = 0; i < document->note_count; ++i) {
+        put_text(text, NULL, document->notes[i]);
+    }
+    wh_json_text_end(text, ']');
+}
+
+static void put_head(wh_json_text_t *text, const wh_document_t *document) {
+    const wh_trace_t *trace = document->trace;
+    wh_json_text_integer(text, "format", FORMAT);
+    put_text(text, "title", document->title);
+    put_text(text, "version", WH_VERSION);
+    put_text(text, "reproduce", document->reproduce);
+    put_parameters(text, document);
+    put_text(text, "source", document->source);
+    put_notes(text, document);
+    wh_json_text_value(text, "run", json_incref(document->run));
+    put_exact(text, "slice_s", (double)trace->layout->slice_us / 1e6);
+    wh_json_text_integer(text, "slices", trace->last > 0 ? trace->last : 0);
+    put_exact(text, "begin_s", wh_document_seconds(trace, trace->first));
+    put_exact(text, "duration_s", wh_document_seconds(trace, trace->last));
+}
+
+/* ---------------------------------------------------------------------------------------------------- names */
+
+static void put_axis(wh_json_text_t *text, const wh_layout_t *layout, size_t axis) {
+    static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
+    const bool of_robot = axis < WH_ROBOT_AXES;
+    const wh_travel_t *travel = of_robot ? &layout->machine.robot.travel[axis] : NULL;
+    const bool known = travel && travel->max > travel->min;
+    const double speed =
+        axis < layout->machine.axis_count ? wh_machine_limits(&layout->machine, axis)->speed : 0;
+    char name[WH_NAME_SIZE + 8] = "";
+    for (size_t g = 0; !of_robot && g < layout->machine.gripper_count; ++g) {
+        if (layout->machine.mounts[g].axis == (int32_t)axis) {
+            (void)snprintf(name, sizeof name, "%s chuck", layout->grippers[g].name);
+        }
+    }
+    wh_json_text_begin(text, NULL, '{');
+    put_text(text, "name", of_robot ? names[axis] : name);
+    wh_json_text_string(text, "unit", axis == WH_AXIS_R || axis == WH_AXIS_Z ? "mm" : "rad");
+    wh_json_text_number(text, "low", known ? (double)travel->min : HUGE_VAL, 0, true);
+    wh_json_text_number(text, "high", known ? (double)travel->max : HUGE_VAL, 0, true);
+    wh_json_text_number(text, "speed", speed > 0 ? speed : HUGE_VAL, 0, true);
+    wh_json_text_end(text, '}');
+}
+
+static void put_names(wh_json_text_t *text, const wh_trace_t *trace) {
+    const wh_layout_t *layout = trace->layout;
+    wh_json_text_begin(text, "names", '{');
+    wh_json_text_begin(text, "wafers", '[');
+    for (size_t i = 0; i < layout->wafer_count; ++i) {
+        put_text(text, NULL, layout->wafers[i].name);
+    }
+    wh_json_text_end(text, ']');
+    wh_json_text_begin(text, "grippers", '[');
+    for (size_t i = 0; i < layout->machine.gripper_count; ++i) {
+        put_text(text, NULL, layout->grippers[i].name);
+    }
+    wh_json_text_end(text, ']');
+    wh_json_text_begin(text, "stations", '[');
+    for (size_t i = 0; i < layout->station_count; ++i) {
+        put_text(text, NULL, layout->stations[i].name);
+    }
+    wh_json_text_end(text, ']');
+    wh_json_text_begin(text, "axes", '[');
+    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
+        put_axis(text, layout, axis);
+    }
+    wh_json_text_end(text, ']');
+    wh_json_text_end(text, '}');
+}
+
+/* ----------------------------------------------------------------------------------------------------- cell */
+
+static void put_wafer(wh_json_text_t *text, const wh_layout_t *layout) {
+    wh_json_text_begin(text, "wafer", '{');
+    put_exact(text, "diameter", layout->wafer_diameter);
+    put_exact(text, "thickness", layout->wafer_thickness);
+    put_exact(text, "notch", layout->notch);
+    wh_json_text_end(text, '}');
+}
+
+static void put_limits(wh_json_text_t *text, const wh_grasp_config_t *grasp) {
+    wh_json_text_begin(text, "limits", '{');
+    put_exact(text, "projz", grasp->tolerance.projz);
+    put_exact(text, "projxy", grasp->tolerance.projxy);
+    put_exact(text, "planar", grasp->tolerance.planar);
+    put_exact(text, "near_projz", grasp->near_projz);
+    put_exact(text, "near_projxy", grasp->near_projxy);
+    wh_json_text_end(text, '}');
+}
+
+static void put_slots(wh_json_text_t *text, const wh_layout_t *layout) {
+    wh_json_text_begin(text, "slots", '[');
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        for (int32_t slot = 1; slot <= layout->places[s].slots; ++slot) {
+            const wh_pose_t pose = wh_station_slot(&layout->places[s], slot);
+            wh_json_text_begin(text, NULL, '{');
+            wh_json_text_integer(text, "station", (long long)s);
+            wh_json_text_integer(text, "slot", slot);
+            wh_document_put_pose(text, &pose);
+            wh_json_text_end(text, '}');
+        }
+    }
+    wh_json_text_end(text, ']');
+}
+
+int wh_document_write(const wh_document_t *document, FILE *out) {
+    wh_json_text_t text = {.out = out};
+    const wh_trace_t *trace = document->trace;
+    wh_json_text_begin(&text, NULL, '{');
+    put_head(&text, document);
+    put_names(&text, trace);
+    put_wafer(&text, trace->layout);
+    put_limits(&text, &trace->layout->grasp);
+    put_slots(&text, trace->layout);
+    wh_document_put_thinning(&text, trace);
+    wh_document_put_tracks(&text, document);
+    wh_document_put_marks(&text, trace);
+    wh_json_text_value(&text, "scene", wh_scene_make(trace, document->title, false));
+    wh_json_text_end(&text, '}');
+    fputc('\n', out);
+    return text.failed || fflush(out) != 0 || ferror(out) ? -1 : 0;
+}

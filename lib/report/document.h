@@ -1,0 +1,50 @@
+/* A run as one JSON object: what the page of a report shows, and what other programs may read.
+ *
+ * Lengths in mm, angles in rad, times in s from the run's begin; poses are r [x, y, z] and the quaternion q [x, y, z, w]; indices
+ * are from 0, slots from 1. The members:
+ *   format (1), title, version, reproduce (the command that makes the run again), parameters { name: value }
+ *   source       "run" or "log"; notes: [text], what a log did not tell
+ *   run          what `run --json` prints, whole (app/record_json.h); of a log what it holds
+ *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s
+ *   names        wafers, grippers, stations: [name]; axes: [{ name, unit "mm" or "rad", low, high, speed }] (nulls: not known)
+ *   wafer        diameter, thickness, notch (about its z from its x)
+ *   limits       projz, projxy, planar, near_projz, near_projxy
+ *   slots        [{ station, slot, r, q }]: base_from_slot
+ *   thinning     how far what tracks say between points may be off: mm, rad, mm_per_s, rad_per_s, vacuum, proximity_mm, planar;
+ *                `of` samples, `kept` of them. At events and at the begin and end of each command nothing is off
+ *   tracks       grippers, links [{ name (links), t, r, q }]: base_from_gripper, base_from_link. Between points r is linear
+ *                and q the shorter slerp; before the first and after the last nothing moves
+ *                wafers [[{ t, holder (gripper or null), r, q }]]: from t on gripper_from_wafer or base_from_wafer
+ *                axes [{ t, v, speed_t, speed }]; vacuum [{ t, v }], 0 to 1: linear
+ *                valves (0: open), sensors (1: on) [{ t, v }]: from t on
+ *                proximity [{ t, wafer, dr_proj_z, dr_proj_xy, n1_proj_n2 }], the first two as absolute values: each gripper
+ *                against its nearest wafer while they are within 20 mm and twice near_projxy; nulls: there is none
+ *                clearances [{ pair, limit (null: none), t, gap (null: wider than 20 mm) }]
+ *   marks        [{ t, kind, text, at (null: nowhere) }]: events worth a mark in the cell
+ *   scene        glTF 2.0 (report/scene.h), without animation
+ */
+#ifndef WH_REPORT_DOCUMENT_H
+#define WH_REPORT_DOCUMENT_H
+
+#include <jansson.h>
+#include <stdio.h>
+
+#include "report/trace.h"
+#include "script/record.h"
+
+typedef struct {
+    const char *title, *reproduce;
+    const char *source;            /* "run" or "log" */
+    const char *const *parameters; /* NAME=VALUE */
+    size_t parameter_count;
+    const char *const *notes;
+    size_t note_count;
+    json_t *run;               /* borrowed */
+    const wh_record_t *record; /* for its curves and limits; its layout is the trace's */
+    const wh_trace_t *trace;   /* finished */
+} wh_document_t;
+
+/* 0, or -1 when `out` does not take it. Aborts when memory is out. */
+int wh_document_write(const wh_document_t *document, FILE *out);
+
+#endif

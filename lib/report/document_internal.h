@@ -1,0 +1,18 @@
+/* Within the document. */
+#ifndef WH_REPORT_DOCUMENT_INTERNAL_H
+#define WH_REPORT_DOCUMENT_INTERNAL_H
+
+#include "report/document.h"
+#include "report/json_text.h"
+
+double wh_document_seconds(const wh_trace_t *trace, int64_t slice);
+
+/* The members r and q. */
+void wh_document_put_pose(wh_json_text_t *text, const wh_pose_t *pose);
+
+/* The document's members of these names. */
+void wh_document_put_thinning(wh_json_text_t *text, const wh_trace_t *trace);
+void wh_document_put_tracks(wh_json_text_t *text, const wh_document_t *document);
+void wh_document_put_marks(wh_json_text_t *text, const wh_trace_t *trace);
+
+#endif

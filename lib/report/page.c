@@ -1,0 +1,162 @@
+#include "report/page.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "script/embedded.h"
+
+/* Longest name between two @. */
+#define NAME_BYTES 64
+
+/* What others wrote: where it is below WH_JAVASCRIPT, and Debian's package that has it. */
+static const struct {
+    const char *name, *path, *package;
+} foreign[] = {
+    {"three.min.js", "three/three.min.js", "libjs-three"},
+    {"OrbitControls.js", "three/examples/js/controls/OrbitControls.js", "libjs-three"},
+    {"GLTFLoader.js", "three/examples/js/loaders/GLTFLoader.js", "libjs-three"},
+    {"dygraph.min.js", "dygraphs/dygraph.min.js", "libjs-dygraphs"},
+    {"dygraph.min.css", "dygraphs/dygraph.min.css", "libjs-dygraphs"},
+};
+
+typedef struct {
+    FILE *out;
+    const char *title, *document;
+    size_t document_size;
+    char *message;
+} page_t;
+
+static const wh_embedded_t *find_ours(const char *name) {
+    for (size_t i = 0; i < wh_embedded_page_count; ++i) {
+        if (strcmp(wh_embedded_page[i].name, name) == 0) {
+            return &wh_embedded_page[i];
+        }
+    }
+    return NULL;
+}
+
+/* ------------------------------------------------------------------------------------------------- inlining */
+
+/* Where an HTML parser would take a script's or a style's text for markup, a backslash keeps it from that and means nothing to
+ * JavaScript's strings and to CSS. */
+static bool is_markup(const char *text, size_t size) {
+    static const char *const ends[] = {"/script", "/style", "!--"};
+    for (size_t i = 0; i < sizeof ends / sizeof ends[0]; ++i) {
+        const size_t length = strlen(ends[i]);
+        if (size > length && strncasecmp(text + 1, ends[i], length) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void write_inlined(FILE *out, const char *text, size_t size) {
+    while (size > 0) {
+        const char *found = memchr(text, '<', size);
+        const size_t plain = found ? (size_t)(found - text) + 1 : size;
+        fwrite(text, 1, plain, out);
+        if (found && is_markup(found, size - plain + 1)) {
+            fputc('\\', out);
+        }
+        text += plain;
+        size -= plain;
+    }
+}
+
+static void write_title(FILE *out, const char *title) {
+    for (const char *c = title; *c; ++c) {
+        switch (*c) {
+        case '<':
+            fputs("&lt;", out);
+            break;
+        case '&':
+            fputs("&amp;", out);
+            break;
+        default:
+            fputc((unsigned char)*c, out);
+        }
+    }
+}
+
+static bool write_foreign(const page_t *page, size_t i) {
+    const char *folder = getenv("WAFERHAND_JAVASCRIPT");
+    char path[4096];
+    (void)snprintf(path, sizeof path, "%s/%s", folder ? folder : WH_JAVASCRIPT, foreign[i].path);
+    FILE *file = fopen(path, "rb");
+    char *text = NULL;
+    size_t size = 0;
+    const ssize_t read = file ? getdelim(&text, &size, EOF, file) : -1;
+    if (read < 0) {
+        (void)snprintf(page->message, WH_PAGE_MESSAGE_BYTES,
+                       "%.400s: %s (expected the JavaScript of Debian's package %s: apt-get install %s)",
+                       path, file ? "empty" : strerror(errno), foreign[i].package, foreign[i].package);
+    } else {
+        write_inlined(page->out, text, (size_t)read);
+    }
+    if (file) {
+        (void)fclose(file);
+    }
+    free(text);
+    return read >= 0;
+}
+
+/* ---------------------------------------------------------------------------------------------------- names */
+
+static bool write_named(const page_t *page, const char *name) {
+    const wh_embedded_t *ours = find_ours(name);
+    if (ours) {
+        write_inlined(page->out, (const char *)ours->text, ours->size);
+        return true;
+    }
+    if (strcmp(name, "title") == 0) {
+        write_title(page->out, page->title);
+        return true;
+    }
+    if (strcmp(name, "document") == 0) {
+        fwrite(page->document, 1, page->document_size, page->out);
+        return true;
+    }
+    for (size_t i = 0; i < sizeof foreign / sizeof foreign[0]; ++i) {
+        if (strcmp(foreign[i].name, name) == 0) {
+            return write_foreign(page, i);
+        }
+    }
+    (void)snprintf(page->message, WH_PAGE_MESSAGE_BYTES,
+                   "the page asks for %s, which the program was built without", name);
+    return false;
+}
+
+/* The length of the name that ends with an @, or 0. */
+static size_t name_length(const char *text) {
+    const size_t length = strspn(text, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-");
+    return length < NAME_BYTES && text[length] == '@' ? length : 0;
+}
+
+bool wh_page_write(FILE *out, const char *title, const char *document, size_t size,
+                   char message[WH_PAGE_MESSAGE_BYTES]) {
+    const page_t page = {out, title, document, size, message};
+    const wh_embedded_t *template = find_ours("report.html.in");
+    if (!template) {
+        (void)snprintf(message, WH_PAGE_MESSAGE_BYTES, "the program was built without its page");
+        return false;
+    }
+    const char *from = (const char *)template->text;
+    for (const char *at = strchr(from, '@'); at; at = strchr(at, '@')) {
+        const size_t length = name_length(at + 1);
+        char name[NAME_BYTES];
+        if (length == 0) {
+            ++at;
+            continue;
+        }
+        fwrite(from, 1, (size_t)(at - from), out);
+        (void)snprintf(name, sizeof name, "%.*s", (int)length, at + 1);
+        if (!write_named(&page, name)) {
+            return false;
+        }
+        from = at = at + length + 2;
+    }
+    fputs(from, out);
+    return true;
+}

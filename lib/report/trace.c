@@ -1,0 +1,275 @@
+#include "report/trace.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "report/quaternion.h"
+#include "script/collision.h"
+#include "script/record.h"
+
+/* So many wafers are compared in each slice; more, only in slices with events. */
+#define WATCHED_WAFERS 64
+
+/* -------------------------------------------------------------------------------------------------- opening */
+
+static bool turns(size_t axis) {
+    return axis != WH_AXIS_R && axis != WH_AXIS_Z;
+}
+
+static void open_track(wh_thin_t *thin, size_t width, double tolerance, double turn) {
+    wh_thin_open(thin, width, WH_TRACE_SHARE * tolerance, WH_TRACE_SHARE * turn, WH_TRACE_POINTS);
+}
+
+static void open_tracks(wh_trace_t *trace) {
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        open_track(&trace->grippers[g], 3, WH_TRACE_MM, WH_TRACE_RAD);
+        open_track(&trace->vacuum[g], 1, WH_TRACE_VACUUM, 0);
+        /* Half, for points are inserted. */
+        open_track(&trace->proximity[g], 3, WH_TRACE_PROXIMITY_MM / 2, 0);
+    }
+    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        open_track(&trace->links[i], 3, WH_TRACE_MM, WH_TRACE_RAD);
+    }
+    for (size_t axis = 0; axis < WH_AXES; ++axis) {
+        open_track(&trace->axes[axis], 1, turns(axis) ? WH_TRACE_RAD : WH_TRACE_MM, 0);
+        open_track(&trace->speeds[axis], 1, turns(axis) ? WH_TRACE_RAD_PER_S : WH_TRACE_MM_PER_S, 0);
+    }
+}
+
+static void add_stay(wh_trace_t *trace, int64_t slice, int32_t wafer, int32_t holder, const wh_pose_t *pose) {
+    trace->stays =
+        wh_record_grow(trace->stays, trace->stay_count, &trace->stay_capacity, sizeof *trace->stays);
+    const wh_stay_t stay = {slice, wafer, holder, *pose};
+    trace->stay_of[wafer] = (int32_t)trace->stay_count;
+    trace->stays[trace->stay_count++] = stay;
+}
+
+/* As motion control finds it: at home, all valves closed. */
+static void start_at_home(wh_trace_t *trace, wh_state_t *state) {
+    const wh_layout_t *layout = trace->layout;
+    const wh_machine_t *machine = &layout->machine;
+    wh_gripper_t grippers[WH_GRIPPERS];
+    wh_condition_t condition;
+    wh_pose_t poses[WH_GRIPPERS];
+    double axes[WH_AXES] = {0};
+    memcpy(axes, machine->robot.home, sizeof machine->robot.home);
+    wh_machine_grippers(machine, axes, poses);
+    wh_condition_start(&condition, &layout->physics);
+    memset(grippers, 0, sizeof grippers);
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        grippers[g].base_from_gripper = poses[g];
+        grippers[g].wafer = WH_NONE;
+        condition.told[g] = WH_VALVE_CLOSED;
+    }
+    state->grippers = grippers;
+    state->condition = &condition;
+    wh_trace_slice(trace, axes, machine->axis_count, state);
+}
+
+void wh_trace_begin(wh_trace_t *trace, const wh_layout_t *layout, bool at_home) {
+    trace->layout = layout;
+    trace->first = trace->last = -1;
+    open_tracks(trace);
+    trace->stay_of = malloc((layout->wafer_count + 1) * sizeof *trace->stay_of);
+    if (!trace->stay_of) {
+        abort();
+    }
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        add_stay(trace, 0, (int32_t)w, WH_NONE, &layout->start[w].base_from_wafer);
+    }
+    if (at_home) {
+        wh_state_t state = {.wafers = layout->start,
+                            .wafer_count = layout->wafer_count,
+                            .gripper_count = layout->machine.gripper_count};
+        start_at_home(trace, &state);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- poses */
+
+static void add_pose(wh_thin_t *thin, int64_t slice, const wh_pose_t *pose) {
+    double values[7] = {pose->r.x, pose->r.y, pose->r.z};
+    const bool follows = thin->of > 0;
+    wh_quaternion_from_matrix(&pose->R, follows ? thin->last.values + 3 : NULL, values + 3);
+    wh_thin_add(thin, slice, values, 0);
+}
+
+static void add_poses(wh_trace_t *trace, const wh_state_t *state) {
+    const wh_layout_t *layout = trace->layout;
+    wh_pose_t poses[WH_GRIPPERS];
+    wh_pose_t base_from_effector;
+    wh_pose_t arm[WH_ARM_BODIES];
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        poses[g] = state->grippers[g].base_from_gripper;
+        add_pose(&trace->grippers[g], state->seq, &poses[g]);
+    }
+    if (!wh_collision_effector(&layout->machine, poses, &base_from_effector)) {
+        return;
+    }
+    wh_arm_place(&layout->shapes.arm, &base_from_effector, arm);
+    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        add_pose(&trace->links[i], state->seq, &arm[WH_ARM_LIFT + i]);
+    }
+}
+
+static void add_axes(wh_trace_t *trace, const double axes[], size_t axis_count, const wh_state_t *state) {
+    const double seconds = (double)((state->seq - trace->last) * trace->layout->slice_us) / 1e6;
+    const bool follows = trace->last >= 0;
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        const double speed = follows ? (axes[axis] - trace->last_axes[axis]) / seconds : 0;
+        wh_thin_add(&trace->axes[axis], state->seq, &axes[axis], 0);
+        wh_thin_add(&trace->speeds[axis], state->seq, &speed, 0);
+        trace->last_axes[axis] = axes[axis];
+    }
+    trace->axis_count = axis_count > trace->axis_count ? axis_count : trace->axis_count;
+}
+
+/* ---------------------------------------------------------------------------------------------------- steps */
+
+static void add_step(wh_steps_t *steps, int64_t slice, int32_t value) {
+    if (steps->count > 0 && steps->steps[steps->count - 1].value == value) {
+        return;
+    }
+    steps->steps = wh_record_grow(steps->steps, steps->count, &steps->capacity, sizeof *steps->steps);
+    steps->steps[steps->count].slice = slice;
+    steps->steps[steps->count++].value = value;
+}
+
+static void add_signals(wh_trace_t *trace, const wh_state_t *state) {
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        const double level = state->condition->vacuum[g].level;
+        add_step(&trace->valves[g], state->seq, state->condition->told[g]);
+        add_step(&trace->sensors[g], state->seq, (int32_t)(state->sensors >> g & 1U));
+        wh_thin_add(&trace->vacuum[g], state->seq, &level, 0);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- wafers */
+
+static void look_at_wafer(wh_trace_t *trace, const wh_state_t *state, int32_t w, int32_t holder,
+                          const wh_pose_t *pose) {
+    const wh_stay_t *stay = &trace->stays[trace->stay_of[w]];
+    if (stay->holder != holder || memcmp(&stay->pose, pose, sizeof *pose) != 0) {
+        add_stay(trace, state->seq, w, holder, pose);
+        for (size_t g = 0; g < state->gripper_count; ++g) {
+            trace->vicinity[g].is_known = false;
+        }
+    }
+}
+
+static void add_wafers(wh_trace_t *trace, const wh_state_t *state) {
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        const wh_gripper_t *gripper = &state->grippers[g];
+        if (gripper->wafer != WH_NONE) {
+            look_at_wafer(trace, state, gripper->wafer, (int32_t)g, &gripper->gripper_from_wafer);
+        }
+    }
+    const bool all = state->wafer_count <= WATCHED_WAFERS || state->event_count > 0 || trace->last < 0;
+    for (size_t w = 0; all && w < state->wafer_count; ++w) {
+        if (state->wafers[w].holder == WH_NONE) {
+            look_at_wafer(trace, state, (int32_t)w, WH_NONE, &state->wafers[w].base_from_wafer);
+        }
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- events */
+
+/* What went as it should is told by other means. */
+static bool is_marked(wh_event_kind_t kind) {
+    static const uint32_t plain = 1U << WH_EVENT_PICKED | 1U << WH_EVENT_RELEASED |
+                                  1U << WH_EVENT_HANDED_OVER | 1U << WH_EVENT_SETTLED |
+                                  1U << WH_EVENT_BAD_INPUT;
+    return (plain >> (unsigned)kind & 1U) == 0;
+}
+
+/* Where it happened: contact, wafer or gripper. */
+static bool place_of(const wh_event_t *event, const wh_state_t *state, wh_vec3_t *at) {
+    static const uint32_t contacts = 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE;
+    if (contacts >> (unsigned)event->kind & 1U) {
+        *at = event->at;
+        return true;
+    }
+    if (event->wafer >= 0 && (size_t)event->wafer < state->wafer_count) {
+        *at = state->wafers[event->wafer].base_from_wafer.r;
+        return true;
+    }
+    if (event->gripper >= 0 && (size_t)event->gripper < state->gripper_count) {
+        *at = state->grippers[event->gripper].base_from_gripper.r;
+        return true;
+    }
+    return false;
+}
+
+static void add_marks(wh_trace_t *trace, const wh_state_t *state) {
+    for (size_t i = 0; i < state->event_count; ++i) {
+        const wh_event_t *event = &state->events[i];
+        if (is_marked(event->kind)) {
+            trace->marks =
+                wh_record_grow(trace->marks, trace->mark_count, &trace->mark_capacity, sizeof *trace->marks);
+            wh_mark_t *mark = &trace->marks[trace->mark_count++];
+            memset(mark, 0, sizeof *mark);
+            mark->event = *event;
+            mark->utime = state->utime;
+            mark->has_place = place_of(event, state, &mark->at);
+        }
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- slices */
+
+typedef void each_t(wh_thin_t *thin);
+
+static void for_each(wh_trace_t *trace, each_t *act) {
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        act(&trace->grippers[g]);
+        act(&trace->vacuum[g]);
+        act(&trace->proximity[g]);
+    }
+    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        act(&trace->links[i]);
+    }
+    for (size_t axis = 0; axis < WH_AXES; ++axis) {
+        act(&trace->axes[axis]);
+        act(&trace->speeds[axis]);
+    }
+}
+
+void wh_trace_slice(wh_trace_t *trace, const double axes[], size_t axis_count, const wh_state_t *state) {
+    if (!trace->layout || state->seq <= trace->last) {
+        return;
+    }
+    trace->first = trace->first < 0 ? state->seq : trace->first;
+    add_poses(trace, state);
+    if (axes) {
+        add_axes(trace, axes, axis_count, state);
+    }
+    add_signals(trace, state);
+    add_wafers(trace, state);
+    wh_trace_proximity(trace, state);
+    if (state->event_count > 0) {
+        add_marks(trace, state);
+        wh_trace_mark(trace);
+    }
+    trace->last = state->seq;
+}
+
+void wh_trace_mark(wh_trace_t *trace) {
+    for_each(trace, wh_thin_force);
+}
+
+void wh_trace_finish(wh_trace_t *trace) {
+    for_each(trace, wh_thin_finish);
+}
+
+void wh_trace_close(wh_trace_t *trace) {
+    for_each(trace, wh_thin_close);
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        free(trace->valves[g].steps);
+        free(trace->sensors[g].steps);
+        free(trace->vicinity[g].wafers);
+    }
+    free(trace->stays);
+    free(trace->stay_of);
+    free(trace->marks);
+    memset(trace, 0, sizeof *trace);
+}

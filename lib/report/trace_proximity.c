@@ -1,0 +1,106 @@
+/* Each gripper against its nearest wafer, over time: the paper's Fig. 9. */
+#include <string.h>
+
+#include "report/trace.h"
+#include "script/record.h"
+
+/* With more wafers than these, those near a gripper are looked for anew when it has gone so far, mm. */
+#define FEW_WAFERS 64
+#define ROOM 100.0
+
+static double square_of(const wh_vec3_t *a, const wh_vec3_t *b) {
+    const wh_vec3_t way = wh_vec3_subtract(a, b);
+    return wh_vec3_dot(&way, &way);
+}
+
+/* A wafer within the reach of the plot has its centre so near to the gripper's. */
+static double reach_of(const wh_trace_t *trace) {
+    return WH_TRACE_REACH + 2 * trace->layout->grasp.near_projxy;
+}
+
+/* ------------------------------------------------------------------------------------------------- vicinity */
+
+static void look_around(const wh_trace_t *trace, wh_vicinity_t *vicinity, const wh_state_t *state,
+                        const wh_vec3_t *at) {
+    const double radius = reach_of(trace) + ROOM;
+    const bool few = state->wafer_count <= FEW_WAFERS;
+    vicinity->count = 0;
+    for (size_t w = 0; w < state->wafer_count; ++w) {
+        if (few || square_of(&state->wafers[w].base_from_wafer.r, at) < radius * radius) {
+            vicinity->wafers = wh_record_grow(vicinity->wafers, vicinity->count, &vicinity->capacity,
+                                              sizeof *vicinity->wafers);
+            vicinity->wafers[vicinity->count++] = (int32_t)w;
+        }
+    }
+    vicinity->centre = *at;
+    vicinity->is_known = true;
+}
+
+/* Wafers that another gripper carries come near by themselves, and are not on the list. */
+static int32_t find_nearest(const wh_trace_t *trace, const wh_vicinity_t *vicinity, const wh_state_t *state,
+                            const wh_vec3_t *at) {
+    const double reach = reach_of(trace);
+    double least = reach * reach;
+    int32_t nearest = WH_NONE;
+    for (size_t i = 0; i < vicinity->count; ++i) {
+        const double square = square_of(&state->wafers[vicinity->wafers[i]].base_from_wafer.r, at);
+        if (square < least) {
+            least = square;
+            nearest = vicinity->wafers[i];
+        }
+    }
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        const int32_t held = state->grippers[g].wafer;
+        if (held != WH_NONE && square_of(&state->wafers[held].base_from_wafer.r, at) < least) {
+            least = square_of(&state->wafers[held].base_from_wafer.r, at);
+            nearest = held;
+        }
+    }
+    return nearest;
+}
+
+/* ---------------------------------------------------------------------------------------------------- values */
+
+static void take(const wh_proximity_t *p, double values[3]) {
+    values[0] = wh_real_abs(p->dr_proj_z);
+    values[1] = p->dr_proj_xy_norm;
+    values[2] = WH_TRACE_PLANAR_SCALE * p->n1_proj_n2;
+}
+
+static void add_gripper(wh_trace_t *trace, const wh_state_t *state, size_t g) {
+    const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
+    wh_vicinity_t *vicinity = &trace->vicinity[g];
+    double values[3] = {0};
+    wh_proximity_t p;
+    if (!vicinity->is_known || square_of(&pose->r, &vicinity->centre) > ROOM * ROOM) {
+        look_around(trace, vicinity, state, &pose->r);
+    }
+    int32_t nearest = find_nearest(trace, vicinity, state, &pose->r);
+    if (nearest != WH_NONE) {
+        const bool measured = wh_proximity_measure(&state->wafers[nearest].base_from_wafer, pose,
+                                                   &trace->layout->grasp.tolerance, &p) == WH_OK;
+        if (measured && wh_real_abs(p.dr_proj_z) < WH_TRACE_REACH &&
+            p.dr_proj_xy_norm < 2 * trace->layout->grasp.near_projxy) {
+            take(&p, values);
+        } else {
+            nearest = WH_NONE;
+        }
+    }
+    wh_thin_add(&trace->proximity[g], state->seq, values, nearest);
+}
+
+void wh_trace_proximity(wh_trace_t *trace, const wh_state_t *state) {
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        add_gripper(trace, state, g);
+    }
+    for (size_t i = 0; i < state->event_count; ++i) {
+        const wh_event_t *event = &state->events[i];
+        const bool past = event->kind == WH_EVENT_NEAR_MISS || event->kind == WH_EVENT_CONTESTED;
+        if (past && (int64_t)event->measured_slice < state->seq) {
+            double values[3];
+            take(&event->measured, values);
+            wh_thin_insert(&trace->proximity[event->gripper], (int64_t)event->measured_slice, values,
+                           event->wafer);
+        }
+    }
+}
