@@ -10,15 +10,17 @@
  *   wafer        diameter, thickness, notch (about its z from its x)
  *   limits       projz, projxy, planar, near_projz, near_projxy
  *   slots        [{ station, slot, r, q }]: base_from_slot
- *   thinning     how far what tracks say between points may be off: mm, rad, mm_per_s, rad_per_s, vacuum, proximity_mm, planar;
- *                `of` samples, `kept` of them. At events and at the begin and end of each command nothing is off
+ *   thinning     how far what tracks say may be off: mm and rad (grippers and axes), link_mm, link_rad, mm_per_s, rad_per_s,
+ *                vacuum, projz, projxy, planar; `of` samples, `kept` of them. At events and at the begin and end of each
+ *                command nothing is off
  *   tracks       grippers, links [{ name (links), t, r, q }]: base_from_gripper, base_from_link. Between points r is linear
  *                and q the shorter slerp; before the first and after the last nothing moves
  *                wafers [[{ t, holder (gripper or null), r, q }]]: from t on gripper_from_wafer or base_from_wafer
  *                axes [{ t, v, speed_t, speed }]; vacuum [{ t, v }], 0 to 1: linear
  *                valves (0: open), sensors (1: on) [{ t, v }]: from t on
  *                proximity [{ t, wafer, dr_proj_z, dr_proj_xy, n1_proj_n2 }], the first two as absolute values: each gripper
- *                against its nearest wafer while they are within 20 mm and twice near_projxy; nulls: there is none
+ *                against the wafer that it holds, or else would take: with the smallest |dr_proj_z|, while they are within
+ *                20 mm and twice near_projxy; nulls: there is none
  *                clearances [{ pair, limit (null: none), t, gap (null: wider than 20 mm) }]
  *   marks        [{ t, kind, text, at (null: nowhere) }]: events worth a mark in the cell
  *   scene        glTF 2.0 (report/scene.h), without animation

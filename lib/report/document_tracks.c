@@ -7,7 +7,7 @@
 #include "report/utf8.h"
 
 /* Decimals that add a hundredth of what thinning leaves, or less. */
-enum { DECIMALS_S = 6, DECIMALS_MM = 4, DECIMALS_RAD = 7, DECIMALS_SHARE = 5, DECIMALS_PLANAR = 9 };
+enum { DECIMALS_S = 6, DECIMALS_MM = 4, DECIMALS_RAD = 6, DECIMALS_SHARE = 5, DECIMALS_PLANAR = 9 };
 
 static bool is_rad(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
@@ -16,30 +16,32 @@ static bool is_rad(size_t axis) {
 /* ------------------------------------------------------------------------------------------------- thinning */
 
 typedef struct {
-    double mm, rad, mm_per_s, rad_per_s, vacuum, proximity;
+    double mm, rad, link_mm, link_rad, mm_per_s, rad_per_s, vacuum, projz;
     int64_t of, kept;
 } sums_t;
 
-static void count(sums_t *sums, const wh_thin_t *thin, double *linear) {
+static void count(sums_t *sums, const wh_thin_t *thin, double *linear, double *turn) {
     sums->of += thin->of;
     sums->kept += (int64_t)thin->count;
     *linear = thin->tolerance > *linear ? thin->tolerance : *linear;
-    sums->rad = thin->turn > sums->rad ? thin->turn : sums->rad;
+    if (turn) {
+        *turn = thin->turn > *turn ? thin->turn : *turn;
+    }
 }
 
 static sums_t sum_up(const wh_trace_t *trace) {
     sums_t sums = {0};
     for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        count(&sums, &trace->grippers[g], &sums.mm);
-        count(&sums, &trace->vacuum[g], &sums.vacuum);
-        count(&sums, &trace->proximity[g], &sums.proximity);
+        count(&sums, &trace->grippers[g], &sums.mm, &sums.rad);
+        count(&sums, &trace->vacuum[g], &sums.vacuum, NULL);
+        count(&sums, &trace->proximity[g], &sums.projz, NULL);
     }
     for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
-        count(&sums, &trace->links[i], &sums.mm);
+        count(&sums, &trace->links[i], &sums.link_mm, &sums.link_rad);
     }
     for (size_t axis = 0; axis < trace->axis_count; ++axis) {
-        count(&sums, &trace->axes[axis], is_rad(axis) ? &sums.rad : &sums.mm);
-        count(&sums, &trace->speeds[axis], is_rad(axis) ? &sums.rad_per_s : &sums.mm_per_s);
+        count(&sums, &trace->axes[axis], is_rad(axis) ? &sums.rad : &sums.mm, NULL);
+        count(&sums, &trace->speeds[axis], is_rad(axis) ? &sums.rad_per_s : &sums.mm_per_s, NULL);
     }
     return sums;
 }
@@ -57,8 +59,11 @@ void wh_document_put_thinning(wh_json_text_t *text, const wh_trace_t *trace) {
     put_tolerance(text, "mm_per_s", sums.mm_per_s);
     put_tolerance(text, "rad_per_s", sums.rad_per_s);
     put_tolerance(text, "vacuum", sums.vacuum);
-    put_tolerance(text, "proximity_mm", 2 * sums.proximity);
-    put_tolerance(text, "planar", 2 * sums.proximity / WH_TRACE_PLANAR_SCALE);
+    put_tolerance(text, "link_mm", sums.link_mm);
+    put_tolerance(text, "link_rad", sums.link_rad);
+    put_tolerance(text, "projz", 2 * sums.projz);
+    put_tolerance(text, "projxy", 2 * sums.projz / WH_TRACE_PROJXY_SCALE);
+    put_tolerance(text, "planar", 2 * sums.projz / WH_TRACE_PLANAR_SCALE);
     wh_json_text_integer(text, "of", sums.of);
     wh_json_text_integer(text, "kept", sums.kept);
     wh_json_text_end(text, '}');
@@ -233,7 +238,7 @@ static void put_proximity(wh_json_text_t *text, const wh_trace_t *trace) {
         put_times(text, trace, "t", thin);
         put_nearest(text, thin);
         put_values(text, "dr_proj_z", thin, 0, 1, DECIMALS_RAD, 1);
-        put_values(text, "dr_proj_xy", thin, 1, 1, DECIMALS_RAD, 1);
+        put_values(text, "dr_proj_xy", thin, 1, 1, DECIMALS_MM, WH_TRACE_PROJXY_SCALE);
         put_values(text, "n1_proj_n2", thin, 2, 1, DECIMALS_PLANAR, WH_TRACE_PLANAR_SCALE);
         wh_json_text_end(text, '}');
     }

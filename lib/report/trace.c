@@ -16,23 +16,24 @@ static bool turns(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
 }
 
-static void open_track(wh_thin_t *thin, size_t width, double tolerance, double turn) {
-    wh_thin_open(thin, width, WH_TRACE_SHARE * tolerance, WH_TRACE_SHARE * turn, WH_TRACE_POINTS);
+static void open_track(wh_thin_t *thin, size_t width, double tolerance, double turn, size_t limit) {
+    wh_thin_open(thin, width, WH_TRACE_SHARE * tolerance, WH_TRACE_SHARE * turn, limit);
 }
 
 static void open_tracks(wh_trace_t *trace) {
+    const size_t limit = WH_TRACE_POINTS;
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        open_track(&trace->grippers[g], 3, WH_TRACE_MM, WH_TRACE_RAD);
-        open_track(&trace->vacuum[g], 1, WH_TRACE_VACUUM, 0);
+        open_track(&trace->grippers[g], 3, WH_TRACE_MM, WH_TRACE_RAD, WH_TRACE_GRIPPER_POINTS);
+        open_track(&trace->vacuum[g], 1, WH_TRACE_VACUUM, 0, limit);
         /* Half, for points are inserted. */
-        open_track(&trace->proximity[g], 3, WH_TRACE_PROXIMITY_MM / 2, 0);
+        open_track(&trace->proximity[g], 3, WH_TRACE_PROJZ / 2, 0, limit);
     }
     for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
-        open_track(&trace->links[i], 3, WH_TRACE_MM, WH_TRACE_RAD);
+        open_track(&trace->links[i], 3, WH_TRACE_LINK_MM, WH_TRACE_LINK_RAD, limit);
     }
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
-        open_track(&trace->axes[axis], 1, turns(axis) ? WH_TRACE_RAD : WH_TRACE_MM, 0);
-        open_track(&trace->speeds[axis], 1, turns(axis) ? WH_TRACE_RAD_PER_S : WH_TRACE_MM_PER_S, 0);
+        open_track(&trace->axes[axis], 1, turns(axis) ? WH_TRACE_RAD : WH_TRACE_MM, 0, limit);
+        open_track(&trace->speeds[axis], 1, turns(axis) ? WH_TRACE_RAD_PER_S : WH_TRACE_MM_PER_S, 0, limit);
     }
 }
 

@@ -1,7 +1,7 @@
 /* What a run's page shows over time: collected slice by slice while the run goes, thinned as it comes.
  *
- * Grippers and the arm's links as poses in base, axes with their speeds, vacuum, and each gripper against its nearest wafer are
- * thinned (report/thin.h); valves, sensors and where wafers lie change in steps and are kept as they are. All of it is exact at
+ * Grippers and the arm's links as poses in base, axes with their speeds, vacuum, and each gripper against the wafer that it holds
+ * or would take are thinned (report/thin.h); valves, sensors and where wafers lie change in steps and are kept as they are. All of it is exact at
  * events and wherever wh_trace_mark is called. Slices count as in the run: what is of slice n is true at its end, slice
  * 0 is before the first.
  *
@@ -14,15 +14,21 @@
 #include "script/layout.h"
 #include "sim/slice.h"
 
-/* How far what is shown may be off, to begin with: it grows where a signal has more than WH_TRACE_POINTS points. */
-#define WH_TRACE_MM 0.05
-#define WH_TRACE_RAD 1e-4
-#define WH_TRACE_MM_PER_S 1.0
-#define WH_TRACE_RAD_PER_S 2e-3
+/* How far what is shown may be off, to begin with: it grows where a signal has more points than it may. */
+#define WH_TRACE_MM 0.05 /* of grippers and axes */
+#define WH_TRACE_RAD 5e-4
+#define WH_TRACE_LINK_MM 0.5
+#define WH_TRACE_LINK_RAD 2e-3
+#define WH_TRACE_MM_PER_S 5.0
+#define WH_TRACE_RAD_PER_S 2e-2
 #define WH_TRACE_VACUUM 1e-3
-#define WH_TRACE_PROXIMITY_MM 0.005 /* of |dr_proj_z| and |dr_proj_xy| */
-#define WH_TRACE_PLANAR 1e-6        /* of n1_proj_n2 */
-#define WH_TRACE_POINTS 12000
+#define WH_TRACE_PROJZ 0.005
+#define WH_TRACE_PROJXY 0.1
+#define WH_TRACE_PLANAR 1e-6
+
+/* How many points a gripper may have, and any other signal. */
+#define WH_TRACE_GRIPPER_POINTS 60000
+#define WH_TRACE_POINTS 30000
 
 /* Of these thinning takes so much, and rounding to decimals the rest. */
 #define WH_TRACE_SHARE 0.98
@@ -31,8 +37,9 @@
  * layout's near_projxy. */
 #define WH_TRACE_REACH 20.0
 
-/* In a proximity sample the cosine is stretched, so that one tolerance serves. */
-#define WH_TRACE_PLANAR_SCALE (WH_TRACE_PROXIMITY_MM / WH_TRACE_PLANAR)
+/* A proximity sample holds |dr_proj_z|, |dr_proj_xy| and n1_proj_n2, the others stretched to the first one's tolerance. */
+#define WH_TRACE_PROJXY_SCALE (WH_TRACE_PROJZ / WH_TRACE_PROJXY)
+#define WH_TRACE_PLANAR_SCALE (WH_TRACE_PROJZ / WH_TRACE_PLANAR)
 
 /* The links of the arm that move: WH_ARM_LIFT to WH_ARM_HAND. */
 #define WH_TRACE_LINKS 4
@@ -106,7 +113,7 @@ void wh_trace_finish(wh_trace_t *trace);
 
 void wh_trace_close(wh_trace_t *trace);
 
-/* Within: each gripper against its nearest wafer. */
+/* Within: each gripper against the wafer that it holds or would take. */
 void wh_trace_proximity(wh_trace_t *trace, const wh_state_t *state);
 
 #endif

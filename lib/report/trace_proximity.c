@@ -36,34 +36,53 @@ static void look_around(const wh_trace_t *trace, wh_vicinity_t *vicinity, const 
     vicinity->is_known = true;
 }
 
-/* Wafers that another gripper carries come near by themselves, and are not on the list. */
+typedef struct {
+    const wh_state_t *state;
+    const wh_vec3_t *at; /* the gripper */
+    double reach, least;
+    int32_t nearest;
+} search_t;
+
+static void consider(search_t *search, int32_t wafer) {
+    const wh_pose_t *pose = &search->state->wafers[wafer].base_from_wafer;
+    if (square_of(&pose->r, search->at) < search->reach * search->reach) {
+        const wh_vec3_t dr = wh_vec3_subtract(&pose->r, search->at);
+        const wh_vec3_t n1 = wh_mat3_column(&pose->R, 2);
+        const double height = wh_real_abs(wh_vec3_dot(&dr, &n1));
+        if (search->nearest == WH_NONE || height < search->least) {
+            search->least = height;
+            search->nearest = wafer;
+        }
+    }
+}
+
+/* The wafer that it holds, else the one that it would take: with the smallest |dr_proj_z|. */
 static int32_t find_nearest(const wh_trace_t *trace, const wh_vicinity_t *vicinity, const wh_state_t *state,
-                            const wh_vec3_t *at) {
-    const double reach = reach_of(trace);
-    double least = reach * reach;
-    int32_t nearest = WH_NONE;
+                            size_t g) {
+    search_t search = {.state = state,
+                       .at = &state->grippers[g].base_from_gripper.r,
+                       .reach = reach_of(trace),
+                       .nearest = WH_NONE};
+    if (state->grippers[g].wafer != WH_NONE) {
+        return state->grippers[g].wafer;
+    }
     for (size_t i = 0; i < vicinity->count; ++i) {
-        const double square = square_of(&state->wafers[vicinity->wafers[i]].base_from_wafer.r, at);
-        if (square < least) {
-            least = square;
-            nearest = vicinity->wafers[i];
+        consider(&search, vicinity->wafers[i]);
+    }
+    /* Wafers that another gripper carries come near by themselves, and are not on the list. */
+    for (size_t other = 0; other < state->gripper_count; ++other) {
+        if (state->grippers[other].wafer != WH_NONE) {
+            consider(&search, state->grippers[other].wafer);
         }
     }
-    for (size_t g = 0; g < state->gripper_count; ++g) {
-        const int32_t held = state->grippers[g].wafer;
-        if (held != WH_NONE && square_of(&state->wafers[held].base_from_wafer.r, at) < least) {
-            least = square_of(&state->wafers[held].base_from_wafer.r, at);
-            nearest = held;
-        }
-    }
-    return nearest;
+    return search.nearest;
 }
 
 /* ---------------------------------------------------------------------------------------------------- values */
 
 static void take(const wh_proximity_t *p, double values[3]) {
     values[0] = wh_real_abs(p->dr_proj_z);
-    values[1] = p->dr_proj_xy_norm;
+    values[1] = WH_TRACE_PROJXY_SCALE * p->dr_proj_xy_norm;
     values[2] = WH_TRACE_PLANAR_SCALE * p->n1_proj_n2;
 }
 
@@ -75,7 +94,7 @@ static void add_gripper(wh_trace_t *trace, const wh_state_t *state, size_t g) {
     if (!vicinity->is_known || square_of(&pose->r, &vicinity->centre) > ROOM * ROOM) {
         look_around(trace, vicinity, state, &pose->r);
     }
-    int32_t nearest = find_nearest(trace, vicinity, state, &pose->r);
+    int32_t nearest = find_nearest(trace, vicinity, state, g);
     if (nearest != WH_NONE) {
         const bool measured = wh_proximity_measure(&state->wafers[nearest].base_from_wafer, pose,
                                                    &trace->layout->grasp.tolerance, &p) == WH_OK;
