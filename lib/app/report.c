@@ -1,23 +1,56 @@
 /* waferhand report RUN */
 #include <argp.h>
+#include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "app/app.h"
 #include "app/run.h"
+#include "report/log_run.h"
+
+enum { OPTION_LAYOUT = 5000, OPTION_RUN };
+
+typedef struct {
+    wh_run_arguments_t run; /* run.run.script is RUN, whatever it is */
+    const char *layout;
+    size_t number;
+} arguments_t;
+
+static const struct argp_option options[] = {
+    {"layout", OPTION_LAYOUT, "FILE", 0, "Of a log: its layout's file, if it is not where the log says", 0},
+    {"run", OPTION_RUN, "N", 0, "Of a log: its N-th run (default: the last)", 0},
+    {0},
+};
+
+static size_t run_number(const struct argp_state *state, const char *text) {
+    char *end = NULL;
+    errno = 0;
+    const unsigned long number = strtoul(text, &end, 10);
+    if (errno != 0 || *end != '\0' || text[0] < '0' || text[0] > '9' || number == 0) {
+        argp_error(state, "--run: %s (expected a whole number from 1)", text);
+    }
+    return number;
+}
 
 static error_t parse(int key, char *argument, struct argp_state *state) {
-    wh_run_arguments_t *arguments = state->input;
-    (void)argument;
+    arguments_t *arguments = state->input;
     switch (key) {
     case ARGP_KEY_INIT:
-        state->child_inputs[0] = arguments;
+        state->child_inputs[0] = &arguments->run;
+        return 0;
+    case OPTION_LAYOUT:
+        arguments->layout = argument;
+        return 0;
+    case OPTION_RUN:
+        arguments->number = run_number(state, argument);
         return 0;
     case ARGP_KEY_END:
-        if (!arguments->run.script) {
+        if (!arguments->run.run.script) {
             argp_error(state, "of which run?");
         }
-        if (!wh_report_files_wanted(&arguments->files)) {
-            argp_error(state, "into which file? (-o FILE, --gltf FILE, --data FILE)");
+        if (!wh_report_files_wanted(&arguments->run.files)) {
+            argp_error(state, "into which file? (-o FILE, --gltf FILE or --data FILE)");
         }
         return 0;
     default:
@@ -25,17 +58,66 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     }
 }
 
+static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
+    const wh_run_options_t *given = &arguments->run.run;
+    const wh_log_run_options_t wanted = {
+        given->script, arguments->number, {arguments->layout, given->parameters, given->parameter_count}};
+    if (!wh_log_run_read(run, &wanted)) {
+        fprintf(stderr, "%s\n", run->message);
+        return false;
+    }
+    char *command = wh_report_command("replay", given->script, NULL, 0);
+    const wh_document_t document = {.title = given->script,
+                                    .reproduce = command,
+                                    .source = "log",
+                                    .parameters = given->parameters,
+                                    .parameter_count = given->parameter_count,
+                                    .notes = run->notes,
+                                    .note_count = run->note_count,
+                                    .record = &run->record,
+                                    .trace = &run->trace};
+    const bool written = wh_report_files_write(&arguments->run.files, &document);
+    free(command);
+    return written;
+}
+
+static int report_log(const arguments_t *arguments) {
+    static wh_log_run_t run;
+    const bool written = write_log(arguments, &run);
+    wh_log_run_close(&run);
+    return written ? WH_EXIT_MET : WH_EXIT_USAGE;
+}
+
+static int report_script(arguments_t *arguments) {
+    if (arguments->layout || arguments->number > 0) {
+        fprintf(stderr, "%s: no LCM event log (expected one with %s)\n", arguments->run.run.script,
+                arguments->layout ? "--layout" : "--run");
+        return WH_EXIT_USAGE;
+    }
+    const int status = wh_run_and_report(&arguments->run);
+    return status == WH_EXIT_USAGE ? WH_EXIT_USAGE : WH_EXIT_MET;
+}
+
 int wh_app_report(int argc, char **argv) {
     static const struct argp_child children[] = {{&wh_run_argp, 0, NULL, 0}, {0}};
     static const struct argp argp = {
-        NULL,     parse, "RUN", "Makes a page of a run.\vExit status: 0 if it was written, 2 if not.",
-        children, NULL,  NULL};
+        options,
+        parse,
+        "RUN",
+        "Makes a page of a run, which is a script that is run again, or an LCM event log: the cell in "
+        "motion, plots "
+        "and tables, in one file that opens without a network.\v"
+        "Exit status: 0 if it was written, whatever came of the run; 2 for wrong usage or a bad input file.",
+        children,
+        NULL,
+        NULL};
     static char name[] = "waferhand report";
-    wh_run_arguments_t arguments = {.quiet = true};
-    wh_run_arguments_init(&arguments, argc);
+    arguments_t arguments = {.run = {.quiet = true}};
+    wh_run_arguments_init(&arguments.run, argc);
     argv[0] = name;
     argp_parse(&argp, argc, argv, 0, NULL, &arguments);
-    const int status = wh_run_and_report(&arguments);
-    wh_run_arguments_free(&arguments);
-    return status == WH_EXIT_USAGE ? WH_EXIT_USAGE : WH_EXIT_MET;
+    const bool is_log = wh_log_run_is_log(arguments.run.run.script);
+    const int status = is_log ? report_log(&arguments) : report_script(&arguments);
+    wh_run_arguments_free(&arguments.run);
+    return status;
 }

@@ -84,15 +84,15 @@ static void write_word(FILE *out, const char *word) {
     fputc('\'', out);
 }
 
-char *wh_report_command(const char *script, const char *const parameters[], size_t count) {
+char *wh_report_command(const char *command, const char *file, const char *const parameters[], size_t count) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) {
         return NULL;
     }
-    fputs("waferhand run ", out);
-    write_word(out, script);
+    fprintf(out, "waferhand %s ", command);
+    write_word(out, file);
     for (size_t i = 0; i < count; ++i) {
         fputs(" --set ", out);
         write_word(out, parameters[i]);

@@ -69,7 +69,7 @@ static void start_at_home(wh_trace_t *trace, wh_state_t *state) {
 
 void wh_trace_begin(wh_trace_t *trace, const wh_layout_t *layout, bool at_home) {
     trace->layout = layout;
-    trace->first = trace->last = -1;
+    trace->first = trace->last = trace->axes_slice = -1;
     open_tracks(trace);
     trace->stay_of = malloc((layout->wafer_count + 1) * sizeof *trace->stay_of);
     if (!trace->stay_of) {
@@ -114,14 +114,15 @@ static void add_poses(wh_trace_t *trace, const wh_state_t *state) {
 }
 
 static void add_axes(wh_trace_t *trace, const double axes[], size_t axis_count, const wh_state_t *state) {
-    const double seconds = (double)((state->seq - trace->last) * trace->layout->slice_us) / 1e6;
-    const bool follows = trace->last >= 0;
+    const double seconds = (double)((state->seq - trace->axes_slice) * trace->layout->slice_us) / 1e6;
+    const bool follows = trace->axes_slice >= 0;
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const double speed = follows ? (axes[axis] - trace->last_axes[axis]) / seconds : 0;
         wh_thin_add(&trace->axes[axis], state->seq, &axes[axis], 0);
         wh_thin_add(&trace->speeds[axis], state->seq, &speed, 0);
         trace->last_axes[axis] = axes[axis];
     }
+    trace->axes_slice = state->seq;
     trace->axis_count = axis_count > trace->axis_count ? axis_count : trace->axis_count;
 }
 

@@ -94,6 +94,7 @@ typedef struct {
     size_t mark_count, mark_capacity;
     int64_t first, last; /* slices */
     double last_axes[WH_AXES];
+    int64_t axes_slice; /* of last_axes */
     wh_vicinity_t vicinity[WH_GRIPPERS];
 } wh_trace_t;
 

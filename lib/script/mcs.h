@@ -94,6 +94,11 @@ void wh_mcs_push_lines(lua_State *L);
 /* Whether the cell complained: a wafer was let go where it should not have been, or an input was refused. */
 bool wh_mcs_is_complaint(const wh_event_t *event);
 
+/* Counts the slice of which `task`, `track` and `state` are; and the wafers that the running command, which succeeded, has put. Who
+ * follows a run from a log keeps its record by them, too. */
+void wh_mcs_count_slice(wh_mcs_t *mcs);
+void wh_mcs_count_puts(wh_mcs_t *mcs);
+
 /* Closes the record: wafers, slices, hash. The sandbox must still be there. */
 void wh_mcs_finish(wh_mcs_t *mcs);
 

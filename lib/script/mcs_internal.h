@@ -39,10 +39,7 @@ wh_segment_t wh_mcs_read_segment(lua_State *L, const wh_mcs_t *mcs);
 /* What the segment table at stack index 1, read as `segment`, asks of the machine. */
 wh_task_t wh_mcs_task(lua_State *L, const wh_mcs_t *mcs, const wh_segment_t *segment);
 
-/* Counts the slice that was just exchanged; the wafers that the running command, which succeeded, has put; and, where
- * a rehearsed segment ends, how near the axes came to their ends. */
-void wh_mcs_count_slice(wh_mcs_t *mcs);
-void wh_mcs_count_puts(wh_mcs_t *mcs);
+/* Where a rehearsed segment ends: how near the axes came to their ends. */
 void wh_mcs_look_at_reach(wh_mcs_t *mcs);
 
 /* Functions of the native table, by subject. */
