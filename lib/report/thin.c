@@ -170,19 +170,25 @@ void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[], int32_t 
     take(thin, slice, values, tag);
 }
 
+static void make_exact(wh_thin_t *thin, wh_thin_point_t *point) {
+    thin->exact_count += point->exact ? 0 : 1;
+    point->exact = true;
+}
+
 void wh_thin_force(wh_thin_t *thin) {
+    if (thin->count == 0) {
+        return;
+    }
+    wh_thin_point_t *point = &thin->points[thin->count - 1];
     if (!thin->is_pending) {
-        if (thin->count > 0 && !thin->points[thin->count - 1].exact) {
-            thin->points[thin->count - 1].exact = true;
-            ++thin->exact_count;
-        }
-        return;
-    }
-    if (rests(thin, thin->points[thin->count - 1].values, thin->last.values)) {
+        make_exact(thin, point);
+    } else if (rests(thin, point->values, thin->last.values)) {
+        /* Both ends of the rest then say it. */
+        make_exact(thin, point);
         thin->is_forced = true;
-        return;
+    } else {
+        keep(thin, true);
     }
-    keep(thin, true);
 }
 
 void wh_thin_finish(wh_thin_t *thin) {

@@ -1,0 +1,232 @@
+/* Thinned signals: between their points nothing is off by more than the tolerance, and forced samples are not off at all. */
+#include "support.h"
+
+#include "report/quaternion.h"
+#include "report/thin.h"
+#include "script/record.h"
+
+#define SAMPLES 4000
+
+typedef struct {
+    double values[WH_THIN_WIDTH];
+    int32_t tag;
+    bool forced;
+} sample_t;
+
+static sample_t samples[SAMPLES];
+
+/* ------------------------------------------------------------------------------------------------- signals */
+
+static void turn_by(const double axis[3], double angle, double q[4]) {
+    const double norm = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+    for (size_t i = 0; i < 3; ++i) {
+        q[i] = sin(angle / 2) * axis[i] / norm;
+    }
+    q[3] = cos(angle / 2);
+}
+
+static void multiply(const double a[4], const double b[4], double q[4]) {
+    q[0] = a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1];
+    q[1] = a[3] * b[1] + a[1] * b[3] + a[2] * b[0] - a[0] * b[2];
+    q[2] = a[3] * b[2] + a[2] * b[3] + a[0] * b[1] - a[1] * b[0];
+    q[3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
+}
+
+/* Rests and smooth moves of random lengths, as a robot makes them, with a jolt now and then; the moves turn about random axes. */
+static void make_signal(size_t width, bool turns, bool tagged) {
+    double from[WH_THIN_WIDTH] = {0, 0, 0, 0, 0, 0, 1};
+    double way[3] = {0};
+    double axis[3] = {0, 0, 1};
+    double angle = 0;
+    int32_t tag = 0;
+    int left = 0;
+    int length = 1;
+    for (size_t i = 0; i < SAMPLES; ++i, --left) {
+        if (left == 0) {
+            memcpy(from, i > 0 ? samples[i - 1].values : from, sizeof from);
+            length = left = 1 + (int)wh_test_below(300);
+            const bool rests = wh_test_below(3) == 0;
+            for (size_t k = 0; k < 3; ++k) {
+                way[k] = rests ? 0 : wh_test_uniform(-300, 300);
+                axis[k] = wh_test_uniform(-1, 1);
+            }
+            angle = rests ? 0 : wh_test_uniform(-4, 4);
+            tag = tagged && wh_test_below(4) == 0 ? (int32_t)wh_test_below(3) - 1 : tag;
+        }
+        const double share = (double)(length - left + 1) / length;
+        const double smooth = share * share * (3 - 2 * share);
+        sample_t *sample = &samples[i];
+        for (size_t k = 0; k < width; ++k) {
+            sample->values[k] = from[k] + smooth * way[k] + (wh_test_below(500) == 0 ? 1 : 0);
+        }
+        if (turns) {
+            double q[4];
+            turn_by(axis, smooth * angle, q);
+            multiply(from + width, q, sample->values + width);
+        }
+        sample->tag = tag;
+        sample->forced = wh_test_below(50) == 0;
+    }
+}
+
+static void thin_signal(wh_thin_t *thin) {
+    for (size_t i = 0; i < SAMPLES; ++i) {
+        wh_thin_add(thin, (int64_t)i + 7, samples[i].values, samples[i].tag);
+        if (samples[i].forced) {
+            wh_thin_force(thin);
+        }
+    }
+    wh_thin_finish(thin);
+}
+
+/* ------------------------------------------------------------------------------------------------- judging */
+
+static double angle_between(const double a[4], const double b[4]) {
+    double turn[3];
+    wh_quaternion_turn(a, b, turn);
+    return sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+}
+
+/* The greatest error of the numbers, and of the rotation, at one sample. */
+static void assert_within(const wh_thin_t *thin, size_t i, size_t width) {
+    double read[WH_THIN_WIDTH];
+    const double factor = samples[i].forced ? 0 : 1;
+    wh_thin_read(thin, (int64_t)i + 7, read);
+    for (size_t k = 0; k < width; ++k) {
+        assert_near(read[k], samples[i].values[k], factor * thin->tolerance * (1 + 1e-9));
+    }
+    if (thin->turns) {
+        assert_near(angle_between(read + width, samples[i].values + width), 0,
+                    factor * thin->turn + 1e-7 /* of the angle's own rounding, near 0 */);
+    }
+}
+
+static void assert_points(const wh_thin_t *thin) {
+    for (size_t i = 0; i < thin->count; ++i) {
+        const wh_thin_point_t *point = &thin->points[i];
+        const sample_t *sample = &samples[point->slice - 7];
+        assert_true(i == 0 || point->slice > thin->points[i - 1].slice);
+        assert_memory_equal(point->values, sample->values, thin->width * sizeof(double));
+        assert_int_equal(point->tag, sample->tag);
+    }
+    assert_int_equal(thin->points[0].slice, 7);
+    assert_int_equal(thin->points[thin->count - 1].slice, SAMPLES + 6);
+    assert_int_equal(thin->of, SAMPLES);
+}
+
+static void check(size_t width, bool turns, bool tagged, size_t limit) {
+    wh_thin_t thin;
+    wh_thin_open(&thin, width, wh_test_decades(1e-4, 10), turns ? wh_test_decades(1e-5, 0.1) : 0, limit);
+    make_signal(width, turns, tagged);
+    thin_signal(&thin);
+    assert_points(&thin);
+    for (size_t i = 0; i < SAMPLES; ++i) {
+        assert_within(&thin, i, width);
+    }
+    assert_true(limit == SIZE_MAX || thin.count - thin.exact_count <= limit);
+    wh_thin_close(&thin);
+}
+
+static void test_numbers_stay_within_the_tolerance(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    for (int i = 0; i < 60; ++i) {
+        check(1 + wh_test_below(3), false, false, SIZE_MAX);
+    }
+}
+
+static void test_poses_stay_within_both_tolerances(void **state) {
+    (void)state;
+    for (int i = 0; i < 60; ++i) {
+        check(3, true, false, SIZE_MAX);
+    }
+}
+
+static void test_tags_begin_anew(void **state) {
+    (void)state;
+    for (int i = 0; i < 60; ++i) {
+        check(3, false, true, SIZE_MAX);
+    }
+}
+
+/* The tolerance grows, is told, and holds. */
+static void test_a_limit_is_kept_and_the_tolerance_told(void **state) {
+    (void)state;
+    for (int i = 0; i < 60; ++i) {
+        check(3, wh_test_below(2) == 0, false, 20 + wh_test_below(200));
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------- by hand */
+
+static void test_a_straight_line_has_two_points(void **state) {
+    (void)state;
+    wh_thin_t thin;
+    wh_thin_open(&thin, 1, 1e-3, 0, SIZE_MAX);
+    for (int64_t i = 0; i < 1000; ++i) {
+        const double value = 3 + 0.25 * (double)i;
+        wh_thin_add(&thin, i, &value, 0);
+    }
+    wh_thin_finish(&thin);
+    assert_int_equal(thin.count, 2);
+    double read;
+    wh_thin_read(&thin, 400, &read);
+    assert_near(read, 103, 1e-12);
+    wh_thin_read(&thin, -5, &read);
+    assert_near(read, 3, 0);
+    wh_thin_read(&thin, 5000, &read);
+    assert_near(read, 252.75, 0);
+    wh_thin_close(&thin);
+}
+
+/* A forced sample within a rest costs no point, and the rest stays exact. */
+static void test_a_rest_has_two_points(void **state) {
+    (void)state;
+    wh_thin_t thin;
+    wh_thin_open(&thin, 1, 0.5, 0, SIZE_MAX);
+    for (int64_t i = 0; i <= 20; ++i) {
+        const double value = i <= 10 ? 5 : 5 + 0.1 * (double)(i - 10);
+        wh_thin_add(&thin, i, &value, 0);
+        if (i == 3) {
+            wh_thin_force(&thin);
+        }
+    }
+    wh_thin_finish(&thin);
+    assert_int_equal(thin.count, 3);
+    assert_int_equal(thin.points[1].slice, 10);
+    wh_thin_close(&thin);
+}
+
+static void test_a_sample_is_inserted_where_its_tag_is(void **state) {
+    (void)state;
+    wh_thin_t thin;
+    wh_thin_open(&thin, 1, 10, 0, SIZE_MAX);
+    for (int64_t i = 0; i <= 20; ++i) {
+        const double value = (double)(i % 2);
+        wh_thin_add(&thin, i, &value, i < 10 ? 1 : 2);
+    }
+    const double exact = 1;
+    wh_thin_insert(&thin, 5, &exact, 1);
+    wh_thin_insert(&thin, 5, &exact, 1); /* there already */
+    wh_thin_insert(&thin, 7, &exact, 2); /* of another tag */
+    wh_thin_insert(&thin, 99, &exact, 2);
+    double read;
+    wh_thin_read(&thin, 5, &read);
+    assert_near(read, 1, 0);
+    assert_int_equal(thin.count, 5);
+    assert_true(thin.points[1].exact);
+    wh_thin_close(&thin);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_numbers_stay_within_the_tolerance),
+        cmocka_unit_test(test_poses_stay_within_both_tolerances),
+        cmocka_unit_test(test_tags_begin_anew),
+        cmocka_unit_test(test_a_limit_is_kept_and_the_tolerance_told),
+        cmocka_unit_test(test_a_straight_line_has_two_points),
+        cmocka_unit_test(test_a_rest_has_two_points),
+        cmocka_unit_test(test_a_sample_is_inserted_where_its_tag_is),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
