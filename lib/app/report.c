@@ -88,7 +88,23 @@ static int report_log(const arguments_t *arguments) {
     return written ? WH_EXIT_MET : WH_EXIT_USAGE;
 }
 
+/* A script is text. */
+static bool is_text(const char *path) {
+    char begin[512];
+    FILE *file = fopen(path, "rb");
+    const size_t size = file ? fread(begin, 1, sizeof begin, file) : 0;
+    if (file) {
+        (void)fclose(file);
+    }
+    return !memchr(begin, '\0', size);
+}
+
 static int report_script(arguments_t *arguments) {
+    if (!is_text(arguments->run.run.script)) {
+        fprintf(stderr, "%s: no LCM event log and no script (expected one of them)\n",
+                arguments->run.run.script);
+        return WH_EXIT_USAGE;
+    }
     if (arguments->layout || arguments->number > 0) {
         fprintf(stderr, "%s: no LCM event log (expected one with %s)\n", arguments->run.run.script,
                 arguments->layout ? "--layout" : "--run");
