@@ -4,6 +4,9 @@
 
 #include "report/log_internal.h"
 
+/* What is farther away, mm or rad, no cell has. */
+#define FARTHEST 1e9
+
 /* -------------------------------------------------------------------------------------------------- a run */
 
 static uint64_t last_hash(wh_link_t *link) {
@@ -181,7 +184,7 @@ static bool find_axes(const wh_log_run_t *run, const waferhand_state *message, d
     const waferhand_command *command = &run->command;
     bool known = run->has_command && command->run == message->run && command->seq == message->seq;
     for (int32_t axis = 0; known && axis < command->axis_count; ++axis) {
-        known = wh_real_is_finite(command->axis_position[axis]);
+        known = wh_real_abs(command->axis_position[axis]) < FARTHEST;
     }
     memcpy(axes, run->axes, sizeof run->axes);
     for (int32_t axis = 0; known && axis < command->axis_count; ++axis) {
@@ -215,6 +218,11 @@ static void keep_events(wh_log_run_t *run) {
     }
 }
 
+static bool is_place(const wh_pose_t *pose) {
+    return wh_pose_validate(pose) == WH_OK && wh_real_abs(pose->r.x) < FARTHEST &&
+           wh_real_abs(pose->r.y) < FARTHEST && wh_real_abs(pose->r.z) < FARTHEST;
+}
+
 static bool is_index(int32_t index, size_t count) {
     return index == WH_NONE || (index >= 0 && (size_t)index < count);
 }
@@ -227,13 +235,12 @@ static bool is_sound(const wh_state_t *state, const wh_layout_t *layout) {
                  wh_condition_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK;
     for (size_t w = 0; sound && w < state->wafer_count; ++w) {
         sound = is_index(state->wafers[w].holder, state->gripper_count) &&
-                wh_pose_validate(&state->wafers[w].base_from_wafer) == WH_OK;
+                is_place(&state->wafers[w].base_from_wafer);
     }
     for (size_t g = 0; sound && g < state->gripper_count; ++g) {
         const wh_gripper_t *gripper = &state->grippers[g];
-        sound = is_index(gripper->wafer, state->wafer_count) &&
-                wh_pose_validate(&gripper->base_from_gripper) == WH_OK &&
-                (gripper->wafer == WH_NONE || wh_pose_validate(&gripper->gripper_from_wafer) == WH_OK);
+        sound = is_index(gripper->wafer, state->wafer_count) && is_place(&gripper->base_from_gripper) &&
+                (gripper->wafer == WH_NONE || is_place(&gripper->gripper_from_wafer));
     }
     return sound;
 }

@@ -80,9 +80,14 @@ static void thin_again(wh_thin_t *thin) {
     thin->turn *= 2;
 }
 
+/* A signal that turns too far from sample to sample cannot be thinned: it gets its room, or each sample would cost all of
+ * them. */
 static void keep_to_limit(wh_thin_t *thin) {
-    if (thin->count - thin->exact_count > thin->limit) {
+    for (int i = 0; i < 3 && thin->count - thin->exact_count > thin->limit; ++i) {
         thin_again(thin);
+    }
+    if (thin->count - thin->exact_count > thin->limit) {
+        thin->limit *= 2;
     }
 }
 

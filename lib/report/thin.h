@@ -7,8 +7,8 @@
  *
  * Samples come in the order of their slices, nothing is looked at twice: from the last point the slopes are kept that
  * miss no sample since, and the sample that has none among them comes after a new point. When there are more points than
- * `limit`, beside those that are exact, the tolerance is doubled and they are thinned again: so memory is bounded. Host
- * code: aborts when memory is out.
+ * `limit`, beside those that are exact, the tolerance is doubled and they are thinned again: so memory is bounded, but for
+ * a signal that turns by more than WH_THIN_TURN from sample to sample, or jumps without end. Host code: aborts when memory is out.
  */
 #ifndef WH_REPORT_THIN_H
 #define WH_REPORT_THIN_H

@@ -234,9 +234,9 @@ static char *split(const uint8_t *data, size_t size, char **argv) {
 }
 
 static int act(int argc, char **argv) {
-    static int (*const subcommands[])(int argc, char **argv) = {wh_app_run,    wh_app_mcs,    wh_app_sim,
-                                                                wh_app_replay, wh_app_layout, wh_app_study};
-    static const char *const names[] = {"run", "mcs", "sim", "replay", "layout", "study"};
+    static int (*const subcommands[])(int argc, char **argv) = {
+        wh_app_run, wh_app_mcs, wh_app_sim, wh_app_replay, wh_app_report, wh_app_layout, wh_app_study};
+    static const char *const names[] = {"run", "mcs", "sim", "replay", "report", "layout", "study"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(argv[0], names[i]) == 0) {
             return subcommands[i](argc, argv);

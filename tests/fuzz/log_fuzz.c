@@ -8,9 +8,12 @@
 #include <sys/mman.h>
 
 #include "app/app.h"
+#include "app/record_json.h"
 #include "fuzz.h"
 #include "link/check.h"
 #include "link/replay.h"
+#include "report/document.h"
+#include "report/log_run.h"
 
 #define HEADER 28
 
@@ -75,6 +78,37 @@ static wh_log_result_t read_log(size_t size, bool *differs, bool *compared) {
     return result;
 }
 
+/* ------------------------------------------------------------------------------------------------- reporting */
+
+/* Whatever is read can be shown: as JSON that can be read back. */
+static void report(void) {
+    static wh_log_run_t run;
+    const wh_log_run_options_t options = {.path = path};
+    char *text = NULL;
+    size_t size = 0;
+    if (wh_log_run_read(&run, &options)) {
+        FILE *const out = open_memstream(&text, &size);
+        json_t *const record = wh_record_to_json(&run.record);
+        const wh_document_t document = {.title = "log",
+                                        .reproduce = "",
+                                        .source = "log",
+                                        .notes = run.notes,
+                                        .note_count = run.note_count,
+                                        .run = record,
+                                        .record = &run.record,
+                                        .trace = &run.trace};
+        REQUIRE(out != NULL && record != NULL && wh_document_write(&document, out) == 0 && fclose(out) == 0);
+        json_t *const read = json_loadb(text, size, 0, NULL);
+        REQUIRE(read != NULL && !memchr(text, '<', size));
+        json_decref(read);
+        json_decref(record);
+        free(text);
+    } else {
+        REQUIRE(fuzz_is_one_line(run.message));
+    }
+    wh_log_run_close(&run);
+}
+
 /* ---------------------------------------------------------------------------------------------- the program */
 
 /* Runs a subcommand with standard output in memory, to be freed. */
@@ -117,6 +151,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     put_file(data, size);
     const wh_log_result_t result = read_log(size, &differs, &compared);
     check_program(result, differs, compared);
+    report();
     return 0;
 }
 
