@@ -35,8 +35,10 @@ static void check(const arguments_t *arguments, struct argp_state *state) {
         argp_error(state, "--layout: %s (a script names its layout itself)", arguments->layout);
     }
     if (arguments->layout &&
-        (arguments->run.json || arguments->run.sections || arguments->run.segments_path)) {
-        argp_error(state, "--json, --gantt, --margins and --segments go with a script");
+        (arguments->run.json || arguments->run.sections || arguments->run.segments_path ||
+         wh_report_files_wanted(&arguments->run.files))) {
+        argp_error(state,
+                   "--json, --gantt, --margins, --segments, --report, --gltf and --data go with a script");
     }
 }
 
