@@ -78,25 +78,35 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
 
 /* ---------------------------------------------------------------------------------------------------- names */
 
-static void put_axis(wh_json_text_t *text, const wh_layout_t *layout, size_t axis) {
+/* The robot's have names; a chuck's is its gripper's. */
+static void name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
-    const bool of_robot = axis < WH_ROBOT_AXES;
-    const wh_travel_t *travel = of_robot ? &layout->machine.robot.travel[axis] : NULL;
-    const bool known = travel && travel->max > travel->min;
-    const double speed =
-        axis < layout->machine.axis_count ? wh_machine_limits(&layout->machine, axis)->speed : 0;
-    char name[WH_NAME_SIZE + 8] = "";
-    for (size_t g = 0; !of_robot && g < layout->machine.gripper_count; ++g) {
+    (void)snprintf(name, size, "%s", axis < WH_ROBOT_AXES ? names[axis] : "chuck");
+    for (size_t g = 0; axis >= WH_ROBOT_AXES && g < layout->machine.gripper_count; ++g) {
         if (layout->machine.mounts[g].axis == (int32_t)axis) {
-            (void)snprintf(name, sizeof name, "%s chuck", layout->grippers[g].name);
+            (void)snprintf(name, size, "%s chuck", layout->grippers[g].name);
         }
     }
+}
+
+/* Null where it is not known: of a chuck, and of a log without its layout. */
+static void put_known(wh_json_text_t *text, const char *key, bool known, double value) {
+    wh_json_text_number(text, key, known ? value : HUGE_VAL, 0, true);
+}
+
+static void put_axis(wh_json_text_t *text, const wh_layout_t *layout, size_t axis) {
+    const wh_machine_t *machine = &layout->machine;
+    const wh_travel_t none = {0, 0};
+    const wh_travel_t travel = axis < WH_ROBOT_AXES ? machine->robot.travel[axis] : none;
+    const double speed = axis < machine->axis_count ? wh_machine_limits(machine, axis)->speed : 0;
+    char name[WH_NAME_SIZE + 8];
+    name_axis(layout, axis, name, sizeof name);
     wh_json_text_begin(text, NULL, '{');
-    put_text(text, "name", of_robot ? names[axis] : name);
+    put_text(text, "name", name);
     wh_json_text_string(text, "unit", axis == WH_AXIS_R || axis == WH_AXIS_Z ? "mm" : "rad");
-    wh_json_text_number(text, "low", known ? (double)travel->min : HUGE_VAL, 0, true);
-    wh_json_text_number(text, "high", known ? (double)travel->max : HUGE_VAL, 0, true);
-    wh_json_text_number(text, "speed", speed > 0 ? speed : HUGE_VAL, 0, true);
+    put_known(text, "low", travel.max > travel.min, travel.min);
+    put_known(text, "high", travel.max > travel.min, travel.max);
+    put_known(text, "speed", speed > 0, speed);
     wh_json_text_end(text, '}');
 }
 

@@ -227,22 +227,32 @@ static bool is_index(int32_t index, size_t count) {
     return index == WH_NONE || (index >= 0 && (size_t)index < count);
 }
 
-/* Whether a simulator could have left it so: indices and numbers are used from here on. */
-static bool is_sound(const wh_state_t *state, const wh_layout_t *layout) {
-    bool sound = state->wafer_count == layout->wafer_count &&
-                 state->gripper_count == layout->machine.gripper_count && state->seq > 0 &&
-                 state->seq < INT64_MAX / layout->slice_us &&
-                 wh_condition_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK;
+static bool are_wafers_sound(const wh_state_t *state) {
+    bool sound = true;
     for (size_t w = 0; sound && w < state->wafer_count; ++w) {
         sound = is_index(state->wafers[w].holder, state->gripper_count) &&
                 is_place(&state->wafers[w].base_from_wafer);
     }
+    return sound;
+}
+
+static bool are_grippers_sound(const wh_state_t *state) {
+    bool sound = true;
     for (size_t g = 0; sound && g < state->gripper_count; ++g) {
         const wh_gripper_t *gripper = &state->grippers[g];
         sound = is_index(gripper->wafer, state->wafer_count) && is_place(&gripper->base_from_gripper) &&
                 (gripper->wafer == WH_NONE || is_place(&gripper->gripper_from_wafer));
     }
     return sound;
+}
+
+/* Whether a simulator could have left it so: indices and numbers are used from here on. */
+static bool is_sound(const wh_state_t *state, const wh_layout_t *layout) {
+    return state->wafer_count == layout->wafer_count &&
+           state->gripper_count == layout->machine.gripper_count && state->seq > 0 &&
+           state->seq < INT64_MAX / layout->slice_us &&
+           wh_condition_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
+           are_wafers_sound(state) && are_grippers_sound(state);
 }
 
 void wh_log_take_state(wh_log_run_t *run, const waferhand_state *message) {

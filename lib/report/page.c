@@ -7,6 +7,10 @@
 
 #include "script/embedded.h"
 
+#if !defined(WH_JAVASCRIPT)
+#define WH_JAVASCRIPT "/usr/share/javascript"
+#endif
+
 /* Longest name between two @. */
 #define NAME_BYTES 64
 

@@ -32,40 +32,52 @@ static void multiply(const double a[4], const double b[4], double q[4]) {
     q[3] = a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2];
 }
 
+/* A rest or a smooth move from a sample on. */
+typedef struct {
+    double from[WH_THIN_WIDTH], way[3], axis[3], angle;
+    size_t begin, length;
+    int32_t tag;
+} move_t;
+
+static void begin_move(move_t *move, size_t begin, bool tagged) {
+    const bool rests = wh_test_below(3) == 0;
+    if (begin > 0) {
+        memcpy(move->from, samples[begin - 1].values, sizeof move->from);
+    }
+    move->begin = begin;
+    move->length = 1 + wh_test_below(300);
+    for (size_t k = 0; k < 3; ++k) {
+        move->way[k] = rests ? 0 : wh_test_uniform(-300, 300);
+        move->axis[k] = wh_test_uniform(-1, 1);
+    }
+    move->angle = rests ? 0 : wh_test_uniform(-4, 4);
+    move->tag = tagged && wh_test_below(4) == 0 ? (int32_t)wh_test_below(3) - 1 : move->tag;
+}
+
+static void make_sample(const move_t *move, size_t i, size_t width, bool turns) {
+    const double share = (double)(i - move->begin + 1) / (double)move->length;
+    const double smooth = share * share * (3 - 2 * share);
+    sample_t *sample = &samples[i];
+    for (size_t k = 0; k < width; ++k) {
+        sample->values[k] = move->from[k] + smooth * move->way[k] + (wh_test_below(500) == 0 ? 1 : 0);
+    }
+    if (turns) {
+        double q[4];
+        turn_by(move->axis, smooth * move->angle, q);
+        multiply(move->from + width, q, sample->values + width);
+    }
+    sample->tag = move->tag;
+    sample->forced = wh_test_below(50) == 0;
+}
+
 /* Rests and smooth moves of random lengths, as a robot makes them, with a jolt now and then; the moves turn about random axes. */
 static void make_signal(size_t width, bool turns, bool tagged) {
-    double from[WH_THIN_WIDTH] = {0, 0, 0, 0, 0, 0, 1};
-    double way[3] = {0};
-    double axis[3] = {0, 0, 1};
-    double angle = 0;
-    int32_t tag = 0;
-    int left = 0;
-    int length = 1;
-    for (size_t i = 0; i < SAMPLES; ++i, --left) {
-        if (left == 0) {
-            memcpy(from, i > 0 ? samples[i - 1].values : from, sizeof from);
-            length = left = 1 + (int)wh_test_below(300);
-            const bool rests = wh_test_below(3) == 0;
-            for (size_t k = 0; k < 3; ++k) {
-                way[k] = rests ? 0 : wh_test_uniform(-300, 300);
-                axis[k] = wh_test_uniform(-1, 1);
-            }
-            angle = rests ? 0 : wh_test_uniform(-4, 4);
-            tag = tagged && wh_test_below(4) == 0 ? (int32_t)wh_test_below(3) - 1 : tag;
+    move_t move = {.from = {0, 0, 0, 0, 0, 0, 1}, .length = 0};
+    for (size_t i = 0; i < SAMPLES; ++i) {
+        if (i == move.begin + move.length) {
+            begin_move(&move, i, tagged);
         }
-        const double share = (double)(length - left + 1) / length;
-        const double smooth = share * share * (3 - 2 * share);
-        sample_t *sample = &samples[i];
-        for (size_t k = 0; k < width; ++k) {
-            sample->values[k] = from[k] + smooth * way[k] + (wh_test_below(500) == 0 ? 1 : 0);
-        }
-        if (turns) {
-            double q[4];
-            turn_by(axis, smooth * angle, q);
-            multiply(from + width, q, sample->values + width);
-        }
-        sample->tag = tag;
-        sample->forced = wh_test_below(50) == 0;
+        make_sample(&move, i, width, turns);
     }
 }
 
