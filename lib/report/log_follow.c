@@ -86,9 +86,8 @@ static void end_command(wh_log_run_t *run, const waferhand_mcs *message) {
     run->mcs.running = WH_NONE;
 }
 
-static void begin_command(wh_log_run_t *run, const waferhand_mcs *message) {
-    const bool has_begun = run->trace.layout && message->run == run->run;
-    if (has_begun) {
+static void begin_command(wh_log_run_t *run, const waferhand_mcs *message, bool ours) {
+    if (ours && run->trace.layout) {
         add_command(run, message->line, message->command, (double)message->utime / 1e6);
         return;
     }
@@ -99,18 +98,15 @@ static void begin_command(wh_log_run_t *run, const waferhand_mcs *message) {
 
 /* A command begins once, however often that is said. */
 static bool is_running(const wh_log_run_t *run, const waferhand_mcs *message) {
-    return run->mcs.running != WH_NONE && run->mcs.record &&
+    return run->mcs.running != WH_NONE &&
            strcmp(run->record.commands[run->mcs.running].text, message->command) == 0;
 }
 
 void wh_log_take_mcs(wh_log_run_t *run, const waferhand_mcs *message) {
-    const bool ours = run->mcs.record && message->run == run->run;
+    const bool ours = run->is_wanted && run->mcs.record && message->run == run->run;
     const bool ended = message->phase == WH_LINK_PHASE_DONE || message->phase == WH_LINK_PHASE_FAILED;
-    if (run->mcs.record && message->run == run->run) {
-        wh_trace_mark(&run->trace);
-    }
-    if (message->phase == WH_LINK_PHASE_BEGINS && !is_running(run, message)) {
-        begin_command(run, message);
+    if (message->phase == WH_LINK_PHASE_BEGINS && !(ours && is_running(run, message))) {
+        begin_command(run, message, ours);
     } else if (ended && ours && is_running(run, message)) {
         end_command(run, message);
     }
@@ -209,6 +205,9 @@ static void take_slice(wh_log_run_t *run, const waferhand_state *message) {
         wh_collision_follow(&run->mcs.collision, &run->mcs.state);
     }
     wh_trace_slice(&run->trace, known ? axes : NULL, (size_t)run->command.axis_count, &run->mcs.state);
+    if (wh_log_is_boundary(run)) {
+        wh_trace_mark(&run->trace);
+    }
 }
 
 static void keep_events(wh_log_run_t *run) {

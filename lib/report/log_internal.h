@@ -13,6 +13,9 @@ void wh_log_take_state(wh_log_run_t *run, const waferhand_state *message);
 /* What motion control says of its commands. */
 void wh_log_take_mcs(wh_log_run_t *run, const waferhand_mcs *message);
 
+/* Whether a command begins or ends with the last slice. */
+bool wh_log_is_boundary(const wh_log_run_t *run);
+
 /* The log is over: closes the record and the trace. */
 void wh_log_finish_run(wh_log_run_t *run);
 

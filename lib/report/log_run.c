@@ -86,11 +86,12 @@ static void on_state(wh_log_run_t *run) {
         ++run->run_count;
         run->run = message.run;
         run->seq = 0;
-        if (wants(run)) {
+        run->is_wanted = wants(run);
+        if (run->is_wanted) {
             wh_log_begin_run(run);
         }
     }
-    if (message.run == run->run && wants(run)) {
+    if (message.run == run->run && run->is_wanted) {
         wh_log_take_state(run, &message);
     }
     (void)waferhand_state_decode_cleanup(&message);
@@ -122,15 +123,51 @@ static void take_event(wh_log_run_t *run) {
 
 /* ------------------------------------------------------------------------------------------------- the whole */
 
-/* The cell is told once a second: a recording may begin before it, and goes with the first one then. */
-static void find_cell(wh_log_run_t *run, FILE *file) {
+static int compare(const void *a, const void *b) {
+    const wh_log_boundary_t *one = a;
+    const wh_log_boundary_t *two = b;
+    if (one->run != two->run) {
+        return one->run < two->run ? -1 : 1;
+    }
+    return (one->seq > two->seq) - (one->seq < two->seq);
+}
+
+static void note_boundary(wh_log_run_t *run) {
+    waferhand_mcs message;
+    if (!wh_link_decode_mcs(run->log.data, run->log.size, &message)) {
+        return;
+    }
+    run->boundaries = wh_record_grow(run->boundaries, run->boundary_count, &run->boundary_capacity,
+                                     sizeof *run->boundaries);
+    const wh_log_boundary_t boundary = {message.run, message.seq};
+    if (message.phase != WH_LINK_PHASE_GOES_ON) {
+        run->boundaries[run->boundary_count++] = boundary;
+    }
+    (void)waferhand_mcs_decode_cleanup(&message);
+}
+
+/* What is needed before it comes. The cell is told once a second: a recording may begin before it, and goes with the first one then.
+ * And a command's end may be told after the next slice. */
+static void look_ahead(wh_log_run_t *run, FILE *file) {
     wh_log_open(&run->log, file);
-    while (!run->next_cell.layout && wh_log_next(&run->log) == WH_LOG_EVENT) {
-        if (strcmp(run->log.channel, WH_CHANNEL_CELL) == 0 && run->log.size <= WH_LINK_DATAGRAM) {
+    while (wh_log_next(&run->log) == WH_LOG_EVENT) {
+        const bool fits = run->log.size > 0 && run->log.size <= WH_LINK_DATAGRAM;
+        if (fits && !run->next_cell.layout && strcmp(run->log.channel, WH_CHANNEL_CELL) == 0) {
             on_cell(run);
+        } else if (fits && strcmp(run->log.channel, WH_CHANNEL_MCS) == 0) {
+            note_boundary(run);
         }
     }
+    if (run->boundary_count > 0) {
+        qsort(run->boundaries, run->boundary_count, sizeof *run->boundaries, compare);
+    }
     rewind(file);
+}
+
+bool wh_log_is_boundary(const wh_log_run_t *run) {
+    const wh_log_boundary_t now = {run->run, run->seq};
+    return run->boundary_count > 0 &&
+           bsearch(&now, run->boundaries, run->boundary_count, sizeof now, compare) != NULL;
 }
 
 static wh_log_result_t read_events(wh_log_run_t *run, FILE *file) {
@@ -186,7 +223,7 @@ bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options) {
     if (!file) {
         return false;
     }
-    find_cell(run, file);
+    look_ahead(run, file);
     const wh_log_result_t result = read_events(run, file);
     (void)fclose(file);
     if (!run->trace.layout || run->trace.last <= 0) {
@@ -201,4 +238,6 @@ void wh_log_run_close(wh_log_run_t *run) {
     wh_log_drop_run(run);
     wh_log_layout_free(&run->cell);
     wh_log_layout_free(&run->next_cell);
+    free(run->boundaries);
+    run->boundaries = NULL;
 }

@@ -26,6 +26,11 @@ typedef struct {
     char text[200];
 } wh_log_begin_t;
 
+/* A slice with which a command begins or ends. */
+typedef struct {
+    int64_t run, seq;
+} wh_log_boundary_t;
+
 /* Zero it to begin with, or leave it static; must not be moved. Read record, trace, notes and message. */
 typedef struct {
     wh_link_t link; /* first: tells the hash of the last state, for wh_mcs_finish */
@@ -37,10 +42,13 @@ typedef struct {
     wh_trace_t trace;
     void *collision_memory;
     wh_link_arrays_t arrays;
+    wh_log_boundary_t *boundaries; /* sorted: messages of them may come late */
+    size_t boundary_count, boundary_capacity;
     waferhand_command command; /* the last one */
     bool has_command;
     wh_log_begin_t begin;
     int64_t run, seq; /* of the last state */
+    bool is_wanted;   /* that run */
     int64_t refused;  /* seq of the last refusal */
     size_t run_count;
     uint64_t hash;
