@@ -28,7 +28,9 @@ static bool is_contact(wh_event_kind_t kind) {
 static void describe(const wh_layout_t *layout, const wh_event_t *event, char *text, size_t size) {
     (void)snprintf(text, size, "%s", wh_event_name(event->kind));
     for (char *c = text; *c; ++c) {
-        *c = *c == '_' ? ' ' : *c;
+        if (*c == '_') {
+            *c = ' ';
+        }
     }
     if (is_contact(event->kind)) {
         append(text, size, ": ", wh_layout_part_name(layout, event->parts[0]));

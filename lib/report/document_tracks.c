@@ -147,7 +147,7 @@ static void put_stay(wh_json_text_t *text, const wh_trace_t *trace, const wh_sta
 
 /* By wafer, each in order of time: the list holds them in order of time alone. */
 static const wh_stay_t **sort_stays(const wh_trace_t *trace, size_t *ends) {
-    const wh_stay_t **sorted = malloc((trace->stay_count + 1) * sizeof(const wh_stay_t *));
+    const wh_stay_t **sorted = calloc(trace->stay_count + 1, sizeof(const wh_stay_t *));
     if (!sorted) {
         abort();
     }

@@ -1,6 +1,5 @@
 /* The convex hull of points, face by face: for a look at a mesh. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "motion/trig.h"
 #include "report/mesh.h"
@@ -32,10 +31,15 @@ typedef struct {
 
 /* --------------------------------------------------------------------------------------------------- points */
 
+static bool is_same(const wh_vec3_t *a, const wh_vec3_t *b) {
+    const wh_vec3_t way = wh_vec3_subtract(a, b);
+    return !(wh_vec3_dot(&way, &way) > 0);
+}
+
 static void take(hull_t *hull, const wh_vec3_t *point) {
     bool is_new = hull->count < MOST_POINTS;
     for (size_t i = 0; is_new && i < hull->count; ++i) {
-        is_new = memcmp(&hull->points[i], point, sizeof *point) != 0;
+        is_new = !is_same(&hull->points[i], point);
     }
     if (is_new) {
         hull->points[hull->count++] = *point;

@@ -118,10 +118,18 @@ wh_keyframes_t wh_keyframes_of_wafer(const wh_trace_t *trace, int32_t wafer) {
 
 /* ---------------------------------------------------------------------------------------------------- nodes */
 
+static bool differ(const float a[], const float b[], size_t count) {
+    bool same = true;
+    for (size_t i = 0; i < count; ++i) {
+        same = same && !(a[i] < b[i]) && !(a[i] > b[i]);
+    }
+    return !same;
+}
+
 static bool rests(const wh_keyframes_t *motion) {
     for (size_t i = 1; i < motion->count; ++i) {
-        if (memcmp(motion->places[i], motion->places[0], sizeof motion->places[0]) != 0 ||
-            memcmp(motion->turns[i], motion->turns[0], sizeof motion->turns[0]) != 0) {
+        if (differ(motion->places[i], motion->places[0], 3) ||
+            differ(motion->turns[i], motion->turns[0], 4)) {
             return false;
         }
     }

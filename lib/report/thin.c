@@ -47,8 +47,9 @@ void wh_thin_close(wh_thin_t *thin) {
 
 static void keep(wh_thin_t *thin, bool exact) {
     thin->points = wh_record_grow(thin->points, thin->count, &thin->capacity, sizeof *thin->points);
-    thin->points[thin->count] = thin->last;
-    thin->points[thin->count++].exact = exact;
+    thin->anchor = thin->last;
+    thin->anchor.exact = exact;
+    thin->points[thin->count++] = thin->anchor;
     thin->exact_count += exact ? 1 : 0;
     thin->is_pending = false;
     thin->is_forced = false;
@@ -100,7 +101,7 @@ static double turned(const wh_thin_t *thin) {
 
 /* How far the sample is from the last point. */
 static void move(wh_thin_t *thin, const double values[]) {
-    const double *from = thin->points[thin->count - 1].values;
+    const double *from = thin->anchor.values;
     const size_t linear = linear_width(thin);
     for (size_t i = 0; i < linear; ++i) {
         thin->moved[i] = values[i] - from[i];
@@ -134,7 +135,7 @@ static void narrow(wh_thin_t *thin, double slices) {
 }
 
 static double slices_to(const wh_thin_t *thin, int64_t slice) {
-    return (double)(slice - thin->points[thin->count - 1].slice);
+    return (double)(slice - thin->anchor.slice);
 }
 
 /* --------------------------------------------------------------------------------------------------- samples */
@@ -160,7 +161,7 @@ void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[], int32_t 
     if (thin->count > 0) {
         settle(thin, values, tag);
     }
-    if (thin->count == 0 || tag != thin->points[thin->count - 1].tag) {
+    if (thin->count == 0 || tag != thin->anchor.tag) {
         take(thin, slice, values, tag);
         keep(thin, true);
         return;

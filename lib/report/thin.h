@@ -37,10 +37,11 @@ typedef struct {
     size_t limit;
     wh_thin_point_t *points;
     size_t count, capacity, exact_count;
-    int64_t of; /* samples so far */
-    wh_thin_point_t last;
-    bool is_pending; /* `last` is not among the points */
-    bool is_forced;  /* and must be, unless the signal rests from the last point to it */
+    int64_t of;             /* samples so far */
+    wh_thin_point_t anchor; /* the last of the points */
+    wh_thin_point_t last;   /* the last sample */
+    bool is_pending;        /* `last` is not among the points */
+    bool is_forced;         /* and must be, unless the signal rests from the last point to it */
     double low[WH_THIN_WIDTH], high[WH_THIN_WIDTH]; /* slopes that miss no sample since the last point */
     double moved[WH_THIN_WIDTH];                    /* of `last` from the last point */
 } wh_thin_t;

@@ -46,7 +46,7 @@ static void add_stay(wh_trace_t *trace, int64_t slice, int32_t wafer, int32_t ho
 }
 
 /* As motion control finds it: at home, all valves closed. */
-static void start_at_home(wh_trace_t *trace, wh_state_t *state) {
+static void start_at_home(wh_trace_t *trace) {
     const wh_layout_t *layout = trace->layout;
     const wh_machine_t *machine = &layout->machine;
     wh_gripper_t grippers[WH_GRIPPERS];
@@ -62,9 +62,12 @@ static void start_at_home(wh_trace_t *trace, wh_state_t *state) {
         grippers[g].wafer = WH_NONE;
         condition.told[g] = WH_VALVE_CLOSED;
     }
-    state->grippers = grippers;
-    state->condition = &condition;
-    wh_trace_slice(trace, axes, machine->axis_count, state);
+    const wh_state_t state = {.wafers = layout->start,
+                              .wafer_count = layout->wafer_count,
+                              .grippers = grippers,
+                              .gripper_count = machine->gripper_count,
+                              .condition = &condition};
+    wh_trace_slice(trace, axes, machine->axis_count, &state);
 }
 
 void wh_trace_begin(wh_trace_t *trace, const wh_layout_t *layout, bool at_home) {
@@ -79,10 +82,7 @@ void wh_trace_begin(wh_trace_t *trace, const wh_layout_t *layout, bool at_home) 
         add_stay(trace, 0, (int32_t)w, WH_NONE, &layout->start[w].base_from_wafer);
     }
     if (at_home) {
-        wh_state_t state = {.wafers = layout->start,
-                            .wafer_count = layout->wafer_count,
-                            .gripper_count = layout->machine.gripper_count};
-        start_at_home(trace, &state);
+        start_at_home(trace);
     }
 }
 
