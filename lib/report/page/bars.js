@@ -1,0 +1,96 @@
+/* What the lanes show: for each lane its name and its bars { from, to, text, colour, hatch, seek } or a curve. */
+(function (W) {
+    'use strict';
+
+    /* Intervals in which a track of steps has a value. */
+    function intervals(track, wanted, end) {
+        const made = [];
+        track.t.forEach((t, i) => {
+            const to = i + 1 < track.t.length ? track.t[i + 1] : end;
+            const last = made[made.length - 1];
+            if (track.v[i] === wanted && last && last.to === t) {
+                last.to = to;
+            } else if (track.v[i] === wanted) {
+                made.push({ from: t, to });
+            }
+        });
+        return made;
+    }
+
+    const some = (track) => !!(track && track.t && track.t.length > 0);
+
+    function signalLanes(doc, name, i) {
+        const lanes = [];
+        const { valves, vacuum, sensors } = doc.tracks;
+        const bars = (track, wanted, text) => intervals(track, wanted, doc.duration)
+            .map((bar) => Object.assign(bar, { text, colour: `s${i % 6}` }));
+        if (some(valves[i])) {
+            lanes.push({ name: `${name} valve`, bars: bars(valves[i], 0, 'open') });
+        }
+        if (some(vacuum[i])) {
+            lanes.push({ name: `${name} vacuum`, bars: [], curve: vacuum[i], colour: `s${i % 6}` });
+        }
+        if (some(sensors[i])) {
+            lanes.push({ name: `${name} sensor`, bars: bars(sensors[i], 1, 'wafer') });
+        }
+        return lanes;
+    }
+
+    function signals(doc) {
+        const lanes = [].concat(...doc.names.grippers.map((name, i) => signalLanes(doc, name, i)));
+        return { id: 'signals', title: 'Valves, vacuum and sensors', lanes,
+            note: doc.tracks.vacuum.some(some) ? '' : 'The vacuum is not shown: in this run it was ideal, or was not recorded.',
+            why: 'The document holds no valves, vacuum or sensors.' };
+    }
+
+    /* One lane a gripper, with the wafers that it held. */
+    function holders(doc) {
+        const lanes = doc.names.grippers.map((name) => ({ name, bars: [] }));
+        doc.tracks.wafers.forEach((states, wafer) => states.forEach((state, i) => {
+            const lane = lanes[state.holder];
+            const to = i + 1 < states.length ? states[i + 1].t : doc.duration;
+            const last = lane && lane.bars[lane.bars.length - 1];
+            if (last && last.wafer === wafer && last.to === state.t) {
+                last.to = to;
+            } else if (lane) {
+                lane.bars.push({ from: state.t, to, wafer, text: doc.names.wafers[wafer], colour: `s${state.holder % 6}` });
+            }
+        }));
+        lanes.forEach((lane) => lane.bars.sort((a, b) => a.from - b.from));
+        return { id: 'holders', title: 'Who holds which wafer', lanes: doc.tracks.wafers.length > 0 ? lanes : [],
+            why: 'The document does not hold who held what.' };
+    }
+
+    const COLOURS = { loaded: 's0', empty: 's5', vacuum: 's3', handover: 's2', waiting: 's4' };
+
+    function laneName(entry) {
+        return entry.gripper ? `${entry.gripper} ${entry.resource === 'gripper' ? 'holds' : entry.resource}` : entry.resource;
+    }
+
+    /* The robot's and the chucks' time, by what it went into; grippers and valves have lanes of their own above. */
+    function busy(doc) {
+        const lanes = new Map();
+        (doc.run.gantt || []).filter((entry) => entry.resource === 'robot' || entry.resource === 'chuck').forEach((entry) => {
+            const name = laneName(entry);
+            if (!lanes.has(name)) {
+                lanes.set(name, { name, bars: [] });
+            }
+            lanes.get(name).bars.push({ from: entry.from_s, to: entry.to_s, text: entry.what,
+                colour: COLOURS[entry.what] || 's1' });
+        });
+        return Array.from(lanes.values());
+    }
+
+    function commands(doc) {
+        const bars = doc.commands.filter((command) => typeof command.begin_s === 'number')
+            .map((command) => ({ from: command.begin_s, to: command.end_s, text: command.text,
+                colour: command.error ? 'bad' : 's0', alternate: true }));
+        const lanes = (bars.length > 0 ? [{ name: 'commands', bars }] : []).concat(busy(doc));
+        return { id: 'commands-chart', title: 'Commands, and what the time goes into', lanes,
+            why: 'The document holds no commands: a log of moves alone has none.' };
+    }
+
+    const groups = (doc) => [signals(doc), holders(doc), commands(doc)];
+
+    W.bars = { groups };
+}(window.Waferhand));

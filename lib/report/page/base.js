@@ -1,0 +1,63 @@
+/* The page's one name, and the small helpers that every part uses. */
+window.Waferhand = {};
+(function (W) {
+    'use strict';
+
+    const DASH = '\u2013';
+    const MINUS = '\u2212';
+
+    /* An element: attributes by name (a function listens, `text` is the text), then children or strings. */
+    function element(name, attributes, ...children) {
+        const made = document.createElement(name);
+        Object.entries(attributes || {}).forEach(([key, value]) => {
+            if (typeof value === 'function') {
+                made.addEventListener(key, value);
+            } else if (key === 'text') {
+                made.textContent = value;
+            } else if (value !== null && value !== undefined && value !== false) {
+                made.setAttribute(key, value === true ? '' : value);
+            }
+        });
+        children.forEach((child) => made.append(child));
+        return made;
+    }
+
+    /* A number for people: fixed decimals, a true minus, no negative zero, a dash for none. */
+    function number(value, decimals) {
+        if (typeof value !== 'number' || !isFinite(value)) {
+            return DASH;
+        }
+        const text = value.toFixed(decimals);
+        return Number(text) === 0 ? text.replace('-', '') : text.replace('-', MINUS);
+    }
+
+    /* Four significant digits and no more: 0.4923, 49.99, 1235. */
+    function figure(value) {
+        if (typeof value !== 'number' || !isFinite(value)) {
+            return DASH;
+        }
+        const size = Math.abs(value);
+        if (size !== 0 && size < 1e-6) {
+            return value.toExponential(1).replace(/-/g, MINUS);
+        }
+        const before = size < 1 ? 0 : Math.floor(Math.log10(size));
+        return number(value, Math.max(0, 3 - before + (size < 1 ? 1 : 0)));
+    }
+
+    const seconds = (t) => number(t, 3) + '\u00a0s';
+
+    /* A word as the program's JSON spells it, for people. */
+    const words = (text) => String(text).replace(/_/g, ' ');
+
+    const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
+
+    /* What a section says in place of what the document does not hold. */
+    const why = (text) => element('p', { class: 'why', text });
+
+    /* Tells those who hear the page instead of seeing it. */
+    function say(text) {
+        document.getElementById('said').textContent = text;
+    }
+
+    Object.assign(W, { element, number, figure, seconds, words, clamp, why, say, DASH });
+}(window.Waferhand));

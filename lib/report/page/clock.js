@@ -1,0 +1,117 @@
+/* The shown time and the shown window of it. All parts listen here, and none talks to another. */
+(function (W) {
+    'use strict';
+
+    const listeners = { time: [], window: [], play: [] };
+    const pending = new Set();
+    let begun = null;
+
+    const clock = { now: 0, end: 0, slice: 0.001, speed: 1, playing: false, window: [0, 1], stops: [] };
+
+    /* Listeners are called once a frame however often something changed. */
+    function changed(what) {
+        if (pending.size === 0) {
+            requestAnimationFrame(clock.flush);
+        }
+        pending.add(what);
+    }
+
+    clock.flush = function () {
+        const due = Array.from(pending);
+        pending.clear();
+        due.forEach((what) => listeners[what].forEach((listener) => listener(clock)));
+    };
+
+    clock.on = (what, listener) => listeners[what].push(listener);
+
+    /* The time of a slice, computed as the program computes an event's: equal times are equal to the last bit. */
+    clock.time = (number) => number * Math.round(clock.slice * 1e6) / 1e6;
+    clock.number = (t) => Math.round(t / clock.slice);
+
+    clock.seek = function (t) {
+        clock.now = W.clamp(t, 0, clock.end);
+        if (clock.now < clock.window[0] || clock.now > clock.window[1]) {
+            follow();
+        }
+        changed('time');
+    };
+
+    /* Turns the page, as it were, when the time leaves the shown window. */
+    function follow() {
+        const width = clock.window[1] - clock.window[0];
+        const from = W.clamp(clock.now - 0.05 * width, 0, Math.max(clock.end - width, 0));
+        clock.setWindow(from, from + width);
+    }
+
+    clock.setWindow = function (from, to) {
+        const width = W.clamp(to - from, Math.min(10 * clock.slice, clock.end), clock.end);
+        const low = W.clamp(from, 0, clock.end - width);
+        clock.window = [low, low + width];
+        changed('window');
+    };
+
+    clock.zoom = function (factor) {
+        const [from, to] = clock.window;
+        const middle = clock.now >= from && clock.now <= to ? clock.now : (from + to) / 2;
+        clock.setWindow(middle - (middle - from) * factor, middle + (to - middle) * factor);
+    };
+
+    clock.reset = () => clock.setWindow(0, clock.end);
+
+    clock.stepSlice = (count) => clock.seek(clock.time(clock.number(clock.now) + count));
+
+    /* To the next (1) or the one before (-1) of the events. */
+    clock.stepStop = function (way) {
+        const at = W.tracks.index(clock.stops, clock.now);
+        const before = at >= 0 && clock.stops[at] === clock.now ? at - 1 : at;
+        const to = clock.stops[way > 0 ? at + 1 : before];
+        clock.seek(to === undefined ? (way > 0 ? clock.end : 0) : to);
+    };
+
+    function frame(stamp) {
+        if (!clock.playing) {
+            return;
+        }
+        const passed = begun === null ? 0 : (stamp - begun) / 1000;
+        begun = stamp;
+        clock.seek(clock.now + clock.speed * passed);
+        if (clock.now >= clock.end) {
+            clock.pause();
+        }
+        requestAnimationFrame(frame);
+    }
+
+    clock.play = function () {
+        if (clock.playing) {
+            return;
+        }
+        if (clock.now >= clock.end) {
+            clock.seek(0);
+        }
+        clock.playing = true;
+        begun = null;
+        changed('play');
+        requestAnimationFrame(frame);
+    };
+
+    clock.pause = function () {
+        clock.playing = false;
+        changed('play');
+    };
+
+    clock.toggle = () => (clock.playing ? clock.pause() : clock.play());
+
+    clock.setSpeed = function (speed) {
+        clock.speed = speed;
+        changed('play');
+    };
+
+    clock.start = function (doc) {
+        clock.end = doc.duration;
+        clock.slice = doc.slice;
+        clock.window = [0, doc.duration];
+        clock.stops = Array.from(new Set(doc.events.map((event) => event.t))).sort((a, b) => a - b);
+    };
+
+    W.clock = clock;
+}(window.Waferhand));

@@ -1,0 +1,94 @@
+/* Which curves there are: groups of panels, each with its curves and limits, taken from the document's tracks. A curve is
+ * { name, colour, t, v, unit, decimals, step }; a limit { value, text, below }: what is allowed lies below it, or above. */
+(function (W) {
+    'use strict';
+
+    const DEGREES = 180 / Math.PI;
+    const some = (track) => !!(track && track.t && track.t.length > 0);
+    const scaled = (values, factor, absolute) => (factor === 1 && !absolute ? values
+        : values.map((v) => (v === null ? null : factor * (absolute ? Math.abs(v) : v))));
+
+    const MEASURES = [
+        { key: 'dr_proj_z', name: '|dr_proj_z|', unit: 'mm', decimals: 4, limit: 'projz', below: true, absolute: true },
+        { key: 'dr_proj_xy', name: '|dr_proj_xy|', unit: 'mm', decimals: 4, limit: 'projxy', below: true, absolute: true },
+        { key: 'n1_proj_n2', name: 'n1_proj_n2', unit: '', decimals: 6, limit: 'planar', below: false, absolute: false },
+    ];
+
+    function limitOf(doc, measure) {
+        const value = doc.limits[measure.limit];
+        return typeof value === 'number' ? [{ value, below: measure.below,
+            text: `limit ${value}${measure.unit && '\u00a0' + measure.unit}` }] : [];
+    }
+
+    /* The name of the nearest wafer at a time, for the legend: a name, or an index. */
+    function nearest(doc, track) {
+        return (t) => {
+            const found = Array.isArray(track.wafer) ? W.tracks.step(track.t, track.wafer, t) : track.wafer;
+            return typeof found === 'number' ? doc.names.wafers[found] || '' : found || '';
+        };
+    }
+
+    function proximityPanel(doc, track, name, measure, i) {
+        const curve = { name: measure.name, colour: i, t: track.t, unit: measure.unit, decimals: measure.decimals,
+            v: scaled(track[measure.key], 1, measure.absolute), note: nearest(doc, track) };
+        return { title: `${name}: ${measure.name}`, unit: measure.unit, curves: [curve], limits: limitOf(doc, measure),
+            zero: measure.below };
+    }
+
+    function proximity(doc) {
+        const panels = [];
+        doc.tracks.proximity.forEach((track, i) => {
+            if (some(track)) {
+                MEASURES.filter((measure) => Array.isArray(track[measure.key])).forEach((measure) => panels.push(
+                    proximityPanel(doc, track, doc.names.grippers[i] || `gripper ${i + 1}`, measure, i)));
+            }
+        });
+        return { id: 'proximity', title: 'Proximity of each gripper to its nearest wafer', panels,
+            why: 'No gripper came near a wafer, or the document does not hold how near.' };
+    }
+
+    /* One panel for the axes in mm, one for those that turn. */
+    function axisPanel(doc, unit, speed) {
+        const factor = unit === 'rad' ? DEGREES : 1;
+        const shown = (unit === 'rad' ? '\u00b0' : 'mm') + (speed ? '/s' : '');
+        const curves = [];
+        doc.tracks.axes.forEach((track, i) => {
+            const axis = doc.names.axes[i] || { name: `axis ${i + 1}`, unit: 'mm' };
+            const t = speed ? track.speed_t : track.t;
+            if (axis.unit === unit && t && t.length > 0) {
+                curves.push({ name: axis.name, colour: i, t, v: scaled(speed ? track.speed : track.v, factor, false),
+                    unit: shown, decimals: speed ? 2 : 3, bounds: bounds(axis, factor, speed) });
+            }
+        });
+        return { title: speed ? 'Speeds' : 'Positions', unit: shown, curves, limits: [], zero: speed };
+    }
+
+    /* What an axis may do, in words. */
+    function bounds(axis, factor, speed) {
+        if (speed) {
+            return axis.speed > 0 ? `at most ${W.figure(axis.speed * factor)}` : '';
+        }
+        return typeof axis.low === 'number' && typeof axis.high === 'number'
+            ? `${W.figure(axis.low * factor)} to ${W.figure(axis.high * factor)}` : '';
+    }
+
+    function axes(doc) {
+        const panels = [['mm', false], ['rad', false], ['mm', true], ['rad', true]]
+            .map(([unit, speed]) => axisPanel(doc, unit, speed)).filter((panel) => panel.curves.length > 0);
+        return { id: 'axes', title: 'Axes', panels, why: 'The document holds no positions of axes.' };
+    }
+
+    function clearances(doc) {
+        const panels = doc.tracks.clearances.filter((track) => some(track) && Array.isArray(track.gap))
+            .map((track, i) => ({ title: W.words(track.pair), unit: 'mm', zero: true,
+                curves: [{ name: 'gap', colour: i, t: track.t, v: track.gap, unit: 'mm', decimals: 3 }],
+                limits: track.limit > 0 ? [{ value: track.limit, below: false, text: `limit ${track.limit}\u00a0mm` }]
+                    : [] }));
+        return { id: 'clearances', title: 'Clearances', panels,
+            why: 'Clearances are not shown: collisions were not checked in this run, or nothing came near.' };
+    }
+
+    const groups = (doc) => [proximity(doc), axes(doc), clearances(doc)];
+
+    W.curves = { groups };
+}(window.Waferhand));

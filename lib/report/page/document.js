@@ -1,0 +1,57 @@
+/* The document that the page shows: read once, with something in the place of every part that may be missing. */
+(function (W) {
+    'use strict';
+
+    const list = (value) => (Array.isArray(value) ? value : []);
+    const object = (value) => (value && typeof value === 'object' && !Array.isArray(value) ? value : {});
+
+    function names(from) {
+        return { wafers: list(from.wafers), grippers: list(from.grippers), axes: list(from.axes),
+            stations: list(from.stations) };
+    }
+
+    function tracks(from) {
+        const kinds = ['grippers', 'wafers', 'axes', 'valves', 'sensors', 'vacuum', 'proximity', 'clearances', 'links'];
+        return kinds.reduce((all, kind) => Object.assign(all, { [kind]: list(from[kind]) }), {});
+    }
+
+    /* Events with their time in seconds, in order; several may share one time. */
+    function events(run) {
+        return list(run.events).filter((event) => event && typeof event.utime === 'number')
+            .map((event) => Object.assign({ t: event.utime / 1e6 }, event)).sort((a, b) => a.t - b.t);
+    }
+
+    /* The last time that anything in the document has, for one that does not say how long it is. */
+    function lastTime(doc) {
+        const last = (track) => (track && track.t && track.t.length > 0 ? track.t[track.t.length - 1] : 0);
+        const moved = doc.tracks.grippers.concat(doc.tracks.axes).map(last);
+        return Math.max(0.001, ...moved, ...doc.events.slice(-1).map((event) => event.t));
+    }
+
+    function complete(from) {
+        const run = object(from.run);
+        const doc = {
+            title: from.title || run.script || 'Report', version: from.version || '', reproduce: from.reproduce || '',
+            parameters: object(from.parameters), run, names: names(object(from.names)),
+            wafer: Object.assign({ diameter: 300, thickness: 0.775 }, object(from.wafer)), limits: object(from.limits),
+            slots: list(from.slots), thinning: from.thinning || null, tracks: tracks(object(from.tracks)),
+            marks: list(from.marks), scene: from.scene || null, slice: from.slice_s > 0 ? from.slice_s : 0.001,
+            slices: from.slices, commands: list(run.commands), events: events(run),
+            expectations: list(run.expectations),
+        };
+        doc.duration = from.duration_s > 0 ? from.duration_s : lastTime(doc);
+        return doc;
+    }
+
+    /* The document, or null with `W.fault` telling why. */
+    function read() {
+        try {
+            return complete(object(JSON.parse(document.getElementById('document').textContent)));
+        } catch (error) {
+            W.fault = error.message;
+            return null;
+        }
+    }
+
+    W.document = { read, complete };
+}(window.Waferhand));

@@ -1,0 +1,234 @@
+/* The cell without WebGL: drawings from above and from the side, moved to the shown time. It does what scene.js does. */
+(function (W) {
+    'use strict';
+
+    /* Across, up and towards the eye, of base's axes. */
+    const SIDES = {
+        top: { title: 'from above', across: 0, up: 1, near: (p) => p[2] },
+        side: { title: 'from the side', across: 0, up: 2, near: (p) => -p[1] },
+    };
+
+    function movers(doc) {
+        const found = {};
+        doc.tracks.links.forEach((link) => {
+            found[link.name] = { kind: 'link', at: (t) => W.tracks.pose(link, t) };
+        });
+        doc.names.grippers.forEach((name, i) => {
+            found[name] = { kind: 'gripper', i, at: (t) => W.tracks.pose(doc.tracks.grippers[i], t) };
+        });
+        doc.names.wafers.forEach((name, i) => {
+            found[name] = { kind: 'wafer', i, at: (t) => W.tracks.wafer(doc.tracks, i, t) };
+        });
+        return found;
+    }
+
+    /* Where each body's points are now; what stands still is computed once. */
+    function pose(view, t) {
+        view.at = t;
+        Object.values(view.movers).forEach((mover) => { mover.pose = mover.at(t); });
+        view.bodies.forEach((body) => {
+            if (!body.mover) {
+                body.now = body.points;
+            } else if (body.mover.pose) {
+                const { r, q } = body.mover.pose;
+                body.now = body.points.map((p) => W.pose.add(r, W.pose.rotate(q, p)));
+            } else {
+                body.now = null;
+            }
+        });
+    }
+
+    function bounds(view) {
+        const box = { low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
+        view.bodies.filter((body) => body.now).forEach((body) => body.now.forEach((p) => p.forEach((x, i) => {
+            box.low[i] = Math.min(box.low[i], x);
+            box.high[i] = Math.max(box.high[i], x);
+        })));
+        return box;
+    }
+
+    /* The panels that are shown, side by side or, where it is narrow, one above the other. */
+    function panels(view) {
+        const sides = view.shown === 'top' || view.shown === 'side' ? [view.shown] : ['top', 'side'];
+        const { clientWidth: width, clientHeight: height } = view.host;
+        const wide = width > height;
+        return sides.map((name, i) => {
+            const share = 1 / sides.length;
+            const area = wide ? { x: i * share * width, y: 0, w: share * width, h: height }
+                : { x: 0, y: i * share * height, w: width, h: share * height };
+            return fit(view.box, SIDES[name], area);
+        });
+    }
+
+    function fit(box, side, area) {
+        const size = [side.across, side.up].map((i) => box.high[i] - box.low[i]);
+        const scale = Math.min((area.w - 40) / size[0], (area.h - 70) / size[1]);
+        const middle = [side.across, side.up].map((i) => (box.high[i] + box.low[i]) / 2);
+        return { side, area, spot: (p) => [area.x + area.w / 2 + (p[side.across] - middle[0]) * scale,
+            area.y + area.h / 2 + 12 - (p[side.up] - middle[1]) * scale] };
+    }
+
+    function colourOf(view, body) {
+        if (body.mover && body.mover.kind === 'gripper') {
+            return W.theme.series(body.mover.i);
+        }
+        if (body.mover && body.mover.kind === 'wafer') {
+            const state = W.tracks.hold(view.doc.tracks.wafers[body.mover.i], view.at);
+            return state && typeof state.holder === 'number' ? W.theme.series(state.holder) : W.theme.colour('wafer');
+        }
+        return `rgb(${body.colour.map((x) => Math.round(255 * x)).join()})`;
+    }
+
+    function path(pen, points) {
+        pen.beginPath();
+        points.forEach((p, i) => (i === 0 ? pen.moveTo(...p) : pen.lineTo(...p)));
+        pen.closePath();
+    }
+
+    function drawBody(view, panel, body) {
+        const pen = view.pen;
+        path(pen, W.hulls.outline(body.now.map(panel.spot)));
+        pen.globalAlpha = body.mover ? 0.55 : Math.min(0.3, body.alpha);
+        pen.fillStyle = colourOf(view, body);
+        pen.fill();
+        pen.globalAlpha = 0.8;
+        pen.strokeStyle = W.theme.colour('edge');
+        pen.stroke();
+        pen.globalAlpha = 1;
+    }
+
+    function text(view, words, x, y, colour) {
+        const pen = view.pen;
+        pen.lineWidth = 4;
+        pen.strokeStyle = W.theme.colour('stage');
+        pen.strokeText(words, x, y);
+        pen.fillStyle = colour;
+        pen.fillText(words, x, y);
+        pen.lineWidth = 1;
+    }
+
+    function drawNames(view, panel) {
+        Object.entries(view.movers).filter(([, mover]) => mover.kind !== 'link' && mover.pose)
+            .forEach(([name, mover]) => {
+                const [x, y] = panel.spot(mover.pose.r);
+                text(view, name, x + 6, y - 6, W.theme.colour('ink'));
+            });
+    }
+
+    function drawFrames(view, panel) {
+        Object.values(view.movers).filter((mover) => mover.pose).forEach(({ pose: { r, q } }) => {
+            [0, 1, 2].forEach((i) => {
+                const tip = W.pose.add(r, W.pose.axis(q, i).map((x) => 100 * x));
+                line(view, panel.spot(r), panel.spot(tip), W.theme.colour('axis-' + 'xyz'[i]), 2);
+            });
+        });
+    }
+
+    function line(view, from, to, colour, width) {
+        const pen = view.pen;
+        pen.beginPath();
+        pen.moveTo(...from);
+        pen.lineTo(...to);
+        pen.lineWidth = width;
+        pen.strokeStyle = colour;
+        pen.stroke();
+        pen.lineWidth = 1;
+    }
+
+    function drawMarks(view, panel) {
+        view.marks.forEach((mark) => {
+            const near = W.marks.isNear(mark, view.at);
+            const [x, y] = panel.spot(mark.at);
+            const colour = W.theme.colour(W.marks.colourName(mark));
+            view.pen.fillStyle = colour;
+            view.pen.beginPath();
+            view.pen.arc(x, y, near ? 7 : 3.5, 0, 7);
+            view.pen.fill();
+            if (near) {
+                text(view, W.marks.text(mark), W.clamp(x + 10, 4, panel.area.x + panel.area.w - 180), y, colour);
+            }
+        });
+    }
+
+    function drawRuler(view, panel) {
+        const [from, to] = view.ends.map(panel.spot);
+        line(view, from, to, W.theme.colour('ink'), 2);
+        text(view, view.measured, (from[0] + to[0]) / 2 + 6, (from[1] + to[1]) / 2 - 6, W.theme.colour('ink'));
+    }
+
+    function drawPanel(view, panel) {
+        const nearest = (body) => Math.max(...body.now.map(panel.side.near));
+        view.bodies.filter((body) => body.now).map((body) => [nearest(body), body])
+            .sort((a, b) => a[0] - b[0]).forEach(([, body]) => drawBody(view, panel, body));
+        text(view, panel.side.title, panel.area.x + 14, panel.area.y + panel.area.h - 12, W.theme.colour('ink'));
+        drawMarks(view, panel);
+        if (view.options.frames) {
+            drawFrames(view, panel);
+        }
+        if (view.options.names) {
+            drawNames(view, panel);
+        }
+        if (view.ends) {
+            drawRuler(view, panel);
+        }
+    }
+
+    function render(view) {
+        const scale = window.devicePixelRatio || 1;
+        const { clientWidth: width, clientHeight: height } = view.host;
+        view.due = false;
+        view.canvas.width = width * scale;
+        view.canvas.height = height * scale;
+        view.pen.setTransform(scale, 0, 0, scale, 0, 0);
+        view.pen.font = '13px system-ui, "DejaVu Sans", sans-serif';
+        view.pen.lineJoin = 'round';
+        view.pen.fillStyle = W.theme.colour('stage');
+        view.pen.fillRect(0, 0, width, height);
+        panels(view).forEach((panel) => drawPanel(view, panel));
+    }
+
+    function draw(view) {
+        if (!view.due) {
+            view.due = true;
+            requestAnimationFrame(() => render(view));
+        }
+    }
+
+    /* The frame whose origin is drawn nearest to the pointer, within a finger's width. */
+    function pick(view, event) {
+        const area = view.canvas.getBoundingClientRect();
+        const spot = [event.clientX - area.left, event.clientY - area.top];
+        let best = { far: 30, found: null };
+        panels(view).forEach((panel) => Object.entries(view.movers).forEach(([name, mover]) => {
+            if (mover.pose && mover.kind !== 'link') {
+                const at = panel.spot(mover.pose.r);
+                const far = Math.hypot(at[0] - spot[0], at[1] - spot[1]);
+                best = far < best.far ? { far, found: { name, at: mover.pose.r } } : best;
+            }
+        }));
+        return best.found;
+    }
+
+    function make(host, doc, roots) {
+        const canvas = W.element('canvas');
+        const view = { host, doc, canvas, pen: canvas.getContext('2d'), options: {}, shown: 'whole', due: false };
+        host.append(canvas);
+        view.movers = movers(doc);
+        view.bodies = W.hulls.make(roots || [], view.movers);
+        view.marks = W.marks.placed(doc);
+        pose(view, 0);
+        view.box = bounds(view);
+        view.update = (t) => { pose(view, t); draw(view); };
+        view.paint = () => draw(view);
+        view.resize = () => draw(view);
+        view.show = (name) => { view.shown = name; draw(view); };
+        view.set = (options) => { Object.assign(view.options, options); draw(view); };
+        view.rule = (ends, words) => { Object.assign(view, { ends, measured: words }); draw(view); };
+        view.pick = (event) => pick(view, event);
+        view.still = () => { render(view); return canvas.toDataURL('image/png'); };
+        new ResizeObserver(view.resize).observe(host);
+        return view;
+    }
+
+    W.drawing = { make };
+}(window.Waferhand));

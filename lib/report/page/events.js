@@ -1,0 +1,19 @@
+/* What kinds of events there are for the eye, and an event in words. */
+(function (W) {
+    'use strict';
+
+    const BAD = ['hit', 'slipped', 'vacuum_lost', 'released_unsupported', 'slot_occupied', 'bad_input'];
+    const WARN = ['near_miss', 'too_close', 'contested', 'undecided', 'placed_off_centre', 'placed_askew', 'fault_armed'];
+
+    /* The style sheet's name of the colour. */
+    function colour(kind) {
+        return BAD.includes(kind) ? 'bad' : WARN.includes(kind) ? 'warn' : 'accent';
+    }
+
+    function tell(event) {
+        const parts = event.parts ? `${event.parts[0]} and ${event.parts[1]}` : null;
+        return [W.words(event.kind), event.wafer, parts, event.gripper && 'by ' + event.gripper].filter(Boolean).join(' ');
+    }
+
+    W.events = { colour, tell };
+}(window.Waferhand));

@@ -1,0 +1,107 @@
+/* The scene's parts as convex bodies in mm of base, and their outlines from above and from the side: what drawings are
+ * made of. A mesh of several bodies that do not touch is taken apart. */
+(function (W) {
+    'use strict';
+
+    const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+
+    /* Columns one after the other, as in glTF. */
+    function product(a, b) {
+        return IDENTITY.map((_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[(i & 3) + 4 * k] * b[k + (i & 12)], 0));
+    }
+
+    function local(node) {
+        if (node.matrix) {
+            return node.matrix;
+        }
+        const columns = [0, 1, 2].map((i) => W.pose.axis(node.q, i).map((x) => x * node.s[i]));
+        return [...columns[0], 0, ...columns[1], 0, ...columns[2], 0, ...node.r, 1];
+    }
+
+    const apply = (m, x, y, z) => [0, 1, 2].map((i) => m[i] * x + m[i + 4] * y + m[i + 8] * z + m[i + 12]);
+
+    function find(parents, i) {
+        let root = i;
+        while (parents[root] !== root) {
+            parents[root] = parents[parents[root]];
+            root = parents[root];
+        }
+        return root;
+    }
+
+    /* Numbers of a part's vertices, those of one place being one. */
+    function places(part) {
+        const seen = new Map();
+        const p = part.positions;
+        return Array.from({ length: p.length / 3 }, (_, i) => {
+            const key = [0, 1, 2].map((k) => Math.round(p[3 * i + k] * 1e6)).join();
+            if (!seen.has(key)) {
+                seen.set(key, i);
+            }
+            return seen.get(key);
+        });
+    }
+
+    /* A part's bodies: lists of points that triangles connect. */
+    function bodies(part) {
+        if (part.bodies) {
+            return part.bodies;
+        }
+        const place = places(part);
+        const parents = place.map((_, i) => i);
+        for (let i = 0; i < part.indices.length; i += 3) {
+            const [a, b, c] = [0, 1, 2].map((k) => find(parents, place[part.indices[i + k]]));
+            parents[b] = a;
+            parents[find(parents, c)] = a;
+        }
+        const groups = new Map();
+        new Set(place).forEach((i) => {
+            const root = find(parents, i);
+            groups.set(root, (groups.get(root) || []).concat([Array.from(part.positions.slice(3 * i, 3 * i + 3))]));
+        });
+        part.bodies = Array.from(groups.values());
+        return part.bodies;
+    }
+
+    /* Goes through the tree; a node in `movers` begins anew, for its own pose is set later. */
+    function collect(node, above, mover, movers, found) {
+        const own = movers[node.name];
+        const matrix = own ? IDENTITY : product(above, local(node));
+        node.parts.forEach((part) => bodies(part).forEach((points) => found.push({
+            mover: own || mover, name: node.name, colour: part.colour, alpha: part.alpha,
+            points: points.map((p) => apply(matrix, ...p).map((x) => 1000 * x)),
+        })));
+        node.children.forEach((child) => collect(child, matrix, own || mover, movers, found));
+    }
+
+    /* y up becomes z up for what stands still. */
+    const Z_UP = [1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1];
+
+    function make(roots, movers) {
+        const found = [];
+        roots.forEach((root) => collect(root, Z_UP, null, movers, found));
+        return found;
+    }
+
+    const turn = (o, a, b) => (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
+
+    function chain(points) {
+        const made = [];
+        points.forEach((p) => {
+            while (made.length > 1 && turn(made[made.length - 2], made[made.length - 1], p) <= 0) {
+                made.pop();
+            }
+            made.push(p);
+        });
+        made.pop();
+        return made;
+    }
+
+    /* The outline of points in the plane. */
+    function outline(points) {
+        const sorted = points.slice().sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+        return chain(sorted).concat(chain(sorted.reverse()));
+    }
+
+    W.hulls = { make, outline };
+}(window.Waferhand));

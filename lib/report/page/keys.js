@@ -1,0 +1,71 @@
+/* The keyboard, and the list of its keys. */
+(function (W) {
+    'use strict';
+
+    const view = (name) => () => W.stage.view && W.stage.show(name);
+    const option = (name) => () => W.stage.view && W.stage.toggle(name);
+
+    const KEYS = [
+        { keys: [' '], name: 'Space', text: 'play or pause', act: () => W.clock.toggle() },
+        { keys: ['ArrowLeft'], name: '\u2190', text: 'one slice back', act: () => W.clock.stepSlice(-1) },
+        { keys: ['ArrowRight'], name: '\u2192', text: 'one slice on', act: () => W.clock.stepSlice(1) },
+        { keys: ['Shift+ArrowLeft', ','], name: 'Shift \u2190', text: 'to the event before', act: () => W.clock.stepStop(-1) },
+        { keys: ['Shift+ArrowRight', '.'], name: 'Shift \u2192', text: 'to the next event', act: () => W.clock.stepStop(1) },
+        { keys: ['Home'], name: 'Home', text: 'to the begin', act: () => W.clock.seek(0) },
+        { keys: ['End'], name: 'End', text: 'to the end', act: () => W.clock.seek(W.clock.end) },
+        { keys: ['['], name: '[', text: 'slower', act: () => W.transport.faster(-1) },
+        { keys: [']'], name: ']', text: 'faster', act: () => W.transport.faster(1) },
+        { keys: ['1'], name: '1', text: 'view of the whole cell', act: view('whole') },
+        { keys: ['2'], name: '2', text: 'view from the top', act: view('top') },
+        { keys: ['3'], name: '3', text: 'view from the side', act: view('side') },
+        { keys: ['4'], name: '4', text: 'ride along with a gripper; again: with the next', act: view('gripper') },
+        { keys: ['m'], name: 'm', text: 'measure', act: () => W.measure.toggle() },
+        { keys: ['f'], name: 'f', text: 'frames', act: option('frames') },
+        { keys: ['n'], name: 'n', text: 'names of wafers and grippers', act: option('names') },
+        { keys: ['+', '='], name: '+', text: 'plots: shorter time', act: () => W.clock.zoom(0.5) },
+        { keys: ['-'], name: '\u2212', text: 'plots: longer time', act: () => W.clock.zoom(2) },
+        { keys: ['0'], name: '0', text: 'plots: the whole run', act: () => W.clock.reset() },
+        { keys: ['t'], name: 't', text: 'light or dark', act: () => W.theme.toggle() },
+        { keys: ['?'], name: '?', text: 'this list', act: () => keys.help() },
+    ];
+
+    /* Keys that an element with the focus needs itself. */
+    function isTaken(target, key) {
+        const name = target.tagName;
+        if (name === 'TEXTAREA' || name === 'SELECT' || (name === 'INPUT' && target.type !== 'range')) {
+            return true;
+        }
+        return key === ' ' && (name === 'BUTTON' || name === 'SUMMARY');
+    }
+
+    function pressed(event) {
+        const key = (event.shiftKey && event.key.startsWith('Arrow') ? 'Shift+' : '') + event.key;
+        const found = KEYS.find((each) => each.keys.includes(key));
+        const other = event.ctrlKey || event.altKey || event.metaKey || document.getElementById('help').open;
+        if (found && !other && !isTaken(event.target, event.key)) {
+            event.preventDefault();
+            found.act();
+        }
+    }
+
+    const keys = {
+        help() {
+            const dialog = document.getElementById('help');
+            if (!dialog.open) {
+                dialog.showModal();
+            }
+        },
+        start() {
+            const rows = KEYS.map(({ name, text }) => W.element('tr', {}, W.element('td', {}, W.element('kbd', {}, name)),
+                W.element('td', {}, text)));
+            const dialog = document.getElementById('help');
+            dialog.append(W.element('h2', {}, 'Keys'), W.element('table', {}, W.element('tbody', {}, ...rows)),
+                W.element('p', {}, 'In the picture: drag to orbit, with the right button to move, scroll to zoom once it has '
+                    + 'the focus. In the plots: drag to zoom, click to go there, double click for the whole run.'),
+                W.element('button', { type: 'button', click: () => dialog.close() }, 'Close'));
+            document.addEventListener('keydown', pressed);
+        },
+    };
+
+    W.keys = keys;
+}(window.Waferhand));

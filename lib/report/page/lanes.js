@@ -1,0 +1,199 @@
+/* Bars over time, a lane a row, on the plots' time axis: drawn on a canvas, only what is in the window. */
+(function (W) {
+    'use strict';
+
+    const ROW = 26;
+    const AXIS = 20;
+    const RIGHT = 10;
+    const charts = [];
+    const lanes = {};
+
+    const left = () => W.plots.gutter() - 9;
+    const width = (chart) => Math.max(chart.canvas.clientWidth - left() - RIGHT, 10);
+    const spot = (chart, t) => left() + width(chart) * (t - W.clock.window[0]) / (W.clock.window[1] - W.clock.window[0]);
+
+    /* Times for the axis: 1, 2 or 5 times a power of ten apart. */
+    function steps(from, to, count) {
+        const raw = (to - from) / count;
+        const power = Math.pow(10, Math.floor(Math.log10(raw)));
+        const step = [1, 2, 5, 10].find((factor) => factor * power >= raw) * power;
+        const first = Math.ceil(from / step);
+        return Array.from({ length: Math.max(Math.floor(to / step) - first + 1, 0) }, (_, i) => (first + i) * step);
+    }
+
+    function drawAxis(chart, pen, height) {
+        pen.strokeStyle = W.theme.colour('rule');
+        pen.fillStyle = W.theme.colour('dim');
+        pen.textAlign = 'center';
+        steps(...W.clock.window, Math.max(width(chart) / 90, 2)).forEach((t) => {
+            const x = Math.round(spot(chart, t)) + 0.5;
+            pen.beginPath();
+            pen.moveTo(x, 0);
+            pen.lineTo(x, height - AXIS);
+            pen.stroke();
+            pen.fillText(`${Number(t.toPrecision(10))}\u00a0s`, x, height - 5);
+        });
+        pen.textAlign = 'left';
+    }
+
+    /* As much of a text as there is room for. */
+    function drawText(pen, text, x, y, room) {
+        if (room < 14) {
+            return;
+        }
+        let shown = text;
+        while (shown.length > 1 && pen.measureText(shown).width > room) {
+            shown = shown.slice(0, -2) + '\u2026';
+        }
+        if (shown !== '\u2026') {
+            pen.fillText(shown, x, y);
+        }
+    }
+
+    function drawBar(chart, pen, bar, y, i) {
+        const begin = Math.max(spot(chart, bar.from), left());
+        const end = Math.min(spot(chart, bar.to), left() + width(chart));
+        const wide = Math.max(end - begin, 1);
+        pen.globalAlpha = bar.alternate && i % 2 ? 0.82 : 1;
+        pen.fillStyle = W.theme.colour(bar.colour);
+        pen.fillRect(begin, y + 4, wide, ROW - 8);
+        pen.globalAlpha = 1;
+        if (wide > 20) {
+            pen.fillStyle = W.theme.colour('panel');
+            pen.fillRect(begin, y + 4, 1, ROW - 8);
+            pen.fillStyle = W.theme.colour('on-series');
+            drawText(pen, bar.text || '', begin + 5, y + ROW / 2 + 4, wide - 9);
+        }
+    }
+
+    /* The first bar that ends within the window; they are in order and do not overlap. */
+    function first(bars, t) {
+        let low = 0;
+        let high = bars.length;
+        while (low < high) {
+            const middle = (low + high) >> 1;
+            if (bars[middle].to < t) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        return low;
+    }
+
+    /* Bars within a pixel that is drawn already are left out. */
+    function drawBars(chart, pen, lane, y) {
+        let drawn = -Infinity;
+        for (let i = first(lane.bars, W.clock.window[0]); i < lane.bars.length; ++i) {
+            const bar = lane.bars[i];
+            if (bar.from > W.clock.window[1]) {
+                return;
+            }
+            if (spot(chart, bar.to) > drawn + 0.5) {
+                drawBar(chart, pen, bar, y, i);
+                drawn = spot(chart, bar.to);
+            }
+        }
+    }
+
+    /* A level from 0 to 1, filled. */
+    function drawCurve(chart, pen, lane, y) {
+        const bottom = y + ROW - 4;
+        const rows = W.reduce.rows([lane.curve], W.clock.window, width(chart), W.clock.end);
+        pen.save();
+        pen.beginPath();
+        pen.rect(left(), y, width(chart), ROW);
+        pen.clip();
+        pen.beginPath();
+        pen.moveTo(left(), bottom);
+        rows.forEach(([t, v]) => pen.lineTo(spot(chart, t), bottom - (ROW - 8) * v));
+        pen.lineTo(rows.length > 0 ? Math.max(spot(chart, rows[rows.length - 1][0]), left() + width(chart)) : left(),
+            bottom - (ROW - 8) * (rows.length > 0 ? rows[rows.length - 1][1] : 0));
+        pen.lineTo(left() + width(chart), bottom);
+        pen.fillStyle = W.theme.colour(lane.colour);
+        pen.globalAlpha = 0.35;
+        pen.fill();
+        pen.globalAlpha = 1;
+        pen.strokeStyle = W.theme.colour(lane.colour);
+        pen.stroke();
+        pen.restore();
+    }
+
+    function drawLane(chart, pen, lane, i) {
+        const y = i * ROW;
+        pen.fillStyle = W.theme.colour('ink');
+        drawText(pen, lane.name, 2, y + ROW / 2 + 4, left() - 8);
+        pen.strokeStyle = W.theme.colour('rule');
+        pen.strokeRect(left() + 0.5, y + 3.5, width(chart), ROW - 7);
+        if (lane.curve) {
+            drawCurve(chart, pen, lane, y);
+        }
+        drawBars(chart, pen, lane, y);
+    }
+
+    function draw(chart) {
+        const scale = window.devicePixelRatio || 1;
+        const height = chart.group.lanes.length * ROW + AXIS;
+        chart.canvas.style.height = height + 'px';
+        chart.canvas.width = chart.canvas.clientWidth * scale;
+        chart.canvas.height = height * scale;
+        const pen = chart.canvas.getContext('2d');
+        pen.scale(scale, scale);
+        pen.font = '12px system-ui, "DejaVu Sans", sans-serif';
+        drawAxis(chart, pen, height);
+        chart.group.lanes.forEach((lane, i) => drawLane(chart, pen, lane, i));
+        follow(chart);
+    }
+
+    const follow = (chart) => W.plots.place(chart.cursor, left(), width(chart));
+
+    const timeAt = (chart, event) => {
+        const x = event.clientX - chart.canvas.getBoundingClientRect().left - left();
+        return W.clock.window[0] + (W.clock.window[1] - W.clock.window[0]) * W.clamp(x / width(chart), 0, 1);
+    };
+
+    /* A click takes the time there, a drag zooms, a double click shows the whole run again. */
+    function listen(chart) {
+        let from = null;
+        chart.canvas.addEventListener('pointerdown', (event) => { from = event; });
+        window.addEventListener('pointerup', (event) => {
+            if (from && Math.abs(event.clientX - from.clientX) > 5) {
+                const times = [timeAt(chart, from), timeAt(chart, event)].sort((a, b) => a - b);
+                W.clock.setWindow(...times);
+            } else if (from) {
+                W.clock.seek(timeAt(chart, from));
+            }
+            from = null;
+        });
+        chart.canvas.addEventListener('dblclick', W.clock.reset);
+    }
+
+    function make(group) {
+        const names = group.lanes.map((lane) => lane.name).join(', ');
+        const chart = { group, canvas: W.element('canvas', { class: 'lanes', role: 'img',
+            'aria-label': `${group.title} over time: ${names}; in figures in the tables below` }),
+        cursor: W.element('div', { class: 'cursor' }) };
+        charts.push(chart);
+        listen(chart);
+        new ResizeObserver(() => draw(chart)).observe(chart.canvas);
+        return W.element('div', { class: 'frame' }, chart.canvas, chart.cursor);
+    }
+
+    lanes.section = function (group) {
+        const body = [group.lanes.length > 0 ? make(group) : W.why(group.why)];
+        if (group.note && group.lanes.length > 0) {
+            body.push(W.why(group.note));
+        }
+        return W.element('section', { class: 'group', id: group.id }, W.element('h2', {}, group.title), ...body);
+    };
+
+    lanes.start = function () {
+        W.clock.on('time', () => charts.forEach(follow));
+        W.clock.on('window', () => charts.forEach(draw));
+        W.theme.on(() => charts.forEach(draw));
+    };
+
+    lanes.showAll = () => charts.forEach(draw);
+
+    W.lanes = lanes;
+}(window.Waferhand));

@@ -1,0 +1,66 @@
+/* Puts the page together: what is seen first comes first, the rest when there is time. */
+(function (W) {
+    'use strict';
+
+    /* A part that cannot be shown says so in its place and leaves the others alone. */
+    function part(host, build) {
+        try {
+            build();
+        } catch (error) {
+            host.append(W.why(`This part cannot be shown: ${error.message}.`));
+            W.faults.push(error);
+        }
+    }
+
+    const host = (id) => document.getElementById(id);
+
+    function plots(doc) {
+        const buttons = [['Shorter time (+)', '+', () => W.clock.zoom(0.5)], ['Longer time (-)', '\u2212', () => W.clock.zoom(2)],
+            ['The whole run (0)', 'All', () => W.clock.reset()]].map(([title, text, act]) => W.element('button',
+            { type: 'button', title, 'aria-label': title, click: act }, text));
+        host('plots').append(W.element('div', { class: 'zoom', role: 'toolbar', 'aria-label': 'Time window' }, ...buttons));
+        W.plots.start(doc);
+        W.lanes.start();
+        const curves = W.curves.groups(doc);
+        const bars = W.bars.groups(doc);
+        host('plots').append(W.plots.section(curves[0]), ...bars.map(W.lanes.section),
+            ...curves.slice(1).map(W.plots.section));
+        W.plots.fill(false);
+    }
+
+    function tables(doc) {
+        W.tables.start(doc, host('tables'));
+        W.reproduce.start(doc, host('tables'));
+    }
+
+    /* After the first picture. */
+    function rest(doc) {
+        part(host('plots'), () => plots(doc));
+        part(host('tables'), () => tables(doc));
+        W.print.start();
+        performance.mark('complete');
+    }
+
+    function start() {
+        W.faults = [];
+        const doc = W.document.read();
+        if (!doc) {
+            host('head').append(W.why(`The document of this report cannot be read: ${W.fault}.`));
+            return;
+        }
+        W.shown = doc;
+        W.clock.start(doc);
+        part(host('head'), () => W.summary.start(doc));
+        part(host('canvas'), () => W.stage.start(doc));
+        part(host('transport'), () => W.transport.start(doc));
+        part(host('now'), () => W.now.start(doc));
+        part(host('measure'), () => W.measure.start(doc));
+        W.keys.start();
+        requestAnimationFrame(() => setTimeout(() => {
+            performance.mark('interactive');
+            rest(doc);
+        }, 0));
+    }
+
+    start();
+}(window.Waferhand));

@@ -1,0 +1,40 @@
+/* Hits, near misses and the like, where they happened: small always, large and named while the time is near. */
+(function (W) {
+    'use strict';
+
+    const NEAR_S = 0.4;
+    const colourName = (mark) => W.events.colour(mark.kind);
+
+    /* Those with a place, in order of time. */
+    const placed = (doc) => doc.marks.filter((mark) => Array.isArray(mark.at)).sort((a, b) => a.t - b.t);
+
+    const isNear = (mark, t) => Math.abs(mark.t - t) <= NEAR_S;
+
+    const text = (mark) => mark.text || W.words(mark.kind);
+
+    /* The marks in a scene of three.js. */
+    function make(scene, doc, label) {
+        const shown = placed(doc).map((mark) => {
+            const shape = W.shapes.mark(0.012);
+            shape.position.fromArray(mark.at).multiplyScalar(0.001);
+            scene.add(shape);
+            return { mark, shape, label: label('mark', text(mark)) };
+        });
+        return {
+            shown,
+            update(t) {
+                shown.forEach((each) => {
+                    const near = isNear(each.mark, t);
+                    each.shape.scale.setScalar(near ? 1.8 : 0.8);
+                    each.shape.material.opacity = near ? 1 : 0.55;
+                    each.label.hidden = !near;
+                });
+            },
+            paint() {
+                shown.forEach((each) => each.shape.material.color.set(W.theme.colour(colourName(each.mark))));
+            },
+        };
+    }
+
+    W.marks = { make, placed, isNear, text, colourName };
+}(window.Waferhand));

@@ -1,0 +1,224 @@
+/* Curves over time by dygraphs, on one time axis: zooming one zooms all, a click takes the time there. Panels are made
+ * one after the other when the page has time, and brought up to date when they are seen. */
+(function (W) {
+    'use strict';
+
+    const plots = { panels: [], seen: null, doc: null };
+
+    /* The width left of the plots for numbers and names. */
+    plots.gutter = () => (document.body.clientWidth < 560 ? 58 : 92);
+
+    const area = (panel) => panel.graph.getArea();
+
+    function formatter(unit) {
+        return (value) => `${W.figure(value).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '')}${unit ? '\u00a0' + unit : ''}`;
+    }
+
+    /* The allowed side of each limit is tinted, the limit drawn. */
+    function underlay(panel) {
+        return (pen, { x, y, w, h }, graph) => panel.limits.forEach((limit) => {
+            const at = W.clamp(graph.toDomYCoord(limit.value), y, y + h);
+            pen.save();
+            pen.fillStyle = W.theme.colour('allowed');
+            pen.fillRect(x, limit.below ? at : y, w, limit.below ? y + h - at : at - y);
+            pen.strokeStyle = W.theme.colour('bad');
+            pen.setLineDash([6, 4]);
+            pen.beginPath();
+            pen.moveTo(x, at);
+            pen.lineTo(x + w, at);
+            pen.stroke();
+            pen.restore();
+        });
+    }
+
+    /* Values with the limit in sight, and some air. */
+    function valueRange(panel) {
+        let [low, high] = panel.zero ? [0, 0] : [Infinity, -Infinity];
+        const take = (v) => {
+            if (v !== null) {
+                low = v < low ? v : low;
+                high = v > high ? v : high;
+            }
+        };
+        panel.curves.forEach((curve) => curve.v.forEach(take));
+        panel.limits.forEach((limit) => take(limit.value));
+        const air = (high - low || 1) * 0.06;
+        return [panel.zero && low === 0 ? 0 : low - air, high + air];
+    }
+
+    function colours(panel) {
+        return panel.curves.map((curve) => W.theme.series(curve.colour));
+    }
+
+    /* Dashes tell curves apart where colours do not. */
+    const DASHES = [null, [8, 3], [2, 3], [10, 3, 2, 3], [4, 4], [14, 4]];
+
+    function looks(panel) {
+        const series = {};
+        panel.curves.forEach((curve, i) => {
+            series[curve.name] = { strokePattern: DASHES[i % DASHES.length], stepPlot: !!curve.step };
+        });
+        return { colors: colours(panel), series, axisLineColor: W.theme.colour('line'),
+            gridLineColor: W.theme.colour('rule') };
+    }
+
+    function interaction() {
+        const model = Object.assign({}, window.Dygraph.defaultInteractionModel);
+        model.dblclick = (event, graph) => {
+            graph.updateOptions({ valueRange: graph.panel.range }, true);
+            W.clock.reset();
+        };
+        return model;
+    }
+
+    function options(panel) {
+        return Object.assign({
+            labels: ['t'].concat(panel.curves.map((curve) => curve.name)), legend: 'never', animatedZooms: false,
+            connectSeparatedPoints: true, strokeWidth: 1.6, highlightCircleSize: 0, dateWindow: W.clock.window.slice(),
+            valueRange: panel.range, rightGap: 10, underlayCallback: underlay(panel), interactionModel: interaction(),
+            axes: {
+                x: { axisLabelFormatter: formatter('s'), pixelsPerLabel: 90 },
+                y: { axisLabelFormatter: formatter(''), axisLabelWidth: plots.gutter() - 14, pixelsPerLabel: 28 },
+            },
+            clickCallback: (event) => W.clock.seek(panel.graph.toDataXCoord(panel.graph.eventToDomCoords(event)[0])),
+            drawCallback: (graph, initial) => { if (!initial) { zoomed(panel); } },
+        }, looks(panel));
+    }
+
+    /* The reader zoomed or moved this one: all the others follow. */
+    function zoomed(panel) {
+        const [from, to] = panel.graph.xAxisRange();
+        const [low, high] = W.clock.window;
+        const width = high - low;
+        if (!panel.busy && (Math.abs(from - low) > 1e-6 * width || Math.abs(to - high) > 1e-6 * width)) {
+            W.clock.setWindow(from, to);
+        }
+    }
+
+    function data(panel) {
+        return W.reduce.rows(panel.curves, W.clock.window, Math.max(panel.host.clientWidth, 200), plots.doc.duration);
+    }
+
+    function legendItem(panel, curve, i) {
+        const value = W.element('b', { class: 'value' });
+        const note = W.element('span', { class: 'note' });
+        const swatch = W.element('i', { class: `swatch dash${i % DASHES.length}`, style: `--c: var(--s${curve.colour % 6})` });
+        panel.values.push({ curve, value, note });
+        return W.element('span', { class: 'item' }, swatch, panel.curves.length > 1 ? curve.name + ' ' : '', value, ' ',
+            W.element('span', { class: 'unit' }, curve.unit), note);
+    }
+
+    function frame(panel) {
+        panel.values = [];
+        panel.host = W.element('div', { class: 'graph', role: 'img',
+            'aria-label': `${panel.title} over time; values at the shown time are above` });
+        panel.cursor = W.element('div', { class: 'cursor', hidden: true });
+        const items = panel.curves.map((curve, i) => legendItem(panel, curve, i));
+        const limits = panel.limits.map((limit) => W.element('span', { class: 'limit' }, limit.text));
+        panel.box = W.element('figure', { class: 'panel' },
+            W.element('figcaption', {}, W.element('span', { class: 'name' }, panel.title), ...items, ...limits),
+            W.element('div', { class: 'frame' }, panel.host, panel.cursor));
+        return panel.box;
+    }
+
+    function draw(panel) {
+        panel.range = valueRange(panel);
+        panel.busy = true;
+        panel.graph = new window.Dygraph(panel.host, data(panel), options(panel));
+        panel.graph.panel = panel;
+        panel.busy = false;
+        panel.stale = false;
+        panel.seen = true;
+        plots.seen.observe(panel.box);
+        follow(panel);
+    }
+
+    function refresh(panel) {
+        if (!panel.graph || !panel.seen) {
+            panel.stale = true;
+            return;
+        }
+        panel.stale = false;
+        panel.busy = true;
+        panel.graph.updateOptions({ file: data(panel), dateWindow: W.clock.window.slice() });
+        panel.busy = false;
+        follow(panel);
+    }
+
+    /* The cursor's line, shared with the bars: where the time is within the window, and nowhere beyond. */
+    plots.place = function (cursor, left, width) {
+        const [from, to] = W.clock.window;
+        const inside = W.clock.now >= from && W.clock.now <= to;
+        cursor.hidden = !inside;
+        if (inside) {
+            const x = left + width * (W.clock.now - from) / (to - from);
+            cursor.style.transform = `translateX(${x.toFixed(2)}px)`;
+        }
+    };
+
+    function follow(panel) {
+        if (!panel.graph || !panel.seen) {
+            return;
+        }
+        const { x, w } = area(panel);
+        plots.place(panel.cursor, x, w);
+        panel.values.forEach(({ curve, value, note }) => {
+            const look = curve.step ? W.tracks.step : W.tracks.linear;
+            const now = look(curve.t, curve.v, W.clock.now);
+            value.textContent = W.number(now, curve.decimals);
+            note.textContent = now !== null && curve.note ? ` ${curve.note(W.clock.now)}` : curve.bounds
+                ? ` (${curve.bounds})` : '';
+        });
+    }
+
+    function observe(entries) {
+        entries.forEach((entry) => {
+            const panel = plots.panels.find((each) => each.box === entry.target);
+            panel.seen = entry.isIntersecting;
+            if (panel.seen) {
+                (panel.stale ? refresh : follow)(panel);
+            }
+        });
+    }
+
+    /* A group's section: its panels' frames, or why there are none. */
+    plots.section = function (group) {
+        const body = group.panels.length > 0 ? group.panels.map(frame) : [W.why(group.why)];
+        plots.panels.push(...group.panels);
+        return W.element('section', { class: 'group', id: group.id }, W.element('h2', {}, group.title), ...body);
+    };
+
+    /* All panels are made in the page's spare time, one at a time; `all` makes them at once. */
+    plots.fill = function (all) {
+        const due = plots.panels.filter((panel) => !panel.graph);
+        due.slice(0, all ? due.length : 1).forEach(draw);
+        if (due.length > 1 && !all) {
+            setTimeout(plots.fill, 0, false);
+        }
+    };
+
+    /* For paper: everything is seen. */
+    plots.showAll = function () {
+        plots.fill(true);
+        plots.panels.forEach((panel) => {
+            panel.seen = true;
+            panel.graph.resize();
+            refresh(panel);
+        });
+    };
+
+    function repaint() {
+        plots.panels.filter((panel) => panel.graph).forEach((panel) => panel.graph.updateOptions(looks(panel)));
+    }
+
+    plots.start = function (doc) {
+        plots.doc = doc;
+        plots.seen = new IntersectionObserver(observe, { rootMargin: '200px' });
+        W.clock.on('time', () => plots.panels.forEach(follow));
+        W.clock.on('window', () => plots.panels.forEach(refresh));
+        W.theme.on(repaint);
+        window.addEventListener('resize', () => requestAnimationFrame(() => plots.panels.forEach(follow)));
+    };
+
+    W.plots = plots;
+}(window.Waferhand));

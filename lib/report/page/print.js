@@ -1,0 +1,34 @@
+/* On paper: light colours, every plot drawn, and a still of the cell in the place of the moving one. */
+(function (W) {
+    'use strict';
+
+    let still = null;
+
+    function before() {
+        W.clock.pause();
+        W.theme.show('light');
+        W.clock.flush();
+        W.plots.showAll();
+        W.lanes.showAll();
+        if (W.stage.view) {
+            W.stage.view.paint();
+            still = W.element('img', { id: 'still', src: W.stage.view.still(), alt: 'The cell at the shown time' });
+            document.getElementById('canvas').append(still);
+        }
+    }
+
+    function after() {
+        if (still) {
+            still.remove();
+            still = null;
+        }
+        W.theme.restore();
+    }
+
+    W.print = {
+        start() {
+            window.addEventListener('beforeprint', before);
+            window.addEventListener('afterprint', after);
+        },
+    };
+}(window.Waferhand));

@@ -1,0 +1,51 @@
+/* What it takes to have the same run again: the command, the parameters, the version, the hash of the last state. */
+(function (W) {
+    'use strict';
+
+    /* By the clipboard, or, where a page may not use it, by a selection. */
+    function copy(text) {
+        const area = W.element('textarea', { class: 'aside', 'aria-hidden': 'true' });
+        const select = () => {
+            area.value = text;
+            document.body.append(area);
+            area.select();
+            const copied = document.execCommand('copy');
+            area.remove();
+            return copied;
+        };
+        return navigator.clipboard ? navigator.clipboard.writeText(text).then(() => true, select)
+            : Promise.resolve(select());
+    }
+
+    function command(doc) {
+        const button = W.element('button', { type: 'button', id: 'copy', click() {
+            copy(doc.reproduce).then((copied) => {
+                button.textContent = copied ? 'Copied' : 'Please copy by hand';
+                W.say(button.textContent);
+                setTimeout(() => { button.textContent = 'Copy'; }, 2000);
+            });
+        } }, 'Copy');
+        return W.element('div', { class: 'command' }, W.element('code', {}, doc.reproduce), button);
+    }
+
+    function facts(doc) {
+        const { run, thinning } = doc;
+        const parameters = Object.entries(doc.parameters).map(([name, value]) => [`parameter ${name}`, String(value)]);
+        return [['version', doc.version], ['hash of the last state', run.hash], ['script', run.script],
+            ['layout', run.layout], ...parameters, ['slices', run.slices],
+            ['shown', thinning && typeof thinning.kept === 'number' ? `${thinning.kept} of ${thinning.of} points: positions to `
+                + `${thinning.mm} mm, angles to ${thinning.rad} rad; exact at events` : null]]
+            .filter(([, value]) => value !== null && value !== undefined && value !== '')
+            .map(([name, value]) => () => W.tables.row([name, String(value)]));
+    }
+
+    W.reproduce = {
+        start(doc, host) {
+            const made = W.tables.section('reproduce', 'To have this run again', ['', ''], facts(doc),
+                'The document does not hold what reproduces the run.');
+            made.insertBefore(doc.reproduce ? command(doc) : W.why('The document holds no command that reproduces the run.'),
+                made.children[1] || null);
+            host.append(made);
+        },
+    };
+}(window.Waferhand));

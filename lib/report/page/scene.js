@@ -1,0 +1,267 @@
+/* The cell in three dimensions, by three.js: the document's scene, moved to the shown time. Metres here, z up. */
+(function (W) {
+    'use strict';
+
+    const THREE = window.THREE;
+    const M = 0.001;
+
+    /* glTF has y up; this undoes it, so that everything below is in the cell's base. */
+    function world(doc, roots, named) {
+        const group = new THREE.Group();
+        group.rotation.x = Math.PI / 2;
+        roots.forEach((root) => group.add(W.shapes.tree(root, named)));
+        group.updateMatrixWorld(true);
+        return group;
+    }
+
+    /* What moves hangs from the base itself, whatever it hung from in the file. */
+    function movers(doc, scene, named) {
+        const found = [];
+        const take = (name, kind, i) => {
+            const object = named[name];
+            if (object) {
+                scene.add(object);
+                object.scale.set(1, 1, 1);
+                found.push({ object, kind, i });
+            }
+        };
+        doc.tracks.links.forEach((link, i) => take(link.name, 'link', i));
+        doc.names.grippers.forEach((name, i) => take(name, 'gripper', i));
+        doc.names.wafers.forEach((name, i) => take(name, 'wafer', i));
+        return found;
+    }
+
+    function poseOf(doc, mover, t) {
+        switch (mover.kind) {
+        case 'wafer':
+            return W.tracks.wafer(doc.tracks, mover.i, t);
+        case 'gripper':
+            return W.tracks.pose(doc.tracks.grippers[mover.i], t);
+        default:
+            return W.tracks.pose(doc.tracks.links[mover.i], t);
+        }
+    }
+
+    function put(object, pose) {
+        object.position.fromArray(pose.r).multiplyScalar(M);
+        object.quaternion.fromArray(pose.q);
+    }
+
+    /* Every mesh and every edge of an object in one colour. */
+    function dye(object, colour) {
+        object.traverse((child) => {
+            if (child.userData.axis === undefined && child.isMesh) {
+                child.material.color.set(colour);
+            }
+        });
+    }
+
+    function holderOf(doc, i, t) {
+        const state = W.tracks.hold(doc.tracks.wafers[i], t);
+        return state && typeof state.holder === 'number' ? state.holder : -1;
+    }
+
+    function waferColour(holder) {
+        return holder < 0 ? W.theme.colour('wafer') : W.theme.series(holder);
+    }
+
+    /* A triad for each gripper, wafer and station, and for base. */
+    function addTriads(doc, scene, moving) {
+        const triads = [];
+        const add = (parent, size) => {
+            const made = W.shapes.triad(size);
+            parent.add(made);
+            triads.push(made);
+            return made;
+        };
+        add(scene, 0.3);
+        moving.filter((mover) => mover.kind !== 'link').forEach((mover) => add(mover.object, 0.12));
+        doc.slots.filter((slot) => slot.slot === 1).forEach((slot) => put(add(scene, 0.2), slot));
+        return triads;
+    }
+
+    function light(scene) {
+        scene.add(new THREE.HemisphereLight(0xffffff, 0x8a8f96, 0.75));
+        const sun = new THREE.DirectionalLight(0xffffff, 0.45);
+        sun.position.set(-0.6, -1.2, 2);
+        scene.add(sun);
+    }
+
+    function renderer() {
+        const made = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+        made.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+        return made;
+    }
+
+    /* Null where there is no WebGL or no scene. */
+    function make(host, doc, roots) {
+        const test = document.createElement('canvas');
+        if (!roots || !(test.getContext('webgl') || test.getContext('experimental-webgl'))) {
+            return null;
+        }
+        const view = { host, doc, named: {}, scene: new THREE.Scene(), labels: [], options: {}, due: false };
+        view.gl = renderer();
+        view.canvas = view.gl.domElement;
+        host.append(view.canvas);
+        view.scene.add(world(doc, roots, view.named));
+        view.moving = movers(doc, view.scene, view.named);
+        light(view.scene);
+        pose(view, 0);
+        view.box = new THREE.Box3().setFromObject(view.scene);
+        view.triads = addTriads(doc, view.scene, view.moving);
+        view.marks = W.marks.make(view.scene, doc, (kind, text) => label(view, kind, text));
+        view.tags = view.moving.filter((mover) => mover.kind !== 'link')
+            .map((mover) => ({ mover, label: label(view, mover.kind, mover.object.name) }));
+        view.ruler = W.shapes.line();
+        view.rulerLabel = label(view, 'ruler', '');
+        view.scene.add(view.ruler);
+        view.rig = W.camera.make(view.canvas, view.box, () => draw(view));
+        return finish(view);
+    }
+
+    function finish(view) {
+        view.update = (t) => { pose(view, t); draw(view); };
+        view.paint = () => { paint(view); draw(view); };
+        view.resize = () => { resize(view); draw(view); };
+        view.show = (name, rider) => { view.rig.show(name, rider); draw(view); };
+        view.set = (options) => { Object.assign(view.options, options); view.paint(); };
+        view.rule = (ends, text) => rule(view, ends, text);
+        view.pick = (event) => pick(view, event);
+        view.still = () => { render(view); return view.canvas.toDataURL('image/png'); };
+        new ResizeObserver(view.resize).observe(view.host);
+        resize(view);
+        view.show('whole');
+        paint(view);
+        return view;
+    }
+
+    function label(view, kind, text) {
+        const made = W.element('span', { class: 'tag ' + kind, text, 'aria-hidden': 'true', hidden: true });
+        view.host.append(made);
+        return made;
+    }
+
+    function pose(view, t) {
+        view.at = t;
+        view.moving.forEach((mover) => {
+            const found = poseOf(view.doc, mover, t);
+            mover.object.visible = found !== null;
+            if (found) {
+                put(mover.object, found);
+            }
+            const holder = mover.kind === 'wafer' ? holderOf(view.doc, mover.i, t) : -1;
+            if (mover.kind === 'wafer' && mover.holder !== holder) {
+                mover.holder = holder;
+                dye(mover.object, waferColour(holder));
+            }
+        });
+    }
+
+    /* Colours after a change of theme or of what is shown. */
+    function paint(view) {
+        const colour = W.theme.colour;
+        view.scene.background = new THREE.Color(colour('stage'));
+        view.scene.traverse((child) => {
+            if (child.userData.edges !== undefined) {
+                child.material.color.set(colour('edge'));
+                child.material.opacity = child.userData.edges < 1 ? 0.35 : 0.8;
+            } else if (child.userData.axis) {
+                child.material.color.set(colour('axis-' + child.userData.axis));
+            }
+        });
+        view.moving.forEach((mover) => {
+            if (mover.kind !== 'link') {
+                dye(mover.object, mover.kind === 'wafer' ? waferColour(mover.holder) : W.theme.series(mover.i));
+            }
+        });
+        view.triads.forEach((triad) => { triad.visible = !!view.options.frames; });
+        view.marks.paint();
+        view.ruler.material.color.set(colour('ink'));
+    }
+
+    function resize(view) {
+        const width = Math.max(view.host.clientWidth, 1);
+        const height = Math.max(view.host.clientHeight, 1);
+        view.gl.setSize(width, height);
+        view.rig.resize(width, height);
+    }
+
+    /* Once a frame, and only when something changed. */
+    function draw(view) {
+        if (!view.due) {
+            view.due = true;
+            requestAnimationFrame(() => render(view));
+        }
+    }
+
+    function render(view) {
+        view.due = false;
+        view.rig.ride();
+        view.marks.update(view.at);
+        view.gl.render(view.scene, view.rig.camera);
+        hang(view);
+    }
+
+    /* Puts a label beside its point, or hides it. */
+    function hangOne(view, each, point) {
+        const spot = point.clone().project(view.rig.camera);
+        const inside = Math.abs(spot.x) < 1 && Math.abs(spot.y) < 1 && spot.z < 1;
+        each.hidden = !inside;
+        if (inside) {
+            const x = (spot.x + 1) / 2 * view.host.clientWidth;
+            const y = (1 - spot.y) / 2 * view.host.clientHeight;
+            each.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+        }
+    }
+
+    function hang(view) {
+        view.tags.forEach((tag) => {
+            if (view.options.names) {
+                hangOne(view, tag.label, tag.mover.object.position);
+            } else {
+                tag.label.hidden = true;
+            }
+        });
+        view.marks.shown.filter((each) => !each.label.hidden)
+            .forEach((each) => hangOne(view, each.label, each.shape.position));
+        view.ruler.visible = !!view.ends;
+        if (view.ends) {
+            hangOne(view, view.rulerLabel, view.ends[0].clone().lerp(view.ends[1], 0.5));
+        } else {
+            view.rulerLabel.hidden = true;
+        }
+    }
+
+    /* Draws the measured distance; no ends, no line. */
+    function rule(view, ends, text) {
+        view.ends = ends && ends.map((end) => new THREE.Vector3(...end).multiplyScalar(M));
+        if (view.ends) {
+            const points = view.ruler.geometry.attributes.position;
+            view.ends.forEach((end, i) => points.setXYZ(i, end.x, end.y, end.z));
+            points.needsUpdate = true;
+            view.rulerLabel.textContent = text;
+        }
+        draw(view);
+    }
+
+    /* What lies under the pointer: { name, at }, at in mm of base; null where there is nothing that has a name. */
+    function pick(view, event) {
+        const area = view.canvas.getBoundingClientRect();
+        const spot = new THREE.Vector2((event.clientX - area.left) / area.width * 2 - 1,
+            1 - (event.clientY - area.top) / area.height * 2);
+        const ray = new THREE.Raycaster();
+        ray.setFromCamera(spot, view.rig.camera);
+        const hits = ray.intersectObjects(view.scene.children, true)
+            .filter((hit) => hit.object.isMesh && hit.object.userData.axis === undefined);
+        for (const hit of hits) {
+            for (let object = hit.object; object; object = object.parent) {
+                if (object.name) {
+                    return { name: object.name, at: hit.point.toArray().map((x) => x / M) };
+                }
+            }
+        }
+        return null;
+    }
+
+    W.scene = { make };
+}(window.Waferhand));

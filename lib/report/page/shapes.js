@@ -1,0 +1,97 @@
+/* The scene's nodes as objects of three.js, and the small objects that are ours: triads and marks. */
+(function (W) {
+    'use strict';
+
+    const THREE = window.THREE;
+    const AXES = ['x', 'y', 'z'];
+
+    function geometry(part) {
+        if (!part.geometry) {
+            const made = new THREE.BufferGeometry();
+            made.setAttribute('position', new THREE.BufferAttribute(part.positions, 3));
+            made.setIndex(new THREE.BufferAttribute(part.indices, 1));
+            const flat = made.toNonIndexed();
+            flat.computeVertexNormals();
+            part.geometry = flat;
+            part.edges = new THREE.EdgesGeometry(made, 30);
+        }
+        return part;
+    }
+
+    function surface(part) {
+        const clear = part.alpha < 1;
+        return new THREE.MeshLambertMaterial({ color: new THREE.Color().fromArray(part.colour), transparent: clear,
+            opacity: part.alpha, depthWrite: !clear, side: THREE.DoubleSide, polygonOffset: true,
+            polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+    }
+
+    /* A part with its edges, as drawings have them. */
+    function solid(part) {
+        const { geometry: flat, edges } = geometry(part);
+        const group = new THREE.Group();
+        const mesh = new THREE.Mesh(flat, surface(part));
+        const lines = new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ transparent: true }));
+        lines.userData.edges = part.alpha;
+        group.add(mesh, lines);
+        return group;
+    }
+
+    function place(object, node) {
+        if (node.matrix) {
+            object.applyMatrix(new THREE.Matrix4().fromArray(node.matrix));
+            return;
+        }
+        object.position.fromArray(node.r);
+        object.quaternion.fromArray(node.q);
+        object.scale.fromArray(node.s);
+    }
+
+    /* The whole tree; `named` collects objects by the names of their nodes. */
+    function tree(node, named) {
+        const group = new THREE.Group();
+        place(group, node);
+        node.parts.forEach((part) => group.add(solid(part)));
+        node.children.forEach((child) => group.add(tree(child, named)));
+        if (node.name) {
+            group.name = node.name;
+            named[node.name] = group;
+        }
+        return group;
+    }
+
+    /* Three bars along a frame's axes, `size` in metres. */
+    function triad(size) {
+        const group = new THREE.Group();
+        AXES.forEach((axis, i) => {
+            const sides = [0.02, 0.02, 0.02].map((thin, k) => (k === i ? size : thin * size * 1.5));
+            const bar = new THREE.Mesh(new THREE.BoxBufferGeometry(...sides), new THREE.MeshBasicMaterial());
+            bar.position.setComponent(i, size / 2);
+            bar.userData.axis = axis;
+            group.add(bar);
+        });
+        group.userData.triad = true;
+        return group;
+    }
+
+    /* Something to see at a place where something happened, through whatever is before it. */
+    function mark(size) {
+        const shape = new THREE.OctahedronBufferGeometry(size);
+        const look = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true });
+        const made = new THREE.Mesh(shape, look);
+        made.renderOrder = 10;
+        return made;
+    }
+
+    /* A line between two points that are set later. */
+    function line() {
+        const made = new THREE.BufferGeometry();
+        made.setAttribute('position', new THREE.BufferAttribute(new Float32Array(6), 3));
+        const look = new THREE.LineBasicMaterial({ depthTest: false, transparent: true });
+        const object = new THREE.Line(made, look);
+        object.renderOrder = 11;
+        object.frustumCulled = false;
+        return object;
+    }
+
+    W.shapes = { tree, triad, mark, line, AXES };
+}(window.Waferhand));

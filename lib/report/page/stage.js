@@ -1,0 +1,94 @@
+/* The picture of the cell with its buttons and its legend: three.js where it can be, drawings where not. */
+(function (W) {
+    'use strict';
+
+    const VIEWS = [['whole', 'Whole', '1'], ['top', 'Top', '2'], ['side', 'Side', '3'], ['gripper', 'Gripper', '4']];
+    const OPTIONS = [['names', 'Names', 'n'], ['frames', 'Frames', 'f']];
+
+    const stage = { view: null, shown: 'whole', rider: 0, options: { names: false, frames: false }, buttons: {} };
+
+    function button(name, text, key, pressed) {
+        const made = W.element('button', { type: 'button', 'aria-pressed': 'false', title: `${text} (${key})`,
+            'aria-keyshortcuts': key, 'data-name': name, click: pressed }, text);
+        stage.buttons[name] = made;
+        return made;
+    }
+
+    /* A view by its name; the gripper's again rides along with the next one. */
+    stage.show = function (name) {
+        const doc = stage.doc;
+        const count = doc.tracks.grippers.length;
+        stage.rider = name === 'gripper' && stage.shown === 'gripper' && count > 0 ? (stage.rider + 1) % count
+            : stage.rider;
+        stage.shown = name;
+        stage.view.show(name, () => W.tracks.pose(doc.tracks.grippers[stage.rider], W.clock.now));
+        VIEWS.forEach(([each]) => stage.buttons[each].setAttribute('aria-pressed', each === name));
+        W.say(name === 'gripper' ? `riding along with ${doc.names.grippers[stage.rider]}` : `view: ${name}`);
+    };
+
+    stage.toggle = function (name) {
+        stage.options[name] = !stage.options[name];
+        stage.buttons[name].setAttribute('aria-pressed', stage.options[name]);
+        stage.view.set(stage.options);
+        legend();
+    };
+
+    const item = (colour, text, shape) => W.element('span', { class: 'item' },
+        W.element('i', { class: 'dot ' + (shape || ''), style: `background: var(--${colour})` }), text);
+
+    /* What the colours mean. */
+    function legend() {
+        const doc = stage.doc;
+        const holders = doc.names.grippers.map((name, i) => item(`s${i % 6}`, `${name}, and what it holds`));
+        const kinds = Array.from(new Set(W.marks.placed(doc).map((mark) => mark.kind)));
+        const marks = kinds.map((kind) => item(W.marks.colourName({ kind }), W.words(kind), 'mark'));
+        const axes = stage.options.frames ? ['x', 'y', 'z'].map((axis) => item('axis-' + axis, axis)) : [];
+        const key = document.getElementById('key');
+        key.replaceChildren(item('wafer', 'free wafer'), ...holders, ...marks, ...axes);
+    }
+
+    function toolbar() {
+        const bar = document.getElementById('toolbar');
+        const views = VIEWS.map(([name, text, key]) => button(name, text, key, () => stage.show(name)));
+        const options = OPTIONS.map(([name, text, key]) => button(name, text, key, () => stage.toggle(name)));
+        bar.append(W.element('span', { class: 'group' }, ...views), W.element('span', { class: 'group' }, ...options));
+    }
+
+    function picture(host, doc) {
+        const roots = W.gltf.read(doc.scene);
+        if (!roots) {
+            host.append(W.why(doc.scene ? `The cell is not shown: ${W.fault}.`
+                : 'The cell is not shown: the document holds no scene.'));
+            return null;
+        }
+        const view = W.scene.make(host, doc, roots);
+        if (!view) {
+            host.classList.add('flat');
+        }
+        return view || W.drawing.make(host, doc, roots);
+    }
+
+    function describe(canvas) {
+        canvas.tabIndex = 0;
+        canvas.setAttribute('role', 'img');
+        canvas.setAttribute('aria-label', 'The cell at the shown time. Drag to orbit, scroll while focused to zoom.');
+    }
+
+    stage.start = function (doc) {
+        const host = document.getElementById('canvas');
+        stage.doc = doc;
+        stage.view = picture(host, doc);
+        if (!stage.view) {
+            document.getElementById('view').classList.add('empty');
+            return;
+        }
+        describe(stage.view.canvas);
+        toolbar();
+        legend();
+        stage.buttons.whole.setAttribute('aria-pressed', 'true');
+        W.clock.on('time', (clock) => stage.view.update(clock.now));
+        W.theme.on(() => stage.view.paint());
+    };
+
+    W.stage = stage;
+}(window.Waferhand));

@@ -1,0 +1,66 @@
+/* The head of the page: what ran, whether it came out as expected, and its figures at a glance. */
+(function (W) {
+    'use strict';
+
+    function verdict(doc) {
+        if (typeof doc.run.ok !== 'boolean') {
+            return W.element('span', { class: 'verdict' }, 'no verdict');
+        }
+        return W.element('span', { class: `verdict ${doc.run.ok ? 'good' : 'bad'}` },
+            doc.run.ok ? '\u2713 as expected' : '\u2717 not as expected');
+    }
+
+    function tile(text, value, note, kind) {
+        return W.element('div', { class: `tile ${kind || ''}` }, W.element('b', {}, value), W.element('span', {}, text),
+            W.element('small', {}, note || ''));
+    }
+
+    const counted = (count, one, many) => `${count} ${count === 1 ? one : many}`;
+
+    function expectations(doc) {
+        const met = doc.expectations.filter((each) => each.ok).length;
+        const all = doc.expectations.length;
+        return all === 0 ? null : tile('expectations met', `${met} of ${all}`, '', met === all ? 'good' : 'bad');
+    }
+
+    function commands(doc) {
+        const errors = doc.commands.filter((command) => command.error).length;
+        return doc.commands.length === 0 ? null : tile(doc.commands.length === 1 ? 'command' : 'commands',
+            doc.commands.length, errors > 0 ? counted(errors, 'error', 'errors') : 'no error', errors > 0 ? 'bad' : '');
+    }
+
+    function events(doc) {
+        const bad = doc.events.filter((event) => W.events.colour(event.kind) === 'bad').length;
+        const warn = doc.events.filter((event) => W.events.colour(event.kind) === 'warn').length;
+        const note = [bad > 0 && counted(bad, 'fault', 'faults'), warn > 0 && counted(warn, 'warning', 'warnings')]
+            .filter(Boolean).join(', ') || 'none to worry about';
+        return tile(doc.events.length === 1 ? 'event' : 'events', doc.events.length, note, bad > 0 ? 'bad' : warn > 0
+            ? 'warn' : '');
+    }
+
+    function throughput(doc) {
+        const found = doc.run.throughput;
+        return found && found.wafers > 0 ? tile('wafers per hour', W.number(found.wafers_per_hour, 1),
+            `${counted(found.wafers, 'wafer', 'wafers')} in ${W.seconds(found.seconds)}`) : null;
+    }
+
+    function duration(doc) {
+        const slices = typeof doc.slices === 'number' ? `${doc.slices.toLocaleString('en')} slices of ` : 'slices of ';
+        return tile('simulated', W.seconds(doc.duration), `${slices}${W.figure(1000 * doc.slice)}\u00a0ms`);
+    }
+
+    W.summary = {
+        start(doc) {
+            const tiles = [expectations(doc), commands(doc), events(doc), throughput(doc), duration(doc)];
+            const theme = W.element('button', { type: 'button', id: 'theme', title: 'Light or dark (t)',
+                'aria-keyshortcuts': 't', click: W.theme.toggle }, 'Light / dark');
+            const help = W.element('button', { type: 'button', id: 'helping', title: 'Keys (?)',
+                'aria-keyshortcuts': '?', click: () => W.keys.help() }, 'Keys');
+            document.getElementById('head').append(
+                W.element('div', { class: 'row' }, W.element('h1', {}, doc.title), verdict(doc),
+                    W.element('span', { class: 'space' }), help, theme),
+                doc.run.failure ? W.element('p', { class: 'failure' }, doc.run.failure) : '',
+                W.element('div', { class: 'tiles' }, ...tiles.filter(Boolean)));
+        },
+    };
+}(window.Waferhand));

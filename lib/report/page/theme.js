@@ -1,0 +1,40 @@
+/* Light and dark: the system's choice until the switch is used. Colours are read from the style sheet. */
+(function (W) {
+    'use strict';
+
+    const root = document.documentElement;
+    const system = window.matchMedia('(prefers-color-scheme: dark)');
+    const listeners = [];
+    let colours = {};
+    let chosen = null;
+
+    /* A colour of the style sheet by its name, without the dashes. */
+    function colour(name) {
+        if (!colours[name]) {
+            colours[name] = getComputedStyle(root).getPropertyValue('--' + name).trim();
+        }
+        return colours[name];
+    }
+
+    /* Of a series, a gripper, ...: six, then from the start. */
+    const series = (i) => colour('s' + (i % 6));
+
+    function show(name) {
+        root.dataset.theme = name;
+        colours = {};
+        listeners.forEach((listener) => listener(name));
+    }
+
+    const wanted = () => chosen || (system.matches ? 'dark' : 'light');
+
+    function toggle() {
+        chosen = root.dataset.theme === 'dark' ? 'light' : 'dark';
+        show(chosen);
+    }
+
+    system.addEventListener('change', () => show(wanted()));
+    show(wanted());
+
+    W.theme = { colour, series, toggle, show, restore: () => show(wanted()), on: (listener) => listeners.push(listener),
+        name: () => root.dataset.theme };
+}(window.Waferhand));

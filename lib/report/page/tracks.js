@@ -1,0 +1,91 @@
+/* Tracks: what moved, as points over time. Every look-up is a binary search; nothing is done for each point. */
+(function (W) {
+    'use strict';
+
+    /* The last point at or before `at`; -1 before the first. */
+    function index(times, at) {
+        let low = 0;
+        let high = times.length;
+        while (low < high) {
+            const middle = (low + high) >> 1;
+            if (times[middle] <= at) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        return low - 1;
+    }
+
+    /* The same in a list of objects with a `t`. */
+    function indexOf(list, at) {
+        let low = 0;
+        let high = list.length;
+        while (low < high) {
+            const middle = (low + high) >> 1;
+            if (list[middle].t <= at) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        return low - 1;
+    }
+
+    /* Between which two points `at` lies, and how far along: 0 at a point and outside of the track. */
+    function span(times, at) {
+        const found = index(times, at);
+        const from = Math.max(found, 0);
+        const last = from + 1 >= times.length || found < 0;
+        const to = last ? from : from + 1;
+        return { from, to, share: last ? 0 : (at - times[from]) / (times[to] - times[from]) };
+    }
+
+    function linear(times, values, at) {
+        if (!times || times.length === 0) {
+            return null;
+        }
+        const { from, to, share } = span(times, at);
+        const a = values[from];
+        const b = values[to];
+        if (share === 0 || a === null || b === null) {
+            return share === 0 ? a : null;
+        }
+        return a + share * (b - a);
+    }
+
+    function step(times, values, at) {
+        return times && times.length > 0 ? values[Math.max(index(times, at), 0)] : null;
+    }
+
+    const slice = (values, i, size) => values.slice(size * i, size * i + size);
+
+    function point(track, i) {
+        return { r: slice(track.r, i, 3), q: slice(track.q, i, 4) };
+    }
+
+    /* The pose on a track of poses; null for one without points. */
+    function pose(track, at) {
+        if (!track || !track.t || track.t.length === 0) {
+            return null;
+        }
+        const { from, to, share } = span(track.t, at);
+        return share === 0 ? point(track, from) : W.pose.between(point(track, from), point(track, to), share);
+    }
+
+    /* Who holds a wafer from when on: { t, holder, r, q }; null for none. */
+    function hold(states, at) {
+        return states && states.length > 0 ? states[Math.max(indexOf(states, at), 0)] : null;
+    }
+
+    function wafer(tracks, i, at) {
+        const state = hold(tracks.wafers[i], at);
+        if (!state || state.holder === null || state.holder === undefined) {
+            return state ? { r: state.r, q: state.q } : null;
+        }
+        const gripper = pose(tracks.grippers[state.holder], at);
+        return gripper && W.pose.compose(gripper, state);
+    }
+
+    W.tracks = { index, indexOf, linear, step, pose, hold, wafer };
+}(window.Waferhand));
