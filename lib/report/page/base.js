@@ -44,6 +44,19 @@ window.Waferhand = {};
         return number(value, Math.max(0, 3 - before + (size < 1 ? 1 : 0)));
     }
 
+    /* A small picture of filled paths on 24 by 24. */
+    function icon(path) {
+        const space = 'http://www.w3.org/2000/svg';
+        const made = document.createElementNS(space, 'svg');
+        const shape = document.createElementNS(space, 'path');
+        made.setAttribute('viewBox', '0 0 24 24');
+        made.setAttribute('class', 'icon');
+        made.setAttribute('aria-hidden', 'true');
+        shape.setAttribute('d', path);
+        made.append(shape);
+        return made;
+    }
+
     const seconds = (t) => number(t, 3) + '\u00a0s';
 
     /* A word as the program's JSON spells it, for people. */
@@ -59,5 +72,5 @@ window.Waferhand = {};
         document.getElementById('said').textContent = text;
     }
 
-    Object.assign(W, { element, number, figure, seconds, words, clamp, why, say, DASH });
+    Object.assign(W, { element, icon, number, figure, seconds, words, clamp, why, say, DASH });
 }(window.Waferhand));

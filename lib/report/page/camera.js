@@ -4,28 +4,48 @@
 
     const THREE = window.THREE;
     const WIDTH_DEG = 32;
+    const AIR = 1.13; /* so that buttons and the legend cover nothing */
 
     /* From where to look at the middle in each view that stands still. */
     const VIEWS = { whole: [0.62, -0.75, 0.62], top: [0, -0.0005, 1], side: [0, -1, 0.0005] };
 
-    /* How far away the box's corners are all in the picture. */
-    function distance(camera, box, back) {
-        const middle = box.getCenter(new THREE.Vector3());
+    /* The corners of all meshes' boxes: what has to be in the picture. */
+    function corners(scene) {
+        const found = [];
+        scene.updateMatrixWorld(true);
+        scene.traverse((object) => {
+            if (object.isMesh) {
+                object.geometry.computeBoundingBox();
+                const { min, max } = object.geometry.boundingBox;
+                for (let i = 0; i < 8; ++i) {
+                    found.push(new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z)
+                        .applyMatrix4(object.matrixWorld));
+                }
+            }
+        });
+        return found;
+    }
+
+    /* From how far, looking along `back` at `middle`, every corner is in the picture, and where the middle of the picture
+     * would better be. */
+    function fit(camera, points, middle, back) {
         const right = new THREE.Vector3().crossVectors(camera.up, back).normalize();
         const up = new THREE.Vector3().crossVectors(back, right);
         const tall = Math.tan(camera.fov * Math.PI / 360);
-        let far = 0;
-        for (let i = 0; i < 8; ++i) {
-            const corner = new THREE.Vector3(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
-                i & 4 ? box.max.z : box.min.z).sub(middle);
-            const aside = Math.max(Math.abs(corner.dot(right)) / (tall * camera.aspect),
-                Math.abs(corner.dot(up)) / tall);
-            far = Math.max(far, aside + corner.dot(back));
-        }
-        return 1.06 * far;
+        const wide = tall * camera.aspect;
+        const local = points.map((point) => {
+            const from = point.clone().sub(middle);
+            return [from.dot(right), from.dot(up), from.dot(back)];
+        });
+        const most = (f) => Math.max(...local.map(f));
+        const sides = [most(([x, , z]) => x / wide + z), most(([x, , z]) => -x / wide + z),
+            most(([, y, z]) => y / tall + z), most(([, y, z]) => -y / tall + z)];
+        middle.addScaledVector(right, wide * (sides[0] - sides[1]) / 2);
+        middle.addScaledVector(up, tall * (sides[2] - sides[3]) / 2);
+        return Math.max(sides[0] + sides[1], sides[2] + sides[3]) / 2;
     }
 
-    function make(canvas, box, changed) {
+    function make(canvas, points, changed) {
         const camera = new THREE.PerspectiveCamera(WIDTH_DEG, 1, 0.02, 40);
         camera.up.set(0, 0, 1);
         const controls = new THREE.OrbitControls(camera, canvas);
@@ -36,13 +56,13 @@
         canvas.addEventListener('blur', () => { controls.enableZoom = false; });
         const rig = { camera, controls, view: 'whole', rider: null, moved: false };
         controls.addEventListener('start', () => { rig.moved = true; });
-        rig.show = (view, rider) => show(rig, box, view, rider);
-        rig.resize = (width, height) => resize(rig, box, width, height);
+        rig.show = (view, rider) => show(rig, points, view, rider);
+        rig.resize = (width, height) => resize(rig, points, width, height);
         rig.ride = () => ride(rig);
         return rig;
     }
 
-    function show(rig, box, view, rider) {
+    function show(rig, points, view, rider) {
         rig.view = view;
         rig.rider = view === 'gripper' ? rider : null;
         rig.moved = false;
@@ -52,8 +72,9 @@
             return;
         }
         const back = new THREE.Vector3(...VIEWS[view]).normalize();
-        box.getCenter(rig.controls.target);
-        rig.camera.position.copy(rig.controls.target).addScaledVector(back, distance(rig.camera, box, back));
+        const middle = rig.controls.target.set(0, 0, 0);
+        const far = fit(rig.camera, points, middle, back);
+        rig.camera.position.copy(middle).addScaledVector(back, AIR * far);
         rig.camera.lookAt(rig.controls.target);
         rig.controls.update();
     }
@@ -71,13 +92,13 @@
         rig.camera.lookAt(rig.controls.target);
     }
 
-    function resize(rig, box, width, height) {
+    function resize(rig, points, width, height) {
         rig.camera.aspect = width / height;
         rig.camera.updateProjectionMatrix();
         if (!rig.moved && rig.view !== 'gripper') {
-            show(rig, box, rig.view, null);
+            show(rig, points, rig.view, null);
         }
     }
 
-    W.camera = { make };
+    W.camera = { make, corners };
 }(window.Waferhand));

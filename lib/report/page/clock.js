@@ -6,7 +6,7 @@
     const pending = new Set();
     let begun = null;
 
-    const clock = { now: 0, end: 0, slice: 0.001, speed: 1, playing: false, window: [0, 1], stops: [] };
+    const clock = { now: 0, begin: 0, end: 0, slice: 0.001, speed: 1, playing: false, window: [0, 1], stops: [] };
 
     /* Listeners are called once a frame however often something changed. */
     function changed(what) {
@@ -29,7 +29,7 @@
     clock.number = (t) => Math.round(t / clock.slice);
 
     clock.seek = function (t) {
-        clock.now = W.clamp(t, 0, clock.end);
+        clock.now = W.clamp(t, clock.begin, clock.end);
         if (clock.now < clock.window[0] || clock.now > clock.window[1]) {
             follow();
         }
@@ -39,13 +39,14 @@
     /* Turns the page, as it were, when the time leaves the shown window. */
     function follow() {
         const width = clock.window[1] - clock.window[0];
-        const from = W.clamp(clock.now - 0.05 * width, 0, Math.max(clock.end - width, 0));
+        const from = clock.now - 0.05 * width;
         clock.setWindow(from, from + width);
     }
 
     clock.setWindow = function (from, to) {
-        const width = W.clamp(to - from, Math.min(10 * clock.slice, clock.end), clock.end);
-        const low = W.clamp(from, 0, clock.end - width);
+        const most = clock.end - clock.begin;
+        const width = W.clamp(to - from, Math.min(10 * clock.slice, most), most);
+        const low = W.clamp(from, clock.begin, clock.end - width);
         clock.window = [low, low + width];
         changed('window');
     };
@@ -56,7 +57,7 @@
         clock.setWindow(middle - (middle - from) * factor, middle + (to - middle) * factor);
     };
 
-    clock.reset = () => clock.setWindow(0, clock.end);
+    clock.reset = () => clock.setWindow(clock.begin, clock.end);
 
     clock.stepSlice = (count) => clock.seek(clock.time(clock.number(clock.now) + count));
 
@@ -65,7 +66,7 @@
         const at = W.tracks.index(clock.stops, clock.now);
         const before = at >= 0 && clock.stops[at] === clock.now ? at - 1 : at;
         const to = clock.stops[way > 0 ? at + 1 : before];
-        clock.seek(to === undefined ? (way > 0 ? clock.end : 0) : to);
+        clock.seek(to === undefined ? (way > 0 ? clock.end : clock.begin) : to);
     };
 
     function frame(stamp) {
@@ -86,7 +87,7 @@
             return;
         }
         if (clock.now >= clock.end) {
-            clock.seek(0);
+            clock.seek(clock.begin);
         }
         clock.playing = true;
         begun = null;
@@ -109,7 +110,9 @@
     clock.start = function (doc) {
         clock.end = doc.duration;
         clock.slice = doc.slice;
-        clock.window = [0, doc.duration];
+        clock.begin = Math.min(doc.begin, doc.duration);
+        clock.now = clock.begin;
+        clock.window = [clock.begin, doc.duration];
         clock.stops = Array.from(new Set(doc.events.map((event) => event.t))).sort((a, b) => a - b);
     };
 

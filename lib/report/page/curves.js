@@ -1,5 +1,6 @@
 /* Which curves there are: groups of panels, each with its curves and limits, taken from the document's tracks. A curve is
- * { name, colour, t, v, unit, decimals, step }; a limit { value, text, below }: what is allowed lies below it, or above. */
+ * { name, colour, t, v, unit, decimals, step }; a limit { value, text, below }: what is allowed lies below it, or above;
+ * `most` is the widest range of values that is worth showing. */
 (function (W) {
     'use strict';
 
@@ -9,9 +10,12 @@
         : values.map((v) => (v === null ? null : factor * (absolute ? Math.abs(v) : v))));
 
     const MEASURES = [
-        { key: 'dr_proj_z', name: '|dr_proj_z|', unit: 'mm', decimals: 4, limit: 'projz', below: true, absolute: true },
-        { key: 'dr_proj_xy', name: '|dr_proj_xy|', unit: 'mm', decimals: 4, limit: 'projxy', below: true, absolute: true },
-        { key: 'n1_proj_n2', name: 'n1_proj_n2', unit: '', decimals: 6, limit: 'planar', below: false, absolute: false },
+        { key: 'dr_proj_z', name: '|dr_proj_z|', unit: 'mm', decimals: 4, limit: 'projz', below: true, absolute: true,
+            most: (limit) => [0, 6 * limit] },
+        { key: 'dr_proj_xy', name: '|dr_proj_xy|', unit: 'mm', decimals: 4, limit: 'projxy', below: true, absolute: true,
+            most: (limit) => [0, 3 * limit] },
+        { key: 'n1_proj_n2', name: 'n1_proj_n2', unit: '', decimals: 6, limit: 'planar', below: false, absolute: false,
+            most: (limit) => [1 - 2 * (1 - limit), 1] },
     ];
 
     function limitOf(doc, measure) {
@@ -32,7 +36,7 @@
         const curve = { name: measure.name, colour: i, t: track.t, unit: measure.unit, decimals: measure.decimals,
             v: scaled(track[measure.key], 1, measure.absolute), note: nearest(doc, track) };
         return { title: `${name}: ${measure.name}`, unit: measure.unit, curves: [curve], limits: limitOf(doc, measure),
-            zero: measure.below };
+            zero: measure.below, most: limitOf(doc, measure).map((limit) => measure.most(limit.value))[0] };
     }
 
     function proximity(doc) {

@@ -31,6 +31,7 @@
     function complete(from) {
         const run = object(from.run);
         const doc = {
+            begin: from.begin_s > 0 ? from.begin_s : 0, notes: list(from.notes), source: from.source || '',
             title: from.title || run.script || 'Report', version: from.version || '', reproduce: from.reproduce || '',
             parameters: object(from.parameters), run, names: names(object(from.names)),
             wafer: Object.assign({ diameter: 300, thickness: 0.775 }, object(from.wafer)), limits: object(from.limits),

@@ -10,15 +10,10 @@
 
     function movers(doc) {
         const found = {};
-        doc.tracks.links.forEach((link) => {
-            found[link.name] = { kind: 'link', at: (t) => W.tracks.pose(link, t) };
-        });
-        doc.names.grippers.forEach((name, i) => {
-            found[name] = { kind: 'gripper', i, at: (t) => W.tracks.pose(doc.tracks.grippers[i], t) };
-        });
-        doc.names.wafers.forEach((name, i) => {
-            found[name] = { kind: 'wafer', i, at: (t) => W.tracks.wafer(doc.tracks, i, t) };
-        });
+        const add = (kind, i, name, at) => { found[W.gltf.key(kind, i)] = { kind, i, name, at }; };
+        doc.tracks.links.forEach((link, i) => add('link', i, link.name, (t) => W.tracks.pose(link, t)));
+        doc.names.grippers.forEach((name, i) => add('gripper', i, name, (t) => W.tracks.pose(doc.tracks.grippers[i], t)));
+        doc.names.wafers.forEach((name, i) => add('wafer', i, name, (t) => W.tracks.wafer(doc.tracks, i, t)));
         return found;
     }
 
@@ -52,20 +47,25 @@
         const sides = view.shown === 'top' || view.shown === 'side' ? [view.shown] : ['top', 'side'];
         const { clientWidth: width, clientHeight: height } = view.host;
         const wide = width > height;
-        return sides.map((name, i) => {
-            const share = 1 / sides.length;
-            const area = wide ? { x: i * share * width, y: 0, w: share * width, h: height }
-                : { x: 0, y: i * share * height, w: width, h: share * height };
-            return fit(view.box, SIDES[name], area);
-        });
+        const share = 1 / sides.length;
+        const areas = sides.map((_, i) => (wide ? { x: i * share * width, y: 0, w: share * width, h: height }
+            : { x: 0, y: i * share * height, w: width, h: share * height }));
+        const scale = scaleOf(view.box, sides.map((name) => SIDES[name]), areas[0]);
+        return sides.map((name, i) => fit(view.box, SIDES[name], areas[i], scale));
     }
 
-    function fit(box, side, area) {
-        const size = [side.across, side.up].map((i) => box.high[i] - box.low[i]);
-        const scale = Math.min((area.w - 40) / size[0], (area.h - 70) / size[1]);
+    const size = (box, side) => [side.across, side.up].map((i) => box.high[i] - box.low[i]);
+
+    /* One scale for both, so that they can be compared. */
+    function scaleOf(box, sides, area) {
+        return Math.min(...sides.map((side) => Math.min((area.w - 40) / size(box, side)[0],
+            (area.h - 120) / size(box, side)[1])));
+    }
+
+    function fit(box, side, area, scale) {
         const middle = [side.across, side.up].map((i) => (box.high[i] + box.low[i]) / 2);
         return { side, area, spot: (p) => [area.x + area.w / 2 + (p[side.across] - middle[0]) * scale,
-            area.y + area.h / 2 + 12 - (p[side.up] - middle[1]) * scale] };
+            area.y + area.h / 2 + 14 - (p[side.up] - middle[1]) * scale] };
     }
 
     function colourOf(view, body) {
@@ -76,7 +76,7 @@
             const state = W.tracks.hold(view.doc.tracks.wafers[body.mover.i], view.at);
             return state && typeof state.holder === 'number' ? W.theme.series(state.holder) : W.theme.colour('wafer');
         }
-        return `rgb(${body.colour.map((x) => Math.round(255 * x)).join()})`;
+        return W.gltf.colour(body.part);
     }
 
     function path(pen, points) {
@@ -88,7 +88,7 @@
     function drawBody(view, panel, body) {
         const pen = view.pen;
         path(pen, W.hulls.outline(body.now.map(panel.spot)));
-        pen.globalAlpha = body.mover ? 0.55 : Math.min(0.3, body.alpha);
+        pen.globalAlpha = body.mover ? 0.55 : Math.min(0.3, body.part.alpha);
         pen.fillStyle = colourOf(view, body);
         pen.fill();
         pen.globalAlpha = 0.8;
@@ -108,10 +108,10 @@
     }
 
     function drawNames(view, panel) {
-        Object.entries(view.movers).filter(([, mover]) => mover.kind !== 'link' && mover.pose)
-            .forEach(([name, mover]) => {
+        Object.values(view.movers).filter((mover) => mover.kind !== 'link' && mover.pose)
+            .forEach((mover) => {
                 const [x, y] = panel.spot(mover.pose.r);
-                text(view, name, x + 6, y - 6, W.theme.colour('ink'));
+                text(view, mover.name, x + 6, y - 6, W.theme.colour('ink'));
             });
     }
 
@@ -160,7 +160,7 @@
         const nearest = (body) => Math.max(...body.now.map(panel.side.near));
         view.bodies.filter((body) => body.now).map((body) => [nearest(body), body])
             .sort((a, b) => a[0] - b[0]).forEach(([, body]) => drawBody(view, panel, body));
-        text(view, panel.side.title, panel.area.x + 14, panel.area.y + panel.area.h - 12, W.theme.colour('ink'));
+        text(view, panel.side.title, panel.area.x + 14, panel.area.y + 64, W.theme.colour('dim'));
         drawMarks(view, panel);
         if (view.options.frames) {
             drawFrames(view, panel);
@@ -199,11 +199,11 @@
         const area = view.canvas.getBoundingClientRect();
         const spot = [event.clientX - area.left, event.clientY - area.top];
         let best = { far: 30, found: null };
-        panels(view).forEach((panel) => Object.entries(view.movers).forEach(([name, mover]) => {
+        panels(view).forEach((panel) => Object.values(view.movers).forEach((mover) => {
             if (mover.pose && mover.kind !== 'link') {
                 const at = panel.spot(mover.pose.r);
                 const far = Math.hypot(at[0] - spot[0], at[1] - spot[1]);
-                best = far < best.far ? { far, found: { name, at: mover.pose.r } } : best;
+                best = far < best.far ? { far, found: { kind: mover.kind, i: mover.i, at: mover.pose.r } } : best;
             }
         }));
         return best.found;

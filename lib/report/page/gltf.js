@@ -35,11 +35,14 @@
         return made;
     }
 
+    /* As screens want it: glTF's colours are linear. */
+    const encoded = (x) => (x <= 0.0031308 ? 12.92 * x : 1.055 * Math.pow(x, 1 / 2.4) - 0.055);
+
     function material(file, i) {
         const found = (file.materials || [])[i] || {};
         const surface = found.pbrMetallicRoughness || {};
         const colour = surface.baseColorFactor || [0.7, 0.7, 0.7, 1];
-        return { name: found.name || '', colour: colour.slice(0, 3), alpha: colour[3] };
+        return { name: found.name || '', colour: colour.slice(0, 3).map(encoded), alpha: colour[3] };
     }
 
     function part(file, primitive) {
@@ -61,8 +64,9 @@
 
     function node(file, i) {
         const from = file.nodes[i];
+        const extras = from.extras || {};
         return {
-            name: from.name || '', matrix: from.matrix || null, r: from.translation || [0, 0, 0],
+            name: from.name || '', kind: extras.kind || '', index: extras.index || 0, matrix: from.matrix || null, r: from.translation || [0, 0, 0],
             q: from.rotation || [0, 0, 0, 1], s: from.scale || [1, 1, 1],
             parts: from.mesh === undefined ? [] : mesh(file, from.mesh),
             children: (from.children || []).map((child) => node(file, child)),
@@ -84,5 +88,13 @@
         }
     }
 
-    W.gltf = { read };
+    /* The page's own colour for a material that it knows, else the file's. */
+    function colour(part) {
+        return W.theme.colour('part-' + part.name) || `rgb(${part.colour.map((x) => Math.round(255 * x)).join()})`;
+    }
+
+    /* What a node is, among the nodes: the same for a gripper, a wafer, a link of the document. */
+    const key = (kind, i) => `${kind} ${i}`;
+
+    W.gltf = { read, colour, key };
 }(window.Waferhand));

@@ -65,10 +65,10 @@
 
     /* Goes through the tree; a node in `movers` begins anew, for its own pose is set later. */
     function collect(node, above, mover, movers, found) {
-        const own = movers[node.name];
+        const own = movers[W.gltf.key(node.kind, node.index)];
         const matrix = own ? IDENTITY : product(above, local(node));
         node.parts.forEach((part) => bodies(part).forEach((points) => found.push({
-            mover: own || mover, name: node.name, colour: part.colour, alpha: part.alpha,
+            mover: own || mover, part,
             points: points.map((p) => apply(matrix, ...p).map((x) => 1000 * x)),
         })));
         node.children.forEach((child) => collect(child, matrix, own || mover, movers, found));

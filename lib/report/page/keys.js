@@ -11,7 +11,7 @@
         { keys: ['ArrowRight'], name: '\u2192', text: 'one slice on', act: () => W.clock.stepSlice(1) },
         { keys: ['Shift+ArrowLeft', ','], name: 'Shift \u2190', text: 'to the event before', act: () => W.clock.stepStop(-1) },
         { keys: ['Shift+ArrowRight', '.'], name: 'Shift \u2192', text: 'to the next event', act: () => W.clock.stepStop(1) },
-        { keys: ['Home'], name: 'Home', text: 'to the begin', act: () => W.clock.seek(0) },
+        { keys: ['Home'], name: 'Home', text: 'to the begin', act: () => W.clock.seek(W.clock.begin) },
         { keys: ['End'], name: 'End', text: 'to the end', act: () => W.clock.seek(W.clock.end) },
         { keys: ['['], name: '[', text: 'slower', act: () => W.transport.faster(-1) },
         { keys: [']'], name: ']', text: 'faster', act: () => W.transport.faster(1) },

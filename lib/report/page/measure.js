@@ -79,10 +79,11 @@
 
     /* A station stands for the slot of it that is nearest to what was hit. */
     function frameOf(hit) {
-        if (measure.frames.has(hit.name) && !measure.doc.names.stations.includes(hit.name)) {
-            return hit.name;
+        const { names } = measure.doc;
+        if (hit.kind === 'wafer' || hit.kind === 'gripper') {
+            return (hit.kind === 'wafer' ? names.wafers : names.grippers)[hit.i];
         }
-        const station = measure.doc.names.stations.findIndex((name) => hit.name.split(/[ /:]/).includes(name));
+        const station = hit.kind === 'station' ? hit.i : -1;
         const slots = measure.doc.slots.filter((slot) => slot.station === station);
         const far = (slot) => W.pose.norm(W.pose.subtract(slot.r, hit.at));
         const nearest = slots.reduce((best, slot) => (!best || far(slot) < far(best) ? slot : best), null);

@@ -3,84 +3,106 @@
 (function (W) {
     'use strict';
 
-    const now = { rows: [] };
+    const now = { cells: [] };
 
-    const MEASURES = [['dr_proj_z', '|dr_proj_z|', 'mm', 'projz', 4], ['dr_proj_xy', '|dr_proj_xy|', 'mm', 'projxy', 4],
-        ['n1_proj_n2', 'n1_proj_n2', '', 'planar', 6]];
+    const place = (i) => (doc, gripper, t) => {
+        const pose = W.tracks.pose(doc.tracks.grippers[gripper], t);
+        return { text: pose ? W.number(pose.r[i], 3) : W.DASH };
+    };
 
-    const value = (name) => W.element('dd', { 'data-name': name });
+    const measured = (key, unit, name, decimals) => (doc, gripper, t) => {
+        const track = doc.tracks.proximity[gripper];
+        const found = track ? W.tracks.linear(track.t, track[key] || [], t) : null;
+        return typeof found === 'number' ? judged(key, found, doc.limits[name], decimals, unit) : { text: W.DASH };
+    };
 
-    function card(doc, name, i) {
-        const values = {};
-        const line = (key, text) => {
-            values[key] = value(key);
-            return [W.element('dt', {}, text), values[key]];
-        };
-        const measured = doc.tracks.proximity[i] ? [].concat(line('nearest', 'nearest wafer'),
-            ...MEASURES.map(([key, text]) => line(key, text))) : [];
-        now.rows.push({ i, values });
-        return W.element('div', { class: 'card', 'data-gripper': name },
-            W.element('h3', {}, W.element('i', { class: 'dot', style: `background: var(--s${i % 6})` }), name),
-            W.element('dl', {}, ...line('holds', 'holds'), ...line('signals', 'valve'), ...line('at', 'at (mm)'), ...measured));
+    /* With a tick or a cross where there is a limit. */
+    function judged(key, found, limit, decimals, unit) {
+        const planar = key === 'n1_proj_n2';
+        const size = planar ? found : Math.abs(found);
+        const within = planar ? size > limit : size < limit;
+        const known = typeof limit === 'number';
+        return { text: W.number(size, decimals) + (known ? (within ? ' \u2713' : ' \u2717') : ''),
+            kind: known && within ? 'within' : '' };
     }
 
-    function signals(doc, i, t) {
-        const { valves, vacuum, sensors } = doc.tracks;
-        const valve = valves[i] ? W.tracks.step(valves[i].t, valves[i].v, t) : null;
-        const words = [valve === null ? W.DASH : valve === 0 ? 'open' : 'closed'];
-        const level = vacuum[i] ? W.tracks.linear(vacuum[i].t, vacuum[i].v, t) : null;
-        const sensor = sensors[i] ? W.tracks.step(sensors[i].t, sensors[i].v, t) : null;
-        words.push(...(level === null ? [] : [`vacuum ${W.number(100 * level, 0)}\u00a0%`]));
-        words.push(...(sensor === null ? [] : [sensor ? 'sensor on' : 'sensor off']));
-        return words.join(', ');
-    }
-
-    function held(doc, gripper, t) {
+    function holds(doc, gripper, t) {
         const found = doc.names.wafers.filter((_, i) => {
             const state = W.tracks.hold(doc.tracks.wafers[i], t);
             return state && state.holder === gripper;
         });
-        return found.join(', ') || 'nothing';
+        return { text: found.join(', ') || 'nothing' };
     }
 
-    function limited(cell, doc, measure, found) {
-        const [key, , unit, name, decimals] = measure;
-        const limit = doc.limits[name];
-        const size = found === null || key === 'n1_proj_n2' ? found : Math.abs(found);
-        const within = key === 'n1_proj_n2' ? size > limit : size < limit;
-        const known = typeof size === 'number' && typeof limit === 'number';
-        cell.textContent = typeof size !== 'number' ? W.DASH
-            : W.number(size, decimals) + (unit && '\u00a0' + unit) + (known ? (within ? ' \u2713' : ' \u2717') : '');
-        cell.className = known ? (within ? 'within' : 'beyond') : '';
+    function nearest(doc, gripper, t) {
+        const track = doc.tracks.proximity[gripper];
+        const near = track ? W.tracks.linear(track.t, track.dr_proj_z || [], t) : null;
+        const wafer = track && Array.isArray(track.wafer) ? W.tracks.step(track.t, track.wafer, t) : null;
+        return { text: typeof near === 'number' ? doc.names.wafers[wafer] || wafer || '' : 'none near' };
     }
 
-    function showProximity(doc, { i, values }, t) {
-        const track = doc.tracks.proximity[i];
-        if (!track) {
-            return;
-        }
-        const wafer = Array.isArray(track.wafer) ? W.tracks.step(track.t, track.wafer, t) : track.wafer;
-        const name = typeof wafer === 'number' ? doc.names.wafers[wafer] : wafer;
-        const near = MEASURES.map(([key]) => W.tracks.linear(track.t, track[key] || [], t));
-        values.nearest.textContent = (near[0] !== null && near[0] !== undefined && name) || 'none near';
-        MEASURES.forEach((measure, k) => limited(values[measure[0]], doc, measure, near[k]));
+    const stepped = (kind, words) => (doc, gripper, t) => {
+        const track = doc.tracks[kind][gripper];
+        const value = track ? W.tracks.step(track.t, track.v, t) : null;
+        return { text: value === 0 || value === 1 ? words[value] : W.DASH };
+    };
+
+    function vacuum(doc, gripper, t) {
+        const track = doc.tracks.vacuum[gripper];
+        const level = track ? W.tracks.linear(track.t, track.v, t) : null;
+        return { text: typeof level === 'number' ? `${W.number(100 * level, 0)}\u00a0%` : W.DASH };
+    }
+
+    const some = (tracks) => tracks.some((track) => track && track.t && track.t.length > 0);
+
+    /* The table's rows: names and what they show; those that the document has nothing for are left out. */
+    function rows(doc) {
+        const { tracks } = doc;
+        return [['holds', 'holds', holds, true],
+            ['valve', 'valve', stepped('valves', ['open', 'closed']), some(tracks.valves)],
+            ['vacuum', 'vacuum', vacuum, some(tracks.vacuum)],
+            ['sensor', 'sensor', stepped('sensors', ['off', 'on']), some(tracks.sensors)],
+            ['x', 'x (mm)', place(0), true], ['y', 'y (mm)', place(1), true], ['z', 'z (mm)', place(2), true],
+            ['nearest', 'nearest', nearest, some(tracks.proximity)],
+            ['dr_proj_z', '|dr_proj_z|', measured('dr_proj_z', 'mm', 'projz', 4), some(tracks.proximity)],
+            ['dr_proj_xy', '|dr_proj_xy|', measured('dr_proj_xy', 'mm', 'projxy', 4), some(tracks.proximity)],
+            ['n1_proj_n2', 'n1_proj_n2', measured('n1_proj_n2', '', 'planar', 6), some(tracks.proximity)],
+        ].filter(([, , , there]) => there);
+    }
+
+    function cell(name, gripper, look) {
+        const element = W.element('td', { 'data-name': name, 'data-gripper': now.doc.names.grippers[gripper] });
+        now.cells.push({ element, gripper, look });
+        return element;
+    }
+
+    const head = (name, i) => W.element('th', { scope: 'col' },
+        W.element('i', { class: 'dot', style: `background: var(--s${i % 6})` }), name);
+
+    /* Two grippers a table, for there is little room. */
+    function table(doc, from) {
+        const grippers = doc.names.grippers.slice(from, from + 2).map((name, i) => [name, from + i]);
+        return W.element('div', { class: 'card' }, W.element('table', { class: 'states' },
+            W.element('thead', {}, W.element('tr', {}, W.element('td', {}), ...grippers.map((each) => head(...each)))),
+            W.element('tbody', {}, ...rows(doc).map(([name, text, look]) => W.element('tr', {},
+                W.element('th', { scope: 'row' }, text), ...grippers.map(([, i]) => cell(name, i, look)))))));
     }
 
     function show(clock) {
-        const doc = now.doc;
-        now.rows.forEach((row) => {
-            const pose = W.tracks.pose(doc.tracks.grippers[row.i], clock.now);
-            row.values.holds.textContent = held(doc, row.i, clock.now);
-            row.values.signals.textContent = signals(doc, row.i, clock.now);
-            row.values.at.textContent = pose ? pose.r.map((x) => W.number(x, 3)).join('  ') : W.DASH;
-            showProximity(doc, row, clock.now);
+        now.cells.forEach(({ element, gripper, look }) => {
+            const { text, kind } = look(now.doc, gripper, clock.now);
+            element.textContent = text;
+            element.className = kind || '';
         });
     }
 
     now.start = function (doc) {
         const host = document.getElementById('now');
         now.doc = doc;
-        host.append(W.element('h2', {}, 'Now'), ...doc.names.grippers.map((name, i) => card(doc, name, i)));
+        host.append(W.element('h2', {}, 'Now'));
+        for (let i = 0; i < doc.names.grippers.length; i += 2) {
+            host.append(table(doc, i));
+        }
         if (doc.names.grippers.length === 0) {
             host.append(W.why('The document names no grippers.'));
         }

@@ -42,6 +42,7 @@
         };
         panel.curves.forEach((curve) => curve.v.forEach(take));
         panel.limits.forEach((limit) => take(limit.value));
+        [low, high] = panel.most ? [Math.max(low, panel.most[0]), Math.min(high, panel.most[1])] : [low, high];
         const air = (high - low || 1) * 0.06;
         return [panel.zero && low === 0 ? 0 : low - air, high + air];
     }

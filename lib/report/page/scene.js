@@ -17,17 +17,17 @@
     /* What moves hangs from the base itself, whatever it hung from in the file. */
     function movers(doc, scene, named) {
         const found = [];
-        const take = (name, kind, i) => {
-            const object = named[name];
+        const take = (kind, i, name) => {
+            const object = named[W.gltf.key(kind, i)];
             if (object) {
                 scene.add(object);
                 object.scale.set(1, 1, 1);
-                found.push({ object, kind, i });
+                found.push({ object, kind, i, name });
             }
         };
-        doc.tracks.links.forEach((link, i) => take(link.name, 'link', i));
-        doc.names.grippers.forEach((name, i) => take(name, 'gripper', i));
-        doc.names.wafers.forEach((name, i) => take(name, 'wafer', i));
+        doc.tracks.links.forEach((link, i) => take('link', i, link.name));
+        doc.names.grippers.forEach((name, i) => take('gripper', i, name));
+        doc.names.wafers.forEach((name, i) => take('wafer', i, name));
         return found;
     }
 
@@ -50,7 +50,7 @@
     /* Every mesh and every edge of an object in one colour. */
     function dye(object, colour) {
         object.traverse((child) => {
-            if (child.userData.axis === undefined && child.isMesh) {
+            if (child.userData.part) {
                 child.material.color.set(colour);
             }
         });
@@ -87,35 +87,41 @@
         scene.add(sun);
     }
 
+    /* Null where there is no WebGL: asked for here, for three.js complains aloud. The picture is kept for paper. */
     function renderer() {
-        const made = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+        const canvas = W.element('canvas');
+        const wanted = { antialias: true, alpha: false, preserveDrawingBuffer: true };
+        const context = canvas.getContext('webgl', wanted) || canvas.getContext('experimental-webgl', wanted);
+        if (!context) {
+            return null;
+        }
+        const made = new THREE.WebGLRenderer(Object.assign({ canvas, context }, wanted));
         made.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
         return made;
     }
 
     /* Null where there is no WebGL or no scene. */
     function make(host, doc, roots) {
-        const test = document.createElement('canvas');
-        if (!roots || !(test.getContext('webgl') || test.getContext('experimental-webgl'))) {
+        const gl = roots && renderer();
+        if (!gl) {
             return null;
         }
-        const view = { host, doc, named: {}, scene: new THREE.Scene(), labels: [], options: {}, due: false };
-        view.gl = renderer();
+        const view = { host, doc, named: {}, scene: new THREE.Scene(), gl, options: {}, due: false };
         view.canvas = view.gl.domElement;
         host.append(view.canvas);
         view.scene.add(world(doc, roots, view.named));
         view.moving = movers(doc, view.scene, view.named);
         light(view.scene);
         pose(view, 0);
-        view.box = new THREE.Box3().setFromObject(view.scene);
+        view.corners = W.camera.corners(view.scene);
         view.triads = addTriads(doc, view.scene, view.moving);
         view.marks = W.marks.make(view.scene, doc, (kind, text) => label(view, kind, text));
         view.tags = view.moving.filter((mover) => mover.kind !== 'link')
-            .map((mover) => ({ mover, label: label(view, mover.kind, mover.object.name) }));
+            .map((mover) => ({ mover, label: label(view, mover.kind, mover.name) }));
         view.ruler = W.shapes.line();
         view.rulerLabel = label(view, 'ruler', '');
         view.scene.add(view.ruler);
-        view.rig = W.camera.make(view.canvas, view.box, () => draw(view));
+        view.rig = W.camera.make(view.canvas, view.corners, () => draw(view));
         return finish(view);
     }
 
@@ -165,6 +171,8 @@
             if (child.userData.edges !== undefined) {
                 child.material.color.set(colour('edge'));
                 child.material.opacity = child.userData.edges < 1 ? 0.35 : 0.8;
+            } else if (child.userData.part) {
+                child.material.color.set(W.gltf.colour(child.userData.part));
             } else if (child.userData.axis) {
                 child.material.color.set(colour('axis-' + child.userData.axis));
             }
@@ -244,7 +252,7 @@
         draw(view);
     }
 
-    /* What lies under the pointer: { name, at }, at in mm of base; null where there is nothing that has a name. */
+    /* What lies under the pointer: { kind, i, at }, at in mm of base; null where there is nothing of a kind. */
     function pick(view, event) {
         const area = view.canvas.getBoundingClientRect();
         const spot = new THREE.Vector2((event.clientX - area.left) / area.width * 2 - 1,
@@ -252,11 +260,11 @@
         const ray = new THREE.Raycaster();
         ray.setFromCamera(spot, view.rig.camera);
         const hits = ray.intersectObjects(view.scene.children, true)
-            .filter((hit) => hit.object.isMesh && hit.object.userData.axis === undefined);
+            .filter((hit) => hit.object.userData.part);
         for (const hit of hits) {
             for (let object = hit.object; object; object = object.parent) {
-                if (object.name) {
-                    return { name: object.name, at: hit.point.toArray().map((x) => x / M) };
+                if (object.userData.node) {
+                    return { kind: object.userData.node.kind, i: object.userData.node.index, at: hit.point.toArray().map((x) => x / M) };
                 }
             }
         }

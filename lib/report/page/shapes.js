@@ -20,8 +20,7 @@
 
     function surface(part) {
         const clear = part.alpha < 1;
-        return new THREE.MeshLambertMaterial({ color: new THREE.Color().fromArray(part.colour), transparent: clear,
-            opacity: part.alpha, depthWrite: !clear, side: THREE.DoubleSide, polygonOffset: true,
+        return new THREE.MeshLambertMaterial({ transparent: clear, opacity: part.alpha, depthWrite: !clear, side: THREE.DoubleSide, polygonOffset: true,
             polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     }
 
@@ -32,6 +31,7 @@
         const mesh = new THREE.Mesh(flat, surface(part));
         const lines = new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ transparent: true }));
         lines.userData.edges = part.alpha;
+        mesh.userData.part = part;
         group.add(mesh, lines);
         return group;
     }
@@ -46,15 +46,15 @@
         object.scale.fromArray(node.s);
     }
 
-    /* The whole tree; `named` collects objects by the names of their nodes. */
+    /* The whole tree; `named` collects objects by what their nodes are. */
     function tree(node, named) {
         const group = new THREE.Group();
         place(group, node);
         node.parts.forEach((part) => group.add(solid(part)));
         node.children.forEach((child) => group.add(tree(child, named)));
-        if (node.name) {
-            group.name = node.name;
-            named[node.name] = group;
+        if (node.kind) {
+            group.userData.node = node;
+            named[W.gltf.key(node.kind, node.index)] = group;
         }
         return group;
     }

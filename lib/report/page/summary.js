@@ -60,6 +60,7 @@
                 W.element('div', { class: 'row' }, W.element('h1', {}, doc.title), verdict(doc),
                     W.element('span', { class: 'space' }), help, theme),
                 doc.run.failure ? W.element('p', { class: 'failure' }, doc.run.failure) : '',
+                ...doc.notes.map((note) => W.why(note)),
                 W.element('div', { class: 'tiles' }, ...tiles.filter(Boolean)));
         },
     };

@@ -29,7 +29,8 @@
             return made;
         }
         const body = W.element('tbody', {}, ...rows.slice(0, SHOWN).map((each) => each()));
-        const head = W.element('tr', {}, ...heads.map((text) => W.element('th', { scope: 'col' }, text)));
+        const kinds = Array.from(body.rows[0].cells, (cell) => cell.className);
+        const head = W.element('tr', {}, ...heads.map((text, i) => W.element('th', { scope: 'col', class: kinds[i] }, text)));
         made.append(W.element('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': title },
             W.element('table', {}, W.element('thead', {}, head), body)));
         if (rows.length > SHOWN) {

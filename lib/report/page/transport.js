@@ -4,11 +4,13 @@
 
     const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
     const THUMB = 16;
+    const ICONS = { play: 'M6 4l14 8-14 8z', pause: 'M6 4h4v16H6zM14 4h4v16h-4z', before: 'M5 4h3v16H5zM20 4v16L9 12z',
+        next: 'M16 4h3v16h-3zM4 4v16l11-8z' };
     const transport = {};
 
-    function tool(name, text, title, keys, pressed) {
+    function tool(name, title, keys, pressed) {
         return W.element('button', { type: 'button', id: name, class: 'tool', title: `${title} (${keys})`,
-            'aria-label': title, 'aria-keyshortcuts': keys, click: pressed }, text);
+            'aria-label': title, 'aria-keyshortcuts': keys, click: pressed }, W.icon(ICONS[name]));
     }
 
     function speeds() {
@@ -26,8 +28,8 @@
 
     /* The scrubber counts slices, so that its keys step by one. */
     function range(doc) {
-        const made = W.element('input', { type: 'range', id: 'scrubber', min: 0, max: W.clock.number(doc.duration), step: 1,
-            value: 0, 'aria-label': 'Time', input: () => W.clock.seek(W.clock.time(Number(made.value))) });
+        const made = W.element('input', { type: 'range', id: 'scrubber', min: W.clock.number(doc.begin), max: W.clock.number(doc.duration), step: 1,
+            value: W.clock.number(doc.begin), 'aria-label': 'Time', input: () => W.clock.seek(W.clock.time(Number(made.value))) });
         return made;
     }
 
@@ -43,7 +45,8 @@
         ['accent', 'warn', 'bad'].forEach((colour) => {
             pen.fillStyle = W.theme.colour(colour);
             const spots = transport.doc.events.filter((event) => W.events.colour(event.kind) === colour)
-                .map((event) => Math.round(THUMB / 2 + (width - THUMB) * event.t / transport.doc.duration));
+                .map((event) => Math.round(THUMB / 2 + (width - THUMB) * (event.t - W.clock.begin)
+                    / (W.clock.end - W.clock.begin)));
             new Set(spots).forEach((x) => pen.fillRect(x - 1, 0, 2, 10));
         });
     }
@@ -68,7 +71,7 @@
     }
 
     function showPlay(clock) {
-        transport.play.textContent = clock.playing ? '\u275a\u275a' : '\u25b6';
+        transport.play.replaceChildren(W.icon(clock.playing ? ICONS.pause : ICONS.play));
         transport.play.setAttribute('aria-label', clock.playing ? 'Pause' : 'Play');
         transport.speed.value = clock.speed;
     }
@@ -76,7 +79,7 @@
     transport.start = function (doc) {
         const host = document.getElementById('transport');
         transport.doc = doc;
-        transport.play = tool('play', '\u25b6', 'Play', 'Space', W.clock.toggle);
+        transport.play = tool('play', 'Play', 'Space', W.clock.toggle);
         transport.speed = speeds();
         transport.range = range(doc);
         transport.ticks = W.element('canvas', { class: 'ticks', 'aria-hidden': 'true' });
@@ -84,8 +87,8 @@
         transport.here = W.element('span', { class: 'here' });
         host.append(
             W.element('div', { class: 'buttons' },
-                tool('before', '\u23ee', 'Event before', 'Shift+ArrowLeft', () => W.clock.stepStop(-1)), transport.play,
-                tool('next', '\u23ed', 'Next event', 'Shift+ArrowRight', () => W.clock.stepStop(1)), transport.speed),
+                tool('before', 'Event before', 'Shift+ArrowLeft', () => W.clock.stepStop(-1)), transport.play,
+                tool('next', 'Next event', 'Shift+ArrowRight', () => W.clock.stepStop(1)), transport.speed),
             W.element('div', { class: 'line' }, transport.range, transport.ticks),
             W.element('div', { class: 'clock' },
                 W.element('span', {}, transport.time, ` / ${W.number(doc.duration, 3)} s`), transport.here));
