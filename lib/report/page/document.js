@@ -28,18 +28,24 @@
         return Math.max(0.001, ...moved, ...doc.events.slice(-1).map((event) => event.t));
     }
 
-    function complete(from) {
+    const NOTHING = { begin_s: 0, duration_s: 0, slice_s: 0.001, title: '', source: '', version: '', reproduce: '',
+        thinning: null, scene: null };
+
+    function lists(from, run) {
+        return { notes: list(from.notes), slots: list(from.slots), marks: list(from.marks), commands: list(run.commands),
+            events: events(run), expectations: list(run.expectations) };
+    }
+
+    function complete(given) {
+        const from = Object.assign({}, NOTHING, given);
         const run = object(from.run);
-        const doc = {
-            begin: from.begin_s > 0 ? from.begin_s : 0, notes: list(from.notes), source: from.source || '',
-            title: from.title || run.script || 'Report', version: from.version || '', reproduce: from.reproduce || '',
-            parameters: object(from.parameters), run, names: names(object(from.names)),
+        const doc = Object.assign(lists(from, run), {
+            title: from.title || run.script || 'Report', source: from.source, version: from.version,
+            reproduce: from.reproduce, parameters: object(from.parameters), run, names: names(object(from.names)),
             wafer: Object.assign({ diameter: 300, thickness: 0.775 }, object(from.wafer)), limits: object(from.limits),
-            slots: list(from.slots), thinning: from.thinning || null, tracks: tracks(object(from.tracks)),
-            marks: list(from.marks), scene: from.scene || null, slice: from.slice_s > 0 ? from.slice_s : 0.001,
-            slices: from.slices, commands: list(run.commands), events: events(run),
-            expectations: list(run.expectations),
-        };
+            thinning: from.thinning, tracks: tracks(object(from.tracks)), scene: from.scene, slices: from.slices,
+            slice: from.slice_s > 0 ? from.slice_s : 0.001, begin: Math.max(from.begin_s, 0),
+        });
         doc.duration = from.duration_s > 0 ? from.duration_s : lastTime(doc);
         return doc;
     }

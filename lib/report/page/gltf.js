@@ -41,8 +41,8 @@
     function material(file, i) {
         const found = (file.materials || [])[i] || {};
         const surface = found.pbrMetallicRoughness || {};
-        const colour = surface.baseColorFactor || [0.7, 0.7, 0.7, 1];
-        return { name: found.name || '', colour: colour.slice(0, 3).map(encoded), alpha: colour[3] };
+        const linear = surface.baseColorFactor || [0.7, 0.7, 0.7, 1];
+        return { name: found.name || '', colour: linear.slice(0, 3).map(encoded), alpha: linear[3] };
     }
 
     function part(file, primitive) {
@@ -62,15 +62,16 @@
         return file.parts[i];
     }
 
+    const NODE = { name: '', translation: [0, 0, 0], rotation: [0, 0, 0, 1], scale: [1, 1, 1], matrix: null, children: [],
+        extras: {} };
+
+    /* `kind` and `index` say what a node is, for names need not be unique. */
     function node(file, i) {
-        const from = file.nodes[i];
-        const extras = from.extras || {};
-        return {
-            name: from.name || '', kind: extras.kind || '', index: extras.index || 0, matrix: from.matrix || null, r: from.translation || [0, 0, 0],
-            q: from.rotation || [0, 0, 0, 1], s: from.scale || [1, 1, 1],
+        const from = Object.assign({}, NODE, file.nodes[i]);
+        const { kind = '', index = 0 } = from.extras;
+        return { name: from.name, kind, index, matrix: from.matrix, r: from.translation, q: from.rotation, s: from.scale,
             parts: from.mesh === undefined ? [] : mesh(file, from.mesh),
-            children: (from.children || []).map((child) => node(file, child)),
-        };
+            children: from.children.map((child) => node(file, child)) };
     }
 
     /* The scene's root nodes, or null where there is none that can be read. */
@@ -89,8 +90,8 @@
     }
 
     /* The page's own colour for a material that it knows, else the file's. */
-    function colour(part) {
-        return W.theme.colour('part-' + part.name) || `rgb(${part.colour.map((x) => Math.round(255 * x)).join()})`;
+    function colour(look) {
+        return W.theme.colour('part-' + look.name) || `rgb(${look.colour.map((x) => Math.round(255 * x)).join()})`;
     }
 
     /* What a node is, among the nodes: the same for a gripper, a wafer, a link of the document. */

@@ -17,8 +17,9 @@
         const raw = (to - from) / count;
         const power = Math.pow(10, Math.floor(Math.log10(raw)));
         const step = [1, 2, 5, 10].find((factor) => factor * power >= raw) * power;
-        const first = Math.ceil(from / step);
-        return Array.from({ length: Math.max(Math.floor(to / step) - first + 1, 0) }, (_, i) => (first + i) * step);
+        const lowest = Math.ceil(from / step);
+        return Array.from({ length: Math.max(Math.floor(to / step) - lowest + 1, 0) },
+            (_, i) => (lowest + i) * step);
     }
 
     function drawAxis(chart, pen, height) {

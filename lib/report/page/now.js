@@ -10,14 +10,14 @@
         return { text: pose ? W.number(pose.r[i], 3) : W.DASH };
     };
 
-    const measured = (key, unit, name, decimals) => (doc, gripper, t) => {
+    const measured = (key, name, decimals) => (doc, gripper, t) => {
         const track = doc.tracks.proximity[gripper];
         const found = track ? W.tracks.linear(track.t, track[key] || [], t) : null;
-        return typeof found === 'number' ? judged(key, found, doc.limits[name], decimals, unit) : { text: W.DASH };
+        return typeof found === 'number' ? judged(key, found, doc.limits[name], decimals) : { text: W.DASH };
     };
 
     /* With a tick or a cross where there is a limit. */
-    function judged(key, found, limit, decimals, unit) {
+    function judged(key, found, limit, decimals) {
         const planar = key === 'n1_proj_n2';
         const size = planar ? found : Math.abs(found);
         const within = planar ? size > limit : size < limit;
@@ -64,9 +64,9 @@
             ['sensor', 'sensor', stepped('sensors', ['off', 'on']), some(tracks.sensors)],
             ['x', 'x (mm)', place(0), true], ['y', 'y (mm)', place(1), true], ['z', 'z (mm)', place(2), true],
             ['nearest', 'nearest', nearest, some(tracks.proximity)],
-            ['dr_proj_z', '|dr_proj_z|', measured('dr_proj_z', 'mm', 'projz', 4), some(tracks.proximity)],
-            ['dr_proj_xy', '|dr_proj_xy|', measured('dr_proj_xy', 'mm', 'projxy', 4), some(tracks.proximity)],
-            ['n1_proj_n2', 'n1_proj_n2', measured('n1_proj_n2', '', 'planar', 6), some(tracks.proximity)],
+            ['dr_proj_z', '|dr_proj_z| (mm)', measured('dr_proj_z', 'projz', 4), some(tracks.proximity)],
+            ['dr_proj_xy', '|dr_proj_xy| (mm)', measured('dr_proj_xy', 'projxy', 4), some(tracks.proximity)],
+            ['n1_proj_n2', 'n1_proj_n2', measured('n1_proj_n2', 'planar', 6), some(tracks.proximity)],
         ].filter(([, , , there]) => there);
     }
 

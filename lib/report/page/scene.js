@@ -42,9 +42,9 @@
         }
     }
 
-    function put(object, pose) {
-        object.position.fromArray(pose.r).multiplyScalar(M);
-        object.quaternion.fromArray(pose.q);
+    function put(object, { r, q }) {
+        object.position.fromArray(r).multiplyScalar(M);
+        object.quaternion.fromArray(q);
     }
 
     /* Every mesh and every edge of an object in one colour. */
@@ -264,7 +264,8 @@
         for (const hit of hits) {
             for (let object = hit.object; object; object = object.parent) {
                 if (object.userData.node) {
-                    return { kind: object.userData.node.kind, i: object.userData.node.index, at: hit.point.toArray().map((x) => x / M) };
+                    const { kind, index } = object.userData.node;
+                    return { kind, i: index, at: hit.point.toArray().map((x) => x / M) };
                 }
             }
         }

@@ -20,8 +20,8 @@
 
     function surface(part) {
         const clear = part.alpha < 1;
-        return new THREE.MeshLambertMaterial({ transparent: clear, opacity: part.alpha, depthWrite: !clear, side: THREE.DoubleSide, polygonOffset: true,
-            polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+        return new THREE.MeshLambertMaterial({ transparent: clear, opacity: part.alpha, depthWrite: !clear,
+            side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     }
 
     /* A part with its edges, as drawings have them. */

@@ -96,7 +96,8 @@
     function share(split, whole) {
         const [key, text, colour] = split;
         return () => row([text, num(W.number(whole.split[key], 3)), num(W.number(100 * whole.split[key] / whole.sum, 1)),
-            W.element('i', { class: 'share', style: `width: ${100 * whole.split[key] / whole.sum}%; background: var(--${colour})` })]);
+            W.element('i', { class: 'share',
+                style: `width: ${100 * whole.split[key] / whole.sum}%; background: var(--${colour})` })]);
     }
 
     function throughput(doc) {

@@ -28,8 +28,9 @@
 
     /* The scrubber counts slices, so that its keys step by one. */
     function range(doc) {
-        const made = W.element('input', { type: 'range', id: 'scrubber', min: W.clock.number(doc.begin), max: W.clock.number(doc.duration), step: 1,
-            value: W.clock.number(doc.begin), 'aria-label': 'Time', input: () => W.clock.seek(W.clock.time(Number(made.value))) });
+        const made = W.element('input', { type: 'range', id: 'scrubber', min: W.clock.number(doc.begin),
+            max: W.clock.number(doc.duration), step: 1, value: W.clock.number(doc.begin), 'aria-label': 'Time',
+            input: () => W.clock.seek(W.clock.time(Number(made.value))) });
         return made;
     }
 
