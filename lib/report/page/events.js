@@ -11,8 +11,10 @@
     }
 
     function tell(event) {
-        const parts = event.parts ? `${event.parts[0]} and ${event.parts[1]}` : null;
-        return [W.words(event.kind), event.wafer, parts, event.gripper && 'by ' + event.gripper].filter(Boolean).join(' ');
+        if (event.parts) {
+            return `${W.words(event.kind)}: ${event.parts[0]} and ${event.parts[1]}`;
+        }
+        return [W.words(event.kind), event.wafer, event.gripper && 'by ' + event.gripper].filter(Boolean).join(' ');
     }
 
     W.events = { colour, tell };

@@ -17,8 +17,9 @@
         const shown = placed(doc).map((mark) => {
             const shape = W.shapes.mark(0.012);
             shape.position.fromArray(mark.at).multiplyScalar(0.001);
+            shape.renderOrder = colourName(mark) === 'bad' ? 11 : 10;
             scene.add(shape);
-            return { mark, shape, label: label('mark', text(mark)) };
+            return { mark, shape, label: label('mark ' + colourName(mark), text(mark)) };
         });
         return {
             shown,

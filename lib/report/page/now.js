@@ -62,10 +62,10 @@
             ['valve', 'valve', stepped('valves', ['open', 'closed']), some(tracks.valves)],
             ['vacuum', 'vacuum', vacuum, some(tracks.vacuum)],
             ['sensor', 'sensor', stepped('sensors', ['off', 'on']), some(tracks.sensors)],
-            ['x', 'x (mm)', place(0), true], ['y', 'y (mm)', place(1), true], ['z', 'z (mm)', place(2), true],
+            ['x', 'x mm', place(0), true], ['y', 'y mm', place(1), true], ['z', 'z mm', place(2), true],
             ['nearest', 'nearest', nearest, some(tracks.proximity)],
-            ['dr_proj_z', '|dr_proj_z| (mm)', measured('dr_proj_z', 'projz', 4), some(tracks.proximity)],
-            ['dr_proj_xy', '|dr_proj_xy| (mm)', measured('dr_proj_xy', 'projxy', 4), some(tracks.proximity)],
+            ['dr_proj_z', '|dr_proj_z| mm', measured('dr_proj_z', 'projz', 4), some(tracks.proximity)],
+            ['dr_proj_xy', '|dr_proj_xy| mm', measured('dr_proj_xy', 'projxy', 4), some(tracks.proximity)],
             ['n1_proj_n2', 'n1_proj_n2', measured('n1_proj_n2', 'planar', 6), some(tracks.proximity)],
         ].filter(([, , , there]) => there);
     }

@@ -61,8 +61,23 @@
         return state && typeof state.holder === 'number' ? state.holder : -1;
     }
 
+    /* A held one is paler than who holds it, so that the blade shows on it. */
     function waferColour(holder) {
-        return holder < 0 ? W.theme.colour('wafer') : W.theme.series(holder);
+        const colour = new THREE.Color(holder < 0 ? W.theme.colour('wafer') : W.theme.series(holder));
+        return holder < 0 ? colour : colour.lerp(new THREE.Color(W.theme.colour('stage')), 0.42);
+    }
+
+    /* The floor, in squares of 200 mm. */
+    function addFloor(view) {
+        const far = Math.max(...view.corners.map((corner) => Math.max(Math.abs(corner.x), Math.abs(corner.y))));
+        const count = 2 * Math.ceil(far / 0.2);
+        const made = new THREE.GridHelper(count * 0.2, count);
+        made.rotation.x = Math.PI / 2;
+        made.position.z = Math.min(...view.corners.map((corner) => corner.z)) - 0.002;
+        made.material.vertexColors = THREE.NoColors;
+        made.material.needsUpdate = true;
+        view.floor = made;
+        view.scene.add(made);
     }
 
     /* A triad for each gripper, wafer and station, and for base. */
@@ -114,13 +129,10 @@
         light(view.scene);
         pose(view, 0);
         view.corners = W.camera.corners(view.scene);
+        addFloor(view);
         view.triads = addTriads(doc, view.scene, view.moving);
-        view.marks = W.marks.make(view.scene, doc, (kind, text) => label(view, kind, text));
-        view.tags = view.moving.filter((mover) => mover.kind !== 'link')
-            .map((mover) => ({ mover, label: label(view, mover.kind, mover.name) }));
-        view.ruler = W.shapes.line();
-        view.rulerLabel = label(view, 'ruler', '');
-        view.scene.add(view.ruler);
+        view.marks = W.marks.make(view.scene, doc, (kind, text) => W.labels.make(view, kind, text));
+        W.labels.add(view);
         view.rig = W.camera.make(view.canvas, view.corners, () => draw(view));
         return finish(view);
     }
@@ -131,7 +143,8 @@
         view.resize = () => { resize(view); draw(view); };
         view.show = (name, rider) => { view.rig.show(name, rider); draw(view); };
         view.set = (options) => { Object.assign(view.options, options); view.paint(); };
-        view.rule = (ends, text) => rule(view, ends, text);
+        view.rule = (ends, text) => W.labels.rule(view, ends, text);
+        view.draw = () => draw(view);
         view.pick = (event) => pick(view, event);
         view.still = () => { render(view); return view.canvas.toDataURL('image/png'); };
         new ResizeObserver(view.resize).observe(view.host);
@@ -139,12 +152,6 @@
         view.show('whole');
         paint(view);
         return view;
-    }
-
-    function label(view, kind, text) {
-        const made = W.element('span', { class: 'tag ' + kind, text, 'aria-hidden': 'true', hidden: true });
-        view.host.append(made);
-        return made;
     }
 
     function pose(view, t) {
@@ -184,6 +191,7 @@
         });
         view.triads.forEach((triad) => { triad.visible = !!view.options.frames; });
         view.marks.paint();
+        view.floor.material.color.set(colour('rule'));
         view.ruler.material.color.set(colour('ink'));
     }
 
@@ -207,49 +215,7 @@
         view.rig.ride();
         view.marks.update(view.at);
         view.gl.render(view.scene, view.rig.camera);
-        hang(view);
-    }
-
-    /* Puts a label beside its point, or hides it. */
-    function hangOne(view, each, point) {
-        const spot = point.clone().project(view.rig.camera);
-        const inside = Math.abs(spot.x) < 1 && Math.abs(spot.y) < 1 && spot.z < 1;
-        each.hidden = !inside;
-        if (inside) {
-            const x = (spot.x + 1) / 2 * view.host.clientWidth;
-            const y = (1 - spot.y) / 2 * view.host.clientHeight;
-            each.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
-        }
-    }
-
-    function hang(view) {
-        view.tags.forEach((tag) => {
-            if (view.options.names) {
-                hangOne(view, tag.label, tag.mover.object.position);
-            } else {
-                tag.label.hidden = true;
-            }
-        });
-        view.marks.shown.filter((each) => !each.label.hidden)
-            .forEach((each) => hangOne(view, each.label, each.shape.position));
-        view.ruler.visible = !!view.ends;
-        if (view.ends) {
-            hangOne(view, view.rulerLabel, view.ends[0].clone().lerp(view.ends[1], 0.5));
-        } else {
-            view.rulerLabel.hidden = true;
-        }
-    }
-
-    /* Draws the measured distance; no ends, no line. */
-    function rule(view, ends, text) {
-        view.ends = ends && ends.map((end) => new THREE.Vector3(...end).multiplyScalar(M));
-        if (view.ends) {
-            const points = view.ruler.geometry.attributes.position;
-            view.ends.forEach((end, i) => points.setXYZ(i, end.x, end.y, end.z));
-            points.needsUpdate = true;
-            view.rulerLabel.textContent = text;
-        }
-        draw(view);
+        W.labels.hang(view);
     }
 
     /* What lies under the pointer: { kind, i, at }, at in mm of base; null where there is nothing of a kind. */

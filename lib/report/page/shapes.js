@@ -77,9 +77,7 @@
     function mark(size) {
         const shape = new THREE.OctahedronBufferGeometry(size);
         const look = new THREE.MeshBasicMaterial({ depthTest: false, transparent: true });
-        const made = new THREE.Mesh(shape, look);
-        made.renderOrder = 10;
-        return made;
+        return new THREE.Mesh(shape, look);
     }
 
     /* A line between two points that are set later. */
@@ -88,7 +86,7 @@
         made.setAttribute('position', new THREE.BufferAttribute(new Float32Array(6), 3));
         const look = new THREE.LineBasicMaterial({ depthTest: false, transparent: true });
         const object = new THREE.Line(made, look);
-        object.renderOrder = 11;
+        object.renderOrder = 12;
         object.frustumCulled = false;
         return object;
     }

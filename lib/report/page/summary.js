@@ -7,7 +7,7 @@
             return W.element('span', { class: 'verdict' }, 'no verdict');
         }
         return W.element('span', { class: `verdict ${doc.run.ok ? 'good' : 'bad'}` },
-            doc.run.ok ? '\u2713 as expected' : '\u2717 not as expected');
+            doc.run.ok ? '\u2713 passed' : '\u2717 failed');
     }
 
     function tile(text, value, note, kind) {

@@ -63,12 +63,14 @@
     }
 
     function showTime(clock) {
-        const here = eventsAt(clock.now).map(W.events.tell).join(', ');
+        const events = eventsAt(clock.now);
+        const here = events.map(W.events.tell).join(', ');
         transport.range.value = clock.number(clock.now);
         transport.range.setAttribute('aria-valuetext', `${clock.now.toFixed(3)} seconds. ${here}`);
         transport.time.textContent = W.number(clock.now, 3);
         transport.here.textContent = here || `slice ${clock.number(clock.now)}`;
-        transport.here.className = here ? 'here event' : 'here';
+        transport.here.className = 'here ' + (here ? W.events.colour(events[0].kind) : '');
+        transport.here.title = here;
     }
 
     function showPlay(clock) {
