@@ -1,0 +1,192 @@
+"""Play, pause, speed, scrubber, keys and plots: all show one time and one window of it."""
+import time
+import unittest
+
+import documents
+from browser import Browser
+
+
+def setUpModule():
+    global page, document, path
+    document, path = documents.example("01_transfer")
+    page = Browser()
+
+
+def tearDownModule():
+    page.close()
+
+
+class Time(unittest.TestCase):
+    def setUp(self):
+        page.open(path)
+        self.events = sorted({event["utime"] / 1e6 for event in document["run"]["events"]})
+
+    def tearDown(self):
+        self.assertEqual(page.faults(), [])
+
+    def test_opens(self):
+        """Quickly, alone, small."""
+        self.assertEqual(page.outside(), [])
+        self.assertLess(path.stat().st_size, 3e6)
+        self.assertEqual(page.driver.title, document["title"])
+        marks = page.js("return performance.getEntriesByType('mark').map((mark) => [mark.name, Math.round(mark.startTime)])")
+        print(f"transfer run: {path.stat().st_size} bytes, ms since navigation: {dict(marks)}")
+
+    def test_whole_cell_is_in_the_picture(self):
+        spots = page.js("""const { corners, rig } = Waferhand.stage.view; rig.camera.updateMatrixWorld();
+            return corners.map((corner) => corner.clone().project(rig.camera).toArray())""")
+        self.assertLess(max(max(abs(x), abs(y)) for x, y, _ in spots), 1)
+        self.assertGreater(max(max(abs(x), abs(y)) for x, y, _ in spots), 0.75)
+
+    def test_play_and_pause(self):
+        page.key(" ", code="Space")
+        self.assertTrue(page.js("return Waferhand.clock.playing"))
+        began, at = time.monotonic(), page.now()
+        page.wait("return Waferhand.clock.now > 0.8")
+        passed = time.monotonic() - began
+        self.assertLess(page.now() - at, passed + 0.3)
+        page.key(" ", code="Space")
+        rests = page.now()
+        page.settle()
+        self.assertEqual(page.now(), rests)
+        self.assertEqual(page.text("#time"), f"{rests:.3f}")
+
+    def test_speed(self):
+        page.js("""const select = document.getElementById('speed'); select.value = '100';
+            select.dispatchEvent(new Event('change'))""")
+        page.click(*self.middle("#play"))
+        page.wait("return !Waferhand.clock.playing", 20)
+        self.assertEqual(page.now(), document["duration_s"])
+        page.key("[")
+        self.assertEqual(page.js("return document.getElementById('speed').value"), "50")
+        page.key(" ", code="Space")
+        self.assertLess(page.now(), document["duration_s"])
+
+    def middle(self, selector):
+        left, top, width, height = page.box(selector)
+        return left + width / 2, top + height / 2
+
+    def test_scrubber(self):
+        left, top, width, _ = page.box("#scrubber")
+        page.click(left + width / 2, top + 11)
+        self.assertAlmostEqual(page.now(), document["duration_s"] / 2, delta=0.02)
+        page.drag((left + width / 2, top + 11), (left + width / 4, top + 11))
+        self.assertAlmostEqual(page.now(), document["duration_s"] / 4, delta=0.1)
+        self.assertIn("seconds", page.js("return document.getElementById('scrubber').getAttribute('aria-valuetext')"))
+
+    def test_keys(self):
+        page.key("ArrowRight")
+        page.key("ArrowRight")
+        self.assertEqual(page.now(), 0.002)
+        page.key("ArrowLeft")
+        self.assertEqual(page.now(), 0.001)
+        for wanted in self.events:
+            page.key("ArrowRight", shift=True)
+            self.assertEqual(page.now(), wanted)
+        self.assertIn("released", page.text("#transport .here"))
+        page.key("ArrowLeft", shift=True)
+        self.assertEqual(page.now(), self.events[-2])
+        page.key("End")
+        self.assertEqual(page.now(), document["duration_s"])
+        page.key("Home")
+        self.assertEqual(page.now(), 0)
+
+    def test_views_and_switches(self):
+        for key, name in (("2", "top"), ("3", "side"), ("4", "gripper"), ("1", "whole")):
+            page.key(key)
+            self.assertEqual(page.js("return Waferhand.stage.shown"), name)
+            self.assertEqual(page.js("return document.querySelector('[data-name=%s]').getAttribute('aria-pressed')" % name), "true")
+        page.key("n")
+        self.assertIn("Wafer 1", page.js("return Array.from(document.querySelectorAll('.tag:not([hidden])'), (tag) => tag.textContent)"))
+        page.key("f")
+        self.assertTrue(page.js("return Waferhand.stage.view.triads.every((triad) => triad.visible)"))
+        page.key("t")
+        self.assertEqual(page.js("return document.documentElement.dataset.theme"), "dark")
+        page.key("?")
+        self.assertTrue(page.js("return document.getElementById('help').open"))
+        page.key("Escape")
+        self.assertFalse(page.js("return document.getElementById('help').open"))
+
+    def test_riding_along(self):
+        page.key("4")
+        before = page.js("return Waferhand.stage.view.rig.camera.position.toArray()")
+        page.seek(3)
+        page.settle()
+        self.assertNotEqual(page.js("return Waferhand.stage.view.rig.camera.position.toArray()"), before)
+
+    def test_orbit(self):
+        left, top, width, height = page.box("#canvas canvas")
+        before = page.js("return Waferhand.stage.view.rig.camera.position.toArray()")
+        page.drag((left + width / 2, top + height / 2), (left + width / 2 + 120, top + height / 2 + 10))
+        self.assertNotEqual(page.js("return Waferhand.stage.view.rig.camera.position.toArray()"), before)
+
+    def test_space_on_a_button_is_the_buttons(self):
+        page.js("document.getElementById('theme').focus()")
+        page.key(" ", code="Space")
+        self.assertFalse(page.js("return Waferhand.clock.playing"))
+        self.assertEqual(page.js("return document.documentElement.dataset.theme"), "dark")
+
+    def test_events_lead_there(self):
+        page.js("document.querySelectorAll('#events button.time')[2].click(); Waferhand.clock.flush()")
+        self.assertEqual(page.now(), document["run"]["events"][2]["utime"] / 1e6)
+
+    def cursors(self):
+        """Where each plot's and each chart's cursor says the time is, within the window."""
+        return page.js("""Waferhand.plots.panels.forEach((panel) => { panel.seen = true; }); Waferhand.clock.seek(Waferhand.clock.now);
+            Waferhand.clock.flush(); return Array.from(document.querySelectorAll('.cursor'), (cursor) =>
+            cursor.getBoundingClientRect().left + 1)""")
+
+    def test_one_cursor(self):
+        page.seek(2.5)
+        at = self.cursors()
+        self.assertGreater(len(at), 8)
+        self.assertLess(max(at) - min(at), 1.5)
+        x = page.js("""const panel = Waferhand.plots.panels[0]; return panel.host.getBoundingClientRect().left
+            + panel.graph.toDomXCoord(2.5)""")
+        self.assertAlmostEqual(at[0], x, delta=1.5)
+
+    def windows(self):
+        return page.js("""Waferhand.plots.panels.forEach((panel) => { panel.seen = true; });
+            Waferhand.clock.setWindow(...Waferhand.clock.window); Waferhand.clock.flush();
+            return Waferhand.plots.panels.map((panel) => panel.graph.xAxisRange())""")
+
+    def test_zoom_is_shared(self):
+        left, top, width, height = page.box("#proximity .graph")
+        page.drag((left + width * 0.4, top + height / 2), (left + width * 0.6, top + height / 2))
+        low, high = page.js("return Waferhand.clock.window")
+        self.assertAlmostEqual(high - low, 0.2 * document["duration_s"] * width / (width - 102), delta=0.15)
+        for window in self.windows():
+            self.assertAlmostEqual(window[0], low, delta=1e-6)
+            self.assertAlmostEqual(window[1], high, delta=1e-6)
+        page.box("#proximity .graph")
+        page.click(left + width * 0.5, top + height / 2, 1)
+        page.click(left + width * 0.5, top + height / 2, 2)
+        page.settle()
+        self.assertEqual(page.js("return Waferhand.clock.window"), [0, document["duration_s"]])
+        left, top, width, height = page.box("#holders canvas")
+        page.drag((left + width * 0.5, top + 10), (left + width * 0.7, top + 10))
+        self.assertLess(page.js("return Waferhand.clock.window[1] - Waferhand.clock.window[0]"), 2.5)
+        page.key("0")
+        self.assertEqual(page.js("return Waferhand.clock.window"), [0, document["duration_s"]])
+
+    def test_click_in_a_plot_goes_there(self):
+        left, top, width, height = page.box("#proximity .graph")
+        wanted = page.js("return Waferhand.plots.panels[0].graph.toDataXCoord(arguments[0])", width / 2)
+        page.click(left + width / 2, top + height / 2)
+        page.settle()
+        self.assertAlmostEqual(page.now(), wanted, delta=0.02)
+
+    def test_window_follows(self):
+        page.js("Waferhand.clock.setWindow(0, 1)")
+        page.seek(5)
+        low, high = page.js("return Waferhand.clock.window")
+        self.assertTrue(low <= 5 <= high)
+
+    def test_copy(self):
+        page.cdp("Browser.grantPermissions", permissions=["clipboardReadWrite", "clipboardSanitizedWrite"])
+        page.click(*self.middle("#copy"))
+        page.wait("return document.getElementById('copy').textContent === 'Copied'", 5)
+
+
+if __name__ == "__main__":
+    unittest.main()

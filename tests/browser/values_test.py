@@ -1,0 +1,139 @@
+"""What the page shows at a time is what its document says: exactly at points, by linear and slerp in between."""
+import random
+import unittest
+
+import documents
+import expected
+from browser import Browser
+
+
+def setUpModule():
+    global page
+    page = Browser()
+
+
+def tearDownModule():
+    page.close()
+
+
+def shown(value, decimals):
+    """A number as the page writes it."""
+    text = f"{abs(value):.{decimals}f}"
+    return ("\u2212" if value < 0 and float(text) != 0 else "") + text
+
+
+def times_of(document):
+    """The ends, every event, every command's begin and end, points of the tracks, and times between them."""
+    times = {0, document["duration_s"]}
+    times |= {event["utime"] / 1e6 for event in document["run"]["events"]}
+    times |= {command[key] for command in document["run"]["commands"] for key in ("begin_s", "end_s")}
+    points = document["tracks"]["grippers"][0]["t"]
+    times |= set(points[1::40])
+    maker = random.Random(7)
+    times |= {maker.uniform(0, document["duration_s"]) for _ in range(40)}
+    return sorted(times)
+
+
+class Values(unittest.TestCase):
+    names = ["01_transfer", "02_prealigner", "04_scrape", "05_leak"]
+
+    def test_poses(self):
+        for name in self.names:
+            document, path = documents.example(name)
+            page.open(path)
+            for t in times_of(document):
+                self.compare_poses(document, t, name)
+
+    def compare_poses(self, document, t, name):
+        found = page.js("""const [t] = arguments, W = Waferhand, tracks = W.shown.tracks;
+            const flat = (pose) => [pose.r, [0, 1, 2].map((i) => W.pose.axis(pose.q, i))];
+            return [tracks.grippers.map((track) => flat(W.tracks.pose(track, t))),
+                tracks.wafers.map((_, i) => flat(W.tracks.wafer(tracks, i, t)))]""", t)
+        for kind, wanted_of in ((0, expected.gripper), (1, expected.wafer)):
+            for i, (r, axes) in enumerate(found[kind]):
+                wanted = wanted_of(document, i, t)
+                for k in range(3):
+                    self.assertAlmostEqual(r[k], wanted[0][k], delta=1e-9, msg=(name, t, kind, i))
+                    for row in range(3):
+                        self.assertAlmostEqual(axes[k][row], wanted[1][row][k], delta=1e-8, msg=(name, t, kind, i))
+
+    def test_exact_at_points(self):
+        """At a point of a track the page computes nothing: the same bits."""
+        document, path = documents.example("01_transfer")
+        page.open(path)
+        track = document["tracks"]["grippers"][0]
+        for i in range(0, len(track["t"]), 17):
+            r = page.js("return Waferhand.tracks.pose(Waferhand.shown.tracks.grippers[0], arguments[0]).r", track["t"][i])
+            self.assertEqual(r, track["r"][3 * i:3 * i + 3])
+
+    def test_table_of_now(self):
+        for name in self.names:
+            document, path = documents.example(name)
+            page.open(path)
+            for t in times_of(document)[::3]:
+                page.seek(t)
+                self.compare_now(document, t, name)
+
+    def compare_now(self, document, t, name):
+        cells = page.js("""return Array.from(document.querySelectorAll('#now td[data-name]'),
+            (cell) => [cell.dataset.gripper, cell.dataset.name, cell.textContent])""")
+        texts = {(gripper, key): text for gripper, key, text in cells}
+        limits = document["limits"]
+        for i, gripper in enumerate(document["names"]["grippers"]):
+            r = expected.gripper(document, i, t)[0]
+            for k, key in enumerate("xyz"):
+                self.assertEqual(texts[gripper, key], shown(r[k], 3), (name, t))
+            held = [wafer for k, wafer in enumerate(document["names"]["wafers"]) if expected.holder(document, k, t) == i]
+            self.assertEqual(texts[gripper, "holds"], ", ".join(held) or "nothing", (name, t))
+            valve = document["tracks"]["valves"][i]
+            self.assertEqual(texts[gripper, "valve"], ["open", "closed"][expected.step(valve["t"], valve["v"], t)], (name, t))
+            near = document["tracks"]["proximity"][i]
+            for key, limit, decimals in (("dr_proj_z", "projz", 4), ("dr_proj_xy", "projxy", 4), ("n1_proj_n2", "planar", 6)):
+                value = expected.linear(near["t"], near[key], t) if near["t"] else None
+                text = texts[gripper, key]
+                if value is None:
+                    self.assertEqual(text, "\u2013", (name, t))
+                    continue
+                value = value if key == "n1_proj_n2" else abs(value)
+                ready = value > limits[limit] if key == "n1_proj_n2" else value < limits[limit]
+                self.assertEqual(text, shown(value, decimals) + (" \u2713" if ready else " \u2717"), (name, t, key))
+
+    def test_legends(self):
+        """The figures beside the plots, axes among them, at the shown time."""
+        document, path = documents.example("01_transfer")
+        page.open(path)
+        for t in times_of(document)[::5]:
+            page.seek(t)
+            values = page.js("""Waferhand.plots.panels.forEach((panel) => { panel.seen = true; }); Waferhand.clock.seek(arguments[0]);
+                Waferhand.clock.flush(); return Array.from(document.querySelectorAll('#axes figcaption .item'),
+                (item) => [item.firstChild.nextSibling.textContent.trim(), item.querySelector('.value').textContent])""", t)
+            self.assertEqual(len(values), 2 * len(document["names"]["axes"]))
+            for k, (name, text) in enumerate(values):
+                index = next(i for i, axis in enumerate(document["names"]["axes"]) if axis["name"] == name)
+                axis, track = document["names"]["axes"][index], document["tracks"]["axes"][index]
+                speed = k >= len(document["names"]["axes"])
+                value = expected.linear(track["speed_t" if speed else "t"], track["speed" if speed else "v"], t)
+                value *= 180 / 3.141592653589793 if axis["unit"] == "rad" else 1
+                self.assertEqual(text, shown(value, 2 if speed else 3), (t, name, speed))
+
+    def test_tables(self):
+        document, path = documents.example("01_transfer")
+        page.open(path)
+        rows = page.js("""return ['wafers', 'expectations', 'commands', 'events'].map((id) => Array.from(
+            document.querySelectorAll(`#${id} tbody tr`), (row) => Array.from(row.cells, (cell) => cell.textContent)))""")
+        run = document["run"]
+        for row, wafer in zip(rows[0], run["wafers"], strict=True):
+            self.assertEqual(row, [wafer["name"], "\u2013", wafer["station"], str(wafer["slot"])]
+                             + [shown(wafer[key], 4) for key in ("dx", "dy", "dz", "tilt_deg")])
+        self.assertEqual([row[1] for row in rows[1]], [each["text"] for each in run["expectations"]])
+        self.assertEqual([row[1:4] for row in rows[2]],
+                         [[c["text"], shown(c["begin_s"], 3), shown(c["end_s"], 3)] for c in run["commands"]])
+        self.assertEqual([row[:3] for row in rows[3]],
+                         [[shown(e["utime"] / 1e6, 3), e["kind"].replace("_", " "), e["wafer"]] for e in run["events"]])
+        self.assertIn(run["hash"], page.text("#reproduce"))
+        self.assertIn(document["reproduce"], page.text("#reproduce code"))
+        self.assertIn(f"{run['throughput']['wafers_per_hour']:.1f}", page.text("#split"))
+
+
+if __name__ == "__main__":
+    unittest.main()
