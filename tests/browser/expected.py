@@ -25,20 +25,25 @@ def step(times, values, at):
 
 
 def slerp(a, b, share):
+    a, b = unit(a), unit(b)
     cosine = sum(x * y for x, y in zip(a, b))
     if cosine < 0:
         b, cosine = [-x for x in b], -cosine
     if cosine > 1 - 1e-9:
         mixed = [x + share * (y - x) for x, y in zip(a, b)]
-        size = math.sqrt(sum(x * x for x in mixed))
-        return [x / size for x in mixed]
+        return unit(mixed)
     angle = math.acos(cosine)
     return [(math.sin((1 - share) * angle) * x + math.sin(share * angle) * y) / math.sin(angle) for x, y in zip(a, b)]
 
 
+def unit(q):
+    size = math.sqrt(sum(x * x for x in q))
+    return [x / size for x in q]
+
+
 def matrix(q):
     """The rotation matrix, row by row."""
-    x, y, z, w = q
+    x, y, z, w = unit(q)
     return [[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
             [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
             [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]

@@ -194,19 +194,18 @@
         }
     }
 
-    /* The frame whose origin is drawn nearest to the pointer, within a finger's width. */
+    /* The frames whose origins are drawn within a finger's width of the pointer, the nearest first. */
     function pick(view, event) {
         const area = view.canvas.getBoundingClientRect();
         const spot = [event.clientX - area.left, event.clientY - area.top];
-        let best = { far: 30, found: null };
-        panels(view).forEach((panel) => Object.values(view.movers).forEach((mover) => {
-            if (mover.pose && mover.kind !== 'link') {
-                const at = panel.spot(mover.pose.r);
-                const far = Math.hypot(at[0] - spot[0], at[1] - spot[1]);
-                best = far < best.far ? { far, found: { kind: mover.kind, i: mover.i, at: mover.pose.r } } : best;
+        const found = [];
+        panels(view).forEach((panel) => Object.values(view.movers).forEach(({ kind, i, pose: at }) => {
+            if (at && kind !== 'link') {
+                const [x, y] = panel.spot(at.r);
+                found.push({ kind, i, at: at.r, far: Math.hypot(x - spot[0], y - spot[1]) });
             }
         }));
-        return best.found;
+        return found.filter((each) => each.far < 30).sort((a, b) => a.far - b.far);
     }
 
     function make(host, doc, roots) {
@@ -225,6 +224,7 @@
         view.set = (options) => { Object.assign(view.options, options); draw(view); };
         view.rule = (ends, words) => { Object.assign(view, { ends, measured: words }); draw(view); };
         view.pick = (event) => pick(view, event);
+        view.panels = () => panels(view);
         view.still = () => { render(view); return canvas.toDataURL('image/png'); };
         new ResizeObserver(view.resize).observe(host);
         return view;

@@ -90,9 +90,13 @@
         return nearest && `${stationName(measure.doc, nearest)}/${nearest.slot}`;
     }
 
+    /* The nearest that is not chosen already: of a wafer on a gripper either can be picked. */
     function clicked(event) {
-        const hit = measure.armed && !measure.dragged && W.stage.view.pick(event);
-        const name = hit && frameOf(hit);
+        if (!measure.armed || measure.dragged) {
+            return;
+        }
+        const other = measure.selects[1 - measure.next].value;
+        const name = W.stage.view.pick(event).map(frameOf).find((each) => each && (measure.next === 0 || each !== other));
         if (name) {
             measure.selects[measure.next].value = name;
             measure.next = 1 - measure.next;

@@ -26,6 +26,11 @@
         return [0, 1, 2].map((i) => a[3] * b[i] + b[3] * a[i] + v[i]).concat(a[3] * b[3] - dot(a, b));
     }
 
+    function unit(q) {
+        const size = Math.sqrt(dot(q, q) + q[3] * q[3]);
+        return q.map((x) => x / size);
+    }
+
     /* base_from_b of base_from_a and a_from_b. */
     function compose(a, b) {
         return { r: add(a.r, rotate(a.q, b.r)), q: multiply(a.q, b.q) };
@@ -71,6 +76,6 @@
         };
     }
 
-    W.pose = { IDENTITY, add, subtract, dot, norm, cross, rotate, conjugate, multiply, compose, slerp, between, axis,
+    W.pose = { IDENTITY, add, subtract, dot, norm, cross, rotate, conjugate, multiply, unit, compose, slerp, between, axis,
         measure };
 }(window.Waferhand));

@@ -218,24 +218,22 @@
         W.labels.hang(view);
     }
 
-    /* What lies under the pointer: { kind, i, at }, at in mm of base; null where there is nothing of a kind. */
+    /* What a mesh belongs to: the nearest node above it that is of a kind. */
+    function owner(object) {
+        return !object || object.userData.node ? object : owner(object.parent);
+    }
+
+    /* What lies under the pointer, the nearest first: [{ kind, i, at }], at in mm of base. */
     function pick(view, event) {
         const area = view.canvas.getBoundingClientRect();
         const spot = new THREE.Vector2((event.clientX - area.left) / area.width * 2 - 1,
             1 - (event.clientY - area.top) / area.height * 2);
         const ray = new THREE.Raycaster();
         ray.setFromCamera(spot, view.rig.camera);
-        const hits = ray.intersectObjects(view.scene.children, true)
-            .filter((hit) => hit.object.userData.part);
-        for (const hit of hits) {
-            for (let object = hit.object; object; object = object.parent) {
-                if (object.userData.node) {
-                    const { kind, index } = object.userData.node;
-                    return { kind, i: index, at: hit.point.toArray().map((x) => x / M) };
-                }
-            }
-        }
-        return null;
+        return ray.intersectObjects(view.scene.children, true).filter((hit) => hit.object.userData.part)
+            .map((hit) => ({ node: owner(hit.object), at: hit.point.toArray().map((x) => x / M) }))
+            .filter((hit) => hit.node)
+            .map(({ node, at }) => ({ kind: node.userData.node.kind, i: node.userData.node.index, at }));
     }
 
     W.scene = { make };

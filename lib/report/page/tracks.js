@@ -60,8 +60,9 @@
 
     const slice = (values, i, size) => values.slice(size * i, size * i + size);
 
+    /* Rounded quaternions are a little longer or shorter than 1. */
     function point(track, i) {
-        return { r: slice(track.r, i, 3), q: slice(track.q, i, 4) };
+        return { r: slice(track.r, i, 3), q: W.pose.unit(slice(track.q, i, 4)) };
     }
 
     /* The pose on a track of poses; null for one without points. */
@@ -81,10 +82,10 @@
     function wafer(tracks, i, at) {
         const state = hold(tracks.wafers[i], at);
         if (!state || state.holder === null || state.holder === undefined) {
-            return state ? { r: state.r, q: state.q } : null;
+            return state ? { r: state.r, q: W.pose.unit(state.q) } : null;
         }
         const gripper = pose(tracks.grippers[state.holder], at);
-        return gripper && W.pose.compose(gripper, state);
+        return gripper && W.pose.compose(gripper, { r: state.r, q: W.pose.unit(state.q) });
     }
 
     W.tracks = { index, indexOf, linear, step, pose, hold, wafer };

@@ -1,0 +1,92 @@
+"""An hour at 1 kHz with 60,000 points a track: it opens, and the scrubber, play and zoom do not stall."""
+import statistics
+import unittest
+
+import documents
+from browser import Browser
+
+# Work of the page's own in a frame, ms: a frame lasts 16.7 on most screens. Ours needs a third; the machine may be busy.
+FRAME_MS = 16.7
+# From a zoom or a jump that turns the window to the plots that show it.
+ZOOM_MS = 250
+
+
+class Hour(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.document = documents.hour()
+        cls.path = documents.page_of(cls.document, "hour")
+        cls.page = Browser()
+        cls.page.open(cls.path)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.page.close()
+
+    def tearDown(self):
+        self.assertEqual(self.page.faults(), [])
+
+    def test_opens(self):
+        marks = self.page.js("return performance.getEntriesByType('mark').map((mark) => [mark.name, Math.round(mark.startTime)])")
+        points = max(len(track["t"]) for track in self.document["tracks"]["grippers"])
+        print(f"hour: {self.path.stat().st_size} bytes, {points} points, ms since navigation: {dict(marks)}")
+        self.assertGreater(self.document["duration_s"], 3500)
+        self.assertGreater(points, 45000)
+
+    def spent(self, steps):
+        """Milliseconds of the page's work for each of some steps, and from frame to frame."""
+        return self.page.driver.execute_async_script("""
+            const [steps, done] = arguments, W = Waferhand, spent = [], frames = [];
+            const make = new Function('W', 'i', steps.step);
+            let i = 0, last = null;
+            function frame(stamp) {
+                if (last !== null) { frames.push(stamp - last); }
+                last = stamp;
+                if (i === steps.count) { done([spent, frames]); return; }
+                const begin = performance.now();
+                make(W, i++);
+                W.clock.flush();
+                spent.push(performance.now() - begin);
+                requestAnimationFrame(frame);
+            }
+            requestAnimationFrame(frame);""", steps)
+
+    def judge(self, name, steps, limit):
+        spent, frames = self.spent(steps)
+        median = statistics.median(spent)
+        print(f"hour, {name}: work a step, ms: median {median:.2f}, longest {max(spent):.1f}; "
+              f"frame to frame, in software GL: median {statistics.median(frames):.1f}, longest {max(frames):.1f}")
+        self.assertLess(median, limit, name)
+        return spent
+
+    def test_scrubbing(self):
+        self.judge("scrubbing over all", {"step": "W.clock.seek((i * 617 % 1000) / 1000 * W.clock.end)", "count": 200}, FRAME_MS)
+
+    def test_slices(self):
+        self.page.seek(1800)
+        self.judge("slice by slice", {"step": "W.clock.stepSlice(1)", "count": 100}, FRAME_MS)
+
+    def test_zoom(self):
+        self.page.seek(1800)
+        self.judge("zooming all plots", {"step": """W.plots.panels.forEach((panel) => { panel.seen = true; });
+            W.clock.zoom(i < 8 ? 0.5 : 2)""", "count": 16}, ZOOM_MS)
+
+    def test_play_at_a_hundred(self):
+        self.page.js("Waferhand.clock.reset(); Waferhand.clock.seek(0); Waferhand.clock.setSpeed(100); Waferhand.clock.play()")
+        self.page.wait("return Waferhand.clock.now > 150", 30)
+        self.page.js("Waferhand.clock.pause()")
+
+    def test_cost_does_not_grow_with_points(self):
+        """A look-up is a binary search: an hour's costs no more than a few times a second's."""
+        cost = self.page.js("""const W = Waferhand, track = W.shown.tracks.grippers[0];
+            const few = { t: track.t.slice(0, 20), r: track.r.slice(0, 60), q: track.q.slice(0, 80) };
+            const run = (from, end) => { const begin = performance.now(); for (let i = 0; i < 20000; ++i)
+                { W.tracks.pose(from, end * i / 20000); } return performance.now() - begin; };
+            run(few, 1); run(track, 3600);
+            return [run(few, few.t[19]), run(track, 3600)]""")
+        print(f"hour: 20,000 poses of 20 points {cost[0]:.0f} ms, of all points {cost[1]:.0f} ms")
+        self.assertLess(cost[1], 8 * cost[0] + 20)
+
+
+if __name__ == "__main__":
+    unittest.main()

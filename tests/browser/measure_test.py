@@ -1,0 +1,133 @@
+"""The measuring tool: its figures against a computation here, by lists, by keys and by clicks, with WebGL and without."""
+import unittest
+
+import documents
+import expected
+from browser import NO_WEBGL, Browser
+
+
+def setUpModule():
+    global document, path
+    document, path = documents.example("01_transfer")
+
+
+class Measure:
+    flags = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.page = Browser(cls.flags)
+        cls.page.open(path)
+
+    @classmethod
+    def tearDownClass(cls):
+        faults, outside = cls.page.faults(), cls.page.outside()
+        cls.page.close()
+        assert faults == [] and outside == [], (faults, outside)
+
+    def choose(self, first, second):
+        self.page.js("""arguments[0].forEach((name, i) => { const select = document.getElementById('measure-' + i);
+            select.value = name; select.dispatchEvent(new Event('change')); })""", [first, second])
+
+    def frame(self, name, t):
+        names = document["names"]
+        if name == "base":
+            return [0, 0, 0], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        if name in names["wafers"]:
+            return expected.wafer(document, names["wafers"].index(name), t)
+        if name in names["grippers"]:
+            return expected.gripper(document, names["grippers"].index(name), t)
+        station, _, number = name.partition("/")
+        return expected.slot(document, station, int(number or 1))
+
+    def compare(self, first, second, t):
+        wanted = expected.measure(self.frame(first, t), self.frame(second, t))
+        found = self.page.js("return Waferhand.measure.at(arguments[0])", t)
+        for key, value in wanted.items():
+            self.assertAlmostEqual(found[key], value, delta=1e-6 if key == "angle" else 1e-9, msg=(first, second, t, key))
+            text = self.page.text(f"#measure dd[data-name={key}]").replace("\u2212", "-").split("\u00a0")
+            self.assertAlmostEqual(float(text[0]), value, delta=0.5001e-4, msg=(first, second, t, key))
+            self.assertEqual(text[1], "\u00b0" if key == "angle" else "mm")
+
+    def test_figures(self):
+        pairs = [("EE", "Wafer 1"), ("Wafer 2", "B/10"), ("A", "Wafer 1"), ("base", "EE"), ("A/25", "B/1"), ("PA", "EE")]
+        for first, second in pairs:
+            self.choose(first, second)
+            for t in (0, 1.158, 2.34567, 3.501, 6.0001, document["duration_s"]):
+                self.page.seek(t)
+                self.compare(first, second, t)
+
+    def test_offset_at_the_end_is_the_run_s(self):
+        """Wafer 2 in B slot 10, as the run's own table has it."""
+        self.choose("B/10", "Wafer 2")
+        self.page.seek(document["duration_s"])
+        wafer = document["run"]["wafers"][1]
+        found = self.page.js("return Waferhand.measure.at(Waferhand.clock.now)")
+        for key in ("dx", "dy", "dz"):
+            self.assertAlmostEqual(found[key], wafer[key], delta=1e-9)
+        self.assertAlmostEqual(found["angle"], wafer["tilt_deg"], delta=1e-6)
+
+    def test_every_frame_is_there(self):
+        options = self.page.js("return Array.from(document.querySelectorAll('#measure-0 option'), (option) => option.value)")
+        names = document["names"]
+        for name in names["wafers"] + names["grippers"] + names["stations"] + ["base", "A/1", "A/25", "B/10", "P/1"]:
+            self.assertIn(name, options)
+
+    def test_key_and_clicks(self):
+        self.page.js("document.activeElement.blur(); Waferhand.stage.show('whole'); Waferhand.measure.arm(false)")
+        self.page.seek(2.3)
+        self.choose("", "")
+        self.page.key("m")
+        self.assertEqual(self.page.js("return document.activeElement.id"), "measure-0")
+        left, top, width, height = self.page.box("#canvas canvas")
+        for name in self.clicked:
+            x, y = self.spot(name)
+            self.page.click(left + x, top + y)
+        self.assertEqual(self.page.js("return Waferhand.measure.selects.map((select) => select.value)"), self.clicked)
+        self.page.seek(2.4)
+        self.compare(*self.clicked, 2.4)
+        self.page.shoot("measure" if self.flags is None else "measure_without_webgl")
+        self.page.js("document.activeElement.blur()")
+        self.page.key("m")
+        self.assertFalse(self.page.js("return Waferhand.measure.armed"))
+
+
+class WithWebGL(Measure, unittest.TestCase):
+    clicked = ["PA", "Wafer 1"]
+
+    def spot(self, name):
+        """A little beside the frame's origin, in pixels of the picture: on the body."""
+        return self.page.js("""const { view } = Waferhand.stage, mover = view.moving.find((each) => each.name === arguments[0]);
+            const point = mover.object.position.clone(); point.x += 0.02; point.y += 0.02;
+            const at = point.project(view.rig.camera);
+            return [(at.x + 1) / 2 * view.host.clientWidth, (1 - at.y) / 2 * view.host.clientHeight]""", name)
+
+
+class WithoutWebGL(Measure, unittest.TestCase):
+    flags = NO_WEBGL
+    clicked = ["EE", "Wafer 1"]  # at one spot: the second click there takes the other
+
+    def spot(self, name):
+        return self.page.js("""const { view } = Waferhand.stage, mover = Object.values(view.movers).find((each) =>
+            each.name === arguments[0]); return view.panels()[0].spot(mover.pose.r)""", name)
+
+    def test_two_drawings_that_move(self):
+        self.assertTrue(self.page.js("return document.getElementById('canvas').classList.contains('flat')"))
+        self.assertEqual(self.page.js("return Waferhand.stage.view.panels().length"), 2)
+        pictures = []
+        for t in (0, 2, 5):
+            self.page.seek(t)
+            self.page.settle()
+            pictures.append(self.page.js("return document.querySelector('#canvas canvas').toDataURL()"))
+        self.assertEqual(len(set(pictures)), 3)
+        self.page.key("2")
+        self.assertEqual(self.page.js("return Waferhand.stage.view.panels().length"), 1)
+        self.page.key("1")
+        self.page.key("n")
+        self.page.key("f")
+        self.page.seek(2.4)
+        self.page.shoot("without_webgl")
+
+
+if __name__ == "__main__":
+    unittest.main()

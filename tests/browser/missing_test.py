@@ -1,0 +1,83 @@
+"""Documents that lack something, or are none: the part is left out with a word why, and nothing throws."""
+import unittest
+
+import documents
+from browser import Browser
+
+
+def setUpModule():
+    global page, document
+    document, _ = documents.example("04_scrape")
+    page = Browser()
+
+
+def tearDownModule():
+    page.close()
+
+
+def pruned(keep_run):
+    """As from a log of moves: neither commands nor figures."""
+    made = documents.without(document, "run", "commands")
+    for key in [key for key in made["run"] if key not in keep_run]:
+        del made["run"][key]
+    return made
+
+
+class Missing(unittest.TestCase):
+    def show(self, changed, name):
+        page.open(documents.page_of(changed, "missing_" + name))
+        for t in (0, 1, 4.506, 5):
+            page.js("if (Waferhand.shown) { Waferhand.clock.seek(arguments[0]); Waferhand.clock.flush(); }", t)
+        page.settle()
+        self.assertEqual(page.faults(), [], name)
+        self.assertEqual(page.outside(), [], name)
+        return page.js("return Array.from(document.querySelectorAll('.why'), (each) => each.textContent).join('\\n')")
+
+    def test_one_track_at_a_time(self):
+        words = {"clearances": "collisions were not checked", "vacuum": "The vacuum is not shown", "proximity": "came near",
+                 "axes": "no positions of axes", "wafers": "who held what"}
+        for kind in document["tracks"]:
+            why = self.show(documents.without(document, "tracks", kind), "track_" + kind)
+            self.assertIn(words.get(kind, ""), why, kind)
+
+    def test_one_part_at_a_time(self):
+        words = {"scene": "holds no scene", "reproduce": "no command that reproduces", "run": "holds no commands"}
+        for part in document:
+            why = self.show(documents.without(document, part), "part_" + part)
+            self.assertIn(words.get(part, ""), why, part)
+
+    def test_log_without_commands(self):
+        why = self.show(pruned(["wafers", "events", "hash"]), "log")
+        self.assertIn("a log of moves alone", why)
+        self.assertIn("not hold what the time went into", why)
+        self.assertIn("no verdict", page.text("#head"))
+
+    def test_nothing_at_all(self):
+        self.assertIn("holds no scene", self.show({}, "all"))
+
+    def test_no_document(self):
+        path = documents.page_of(document, "missing_json")
+        text = path.read_text()
+        begin = text.index('id="document">') + len('id="document">')
+        path.write_text(text[:begin] + '{"format": 1,' + text[text.index("</script>", begin):])
+        page.open(path)
+        self.assertIn("cannot be read", page.text("#head"))
+        self.assertEqual(page.faults(), [])
+
+    def test_spoilt_scene(self):
+        spoilt = documents.without(document, "scene", "accessors")
+        self.assertIn("the scene cannot be read", self.show(spoilt, "scene_spoilt"))
+
+    def test_text_is_text(self):
+        """What looks like markup in a name or a message is shown, not run."""
+        changed = documents.without(document, "thinning")
+        changed["title"] = "<img src=x onerror=alert(1)></script><script>alert(2)</script>"
+        changed["run"]["commands"][0]["text"] = "</script><b>bold</b>"
+        changed["names"]["wafers"][0] = "<b>W</b>"
+        self.show(changed, "markup")
+        self.assertIn("<img src=x", page.text("#head h1"))
+        self.assertEqual(page.js("return document.querySelectorAll('#commands b, #measure b, h1 img').length"), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
