@@ -170,6 +170,21 @@ class Looks(unittest.TestCase):
         self.assertEqual(self.page.js("return document.querySelectorAll('#still').length"), 0)
         print(f"printed: {pages} pages, {len(pdf)} bytes")
 
+    def test_printed_page(self):
+        """What goes to paper, as a picture: black on white, the still, no buttons."""
+        self.open("04_scrape", 4.506, size=(760, 1000), dark=True)
+        self.page.cdp("Emulation.setEmulatedMedia", media="print", features=[])
+        self.page.js("dispatchEvent(new Event('beforeprint'))")
+        self.page.settle()
+        self.whole()
+        self.page.shoot("printed")
+        self.assertEqual(self.page.js("""return ['#transport', '#toolbar', '#theme', '#copy'].map((each) =>
+            getComputedStyle(document.querySelector(each)).display)"""), ["none"] * 4)
+        self.assertEqual(self.page.js("return getComputedStyle(document.body).backgroundColor"), "rgb(255, 255, 255)")
+        self.assertGreater(self.page.js("return document.getElementById('still').naturalWidth"), 300)
+        self.check_contrast()
+        self.page.js("dispatchEvent(new Event('afterprint'))")
+
     def test_views(self):
         self.open("04_scrape", 4.506)
         for key, name in (("2", "top"), ("3", "side"), ("4", "gripper")):

@@ -4,6 +4,7 @@
 
     const THREE = window.THREE;
     const WIDTH_DEG = 32;
+    const FLAT_DEG = 7; /* from above and from the side lines that are parallel nearly stay so */
     const AIR = 1.13; /* so that buttons and the legend cover nothing */
 
     /* From where to look at the middle in each view that stands still. */
@@ -58,8 +59,26 @@
         controls.addEventListener('start', () => { rig.moved = true; });
         rig.show = (view, rider) => show(rig, points, view, rider);
         rig.resize = (width, height) => resize(rig, points, width, height);
-        rig.ride = () => ride(rig);
+        rig.ride = () => {
+            ride(rig);
+            clip(rig);
+        };
         return rig;
+    }
+
+    function widen(camera, degrees) {
+        camera.fov = degrees;
+        camera.updateProjectionMatrix();
+    }
+
+    /* What is nearer than this is not drawn: as far as may be, for depths have few digits. */
+    function clip(rig) {
+        const { camera, controls } = rig;
+        const near = Math.max(0.02, camera.position.distanceTo(controls.target) - 3);
+        if (Math.abs(near - camera.near) > 1e-3) {
+            camera.near = near;
+            camera.updateProjectionMatrix();
+        }
     }
 
     function show(rig, points, view, rider) {
@@ -68,10 +87,12 @@
         rig.moved = false;
         rig.controls.enabled = view !== 'gripper';
         if (view === 'gripper') {
+            widen(rig.camera, WIDTH_DEG);
             ride(rig);
             return;
         }
         const back = new THREE.Vector3(...VIEWS[view]).normalize();
+        widen(rig.camera, view === 'whole' ? WIDTH_DEG : FLAT_DEG);
         const middle = rig.controls.target.set(0, 0, 0);
         const far = fit(rig.camera, points, middle, back);
         rig.camera.position.copy(middle).addScaledVector(back, AIR * far);

@@ -6,6 +6,7 @@
 
     const DEGREES = 180 / Math.PI;
     const some = (track) => !!(track && track.t && track.t.length > 0);
+    const valued = (values) => Array.isArray(values) && values.some((value) => value !== null);
     const scaled = (values, factor, absolute) => (factor === 1 && !absolute ? values
         : values.map((v) => (v === null ? null : factor * (absolute ? Math.abs(v) : v))));
 
@@ -43,7 +44,7 @@
         const panels = [];
         doc.tracks.proximity.forEach((track, i) => {
             if (some(track)) {
-                MEASURES.filter((measure) => Array.isArray(track[measure.key])).forEach((measure) => panels.push(
+                MEASURES.filter((measure) => valued(track[measure.key])).forEach((measure) => panels.push(
                     proximityPanel(doc, track, doc.names.grippers[i] || `gripper ${i + 1}`, measure, i)));
             }
         });
@@ -83,7 +84,7 @@
     }
 
     function clearances(doc) {
-        const panels = doc.tracks.clearances.filter((track) => some(track) && Array.isArray(track.gap))
+        const panels = doc.tracks.clearances.filter((track) => some(track) && valued(track.gap))
             .map((track, i) => ({ title: W.words(track.pair), unit: 'mm', zero: true,
                 curves: [{ name: 'gap', colour: i, t: track.t, v: track.gap, unit: 'mm', decimals: 3 }],
                 limits: track.limit > 0 ? [{ value: track.limit, below: false, text: `limit ${track.limit}\u00a0mm` }]

@@ -79,21 +79,26 @@
         return W.gltf.colour(body.part);
     }
 
-    function path(pen, points) {
+    function path(pen, shapes) {
         pen.beginPath();
-        points.forEach((p, i) => (i === 0 ? pen.moveTo(...p) : pen.lineTo(...p)));
-        pen.closePath();
+        shapes.forEach((points) => {
+            points.forEach((p, i) => (i === 0 ? pen.moveTo(...p) : pen.lineTo(...p)));
+            pen.closePath();
+        });
     }
 
+    /* Triangles are filled as one, and have no lines between them. */
     function drawBody(view, panel, body) {
         const pen = view.pen;
-        path(pen, W.hulls.outline(body.now.map(panel.spot)));
+        path(pen, W.hulls.shapes(body, body.now.map(panel.spot)));
         pen.globalAlpha = body.mover ? 0.55 : Math.min(0.3, body.part.alpha);
         pen.fillStyle = colourOf(view, body);
         pen.fill();
         pen.globalAlpha = 0.8;
         pen.strokeStyle = W.theme.colour('edge');
-        pen.stroke();
+        if (!body.dented) {
+            pen.stroke();
+        }
         pen.globalAlpha = 1;
     }
 
@@ -116,7 +121,7 @@
     }
 
     function drawFrames(view, panel) {
-        Object.values(view.movers).filter((mover) => mover.pose).forEach(({ pose: { r, q } }) => {
+        Object.values(view.movers).filter((mover) => mover.kind !== 'link' && mover.pose).forEach(({ pose: { r, q } }) => {
             [0, 1, 2].forEach((i) => {
                 const tip = W.pose.add(r, W.pose.axis(q, i).map((x) => 100 * x));
                 line(view, panel.spot(r), panel.spot(tip), W.theme.colour('axis-' + 'xyz'[i]), 2);

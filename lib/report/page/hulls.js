@@ -15,7 +15,7 @@
             return node.matrix;
         }
         const columns = [0, 1, 2].map((i) => W.pose.axis(node.q, i).map((x) => x * node.s[i]));
-        return [...columns[0], 0, ...columns[1], 0, ...columns[2], 0, ...node.r, 1];
+        return [...columns[0], 0, ...columns[1], 0, ...columns[2], 0, ...node.r.map((x) => 1000 * x), 1];
     }
 
     const apply = (m, x, y, z) => [0, 1, 2].map((i) => m[i] * x + m[i + 4] * y + m[i + 8] * z + m[i + 12]);
@@ -42,24 +42,43 @@
         });
     }
 
-    /* A part's bodies: lists of points that triangles connect. */
+    const vertex = (part, i) => [0, 1, 2].map((k) => 1000 * part.positions[3 * i + k]);
+
+    /* No corner lies more than this, mm, before any of a convex body's faces: a wafer's notch is let pass. */
+    const DENT = 2;
+
+    function isConvex(points, triangles) {
+        return triangles.every(([a, b, c]) => {
+            const normal = W.pose.cross(W.pose.subtract(b, a), W.pose.subtract(c, a));
+            const size = W.pose.norm(normal);
+            return size === 0 || points.every((p) => W.pose.dot(normal, W.pose.subtract(p, a)) / size < DENT);
+        });
+    }
+
+    /* A part's bodies, mm: the points that triangles connect, and the triangles themselves where a hull would hide dents. */
     function bodies(part) {
         if (part.bodies) {
             return part.bodies;
         }
         const place = places(part);
         const parents = place.map((_, i) => i);
+        const corners = [];
         for (let i = 0; i < part.indices.length; i += 3) {
-            const [a, b, c] = [0, 1, 2].map((k) => find(parents, place[part.indices[i + k]]));
-            parents[b] = a;
-            parents[find(parents, c)] = a;
+            corners.push([0, 1, 2].map((k) => place[part.indices[i + k]]));
+            const [a, b, c] = corners[corners.length - 1];
+            parents[find(parents, b)] = find(parents, a);
+            parents[find(parents, c)] = find(parents, a);
         }
         const groups = new Map();
-        new Set(place).forEach((i) => {
+        const group = (i) => {
             const root = find(parents, i);
-            groups.set(root, (groups.get(root) || []).concat([Array.from(part.positions.slice(3 * i, 3 * i + 3))]));
-        });
-        part.bodies = Array.from(groups.values());
+            groups.set(root, groups.get(root) || { points: [], triangles: [] });
+            return groups.get(root);
+        };
+        new Set(place).forEach((i) => group(i).points.push(vertex(part, i)));
+        corners.forEach((three) => group(three[0]).triangles.push(three.map((i) => vertex(part, i))));
+        part.bodies = Array.from(groups.values(), ({ points, triangles }) => (isConvex(points, triangles) ? { points }
+            : { points: [].concat(...triangles), dented: true }));
         return part.bodies;
     }
 
@@ -67,9 +86,8 @@
     function collect(node, above, mover, movers, found) {
         const own = movers[W.gltf.key(node.kind, node.index)];
         const matrix = own ? IDENTITY : product(above, local(node));
-        node.parts.forEach((part) => bodies(part).forEach((points) => found.push({
-            mover: own || mover, part,
-            points: points.map((p) => apply(matrix, ...p).map((x) => 1000 * x)),
+        node.parts.forEach((part) => bodies(part).forEach(({ points, dented }) => found.push({
+            mover: own || mover, part, dented, points: points.map((p) => apply(matrix, ...p)),
         })));
         node.children.forEach((child) => collect(child, matrix, own || mover, movers, found));
     }
@@ -103,5 +121,20 @@
         return chain(sorted).concat(chain(sorted.reverse()));
     }
 
-    W.hulls = { make, outline };
+    /* What to fill for a body whose points are seen there: its outline, or each of its triangles that faces us. */
+    function shapes(body, points) {
+        if (!body.dented) {
+            return [outline(points)];
+        }
+        const found = [];
+        for (let i = 0; i < points.length; i += 3) {
+            const three = points.slice(i, i + 3);
+            if (turn(...three) < 0) {
+                found.push(three);
+            }
+        }
+        return found;
+    }
+
+    W.hulls = { make, shapes };
 }(window.Waferhand));

@@ -28,7 +28,9 @@
         if (inside) {
             const x = (spot.x + 1) / 2 * view.host.clientWidth;
             const y = (1 - spot.y) / 2 * view.host.clientHeight;
-            each.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+            const left = x > 0.55 * view.host.clientWidth && each.classList.contains('mark');
+            const aside = left ? 'translateX(calc(-100% - 12px))' : '';
+            each.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) ${aside}`;
         }
     }
 

@@ -136,10 +136,10 @@
             [a.value, b.value] = [b.value, a.value];
             show();
         } }, '\u21c5');
-        host.append(W.element('h2', {}, 'Measure'), W.element('div', { class: 'card' },
+        host.append(W.element('h2', { title: 'dX, dY and dz are in the axes of the first frame' },
+            'Measure ', W.element('small', {}, 'in the axes of the first frame')), W.element('div', { class: 'card' },
             select(0, 'from', doc.names.grippers[0]), select(1, 'to', doc.names.wafers[0]),
-            W.element('div', { class: 'row' }, measure.button, swap), table(),
-            W.element('p', { class: 'note' }, 'dX, dY and dz are in the axes of the first frame.')));
+            W.element('div', { class: 'row' }, measure.button, swap), table()));
         if (W.stage.view) {
             listen();
         }

@@ -70,7 +70,7 @@
     /* The floor, in squares of 200 mm. */
     function addFloor(view) {
         const far = Math.max(...view.corners.map((corner) => Math.max(Math.abs(corner.x), Math.abs(corner.y))));
-        const count = 2 * Math.ceil(far / 0.2);
+        const count = 4 * Math.ceil(far / 0.2);
         const made = new THREE.GridHelper(count * 0.2, count);
         made.rotation.x = Math.PI / 2;
         made.position.z = Math.min(...view.corners.map((corner) => corner.z)) - 0.002;
