@@ -44,14 +44,15 @@
 
     const vertex = (part, i) => [0, 1, 2].map((k) => 1000 * part.positions[3 * i + k]);
 
-    /* No corner lies more than this, mm, before any of a convex body's faces: a wafer's notch is let pass. */
-    const DENT = 2;
+    /* No corner of a convex body lies before any of its faces by more than this share of its size: a wafer's notch passes. */
+    const DENT = 0.03;
 
     function isConvex(points, triangles) {
+        const reach = Math.max(...points.map((p) => W.pose.norm(W.pose.subtract(p, points[0]))));
         return triangles.every(([a, b, c]) => {
             const normal = W.pose.cross(W.pose.subtract(b, a), W.pose.subtract(c, a));
             const size = W.pose.norm(normal);
-            return size === 0 || points.every((p) => W.pose.dot(normal, W.pose.subtract(p, a)) / size < DENT);
+            return size === 0 || points.every((p) => W.pose.dot(normal, W.pose.subtract(p, a)) / size < DENT * reach);
         });
     }
 

@@ -10,8 +10,9 @@
 
     const area = (panel) => panel.graph.getArea();
 
+    /* Ticks are round numbers: all their digits, but not those that rounding left. */
     function formatter(unit) {
-        return (value) => `${W.figure(value).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '')}${unit ? '\u00a0' + unit : ''}`;
+        return (value) => String(Number(value.toPrecision(9))).replace('-', '\u2212') + (unit && '\u00a0' + unit);
     }
 
     /* The allowed side of each limit is tinted, the limit drawn. */
