@@ -1,4 +1,5 @@
 """Play, pause, speed, scrubber, keys and plots: all show one time and one window of it."""
+import os
 import time
 import unittest
 
@@ -29,8 +30,22 @@ class Time(unittest.TestCase):
         self.assertEqual(page.outside(), [])
         self.assertLess(path.stat().st_size, 3e6)
         self.assertEqual(page.driver.title, document["title"])
-        marks = page.js("return performance.getEntriesByType('mark').map((mark) => [mark.name, Math.round(mark.startTime)])")
-        print(f"transfer run: {path.stat().st_size} bytes, ms since navigation: {dict(marks)}")
+        page.cdp("Performance.enable", timeDomain="threadTicks")
+        tries = [self.opened() for _ in range(4)]
+        work, interactive = min(each[0] for each in tries), min(each[1] for each in tries)
+        print(f"transfer run: {path.stat().st_size} bytes; {work:.2f} s of work to show all of it; interactive after "
+              f"{interactive:.0f} ms, machine's load {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors")
+        self.assertLess(work, 0.6)
+        if os.getloadavg()[0] < 1.5 * os.cpu_count():
+            self.assertLess(interactive, 1000)
+        else:
+            print("  the machine is busy with other things: the time is not judged")
+
+    def opened(self):
+        """The page's own processor time, s, and when it took input, ms after navigation."""
+        page.open(path)
+        metrics = {each["name"]: each["value"] for each in page.cdp("Performance.getMetrics")["metrics"]}
+        return metrics["TaskDuration"], page.js("return performance.getEntriesByName('interactive')[0].startTime")
 
     def test_whole_cell_is_in_the_picture(self):
         spots = page.js("""const { corners, rig } = Waferhand.stage.view; rig.camera.updateMatrixWorld();
@@ -59,8 +74,9 @@ class Time(unittest.TestCase):
         self.assertEqual(page.now(), document["duration_s"])
         page.key("[")
         self.assertEqual(page.js("return document.getElementById('speed').value"), "50")
+        page.js("Waferhand.clock.setSpeed(0.1)")
         page.key(" ", code="Space")
-        self.assertLess(page.now(), document["duration_s"])
+        self.assertEqual(page.js("return [Waferhand.clock.playing, Waferhand.clock.now < 1]"), [True, True])
 
     def middle(self, selector):
         left, top, width, height = page.box(selector)
