@@ -67,6 +67,18 @@ class Measure:
             self.assertAlmostEqual(found[key], wafer[key], delta=1e-9)
         self.assertAlmostEqual(found["angle"], wafer["tilt_deg"], delta=1e-6)
 
+    def test_the_line_is_drawn(self):
+        """At once, and gone when measuring ends: seen in the picture, the label apart."""
+        self.page.seek(2.3)
+        self.choose("PA", "Wafer 1")
+        pictures = []
+        for armed in (False, True, False):
+            self.page.js("Waferhand.measure.arm(arguments[0])", armed)
+            self.page.settle()
+            pictures.append(self.page.js("return Waferhand.stage.view.canvas.toDataURL()"))
+        self.assertNotEqual(pictures[0], pictures[1])
+        self.assertEqual(pictures[0], pictures[2])
+
     def test_every_frame_is_there(self):
         options = self.page.js("return Array.from(document.querySelectorAll('#measure-0 option'), (option) => option.value)")
         names = document["names"]

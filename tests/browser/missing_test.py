@@ -52,6 +52,18 @@ class Missing(unittest.TestCase):
         self.assertIn("not hold what the time went into", why)
         self.assertIn("no verdict", page.text("#head"))
 
+    def test_begins_later(self):
+        """As a log whose first part is gone: times below its begin are not shown."""
+        later = documents.without(document, "thinning")
+        later["begin_s"] = 2
+        self.show(later, "begin")
+        page.key("Home")
+        self.assertEqual(page.now(), 2)
+        page.key("ArrowLeft")
+        self.assertEqual(page.now(), 2)
+        self.assertEqual(page.js("return Waferhand.clock.window[0]"), 2)
+        self.assertEqual(page.js("return Number(document.getElementById('scrubber').min)"), 2000)
+
     def test_nothing_at_all(self):
         self.assertIn("holds no scene", self.show({}, "all"))
 

@@ -17,6 +17,7 @@
             .map((mover) => ({ mover, label: make(view, mover.kind, mover.name) }));
         view.ruler = W.shapes.line();
         view.rulerLabel = make(view, 'ruler', '');
+        view.ruler.visible = false;
         view.scene.add(view.ruler);
     }
 
@@ -46,7 +47,6 @@
             hangOne(view, each.label, each.shape.position);
             each.label.style.marginTop = `${-20 - 24 * i}px`;
         });
-        view.ruler.visible = !!view.ends;
         if (view.ends) {
             hangOne(view, view.rulerLabel, view.ends[0].clone().lerp(view.ends[1], 0.5));
         } else {
@@ -57,6 +57,7 @@
     /* Draws the measured distance; no ends, no line. */
     function rule(view, ends, text) {
         view.ends = ends && ends.map((end) => new THREE.Vector3(...end).multiplyScalar(M));
+        view.ruler.visible = !!view.ends;
         if (view.ends) {
             const points = view.ruler.geometry.attributes.position;
             view.ends.forEach((end, i) => points.setXYZ(i, end.x, end.y, end.z));
