@@ -145,9 +145,9 @@ static void put_stay(wh_json_text_t *text, const wh_trace_t *trace, const wh_sta
     wh_json_text_end(text, '}');
 }
 
-/* By wafer, each in order of time: the list holds them in order of time alone. */
-static const wh_stay_t **sort_stays(const wh_trace_t *trace, size_t *ends) {
-    const wh_stay_t **sorted = calloc(trace->stay_count + 1, sizeof(const wh_stay_t *));
+/* Indices of the stays by wafer, each wafer's in order of time: the list holds them in order of time alone. */
+static size_t *sort_stays(const wh_trace_t *trace, size_t *ends) {
+    size_t *sorted = calloc(trace->stay_count + 1, sizeof *sorted);
     if (!sorted) {
         abort();
     }
@@ -158,7 +158,7 @@ static const wh_stay_t **sort_stays(const wh_trace_t *trace, size_t *ends) {
         ends[w] += ends[w - 1];
     }
     for (size_t i = trace->stay_count; i > 0; --i) {
-        sorted[--ends[trace->stays[i - 1].wafer]] = &trace->stays[i - 1];
+        sorted[--ends[trace->stays[i - 1].wafer]] = i - 1;
     }
     return sorted;
 }
@@ -169,13 +169,13 @@ static void put_wafers(wh_json_text_t *text, const wh_trace_t *trace) {
     if (!begins) {
         abort();
     }
-    const wh_stay_t **sorted = sort_stays(trace, begins);
+    size_t *sorted = sort_stays(trace, begins);
     begins[wafers] = trace->stay_count;
     wh_json_text_begin(text, "wafers", '[');
     for (size_t w = 0; w < wafers; ++w) {
         wh_json_text_begin(text, NULL, '[');
         for (size_t i = begins[w]; i < begins[w + 1]; ++i) {
-            put_stay(text, trace, sorted[i]);
+            put_stay(text, trace, &trace->stays[sorted[i]]);
         }
         wh_json_text_end(text, ']');
     }

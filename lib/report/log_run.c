@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -38,14 +37,11 @@ bool wh_log_run_is_log(const char *path) {
     return is_log;
 }
 
-static void note(wh_log_run_t *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void note(wh_log_run_t *run, const char *format, ...) {
-    va_list values;
+/* Room for one more note. */
+static char *next_note(wh_log_run_t *run) {
     char *text = run->text[run->note_count];
-    va_start(values, format);
-    (void)vsnprintf(text, sizeof run->text[0], format, values);
-    va_end(values);
     run->notes[run->note_count++] = text;
+    return text;
 }
 
 static bool wants(const wh_log_run_t *run) {
@@ -183,16 +179,20 @@ static wh_log_result_t read_events(wh_log_run_t *run, FILE *file) {
 }
 
 static void tell(wh_log_run_t *run, wh_log_result_t result) {
-    note(run, "From a log: what the script expected and its cycles are not in it.");
+    (void)snprintf(next_note(run), WH_LOG_NOTE_BYTES,
+                   "From a log: what the script expected and its cycles are not in it.");
     if (!run->cell.is_whole) {
-        note(run, "Shapes are the defaults of 300 mm wafers: %.140s.", run->cell.note);
+        (void)snprintf(next_note(run), WH_LOG_NOTE_BYTES, "Shapes are the defaults of 300 mm wafers: %.140s.",
+                       run->cell.note);
     }
     if (run->gaps > 0) {
-        note(run, "%zu stretches of slices are not in the log.", run->gaps);
+        (void)snprintf(next_note(run), WH_LOG_NOTE_BYTES, "%zu stretches of slices are not in the log.",
+                       run->gaps);
     }
     if (result == WH_LOG_CUT || result == WH_LOG_DAMAGED) {
-        note(run, "The log is %s at byte %" PRIu64 ": shown up to there.",
-             result == WH_LOG_CUT ? "cut off" : "damaged", run->log.offset);
+        (void)snprintf(next_note(run), WH_LOG_NOTE_BYTES,
+                       "The log is %s at byte %" PRIu64 ": shown up to there.",
+                       result == WH_LOG_CUT ? "cut off" : "damaged", run->log.offset);
     }
 }
 

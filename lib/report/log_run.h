@@ -13,6 +13,8 @@
 #include "report/trace.h"
 #include "script/mcs.h"
 
+#define WH_LOG_NOTE_BYTES 240
+
 typedef struct {
     const char *path;
     size_t number; /* which run of the log, from 1; 0: the last */
@@ -56,8 +58,8 @@ typedef struct {
     size_t gaps; /* stretches of slices that are not in the log */
     double axes[WH_AXES];
     int32_t valves[WH_GRIPPERS];
-    char text[4][200];
-    const char *notes[5];
+    char text[4][WH_LOG_NOTE_BYTES];
+    const char *notes[4];
     size_t note_count;
     char message[800]; /* why there is nothing to show */
 } wh_log_run_t;

@@ -74,7 +74,7 @@ void wh_trace_begin(wh_trace_t *trace, const wh_layout_t *layout, bool at_home) 
     trace->layout = layout;
     trace->first = trace->last = trace->axes_slice = -1;
     open_tracks(trace);
-    trace->stay_of = malloc((layout->wafer_count + 1) * sizeof *trace->stay_of);
+    trace->stay_of = calloc(layout->wafer_count + 1, sizeof *trace->stay_of);
     if (!trace->stay_of) {
         abort();
     }
@@ -148,10 +148,19 @@ static void add_signals(wh_trace_t *trace, const wh_state_t *state) {
 
 /* --------------------------------------------------------------------------------------------------- wafers */
 
+static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
+    const wh_vec3_t way = wh_vec3_subtract(&a->r, &b->r);
+    bool same = !(wh_real_abs(way.x) > 0) && !(wh_real_abs(way.y) > 0) && !(wh_real_abs(way.z) > 0);
+    for (size_t i = 0; same && i < 9; ++i) {
+        same = !(wh_real_abs(a->R.m[i / 3][i % 3] - b->R.m[i / 3][i % 3]) > 0);
+    }
+    return same;
+}
+
 static void look_at_wafer(wh_trace_t *trace, const wh_state_t *state, int32_t w, int32_t holder,
                           const wh_pose_t *pose) {
     const wh_stay_t *stay = &trace->stays[trace->stay_of[w]];
-    if (stay->holder != holder || memcmp(&stay->pose, pose, sizeof *pose) != 0) {
+    if (stay->holder != holder || !is_same(&stay->pose, pose)) {
         add_stay(trace, state->seq, w, holder, pose);
         for (size_t g = 0; g < state->gripper_count; ++g) {
             trace->vicinity[g].is_known = false;
