@@ -21,7 +21,7 @@ typedef struct {
 static wh_run_t run;
 static wh_trace_t trace;
 static slice_t *slices; /* by number, 0 not used */
-static size_t slice_count;
+static size_t slice_count, slice_capacity;
 
 static void on_slice(void *user, const wh_mcs_t *mcs) {
     (void)user;
@@ -31,8 +31,11 @@ static void on_slice(void *user, const wh_mcs_t *mcs) {
     }
     wh_trace_slice(&trace, mcs->command.axes, mcs->command.axis_count, state);
     slice_count = (size_t)state->seq + 1;
-    slices = realloc(slices, slice_count * sizeof *slices);
-    assert_non_null(slices);
+    if (slice_count > slice_capacity) {
+        slice_capacity = 2 * slice_count + 8192;
+        slices = realloc(slices, slice_capacity * sizeof *slices);
+        assert_non_null(slices);
+    }
     slice_t *kept = &slices[state->seq];
     memset(kept, 0, sizeof *kept);
     for (size_t g = 0; g < state->gripper_count; ++g) {
@@ -74,6 +77,7 @@ static int close_run(void **state) {
     wh_run_close(&run);
     free(slices);
     slices = NULL;
+    slice_capacity = 0;
     return 0;
 }
 
