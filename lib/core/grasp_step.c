@@ -49,6 +49,8 @@
     wh_grips_kept{K, L}(t);
   lemma wh_same_releases_through{K, M, L}: \forall wh_grasp_t *t;
     wh_same_size{K, M}(t) && wh_same_releases{K, M}(t) && wh_same_releases{M, L}(t) ==> wh_same_releases{K, L}(t);
+  lemma wh_same_inputs_through{K, M, L}: \forall wh_gripper_input_t *in, integer count;
+    wh_same_inputs{K, M}(in, count) && wh_same_inputs{M, L}(in, count) ==> wh_same_inputs{K, L}(in, count);
   lemma wh_same_stands_through{K, M, L}: \forall wh_grasp_t *t;
     wh_same_size{K, M}(t) && wh_same_stands{K, M}(t) && wh_same_stands{M, L}(t) ==> wh_same_stands{K, L}(t);
   lemma wh_same_valves_through{K, M, L}: \forall wh_grasp_t *t;
@@ -453,6 +455,7 @@ static wh_status_t validate_call(const wh_grasp_t *table, const wh_gripper_input
     requires wh_stepping(table, inputs, 0, table->storage.gripper_count);
     assigns table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
             list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_same_size{Pre, Post}(table);
     ensures wh_list_grown{Pre, Post}(list, 1);
@@ -497,6 +500,7 @@ static void pick_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_eve
     /*@ loop invariant 0 <= g <= table->storage.gripper_count;
         loop invariant table->storage.wafer_count == \at(table->storage.wafer_count, Pre);
         loop invariant table->storage.gripper_count == \at(table->storage.gripper_count, Pre);
+        loop invariant table->storage.bucket_count == \at(table->storage.bucket_count, Pre);
         loop invariant wh_room(list) == wh_room{Pre}(list);
         loop invariant wh_same_size{Pre, Here}(table);
         loop invariant wh_stepping(table, inputs, 0, table->storage.gripper_count);
@@ -543,6 +547,35 @@ static void report_releases(wh_grasp_t *table, const wh_gripper_input_t *inputs,
     }
 }
 
+/*@ requires wh_table_memory(table) && wh_list_ready(list, 2) && wh_list_apart(list, table);
+    requires wh_is_gripper(table, g);
+    requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table) &&
+             wh_inputs_apart_list(inputs, table, list);
+    requires wh_encounters(table);
+    assigns table->counters, table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
+            list->count, list->events[0 .. wh_room(list) - 1];
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_list_grown{Pre, Post}(list, 2);
+    ensures wh_encounters(table);
+    ensures wh_same_inputs{Pre, Post}(inputs, table->storage.gripper_count);
+    ensures wh_same_held{Pre, Post}(table);
+    ensures wh_same_holders{Pre, Post}(table);
+    ensures wh_same_releases{Pre, Post}(table);
+    ensures wh_same_poses{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table); */
+static void watch_next(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
+    /*@ assert \forall integer i; wh_is_gripper(table, i) ==> \separated(inputs + i, table->storage.grippers + g); */
+    /*@ assert \forall integer i; wh_is_gripper(table, i) ==>
+          \separated(inputs + i, list->events + (0 .. wh_room(list) - 1)); */
+    /*@ assert \forall integer w; wh_is_wafer(table, w) ==>
+          \separated(table->storage.wafers + w, table->storage.grippers + g); */
+    /*@ assert \forall integer w; wh_is_wafer(table, w) ==>
+          \separated(table->storage.wafers + w, list->events + (0 .. wh_room(list) - 1)); */
+    wh_encounter_update(table, g, &inputs[g], list);
+
+}
+
 /*@ requires wh_table_memory(table) && wh_list_apart(list, table) && wh_list_ready(list, 2 * table->storage.gripper_count);
     requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table) &&
              wh_inputs_apart_list(inputs, table, list);
@@ -563,21 +596,26 @@ static void watch_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_ev
     /*@ loop invariant 0 <= g <= table->storage.gripper_count;
         loop invariant table->storage.wafer_count == \at(table->storage.wafer_count, Pre);
         loop invariant table->storage.gripper_count == \at(table->storage.gripper_count, Pre);
+        loop invariant table->storage.bucket_count == \at(table->storage.bucket_count, Pre);
+        loop invariant wh_room(list) == wh_room{Pre}(list);
         loop invariant wh_same_size{Pre, Here}(table);
-        loop invariant wh_same_held{Pre, Here}(table);
         loop invariant wh_list_grown{Pre, Here}(list, 2 * g);
         loop invariant wh_encounters(table);
+        loop invariant wh_same_inputs{Pre, Here}(inputs, table->storage.gripper_count);
+        loop invariant wh_same_held{Pre, Here}(table);
+        loop invariant wh_same_holders{Pre, Here}(table);
+        loop invariant wh_same_releases{Pre, Here}(table);
+        loop invariant wh_same_poses{Pre, Here}(table);
         loop invariant wh_same_grips{Pre, Here}(table);
         loop assigns g, table->counters, table->storage.grippers[0 .. \at(table->storage.gripper_count, Pre) - 1],
             table->storage.buckets[0 .. \at(table->storage.bucket_count, Pre) - 1],
             list->count, list->events[0 .. wh_room{Pre}(list) - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        wh_encounter_update(table, g, &inputs[g], list);
-        /*@ assert wh_same_size{LoopCurrent, Here}(table); */
-        /*@ assert wh_same_held{LoopCurrent, Here}(table); */
-        /*@ assert wh_same_grips{LoopCurrent, Here}(table); */
-        /*@ assert wh_encounters(table); */
+        /*@ assert wh_table_memory(table) && wh_list_apart(list, table) && wh_list_ready(list, 2); */
+        /*@ assert wh_inputs_apart(inputs, table); */
+        /*@ assert wh_inputs_apart_list(inputs, table, list); */
+        watch_next(table, g, inputs, list);
     }
 }
 
