@@ -573,7 +573,6 @@ static void watch_next(wh_grasp_t *table, size_t g, const wh_gripper_input_t *in
     /*@ assert \forall integer w; wh_is_wafer(table, w) ==>
           \separated(table->storage.wafers + w, list->events + (0 .. wh_room(list) - 1)); */
     wh_encounter_update(table, g, &inputs[g], list);
-
 }
 
 /*@ requires wh_table_memory(table) && wh_list_apart(list, table) && wh_list_ready(list, 2 * table->storage.gripper_count);

@@ -15,7 +15,7 @@
 
 /* A horizon that is being measured while wafers are looked at. */
 typedef struct {
-    wh_limits_t limits;
+    wh_vicinity_t limits;
     wh_real_t gap; /* the least so far, mm */
     bool measured; /* false: there are no buckets to keep it in */
 } wh_horizon_t;

@@ -72,7 +72,7 @@ static uint32_t key_at(const wh_grasp_t *table, const wh_vec3_t *r) {
  * it reach a little farther. */
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && \valid_read(R) && \valid_read(limits);
     assigns table->storage.buckets[0 .. 2]; */
-static void widen(wh_grasp_t *table, const wh_mat3_t *R, const wh_limits_t *limits) {
+static void widen(wh_grasp_t *table, const wh_mat3_t *R, const wh_vicinity_t *limits) {
     const wh_real_t loose = 8 * WH_ROTATION_TOLERANCE * (limits->projz + limits->projxy);
     /*@ loop invariant 0 <= axis <= 3;
         loop assigns axis, table->storage.buckets[0 .. 2];
@@ -91,7 +91,7 @@ static void widen(wh_grasp_t *table, const wh_mat3_t *R, const wh_limits_t *limi
  * are put down tilted later would need too many. */
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && \valid_read(limits);
     assigns table->storage.buckets[3 .. 5]; */
-static void choose_edges(wh_grasp_t *table, const wh_limits_t *limits) {
+static void choose_edges(wh_grasp_t *table, const wh_vicinity_t *limits) {
     const uint32_t large = units_of((limits->projz + limits->projxy) / 8);
     /*@ loop invariant 0 <= axis <= 3;
         loop assigns axis, table->storage.buckets[3 .. 5];
@@ -141,7 +141,7 @@ void wh_index_build(wh_grasp_t *table) {
     if (storage->bucket_count == 0) {
         return;
     }
-    const wh_limits_t limits = wh_index_limits(table);
+    const wh_vicinity_t limits = wh_index_limits(table);
     storage->buckets[0] = 0;
     storage->buckets[1] = 0;
     storage->buckets[2] = 0;
@@ -168,7 +168,7 @@ void wh_index_move(wh_grasp_t *table, size_t wafer) {
     if (table->storage.bucket_count == 0) {
         return;
     }
-    const wh_limits_t limits = wh_index_limits(table);
+    const wh_vicinity_t limits = wh_index_limits(table);
     take_out(table, wafer);
     insert(table, wafer);
     widen(table, &table->storage.wafers[wafer].base_from_wafer.R, &limits);

@@ -40,7 +40,7 @@ static inline int32_t wh_index_whole(wh_real_t units) {
 /* Where a wafer may be taken or watched: within these limits of |dr_proj_z| and |dr_proj_xy|. */
 typedef struct {
     wh_real_t projz, projxy;
-} wh_limits_t;
+} wh_vicinity_t;
 
 /* What a search found: wafers' indices in no order, or all wafers where `listed` is null. */
 typedef struct {
@@ -122,9 +122,9 @@ static inline size_t wh_index_wafer(const wh_grasp_t *table, const wh_near_t *ne
 
 /* The neighbourhood, which every ready wafer is in. */
 /*@ requires \valid_read(table); assigns \nothing; */
-static inline wh_limits_t wh_index_limits(const wh_grasp_t *table) {
+static inline wh_vicinity_t wh_index_limits(const wh_grasp_t *table) {
     const wh_grasp_config_t *config = &table->config;
-    const wh_limits_t limits = {
+    const wh_vicinity_t limits = {
         config->near_projz > config->tolerance.projz ? config->near_projz : config->tolerance.projz,
         config->near_projxy > config->tolerance.projxy ? config->near_projxy : config->tolerance.projxy};
     return limits;
