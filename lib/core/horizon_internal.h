@@ -76,7 +76,8 @@ wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *
 
 /* Begins to measure what wh_index_near found with this margin. */
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(near);
-    assigns \nothing; */
+    assigns \nothing;
+    ensures \result.measured ==> table->storage.bucket_count > 0; */
 wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_near_t *near, wh_real_t margin);
 
 /* Takes a free wafer into account; true when it is not ready, as wh_proximity_ready says it. */
@@ -108,6 +109,7 @@ void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const
 
 /* Keeps it, where there are buckets, for gripper g at `place`. */
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place) && \valid_read(horizon);
+    requires horizon->measured ==> table->storage.bucket_count > 0;
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 static inline void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place,
                                    const wh_horizon_t *horizon) {
