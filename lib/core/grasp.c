@@ -117,9 +117,12 @@ static void free_wafers(wh_wafer_t wafers[], size_t count) {
 
 /*@ requires \valid(table) && \valid_read(config) && \valid_read(storage) && \separated(table, storage);
     assigns *table;
-    ensures table->storage.wafers == storage->wafers && table->storage.wafer_count == storage->wafer_count;
-    ensures table->storage.grippers == storage->grippers && table->storage.gripper_count == storage->gripper_count;
-    ensures table->storage.buckets == storage->buckets && table->storage.bucket_count == storage->bucket_count; */
+    ensures table->storage.wafers == storage->wafers;
+    ensures table->storage.wafer_count == storage->wafer_count;
+    ensures table->storage.grippers == storage->grippers;
+    ensures table->storage.gripper_count == storage->gripper_count;
+    ensures table->storage.buckets == storage->buckets;
+    ensures table->storage.bucket_count == storage->bucket_count; */
 static void begin(wh_grasp_t *table, const wh_grasp_config_t *config, const wh_grasp_storage_t *storage) {
     static const wh_grasp_counters_t none = {0};
     table->config = *config;
