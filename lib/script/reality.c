@@ -103,7 +103,8 @@ void wh_reality_delay(wh_reality_t *reality, wh_command_t *command) {
     }
     for (size_t g = 0; g < command->gripper_count; ++g) {
         const int64_t slice = command->seq - reality->lag[g];
-        const bool closed = slice < 1 || (reality->told[slice % WH_REALITY_PAST] >> g & 1U) != 0;
+        const unsigned told = slice < 1 ? ~0U : reality->told[(size_t)slice % WH_REALITY_PAST];
+        const bool closed = (told >> g & 1U) != 0;
         command->grippers[g].valve = closed ? WH_VALVE_CLOSED : WH_VALVE_OPEN;
     }
 }

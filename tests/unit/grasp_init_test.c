@@ -8,6 +8,20 @@ static void begin_busy(cell_t *cell) {
     cell_set(cell, 0, 0, 0, 30, CLOSED);
 }
 
+static void spoil_storage(wh_grasp_storage_t *storage, int what) {
+    static uint32_t buckets[WH_GRASP_BUCKETS(CELL_WAFERS, CELL_GRIPPERS)];
+    const size_t too_many = (size_t)INT32_MAX + 1;
+    storage->wafers = what == 22 ? NULL : storage->wafers;
+    storage->grippers = what == 23 ? NULL : storage->grippers;
+    storage->bucket_count = what == 24 ? 1 : 0;
+    storage->wafer_count = what == 25 ? too_many : storage->wafer_count;
+    storage->gripper_count = what == 26 ? too_many : storage->gripper_count;
+    if (what >= 27) {
+        storage->buckets = buckets;
+        storage->bucket_count = what == 27 ? too_many : sizeof buckets / sizeof buckets[0] - 1;
+    }
+}
+
 /* What init must refuse, one thing at a time. */
 static wh_status_t init_with(cell_t *cell, int what) {
     wh_grasp_config_t config = wh_grasp_config_default();
@@ -17,20 +31,11 @@ static wh_status_t init_with(cell_t *cell, int what) {
                                 &config.tolerance.projxy};
     if (what < 20) {
         *limit[what / 5] = bad[what % 5];
-    } else {
+    } else if (what < 22) {
         config.tolerance.planar = what == 20 ? 1 : config.tolerance.planar;
         config.check = what == 21 ? (wh_check_t)2 : config.check;
-        storage.wafers = what == 22 ? NULL : storage.wafers;
-        storage.grippers = what == 23 ? NULL : storage.grippers;
-        storage.bucket_count = what == 24 ? 1 : 0;
-        storage.wafer_count = what == 25 ? (size_t)INT32_MAX + 1 : storage.wafer_count;
-        storage.gripper_count = what == 26 ? (size_t)INT32_MAX + 1 : storage.gripper_count;
-        if (what >= 27) {
-            static uint32_t buckets[WH_GRASP_BUCKETS(CELL_WAFERS, CELL_GRIPPERS)];
-            storage.buckets = buckets;
-            storage.bucket_count =
-                what == 27 ? (size_t)INT32_MAX + 1 : sizeof buckets / sizeof buckets[0] - 1;
-        }
+    } else {
+        spoil_storage(&storage, what);
     }
     return wh_grasp_init(&cell->table, &config, &storage);
 }
