@@ -3,7 +3,8 @@
  *
  * Assumed, as the headers ask: pointers are null only where a function refuses null; arrays have as many elements as
  * their counts say, GRIPPERS and WAFERS; a bool is 0 or 1; a table is only handed on once wh_grasp_init accepted it.
- * What the arrays hold, before and between the calls, is otherwise up to the library; what buckets hold is anything.
+ * What the arrays hold, before and between the calls, is otherwise up to the library; what the slice, counters and
+ * buckets hold is anything.
  */
 #include "core/hold.h"
 #include "core/restore.h"
@@ -83,6 +84,11 @@ static wh_grasp_config_t any_config(void) {
     config.near_projz = real;
     config.near_projxy = real;
     return config;
+}
+
+static wh_grasp_counters_t any_counters(void) {
+    const wh_grasp_counters_t counters = {word, word, word, word, word, word};
+    return counters;
 }
 
 static wh_event_t any_event(void) {
@@ -210,12 +216,22 @@ static void call_questions(const wh_grasp_t *table) {
     (void)wh_grasp_hash(table);
 }
 
+/* Before each call the slice and the counters, which only count, and the buckets are anything: more than the calls before it
+ * can have made of them, and nothing that must be followed count by count. */
+static void spoil(wh_grasp_t *table) {
+    table->slice = word;
+    table->counters = any_counters();
+    if (table->storage.bucket_count > 0) {
+        for (size_t i = 0; i < BUCKETS; ++i) {
+            table->storage.buckets[i] = bits;
+        }
+    }
+}
+
 /* Any calls in any order, without end. */
 static void use(wh_grasp_t *table, size_t gripper_count) {
     while (any_bool()) {
-        for (size_t i = 0; i < table->storage.bucket_count; ++i) {
-            table->storage.buckets[i] = bits;
-        }
+        spoil(table);
         switch (integer) {
         case 0:
             call_step(table, gripper_count);
