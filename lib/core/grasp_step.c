@@ -767,6 +767,7 @@ static wh_status_t validate(wh_grasp_t *table, const wh_gripper_input_t *inputs,
     requires list != \null ==> list->count == 0;
     assigns table->slice, table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
             list->count, list->events[0 .. wh_room(list) - 1];
     ensures wh_consistent(table);
     ensures wh_free_at_rest{Pre, Post}(table);
