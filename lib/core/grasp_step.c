@@ -3,6 +3,7 @@
 #include "core/horizon_internal.h"
 #include "core/proximity_internal.h"
 
+/* wh_remembers: gripper g no longer names a wafer that it has let go. */
 /*@
   lemma wh_poses_through{K, M, L}: \forall wh_grasp_t *t, integer w;
     wh_same_size{K, M}(t) && wh_same_poses{K, M}(t) && wh_other_poses{M, L}(t, w) ==> wh_other_poses{K, L}(t, w);
@@ -72,7 +73,6 @@
     wh_other_holders{K, L}(t, wh_held{L}(t, g)) && wh_same_releases{K, L}(t) && wh_other_held{K, L}(t, g) &&
     wh_stepping{K}(t, in, from, to) ==> wh_stepping{L}(t, in, from, to);
 
-  // Gripper g no longer names a wafer that it has let go.
   predicate wh_remembers{K, L}(wh_grasp_t *t, integer g, integer valve) =
     wh_held{L}(t, g) == (valve == WH_VALVE_CLOSED ? WH_NONE : wh_held{K}(t, g)) &&
     \forall integer w; wh_is_wafer{K}(t, w) ==> wh_released_by{L}(t, w) ==

@@ -12,16 +12,16 @@ wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_
 typedef struct {
     int32_t wafer; /* WH_NONE: none */
     wh_real_t distance;
-} candidate_t;
+} nearest_t;
 
 /*@ requires \valid(best) && \valid_read(wafer) && \valid_read(base_from_gripper) && w <= INT32_MAX;
     requires \separated(best, wafer) && \separated(best, base_from_gripper);
     assigns *best;
     ensures best->wafer == \old(best->wafer) || best->wafer == w;
     ensures \old(best->wafer) == WH_NONE ==> best->wafer == w; */
-static void keep_better(candidate_t *best, size_t w, const wh_wafer_t *wafer,
+static void keep_better(nearest_t *best, size_t w, const wh_wafer_t *wafer,
                         const wh_pose_t *base_from_gripper) {
-    const candidate_t here = {(int32_t)w, wh_grasp_distance(wafer, base_from_gripper)};
+    const nearest_t here = {(int32_t)w, wh_grasp_distance(wafer, base_from_gripper)};
     if (best->wafer == WH_NONE || here.distance < best->distance ||
         (here.distance == best->distance && here.wafer < best->wafer)) {
         *best = here;
@@ -34,7 +34,7 @@ int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_f
     const wh_near_t near = wh_grasp_is_swept(table, g) ? wh_index_again(table, g, place, place)
                                                        : wh_index_near(table, g, place, place, margin);
     wh_horizon_t horizon = wh_horizon_begin(table, g, &near, margin);
-    candidate_t best = {.wafer = WH_NONE};
+    nearest_t best = {.wafer = WH_NONE};
     /*@ loop invariant 0 <= i <= near.count;
         loop invariant best.wafer == WH_NONE ||
                        wh_is_wafer(table, best.wafer) && wh_holder(table, best.wafer) == WH_NONE;

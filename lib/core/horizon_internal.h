@@ -27,7 +27,7 @@ enum { WH_HORIZON_OF_TOLERANCE = 1, WH_HORIZON_HOLDS = 2 };
     assigns \nothing;
     ensures \result == table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g); */
 static inline uint32_t *wh_horizon_words(const wh_grasp_t *table, size_t g) {
-    return table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g);
+    return &table->storage.buckets[WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g];
 }
 
 /* The way from a place that a word keeps, along one axis, in units. Two's complement, whatever a cast makes of it. */

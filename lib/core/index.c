@@ -17,7 +17,7 @@ size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) {
     assigns \nothing;
     ensures \result == table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * table->storage.gripper_count); */
 static uint32_t *heads_of(const wh_grasp_t *table) {
-    return table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * table->storage.gripper_count);
+    return &table->storage.buckets[WH_INDEX_HORIZONS + WH_HORIZON_WORDS * table->storage.gripper_count];
 }
 
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && w < table->storage.wafer_count;
@@ -52,7 +52,7 @@ static uint32_t key_of(uint32_t x, uint32_t y, uint32_t z) {
     assigns \nothing; */
 static uint32_t *head_of(const wh_grasp_t *table, uint32_t key) {
     const uint64_t heads = 2 * (uint64_t)table->storage.wafer_count;
-    return heads_of(table) + (size_t)((key * heads) >> 32);
+    return &heads_of(table)[(size_t)((key * heads) >> 32)];
 }
 
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && axis < 3;
@@ -186,7 +186,7 @@ typedef struct {
     ensures \result ==> box->count[axis] <= most; */
 static bool span(const wh_grasp_t *table, box_t *box, size_t axis, wh_real_t from, wh_real_t to,
                  uint32_t margin, size_t most) {
-    const uint32_t extent = table->storage.buckets[WH_INDEX_EXTENTS + axis] & INT32_MAX;
+    const uint32_t extent = table->storage.buckets[WH_INDEX_EXTENTS + axis] & (uint32_t)INT32_MAX;
     const uint32_t half = extent + margin + 2;
     const uint32_t shift = shift_of(table, axis);
     const uint32_t least = place_of(from < to ? from : to);

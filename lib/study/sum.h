@@ -7,6 +7,7 @@
 #ifndef WH_STUDY_SUM_H
 #define WH_STUDY_SUM_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 __extension__ typedef __int128 wh_int128_t;
@@ -17,7 +18,7 @@ __extension__ typedef unsigned __int128 wh_uint128_t;
 
 /* Per sign one bin for each whole number below 128, then 64 for each doubling up to 2^44. */
 #define WH_SUM_SIDE (128 + 37 * 64)
-#define WH_SUM_BINS (2 * WH_SUM_SIDE)
+#define WH_SUM_BINS ((size_t)2 * WH_SUM_SIDE)
 
 /* To be zeroed. */
 typedef struct {
