@@ -191,7 +191,7 @@ static bool span(const wh_grasp_t *table, box_t *box, size_t axis, wh_real_t fro
     const uint32_t shift = shift_of(table, axis);
     const uint32_t least = place_of(from < to ? from : to);
     const uint32_t greatest = from == to ? least : place_of(from < to ? to : from);
-    const uint32_t first = (least > half ? least - half : 0) >> shift;
+    const uint32_t first = (least > half ? least - half : 0U) >> shift;
     const uint32_t last = (greatest < UINT32_MAX - half ? greatest + half : UINT32_MAX) >> shift;
     if (last - first >= most) {
         return false;

@@ -168,7 +168,7 @@ wh_sandbox_t *__wrap_wh_sandbox_new(const wh_sandbox_limits_t *limits) {
 }
 
 void __wrap_wh_sandbox_free(wh_sandbox_t *sandbox) {
-    REQUIRE(sandbox == shared);
+    REQUIRE(!sandbox || sandbox == shared);
 }
 
 const wh_layout_t *__wrap_wh_layout_load(wh_sandbox_t *sandbox, const char *path,
