@@ -1,11 +1,11 @@
 /* waferhand mcs [SCRIPT] [--layout FILE] */
 #include <stdio.h>
-#include <stdlib.h>
 #include <sys/timerfd.h>
 #include <unistd.h>
 
 #include "app/app.h"
 #include "app/mcs_link.h"
+#include "app/number.h"
 #include "app/prompt.h"
 #include "app/run.h"
 
@@ -43,9 +43,8 @@ static void check(const arguments_t *arguments, struct argp_state *state) {
 }
 
 static double take_rate(const struct argp_state *state, const char *text) {
-    char *end = NULL;
-    const double rate = strtod(text, &end);
-    if (end == text || *end != '\0' || !(rate >= 1e-3 && rate <= 1e3)) {
+    double rate = 0;
+    if (!wh_number_read(text, 1e-3, 1e3, &rate)) {
         argp_error(state, "--rate: %s (expected a number from 0.001 to 1000)", text);
     }
     return rate;

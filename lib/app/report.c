@@ -1,11 +1,11 @@
 /* waferhand report RUN */
 #include <argp.h>
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
+#include "app/number.h"
 #include "app/run.h"
 #include "report/log_run.h"
 
@@ -24,10 +24,8 @@ static const struct argp_option options[] = {
 };
 
 static size_t run_number(const struct argp_state *state, const char *text) {
-    char *end = NULL;
-    errno = 0;
-    const unsigned long number = strtoul(text, &end, 10);
-    if (errno != 0 || *end != '\0' || text[0] < '0' || text[0] > '9' || number == 0) {
+    uint64_t number = 0;
+    if (!wh_number_read_whole(text, &number) || number == 0) {
         argp_error(state, "--run: %s (expected a whole number from 1)", text);
     }
     return number;

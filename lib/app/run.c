@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "app/app.h"
+#include "app/number.h"
 #include "app/record_json.h"
 #include "app/record_table.h"
 #include "app/segments.h"
@@ -41,10 +42,8 @@ static const struct argp_option options[] = {
 
 /* A whole number in a range, given as 1000000 or 1e6. */
 static double whole_number(const struct argp_state *state, const char *name, const char *text, double max) {
-    char *end = NULL;
-    errno = 0;
-    const double value = strtod(text, &end);
-    if (end == text || *end != '\0' || !(value >= 1 && value <= max)) {
+    double value = 0;
+    if (!wh_number_read(text, 1, max, &value)) {
         argp_error(state, "--%s: %s (expected a number from 1 to %g)", name, text, max);
     }
     return value;

@@ -1,10 +1,10 @@
 /* waferhand study SCRIPT */
 #include <argp.h>
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "app/app.h"
+#include "app/number.h"
 #include "app/run.h"
 #include "app/study_report.h"
 #include "app/study_run.h"
@@ -56,10 +56,8 @@ static const struct argp_option options[] = {
 /* A number as it must be, 1000000 or 1e6. */
 static double number(const struct argp_state *state, const char *name, const char *text, double min,
                      double max) {
-    char *end = NULL;
-    errno = 0;
-    const double value = strtod(text, &end);
-    if (end == text || *end != '\0' || !(value >= min && value <= max)) {
+    double value = 0;
+    if (!wh_number_read(text, min, max, &value)) {
         argp_error(state, "--%s: %s (expected a number from %.12g to %.12g)", name, text, min, max);
     }
     return value;
@@ -74,12 +72,9 @@ static uint64_t whole(const struct argp_state *state, const char *name, const ch
     return (uint64_t)value;
 }
 
-/* 64 bits, which a double has not. */
 static uint64_t seed(const struct argp_state *state, const char *text) {
-    char *end = NULL;
-    errno = 0;
-    const unsigned long long value = strtoull(text, &end, 10);
-    if (text[0] < '0' || text[0] > '9' || *end != '\0' || errno != 0) {
+    uint64_t value = 0;
+    if (!wh_number_read_whole(text, &value)) {
         argp_error(state, "--seed: %s (expected a whole number from 0 to 18446744073709551615)", text);
     }
     return value;
