@@ -206,11 +206,11 @@ static wh_status_t validate_inputs(wh_grasp_t *table, const wh_gripper_input_t *
 }
 
 /* A gripper's pose that just passes wh_pose_validate can turn the wafer's into one that does not, and that the table's
- * owner could not hand back to any call: such a one is mended. */
+ * owner could not hand back to any call: such a one is mended. Mirrored it cannot be, since neither of the two is. */
 void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
                     const wh_pose_t *gripper_from_wafer) {
     wh_pose_compose_to(base_from_gripper, gripper_from_wafer, &wafer->base_from_wafer);
-    if (wh_pose_validate(&wafer->base_from_wafer) != WH_OK) {
+    if (!wh_mat3_is_orthonormal(&wafer->base_from_wafer.R)) {
         wh_mat3_orthonormalise(&wafer->base_from_wafer.R);
     }
 }
@@ -690,28 +690,109 @@ static void report_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_e
     /*@ assert wh_same_size{Pre, Here}(table); */
 }
 
-/*@ requires wh_table_memory(table) && wh_consistent(table) && wh_list_apart(list, table);
+/* That looking for wafers would find none: none of those at rest matters to gripper g, on its way or at its end. */
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place);
+    assigns \nothing; */
+static bool is_far_from_all(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
+    return wh_horizon_covers(table, g, place) &&
+           (!wh_grasp_is_swept(table, g) ||
+            wh_horizon_covers(table, g, &table->storage.grippers[g].base_from_gripper.r));
+}
+
+/* Whether this slice has no pick, no release and nothing to tell: what most slices are. No gripper is watching a wafer;
+ * those that hold one go on holding it, or else those that are open are far from all that rest. */
+/*@ requires wh_table_memory(table);
+    requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1));
+    assigns \nothing;
+    ensures \result ==> \forall integer g; wh_is_gripper(table, g) ==>
+              inputs[g].valve == WH_VALVE_OPEN || wh_held(table, g) == WH_NONE; */
+static bool is_uneventful(const wh_grasp_t *table, const wh_gripper_input_t *inputs) {
+    bool holding = false;
+    bool looking = false;
+    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
+        loop invariant \forall integer i; 0 <= i < g ==>
+                         inputs[i].valve == WH_VALVE_OPEN || wh_held(table, i) == WH_NONE;
+        loop assigns g, holding, looking;
+        loop variant table->storage.gripper_count - g; */
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        const wh_gripper_t *gripper = &table->storage.grippers[g];
+        const bool open = inputs[g].valve == WH_VALVE_OPEN;
+        if (gripper->approach.wafer != WH_NONE || gripper->contest.wafer != WH_NONE) {
+            return false;
+        }
+        if (gripper->wafer != WH_NONE) {
+            if (!open) {
+                return false;
+            }
+            holding = true;
+        } else if (open) {
+            if (!is_far_from_all(table, g, &inputs[g].base_from_gripper.r)) {
+                return false;
+            }
+            looking = true;
+        }
+    }
+    return !(holding && looking);
+}
+
+/*@ requires wh_table_memory(table) && wh_consistent(table) && wh_is_gripper(table, g);
+    requires \valid_read(input) && wh_apart_from_arrays(input, table);
+    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1].base_from_wafer,
+            table->storage.grippers[g].base_from_gripper, table->storage.grippers[g].valve;
+    ensures wh_free_stay{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table); */
+static void move(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
+    wh_gripper_t *gripper = &table->storage.grippers[g];
+    if (gripper->wafer != WH_NONE) {
+        wh_grasp_carry(&table->storage.wafers[gripper->wafer], &input->base_from_gripper,
+                       &gripper->gripper_from_wafer);
+    }
+    gripper->base_from_gripper = input->base_from_gripper;
+    gripper->valve = input->valve;
+}
+
+/* An uneventful slice: the grippers go where they go, and what they hold goes with them. */
+/*@ requires wh_table_memory(table) && wh_consistent(table);
+    requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table);
+    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1].base_from_wafer,
+            table->storage.grippers[0 .. table->storage.gripper_count - 1].base_from_gripper,
+            table->storage.grippers[0 .. table->storage.gripper_count - 1].valve;
+    ensures wh_consistent(table);
+    ensures wh_free_stay{Pre, Post}(table);
+    ensures wh_same_holders{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table); */
+static void move_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
+    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
+        loop invariant wh_consistent(table);
+        loop invariant wh_free_stay{Pre, Here}(table);
+        loop invariant wh_same_holders{Pre, Here}(table);
+        loop invariant wh_same_grips{Pre, Here}(table);
+        loop assigns g, table->storage.wafers[0 .. table->storage.wafer_count - 1].base_from_wafer,
+                     table->storage.grippers[0 .. table->storage.gripper_count - 1].base_from_gripper,
+                     table->storage.grippers[0 .. table->storage.gripper_count - 1].valve;
+        loop variant table->storage.gripper_count - g; */
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        move(table, g, &inputs[g]);
+    }
+}
+
+/* Parts 4 to 6, for slices in which they may find something. */
+/*@ requires wh_table_memory(table) && wh_list_apart(list, table);
     requires wh_list_ready(list, 4 * table->storage.gripper_count);
     requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table) &&
              wh_inputs_apart_list(inputs, table, list);
-    assigns table->slice, table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
+    requires wh_stepping(table, inputs, 0, table->storage.gripper_count);
+    requires wh_encounters(table);
+    assigns table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[0 .. table->storage.gripper_count - 1],
             table->storage.buckets[0 .. table->storage.bucket_count - 1],
             list->count, list->events[0 .. wh_room(list) - 1];
-    ensures wh_consistent(table);
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_stepping(table, inputs, 0, table->storage.gripper_count);
+    ensures wh_encounters(table);
     ensures wh_free_at_rest{Pre, Post}(table);
-    ensures wh_grips_kept{Pre, Post}(table); */
-static void advance(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
-    ++table->slice;
-    /*@ assert wh_same_size{Pre, Here}(table) && wh_table_memory(table); */
-    /*@ assert wh_paired(table); */
-    /*@ assert wh_none_released(table); */
-    /*@ assert wh_encounters(table); */
-    carry_and_release(table, inputs);
-    /*@ assert wh_same_size{Pre, Here}(table); */
-    /*@ assert wh_encounters(table); */
-    /*@ assert wh_free_stay{Pre, Here}(table); */
-    /*@ assert wh_hold_kept{Pre, Here}(table); */
+    ensures wh_hold_kept{Pre, Post}(table); */
+static void pick_and_report(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     pick_all(table, inputs, list);
     /*@ assert wh_same_size{Pre, Here}(table); */
     /*@ assert table->storage.wafer_count == \at(table->storage.wafer_count, Pre) &&
@@ -728,6 +809,35 @@ static void advance(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_even
     /*@ assert wh_inputs_apart_list(inputs, table, list); */
     report_all(table, inputs, list);
     /*@ assert wh_same_size{Pre, Here}(table); */
+    /*@ assert wh_free_at_rest{Pre, Here}(table); */
+    /*@ assert wh_hold_kept{Pre, Here}(table); */
+}
+
+/* Parts 2 to 7. */
+/*@ requires wh_table_memory(table) && wh_consistent(table) && wh_list_apart(list, table);
+    requires wh_list_ready(list, 4 * table->storage.gripper_count);
+    requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table) &&
+             wh_inputs_apart_list(inputs, table, list);
+    assigns table->slice, table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
+            table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
+            list->count, list->events[0 .. wh_room(list) - 1];
+    ensures wh_consistent(table);
+    ensures wh_free_at_rest{Pre, Post}(table);
+    ensures wh_grips_kept{Pre, Post}(table); */
+static void advance_with_events(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
+    ++table->slice;
+    /*@ assert wh_same_size{Pre, Here}(table) && wh_table_memory(table); */
+    /*@ assert wh_paired(table); */
+    /*@ assert wh_none_released(table); */
+    /*@ assert wh_encounters(table); */
+    carry_and_release(table, inputs);
+    /*@ assert wh_same_size{Pre, Here}(table); */
+    /*@ assert wh_encounters(table); */
+    /*@ assert wh_free_stay{Pre, Here}(table); */
+    /*@ assert wh_hold_kept{Pre, Here}(table); */
+    pick_and_report(table, inputs, list);
+    /*@ assert wh_same_size{Pre, Here}(table); */
     /*@ assert table->storage.wafer_count == \at(table->storage.wafer_count, Pre) &&
                table->storage.gripper_count == \at(table->storage.gripper_count, Pre); */
     /*@ assert wh_free_at_rest{Pre, Here}(table); */
@@ -737,6 +847,26 @@ static void advance(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_even
     remember_all(table, inputs);
     /*@ assert wh_free_at_rest{Pre, Here}(table); */
     /*@ assert wh_grips_kept{Pre, Here}(table); */
+}
+
+/*@ requires wh_table_memory(table) && wh_consistent(table) && wh_list_apart(list, table);
+    requires wh_list_ready(list, 4 * table->storage.gripper_count);
+    requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table) &&
+             wh_inputs_apart_list(inputs, table, list);
+    assigns table->slice, table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
+            table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
+            list->count, list->events[0 .. wh_room(list) - 1];
+    ensures wh_consistent(table);
+    ensures wh_free_at_rest{Pre, Post}(table);
+    ensures wh_grips_kept{Pre, Post}(table); */
+static void advance(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
+    if (is_uneventful(table, inputs)) {
+        ++table->slice;
+        move_all(table, inputs);
+    } else {
+        advance_with_events(table, inputs, list);
+    }
 }
 
 /* Part 1. A refused call changes nothing but counters and the list. */

@@ -19,17 +19,23 @@ static bool near(wh_real_t value, wh_real_t wanted) {
     return wh_real_abs(value - wanted) <= WH_ROTATION_TOLERANCE;
 }
 
+bool wh_mat3_is_orthonormal(const wh_mat3_t *R) {
+    const wh_vec3_t e1 = wh_mat3_column(R, 0);
+    const wh_vec3_t e2 = wh_mat3_column(R, 1);
+    const wh_vec3_t e3 = wh_mat3_column(R, 2);
+    return near(wh_vec3_dot(&e1, &e1), 1) && near(wh_vec3_dot(&e2, &e2), 1) &&
+           near(wh_vec3_dot(&e3, &e3), 1) && near(wh_vec3_dot(&e1, &e2), 0) &&
+           near(wh_vec3_dot(&e1, &e3), 0) && near(wh_vec3_dot(&e2, &e3), 0);
+}
+
 /* False for numbers that are not finite. */
 /*@ requires \valid_read(R); assigns \nothing; */
 static bool is_rotation(const wh_mat3_t *R) {
     const wh_vec3_t e1 = wh_mat3_column(R, 0);
     const wh_vec3_t e2 = wh_mat3_column(R, 1);
     const wh_vec3_t e3 = wh_mat3_column(R, 2);
-    const bool orthonormal = near(wh_vec3_dot(&e1, &e1), 1) && near(wh_vec3_dot(&e2, &e2), 1) &&
-                             near(wh_vec3_dot(&e3, &e3), 1) && near(wh_vec3_dot(&e1, &e2), 0) &&
-                             near(wh_vec3_dot(&e1, &e3), 0) && near(wh_vec3_dot(&e2, &e3), 0);
     const wh_vec3_t e1_cross_e2 = wh_vec3_cross(&e1, &e2);
-    return orthonormal && wh_vec3_dot(&e1_cross_e2, &e3) > 0;
+    return wh_mat3_is_orthonormal(R) && wh_vec3_dot(&e1_cross_e2, &e3) > 0;
 }
 
 /* A rotation's numbers need not be looked at one by one. */

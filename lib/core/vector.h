@@ -136,11 +136,12 @@ static inline wh_vec3_t wh_mat3_transform_back(const wh_mat3_t *a, const wh_vec3
 static inline void wh_mat3_multiply_to(const wh_mat3_t *a, const wh_mat3_t *b, wh_mat3_t *product) {
     /*@ loop assigns row, *product; loop variant 3 - row; */
     for (size_t row = 0; row < 3; ++row) {
-        /*@ loop assigns column, *product; loop variant 3 - column; */
-        for (size_t column = 0; column < 3; ++column) {
-            product->m[row][column] = a->m[row][0] * b->m[0][column] + a->m[row][1] * b->m[1][column] +
-                                      a->m[row][2] * b->m[2][column];
-        }
+        const wh_real_t x = a->m[row][0];
+        const wh_real_t y = a->m[row][1];
+        const wh_real_t z = a->m[row][2];
+        product->m[row][0] = x * b->m[0][0] + y * b->m[1][0] + z * b->m[2][0];
+        product->m[row][1] = x * b->m[0][1] + y * b->m[1][1] + z * b->m[2][1];
+        product->m[row][2] = x * b->m[0][2] + y * b->m[1][2] + z * b->m[2][2];
     }
 }
 
@@ -150,11 +151,12 @@ static inline void wh_mat3_multiply_to(const wh_mat3_t *a, const wh_mat3_t *b, w
 static inline void wh_mat3_multiply_back_to(const wh_mat3_t *a, const wh_mat3_t *b, wh_mat3_t *product) {
     /*@ loop assigns row, *product; loop variant 3 - row; */
     for (size_t row = 0; row < 3; ++row) {
-        /*@ loop assigns column, *product; loop variant 3 - column; */
-        for (size_t column = 0; column < 3; ++column) {
-            product->m[row][column] = a->m[0][row] * b->m[0][column] + a->m[1][row] * b->m[1][column] +
-                                      a->m[2][row] * b->m[2][column];
-        }
+        const wh_real_t x = a->m[0][row];
+        const wh_real_t y = a->m[1][row];
+        const wh_real_t z = a->m[2][row];
+        product->m[row][0] = x * b->m[0][0] + y * b->m[1][0] + z * b->m[2][0];
+        product->m[row][1] = x * b->m[0][1] + y * b->m[1][1] + z * b->m[2][1];
+        product->m[row][2] = x * b->m[0][2] + y * b->m[1][2] + z * b->m[2][2];
     }
 }
 
