@@ -16,6 +16,8 @@
   lemma wh_rest_through{K, M, L}: \forall wh_grasp_t *t;
     wh_same_size{K, M}(t) && wh_free_at_rest{K, M}(t) && wh_holders_kept{M, L}(t) && wh_free_at_rest{M, L}(t) ==>
     wh_free_at_rest{K, L}(t);
+  lemma wh_free_stay_through{K, M, L}: \forall wh_grasp_t *t;
+    wh_same_size{K, M}(t) && wh_free_stay{K, M}(t) && wh_free_stay{M, L}(t) ==> wh_free_stay{K, L}(t);
   lemma wh_rest_from{K, M, L}: \forall wh_grasp_t *t;
     wh_same_size{K, M}(t) && wh_free_stay{K, M}(t) && wh_free_at_rest{M, L}(t) ==> wh_free_at_rest{K, L}(t);
   lemma wh_rest_until{K, M, L}: \forall wh_grasp_t *t;
@@ -737,10 +739,15 @@ static bool is_uneventful(const wh_grasp_t *table, const wh_gripper_input_t *inp
 
 /*@ requires wh_table_memory(table) && wh_consistent(table) && wh_is_gripper(table, g);
     requires \valid_read(input) && wh_apart_from_arrays(input, table);
-    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1].base_from_wafer,
-            table->storage.grippers[g].base_from_gripper, table->storage.grippers[g].valve;
-    ensures wh_free_stay{Pre, Post}(table);
-    ensures wh_same_grips{Pre, Post}(table); */
+    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1],
+            table->storage.grippers[0 .. table->storage.gripper_count - 1];
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_same_holders{Pre, Post}(table);
+    ensures wh_same_releases{Pre, Post}(table);
+    ensures wh_same_held{Pre, Post}(table);
+    ensures wh_same_watched{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table);
+    ensures wh_free_stay{Pre, Post}(table); */
 static void move(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
     wh_gripper_t *gripper = &table->storage.grippers[g];
     if (gripper->wafer != WH_NONE) {
@@ -754,22 +761,26 @@ static void move(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
 /* An uneventful slice: the grippers go where they go, and what they hold goes with them. */
 /*@ requires wh_table_memory(table) && wh_consistent(table);
     requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table);
-    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1].base_from_wafer,
-            table->storage.grippers[0 .. table->storage.gripper_count - 1].base_from_gripper,
-            table->storage.grippers[0 .. table->storage.gripper_count - 1].valve;
+    assigns table->storage.wafers[0 .. table->storage.wafer_count - 1],
+            table->storage.grippers[0 .. table->storage.gripper_count - 1];
+    ensures wh_same_size{Pre, Post}(table);
     ensures wh_consistent(table);
-    ensures wh_free_stay{Pre, Post}(table);
     ensures wh_same_holders{Pre, Post}(table);
-    ensures wh_same_grips{Pre, Post}(table); */
+    ensures wh_same_grips{Pre, Post}(table);
+    ensures wh_free_stay{Pre, Post}(table); */
 static void move_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     /*@ loop invariant 0 <= g <= table->storage.gripper_count;
-        loop invariant wh_consistent(table);
-        loop invariant wh_free_stay{Pre, Here}(table);
+        loop invariant table->storage.wafer_count == \at(table->storage.wafer_count, Pre);
+        loop invariant table->storage.gripper_count == \at(table->storage.gripper_count, Pre);
+        loop invariant wh_same_size{Pre, Here}(table);
         loop invariant wh_same_holders{Pre, Here}(table);
+        loop invariant wh_same_releases{Pre, Here}(table);
+        loop invariant wh_same_held{Pre, Here}(table);
+        loop invariant wh_same_watched{Pre, Here}(table);
         loop invariant wh_same_grips{Pre, Here}(table);
-        loop assigns g, table->storage.wafers[0 .. table->storage.wafer_count - 1].base_from_wafer,
-                     table->storage.grippers[0 .. table->storage.gripper_count - 1].base_from_gripper,
-                     table->storage.grippers[0 .. table->storage.gripper_count - 1].valve;
+        loop invariant wh_free_stay{Pre, Here}(table);
+        loop assigns g, table->storage.wafers[0 .. \at(table->storage.wafer_count, Pre) - 1],
+                     table->storage.grippers[0 .. \at(table->storage.gripper_count, Pre) - 1];
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         move(table, g, &inputs[g]);
