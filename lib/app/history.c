@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "report/output.h"
 #include "script/session.h"
 
 void wh_history_path(char *path, size_t size) {
@@ -76,27 +77,14 @@ static size_t gather(char *text, const char *lines[WH_HISTORY_LINES]) {
 
 /* Replaces the file by these lines, at once. */
 static void rewrite(const char *path, const char *const lines[], size_t first, size_t count) {
-    char other[PATH_MAX];
-    if ((size_t)snprintf(other, sizeof other, "%s.XXXXXX", path) >= sizeof other) {
-        return;
-    }
-    const int fd = mkostemp(other, O_CLOEXEC);
-    FILE *out = fd >= 0 ? fdopen(fd, "w") : NULL;
-    if (!out) {
-        if (fd >= 0) {
-            close(fd);
-            unlink(other);
-        }
+    wh_output_t output = {0};
+    if (!wh_output_open(&output, path)) {
         return;
     }
     for (size_t i = first; i < count; ++i) {
-        fprintf(out, "%s\n", lines[i % WH_HISTORY_LINES]);
+        fprintf(output.file, "%s\n", lines[i % WH_HISTORY_LINES]);
     }
-    const bool written = fflush(out) == 0 && !ferror(out);
-    fclose(out);
-    if (!written || rename(other, path) != 0) {
-        unlink(other);
-    }
+    (void)wh_output_commit(&output);
 }
 
 void wh_history_load(const char *path, void (*line)(void *user, const char *text), void *user) {

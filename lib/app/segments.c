@@ -1,11 +1,9 @@
 #include "app/segments.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
+
+#include "report/output.h"
 
 static void write_numbers(FILE *out, const wh_real_t values[], size_t count) {
     fputs("{", out);
@@ -143,34 +141,13 @@ static void write_all(FILE *out, const wh_mcs_t *mcs) {
     fprintf(out, "static const uint64_t played_hash = UINT64_C(0x%016" PRIx64 ");\n", mcs->record->hash);
 }
 
-static int write_and_rename(const wh_mcs_t *mcs, const char *path, const char *part) {
-    FILE *out = fopen(part, "w");
-    if (!out) {
+int wh_segments_write(const wh_mcs_t *mcs, const char *path) {
+    wh_output_t output = {0};
+    if (!wh_output_open(&output, path)) {
         return -1;
     }
     if (mcs->layout) {
-        write_all(out, mcs);
+        write_all(output.file, mcs);
     }
-    const bool failed = ferror(out) != 0;
-    if (fclose(out) != 0 || failed || rename(part, path) != 0) {
-        const int problem = errno;
-        unlink(part);
-        errno = problem;
-        return -1;
-    }
-    return 0;
-}
-
-int wh_segments_write(const wh_mcs_t *mcs, const char *path) {
-    const size_t size = strlen(path) + sizeof ".part";
-    char *part = malloc(size);
-    if (!part) {
-        return -1;
-    }
-    snprintf(part, size, "%s.part", path);
-    const int result = write_and_rename(mcs, path, part);
-    const int problem = errno;
-    free(part);
-    errno = problem;
-    return result;
+    return wh_output_commit(&output) ? 0 : -1;
 }

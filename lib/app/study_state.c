@@ -1,50 +1,24 @@
 #include "app/study_state.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "app/study_state_internal.h"
 #include "core/hash.h"
+#include "report/output.h"
 
 /* --------------------------------------------------------------------------------------------------------- file */
 
-static bool write_whole(int file, const char *text) {
-    size_t left = strlen(text);
-    while (left > 0) {
-        const ssize_t written = write(file, text, left);
-        if (written < 0 && errno != EINTR) {
-            return false;
-        }
-        const size_t count = written > 0 ? (size_t)written : 0;
-        text += count;
-        left -= count;
-    }
-    return fsync(file) == 0;
-}
-
 bool wh_state_save(const char *path, const char *text) {
-    char other[4096];
-    if ((size_t)snprintf(other, sizeof other, "%s.new", path) >= sizeof other) {
-        errno = ENAMETOOLONG;
+    wh_output_t output = {0};
+    if (!wh_output_open(&output, path)) {
         return false;
     }
-    const int file = open(other, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file < 0) {
-        return false;
-    }
-    const bool written = write_whole(file, text);
-    if (close(file) != 0 || !written || rename(other, path) != 0) {
-        const int reason = errno;
-        unlink(other);
-        errno = reason;
-        return false;
-    }
-    return true;
+    (void)fputs(text, output.file);
+    return wh_output_commit(&output);
 }
 
 /* All of a file; null, with errno, when it cannot be read. */

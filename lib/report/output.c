@@ -48,12 +48,18 @@ bool wh_output_open(wh_output_t *output, const char *path) {
     return output->file != NULL;
 }
 
+/* On the disk, not only on its way to it: a power cut after the renaming must not leave an empty file. */
+static bool is_stored(const wh_output_t *output) {
+    return fflush(output->file) == 0 && !ferror(output->file) &&
+           (output->beside[0] == '\0' || fsync(fileno(output->file)) == 0);
+}
+
 bool wh_output_commit(wh_output_t *output) {
-    const bool failed = fflush(output->file) != 0 || ferror(output->file);
+    const bool stored = is_stored(output);
     const bool closed = fclose(output->file) == 0;
     output->file = NULL;
     const bool placed =
-        !failed && closed && (output->beside[0] == '\0' || rename(output->beside, output->path) == 0);
+        stored && closed && (output->beside[0] == '\0' || rename(output->beside, output->path) == 0);
     if (!placed && output->beside[0] != '\0') {
         const int reason = errno;
         (void)unlink(output->beside);
