@@ -23,8 +23,8 @@ class Builder:
         version = subprocess.run([compiler, "--version"], capture_output=True, check=True, text=True).stdout
         self.identity = version.split("\n")[0] + flags
         self.originals = os.path.join(folder, "originals")
-        self.sources = sorted(glob.glob("lib/core/*.c") + glob.glob("lib/motion/*.c") +
-                              glob.glob("lib/cell/*.c") + glob.glob("lib/sim/*.c"))
+        folders = ("core", "motion", "cell", "batch", "sim")
+        self.sources = sorted(path for folder in folders for path in glob.glob(f"lib/{folder}/*.c"))
         os.makedirs(self.originals, exist_ok=True)
         for source in self.sources:
             if not self.compile(source, self.object_of(source, self.originals), []):

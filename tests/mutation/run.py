@@ -44,7 +44,7 @@ def report(campaign):
 
 def load_test(builder, folder, name):
     reached = builder.reached_from(os.path.join(folder, "obj", name + ".o"))
-    test = Test(os.path.join(folder, "run", os.path.basename(name)), reached)
+    test = Test(os.path.join(folder, "run", name.replace("/", "_")), reached)
     test.measure(builder.originals)
     return test
 
