@@ -32,6 +32,8 @@ static void refused_for_input(cell_t *cell, const cell_t *before, int gripper, w
     assert_int_equal(e->gripper, gripper);
     assert_int_equal(e->wafer, WH_NONE);
     assert_int_equal(e->other, WH_NONE);
+    assert_int_equal(e->parts[0], WH_NONE);
+    assert_int_equal(e->parts[1], WH_NONE);
     assert_int_equal(e->status, status);
     assert_int_equal(e->slice, before->table.slice + 1);
     assert_int_equal(e->measured_slice, before->table.slice + 1);
@@ -81,6 +83,38 @@ static void rotations_and_valves_are_looked_at(void **state) {
     cell.input[2].valve = 9;
     assert_int_equal(wh_grasp_step(&cell.table, cell.input, NULL), WH_STATUS_BAD_VALVE);
     expect_unchanged(&cell, &before, 1);
+}
+
+/* One of the 24 rotations that lay a cube onto itself: each row and column has one entry of 1 or -1, so that any two entries
+ * are the same in some of them. */
+static wh_mat3_t cube_rotation(int number) {
+    const int first = number / 8;
+    const int second = (first + 1 + number / 4 % 2) % 3;
+    wh_vec3_t e1 = {first == 0, first == 1, first == 2};
+    wh_vec3_t e2 = {second == 0, second == 1, second == 2};
+    e1 = wh_vec3_scale(number % 2 ? -1 : 1, &e1);
+    e2 = wh_vec3_scale(number / 2 % 2 ? -1 : 1, &e2);
+    const wh_vec3_t e3 = wh_vec3_cross(&e1, &e2);
+    return (wh_mat3_t){{{e1.x, e2.x, e3.x}, {e1.y, e2.y, e3.y}, {e1.z, e2.z, e3.z}}};
+}
+
+/* An entry that differs from the last slice's is seen, whatever the others and the place are. */
+static void each_entry_of_a_rotation_is_looked_at(void **state) {
+    (void)state;
+    for (int number = 0; number < 24 * 3; ++number) {
+        cell_t cell;
+        cell_begin_default(&cell);
+        const double at = number / 24 - 1;
+        const wh_pose_t last = {cube_rotation(number % 24), {(wh_real_t)at, (wh_real_t)at, (wh_real_t)at}};
+        cell.input[0].base_from_gripper = last;
+        cell_step(&cell);
+        for (int k = 0; k < 9; ++k) {
+            wh_pose_t *pose = &cell.input[0].base_from_gripper;
+            *pose = last;
+            pose->R.m[k / 3][k % 3] += 2 * WH_ROTATION_TOLERANCE;
+            assert_int_equal(wh_grasp_step(&cell.table, cell.input, NULL), WH_STATUS_NOT_A_ROTATION);
+        }
+    }
 }
 
 static void a_refused_step_changes_no_later_step(void **state) {
@@ -200,6 +234,10 @@ static void empty_tables_work(void **state) {
     const wh_gripper_input_t input = {wh_pose_identity(), OPEN};
     assert_int_equal(wh_grasp_init(&table, &config, &no_wafers), WH_OK);
     assert_int_equal(wh_grasp_step(&table, &input, NULL), WH_OK);
+    /* One of something is not none. */
+    assert_int_equal(wh_grasp_step(&table, NULL, NULL), WH_STATUS_NULL_ARGUMENT);
+    list.capacity = 1;
+    assert_int_equal(wh_grasp_step(&table, &input, &list), WH_STATUS_NULL_ARGUMENT);
 }
 
 /* The largest numbers there are neither trap nor are taken for near. */
@@ -232,6 +270,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_number_of_a_pose_is_looked_at),
         cmocka_unit_test(rotations_and_valves_are_looked_at),
+        cmocka_unit_test(each_entry_of_a_rotation_is_looked_at),
         cmocka_unit_test(a_refused_step_changes_no_later_step),
         cmocka_unit_test(a_list_is_large_enough_or_null),
         cmocka_unit_test(a_list_changes_nothing),

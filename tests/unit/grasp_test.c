@@ -51,6 +51,28 @@ static void a_pick_moves_nothing(void **state) {
     }
 }
 
+/* What stands before the wafers in memory, here one that looks free, is no wafer. */
+static void closing_empty_handed_lets_go_of_nothing(void **state) {
+    (void)state;
+    wh_grasp_t table;
+    wh_wafer_t wafer[2] = {{.holder = WH_NONE}};
+    wh_gripper_t gripper;
+    wh_gripper_input_t input = {wh_test_at(0, 0, -2), OPEN};
+    wh_event_t event[WH_EVENTS_PER_GRIPPER];
+    wh_event_list_t list = {event, WH_EVENTS_PER_GRIPPER, 0};
+    wafer[1].base_from_wafer = wh_test_at(0, 0, 0);
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = {&wafer[1], 1, &gripper, 1, NULL, 0};
+    assert_int_equal(wh_grasp_init(&table, &config, &storage), WH_OK);
+    assert_int_equal(wh_grasp_step(&table, &input, &list), WH_OK);
+    assert_int_equal(gripper.approach.wafer, 0);
+    input.valve = CLOSED;
+    assert_int_equal(wh_grasp_step(&table, &input, &list), WH_OK);
+    assert_int_equal(list.count, 1);
+    assert_int_equal(event[0].kind, WH_EVENT_NEAR_MISS);
+    assert_int_equal(table.counters.released, 0);
+}
+
 static void a_held_wafer_moves_with_its_gripper(void **state) {
     (void)state;
     cell_t cell;
@@ -313,6 +335,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(starts_free_and_closed),
         cmocka_unit_test(a_pick_moves_nothing),
+        cmocka_unit_test(closing_empty_handed_lets_go_of_nothing),
         cmocka_unit_test(a_held_wafer_moves_with_its_gripper),
         cmocka_unit_test(a_gripper_takes_again_only_in_the_next_slice),
         cmocka_unit_test(hand_overs_go_both_ways),
