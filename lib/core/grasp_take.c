@@ -72,22 +72,42 @@ static void turn_onto_pads(wh_mat3_t *R) {
     }
 }
 
+/*@ requires wh_table_memory(table) && list != \null && wh_list_ready(list, 1) && wh_list_apart(list, table);
+    requires wh_is_gripper(table, g) && wh_is_wafer(table, w) && \valid_read(then);
+    assigns list->count, list->events[0 .. list->capacity - 1];
+    ensures wh_list_grown{Pre, Post}(list, 1); */
+static void append(const wh_grasp_t *table, wh_event_list_t *list, size_t g, int32_t w,
+                   const wh_pose_t *then) {
+    const wh_wafer_t *wafer = &table->storage.wafers[w];
+    const bool handed_over = wafer->released_by != WH_NONE;
+    wh_event_t *event = wh_event_append(table, list, handed_over ? WH_EVENT_HANDED_OVER : WH_EVENT_PICKED);
+    event->wafer = w;
+    event->gripper = (int32_t)g;
+    event->other = wafer->released_by;
+    wh_proximity_values(&wafer->base_from_wafer, then, &table->config.tolerance, &event->measured);
+}
+
 /* Before the wafer is taken: a seated wafer would no longer show what made it ready. */
 /*@ requires wh_table_memory(table) && wh_list_ready(list, 1) && wh_list_apart(list, table);
     requires wh_is_gripper(table, g) && wh_is_wafer(table, w) && \valid_read(then);
     assigns table->counters, list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
-    ensures wh_list_grown{Pre, Post}(list, 1); */
+    ensures wh_list_grown{Pre, Post}(list, 1);
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_same_holders{Pre, Post}(table);
+    ensures wh_same_releases{Pre, Post}(table);
+    ensures wh_same_held{Pre, Post}(table);
+    ensures wh_same_watched{Pre, Post}(table);
+    ensures wh_same_poses{Pre, Post}(table);
+    ensures wh_same_grips{Pre, Post}(table); */
 static void report(wh_grasp_t *table, wh_event_list_t *list, size_t g, int32_t w, const wh_pose_t *then) {
-    const wh_wafer_t *wafer = &table->storage.wafers[w];
-    const bool handed_over = wafer->released_by != WH_NONE;
+    const bool handed_over = table->storage.wafers[w].released_by != WH_NONE;
     *(handed_over ? &table->counters.handed_over : &table->counters.picked) += 1;
     if (list) {
-        wh_event_t *event =
-            wh_event_append(table, list, handed_over ? WH_EVENT_HANDED_OVER : WH_EVENT_PICKED);
-        event->wafer = w;
-        event->gripper = (int32_t)g;
-        event->other = wafer->released_by;
-        wh_proximity_values(&wafer->base_from_wafer, then, &table->config.tolerance, &event->measured);
+        /*@ assert \forall integer i; wh_is_gripper(table, i) ==>
+              \separated(&table->storage.grippers[i], list->events + (0 .. list->capacity - 1)); */
+        /*@ assert \forall integer i; wh_is_wafer(table, i) ==>
+              \separated(&table->storage.wafers[i], list->events + (0 .. list->capacity - 1)); */
+        append(table, list, g, w, then);
     }
 }
 
@@ -109,8 +129,8 @@ static void pair(wh_grasp_t *table, size_t g, int32_t w) {
 /*@ requires \valid(gripper_from_wafer) && \valid_read(then) && \valid_read(base_from_wafer);
     requires \separated(gripper_from_wafer, then) && \separated(gripper_from_wafer, base_from_wafer);
     assigns *gripper_from_wafer; */
-static void grip(wh_pose_t *gripper_from_wafer, const wh_pose_t *then, const wh_pose_t *base_from_wafer,
-                 bool seat) {
+static void measure_grip(wh_pose_t *gripper_from_wafer, const wh_pose_t *then,
+                         const wh_pose_t *base_from_wafer, bool seat) {
     wh_pose_relative_to(then, base_from_wafer, gripper_from_wafer);
     wh_mat3_orthonormalise(&gripper_from_wafer->R);
     if (seat) {
@@ -120,20 +140,29 @@ static void grip(wh_pose_t *gripper_from_wafer, const wh_pose_t *then, const wh_
     }
 }
 
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && wh_is_wafer(table, w);
+    requires \valid_read(then) && \separated(then, table->storage.grippers + (0 .. table->storage.gripper_count - 1));
+    assigns table->storage.grippers[g].gripper_from_wafer;
+    ensures wh_same_poses{Pre, Post}(table);
+    ensures wh_other_grips{Pre, Post}(table, g); */
+static void grip(wh_grasp_t *table, size_t g, int32_t w, const wh_pose_t *then) {
+    /*@ assert \forall integer i; wh_is_wafer(table, i) ==>
+          \separated(&table->storage.wafers[i], &table->storage.grippers[g]); */
+    /*@ assert \forall integer i; wh_is_gripper(table, i) && i != g ==>
+          \separated(&table->storage.grippers[i], &table->storage.grippers[g]); */
+    measure_grip(&table->storage.grippers[g].gripper_from_wafer, then,
+                 &table->storage.wafers[w].base_from_wafer, table->config.seat);
+}
+
 void wh_grasp_take(wh_grasp_t *table, size_t g, int32_t w, const wh_pose_t *then, wh_event_list_t *list) {
     report(table, list, g, w, then);
     /*@ assert wh_same_size{Pre, Here}(table); */
-    /*@ assert wh_same_holders{Pre, Here}(table); */
-    /*@ assert wh_same_held{Pre, Here}(table); */
-    /*@ assert wh_same_releases{Pre, Here}(table); */
-    /*@ assert wh_same_watched{Pre, Here}(table); */
-    /*@ assert wh_other_poses{Pre, Here}(table, WH_NONE); */
-    /*@ assert wh_other_grips{Pre, Here}(table, WH_NONE); */
     pair(table, g, w);
     /*@ assert wh_other_holders{Pre, Here}(table, w); */
     /*@ assert wh_other_held{Pre, Here}(table, g); */
     /*@ assert wh_same_releases{Pre, Here}(table); */
     /*@ assert wh_same_watched{Pre, Here}(table); */
-    grip(&table->storage.grippers[g].gripper_from_wafer, then, &table->storage.wafers[w].base_from_wafer,
-         table->config.seat);
+    /*@ assert wh_same_poses{Pre, Here}(table); */
+    /*@ assert wh_same_grips{Pre, Here}(table); */
+    grip(table, g, w, then);
 }

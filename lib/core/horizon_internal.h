@@ -52,7 +52,7 @@ static inline bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh
     const wh_real_t x = wh_horizon_way(words[0], place->x);
     const wh_real_t y = wh_horizon_way(words[1], place->y);
     const wh_real_t z = wh_horizon_way(words[2], place->z);
-    const wh_real_t reach = (wh_real_t)(int32_t)(words[3] >> 2);
+    const wh_real_t reach = (wh_real_t)(int32_t)(words[3] / 4);
     return x * x + y * y + z * z < reach * reach;
 }
 

@@ -5,6 +5,9 @@
 /* A cell's shortest edge as a power of two of the unit: 16 mm. */
 #define SMALLEST 10U
 
+/*@ predicate in_buckets{L}(wh_grasp_t *t, uint32_t *p) =
+      \base_addr(p) == \base_addr(t->storage.buckets) && 0 <= p - t->storage.buckets < t->storage.bucket_count; */
+
 size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) {
     const size_t most = (size_t)INT32_MAX / 16;
     if (wafer_count > most || gripper_count > most) {
@@ -21,7 +24,9 @@ static uint32_t *heads_of(const wh_grasp_t *table) {
 }
 
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && w < table->storage.wafer_count;
-    assigns \nothing; */
+    assigns \nothing;
+    ensures \result == table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * table->storage.gripper_count +
+                                                 2 * (table->storage.wafer_count + w)); */
 static uint32_t *node_of(const wh_grasp_t *table, size_t w) {
     return heads_of(table) + 2 * (table->storage.wafer_count + w);
 }
@@ -48,11 +53,17 @@ static uint32_t key_of(uint32_t x, uint32_t y, uint32_t z) {
     return key ^ (key >> 13);
 }
 
+/* One of `count` for this key. */
+/*@ requires 0 < count <= UINT32_MAX; assigns \nothing; ensures \result < count; */
+static size_t share_of(uint32_t key, uint64_t count) {
+    /*@ assert 0 <= key * count <= UINT32_MAX * count; */
+    return (size_t)((key * count) >> 32);
+}
+
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && table->storage.wafer_count > 0;
-    assigns \nothing; */
+    assigns \nothing; ensures in_buckets(table, \result); */
 static uint32_t *head_of(const wh_grasp_t *table, uint32_t key) {
-    const uint64_t heads = 2 * (uint64_t)table->storage.wafer_count;
-    return &heads_of(table)[(size_t)((key * heads) >> 32)];
+    return &heads_of(table)[share_of(key, 2 * (uint64_t)table->storage.wafer_count)];
 }
 
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && axis < 3;
@@ -124,7 +135,7 @@ static void insert(wh_grasp_t *table, size_t w) {
 static void take_out(wh_grasp_t *table, size_t w) {
     uint32_t *link = head_of(table, node_of(table, w)[1]);
     /*@ loop invariant 0 <= i <= table->storage.wafer_count;
-        loop invariant \valid(link) && \base_addr(link) == \base_addr(table->storage.buckets);
+        loop invariant in_buckets(table, link);
         loop assigns i, link;
         loop variant table->storage.wafer_count - i; */
     for (size_t i = 0; i < table->storage.wafer_count && *link < table->storage.wafer_count; ++i) {
@@ -183,7 +194,7 @@ typedef struct {
 /* False when the cells along this axis are more than `most`. Two units for what the two places were rounded by. */
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && axis < 3 && margin <= 1 << 30 && \valid(box);
     assigns box->first[axis], box->count[axis];
-    ensures \result ==> box->count[axis] <= most; */
+    ensures \result ==> most > 0 && box->count[axis] <= most; */
 static bool span(const wh_grasp_t *table, box_t *box, size_t axis, wh_real_t from, wh_real_t to,
                  uint32_t margin, size_t most) {
     const uint32_t extent = table->storage.buckets[WH_INDEX_EXTENTS + axis] & (uint32_t)INT32_MAX;
@@ -205,6 +216,7 @@ static bool span(const wh_grasp_t *table, box_t *box, size_t axis, wh_real_t fro
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0;
     requires \valid_read(from) && \valid_read(to) && \valid(box);
     assigns *box;
+    ensures \result ==> table->storage.wafer_count > 0;
     ensures \result ==> box->count[0] <= INT32_MAX && box->count[1] <= INT32_MAX && box->count[2] <= INT32_MAX; */
 static bool enclose(const wh_grasp_t *table, const wh_vec3_t *from, const wh_vec3_t *to, wh_real_t margin,
                     box_t *box) {
@@ -248,6 +260,7 @@ static size_t list_cell(wh_grasp_t *table, uint32_t key, size_t count) {
 /* The same for the cells that are above each other. */
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && table->storage.wafer_count > 0;
     requires count <= table->storage.wafer_count + 1 && \valid_read(box);
+    requires \separated(box, table->storage.buckets + (0 .. table->storage.bucket_count - 1));
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures \result <= table->storage.wafer_count + 1; */
 static size_t list_column(wh_grasp_t *table, const box_t *box, uint32_t x, uint32_t y, size_t count) {
@@ -261,7 +274,7 @@ static size_t list_column(wh_grasp_t *table, const box_t *box, uint32_t x, uint3
 }
 
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && table->storage.wafer_count > 0;
-    requires \valid_read(box);
+    requires \valid_read(box) && \separated(box, table->storage.buckets + (0 .. table->storage.bucket_count - 1));
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures \result <= table->storage.wafer_count + 1; */
 static size_t list_box(wh_grasp_t *table, const box_t *box) {
