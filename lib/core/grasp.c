@@ -129,6 +129,7 @@ static void begin(wh_grasp_t *table, const wh_grasp_config_t *config, const wh_g
     table->slice = 0;
     table->counters = none;
     table->storage = *storage;
+    /*@ assert storage->wafers == \at(storage->wafers, Pre); */
 }
 
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
