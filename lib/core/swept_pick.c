@@ -62,6 +62,52 @@ static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *swe
     return best;
 }
 
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && wh_is_wafer(table, w);
+    requires \valid_read(base_from_gripper) &&
+             \separated(base_from_gripper, table->storage.wafers + (0 .. table->storage.wafer_count - 1));
+    assigns table->storage.wafers[w].base_from_wafer;
+    ensures wh_other_poses{Pre, Post}(table, w);
+    ensures wh_same_grips{Pre, Post}(table); */
+static void carry_on(wh_grasp_t *table, size_t g, int32_t w, const wh_pose_t *base_from_gripper) {
+    /*@ assert \forall integer i; wh_is_wafer(table, i) && i != w ==>
+          \separated(&table->storage.wafers[i], &table->storage.wafers[w]); */
+    /*@ assert \forall integer i; wh_is_gripper(table, i) ==>
+          \separated(&table->storage.grippers[i], &table->storage.wafers[w]); */
+    wh_grasp_carry(&table->storage.wafers[w], base_from_gripper,
+                   &table->storage.grippers[g].gripper_from_wafer);
+}
+
+/* The wafer is taken at t and carried to the slice's end. */
+/*@ requires wh_table_memory(table) && wh_list_ready(list, 1) && wh_list_apart(list, table);
+    requires wh_is_gripper(table, g) && wh_is_wafer(table, w);
+    requires wh_holder(table, w) == WH_NONE && wh_held(table, g) == WH_NONE;
+    requires wh_sweep_memory(sweep) &&
+             \separated(sweep->end, table->storage.wafers + (0 .. table->storage.wafer_count - 1));
+    assigns table->counters, table->storage.wafers[w], table->storage.grippers[g].wafer,
+            table->storage.grippers[g].gripper_from_wafer, list->count, list->events[0 .. wh_room(list) - 1];
+    ensures wh_list_grown{Pre, Post}(list, 1);
+    ensures wh_same_size{Pre, Post}(table);
+    ensures wh_took{Pre, Post}(table, g, w);
+    ensures wh_other_holders{Pre, Post}(table, w);
+    ensures wh_other_held{Pre, Post}(table, g);
+    ensures wh_other_poses{Pre, Post}(table, w);
+    ensures wh_other_grips{Pre, Post}(table, g);
+    ensures wh_same_releases{Pre, Post}(table);
+    ensures wh_same_watched{Pre, Post}(table); */
+static void take_at(wh_grasp_t *table, size_t g, int32_t w, const wh_sweep_t *sweep, wh_real_t t,
+                    wh_event_list_t *list) {
+    wh_pose_t then;
+    wh_sweep_pose_at(sweep, t, &then);
+    /*@ assert wh_same_poses{Pre, Here}(table); */
+    /*@ assert wh_same_grips{Pre, Here}(table); */
+    wh_grasp_take(table, g, w, &then, list);
+    /*@ assert wh_other_poses{Pre, Here}(table, w); */
+    /*@ assert wh_other_grips{Pre, Here}(table, g); */
+    if (table->config.seat || t < 1) {
+        carry_on(table, g, w, sweep->end);
+    }
+}
+
 bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
     const wh_pose_t *begin = &table->storage.grippers[g].base_from_gripper;
@@ -70,22 +116,14 @@ bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *
     }
     wh_sweep_t sweep;
     wh_sweep_between(begin, &input->base_from_gripper, &sweep);
-    /*@ assert wh_other_poses{Pre, Here}(table, WH_NONE); */
-    /*@ assert wh_other_grips{Pre, Here}(table, WH_NONE); */
+    /*@ assert wh_same_poses{Pre, Here}(table); */
+    /*@ assert wh_same_grips{Pre, Here}(table); */
     const candidate_t best = find_ready(table, g, &sweep);
     if (best.wafer == WH_NONE) {
         return false;
     }
-    wh_pose_t then;
-    wh_sweep_pose_at(&sweep, best.t, &then);
-    wh_grasp_take(table, g, best.wafer, &then, list);
+    take_at(table, g, best.wafer, &sweep, best.t, list);
     /*@ assert wh_other_poses{Pre, Here}(table, best.wafer); */
     /*@ assert wh_other_grips{Pre, Here}(table, g); */
-    if (table->config.seat || best.t < 1) {
-        wh_grasp_carry(&table->storage.wafers[best.wafer], &input->base_from_gripper,
-                       &table->storage.grippers[g].gripper_from_wafer);
-        /*@ assert wh_other_poses{Pre, Here}(table, best.wafer); */
-        /*@ assert wh_other_grips{Pre, Here}(table, g); */
-    }
     return true;
 }
