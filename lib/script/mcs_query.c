@@ -4,6 +4,8 @@
 
 #include "motion/trig.h"
 #include "script/mcs_internal.h"
+#include "script/relation.h"
+#include "script/wh_module_internal.h"
 
 static void set_number(lua_State *L, const char *name, double value) {
     lua_pushnumber(L, value);
@@ -206,45 +208,70 @@ static int judge_place(lua_State *L) {
     return 5;
 }
 
-static void push_list(lua_State *L, const double values[], int count) {
-    lua_createtable(L, count, 0);
-    for (int i = 0; i < count; ++i) {
-        lua_pushnumber(L, values[i]);
-        lua_rawseti(L, -2, i + 1);
-    }
-}
-
-static int push_pose(lua_State *L, const wh_pose_t *pose) {
-    const double r[] = {pose->r.x, pose->r.y, pose->r.z};
-    lua_createtable(L, 0, 2);
-    push_list(L, r, 3);
-    lua_setfield(L, -2, "r");
-    lua_createtable(L, 3, 0);
-    for (int row = 0; row < 3; ++row) {
-        push_list(L, pose->R.m[row], 3);
-        lua_rawseti(L, -2, row + 1);
-    }
-    lua_setfield(L, -2, "R");
-    return 1;
-}
-
 /* native.wafer_pose(wafer): { r, R }, as the module wh takes it. */
 static int read_wafer_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_tape_measured(mcs->tape, "a wafer's pose");
-    return push_pose(L, &wafer_argument(L, mcs, 1)->base_from_wafer);
+    wh_lua_push_pose(L, &wafer_argument(L, mcs, 1)->base_from_wafer);
+    return 1;
 }
 
-/* native.gripper_pose(gripper): where it is now, also before the first slice. */
-static int read_gripper_pose(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+static wh_pose_t commanded_pose(const wh_mcs_t *mcs, int32_t gripper) {
     wh_pose_t poses[WH_GRIPPERS];
     if (mcs->layout->grippers[gripper].station != WH_NONE) {
         wh_tape_measured(mcs->tape, "a chuck's pose");
     }
     wh_machine_grippers(&wh_mcs_real(mcs)->machine, mcs->track.axes, poses);
-    return push_pose(L, &poses[gripper]);
+    return poses[gripper];
+}
+
+/* native.gripper_pose(gripper): where motion control has it, also before the first slice. */
+static int read_gripper_pose(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_pose_t pose = commanded_pose(mcs, wh_mcs_index(L, 1, mcs->state.gripper_count));
+    wh_lua_push_pose(L, &pose);
+    return 1;
+}
+
+/* native.real_gripper_pose(gripper): where it is, which a fault may keep from where motion control has it. */
+static int read_real_gripper_pose(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    wh_pose_t pose = commanded_pose(mcs, gripper);
+    if (mcs->state.seq > 0) {
+        pose = mcs->state.grippers[gripper].base_from_gripper;
+    }
+    wh_lua_push_pose(L, &pose);
+    return 1;
+}
+
+/* native.slot_pose(station, slot): where that slot really is. */
+static int read_slot_pose(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_station_t *station = &wh_mcs_real(mcs)->places[wh_mcs_index(L, 1, mcs->layout->station_count)];
+    const wh_pose_t pose = wh_station_slot(station, wh_mcs_index(L, 2, (size_t)station->slots) + 1);
+    wh_tape_measured(mcs->tape, "where a slot is");
+    wh_lua_push_pose(L, &pose);
+    return 1;
+}
+
+/* native.relate(first, second): how the second of two poses lies as seen from the first: distance, dx, dy, dz, and the angle
+ * and the whole turn in degrees. */
+static int relate(lua_State *L) {
+    const wh_field_t arguments[] = {wh_lua_argument("first", 1), wh_lua_argument("second", 2)};
+    wh_pose_t poses[2];
+    for (int i = 0; i < 2; ++i) {
+        lua_pushvalue(L, i + 1);
+        wh_lua_take_valid_pose(L, &arguments[i], &poses[i]);
+    }
+    const wh_relation_t relation = wh_relate(&poses[0], &poses[1]);
+    lua_pushnumber(L, relation.distance);
+    lua_pushnumber(L, relation.r.x);
+    lua_pushnumber(L, relation.r.y);
+    lua_pushnumber(L, relation.r.z);
+    lua_pushnumber(L, wh_deg_from_rad(relation.angle));
+    lua_pushnumber(L, wh_deg_from_rad(relation.turn));
+    return 6;
 }
 
 const luaL_Reg wh_mcs_query_functions[] = {{"layout", describe_layout},
@@ -257,4 +284,7 @@ const luaL_Reg wh_mcs_query_functions[] = {{"layout", describe_layout},
                                            {"lies", judge_place},
                                            {"wafer_pose", read_wafer_pose},
                                            {"gripper_pose", read_gripper_pose},
+                                           {"real_gripper_pose", read_real_gripper_pose},
+                                           {"slot_pose", read_slot_pose},
+                                           {"relate", relate},
                                            {NULL, NULL}};

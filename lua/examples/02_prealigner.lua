@@ -8,8 +8,11 @@ get("B", 10)  put("P", 1, { handover = "new_first" })
 expect(holder("Wafer 2") == "PA", "the chuck holds Wafer 2")
 expect_offset("Wafer 2", "P", 1, 13.794, 7.2385)
 
+local apart = distance("PA", "Wafer 2")
 rotate("P", 90)
 expect_offset("Wafer 2", "P", 1, -7.2385, 13.794)
+expect(math.abs(distance("PA", "Wafer 2") - apart) < 1e-9, "Wafer 2 stays as far from the middle of the chuck")
+expect(math.abs(measure("P", "PA").turn - 90) < 1e-9, "the chuck stands at 90 degrees")
 
 -- Back onto the blade and over again, both valves switching in one slice.
 get("P", 1, { handover = "same_slice" })

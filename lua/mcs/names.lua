@@ -2,7 +2,7 @@
 -- what it does not know with a numbered error that names it.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, math, pairs, table, tostring, type = ipairs, math, pairs, table, tostring, type
+local ipairs, math, pairs, table, tonumber, tostring, type = ipairs, math, pairs, table, tonumber, tostring, type
 
 return function(native, errors)
   local names = { errors = errors }
@@ -84,6 +84,71 @@ return function(native, errors)
       native.fail("NO_SUCH_WAFER", names.quote(name))
     end
     return index
+  end
+
+  ------------------------------------------------------------------------------------------------- frames
+
+  -- "B/10", where B is a station: that, and what stands for the slot.
+  local function split_slot(stations, name)
+    local station, slot = name:match("^(.*)/(%d+)$")
+    return stations[station], math.tointeger(tonumber(slot)) or slot
+  end
+
+  local function slot_frame(stations, name)
+    local station, slot = split_slot(stations, name)
+    local exists = station and math.type(slot) == "integer" and slot >= 1 and slot <= station.slots
+    return exists and ("%s/%d"):format(station.name, slot) == name and native.slot_pose(station.index, slot)
+  end
+
+  local function station_frame(stations, name)
+    return stations[name] and native.slot_pose(stations[name].index, 1)
+  end
+
+  local function gripper_frame(grippers, name)
+    for index, gripper in ipairs(grippers) do
+      if gripper.name == name then
+        return native.real_gripper_pose(index)
+      end
+    end
+  end
+
+  local function wafer_frame(name)
+    local wafer = native.wafer(name)
+    return wafer and native.wafer_pose(wafer)
+  end
+
+  local function refuse_frame(what, stations, name)
+    local station, slot = split_slot(stations, tostring(name))
+    if station then
+      names.slot(station, slot)
+    end
+    local expected = 'expected "base" or the name of a wafer, a gripper, a station or a slot, such as "A/1"'
+    native.fail("BAD_ARGUMENT", ("%s: %s (%s)"):format(what, names.quote(name), expected))
+  end
+
+  -- The pose of a frame by its name. Of equal names a slot's comes first, as in a report's measuring tool.
+  function names.frame(what, name)
+    local layout = native.layout()
+    local text = type(name) == "string" and name or ""
+    return slot_frame(layout.stations, text) or station_frame(layout.stations, text)
+      or gripper_frame(layout.grippers, text) or wafer_frame(text) or text == "base" and { r = { 0, 0, 0 } }
+      or refuse_frame(what, layout.stations, name)
+  end
+
+  -- Every frame's name.
+  function names.frames()
+    local list = native.wafer_names()
+    for _, gripper in ipairs(native.layout().grippers) do
+      list[#list + 1] = gripper.name
+    end
+    for name, station in pairs(native.layout().stations) do
+      list[#list + 1] = name
+      for slot = 1, station.slots do
+        list[#list + 1] = ("%s/%d"):format(name, slot)
+      end
+    end
+    list[#list + 1] = "base"
+    return list
   end
 
   function names.number(what, value)

@@ -1,7 +1,7 @@
--- The operator's words that ask and judge: offset, holder, proximity, expect, expect_offset.
+-- The operator's words that ask and judge: offset, holder, proximity, measure, expect, expect_offset, ...
 
 -- Kept, for a script may set globals of these names.
-local math, tostring, wh = math, tostring, wh
+local select, tostring, wh = select, tostring, wh
 
 return function(native, names)
   local questions = {}
@@ -21,7 +21,25 @@ return function(native, names)
   -- The check of a wafer against a gripper as they stand now: see wh.proximity.
   function questions.proximity(wafer, gripper)
     local tolerance = native.layout().tolerance
-    return wh.proximity(native.wafer_pose(names.wafer(wafer)), native.gripper_pose(names.gripper(gripper)), tolerance)
+    return wh.proximity(native.wafer_pose(names.wafer(wafer)), native.real_gripper_pose(names.gripper(gripper)), tolerance)
+  end
+
+  -- How the second frame lies as seen from the first: the distance of the origins; dx, dy, dz in the first frame's axes, mm;
+  -- the angle between the z axes, and the whole turn, degrees. A frame is the name of a wafer, a gripper, a station (its
+  -- slot 1) or a slot, such as "B/10", or "base".
+  function questions.measure(first, second)
+    local distance, dx, dy, dz, angle, turn = native.relate(names.frame("measure", first), names.frame("measure", second))
+    return { distance = distance, dx = dx, dy = dy, dz = dz, angle = angle, turn = turn }
+  end
+
+  -- The distance of two frames' origins, mm.
+  function questions.distance(first, second)
+    return (native.relate(names.frame("distance", first), names.frame("distance", second)))
+  end
+
+  -- The angle between two frames' z axes, degrees.
+  function questions.angle(first, second)
+    return (select(5, native.relate(names.frame("angle", first), names.frame("angle", second))))
   end
 
   -- What hit what so far: a list of { kind = "hit" or "undecided", parts = both names, at = { x, y, z }, time = s }.

@@ -39,7 +39,7 @@ return function(native, commands, questions, names, words)
   -- For each kind of argument the names that there are, or nothing: then it is a number.
   vocabulary.kinds = {
     station = station_names, gripper = gripper_names, wafer = native.wafer_names, command = command_names,
-    fault = native.fault_kinds,
+    fault = native.fault_kinds, frame = names.frames,
     handover = function() return { "new_first", "same_slice" } end,
     vacuum_check = function() return { "both", "get", "put", "none" } end,
     switch = function() return { "true", "false" } end,
@@ -128,6 +128,22 @@ return function(native, commands, questions, names, words)
       { "ready", tostring(p.ready) }, { "n1_proj_n2", p.n1_proj_n2 }, { "dr_proj_z", p.dr_proj_z },
       { "dr_proj_x", p.dr_proj_xy[1] }, { "dr_proj_y", p.dr_proj_xy[2] }, { "dr_proj_xy_norm", p.dr_proj_xy_norm },
     } .. " failed=" .. (#failed > 0 and table.concat(failed, ",") or "none")
+  end
+
+  local function measure(arguments)
+    local found = questions.measure(arguments[1], arguments[2])
+    return words.pairs {
+      { "distance", found.distance }, { "dx", found.dx }, { "dy", found.dy }, { "dz", found.dz },
+      { "angle_deg", found.angle }, { "turn_deg", found.turn },
+    }
+  end
+
+  local function distance(arguments)
+    return words.pairs { { "distance", questions.distance(arguments[1], arguments[2]) } }
+  end
+
+  local function angle(arguments)
+    return words.pairs { { "angle_deg", questions.angle(arguments[1], arguments[2]) } }
   end
 
   local function describe_wafer(layout, name, index)
@@ -274,6 +290,10 @@ return function(native, commands, questions, names, words)
     HOLDER = { takes = { "wafer" }, does = "the gripper that holds the wafer",
                run = function(arguments) return words.pairs { { "holder", questions.holder(arguments[1]) } } end },
     PROXIMITY = { takes = { "wafer", "gripper" }, run = proximity, does = "the check of the wafer against the gripper" },
+    MEASURE = { takes = { "frame", "frame" }, run = measure,
+                does = "how the second frame lies in the first one's axes: a wafer, gripper, station, slot (A/1) or base" },
+    DISTANCE = { takes = { "frame", "frame" }, run = distance, does = "of two frames' origins" },
+    ANGLE = { takes = { "frame", "frame" }, run = angle, does = "between two frames' z axes" },
     WHERE = { takes = { "wafer" }, optional = true, repeated = true, run = where, does = "where wafers are; without a name, all" },
     AXES = { takes = {}, run = axes, does = "where the axes stand, degrees and mm" },
     STATIONS = { takes = {}, run = stations, does = "the stations of the cell" },

@@ -129,7 +129,7 @@ return function(native)
     if name == nil then
       return "none"
     end
-    if name:find("^[%w_.-]+$") and name:lower() ~= "none" then
+    if name:find("^[%w_./-]+$") and name:lower() ~= "none" then
       return name
     end
     return '"' .. name:gsub('["\\]', "\\%0") .. '"'

@@ -104,6 +104,7 @@ static void an_example(void **state) {
 static void a_script_that_measures_is_never_replayed(void **state) {
     (void)state;
     compare("tests/data/study_measure.lua", NULL, 0, 0, 0);
+    compare("tests/data/study_frames.lua", NULL, 0, 0, 0);
 }
 
 static void collisions_are_never_replayed(void **state) {

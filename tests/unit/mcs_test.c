@@ -30,16 +30,28 @@ static void test_a_command_within_a_command_is_refused(void **state) {
     assert_true(run.record.slices == 200);
 }
 
-static void test_errors_within_a_pattern_name_the_line(void **state) {
-    (void)state;
-    const wh_run_outcome_t outcome = play("tests/data/error_lines.lua", 0);
+static void assert_expected(const char *script, size_t expectations) {
+    const wh_run_outcome_t outcome = play(script, 0);
     for (size_t i = 0; i < run.record.expectation_count; ++i) {
         if (!run.record.expectations[i].ok) {
             print_error("%s\n", run.record.expectations[i].text);
         }
     }
+    if (outcome != WH_RUN_MET) {
+        print_error("%s\n", run.record.failure ? run.record.failure : run.message);
+    }
     assert_int_equal(outcome, WH_RUN_MET);
-    assert_int_equal(run.record.expectation_count, 2);
+    assert_int_equal(run.record.expectation_count, expectations);
+}
+
+static void test_errors_within_a_pattern_name_the_line(void **state) {
+    (void)state;
+    assert_expected("tests/data/error_lines.lua", 2);
+}
+
+static void test_frames_are_measured(void **state) {
+    (void)state;
+    assert_expected("tests/data/measure.lua", 77);
 }
 
 static void test_a_script_may_use_the_names_of_functions(void **state) {
@@ -79,6 +91,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(test_a_command_within_a_command_is_refused, close_run),
         cmocka_unit_test_teardown(test_errors_within_a_pattern_name_the_line, close_run),
+        cmocka_unit_test_teardown(test_frames_are_measured, close_run),
         cmocka_unit_test_teardown(test_a_script_may_use_the_names_of_functions, close_run),
         cmocka_unit_test(test_a_stop_may_come_at_any_time),
         cmocka_unit_test_teardown(test_the_record_is_paid_for_from_the_budget, close_run),

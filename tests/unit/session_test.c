@@ -65,6 +65,9 @@ static void test_every_command(void **state) {
         {"PROXIMITY \"Wafer 2\" PA", "OK ready=true n1_proj_n2=1 dr_proj_z=0.24"},
         {"PROXIMITY \"Wafer 2\" EE", "OK ready=false"},
         {"ROTATE P 90", "OK seconds=0.6"},
+        {"MEASURE P PA", "OK distance=0 dx=0 dy=0 dz=0 angle_deg=0 turn_deg=90"},
+        {"DISTANCE a/1 A/25", "OK distance=240"},
+        {"ANGLE \"Wafer 1\" base", "OK angle_deg=1.5"},
         {"VALVE EE 0", "OK seconds=0.001"},
         {"VALVE EE 1", "OK seconds=0.001"},
         {"MOVE theta=10 r=400", "OK seconds="},
@@ -72,7 +75,7 @@ static void test_every_command(void **state) {
         {"WAIT 0.5", "OK seconds=0.5"},
         {"WHERE \"Wafer 2\"", "OK wafer=\"Wafer 2\" holder=PA station=P slot=1 dx="},
         {"STATIONS", "OK station=A slots=25; station=B slots=25; station=P slots=1 chuck=PA"},
-        {"HELP", "OK AXES CLEAR FAULT GET HELP"},
+        {"HELP", "OK ANGLE AXES CLEAR DISTANCE FAULT GET HELP"},
         {"HELP WAIT", "OK WAIT SECONDS: stands still"},
     };
     ASSERT_DIALOGUE(dialogue);
@@ -136,6 +139,8 @@ static void test_errors_have_their_numbers(void **state) {
         {"GET A 1 gripper=XX", "ERROR 45 "},
         {"GET A 1 gripper=PA", "ERROR 45 "},
         {"HOLDER \"Wafer 9\"", "ERROR 46 NO_SUCH_WAFER: "},
+        {"MEASURE A/26 base", "ERROR 41 NO_SUCH_SLOT: "},
+        {"DISTANCE A nowhere", "ERROR 48 BAD_ARGUMENT: "},
         {"VALVE EE 2", "ERROR 4 BAD_VALVE: "},
         {"MOVE z=2000", "ERROR 22 LIMIT_EXCEEDED: "},
         {"LINE dx=2000", "ERROR 21 OUT_OF_REACH: "},
@@ -469,6 +474,8 @@ static void test_completion(void **state) {
     assert_candidates("HOLDER \"Wafer 1", 7, "\"Wafer 1\"|");
     assert_candidates("OFFSET \"Wafer 1\" ", 17, "A|B|P|");
     assert_candidates("WHERE \"Wafer 1\" \"w", 16, "\"Wafer 1\"|\"Wafer 2\"|");
+    assert_candidates("MEASURE b/2", 8, "B/2|B/20|B/21|B/22|B/23|B/24|B/25|");
+    assert_candidates("MEASURE EE ba", 11, "base|");
     assert_candidates("HELP wa", 5, "WAIT|");
     assert_candidates("FLY ", 4, "");
     assert_candidates("GET \"A\"B ", 9, "");
