@@ -48,7 +48,7 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
             argp_error(state, "of which run?");
         }
         if (!wh_report_files_wanted(&arguments->run.files)) {
-            argp_error(state, "into which file? (-o FILE, --gltf FILE or --data FILE)");
+            argp_error(state, "into which file? (-o FILE, --gltf FILE, --data FILE or --svg DIR)");
         }
         return 0;
     default:
@@ -120,7 +120,7 @@ int wh_app_report(int argc, char **argv) {
         "RUN",
         "Makes a page of a run, which is a script that is run again, or an LCM event log: the cell in "
         "motion, plots "
-        "and tables, in one file that opens without a network.\v"
+        "and tables, in one file that opens without a network; or its plots for print.\v"
         "Exit status: 0 if it was written, whatever came of the run; 2 for wrong usage or a bad input file.",
         children,
         NULL,

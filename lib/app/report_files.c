@@ -7,10 +7,11 @@
 #include "app/record_json.h"
 #include "report/output.h"
 #include "report/page.h"
+#include "report/plots.h"
 #include "report/scene.h"
 #include "script/record.h"
 
-enum { OPTION_GLTF = 4000, OPTION_DATA };
+enum { OPTION_GLTF = 4000, OPTION_DATA, OPTION_SVG };
 
 static const struct argp_option options[] = {
     {"report", 'o', "FILE", 0, "Write a page to look at and to mail: the cell in motion, plots and tables",
@@ -18,6 +19,10 @@ static const struct argp_option options[] = {
     {"gltf", OPTION_GLTF, "FILE", 0, "Write the cell in motion as glTF 2.0, for Blender and other viewers",
      0},
     {"data", OPTION_DATA, "FILE", 0, "Write the page's data alone, as JSON", 0},
+    {"svg", OPTION_SVG, "DIR", 0,
+     "Write the plots into this folder, for print: each as SVG, with the data and the gnuplot script that "
+     "it is made of",
+     0},
     {0},
 };
 
@@ -33,6 +38,9 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     case OPTION_DATA:
         files->document = argument;
         return 0;
+    case OPTION_SVG:
+        files->plots = argument;
+        return 0;
     default:
         return ARGP_ERR_UNKNOWN;
     }
@@ -41,7 +49,7 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
 const struct argp wh_report_files_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
 
 bool wh_report_files_wanted(const wh_report_files_t *files) {
-    return files->page || files->scene || files->document;
+    return files->page || files->scene || files->document || files->plots;
 }
 
 /* ------------------------------------------------------------------------------------------------- listening */
@@ -147,6 +155,15 @@ static bool write_file(const content_t *content, const char *path, writer_t *wri
     return written;
 }
 
+static bool write_plots(const wh_document_t *document, const char *folder) {
+    char message[WH_PLOTS_MESSAGE_BYTES] = "";
+    if (folder && !wh_plots_write(document, folder, message)) {
+        fprintf(stderr, "%s: not written: %s\n", folder, message);
+        return false;
+    }
+    return true;
+}
+
 /* The document as text, to be freed; null when memory is out. */
 static char *text_of(const wh_document_t *document, size_t *size) {
     char *text = NULL;
@@ -170,7 +187,7 @@ bool wh_report_files_write(const wh_report_files_t *files, const wh_document_t *
     }
     const bool written = text && write_file(&content, files->document, write_document) &&
                          write_file(&content, files->scene, write_scene) &&
-                         write_file(&content, files->page, write_page);
+                         write_file(&content, files->page, write_page) && write_plots(&whole, files->plots);
     free(text);
     json_decref(whole.run);
     return written;

@@ -10,9 +10,10 @@
 /* Zero it to begin with: null paths are not wanted. */
 typedef struct {
     const char *page, *scene, *document;
+    const char *plots; /* a folder */
 } wh_report_files_t;
 
-/* --report, --gltf and --data; its input is a wh_report_files_t. */
+/* --report, --gltf, --data and --svg; its input is a wh_report_files_t. */
 extern const struct argp wh_report_files_argp;
 
 bool wh_report_files_wanted(const wh_report_files_t *files);

@@ -78,8 +78,7 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
 
 /* ---------------------------------------------------------------------------------------------------- names */
 
-/* The robot's have names; a chuck's is its gripper's. */
-static void name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size) {
+void wh_document_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
     (void)snprintf(name, size, "%s", axis < WH_ROBOT_AXES ? names[axis] : "chuck");
     for (size_t g = 0; axis >= WH_ROBOT_AXES && g < layout->machine.gripper_count; ++g) {
@@ -100,7 +99,7 @@ static void put_axis(wh_json_text_t *text, const wh_layout_t *layout, size_t axi
     const wh_travel_t travel = axis < WH_ROBOT_AXES ? machine->robot.travel[axis] : none;
     const double speed = axis < machine->axis_count ? wh_machine_limits(machine, axis)->speed : 0;
     char name[WH_NAME_SIZE + 8];
-    name_axis(layout, axis, name, sizeof name);
+    wh_document_name_axis(layout, axis, name, sizeof name);
     wh_json_text_begin(text, NULL, '{');
     put_text(text, "name", name);
     wh_json_text_string(text, "unit", axis == WH_AXIS_R || axis == WH_AXIS_Z ? "mm" : "rad");

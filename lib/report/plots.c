@@ -1,0 +1,258 @@
+#include "report/plots.h"
+
+#include <errno.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "report/document_internal.h"
+#include "report/plots_internal.h"
+#include "script/record.h"
+
+extern char **environ;
+
+/* Where they are made: within the folder that they are for. */
+#define FOLDER "/.plots.XXXXXX"
+#define PATH_BYTES 4096
+
+static const char *const endings[] = {"dat", "gp", "svg"};
+#define ENDINGS (sizeof endings / sizeof endings[0])
+
+static bool path_of(char path[PATH_BYTES], const char *folder, const char *name, const char *ending) {
+    return snprintf(path, PATH_BYTES, "%s/%s.%s", folder, name, ending) < PATH_BYTES;
+}
+
+/* ---------------------------------------------------------------------------------------------------- files */
+
+static bool is_taken(const wh_plots_t *plots, const char *name) {
+    for (size_t i = 0; i < plots->count; ++i) {
+        if (strcmp(plots->names[i].name, name) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What a shell, LaTeX and every system take for a name; of two that become one, the second is numbered. */
+static void choose_name(const wh_plots_t *plots, char name[WH_PLOT_NAME_BYTES], const char *stem,
+                        const char *of) {
+    (void)snprintf(name, WH_PLOT_NAME_BYTES - 20, "%s%s%s", stem, of ? "_" : "", of ? of : "");
+    for (char *c = name; *c; ++c) {
+        if (!strchr("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-", *c)) {
+            *c = '_';
+        }
+    }
+    const size_t length = strlen(name);
+    for (int i = 2; is_taken(plots, name); ++i) {
+        (void)snprintf(name + length, WH_PLOT_NAME_BYTES - length, "_%d", i);
+    }
+}
+
+static FILE *open_file(const wh_plots_t *plots, const wh_plot_t *plot, const char *ending) {
+    char path[PATH_BYTES];
+    errno = ENAMETOOLONG;
+    return path_of(path, plots->folder, plot->name, ending) ? fopen(path, "wb") : NULL;
+}
+
+static void close_file(wh_plots_t *plots, FILE *file) {
+    const bool failed = file && ferror(file);
+    if (file && (fclose(file) != 0 || failed) && plots->error == 0) {
+        plots->error = errno ? errno : EIO;
+    }
+}
+
+bool wh_plots_open(wh_plots_t *plots, wh_plot_t *plot, const char *name, const char *of) {
+    if (plots->error != 0) {
+        return false;
+    }
+    memset(plot, 0, sizeof *plot);
+    choose_name(plots, plot->name, name, of);
+    plots->names = wh_record_grow(plots->names, plots->count, &plots->capacity, sizeof *plots->names);
+    memcpy(plots->names[plots->count++].name, plot->name, sizeof plot->name);
+    plot->data = open_file(plots, plot, "dat");
+    plot->script = plot->data ? open_file(plots, plot, "gp") : NULL;
+    if (!plot->script) {
+        plots->error = errno;
+        close_file(plots, plot->data);
+    }
+    return plot->script != NULL;
+}
+
+void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot) {
+    fputs("unset multiplot\nset output\n", plot->script);
+    close_file(plots, plot->script);
+    close_file(plots, plot->data);
+}
+
+/* ------------------------------------------------------------------------------------------------------ run */
+
+double wh_plots_slice_s(const wh_plots_t *plots) {
+    return (double)plots->document->trace->layout->slice_us / 1e6;
+}
+
+double wh_plots_begin_s(const wh_plots_t *plots) {
+    const wh_trace_t *trace = plots->document->trace;
+    return trace->first > 0 ? wh_document_seconds(trace, trace->first) : 0;
+}
+
+double wh_plots_end_s(const wh_plots_t *plots) {
+    const wh_trace_t *trace = plots->document->trace;
+    return trace->last > 0 ? wh_document_seconds(trace, trace->last) : 0;
+}
+
+static void add_hold(wh_plot_hold_t **list, size_t *count, size_t *capacity, const wh_plot_hold_t *hold) {
+    wh_plot_hold_t *last = *count > 0 ? &(*list)[*count - 1] : NULL;
+    if (last && last->wafer == hold->wafer && !(hold->begin_s > last->end_s)) {
+        last->end_s = hold->end_s;
+    } else {
+        *list = wh_record_grow(*list, *count, capacity, sizeof **list);
+        (*list)[(*count)++] = *hold;
+    }
+}
+
+/* A gripper holds one wafer, so the stays, which come in order of time, end in that order too. */
+wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t *count) {
+    const wh_trace_t *trace = plots->document->trace;
+    wh_plot_hold_t *list = NULL;
+    wh_plot_hold_t open = {0, 0, WH_NONE};
+    size_t capacity = 0;
+    *count = 0;
+    for (size_t i = 0; i < trace->stay_count; ++i) {
+        const wh_stay_t *stay = &trace->stays[i];
+        const double at = wh_document_seconds(trace, stay->slice);
+        if (open.wafer != WH_NONE && (stay->wafer == open.wafer || stay->holder == gripper)) {
+            open.end_s = at;
+            add_hold(&list, count, &capacity, &open);
+            open.wafer = WH_NONE;
+        }
+        if (stay->holder == gripper) {
+            open = (wh_plot_hold_t){at, at, stay->wafer};
+        }
+    }
+    if (open.wafer != WH_NONE) {
+        open.end_s = wh_plots_end_s(plots);
+        add_hold(&list, count, &capacity, &open);
+    }
+    return list;
+}
+
+/* -------------------------------------------------------------------------------------------------- gnuplot */
+
+/* Runs it in their folder, without anybody's settings; 0, an errno, or -1 when it says itself what is wrong. */
+static int start(const wh_plots_t *plots, char *const arguments[]) {
+    posix_spawn_file_actions_t actions;
+    pid_t process = 0;
+    int status = 0;
+    int error = posix_spawn_file_actions_init(&actions);
+    if (error != 0) {
+        return error;
+    }
+    error = posix_spawn_file_actions_addchdir_np(&actions, plots->folder);
+    if (error == 0) {
+        error = posix_spawnp(&process, arguments[0], &actions, NULL, arguments, environ);
+    }
+    (void)posix_spawn_file_actions_destroy(&actions);
+    if (error != 0) {
+        return error;
+    }
+    while (waitpid(process, &status, 0) < 0) {
+        if (errno != EINTR) {
+            return errno;
+        }
+    }
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? 0 : -1;
+}
+
+static bool draw(const wh_plots_t *plots, const char *name, char message[WH_PLOTS_MESSAGE_BYTES]) {
+    char program[] = "gnuplot";
+    char plain[] = "-d";
+    char script[WH_PLOT_NAME_BYTES + 4];
+    char *const arguments[] = {program, plain, script, NULL};
+    (void)snprintf(script, sizeof script, "%s.gp", name);
+    const int error = start(plots, arguments);
+    if (error > 0) {
+        (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES,
+                       "gnuplot: %s (expected the program of Debian's package gnuplot-nox: apt-get install "
+                       "gnuplot-nox)",
+                       strerror(error));
+    } else if (error < 0) {
+        (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "gnuplot could not draw %s", name);
+    }
+    return error == 0;
+}
+
+static bool draw_all(const wh_plots_t *plots, char message[WH_PLOTS_MESSAGE_BYTES]) {
+    bool drawn = true;
+    for (size_t i = 0; drawn && i < plots->count; ++i) {
+        drawn = draw(plots, plots->names[i].name, message);
+    }
+    return drawn;
+}
+
+/* ------------------------------------------------------------------------------------------------- placing */
+
+static bool place(const wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
+    char from[PATH_BYTES];
+    char to[PATH_BYTES];
+    for (size_t i = 0; i < plots->count * ENDINGS; ++i) {
+        const char *name = plots->names[i / ENDINGS].name;
+        const char *ending = endings[i % ENDINGS];
+        errno = ENAMETOOLONG;
+        if (!path_of(from, plots->folder, name, ending) || !path_of(to, folder, name, ending) ||
+            rename(from, to) != 0) {
+            (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s.%s: %s", name, ending, strerror(errno));
+            return false;
+        }
+    }
+    return true;
+}
+
+static void clear(const wh_plots_t *plots) {
+    char path[PATH_BYTES];
+    for (size_t i = 0; i < plots->count * ENDINGS; ++i) {
+        if (path_of(path, plots->folder, plots->names[i / ENDINGS].name, endings[i % ENDINGS])) {
+            (void)unlink(path);
+        }
+    }
+    (void)rmdir(plots->folder);
+}
+
+static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
+    if (wh_plots_end_s(plots) > wh_plots_begin_s(plots)) {
+        wh_plots_proximity(plots);
+        wh_plots_signals(plots);
+        wh_plots_holders(plots);
+        wh_plots_commands(plots);
+        wh_plots_axes(plots);
+        wh_plots_clearances(plots);
+    }
+    wh_plots_offsets(plots);
+    if (plots->error != 0) {
+        (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s", strerror(plots->error));
+        return false;
+    }
+    return draw_all(plots, message) && place(plots, folder, message);
+}
+
+bool wh_plots_write(const wh_document_t *document, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
+    char within[PATH_BYTES];
+    const bool is_new = mkdir(folder, 0777) == 0;
+    errno = ENAMETOOLONG;
+    if ((size_t)snprintf(within, sizeof within, "%s%s", folder, FOLDER) >= sizeof within ||
+        !mkdtemp(within)) {
+        (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s (expected a folder that can be written to)",
+                       strerror(errno));
+        return false;
+    }
+    wh_plots_t plots = {.document = document, .folder = within};
+    const bool made = make(&plots, folder, message);
+    clear(&plots);
+    free(plots.names);
+    if (!made && is_new) {
+        (void)rmdir(folder);
+    }
+    return made;
+}

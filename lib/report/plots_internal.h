@@ -1,0 +1,49 @@
+/* Within the plots. */
+#ifndef WH_REPORT_PLOTS_INTERNAL_H
+#define WH_REPORT_PLOTS_INTERNAL_H
+
+#include "report/plot.h"
+#include "report/plots.h"
+
+typedef struct {
+    char name[WH_PLOT_NAME_BYTES];
+} wh_plot_name_t;
+
+/* Plots being made in a folder of their own. */
+typedef struct {
+    const wh_document_t *document;
+    const char *folder; /* where they are made */
+    wh_plot_name_t *names;
+    size_t count, capacity;
+    int error; /* errno of the first file that could not be written; then nothing more is */
+} wh_plots_t;
+
+/* A plot's files, named by `name` and, unless it is null, what of `of` may stand in a file's name. False when they cannot be
+ * opened, then there is nothing to close. */
+bool wh_plots_open(wh_plots_t *plots, wh_plot_t *plot, const char *name, const char *of);
+void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot);
+
+/* How long a slice is, s, and until when the run goes. */
+double wh_plots_slice_s(const wh_plots_t *plots);
+double wh_plots_begin_s(const wh_plots_t *plots);
+double wh_plots_end_s(const wh_plots_t *plots);
+
+/* When a gripper held a wafer. */
+typedef struct {
+    double begin_s, end_s;
+    int32_t wafer;
+} wh_plot_hold_t;
+
+/* All of a gripper's, in order, to be freed. */
+wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t *count);
+
+/* The plots, by subject; each adds none where there is nothing to show. */
+void wh_plots_proximity(wh_plots_t *plots);
+void wh_plots_axes(wh_plots_t *plots);
+void wh_plots_signals(wh_plots_t *plots);
+void wh_plots_holders(wh_plots_t *plots);
+void wh_plots_commands(wh_plots_t *plots);
+void wh_plots_clearances(wh_plots_t *plots);
+void wh_plots_offsets(wh_plots_t *plots);
+
+#endif
