@@ -696,11 +696,11 @@ static void report_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_e
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place);
     assigns \nothing; */
 static bool is_far_from_all(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
-    if (wh_grasp_is_swept(table, g) &&
-        !wh_horizon_covers(table, g, &table->storage.grippers[g].base_from_gripper.r)) {
+    const wh_vec3_t *begin = &table->storage.grippers[g].base_from_gripper.r;
+    if (!wh_horizon_covers(table, g, place)) {
         return false;
     }
-    return wh_horizon_covers(table, g, place);
+    return !wh_grasp_is_swept(table, g) || wh_horizon_covers(table, g, begin);
 }
 
 /* Whether this slice has no pick, no release and nothing to tell: what most slices are. No gripper is watching a wafer;
