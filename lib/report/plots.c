@@ -237,9 +237,9 @@ static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_ME
     return draw_all(plots, message) && place(plots, folder, message);
 }
 
-bool wh_plots_write(const wh_document_t *document, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
+static bool make_within(const wh_document_t *document, const char *folder,
+                        char message[WH_PLOTS_MESSAGE_BYTES]) {
     char within[PATH_BYTES];
-    const bool is_new = mkdir(folder, 0777) == 0;
     errno = ENAMETOOLONG;
     if ((size_t)snprintf(within, sizeof within, "%s%s", folder, FOLDER) >= sizeof within ||
         !mkdtemp(within)) {
@@ -251,6 +251,12 @@ bool wh_plots_write(const wh_document_t *document, const char *folder, char mess
     const bool made = make(&plots, folder, message);
     clear(&plots);
     free(plots.names);
+    return made;
+}
+
+bool wh_plots_write(const wh_document_t *document, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
+    const bool is_new = mkdir(folder, 0777) == 0;
+    const bool made = make_within(document, folder, message);
     if (!made && is_new) {
         (void)rmdir(folder);
     }
