@@ -9,7 +9,7 @@
 #include "report/scene.h"
 #include "report/utf8.h"
 
-#define FORMAT 1
+#define FORMAT 2
 
 double wh_document_seconds(const wh_trace_t *trace, int64_t slice) {
     return (double)(slice * trace->layout->slice_us) / 1e6;
@@ -145,6 +145,41 @@ static void put_wafer(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_end(text, '}');
 }
 
+static void put_mount(wh_json_text_t *text, const wh_mount_t *mount) {
+    const wh_pose_t identity = wh_pose_identity();
+    wh_json_text_begin(text, NULL, '{');
+    if (mount->axis == WH_NONE) {
+        wh_json_text_value(text, "axis", json_null());
+        wh_document_put_pose(text, mount->is_shifted ? &mount->effector_from_gripper : &identity);
+    } else {
+        wh_json_text_integer(text, "axis", mount->axis);
+        wh_document_put_pose(text, &mount->base_from_station);
+    }
+    wh_json_text_end(text, '}');
+}
+
+static void put_machine(wh_json_text_t *text, const wh_layout_t *layout) {
+    static const char *const names[WH_TRACE_LINKS] = {"lift", "upper arm", "forearm", "hand"};
+    const wh_arm_t *arm = &layout->shapes.arm;
+    wh_json_text_begin(text, "machine", '{');
+    wh_json_text_begin(text, "grippers", '[');
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        put_mount(text, &layout->machine.mounts[g]);
+    }
+    wh_json_text_end(text, ']');
+    wh_json_text_begin(text, "links", '[');
+    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        wh_json_text_string(text, NULL, names[i]);
+    }
+    wh_json_text_end(text, ']');
+    wh_json_text_begin(text, "arm", '{');
+    put_exact(text, "reach", arm->reach);
+    put_exact(text, "link", arm->link);
+    wh_json_text_value(text, "right_handed", json_boolean(arm->right_handed));
+    wh_json_text_end(text, '}');
+    wh_json_text_end(text, '}');
+}
+
 static void put_limits(wh_json_text_t *text, const wh_grasp_config_t *grasp) {
     wh_json_text_begin(text, "limits", '{');
     put_exact(text, "projz", grasp->tolerance.projz);
@@ -177,6 +212,7 @@ int wh_document_write(const wh_document_t *document, FILE *out) {
     put_head(&text, document);
     put_names(&text, trace);
     put_wafer(&text, trace->layout);
+    put_machine(&text, trace->layout);
     put_limits(&text, &trace->layout->grasp);
     put_slots(&text, trace->layout);
     wh_document_put_thinning(&text, trace);

@@ -2,7 +2,7 @@
  *
  * Lengths in mm, angles in rad, times in s from the run's begin; poses are r [x, y, z] and the quaternion q [x, y, z, w]; indices
  * are from 0, slots from 1. The members:
- *   format (1), title, version, reproduce (the command that makes the run again), parameters { name: value }
+ *   format (2), title, version, reproduce (the command that makes the run again), parameters { name: value }
  *   source       "run" or "log"; notes: [text], what a log did not tell
  *   run          what `run --json` prints, whole (app/record_json.h); of a log what it holds
  *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s
@@ -10,17 +10,23 @@
  *   wafer        diameter, thickness, notch (about its z from its x)
  *   limits       projz, projxy, planar, near_projz, near_projxy
  *   slots        [{ station, slot, r, q }]: base_from_slot
- *   thinning     how far what tracks say may be off: mm and rad (grippers and axes), link_mm, link_rad, mm_per_s, rad_per_s,
- *                vacuum, projz, projxy, planar; `of` samples, `kept` of them. At events and at the begin and end of each
- *                command nothing is off
- *   tracks       grippers, links [{ name (links), t, r, q }]: base_from_gripper, base_from_link. Between points r is linear
- *                and q the shorter slerp; before the first and after the last nothing moves
+ *   machine      grippers [{ axis, r, q }]: of a chuck the axis that turns it and base_from_station, on the robot null and
+ *                effector_from_gripper; links: names of the arm's; arm { reach, link, right_handed } (collision/arm.h)
+ *   thinning     how far what tracks say may be off: mm, rad (axes), gripper_mm, gripper_rad, vacuum, projz, projxy, planar;
+ *                `of` samples, `kept` of them. At events and at the begin and end of each command nothing is off
+ *   tracks       axes [curve]. A curve is { t, v, slope } (a second); between two points it is the cubic that has the value and
+ *                the slope of both; v and slope null: from there on to the next point there is none, as before the first; after
+ *                the last one nothing changes. The slope of an axis is its speed
+ *                grippers [{ t, r, q }]: base_from_gripper from the first of these points on, r linear and q the shorter slerp; before it,
+ *                and of those without points, base_from_gripper follows from the axes (motion/machine.h): on the robot, whose
+ *                axes are theta, R, Z and yaw, of an end-effector at (R cos theta, R sin theta, Z), turned about z by theta +
+ *                yaw; of a chuck, turned about the station's z by its axis. Links follow from the end-effector
  *                wafers [[{ t, holder (gripper or null), r, q }]]: from t on gripper_from_wafer or base_from_wafer
- *                axes [{ t, v, speed_t, speed }]; vacuum [{ t, v }], 0 to 1: linear
- *                valves (0: open), sensors (1: on) [{ t, v }]: from t on
- *                proximity [{ t, wafer, dr_proj_z, dr_proj_xy, n1_proj_n2 }], the first two as absolute values: each gripper
- *                against the wafer that it holds, or else would take: with the smallest |dr_proj_z|, while they are within
- *                20 mm and twice near_projxy; nulls: there is none
+ *                valves (0: open), sensors (1: on), nearest (a wafer or null), for each gripper [{ t, v }]: from t on
+ *                vacuum [curve], 0 to 1
+ *                proximity [{ dr_proj_z, dr_proj_xy, n1_proj_n2 }]: curves, the first two as absolute values: each gripper
+ *                against `nearest`, the wafer that it holds, or else would take: with the smallest |dr_proj_z|, while
+ *                they are within 20 mm and twice near_projxy
  *                clearances [{ pair, limit (null: none), t, gap (null: wider than 20 mm) }]
  *   marks        [{ t, kind, text, at (null: nowhere) }]: events worth a mark in the cell
  *   scene        glTF 2.0 (report/scene.h), without animation

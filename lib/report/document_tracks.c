@@ -6,8 +6,17 @@
 #include "report/document_internal.h"
 #include "report/utf8.h"
 
-/* Decimals that add a hundredth of what thinning leaves, or less. */
-enum { DECIMALS_S = 6, DECIMALS_MM = 4, DECIMALS_RAD = 6, DECIMALS_SHARE = 5, DECIMALS_PLANAR = 9 };
+/* Decimals that add a hundredth of what thinning leaves, or less: of values, and of slopes, which count for up to 4 s. */
+enum { DECIMALS_S = 6, DECIMALS_OWN_MM = 4, DECIMALS_OWN = 6 };
+
+typedef struct {
+    int value, slope;
+} decimals_t;
+
+static const decimals_t decimals_mm = {4, 3};
+static const decimals_t decimals_rad = {7, 6};
+static const decimals_t decimals_level = {5, 4};
+static const decimals_t decimals_measure[WH_MEASURES] = {{6, 5}, {4, 3}, {9, 9}};
 
 static bool is_rad(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
@@ -16,34 +25,48 @@ static bool is_rad(size_t axis) {
 /* ------------------------------------------------------------------------------------------------- thinning */
 
 typedef struct {
-    double mm, rad, link_mm, link_rad, mm_per_s, rad_per_s, vacuum, projz;
+    double mm, rad, own_mm, own_rad, vacuum, measured[WH_MEASURES];
     int64_t of, kept;
 } sums_t;
 
-static void count(sums_t *sums, const wh_thin_t *thin, double *linear, double *turn) {
-    sums->of += thin->of;
-    sums->kept += (int64_t)thin->count;
-    *linear = thin->tolerance > *linear ? thin->tolerance : *linear;
-    if (turn) {
-        *turn = thin->turn > *turn ? thin->turn : *turn;
-    }
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+static void count(sums_t *sums, const wh_curve_t *curve, double *tolerance) {
+    sums->of += curve->of;
+    sums->kept += (int64_t)curve->count;
+    *tolerance = larger(curve->tolerance, *tolerance);
 }
 
 static sums_t sum_up(const wh_trace_t *trace) {
     sums_t sums = {0};
     for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        count(&sums, &trace->grippers[g], &sums.mm, &sums.rad);
-        count(&sums, &trace->vacuum[g], &sums.vacuum, NULL);
-        count(&sums, &trace->proximity[g], &sums.projz, NULL);
-    }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
-        count(&sums, &trace->links[i], &sums.link_mm, &sums.link_rad);
+        const wh_thin_t *own = &trace->own[g];
+        count(&sums, &trace->vacuum[g], &sums.vacuum);
+        for (size_t m = 0; m < WH_MEASURES; ++m) {
+            count(&sums, &trace->proximity[g][m], &sums.measured[m]);
+        }
+        sums.of += own->of;
+        sums.kept += (int64_t)own->count;
+        sums.own_mm = own->count > 0 ? larger(own->tolerance, sums.own_mm) : sums.own_mm;
+        sums.own_rad = own->count > 0 ? larger(own->turn, sums.own_rad) : sums.own_rad;
     }
     for (size_t axis = 0; axis < trace->axis_count; ++axis) {
-        count(&sums, &trace->axes[axis], is_rad(axis) ? &sums.rad : &sums.mm, NULL);
-        count(&sums, &trace->speeds[axis], is_rad(axis) ? &sums.rad_per_s : &sums.mm_per_s, NULL);
+        count(&sums, &trace->axes[axis], is_rad(axis) ? &sums.rad : &sums.mm);
     }
     return sums;
+}
+
+/* How far a gripper's origin is from where its axes' curves put it, at most: R and Z off, theta off at the robot's reach. */
+static double gripper_mm(const wh_trace_t *trace, const sums_t *sums) {
+    double reach = trace->layout->machine.robot.travel[WH_AXIS_R].max;
+    for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
+        const wh_mount_t *mount = &trace->layout->machine.mounts[g];
+        reach += mount->is_shifted ? wh_vec3_norm(&mount->effector_from_gripper.r) : 0;
+    }
+    const double across = sums->mm + reach * sums->rad;
+    return larger(sqrt(across * across + sums->mm * sums->mm), sums->own_mm);
 }
 
 /* What rounding adds, and the half that points which are inserted take. */
@@ -56,76 +79,98 @@ void wh_document_put_thinning(wh_json_text_t *text, const wh_trace_t *trace) {
     wh_json_text_begin(text, "thinning", '{');
     put_tolerance(text, "mm", sums.mm);
     put_tolerance(text, "rad", sums.rad);
-    put_tolerance(text, "mm_per_s", sums.mm_per_s);
-    put_tolerance(text, "rad_per_s", sums.rad_per_s);
+    put_tolerance(text, "gripper_mm", gripper_mm(trace, &sums));
+    put_tolerance(text, "gripper_rad", larger(2 * sums.rad, sums.own_rad));
     put_tolerance(text, "vacuum", sums.vacuum);
-    put_tolerance(text, "link_mm", sums.link_mm);
-    put_tolerance(text, "link_rad", sums.link_rad);
-    put_tolerance(text, "projz", 2 * sums.projz);
-    put_tolerance(text, "projxy", 2 * sums.projz / WH_TRACE_PROJXY_SCALE);
-    put_tolerance(text, "planar", 2 * sums.projz / WH_TRACE_PLANAR_SCALE);
+    put_tolerance(text, "projz", 2 * sums.measured[WH_MEASURE_PROJZ]);
+    put_tolerance(text, "projxy", 2 * sums.measured[WH_MEASURE_PROJXY]);
+    put_tolerance(text, "planar", 2 * sums.measured[WH_MEASURE_PLANAR]);
     wh_json_text_integer(text, "of", sums.of);
     wh_json_text_integer(text, "kept", sums.kept);
     wh_json_text_end(text, '}');
 }
 
-/* -------------------------------------------------------------------------------------------------- tracks */
+/* --------------------------------------------------------------------------------------------------- curves */
 
-static void put_times(wh_json_text_t *text, const wh_trace_t *trace, const char *key, const wh_thin_t *thin) {
-    wh_json_text_begin(text, key, '[');
-    for (size_t i = 0; i < thin->count; ++i) {
-        wh_json_text_number(text, NULL, wh_document_seconds(trace, thin->points[i].slice), DECIMALS_S, false);
+static void put_second(wh_json_text_t *text, const wh_trace_t *trace, int64_t slice) {
+    wh_json_text_number(text, NULL, wh_document_seconds(trace, slice), DECIMALS_S, false);
+}
+
+/* Where a curve breaks off, nulls stand a slice after its last point. */
+static void put_curve_times(wh_json_text_t *text, const wh_trace_t *trace, const wh_curve_t *curve) {
+    wh_json_text_begin(text, "t", '[');
+    for (size_t i = 0; i < curve->count; ++i) {
+        put_second(text, trace, curve->points[i].slice);
+        if (curve->points[i].ends) {
+            put_second(text, trace, curve->points[i].slice + 1);
+        }
     }
     wh_json_text_end(text, ']');
 }
 
-/* Numbers `first` to `first + width - 1` of each point, over `scale`; null where the point's tag is WH_NONE. */
+static void put_null(wh_json_text_t *text) {
+    wh_json_text_number(text, NULL, HUGE_VAL, 0, false);
+}
+
+static void put_curve(wh_json_text_t *text, const wh_trace_t *trace, const char *key, const wh_curve_t *curve,
+                      decimals_t decimals) {
+    const double slices_a_second = 1e6 / (double)trace->layout->slice_us;
+    wh_json_text_begin(text, key, '{');
+    put_curve_times(text, trace, curve);
+    wh_json_text_begin(text, "v", '[');
+    for (size_t i = 0; i < curve->count; ++i) {
+        wh_json_text_number(text, NULL, curve->points[i].value, decimals.value, curve->points[i].exact);
+        if (curve->points[i].ends) {
+            put_null(text);
+        }
+    }
+    wh_json_text_end(text, ']');
+    wh_json_text_begin(text, "slope", '[');
+    for (size_t i = 0; i < curve->count; ++i) {
+        wh_json_text_number(text, NULL, curve->points[i].slope * slices_a_second, decimals.slope, false);
+        if (curve->points[i].ends) {
+            put_null(text);
+        }
+    }
+    wh_json_text_end(text, ']');
+    wh_json_text_end(text, '}');
+}
+
+static void put_axes(wh_json_text_t *text, const wh_trace_t *trace) {
+    wh_json_text_begin(text, "axes", '[');
+    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
+        put_curve(text, trace, NULL, &trace->axes[axis], is_rad(axis) ? decimals_rad : decimals_mm);
+    }
+    wh_json_text_end(text, ']');
+}
+
+/* ------------------------------------------------------------------------------------------------ own poses */
+
+/* Numbers `first` to `first + width - 1` of each point. */
 static void put_values(wh_json_text_t *text, const char *key, const wh_thin_t *thin, size_t first,
-                       size_t width, int decimals, double scale) {
+                       size_t width, int decimals) {
     wh_json_text_begin(text, key, '[');
     for (size_t i = 0; i < thin->count; ++i) {
         const wh_thin_point_t *point = &thin->points[i];
         for (size_t k = first; k < first + width; ++k) {
-            const double value = point->tag == WH_NONE ? HUGE_VAL : point->values[k] / scale;
-            wh_json_text_number(text, NULL, value, decimals, point->exact);
+            wh_json_text_number(text, NULL, point->values[k], decimals, point->exact);
         }
     }
     wh_json_text_end(text, ']');
 }
 
-static void put_poses(wh_json_text_t *text, const wh_trace_t *trace, const wh_thin_t *thin,
-                      const char *name) {
-    wh_json_text_begin(text, NULL, '{');
-    if (name) {
-        wh_json_text_string(text, "name", name);
-    }
-    put_times(text, trace, "t", thin);
-    put_values(text, "r", thin, 0, 3, DECIMALS_MM, 1);
-    put_values(text, "q", thin, 3, 4, DECIMALS_RAD, 1);
-    wh_json_text_end(text, '}');
-}
-
-static void put_robot(wh_json_text_t *text, const wh_trace_t *trace) {
-    static const char *const names[WH_TRACE_LINKS] = {"lift", "upper arm", "forearm", "hand"};
+static void put_own(wh_json_text_t *text, const wh_trace_t *trace) {
     wh_json_text_begin(text, "grippers", '[');
     for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        put_poses(text, trace, &trace->grippers[g], NULL);
-    }
-    wh_json_text_end(text, ']');
-    wh_json_text_begin(text, "links", '[');
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
-        if (trace->links[i].count > 0) {
-            put_poses(text, trace, &trace->links[i], names[i]);
-        }
-    }
-    wh_json_text_end(text, ']');
-    wh_json_text_begin(text, "axes", '[');
-    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
+        const wh_thin_t *own = &trace->own[g];
         wh_json_text_begin(text, NULL, '{');
-        put_times(text, trace, "t", &trace->axes[axis]);
-        put_values(text, "v", &trace->axes[axis], 0, 1, is_rad(axis) ? DECIMALS_RAD : DECIMALS_MM, 1);
-        put_times(text, trace, "speed_t", &trace->speeds[axis]);
-        put_values(text, "speed", &trace->speeds[axis], 0, 1, is_rad(axis) ? DECIMALS_RAD : DECIMALS_MM, 1);
+        wh_json_text_begin(text, "t", '[');
+        for (size_t i = 0; i < own->count; ++i) {
+            put_second(text, trace, own->points[i].slice);
+        }
+        wh_json_text_end(text, ']');
+        put_values(text, "r", own, 0, 3, DECIMALS_OWN_MM);
+        put_values(text, "q", own, 3, 4, DECIMALS_OWN);
         wh_json_text_end(text, '}');
     }
     wh_json_text_end(text, ']');
@@ -186,6 +231,7 @@ static void put_wafers(wh_json_text_t *text, const wh_trace_t *trace) {
 
 /* -------------------------------------------------------------------------------------------------- signals */
 
+/* WH_NONE is null. */
 static void put_steps(wh_json_text_t *text, const wh_trace_t *trace, const char *key,
                       const wh_steps_t lists[]) {
     wh_json_text_begin(text, key, '[');
@@ -193,13 +239,16 @@ static void put_steps(wh_json_text_t *text, const wh_trace_t *trace, const char 
         wh_json_text_begin(text, NULL, '{');
         wh_json_text_begin(text, "t", '[');
         for (size_t i = 0; i < lists[g].count; ++i) {
-            wh_json_text_number(text, NULL, wh_document_seconds(trace, lists[g].steps[i].slice), DECIMALS_S,
-                                false);
+            put_second(text, trace, lists[g].steps[i].slice);
         }
         wh_json_text_end(text, ']');
         wh_json_text_begin(text, "v", '[');
         for (size_t i = 0; i < lists[g].count; ++i) {
-            wh_json_text_integer(text, NULL, lists[g].steps[i].value);
+            if (lists[g].steps[i].value == WH_NONE) {
+                put_null(text);
+            } else {
+                wh_json_text_integer(text, NULL, lists[g].steps[i].value);
+            }
         }
         wh_json_text_end(text, ']');
         wh_json_text_end(text, '}');
@@ -210,36 +259,19 @@ static void put_steps(wh_json_text_t *text, const wh_trace_t *trace, const char 
 static void put_vacuum(wh_json_text_t *text, const wh_trace_t *trace) {
     wh_json_text_begin(text, "vacuum", '[');
     for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        wh_json_text_begin(text, NULL, '{');
-        put_times(text, trace, "t", &trace->vacuum[g]);
-        put_values(text, "v", &trace->vacuum[g], 0, 1, DECIMALS_SHARE, 1);
-        wh_json_text_end(text, '}');
-    }
-    wh_json_text_end(text, ']');
-}
-
-static void put_nearest(wh_json_text_t *text, const wh_thin_t *thin) {
-    wh_json_text_begin(text, "wafer", '[');
-    for (size_t i = 0; i < thin->count; ++i) {
-        if (thin->points[i].tag == WH_NONE) {
-            wh_json_text_value(text, NULL, json_null());
-        } else {
-            wh_json_text_integer(text, NULL, thin->points[i].tag);
-        }
+        put_curve(text, trace, NULL, &trace->vacuum[g], decimals_level);
     }
     wh_json_text_end(text, ']');
 }
 
 static void put_proximity(wh_json_text_t *text, const wh_trace_t *trace) {
+    static const char *const names[WH_MEASURES] = {"dr_proj_z", "dr_proj_xy", "n1_proj_n2"};
     wh_json_text_begin(text, "proximity", '[');
     for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        const wh_thin_t *thin = &trace->proximity[g];
         wh_json_text_begin(text, NULL, '{');
-        put_times(text, trace, "t", thin);
-        put_nearest(text, thin);
-        put_values(text, "dr_proj_z", thin, 0, 1, DECIMALS_RAD, 1);
-        put_values(text, "dr_proj_xy", thin, 1, 1, DECIMALS_MM, WH_TRACE_PROJXY_SCALE);
-        put_values(text, "n1_proj_n2", thin, 2, 1, DECIMALS_PLANAR, WH_TRACE_PLANAR_SCALE);
+        for (size_t m = 0; m < WH_MEASURES; ++m) {
+            put_curve(text, trace, names[m], &trace->proximity[g][m], decimals_measure[m]);
+        }
         wh_json_text_end(text, '}');
     }
     wh_json_text_end(text, ']');
@@ -283,10 +315,12 @@ static void put_clearances(wh_json_text_t *text, const wh_document_t *document) 
 void wh_document_put_tracks(wh_json_text_t *text, const wh_document_t *document) {
     const wh_trace_t *trace = document->trace;
     wh_json_text_begin(text, "tracks", '{');
-    put_robot(text, trace);
+    put_axes(text, trace);
+    put_own(text, trace);
     put_wafers(text, trace);
     put_steps(text, trace, "valves", trace->valves);
     put_steps(text, trace, "sensors", trace->sensors);
+    put_steps(text, trace, "nearest", trace->nearest);
     put_vacuum(text, trace);
     put_proximity(text, trace);
     put_clearances(text, document);

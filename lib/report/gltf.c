@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "report/packed.h"
 #include "report/quaternion.h"
 #include "report/utf8.h"
 
@@ -199,27 +200,9 @@ void wh_gltf_add_motion(wh_gltf_t *gltf, size_t node, const float times[], const
 
 /* ------------------------------------------------------------------------------------------------- finishing */
 
-/* The buffer as a URI of its own: base 64. */
+/* The buffer as a URI of its own. */
 static json_t *data_uri(const wh_gltf_t *gltf) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    static const char head[] = "data:application/octet-stream;base64,";
-    char *text = malloc(sizeof head + (gltf->size + 2) / 3 * 4 + 1);
-    if (!text) {
-        abort();
-    }
-    memcpy(text, head, sizeof head);
-    char *to = text + sizeof head - 1;
-    for (size_t i = 0; i < gltf->size; i += 3) {
-        const size_t left = gltf->size - i;
-        const uint32_t bits = (uint32_t)gltf->bytes[i] << 16 |
-                              (left > 1 ? (uint32_t)gltf->bytes[i + 1] << 8 : 0) |
-                              (left > 2 ? gltf->bytes[i + 2] : 0);
-        *to++ = digits[bits >> 18];
-        *to++ = digits[bits >> 12 & 63];
-        *to++ = left > 1 ? digits[bits >> 6 & 63] : '=';
-        *to++ = left > 2 ? digits[bits & 63] : '=';
-    }
-    *to = '\0';
+    char *text = wh_packed_bytes("data:application/octet-stream;base64,", gltf->bytes, gltf->size);
     json_t *uri = json_string(text);
     free(text);
     return uri;

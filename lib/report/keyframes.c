@@ -27,6 +27,65 @@ static void add_key(wh_keyframes_t *motion, double seconds, const wh_vec3_t *r, 
     ++motion->count;
 }
 
+/* ---------------------------------------------------------------------------------------------------- paths */
+
+typedef struct {
+    const wh_trace_t *trace;
+    wh_paths_t *paths;
+} tracing_t;
+
+static void add_place(wh_thin_t *thin, int64_t slice, const wh_pose_t *pose) {
+    double values[7] = {pose->r.x, pose->r.y, pose->r.z};
+    wh_quaternion_from_matrix(&pose->R, thin->of > 0 ? thin->last.values + 3 : NULL, values + 3);
+    wh_thin_add(thin, slice, values);
+}
+
+static void add_places(void *user, int64_t slice) {
+    const tracing_t *tracing = user;
+    const wh_trace_t *trace = tracing->trace;
+    wh_pose_t links[WH_TRACE_LINKS];
+    wh_pose_t gripper;
+    for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
+        wh_trace_gripper(trace, g, slice, &gripper);
+        add_place(&tracing->paths->grippers[g], slice, &gripper);
+    }
+    if (wh_trace_links(trace, slice, links)) {
+        for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+            add_place(&tracing->paths->links[i], slice, &links[i]);
+        }
+    }
+}
+
+wh_paths_t wh_paths_of_trace(const wh_trace_t *trace) {
+    wh_paths_t paths;
+    tracing_t tracing = {trace, &paths};
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        wh_thin_open(&paths.grippers[g], 3, WH_PATHS_MM, WH_PATHS_RAD, WH_PATHS_POINTS);
+    }
+    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        wh_thin_open(&paths.links[i], 3, WH_PATHS_LINK_MM, WH_PATHS_LINK_RAD, WH_PATHS_LINK_POINTS);
+    }
+    wh_trace_walk(trace, add_places, &tracing);
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        wh_thin_finish(&paths.grippers[g]);
+    }
+    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        wh_thin_finish(&paths.links[i]);
+    }
+    return paths;
+}
+
+void wh_paths_free(wh_paths_t *paths) {
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        wh_thin_close(&paths->grippers[g]);
+    }
+    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        wh_thin_close(&paths->links[i]);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ keyframes */
+
 static double seconds_of(const wh_trace_t *trace, double slice) {
     return slice * (double)trace->layout->slice_us / 1e6;
 }
@@ -78,8 +137,8 @@ static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, const double a
     return parts;
 }
 
-static void add_hold(wh_keyframes_t *motion, const wh_trace_t *trace, const wh_stay_t *stay, int64_t end) {
-    const wh_thin_t *thin = &trace->grippers[stay->holder];
+static void add_hold(wh_keyframes_t *motion, const wh_trace_t *trace, const wh_thin_t *thin,
+                     const wh_stay_t *stay, int64_t end) {
     for (size_t i = 0; i + 1 < thin->count && thin->points[i].slice < end; ++i) {
         const wh_thin_point_t *from = &thin->points[i];
         const wh_thin_point_t *to = from + 1;
@@ -96,7 +155,7 @@ static void add_hold(wh_keyframes_t *motion, const wh_trace_t *trace, const wh_s
     }
 }
 
-wh_keyframes_t wh_keyframes_of_wafer(const wh_trace_t *trace, int32_t wafer) {
+wh_keyframes_t wh_keyframes_of_wafer(const wh_trace_t *trace, const wh_paths_t *paths, int32_t wafer) {
     wh_keyframes_t motion = {0};
     const wh_stay_t *stay = NULL;
     for (size_t i = 0; i <= trace->stay_count; ++i) {
@@ -106,7 +165,7 @@ wh_keyframes_t wh_keyframes_of_wafer(const wh_trace_t *trace, int32_t wafer) {
         }
         const int64_t end = over ? trace->last : trace->stays[i].slice;
         if (stay && stay->holder != WH_NONE) {
-            add_hold(&motion, trace, stay, end);
+            add_hold(&motion, trace, &paths->grippers[stay->holder], stay, end);
         } else if (stay) {
             add_pose(&motion, trace, (double)stay->slice, &stay->pose);
             add_pose(&motion, trace, (double)end, &stay->pose);

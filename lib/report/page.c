@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "report/packed.h"
 #include "script/embedded.h"
 
 #if !defined(WH_JAVASCRIPT)
@@ -119,7 +120,9 @@ static bool write_named(const page_t *page, const char *name) {
         return true;
     }
     if (strcmp(name, "document") == 0) {
-        fwrite(page->document, 1, page->document_size, page->out);
+        char *packed = wh_packed_text(page->document, page->document_size);
+        fputs(packed, page->out);
+        free(packed);
         return true;
     }
     for (size_t i = 0; i < sizeof foreign / sizeof foreign[0]; ++i) {

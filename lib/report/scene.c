@@ -28,6 +28,7 @@ typedef struct {
     const wh_trace_t *trace;
     const wh_layout_t *layout;
     wh_gltf_t gltf;
+    wh_paths_t paths; /* of what moves, where it is animated */
     bool animated;
 } scene_t;
 
@@ -102,40 +103,35 @@ static void add_stations(scene_t *scene) {
     }
 }
 
-static wh_pose_t first_pose(const wh_thin_t *thin) {
-    wh_pose_t pose;
-    const double *values = thin->points[0].values;
-    pose.r = wh_vec3(values[0], values[1], values[2]);
-    wh_quaternion_to_matrix(values + 3, &pose.R);
-    return pose;
-}
-
-static void add_moving(scene_t *scene, const wh_thin_t *thin, body_t *body, const char *name,
-                       const char *kind, size_t index) {
+static void add_moving(scene_t *scene, const wh_pose_t *pose, const wh_thin_t *path, body_t *body,
+                       const char *name, const char *kind, size_t index) {
     const size_t mesh = finish_body(scene, body, name);
-    if (thin->count == 0) {
-        return;
-    }
-    const wh_pose_t pose = first_pose(thin);
-    const size_t node = wh_gltf_add_node(&scene->gltf, name, mesh, &pose, kind, index);
+    const size_t node = wh_gltf_add_node(&scene->gltf, name, mesh, pose, kind, index);
     if (scene->animated) {
-        wh_keyframes_t motion = wh_keyframes_of_track(scene->trace, thin);
+        wh_keyframes_t motion = wh_keyframes_of_track(scene->trace, path);
         wh_keyframes_add(&motion, &scene->gltf, node);
     }
 }
 
-static void add_robot(scene_t *scene) {
+static void add_links(scene_t *scene) {
     static const char *const names[WH_TRACE_LINKS] = {"lift", "upper arm", "forearm", "hand"};
-    const wh_layout_t *layout = scene->layout;
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    wh_pose_t poses[WH_TRACE_LINKS];
+    const bool is_there = wh_trace_links(scene->trace, scene->trace->first, poses);
+    for (size_t i = 0; is_there && i < WH_TRACE_LINKS; ++i) {
         body_t body = {0};
         add_parts(scene, &body, 1U << WH_PART_ARM, (int32_t)(WH_ARM_LIFT + i), NULL);
-        add_moving(scene, &scene->trace->links[i], &body, names[i], "link", i);
+        add_moving(scene, &poses[i], &scene->paths.links[i], &body, names[i], "link", i);
     }
+}
+
+static void add_grippers(scene_t *scene) {
+    const wh_layout_t *layout = scene->layout;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        wh_pose_t pose;
         body_t body = {0};
+        wh_trace_gripper(scene->trace, g, scene->trace->first, &pose);
         add_parts(scene, &body, 1U << WH_PART_BLADE | 1U << WH_PART_CHUCK, (int32_t)g, NULL);
-        add_moving(scene, &scene->trace->grippers[g], &body, layout->grippers[g].name, "gripper", g);
+        add_moving(scene, &pose, &scene->paths.grippers[g], &body, layout->grippers[g].name, "gripper", g);
     }
 }
 
@@ -149,7 +145,7 @@ static void add_wafers(scene_t *scene) {
         const size_t node = wh_gltf_add_node(&scene->gltf, layout->wafers[w].name, mesh,
                                              &layout->start[w].base_from_wafer, "wafer", w);
         if (scene->animated) {
-            wh_keyframes_t motion = wh_keyframes_of_wafer(scene->trace, (int32_t)w);
+            wh_keyframes_t motion = wh_keyframes_of_wafer(scene->trace, &scene->paths, (int32_t)w);
             wh_keyframes_add(&motion, &scene->gltf, node);
         }
     }
@@ -159,12 +155,17 @@ static void add_wafers(scene_t *scene) {
 json_t *wh_scene_make(const wh_trace_t *trace, const char *name, bool animated) {
     scene_t scene = {.trace = trace, .layout = trace->layout, .animated = animated};
     wh_gltf_open(&scene.gltf);
+    if (animated) {
+        scene.paths = wh_paths_of_trace(trace);
+    }
     for (size_t ink = 0; ink < INKS; ++ink) {
         (void)wh_gltf_add_material(&scene.gltf, &materials[ink]);
     }
     add_fixed(&scene);
     add_stations(&scene);
-    add_robot(&scene);
+    add_links(&scene);
+    add_grippers(&scene);
     add_wafers(&scene);
+    wh_paths_free(&scene.paths);
     return wh_gltf_finish(&scene.gltf, name, "waferhand " WH_VERSION);
 }

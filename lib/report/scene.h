@@ -4,7 +4,7 @@
  * frame, "lift", "upper arm", "forearm" and "hand", then grippers and wafers by their names in their own frames. A node's extras
  * tell { kind: "base", "obstacles", "station", "link", "gripper" or "wafer", index: from 0 }. Shapes are those that
  * the collision check has (script/shapes.h); wafers have their notch. The nodes stand as before the run; with `animated` an
- * animation "run" moves them, wafers too, to within the trace's tolerance.
+ * animation "run" moves them, wafers too, to within what keyframes.h and the trace's tolerance say.
  */
 #ifndef WH_REPORT_SCENE_H
 #define WH_REPORT_SCENE_H

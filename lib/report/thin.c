@@ -66,7 +66,7 @@ static void thin_again(wh_thin_t *thin) {
     coarse.turns = thin->turns;
     for (size_t i = 0; i < thin->count; ++i) {
         const wh_thin_point_t *point = &thin->points[i];
-        wh_thin_add(&coarse, point->slice, point->values, point->tag);
+        wh_thin_add(&coarse, point->slice, point->values);
         if (point->exact) {
             wh_thin_force(&coarse);
         }
@@ -140,29 +140,27 @@ static double slices_to(const wh_thin_t *thin, int64_t slice) {
 
 /* --------------------------------------------------------------------------------------------------- samples */
 
-static void take(wh_thin_t *thin, int64_t slice, const double values[], int32_t tag) {
+static void take(wh_thin_t *thin, int64_t slice, const double values[]) {
     thin->last.slice = slice;
-    thin->last.tag = tag;
     memcpy(thin->last.values, values, thin->width * sizeof *values);
     thin->is_pending = true;
 }
 
-/* What must become a point before the sample comes: a forced one from which the signal moves on, and the last one of a tag. */
-static void settle(wh_thin_t *thin, const double values[], int32_t tag) {
-    const bool moves_on = thin->is_forced && !rests(thin, thin->last.values, values);
-    if (thin->is_pending && (moves_on || tag != thin->last.tag)) {
+/* A forced sample from which the signal moves on must become a point before the next one comes. */
+static void settle(wh_thin_t *thin, const double values[]) {
+    if (thin->is_pending && thin->is_forced && !rests(thin, thin->last.values, values)) {
         keep(thin, true);
         keep_to_limit(thin);
     }
 }
 
-void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[], int32_t tag) {
+void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[]) {
     ++thin->of;
     if (thin->count > 0) {
-        settle(thin, values, tag);
+        settle(thin, values);
     }
-    if (thin->count == 0 || tag != thin->anchor.tag) {
-        take(thin, slice, values, tag);
+    if (thin->count == 0) {
+        take(thin, slice, values);
         keep(thin, true);
         return;
     }
@@ -173,7 +171,7 @@ void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[], int32_t 
         move(thin, values);
     }
     narrow(thin, slices_to(thin, slice));
-    take(thin, slice, values, tag);
+    take(thin, slice, values);
 }
 
 static void make_exact(wh_thin_t *thin, wh_thin_point_t *point) {
@@ -218,29 +216,6 @@ static size_t find(const wh_thin_t *thin, int64_t slice) {
         }
     }
     return low;
-}
-
-void wh_thin_insert(wh_thin_t *thin, int64_t slice, const double values[], int32_t tag) {
-    if (thin->is_pending) {
-        keep(thin, true);
-    }
-    if (thin->count == 0 || slice < thin->points[0].slice || slice > thin->points[thin->count - 1].slice) {
-        return;
-    }
-    const size_t at = find(thin, slice);
-    if (thin->points[at].tag != tag || thin->points[at].slice == slice) {
-        return;
-    }
-    thin->points = wh_record_grow(thin->points, thin->count, &thin->capacity, sizeof *thin->points);
-    memmove(&thin->points[at + 2], &thin->points[at + 1], (thin->count - at - 1) * sizeof *thin->points);
-    ++thin->count;
-    ++thin->exact_count;
-    wh_thin_point_t *made = &thin->points[at + 1];
-    memset(made, 0, sizeof *made);
-    made->slice = slice;
-    made->tag = tag;
-    made->exact = true;
-    memcpy(made->values, values, thin->width * sizeof *values);
 }
 
 void wh_thin_read(const wh_thin_t *thin, int64_t slice, double values[]) {

@@ -1,9 +1,9 @@
-/* Thinning: of a signal that comes sample by sample, the points between which straight lines stay within a tolerance.
+/* Thinning of poses, and of any signal that lines are to show: of a signal that comes sample by sample, the points between which straight lines stay within a tolerance.
  *
  * A sample has up to WH_THIN_WIDTH numbers, read between points as linear in time; of a pose the last four are a
  * quaternion (x, y, z, w), read as the shorter slerp. Every point is a sample. Each number of a sample, and of a
- * rotation the angle that is missing, is off by at most the tolerance; forced samples, and those on both sides of
- * a change of tag, are not off at all.
+ * rotation the angle that is missing, is off by at most the tolerance; forced samples are not
+ * off at all.
  *
  * Samples come in the order of their slices, nothing is looked at twice: from the last point the slopes are kept that
  * miss no sample since, and the sample that has none among them comes after a new point. When there are more points than
@@ -25,8 +25,7 @@
 typedef struct {
     int64_t slice;
     double values[WH_THIN_WIDTH];
-    int32_t tag; /* the caller's */
-    bool exact;  /* on purpose, not for the tolerance's sake */
+    bool exact; /* on purpose, not for the tolerance's sake */
 } wh_thin_point_t;
 
 /* Read points, count, tolerance, turn and of; the rest is its own. */
@@ -50,17 +49,13 @@ typedef struct {
 void wh_thin_open(wh_thin_t *thin, size_t width, double tolerance, double turn, size_t limit);
 
 /* One more sample, of a later slice than the last one. Cost: about 20 ns, 100 ns where a rotation changes. */
-void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[], int32_t tag);
+void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[]);
 
 /* The last sample is exact. */
 void wh_thin_force(wh_thin_t *thin);
 
 /* The last sample becomes a point, so that the points cover all. More samples may follow. */
 void wh_thin_finish(wh_thin_t *thin);
-
-/* A sample that has been, and is wanted exactly after all. It becomes a point where the points there have its tag; the
- * samples beside it may then be off by twice the tolerance. */
-void wh_thin_insert(wh_thin_t *thin, int64_t slice, const double values[], int32_t tag);
 
 /* What the points say of a slice; the first point's values before it, the last one's after it. Cost: log n. */
 void wh_thin_read(const wh_thin_t *thin, int64_t slice, double values[]);

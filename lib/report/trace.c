@@ -4,11 +4,14 @@
 #include <string.h>
 
 #include "report/quaternion.h"
-#include "script/collision.h"
 #include "script/record.h"
 
 /* So many wafers are compared in each slice; more, only in slices with events. */
 #define WATCHED_WAFERS 64
+
+/* A gripper so near to where its axes put it is there. */
+#define SAME_MM 1e-9
+#define SAME_ROTATION 1e-12
 
 /* -------------------------------------------------------------------------------------------------- opening */
 
@@ -16,24 +19,23 @@ static bool turns(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
 }
 
-static void open_track(wh_thin_t *thin, size_t width, double tolerance, double turn, size_t limit) {
-    wh_thin_open(thin, width, WH_TRACE_SHARE * tolerance, WH_TRACE_SHARE * turn, limit);
+static void open_curve(wh_curve_t *curve, double tolerance) {
+    wh_curve_open(curve, WH_TRACE_SHARE * tolerance, WH_TRACE_POINTS);
 }
 
 static void open_tracks(wh_trace_t *trace) {
-    const size_t limit = WH_TRACE_POINTS;
+    static const double measured[WH_MEASURES] = {WH_TRACE_PROJZ, WH_TRACE_PROJXY, WH_TRACE_PLANAR};
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        open_track(&trace->grippers[g], 3, WH_TRACE_MM, WH_TRACE_RAD, WH_TRACE_GRIPPER_POINTS);
-        open_track(&trace->vacuum[g], 1, WH_TRACE_VACUUM, 0, limit);
-        /* Half, for points are inserted. */
-        open_track(&trace->proximity[g], 3, WH_TRACE_PROJZ / 2, 0, limit);
-    }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
-        open_track(&trace->links[i], 3, WH_TRACE_LINK_MM, WH_TRACE_LINK_RAD, limit);
+        open_curve(&trace->vacuum[g], WH_TRACE_VACUUM);
+        for (size_t m = 0; m < WH_MEASURES; ++m) {
+            /* Half, for points are inserted. */
+            open_curve(&trace->proximity[g][m], measured[m] / 2);
+        }
+        wh_thin_open(&trace->own[g], 3, WH_TRACE_SHARE * WH_TRACE_OWN_MM, WH_TRACE_SHARE * WH_TRACE_OWN_RAD,
+                     WH_TRACE_POINTS);
     }
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
-        open_track(&trace->axes[axis], 1, turns(axis) ? WH_TRACE_RAD : WH_TRACE_MM, 0, limit);
-        open_track(&trace->speeds[axis], 1, turns(axis) ? WH_TRACE_RAD_PER_S : WH_TRACE_MM_PER_S, 0, limit);
+        open_curve(&trace->axes[axis], turns(axis) ? WH_TRACE_RAD : WH_TRACE_MM);
     }
 }
 
@@ -72,7 +74,7 @@ static void start_at_home(wh_trace_t *trace) {
 
 void wh_trace_begin(wh_trace_t *trace, const wh_layout_t *layout, bool at_home) {
     trace->layout = layout;
-    trace->first = trace->last = trace->axes_slice = -1;
+    trace->first = trace->last = -1;
     open_tracks(trace);
     trace->stay_of = calloc(layout->wafer_count + 1, sizeof *trace->stay_of);
     if (!trace->stay_of) {
@@ -86,49 +88,49 @@ void wh_trace_begin(wh_trace_t *trace, const wh_layout_t *layout, bool at_home) 
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- poses */
+/* --------------------------------------------------------------------------------------------------- motion */
 
-static void add_pose(wh_thin_t *thin, int64_t slice, const wh_pose_t *pose) {
-    double values[7] = {pose->r.x, pose->r.y, pose->r.z};
-    const bool follows = thin->of > 0;
-    wh_quaternion_from_matrix(&pose->R, follows ? thin->last.values + 3 : NULL, values + 3);
-    wh_thin_add(thin, slice, values, 0);
+/* Another machine's sines may differ in their last bits. */
+static bool is_at(const wh_pose_t *pose, const wh_pose_t *expected) {
+    const wh_vec3_t way = wh_vec3_subtract(&pose->r, &expected->r);
+    bool same = wh_vec3_norm(&way) <= SAME_MM;
+    for (size_t i = 0; same && i < 9; ++i) {
+        same = wh_real_abs(pose->R.m[i / 3][i % 3] - expected->R.m[i / 3][i % 3]) <= SAME_ROTATION;
+    }
+    return same;
 }
 
-static void add_poses(wh_trace_t *trace, const wh_state_t *state) {
-    const wh_layout_t *layout = trace->layout;
-    wh_pose_t poses[WH_GRIPPERS];
-    wh_pose_t base_from_effector;
-    wh_pose_t arm[WH_ARM_BODIES];
+static void add_own(wh_thin_t *own, int64_t slice, const wh_pose_t *pose) {
+    double values[7] = {pose->r.x, pose->r.y, pose->r.z};
+    const bool follows = own->of > 0;
+    wh_quaternion_from_matrix(&pose->R, follows ? own->last.values + 3 : NULL, values + 3);
+    wh_thin_add(own, slice, values);
+}
+
+/* What the axes do not say of the grippers. */
+static void add_grippers(wh_trace_t *trace, const double axes[], const wh_state_t *state) {
+    wh_pose_t expected[WH_GRIPPERS];
+    if (axes) {
+        wh_machine_grippers(&trace->layout->machine, axes, expected);
+    }
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        poses[g] = state->grippers[g].base_from_gripper;
-        add_pose(&trace->grippers[g], state->seq, &poses[g]);
-    }
-    if (!wh_collision_effector(&layout->machine, poses, &base_from_effector)) {
-        return;
-    }
-    wh_arm_place(&layout->shapes.arm, &base_from_effector, arm);
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
-        add_pose(&trace->links[i], state->seq, &arm[WH_ARM_LIFT + i]);
+        const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
+        if (trace->own[g].of > 0 || !axes || !is_at(pose, &expected[g])) {
+            add_own(&trace->own[g], state->seq, pose);
+        }
     }
 }
 
 static void add_axes(wh_trace_t *trace, const double axes[], size_t axis_count, const wh_state_t *state) {
-    const double seconds = (double)((state->seq - trace->axes_slice) * trace->layout->slice_us) / 1e6;
-    const bool follows = trace->axes_slice >= 0;
     for (size_t axis = 0; axis < axis_count; ++axis) {
-        const double speed = follows ? (axes[axis] - trace->last_axes[axis]) / seconds : 0;
-        wh_thin_add(&trace->axes[axis], state->seq, &axes[axis], 0);
-        wh_thin_add(&trace->speeds[axis], state->seq, &speed, 0);
-        trace->last_axes[axis] = axes[axis];
+        wh_curve_add(&trace->axes[axis], state->seq, axes[axis]);
     }
-    trace->axes_slice = state->seq;
     trace->axis_count = axis_count > trace->axis_count ? axis_count : trace->axis_count;
 }
 
 /* ---------------------------------------------------------------------------------------------------- steps */
 
-static void add_step(wh_steps_t *steps, int64_t slice, int32_t value) {
+void wh_trace_step(wh_steps_t *steps, int64_t slice, int32_t value) {
     if (steps->count > 0 && steps->steps[steps->count - 1].value == value) {
         return;
     }
@@ -139,10 +141,9 @@ static void add_step(wh_steps_t *steps, int64_t slice, int32_t value) {
 
 static void add_signals(wh_trace_t *trace, const wh_state_t *state) {
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        const double level = state->condition->vacuum[g].level;
-        add_step(&trace->valves[g], state->seq, state->condition->told[g]);
-        add_step(&trace->sensors[g], state->seq, (int32_t)(state->sensors >> g & 1U));
-        wh_thin_add(&trace->vacuum[g], state->seq, &level, 0);
+        wh_trace_step(&trace->valves[g], state->seq, state->condition->told[g]);
+        wh_trace_step(&trace->sensors[g], state->seq, (int32_t)(state->sensors >> g & 1U));
+        wh_curve_add(&trace->vacuum[g], state->seq, state->condition->vacuum[g].level);
     }
 }
 
@@ -228,20 +229,19 @@ static void add_marks(wh_trace_t *trace, const wh_state_t *state) {
 
 /* --------------------------------------------------------------------------------------------------- slices */
 
-typedef void each_t(wh_thin_t *thin);
+typedef void each_curve_t(wh_curve_t *curve);
+typedef void each_own_t(wh_thin_t *own);
 
-static void for_each(wh_trace_t *trace, each_t *act) {
+static void for_each(wh_trace_t *trace, each_curve_t *act, each_own_t *act_on_own) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        act(&trace->grippers[g]);
         act(&trace->vacuum[g]);
-        act(&trace->proximity[g]);
-    }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
-        act(&trace->links[i]);
+        for (size_t m = 0; m < WH_MEASURES; ++m) {
+            act(&trace->proximity[g][m]);
+        }
+        act_on_own(&trace->own[g]);
     }
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
         act(&trace->axes[axis]);
-        act(&trace->speeds[axis]);
     }
 }
 
@@ -250,7 +250,8 @@ void wh_trace_slice(wh_trace_t *trace, const double axes[], size_t axis_count, c
         return;
     }
     trace->first = trace->first < 0 ? state->seq : trace->first;
-    add_poses(trace, state);
+    const bool is_whole = axes && axis_count >= trace->layout->machine.axis_count;
+    add_grippers(trace, is_whole ? axes : NULL, state);
     if (axes) {
         add_axes(trace, axes, axis_count, state);
     }
@@ -265,18 +266,19 @@ void wh_trace_slice(wh_trace_t *trace, const double axes[], size_t axis_count, c
 }
 
 void wh_trace_mark(wh_trace_t *trace) {
-    for_each(trace, wh_thin_force);
+    for_each(trace, wh_curve_force, wh_thin_force);
 }
 
 void wh_trace_finish(wh_trace_t *trace) {
-    for_each(trace, wh_thin_finish);
+    for_each(trace, wh_curve_finish, wh_thin_finish);
 }
 
 void wh_trace_close(wh_trace_t *trace) {
-    for_each(trace, wh_thin_close);
+    for_each(trace, wh_curve_close, wh_thin_close);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         free(trace->valves[g].steps);
         free(trace->sensors[g].steps);
+        free(trace->nearest[g].steps);
         free(trace->vicinity[g].wafers);
     }
     free(trace->stays);

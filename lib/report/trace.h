@@ -1,34 +1,33 @@
 /* What a run's page shows over time: collected slice by slice while the run goes, thinned as it comes.
  *
- * Grippers and the arm's links as poses in base, axes with their speeds, vacuum, and each gripper against the wafer that it holds
- * or would take are thinned (report/thin.h); valves, sensors and where wafers lie change in steps and are kept as they are. All of it is exact at
- * events and wherever wh_trace_mark is called. Slices count as in the run: what is of slice n is true at its end, slice
- * 0 is before the first.
+ * Axes, vacuum, and each gripper against the wafer that it holds or would take are curves (report/curve.h); valves, sensors and where
+ * wafers lie change in steps and are kept as they are. Where grippers and the arm's links are follows from the axes; a gripper
+ * that is elsewhere, for its machine is not the layout's or a log does not tell the axes, has poses of its own from then on
+ * (report/thin.h). All of it is exact at events and wherever wh_trace_mark is called. Slices count as in the run: what is of
+ * slice n is true at its end, slice 0 is before the first.
  *
  * Host code: aborts when memory is out. Memory: what thinning leaves, steps, and 4 bytes a wafer.
  */
 #ifndef WH_REPORT_TRACE_H
 #define WH_REPORT_TRACE_H
 
+#include "report/curve.h"
 #include "report/thin.h"
 #include "script/layout.h"
 #include "sim/slice.h"
 
 /* How far what is shown may be off, to begin with: it grows where a signal has more points than it may. */
-#define WH_TRACE_MM 0.05 /* of grippers and axes */
-#define WH_TRACE_RAD 5e-4
-#define WH_TRACE_LINK_MM 0.5
-#define WH_TRACE_LINK_RAD 2e-3
-#define WH_TRACE_MM_PER_S 5.0
-#define WH_TRACE_RAD_PER_S 2e-2
+#define WH_TRACE_MM 0.02 /* of axes */
+#define WH_TRACE_RAD 2e-5
+#define WH_TRACE_OWN_MM 0.05 /* of poses that do not follow from axes */
+#define WH_TRACE_OWN_RAD 5e-4
 #define WH_TRACE_VACUUM 1e-3
 #define WH_TRACE_PROJZ 0.005
-#define WH_TRACE_PROJXY 0.1
+#define WH_TRACE_PROJXY 0.05
 #define WH_TRACE_PLANAR 1e-6
 
-/* How many points a gripper may have, and any other signal. */
-#define WH_TRACE_GRIPPER_POINTS 60000
-#define WH_TRACE_POINTS 30000
+/* How many points a signal may have beside those that are exact. */
+#define WH_TRACE_POINTS 60000
 
 /* Of these thinning takes so much, and rounding to decimals the rest. */
 #define WH_TRACE_SHARE 0.98
@@ -37,9 +36,13 @@
  * layout's near_projxy. */
 #define WH_TRACE_REACH 20.0
 
-/* A proximity sample holds |dr_proj_z|, |dr_proj_xy| and n1_proj_n2, the others stretched to the first one's tolerance. */
-#define WH_TRACE_PROJXY_SCALE (WH_TRACE_PROJZ / WH_TRACE_PROJXY)
-#define WH_TRACE_PLANAR_SCALE (WH_TRACE_PROJZ / WH_TRACE_PLANAR)
+/* What a gripper is measured by against its nearest wafer. */
+typedef enum {
+    WH_MEASURE_PROJZ,  /* |dr_proj_z|, mm */
+    WH_MEASURE_PROJXY, /* |dr_proj_xy|, mm */
+    WH_MEASURE_PLANAR, /* n1_proj_n2 */
+    WH_MEASURES
+} wh_measure_t;
 
 /* The links of the arm that move: WH_ARM_LIFT to WH_ARM_HAND. */
 #define WH_TRACE_LINKS 4
@@ -83,18 +86,18 @@ typedef struct {
 typedef struct {
     const wh_layout_t *layout; /* null before the first slice; borrowed */
     size_t axis_count;
-    wh_thin_t grippers[WH_GRIPPERS], links[WH_TRACE_LINKS];
-    wh_thin_t axes[WH_AXES], speeds[WH_AXES];
-    wh_thin_t vacuum[WH_GRIPPERS], proximity[WH_GRIPPERS];
+    wh_curve_t axes[WH_AXES], vacuum[WH_GRIPPERS];
+    wh_curve_t proximity[WH_GRIPPERS][WH_MEASURES];
+    wh_thin_t own
+        [WH_GRIPPERS]; /* base_from_gripper from its first point on; without points it follows from the axes */
     wh_steps_t valves[WH_GRIPPERS], sensors[WH_GRIPPERS];
-    wh_stay_t *stays; /* in order of time */
+    wh_steps_t nearest[WH_GRIPPERS]; /* the wafer that it is measured against, or WH_NONE */
+    wh_stay_t *stays;                /* in order of time */
     size_t stay_count, stay_capacity;
     int32_t *stay_of; /* each wafer's last one */
     wh_mark_t *marks;
     size_t mark_count, mark_capacity;
     int64_t first, last; /* slices */
-    double last_axes[WH_AXES];
-    int64_t axes_slice; /* of last_axes */
     wh_vicinity_t vicinity[WH_GRIPPERS];
 } wh_trace_t;
 
@@ -102,8 +105,8 @@ typedef struct {
  * slice is (of a run of which the beginning is missing). */
 void wh_trace_begin(wh_trace_t *trace, const wh_layout_t *layout, bool at_home);
 
-/* One accepted slice, later than the last one. `axes` has axis_count numbers; null where they are not known, then as they
- * were. Cost: about 1.5 us with two grippers, a pass over all wafers where something happens or a gripper has gone far. */
+/* One accepted slice, later than the last one. `axes` has axis_count numbers; null where they are not known. Cost: about 1 us
+ * with two grippers, a pass over all wafers where something happens or a gripper has gone far. */
 void wh_trace_slice(wh_trace_t *trace, const double axes[], size_t axis_count, const wh_state_t *state);
 
 /* What the last slice left is wanted exactly. */
@@ -113,6 +116,19 @@ void wh_trace_mark(wh_trace_t *trace);
 void wh_trace_finish(wh_trace_t *trace);
 
 void wh_trace_close(wh_trace_t *trace);
+
+/* Where a gripper is shown at a slice. Of a finished trace, one that has slices. Cost: log n. */
+void wh_trace_gripper(const wh_trace_t *trace, size_t gripper, int64_t slice, wh_pose_t *base_from_gripper);
+
+/* Where the arm's links are shown; false where no gripper is on the robot. */
+bool wh_trace_links(const wh_trace_t *trace, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]);
+
+/* Between which poses of grippers and links lie on straight lines, or nearly: the points of all that moves them, and so many between two
+ * that none is passed over. Calls `visit` for each of these slices, in order. */
+void wh_trace_walk(const wh_trace_t *trace, void (*visit)(void *user, int64_t slice), void *user);
+
+/* Within: adds the value unless it is the last one. */
+void wh_trace_step(wh_steps_t *steps, int64_t slice, int32_t value);
 
 /* Within: each gripper against the wafer that it holds or would take. */
 void wh_trace_proximity(wh_trace_t *trace, const wh_state_t *state);

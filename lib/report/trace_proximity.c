@@ -80,32 +80,65 @@ static int32_t find_nearest(const wh_trace_t *trace, const wh_vicinity_t *vicini
 
 /* ---------------------------------------------------------------------------------------------------- values */
 
-static void take(const wh_proximity_t *p, double values[3]) {
-    values[0] = wh_real_abs(p->dr_proj_z);
-    values[1] = WH_TRACE_PROJXY_SCALE * p->dr_proj_xy_norm;
-    values[2] = WH_TRACE_PLANAR_SCALE * p->n1_proj_n2;
+static void take(const wh_proximity_t *p, double values[WH_MEASURES]) {
+    values[WH_MEASURE_PROJZ] = wh_real_abs(p->dr_proj_z);
+    values[WH_MEASURE_PROJXY] = p->dr_proj_xy_norm;
+    values[WH_MEASURE_PLANAR] = p->n1_proj_n2;
 }
 
-static void add_gripper(wh_trace_t *trace, const wh_state_t *state, size_t g) {
+/* The nearest wafer and how near, or WH_NONE. */
+static int32_t measure(wh_trace_t *trace, const wh_state_t *state, size_t g, double values[WH_MEASURES]) {
     const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
     wh_vicinity_t *vicinity = &trace->vicinity[g];
-    double values[3] = {0};
     wh_proximity_t p;
     if (!vicinity->is_known || square_of(&pose->r, &vicinity->centre) > ROOM * ROOM) {
         look_around(trace, vicinity, state, &pose->r);
     }
-    int32_t nearest = find_nearest(trace, vicinity, state, g);
-    if (nearest != WH_NONE) {
-        const bool measured = wh_proximity_measure(&state->wafers[nearest].base_from_wafer, pose,
-                                                   &trace->layout->grasp.tolerance, &p) == WH_OK;
-        if (measured && wh_real_abs(p.dr_proj_z) < WH_TRACE_REACH &&
-            p.dr_proj_xy_norm < 2 * trace->layout->grasp.near_projxy) {
-            take(&p, values);
-        } else {
-            nearest = WH_NONE;
+    const int32_t nearest = find_nearest(trace, vicinity, state, g);
+    if (nearest == WH_NONE || wh_proximity_measure(&state->wafers[nearest].base_from_wafer, pose,
+                                                   &trace->layout->grasp.tolerance, &p) != WH_OK) {
+        return WH_NONE;
+    }
+    take(&p, values);
+    const bool near = values[WH_MEASURE_PROJZ] < WH_TRACE_REACH &&
+                      values[WH_MEASURE_PROJXY] < 2 * trace->layout->grasp.near_projxy;
+    return near ? nearest : WH_NONE;
+}
+
+static void add_gripper(wh_trace_t *trace, const wh_state_t *state, size_t g) {
+    wh_steps_t *steps = &trace->nearest[g];
+    double values[WH_MEASURES] = {0};
+    const int32_t nearest = measure(trace, state, g, values);
+    const bool is_other = steps->count > 0 && steps->steps[steps->count - 1].value != nearest;
+    wh_trace_step(steps, state->seq, nearest);
+    for (size_t m = 0; m < WH_MEASURES; ++m) {
+        if (is_other) {
+            wh_curve_break(&trace->proximity[g][m]);
+        }
+        if (nearest != WH_NONE) {
+            wh_curve_add(&trace->proximity[g][m], state->seq, values[m]);
         }
     }
-    wh_thin_add(&trace->proximity[g], state->seq, values, nearest);
+}
+
+/* The wafer that the gripper was measured against at a slice. */
+static int32_t nearest_at(const wh_steps_t *steps, int64_t slice) {
+    size_t i = steps->count;
+    while (i > 0 && steps->steps[i - 1].slice > slice) {
+        --i;
+    }
+    return i > 0 ? steps->steps[i - 1].value : WH_NONE;
+}
+
+static void insert_past(wh_trace_t *trace, const wh_event_t *event) {
+    const int64_t slice = (int64_t)event->measured_slice;
+    double values[WH_MEASURES];
+    take(&event->measured, values);
+    if (nearest_at(&trace->nearest[event->gripper], slice) == event->wafer) {
+        for (size_t m = 0; m < WH_MEASURES; ++m) {
+            wh_curve_insert(&trace->proximity[event->gripper][m], slice, values[m]);
+        }
+    }
 }
 
 void wh_trace_proximity(wh_trace_t *trace, const wh_state_t *state) {
@@ -116,10 +149,7 @@ void wh_trace_proximity(wh_trace_t *trace, const wh_state_t *state) {
         const wh_event_t *event = &state->events[i];
         const bool past = event->kind == WH_EVENT_NEAR_MISS || event->kind == WH_EVENT_CONTESTED;
         if (past && (int64_t)event->measured_slice < state->seq) {
-            double values[3];
-            take(&event->measured, values);
-            wh_thin_insert(&trace->proximity[event->gripper], (int64_t)event->measured_slice, values,
-                           event->wafer);
+            insert_past(trace, event);
         }
     }
 }

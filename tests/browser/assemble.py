@@ -1,8 +1,10 @@
 """Puts a page together from the template and a document, as the program does: for documents made for a test."""
+import base64
 import html
 import json
 import pathlib
 import re
+import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "lib/report/page"
@@ -14,10 +16,14 @@ LIBRARIES = {
 }
 
 
+def pack(text):
+    return base64.b64encode(zlib.compress(text.encode(), 9)).decode()
+
+
 def text_of(name, document):
     """What stands in the place of @name@."""
     if name == "document":
-        return json.dumps(document, separators=(",", ":")).replace("</", "<\\/")
+        return pack(json.dumps(document, separators=(",", ":")))
     if name == "title":
         return html.escape(document.get("title", "Report"))
     path = pathlib.Path(LIBRARIES.get(name, PAGE / name))

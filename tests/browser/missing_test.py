@@ -2,6 +2,7 @@
 import unittest
 
 import documents
+from assemble import pack
 from browser import Browser
 
 
@@ -71,10 +72,18 @@ class Missing(unittest.TestCase):
         path = documents.page_of(document, "missing_json")
         text = path.read_text()
         begin = text.index('id="document">') + len('id="document">')
-        path.write_text(text[:begin] + '{"format": 1,' + text[text.index("</script>", begin):])
-        page.open(path)
-        self.assertIn("cannot be read", page.text("#head"))
-        self.assertEqual(page.faults(), [])
+        for spoilt in (pack('{"format": 2,'), pack("{}")[:8], "<nothing>"):
+            path.write_text(text[:begin] + spoilt + text[text.index("</script>", begin):])
+            page.open(path)
+            self.assertIn("cannot be read", page.text("#head"))
+            self.assertEqual(page.faults(), [])
+
+    def test_old_browser(self):
+        """One that cannot unpack the document says so."""
+        old = page.cdp("Page.addScriptToEvaluateOnNewDocument", source="delete window.DecompressionStream")
+        page.open(documents.page_of(document, "missing_stream"))
+        page.cdp("Page.removeScriptToEvaluateOnNewDocument", identifier=old["identifier"])
+        self.assertIn("a browser of 2023 or later", page.text("#head"))
 
     def test_spoilt_scene(self):
         spoilt = documents.without(document, "scene", "accessors")

@@ -1,4 +1,4 @@
-"""What the page shows at a time is what its document says: exactly at points, by linear and slerp in between."""
+"""What the page shows at a time is what its document says: exactly at points, by cubics in between."""
 import random
 import unittest
 
@@ -27,8 +27,7 @@ def times_of(document):
     times = {0, document["duration_s"]}
     times |= {event["utime"] / 1e6 for event in document["run"]["events"]}
     times |= {command[key] for command in document["run"]["commands"] for key in ("begin_s", "end_s")}
-    points = document["tracks"]["grippers"][0]["t"]
-    times |= set(points[1::40])
+    times |= set(document["tracks"]["axes"][0]["t"][1::3])
     maker = random.Random(7)
     times |= {maker.uniform(0, document["duration_s"]) for _ in range(40)}
     return sorted(times)
@@ -47,7 +46,7 @@ class Values(unittest.TestCase):
     def compare_poses(self, document, t, name):
         found = page.js("""const [t] = arguments, W = Waferhand, tracks = W.shown.tracks;
             const flat = (pose) => [pose.r, [0, 1, 2].map((i) => W.pose.axis(pose.q, i))];
-            return [tracks.grippers.map((track) => flat(W.tracks.pose(track, t))),
+            return [tracks.grippers.map((_, i) => flat(W.robot.gripper(tracks, i, t))),
                 tracks.wafers.map((_, i) => flat(W.tracks.wafer(tracks, i, t)))]""", t)
         for kind, wanted_of in ((0, expected.gripper), (1, expected.wafer)):
             for i, (r, axes) in enumerate(found[kind]):
@@ -57,14 +56,46 @@ class Values(unittest.TestCase):
                     for row in range(3):
                         self.assertAlmostEqual(axes[k][row], wanted[1][row][k], delta=1e-8, msg=(name, t, kind, i))
 
+    def test_links(self):
+        document, path = documents.example("01_transfer")
+        page.open(path)
+        for t in times_of(document)[::4]:
+            found = page.js("""const [t] = arguments, W = Waferhand; return [0, 1, 2, 3].map((i) => {
+                const pose = W.robot.link(W.shown.tracks, i, t);
+                return [pose.r, [0, 1].map((k) => W.pose.axis(pose.q, 0)[k])]; })""", t)
+            for (r, x), wanted in zip(found, expected.links(document, t), strict=True):
+                for k in range(3):
+                    self.assertAlmostEqual(r[k], wanted[0][k], delta=1e-6)
+                for k in range(2):
+                    self.assertAlmostEqual(x[k], wanted[1][k][0], delta=1e-8)
+
     def test_exact_at_points(self):
         """At a point of a track the page computes nothing: the same bits."""
         document, path = documents.example("01_transfer")
         page.open(path)
-        track = document["tracks"]["grippers"][0]
-        for i in range(0, len(track["t"]), 17):
-            r = page.js("return Waferhand.tracks.pose(Waferhand.shown.tracks.grippers[0], arguments[0]).r", track["t"][i])
-            self.assertEqual(r, track["r"][3 * i:3 * i + 3])
+        for track, axis in enumerate(document["tracks"]["axes"]):
+            for i in range(0, len(axis["t"]), 3):
+                found = page.js("return Waferhand.tracks.curve(Waferhand.shown.tracks.axes[arguments[0]], arguments[1], false)",
+                                track, axis["t"][i])
+                self.assertEqual(found, axis["v"][i])
+
+    def test_exact_at_events(self):
+        """What the run itself measured, where nothing draws wafers onto the pads, and where it says that they ended."""
+        for name in ("01_transfer", "02_prealigner"):
+            document, path = documents.example(name)
+            page.open(path)
+            run, names = document["run"], document["names"]
+            for event in [each for each in run["events"] if each["kind"] in ("picked", "handed_over")]:
+                t, g = event["utime"] / 1e6, names["grippers"].index(event["gripper"])
+                found = page.js("""const [t, g] = arguments, W = Waferhand, tracks = W.shown.tracks;
+                    return ['dr_proj_z', 'dr_proj_xy', 'n1_proj_n2'].map((key) => W.tracks.curve(tracks.proximity[g][key], t, false))""",
+                                t, g)
+                wanted = [abs(event["dr_proj_z"]), event["dr_proj_xy_norm"], event["n1_proj_n2"]]
+                self.assertEqual(found, wanted, (name, t))
+            for i, wafer in enumerate(run["wafers"]):
+                r = page.js("return Waferhand.tracks.wafer(Waferhand.shown.tracks, arguments[0], Waferhand.clock.end).r", i)
+                for k in range(3):
+                    self.assertAlmostEqual(r[k], wafer["position"][k], delta=1e-9, msg=(name, i))
 
     def test_table_of_now(self):
         for name in self.names:
@@ -88,8 +119,11 @@ class Values(unittest.TestCase):
             valve = document["tracks"]["valves"][i]
             self.assertEqual(texts[gripper, "valve"], ["open", "closed"][expected.step(valve["t"], valve["v"], t)], (name, t))
             near = document["tracks"]["proximity"][i]
+            nearest = document["tracks"]["nearest"][i]
+            wafer = expected.step(nearest["t"], nearest["v"], t)
+            self.assertEqual(texts[gripper, "nearest"], "none near" if wafer is None else document["names"]["wafers"][wafer])
             for key, limit, decimals in (("dr_proj_z", "projz", 4), ("dr_proj_xy", "projxy", 4), ("n1_proj_n2", "planar", 6)):
-                value = expected.linear(near["t"], near[key], t) if near["t"] else None
+                value = expected.curve(near[key], t)[0]
                 text = texts[gripper, key]
                 if value is None:
                     self.assertEqual(text, "\u2013", (name, t))
@@ -112,7 +146,7 @@ class Values(unittest.TestCase):
                 index = next(i for i, axis in enumerate(document["names"]["axes"]) if axis["name"] == name)
                 axis, track = document["names"]["axes"][index], document["tracks"]["axes"][index]
                 speed = k >= len(document["names"]["axes"])
-                value = expected.linear(track["speed_t" if speed else "t"], track["speed" if speed else "v"], t)
+                value = expected.curve(track, t)[1 if speed else 0]
                 value *= 180 / 3.141592653589793 if axis["unit"] == "rad" else 1
                 self.assertEqual(text, shown(value, 2 if speed else 3), (t, name, speed))
 

@@ -9,7 +9,6 @@
 
 typedef struct {
     double values[WH_THIN_WIDTH];
-    int32_t tag;
     bool forced;
 } sample_t;
 
@@ -36,10 +35,9 @@ static void multiply(const double a[4], const double b[4], double q[4]) {
 typedef struct {
     double from[WH_THIN_WIDTH], way[3], axis[3], angle;
     size_t begin, length;
-    int32_t tag;
 } move_t;
 
-static void begin_move(move_t *move, size_t begin, bool tagged) {
+static void begin_move(move_t *move, size_t begin) {
     const bool rests = wh_test_below(3) == 0;
     if (begin > 0) {
         memcpy(move->from, samples[begin - 1].values, sizeof move->from);
@@ -51,7 +49,6 @@ static void begin_move(move_t *move, size_t begin, bool tagged) {
         move->axis[k] = wh_test_uniform(-1, 1);
     }
     move->angle = rests ? 0 : wh_test_uniform(-4, 4);
-    move->tag = tagged && wh_test_below(4) == 0 ? (int32_t)wh_test_below(3) - 1 : move->tag;
 }
 
 static void make_sample(const move_t *move, size_t i, size_t width, bool turns) {
@@ -66,16 +63,15 @@ static void make_sample(const move_t *move, size_t i, size_t width, bool turns) 
         turn_by(move->axis, smooth * move->angle, q);
         multiply(move->from + width, q, sample->values + width);
     }
-    sample->tag = move->tag;
     sample->forced = wh_test_below(50) == 0;
 }
 
 /* Rests and smooth moves of random lengths, as a robot makes them, with a jolt now and then; the moves turn about random axes. */
-static void make_signal(size_t width, bool turns, bool tagged) {
+static void make_signal(size_t width, bool turns) {
     move_t move = {.from = {0, 0, 0, 0, 0, 0, 1}, .length = 0};
     for (size_t i = 0; i < SAMPLES; ++i) {
         if (i == move.begin + move.length) {
-            begin_move(&move, i, tagged);
+            begin_move(&move, i);
         }
         make_sample(&move, i, width, turns);
     }
@@ -83,7 +79,7 @@ static void make_signal(size_t width, bool turns, bool tagged) {
 
 static void thin_signal(wh_thin_t *thin) {
     for (size_t i = 0; i < SAMPLES; ++i) {
-        wh_thin_add(thin, (int64_t)i + 7, samples[i].values, samples[i].tag);
+        wh_thin_add(thin, (int64_t)i + 7, samples[i].values);
         if (samples[i].forced) {
             wh_thin_force(thin);
         }
@@ -119,17 +115,16 @@ static void assert_points(const wh_thin_t *thin) {
         const sample_t *sample = &samples[point->slice - 7];
         assert_true(i == 0 || point->slice > thin->points[i - 1].slice);
         assert_memory_equal(point->values, sample->values, thin->width * sizeof(double));
-        assert_int_equal(point->tag, sample->tag);
     }
     assert_int_equal(thin->points[0].slice, 7);
     assert_int_equal(thin->points[thin->count - 1].slice, SAMPLES + 6);
     assert_int_equal(thin->of, SAMPLES);
 }
 
-static void check(size_t width, bool turns, bool tagged, size_t limit) {
+static void check(size_t width, bool turns, size_t limit) {
     wh_thin_t thin;
     wh_thin_open(&thin, width, wh_test_decades(1e-4, 10), turns ? wh_test_decades(1e-5, 0.1) : 0, limit);
-    make_signal(width, turns, tagged);
+    make_signal(width, turns);
     thin_signal(&thin);
     assert_points(&thin);
     for (size_t i = 0; i < SAMPLES; ++i) {
@@ -143,21 +138,14 @@ static void test_numbers_stay_within_the_tolerance(void **state) {
     (void)state;
     (void)wh_test_seed();
     for (int i = 0; i < 60; ++i) {
-        check(1 + wh_test_below(3), false, false, SIZE_MAX);
+        check(1 + wh_test_below(3), false, SIZE_MAX);
     }
 }
 
 static void test_poses_stay_within_both_tolerances(void **state) {
     (void)state;
     for (int i = 0; i < 60; ++i) {
-        check(3, true, false, SIZE_MAX);
-    }
-}
-
-static void test_tags_begin_anew(void **state) {
-    (void)state;
-    for (int i = 0; i < 60; ++i) {
-        check(3, false, true, SIZE_MAX);
+        check(3, true, SIZE_MAX);
     }
 }
 
@@ -165,7 +153,7 @@ static void test_tags_begin_anew(void **state) {
 static void test_a_limit_is_kept_and_the_tolerance_told(void **state) {
     (void)state;
     for (int i = 0; i < 60; ++i) {
-        check(3, wh_test_below(2) == 0, false, 20 + wh_test_below(200));
+        check(3, wh_test_below(2) == 0, 20 + wh_test_below(200));
     }
 }
 
@@ -177,7 +165,7 @@ static void test_a_straight_line_has_two_points(void **state) {
     wh_thin_open(&thin, 1, 1e-3, 0, SIZE_MAX);
     for (int64_t i = 0; i < 1000; ++i) {
         const double value = 3 + 0.25 * (double)i;
-        wh_thin_add(&thin, i, &value, 0);
+        wh_thin_add(&thin, i, &value);
     }
     wh_thin_finish(&thin);
     assert_int_equal(thin.count, 2);
@@ -198,7 +186,7 @@ static void test_a_rest_has_two_points(void **state) {
     wh_thin_open(&thin, 1, 0.5, 0, SIZE_MAX);
     for (int64_t i = 0; i <= 20; ++i) {
         const double value = i <= 10 ? 5 : 5 + 0.1 * (double)(i - 10);
-        wh_thin_add(&thin, i, &value, 0);
+        wh_thin_add(&thin, i, &value);
         if (i == 3) {
             wh_thin_force(&thin);
         }
@@ -209,36 +197,13 @@ static void test_a_rest_has_two_points(void **state) {
     wh_thin_close(&thin);
 }
 
-static void test_a_sample_is_inserted_where_its_tag_is(void **state) {
-    (void)state;
-    wh_thin_t thin;
-    wh_thin_open(&thin, 1, 10, 0, SIZE_MAX);
-    for (int64_t i = 0; i <= 20; ++i) {
-        const double value = (double)(i % 2);
-        wh_thin_add(&thin, i, &value, i < 10 ? 1 : 2);
-    }
-    const double exact = 1;
-    wh_thin_insert(&thin, 5, &exact, 1);
-    wh_thin_insert(&thin, 5, &exact, 1); /* there already */
-    wh_thin_insert(&thin, 7, &exact, 2); /* of another tag */
-    wh_thin_insert(&thin, 99, &exact, 2);
-    double read;
-    wh_thin_read(&thin, 5, &read);
-    assert_near(read, 1, 0);
-    assert_int_equal(thin.count, 5);
-    assert_true(thin.points[1].exact);
-    wh_thin_close(&thin);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers_stay_within_the_tolerance),
         cmocka_unit_test(test_poses_stay_within_both_tolerances),
-        cmocka_unit_test(test_tags_begin_anew),
         cmocka_unit_test(test_a_limit_is_kept_and_the_tolerance_told),
         cmocka_unit_test(test_a_straight_line_has_two_points),
         cmocka_unit_test(test_a_rest_has_two_points),
-        cmocka_unit_test(test_a_sample_is_inserted_where_its_tag_is),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

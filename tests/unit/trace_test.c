@@ -91,15 +91,6 @@ static double angle_between(const wh_mat3_t *a, const wh_mat3_t *b) {
     return sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
 }
 
-static wh_pose_t read_pose(const wh_thin_t *thin, int64_t slice) {
-    double values[7];
-    wh_pose_t pose;
-    wh_thin_read(thin, slice, values);
-    pose.r = wh_vec3(values[0], values[1], values[2]);
-    wh_quaternion_to_matrix(values + 3, &pose.R);
-    return pose;
-}
-
 static void assert_pose(const wh_pose_t *shown, const wh_pose_t *was, double mm, double rad) {
     assert_near(shown->r.x, was->r.x, mm);
     assert_near(shown->r.y, was->r.y, mm);
@@ -123,17 +114,37 @@ static const wh_stay_t *stay_at(int32_t wafer, int64_t slice) {
     return found;
 }
 
+/* How far a pose may be off: its axes' tolerances, those of angles at the robot's reach. */
+static double room_mm(const slice_t *was) {
+    return was->is_exact ? 1e-9
+                         : 2 * WH_TRACE_MM + WH_TRACE_RAD * trace.layout->machine.robot.travel[WH_AXIS_R].max;
+}
+
+static double room_rad(const slice_t *was) {
+    return was->is_exact ? 0 : 2 * WH_TRACE_RAD;
+}
+
 static void check_gripper(size_t g, int64_t n) {
     const slice_t *was = &slices[n];
-    const double factor = was->is_exact ? 0 : 1;
-    const wh_thin_t *thin = &trace.grippers[g];
-    const wh_pose_t shown = read_pose(thin, n);
-    double level;
-    assert_pose(&shown, &was->grippers[g], factor * thin->tolerance + 1e-12, factor * thin->turn);
-    wh_thin_read(&trace.vacuum[g], n, &level);
-    assert_near(level, was->levels[g], factor * WH_TRACE_VACUUM);
+    wh_pose_t shown;
+    wh_trace_gripper(&trace, g, n, &shown);
+    assert_pose(&shown, &was->grippers[g], room_mm(was), room_rad(was));
+    assert_near(wh_curve_read(&trace.vacuum[g], n, NULL), was->levels[g],
+                was->is_exact ? 0 : WH_TRACE_VACUUM);
     assert_int_equal(step_at(&trace.valves[g], n), was->valves[g]);
     assert_int_equal(step_at(&trace.sensors[g], n), was->sensors >> g & 1U);
+}
+
+/* The arm as it was placed for the collision check. */
+static void check_links(int64_t n) {
+    const slice_t *was = &slices[n];
+    wh_pose_t links[WH_TRACE_LINKS], bodies[WH_ARM_BODIES];
+    assert_true(wh_trace_links(&trace, n, links));
+    wh_arm_place(&trace.layout->shapes.arm, &was->grippers[0], bodies);
+    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        /* The elbow goes further than the wrist where the arm is folded or stretched. */
+        assert_pose(&links[i], &bodies[WH_ARM_LIFT + i], 20 * room_mm(was), 40 * room_rad(was));
+    }
 }
 
 /* Held, a wafer is where its gripper shows it: a way out from the gripper's origin its turn counts, too. */
@@ -145,24 +156,25 @@ static void check_wafer(int32_t w, int64_t n) {
         assert_memory_equal(&stay->pose, &was->wafers[w], sizeof stay->pose);
         return;
     }
-    const wh_thin_t *thin = &trace.grippers[stay->holder];
-    const wh_pose_t gripper = read_pose(thin, n);
+    wh_pose_t gripper;
+    wh_trace_gripper(&trace, (size_t)stay->holder, n, &gripper);
     const wh_pose_t shown = wh_pose_compose(&gripper, &stay->pose);
-    const double mm = thin->tolerance + thin->turn * wh_vec3_norm(&stay->pose.r);
-    assert_pose(&shown, &was->wafers[w], was->is_exact ? 1e-9 : mm, was->is_exact ? 0 : thin->turn);
+    assert_pose(&shown, &was->wafers[w], room_mm(was) + room_rad(was) * wh_vec3_norm(&stay->pose.r),
+                room_rad(was));
 }
 
+/* Between points a slope is not judged by a tolerance: by a hundredth of what the axis does. */
 static void check_axes(int64_t n) {
+    const double seconds = (double)trace.layout->slice_us / 1e6;
     for (size_t axis = 0; axis < trace.axis_count; ++axis) {
-        const double factor = slices[n].is_exact ? 0 : 1;
-        const double seconds = (double)trace.layout->slice_us / 1e6;
-        double value, speed;
-        wh_thin_read(&trace.axes[axis], n, &value);
-        wh_thin_read(&trace.speeds[axis], n, &speed);
-        assert_near(value, slices[n].axes[axis], factor * trace.axes[axis].tolerance);
+        const wh_curve_t *curve = &trace.axes[axis];
+        const double limit = (double)wh_machine_limits(&trace.layout->machine, axis)->speed;
+        double slope;
+        const double value = wh_curve_read(curve, n, &slope);
+        assert_near(value, slices[n].axes[axis], slices[n].is_exact ? 0 : curve->tolerance);
         if (n > 1) {
-            assert_near(speed, (slices[n].axes[axis] - slices[n - 1].axes[axis]) / seconds,
-                        factor * trace.speeds[axis].tolerance + 1e-9);
+            assert_near(slope / seconds, (slices[n].axes[axis] - slices[n - 1].axes[axis]) / seconds,
+                        0.02 * limit);
         }
     }
 }
@@ -177,6 +189,7 @@ static void check_all(void) {
             check_wafer((int32_t)w, n);
         }
         check_axes(n);
+        check_links(n);
     }
 }
 
@@ -188,11 +201,13 @@ static void check_events(size_t expected) {
         const bool taken = event->kind == WH_EVENT_PICKED || event->kind == WH_EVENT_NEAR_MISS ||
                            event->kind == WH_EVENT_HANDED_OVER;
         if (taken) {
-            double values[3];
-            wh_thin_read(&trace.proximity[event->gripper], (int64_t)event->measured_slice, values);
-            assert_near(values[0], fabs(event->measured.dr_proj_z), 0);
-            assert_near(values[1], WH_TRACE_PROJXY_SCALE * event->measured.dr_proj_xy_norm, 0);
-            assert_near(values[2], WH_TRACE_PLANAR_SCALE * event->measured.n1_proj_n2, 0);
+            const wh_curve_t *curves = trace.proximity[event->gripper];
+            const int64_t slice = (int64_t)event->measured_slice;
+            const wh_proximity_t *p = &event->measured;
+            assert_near(wh_curve_read(&curves[WH_MEASURE_PROJZ], slice, NULL), fabs(p->dr_proj_z), 0);
+            assert_near(wh_curve_read(&curves[WH_MEASURE_PROJXY], slice, NULL), p->dr_proj_xy_norm, 0);
+            assert_near(wh_curve_read(&curves[WH_MEASURE_PLANAR], slice, NULL), p->n1_proj_n2, 0);
+            assert_int_equal(step_at(&trace.nearest[event->gripper], slice), event->wafer);
             ++measured;
         }
     }
@@ -228,6 +243,45 @@ static void test_vacuum_that_leaks(void **state) {
     (void)state;
     play("lua/examples/05_leak.lua");
     check_all();
+}
+
+/* ------------------------------------------------------------------------------------------------ own poses */
+
+/* From where a gripper leaves what the axes say, it is shown where it is. */
+static void test_a_gripper_that_is_elsewhere(void **state) {
+    (void)state;
+    play("lua/examples/01_transfer.lua");
+    const wh_layout_t *layout = trace.layout;
+    wh_trace_t other = {0};
+    wh_gripper_t grippers[2];
+    wh_condition_t condition;
+    memset(grippers, 0, sizeof grippers);
+    wh_condition_start(&condition, &layout->physics);
+    wh_trace_begin(&other, layout, false);
+    for (int64_t n = 1; n <= 2000; ++n) {
+        for (size_t g = 0; g < 2; ++g) {
+            grippers[g].base_from_gripper = slices[n].grippers[g];
+            grippers[g].wafer = WH_NONE;
+        }
+        grippers[0].base_from_gripper.r.z += n > 900 ? 0.25 : 0;
+        const wh_state_t at = {.seq = n,
+                               .grippers = grippers,
+                               .gripper_count = 2,
+                               .condition = &condition,
+                               .wafers = layout->start,
+                               .wafer_count = layout->wafer_count};
+        wh_trace_slice(&other, n == 1500 ? NULL : slices[n].axes, layout->machine.axis_count, &at);
+    }
+    wh_trace_finish(&other);
+    assert_int_equal(other.own[0].points[0].slice, 901);
+    assert_int_equal(other.own[1].points[0].slice, 1500);
+    for (int64_t n = 1; n <= 2000; ++n) {
+        wh_pose_t shown, was = slices[n].grippers[0];
+        was.r.z += n > 900 ? 0.25 : 0;
+        wh_trace_gripper(&other, 0, n, &shown);
+        assert_pose(&shown, &was, 0.08, 1e-3);
+    }
+    wh_trace_close(&other);
 }
 
 /* --------------------------------------------------------------------------------------------------- scene */
@@ -311,6 +365,10 @@ static json_t *document_of(const wh_document_t *document) {
     return read;
 }
 
+static double number_at(const json_t *object, const char *key, size_t i) {
+    return json_number_value(json_array_get(json_object_get(object, key), i));
+}
+
 static void test_document(void **state) {
     (void)state;
     static const char *const parameters[] = {"a=1", "b=x=</script>"};
@@ -325,23 +383,30 @@ static void test_document(void **state) {
                                     .record = &run.record,
                                     .trace = &trace};
     json_t *read = document_of(&document);
-    assert_int_equal(integer(read, "format"), 1);
+    assert_int_equal(integer(read, "format"), 2);
     assert_string_equal(json_string_value(json_object_get(read, "title")), "a </title>");
     assert_string_equal(json_string_value(json_object_get(json_object_get(read, "parameters"), "b")),
                         "x=</script>");
     assert_true(json_equal(json_object_get(read, "run"), object));
     assert_int_equal(json_array_size(json_object_get(read, "slots")), 51);
     const json_t *tracks = json_object_get(read, "tracks");
-    const json_t *gripper = json_array_get(json_object_get(tracks, "grippers"), 0);
-    const size_t points = json_array_size(json_object_get(gripper, "t"));
-    assert_int_equal(points, trace.grippers[0].count);
-    assert_int_equal(json_array_size(json_object_get(gripper, "r")), 3 * points);
-    assert_int_equal(json_array_size(json_object_get(gripper, "q")), 4 * points);
-    for (size_t i = 0; i < points; ++i) {
-        const wh_thin_point_t *point = &trace.grippers[0].points[i];
-        const double x = json_number_value(json_array_get(json_object_get(gripper, "r"), 3 * i));
-        assert_near(x, point->values[0], point->exact ? 0 : 1e-4);
+    assert_int_equal(
+        json_array_size(json_object_get(json_array_get(json_object_get(tracks, "grippers"), 0), "t")), 0);
+    const json_t *axis = json_array_get(json_object_get(tracks, "axes"), WH_AXIS_R);
+    const wh_curve_t *curve = &trace.axes[WH_AXIS_R];
+    assert_int_equal(json_array_size(json_object_get(axis, "t")), curve->count);
+    assert_int_equal(json_array_size(json_object_get(axis, "v")), curve->count);
+    assert_int_equal(json_array_size(json_object_get(axis, "slope")), curve->count);
+    for (size_t i = 0; i < curve->count; ++i) {
+        const wh_curve_point_t *point = &curve->points[i];
+        assert_near(number_at(axis, "t", i), (double)point->slice / 1e3, 1e-9);
+        assert_near(number_at(axis, "v", i), point->value, point->exact ? 0 : 1e-4);
+        assert_near(number_at(axis, "slope", i), point->slope * 1e3, 1e-3);
     }
+    const json_t *machine = json_object_get(read, "machine");
+    const json_t *chuck = json_array_get(json_object_get(machine, "grippers"), 1);
+    assert_int_equal(integer(chuck, "axis"), 4);
+    assert_near(number_at(chuck, "r", 0), -600, 1e-12);
     json_decref(read);
     json_decref(object);
 }
@@ -352,6 +417,7 @@ int main(void) {
         cmocka_unit_test_teardown(test_prealigner, close_run),
         cmocka_unit_test_teardown(test_missed_pick, close_run),
         cmocka_unit_test_teardown(test_vacuum_that_leaks, close_run),
+        cmocka_unit_test_teardown(test_a_gripper_that_is_elsewhere, close_run),
         cmocka_unit_test_teardown(test_scene, close_run),
         cmocka_unit_test_teardown(test_document, close_run),
     };

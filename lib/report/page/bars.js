@@ -28,7 +28,7 @@
             lanes.push({ name: `${name} valve`, bars: bars(valves[i], 0, 'open') });
         }
         if (some(vacuum[i])) {
-            lanes.push({ name: `${name} vacuum`, bars: [], curve: vacuum[i], colour: `s${i % 6}` });
+            lanes.push({ name: `${name} vacuum`, bars: [], curve: W.curves.smooth(vacuum[i], false, 1), colour: `s${i % 6}` });
         }
         if (some(sensors[i])) {
             lanes.push({ name: `${name} sensor`, bars: bars(sensors[i], 1, 'wafer') });

@@ -1,21 +1,31 @@
 /* Which curves there are: groups of panels, each with its curves and limits, taken from the document's tracks. A curve is
- * { name, colour, t, v, unit, decimals, step }; a limit { value, text, below }: what is allowed lies below it, or above;
- * `most` is the widest range of values that is worth showing. */
+ * { name, colour, unit, decimals, t, read(i, share), at(t) }: `read` between its points i and i + 1, null in a gap; a limit
+ * { value, text, below }: what is allowed lies below it, or above; `most` is the widest range of values that is worth showing. */
 (function (W) {
     'use strict';
 
     const DEGREES = 180 / Math.PI;
     const some = (track) => !!(track && track.t && track.t.length > 0);
     const valued = (values) => Array.isArray(values) && values.some((value) => value !== null);
-    const scaled = (values, factor, absolute) => (factor === 1 && !absolute ? values
-        : values.map((v) => (v === null ? null : factor * (absolute ? Math.abs(v) : v))));
+    const times = (value, factor) => (value === null ? null : factor * value);
+
+    /* A curve of the document, or its slope. */
+    function smooth(track, slope, factor) {
+        return { t: track.t, read: (i, share) => times(W.tracks.cubic(track, i, share, slope), factor), smooth: true,
+            at: (t) => times(W.tracks.curve(track, t, slope), factor) };
+    }
+
+    /* Straight lines from value to value. */
+    function lines(t, values) {
+        return { t, read: (i) => values[i], at: (now) => W.tracks.linear(t, values, now) };
+    }
 
     const MEASURES = [
-        { key: 'dr_proj_z', name: '|dr_proj_z|', unit: 'mm', decimals: 4, limit: 'projz', below: true, absolute: true,
+        { key: 'dr_proj_z', name: '|dr_proj_z|', unit: 'mm', decimals: 4, limit: 'projz', below: true,
             most: (limit) => [0, 6 * limit] },
-        { key: 'dr_proj_xy', name: '|dr_proj_xy|', unit: 'mm', decimals: 4, limit: 'projxy', below: true, absolute: true,
+        { key: 'dr_proj_xy', name: '|dr_proj_xy|', unit: 'mm', decimals: 4, limit: 'projxy', below: true,
             most: (limit) => [0, 3 * limit] },
-        { key: 'n1_proj_n2', name: 'n1_proj_n2', unit: '', decimals: 6, limit: 'planar', below: false, absolute: false,
+        { key: 'n1_proj_n2', name: 'n1_proj_n2', unit: '', decimals: 6, limit: 'planar', below: false,
             most: (limit) => [1 - 2 * (1 - limit), 1] },
     ];
 
@@ -25,29 +35,24 @@
             text: `limit ${value}${measure.unit && '\u00a0' + measure.unit}` }] : [];
     }
 
-    /* The name of the nearest wafer at a time, for the legend: a name, or an index. */
-    function nearest(doc, track) {
-        return (t) => {
-            const found = Array.isArray(track.wafer) ? W.tracks.step(track.t, track.wafer, t) : track.wafer;
-            return typeof found === 'number' ? doc.names.wafers[found] || '' : found || '';
-        };
+    /* The name of the nearest wafer at a time, for the legend. */
+    function nearest(doc, i) {
+        const track = doc.tracks.nearest[i];
+        return (t) => (track ? doc.names.wafers[W.tracks.step(track.t, track.v, t)] || '' : '');
     }
 
     function proximityPanel(doc, track, name, measure, i) {
-        const curve = { name: measure.name, colour: i, t: track.t, unit: measure.unit, decimals: measure.decimals,
-            v: scaled(track[measure.key], 1, measure.absolute), note: nearest(doc, track) };
+        const curve = Object.assign(smooth(track[measure.key], false, 1), { name: measure.name, colour: i, unit: measure.unit,
+            decimals: measure.decimals, note: nearest(doc, i) });
         return { title: `${name}: ${measure.name}`, unit: measure.unit, curves: [curve], limits: limitOf(doc, measure),
             zero: measure.below, most: limitOf(doc, measure).map((limit) => measure.most(limit.value))[0] };
     }
 
     function proximity(doc) {
         const panels = [];
-        doc.tracks.proximity.forEach((track, i) => {
-            if (some(track)) {
-                MEASURES.filter((measure) => valued(track[measure.key])).forEach((measure) => panels.push(
-                    proximityPanel(doc, track, doc.names.grippers[i] || `gripper ${i + 1}`, measure, i)));
-            }
-        });
+        doc.tracks.proximity.forEach((track, i) => MEASURES.filter((measure) => some(track[measure.key]))
+            .forEach((measure) => panels.push(
+                proximityPanel(doc, track, doc.names.grippers[i] || `gripper ${i + 1}`, measure, i))));
         return { id: 'proximity', title: 'Proximity of each gripper to its nearest wafer', panels,
             why: 'No gripper came near a wafer, or the document does not hold how near.' };
     }
@@ -59,10 +64,9 @@
         const curves = [];
         doc.tracks.axes.forEach((track, i) => {
             const axis = doc.names.axes[i] || { name: `axis ${i + 1}`, unit: 'mm' };
-            const t = speed ? track.speed_t : track.t;
-            if (axis.unit === unit && t && t.length > 0) {
-                curves.push({ name: axis.name, colour: i, t, v: scaled(speed ? track.speed : track.v, factor, false),
-                    unit: shown, decimals: speed ? 2 : 3, bounds: bounds(axis, factor, speed) });
+            if (axis.unit === unit && some(track)) {
+                curves.push(Object.assign(smooth(track, speed, factor), { name: axis.name, colour: i, unit: shown,
+                    decimals: speed ? 2 : 3, bounds: bounds(axis, factor, speed) }));
             }
         });
         return { title: speed ? 'Speeds' : 'Positions', unit: shown, curves, limits: [], zero: speed };
@@ -86,7 +90,7 @@
     function clearances(doc) {
         const panels = doc.tracks.clearances.filter((track) => some(track) && valued(track.gap))
             .map((track, i) => ({ title: W.words(track.pair), unit: 'mm', zero: true,
-                curves: [{ name: 'gap', colour: i, t: track.t, v: track.gap, unit: 'mm', decimals: 3 }],
+                curves: [Object.assign(lines(track.t, track.gap), { name: 'gap', colour: i, unit: 'mm', decimals: 3 })],
                 limits: track.limit > 0 ? [{ value: track.limit, below: false, text: `limit ${track.limit}\u00a0mm` }]
                     : [] }));
         return { id: 'clearances', title: 'Clearances', panels,
@@ -95,5 +99,5 @@
 
     const groups = (doc) => [proximity(doc), axes(doc), clearances(doc)];
 
-    W.curves = { groups };
+    W.curves = { groups, smooth };
 }(window.Waferhand));

@@ -10,9 +10,13 @@
             stations: list(from.stations) };
     }
 
-    function tracks(from) {
-        const kinds = ['grippers', 'wafers', 'axes', 'valves', 'sensors', 'vacuum', 'proximity', 'clearances', 'links'];
-        return kinds.reduce((all, kind) => Object.assign(all, { [kind]: list(from[kind]) }), {});
+    function machine(from) {
+        return { grippers: list(from.grippers), links: list(from.links), arm: Object.assign({ reach: 0, link: 1 }, from.arm) };
+    }
+
+    function tracks(from, robot) {
+        const kinds = ['axes', 'grippers', 'wafers', 'valves', 'sensors', 'nearest', 'vacuum', 'proximity', 'clearances'];
+        return kinds.reduce((all, kind) => Object.assign(all, { [kind]: list(from[kind]) }), { machine: machine(robot) });
     }
 
     /* Events with their time in seconds, in order; several may share one time. */
@@ -24,7 +28,7 @@
     /* The last time that anything in the document has, for one that does not say how long it is. */
     function lastTime(doc) {
         const last = (track) => (track && track.t && track.t.length > 0 ? track.t[track.t.length - 1] : 0);
-        const moved = doc.tracks.grippers.concat(doc.tracks.axes).map(last);
+        const moved = doc.tracks.axes.concat(doc.tracks.grippers).map(last);
         return Math.max(0.001, ...moved, ...doc.events.slice(-1).map((event) => event.t));
     }
 
@@ -43,17 +47,36 @@
             title: from.title || run.script || 'Report', source: from.source, version: from.version,
             reproduce: from.reproduce, parameters: object(from.parameters), run, names: names(object(from.names)),
             wafer: Object.assign({ diameter: 300, thickness: 0.775 }, object(from.wafer)), limits: object(from.limits),
-            thinning: from.thinning, tracks: tracks(object(from.tracks)), scene: from.scene, slices: from.slices,
+            thinning: from.thinning, tracks: tracks(object(from.tracks), object(from.machine)),
+            scene: from.scene, slices: from.slices,
             slice: from.slice_s > 0 ? from.slice_s : 0.001, begin: Math.max(from.begin_s, 0),
         });
         doc.duration = from.duration_s > 0 ? from.duration_s : lastTime(doc);
         return doc;
     }
 
-    /* The document, or null with `W.fault` telling why. */
-    function read() {
+    function bytes(text) {
+        const made = new Uint8Array(text.length);
+        for (let i = 0; i < text.length; ++i) {
+            made[i] = text.charCodeAt(i);
+        }
+        return made;
+    }
+
+    /* The text that was deflated, and written as base64. */
+    function inflate(packed) {
+        if (!window.DecompressionStream) {
+            throw new Error('it takes a browser of 2023 or later to unpack it');
+        }
+        const stream = new Blob([bytes(atob(packed))]).stream().pipeThrough(new window.DecompressionStream('deflate'));
+        return new Response(stream).text();
+    }
+
+    /* Promises the document, or null with `W.fault` telling why. */
+    async function read() {
         try {
-            return complete(object(JSON.parse(document.getElementById('document').textContent)));
+            const text = await inflate(document.getElementById('document').textContent.trim());
+            return complete(object(JSON.parse(text)));
         } catch (error) {
             W.fault = error.message;
             return null;

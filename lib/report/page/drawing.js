@@ -11,8 +11,8 @@
     function movers(doc) {
         const found = {};
         const add = (kind, i, name, at) => { found[W.gltf.key(kind, i)] = { kind, i, name, at }; };
-        doc.tracks.links.forEach((link, i) => add('link', i, link.name, (t) => W.tracks.pose(link, t)));
-        doc.names.grippers.forEach((name, i) => add('gripper', i, name, (t) => W.tracks.pose(doc.tracks.grippers[i], t)));
+        doc.tracks.machine.links.forEach((name, i) => add('link', i, name, (t) => W.robot.link(doc.tracks, i, t)));
+        doc.names.grippers.forEach((name, i) => add('gripper', i, name, (t) => W.robot.gripper(doc.tracks, i, t)));
         doc.names.wafers.forEach((name, i) => add('wafer', i, name, (t) => W.tracks.wafer(doc.tracks, i, t)));
         return found;
     }

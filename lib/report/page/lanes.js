@@ -100,7 +100,7 @@
     /* A level from 0 to 1, filled. */
     function drawCurve(chart, pen, lane, y) {
         const bottom = y + ROW - 4;
-        const rows = W.reduce.rows([lane.curve], W.clock.window, width(chart), W.clock.end);
+        const rows = W.reduce.rows([lane.curve], W.clock.window, width(chart));
         pen.save();
         pen.beginPath();
         pen.rect(left(), y, width(chart), ROW);

@@ -41,11 +41,10 @@
         performance.mark('complete');
     }
 
-    function start() {
-        W.faults = [];
-        const doc = W.document.read();
+    function show(doc) {
         if (!doc) {
             host('head').append(W.why(`The document of this report cannot be read: ${W.fault}.`));
+            performance.mark('complete');
             return;
         }
         W.shown = doc;
@@ -62,5 +61,6 @@
         }, 0));
     }
 
-    start();
+    W.faults = [];
+    W.document.read().then(show);
 }(window.Waferhand));

@@ -10,7 +10,7 @@
         doc.names.wafers.forEach((name, i) => found.set(name, { group: 'Wafers',
             at: (t) => W.tracks.wafer(doc.tracks, i, t) }));
         doc.names.grippers.forEach((name, i) => found.set(name, { group: 'Grippers',
-            at: (t) => W.tracks.pose(doc.tracks.grippers[i], t) }));
+            at: (t) => W.robot.gripper(doc.tracks, i, t) }));
         doc.slots.filter((slot) => slot.slot === 1).forEach((slot) => found.set(stationName(doc, slot),
             { group: 'Stations', at: () => slot }));
         doc.slots.forEach((slot) => found.set(`${stationName(doc, slot)}/${slot.slot}`,

@@ -6,13 +6,13 @@
     const now = { cells: [] };
 
     const place = (i) => (doc, gripper, t) => {
-        const pose = W.tracks.pose(doc.tracks.grippers[gripper], t);
+        const pose = W.robot.gripper(doc.tracks, gripper, t);
         return { text: pose ? W.number(pose.r[i], 3) : W.DASH };
     };
 
     const measured = (key, name, decimals) => (doc, gripper, t) => {
         const track = doc.tracks.proximity[gripper];
-        const found = track ? W.tracks.linear(track.t, track[key] || [], t) : null;
+        const found = track ? W.tracks.curve(track[key], t, false) : null;
         return typeof found === 'number' ? judged(key, found, doc.limits[name], decimals) : { text: W.DASH };
     };
 
@@ -35,10 +35,9 @@
     }
 
     function nearest(doc, gripper, t) {
-        const track = doc.tracks.proximity[gripper];
-        const near = track ? W.tracks.linear(track.t, track.dr_proj_z || [], t) : null;
-        const wafer = track && Array.isArray(track.wafer) ? W.tracks.step(track.t, track.wafer, t) : null;
-        return { text: typeof near === 'number' ? doc.names.wafers[wafer] || wafer || '' : 'none near' };
+        const track = doc.tracks.nearest[gripper];
+        const wafer = track ? W.tracks.step(track.t, track.v, t) : null;
+        return { text: wafer === null ? 'none near' : doc.names.wafers[wafer] || '' };
     }
 
     const stepped = (kind, words) => (doc, gripper, t) => {
@@ -49,11 +48,12 @@
 
     function vacuum(doc, gripper, t) {
         const track = doc.tracks.vacuum[gripper];
-        const level = track ? W.tracks.linear(track.t, track.v, t) : null;
+        const level = W.tracks.curve(track, t, false);
         return { text: typeof level === 'number' ? `${W.number(100 * level, 0)}\u00a0%` : W.DASH };
     }
 
     const some = (tracks) => tracks.some((track) => track && track.t && track.t.length > 0);
+    const near = (tracks) => tracks.some((track) => track && some(Object.values(track)));
 
     /* The table's rows: names and what they show; those that the document has nothing for are left out. */
     function rows(doc) {
@@ -63,10 +63,10 @@
             ['vacuum', 'vacuum', vacuum, some(tracks.vacuum)],
             ['sensor', 'sensor', stepped('sensors', ['off', 'on']), some(tracks.sensors)],
             ['x', 'x mm', place(0), true], ['y', 'y mm', place(1), true], ['z', 'z mm', place(2), true],
-            ['nearest', 'nearest', nearest, some(tracks.proximity)],
-            ['dr_proj_z', '|dr_proj_z| mm', measured('dr_proj_z', 'projz', 4), some(tracks.proximity)],
-            ['dr_proj_xy', '|dr_proj_xy| mm', measured('dr_proj_xy', 'projxy', 4), some(tracks.proximity)],
-            ['n1_proj_n2', 'n1_proj_n2', measured('n1_proj_n2', 'planar', 6), some(tracks.proximity)],
+            ['nearest', 'nearest', nearest, some(tracks.nearest)],
+            ['dr_proj_z', '|dr_proj_z| mm', measured('dr_proj_z', 'projz', 4), near(tracks.proximity)],
+            ['dr_proj_xy', '|dr_proj_xy| mm', measured('dr_proj_xy', 'projxy', 4), near(tracks.proximity)],
+            ['n1_proj_n2', 'n1_proj_n2', measured('n1_proj_n2', 'planar', 6), near(tracks.proximity)],
         ].filter(([, , , there]) => there);
     }
 

@@ -41,7 +41,7 @@
                 high = v > high ? v : high;
             }
         };
-        panel.curves.forEach((curve) => curve.v.forEach(take));
+        panel.curves.forEach((curve) => curve.t.forEach((_, i) => take(curve.read(i, 0))));
         panel.limits.forEach((limit) => take(limit.value));
         [low, high] = panel.most ? [Math.max(low, panel.most[0]), Math.min(high, panel.most[1])] : [low, high];
         const air = (high - low || 1) * 0.06;
@@ -58,7 +58,7 @@
     function looks(panel) {
         const series = {};
         panel.curves.forEach((curve, i) => {
-            series[curve.name] = { strokePattern: DASHES[i % DASHES.length], stepPlot: !!curve.step };
+            series[curve.name] = { strokePattern: DASHES[i % DASHES.length] };
         });
         return { colors: colours(panel), series, axisLineColor: W.theme.colour('line'),
             gridLineColor: W.theme.colour('rule') };
@@ -98,7 +98,7 @@
     }
 
     function data(panel) {
-        return W.reduce.rows(panel.curves, W.clock.window, Math.max(panel.host.clientWidth, 200), plots.doc.duration);
+        return W.reduce.rows(panel.curves, W.clock.window, Math.max(panel.host.clientWidth, 200));
     }
 
     function legendItem(panel, curve, i) {
@@ -165,8 +165,7 @@
         const { x, w } = area(panel);
         plots.place(panel.cursor, x, w);
         panel.values.forEach(({ curve, value, note }) => {
-            const look = curve.step ? W.tracks.step : W.tracks.linear;
-            const now = look(curve.t, curve.v, W.clock.now);
+            const now = curve.at(W.clock.now);
             value.textContent = W.number(now, curve.decimals);
             note.textContent = now !== null && curve.note ? ` ${curve.note(W.clock.now)}` : curve.bounds
                 ? ` (${curve.bounds})` : '';

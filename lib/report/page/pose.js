@@ -36,6 +36,11 @@
         return { r: add(a.r, rotate(a.q, b.r)), q: multiply(a.q, b.q) };
     }
 
+    function inverse(a) {
+        const q = conjugate(a.q);
+        return { r: rotate(q, a.r.map((x) => -x)), q };
+    }
+
     /* The shorter way round; the angle by a tangent, for a cosine says little of small ones. */
     function slerp(a, b, share) {
         const sign = dot(a, b) + a[3] * b[3] < 0 ? -1 : 1;
@@ -76,6 +81,6 @@
         };
     }
 
-    W.pose = { IDENTITY, add, subtract, dot, norm, cross, rotate, conjugate, multiply, unit, compose, slerp, between, axis,
-        measure };
+    W.pose = { IDENTITY, add, subtract, dot, norm, cross, rotate, conjugate, multiply, unit, compose, inverse, slerp, between,
+        axis, measure };
 }(window.Waferhand));

@@ -33,8 +33,9 @@
         const parameters = Object.entries(doc.parameters).map(([name, value]) => [`parameter ${name}`, String(value)]);
         return [['version', doc.version], ['hash of the last state', run.hash], ['script', run.script],
             ['layout', run.layout], ...parameters, ['slices', run.slices],
-            ['shown', thinning && typeof thinning.kept === 'number' ? `${thinning.kept} of ${thinning.of} points: positions to `
-                + `${thinning.mm} mm, angles to ${thinning.rad} rad; exact at events` : null]]
+            ['shown', thinning && typeof thinning.kept === 'number' ? `${thinning.kept} of ${thinning.of} points: axes to `
+                + `${W.figure(thinning.mm)} mm and ${W.figure(thinning.rad)} rad, grippers to `
+                + `${W.figure(thinning.gripper_mm)} mm; exact at events` : null]]
             .filter(([, value]) => value !== null && value !== undefined && value !== '')
             .map(([name, value]) => () => W.tables.row([name, String(value)]));
     }

@@ -25,7 +25,7 @@
                 found.push({ object, kind, i, name });
             }
         };
-        doc.tracks.links.forEach((link, i) => take('link', i, link.name));
+        doc.tracks.machine.links.forEach((name, i) => take('link', i, name));
         doc.names.grippers.forEach((name, i) => take('gripper', i, name));
         doc.names.wafers.forEach((name, i) => take('wafer', i, name));
         return found;
@@ -36,9 +36,9 @@
         case 'wafer':
             return W.tracks.wafer(doc.tracks, mover.i, t);
         case 'gripper':
-            return W.tracks.pose(doc.tracks.grippers[mover.i], t);
+            return W.robot.gripper(doc.tracks, mover.i, t);
         default:
-            return W.tracks.pose(doc.tracks.links[mover.i], t);
+            return W.robot.link(doc.tracks, mover.i, t);
         }
     }
 

@@ -17,11 +17,11 @@
     /* A view by its name; the gripper's again rides along with the next one. */
     stage.show = function (name) {
         const doc = stage.doc;
-        const count = doc.tracks.grippers.length;
+        const count = doc.names.grippers.length;
         stage.rider = name === 'gripper' && stage.shown === 'gripper' && count > 0 ? (stage.rider + 1) % count
             : stage.rider;
         stage.shown = name;
-        stage.view.show(name, () => W.tracks.pose(doc.tracks.grippers[stage.rider], W.clock.now));
+        stage.view.show(name, () => W.robot.gripper(doc.tracks, stage.rider, W.clock.now));
         VIEWS.forEach(([each]) => stage.buttons[each].setAttribute('aria-pressed', each === name));
         W.say(name === 'gripper' ? `riding along with ${doc.names.grippers[stage.rider]}` : `view: ${name}`);
     };

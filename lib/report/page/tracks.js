@@ -1,4 +1,4 @@
-/* Tracks: what moved, as points over time. Every look-up is a binary search; nothing is done for each point. */
+/* Tracks: what changed, as points over time. Every look-up is a binary search; nothing is done for each point. */
 (function (W) {
     'use strict';
 
@@ -41,6 +41,7 @@
         return { from, to, share: last ? 0 : (at - times[from]) / (times[to] - times[from]) };
     }
 
+    /* On straight lines between values; null values are gaps. */
     function linear(times, values, at) {
         if (!times || times.length === 0) {
             return null;
@@ -54,6 +55,38 @@
         return a + share * (b - a);
     }
 
+    /* A curve between its points i and i + 1, `share` of the way, or its slope: null in a gap, as it was after the last point. */
+    function cubic({ t, v, slope: slopes }, i, share, slope) {
+        const a = v[i];
+        const b = v[i + 1];
+        if (share === 0) {
+            return slope ? slopes[i] : a;
+        }
+        if (a === null || b === null) {
+            return null;
+        }
+        if (b === undefined) {
+            return slope ? 0 : a;
+        }
+        const width = t[i + 1] - t[i];
+        const first = width * slopes[i];
+        const last = width * slopes[i + 1];
+        const second = 3 * (b - a) - 2 * first - last;
+        const third = first + last - 2 * (b - a);
+        return slope ? (first + share * (2 * second + 3 * share * third)) / width
+            : a + share * (first + share * (second + share * third));
+    }
+
+    /* What a curve is at a time; before its first point it is not. */
+    function curve(from, at, slope) {
+        if (!from || !from.t || from.t.length === 0 || at < from.t[0]) {
+            return null;
+        }
+        const i = index(from.t, at);
+        const share = i + 1 < from.t.length ? (at - from.t[i]) / (from.t[i + 1] - from.t[i]) : at - from.t[i];
+        return cubic(from, i, share, slope);
+    }
+
     function step(times, values, at) {
         return times && times.length > 0 ? values[Math.max(index(times, at), 0)] : null;
     }
@@ -65,9 +98,9 @@
         return { r: slice(track.r, i, 3), q: W.pose.unit(slice(track.q, i, 4)) };
     }
 
-    /* The pose on a track of poses; null for one without points. */
+    /* The pose on a track of poses; null for one without points and before the first of them. */
     function pose(track, at) {
-        if (!track || !track.t || track.t.length === 0) {
+        if (!track || !track.t || track.t.length === 0 || at < track.t[0]) {
             return null;
         }
         const { from, to, share } = span(track.t, at);
@@ -84,9 +117,9 @@
         if (!state || state.holder === null || state.holder === undefined) {
             return state ? { r: state.r, q: W.pose.unit(state.q) } : null;
         }
-        const gripper = pose(tracks.grippers[state.holder], at);
+        const gripper = W.robot.gripper(tracks, state.holder, at);
         return gripper && W.pose.compose(gripper, { r: state.r, q: W.pose.unit(state.q) });
     }
 
-    W.tracks = { index, indexOf, linear, step, pose, hold, wafer };
+    W.tracks = { index, indexOf, linear, step, cubic, curve, pose, hold, wafer };
 }(window.Waferhand));
