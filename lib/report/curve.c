@@ -75,11 +75,22 @@ static bool fits(const wh_curve_t *curve, size_t end, double slope) {
     return true;
 }
 
-/* Over the samples on both sides; over one at an end of all. */
+/* Over the samples on both sides, but flat enough that a jump is not overshot; over one at an end of all. */
 static double slope_at(const wh_curve_t *curve, size_t i) {
-    const wh_sample_t *before = &curve->samples[i > 0 ? i - 1 : i];
-    const wh_sample_t *after = &curve->samples[i + 1 < curve->sample_count ? i + 1 : i];
-    return after == before ? 0 : (after->value - before->value) / (double)(after->slice - before->slice);
+    const wh_sample_t *at = &curve->samples[i];
+    const wh_sample_t *before = i > 0 ? at - 1 : at;
+    const wh_sample_t *after = i + 1 < curve->sample_count ? at + 1 : at;
+    if (after == before) {
+        return 0;
+    }
+    const double slope = (after->value - before->value) / (double)(after->slice - before->slice);
+    if (before == at || after == at) {
+        return slope;
+    }
+    const double to = (at->value - before->value) / (double)(at->slice - before->slice);
+    const double from = (after->value - at->value) / (double)(after->slice - at->slice);
+    const double least = to * from > 0 ? 3 * fmin(fabs(to), fabs(from)) : 0;
+    return fabs(slope) <= least ? slope : copysign(least, slope);
 }
 
 /* --------------------------------------------------------------------------------------------------- points */

@@ -10,9 +10,14 @@
 
     const area = (panel) => panel.graph.getArea();
 
-    /* Ticks are round numbers: all their digits, but not those that rounding left. */
+    /* Ticks are round numbers: all their digits, but not those that rounding left. Near to 1, what is missing to
+     * it tells more. */
     function formatter(unit) {
-        return (value) => String(Number(value.toPrecision(9))).replace('-', '\u2212') + (unit && '\u00a0' + unit);
+        return (value) => {
+            const lack = Number((1 - value).toPrecision(2));
+            const text = lack > 0 && lack < 1e-5 ? `1 - ${lack.toExponential()}` : String(Number(value.toPrecision(9)));
+            return text.replace(/-/g, '\u2212') + (unit && '\u00a0' + unit);
+        };
     }
 
     /* The allowed side of each limit is tinted, the limit drawn. */
@@ -41,7 +46,7 @@
                 high = v > high ? v : high;
             }
         };
-        panel.curves.forEach((curve) => curve.t.forEach((_, i) => take(curve.read(i, 0))));
+        panel.curves.forEach((curve) => W.reduce.range(curve).forEach(take));
         panel.limits.forEach((limit) => take(limit.value));
         [low, high] = panel.most ? [Math.max(low, panel.most[0]), Math.min(high, panel.most[1])] : [low, high];
         const air = (high - low || 1) * 0.06;

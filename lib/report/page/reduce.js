@@ -10,17 +10,17 @@
     function curve(from, window, columns) {
         const first = Math.max(W.tracks.index(from.t, window[0]), 0);
         const last = Math.min(W.tracks.index(from.t, window[1]) + 1, from.t.length - 1);
-        return last - first >= 4 * columns ? extremes(from, first, last, window, columns)
+        return last - first >= 4 * columns ? extremes(all(from, first, last, Infinity), window, columns)
             : all(from, first, last, (window[1] - window[0]) * PIXELS / columns);
     }
 
-    /* How many parts a cubic is drawn in; between equal values with no slope it is one. */
+    /* How many parts a cubic is drawn in: two at least, for slopes are often greatest half-way; one where it rests. */
     function parts(from, i, last, apart) {
         if (!from.smooth || i === last || from.read(i, 0) === null || from.read(i + 1, 0) === null) {
             return 1;
         }
-        const flat = from.read(i, 0) === from.read(i + 1, 0) && from.read(i, 0.5) === from.read(i, 0);
-        return flat ? 1 : W.clamp(Math.ceil((from.t[i + 1] - from.t[i]) / apart), 1, PARTS);
+        const rests = from.read(i, 0) === from.read(i + 1, 0) && from.read(i, 0.5) === from.read(i, 0);
+        return rests ? 1 : W.clamp(Math.ceil((from.t[i + 1] - from.t[i]) / apart), 2, PARTS);
     }
 
     /* All points, those of cubics at most so far apart. */
@@ -38,27 +38,28 @@
     }
 
     /* A gap counts as a value of its own, so that curves end where they did. */
-    function extremes(from, first, last, window, columns) {
+    function extremes([times, values], window, columns) {
         const t = [];
         const v = [];
-        const values = Array.from({ length: last - first + 1 }, (_, i) => from.read(first + i, 0));
-        const keep = (i) => { t.push(from.t[i]); v.push(values[i - first]); };
+        const keep = (i) => { t.push(times[i]); v.push(values[i]); };
         const width = (window[1] - window[0]) / columns;
-        let i = first;
-        while (i <= last) {
-            const end = Math.max(from.t[i], window[0]) + width;
+        let i = 0;
+        while (i < times.length) {
+            const end = Math.max(times[i], window[0]) + width;
             const begin = i;
             let [low, high] = [i, i];
-            const gap = values[begin - first] === null;
-            for (; i <= last && from.t[i] < end && (values[i - first] === null) === gap; ++i) {
-                low = values[i - first] < values[low - first] ? i : low;
-                high = values[i - first] > values[high - first] ? i : high;
+            for (; i < times.length && times[i] < end && (values[i] === null) === (values[begin] === null); ++i) {
+                low = values[i] < values[low] ? i : low;
+                high = values[i] > values[high] ? i : high;
             }
             i = Math.max(i, begin + 1);
             Array.from(new Set([begin, low, high, i - 1])).sort((a, b) => a - b).forEach(keep);
         }
         return [t, v];
     }
+
+    /* All values that a curve takes, nearly: what it ranges over. */
+    const range = (from) => all(from, 0, from.t.length - 1, Infinity)[1];
 
     /* Rows for dygraphs: the times of all curves, null where a curve has no point, NaN where it has a gap. */
     function rows(curves, window, columns) {
@@ -81,5 +82,5 @@
         }
     }
 
-    W.reduce = { rows };
+    W.reduce = { rows, range };
 }(window.Waferhand));
