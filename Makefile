@@ -27,7 +27,7 @@ include tests/tests.mk
 CORE_PARTS := symbols footprint instructions bits on_target eva fuzz
 PART := $(CORE_PARTS) wp coverage mutation
 
-.PHONY: all library run spy test quick bench check verify-core verify install uninstall clean help
+.PHONY: all library run spy view test quick bench check verify-core verify install uninstall clean help
 
 all: ## the library, the program, the Lua module and the manual page, in build/
 	$(NEED) run
@@ -45,6 +45,11 @@ spy: ## opens lcm-spy, with our messages decoded and a view of the proximity che
 	$(NEED) spy
 	$(BUILD) spy
 	@lib/link/spy/start build/spy/types.jar
+
+view: all ## shows a cell live in a web browser: fetches Drake's viewer, says what to start beside it
+	$(NEED) run view
+	@lib/view/fetch
+	@lib/view/start
 
 test: ## every test: plain, under sanitizers, in float, and end to end
 	$(NEED) run test

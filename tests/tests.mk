@@ -6,7 +6,7 @@ CXX_TESTS := $(basename $(filter %.cpp,$(TEST_SOURCES)))
 
 # A test of the program's parts is linked with them; all others see the library alone, as a firmware does,
 # and are built in float too.
-PROGRAM_TESTS := $(basename $(shell grep -lE '^.include ("(link|script|report|app|study)/|<waferhand_)' $(TEST_SOURCES) /dev/null))
+PROGRAM_TESTS := $(basename $(shell grep -lE '^.include ("(link|script|report|view|app|study)/|<waferhand_)' $(TEST_SOURCES) /dev/null))
 TESTS := $(basename $(TEST_SOURCES))
 # Those of collision are linked with it, and there is no float build of it.
 COLLISION_TESTS := $(basename $(shell grep -lE '^.include "collision/' $(TEST_SOURCES) /dev/null))

@@ -11,12 +11,14 @@
 #include "app/style.h"
 #include "link/outputs.h"
 #include "link/simulation.h"
+#include "view/view.h"
 
-enum { OPTION_URL = 1000, OPTION_RECORD, OPTION_OUTPUTS };
+enum { OPTION_URL = 1000, OPTION_RECORD, OPTION_OUTPUTS, OPTION_VIEW };
 
 typedef struct {
     wh_layout_arguments_t layout;
     const char *url, *record, *outputs;
+    bool view;
 } arguments_t;
 
 static const struct argp_option options[] = {
@@ -24,6 +26,7 @@ static const struct argp_option options[] = {
     {"record", OPTION_RECORD, "FILE", 0, "Write all messages into an LCM event log", 0},
     {"outputs", OPTION_OUTPUTS, "FILE", 0, "Take the valves from this file, one value per gripper, 0 or 1",
      0},
+    {"view", OPTION_VIEW, NULL, 0, "Publish the cell for Drake's viewer, live; `make view` starts one", 0},
     {0},
 };
 
@@ -41,6 +44,9 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         return 0;
     case OPTION_OUTPUTS:
         arguments->outputs = argument;
+        return 0;
+    case OPTION_VIEW:
+        arguments->view = true;
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -98,32 +104,69 @@ static bool open_outputs(wh_outputs_t *outputs, const char *path, size_t count) 
     return problem == 0;
 }
 
-static int serve(wh_node_t *node, const wh_layout_t *layout, const char *outputs_path) {
-    static wh_simulation_t simulation;
-    static wh_outputs_t outputs;
+static bool open_view(wh_view_t *view, wh_node_t *node, const wh_layout_t *layout) {
+    static const char *const left_out[WH_VIEW_DETAILS] = {
+        [WH_VIEW_ALL] = "",
+        [WH_VIEW_NO_LEDGES] = "; its ledges are left out",
+        [WH_VIEW_BOXES] = "; its ledges are left out, its meshes are boxes",
+    };
+    if (wh_view_open(view, node, layout) != WH_OK) {
+        fprintf(stderr, "%s: --view: too many parts (expected a cell that fits %d bytes)\n", layout->path,
+                WH_VIEW_BYTES);
+        return false;
+    }
+    fprintf(stderr, "sim: shown to viewers: %d bodies in %d bytes%s\n", view->cell.load.num_links,
+            view->load_size, left_out[view->cell.detail]);
+    return true;
+}
+
+/* Whatever was opened; the others are all zero. */
+typedef struct {
+    wh_simulation_t simulation;
+    wh_outputs_t outputs;
+    wh_view_t view;
+} served_t;
+
+static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *layout,
+                        const arguments_t *arguments) {
     static char name[] = "sim";
-    const wh_status_t status = wh_simulation_open(&simulation, node, layout, wh_say_line, name);
+    const wh_status_t status = wh_simulation_open(&served->simulation, node, layout, wh_say_line, name);
     if (status != WH_OK) {
         fprintf(stderr, "%s: %s (expected at most %d wafers, and a cell that fits one datagram)\n",
                 layout->path, wh_status_text(status), WH_LINK_WAFERS);
-        return WH_EXIT_USAGE;
+        return false;
     }
-    if (!open_outputs(&outputs, outputs_path, layout->machine.gripper_count)) {
-        wh_simulation_close(&simulation);
+    return open_outputs(&served->outputs, arguments->outputs, layout->machine.gripper_count) &&
+           (!arguments->view || open_view(&served->view, node, layout));
+}
+
+static void close_served(served_t *served) {
+    if (served->outputs.count > 0) {
+        wh_outputs_close(&served->outputs);
+    }
+    wh_view_close(&served->view);
+    wh_simulation_close(&served->simulation);
+}
+
+static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *arguments) {
+    static served_t served;
+    wh_simulation_t *simulation = &served.simulation;
+    if (!open_served(&served, node, layout, arguments)) {
+        close_served(&served);
         return WH_EXIT_USAGE;
     }
     fprintf(stderr, "sim: %s is ready, layout %016" PRIx64 "\n", layout->path,
-            simulation.server.identity.layout_hash);
+            simulation->server.identity.layout_hash);
     int handled = 0;
     while (!wh_stop_requested && handled >= 0) {
-        handled = wait_and_handle(node, &outputs, &simulation);
-        wh_simulation_tick(&simulation);
+        handled = wait_and_handle(node, &served.outputs, simulation);
+        wh_simulation_tick(simulation);
+        if (arguments->view) {
+            wh_view_tick(&served.view, &simulation->server);
+        }
     }
-    print_counters(&simulation);
-    if (outputs.count > 0) {
-        wh_outputs_close(&outputs);
-    }
-    wh_simulation_close(&simulation);
+    print_counters(simulation);
+    close_served(&served);
     return handled < 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
 }
 
@@ -137,7 +180,7 @@ static int run(const arguments_t *arguments) {
     if (!wh_open_node(&node, arguments->url, arguments->record)) {
         return WH_EXIT_USAGE;
     }
-    const int status = serve(&node, layout, arguments->outputs);
+    const int status = serve(&node, layout, arguments);
     wh_node_close(&node);
     return status;
 }

@@ -19,7 +19,7 @@ LIBRARY_SOURCES := $(wildcard $(LIBRARY_PARTS:%=lib/%/*.c))
 COLLISION_SOURCES := $(wildcard lib/collision/*.c)
 MODULE_SOURCES := $(wildcard lib/script/wh_module*.c)
 SCRIPT_SOURCES := $(filter-out $(MODULE_SOURCES),$(wildcard lib/script/*.c lib/study/*.c))
-PROGRAM_SOURCES := $(SCRIPT_SOURCES) $(MODULE_SOURCES) $(wildcard lib/link/*.c lib/report/*.c lib/app/*.c)
+PROGRAM_SOURCES := $(SCRIPT_SOURCES) $(MODULE_SOURCES) $(wildcard lib/link/*.c lib/report/*.c lib/view/*.c lib/app/*.c)
 MESSAGES := $(patsubst lcm_types/%.lcm,%,$(wildcard lcm_types/*.lcm))
 LUA_SOURCES := $(sort $(shell find lua -name '*.lua' 2>/dev/null))
 PAGE_SOURCES := $(sort $(wildcard lib/report/page/*))
@@ -144,7 +144,7 @@ $(B)/obj/lcm/%.o: $(B)/lcm/%.c $(B)/flags
 	$(call compile,CC ,$(CC),$(CFLAGS))
 $(MESSAGE_OBJECTS): FLAGS = $(MESSAGE_FLAGS)
 # Compilers leave headers found by -isystem out of the .d files.
-$(filter $(B)/obj/lib/link/% $(B)/obj/lib/report/% $(B)/obj/lib/app/%,$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o) $(TOOLS:%=$(B)/obj/%.o): \
+$(filter $(B)/obj/lib/link/% $(B)/obj/lib/report/% $(B)/obj/lib/view/% $(B)/obj/lib/app/%,$(PROGRAM_OBJECTS)) $(PROGRAM_TESTS:%=$(B)/obj/%.o) $(TOOLS:%=$(B)/obj/%.o): \
     $(B)/lcm/waferhand_messages.h
 
 -include $(shell find $(B)/obj $(B)/pic -name '*.d' 2>/dev/null)

@@ -1,0 +1,46 @@
+/* `sim --view`: the cell that a simulator serves, published for Drake's viewer (meldis), live.
+ *
+ * The bodies go out when it begins and once a second, for viewers that come later and for those that missed them; where they are
+ * goes out at most 60 times a second while slices are stepped, once more when they stop, and once a second. All by the wall clock, and none of
+ * it is looked at by the simulation, which has the same bits with a view and without.
+ */
+#ifndef WH_VIEW_VIEW_H
+#define WH_VIEW_VIEW_H
+
+#include "link/node.h"
+#include "link/server.h"
+#include "view/cell.h"
+
+#define WH_CHANNEL_VIEWER_LOAD "DRAKE_VIEWER_LOAD_ROBOT"
+#define WH_CHANNEL_VIEWER_DRAW "DRAKE_VIEWER_DRAW"
+
+/* How often at most the places go out, and how often at least both messages, us. */
+#define WH_VIEW_DRAW_US 16667
+#define WH_VIEW_LOAD_US 1000000
+
+/* What arrives whole, in fragments, where the system's buffers are as they come. */
+#define WH_VIEW_BYTES 196461
+
+/* Must not be moved once opened. */
+typedef struct {
+    wh_node_t *node; /* null: nothing is published */
+    wh_view_cell_t cell;
+    uint8_t *load; /* encoded, once and for all */
+    uint8_t *draw; /* room for it encoded */
+    int load_size, draw_room;
+    int64_t run, seq; /* of what went out last */
+    int64_t last_load_us, last_draw_us;
+    uint64_t loads, draws, unsent;
+} wh_view_t;
+
+/* WH_STATUS_BAD_CAPACITY, and nothing to close, for a cell that does not fit WH_VIEW_BYTES even without its ledges and with
+ * boxes for its meshes; view->cell.detail tells what was left out. `node`, which may be null, and `layout` must outlive the
+ * view. */
+wh_status_t wh_view_open(wh_view_t *view, wh_node_t *node, const wh_layout_t *layout);
+
+/* Publishes what is due: to be called after each step and at least every 100 ms. Allocates nothing. */
+void wh_view_tick(wh_view_t *view, const wh_server_t *server);
+
+void wh_view_close(wh_view_t *view);
+
+#endif
