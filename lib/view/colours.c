@@ -23,7 +23,7 @@ static float mixed(float from, float to, float share) {
 wh_view_colour_t wh_view_colour_of_part(const wh_part_t *part) {
     switch (part->kind) {
     case WH_PART_FIXED:
-        return part->owner == WH_NONE ? from_hex(0x8b95a0, 0.18F) : from_hex(0x9aa3ad, 0.16F);
+        return part->owner == WH_NONE ? from_hex(0x8b95a0, 0.35F) : from_hex(0x9aa3ad, 0.22F);
     case WH_PART_LEDGE:
         return from_hex(0x77828d, 1);
     case WH_PART_ARM:

@@ -1,4 +1,5 @@
-/* The colours of a cell in Drake's viewer: those of the report's page (lib/report/page/page.css), in light. */
+/* The colours of a cell in Drake's viewer: those of the report's page (lib/report/page/page.css), in light,
+ * but less transparent: there are no edges here. */
 #ifndef WH_VIEW_COLOURS_H
 #define WH_VIEW_COLOURS_H
 
