@@ -1,41 +1,50 @@
 #include "batch/batch_internal.h"
 
-/* A wafer's first number in each half; the others follow at steps of WH_BATCH_BLOCK. */
-static size_t near_half(size_t wafer) {
-    return wafer / WH_BATCH_BLOCK * WH_BATCH_HALF + wafer % WH_BATCH_BLOCK;
+static void put(float *numbers, const wh_vec3_t *v) {
+    numbers[0] = (float)v->x;
+    numbers[WH_BATCH_LANES] = (float)v->y;
+    numbers[2 * WH_BATCH_LANES] = (float)v->z;
 }
 
-static size_t far_half(const wh_batch_t *batch, size_t wafer) {
-    return WH_BATCH_NUMBERS(batch->wafer_count) / 2 + near_half(wafer);
+/* A sphere about the mean of the wafers' origins, by a hundred-thousandth too large for what is rounded. */
+static void put_sphere(float *sphere, const wh_pose_t *wafers, size_t count) {
+    wh_vec3_t sum = {0, 0, 0};
+    for (size_t i = 0; i < count; ++i) {
+        sum = wh_vec3_add(&sum, &wafers[i].r);
+    }
+    const wh_vec3_t centre = wh_vec3_scale(1 / (wh_real_t)count, &sum);
+    wh_real_t farthest = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const wh_vec3_t d = wh_vec3_subtract(&wafers[i].r, &centre);
+        const wh_real_t distance = wh_vec3_norm(&d);
+        farthest = farthest < distance ? distance : farthest;
+    }
+    put(sphere, &centre);
+    sphere[3 * WH_BATCH_LANES] = (float)(farthest * WH_REAL(1.00001));
 }
 
-static void put(wh_real_t *numbers, const wh_vec3_t *v) {
-    numbers[0] = v->x;
-    numbers[WH_BATCH_BLOCK] = v->y;
-    numbers[2 * WH_BATCH_BLOCK] = v->z;
-}
-
-static void put_pose(const wh_batch_t *batch, size_t wafer, const wh_pose_t *pose) {
-    wh_real_t *at = &batch->numbers[near_half(wafer)];
-    const wh_vec3_t e1 = wh_mat3_column(&pose->R, 0);
-    const wh_vec3_t e2 = wh_mat3_column(&pose->R, 1);
-    const wh_vec3_t n1 = wh_mat3_column(&pose->R, 2);
-    put(at, &n1);
-    put(&at[3 * WH_BATCH_BLOCK], &pose->r);
-    at = &batch->numbers[far_half(batch, wafer)];
-    put(at, &e1);
-    put(&at[3 * WH_BATCH_BLOCK], &e2);
-}
-
-static wh_pose_t get_pose(const wh_batch_t *batch, size_t wafer) {
-    const wh_real_t *near = &batch->numbers[near_half(wafer)];
-    const wh_real_t *far = &batch->numbers[far_half(batch, wafer)];
-    const wh_vec3_t n1 = wh_batch_vector(near);
-    const wh_vec3_t e1 = wh_batch_vector(far);
-    const wh_vec3_t e2 = wh_batch_vector(&far[3 * WH_BATCH_BLOCK]);
-    const wh_pose_t pose = {{{{e1.x, e2.x, n1.x}, {e1.y, e2.y, n1.y}, {e1.z, e2.z, n1.z}}},
-                            wh_batch_vector(&near[3 * WH_BATCH_BLOCK])};
-    return pose;
+/* The numbers of a block of wafers. One that cannot be sieved is left to the check. */
+static void put_block(const wh_batch_t *batch, size_t block) {
+    const wh_vec3_t unknown = wh_vec3((wh_real_t)NAN, (wh_real_t)NAN, (wh_real_t)NAN);
+    const size_t rest = batch->wafer_count - block * WH_BATCH_LANES;
+    const size_t count = rest < WH_BATCH_LANES ? rest : WH_BATCH_LANES;
+    const wh_pose_t *wafers = &batch->base_from_wafers[block * WH_BATCH_LANES];
+    float *sphere = &batch->numbers[block / WH_BATCH_LANES * WH_BATCH_SPHERES + block % WH_BATCH_LANES];
+    float *origins = &batch->numbers[wh_batch_origins(batch->wafer_count) + block * WH_BATCH_BLOCK];
+    float *normals = &batch->numbers[wh_batch_normals(batch->wafer_count) + block * WH_BATCH_BLOCK];
+    bool whole = true;
+    for (size_t i = 0; i < count; ++i) {
+        const wh_vec3_t n1 = wh_mat3_column(&wafers[i].R, 2);
+        const bool fits = wh_pose_validate(&wafers[i]) == WH_OK && wh_batch_fits(&wafers[i].r);
+        put(&origins[i], fits ? &wafers[i].r : &unknown);
+        put(&normals[i], fits ? &n1 : &unknown);
+        whole = whole && fits;
+    }
+    if (whole) {
+        put_sphere(sphere, wafers, count);
+    } else {
+        put(sphere, &unknown);
+    }
 }
 
 static wh_batch_code_t fastest(void) {
@@ -47,26 +56,24 @@ static wh_batch_code_t fastest(void) {
     return WH_BATCH_PORTABLE;
 }
 
-wh_status_t wh_batch_init(wh_batch_t *batch, const wh_pose_t *base_from_wafers, size_t wafer_count,
-                          wh_real_t *numbers, size_t number_count) {
+wh_status_t wh_batch_init(wh_batch_t *batch, wh_pose_t *base_from_wafers, size_t wafer_count, float *numbers,
+                          size_t number_count) {
     if (!batch || (wafer_count != 0 && (!base_from_wafers || !numbers))) {
         return WH_STATUS_NULL_ARGUMENT;
     }
     /* the other way round, the product might not fit */
-    if (wafer_count > INT32_MAX ||
-        number_count / WH_BATCH_NUMBERS(1) < (wafer_count + WH_BATCH_BLOCK - 1) / WH_BATCH_BLOCK) {
+    if (wafer_count > INT32_MAX || number_count / 64 < WH_BATCH_LINES(wafer_count)) {
         return WH_STATUS_BAD_CAPACITY;
     }
+    batch->base_from_wafers = base_from_wafers;
     batch->numbers = numbers;
     batch->wafer_count = wafer_count;
     batch->code = fastest();
-    const size_t half = WH_BATCH_NUMBERS(wafer_count) / 2;
-    for (size_t i = wafer_count / WH_BATCH_BLOCK * WH_BATCH_HALF; i < half; ++i) {
-        numbers[i] = (wh_real_t)NAN;
-        numbers[half + i] = (wh_real_t)NAN;
+    for (size_t i = 0; i < WH_BATCH_NUMBERS(wafer_count); ++i) {
+        numbers[i] = (float)INFINITY;
     }
-    for (size_t w = 0; w < wafer_count; ++w) {
-        put_pose(batch, w, &base_from_wafers[w]);
+    for (size_t b = 0; b < WH_BATCH_WORDS(wafer_count); ++b) {
+        put_block(batch, b);
     }
     return WH_OK;
 }
@@ -89,17 +96,7 @@ wh_status_t wh_batch_place(wh_batch_t *batch, size_t wafer, const wh_pose_t *bas
     if (wafer >= batch->wafer_count) {
         return WH_STATUS_OUT_OF_RANGE;
     }
-    put_pose(batch, wafer, base_from_wafer);
-    return WH_OK;
-}
-
-wh_status_t wh_batch_wafer(const wh_batch_t *batch, size_t wafer, wh_pose_t *base_from_wafer) {
-    if (!batch || !base_from_wafer) {
-        return WH_STATUS_NULL_ARGUMENT;
-    }
-    if (wafer >= batch->wafer_count) {
-        return WH_STATUS_OUT_OF_RANGE;
-    }
-    *base_from_wafer = get_pose(batch, wafer);
+    batch->base_from_wafers[wafer] = *base_from_wafer;
+    put_block(batch, wafer / WH_BATCH_LANES);
     return WH_OK;
 }

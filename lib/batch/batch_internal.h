@@ -1,38 +1,64 @@
-/* Within the batch: verdicts for a tile, as many wafers as stay in the nearest cache while grippers go over them in turns. */
+/* Within the batch: which wafers may be ready, by a sieve that never holds back one that is. */
 #ifndef WH_BATCH_BATCH_INTERNAL_H
 #define WH_BATCH_BATCH_INTERNAL_H
 
 #include "batch/batch.h"
 
-/* Numbers of a block in one of the two halves of the memory; wafers of a tile; blocks of a word. */
-enum { WH_BATCH_HALF = 6 * WH_BATCH_BLOCK, WH_BATCH_TILE = 512, WH_BATCH_WORD = 32 / WH_BATCH_BLOCK };
+/* Wafers of a tile, which stay in the nearest cache while grippers go over them in turns. Numbers of a block of spheres, and
+ * of a block of wafers, which has as many for the origins as for n1. */
+enum {
+    WH_BATCH_TILE = WH_BATCH_LANES * WH_BATCH_LANES,
+    WH_BATCH_SPHERES = 4 * WH_BATCH_LANES,
+    WH_BATCH_BLOCK = 3 * WH_BATCH_LANES
+};
 
-/* What a gripper asks, the same for each wafer. */
+/* Blocks that follow one another: where their numbers begin. */
 typedef struct {
-    wh_vec3_t r;  /* the gripper's position */
-    wh_vec3_t n2; /* with x NaN when there is one, or an infinity, in the gripper's other two axes */
-    wh_tolerance_t limits;
-} wh_batch_question_t;
-
-/* Blocks that follow one another: where their numbers begin in either half. */
-typedef struct {
-    const wh_real_t *near;
-    const wh_real_t *far;
-    size_t block_count; /* 1 to WH_BATCH_TILE / WH_BATCH_BLOCK */
+    const float *spheres;
+    const float *origins;
+    const float *normals;
+    size_t block_count; /* 1 to WH_BATCH_LANES */
 } wh_batch_tile_t;
 
-/* Three numbers of a wafer's. */
-static inline wh_vec3_t wh_batch_vector(const wh_real_t *numbers) {
-    return wh_vec3(numbers[0], numbers[WH_BATCH_BLOCK], numbers[2 * WH_BATCH_BLOCK]);
+/* Holds back spheres (c, radius) with |c - at| above radius + reach, and wafers (r, n1) with |r - at| above reach or
+ * |n1 . (r - at)| above the limit. So a NaN anywhere holds nothing back. */
+typedef struct {
+    float at[3];
+    float reach, limit;
+} wh_batch_sieve_t;
+
+/* Whether a point is near enough to base's origin, in mm, that squares fit into float. NaN is not. */
+static inline bool wh_batch_fits(const wh_vec3_t *r) {
+    return wh_real_abs(r->x) + wh_real_abs(r->y) + wh_real_abs(r->z) < WH_REAL(1e15);
 }
 
-/* The tile's ready wafers, from the first word's lowest bit on; the last word's bits of no block are 0. */
-void wh_batch_answer_portable(const wh_batch_tile_t *tile, const wh_batch_question_t *question,
-                              uint32_t *words);
+/* Where the wafers' origins begin, and where n1. */
+static inline size_t wh_batch_origins(size_t wafer_count) {
+    return (wafer_count + WH_BATCH_TILE - 1) / WH_BATCH_TILE * WH_BATCH_SPHERES;
+}
+
+static inline size_t wh_batch_normals(size_t wafer_count) {
+    return wh_batch_origins(wafer_count) + WH_BATCH_WORDS(wafer_count) * WH_BATCH_BLOCK;
+}
+
+/* Where the lowest bit is that is set; one must be. */
+static inline size_t wh_batch_lowest(uint32_t bits) {
+#if defined(__GNUC__)
+    return (size_t)__builtin_ctz(bits);
+#else
+    size_t i = 0;
+    for (; (bits >> i & 1U) == 0; ++i) {
+    }
+    return i;
+#endif
+}
+
+/* A word for each block, a bit for each wafer that passes. Returns a bit for each word that may have one set. */
+uint32_t wh_batch_sieve_portable(const wh_batch_sieve_t *sieve, const wh_batch_tile_t *tile, uint32_t *words);
 
 #if defined(__GNUC__) && defined(__x86_64__)
 #define WH_BATCH_HAS_AVX2 1
-void wh_batch_answer_avx2(const wh_batch_tile_t *tile, const wh_batch_question_t *question, uint32_t *words);
+uint32_t wh_batch_sieve_avx2(const wh_batch_sieve_t *sieve, const wh_batch_tile_t *tile, uint32_t *words);
 #else
 #define WH_BATCH_HAS_AVX2 0
 #endif

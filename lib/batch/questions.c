@@ -2,53 +2,85 @@
 
 /* As many wafers as grippers go over in turns. */
 typedef struct {
-    size_t first; /* the index of its first wafer */
-    size_t word_count;
-    wh_batch_tile_t numbers;
     const wh_batch_t *batch;
+    size_t first; /* the index of its first wafer */
+    wh_batch_tile_t numbers;
 } tile_t;
 
 static tile_t tile_at(const wh_batch_t *batch, size_t first) {
-    const size_t rest = batch->wafer_count - first;
-    const size_t wafers = rest < WH_BATCH_TILE ? rest : (size_t)WH_BATCH_TILE;
-    const wh_real_t *near = &batch->numbers[first / WH_BATCH_BLOCK * WH_BATCH_HALF];
+    const size_t block = first / WH_BATCH_LANES;
+    const size_t rest = WH_BATCH_WORDS(batch->wafer_count) - block;
     tile_t tile;
-    tile.first = first;
-    tile.word_count = WH_BATCH_WORDS(wafers);
-    tile.numbers.near = near;
-    tile.numbers.far = &near[WH_BATCH_NUMBERS(batch->wafer_count) / 2];
-    tile.numbers.block_count = (wafers + WH_BATCH_BLOCK - 1) / WH_BATCH_BLOCK;
     tile.batch = batch;
+    tile.first = first;
+    tile.numbers.spheres = &batch->numbers[block / WH_BATCH_LANES * WH_BATCH_SPHERES];
+    tile.numbers.origins = &batch->numbers[wh_batch_origins(batch->wafer_count) + block * WH_BATCH_BLOCK];
+    tile.numbers.normals = &batch->numbers[wh_batch_normals(batch->wafer_count) + block * WH_BATCH_BLOCK];
+    tile.numbers.block_count = rest < WH_BATCH_LANES ? rest : WH_BATCH_LANES;
     return tile;
 }
 
-static void answer(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
-                   uint32_t *words) {
-    wh_batch_question_t question;
-    question.r = gripper->r;
-    question.n2 = wh_mat3_column(&gripper->R, 2);
-    question.limits = *tolerance;
-    for (size_t i = 0; i < 2; ++i) {
-        const wh_real_t unused = gripper->R.m[0][i] + gripper->R.m[1][i] + gripper->R.m[2][i];
-        question.n2.x += unused - unused;
+/* Where a ready wafer may be. Its pose is valid, so it is no farther away than both limits together, but for a thousandth. To
+ * these comes what is rounded on the way, in units of float's last place at most 3 of the gripper's distance from base's
+ * origin and 14 of the limits: 4 and 16 are taken. */
+static wh_batch_sieve_t sieve_around(const wh_vec3_t *r, const wh_tolerance_t *tolerance) {
+    const wh_real_t limits = tolerance->projz + tolerance->projxy;
+    const wh_real_t origin = wh_real_abs(r->x) + wh_real_abs(r->y) + wh_real_abs(r->z);
+    const wh_real_t slack = (origin + 4 * limits) / 4194304;
+    wh_batch_sieve_t sieve = {{(float)NAN, 0, 0}, 0, (float)NAN};
+    if (wh_batch_fits(r)) {
+        sieve.at[0] = (float)r->x;
+        sieve.at[1] = (float)r->y;
+        sieve.at[2] = (float)r->z;
+        sieve.reach = (float)(limits * WH_REAL(1.001) + slack);
+        sieve.limit = (float)(tolerance->projz + slack);
     }
-#if WH_BATCH_HAS_AVX2
-    if (tile->batch->code == WH_BATCH_AVX2) {
-        wh_batch_answer_avx2(&tile->numbers, &question, words);
-        return;
-    }
-#endif
-    wh_batch_answer_portable(&tile->numbers, &question, words);
+    return sieve;
 }
 
-static size_t count_bits(const uint32_t *words, size_t word_count) {
+static uint32_t sieve_tile(const tile_t *tile, const wh_batch_sieve_t *sieve, uint32_t *words) {
+#if WH_BATCH_HAS_AVX2
+    if (tile->batch->code == WH_BATCH_AVX2) {
+        return wh_batch_sieve_avx2(sieve, &tile->numbers, words);
+    }
+#endif
+    return wh_batch_sieve_portable(sieve, &tile->numbers, words);
+}
+
+/* Of a block's 32 wafers from `first` on, the ready ones of those that passed. A lane may pass that has no wafer. */
+static uint32_t check(const wh_batch_t *batch, size_t first, uint32_t passed, const wh_pose_t *gripper,
+                      const wh_tolerance_t *tolerance) {
+    uint32_t ready = 0;
+    for (uint32_t rest = passed; rest != 0; rest &= rest - 1) {
+        const size_t lane = wh_batch_lowest(rest);
+        const bool is_ready = first + lane < batch->wafer_count &&
+                              wh_proximity_ready(&batch->base_from_wafers[first + lane], gripper, tolerance);
+        ready |= (uint32_t)is_ready << lane;
+    }
+    return ready;
+}
+
+static size_t count_bits(uint32_t bits) {
     size_t count = 0;
-    for (size_t i = 0; i < word_count; ++i) {
-        for (uint32_t rest = words[i]; rest != 0; rest &= rest - 1) {
-            ++count;
-        }
+    for (uint32_t rest = bits; rest != 0; rest &= rest - 1) {
+        ++count;
     }
     return count;
+}
+
+/* The tile's ready wafers, one bit each; returns how many. */
+static size_t answer(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
+                     uint32_t *words) {
+    const wh_batch_sieve_t sieve = sieve_around(&gripper->r, tolerance);
+    size_t ready = 0;
+    for (uint32_t rest = sieve_tile(tile, &sieve, words); rest != 0; rest &= rest - 1) {
+        const size_t i = wh_batch_lowest(rest);
+        if (words[i] != 0) {
+            words[i] = check(tile->batch, tile->first + i * WH_BATCH_LANES, words[i], gripper, tolerance);
+            ready += count_bits(words[i]);
+        }
+    }
+    return ready;
 }
 
 size_t wh_batch_ready(const wh_batch_t *batch, const wh_pose_t *base_from_grippers, size_t gripper_count,
@@ -58,68 +90,59 @@ size_t wh_batch_ready(const wh_batch_t *batch, const wh_pose_t *base_from_grippe
         const tile_t tile = tile_at(batch, first);
         for (size_t g = 0; g < gripper_count; ++g) {
             uint32_t *words = &bits[g * WH_BATCH_WORDS(batch->wafer_count) + first / 32];
-            answer(&tile, &base_from_grippers[g], tolerance, words);
-            ready += count_bits(words, tile.word_count);
+            ready += answer(&tile, &base_from_grippers[g], tolerance, words);
         }
     }
     return ready;
 }
 
-/* The tile's first ready wafer that is not before `wafer`; the batch's number of wafers when there is none. */
-static size_t next_ready(const tile_t *tile, const uint32_t *words, size_t wafer) {
-    size_t i = wafer - tile->first;
-    while (i < tile->word_count * 32 && words[i / 32] >> i % 32 == 0) {
-        i = (i / 32 + 1) * 32;
+/* The first `capacity` ready wafers of the tile; returns how many there are. */
+static size_t list_tile(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
+                        int32_t *wafers, size_t capacity) {
+    uint32_t words[WH_BATCH_LANES];
+    const size_t ready = answer(tile, gripper, tolerance, words);
+    size_t listed = 0;
+    for (size_t i = 0; i < tile->numbers.block_count; ++i) {
+        for (uint32_t rest = words[i]; rest != 0 && listed < capacity; rest &= rest - 1) {
+            wafers[listed++] = (int32_t)(tile->first + 32 * i + wh_batch_lowest(rest));
+        }
     }
-    if (i >= tile->word_count * 32) {
-        return tile->batch->wafer_count;
-    }
-    while ((words[i / 32] >> i % 32 & 1U) == 0) {
-        ++i;
-    }
-    return tile->first + i;
+    return ready;
 }
 
 size_t wh_batch_list(const wh_batch_t *batch, const wh_pose_t *base_from_gripper,
                      const wh_tolerance_t *tolerance, int32_t *wafers, size_t capacity) {
     size_t ready = 0;
     for (size_t first = 0; first < batch->wafer_count; first += WH_BATCH_TILE) {
-        uint32_t words[WH_BATCH_TILE / 32];
         const tile_t tile = tile_at(batch, first);
-        answer(&tile, base_from_gripper, tolerance, words);
-        for (size_t w = next_ready(&tile, words, first); w < batch->wafer_count;
-             w = next_ready(&tile, words, w + 1)) {
-            if (ready < capacity) {
-                wafers[ready] = (int32_t)w;
-            }
-            ++ready;
-        }
+        const size_t listed = ready < capacity ? ready : capacity;
+        ready += list_tile(&tile, base_from_gripper, tolerance, &wafers[listed], capacity - listed);
     }
     return ready;
 }
 
-static wh_real_t distance(const wh_batch_t *batch, size_t wafer, const wh_vec3_t *gripper) {
-    const wh_real_t *near = &batch->numbers[wafer / WH_BATCH_BLOCK * WH_BATCH_HALF + wafer % WH_BATCH_BLOCK];
-    const wh_vec3_t n1 = wh_batch_vector(near);
-    const wh_vec3_t r = wh_batch_vector(&near[3 * WH_BATCH_BLOCK]);
-    const wh_vec3_t dr = wh_vec3_subtract(&r, gripper);
+static wh_real_t distance(const wh_pose_t *wafer, const wh_pose_t *gripper) {
+    const wh_vec3_t n1 = wh_mat3_column(&wafer->R, 2);
+    const wh_vec3_t dr = wh_vec3_subtract(&wafer->r, &gripper->r);
     return wh_real_abs(wh_vec3_dot(&dr, &n1));
 }
 
 /* The best of `before`, from the tiles before, and of the tile's. */
 static int32_t better(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
                       int32_t before) {
-    const wh_batch_t *batch = tile->batch;
-    uint32_t words[WH_BATCH_TILE / 32];
-    answer(tile, gripper, tolerance, words);
+    const wh_pose_t *wafers = tile->batch->base_from_wafers;
+    uint32_t words[WH_BATCH_LANES];
     int32_t best = before;
-    wh_real_t least = best == WH_NONE ? tolerance->projz : distance(batch, (size_t)best, &gripper->r);
-    for (size_t w = next_ready(tile, words, tile->first); w < batch->wafer_count;
-         w = next_ready(tile, words, w + 1)) {
-        const wh_real_t here = distance(batch, w, &gripper->r);
-        if (here < least) {
-            best = (int32_t)w;
-            least = here;
+    wh_real_t least = best == WH_NONE ? tolerance->projz : distance(&wafers[best], gripper);
+    (void)answer(tile, gripper, tolerance, words);
+    for (size_t i = 0; i < tile->numbers.block_count; ++i) {
+        for (uint32_t rest = words[i]; rest != 0; rest &= rest - 1) {
+            const size_t w = tile->first + 32 * i + wh_batch_lowest(rest);
+            const wh_real_t here = distance(&wafers[w], gripper);
+            if (here < least) {
+                best = (int32_t)w;
+                least = here;
+            }
         }
     }
     return best;

@@ -68,7 +68,7 @@ static void count_checks(void) {
 enum { WAFERS = 1000 };
 
 static void count_batch(const char *name, wh_batch_code_t code) {
-    static wh_real_t numbers[WH_BATCH_NUMBERS(WAFERS)];
+    static float numbers[WH_BATCH_NUMBERS(WAFERS)];
     static uint32_t bits[WH_BATCH_WORDS(WAFERS)];
     const wh_tolerance_t tolerance = wh_tolerance_paper();
     wh_pose_t *wafers = bench_wafers(WAFERS, BENCH_COLUMN);

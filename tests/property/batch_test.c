@@ -1,5 +1,5 @@
-/* A batch against the check itself, pair by pair: on the limits and anywhere, with NaN and infinities, with as many wafers as
- * leave a rest of every length, with each code that the processor has. */
+/* A batch against the check itself, pair by pair: on the limits and anywhere, far from base's origin, with NaN and infinities and
+ * with poses that are none, with as many wafers as leave a rest of every length, with each code that the processor has. */
 #include "batch/batch.h"
 #include "support_proximity.h"
 
@@ -7,30 +7,45 @@ enum { ROUNDS = 3000, MOST = 1100, GRIPPERS = 5 };
 
 static wh_pose_t wafers[MOST];
 static wh_pose_t grippers[GRIPPERS];
-static wh_real_t numbers[WH_BATCH_NUMBERS(MOST) + 1];
+static float numbers[WH_BATCH_NUMBERS(MOST) + 1];
 static uint32_t bits[GRIPPERS * WH_BATCH_WORDS(MOST)];
 static int32_t list[MOST];
-static size_t ready_pairs, spoiled_poses;
+static size_t ready_pairs, ready_far, ready_invalid, spoiled_poses;
 
-/* One time in ten one of its numbers is none. */
+/* One time in ten one of its numbers is none, or the pose is no pose: a column is too long, or all are skewed. */
 static void spoil(wh_pose_t *pose) {
     if (wh_test_below(10) == 0) {
         const wh_real_t none[] = {(wh_real_t)NAN, (wh_real_t)INFINITY, -(wh_real_t)INFINITY};
-        const uint32_t at = wh_test_below(12);
+        const uint32_t at = wh_test_below(14);
         wh_real_t *number = at < 9     ? &pose->R.m[at / 3][at % 3]
                             : at == 9  ? &pose->r.x
                             : at == 10 ? &pose->r.y
                                        : &pose->r.z;
-        *number = none[wh_test_below(3)];
+        if (at < 12) {
+            *number = none[wh_test_below(3)];
+        } else {
+            const wh_real_t factor = WH_REAL(at == 12 ? 1e-3 : wh_test_uniform(0.9, 1.1));
+            const size_t column = wh_test_below(3);
+            for (size_t i = 0; i < 3; ++i) {
+                pose->R.m[i][column] *= factor;
+            }
+        }
         ++spoiled_poses;
     }
 }
 
 /* Some wafers lie beside a gripper, on its limits, the others beside one that is not asked for. */
 static void draw(size_t count, const wh_tolerance_t *tolerance) {
+    /* how far away both are, so that float's rounding is from far below the limits to far above them */
+    const double far[] = {0, 0, 1e2, 1e5, 1e7, 1e10, 1e15, 1e16, 1e25, 1e36};
+    const double distance = far[wh_test_below(10)];
+    const wh_vec3_t away =
+        wh_vec3(WH_REAL(wh_test_uniform(-distance, distance)), WH_REAL(wh_test_uniform(-distance, distance)),
+                WH_REAL(wh_test_uniform(-distance, distance)));
     for (size_t g = 0; g < GRIPPERS; ++g) {
         wh_pose_t wafer;
         wh_test_pair(tolerance, &wafer, &grippers[g]);
+        grippers[g].r = wh_vec3_add(&grippers[g].r, &away);
     }
     for (size_t w = 0; w < count; ++w) {
         const size_t g = wh_test_below(2 * GRIPPERS);
@@ -62,6 +77,8 @@ static size_t expect(size_t count, size_t g, const wh_tolerance_t *tolerance, in
     for (size_t w = 0; w < count; ++w) {
         if (wh_proximity_ready(&wafers[w], &grippers[g], tolerance)) {
             list[ready++] = (int32_t)w;
+            ready_far += wh_real_abs(wafers[w].r.x) > WH_REAL(1e6) ? 1 : 0;
+            ready_invalid += wh_pose_validate(&wafers[w]) == WH_OK ? 0 : 1;
             if (*best == WH_NONE || distance(w, g) < distance((size_t)*best, g)) {
                 *best = (int32_t)w;
             }
@@ -113,7 +130,7 @@ static void verdicts_are_the_checks(void **state) {
         draw(count, &tolerance);
         wh_batch_t batch;
         /* at any alignment */
-        wh_real_t *memory = numbers + wh_test_below(2);
+        float *memory = numbers + wh_test_below(2);
         assert_int_equal(wh_batch_init(&batch, wafers, count, memory, WH_BATCH_NUMBERS(count)), WH_OK);
         compare(&batch, &tolerance);
         if (count > 0) {
@@ -127,8 +144,10 @@ static void verdicts_are_the_checks(void **state) {
             compare(&batch, &tolerance);
         }
     }
-    printf("%lu ready pairs, %lu spoiled poses\n", (unsigned long)ready_pairs, (unsigned long)spoiled_poses);
-    assert_true(ready_pairs > 10000 && spoiled_poses > 10000);
+    printf("%lu ready pairs, %lu spoiled poses, ready far away %lu, with a pose that is none %lu\n",
+           (unsigned long)ready_pairs, (unsigned long)spoiled_poses, (unsigned long)ready_far,
+           (unsigned long)ready_invalid);
+    assert_true(ready_pairs > 10000 && spoiled_poses > 10000 && ready_far > 1000 && ready_invalid > 100);
 }
 
 int main(void) {

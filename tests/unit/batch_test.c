@@ -5,7 +5,7 @@
 enum { WAFERS = 41 };
 
 static wh_pose_t wafers[WAFERS];
-static wh_real_t numbers[WH_BATCH_NUMBERS(WAFERS)];
+static float numbers[WH_BATCH_NUMBERS(WAFERS)];
 
 /* A stack at a pitch of 10 mm: wafer w is at z = 10 w. */
 static wh_batch_t stack(size_t count) {
@@ -20,41 +20,78 @@ static wh_batch_t stack(size_t count) {
 static void sizes_are_whole_blocks(void **state) {
     (void)state;
     assert_int_equal(WH_BATCH_NUMBERS(0), 0);
-    assert_int_equal(WH_BATCH_NUMBERS(1), 96);
-    assert_int_equal(WH_BATCH_NUMBERS(8), 96);
-    assert_int_equal(WH_BATCH_NUMBERS(9), 192);
+    assert_int_equal(WH_BATCH_NUMBERS(1), 128 + 192);
+    assert_int_equal(WH_BATCH_NUMBERS(32), 128 + 192);
+    assert_int_equal(WH_BATCH_NUMBERS(33), 128 + 2 * 192);
+    assert_int_equal(WH_BATCH_NUMBERS(1024), 128 + 32 * 192);
+    assert_int_equal(WH_BATCH_NUMBERS(1025), 2 * 128 + 33 * 192);
     assert_int_equal(WH_BATCH_WORDS(0), 0);
     assert_int_equal(WH_BATCH_WORDS(32), 1);
     assert_int_equal(WH_BATCH_WORDS(33), 2);
 }
 
-/* The layout that the header shows; behind the last wafer stand NaN. */
+/* The layout that the header shows; what no wafer fills is infinite. */
 static void numbers_stand_where_the_header_says(void **state) {
     (void)state;
-    wh_pose_t poses[9];
-    for (size_t w = 0; w < 9; ++w) {
-        for (size_t i = 0; i < 9; ++i) {
-            poses[w].R.m[i / 3][i % 3] = WH_REAL(100 * w + 10 * (i / 3) + i % 3);
-        }
-        poses[w].r = wh_vec3(WH_REAL(100 * w + 3), WH_REAL(100 * w + 13), WH_REAL(100 * w + 23));
+    for (size_t w = 0; w < 40; ++w) {
+        wafers[w].R = wh_test_random_turn(WH_TEST_PI);
+        wafers[w].r = wh_vec3(WH_REAL(w), WH_REAL(100 + w), WH_REAL(200 + w));
     }
     wh_batch_t batch;
-    assert_int_equal(wh_batch_init(&batch, poses, 9, numbers, WH_BATCH_NUMBERS(9)), WH_OK);
-    const int columns[] = {2, 3, 0, 1}; /* n1, the position; e1, e2 */
-    for (size_t i = 0; i < WH_BATCH_NUMBERS(9); ++i) {
-        const size_t w = i / 48 % 2 * 8 + i % 8;
-        const double wanted =
-            100.0 * (double)w + 10.0 * (double)(i / 8 % 3) + columns[i / 96 * 2 + i / 24 % 2];
-        if (w < 9) {
-            assert_near(numbers[i], wanted, 0);
+    assert_int_equal(wh_batch_init(&batch, wafers, 40, numbers, WH_BATCH_NUMBERS(40)), WH_OK);
+    for (size_t i = 0; i < 2 * 192; ++i) {
+        const size_t w = i / 96 % 2 * 32 + i % 32;
+        const size_t axis = i / 32 % 3;
+        if (w >= 40) {
+            assert_true(isinf(numbers[128 + i]));
+        } else if (i < 192) {
+            assert_near(numbers[128 + i], 100.0 * (double)axis + (double)w, 0);
         } else {
-            assert_true(isnan((double)numbers[i]));
+            assert_near(numbers[128 + i], (float)wafers[w].R.m[axis][2], 0);
         }
     }
-    for (size_t w = 0; w < 9; ++w) {
-        wh_pose_t pose;
-        assert_int_equal(wh_batch_wafer(&batch, w, &pose), WH_OK);
-        assert_memory_equal(&pose, &poses[w], sizeof pose);
+    const double first[] = {15.5, 115.5, 215.5, 15.5 * sqrt(3)};
+    const double second[] = {35.5, 135.5, 235.5, 3.5 * sqrt(3)};
+    for (size_t i = 0; i < 4; ++i) {
+        assert_near(numbers[32 * i], first[i], 1e-3);
+        assert_near(numbers[32 * i + 1], second[i], 1e-3);
+        assert_true(isinf(numbers[32 * i + 2]));
+    }
+    assert_true(numbers[96] > 26.8468F && numbers[97] > 6.0622F);
+}
+
+/* Where every lane is left to the check, those beyond the last wafer are not. */
+static void wafers_beyond_the_last_are_not_asked(void **state) {
+    (void)state;
+    wh_batch_t batch = stack(9);
+    const wh_tolerance_t paper = wh_tolerance_paper();
+    const wh_pose_t far = wh_test_at(4e15, 0, 0);
+    uint32_t bits = 0;
+    wafers[9] = far;
+    assert_int_equal(wh_batch_ready(&batch, &far, 1, &paper, &bits), 0);
+    assert_int_equal(bits, 0);
+    assert_int_equal(wh_batch_place(&batch, 8, &far), WH_OK);
+    assert_int_equal(wh_batch_ready(&batch, &far, 1, &paper, &bits), 1);
+    assert_int_equal(bits, 1U << 8);
+}
+
+/* Of a wafer that is left to the check, and of its sphere, the numbers are NaN until it is moved. */
+static void what_cannot_be_sieved_is_left_to_the_check(void **state) {
+    (void)state;
+    wh_batch_t batch = stack(WAFERS);
+    wh_pose_t bad[] = {wafers[5], wafers[5], wafers[5]};
+    bad[0].R.m[0][0] = WH_REAL(1.1);
+    bad[1].r.y = WH_REAL(2e15);
+    bad[2].r.z = (wh_real_t)NAN;
+    for (size_t i = 0; i < 3; ++i) {
+        assert_int_equal(wh_batch_place(&batch, 5, &bad[i]), WH_OK);
+        assert_memory_equal(&wafers[5], &bad[i], sizeof *bad);
+        assert_true(isnan((double)numbers[0]) && isnan((double)numbers[128 + 5]));
+        assert_true(isnan((double)numbers[128 + 192 + 5]) && !isnan((double)numbers[1]));
+        const wh_pose_t good = wh_test_at(1, 2, 3);
+        assert_int_equal(wh_batch_place(&batch, 5, &good), WH_OK);
+        assert_near(numbers[128 + 5], 1, 0);
+        assert_true(!isnan((double)numbers[0]));
     }
 }
 
@@ -62,7 +99,7 @@ static void init_refuses_and_changes_nothing(void **state) {
     (void)state;
     wh_batch_t batch = stack(9);
     const wh_batch_t before = batch;
-    wh_real_t was[WH_BATCH_NUMBERS(WAFERS)];
+    float was[WH_BATCH_NUMBERS(WAFERS)];
     memcpy(was, numbers, sizeof was);
     wafers[0].r.x = 1;
     const size_t room = WH_BATCH_NUMBERS(9);
@@ -85,12 +122,10 @@ static void calls_on_one_wafer_refuse(void **state) {
     assert_int_equal(wh_batch_place(NULL, 0, &pose), WH_STATUS_NULL_ARGUMENT);
     assert_int_equal(wh_batch_place(&batch, 0, NULL), WH_STATUS_NULL_ARGUMENT);
     assert_int_equal(wh_batch_place(&batch, 9, &pose), WH_STATUS_OUT_OF_RANGE);
-    assert_int_equal(wh_batch_wafer(NULL, 0, &pose), WH_STATUS_NULL_ARGUMENT);
-    assert_int_equal(wh_batch_wafer(&batch, 0, NULL), WH_STATUS_NULL_ARGUMENT);
-    assert_int_equal(wh_batch_wafer(&batch, 9, &pose), WH_STATUS_OUT_OF_RANGE);
-    assert_near(pose.r.z, 0, 0);
-    assert_int_equal(wh_batch_wafer(&batch, 8, &pose), WH_OK);
-    assert_near(pose.r.z, 80, 0);
+    assert_near(wafers[0].r.z, 0, 0);
+    pose.r.z = 85;
+    assert_int_equal(wh_batch_place(&batch, 8, &pose), WH_OK);
+    assert_near(wafers[8].r.z, 85, 0);
 }
 
 static void code_is_chosen_or_asked_for(void **state) {
@@ -177,6 +212,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sizes_are_whole_blocks),
         cmocka_unit_test(numbers_stand_where_the_header_says),
+        cmocka_unit_test(wafers_beyond_the_last_are_not_asked),
+        cmocka_unit_test(what_cannot_be_sieved_is_left_to_the_check),
         cmocka_unit_test(init_refuses_and_changes_nothing),
         cmocka_unit_test(calls_on_one_wafer_refuse),
         cmocka_unit_test(code_is_chosen_or_asked_for),

@@ -1,0 +1,73 @@
+#include <string.h>
+
+#include "batch/batch_internal.h"
+
+/* How far beyond the sieve each of 32 is: not at all where it is not above 0. */
+typedef struct {
+    float by[WH_BATCH_LANES];
+} beyond_t;
+
+/* Mostly all are: that is found out first, for compilers that do several at a time. */
+static uint32_t passed(const beyond_t *beyond) {
+    uint32_t held_back = 0;
+    for (size_t i = 0; i < WH_BATCH_LANES; ++i) {
+        held_back += beyond->by[i] > 0 ? 1U : 0U;
+    }
+    uint32_t bits = 0;
+    for (size_t i = 0; i < WH_BATCH_LANES && held_back < WH_BATCH_LANES; ++i) {
+        bits |= (beyond->by[i] > 0 ? 0U : 1U) << i;
+    }
+    return bits;
+}
+
+static uint32_t near_spheres(const wh_batch_sieve_t *sieve, const float *spheres) {
+    beyond_t beyond;
+    for (size_t i = 0; i < WH_BATCH_LANES; ++i) {
+        const float x = spheres[i] - sieve->at[0];
+        const float y = spheres[i + WH_BATCH_LANES] - sieve->at[1];
+        const float z = spheres[i + 2 * WH_BATCH_LANES] - sieve->at[2];
+        const float reach = spheres[i + 3 * WH_BATCH_LANES] + sieve->reach;
+        beyond.by[i] = x * x + y * y + z * z - reach * reach;
+    }
+    return passed(&beyond);
+}
+
+static uint32_t near_origins(const wh_batch_sieve_t *sieve, const float *origins) {
+    beyond_t beyond;
+    for (size_t i = 0; i < WH_BATCH_LANES; ++i) {
+        const float x = origins[i] - sieve->at[0];
+        const float y = origins[i + WH_BATCH_LANES] - sieve->at[1];
+        const float z = origins[i + 2 * WH_BATCH_LANES] - sieve->at[2];
+        beyond.by[i] = x * x + y * y + z * z - sieve->reach * sieve->reach;
+    }
+    return passed(&beyond);
+}
+
+static uint32_t near_planes(const wh_batch_sieve_t *sieve, const float *origins, const float *normals) {
+    beyond_t beyond;
+    for (size_t i = 0; i < WH_BATCH_LANES; ++i) {
+        const float x = origins[i] - sieve->at[0];
+        const float y = origins[i + WH_BATCH_LANES] - sieve->at[1];
+        const float z = origins[i + 2 * WH_BATCH_LANES] - sieve->at[2];
+        const float along =
+            normals[i] * x + normals[i + WH_BATCH_LANES] * y + normals[i + 2 * WH_BATCH_LANES] * z;
+        beyond.by[i] = fabsf(along) - sieve->limit;
+    }
+    return passed(&beyond);
+}
+
+uint32_t wh_batch_sieve_portable(const wh_batch_sieve_t *sieve, const wh_batch_tile_t *tile,
+                                 uint32_t *words) {
+    const uint32_t near =
+        near_spheres(sieve, tile->spheres) & UINT32_MAX >> (WH_BATCH_LANES - tile->block_count);
+    (void)memset(words, 0, tile->block_count * sizeof *words);
+    for (uint32_t rest = near; rest != 0; rest &= rest - 1) {
+        const size_t b = wh_batch_lowest(rest);
+        const float *origins = &tile->origins[b * WH_BATCH_BLOCK];
+        words[b] = near_origins(sieve, origins);
+        if (words[b] != 0) {
+            words[b] &= near_planes(sieve, origins, &tile->normals[b * WH_BATCH_BLOCK]);
+        }
+    }
+    return near;
+}
