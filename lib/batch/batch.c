@@ -6,6 +6,10 @@ static void put(float *numbers, const wh_vec3_t *v) {
     numbers[2 * WH_BATCH_LANES] = (float)v->z;
 }
 
+static size_t smaller(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
 /* A sphere about the mean of the wafers' origins, by a hundred-thousandth too large for what is rounded. */
 static void put_sphere(float *sphere, const wh_pose_t *wafers, size_t count) {
     wh_vec3_t sum = {0, 0, 0};
@@ -25,10 +29,10 @@ static void put_sphere(float *sphere, const wh_pose_t *wafers, size_t count) {
 
 /* The numbers of a block of wafers. One that cannot be sieved is left to the check. */
 static void put_block(const wh_batch_t *batch, size_t block) {
+    const size_t first = block * WH_BATCH_LANES;
+    const size_t count = smaller(batch->wafer_count - first, WH_BATCH_LANES);
     const wh_vec3_t unknown = wh_vec3((wh_real_t)NAN, (wh_real_t)NAN, (wh_real_t)NAN);
-    const size_t rest = batch->wafer_count - block * WH_BATCH_LANES;
-    const size_t count = rest < WH_BATCH_LANES ? rest : WH_BATCH_LANES;
-    const wh_pose_t *wafers = &batch->base_from_wafers[block * WH_BATCH_LANES];
+    const wh_pose_t *wafers = &batch->base_from_wafers[first];
     float *sphere = &batch->numbers[block / WH_BATCH_LANES * WH_BATCH_SPHERES + block % WH_BATCH_LANES];
     float *origins = &batch->numbers[wh_batch_origins(batch->wafer_count) + block * WH_BATCH_BLOCK];
     float *normals = &batch->numbers[wh_batch_normals(batch->wafer_count) + block * WH_BATCH_BLOCK];

@@ -4,13 +4,9 @@
 
 #include "batch/batch.h"
 
-/* Wafers of a tile, which stay in the nearest cache while grippers go over them in turns. Numbers of a block of spheres, and
- * of a block of wafers, which has as many for the origins as for n1. */
-enum {
-    WH_BATCH_TILE = WH_BATCH_LANES * WH_BATCH_LANES,
-    WH_BATCH_SPHERES = 4 * WH_BATCH_LANES,
-    WH_BATCH_BLOCK = 3 * WH_BATCH_LANES
-};
+/* Numbers of a block of spheres, and of a block of wafers, as many for the origins as for n1; wafers of a tile, 32 blocks, which
+ * stay in the nearest cache while grippers go over them in turns. */
+enum { WH_BATCH_SPHERES = 4 * WH_BATCH_LANES, WH_BATCH_BLOCK = 3 * WH_BATCH_LANES, WH_BATCH_TILE = 1024 };
 
 /* Blocks that follow one another: where their numbers begin. */
 typedef struct {
@@ -20,11 +16,14 @@ typedef struct {
     size_t block_count; /* 1 to WH_BATCH_LANES */
 } wh_batch_tile_t;
 
-/* Holds back spheres (c, radius) with |c - at| above radius + reach, and wafers (r, n1) with |r - at| above reach or
- * |n1 . (r - at)| above the limit. So a NaN anywhere holds nothing back. */
+/* Holds back spheres whose centre is farther from (x, y, z) than radius + reach, and wafers whose origin is farther than reach, or
+ * along n1 than the limit. Comparisons are such that a NaN anywhere holds nothing back. */
 typedef struct {
-    float at[3];
-    float reach, limit;
+    float x;
+    float y;
+    float z;
+    float reach;
+    float limit;
 } wh_batch_sieve_t;
 
 /* Whether a point is near enough to base's origin, in mm, that squares fit into float. NaN is not. */

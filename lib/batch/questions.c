@@ -27,11 +27,11 @@ static wh_batch_sieve_t sieve_around(const wh_vec3_t *r, const wh_tolerance_t *t
     const wh_real_t limits = tolerance->projz + tolerance->projxy;
     const wh_real_t origin = wh_real_abs(r->x) + wh_real_abs(r->y) + wh_real_abs(r->z);
     const wh_real_t slack = (origin + 4 * limits) / 4194304;
-    wh_batch_sieve_t sieve = {{(float)NAN, 0, 0}, 0, (float)NAN};
+    wh_batch_sieve_t sieve = {(float)NAN, 0, 0, 0, 0};
     if (wh_batch_fits(r)) {
-        sieve.at[0] = (float)r->x;
-        sieve.at[1] = (float)r->y;
-        sieve.at[2] = (float)r->z;
+        sieve.x = (float)r->x;
+        sieve.y = (float)r->y;
+        sieve.z = (float)r->z;
         sieve.reach = (float)(limits * WH_REAL(1.001) + slack);
         sieve.limit = (float)(tolerance->projz + slack);
     }

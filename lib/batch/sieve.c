@@ -23,9 +23,9 @@ static uint32_t passed(const beyond_t *beyond) {
 static uint32_t near_spheres(const wh_batch_sieve_t *sieve, const float *spheres) {
     beyond_t beyond;
     for (size_t i = 0; i < WH_BATCH_LANES; ++i) {
-        const float x = spheres[i] - sieve->at[0];
-        const float y = spheres[i + WH_BATCH_LANES] - sieve->at[1];
-        const float z = spheres[i + 2 * WH_BATCH_LANES] - sieve->at[2];
+        const float x = spheres[i] - sieve->x;
+        const float y = spheres[i + WH_BATCH_LANES] - sieve->y;
+        const float z = spheres[i + 2 * WH_BATCH_LANES] - sieve->z;
         const float reach = spheres[i + 3 * WH_BATCH_LANES] + sieve->reach;
         beyond.by[i] = x * x + y * y + z * z - reach * reach;
     }
@@ -35,20 +35,22 @@ static uint32_t near_spheres(const wh_batch_sieve_t *sieve, const float *spheres
 static uint32_t near_origins(const wh_batch_sieve_t *sieve, const float *origins) {
     beyond_t beyond;
     for (size_t i = 0; i < WH_BATCH_LANES; ++i) {
-        const float x = origins[i] - sieve->at[0];
-        const float y = origins[i + WH_BATCH_LANES] - sieve->at[1];
-        const float z = origins[i + 2 * WH_BATCH_LANES] - sieve->at[2];
+        const float x = origins[i] - sieve->x;
+        const float y = origins[i + WH_BATCH_LANES] - sieve->y;
+        const float z = origins[i + 2 * WH_BATCH_LANES] - sieve->z;
         beyond.by[i] = x * x + y * y + z * z - sieve->reach * sieve->reach;
     }
     return passed(&beyond);
 }
 
-static uint32_t near_planes(const wh_batch_sieve_t *sieve, const float *origins, const float *normals) {
+static uint32_t near_planes(const wh_batch_sieve_t *sieve, const wh_batch_tile_t *tile, size_t block) {
+    const float *origins = &tile->origins[block * WH_BATCH_BLOCK];
+    const float *normals = &tile->normals[block * WH_BATCH_BLOCK];
     beyond_t beyond;
     for (size_t i = 0; i < WH_BATCH_LANES; ++i) {
-        const float x = origins[i] - sieve->at[0];
-        const float y = origins[i + WH_BATCH_LANES] - sieve->at[1];
-        const float z = origins[i + 2 * WH_BATCH_LANES] - sieve->at[2];
+        const float x = origins[i] - sieve->x;
+        const float y = origins[i + WH_BATCH_LANES] - sieve->y;
+        const float z = origins[i + 2 * WH_BATCH_LANES] - sieve->z;
         const float along =
             normals[i] * x + normals[i + WH_BATCH_LANES] * y + normals[i + 2 * WH_BATCH_LANES] * z;
         beyond.by[i] = fabsf(along) - sieve->limit;
@@ -63,10 +65,9 @@ uint32_t wh_batch_sieve_portable(const wh_batch_sieve_t *sieve, const wh_batch_t
     (void)memset(words, 0, tile->block_count * sizeof *words);
     for (uint32_t rest = near; rest != 0; rest &= rest - 1) {
         const size_t b = wh_batch_lowest(rest);
-        const float *origins = &tile->origins[b * WH_BATCH_BLOCK];
-        words[b] = near_origins(sieve, origins);
+        words[b] = near_origins(sieve, &tile->origins[b * WH_BATCH_BLOCK]);
         if (words[b] != 0) {
-            words[b] &= near_planes(sieve, origins, &tile->normals[b * WH_BATCH_BLOCK]);
+            words[b] &= near_planes(sieve, tile, b);
         }
     }
     return near;

@@ -28,7 +28,7 @@ AVX2 static inline vectors_t vectors_at(const float *numbers) {
 
 AVX2 static inline vectors_t from_gripper(const wh_batch_sieve_t *sieve, const float *numbers) {
     const vectors_t v = vectors_at(numbers);
-    const vectors_t d = {v.x - sieve->at[0], v.y - sieve->at[1], v.z - sieve->at[2]};
+    const vectors_t d = {v.x - sieve->x, v.y - sieve->y, v.z - sieve->z};
     return d;
 }
 
@@ -61,8 +61,10 @@ AVX2 static inline uint32_t near_origins(const wh_batch_sieve_t *sieve, const fl
     return ~beyond;
 }
 
-AVX2 static inline uint32_t near_planes(const wh_batch_sieve_t *sieve, const float *origins,
-                                        const float *normals) {
+AVX2 static inline uint32_t near_planes(const wh_batch_sieve_t *sieve, const wh_batch_tile_t *tile,
+                                        size_t block) {
+    const float *origins = &tile->origins[block * WH_BATCH_BLOCK];
+    const float *normals = &tile->normals[block * WH_BATCH_BLOCK];
     uint32_t beyond = 0;
 #pragma GCC unroll 4
     for (size_t i = 0; i < WH_BATCH_LANES; i += LANES) {
@@ -81,10 +83,9 @@ AVX2 uint32_t wh_batch_sieve_avx2(const wh_batch_sieve_t *sieve, const wh_batch_
     (void)memset(words, 0, tile->block_count * sizeof *words);
     for (uint32_t rest = near; rest != 0; rest &= rest - 1) {
         const size_t b = wh_batch_lowest(rest);
-        const float *origins = &tile->origins[b * WH_BATCH_BLOCK];
-        words[b] = near_origins(sieve, origins);
+        words[b] = near_origins(sieve, &tile->origins[b * WH_BATCH_BLOCK]);
         if (words[b] != 0) {
-            words[b] &= near_planes(sieve, origins, &tile->normals[b * WH_BATCH_BLOCK]);
+            words[b] &= near_planes(sieve, tile, b);
         }
     }
     return near;
