@@ -180,22 +180,3 @@ size_t wh_plot_end_block(wh_plot_t *plot) {
     plot->has_rows = false;
     return plot->blocks++;
 }
-
-size_t wh_plot_thin(wh_plot_t *plot, const wh_thin_t *thin, const wh_plot_signal_t *signal, double slice_s) {
-    for (size_t i = 0; i < thin->count; ++i) {
-        const wh_thin_point_t *point = &thin->points[i];
-        double values[4];
-        for (size_t k = 0; k < signal->width; ++k) {
-            values[k] = point->values[signal->first + k] / signal->scale[k];
-        }
-        values[signal->width] = point->tag;
-        if (signal->tagged && i > 0 && point->tag != thin->points[i - 1].tag) {
-            wh_plot_gap(plot);
-        }
-        if (!signal->tagged || point->tag != WH_NONE) {
-            wh_plot_row(plot, (double)point->slice * slice_s, values,
-                        signal->width + (signal->tagged ? 1 : 0));
-        }
-    }
-    return wh_plot_end_block(plot);
-}

@@ -68,13 +68,4 @@ void wh_plot_row(wh_plot_t *plot, double at, const double values[], size_t count
 void wh_plot_gap(wh_plot_t *plot);
 size_t wh_plot_end_block(wh_plot_t *plot);
 
-/* A block of a thinned signal: `width` of its numbers from `first` on, over `scale`, at `slice_s` a slice; the tag with them if
- * `tagged`, WH_NONE being a gap, and so is a change of it. */
-typedef struct {
-    size_t first, width;
-    double scale[3];
-    bool tagged;
-} wh_plot_signal_t;
-size_t wh_plot_thin(wh_plot_t *plot, const wh_thin_t *thin, const wh_plot_signal_t *signal, double slice_s);
-
 #endif

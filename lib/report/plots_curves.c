@@ -5,12 +5,8 @@
 
 #include "motion/trig.h"
 #include "report/document_internal.h"
+#include "report/plot_curves.h"
 #include "report/plots_internal.h"
-
-static wh_plot_signal_t signal_of(size_t first, double scale) {
-    const wh_plot_signal_t signal = {first, 1, {scale}, false};
-    return signal;
-}
 
 /* ----------------------------------------------------------------------------------------------- proximity */
 
@@ -59,33 +55,30 @@ static void put_planar(const wh_plots_t *plots, wh_plot_t *plot, int32_t g, doub
     fputc('\n', plot->script);
 }
 
-static bool is_near_any(const wh_thin_t *thin) {
-    for (size_t i = 0; i < thin->count; ++i) {
-        if (thin->points[i].tag != WH_NONE) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static void put_proximity(wh_plots_t *plots, int32_t g) {
     static const wh_plot_frame_t frame = {
         .panels = 3, .panel_height = 92, .left = 66, .above = 12, .limits = true};
-    static const wh_plot_signal_t values = {0, 3, {1, WH_TRACE_PROJXY_SCALE, WH_TRACE_PLANAR_SCALE}, true};
-    const wh_layout_t *layout = plots->document->trace->layout;
+    const wh_trace_t *trace = plots->document->trace;
+    const wh_layout_t *layout = trace->layout;
+    const wh_curve_t *curves = trace->proximity[g];
+    const wh_plot_curves_t values = {
+        {&curves[WH_MEASURE_PROJZ], &curves[WH_MEASURE_PROJXY], &curves[WH_MEASURE_PLANAR]},
+        WH_MEASURES,
+        1,
+        false,
+        &trace->nearest[g]};
     const wh_tolerance_t *limits = &layout->grasp.tolerance;
     const char *name = layout->grippers[g].name;
     char title[WH_NAME_SIZE + 100];
     wh_plot_t plot;
-    if (!is_near_any(&plots->document->trace->proximity[g]) ||
-        !wh_plots_open(plots, &plot, "proximity", name)) {
+    if (curves[WH_MEASURE_PROJZ].count == 0 || !wh_plots_open(plots, &plot, "proximity", name)) {
         return;
     }
     (void)snprintf(title, sizeof title, "%s against the wafer that it holds (grey), or else would take",
                    name);
     wh_plot_begin(&plot, &frame, title, wh_plots_begin_s(plots), wh_plots_end_s(plots));
     wh_plot_block(&plot, name, "t (s), |dr_proj_z| (mm), |dr_proj_xy| (mm), n1_proj_n2, wafer (from 0)");
-    (void)wh_plot_thin(&plot, &plots->document->trace->proximity[g], &values, wh_plots_slice_s(plots));
+    (void)wh_plot_curves(&plot, &values, wh_plots_slice_s(plots));
     put_length(plots, &plot, g, "dr_proj_z", 2, limits->projz / 50, limits->projz,
                limits->projz * 4 > WH_TRACE_REACH ? limits->projz * 4 : WH_TRACE_REACH);
     put_length(plots, &plot, g, "dr_proj_xy", 3, limits->projxy / 50000, limits->projxy,
@@ -126,11 +119,11 @@ typedef struct {
 static axis_range_t look_at(const wh_trace_t *trace, const axis_panel_t *panel) {
     axis_range_t range = {0, HUGE_VAL, -HUGE_VAL};
     for (size_t axis = 0; axis < trace->axis_count; ++axis) {
-        const wh_thin_t *thin = panel->is_speed ? &trace->speeds[axis] : &trace->axes[axis];
+        const wh_curve_t *curve = &trace->axes[axis];
         if (is_in(trace, axis, panel)) {
             ++range.curves;
-            for (size_t i = 0; i < thin->count; ++i) {
-                const double value = thin->points[i].values[0];
+            for (size_t i = 0; i < curve->count; ++i) {
+                const double value = panel->is_speed ? curve->points[i].slope : curve->points[i].value;
                 range.low = value < range.low ? value : range.low;
                 range.high = value > range.high ? value : range.high;
             }
@@ -149,18 +142,18 @@ static void put_axis_look(wh_plot_t *plot, const axis_range_t *range) {
 
 static void put_axis_panel(const wh_plots_t *plots, wh_plot_t *plot, const axis_panel_t *panel) {
     const wh_trace_t *trace = plots->document->trace;
-    const wh_plot_signal_t value = signal_of(0, panel->turns ? WH_PI / 180 : 1);
     const axis_range_t range = look_at(trace, panel);
     int line = 0;
     wh_plot_panel(plot, panel->label);
     put_axis_look(plot, &range);
     for (size_t axis = 0; axis < trace->axis_count; ++axis) {
         if (is_in(trace, axis, panel)) {
-            const wh_thin_t *thin = panel->is_speed ? &trace->speeds[axis] : &trace->axes[axis];
+            const wh_plot_curves_t curve = {
+                {&trace->axes[axis]}, 1, panel->turns ? WH_PI / 180 : 1, panel->is_speed, NULL};
             char name[WH_NAME_SIZE + 8];
             wh_document_name_axis(trace->layout, axis, name, sizeof name);
             wh_plot_block(plot, name, panel->is_speed ? "t (s), speed" : "t (s), position");
-            const size_t block = wh_plot_thin(plot, thin, &value, wh_plots_slice_s(plots));
+            const size_t block = wh_plot_curves(plot, &curve, wh_plots_slice_s(plots));
             ++line;
             fprintf(plot->script, "%s'%s.dat' index %zu using 1:2 with linespoints pn 9 lt %d title ",
                     line == 1 ? "plot " : ", \\\n  ", plot->name, block, line);

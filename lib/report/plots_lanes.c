@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "report/document_internal.h"
+#include "report/plot_curves.h"
 #include "report/plot_lanes.h"
 #include "script/figures.h"
 
@@ -21,14 +22,14 @@ static size_t put_steps(const wh_plots_t *plots, wh_plot_t *plot, const wh_steps
 }
 
 static void put_gripper_signals(const wh_plots_t *plots, wh_lanes_t *lanes, size_t g) {
-    static const wh_plot_signal_t level = {0, 1, {1}, false};
     const wh_trace_t *trace = plots->document->trace;
+    const wh_plot_curves_t level = {{&trace->vacuum[g]}, 1, 1, false, NULL};
     const char *name = trace->layout->grippers[g].name;
     wh_plot_block(lanes->plot, name, "t (s), valve is open");
     wh_lanes_draw_signal(lanes, put_steps(plots, lanes->plot, &trace->valves[g], true), 3 * g, "steps");
     wh_plot_block(lanes->plot, name, "t (s), vacuum from 0 to 1");
-    wh_lanes_draw_signal(lanes, wh_plot_thin(lanes->plot, &trace->vacuum[g], &level, wh_plots_slice_s(plots)),
-                         3 * g + 1, "lines");
+    wh_lanes_draw_signal(lanes, wh_plot_curves(lanes->plot, &level, wh_plots_slice_s(plots)), 3 * g + 1,
+                         "lines");
     wh_plot_block(lanes->plot, name, "t (s), vacuum sensor is on");
     wh_lanes_draw_signal(lanes, put_steps(plots, lanes->plot, &trace->sensors[g], false), 3 * g + 2, "steps");
 }
