@@ -310,6 +310,26 @@ static bool is_idle(const wh_grasp_t *table, size_t g) {
            gripper->wafer == WH_NONE && is_within_horizon(table, g) && !is_any_held(table);
 }
 
+/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2);
+    requires wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
+    assigns watch->sweep, watch->gripper->approach, watch->gripper->contest, watch->table->counters,
+            watch->table->storage.buckets[0 .. watch->table->storage.bucket_count - 1],
+            watch->list->count, watch->list->events[0 .. wh_room(watch->list) - 1];
+    ensures wh_both_watched(watch);
+    ensures wh_list_grown{Pre, Post}(watch->list, 2) && wh_same_size{Pre, Post}(watch->table); */
+static void update(wh_watch_t *watch, bool closed) {
+    if (closed || watch->gripper->wafer != WH_NONE) {
+        end_encounters(watch, closed);
+        /*@ assert wh_both_watched(watch); */
+    } else if (wh_grasp_is_swept(watch->table, (size_t)watch->index) && is_sweep_needed(watch)) {
+        wh_encounter_follow_swept(watch);
+        /*@ assert wh_both_watched(watch); */
+    } else {
+        wh_encounter_follow(watch);
+        /*@ assert wh_both_watched(watch); */
+    }
+}
+
 /* Said of `watch` below, so that it is kept for the provers that it has no sweep. */
 /*@ predicate sweep_at{L}(wh_sweep_t **place, wh_sweep_t *sweep) = *place == sweep; */
 void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_input_t *input,
@@ -325,21 +345,24 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
                           table->storage.grippers + (0 .. table->storage.gripper_count - 1)); */
     /*@ assert list != \null ==> \separated(&watch, list->events + (0 .. list->capacity - 1)); */
     /*@ assert wh_watch_memory(&watch); */
-    const bool closed = input->valve == WH_VALVE_CLOSED;
-    if (closed || watch.gripper->wafer != WH_NONE) {
-        end_encounters(&watch, closed);
-        /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
-        /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&
-                   wh_watched(&watch, table->storage.grippers[gripper].contest.wafer); */
-    } else if (wh_grasp_is_swept(table, gripper) && is_sweep_needed(&watch)) {
-        wh_encounter_follow_swept(&watch);
-        /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
-        /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&
-                   wh_watched(&watch, table->storage.grippers[gripper].contest.wafer); */
-    } else {
-        wh_encounter_follow(&watch);
-        /*@ assert wh_list_grown{Pre, Here}(list, 2) && wh_same_size{Pre, Here}(table); */
-        /*@ assert wh_watched(&watch, table->storage.grippers[gripper].approach.wafer) &&
-                   wh_watched(&watch, table->storage.grippers[gripper].contest.wafer); */
-    }
+    /*@ assert \forall integer i; wh_is_gripper(table, i) ==>
+          \separated(&table->storage.grippers[i], list->events + (0 .. wh_room(list) - 1)); */
+    /*@ assert \forall integer i; wh_is_gripper(table, i) && i != gripper ==>
+          \separated(&table->storage.grippers[i], &table->storage.grippers[gripper]); */
+    /*@ assert \separated(&table->storage.grippers[gripper], list->events + (0 .. wh_room(list) - 1)); */
+    update(&watch, input->valve == WH_VALVE_CLOSED);
+    /*@ assert wh_same_size{Pre, Here}(table); */
+    /*@ assert table->storage.grippers == \at(table->storage.grippers, Pre); */
+    /*@ assert table->storage.grippers[gripper].wafer == \at(table->storage.grippers[gripper].wafer, Pre); */
+    /*@ assert \forall integer i; wh_is_gripper{Pre}(table, i) && i != gripper ==>
+          table->storage.grippers[i].wafer == \at(table->storage.grippers[i].wafer, Pre); */
+    /*@ assert wh_same_held{Pre, Here}(table); */
+    /*@ assert \forall integer i; wh_is_gripper{Pre}(table, i) && i != gripper ==>
+          table->storage.grippers[i].approach.wafer == \at(table->storage.grippers[i].approach.wafer, Pre); */
+    /*@ assert \forall integer i; wh_is_gripper{Pre}(table, i) && i != gripper ==>
+          table->storage.grippers[i].contest.wafer == \at(table->storage.grippers[i].contest.wafer, Pre); */
+    /*@ assert wh_other_watched{Pre, Here}(table, gripper); */
+    /*@ assert wh_same_grip{Pre, Here}(table, gripper); */
+    /*@ assert \forall integer i; wh_is_gripper{Pre}(table, i) && i != gripper ==> wh_same_grip{Pre, Here}(table, i); */
+    /*@ assert wh_same_grips{Pre, Here}(table); */
 }

@@ -32,6 +32,8 @@ typedef struct {
     (w->list != \null ==> \separated(w, w->list->events + (0 .. w->list->capacity - 1)));
 
   predicate wh_watched{L}(wh_watch_t *w, integer i) = i == WH_NONE || wh_is_wafer(w->table, i);
+  predicate wh_both_watched{L}(wh_watch_t *w) =
+    wh_watched(w, w->gripper->approach.wafer) && wh_watched(w, w->gripper->contest.wafer);
 
   predicate wh_same_approach{K, L}(wh_watch_t *w) =
     \at(w->gripper->approach.wafer, K) == \at(w->gripper->approach.wafer, L);
