@@ -350,6 +350,10 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
     /*@ assert \forall integer i; wh_is_gripper(table, i) && i != gripper ==>
           \separated(&table->storage.grippers[i], &table->storage.grippers[gripper]); */
     /*@ assert \separated(&table->storage.grippers[gripper], list->events + (0 .. wh_room(list) - 1)); */
+    /*@ assert \forall integer i; wh_is_gripper(table, i) && i != gripper ==>
+          \separated(&table->storage.grippers[i].gripper_from_wafer, &table->storage.grippers[gripper].approach,
+                     list->events + (0 .. wh_room(list) - 1)) &&
+          \separated(&table->storage.grippers[i].gripper_from_wafer, &table->storage.grippers[gripper].contest); */
     update(&watch, input->valve == WH_VALVE_CLOSED);
     /*@ assert wh_same_size{Pre, Here}(table); */
     /*@ assert table->storage.grippers == \at(table->storage.grippers, Pre); */

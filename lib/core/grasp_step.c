@@ -569,12 +569,33 @@ static void report_releases(wh_grasp_t *table, const wh_gripper_input_t *inputs,
 static void watch_next(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     /*@ assert \forall integer i; wh_is_gripper(table, i) ==> \separated(inputs + i, table->storage.grippers + g); */
     /*@ assert \forall integer i; wh_is_gripper(table, i) ==>
-          \separated(inputs + i, list->events + (0 .. wh_room(list) - 1)); */
+          \separated(&inputs[i].valve, &table->storage.grippers[g].approach, list->events + (0 .. wh_room(list) - 1)) &&
+          \separated(&inputs[i].valve, &table->storage.grippers[g].contest); */
     /*@ assert \forall integer w; wh_is_wafer(table, w) ==>
           \separated(table->storage.wafers + w, table->storage.grippers + g); */
     /*@ assert \forall integer w; wh_is_wafer(table, w) ==>
           \separated(table->storage.wafers + w, list->events + (0 .. wh_room(list) - 1)); */
+    /*@ assert \forall integer w; wh_is_wafer(table, w) ==>
+          \separated(&table->storage.wafers[w].holder, &table->storage.grippers[g].approach,
+                     list->events + (0 .. wh_room(list) - 1)) &&
+          \separated(&table->storage.wafers[w].holder, &table->storage.grippers[g].contest); */
+    /*@ assert \forall integer w; wh_is_wafer(table, w) ==>
+          \separated(&table->storage.wafers[w].released_by, &table->storage.grippers[g].approach,
+                     list->events + (0 .. wh_room(list) - 1)) &&
+          \separated(&table->storage.wafers[w].released_by, &table->storage.grippers[g].contest); */
+    /*@ assert \forall integer w; wh_is_wafer(table, w) ==>
+          \separated(&table->storage.wafers[w].base_from_wafer, &table->storage.grippers[g].approach,
+                     list->events + (0 .. wh_room(list) - 1)) &&
+          \separated(&table->storage.wafers[w].base_from_wafer, &table->storage.grippers[g].contest); */
     wh_encounter_update(table, g, &inputs[g], list);
+    /*@ assert wh_same_size{Pre, Here}(table); */
+    /*@ assert \forall integer i; wh_is_gripper{Pre}(table, i) ==> inputs[i].valve == \at(inputs[i].valve, Pre); */
+    /*@ assert wh_same_inputs{Pre, Here}(inputs, \at(table->storage.gripper_count, Pre)); */
+    /*@ assert \forall integer w; wh_is_wafer{Pre}(table, w) ==>
+          table->storage.wafers[w].holder == \at(table->storage.wafers[w].holder, Pre); */
+    /*@ assert \forall integer w; wh_is_wafer{Pre}(table, w) ==>
+          table->storage.wafers[w].released_by == \at(table->storage.wafers[w].released_by, Pre); */
+    /*@ assert \forall integer w; wh_is_wafer{Pre}(table, w) ==> wh_same_pose{Pre, Here}(table, w); */
 }
 
 /*@ requires wh_table_memory(table) && wh_list_apart(list, table) && wh_list_ready(list, 2 * table->storage.gripper_count);
