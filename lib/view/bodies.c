@@ -1,4 +1,5 @@
 /* Bodies and their shapes in a LOAD message. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,7 +50,7 @@ static char *path_of(const char *folder, const char *name) {
     if (!path) {
         abort();
     }
-    strcat(strcat(strcat(path, folder), name ? "::" : ""), written);
+    (void)snprintf(path, size, "%s%s%s", folder, name ? "::" : "", written);
     return path;
 }
 

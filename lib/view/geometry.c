@@ -63,7 +63,8 @@ static void put_round(waferhand_viewer_geometry *geometry, int8_t type, const wh
 /* The index of a point, which is added if it is not there yet: a hull's faces share their corners. */
 static uint32_t index_of(triangles_t *triangles, const float at[3]) {
     for (size_t i = 0; i < triangles->point_count; ++i) {
-        if (memcmp(triangles->points[i], at, sizeof triangles->points[i]) == 0) {
+        const float *point = triangles->points[i];
+        if (point[0] == at[0] && point[1] == at[1] && point[2] == at[2]) {
             return (uint32_t)i;
         }
     }
@@ -87,12 +88,13 @@ static triangles_t triangles_of(const wh_convex_t *convex) {
 
 static void put_triangles(waferhand_viewer_geometry *geometry, const triangles_t *triangles) {
     const size_t count = 2 + 3 * triangles->point_count + triangles->corner_count;
+    const size_t triangle_count = triangles->corner_count / 3;
     float *to = room_for(count, sizeof *to);
     geometry->type = WH_VIEW_TRIANGLES;
     geometry->num_float_data = (int32_t)count;
     geometry->float_data = to;
     *to++ = (float)triangles->point_count;
-    *to++ = (float)(triangles->corner_count / 3);
+    *to++ = (float)triangle_count;
     for (size_t i = 0; i < triangles->point_count; ++i) {
         for (size_t axis = 0; axis < 3; ++axis) {
             *to++ = (float)((double)triangles->points[i][axis] * M_PER_MM);
