@@ -34,7 +34,7 @@ static void spoil(wh_pose_t *pose) {
     }
 }
 
-/* Some wafers lie beside a gripper, on its limits, the others beside one that is not asked for. */
+/* Some wafers lie beside a gripper, on its limits, the others beside one that is not asked for: by turns, or many in a row. */
 static void draw(size_t count, const wh_tolerance_t *tolerance) {
     /* how far away both are, so that float's rounding is from far below the limits to far above them */
     const double far[] = {0, 0, 1e2, 1e5, 1e7, 1e10, 1e15, 1e16, 1e25, 1e36};
@@ -47,8 +47,9 @@ static void draw(size_t count, const wh_tolerance_t *tolerance) {
         wh_test_pair(tolerance, &wafer, &grippers[g]);
         grippers[g].r = wh_vec3_add(&grippers[g].r, &away);
     }
-    for (size_t w = 0; w < count; ++w) {
-        const size_t g = wh_test_below(2 * GRIPPERS);
+    const size_t row = wh_test_below(2) ? 1 : 32;
+    for (size_t w = 0, g = 0; w < count; ++w) {
+        g = w % row == 0 ? wh_test_below(2 * GRIPPERS) : g;
         wh_pose_t gripper;
         wh_test_pair(tolerance, &wafers[w], &gripper);
         if (g < GRIPPERS) {
@@ -62,6 +63,16 @@ static void draw(size_t count, const wh_tolerance_t *tolerance) {
         wh_test_pair(tolerance, &wafers[wh_test_below((uint32_t)count)], &grippers[0]);
     }
     spoil(&grippers[wh_test_below(GRIPPERS)]);
+}
+
+/* Now and then at the end of what a limit may be. */
+static wh_tolerance_t draw_tolerance(int round) {
+    wh_tolerance_t tolerance = wh_test_tolerance(round);
+    if (round % 16 == 1) {
+        tolerance.projz = WH_REAL(wh_test_below(2) ? 1e-9 : 1e6);
+        tolerance.projxy = WH_REAL(wh_test_below(2) ? 1e-6 : 1e6);
+    }
+    return tolerance;
 }
 
 static wh_real_t distance(size_t w, size_t g) {
@@ -125,7 +136,7 @@ static void verdicts_are_the_checks(void **state) {
     (void)state;
     (void)wh_test_seed();
     for (int round = 0; round < ROUNDS; ++round) {
-        const wh_tolerance_t tolerance = wh_test_tolerance(round);
+        const wh_tolerance_t tolerance = draw_tolerance(round);
         const size_t count = wh_test_below(round % 20 ? 80 : MOST);
         draw(count, &tolerance);
         wh_batch_t batch;
