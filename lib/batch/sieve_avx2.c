@@ -42,7 +42,6 @@ AVX2 static inline uint32_t bits_of(masks_t masks) {
 
 AVX2 static inline uint32_t near_spheres(const wh_batch_sieve_t *sieve, const float *spheres) {
     uint32_t beyond = 0;
-#pragma GCC unroll 4
     for (size_t i = 0; i < WH_BATCH_LANES; i += LANES) {
         const vectors_t d = from_gripper(sieve, &spheres[i]);
         const lanes_t reach = load(&spheres[i + 3 * WH_BATCH_LANES]) + sieve->reach;
@@ -51,13 +50,15 @@ AVX2 static inline uint32_t near_spheres(const wh_batch_sieve_t *sieve, const fl
     return ~beyond;
 }
 
+AVX2 static inline uint32_t beyond_reach(const wh_batch_sieve_t *sieve, const float *origins) {
+    const vectors_t d = from_gripper(sieve, origins);
+    return bits_of(dot(&d, &d) > sieve->reach * sieve->reach);
+}
+
+/* The inner loop of wafers in any order: written out, which compilers do not at -O2. */
 AVX2 static inline uint32_t near_origins(const wh_batch_sieve_t *sieve, const float *origins) {
-    uint32_t beyond = 0;
-#pragma GCC unroll 4
-    for (size_t i = 0; i < WH_BATCH_LANES; i += LANES) {
-        const vectors_t d = from_gripper(sieve, &origins[i]);
-        beyond |= bits_of(dot(&d, &d) > sieve->reach * sieve->reach) << i;
-    }
+    const uint32_t beyond = beyond_reach(sieve, origins) | beyond_reach(sieve, &origins[8]) << 8 |
+                            beyond_reach(sieve, &origins[16]) << 16 | beyond_reach(sieve, &origins[24]) << 24;
     return ~beyond;
 }
 
@@ -66,7 +67,6 @@ AVX2 static inline uint32_t near_planes(const wh_batch_sieve_t *sieve, const wh_
     const float *origins = &tile->origins[block * WH_BATCH_BLOCK];
     const float *normals = &tile->normals[block * WH_BATCH_BLOCK];
     uint32_t beyond = 0;
-#pragma GCC unroll 4
     for (size_t i = 0; i < WH_BATCH_LANES; i += LANES) {
         const vectors_t d = from_gripper(sieve, &origins[i]);
         const vectors_t n1 = vectors_at(&normals[i]);
