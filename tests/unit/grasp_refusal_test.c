@@ -117,6 +117,30 @@ static void each_entry_of_a_rotation_is_looked_at(void **state) {
     }
 }
 
+/* Nor does an entry pass for being another number of the pose, or one that stands beside it in memory. */
+static void no_entry_is_taken_for_another(void **state) {
+    (void)state;
+    for (int run = 0; run < 8; ++run) {
+        cell_t cell;
+        cell_begin_default(&cell);
+        const wh_pose_t last = wh_test_pose(wh_test_rotation(run % 3 - 1, 2, run - 4, 0.7), 0.3, -0.2, 0.6);
+        const wh_real_t number[] = {last.R.m[0][0], last.R.m[0][1], last.R.m[0][2], last.R.m[1][0],
+                                    last.R.m[1][1], last.R.m[1][2], last.R.m[2][0], last.R.m[2][1],
+                                    last.R.m[2][2], last.r.x,       last.r.y,       last.r.z};
+        cell_place(&cell, CELL_WAFERS - 1, 0.3, -0.2, 0.6);
+        cell.input[0].base_from_gripper = last;
+        cell_step(&cell);
+        for (int k = 0; k < 9 * 12; ++k) {
+            wh_pose_t *pose = &cell.input[0].base_from_gripper;
+            *pose = last;
+            pose->R.m[k / 12 / 3][k / 12 % 3] = number[k % 12];
+            const bool same = wh_real_abs(number[k / 12] - number[k % 12]) < WH_REAL(1e-6);
+            assert_int_equal(wh_grasp_step(&cell.table, cell.input, NULL),
+                             same ? WH_OK : WH_STATUS_NOT_A_ROTATION);
+        }
+    }
+}
+
 static void a_refused_step_changes_no_later_step(void **state) {
     (void)state;
     cell_t plain;
@@ -271,6 +295,7 @@ int main(void) {
         cmocka_unit_test(each_number_of_a_pose_is_looked_at),
         cmocka_unit_test(rotations_and_valves_are_looked_at),
         cmocka_unit_test(each_entry_of_a_rotation_is_looked_at),
+        cmocka_unit_test(no_entry_is_taken_for_another),
         cmocka_unit_test(a_refused_step_changes_no_later_step),
         cmocka_unit_test(a_list_is_large_enough_or_null),
         cmocka_unit_test(a_list_changes_nothing),

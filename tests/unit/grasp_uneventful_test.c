@@ -1,0 +1,127 @@
+/* Which slices are taken for uneventful: those in which no gripper looks for wafers though one is open and empty. That such a
+ * slice changes no result is shown by tests/property/horizon_test.c. */
+#include "core/horizon_internal.h"
+#include "support_grasp.h"
+
+typedef struct {
+    cell_t cell;
+    uint32_t buckets[WH_GRASP_BUCKETS(CELL_WAFERS, CELL_GRIPPERS)];
+} fixture_t;
+
+/* Gripper 1 is open and empty at (1000, 500, -500), far from all wafers, and has found that out. */
+static void begin(fixture_t *fixture, wh_check_t check) {
+    wh_grasp_config_t config = wh_grasp_config_default();
+    config.check = check;
+    cell_begin(&fixture->cell, &config);
+    wh_grasp_storage_t storage = fixture->cell.table.storage;
+    storage.buckets = fixture->buckets;
+    storage.bucket_count = wh_grasp_buckets(CELL_WAFERS, CELL_GRIPPERS);
+    assert_int_equal(wh_grasp_init(&fixture->cell.table, &config, &storage), WH_OK);
+    cell_move(&fixture->cell, 1, 1000, 499.5, -500, OPEN);
+    cell_move(&fixture->cell, 1, 1000, 500, -500, OPEN);
+    assert_true(wh_horizon_holds(&fixture->cell.table, 1));
+}
+
+/* Whether gripper 1 takes no look in the next slice, not even whether it is within its horizon: the bit that says so, taken
+ * away before, stays away. */
+static bool looks_at_nothing(fixture_t *fixture) {
+    wh_grasp_t *table = &fixture->cell.table;
+    wh_horizon_words(table, 1)[3] &= ~(uint32_t)WH_HORIZON_HOLDS;
+    const uint64_t slice = table->slice;
+    cell_step(&fixture->cell);
+    assert_int_equal(table->slice, slice + 1);
+    return !wh_horizon_holds(table, 1);
+}
+
+static void within_the_horizon_nothing_is_looked_at(void **state) {
+    (void)state;
+    for (int check = WH_CHECK_SAMPLED; check <= WH_CHECK_SWEPT; ++check) {
+        fixture_t fixture;
+        begin(&fixture, (wh_check_t)check);
+        assert_true(looks_at_nothing(&fixture));
+        cell_set(&fixture.cell, 1, 1000, 501, -500, OPEN);
+        assert_true(looks_at_nothing(&fixture));
+        assert_near(fixture.cell.gripper[1].base_from_gripper.r.y, 501, 0);
+        cell_set(&fixture.cell, 1, 1000, 9000, -500, OPEN);
+        assert_false(looks_at_nothing(&fixture));
+    }
+}
+
+/* The way of a slice counts only where it is checked, and only if the gripper was open all along. */
+static void outside_at_the_begin(void **state) {
+    (void)state;
+    for (int i = 0; i < 4; ++i) {
+        const bool swept = i & 1;
+        const bool was_open = i & 2;
+        fixture_t fixture;
+        begin(&fixture, swept ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED);
+        fixture.cell.gripper[1].base_from_gripper.r.y = 9000;
+        fixture.cell.gripper[1].valve = was_open ? OPEN : CLOSED;
+        assert_true(looks_at_nothing(&fixture) == !(swept && was_open));
+    }
+}
+
+/* A closed gripper looks at nothing, wherever it is. */
+static void closed_grippers_may_be_anywhere(void **state) {
+    (void)state;
+    fixture_t fixture;
+    begin(&fixture, WH_CHECK_SAMPLED);
+    cell_set(&fixture.cell, 0, 0, 0, 0, CLOSED);
+    cell_set(&fixture.cell, 2, 2000, 0, 0, CLOSED);
+    assert_true(looks_at_nothing(&fixture));
+    cell_expect_held(&fixture.cell, 0, WH_NONE);
+}
+
+/* What another gripper does that may have to be told, before and after gripper 1 in their order. */
+static void others_may_have_something_to_tell(void **state) {
+    (void)state;
+    for (int g = 0; g <= 2; g += 2) {
+        fixture_t fixture;
+        /* Outside of its horizon. */
+        begin(&fixture, WH_CHECK_SAMPLED);
+        cell_set(&fixture.cell, g, 1000 * g, 9000, -500, OPEN);
+        assert_false(looks_at_nothing(&fixture));
+        /* Holding a wafer, while another looks. */
+        begin(&fixture, WH_CHECK_SAMPLED);
+        cell_move(&fixture.cell, g, 1000 * g, 0, -0.25, OPEN);
+        cell_expect_held(&fixture.cell, g, g);
+        assert_false(looks_at_nothing(&fixture));
+        /* Letting go of it. */
+        cell_set(&fixture.cell, g, 1000 * g, 0, -0.25, CLOSED);
+        assert_false(looks_at_nothing(&fixture));
+        cell_expect_held(&fixture.cell, g, WH_NONE);
+        /* Following one: within its horizon, of the tolerance. */
+        begin(&fixture, WH_CHECK_SAMPLED);
+        cell_move(&fixture.cell, g, 1000 * g, 0, -4, OPEN);
+        cell_move(&fixture.cell, g, 1000 * g, 0, -4, OPEN);
+        assert_int_equal(fixture.cell.gripper[g].approach.wafer, g);
+        const wh_vec3_t *place = &fixture.cell.input[g].base_from_gripper.r;
+        assert_true(wh_horizon_covers(&fixture.cell.table, (size_t)g, place));
+        assert_false(looks_at_nothing(&fixture));
+        /* Near another's wafer. */
+        begin(&fixture, WH_CHECK_SAMPLED);
+        fixture.cell.gripper[g].contest.wafer = g;
+        assert_false(looks_at_nothing(&fixture));
+    }
+}
+
+static void without_buckets_every_slice_is_looked_at(void **state) {
+    (void)state;
+    cell_t cell;
+    cell_begin_default(&cell);
+    cell_move(&cell, 1, 1000, 500, -500, OPEN);
+    cell_place(&cell, 1, 1000, 500, -500);
+    cell_step(&cell);
+    cell_expect_held(&cell, 1, 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(within_the_horizon_nothing_is_looked_at),
+        cmocka_unit_test(outside_at_the_begin),
+        cmocka_unit_test(closed_grippers_may_be_anywhere),
+        cmocka_unit_test(others_may_have_something_to_tell),
+        cmocka_unit_test(without_buckets_every_slice_is_looked_at),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
