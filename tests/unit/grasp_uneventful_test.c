@@ -105,6 +105,21 @@ static void others_may_have_something_to_tell(void **state) {
     }
 }
 
+/* What the pick has found out, that no wafer matters, the watch does not look for again: nothing is searched. */
+static void one_look_is_enough(void **state) {
+    (void)state;
+    for (int check = WH_CHECK_SAMPLED; check <= WH_CHECK_SWEPT; ++check) {
+        fixture_t fixture;
+        begin(&fixture, (wh_check_t)check);
+        cell_move(&fixture.cell, 0, 0, 0, -0.25, OPEN);
+        fixture.buckets[WH_INDEX_FOUND] = UINT32_MAX;
+        assert_false(looks_at_nothing(&fixture));
+        assert_int_equal(fixture.buckets[WH_INDEX_FOUND], UINT32_MAX);
+        cell_move(&fixture.cell, 1, 1000, 9000, -500, OPEN);
+        assert_int_equal(fixture.buckets[WH_INDEX_FOUND], 1);
+    }
+}
+
 static void without_buckets_every_slice_is_looked_at(void **state) {
     (void)state;
     cell_t cell;
@@ -121,6 +136,7 @@ int main(void) {
         cmocka_unit_test(outside_at_the_begin),
         cmocka_unit_test(closed_grippers_may_be_anywhere),
         cmocka_unit_test(others_may_have_something_to_tell),
+        cmocka_unit_test(one_look_is_enough),
         cmocka_unit_test(without_buckets_every_slice_is_looked_at),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
