@@ -52,7 +52,7 @@ view: all ## shows a cell live in a web browser: fetches Drake's viewer, says wh
 	@lib/view/start
 
 test: ## every test: plain, under sanitizers, in float, and end to end
-	$(NEED) run test
+	$(NEED) run test $(if $(CI),browser)
 	$(BUILD) all tests
 	$(BUILD) B=build/sanitize $(SANITIZE) tests program
 	$(BUILD) B=build/float FLOAT=1 library-tests
@@ -70,7 +70,7 @@ bench: ## how fast, against peers in the same process: minutes. BENCH=step for o
 	@tests/bench/run $(if $(JSON),--json)
 
 check: ## format, warnings as errors, static analysis
-	$(NEED) run test check
+	$(NEED) run test check $(if $(CI),scripts)
 	$(BUILD) B=build/check/float CC=gcc WERROR=1 FLOAT=1 library
 	$(BUILD) B=build/check CC=gcc CXX=g++ WERROR=1 all tests check
 

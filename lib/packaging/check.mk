@@ -1,12 +1,12 @@
 # Static checks; compiling with warnings as errors is done by the Makefile. The tools that look for bugs and for broken
 # rules do not fail: lib/packaging/deviations holds what they report against lib/DEVIATIONS.md.
 
-.PHONY: check check-format check-shell check-lua check-manual check-deviations
+.PHONY: check check-format check-shell check-lua check-scripts check-manual check-deviations
 C_FILES := $(shell find lib tests -name '*.[ch]')
 FORMATTED := $(C_FILES) $(shell find lib tests -name '*.cpp' -o -name '*.java')
 SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/packaging/* lib/link/spy/start lib/view/fetch lib/view/start $(filter-out tests/fuzz/corpus,$(wildcard tests/run tests/*/*)))
 
-check: check-format check-shell check-lua check-manual check-deviations
+check: check-format check-shell check-lua check-scripts check-manual check-deviations
 
 check-format:
 	@clang-format --dry-run --Werror $(FORMATTED)
@@ -16,6 +16,10 @@ check-shell:
 
 check-lua:
 	@$(foreach file,$(LUA_SOURCES),luac5.4 -p $(file) &&) true
+
+# Skipped by name where eslint is not: only CI installs it, for with it comes Node.
+check-scripts:
+	@tests/browser/lint || test $$? = 77
 
 # groff reports, but does not fail.
 check-manual: $(B)/waferhand.1

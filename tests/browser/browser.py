@@ -1,5 +1,7 @@
 """A page in headless Chromium, read from disk, with what it logs and asks for kept."""
+import atexit
 import base64
+import functools
 import json
 import time
 
@@ -14,11 +16,13 @@ FLAGS = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--host-re
 WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 NO_WEBGL = ["--disable-gpu", "--disable-webgl", "--disable-3d-apis"]
 
+SIZE = (1440, 900)
+
 
 class Browser:
     """One browser; `open` shows another page in it."""
 
-    def __init__(self, flags=None, size=(1440, 900)):
+    def __init__(self, flags=None, size=SIZE):
         options = webdriver.ChromeOptions()
         for flag in FLAGS + (WEBGL if flags is None else flags):
             options.add_argument(flag)
@@ -133,3 +137,11 @@ class Browser:
 
     def now(self):
         return self.js("return Waferhand.clock.now")
+
+
+@functools.lru_cache(maxsize=None)
+def common():
+    """The browser that tests share: starting one takes longer than most of them. Whoever changes it puts it back."""
+    made = Browser()
+    atexit.register(made.close)
+    return made

@@ -3,8 +3,8 @@ import base64
 import re
 import unittest
 
+import browser
 import documents
-from browser import Browser
 
 # The lowest contrast of text that is easily read (WCAG 2, level AA).
 CONTRAST = 4.5
@@ -52,11 +52,7 @@ def painted(behind):
 class Looks(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.page = Browser()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.page.close()
+        cls.page = browser.common()
 
     def tearDown(self):
         self.assertEqual(self.page.faults(), [])

@@ -1,9 +1,9 @@
 """The measuring tool: its figures against a computation here, by lists, by keys and by clicks, with WebGL and without."""
 import unittest
 
+import browser
 import documents
 import expected
-from browser import NO_WEBGL, Browser
 
 
 def setUpModule():
@@ -16,13 +16,14 @@ class Measure:
 
     @classmethod
     def setUpClass(cls):
-        cls.page = Browser(cls.flags)
+        cls.page = browser.Browser(cls.flags) if cls.flags else browser.common()
         cls.page.open(path)
 
     @classmethod
     def tearDownClass(cls):
         faults, outside = cls.page.faults(), cls.page.outside()
-        cls.page.close()
+        if cls.flags:
+            cls.page.close()
         assert faults == [] and outside == [], (faults, outside)
 
     def choose(self, first, second):
@@ -116,7 +117,7 @@ class WithWebGL(Measure, unittest.TestCase):
 
 
 class WithoutWebGL(Measure, unittest.TestCase):
-    flags = NO_WEBGL
+    flags = browser.NO_WEBGL
     clicked = ["EE", "Wafer 1"]  # at one spot: the second click there takes the other
 
     def spot(self, name):

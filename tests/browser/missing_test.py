@@ -1,19 +1,20 @@
 """Documents that lack something, or are none: the part is left out with a word why, and nothing throws."""
 import unittest
 
+import browser
 import documents
 from assemble import pack
-from browser import Browser
 
 
 def setUpModule():
     global page, document
     document, _ = documents.example("04_scrape")
-    page = Browser()
+    page = browser.common()
+    page.resize(640, 480)  # many pages, which nobody looks at
 
 
 def tearDownModule():
-    page.close()
+    page.resize(*browser.SIZE)
 
 
 def pruned(keep_run):
@@ -27,8 +28,8 @@ def pruned(keep_run):
 class Missing(unittest.TestCase):
     def show(self, changed, name):
         page.open(documents.page_of(changed, "missing_" + name))
-        for t in (0, 1, 4.506, 5):
-            page.js("if (Waferhand.shown) { Waferhand.clock.seek(arguments[0]); Waferhand.clock.flush(); }", t)
+        page.js("""if (Waferhand.shown) { [0, 1, 4.506, 5].forEach((t) => { Waferhand.clock.seek(t);
+            Waferhand.clock.flush(); }); }""")
         page.settle()
         self.assertEqual(page.faults(), [], name)
         self.assertEqual(page.outside(), [], name)

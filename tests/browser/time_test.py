@@ -3,18 +3,14 @@ import os
 import time
 import unittest
 
+import browser
 import documents
-from browser import Browser
 
 
 def setUpModule():
     global page, document, path
     document, path = documents.example("01_transfer")
-    page = Browser()
-
-
-def tearDownModule():
-    page.close()
+    page = browser.common()
 
 
 class Time(unittest.TestCase):

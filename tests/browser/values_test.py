@@ -2,18 +2,14 @@
 import random
 import unittest
 
+import browser
 import documents
 import expected
-from browser import Browser
 
 
 def setUpModule():
     global page
-    page = Browser()
-
-
-def tearDownModule():
-    page.close()
+    page = browser.common()
 
 
 def shown(value, decimals):
