@@ -2,6 +2,7 @@
 #include <inttypes.h>
 
 #include "app/table_internal.h"
+#include "script/mcs.h"
 
 enum { MARK, LINE, TEXT };
 
@@ -97,20 +98,31 @@ static bool put_reason(FILE *out, bool is_first, size_t count, const char *one, 
     return true;
 }
 
-static void put_reasons(const wh_report_t *report) {
-    const wh_record_t *record = report->record;
+static size_t count_errors(const wh_record_t *record) {
     size_t errors = 0;
-    size_t complaints = 0;
     for (size_t i = 0; i < record->command_count; ++i) {
         errors += record->commands[i].error != WH_OK ? 1 : 0;
     }
+    return errors;
+}
+
+/* Errors that the script caught are none. Complaints are, whatever was expected. */
+static void put_reasons(const wh_report_t *report) {
+    const wh_record_t *record = report->record;
+    const size_t unmet = count_unmet(record);
+    const size_t expected = record->expectation_count;
+    size_t complaints = 0;
     for (size_t i = 0; i < record->event_count; ++i) {
-        complaints += wh_report_is_complaint(record->events[i].event.kind) ? 1 : 0;
+        complaints += wh_mcs_is_complaint(&record->events[i].event) ? 1 : 0;
     }
-    bool more =
-        put_reason(report->out, true, count_unmet(record), "expectation not met", "expectations not met");
-    more |= put_reason(report->out, !more, errors, "command with an error", "commands with errors");
-    put_reason(report->out, !more, complaints, "complaint", "complaints");
+    bool more = put_reason(report->out, true, unmet, "expectation not met", "expectations not met");
+    more |= put_reason(report->out, !more, record->failure ? count_errors(record) : 0,
+                       "command with an error", "commands with errors");
+    more |= put_reason(report->out, !more, complaints, "complaint", "complaints");
+    if (more && unmet == 0 && expected > 0) {
+        fprintf(report->out, ", though %s met",
+                expected == 1 ? "the expectation is" : "all expectations are");
+    }
 }
 
 int wh_report_summary(const wh_report_t *report) {

@@ -146,6 +146,15 @@ class Values(unittest.TestCase):
                 value *= 180 / 3.141592653589793 if axis["unit"] == "rad" else 1
                 self.assertEqual(text, shown(value, 2 if speed else 3), (t, name, speed))
 
+    def test_verdict(self):
+        """What a run failed for is said where its expectations do not say it."""
+        page.open(documents.example("04_scrape")[1])
+        self.assertIn("failed", page.text(".verdict"))
+        self.assertRegex(page.text(".failure"), "^It failed for too close: EE .* at 4.505.s; hit: EE .* at 4.506.s, though what "
+                         "the script expected came about.$")
+        page.open(documents.example("01_transfer")[1])
+        self.assertEqual(page.js("return document.querySelectorAll('.failure').length"), 0)
+
     def test_tables(self):
         document, path = documents.example("01_transfer")
         page.open(path)

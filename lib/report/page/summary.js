@@ -2,6 +2,8 @@
 (function (W) {
     'use strict';
 
+    const counted = (count, one, many) => `${count} ${count === 1 ? one : many}`;
+
     function verdict(doc) {
         if (typeof doc.run.ok !== 'boolean') {
             return W.element('span', { class: 'verdict' }, 'no verdict');
@@ -10,12 +12,24 @@
             doc.run.ok ? '\u2713 passed' : '\u2717 failed');
     }
 
+    /* Why a run failed, where its expectations do not say so: events that the cell complains about count, expected or not. */
+    function reason(doc) {
+        const unmet = doc.expectations.filter((each) => !each.ok).length;
+        if (doc.run.ok !== false || unmet > 0 || doc.run.failure) {
+            return '';
+        }
+        const bad = doc.events.filter((event) => W.events.isComplaint(event.kind));
+        const told = bad.slice(0, 3).map((event) => `${W.events.tell(event)} at ${W.seconds(event.t)}`);
+        const others = bad.length > 3 ? [counted(bad.length - 3, 'other complaint', 'other complaints')] : [];
+        const though = doc.expectations.length > 0 ? ', though what the script expected came about' : '';
+        return bad.length === 0 ? '' : W.element('p', { class: 'failure' },
+            `It failed for ${told.concat(others).join('; ')}${though}.`);
+    }
+
     function tile(text, value, note, kind) {
         return W.element('div', { class: `tile ${kind || ''}` }, W.element('b', {}, value), W.element('span', {}, text),
             W.element('small', {}, note || ''));
     }
-
-    const counted = (count, one, many) => `${count} ${count === 1 ? one : many}`;
 
     function expectations(doc) {
         const met = doc.expectations.filter((each) => each.ok).length;
@@ -59,7 +73,7 @@
             document.getElementById('head').append(
                 W.element('div', { class: 'row' }, W.element('h1', {}, doc.title), verdict(doc),
                     W.element('span', { class: 'space' }), help, theme),
-                doc.run.failure ? W.element('p', { class: 'failure' }, doc.run.failure) : '',
+                doc.run.failure ? W.element('p', { class: 'failure' }, doc.run.failure) : reason(doc),
                 ...doc.notes.map((note) => W.why(note)),
                 W.element('div', { class: 'tiles' }, ...tiles.filter(Boolean)));
         },
