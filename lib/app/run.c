@@ -132,7 +132,8 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_run_t *ru
         wh_trace_begin(trace, run->record.layout, true);
     }
     wh_trace_finish(trace);
-    char *command = wh_report_command("run", script->script, script->parameters, script->parameter_count);
+    char *command = wh_report_command(arguments->command ? arguments->command : "run", script->script,
+                                      script->parameters, script->parameter_count);
     const wh_document_t document = {.title = script->script,
                                     .reproduce = command,
                                     .source = "run",

@@ -114,6 +114,9 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     arguments_t *arguments = state->input;
     wh_run_options_t *run = &arguments->run.run;
     switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &arguments->run.files;
+        return 0;
     case OPTION_JSON:
         arguments->run.json = true;
         return 0;
@@ -135,6 +138,11 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     case ARGP_KEY_NO_ARGS:
         argp_error(state, "which script?");
         return EINVAL;
+    case ARGP_KEY_END:
+        if (wh_report_files_wanted(&arguments->run.files) && !arguments->one) {
+            argp_error(state, "a report of which trial? (expected --trial)");
+        }
+        return 0;
     default:
         return take_study(arguments, state, key, argument) ? 0 : ARGP_ERR_UNKNOWN;
     }
@@ -203,11 +211,17 @@ static int study_all(const arguments_t *arguments) {
 
 static int play_one(arguments_t *arguments) {
     const wh_trial_t trial = {arguments->seed, arguments->trial};
+    char command[80];
+    (void)snprintf(command, sizeof command, "study --seed %llu --trial %llu",
+                   (unsigned long long)arguments->seed, (unsigned long long)arguments->trial);
     arguments->run.run.trial = &trial;
+    arguments->run.command = command;
     return wh_run_and_report(&arguments->run);
 }
 
 int wh_app_study(int argc, char **argv) {
+    static const struct argp_child children[] = {
+        {&wh_report_files_argp, 0, "Of the one trial that --trial plays:", 2}, {0}};
     static const struct argp argp = {options,
                                      parse,
                                      "SCRIPT",
@@ -218,7 +232,7 @@ int wh_app_study(int argc, char **argv) {
                                      "Exit status: 0 if the study was finished and what is required is kept, "
                                      "1 if not, 2 for wrong usage or a bad "
                                      "input file; with --trial as for run.",
-                                     NULL,
+                                     children,
                                      NULL,
                                      NULL};
     static char name[] = "waferhand study";
