@@ -56,22 +56,28 @@ typedef struct {
     size_t axes[WH_AXES], own[WH_GRIPPERS];
 } passed_t;
 
+static int64_t next_of_curve(const wh_curve_t *curve, size_t *at, int64_t slice, int64_t next) {
+    while (*at < curve->count && curve->points[*at].slice <= slice) {
+        ++*at;
+    }
+    return *at < curve->count && curve->points[*at].slice < next ? curve->points[*at].slice : next;
+}
+
+static int64_t next_of_own(const wh_thin_t *own, size_t *at, int64_t slice, int64_t next) {
+    while (*at < own->count && own->points[*at].slice <= slice) {
+        ++*at;
+    }
+    return *at < own->count && own->points[*at].slice < next ? own->points[*at].slice : next;
+}
+
 /* The first slice after `slice` at which a signal has a point, or the trace's last. */
 static int64_t next_point(const wh_trace_t *trace, passed_t *passed, int64_t slice) {
     int64_t next = trace->last;
     for (size_t axis = 0; axis < trace->axis_count; ++axis) {
-        const wh_curve_t *curve = &trace->axes[axis];
-        size_t *at = &passed->axes[axis];
-        for (; *at < curve->count && curve->points[*at].slice <= slice; ++*at) {
-        }
-        next = *at < curve->count && curve->points[*at].slice < next ? curve->points[*at].slice : next;
+        next = next_of_curve(&trace->axes[axis], &passed->axes[axis], slice, next);
     }
     for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        const wh_thin_t *own = &trace->own[g];
-        size_t *at = &passed->own[g];
-        for (; *at < own->count && own->points[*at].slice <= slice; ++*at) {
-        }
-        next = *at < own->count && own->points[*at].slice < next ? own->points[*at].slice : next;
+        next = next_of_own(&trace->own[g], &passed->own[g], slice, next);
     }
     return next;
 }
