@@ -6,13 +6,11 @@
 
 char *wh_packed_bytes(const char *head, const uint8_t *bytes, size_t size) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const size_t begin = strlen(head);
-    char *text = malloc(begin + (size + 2) / 3 * 4 + 1);
+    char *text = malloc(strlen(head) + (size + 2) / 3 * 4 + 1);
     if (!text) {
         abort();
     }
-    memcpy(text, head, begin);
-    char *to = text + begin;
+    char *to = stpcpy(text, head);
     for (size_t i = 0; i < size; i += 3) {
         const size_t left = size - i;
         const uint32_t bits = (uint32_t)bytes[i] << 16 | (left > 1 ? (uint32_t)bytes[i + 1] << 8 : 0) |
