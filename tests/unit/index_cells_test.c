@@ -68,17 +68,19 @@ static void the_widest_counts(void **state) {
 /* The shortest power of two from 16 mm on that is twice the extent and an eighth of the whole neighbourhood. */
 static void cells_are_as_long_as_needed(void **state) {
     (void)state;
-    static const double sizes[] = {1e-9, 0.5, 3.99, 7.9, 8.1, 20, 255, 256, 1e3, 70e3, 262143, 1e6};
-    for (size_t i = 0; i < 12 * 12; ++i) {
+    /* Among them one whose extent is 8192 units, and one an eighth of which is. */
+    static const double sizes[] = {1e-9, 0.5,     3.99, 7.9,     8.1,  20,     127.988,
+                                   256,  1023.94, 1e3,  262.5e3, 70e3, 262143, 1e6};
+    for (size_t i = 0; i < 14 * 14; ++i) {
         wh_grasp_config_t config = wh_grasp_config_default();
         config.tolerance.projz = WH_REAL(1e-6);
         config.tolerance.projxy = WH_REAL(1e-6);
-        config.near_projz = WH_REAL(sizes[i % 12]);
-        config.near_projxy = WH_REAL(sizes[i / 12]);
+        config.near_projz = WH_REAL(sizes[i % 14]);
+        config.near_projxy = WH_REAL(sizes[i / 14]);
         indexed_t indexed;
         indexed_begin(&indexed, &config);
         const double eighth =
-            floor(64 * fmax(sizes[i % 12], 1e-6) / 8 + 64 * fmax(sizes[i / 12], 1e-6) / 8 + 1);
+            floor(64 * fmax(sizes[i % 14], 1e-6) / 8 + 64 * fmax(sizes[i / 14], 1e-6) / 8 + 1);
         for (size_t axis = 0; axis < 3; ++axis) {
             uint32_t shift = 10;
             while ((double)(UINT64_C(1) << shift) < fmax(2.0 * indexed.buckets[axis], eighth)) {
@@ -268,6 +270,78 @@ static void cells_are_counted(void **state) {
     }
 }
 
+/* Wafers that stand on edge, so that the cells are longer or shorter along each axis of base. */
+static void begin_upright(indexed_t *indexed, size_t thin) {
+    static const double axes[3][3] = {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
+    const wh_mat3_t R = wh_test_rotation(axes[thin][0], axes[thin][1], axes[thin][2], WH_TEST_PI / 2);
+    wh_grasp_config_t config = wh_grasp_config_default();
+    config.near_projz = WH_REAL(9);
+    indexed_begin(indexed, &config);
+    for (size_t w = 0; w < MANY; ++w) {
+        indexed->wafer[w].base_from_wafer.R = R;
+    }
+    wh_index_build(&indexed->cell.table);
+    for (size_t axis = 0; axis < 3; ++axis) {
+        assert_int_equal(indexed->buckets[3 + axis], axis == thin ? 11 : 14);
+    }
+}
+
+/* A gripper at the edge of a wafer's neighbourhood finds it, on either side, whichever axis the wafer's is along. */
+static void each_axis_has_cells_of_its_own(void **state) {
+    (void)state;
+    for (size_t i = 0; i < 3 * 2000; ++i) {
+        static indexed_t indexed;
+        const size_t thin = i / 2000;
+        if (i % 2000 == 0) {
+            begin_upright(&indexed, thin);
+        }
+        double r[3];
+        double at[3];
+        for (size_t axis = 0; axis < 3; ++axis) {
+            r[axis] = wh_test_uniform(-9e3, 9e3);
+            at[axis] = r[axis] + (wh_test_below(2) ? 1 : -1) * (axis == thin ? 8.99 : 70);
+        }
+        wh_pose_t pose = indexed.wafer[5].base_from_wafer;
+        pose.r = (wh_vec3_t){WH_REAL(r[0]), WH_REAL(r[1]), WH_REAL(r[2])};
+        assert_int_equal(wh_grasp_place(&indexed.cell.table, 5, &pose), WH_OK);
+        const wh_near_t near = indexed_look(&indexed, at[0], at[1], at[2], 0);
+        assert_non_null(near.listed);
+        assert_true(is_listed(&near, 5));
+    }
+}
+
+/* In 64 bits: what the library takes modulo 2^32. */
+static uint32_t key_of(uint64_t x, uint64_t y, uint64_t z) {
+    const uint64_t word = UINT64_C(1) << 32;
+    const uint64_t sum = (x * 2654435761U + (y * 2246822519U % word) + z * 3266489917U) % word;
+    const uint64_t product = (sum ^ sum / 32768) * 739982445U % word;
+    return (uint32_t)(product ^ product / 8192);
+}
+
+/* The keys are the same on every machine and from one version to the next, so that speeds can be compared. */
+static void keys_stay_the_same(void **state) {
+    (void)state;
+    assert_int_equal(key_of(0, 0, 0), 0);
+    for (size_t thin = 0; thin < 3; ++thin) {
+        indexed_t indexed;
+        begin_upright(&indexed, thin);
+        for (int run = 0; run < 1000; ++run) {
+            wh_pose_t pose = indexed.wafer[5].base_from_wafer;
+            uint64_t cell[3];
+            wh_real_t r[3];
+            for (size_t axis = 0; axis < 3; ++axis) {
+                const int32_t unit = (int32_t)wh_test_below(1 << 24) - (1 << 23);
+                r[axis] = WH_REAL(unit) / 64;
+                cell[axis] = (uint64_t)(INT64_C(2147483648) + unit) >> indexed.buckets[3 + axis];
+            }
+            pose.r = (wh_vec3_t){r[0], r[1], r[2]};
+            assert_int_equal(wh_grasp_place(&indexed.cell.table, 5, &pose), WH_OK);
+            const uint32_t *node = indexed.buckets + 8 + 4 * CELL_GRIPPERS + 2 * MANY + 2 * 5;
+            assert_int_equal(node[1], key_of(cell[0], cell[1], cell[2]));
+        }
+    }
+}
+
 /* What one gripper found is not what another finds. */
 static void what_was_found_is_the_same_grippers(void **state) {
     (void)state;
@@ -342,6 +416,8 @@ int main(void) {
         cmocka_unit_test(lists_hold_every_wafer_once),
         cmocka_unit_test(lists_are_short),
         cmocka_unit_test(cells_are_counted),
+        cmocka_unit_test(each_axis_has_cells_of_its_own),
+        cmocka_unit_test(keys_stay_the_same),
         cmocka_unit_test(what_was_found_is_the_same_grippers),
         cmocka_unit_test(boxes_end_with_the_range),
     };
