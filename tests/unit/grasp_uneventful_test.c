@@ -47,6 +47,26 @@ static void within_the_horizon_nothing_is_looked_at(void **state) {
     }
 }
 
+/* To half a unit, on every side of a horizon of 10 mm, whatever the signs of its place. */
+static void the_horizon_is_a_ball(void **state) {
+    (void)state;
+    fixture_t fixture;
+    begin(&fixture, WH_CHECK_SAMPLED);
+    for (int i = 0; i < 8 * 6 * 2; ++i) {
+        const int32_t centre[3] = {i & 1 ? 5000 : -5000, i & 2 ? 3000 : -3000, i & 4 ? 700 : -700};
+        double at[3] = {centre[0], centre[1], centre[2]};
+        const double way = i >= 48 ? 10 + 0.5 / 64 : 10 - 0.5 / 64;
+        at[i / 8 % 3] += i / 24 % 2 ? way : -way;
+        uint32_t *words = wh_horizon_words(&fixture.cell.table, 1);
+        for (int axis = 0; axis < 3; ++axis) {
+            words[axis] = (uint32_t)(64 * centre[axis]);
+        }
+        words[3] = 4 * 640;
+        cell_set(&fixture.cell, 1, at[0], at[1], at[2], OPEN);
+        assert_true(looks_at_nothing(&fixture) == (i < 48));
+    }
+}
+
 /* The way of a slice counts only where it is checked, and only if the gripper was open all along. */
 static void outside_at_the_begin(void **state) {
     (void)state;
@@ -133,6 +153,7 @@ static void without_buckets_every_slice_is_looked_at(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(within_the_horizon_nothing_is_looked_at),
+        cmocka_unit_test(the_horizon_is_a_ball),
         cmocka_unit_test(outside_at_the_begin),
         cmocka_unit_test(closed_grippers_may_be_anywhere),
         cmocka_unit_test(others_may_have_something_to_tell),

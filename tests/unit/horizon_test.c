@@ -250,28 +250,27 @@ static void short_ones_do_not_hold(void **state) {
     assert_false(covers(&fixture, 0, 0, 0));
 }
 
-/* 33 km from base's origin along any axis. */
+/* (3, 4, 5), but for one axis. */
+static wh_vec3_t along(size_t axis, double value) {
+    double at[3] = {3, 4, 5};
+    at[axis] = value;
+    return vector(at[0], at[1], at[2]);
+}
+
+/* 33 km from base's origin along any axis; a little nearer there is one. */
 static void far_away_there_is_none(void **state) {
     (void)state;
-    static const double fars[] = {33554430, 33554434, 1e9, 1e30, INFINITY};
+    static const double fars[] = {33554430, 33554434, 1e9, 1e30, INFINITY, NAN};
     fixture_t fixture;
     begin(&fixture, 4, 60);
-    for (size_t i = 0; i < 5 * 6; ++i) {
-        const double far = i % 2 ? fars[i / 6] : -fars[i / 6];
+    for (size_t i = 0; i < 6 * 6; ++i) {
         const size_t axis = i / 2 % 3;
-        const wh_vec3_t place = vector(axis == 0 ? far : 3, axis == 1 ? far : 4, axis == 2 ? far : 5);
+        const double sign = i % 2 ? 1 : -1;
+        const wh_vec3_t place = along(axis, sign * fars[i / 6]);
         words(&fixture)[3] = UINT32_MAX;
         store(&fixture, &place, 1000);
         assert_int_equal(words(&fixture)[3], 0);
-    }
-    for (size_t axis = 0; axis < 3; ++axis) {
-        const wh_vec3_t place = vector(axis == 0 ? NAN : 3, axis == 1 ? NAN : 4, axis == 2 ? NAN : 5);
-        words(&fixture)[3] = UINT32_MAX;
-        store(&fixture, &place, 1000);
-        assert_int_equal(words(&fixture)[3], 0);
-        /* A little nearer there is one. */
-        const wh_vec3_t nearer =
-            vector(axis == 0 ? -33554000 : 3, axis == 1 ? 33554000 : 4, axis == 2 ? -33554000 : 5);
+        const wh_vec3_t nearer = along(axis, sign * 33554000);
         store(&fixture, &nearer, 1000);
         assert_true(wh_horizon_covers(&fixture.cell.table, G, &nearer));
     }

@@ -232,6 +232,18 @@ static void expect_found_inside(indexed_t *indexed, const units_t *units, uint32
     cell_place(&indexed->cell, 5, 9e5, 9e5, 9e5);
 }
 
+/* So many cells along each axis, on both sides of base's origin or on one. */
+static units_t units_of(const indexed_t *indexed, const int64_t count[3]) {
+    static const int64_t first[] = {-3, -20, -3};
+    units_t units;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const int64_t edge = INT64_C(1) << indexed->buckets[3 + axis];
+        units.first[axis] = first[axis] * edge;
+        units.last[axis] = (first[axis] + count[axis]) * edge - 1;
+    }
+    return units;
+}
+
 /* As many cells as there are wafers are looked at, one more is not. */
 static void cells_are_counted(void **state) {
     (void)state;
@@ -244,15 +256,8 @@ static void cells_are_counted(void **state) {
         const uint32_t margin = i & 1 ? 64 : 0;
         indexed_t indexed;
         indexed_begin_default(&indexed);
-        units_t units;
-        uint64_t cells = 1;
-        for (size_t axis = 0; axis < 3; ++axis) {
-            const int64_t edge = INT64_C(1) << indexed.buckets[3 + axis];
-            const int64_t count = counts[i / 8][axis];
-            units.first[axis] = (axis == 1 ? -20 : -3) * edge;
-            units.last[axis] = units.first[axis] + count * edge - 1;
-            cells *= (uint64_t)count;
-        }
+        const units_t units = units_of(&indexed, counts[i / 8]);
+        const uint64_t cells = (uint64_t)(counts[i / 8][0] * counts[i / 8][1] * counts[i / 8][2]);
         for (size_t w = 0; w < MANY; ++w) {
             cell_place(&indexed.cell, w, 9e5, 9e5, 9e5);
         }
