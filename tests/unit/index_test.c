@@ -101,6 +101,27 @@ static void horizon_goes_with_the_pace(void **state) {
     assert_false(covers(&indexed, 3500, 2500, 16));
 }
 
+/* After all have looked for a wafer to take, each watches what is around itself. */
+static void each_gripper_watches_its_own(void **state) {
+    (void)state;
+    static const int wafers[CELL_GRIPPERS] = {19, 42, 7};
+    for (int check = WH_CHECK_SAMPLED; check <= WH_CHECK_SWEPT; ++check) {
+        indexed_t indexed;
+        wh_grasp_config_t config = wh_grasp_config_default();
+        config.check = (wh_check_t)check;
+        indexed_begin(&indexed, &config);
+        for (int z = -8; z <= -4; z += 4) {
+            for (int g = 0; g < CELL_GRIPPERS; ++g) {
+                cell_set(&indexed.cell, g, 1000 * (wafers[g] % 8), 1000 * (wafers[g] / 8), z, OPEN);
+            }
+            cell_step(&indexed.cell);
+            for (int g = 0; g < CELL_GRIPPERS; ++g) {
+                assert_int_equal(indexed.cell.gripper[g].approach.wafer, z == -4 ? wafers[g] : WH_NONE);
+            }
+        }
+    }
+}
+
 /* In the neighbourhood it is followed, and the tolerance is what counts; that horizon is of no use afterwards. */
 static void horizon_is_of_the_tolerance_while_it_follows(void **state) {
     (void)state;
@@ -254,6 +275,7 @@ int main(void) {
         cmocka_unit_test(search_finds_what_is_around),
         cmocka_unit_test(horizon_ends_before_a_neighbourhood),
         cmocka_unit_test(horizon_goes_with_the_pace),
+        cmocka_unit_test(each_gripper_watches_its_own),
         cmocka_unit_test(horizon_is_of_the_tolerance_while_it_follows),
         cmocka_unit_test(horizon_ends_when_a_wafer_moves),
         cmocka_unit_test(restoring_begins_anew),
