@@ -6,7 +6,7 @@
 #include "app/app.h"
 #include "app/mcs_link.h"
 #include "app/number.h"
-#include "app/prompt.h"
+#include "app/prompt/prompt.h"
 #include "app/run.h"
 
 enum { OPTION_LAYOUT = 2000, OPTION_URL, OPTION_RECORD, OPTION_RATE, OPTION_OUTPUTS };

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/record_json.h"
+#include "app/json/record_json.h"
 #include "report/output.h"
 #include "report/page.h"
 #include "report/plots.h"

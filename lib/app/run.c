@@ -7,11 +7,11 @@
 #include <unistd.h>
 
 #include "app/app.h"
+#include "app/json/record_json.h"
 #include "app/number.h"
-#include "app/record_json.h"
-#include "app/record_table.h"
 #include "app/segments.h"
 #include "app/style.h"
+#include "app/table/record_table.h"
 
 enum {
     OPTION_JSON = 1000,

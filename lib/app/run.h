@@ -13,8 +13,8 @@ typedef struct {
     const char **parameters;
     const char *segments_path;
     bool json;
-    unsigned sections; /* WH_TABLE_* */
-    bool quiet;        /* print neither tables nor, without `json`, anything else */
+    unsigned sections;   /* WH_TABLE_* */
+    bool quiet;          /* print neither tables nor, without `json`, anything else */
     const char *command; /* of the program, that plays it again; null: run */
     wh_report_files_t files;
 } wh_run_arguments_t;

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "app/app.h"
-#include "app/layout_arguments.h"
+#include "app/layout/arguments.h"
 #include "app/link_options.h"
 #include "app/style.h"
 #include "link/outputs.h"

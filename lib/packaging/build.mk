@@ -19,11 +19,11 @@ LIBRARY_SOURCES := $(wildcard $(LIBRARY_PARTS:%=lib/%/*.c))
 COLLISION_SOURCES := $(wildcard lib/collision/*.c)
 MODULE_SOURCES := $(wildcard lib/script/wh_module*.c)
 SCRIPT_SOURCES := $(filter-out $(MODULE_SOURCES),$(wildcard lib/script/*.c lib/study/*.c))
-PROGRAM_SOURCES := $(SCRIPT_SOURCES) $(MODULE_SOURCES) $(wildcard lib/link/*.c lib/report/*.c lib/view/*.c lib/app/*.c)
+PROGRAM_SOURCES := $(SCRIPT_SOURCES) $(MODULE_SOURCES) $(wildcard lib/link/*.c lib/report/*.c lib/view/*.c lib/app/*.c lib/app/*/*.c)
 MESSAGES := $(patsubst lcm_types/%.lcm,%,$(wildcard lcm_types/*.lcm))
 LUA_SOURCES := $(sort $(shell find lua -name '*.lua' 2>/dev/null))
 PAGE_SOURCES := $(sort $(wildcard lib/report/page/*))
-HEADERS := $(wildcard lib/*.h lib/*/*.h lib/*/*.def)
+HEADERS := $(wildcard lib/*.h lib/*/*.h lib/*/*/*.h lib/*/*.def)
 include tests/tests.mk
 
 LIBRARY_OBJECTS := $(LIBRARY_SOURCES:%.c=$(B)/obj/%.o)

@@ -9,7 +9,7 @@
 #include "app/app.h"
 #include "app/mcs_link.h"
 #include "app/run.h"
-#include "app/study.h"
+#include "app/study/study.h"
 #include "fuzz.h"
 #include "script/layout_load.h"
 

@@ -8,7 +8,7 @@
 #include <sys/mman.h>
 
 #include "app/app.h"
-#include "app/record_json.h"
+#include "app/json/record_json.h"
 #include "fuzz.h"
 #include "link/check.h"
 #include "link/replay.h"

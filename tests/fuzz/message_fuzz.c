@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-#include "app/record_json.h"
-#include "app/record_table.h"
+#include "app/json/record_json.h"
+#include "app/table/record_table.h"
 #include "core/restore.h"
 #include "fake_node.h"
 #include "fuzz.h"

@@ -3,8 +3,8 @@
 #include <jansson.h>
 #include <string.h>
 
-#include "app/record_json.h"
-#include "app/record_table.h"
+#include "app/json/record_json.h"
+#include "app/table/record_table.h"
 #include "fuzz.h"
 #include "script/mcs.h"
 #include "script/sandbox_internal.h"

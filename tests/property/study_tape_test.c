@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/study_trial.h"
+#include "app/study/trial.h"
 #include "support.h"
 
 enum { TRIALS = 150 };

@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "app/history.h"
+#include "app/prompt/history.h"
 
 static char folder[] = "/tmp/waferhand-history-XXXXXX";
 static char path[200];

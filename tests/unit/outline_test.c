@@ -1,8 +1,8 @@
 /* Outlines of parts: what of a shape is seen from above and from the side, and labels that make room for each other. */
 #include "support.h"
 
-#include "app/outline.h"
-#include "app/svg.h"
+#include "app/layout/outline.h"
+#include "app/layout/svg.h"
 #include "motion/trig.h"
 
 static wh_outline_t outline;

@@ -6,7 +6,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "app/prompt.h"
+#include "app/prompt/prompt.h"
 
 static wh_session_t session;
 static wh_prompt_t *prompt;

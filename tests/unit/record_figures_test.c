@@ -4,8 +4,8 @@
 #include <jansson.h>
 #include <locale.h>
 
-#include "app/record_json.h"
-#include "app/record_table.h"
+#include "app/json/record_json.h"
+#include "app/table/record_table.h"
 #include "unit/record_fixture.h"
 
 static fixture_t f;

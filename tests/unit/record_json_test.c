@@ -9,7 +9,7 @@
 #include <jansson.h>
 #include <stdlib.h>
 
-#include "app/record_json.h"
+#include "app/json/record_json.h"
 #include "unit/record_fixture.h"
 
 /* Prints a record and parses it again. */

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <wchar.h>
 
-#include "app/grid.h"
-#include "app/record_table.h"
+#include "app/table/grid.h"
+#include "app/table/record_table.h"
 #include "unit/record_fixture.h"
 
 static const wh_style_t piped = {false, true, 0};
@@ -85,7 +85,7 @@ static void test_failed_run(void **state) {
     assert_says(text, "  Wafer 1 lies in that slot\n");
     assert_says(text, "  a number is NaN or infinite\n");
     assert_says(text, "\n✗    12  Wafer 3 on EE, but nobody holds it\n✓ 1 met\n");
-    assert_says(text, "failed: 1 expectation not met, 1 command with an error, 4 complaints\n"
+    assert_says(text, "failed: 1 expectation not met, 1 command with an error, 3 complaints\n"
                       "02_prealigner.lua:9: error 42: wafer missing\n");
     free(text);
 }

@@ -1,0 +1,224 @@
+/* Lines from a terminal: libedit's editing, waiting of our own. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <wchar.h>
+
+#include <histedit.h>
+#include <limits.h>
+
+#include "app/prompt/complete.h"
+#include "app/prompt/history.h"
+#include "app/prompt/line_source.h"
+#include "app/signals.h"
+#include "app/style.h"
+
+struct wh_editor {
+    wh_input_t *input;
+    wh_session_t *session;
+    EditLine *edit;
+    History *history;
+    char history_path[PATH_MAX];
+    char *line;            /* the last one */
+    wh_line_event_t event; /* why the last character did not come */
+    bool reading;
+    mbstate_t decoding;
+};
+
+static wh_editor_t *editor_of(EditLine *edit) {
+    void *editor = NULL;
+    el_get(edit, EL_CLIENTDATA, &editor);
+    return editor;
+}
+
+static char *prompt_text(EditLine *edit) {
+    static char text[] = "mcs> ";
+    (void)edit;
+    return text;
+}
+
+/* ---------------------------------------------------------------------------------------------- characters
+ */
+
+/* The terminal as the shell expects it while we are stopped. */
+static void suspend(EditLine *edit) {
+    el_set(edit, EL_PREP_TERM, 0);
+    raise(SIGSTOP);
+    el_set(edit, EL_PREP_TERM, 1);
+    el_set(edit, EL_REFRESH);
+}
+
+/* Whether reading goes on after the signals that have arrived. */
+static bool handle_signals(wh_editor_t *editor) {
+    for (int number = wh_signals_take(); number != 0; number = wh_signals_take()) {
+        if (number == SIGWINCH) {
+            el_resize(editor->edit);
+        } else if (number == SIGTSTP) {
+            suspend(editor->edit);
+        } else {
+            editor->event = number == SIGINT ? WH_LINE_NONE : WH_LINE_LEAVING;
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Waits until a byte can be read; false when the line has come to an end instead. */
+static bool wait_for_byte(wh_editor_t *editor) {
+    for (;;) {
+        const wh_input_event_t event = wh_input_wait(editor->input);
+        if (event == WH_INPUT_READY) {
+            return true;
+        }
+        if (event != WH_INPUT_SIGNAL) {
+            editor->event = event == WH_INPUT_LEAVE ? WH_LINE_LEAVING : WH_LINE_END;
+            return false;
+        }
+        if (!handle_signals(editor)) {
+            return false;
+        }
+    }
+}
+
+/* libedit's way to get a character: 1, or 0 for the end, or -1. Bytes that are none in the locale are dropped. */
+static int read_character(EditLine *edit, wchar_t *character) {
+    wh_editor_t *editor = editor_of(edit);
+    while (wait_for_byte(editor)) {
+        char byte = 0;
+        const ssize_t bytes = read(STDIN_FILENO, &byte, 1);
+        if (bytes == 0) {
+            return 0;
+        }
+        if (bytes < 0) {
+            if (errno != EINTR && errno != EAGAIN) {
+                return -1;
+            }
+            continue;
+        }
+        const size_t used = mbrtowc(character, &byte, 1, &editor->decoding);
+        if (used <= 1) {
+            return 1;
+        }
+        if (used == (size_t)-1) {
+            memset(&editor->decoding, 0, sizeof editor->decoding);
+        }
+    }
+    return -1;
+}
+
+/* ------------------------------------------------------------------------------------------------- history
+ */
+
+static void enter_line(void *user, const char *text) {
+    HistEvent event;
+    history(user, &event, H_ENTER, text);
+}
+
+static void open_history(wh_editor_t *editor) {
+    HistEvent event;
+    editor->history = history_init();
+    if (!editor->history) {
+        return;
+    }
+    history(editor->history, &event, H_SETSIZE, WH_HISTORY_LINES);
+    history(editor->history, &event, H_SETUNIQUE, 1);
+    wh_history_path(editor->history_path, sizeof editor->history_path);
+    wh_history_load(editor->history_path, enter_line, editor->history);
+    el_set(editor->edit, EL_HIST, history, editor->history);
+}
+
+/* Without the blanks at its end, which completion leaves there. */
+static void remember(wh_editor_t *editor, char *line) {
+    size_t length = strlen(line);
+    while (length > 0 && line[length - 1] == ' ') {
+        line[--length] = '\0';
+    }
+    if (length > 0 && editor->history) {
+        enter_line(editor->history, line);
+        wh_history_append(editor->history_path, line);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------- editor
+ */
+
+static unsigned char complete(EditLine *edit, int key) {
+    (void)key;
+    return wh_prompt_complete(edit, editor_of(edit)->session);
+}
+
+/* What ~/.editrc says comes last. */
+static void set_up(wh_editor_t *editor) {
+    el_set(editor->edit, EL_CLIENTDATA, editor);
+    el_set(editor->edit, EL_SIGNAL, 0);
+    el_set(editor->edit, EL_PROMPT, prompt_text);
+    el_set(editor->edit, EL_EDITOR, "emacs");
+    /* Wide, for of narrow names libedit makes copies that it never frees. */
+    el_wset(editor->edit, EL_ADDFN, L"wh-complete", L"completes a command or a name", complete);
+    el_set(editor->edit, EL_BIND, "^I", "wh-complete", NULL);
+    el_set(editor->edit, EL_BIND, "^R", "em-inc-search-prev", NULL);
+    open_history(editor);
+    el_source(editor->edit, NULL);
+    el_set(editor->edit, EL_GETCFN, read_character);
+}
+
+wh_editor_t *wh_editor_open(wh_input_t *input, wh_session_t *session) {
+    wh_editor_t *editor = calloc(1, sizeof *editor);
+    if (!editor) {
+        return NULL;
+    }
+    editor->input = input;
+    editor->session = session;
+    editor->edit = el_init("waferhand", stdin, stdout, stderr);
+    if (!editor->edit) {
+        free(editor);
+        return NULL;
+    }
+    set_up(editor);
+    return editor;
+}
+
+wh_line_event_t wh_editor_read(wh_editor_t *editor, const char **line) {
+    int length = 0;
+    editor->event = WH_LINE_END;
+    memset(&editor->decoding, 0, sizeof editor->decoding);
+    editor->reading = true;
+    /* libedit itself would do it after it has shown the prompt: a Ctrl-D in between would be lost. */
+    el_set(editor->edit, EL_PREP_TERM, 1);
+    const char *typed = el_gets(editor->edit, &length);
+    editor->reading = false;
+    free(editor->line);
+    editor->line = typed && length > 0 ? strndup(typed, strcspn(typed, "\n")) : NULL;
+    if (!editor->line) {
+        fputs(editor->event == WH_LINE_NONE ? "^C\n" : "\n", stdout);
+        fflush(stdout);
+        return editor->event;
+    }
+    remember(editor, editor->line);
+    *line = editor->line;
+    return WH_LINE_READ;
+}
+
+void wh_editor_say(wh_editor_t *editor, const char *text) {
+    char *printable = wh_style_printable(text);
+    printf("%s%s\n", editor->reading ? "\r\033[K" : "", printable ? printable : "");
+    fflush(stdout);
+    free(printable);
+    if (editor->reading) {
+        el_set(editor->edit, EL_REFRESH);
+    }
+}
+
+void wh_editor_close(wh_editor_t *editor) {
+    if (!editor) {
+        return;
+    }
+    el_end(editor->edit);
+    if (editor->history) {
+        history_end(editor->history);
+    }
+    free(editor->line);
+    free(editor);
+}

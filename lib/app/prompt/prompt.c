@@ -1,0 +1,164 @@
+#include "app/prompt/prompt.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+#include "app/app.h"
+#include "app/prompt/line_source.h"
+#include "app/signals.h"
+#include "app/style.h"
+
+struct wh_prompt {
+    wh_session_t *session;
+    wh_input_t input;
+    wh_editor_t *editor; /* null: plain */
+    wh_plain_t plain;
+    wh_style_t style;
+    bool failed; /* a command did */
+    char answer[WH_SESSION_ANSWER_BYTES];
+};
+
+wh_prompt_t *wh_prompt_open(wh_session_t *session) {
+    wh_prompt_t *prompt = calloc(1, sizeof *prompt);
+    if (!prompt) {
+        return NULL;
+    }
+    const bool terminal = isatty(STDIN_FILENO) && isatty(STDOUT_FILENO);
+    prompt->session = session;
+    prompt->input.session = session;
+    prompt->plain.input = &prompt->input;
+    prompt->style = wh_style_of(stdout);
+    wh_signals_hold(terminal);
+    prompt->editor = terminal ? wh_editor_open(&prompt->input, session) : NULL;
+    return prompt;
+}
+
+void wh_prompt_close(wh_prompt_t *prompt) {
+    if (prompt) {
+        wh_editor_close(prompt->editor);
+        wh_signals_release();
+        free(prompt);
+    }
+}
+
+bool wh_prompt_watch(wh_prompt_t *prompt, const wh_prompt_watch_t *watch) {
+    if (prompt->input.watch_count == WH_PROMPT_WATCHES) {
+        return false;
+    }
+    prompt->input.watches[prompt->input.watch_count++] = *watch;
+    return true;
+}
+
+void wh_prompt_say(wh_prompt_t *prompt, const char *text) {
+    if (prompt->editor) {
+        wh_editor_say(prompt->editor, text);
+    } else {
+        fprintf(stderr, "%s\n", text);
+    }
+}
+
+void wh_prompt_leave(wh_prompt_t *prompt) {
+    prompt->input.leaving = true;
+}
+
+/* ------------------------------------------------------------------------------------------------ the loop
+ */
+
+static wh_line_event_t read_line(wh_prompt_t *prompt, const char **line) {
+    if (prompt->editor) {
+        return wh_editor_read(prompt->editor, line);
+    }
+    *line = prompt->plain.line;
+    return wh_plain_read(&prompt->plain);
+}
+
+static void print_answer(wh_prompt_t *prompt, wh_status_t status) {
+    if (!prompt->editor) {
+        puts(prompt->answer);
+        return;
+    }
+    char *printable = wh_style_printable(prompt->answer);
+    /* Behind the terminal's own ^C. */
+    if (status == WH_STATUS_STOPPED) {
+        putchar('\n');
+    }
+    wh_style_print(&prompt->style, stdout, status == WH_OK ? WH_INK_PLAIN : WH_INK_BAD, "%s",
+                   printable ? printable : "");
+    putchar('\n');
+    free(printable);
+}
+
+/* Whether a signal that came during the command ends the prompt: at a terminal Ctrl-C has ended the command, which
+ * was all that it was for. */
+static bool is_interrupted(const wh_prompt_t *prompt) {
+    bool interrupted = false;
+    for (int number = wh_signals_take(); number != 0; number = wh_signals_take()) {
+        interrupted =
+            interrupted || number == SIGTERM || number == SIGHUP || (number == SIGINT && !prompt->editor);
+    }
+    return interrupted;
+}
+
+static void execute(wh_prompt_t *prompt, const char *line) {
+    wh_signals_stop_session(prompt->session);
+    const wh_status_t status =
+        wh_session_execute(prompt->session, line, prompt->answer, sizeof prompt->answer);
+    wh_signals_stop_session(NULL);
+    prompt->failed = prompt->failed || status != WH_OK;
+    print_answer(prompt, status);
+    if (is_interrupted(prompt)) {
+        prompt->input.leaving = true;
+    }
+}
+
+static bool is_quit(const char *line) {
+    line += strspn(line, " ");
+    return strncasecmp(line, "QUIT", 4) == 0 && line[4 + strspn(line + 4, " ")] == '\0';
+}
+
+/* A line that was cut may have said something behind its blanks. */
+static bool says_nothing(const char *line) {
+    const size_t blanks = strspn(line, " ");
+    return line[blanks] == '#' || (blanks <= WH_SESSION_LINE_BYTES && line[blanks] == '\0');
+}
+
+/* Whether the prompt goes on after this line. */
+static bool take_line(wh_prompt_t *prompt, const char *line) {
+    if (is_quit(line)) {
+        if (!prompt->editor) {
+            puts("OK");
+        }
+        return false;
+    }
+    if (!says_nothing(line)) {
+        execute(prompt, line);
+    }
+    return fflush(stdout) == 0 && !prompt->input.leaving;
+}
+
+/* Reads and executes lines: END or LEAVING, as what ended them. */
+static wh_line_event_t take_lines(wh_prompt_t *prompt) {
+    const char *line = NULL;
+    wh_line_event_t event = WH_LINE_NONE;
+    while (event != WH_LINE_END && event != WH_LINE_LEAVING) {
+        event = read_line(prompt, &line);
+        if (event == WH_LINE_READ && !take_line(prompt, line)) {
+            event = WH_LINE_END;
+        }
+    }
+    return event;
+}
+
+int wh_prompt_run(wh_prompt_t *prompt) {
+    const wh_line_event_t event = take_lines(prompt);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fprintf(stderr, "standard output: %s\n", strerror(errno));
+        return WH_EXIT_USAGE;
+    }
+    const bool failed = !prompt->editor && (prompt->failed || prompt->session->complaints > 0);
+    return event == WH_LINE_LEAVING || prompt->input.leaving || failed ? WH_EXIT_FAILED : WH_EXIT_MET;
+}
