@@ -73,6 +73,19 @@ static void closing_empty_handed_lets_go_of_nothing(void **state) {
     assert_int_equal(table.counters.released, 0);
 }
 
+/* What stands behind the grippers and inputs, here one that could take a wafer, does nothing. */
+static void there_are_no_more_grippers_than_that(void **state) {
+    (void)state;
+    cell_t cell;
+    cell_begin_default(&cell);
+    cell.table.storage.gripper_count = CELL_GRIPPERS - 1;
+    const wh_gripper_t before = cell.gripper[CELL_GRIPPERS - 1];
+    cell_move(&cell, CELL_GRIPPERS - 1, 2000, 0, -0.25, OPEN);
+    cell_move(&cell, 0, 0, 0, -2, OPEN);
+    cell_expect_held(&cell, 2, WH_NONE);
+    assert_memory_equal(&before, &cell.gripper[CELL_GRIPPERS - 1], sizeof before);
+}
+
 static void a_held_wafer_moves_with_its_gripper(void **state) {
     (void)state;
     cell_t cell;
@@ -336,6 +349,7 @@ int main(void) {
         cmocka_unit_test(starts_free_and_closed),
         cmocka_unit_test(a_pick_moves_nothing),
         cmocka_unit_test(closing_empty_handed_lets_go_of_nothing),
+        cmocka_unit_test(there_are_no_more_grippers_than_that),
         cmocka_unit_test(a_held_wafer_moves_with_its_gripper),
         cmocka_unit_test(a_gripper_takes_again_only_in_the_next_slice),
         cmocka_unit_test(hand_overs_go_both_ways),

@@ -42,6 +42,12 @@ static void within_the_horizon_nothing_is_looked_at(void **state) {
         cell_set(&fixture.cell, 1, 1000, 501, -500, OPEN);
         assert_true(looks_at_nothing(&fixture));
         assert_near(fixture.cell.gripper[1].base_from_gripper.r.y, 501, 0);
+        cell_set(&fixture.cell, 1, 1000, 500, -500, CLOSED);
+        assert_true(looks_at_nothing(&fixture));
+        assert_int_equal(fixture.cell.gripper[1].valve, CLOSED);
+        cell_set(&fixture.cell, 1, 1000, 501, -500, OPEN);
+        assert_true(looks_at_nothing(&fixture));
+        assert_int_equal(fixture.cell.gripper[1].valve, OPEN);
         cell_set(&fixture.cell, 1, 1000, 9000, -500, OPEN);
         assert_false(looks_at_nothing(&fixture));
     }

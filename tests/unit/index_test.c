@@ -122,6 +122,23 @@ static void each_gripper_watches_its_own(void **state) {
     }
 }
 
+/* Two that are put down elsewhere in the same slice are found there. */
+static void released_wafers_are_found(void **state) {
+    (void)state;
+    indexed_t indexed;
+    indexed_begin_default(&indexed);
+    cell_set(&indexed.cell, 0, 3000, 2000, -0.25, OPEN);
+    cell_move(&indexed.cell, 1, 5000, 1000, -0.25, OPEN);
+    cell_set(&indexed.cell, 0, 3500, 2500, -0.25, CLOSED);
+    cell_move(&indexed.cell, 1, 5500, 1500, -0.25, CLOSED);
+    cell_expect_held(&indexed.cell, 19, WH_NONE);
+    cell_expect_held(&indexed.cell, 13, WH_NONE);
+    cell_move(&indexed.cell, 2, 3500, 2500, -0.25, OPEN);
+    cell_expect_held(&indexed.cell, 19, 2);
+    cell_move(&indexed.cell, 0, 5500, 1500, -0.25, OPEN);
+    cell_expect_held(&indexed.cell, 13, 0);
+}
+
 /* In the neighbourhood it is followed, and the tolerance is what counts; that horizon is of no use afterwards. */
 static void horizon_is_of_the_tolerance_while_it_follows(void **state) {
     (void)state;
@@ -276,6 +293,7 @@ int main(void) {
         cmocka_unit_test(horizon_ends_before_a_neighbourhood),
         cmocka_unit_test(horizon_goes_with_the_pace),
         cmocka_unit_test(each_gripper_watches_its_own),
+        cmocka_unit_test(released_wafers_are_found),
         cmocka_unit_test(horizon_is_of_the_tolerance_while_it_follows),
         cmocka_unit_test(horizon_ends_when_a_wafer_moves),
         cmocka_unit_test(restoring_begins_anew),
