@@ -65,7 +65,7 @@ class Judge:
         stem = re.sub(r".*/|\.[ch]$|_.*", "", path)
 
         def merit(test):
-            kills = self.kills.get((path, test.name), 0) + (5 if test.name.startswith(stem) else 0.1)
+            kills = self.kills.get((path, test.name), 0) + (5 if f"_{stem}" in test.name else 0.1)
             return (test.name == killer, kills / (test.seconds + 0.01))
 
         return sorted(self.relevant(path), key=merit, reverse=True)
