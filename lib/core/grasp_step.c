@@ -724,8 +724,25 @@ static bool is_far_from_all(const wh_grasp_t *table, size_t g, const wh_vec3_t *
     return !wh_grasp_is_swept(table, g) || wh_horizon_covers(table, g, begin);
 }
 
-/* Whether this slice has no pick, no release and nothing to tell: what most slices are. No gripper is watching a wafer;
- * those that hold one go on holding it, or else those that are open are far from all that rest. */
+/* What gripper g does in this slice may be more than going on with what it holds, or without: it is watching a wafer, lets
+ * go, or is open and not far from all that rest. */
+/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(input);
+    assigns \nothing;
+    ensures !\result ==> input->valve == WH_VALVE_OPEN || wh_held(table, g) == WH_NONE; */
+static bool may_act(const wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
+    const wh_gripper_t *gripper = &table->storage.grippers[g];
+    const bool open = input->valve == WH_VALVE_OPEN;
+    if (gripper->approach.wafer != WH_NONE || gripper->contest.wafer != WH_NONE) {
+        return true;
+    }
+    if (gripper->wafer != WH_NONE) {
+        return !open;
+    }
+    return open && !is_far_from_all(table, g, &input->base_from_gripper.r);
+}
+
+/* Whether this slice has no pick, no release and nothing to tell: what most slices are. Where a gripper holds a wafer and
+ * another one looks for some, they may contest it. */
 /*@ requires wh_table_memory(table);
     requires \valid_read(inputs + (0 .. table->storage.gripper_count - 1));
     assigns \nothing;
@@ -740,22 +757,12 @@ static bool is_uneventful(const wh_grasp_t *table, const wh_gripper_input_t *inp
         loop assigns g, holding, looking;
         loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        const wh_gripper_t *gripper = &table->storage.grippers[g];
-        const bool open = inputs[g].valve == WH_VALVE_OPEN;
-        if (gripper->approach.wafer != WH_NONE || gripper->contest.wafer != WH_NONE) {
+        const bool holds = table->storage.grippers[g].wafer != WH_NONE;
+        if (may_act(table, g, &inputs[g])) {
             return false;
         }
-        if (gripper->wafer != WH_NONE) {
-            if (!open) {
-                return false;
-            }
-            holding = true;
-        } else if (open) {
-            if (!is_far_from_all(table, g, &inputs[g].base_from_gripper.r)) {
-                return false;
-            }
-            looking = true;
-        }
+        holding = holding || holds;
+        looking = looking || (!holds && inputs[g].valve == WH_VALVE_OPEN);
     }
     return !(holding && looking);
 }

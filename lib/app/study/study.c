@@ -110,24 +110,33 @@ static bool take_study(arguments_t *arguments, const struct argp_state *state, i
     }
 }
 
+/* How a script is run, as `run` takes it; false for other options. */
+static bool take_run(arguments_t *arguments, const struct argp_state *state, int key, char *argument) {
+    wh_run_options_t *run = &arguments->run.run;
+    switch (key) {
+    case OPTION_JSON:
+        arguments->run.json = true;
+        return true;
+    case OPTION_SET:
+        arguments->run.parameters[run->parameter_count++] = argument;
+        return true;
+    case OPTION_BUDGET:
+        run->limits.instructions = (uint64_t)number(state, "budget", argument, 1, 1e18);
+        return true;
+    case OPTION_MEMORY:
+        run->limits.memory_bytes = (size_t)(number(state, "memory", argument, 1, 1e6) * 1048576);
+        return true;
+    default:
+        return false;
+    }
+}
+
 static error_t parse(int key, char *argument, struct argp_state *state) {
     arguments_t *arguments = state->input;
     wh_run_options_t *run = &arguments->run.run;
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &arguments->run.files;
-        return 0;
-    case OPTION_JSON:
-        arguments->run.json = true;
-        return 0;
-    case OPTION_SET:
-        arguments->run.parameters[run->parameter_count++] = argument;
-        return 0;
-    case OPTION_BUDGET:
-        run->limits.instructions = (uint64_t)number(state, "budget", argument, 1, 1e18);
-        return 0;
-    case OPTION_MEMORY:
-        run->limits.memory_bytes = (size_t)(number(state, "memory", argument, 1, 1e6) * 1048576);
         return 0;
     case ARGP_KEY_ARG:
         if (run->script) {
@@ -144,7 +153,9 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
         }
         return 0;
     default:
-        return take_study(arguments, state, key, argument) ? 0 : ARGP_ERR_UNKNOWN;
+        return take_study(arguments, state, key, argument) || take_run(arguments, state, key, argument)
+                   ? 0
+                   : ARGP_ERR_UNKNOWN;
     }
 }
 
