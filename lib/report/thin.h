@@ -1,9 +1,9 @@
-/* Thinning of poses, and of any signal that lines are to show: of a signal that comes sample by sample, the points between which straight lines stay within a tolerance.
+/* Thinning of poses, and of any signal that lines are to show: of a signal that comes sample by sample, the points between
+ * which straight lines stay within a tolerance.
  *
  * A sample has up to WH_THIN_WIDTH numbers, read between points as linear in time; of a pose the last four are a
  * quaternion (x, y, z, w), read as the shorter slerp. Every point is a sample. Each number of a sample, and of a
- * rotation the angle that is missing, is off by at most the tolerance; forced samples are not
- * off at all.
+ * rotation the angle that is missing, is off by at most the tolerance; forced samples are not off at all.
  *
  * Samples come in the order of their slices, nothing is looked at twice: from the last point the slopes are kept that
  * miss no sample since, and the sample that has none among them comes after a new point. When there are more points than

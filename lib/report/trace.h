@@ -88,8 +88,7 @@ typedef struct {
     size_t axis_count;
     wh_curve_t axes[WH_AXES], vacuum[WH_GRIPPERS];
     wh_curve_t proximity[WH_GRIPPERS][WH_MEASURES];
-    wh_thin_t own
-        [WH_GRIPPERS]; /* base_from_gripper from its first point on; without points it follows from the axes */
+    wh_thin_t own[WH_GRIPPERS]; /* base_from_gripper from its first point on, if any: else of the axes */
     wh_steps_t valves[WH_GRIPPERS], sensors[WH_GRIPPERS];
     wh_steps_t nearest[WH_GRIPPERS]; /* the wafer that it is measured against, or WH_NONE */
     wh_stay_t *stays;                /* in order of time */

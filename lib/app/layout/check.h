@@ -23,7 +23,8 @@ typedef struct {
     int32_t station;  /* or WH_NONE */
 } wh_finding_t;
 
-/* The room that the blade which serves a station has there when it has entered for a GET, as far as the slot. Measured between the parts, tilt included; 0 where they touch or cut each other. */
+/* The room that the blade which serves a station has there when it has entered for a GET, as far as the slot. Measured
+ * between the parts, tilt included; 0 where they touch or cut each other. */
 typedef struct {
     size_t wafers; /* that the layout puts here */
     bool has_above, has_below, has_beside;
