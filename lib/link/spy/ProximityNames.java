@@ -14,9 +14,10 @@ final class ProximityNames {
 
     private static final int GRIPPERS = 8;
     private static final int WAFERS = 256;
+    private static final int FAULTS = 16;
     /** Bytes of a station after its name, and in the message before and after the layout's path. */
     private static final int STATION = 3 * 8 + 9 * 8 + 4 + 8 + 4, BEFORE_LAYOUT = 3 * 8,
-                             AFTER_PATH = 6 * 8 + 2;
+                             AFTER_PATH = 6 * 8 + 3 + 12 * 8;
 
     /** Throws an IOException when the data are not a whole cell. */
     ProximityNames(LCMDataInputStream data) throws IOException {
@@ -30,6 +31,7 @@ final class ProximityNames {
         grippers = new String[count(data, GRIPPERS)];
         final int stations = count(data, data.available());
         wafers = new String[count(data, WAFERS)];
+        count(data, FAULTS);
         valves = new String[grippers.length];
         texts(data, grippers);
         texts(data, valves);
