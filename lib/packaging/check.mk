@@ -4,7 +4,7 @@
 .PHONY: check check-format check-shell check-lua check-scripts check-manual check-deviations
 C_FILES := $(shell find lib tests -name '*.[ch]')
 FORMATTED := $(C_FILES) $(shell find lib tests -name '*.cpp' -o -name '*.java')
-SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/packaging/* lib/link/spy/start lib/view/fetch lib/view/start $(filter-out tests/fuzz/corpus,$(wildcard tests/run tests/*/*)))
+SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/packaging/* lib/link/spy/start lib/view/fetch lib/view/start $(filter-out $(patsubst %/.,%,$(wildcard tests/*/*/.)),$(wildcard tests/run tests/*/*)))
 
 check: check-format check-shell check-lua check-scripts check-manual check-deviations
 

@@ -141,6 +141,27 @@ wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t 
 
 /* -------------------------------------------------------------------------------------------------- gnuplot */
 
+/* Everybody's, to be freed, but for the letters: gnuplot asks the locale for them, and the plots are UTF-8. Null when memory
+ * is out. */
+static char **environment_of_plots(void) {
+    static char letters[] = "LC_ALL=C.UTF-8";
+    size_t count = 0;
+    while (environ && environ[count]) {
+        ++count;
+    }
+    char **own = calloc(count + 2, sizeof *own);
+    size_t kept = 0;
+    for (size_t i = 0; own && i < count; ++i) {
+        if (strncmp(environ[i], "LC_ALL=", 7) != 0) {
+            own[kept++] = environ[i];
+        }
+    }
+    if (own) {
+        own[kept] = letters;
+    }
+    return own;
+}
+
 /* Runs it in their folder, without anybody's settings; 0, an errno, or -1 when it says itself what is wrong. */
 static int start(const wh_plots_t *plots, char *const arguments[]) {
     posix_spawn_file_actions_t actions;
@@ -150,10 +171,12 @@ static int start(const wh_plots_t *plots, char *const arguments[]) {
     if (error != 0) {
         return error;
     }
-    error = posix_spawn_file_actions_addchdir_np(&actions, plots->folder);
+    char **environment = environment_of_plots();
+    error = environment ? posix_spawn_file_actions_addchdir_np(&actions, plots->folder) : ENOMEM;
     if (error == 0) {
-        error = posix_spawnp(&process, arguments[0], &actions, NULL, arguments, environ);
+        error = posix_spawnp(&process, arguments[0], &actions, NULL, arguments, environment);
     }
+    free(environment);
     (void)posix_spawn_file_actions_destroy(&actions);
     if (error != 0) {
         return error;
