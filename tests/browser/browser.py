@@ -7,16 +7,29 @@ import time
 
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common import utils
 
 from documents import FOLDER
 
-# Root in a container has no sandbox to give; nothing is looked up, whatever the page asks for.
-FLAGS = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--host-resolver-rules=MAP * ~NOTFOUND",
+# Root in a container has no sandbox to give; nothing is looked up, whatever the page asks for. The driver talks to it through a
+# pipe: by way of a port it would ask for the address of localhost.
+FLAGS = ["--headless=new", "--remote-debugging-pipe", "--no-sandbox", "--disable-dev-shm-usage", "--host-resolver-rules=MAP * ~NOTFOUND",
          "--force-device-scale-factor=1", "--hide-scrollbars"]
 WEBGL = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 NO_WEBGL = ["--disable-gpu", "--disable-webgl", "--disable-3d-apis"]
 
 SIZE = (1440, 900)
+
+
+class Driver(Service):
+    """chromedriver by its address: a bare machine may know no name, not even localhost."""
+
+    @property
+    def service_url(self):
+        return f"http://127.0.0.1:{self.port}"
+
+    def is_connectable(self):
+        return utils.is_connectable(self.port, "127.0.0.1")
 
 
 class Browser:
@@ -27,7 +40,7 @@ class Browser:
         for flag in FLAGS + (WEBGL if flags is None else flags):
             options.add_argument(flag)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        self.driver = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+        self.driver = webdriver.Chrome(service=Driver("/usr/bin/chromedriver"), options=options)
         self.driver.set_script_timeout(120)
         self.requests = []
         self.errors = []
