@@ -72,6 +72,7 @@ bench: ## how fast, against peers in the same process: minutes. BENCH=step for o
 check: ## format, warnings as errors, static analysis
 	$(NEED) run test check $(if $(CI),scripts)
 	$(BUILD) B=build/check/float CC=gcc WERROR=1 FLOAT=1 library
+	$(BUILD) B=build/check/clang CC=clang CXX=clang++ WERROR=1 tests
 	$(BUILD) B=build/check CC=gcc CXX=g++ WERROR=1 all tests check
 
 verify-core: ## what must never rot: bits on targets, no allocation, stack, sizes, proofs of no error, 60 s of fuzzing each

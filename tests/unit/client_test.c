@@ -111,7 +111,7 @@ static void hold_by_no_such_gripper(waferhand_state *message) {
 }
 
 static void put_wafer_nowhere(waferhand_state *message) {
-    message->wafers[0].position[1] = NAN;
+    message->wafers[0].position[1] = (double)NAN;
 }
 
 static void switch_half(waferhand_state *message) {

@@ -152,15 +152,18 @@ static void measuring_begins_with_the_margin(void **state) {
  * is not ready. */
 static void gaps_are_measured_from_the_neighbourhood(void **state) {
     (void)state;
-    static const double cases[][6] = {
-        {0, 0, 10, 100, 6, 1},     {0, 0, -10, 100, 6, 1},    {48, 64, 0, 100, 20, 1},
-        {-48, -64, 3, 100, 20, 1}, {48, -64, 10, 100, 20, 1}, {48, -64, 30, 100, 26, 1},
-        {3, -4, 1, 100, 0, 0},     {0, 0, 10, 6, 6, 1},       {0, 0, 10, 5, 5, 1},
-        {80, 0, 0, 5, 5, 1},       {80, 0, 0, 20, 20, 1},     {60, 0, 0, 100, 0, 0},
-        {0, 0, 4, 100, 0, 0},      {0, 0, 4, 0, 0, 0},        {60.5, 0, 4, 9, 0.5, 1},
-        {0, 60.5, 4, 9, 0.5, 1},   {0, 0, 4.5, 9, 0.5, 1},    {0, 0, 4.5, 0, 0, 1},
-        {60.5, 0, 3.5, 0, 0, 1},   {0, 0, NAN, 9, 0, 0},      {NAN, 0, 0, 9, 0, 0},
-        {0, INFINITY, 0, 9, 0, 0}, {0, 0, 1e30, 100, 100, 1}};
+    static const double cases[][6] = {{0, 0, 10, 100, 6, 1},        {0, 0, -10, 100, 6, 1},
+                                      {48, 64, 0, 100, 20, 1},      {-48, -64, 3, 100, 20, 1},
+                                      {48, -64, 10, 100, 20, 1},    {48, -64, 30, 100, 26, 1},
+                                      {3, -4, 1, 100, 0, 0},        {0, 0, 10, 6, 6, 1},
+                                      {0, 0, 10, 5, 5, 1},          {80, 0, 0, 5, 5, 1},
+                                      {80, 0, 0, 20, 20, 1},        {60, 0, 0, 100, 0, 0},
+                                      {0, 0, 4, 100, 0, 0},         {0, 0, 4, 0, 0, 0},
+                                      {60.5, 0, 4, 9, 0.5, 1},      {0, 60.5, 4, 9, 0.5, 1},
+                                      {0, 0, 4.5, 9, 0.5, 1},       {0, 0, 4.5, 0, 0, 1},
+                                      {60.5, 0, 3.5, 0, 0, 1},      {0, 0, (double)NAN, 9, 0, 0},
+                                      {(double)NAN, 0, 0, 9, 0, 0}, {0, (double)INFINITY, 0, 9, 0, 0},
+                                      {0, 0, 1e30, 100, 100, 1}};
     /* Base's axes and the wafer's: the same, and turned into each other. */
     static const wh_mat3_t turns[] = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
                                       {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}}};
@@ -211,7 +214,7 @@ static void what_is_taken_off(void **state) {
 
 static void distances_fit_their_word(void **state) {
     (void)state;
-    static const double gaps[] = {8.4e6, 2e7, 4e7, 1e9, 1e30, INFINITY};
+    static const double gaps[] = {8.4e6, 2e7, 4e7, 1e9, 1e30, (double)INFINITY};
     const wh_vec3_t place = vector(0, 0, 0);
     fixture_t fixture;
     begin(&fixture, 4, 60);
@@ -221,7 +224,8 @@ static void distances_fit_their_word(void **state) {
     }
     assert_true(covers(&fixture, 0, 8388000, 0));
     assert_false(covers(&fixture, 0, 8389000, 0));
-    static const double none[] = {0, 0.75 / 64, 2.0 / 64, 2.99 / 64, -1, -1e9, -INFINITY, NAN};
+    static const double none[] = {0,  0.75 / 64, 2.0 / 64,          2.99 / 64,
+                                  -1, -1e9,      -(double)INFINITY, (double)NAN};
     for (size_t i = 0; i < 8; ++i) {
         store(&fixture, &place, none[i]);
         assert_int_equal(words(&fixture)[3], 0);
@@ -260,7 +264,7 @@ static wh_vec3_t along(size_t axis, double value) {
 /* 33 km from base's origin along any axis; a little nearer there is one. */
 static void far_away_there_is_none(void **state) {
     (void)state;
-    static const double fars[] = {33554430, 33554434, 1e9, 1e30, INFINITY, NAN};
+    static const double fars[] = {33554430, 33554434, 1e9, 1e30, (double)INFINITY, (double)NAN};
     fixture_t fixture;
     begin(&fixture, 4, 60);
     for (size_t i = 0; i < 6 * 6; ++i) {

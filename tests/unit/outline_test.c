@@ -31,7 +31,8 @@ static double area(void) {
 }
 
 static void expect_bounds(double x0, double x1, double y0, double y1) {
-    double low_x = INFINITY, high_x = -INFINITY, low_y = INFINITY, high_y = -INFINITY;
+    double low_x = (double)INFINITY, high_x = -(double)INFINITY, low_y = (double)INFINITY,
+           high_y = -(double)INFINITY;
     for (size_t i = 0; i < outline.count; ++i) {
         low_x = fmin(low_x, outline.spots[i].x);
         high_x = fmax(high_x, outline.spots[i].x);

@@ -108,7 +108,7 @@ static void no_level(waferhand_state *message) {
 }
 
 static void no_number(waferhand_state *message) {
-    message->grippers[0].vacuum_level = NAN;
+    message->grippers[0].vacuum_level = (double)NAN;
 }
 
 static void no_command(waferhand_state *message) {

@@ -159,7 +159,7 @@ static void hold_twice(waferhand_state *message) {
 }
 
 static void spoil_rotation(waferhand_state *message) {
-    message->wafers[1].rotation[0] = NAN;
+    message->wafers[1].rotation[0] = (double)NAN;
 }
 
 static void change_layout(waferhand_state *message) {
