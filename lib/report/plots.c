@@ -146,19 +146,20 @@ wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t 
 static char **environment_of_plots(void) {
     static char letters[] = "LC_ALL=C.UTF-8";
     size_t count = 0;
-    while (environ && environ[count]) {
+    for (char **entry = environ; entry && *entry; ++entry) {
         ++count;
     }
     char **own = calloc(count + 2, sizeof *own);
-    size_t kept = 0;
-    for (size_t i = 0; own && i < count; ++i) {
-        if (strncmp(environ[i], "LC_ALL=", 7) != 0) {
-            own[kept++] = environ[i];
+    if (!own) {
+        return NULL;
+    }
+    char **next = own;
+    for (char **entry = environ; entry && *entry; ++entry) {
+        if (strncmp(*entry, "LC_ALL=", 7) != 0) {
+            *next++ = *entry;
         }
     }
-    if (own) {
-        own[kept] = letters;
-    }
+    *next = letters;
     return own;
 }
 
