@@ -62,24 +62,20 @@ size_t wh_view_add_body(wh_view_cell_t *cell, const char *folder, const char *na
     return (size_t)cell->load.num_links++;
 }
 
-/* Room for one more: it is full when their number is a power of two, and then doubles. */
-static void make_room(waferhand_viewer_link *body) {
-    const size_t count = (size_t)body->num_geom;
-    if ((count & (count - 1)) == 0) {
-        waferhand_viewer_geometry *shapes = realloc(body->geom, 2 * (count + 1) * sizeof *shapes);
-        if (!shapes) {
-            abort();
-        }
-        body->geom = shapes;
-    }
-}
-
 void wh_view_add_shape(wh_view_cell_t *cell, const wh_convex_t *convex, const wh_pose_t *body_from_shape,
                        const wh_view_colour_t *colour) {
     waferhand_viewer_link *body = &cell->load.link[cell->load.num_links - 1];
-    make_room(body);
-    wh_view_geometry_make(convex, body_from_shape, colour, cell->detail >= WH_VIEW_BOXES,
-                          &body->geom[body->num_geom]);
+    const size_t count = (size_t)body->num_geom;
+    waferhand_viewer_geometry *shapes = body->geom;
+    /* Full when their number is a power of two; then it doubles. */
+    if ((count & (count - 1)) == 0) {
+        shapes = realloc(shapes, 2 * (count + 1) * sizeof *shapes);
+    }
+    if (!shapes) {
+        abort();
+    }
+    body->geom = shapes;
+    wh_view_geometry_make(convex, body_from_shape, colour, cell->detail >= WH_VIEW_BOXES, &shapes[count]);
     ++body->num_geom;
 }
 
