@@ -2,16 +2,20 @@
 #ifndef WH_TESTS_SUPPORT_POSE_H
 #define WH_TESTS_SUPPORT_POSE_H
 
+#include <float.h>
+
 #include "core/pose.h"
 #include "support.h"
 
 #define WH_TEST_PI 3.14159265358979323846
 
-/* Half a unit in the last place of 1: the library's rounding error per operation. */
+/* Half a unit in the last place of 1: the library's rounding error per operation; and its largest number. */
 #if defined(WH_FLOAT)
 #define WH_TEST_ROUNDING (1.0 / 16777216.0)
+#define WH_TEST_LARGEST FLT_MAX
 #else
 #define WH_TEST_ROUNDING (1.0 / 9007199254740992.0)
+#define WH_TEST_LARGEST DBL_MAX
 #endif
 
 /* The library's number next to `from` on the way to `to`. */

@@ -38,15 +38,19 @@ static bool measured_is_finite(const wh_proximity_t *p) {
     return finite;
 }
 
+/* A wafer that is contested has a holder, one that is approached has none. */
 /*@ requires wh_table_memory(table) && \valid_read(encounter);
     assigns \nothing;
     ensures \result == WH_OK ==> good_encounter(encounter, table->storage.wafer_count); */
-static wh_status_t check_encounter(const wh_grasp_t *table, const wh_encounter_t *encounter, uint64_t slice) {
+static wh_status_t check_encounter(const wh_grasp_t *table, const wh_encounter_t *encounter, bool contested,
+                                   uint64_t slice) {
     if (encounter->wafer == WH_NONE) {
         return WH_OK;
     }
-    if (!wh_is_index(encounter->wafer, table->storage.wafer_count) ||
-        !is_index_or_none(encounter->holder, table->storage.gripper_count) || encounter->slice > slice) {
+    const bool holder_fits = contested ? wh_is_index(encounter->holder, table->storage.gripper_count)
+                                       : encounter->holder == WH_NONE;
+    if (!wh_is_index(encounter->wafer, table->storage.wafer_count) || !holder_fits ||
+        encounter->slice > slice) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     return measured_is_finite(&encounter->measured) ? WH_OK : WH_STATUS_NOT_FINITE;
@@ -67,6 +71,13 @@ static wh_status_t check_wafer(const wh_grasp_t *table, size_t w, const wh_wafer
     return wh_pose_validate(&wafers[w].base_from_wafer);
 }
 
+/* A wafer is taken within the tolerances. From much farther off it could be carried to where no number is. */
+/*@ requires \valid_read(tolerance) && \valid_read(r); assigns \nothing; */
+static bool is_within_reach(const wh_tolerance_t *tolerance, const wh_vec3_t *r) {
+    const wh_real_t reach = 2 * (tolerance->projz + tolerance->projxy);
+    return wh_real_abs(r->x) <= reach && wh_real_abs(r->y) <= reach && wh_real_abs(r->z) <= reach;
+}
+
 /*@ requires wh_table_memory(table) && \valid_read(wafers + (0 .. table->storage.wafer_count - 1)) && \valid_read(gripper);
     requires g < table->storage.gripper_count;
     assigns \nothing;
@@ -81,7 +92,10 @@ static wh_status_t check_held(const wh_grasp_t *table, size_t g, const wh_wafer_
         wafers[gripper->wafer].holder != (int32_t)g) {
         return WH_STATUS_OUT_OF_RANGE;
     }
-    return wh_pose_validate(&gripper->gripper_from_wafer);
+    const wh_status_t status = wh_pose_validate(&gripper->gripper_from_wafer);
+    const bool reached =
+        status != WH_OK || is_within_reach(&table->config.tolerance, &gripper->gripper_from_wafer.r);
+    return reached ? status : WH_STATUS_OUT_OF_RANGE;
 }
 
 /*@ requires wh_table_memory(table) && \valid_read(wafers + (0 .. table->storage.wafer_count - 1)) && \valid_read(gripper);
@@ -98,10 +112,10 @@ static wh_status_t check_gripper(const wh_grasp_t *table, size_t g, const wh_waf
         status = check_held(table, g, wafers, gripper);
     }
     if (status == WH_OK) {
-        status = check_encounter(table, &gripper->approach, slice);
+        status = check_encounter(table, &gripper->approach, false, slice);
     }
     if (status == WH_OK) {
-        status = check_encounter(table, &gripper->contest, slice);
+        status = check_encounter(table, &gripper->contest, true, slice);
     }
     return status;
 }

@@ -9,7 +9,8 @@
  * they would have there; counters keep counting. `released_by` of the wafers is not looked at.
  * Refused, the table unchanged but for counters.refused: null pointers; poses that do not pass wh_pose_validate;
  * valves other than 0 and 1 (WH_STATUS_BAD_VALVE); measured values that are not finite; indices out of range, a holder
- * that does not hold what it is said to hold or holds it with a closed valve, slices beyond `slice`
+ * that does not hold what it is said to hold or holds it with a closed valve or further off than twice
+ * projz + projxy, an approached wafer with a holder or a contested one without, slices beyond `slice`
  * (WH_STATUS_OUT_OF_RANGE). Cost: linear in wafers and grippers. */
 /*@ requires table == \null || wh_table_memory(table) && wh_consistent(table);
     requires table != \null ==>

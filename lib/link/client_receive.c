@@ -12,10 +12,12 @@ static void heard(wh_client_t *client) {
     }
 }
 
-/* A table of the state's counts and slice. */
-static wh_grasp_t table_over(wh_link_arrays_t *arrays, const wh_state_t *state, int64_t missed) {
+/* A table of the layout's rules, and of the state's counts and slice. */
+static wh_grasp_t table_over(const wh_client_t *client, wh_link_arrays_t *arrays, const wh_state_t *state,
+                             int64_t missed) {
     wh_grasp_t table;
     memset(&table, 0, sizeof table);
+    table.config = client->options.layout->grasp;
     table.slice = (uint64_t)(state->seq - missed);
     table.storage.wafers = arrays->wafers;
     table.storage.wafer_count = state->wafer_count;
@@ -26,8 +28,8 @@ static wh_grasp_t table_over(wh_link_arrays_t *arrays, const wh_state_t *state, 
 
 /* Whether it is the state whose hash it carries, and one that a table could be in: then it is in client->arrays. */
 static bool take_over(wh_client_t *client, const wh_state_t *state, const waferhand_state *message) {
-    const wh_grasp_t as_told = table_over(&client->spare, state, message->missed);
-    wh_grasp_t table = table_over(&client->arrays, state, message->missed);
+    const wh_grasp_t as_told = table_over(client, &client->spare, state, message->missed);
+    wh_grasp_t table = table_over(client, &client->arrays, state, message->missed);
     return wh_condition_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
            wh_condition_hash(state->condition, &as_told) == (uint64_t)message->hash &&
            wh_grasp_restore(&table, as_told.slice, state->wafers, state->grippers) == WH_OK;

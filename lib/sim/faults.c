@@ -38,12 +38,19 @@ static bool value_fits(const wh_fault_t *fault) {
     return fault->value == 0;
 }
 
+/* By so little no wafer leaves the numbers: at their end it is rounded away. */
+static bool offset_fits(const wh_vec3_t *r) {
+    return wh_real_abs(r->x) <= WH_FAULT_REACH && wh_real_abs(r->y) <= WH_FAULT_REACH &&
+           wh_real_abs(r->z) <= WH_FAULT_REACH;
+}
+
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count) {
     if ((unsigned)fault->kind >= WH_FAULT_KINDS || !names_fit(fault, gripper_count, wafer_count) ||
         !value_fits(fault) || fault->from < 1 || fault->until < 0) {
         return WH_STATUS_OUT_OF_RANGE;
     }
-    return wh_pose_validate(&fault->offset);
+    const wh_status_t status = wh_pose_validate(&fault->offset);
+    return status != WH_OK || offset_fits(&fault->offset.r) ? status : WH_STATUS_OUT_OF_RANGE;
 }
 
 static bool slot_fits(const wh_fault_slot_t *slot, size_t gripper_count, size_t wafer_count) {

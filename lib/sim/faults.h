@@ -29,6 +29,8 @@
 
 /* Faults that a run can have at a time. */
 #define WH_FAULTS 16
+/* How far along each axis a fault may take a wafer, mm. */
+#define WH_FAULT_REACH WH_REAL(1e6)
 /* A fault that lasts until it is cleared. */
 #define WH_FAULT_FOREVER INT64_MAX
 
@@ -55,7 +57,7 @@ typedef struct {
     int32_t target;      /* gripper or wafer; WH_NONE for COMMAND_LOST */
     int32_t other;       /* DOUBLED: the wafer underneath; else WH_NONE */
     wh_real_t value;     /* SLOW_VACUUM: s, 0 to 3600; LEAK: 0 to 1; else 0 */
-    wh_pose_t offset;    /* of WAFER_*; else the identity */
+    wh_pose_t offset;    /* of WAFER_*, up to WH_FAULT_REACH; else the identity */
     int64_t from, until; /* slices, seq: 1 <= from; until WH_FAULT_FOREVER: until it is cleared */
 } wh_fault_t;
 

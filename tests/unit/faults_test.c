@@ -74,6 +74,31 @@ static void test_values_have_their_ranges(void **state) {
     }
 }
 
+/* Where numbers end, too, a wafer that faults move stays where a table can have it. */
+static void test_no_offset_takes_a_wafer_out_of_the_numbers(void **state) {
+    (void)state;
+    wh_real_t *const parts[] = {&command.faults[0].fault.offset.r.x, &command.faults[0].fault.offset.r.y,
+                                &command.faults[0].fault.offset.r.z};
+    for (size_t i = 0; i < 3; ++i) {
+        bring_kind(WH_FAULT_WAFER_SHIFTED, 0);
+        *parts[i] = WH_REAL(1.001e6);
+        assert_int_equal(try_step(880, CLOSED), WH_STATUS_OUT_OF_RANGE);
+        --command.seq;
+    }
+    const wh_pose_t last = {wafers[0].base_from_wafer.R,
+                            {WH_TEST_LARGEST, -WH_TEST_LARGEST, WH_TEST_LARGEST}};
+    assert_int_equal(wh_grasp_place(&simulator.table, 0, &last), WH_OK);
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
+    f.offset.r = wh_vec3(WH_REAL(1e6), WH_REAL(-1e6), WH_REAL(1e6));
+    f.offset.R = wh_test_rotation(0, 0, 1, 0.1);
+    bring(0, &f);
+    bring(1, &f);
+    step(880, CLOSED);
+    assert_non_null(find(WH_EVENT_FAULT_ARMED));
+    assert_int_equal(wh_pose_validate(&wafers[0].base_from_wafer), WH_OK);
+    assert_int_equal(wh_condition_validate(&simulator.condition, GRIPPERS, WAFERS), WH_OK);
+}
+
 static void test_slots(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 0);
@@ -171,6 +196,7 @@ int main(void) {
         cmocka_unit_test_setup(test_names, set_up),
         cmocka_unit_test_setup(test_what_no_cell_can_have_is_refused, set_up),
         cmocka_unit_test_setup(test_values_have_their_ranges, set_up),
+        cmocka_unit_test_setup(test_no_offset_takes_a_wafer_out_of_the_numbers, set_up),
         cmocka_unit_test_setup(test_slots, set_up),
         cmocka_unit_test_setup(test_a_refused_input_brings_no_fault, set_up),
         cmocka_unit_test_setup(test_a_fault_acts_from_and_until, set_up),

@@ -151,6 +151,8 @@ static void indices_must_agree(void **state) {
     } rows[] = {
         {&saved.wafer[1].holder, CELL_GRIPPERS},           /* one too many */
         {&saved.gripper[1].contest.holder, CELL_GRIPPERS}, /* likewise */
+        {&saved.gripper[1].contest.holder, WH_NONE},       /* then it is none */
+        {&saved.gripper[2].approach.holder, 0},            /* nor is this, of a wafer that is held */
         {&saved.wafer[0].holder, WH_NONE},                 /* but gripper 0 names it */
         {&saved.wafer[0].holder, 1},                       /* likewise */
         {&saved.wafer[1].holder, 1},                       /* which holds nothing */
@@ -218,6 +220,28 @@ static void each_measured_value_is_looked_at(void **state) {
     assert_int_equal(restore(&saved), WH_OK);
 }
 
+/* Farther from its gripper than a check lets any be taken, a wafer could be carried to where no number is. */
+static void a_held_wafer_is_within_reach(void **state) {
+    (void)state;
+    wh_vec3_t *const r = &saved.gripper[0].gripper_from_wafer.r;
+    const wh_vec3_t good = *r;
+    const wh_real_t reach = 2 * (origin.table.config.tolerance.projz + origin.table.config.tolerance.projxy);
+    wh_real_t *const part[] = {&r->x, &r->y, &r->z};
+    for (size_t i = 0; i < 6; ++i) {
+        const wh_real_t sign = i < 3 ? 1 : -1;
+        *part[i % 3] = sign * reach * WH_REAL(1.001);
+        expect_refused(&saved, WH_STATUS_OUT_OF_RANGE);
+        *part[i % 3] = sign * reach;
+        assert_int_equal(restore(&saved), WH_OK);
+        *r = good;
+    }
+    *r = wh_vec3(reach, -reach, reach);
+    assert_int_equal(restore(&saved), WH_OK);
+    copy.input[0].base_from_gripper.r = wh_vec3(WH_TEST_LARGEST, -WH_TEST_LARGEST, WH_TEST_LARGEST);
+    cell_step(&copy);
+    assert_int_equal(wh_pose_validate(&copy.wafer[0].base_from_wafer), WH_OK);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(a_restored_table_goes_on_with_the_same_bits, set_up),
@@ -230,6 +254,7 @@ int main(void) {
         cmocka_unit_test_setup(an_encounter_lies_in_the_past, set_up),
         cmocka_unit_test_setup(valves_and_poses_are_looked_at, set_up),
         cmocka_unit_test_setup(each_measured_value_is_looked_at, set_up),
+        cmocka_unit_test_setup(a_held_wafer_is_within_reach, set_up),
     };
     (void)wh_test_seed();
     return cmocka_run_group_tests(tests, NULL, NULL);
