@@ -43,9 +43,9 @@ static size_t count_pieces(const wh_curve_t *curve, double tolerance) {
 
 /* The slices at which a curve is read; after its end one at which there is none. */
 static void add_curve(list_t *list, const wh_curve_t *curve) {
+    const size_t most = 2 * curve->count > WH_PLOT_ROWS ? 2 * curve->count : WH_PLOT_ROWS;
     double tolerance = curve->tolerance;
-    while (count_pieces(curve, tolerance) > WH_PLOT_ROWS &&
-           count_pieces(curve, tolerance) > 2 * curve->count) {
+    while (count_pieces(curve, tolerance) > most) {
         tolerance *= 2;
     }
     for (size_t i = 0; i < curve->count; ++i) {

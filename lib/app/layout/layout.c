@@ -6,6 +6,7 @@
 #include "app/layout/arguments.h"
 #include "app/layout/drawing.h"
 #include "app/layout/report.h"
+#include "report/output.h"
 
 enum { OPTION_JSON = 1000, OPTION_SVG };
 
@@ -39,14 +40,13 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
 }
 
 static bool write_svg(const wh_layout_check_t *check, const char *path) {
-    FILE *file = fopen(path, "w");
-    bool written = file && wh_layout_print_svg(check, file) == 0;
-    if (file) {
-        written = fclose(file) == 0 && written;
-    }
+    wh_output_t output = {0};
+    const bool written = wh_output_open(&output, path) && wh_layout_print_svg(check, output.file) == 0 &&
+                         wh_output_commit(&output);
     if (!written) {
         fprintf(stderr, "%s: %s (expected a file that can be written)\n", path, strerror(errno));
     }
+    wh_output_drop(&output);
     return written;
 }
 
