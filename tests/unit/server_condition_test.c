@@ -1,29 +1,21 @@
 /* The state of a simulator with delayed vacuum, pads and faults: taken over by another in the middle of a run it goes on with
  * the same bits, and none that no simulator could be in is taken over. */
-#include "support.h"
+#include "support_server.h"
 
 #include "link/cell_layout.h"
-#include "link/check.h"
-#include "link/server.h"
 #include "script/run.h"
 
 #define SCRIPT "tests/data/delayed.lua"
 
 static wh_server_t servers[2];
-static wh_server_t *server;
 static int64_t restart_every;
 static size_t restarts, faults_seen, slips_seen;
 
 static void send(const wh_command_t *command) {
-    static const int64_t run = 4711;
-    const wh_link_identity_t identity = {run, server->identity.layout_hash};
-    waferhand_command message;
     waferhand_command decoded;
     uint8_t bytes[4096];
-    wh_link_command_to_message(command, &identity, true, &message);
-    const int size = waferhand_command_encode(bytes, 0, (int)sizeof bytes, &message);
-    wh_link_seal(bytes, (size_t)size);
-    assert_true(wh_link_decode_command(bytes, (size_t)size, &decoded));
+    const size_t size = encode_command(command, bytes, sizeof bytes);
+    assert_true(wh_link_decode_command(bytes, size, &decoded));
     /* Twice, as a network does. */
     const wh_server_result_t result = wh_server_command(server, &decoded, NULL);
     assert_true(result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN);
@@ -58,18 +50,8 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     return state->status;
 }
 
-static uint64_t hash(wh_link_t *link) {
-    (void)link;
-    return wh_server_hash(server);
-}
-
-static int64_t missed(wh_link_t *link) {
-    (void)link;
-    return 0;
-}
-
 static wh_link_t *connect_server(void *user, wh_mcs_t *mcs) {
-    static wh_link_t link = {exchange, hash, missed};
+    static wh_link_t link = {exchange, hash_of_server, none_missed};
     (void)user;
     server = servers;
     assert_int_equal(wh_server_open(server, mcs->layout), WH_OK);

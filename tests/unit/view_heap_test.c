@@ -1,29 +1,20 @@
 /* What a view adds to a step allocates nothing, though everything were sent after each: the bodies, and where they are. The places are the
  * simulator's, slice by slice, and its bits are those that it has without a view. */
-#include "support.h"
 #include "support_heap.h"
+#include "support_server.h"
 
-#include "link/server.h"
 #include "script/run.h"
 #include "view/view.h"
 
-static wh_server_t server;
+static wh_server_t servers[1];
 static wh_view_t view;
 static unsigned long calls_in_views;
 
-static unsigned long heap_calls(void) {
-#if defined(WH_TEST_COUNTS_HEAP)
-    return calls;
-#else
-    return 0;
-#endif
-}
-
 static void look(void) {
     view.last_draw_us -= WH_VIEW_DRAW_US;
-    view.last_load_us -= server.seq % 100 == 0 ? WH_VIEW_LOAD_US : 0;
+    view.last_load_us -= server->seq % 100 == 0 ? WH_VIEW_LOAD_US : 0;
     const unsigned long before = heap_calls();
-    wh_view_tick(&view, &server);
+    wh_view_tick(&view, server);
     calls_in_views += heap_calls() - before;
 }
 
@@ -35,44 +26,33 @@ static void compare(size_t body, const wh_pose_t *pose) {
 }
 
 static void compare_all(void) {
-    for (size_t w = 0; w < server.state.wafer_count; ++w) {
-        compare(view.cell.wafers + w, &server.state.wafers[w].base_from_wafer);
+    for (size_t w = 0; w < server->state.wafer_count; ++w) {
+        compare(view.cell.wafers + w, &server->state.wafers[w].base_from_wafer);
     }
-    for (size_t g = 0; g < server.state.gripper_count; ++g) {
-        const int32_t wafer = server.state.grippers[g].wafer;
-        compare(view.cell.grippers + g, &server.state.grippers[g].base_from_gripper);
+    for (size_t g = 0; g < server->state.gripper_count; ++g) {
+        const int32_t wafer = server->state.grippers[g].wafer;
+        compare(view.cell.grippers + g, &server->state.grippers[g].base_from_gripper);
         if (wafer != WH_NONE) {
-            compare(view.cell.covers + g, &server.state.wafers[wafer].base_from_wafer);
+            compare(view.cell.covers + g, &server->state.wafers[wafer].base_from_wafer);
         }
     }
 }
 
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
-    const wh_link_identity_t identity = {4711, server.identity.layout_hash};
-    waferhand_command message;
+    const waferhand_command message = message_of(command);
     (void)link;
-    wh_link_command_to_message(command, &identity, true, &message);
-    assert_int_not_equal(wh_server_command(&server, &message, NULL), WH_SERVER_IGNORED);
+    assert_int_not_equal(wh_server_command(server, &message, NULL), WH_SERVER_IGNORED);
     look();
     compare_all();
-    *state = server.state;
+    *state = server->state;
     return state->status;
 }
 
-static uint64_t hash(wh_link_t *link) {
-    (void)link;
-    return wh_server_hash(&server);
-}
-
-static int64_t missed(wh_link_t *link) {
-    (void)link;
-    return 0;
-}
-
 static wh_link_t *connect_server(void *user, wh_mcs_t *mcs) {
-    static wh_link_t link = {exchange, hash, missed};
+    static wh_link_t link = {exchange, hash_of_server, none_missed};
     (void)user;
-    assert_int_equal(wh_server_open(&server, mcs->layout), WH_OK);
+    server = servers;
+    assert_int_equal(wh_server_open(server, mcs->layout), WH_OK);
     assert_int_equal(wh_view_open(&view, NULL, mcs->layout), WH_OK);
     look();
     return &link;
@@ -85,12 +65,12 @@ static void test_a_view_allocates_and_changes_nothing(void **state) {
     assert_int_equal(wh_run_script(&plain, &options), WH_RUN_MET);
     options.partners.connect = connect_server;
     assert_int_equal(wh_run_script(&run, &options), WH_RUN_MET);
-    assert_true(view.draws == server.counters.stepped + 1 && view.draws > 10000);
+    assert_true(view.draws == server->counters.stepped + 1 && view.draws > 10000);
     assert_true(view.loads > 100 && view.unsent == 0);
     assert_int_equal(calls_in_views, 0);
-    assert_true(wh_server_hash(&server) == plain.record.hash);
+    assert_true(wh_server_hash(server) == plain.record.hash);
     wh_view_close(&view);
-    wh_server_close(&server);
+    wh_server_close(server);
     wh_run_close(&run);
     wh_run_close(&plain);
 }
