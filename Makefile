@@ -81,7 +81,7 @@ verify-core: ## what must never rot: bits on targets, no allocation, stack, size
 
 verify: ## all of it, hours; goes on where it was stopped. PART="wp mutation" for some
 	-$(NEED) run test verify
-	@RESUME=1 FUZZ_SECONDS=$(or $(FUZZ_SECONDS),600) tests/verify/run $(PART)
+	@RESUME=1 FUZZ_SECONDS=$(or $(FUZZ_SECONDS),600) FUZZ_SEED=$(or $(FUZZ_SEED),0) tests/verify/run $(PART)
 
 install: all ## into PREFIX, below DESTDIR
 	$(BUILD) install
