@@ -1,3 +1,5 @@
+/* A step, part by part, in one file for all its length, of which two thirds are contracts: as files of their own the parts cost a
+ * slice 50 instructions more, and a sampled step 32 bytes of stack more than its limit. */
 #include "core/encounter_internal.h"
 #include "core/grasp_internal.h"
 #include "core/horizon_internal.h"
