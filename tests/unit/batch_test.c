@@ -2,7 +2,7 @@
 #include "batch/batch.h"
 #include "support_pose.h"
 
-enum { WAFERS = 41 };
+enum { WAFERS = 41, MANY = 2100 };
 
 static wh_pose_t wafers[WAFERS];
 static float numbers[WH_BATCH_NUMBERS(WAFERS)];
@@ -58,6 +58,8 @@ static void numbers_stand_where_the_header_says(void **state) {
         assert_true(isinf(numbers[32 * i + 2]));
     }
     assert_true(numbers[96] > 26.8468F && numbers[97] > 6.0622F);
+    assert_int_equal(wh_batch_init(&batch, wafers, 1, numbers, WH_BATCH_NUMBERS(1)), WH_OK);
+    assert_near(numbers[96], 0, 0);
 }
 
 /* Where every lane is left to the check, those beyond the last wafer are not. */
@@ -178,6 +180,28 @@ static void each_gripper_finds_its_wafer(void **state) {
     }
 }
 
+/* Beyond the first 1,024 wafers, whose spheres are far away. */
+static void each_of_many_is_found(void **state) {
+    static wh_pose_t many[MANY];
+    static float room[WH_BATCH_NUMBERS(MANY) + 63];
+    const wh_tolerance_t paper = wh_tolerance_paper();
+    (void)state;
+    for (size_t w = 0; w < MANY; ++w) {
+        many[w] = wh_test_at(0, 0, 10.0 * (double)w);
+    }
+    wh_batch_t batch;
+    assert_int_equal(wh_batch_init(&batch, many, MANY, room, WH_BATCH_NUMBERS(MANY) + 63), WH_OK);
+    assert_int_equal(wh_batch_init(&batch, many, MANY, room, SIZE_MAX), WH_OK);
+    for (int code = 0; code < 2; ++code) {
+        for (size_t w = 0; w < MANY; w += 7) {
+            int32_t found = WH_NONE;
+            assert_int_equal(wh_batch_list(&batch, &many[w], &paper, &found, 1), 1);
+            assert_int_equal(found, w);
+        }
+        assert_int_equal(wh_batch_use(&batch, WH_BATCH_PORTABLE), WH_OK);
+    }
+}
+
 /* Of the nearest two, at either side of the gripper, the lower index; a list that is too short is cut. */
 static void best_is_the_nearest_then_the_first(void **state) {
     (void)state;
@@ -219,6 +243,7 @@ int main(void) {
         cmocka_unit_test(code_is_chosen_or_asked_for),
         cmocka_unit_test(no_wafer_is_no_answer),
         cmocka_unit_test(each_gripper_finds_its_wafer),
+        cmocka_unit_test(each_of_many_is_found),
         cmocka_unit_test(best_is_the_nearest_then_the_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
