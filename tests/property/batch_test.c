@@ -161,9 +161,40 @@ static void verdicts_are_the_checks(void **state) {
     assert_true(ready_pairs > 10000 && spoiled_poses > 10000 && ready_far > 1000 && ready_invalid > 100);
 }
 
+/* A limit far below what float resolves at the distances that the other one allows: all that is held back must not be ready,
+ * and all here are. In float so fine a limit is below the check's own rounding, and few are. */
+static void what_is_rounded_is_left_room_for(void **state) {
+    const wh_tolerance_t tolerance = {WH_REAL(1e-3), WH_REAL(1e6), 0};
+    size_t ready = 0;
+    (void)state;
+    grippers[0] = wh_pose_identity();
+    for (int round = 0; round < 100; ++round) {
+        for (size_t w = 0; w < MOST; ++w) {
+            wafers[w].R = wh_test_random_turn(1.5);
+            const double turn = wh_test_uniform(-WH_TEST_PI, WH_TEST_PI);
+            const double far = wh_test_uniform(0.8e6, 0.999e6);
+            const wh_vec3_t place = wh_vec3(WH_REAL(far * cos(turn)), WH_REAL(far * sin(turn)),
+                                            WH_REAL(wh_test_below(2) ? 0.99e-3 : -0.99e-3));
+            wafers[w].r = wh_mat3_transform(&wafers[w].R, &place);
+        }
+        wh_batch_t batch;
+        assert_int_equal(wh_batch_init(&batch, wafers, MOST, numbers, WH_BATCH_NUMBERS(MOST)), WH_OK);
+        size_t expected = 0;
+        for (size_t w = 0; w < MOST; ++w) {
+            expected += wh_proximity_ready(&wafers[w], &grippers[0], &tolerance) ? 1 : 0;
+        }
+        assert_int_equal(wh_batch_ready(&batch, grippers, 1, &tolerance, bits), expected);
+        assert_int_equal(wh_batch_use(&batch, WH_BATCH_PORTABLE), WH_OK);
+        assert_int_equal(wh_batch_ready(&batch, grippers, 1, &tolerance, bits), expected);
+        ready += expected;
+    }
+    assert_true(ready > (sizeof(wh_real_t) < sizeof(double) ? 100 : 99 * MOST));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(verdicts_are_the_checks),
+        cmocka_unit_test(what_is_rounded_is_left_room_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -83,7 +83,7 @@ static void what_cannot_be_sieved_is_left_to_the_check(void **state) {
     wh_batch_t batch = stack(WAFERS);
     wh_pose_t bad[] = {wafers[5], wafers[5], wafers[5]};
     bad[0].R.m[0][0] = WH_REAL(1.1);
-    bad[1].r.y = WH_REAL(2e15);
+    bad[1].r = wh_vec3(0, WH_REAL(2e15), 0);
     bad[2].r.z = (wh_real_t)NAN;
     for (size_t i = 0; i < 3; ++i) {
         assert_int_equal(wh_batch_place(&batch, 5, &bad[i]), WH_OK);
@@ -94,6 +94,24 @@ static void what_cannot_be_sieved_is_left_to_the_check(void **state) {
         assert_int_equal(wh_batch_place(&batch, 5, &good), WH_OK);
         assert_near(numbers[128 + 5], 1, 0);
         assert_true(!isnan((double)numbers[0]));
+    }
+}
+
+static void no_number_is_written_beyond_the_room(void **state) {
+    static const size_t counts[] = {1, 31, 32, 33, 1023, 1024, 1025, 2047, 2048};
+    static wh_pose_t many[2048];
+    static float room[WH_BATCH_NUMBERS(2048) + 256];
+    (void)state;
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; ++i) {
+        const size_t last = WH_BATCH_NUMBERS(counts[i]);
+        wh_batch_t batch;
+        for (size_t k = 0; k < 256; ++k) {
+            room[last + k] = 77;
+        }
+        assert_int_equal(wh_batch_init(&batch, many, counts[i], room, last), WH_OK);
+        for (size_t k = 0; k < 256; ++k) {
+            assert_near(room[last + k], 77, 0);
+        }
     }
 }
 
@@ -238,6 +256,7 @@ int main(void) {
         cmocka_unit_test(numbers_stand_where_the_header_says),
         cmocka_unit_test(wafers_beyond_the_last_are_not_asked),
         cmocka_unit_test(what_cannot_be_sieved_is_left_to_the_check),
+        cmocka_unit_test(no_number_is_written_beyond_the_room),
         cmocka_unit_test(init_refuses_and_changes_nothing),
         cmocka_unit_test(calls_on_one_wafer_refuse),
         cmocka_unit_test(code_is_chosen_or_asked_for),
