@@ -141,6 +141,25 @@ class WithoutWebGL(Measure, unittest.TestCase):
         self.page.seek(2.4)
         self.page.shoot("without_webgl")
 
+    def test_words_of_marks_do_not_overlap(self):
+        """A blade that comes too close and then hits says both, each to be read, in both drawings."""
+        browsed = self.page
+        browsed.open(documents.example("04_scrape")[1])
+        said = browsed.js("""const { view } = Waferhand.stage, pen = view.pen, said = [], fill = pen.fillText;
+            pen.fillText = function (words, x, y) { const { width } = pen.measureText(words);
+                said.push({ words, left: x, right: x + width, base: y }); fill.call(pen, words, x, y); };
+            Waferhand.clock.seek(4.506); Waferhand.clock.flush(); view.still();
+            return said.filter(({ words }) => words.includes(' and '))""")
+        browsed.shoot("marks_without_webgl")
+        browsed.open(path)
+        self.assertEqual(sorted(each["words"] for each in said), ["hit: EE finger left and W04"] * 2
+                         + ["too close: EE finger left and W04"] * 2)
+        for i, one in enumerate(said):
+            self.assertLess(one["right"], 1090)
+            for other in said[i + 1:]:
+                apart = one["right"] <= other["left"] or other["right"] <= one["left"]
+                self.assertTrue(apart or abs(one["base"] - other["base"]) >= 13, (one, other))
+
 
 if __name__ == "__main__":
     unittest.main()

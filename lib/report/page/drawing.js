@@ -140,17 +140,24 @@
         pen.lineWidth = 1;
     }
 
+    /* Words beside a mark, within the panel; those of several marks stand one above the other. */
+    function drawWords(view, panel, words, [x, y]) {
+        const { x: left, w: width } = panel.area;
+        const last = left + width - view.pen.measureText(words).width - 6;
+        text(view, words, W.clamp(x, left + 4, Math.max(left + 4, last)), y, view.pen.fillStyle);
+    }
+
     function drawMarks(view, panel) {
+        let above = 0;
         view.marks.forEach((mark) => {
             const near = W.marks.isNear(mark, view.at);
             const [x, y] = panel.spot(mark.at);
-            const colour = W.theme.colour(W.marks.colourName(mark));
-            view.pen.fillStyle = colour;
+            view.pen.fillStyle = W.theme.colour(W.marks.colourName(mark));
             view.pen.beginPath();
             view.pen.arc(x, y, near ? 7 : 3.5, 0, 7);
             view.pen.fill();
             if (near) {
-                text(view, W.marks.text(mark), W.clamp(x + 10, 4, panel.area.x + panel.area.w - 180), y, colour);
+                drawWords(view, panel, W.marks.text(mark), [x + 10, y - 11 - 20 * above++]);
             }
         });
     }
