@@ -126,6 +126,12 @@ class Looks(unittest.TestCase):
         self.assertEqual(self.page.js("""return Array.from(document.querySelectorAll('button, select, figcaption, h2, dd'))
             .filter((each) => { const box = each.getBoundingClientRect(); return box.width > 0 && !each.closest('.scroll')
             && (box.left < 0 || box.right > 361); }).map((each) => each.outerHTML)"""), [])
+        self.assertEqual(self.page.js("""const parts = [];
+            Array.from(document.querySelectorAll('td'), (cell) => cell.firstChild).filter((each) => each && each.nodeType === 3)
+                .forEach((text) => Array.from(text.data.matchAll(/[a-z]+/gi), (word) => { const range = document.createRange();
+                    range.setStart(text, word.index); range.setEnd(text, word.index + word[0].length);
+                    if (range.getClientRects().length > 1) { parts.push(word[0]); } }));
+            return parts"""), [], "words in two")
 
     def test_controls_do_not_overlap(self):
         for width in (360, 700, 1024, 1440, 1920):
