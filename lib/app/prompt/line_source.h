@@ -11,7 +11,7 @@ typedef enum {
     WH_LINE_LEAVING /* a signal or a watch ended the prompt */
 } wh_line_event_t;
 
-/* ---- prompt_plain.c: bytes, whatever they are ---- */
+/* ---- plain.c: bytes, whatever they are ---- */
 typedef struct {
     wh_input_t *input;
     char buffer[4096];
@@ -22,7 +22,7 @@ typedef struct {
 /* The next line, in plain->line: without its end, cut when too long, a byte 0 replaced by 1, which is refused too. */
 wh_line_event_t wh_plain_read(wh_plain_t *plain);
 
-/* ---- prompt_editor.c: libedit ---- */
+/* ---- editor.c: libedit ---- */
 typedef struct wh_editor wh_editor_t;
 
 /* On standard input and output; null when libedit will not have them. */
