@@ -78,7 +78,7 @@ static void update_valves(wh_outputs_t *outputs, wh_simulation_t *simulation) {
     simulation->valves = outputs->count > 0 ? outputs->valves : NULL;
 }
 
-/* Until a message or the file's folder has something, at most 100 ms. */
+/* Until a message or the file's folder has something, at most 100 ms; the record is made readable when neither had. */
 static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_simulation_t *simulation) {
     struct pollfd ready[] = {{.fd = wh_node_descriptor(node), .events = POLLIN},
                              {.fd = outputs->count > 0 ? wh_outputs_fd(outputs) : -1, .events = POLLIN}};
@@ -87,7 +87,9 @@ static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_simulation
         const int64_t due_ms = (wh_outputs_due(outputs) - wh_node_clock_us()) / 1000 + 1;
         wait_ms = due_ms < wait_ms ? due_ms : wait_ms;
     }
-    (void)poll(ready, 2, wait_ms > 0 ? (int)wait_ms : 0);
+    if (poll(ready, 2, wait_ms > 0 ? (int)wait_ms : 0) == 0) {
+        wh_node_flush_record(node);
+    }
     update_valves(outputs, simulation);
     return wh_node_wait(node, 0);
 }

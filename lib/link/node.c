@@ -33,6 +33,17 @@ bool wh_node_record(wh_node_t *node, const char *path) {
     return node->log != NULL;
 }
 
+static void fail_record(wh_node_t *node) {
+    node->log_failed = true;
+    fprintf(stderr, "record: writing failed; what was written so far stays\n");
+}
+
+void wh_node_flush_record(wh_node_t *node) {
+    if (node->log && !node->log_failed && fflush(node->log->f) != 0) {
+        fail_record(node);
+    }
+}
+
 /* The log is lcm-logger's; channel and data are only read. */
 static void record(wh_node_t *node, const char *channel, const void *data, size_t size) {
     union {
@@ -52,8 +63,7 @@ static void record(wh_node_t *node, const char *channel, const void *data, size_
     event.channel = name;
     event.data = bytes.plain;
     if (lcm_eventlog_write_event(node->log, &event) != 0) {
-        node->log_failed = true;
-        fprintf(stderr, "record: writing failed; what was written so far stays\n");
+        fail_record(node);
     }
 }
 

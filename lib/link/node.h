@@ -44,6 +44,9 @@ bool wh_node_open(wh_node_t *node, const char *url);
  * when the file cannot be made. */
 bool wh_node_record(wh_node_t *node, const char *path);
 
+/* Hands what was recorded over to the system: others can read all of it from then on. Nothing without a record. */
+void wh_node_flush_record(wh_node_t *node);
+
 /* Subscribes one channel with a queue without a limit. False when there is no room. */
 bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user);
 
