@@ -16,12 +16,16 @@ typedef struct {
     char *tics; /* the lanes' names, for gnuplot */
     size_t size;
     size_t drawn; /* curves and blocks of bars in the plot command */
+    size_t bars;  /* of all lanes */
+    double duration;
 } wh_lanes_t;
 
-/* How a block of bars is filled, in gnuplot's words; `text` is for the key, or null. All have a black edge: bars too narrow to
- * be told apart are black, and not whatever drawing them by pixels makes of them. */
+/* How a block of bars is filled: a colour, and solid or a pattern in gnuplot's words; `text` is for the key, or null. Bars have a
+ * black edge, unless so many of them are shown that there would be little but edges: then their colours blend, each by its
+ * share of a pixel's time. Bars that must not be overlooked keep it. */
 typedef struct {
-    const char *text, *fill;
+    const char *text, *colour, *fill;
+    bool keeps_edge;
 } wh_lanes_look_t;
 
 /* `count` lanes, to be named from the top before they are begun. */

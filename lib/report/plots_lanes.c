@@ -71,7 +71,7 @@ static void put_holds(const wh_plots_t *plots, wh_lanes_t *lanes, size_t g) {
 }
 
 void wh_plots_holders(wh_plots_t *plots) {
-    static const wh_lanes_look_t look = {NULL, "fc rgb '#d8d8d8' fs solid"};
+    static const wh_lanes_look_t look = {NULL, "#d8d8d8", "solid", false};
     const wh_layout_t *layout = plots->document->trace->layout;
     const size_t grippers = layout->machine.gripper_count;
     wh_lanes_t lanes;
@@ -98,9 +98,9 @@ void wh_plots_holders(wh_plots_t *plots) {
 /* Of commands: every other one, so that neighbours can be told apart, and those that failed. */
 enum { EVEN, ODD, FAILED, COMMANDS };
 
-static const wh_lanes_look_t command_looks[COMMANDS] = {{NULL, "fc rgb '#ffffff' fs solid"},
-                                                        {NULL, "fc rgb '#e4e4e4' fs solid"},
-                                                        {"failed", "fc rgb '#000000' fs solid"}};
+static const wh_lanes_look_t command_looks[COMMANDS] = {{NULL, "#ffffff", "solid", false},
+                                                        {NULL, "#e4e4e4", "solid", false},
+                                                        {"failed", "#000000", "solid", true}};
 
 static int look_of(const wh_record_t *record, size_t command) {
     return record->commands[command].error != WH_OK ? FAILED : command % 2 == 0 ? EVEN : ODD;
@@ -120,11 +120,11 @@ static size_t put_commands(wh_lanes_t *lanes, const wh_record_t *record, int loo
 }
 
 static const wh_lanes_look_t share_looks[WH_SHARES] = {
-    [WH_SHARE_LOADED] = {"loaded", "fc rgb '#606060' fs solid"},
-    [WH_SHARE_EMPTY] = {"empty", "fc rgb '#c8c8c8' fs solid"},
-    [WH_SHARE_VACUUM] = {"vacuum", "fc rgb '#000000' fs pattern 4"},
-    [WH_SHARE_HANDOVER] = {"hand-over", "fc rgb '#000000' fs pattern 2"},
-    [WH_SHARE_WAITING] = {"waiting", "fc rgb '#ffffff' fs solid"}};
+    [WH_SHARE_LOADED] = {"loaded", "#606060", "solid", false},
+    [WH_SHARE_EMPTY] = {"empty", "#c8c8c8", "solid", false},
+    [WH_SHARE_VACUUM] = {"vacuum", "#000000", "hatched", false},
+    [WH_SHARE_HANDOVER] = {"hand-over", "#000000", "crossed", false},
+    [WH_SHARE_WAITING] = {"waiting", "#ffffff", "solid", false}};
 
 /* The robot has the lane below the commands', then come the chucks that turn. SIZE_MAX: none. */
 typedef struct {
