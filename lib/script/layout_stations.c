@@ -18,6 +18,14 @@ static double default_pitch(double wafer_diameter) {
     return wafer_diameter <= 200 ? 6.35 : 10;
 }
 
+/* So that the blade enters about midway between two wafers at that pitch. */
+static double default_stroke(double wafer_diameter) {
+    if (wafer_diameter <= 150) {
+        return 3;
+    }
+    return wafer_diameter <= 200 ? 4 : 6;
+}
+
 static void read_place(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_station_t *station,
                        wh_station_t *place) {
     static const wh_vec3_t level = {0, 0, 0};
@@ -64,7 +72,7 @@ static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, const wh_
                        wh_layout_station_t *station) {
     static const char *const handovers[] = {"new_first", "same_slice", NULL};
     const double release = layout->grasp.seat ? 0 : -layout->grasp.tolerance.projz / 2;
-    station->stroke = wh_reader_number(reader, "stroke", 6, 0.01, 1000);
+    station->stroke = wh_reader_number(reader, "stroke", default_stroke(layout->wafer_diameter), 0.01, 1000);
     station->offset = wh_reader_number(reader, "offset", station->stroke / 2, 0, station->stroke);
     station->retract = wh_reader_number(reader, "retract", 300, 1, 10000);
     station->pickup_speed = wh_reader_number(reader, "pickup_speed", 20, 0.001, 10000);

@@ -75,10 +75,14 @@ static void test_shapes_of_smaller_wafers(void **state) {
     const wh_layout_t *of_200 = read_sound("wafer = { diameter = 200 }, " CELL);
     expect_box(of_200, "EE palm", -80 / 1.5, -55 / 1.5, -50, 50, -2, 0);
     expect_box(of_200, "F ledge 2 left", 710, 810, 100 - 10 / 1.5, 102, 905.85, 906.35);
+    assert_near(of_200->stations[0].stroke, 4, 0);
+    assert_near(of_200->stations[0].offset, 2, 0);
     const wh_layout_t *of_150 = read_sound("wafer = { diameter = 150 }, " CELL);
     expect_box(of_150, "EE finger left", -27.5, 50, 25, 37.5, -1.5, 0);
     expect_box(of_150, "F ledge 2 left", 722.5, 797.5, 70, 77, 904.26, 904.76);
     expect_cylinder(of_150, "PA chuck", 20, -20, 0);
+    assert_near(of_150->stations[0].stroke, 3, 0);
+    assert_near(of_150->stations[0].offset, 1.5, 0);
 }
 
 static void test_foup(void **state) {
