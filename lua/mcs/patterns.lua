@@ -125,21 +125,23 @@ end
 -------------------------------------------------------------------------------------------------------- PUT
 
 -- In above the slot, down to `release`, switch, down below the wafer, out. "kept", or "lost" when the chuck has not
--- taken it over.
+-- taken it over, "loose" when its vacuum did not come though the wafer lies on it.
 function patterns.put(job)
-  local kept = true
+  local became = "kept"
   approach(job, job.offset)
   enter(job)
   stroke(job, job.release - job.offset)
   if job.chuck then
     hand_over(job, job.gripper, job.chuck)
-    kept = holds(job, job.chuck)
+    if not holds(job, job.chuck) then
+      became = job.is_loaded(job.chuck) and "loose" or "lost"
+    end
   else
     switch(job.gripper, CLOSED)
   end
   stroke(job, job.offset - job.stroke - job.release)
   leave(job)
-  return kept and "kept" or "lost"
+  return became
 end
 
 ----------------------------------------------------------------------------------------------------- others

@@ -37,6 +37,8 @@ return function(native, patterns, names, arm, jobs)
   local function judge_put(job, became)
     if became == "lost" then
       native.fail("WAFER_LOST", native.explain(job.chuck))
+    elseif became == "loose" then
+      native.fail("VACUUM_TIMEOUT", "the wafer lies on the chuck")
     end
   end
 
