@@ -222,6 +222,26 @@ static void test_event_values(void **state) {
     json_decref(root);
 }
 
+/* Degrees, as the layout has its limit and a wafer its tilt. */
+static void test_askew_in_degrees(void **state) {
+    static fixture_t f;
+    (void)state;
+    fixture_failed(&f);
+    const size_t i = f.record.event_count;
+    wh_event_t *event = fixture_event(&f, WH_EVENT_PLACED_ASKEW, 33300000, 1, FIXTURE_EE);
+    event->value = wh_rad_from_deg(90);
+    event->limit = wh_rad_from_deg(45);
+    event = fixture_event(&f, WH_EVENT_PLACED_OFF_CENTRE, 33300000, 1, FIXTURE_EE);
+    event->value = 4;
+    event->limit = 2;
+    json_t *root = reread(&f.record);
+    assert_real(element(root, "events", i), "value", 90);
+    assert_real(element(root, "events", i), "limit", 45);
+    assert_real(element(root, "events", i + 1), "value", 4);
+    assert_real(element(root, "events", i + 1), "limit", 2);
+    json_decref(root);
+}
+
 static void test_expectations(void **state) {
     static const char *const keys[] = {"line", "text", "ok", NULL};
     static fixture_t f;
@@ -326,6 +346,7 @@ int main(void) {
         cmocka_unit_test(test_wafers),
         cmocka_unit_test(test_event_kinds),
         cmocka_unit_test(test_event_values),
+        cmocka_unit_test(test_askew_in_degrees),
         cmocka_unit_test(test_expectations),
         cmocka_unit_test(test_hostile_values),
         cmocka_unit_test(test_write_error),

@@ -142,6 +142,12 @@ static json_t *part_names(wh_json_writer_t *writer, const int32_t parts[2]) {
     return list;
 }
 
+/* A tilt in degrees, as everywhere in the result. */
+static json_t *found(const wh_event_t *event, wh_real_t value) {
+    const bool turned = event->kind == WH_EVENT_PLACED_ASKEW;
+    return wh_json_real((double)(turned ? wh_deg_from_rad(value) : value));
+}
+
 /* What was found against which limit, between which parts, by which fault. */
 static void put_found(wh_json_writer_t *writer, json_t *object, const wh_event_t *event) {
     static const uint32_t with_parts =
@@ -156,8 +162,8 @@ static void put_found(wh_json_writer_t *writer, json_t *object, const wh_event_t
         wh_json_put(writer, object, "at", vector(writer, event->at));
     }
     if (kind & with_values) {
-        wh_json_put(writer, object, "value", wh_json_real((double)event->value));
-        wh_json_put(writer, object, "limit", wh_json_real((double)event->limit));
+        wh_json_put(writer, object, "value", found(event, event->value));
+        wh_json_put(writer, object, "limit", found(event, event->limit));
     }
     if (kind & of_faults) {
         wh_json_put(writer, object, "fault", json_integer(event->parts[0] + 1));
