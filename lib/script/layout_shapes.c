@@ -56,17 +56,29 @@ static void read_shell(wh_reader_t *reader, wh_shell_t *shell) {
     wh_reader_leave(reader);
 }
 
+static void read_chuck(wh_reader_t *reader, wh_spindle_t *chuck) {
+    if (!wh_reader_enter(reader, "chuck")) {
+        return;
+    }
+    wh_reader_refuse_unknown(reader, "radius height body");
+    chuck->radius = wh_reader_number(reader, "radius", chuck->radius, 1, 500);
+    chuck->height = wh_reader_number(reader, "height", chuck->height, 1, 200);
+    chuck->body = wh_reader_number(reader, "body", chuck->body, 1, 1000);
+    wh_reader_leave(reader);
+}
+
 void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout) {
     const wh_travel_t *travel = layout->machine.robot.travel;
     wh_shapes_t *shapes = &layout->shapes;
     *shapes = wh_shapes_default(layout->wafer_diameter, layout->wafer_thickness, travel[WH_AXIS_R].max,
                                 travel[WH_AXIS_Z].min);
     if (wh_reader_enter(reader, "shapes")) {
-        wh_reader_refuse_unknown(reader, "blade arm ledge foup");
+        wh_reader_refuse_unknown(reader, "blade arm ledge foup chuck");
         read_blade(reader, &shapes->blade);
         read_arm(reader, &shapes->arm);
         read_ledge(reader, &shapes->ledge);
         read_shell(reader, &shapes->shell);
+        read_chuck(reader, &shapes->chuck);
         wh_reader_leave(reader);
     }
 }

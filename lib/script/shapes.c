@@ -7,6 +7,7 @@
 /* Heights of the arm's links below the end-effector's contact plane, mm: they fold over each other. */
 enum { HAND_BOTTOM = -60, FOREARM_TOP = -65, FOREARM_BOTTOM = -110, UPPER_TOP = -115, UPPER_BOTTOM = -160 };
 enum { LIFT_TOP = -165, LINK_HALF_WIDTH = 35, HAND_RADIUS = 40, LIFT_RADIUS = 90, COLUMN_RADIUS = 120 };
+enum { BODY_BOTTOM = -220 }; /* of a prealigner, below the chuck's upper side */
 
 wh_shapes_t wh_shapes_default(wh_real_t diameter, wh_real_t thickness, wh_real_t farthest, wh_real_t lowest) {
     const wh_real_t scale = diameter / 300;
@@ -15,7 +16,6 @@ wh_shapes_t wh_shapes_default(wh_real_t diameter, wh_real_t thickness, wh_real_t
     const wh_shapes_t shapes = {
         .wafer_radius = radius,
         .wafer_thickness = thickness,
-        .scale = scale,
         .lowest = lowest,
         .arm = {.reach = 250, .link = farthest > 300 ? WH_REAL(0.53) * (farthest - 250) : 100},
         .blade = {.thickness = blade,
@@ -28,6 +28,7 @@ wh_shapes_t wh_shapes_default(wh_real_t diameter, wh_real_t thickness, wh_real_t
                   .thickness = WH_REAL(0.5),
                   .length = radius},
         .shell = {.room = 8, .wall = 5, .floor = 25, .roof = 20},
+        .chuck = {.radius = 40 * scale, .height = 20, .body = 60 * scale},
     };
     return shapes;
 }
@@ -107,8 +108,9 @@ void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int3
         add_blade(list, shapes, gripper, name);
         return;
     }
-    const wh_part_t part = {
-        .kind = WH_PART_CHUCK, .owner = gripper, .convex = cylinder(40 * shapes->scale, -20, 0)};
+    const wh_part_t part = {.kind = WH_PART_CHUCK,
+                            .owner = gripper,
+                            .convex = cylinder(shapes->chuck.radius, -shapes->chuck.height, 0)};
     wh_shapes_add(list, &part, "%s chuck", name);
 }
 
@@ -187,7 +189,8 @@ void wh_shapes_add_station(wh_part_list_t *list, const wh_shapes_t *shapes, cons
         add_foup(list, shapes, station, index, name);
         break;
     case WH_STAND_CHUCK:
-        add_fixed(list, station, index, cylinder(60 * shapes->scale, -220, -21), name, "body");
+        add_fixed(list, station, index, cylinder(shapes->chuck.body, BODY_BOTTOM, -shapes->chuck.height - 1),
+                  name, "body");
         break;
     case WH_STAND_NOTHING:
         break;

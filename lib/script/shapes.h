@@ -33,17 +33,23 @@ typedef struct {
     wh_real_t floor, roof; /* from the first slot's plane down, from the last one's up, to the inside */
 } wh_shell_t;
 
+/* A prealigner's chuck, the wafer lying on its upper side, and the body below it. mm. */
+typedef struct {
+    wh_real_t radius, height;
+    wh_real_t body; /* radius of the body, which begins 1 mm below the chuck */
+} wh_spindle_t;
+
 /* What stands where slots are. */
 typedef enum { WH_STAND_LEDGES, WH_STAND_FOUP, WH_STAND_CHUCK, WH_STAND_NOTHING } wh_stand_t;
 
 typedef struct {
     wh_real_t wafer_radius, wafer_thickness;
-    wh_real_t scale;  /* wafer diameter / 300 */
     wh_real_t lowest; /* of the robot's Z travel */
     wh_arm_t arm;
     wh_blade_t blade;
     wh_ledge_t ledge;
     wh_shell_t shell;
+    wh_spindle_t chuck;
 } wh_shapes_t;
 
 /* Parts with their names, being collected. */

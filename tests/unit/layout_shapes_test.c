@@ -140,7 +140,8 @@ static void test_own_sizes(void **state) {
         CELL "collision = true, clearance = { blade_wafer_above = 1.5 }, "
              "shapes = { blade = { thickness = 2, half_width = 60, finger = 20, length = 90, palm = 70 }, "
              "ledge = { inner = 130, outer = 160, thickness = 3, length = 20 }, "
-             "foup = { room = 10, wall = 2, floor = 30, roof = 40 }, "
+             "foup = { room = 10, wall = 2, floor = 30, roof = 40 }, chuck = { radius = 30, height = 12, "
+             "body = 100 }, "
              "arm = { reach = 200, link = 400, right_handed = true } }");
     assert_true(layout->collision);
     assert_near(layout->world.limits[WH_CLEARANCE_BLADE_WAFER_ABOVE], 1.5, 0);
@@ -149,6 +150,8 @@ static void test_own_sizes(void **state) {
     expect_box(layout, "EE neck", -200, -70, -30, 30, -2, 0);
     expect_box(layout, "F ledge 1 right", 750, 770, -160, -130, 897, 900);
     expect_box(layout, "F roof", 600, 922, -162, 162, 1180, 1182);
+    expect_cylinder(layout, "PA chuck", 30, -12, 0);
+    expect_cylinder(layout, "P body", 100, 950 - 220, 950 - 13);
     assert_near(layout->world.arm.link, 400, 0);
     assert_true(layout->world.arm.right_handed);
 }
@@ -273,6 +276,8 @@ static void test_bad_shapes(void **state) {
                    "cell.lua: shapes.ledge.inner: 152 (expected a number");
     expect_refused(CELL "shapes = { arm = { elbow = 1 } }",
                    "cell.lua: shapes.arm.elbow: 1 (expected one of the fields");
+    expect_refused(CELL "shapes = { chuck = { radius = 0 } }",
+                   "cell.lua: shapes.chuck.radius: 0 (expected a number from 1 to 500)");
     expect_refused(CELL "shapes = { tail = {} }", "cell.lua: shapes.tail: ");
     expect_refused(CELL "clearance = { blade_wafer = 1 }",
                    "cell.lua: clearance.blade_wafer: 1 (expected one of the fields");

@@ -129,6 +129,9 @@ static json_t *shapes(writer_t *writer) {
         {"foup", "wall", from->shell.wall},
         {"foup", "floor", from->shell.floor},
         {"foup", "roof", from->shell.roof},
+        {"chuck", "radius", from->chuck.radius},
+        {"chuck", "height", from->chuck.height},
+        {"chuck", "body", from->chuck.body},
     };
     json_t *object = json_object();
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; ++i) {

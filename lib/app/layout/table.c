@@ -161,6 +161,10 @@ static int print_shapes(const wh_listing_t *listing) {
     wh_grid_text(grid, 1, WH_INK_PLAIN,
                  "walls of %g, %g from the wafer; floor %g below, roof %g above the slots",
                  (double)s->shell.wall, (double)s->shell.room, (double)s->shell.floor, (double)s->shell.roof);
+    wh_grid_row(grid);
+    wh_grid_text(grid, 0, WH_INK_PLAIN, "chuck");
+    wh_grid_text(grid, 1, WH_INK_PLAIN, "radius %g, %g high; a body of radius %g below it",
+                 (double)s->chuck.radius, (double)s->chuck.height, (double)s->chuck.body);
     return wh_listing_finish(listing, "Shapes, mm", grid);
 }
 
