@@ -156,10 +156,23 @@ static bool move_wafer(wh_fault_slot_t *slot, wh_grasp_t *table) {
     return true;
 }
 
-static void put_back(const wh_fault_slot_t *slot, wh_grasp_t *table) {
+/* A fault that has moved the wafer on will put it back to before both. */
+static void hand_down(const wh_fault_slot_t *slot, wh_faults_t *faults) {
+    for (size_t i = 0; i < faults->count; ++i) {
+        wh_fault_slot_t *later = &faults->slots[i];
+        if (later != slot && later->phase == WH_FAULT_ACTING && wh_fault_is_of_wafer(later->fault.kind) &&
+            later->fault.target == slot->fault.target && is_same_pose(&later->before, &slot->placed)) {
+            later->before = slot->before;
+        }
+    }
+}
+
+static void put_back(const wh_fault_slot_t *slot, wh_faults_t *faults, wh_grasp_t *table) {
     const wh_wafer_t *wafer = &table->storage.wafers[slot->fault.target];
     if (wafer->holder == WH_NONE && is_same_pose(&wafer->base_from_wafer, &slot->placed)) {
         (void)wh_grasp_place(table, (size_t)slot->fault.target, &slot->before);
+    } else {
+        hand_down(slot, faults);
     }
 }
 
@@ -173,10 +186,10 @@ static bool begin(wh_fault_slot_t *slot, wh_grasp_t *table) {
 }
 
 /* Whether it acted until now. */
-static bool end(wh_fault_slot_t *slot, wh_grasp_t *table) {
+static bool end(wh_fault_slot_t *slot, wh_faults_t *faults, wh_grasp_t *table) {
     const bool acted = slot->phase == WH_FAULT_ACTING;
     if (acted && wh_fault_is_of_wafer(slot->fault.kind)) {
-        put_back(slot, table);
+        put_back(slot, faults, table);
     }
     slot->phase = WH_FAULT_OVER;
     return acted;
@@ -188,7 +201,7 @@ wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int
         wh_fault_slot_t *slot = &faults->slots[i];
         const bool alive = slot->phase == WH_FAULT_WAITING || slot->phase == WH_FAULT_ACTING;
         if (alive && seq >= slot->fault.until) {
-            changes.cleared |= end(slot, table) ? 1U << i : 0U;
+            changes.cleared |= end(slot, faults, table) ? 1U << i : 0U;
         } else if (slot->phase == WH_FAULT_WAITING && seq >= slot->fault.from) {
             changes.armed |= begin(slot, table) ? 1U << i : 0U;
         }

@@ -16,8 +16,9 @@
  *
  * A wafer that is held when its fault should begin is left to its gripper: the fault begins in the first slice
  * after which nobody held it. When the fault ends, the wafer goes back to where it was, unless it is held or was moved
- * meanwhile. What a command says must be valid also where a fault overrules it. In the first slice of a
- * run nothing was before: there a valve stuck is closed, and axes move.
+ * meanwhile; where another fault has moved it on, it goes back to where it was before both when that one ends. What a
+ * command says must be valid also where a fault overrules it. In the first slice of a run nothing was before: there a
+ * valve stuck is closed, and axes move.
  *
  * No heap; a wh_faults_t is a plain struct.
  */

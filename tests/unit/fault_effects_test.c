@@ -197,6 +197,30 @@ static void test_a_wafer_that_was_taken_is_not_put_back(void **state) {
     assert_true(answer.wafers[1].base_from_wafer.r.z == 813);
 }
 
+/* Of two faults of one wafer the first may end first, or both at once: in the end it lies where it lay before both. */
+static void test_two_faults_of_one_wafer(void **state) {
+    (void)state;
+    for (int together = 0; together < 2; ++together) {
+        wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
+        f.offset = wh_test_at(3, 0, 0);
+        bring(0, &f);
+        step(880, CLOSED);
+        f = fault_of(WH_FAULT_WAFER_TILTED, 0);
+        f.offset.R = wh_test_rotation(1, 0, 0, 0.1);
+        bring(1, &f);
+        step(880, CLOSED);
+        clear_slot(0);
+        if (together == 0) {
+            step(880, CLOSED);
+            assert_true(answer.wafers[0].base_from_wafer.r.x == 703);
+        }
+        clear_slot(1);
+        step(880, CLOSED);
+        assert_true(answer.wafers[0].base_from_wafer.r.x == 700);
+        assert_true(answer.wafers[0].base_from_wafer.R.m[2][1] == 0);
+    }
+}
+
 static void test_a_held_wafer_is_waited_for(void **state) {
     (void)state;
     pick();
@@ -225,6 +249,7 @@ int main(void) {
         cmocka_unit_test_setup(test_a_turn_that_just_passes_is_mended, set_up),
         cmocka_unit_test_setup(test_doubled_is_onto_the_other, set_up),
         cmocka_unit_test_setup(test_a_wafer_that_was_taken_is_not_put_back, set_up),
+        cmocka_unit_test_setup(test_two_faults_of_one_wafer, set_up),
         cmocka_unit_test_setup(test_a_held_wafer_is_waited_for, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
