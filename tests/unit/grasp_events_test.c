@@ -310,11 +310,29 @@ static void the_second_of_two_contests(void **state) {
 
 static void events_have_names(void **state) {
     (void)state;
-    const char *names[] = {"picked",    "released",  "handed_over",          "near_miss",
-                           "contested", "bad_input", "released_unsupported", "slot_occupied"};
-    for (int kind = 0; kind < 8; ++kind) {
+    static const char *const names[] = {"picked",
+                                        "released",
+                                        "handed_over",
+                                        "near_miss",
+                                        "contested",
+                                        "bad_input",
+                                        "released_unsupported",
+                                        "slot_occupied",
+                                        "placed_off_centre",
+                                        "placed_askew",
+                                        "settled",
+                                        "hit",
+                                        "undecided",
+                                        "too_close",
+                                        "slipped",
+                                        "vacuum_lost",
+                                        "fault_armed",
+                                        "fault_cleared"};
+    assert_int_equal(sizeof names / sizeof names[0], WH_EVENT_KINDS);
+    for (int kind = 0; kind < WH_EVENT_KINDS; ++kind) {
         assert_string_equal(wh_event_name((wh_event_kind_t)kind), names[kind]);
     }
+    assert_string_equal(wh_event_name((wh_event_kind_t)WH_EVENT_KINDS), "unknown");
     assert_string_equal(wh_event_name((wh_event_kind_t)99), "unknown");
 }
 

@@ -156,6 +156,28 @@ static void without_buckets_every_slice_is_looked_at(void **state) {
     cell_expect_held(&cell, 1, 1);
 }
 
+/* The holder lets go where nobody is, and the gripper that contested the wafer is far away from all wafers, and has found
+ * that out: it hears of the end of its contest all the same. */
+static void a_contest_ends_though_nothing_rests_near(void **state) {
+    (void)state;
+    fixture_t fixture;
+    cell_t *cell = &fixture.cell;
+    begin(&fixture, WH_CHECK_SAMPLED);
+    cell_move(cell, 0, 0, 0, 0, OPEN);
+    cell_expect_held(cell, 0, 0);
+    cell_move(cell, 1, 0, 0, 0, OPEN);
+    assert_int_equal(cell->gripper[1].contest.wafer, 0);
+    cell_set(cell, 0, 0, 0, 50, CLOSED);
+    cell_move(cell, 1, 1000, 500, -500, OPEN);
+    assert_true(wh_horizon_holds(&cell->table, 1));
+    assert_non_null(cell_event(cell, WH_EVENT_RELEASED));
+    const wh_event_t *e = cell_event(cell, WH_EVENT_CONTESTED);
+    assert_non_null(e);
+    assert_int_equal(e->gripper, 1);
+    assert_int_equal(e->other, 0);
+    assert_int_equal(cell->gripper[1].contest.wafer, WH_NONE);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(within_the_horizon_nothing_is_looked_at),
@@ -165,6 +187,7 @@ int main(void) {
         cmocka_unit_test(others_may_have_something_to_tell),
         cmocka_unit_test(one_look_is_enough),
         cmocka_unit_test(without_buckets_every_slice_is_looked_at),
+        cmocka_unit_test(a_contest_ends_though_nothing_rests_near),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,6 +55,14 @@ static void test_ranges(void **state) {
     }
 }
 
+static void test_the_ends_of_the_ranges(void **state) {
+    (void)state;
+    const wh_pads_t most = {100, WH_REAL(1e6), 1000, 1000};
+    const wh_pads_t least = {0, 0, WH_REAL(1e-6), 0};
+    assert_int_equal(wh_pads_validate(&most), WH_OK);
+    assert_int_equal(wh_pads_validate(&least), WH_OK);
+}
+
 /* Level, without vacuum: mu g. With: mu (g + F / m). */
 static void test_the_limit_on_the_level(void **state) {
     (void)state;
@@ -93,6 +101,34 @@ static void test_down_faster_than_gravity_and_vacuum(void **state) {
         assert_true(hold.slips == (side > 0));
         assert_true(hold.asked > hold.carried || side < 0);
     }
+}
+
+/* What is asked for and what carries are the same number. */
+static void test_at_the_limit_it_holds(void **state) {
+    (void)state;
+    pads.friction = 1;
+    pads.gravity = 8;
+    const wh_vec3_t acceleration = wh_vec3(8000, 0, 0);
+    const wh_hold_t hold = wh_hold_judge(&pads, 0, &level_pads, &acceleration);
+    assert_near(hold.asked, 8000, 0);
+    assert_near(hold.carried, 8000, 0);
+    assert_false(hold.slips);
+}
+
+/* Nothing presses the wafer on the pads: friction carries nothing. A little less, and the wafer is torn off. */
+static void test_without_pressure_friction_carries_nothing(void **state) {
+    (void)state;
+    pads.force = pads.gravity = 0;
+    const wh_vec3_t aside = wh_vec3(3, 4, 0);
+    const wh_hold_t slid = wh_hold_judge(&pads, 1, &level_pads, &aside);
+    assert_true(slid.slips);
+    assert_near(slid.asked, 5, 0);
+    assert_near(slid.carried, 0, 0);
+    const wh_vec3_t down = wh_vec3(3, 4, WH_REAL(-0.5));
+    const wh_hold_t torn = wh_hold_judge(&pads, 1, &level_pads, &down);
+    assert_true(torn.slips);
+    assert_near(torn.asked, 0.5, 0);
+    assert_near(torn.carried, 0, 0);
 }
 
 static void test_the_formula_in_any_frame(void **state) {
@@ -152,6 +188,24 @@ static void test_the_first_two_slices_are_not_judged(void **state) {
     assert_true(carry.slips);
 }
 
+/* Along each axis of base a centre that goes 0, 1, 4 mm in quarters of a second gains 2 mm: 32 mm/s^2. */
+static void test_acceleration_along_each_axis(void **state) {
+    (void)state;
+    static const wh_vec3_t along[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const wh_vec3_t expected = wh_vec3_scale(32, &along[axis]);
+        const wh_hold_t judged = wh_hold_judge(&pads, 1, &level_pads, &expected);
+        wh_hold_t hold;
+        memset(&carry, 0, sizeof carry);
+        for (int n = 0; n < 3; ++n) {
+            const wh_vec3_t centre = wh_vec3_scale((wh_real_t)(n * n), &along[axis]);
+            (void)wh_carry_update(&carry, &pads, 1, &level_pads, &centre, WH_REAL(0.25), &hold);
+        }
+        assert_near(hold.asked, judged.asked, 0);
+        assert_near(hold.carried, judged.carried, 0);
+    }
+}
+
 static void test_each_excursion_is_told_once(void **state) {
     (void)state;
     const double x[] = {0, 0, 0, 100, 300, 600, 900, 1200, 1500, 1700};
@@ -169,7 +223,11 @@ static void test_without_a_wafer_nothing_is_known(void **state) {
     wh_hold_t hold;
     run(1e9, 5);
     assert_false(wh_carry_update(&carry, &pads, 1, &level_pads, NULL, DT, &hold));
-    assert_true(carry.known == 0 && !carry.slips && carry.before[0].y == 0 && carry.before[1].y == 0);
+    assert_true(carry.known == 0 && !carry.slips);
+    for (size_t i = 0; i < 2; ++i) {
+        const wh_vec3_t *before = &carry.before[i];
+        assert_true(before->x == 0 && before->y == 0 && before->z == 0);
+    }
     assert_true(hold.asked == 0 && hold.carried == 0 && !hold.slips);
 }
 
@@ -177,12 +235,16 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_the_mass_of_silicon, set_up),
         cmocka_unit_test_setup(test_ranges, set_up),
+        cmocka_unit_test_setup(test_the_ends_of_the_ranges, set_up),
         cmocka_unit_test_setup(test_the_limit_on_the_level, set_up),
         cmocka_unit_test_setup(test_a_tilted_gripper_at_rest, set_up),
         cmocka_unit_test_setup(test_down_faster_than_gravity_and_vacuum, set_up),
+        cmocka_unit_test_setup(test_at_the_limit_it_holds, set_up),
+        cmocka_unit_test_setup(test_without_pressure_friction_carries_nothing, set_up),
         cmocka_unit_test_setup(test_the_formula_in_any_frame, set_up),
         cmocka_unit_test_setup(test_a_run_of_constant_acceleration, set_up),
         cmocka_unit_test_setup(test_the_first_two_slices_are_not_judged, set_up),
+        cmocka_unit_test_setup(test_acceleration_along_each_axis, set_up),
         cmocka_unit_test_setup(test_each_excursion_is_told_once, set_up),
         cmocka_unit_test_setup(test_without_a_wafer_nothing_is_known, set_up),
     };

@@ -252,9 +252,12 @@ static void test_limits_of_placing(void **state) {
     assert_int_equal(judge(&scene), 2);
     assert_int_equal(scene.events[2].kind, WH_EVENT_PLACED_ASKEW);
     assert_near(scene.events[2].value, wh_rad_from_deg(1), 64 * WH_TEST_ROUNDING);
+    for (int none = -1; none <= 0; ++none) {
+        cell.off_centre = cell.askew = (wh_real_t)none;
+        let_go(&scene, &tilted);
+        assert_int_equal(judge(&scene), 0);
+    }
     cell.off_centre = cell.askew = 0;
-    let_go(&scene, &tilted);
-    assert_int_equal(judge(&scene), 0);
 }
 
 static void test_a_full_list_takes_no_more(void **state) {
@@ -334,6 +337,33 @@ static void test_what_does_not_settle(void **state) {
     assert_int_equal(scene.list.count, 1);
 }
 
+/* Each release of a list, and none that stands beyond its end. */
+static void test_each_release_settles_in_turn(void **state) {
+    (void)state;
+    scene_t scene;
+    cell.settle = true;
+    const wh_pose_t nowhere = wh_test_at(300, 300, 900);
+    let_go(&scene, &nowhere);
+    for (int w = 1; w < WAFERS; ++w) {
+        scene.wafers[w].base_from_wafer = wh_test_at(700, 0, 900.25 + 10 * w);
+        scene.events[w] = scene.events[0];
+        scene.events[w].wafer = w;
+    }
+    scene.list.count = 2;
+    wh_cell_settle(&cell, &scene.table, &scene.list);
+    assert_int_equal(scene.list.count, 3);
+    assert_near(scene.wafers[1].base_from_wafer.r.z, 910, 4096 * WH_TEST_ROUNDING);
+    assert_near(scene.wafers[2].base_from_wafer.r.z, 920.25, 0);
+    let_go(&scene, &nowhere);
+    scene.wafers[2].base_from_wafer = wh_test_at(700, 0, 920.25);
+    scene.events[1] = scene.events[0];
+    scene.events[1].wafer = 2;
+    wh_cell_settle(&cell, &scene.table, &scene.list);
+    assert_int_equal(scene.list.count, 1);
+    assert_near(scene.wafers[2].base_from_wafer.r.z, 920.25, 0);
+    cell.settle = false;
+}
+
 /* It comes to lie even where nothing more can be said; and what a gripper holds stays in its hand. */
 static void test_settling_without_room_or_while_held(void **state) {
     (void)state;
@@ -370,6 +400,7 @@ int main(void) {
         cmocka_unit_test_setup(test_a_full_list_takes_no_more, set_up),
         cmocka_unit_test_setup(test_a_wafer_comes_to_lie_on_its_slot, set_up),
         cmocka_unit_test_setup(test_what_does_not_settle, set_up),
+        cmocka_unit_test_setup(test_each_release_settles_in_turn, set_up),
         cmocka_unit_test_setup(test_settling_without_room_or_while_held, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -298,7 +298,8 @@ static void test_the_slightest_tilt_shows(void **state) {
 /* Each gripper comes to the point, with its own x along the heading; the plain one by the robot's own inverse. */
 static void test_the_inverse_brings_each_gripper_there(void **state) {
     (void)state;
-    const wh_machine_t machine = machine_with_two_blades();
+    wh_machine_t machine = machine_with_two_blades();
+    machine.mounts[1].effector_from_gripper.R = wh_mat3_from_rpy_deg(0, 0, 170);
     const wh_vec3_t at = wh_vec3(350, -420, 1015);
     for (int turn = -3; turn <= 3; ++turn) {
         const wh_real_t heading = WH_REAL(0.9) * (wh_real_t)turn;

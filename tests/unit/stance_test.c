@@ -101,6 +101,18 @@ static void test_what_stands_still_is_not_written(void **state) {
     }
 }
 
+/* What stands beyond the axes in use is none of them. */
+static void test_the_axes_beyond_the_last_are_left_alone(void **state) {
+    (void)state;
+    wh_real_t axes[AXES + 1] = {0, 300, 900, 0, 0, 0, 7};
+    stance.axes[AXES] = 5;
+    follow(axes);
+    axes[WH_AXIS_R] = 310;
+    follow(axes);
+    assert_near(stance.axes[AXES], 5, 0);
+    assert_near(stance.axes[AXES - 1], 0, 0);
+}
+
 /* A command that follows a track says what the track says, and keeps the faults that it is to bring. */
 static void test_a_command_follows_a_track(void **state) {
     wh_track_t track;
@@ -140,6 +152,7 @@ int main(void) {
         cmocka_unit_test_setup(test_the_poses_are_the_machines, set_up),
         cmocka_unit_test_setup(test_the_bits_decide, set_up),
         cmocka_unit_test_setup(test_what_stands_still_is_not_written, set_up),
+        cmocka_unit_test_setup(test_the_axes_beyond_the_last_are_left_alone, set_up),
         cmocka_unit_test_setup(test_a_command_follows_a_track, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -215,6 +215,33 @@ static void atan2_is_near_the_oracle_far_out(void **state) {
     }
 }
 
+#if !defined(WH_FLOAT)
+/* Angles so close to the middle between two numbers that the last digits of the constants say which is nearer: about
+ * the centres 1/4 to 1, and beside the axes. The right one of the two was found with 120 digits. */
+static void atan2_rounds_the_right_way_at_its_hardest(void **state) {
+    (void)state;
+    static const struct {
+        double y, x, angle;
+    } rows[] = {
+        {0x1.71fabcd27282cp-2, 0x1.86f5dc893bde4p+0, 0x1.dbc68747e64bap-3},
+        {0x1.cfd380730acc6p-2, 0x1.e9fa9ab93147cp+0, 0x1.dbea837f7e7c5p-3},
+        {0x1.f6e7c225ac9ap-1, 0x1.f6e7c225ac9d1p+0, 0x1.dac670561bb28p-2},
+        {0x1.9b1914041034fp-1, 0x1.9b19140410368p+0, 0x1.dac670561bb37p-2},
+        {0x1.fc7346a6f0c99p+0, 0x1.fc7346a6f0ce8p+0, 0x1.921fb54442cf1p-1},
+        {0x1.cf65d236eee51p+0, 0x1.cf65d236eee99p+0, 0x1.921fb54442cf1p-1},
+        {1, 0x1.8d313198a224cp-53, 0x1.921fb54442d18p+0},
+        {1, 0x1.8d313198a2e01p-53, 0x1.921fb54442d18p+0},
+        {1, -0x1.cb3b399d747e3p-55, 0x1.921fb54442d18p+0},
+        {0x1.8d313198a224cp-52, -1, 0x1.921fb54442d18p+1},
+        {0x1.8d313198a2e01p-52, -1, 0x1.921fb54442d18p+1},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        assert_same_bits(wh_atan2(rows[i].y, rows[i].x), rows[i].angle);
+        assert_same_bits(wh_atan2(-rows[i].y, rows[i].x), -rows[i].angle);
+    }
+}
+#endif
+
 /* C99, F.9.1.4: the C library gives these to the letter. */
 static void atan2_has_the_special_values_of_c99(void **state) {
     (void)state;
@@ -359,6 +386,9 @@ int main(void) {
         cmocka_unit_test(atan2_is_near_the_oracle),
         cmocka_unit_test(atan2_takes_every_magnitude),
         cmocka_unit_test(atan2_is_near_the_oracle_far_out),
+#if !defined(WH_FLOAT)
+        cmocka_unit_test(atan2_rounds_the_right_way_at_its_hardest),
+#endif
         cmocka_unit_test(atan2_has_the_special_values_of_c99),
         cmocka_unit_test(cbrt_is_near_the_oracle),
         cmocka_unit_test(cbrt_of_cubes_and_special_values),
