@@ -34,6 +34,44 @@ static void test_leak(void **state) {
     assert_int_equal(answer.grippers[0].wafer, 0);
 }
 
+/* Each gripper has its own faults. */
+static void test_a_neighbours_faults_do_not_count(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_LEAK, 1);
+    bring(0, &f);
+    f = fault_of(WH_FAULT_SLOW_VACUUM, 1);
+    f.value = 2;
+    bring(1, &f);
+    pick();
+    assert_int_equal(answer.sensors, 1);
+    assert_true(answer.condition->vacuum[0].level == 1);
+    bring_kind(WH_FAULT_NO_VACUUM, 1);
+    command.faults[0].index = 2;
+    step(900, OPEN);
+    assert_int_equal(answer.sensors, 1);
+}
+
+/* Until it begins, and when it is over, commands and sensors go through. */
+static void test_only_while_it_acts(void **state) {
+    static const wh_fault_kind_t kinds[] = {WH_FAULT_AXIS_STOPPED, WH_FAULT_COMMAND_LOST,
+                                            WH_FAULT_VALVE_STUCK, WH_FAULT_SENSOR_ON};
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {
+        set_up(state);
+        wh_fault_t f = fault_of(kinds[i], kinds[i] == WH_FAULT_COMMAND_LOST ? WH_NONE : 0);
+        f.from = 4;
+        f.until = 5;
+        bring(0, &f);
+        for (int slice = 1; slice <= 6; ++slice) {
+            const double z = 880 + slice;
+            const int valve = slice % 2 == 0 ? OPEN : CLOSED;
+            step(z, valve);
+            const bool through = grippers[0].base_from_gripper.r.z == (wh_real_t)z &&
+                                 grippers[0].valve == valve && answer.sensors == 0;
+            assert_int_equal(through, slice != 4);
+        }
+    }
+}
+
 /* The worst of several counts. */
 static void test_several_at_one_gripper(void **state) {
     (void)state;
@@ -221,6 +259,24 @@ static void test_two_faults_of_one_wafer(void **state) {
     }
 }
 
+/* Taken where the fault had put it, it is the gripper's, though it has not moved since. */
+static void test_a_wafer_that_is_held_in_its_place_is_not_put_back(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
+    f.offset = wh_test_at(7, 0, 0);
+    bring(0, &f);
+    pick();
+    const wh_pose_t placed = simulator.condition.faults.slots[0].placed;
+    assert_memory_equal(&wafers[0].base_from_wafer, &placed, sizeof placed);
+    f.until = command.seq + 1;
+    bring(0, &f);
+    step(900, OPEN);
+    expect_event(WH_EVENT_FAULT_CLEARED, 0, WH_NONE, 0);
+    assert_memory_equal(&wafers[0].base_from_wafer, &placed, sizeof placed);
+    assert_int_equal(wafers[0].holder, 0);
+    assert_int_equal(simulator.table.counters.refused, 0);
+}
+
 static void test_a_held_wafer_is_waited_for(void **state) {
     (void)state;
     pick();
@@ -239,6 +295,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_no_vacuum, set_up),
         cmocka_unit_test_setup(test_leak, set_up),
+        cmocka_unit_test_setup(test_a_neighbours_faults_do_not_count, set_up),
+        cmocka_unit_test_setup(test_only_while_it_acts, set_up),
         cmocka_unit_test_setup(test_several_at_one_gripper, set_up),
         cmocka_unit_test_setup(test_sensor_off, set_up),
         cmocka_unit_test_setup(test_a_valve_stuck, set_up),
@@ -250,6 +308,7 @@ int main(void) {
         cmocka_unit_test_setup(test_doubled_is_onto_the_other, set_up),
         cmocka_unit_test_setup(test_a_wafer_that_was_taken_is_not_put_back, set_up),
         cmocka_unit_test_setup(test_two_faults_of_one_wafer, set_up),
+        cmocka_unit_test_setup(test_a_wafer_that_is_held_in_its_place_is_not_put_back, set_up),
         cmocka_unit_test_setup(test_a_held_wafer_is_waited_for, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

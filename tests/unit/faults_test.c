@@ -74,6 +74,20 @@ static void test_values_have_their_ranges(void **state) {
     }
 }
 
+static void test_the_ends_of_the_ranges(void **state) {
+    static const struct {
+        wh_fault_kind_t kind;
+        double value;
+    } cases[] = {
+        {WH_FAULT_LEAK, 0}, {WH_FAULT_LEAK, 1}, {WH_FAULT_SLOW_VACUUM, 0}, {WH_FAULT_SLOW_VACUUM, 3600}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        wh_fault_t f = fault_of(cases[i].kind, 0);
+        f.value = (wh_real_t)cases[i].value;
+        assert_int_equal(wh_fault_validate(&f, GRIPPERS, WAFERS), WH_OK);
+    }
+}
+
 /* Where numbers end, too, a wafer that faults move stays where a table can have it. */
 static void test_no_offset_takes_a_wafer_out_of_the_numbers(void **state) {
     (void)state;
@@ -175,6 +189,41 @@ static void test_a_fault_acts_from_and_until(void **state) {
     }
 }
 
+/* Told late that it was to end long ago, it ends now. */
+static void test_an_end_that_has_passed(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 1);
+    bring(0, &f);
+    for (int slice = 1; slice <= 4; ++slice) {
+        step(880, CLOSED);
+        assert_int_equal(answer.sensors, 2);
+    }
+    f.until = 3;
+    bring(0, &f);
+    step(880, CLOSED);
+    expect_event(WH_EVENT_FAULT_CLEARED, WH_NONE, 1, 0);
+    assert_int_equal(answer.sensors, 0);
+}
+
+/* Nothing is left of the fault that a slot had before. */
+static void test_a_slot_that_is_used_again_is_new(void **state) {
+    (void)state;
+    static const wh_pose_t none;
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 1);
+    f.offset = wh_test_at(7, 0, 0);
+    f.until = 2;
+    bring(0, &f);
+    step(880, CLOSED);
+    step(880, CLOSED);
+    const wh_fault_slot_t *slot = &simulator.condition.faults.slots[0];
+    assert_int_equal(slot->phase, WH_FAULT_OVER);
+    assert_true(slot->placed.r.x > 0);
+    bring_kind(WH_FAULT_SENSOR_ON, 0);
+    step(880, CLOSED);
+    assert_memory_equal(&slot->before, &none, sizeof none);
+    assert_memory_equal(&slot->placed, &none, sizeof none);
+}
+
 /* One that is cleared before it began was never there, for whoever reads events. */
 static void test_a_fault_that_never_begins(void **state) {
     (void)state;
@@ -196,10 +245,13 @@ int main(void) {
         cmocka_unit_test_setup(test_names, set_up),
         cmocka_unit_test_setup(test_what_no_cell_can_have_is_refused, set_up),
         cmocka_unit_test_setup(test_values_have_their_ranges, set_up),
+        cmocka_unit_test_setup(test_the_ends_of_the_ranges, set_up),
         cmocka_unit_test_setup(test_no_offset_takes_a_wafer_out_of_the_numbers, set_up),
         cmocka_unit_test_setup(test_slots, set_up),
         cmocka_unit_test_setup(test_a_refused_input_brings_no_fault, set_up),
         cmocka_unit_test_setup(test_a_fault_acts_from_and_until, set_up),
+        cmocka_unit_test_setup(test_an_end_that_has_passed, set_up),
+        cmocka_unit_test_setup(test_a_slot_that_is_used_again_is_new, set_up),
         cmocka_unit_test_setup(test_a_fault_that_never_begins, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

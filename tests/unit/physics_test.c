@@ -132,6 +132,18 @@ static void test_delayed_goes_its_own_way(void **state) {
     assert_int_equal(count(WH_EVENT_VACUUM_LOST), 0);
 }
 
+/* One second, and nothing else that takes its time. */
+static void test_a_slow_pump_alone(void **state) {
+    (void)state;
+    physics.vacuum.build = 1;
+    use();
+    step(0, -1, OPEN);
+    step(0, 0, OPEN);
+    assert_int_equal(answer.grippers[0].wafer, 0);
+    assert_int_equal(answer.sensors, 0);
+    assert_true(answer.condition->vacuum[0].level < WH_REAL(0.01));
+}
+
 /* Pads that carry so much in the wafer's plane: a run along x just below and just above. */
 static void run_along(double factor, size_t slips) {
     const double limit = 0.25 * (9810 + 1000 * 5 / 0.125);
@@ -155,6 +167,11 @@ static void run_along(double factor, size_t slips) {
                 assert_true(fabs((double)event->limit - limit) < 1e-3 * limit);
                 assert_int_equal(event->wafer, 0);
                 assert_int_equal(event->gripper, 0);
+                assert_int_equal(event->other, WH_NONE);
+                assert_int_equal(event->parts[0], WH_NONE);
+                assert_int_equal(event->parts[1], WH_NONE);
+                assert_int_equal(event->slice, command.seq);
+                assert_int_equal(event->measured_slice, command.seq);
             }
         }
     }
@@ -166,6 +183,53 @@ static void test_a_wafer_that_would_slip_is_named(void **state) {
     const double margin = sizeof(wh_real_t) == 4 ? 0.2 : 1e-9;
     run_along(1 - margin, 0);
     run_along(1 + margin, 1);
+}
+
+/* All grippers take a wafer and jerk it away, in one slice the one, in another the others. */
+static void test_each_gripper_slips_for_itself(void **state) {
+    (void)state;
+    physics.pads.friction = WH_REAL(0.25);
+    physics.pads.mass = WH_REAL(0.125);
+    physics.pads.gravity = WH_REAL(9.81);
+    use();
+    for (int g = 0; g < GRIPPERS; ++g) {
+        const wh_pose_t place = wh_test_at(1000 * g, 0, 0);
+        assert_int_equal(wh_grasp_place(&simulator.table, (size_t)g, &place), WH_OK);
+    }
+    for (int jerked = 0; jerked < GRIPPERS; ++jerked) {
+        for (int slice = 0; slice < 5; ++slice) {
+            for (int g = 0; g < GRIPPERS; ++g) {
+                command.grippers[g].base_from_gripper = wh_test_at(1000 * g, 0, 0);
+                command.grippers[g].valve = OPEN;
+            }
+            command.grippers[jerked].base_from_gripper.r.x += slice == 4 ? 5 : 0;
+            ++command.seq;
+            assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+        }
+        assert_int_equal(count(WH_EVENT_SLIPPED), 1);
+        assert_int_equal(answer.events[0].gripper, jerked);
+        for (int slice = 0; slice < 5; ++slice) {
+            ++command.seq;
+            assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+        }
+    }
+}
+
+/* There a gripper seems to hold a wafer by its vacuum. */
+static void test_what_is_beyond_the_grippers_is_left_alone(void **state) {
+    (void)state;
+    physics.vacuum = wh_vacuum_delayed();
+    use();
+    simulator.table.storage.gripper_count = command.gripper_count = GRIPPERS - 1;
+    wh_vacuum_t *vacuum = &simulator.condition.vacuum[GRIPPERS - 1];
+    wh_gripper_input_t *input = &simulator.inputs[GRIPPERS - 1];
+    grippers[GRIPPERS - 1].wafer = 0;
+    vacuum->level = 1;
+    input->valve = CLOSED;
+    const wh_vacuum_t before = *vacuum;
+    step(0, -10, CLOSED);
+    assert_memory_equal(vacuum, &before, sizeof before);
+    assert_int_equal(input->valve, CLOSED);
 }
 
 /* Each fault is told, though many begin in one slice. */
@@ -255,7 +319,10 @@ int main(void) {
         cmocka_unit_test_setup(test_what_is_refused, set_up),
         cmocka_unit_test_setup(test_ideal_is_the_paper, set_up),
         cmocka_unit_test_setup(test_delayed_goes_its_own_way, set_up),
+        cmocka_unit_test_setup(test_a_slow_pump_alone, set_up),
         cmocka_unit_test_setup(test_a_wafer_that_would_slip_is_named, set_up),
+        cmocka_unit_test_setup(test_each_gripper_slips_for_itself, set_up),
+        cmocka_unit_test_setup(test_what_is_beyond_the_grippers_is_left_alone, set_up),
         cmocka_unit_test_setup(test_all_slots_at_once, set_up),
         cmocka_unit_test_setup(test_a_fault_from_the_beginning, set_up),
         cmocka_unit_test_setup(test_what_does_not_fit_is_not_told, set_up),

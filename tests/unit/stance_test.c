@@ -120,6 +120,7 @@ static void test_a_command_follows_a_track(void **state) {
     (void)state;
     memset(&command, 0, sizeof command);
     command.fault_count = 1;
+    command.grippers[GRIPPERS].valve = 7;
     assert_int_equal(wh_track_init(&track, &machine, 250), WH_OK);
     wh_segment_t segment = wh_track_blank(&track);
     segment.kind = WH_SEGMENT_AXES;
@@ -143,6 +144,7 @@ static void test_a_command_follows_a_track(void **state) {
             assert_memory_equal(&command.grippers[g].base_from_gripper, &poses[g], sizeof poses[g]);
             assert_int_equal(command.grippers[g].valve, track.valves[g]);
         }
+        assert_int_equal(command.grippers[GRIPPERS].valve, 7);
     }
     assert_true(seq > 10);
 }
