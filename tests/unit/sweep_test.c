@@ -130,22 +130,6 @@ static void the_first_wafer_on_the_way_is_taken(void **state) {
     cell_expect(&cell, WH_EVENT_PICKED, 1, 0, WH_NONE);
 }
 
-/* Wafers 1 to 3 lie in the gripper's way, but are none of the table's. */
-static void what_is_beyond_the_tables_wafers_is_not_taken(void **state) {
-    (void)state;
-    cell_t cell;
-    begin(&cell, WH_CHECK_SWEPT);
-    for (size_t w = 1; w < CELL_WAFERS; ++w) {
-        cell_place(&cell, w, 0, 500, 0);
-    }
-    cell.table.storage.wafer_count = 1;
-    cell_move(&cell, 0, 0, 500, -8, OPEN);
-    cell_move(&cell, 0, 0, 500, 8, OPEN);
-    cell_expect_nothing(&cell);
-    cell_expect_held(&cell, 0, WH_NONE);
-    assert_int_equal(cell.gripper[0].wafer, WH_NONE);
-}
-
 /* Both are entered sideways at the same instant: then the nearer in z, and of equal ones the lower index. */
 static void ties_go_to_the_nearer_then_the_lower(void **state) {
     (void)state;
@@ -295,7 +279,6 @@ int main(void) {
         cmocka_unit_test(a_turn_picks_at_the_planar_limit),
         cmocka_unit_test(a_turn_may_lead_away_before_it_leads_in),
         cmocka_unit_test(the_first_wafer_on_the_way_is_taken),
-        cmocka_unit_test(what_is_beyond_the_tables_wafers_is_not_taken),
         cmocka_unit_test(ties_go_to_the_nearer_then_the_lower),
         cmocka_unit_test(both_ends_must_be_open),
         cmocka_unit_test(the_end_is_checked_by_the_formulas),

@@ -347,6 +347,62 @@ static void test_slow_axes_are_refused(void **state) {
     }
 }
 
+/* How long the last axis takes to go so far, at 2^-17 rad/s. */
+static double slow_seconds(const wh_track_t *track, wh_real_t target) {
+    wh_limits_t limits[WH_AXES];
+    wh_real_t to[WH_AXES];
+    wh_move_t move;
+    memcpy(to, track->axes, sizeof to);
+    to[machine.axis_count - 1] = target;
+    for (size_t axis = 0; axis < machine.axis_count; ++axis) {
+        limits[axis] = *wh_machine_limits(&machine, axis);
+    }
+    assert_int_equal(wh_move_plan(&move, machine.axis_count, track->axes, to, limits), WH_OK);
+    return (double)wh_move_duration(&move);
+}
+
+/* To the last bit: the way is halved until it takes just 1e6 s. */
+static void test_a_segment_of_just_the_longest_duration(void **state) {
+    (void)state;
+    wh_track_t track = begin_track(1000);
+    machine.chuck_limits.speed = WH_REAL(0x1p-17);
+    wh_segment_t segment = blank(&track, WH_SEGMENT_AXES);
+    wh_real_t near = 7;
+    wh_real_t far = 8;
+    wh_real_t *target = &segment.target[machine.axis_count - 1];
+    for (int i = 0; i < 60 && slow_seconds(&track, near) != 1e6; ++i) {
+        *target = near + (far - near) / 2;
+        if (slow_seconds(&track, *target) > 1e6) {
+            far = *target;
+        } else {
+            near = *target;
+        }
+    }
+    assert_true(slow_seconds(&track, near) == 1e6);
+    *target = near;
+    assert_int_equal(wh_track_begin(&track, &segment), WH_OK);
+    track = begin_track(1000);
+    machine.chuck_limits.speed = WH_REAL(0x1p-17);
+    while (slow_seconds(&track, *target) <= 1e6) {
+        *target += WH_REAL(0x1p-21);
+    }
+    assert_int_equal(wh_track_begin(&track, &segment), WH_STATUS_BAD_SEGMENT);
+}
+
+/* All axes that there can be. */
+static void test_a_move_of_every_axis(void **state) {
+    (void)state;
+    wh_track_t track = begin_track(1000);
+    machine.axis_count = WH_AXES;
+    assert_int_equal(wh_track_init(&track, &machine, 1000), WH_OK);
+    wh_segment_t segment = blank(&track, WH_SEGMENT_AXES);
+    for (size_t axis = 0; axis < WH_AXES; ++axis) {
+        segment.target[axis] = track.axes[axis] + WH_REAL(0.25);
+    }
+    assert_true(play(&track, &segment) > 0);
+    assert_memory_equal(track.axes, segment.target, sizeof track.axes);
+}
+
 /* In the middle of another segment: that one goes on as if nobody had asked. */
 static void test_a_refused_segment_leaves_the_track(void **state) {
     (void)state;
@@ -402,6 +458,8 @@ int main(void) {
         cmocka_unit_test(test_a_sensor_that_is_on_takes_no_slice),
         cmocka_unit_test(test_a_wait_times_out_after_its_slices),
         cmocka_unit_test(test_slow_axes_are_refused),
+        cmocka_unit_test(test_a_segment_of_just_the_longest_duration),
+        cmocka_unit_test(test_a_move_of_every_axis),
         cmocka_unit_test(test_a_refused_segment_leaves_the_track),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,11 +18,13 @@ typedef uint32_t bits_t;
 #define DIGITS 24
 #define SMALLEST (-149)
 #define HASH UINT64_C(0x3fbbdc04a7c2a93f)
+#define EIGHTHS_HASH UINT64_C(0x71fe958f08c04564)
 #else
 typedef uint64_t bits_t;
 #define DIGITS 53
 #define SMALLEST (-1074)
 #define HASH UINT64_C(0x87de8f2510d7902a)
+#define EIGHTHS_HASH UINT64_C(0x6bb34f7a3fc583a5)
 #endif
 
 /* Where long double is no longer than the number under test, the oracle's own error comes on top. */
@@ -374,6 +376,22 @@ static void bits_are_the_same_on_every_machine(void **state) {
     assert_true(hash == HASH);
 }
 
+/* At the odd eighths of a turn the last digits of x say which quarter turn is nearer, and so how it is computed. */
+static void bits_are_the_same_between_two_quarters(void **state) {
+    (void)state;
+    const wh_real_t eighth = WH_PI / 4;
+    uint64_t hash = UINT64_C(0xCBF29CE484222325);
+    for (int n = 1; n < 20000; n += 2) {
+        wh_real_t results[2];
+        wh_sin_cos((wh_real_t)n * eighth, &results[0], &results[1]);
+        for (size_t k = 0; k < 2; ++k) {
+            hash = (hash ^ bits_of(results[k])) * UINT64_C(0x100000001B3);
+        }
+    }
+    printf("hash of 20000 results %016llx\n", (unsigned long long)hash);
+    assert_true(hash == EIGHTHS_HASH);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sin_and_cos_are_near_the_oracle),
@@ -395,6 +413,7 @@ int main(void) {
         cmocka_unit_test(rotations_turn_the_right_way),
         cmocka_unit_test(roll_pitch_and_yaw_are_about_fixed_axes),
         cmocka_unit_test(bits_are_the_same_on_every_machine),
+        cmocka_unit_test(bits_are_the_same_between_two_quarters),
     };
     (void)wh_test_seed();
     return cmocka_run_group_tests(tests, NULL, NULL);
