@@ -72,7 +72,7 @@ static void test_the_hash_covers_each_word(void **state) {
     bring_kind(WH_FAULT_WAFER_SHIFTED, 0);
     pick();
     const wh_condition_t good = simulator.condition;
-    wh_condition_t changed[CHANGES];
+    static wh_condition_t changed[CHANGES];
     for (size_t i = 0; i < CHANGES; ++i) {
         changed[i] = good;
     }
