@@ -259,6 +259,37 @@ static void test_two_faults_of_one_wafer(void **state) {
     }
 }
 
+static void shift(int32_t slot, int32_t wafer) {
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, wafer);
+    f.offset = wh_test_at(3, 0, 0);
+    bring(slot, &f);
+    step(880, CLOSED);
+}
+
+static void expect_x_after_clearing(int32_t slot, double x) {
+    clear_slot(slot);
+    step(880, CLOSED);
+    assert_true(wafers[0].base_from_wafer.r.x == WH_REAL(x));
+}
+
+/* Each hands on where it lay to the one that moved it next, and to none of the others. */
+static void test_three_faults_of_one_wafer_among_others(void **state) {
+    (void)state;
+    wh_fault_t waiting = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
+    waiting.from = 1000;
+    const wh_fault_t sensor = fault_of(WH_FAULT_SENSOR_ON, 0);
+    bring(5, &waiting);
+    bring(3, &sensor);
+    shift(2, 0);
+    shift(0, 0);
+    shift(1, 0);
+    shift(4, 1);
+    expect_x_after_clearing(0, 709);
+    expect_x_after_clearing(1, 703);
+    expect_x_after_clearing(2, 700);
+    assert_true(wafers[1].base_from_wafer.r.x == 703);
+}
+
 /* Taken where the fault had put it, it is the gripper's, though it has not moved since. */
 static void test_a_wafer_that_is_held_in_its_place_is_not_put_back(void **state) {
     (void)state;
@@ -308,6 +339,7 @@ int main(void) {
         cmocka_unit_test_setup(test_doubled_is_onto_the_other, set_up),
         cmocka_unit_test_setup(test_a_wafer_that_was_taken_is_not_put_back, set_up),
         cmocka_unit_test_setup(test_two_faults_of_one_wafer, set_up),
+        cmocka_unit_test_setup(test_three_faults_of_one_wafer_among_others, set_up),
         cmocka_unit_test_setup(test_a_wafer_that_is_held_in_its_place_is_not_put_back, set_up),
         cmocka_unit_test_setup(test_a_held_wafer_is_waited_for, set_up),
     };
