@@ -283,11 +283,31 @@ static void test_three_faults_of_one_wafer_among_others(void **state) {
     shift(2, 0);
     shift(0, 0);
     shift(1, 0);
+    /* the other wafer lies where the second one had put this one */
+    const wh_pose_t same = wh_test_at(706, 0, 900);
+    assert_int_equal(wh_grasp_place(&simulator.table, 1, &same), WH_OK);
     shift(4, 1);
     expect_x_after_clearing(0, 709);
     expect_x_after_clearing(1, 703);
     expect_x_after_clearing(2, 700);
-    assert_true(wafers[1].base_from_wafer.r.x == 703);
+    assert_true(wafers[1].base_from_wafer.r.x == 709);
+    expect_x_after_clearing(4, 700);
+    assert_true(wafers[1].base_from_wafer.r.x == 706);
+}
+
+/* The first in the slots is not the only one that acts. */
+static void test_faults_overrule_grippers_each_in_turn(void **state) {
+    (void)state;
+    step(880, CLOSED);
+    const wh_fault_t stuck = fault_of(WH_FAULT_VALVE_STUCK, 1);
+    const wh_fault_t stopped = fault_of(WH_FAULT_AXIS_STOPPED, 0);
+    bring(0, &stuck);
+    bring(1, &stopped);
+    step(880, CLOSED);
+    command.grippers[1].valve = OPEN;
+    step(890, CLOSED);
+    assert_int_equal(answer.grippers[1].valve, CLOSED);
+    assert_true(answer.grippers[0].base_from_gripper.r.z == 880);
 }
 
 /* Taken where the fault had put it, it is the gripper's, though it has not moved since. */
@@ -340,6 +360,7 @@ int main(void) {
         cmocka_unit_test_setup(test_a_wafer_that_was_taken_is_not_put_back, set_up),
         cmocka_unit_test_setup(test_two_faults_of_one_wafer, set_up),
         cmocka_unit_test_setup(test_three_faults_of_one_wafer_among_others, set_up),
+        cmocka_unit_test_setup(test_faults_overrule_grippers_each_in_turn, set_up),
         cmocka_unit_test_setup(test_a_wafer_that_is_held_in_its_place_is_not_put_back, set_up),
         cmocka_unit_test_setup(test_a_held_wafer_is_waited_for, set_up),
     };
