@@ -1,5 +1,5 @@
-/* Counts what the whole program asks of the heap: malloc and its kin are replaced by ones that count. Include it in one
- * file of a test and run its own test too. Where sanitizers have their own malloc, or another C library other names, nothing is counted and
+/* Counts what the whole program asks of the heap: malloc and its kin are replaced by ones that count, or sanitizers say what theirs
+ * do. Include it in one file of a test and run its own test too. Where another C library has other names, nothing is counted and
  * WH_TEST_COUNTS_HEAP is not defined. */
 #ifndef WH_TESTS_SUPPORT_HEAP_H
 #define WH_TESTS_SUPPORT_HEAP_H
@@ -15,36 +15,57 @@
 #define WH_TEST_SANITIZED
 #endif
 
-#if defined(__GLIBC__) && !defined(WH_TEST_SANITIZED)
+#if defined(WH_TEST_SANITIZED) || defined(__GLIBC__)
 #define WH_TEST_COUNTS_HEAP
+static volatile unsigned long calls; /* compilers take it that malloc changes none of ours */
+#endif
 
-static unsigned long calls;
+#if defined(WH_TEST_SANITIZED)
+int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(const volatile void *memory, size_t size),
+                                              void (*free_hook)(const volatile void *memory));
 
+static void count_malloc(const volatile void *memory, size_t size) {
+    (void)memory;
+    (void)size;
+    calls = calls + 1;
+}
+
+static void count_free(const volatile void *memory) {
+    (void)memory;
+    calls = calls + 1;
+}
+
+__attribute__((constructor)) static void count_what_sanitizers_do(void) {
+    (void)__sanitizer_install_malloc_and_free_hooks(count_malloc, count_free);
+}
+#elif defined(__GLIBC__)
 void *__libc_malloc(size_t size);
 void *__libc_calloc(size_t count, size_t size);
 void *__libc_realloc(void *memory, size_t size);
 void __libc_free(void *memory);
 
 void *malloc(size_t size) {
-    ++calls;
+    calls = calls + 1;
     return __libc_malloc(size);
 }
 
 void *calloc(size_t count, size_t size) {
-    ++calls;
+    calls = calls + 1;
     return __libc_calloc(count, size);
 }
 
 void *realloc(void *memory, size_t size) {
-    ++calls;
+    calls = calls + 1;
     return __libc_realloc(memory, size);
 }
 
 void free(void *memory) {
-    ++calls;
+    calls = calls + 1;
     __libc_free(memory);
 }
+#endif
 
+#if defined(WH_TEST_COUNTS_HEAP)
 /* The count would show it. */
 static void the_count_counts(void **state) {
     (void)state;
