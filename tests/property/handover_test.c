@@ -3,7 +3,7 @@
 
 #include "script/run.h"
 
-#define TRANSFERS 750
+#define TRANSFERS (750 / WH_TEST_SHARE)
 
 /* The margin to eps_projz that a hand-over leaves at least, mm. */
 #define LEAST_MARGIN 0.2

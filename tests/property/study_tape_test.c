@@ -6,7 +6,7 @@
 #include "app/study/trial.h"
 #include "support.h"
 
-enum { TRIALS = 150 };
+enum { TRIALS = 150 / WH_TEST_SHARE };
 
 typedef struct {
     wh_tally_t replayed, whole;
@@ -74,31 +74,31 @@ static void compare(const char *script, const char *const parameters[], size_t p
 
 static void picks_and_handovers(void **state) {
     (void)state;
-    compare(RETRY, NULL, 0, 95, 145);
+    compare(RETRY, NULL, 0, TRIALS * 19 / 30, TRIALS * 29 / 30);
 }
 
 static void between_slices(void **state) {
     (void)state;
     static const char *const parameters[] = {"check=swept", "seat=true"};
-    compare(RETRY, parameters, 2, 95, 145);
+    compare(RETRY, parameters, 2, TRIALS * 19 / 30, TRIALS * 29 / 30);
 }
 
 static void delayed_vacuum(void **state) {
     (void)state;
     static const char *const parameters[] = {"vacuum=delayed", "settle=true"};
-    compare(RETRY, parameters, 2, 95, 145);
+    compare(RETRY, parameters, 2, TRIALS * 19 / 30, TRIALS * 29 / 30);
 }
 
 /* Where motion control waits for a sensor its slices shift: most trials cannot be replayed, and are not. */
 static void late_valves_and_vacuum(void **state) {
     (void)state;
     static const char *const parameters[] = {"valve=0.002", "late=0.01", "z=0.3"};
-    compare(RETRY, parameters, 3, 0, 75);
+    compare(RETRY, parameters, 3, 0, TRIALS / 2);
 }
 
 static void an_example(void **state) {
     (void)state;
-    compare("lua/examples/07_study.lua", NULL, 0, 140, TRIALS);
+    compare("lua/examples/07_study.lua", NULL, 0, TRIALS * 14 / 15, TRIALS);
 }
 
 static void a_script_that_measures_is_never_replayed(void **state) {

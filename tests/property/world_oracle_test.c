@@ -8,7 +8,7 @@
 #include "support_pose.h"
 #include "support_random.h"
 
-enum { WAFERS = 6, FIXED = 4, PARTS = FIXED + 3, RUNS = 75, SLICES = 40, INSTANTS = 200 };
+enum { WAFERS = 6, FIXED = 4, PARTS = FIXED + 3, RUNS = 75 / WH_TEST_SHARE, SLICES = 40, INSTANTS = 200 };
 
 static uint64_t seed = 20260101;
 static wh_part_t parts[PARTS];
