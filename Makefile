@@ -56,7 +56,7 @@ test: ## every test: plain, under sanitizers, in float, and end to end
 	$(BUILD) all tests
 	$(BUILD) B=build/sanitize $(SANITIZE) tests program
 	$(BUILD) B=build/float FLOAT=1 library-tests
-	@tests/run $(END_TO_END) $(TESTS:%=build/%) $(TESTS:%=build/sanitize/%) $(LIBRARY_TESTS:%=build/float/%)
+	@tests/run $(TESTS:%=build/%) $(TESTS:%=build/sanitize/%) $(LIBRARY_TESTS:%=build/float/%) $(END_TO_END)
 
 quick: ## the plain unit and property tests alone, for while you work
 	$(NEED) run test
