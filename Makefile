@@ -1,5 +1,5 @@
-# Waferhand: the commands that people type. What is made from what stands in lib/packaging/build.mk and
-# tests/tests.mk, the checks in lib/packaging/check.mk, the packages in lib/packaging/*.packages.
+# Waferhand: the commands that people type. What is made from what stands in lib/build/build.mk and
+# tests/tests.mk, the checks in tests/check/check.mk, the packages in *.packages of lib/build and tests.
 #
 # Settings, as in `make CC=clang WERROR=1`:
 #   CC CXX CFLAGS CXXFLAGS LDFLAGS  as usual; EXTRA is appended to every compiler call
@@ -13,9 +13,9 @@
 # have two makes at work in build/.
 .NOTPARALLEL:
 
-NEED = @CC='$(CC)' lib/packaging/need
+NEED = @CC='$(CC)' lib/build/need
 JOBS = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
-BUILD = @+$(MAKE) --no-print-directory $(JOBS) -f lib/packaging/build.mk
+BUILD = @+$(MAKE) --no-print-directory $(JOBS) -f lib/build/build.mk
 
 # Invariants (WH_ASSERT) are on as well; -O1, for these builds are the slow ones.
 SANITIZE = CFLAGS='-O1 -g -DWH_DEBUG' CXXFLAGS='-O1 -g -DWH_DEBUG' \

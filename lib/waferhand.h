@@ -1,7 +1,7 @@
 /* Waferhand: pick-and-place of wafers, step by step. The one header to include; it gathers the library's parts in
  * the direction in which data flows.
  *
- *     axes --motion--> gripper poses --core--> who holds which wafer --cell--> where it lies
+ *     axes --motion--> gripper poses --grasp--> who holds which wafer --cell--> where it lies
  *
  * C99, no heap, no static state, the same bits on every machine. Link with -lwaferhand -lm.
  */
@@ -10,13 +10,25 @@
 
 /* In the order of the data flow. */
 /* clang-format off */
-#include "core/config.h"
-#include "core/status.h"
+#include "math/config.h"
+#include "math/status.h"
+#include "math/vector.h"
+#include "math/pose.h"
+#include "math/trig.h"
+#include "math/relation.h"
+#include "math/hash.h"
+#include "math/philox.h"
+#include "math/deviate.h"
 
-#include "core/vector.h"
-#include "core/pose.h"
+#include "grasp/proximity.h"
+#include "grasp/event.h"
+#include "grasp/grasp.h"
+#include "grasp/restore.h"
+#include "grasp/vacuum.h"
+#include "grasp/hold.h"
 
-#include "motion/trig.h"
+#include "batch/batch.h"
+
 #include "motion/profile.h"
 #include "motion/move.h"
 #include "motion/robot.h"
@@ -24,17 +36,7 @@
 #include "motion/machine.h"
 #include "motion/track.h"
 
-#include "core/proximity.h"
-#include "core/event.h"
-#include "core/grasp.h"
-#include "core/restore.h"
-#include "core/vacuum.h"
-#include "core/hold.h"
-#include "core/hash.h"
-
 #include "cell/station.h"
-
-#include "batch/batch.h"
 
 #include "sim/faults.h"
 #include "sim/condition.h"

@@ -1,10 +1,10 @@
-#include "app/input.h"
+#include "input.h"
 
 #include <errno.h>
 #include <poll.h>
 #include <unistd.h>
 
-#include "app/signals.h"
+#include "interrupt.h"
 
 static void call_watches(wh_input_t *input, const struct pollfd *polled, size_t count) {
     wh_signals_stop_session(input->session);

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "app/prompt/prompt.h"
+#include "prompt/prompt.h"
 
 /* Zero it to begin with. */
 typedef struct {

@@ -1,4 +1,4 @@
-#include "app/link_options.h"
+#include "link_options.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -4,7 +4,7 @@
 
 #include <signal.h>
 
-#include "link/node.h"
+#include "../link/node.h"
 
 /* Set by SIGINT and SIGTERM once wh_catch_signals was called. */
 extern volatile sig_atomic_t wh_stop_requested;

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "app/app.h"
-#include "core/config.h"
+#include "../math/config.h"
+#include "app.h"
 
 static const struct {
     const char *name, *purpose;

@@ -3,11 +3,11 @@
 #include <sys/timerfd.h>
 #include <unistd.h>
 
-#include "app/app.h"
-#include "app/mcs_link.h"
-#include "app/number.h"
-#include "app/prompt/prompt.h"
-#include "app/run.h"
+#include "../text/number.h"
+#include "app.h"
+#include "mcs_link.h"
+#include "prompt/prompt.h"
+#include "run_options.h"
 
 enum { OPTION_LAYOUT = 2000, OPTION_URL, OPTION_RECORD, OPTION_RATE, OPTION_OUTPUTS };
 

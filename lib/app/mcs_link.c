@@ -1,4 +1,4 @@
-#include "app/mcs_link.h"
+#include "mcs_link.h"
 
 #include <inttypes.h>
 #include <stdio.h>

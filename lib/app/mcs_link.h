@@ -2,8 +2,8 @@
 #ifndef WH_APP_MCS_LINK_H
 #define WH_APP_MCS_LINK_H
 
-#include "app/link_options.h"
-#include "link/control.h"
+#include "../link/mcs_process.h"
+#include "link_options.h"
 
 typedef struct {
     const char *url, *record, *outputs; /* null: the default, no record, no outputs.txt */

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "app/app.h"
-#include "app/replay_report.h"
+#include "app.h"
+#include "replay_report.h"
 
 enum { OPTION_JSON = 1000 };
 

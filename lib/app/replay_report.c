@@ -1,4 +1,4 @@
-#include "app/replay_report.h"
+#include "replay_report.h"
 
 #include <inttypes.h>
 #include <jansson.h>

@@ -2,7 +2,7 @@
 #ifndef WH_APP_REPLAY_REPORT_H
 #define WH_APP_REPLAY_REPORT_H
 
-#include "link/replay.h"
+#include "../log/replay.h"
 
 /* How the file ended. */
 typedef struct {

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/app.h"
-#include "app/number.h"
-#include "app/run.h"
-#include "report/log_run.h"
+#include "../log/log_run.h"
+#include "../text/number.h"
+#include "app.h"
+#include "run_options.h"
 
 enum { OPTION_LAYOUT = 5000, OPTION_RUN };
 

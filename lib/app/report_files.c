@@ -1,15 +1,15 @@
-#include "app/report_files.h"
+#include "report_files.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/json/record_json.h"
-#include "report/output.h"
-#include "report/page.h"
-#include "report/plots.h"
-#include "report/scene.h"
-#include "script/record.h"
+#include "../print/record_json.h"
+#include "../record/record.h"
+#include "../report/page.h"
+#include "../report/plots.h"
+#include "../text/output.h"
+#include "../view/scene.h"
 
 enum { OPTION_GLTF = 4000, OPTION_DATA, OPTION_SVG };
 

@@ -4,8 +4,8 @@
 
 #include <argp.h>
 
-#include "report/document.h"
-#include "script/mcs.h"
+#include "../mcs/mcs.h"
+#include "../report/document.h"
 
 /* Zero it to begin with: null paths are not wanted. */
 typedef struct {

@@ -1,199 +1,90 @@
-/* A script's run, for `run` and `mcs`. */
-#include "app/run.h"
+/* waferhand run SCRIPT */
+#include <stdio.h>
 
-#include <errno.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
+#include "../link/broadcast.h"
+#include "app.h"
+#include "link_options.h"
+#include "run_options.h"
 
-#include "app/app.h"
-#include "app/json/record_json.h"
-#include "app/number.h"
-#include "app/segments.h"
-#include "app/style.h"
-#include "app/table/record_table.h"
+enum { OPTION_LCM = 2000, OPTION_URL, OPTION_RECORD };
 
-enum {
-    OPTION_JSON = 1000,
-    OPTION_SEGMENTS,
-    OPTION_SET,
-    OPTION_TRUST,
-    OPTION_BUDGET,
-    OPTION_MEMORY,
-    OPTION_GANTT,
-    OPTION_MARGINS
-};
+typedef struct {
+    wh_run_arguments_t run;
+    const char *url, *record;
+    bool lcm;
+} arguments_t;
 
 static const struct argp_option options[] = {
-    {"json", OPTION_JSON, NULL, 0, "Print the result as one JSON object", 0},
-    {"gantt", OPTION_GANTT, NULL, 0, "Also print who was busy when, and what each command's time went into",
+    {"lcm", OPTION_LCM, NULL, 0, "Publish over LCM what motion control and simulator would say to each other",
      0},
-    {"margins", OPTION_MARGINS, NULL, 0,
-     "Also print how near the axes come to the ends of their travel at each station", 0},
-    {"segments", OPTION_SEGMENTS, "FILE", 0,
-     "Write the motion that was played as C source for a firmware test", 0},
-    {"set", OPTION_SET, "NAME=VALUE", 0, "Hand the script a parameter: params.NAME", 0},
-    {"trust", OPTION_TRUST, NULL, 0, "Let the script use all of Lua, files and native modules too", 0},
-    {"budget", OPTION_BUDGET, "N", 0,
-     "End the script after N steps of Lua and simulated slices (default 1e9)", 0},
-    {"memory", OPTION_MEMORY, "MIB", 0, "Let the script use so many MiB of memory (default 256)", 0},
+    {"lcm-url", OPTION_URL, "URL", 0, "Where LCM is (default " WH_NODE_URL "); goes with --lcm", 0},
+    {"record", OPTION_RECORD, "FILE", 0,
+     "Write these messages into an LCM event log; without --lcm no network is needed", 0},
     {0},
 };
 
-/* A whole number in a range, given as 1000000 or 1e6. */
-static double whole_number(const struct argp_state *state, const char *name, const char *text, double max) {
-    double value = 0;
-    if (!wh_number_read(text, 1, max, &value)) {
-        argp_error(state, "--%s: %s (expected a number from 1 to %g)", name, text, max);
-    }
-    return value;
-}
-
-/* An option without an argument; false when it is none. */
-static bool take_flag(wh_run_arguments_t *arguments, int key) {
-    switch (key) {
-    case OPTION_JSON:
-        arguments->json = true;
-        return true;
-    case OPTION_GANTT:
-        arguments->sections |= WH_TABLE_GANTT;
-        return true;
-    case OPTION_MARGINS:
-        arguments->sections |= WH_TABLE_MARGINS;
-        return true;
-    case OPTION_TRUST:
-        arguments->run.limits.trust = true;
-        return true;
-    default:
-        return false;
-    }
-}
-
 static error_t parse(int key, char *argument, struct argp_state *state) {
-    wh_run_arguments_t *arguments = state->input;
+    arguments_t *arguments = state->input;
     switch (key) {
     case ARGP_KEY_INIT:
-        state->child_inputs[0] = &arguments->files;
+        state->child_inputs[0] = &arguments->run;
         return 0;
-    case OPTION_SEGMENTS:
-        arguments->segments_path = argument;
+    case OPTION_LCM:
+        arguments->lcm = true;
         return 0;
-    case OPTION_SET:
-        arguments->parameters[arguments->run.parameter_count++] = argument;
+    case OPTION_URL:
+        arguments->url = argument;
         return 0;
-    case OPTION_BUDGET:
-        arguments->run.limits.instructions = (uint64_t)whole_number(state, "budget", argument, 1e18);
+    case OPTION_RECORD:
+        arguments->record = argument;
         return 0;
-    case OPTION_MEMORY:
-        arguments->run.limits.memory_bytes = (size_t)(whole_number(state, "memory", argument, 1e6) * 1048576);
-        return 0;
-    case ARGP_KEY_ARG:
-        if (arguments->run.script) {
-            argp_error(state, "%s: one script is enough", argument);
+    case ARGP_KEY_END:
+        if (!arguments->run.run.script) {
+            argp_error(state, "which script?");
         }
-        arguments->run.script = argument;
         return 0;
     default:
-        return take_flag(arguments, key) ? 0 : ARGP_ERR_UNKNOWN;
+        return ARGP_ERR_UNKNOWN;
     }
 }
 
-static int print_result(const wh_run_arguments_t *arguments, const wh_run_t *run) {
-    if (arguments->json) {
-        return wh_record_print_json(&run->record, stdout);
-    }
-    if (arguments->quiet) {
-        return 0;
-    }
-    const wh_style_t style = wh_style_of(stdout);
-    return wh_record_print_table_with(&run->record, stdout, &style, arguments->sections);
-}
-
-static bool write_segments(const wh_run_arguments_t *arguments, const wh_run_t *run) {
-    if (arguments->segments_path && wh_segments_write(&run->mcs, arguments->segments_path) != 0) {
-        fprintf(stderr, "%s: %s (expected a file that can be written)\n", arguments->segments_path,
-                strerror(errno));
-        return false;
-    }
-    return true;
-}
-
-static bool write_report(const wh_run_arguments_t *arguments, const wh_run_t *run, wh_trace_t *trace) {
-    const wh_run_options_t *script = &arguments->run;
-    if (!wh_report_files_wanted(&arguments->files)) {
-        return true;
-    }
-    if (!run->record.layout) {
-        fprintf(stderr, "%s: no cell (expected a script that names a layout: there is nothing to show)\n",
-                script->script);
-        return false;
-    }
-    if (!trace->layout) {
-        wh_trace_begin(trace, run->record.layout, true);
-    }
-    wh_trace_finish(trace);
-    char *command = wh_report_command(arguments->command ? arguments->command : "run", script->script,
-                                      script->parameters, script->parameter_count);
-    const wh_document_t document = {.title = script->script,
-                                    .reproduce = command,
-                                    .source = "run",
-                                    .parameters = script->parameters,
-                                    .parameter_count = script->parameter_count,
-                                    .record = &run->record,
-                                    .trace = trace};
-    const bool written = wh_report_files_write(&arguments->files, &document);
-    free(command);
-    return written;
-}
-
-static int report(const wh_run_arguments_t *arguments, const wh_run_t *run, wh_trace_t *trace,
-                  wh_run_outcome_t outcome) {
-    if (outcome == WH_RUN_BAD_INPUT) {
-        fprintf(stderr, "%s\n", run->message);
+/* With messages: published where LCM is, or within the process for the record's sake. */
+static int run_published(arguments_t *arguments) {
+    static wh_broadcast_t broadcast;
+    wh_node_t node;
+    const char *url = arguments->lcm ? arguments->url : "memq://";
+    if (!wh_open_node(&node, url, arguments->record)) {
         return WH_EXIT_USAGE;
     }
-    if (!write_segments(arguments, run) || !write_report(arguments, run, trace)) {
-        return WH_EXIT_USAGE;
+    int status = WH_EXIT_USAGE;
+    if (wh_broadcast_open(&broadcast, &node, NULL, NULL)) {
+        arguments->run.run.partners = wh_broadcast_partners(&broadcast);
+        status = wh_run_and_report(&arguments->run);
+        wh_broadcast_close(&broadcast);
     }
-    if (print_result(arguments, run) != 0 || fflush(stdout) != 0) {
-        fprintf(stderr, "standard output: %s\n", strerror(errno));
-        return WH_EXIT_USAGE;
-    }
-    /* The table ends with it; where that is not on the same screen it would be missed. */
-    if (run->record.failure && (arguments->json || !isatty(STDOUT_FILENO))) {
-        fprintf(stderr, "%s\n", run->record.failure);
-    }
-    return outcome == WH_RUN_MET ? WH_EXIT_MET : WH_EXIT_FAILED;
-}
-
-void wh_run_arguments_init(wh_run_arguments_t *arguments, int argc) {
-    arguments->parameters = calloc((size_t)argc + 1, sizeof *arguments->parameters);
-    if (!arguments->parameters) {
-        perror("waferhand");
-        exit(WH_EXIT_USAGE);
-    }
-    arguments->run.parameters = arguments->parameters;
-}
-
-void wh_run_arguments_free(wh_run_arguments_t *arguments) {
-    free(arguments->parameters);
-    arguments->parameters = NULL;
-}
-
-int wh_run_and_report(wh_run_arguments_t *arguments) {
-    wh_run_t run;
-    wh_trace_t trace = {0};
-    if (wh_report_files_wanted(&arguments->files)) {
-        arguments->run.listener = wh_report_listener(&trace);
-    }
-    arguments->run.keep_segments = arguments->segments_path != NULL;
-    arguments->run.limits.print_to = arguments->json ? stderr : stdout;
-    const wh_run_outcome_t outcome = wh_run_script(&run, &arguments->run);
-    const int status = report(arguments, &run, &trace, outcome);
-    wh_trace_close(&trace);
-    wh_run_close(&run);
+    wh_node_close(&node);
     return status;
 }
 
-static const struct argp_child children[] = {{&wh_report_files_argp, 0, NULL, 0}, {0}};
-const struct argp wh_run_argp = {options, parse, NULL, NULL, children, NULL, NULL};
+int wh_app_run(int argc, char **argv) {
+    static const struct argp_child children[] = {{&wh_run_argp, 0, NULL, 0}, {0}};
+    static const struct argp argp = {
+        options,
+        parse,
+        "SCRIPT",
+        "Plays a motion script against the simulator and prints what came of it.\v"
+        "Exit status: 0 if all expectations were met, 1 if the script's expectations or the cell failed, "
+        "2 for wrong usage or a bad input file.",
+        children,
+        NULL,
+        NULL};
+    static char name[] = "waferhand run";
+    arguments_t arguments = {0};
+    wh_run_arguments_init(&arguments.run, argc);
+    argv[0] = name;
+    argp_parse(&argp, argc, argv, 0, NULL, &arguments);
+    const bool published = arguments.lcm || arguments.record;
+    const int status = published ? run_published(&arguments) : wh_run_and_report(&arguments.run);
+    wh_run_arguments_free(&arguments.run);
+    return status;
+}

@@ -1,9 +1,9 @@
-#include "app/segments.h"
+#include "segments.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "report/output.h"
+#include "../text/output.h"
 
 static void write_numbers(FILE *out, const wh_real_t values[], size_t count) {
     fputs("{", out);

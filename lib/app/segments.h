@@ -7,7 +7,7 @@
 #ifndef WH_APP_SEGMENTS_H
 #define WH_APP_SEGMENTS_H
 
-#include "script/mcs.h"
+#include "../mcs/mcs.h"
 
 /* Writes `path` anew, by way of a file beside it that is renamed when it is complete. Needs a run with keep_segments.
  * 0, or -1 with errno set, the old file being as it was. */

@@ -5,13 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/app.h"
-#include "app/layout/arguments.h"
-#include "app/link_options.h"
-#include "app/style.h"
-#include "link/outputs.h"
-#include "link/simulation.h"
-#include "view/view.h"
+#include "../link/outputs.h"
+#include "../link/sim_process.h"
+#include "../text/style.h"
+#include "../view/view.h"
+#include "app.h"
+#include "layout_arguments.h"
+#include "link_options.h"
 
 enum { OPTION_URL = 1000, OPTION_RECORD, OPTION_OUTPUTS, OPTION_VIEW };
 

@@ -1,4 +1,4 @@
-#include "batch/batch_internal.h"
+#include "batch_internal.h"
 
 static void put(float *numbers, const wh_vec3_t *v) {
     numbers[0] = (float)v->x;

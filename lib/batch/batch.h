@@ -5,7 +5,7 @@
  * arrays), and a sphere around each 32 origins. A wafer that is farther from the gripper than the limits (6) and (7) together,
  * or along n1 farther than (6), by more than all roundings could make up, is not ready; that is found out of several at a time
  * where the processor can, of 32 by one sphere where wafers that are near each other follow one another. Nobody holds a wafer
- * here: who may take what is the caller's business, or the grasp table's (core/grasp.h). A study of many cells makes a batch
+ * here: who may take what is the caller's business, or the grasp table's (grasp/grasp.h). A study of many cells makes a batch
  * of each.
  *
  * Nothing is allocated, nothing is static. A batch may be copied or moved together with its memory. Questions only read: they
@@ -22,7 +22,7 @@
 #ifndef WH_BATCH_BATCH_H
 #define WH_BATCH_BATCH_H
 
-#include "core/proximity.h"
+#include "../grasp/proximity.h"
 
 /* How many numbers a batch of so many wafers takes, and in how many lines of 64: 24.5 bytes a wafer, rounded up to whole blocks
  * of 32 wafers and of 32 spheres. Layout: for each 32 spheres 32 x of the centre, 32 y, 32 z, 32 radii; after all of these, for

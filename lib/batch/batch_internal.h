@@ -2,7 +2,7 @@
 #ifndef WH_BATCH_BATCH_INTERNAL_H
 #define WH_BATCH_BATCH_INTERNAL_H
 
-#include "batch/batch.h"
+#include "batch.h"
 
 /* Numbers of a block of spheres, and of a block of wafers, as many for the origins as for n1; wafers of a tile, 32 blocks, which
  * stay in the nearest cache while grippers go over them in turns. */

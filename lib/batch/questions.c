@@ -1,4 +1,4 @@
-#include "batch/batch_internal.h"
+#include "batch_internal.h"
 
 /* As many wafers as grippers go over in turns. */
 typedef struct {

@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "batch/batch_internal.h"
+#include "batch_internal.h"
 
 /* How far beyond the sieve each of 32 is: not at all where it is not above 0. */
 typedef struct {

@@ -1,4 +1,4 @@
-#include "batch/batch_internal.h"
+#include "batch_internal.h"
 
 #if WH_BATCH_HAS_AVX2
 #include <string.h>

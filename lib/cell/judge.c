@@ -1,4 +1,4 @@
-#include "cell/cell_internal.h"
+#include "cell_internal.h"
 
 /* How far a wafer is above what is under it: the nearest slot plane below, or base's floor. */
 static wh_real_t height_above_support(const wh_cell_t *cell, const wh_pose_t *base_from_wafer) {

@@ -1,5 +1,5 @@
 /* What was let go above its support comes to lie on it. */
-#include "cell/cell_internal.h"
+#include "cell_internal.h"
 
 /* Turns R by the smallest rotation that takes its third column to n, which is less than a right angle away. */
 static void turn_towards(wh_mat3_t *R, const wh_vec3_t *n) {

@@ -1,6 +1,6 @@
-#include "cell/station.h"
+#include "station.h"
 
-#include "motion/trig.h"
+#include "../math/trig.h"
 
 wh_pose_t wh_station_slot(const wh_station_t *station, int32_t slot) {
     const wh_vec3_t e3 = wh_mat3_column(&station->base_from_station.R, 2);

@@ -8,7 +8,7 @@
 #ifndef WH_CELL_STATION_H
 #define WH_CELL_STATION_H
 
-#include "core/grasp.h"
+#include "../grasp/grasp.h"
 
 typedef struct {
     wh_pose_t base_from_station;

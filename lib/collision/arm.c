@@ -1,4 +1,4 @@
-#include "collision/arm.h"
+#include "arm.h"
 
 static wh_vec3_t wrist_of(const wh_arm_t *arm, const wh_pose_t *base_from_effector) {
     const wh_vec3_t x = wh_mat3_column(&base_from_effector->R, 0);

@@ -8,7 +8,7 @@
 #ifndef WH_COLLISION_ARM_H
 #define WH_COLLISION_ARM_H
 
-#include "core/pose.h"
+#include "../math/pose.h"
 
 /* The bodies of the robot, in the order in which they hang on each other. */
 typedef enum {

@@ -1,4 +1,4 @@
-#include "collision/convex_internal.h"
+#include "convex_internal.h"
 
 static wh_real_t larger(wh_real_t a, wh_real_t b) {
     return a > b ? a : b;

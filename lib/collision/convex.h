@@ -8,7 +8,7 @@
 #ifndef WH_COLLISION_CONVEX_H
 #define WH_COLLISION_CONVEX_H
 
-#include "core/pose.h"
+#include "../math/pose.h"
 
 /* How thin and how large a shape may be, and how many points a mesh may have. */
 #define WH_CONVEX_THINNEST 0.01

@@ -2,7 +2,7 @@
 #ifndef WH_COLLISION_CONVEX_INTERNAL_H
 #define WH_COLLISION_CONVEX_INTERNAL_H
 
-#include "collision/convex.h"
+#include "convex.h"
 
 /* A shape is a kernel and all that is within `round` mm of it: a capsule is a line with its radius, the others are their
  * own kernel. The nearest points of two kernels are found in a few steps where curved surfaces would need many. */

@@ -1,4 +1,4 @@
-#include "collision/gap_internal.h"
+#include "gap_internal.h"
 
 #include <ccd/ccd.h>
 

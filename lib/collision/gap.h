@@ -30,7 +30,7 @@
 #ifndef WH_COLLISION_GAP_H
 #define WH_COLLISION_GAP_H
 
-#include "collision/convex.h"
+#include "convex.h"
 
 #if defined(WH_FLOAT)
 #error "waferhand: lib/collision is there in double only"

@@ -2,8 +2,8 @@
 #ifndef WH_COLLISION_GAP_INTERNAL_H
 #define WH_COLLISION_GAP_INTERNAL_H
 
-#include "collision/convex_internal.h"
-#include "collision/gap.h"
+#include "convex_internal.h"
+#include "gap.h"
 
 /* The two shapes, and by how much b is thought to be moved. */
 typedef struct {

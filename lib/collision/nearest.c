@@ -1,4 +1,4 @@
-#include "collision/gap_internal.h"
+#include "gap_internal.h"
 
 /* A point of each kernel; `between` is from a's to b's. */
 typedef struct {

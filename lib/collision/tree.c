@@ -1,4 +1,4 @@
-#include "collision/tree.h"
+#include "tree.h"
 
 /* Beyond any cell; finite, so that differences stay numbers. */
 #define FAR WH_REAL(1e30)

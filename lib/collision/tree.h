@@ -7,7 +7,7 @@
 #ifndef WH_COLLISION_TREE_H
 #define WH_COLLISION_TREE_H
 
-#include "core/vector.h"
+#include "../math/vector.h"
 
 /* From `low` to `high`, mm in base. One with low above high is empty: it overlaps nothing. */
 typedef struct {

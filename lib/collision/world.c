@@ -1,9 +1,9 @@
 /* A world's description and memory. What happens in a slice is in world_move.c, world_near.c and world_pair.c. */
-#include "collision/world.h"
+#include "world.h"
 
 #include <string.h>
 
-#include "collision/world_internal.h"
+#include "world_internal.h"
 
 /* Slices in a bin of the curves, to begin with. */
 #define FIRST_BIN 10

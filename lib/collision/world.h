@@ -20,10 +20,10 @@
 #ifndef WH_COLLISION_WORLD_H
 #define WH_COLLISION_WORLD_H
 
-#include "cell/station.h"
-#include "collision/arm.h"
-#include "collision/convex.h"
-#include "collision/tree.h"
+#include "../cell/station.h"
+#include "arm.h"
+#include "convex.h"
+#include "tree.h"
 
 /* Grippers and parts on them, of one world. */
 #define WH_WORLD_GRIPPERS 8

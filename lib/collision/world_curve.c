@@ -1,6 +1,6 @@
 /* The smallest gaps over time. Everything near is measured anew at the end of a bin, beside the lists of what is near: those
  * are the judgement's, and what it finds must not depend on who looks on. */
-#include "collision/world_internal.h"
+#include "world_internal.h"
 
 static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_vec3_t guess,
                     wh_real_t least[]) {

@@ -4,8 +4,8 @@
 #ifndef WH_COLLISION_WORLD_INTERNAL_H
 #define WH_COLLISION_WORLD_INTERNAL_H
 
-#include "collision/gap.h"
-#include "collision/world.h"
+#include "gap.h"
+#include "world.h"
 
 /* How far beyond the range of clearances things are put on a moving part's list, mm; less where too many are there. */
 #define WH_NEAR_MARGIN WH_REAL(20.0)

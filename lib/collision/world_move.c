@@ -1,5 +1,5 @@
 /* Where everything is now, and what of it rests. */
-#include "collision/world_internal.h"
+#include "world_internal.h"
 
 /* A gripper has left the wafer that it let go once it has gone so far sideways, mm. */
 #define LEFT_BEHIND WH_REAL(1.0)

@@ -1,5 +1,5 @@
 /* What rests near a moving part: a list that is good until the part has gone as far as it reaches. */
-#include "collision/world_internal.h"
+#include "world_internal.h"
 
 wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *mover) {
     const size_t part = (size_t)mover->part;

@@ -1,5 +1,5 @@
 /* The judgement of one pair for one slice: apart by a plane, by gaps against ways, or by dividing the slice. */
-#include "collision/world_internal.h"
+#include "world_internal.h"
 
 /* A slice is divided into at most so many steps before the check gives up. */
 #define MOST_STEPS 256

@@ -1,5 +1,5 @@
 /* Before a run: whether anything touches already what it must not. */
-#include "collision/world_internal.h"
+#include "world_internal.h"
 
 #define MOST_NEAR 256
 

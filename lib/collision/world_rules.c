@@ -1,5 +1,5 @@
 /* Who may touch whom, and which clearance a pair counts for. */
-#include "collision/world_internal.h"
+#include "world_internal.h"
 
 static bool is_on_robot(const wh_part_t *part) {
     return part->kind == WH_PART_ARM || part->kind == WH_PART_BLADE;

@@ -1,5 +1,5 @@
 /* One slice of the world: everything is moved, then each pair that is near is judged. */
-#include "collision/world_internal.h"
+#include "world_internal.h"
 
 /* A pair that was so far apart needs no look: nothing that is kept or judged could come of it. */
 static bool is_far(wh_near_t *near, wh_real_t motion) {

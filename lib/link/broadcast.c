@@ -1,8 +1,8 @@
-#include "link/broadcast.h"
+#include "broadcast.h"
 
 #include <string.h>
 
-#include "link/check.h"
+#include "checksum.h"
 
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     wh_broadcast_t *broadcast = (wh_broadcast_t *)link;

@@ -3,8 +3,8 @@
 #ifndef WH_LINK_BROADCAST_H
 #define WH_LINK_BROADCAST_H
 
-#include "link/control.h"
-#include "link/simulation.h"
+#include "mcs_process.h"
+#include "sim_process.h"
 
 /* Must not be moved once opened. */
 typedef struct {

@@ -2,8 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "link/fault_message.h"
-#include "link/messages.h"
+#include "fault_message.h"
+#include "messages.h"
 
 static bool make_room(const wh_layout_t *layout, waferhand_cell *message) {
     message->gripper_names = calloc(WH_GRIPPERS, sizeof *message->gripper_names);

@@ -1,9 +1,9 @@
-#include "link/cell_layout.h"
+#include "cell_layout.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "link/fault_message.h"
+#include "fault_message.h"
 
 static bool take_name(const char *from, char to[WH_NAME_SIZE]) {
     const size_t length = strlen(from);
@@ -77,7 +77,7 @@ static bool take_lists(const waferhand_cell *cell, wh_layout_t *layout) {
     return sound;
 }
 
-/* Times are in s here, slices in us there: as lib/script/layout_physics.c has it. */
+/* Times are in s here, slices in us there: as lib/layout/layout_physics.c has it. */
 static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_physics_t *physics = &layout->physics;
     const wh_vacuum_config_t vacuum = {cell->vacuum_build,     cell->vacuum_vent,       cell->vacuum_idle,

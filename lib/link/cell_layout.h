@@ -2,7 +2,7 @@
 #ifndef WH_LINK_CELL_LAYOUT_H
 #define WH_LINK_CELL_LAYOUT_H
 
-#include "link/messages.h"
+#include "messages.h"
 
 /* Builds the layout in memory that wh_link_layout_free releases; null for a message that no layout could have made:
  * poses, tolerances, counts, names and slots are checked. The machine but its number of grippers, and the stations'

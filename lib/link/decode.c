@@ -1,8 +1,8 @@
 /* Datagrams, looked at before LCM's generated code sees them: that code trusts counts and lengths. */
 #include <string.h>
 
-#include "link/check.h"
-#include "link/messages.h"
+#include "checksum.h"
+#include "messages.h"
 
 /* Encoded sizes, which the generated *_encoded_size functions confirm in a test. */
 #define FINGERPRINT 8

@@ -1,4 +1,4 @@
-#include "link/fault_message.h"
+#include "fault_message.h"
 
 void wh_link_put_pose(const wh_pose_t *pose, double position[3], double rotation[9]) {
     position[0] = pose->r.x;

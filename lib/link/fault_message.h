@@ -5,7 +5,7 @@
 #include <waferhand_fault.h>
 #include <waferhand_fault_slot.h>
 
-#include "sim/faults.h"
+#include "../sim/faults.h"
 
 void wh_link_put_pose(const wh_pose_t *pose, double position[3], double rotation[9]);
 wh_pose_t wh_link_take_pose(const double position[3], const double rotation[9]);

@@ -1,8 +1,8 @@
-#include "link/messages.h"
+#include "messages.h"
 
 #include <string.h>
 
-#include "link/fault_message.h"
+#include "fault_message.h"
 
 /* -------------------------------------------------------------------------------------------------- parts */
 

@@ -9,8 +9,8 @@
 #include <waferhand_request.h>
 #include <waferhand_state.h>
 
-#include "script/layout.h"
-#include "sim/slice.h"
+#include "../layout/layout.h"
+#include "../sim/slice.h"
 
 /* Channels: lcm_types/README.md says who sends what. */
 #define WH_CHANNEL_COMMAND "WAFERHAND_COMMAND"

@@ -1,4 +1,4 @@
-#include "link/node.h"
+#include "node.h"
 
 #include <poll.h>
 #include <stdio.h>

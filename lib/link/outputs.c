@@ -4,8 +4,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "core/hash.h"
-#include "link/outputs_internal.h"
+#include "../math/hash.h"
+#include "outputs_internal.h"
 
 /* Bad looks running after which a file that never comes to rest is reported. */
 #define RESTLESS_LOOKS 64

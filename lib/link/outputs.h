@@ -36,7 +36,7 @@
 
 #include <sys/types.h>
 
-#include "sim/slice.h"
+#include "../sim/slice.h"
 
 /* The largest file that is looked into. */
 #define WH_OUTPUTS_BYTES 4096

@@ -4,7 +4,7 @@
 
 #include <sys/stat.h>
 
-#include "link/outputs.h"
+#include "outputs.h"
 
 /* 0, or why these arguments are refused: EINVAL, ENAMETOOLONG. */
 int wh_outputs_refuse(const char *path, const int32_t *valves, size_t count);

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "link/outputs_internal.h"
+#include "outputs_internal.h"
 
 static wh_outputs_look_t failed(int error) {
     wh_outputs_look_t look = {.condition = WH_OUTPUTS_UNREADABLE, .error = error};

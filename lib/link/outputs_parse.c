@@ -1,7 +1,7 @@
 /* The grammar of outputs.txt: a pure function, made to be fuzzed. */
 #include <string.h>
 
-#include "link/outputs.h"
+#include "outputs.h"
 
 static bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\n' || c == '\r';

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "link/outputs_internal.h"
+#include "outputs_internal.h"
 
 /* Of a longer path its end is shown. */
 #define SHOWN_PATH 200

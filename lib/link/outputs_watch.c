@@ -6,7 +6,7 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 
-#include "link/outputs_internal.h"
+#include "outputs_internal.h"
 
 /* Reads of events in one update: a neighbour that never stops writing must not keep it for ever. */
 #define READS 16

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "link/outputs_internal.h"
+#include "outputs_internal.h"
 
 #define TEMPORARY ".waferhand-"
 /* Names that are tried: others may be writing beside it, or have been killed. */

@@ -1,4 +1,4 @@
-#include "link/proximity_message.h"
+#include "proximity_message.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #ifndef WH_LINK_PROXIMITY_MESSAGE_H
 #define WH_LINK_PROXIMITY_MESSAGE_H
 
-#include "link/messages.h"
+#include "messages.h"
 
 /* Each gripper of the state against the wafer whose origin is nearest to its own; held ones count too. Cost: linear in
  * grippers times wafers. */

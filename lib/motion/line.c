@@ -1,8 +1,8 @@
-#include "motion/line.h"
+#include "line.h"
 
 #include <string.h>
 
-#include "motion/trig.h"
+#include "../math/trig.h"
 
 /* A factor in time this close to 1 is rounding, not a limit. */
 #if defined(WH_FLOAT)

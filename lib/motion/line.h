@@ -15,7 +15,7 @@
 #ifndef WH_MOTION_LINE_H
 #define WH_MOTION_LINE_H
 
-#include "motion/robot.h"
+#include "robot.h"
 
 /* A planned line. Written by wh_line_plan only; reading its fields is fine. */
 typedef struct {

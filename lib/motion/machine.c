@@ -1,7 +1,7 @@
-#include "motion/machine.h"
+#include "machine.h"
 
-#include "motion/exact.h"
-#include "motion/trig.h"
+#include "../math/exact_internal.h"
+#include "../math/trig.h"
 
 /* A tilt, however slight, shows in one of these; rounding leaves none of it in a turn about z alone. */
 static bool is_level(const wh_mat3_t *R) {

@@ -8,9 +8,9 @@
 
 #include <stdbool.h>
 
-#include "core/grasp.h"
-#include "motion/move.h"
-#include "motion/robot.h"
+#include "../grasp/grasp.h"
+#include "move.h"
+#include "robot.h"
 
 /* Grippers a machine can have, as many as a command message carries. */
 #define WH_GRIPPERS 8

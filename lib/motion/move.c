@@ -1,6 +1,6 @@
-#include "motion/move.h"
+#include "move.h"
 
-#include "motion/profile_internal.h"
+#include "profile_internal.h"
 
 /* Each axis's own times, and how long the slowest takes. Of the profiles the rest is forgotten, which is cheaper than 1 kB
  * of stack for a second move. */

@@ -10,7 +10,7 @@
 #ifndef WH_MOTION_MOVE_H
 #define WH_MOTION_MOVE_H
 
-#include "motion/profile.h"
+#include "profile.h"
 
 /* The most axes that a move, a message or a track knows. */
 #define WH_AXES 8

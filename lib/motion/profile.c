@@ -1,5 +1,5 @@
-#include "motion/profile_internal.h"
-#include "motion/trig.h"
+#include "../math/trig.h"
+#include "profile_internal.h"
 
 static bool is_positive(wh_real_t x) {
     return x > 0 && wh_real_is_finite(x);

@@ -19,8 +19,8 @@
 #ifndef WH_MOTION_PROFILE_H
 #define WH_MOTION_PROFILE_H
 
-#include "core/status.h"
-#include "core/vector.h"
+#include "../math/status.h"
+#include "../math/vector.h"
 
 /* What an axis bears, as magnitudes: mm/s, mm/s^2, mm/s^3 or rad/s, rad/s^2, rad/s^3. */
 typedef struct {

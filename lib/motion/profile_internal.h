@@ -2,7 +2,7 @@
 #ifndef WH_MOTION_PROFILE_INTERNAL_H
 #define WH_MOTION_PROFILE_INTERNAL_H
 
-#include "motion/profile.h"
+#include "profile.h"
 
 /* The three times that fix a profile's shape. */
 typedef struct {

@@ -1,7 +1,7 @@
-#include "motion/robot.h"
+#include "robot.h"
 
-#include "motion/exact.h"
-#include "motion/trig.h"
+#include "../math/exact_internal.h"
+#include "../math/trig.h"
 
 /* 2 pi in two numbers. */
 #if defined(WH_FLOAT)

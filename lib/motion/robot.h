@@ -12,8 +12,8 @@
 #ifndef WH_MOTION_ROBOT_H
 #define WH_MOTION_ROBOT_H
 
-#include "core/pose.h"
-#include "motion/profile.h"
+#include "../math/pose.h"
+#include "profile.h"
 
 #define WH_ROBOT_AXES 4
 

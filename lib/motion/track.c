@@ -1,6 +1,6 @@
-#include "motion/track.h"
+#include "track.h"
 
-#include "core/grasp.h"
+#include "../grasp/grasp.h"
 
 #define MAX_SLICE_US 1000000
 #define MAX_SECONDS WH_REAL(1e6)

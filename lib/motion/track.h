@@ -14,8 +14,8 @@
 #ifndef WH_MOTION_TRACK_H
 #define WH_MOTION_TRACK_H
 
-#include "motion/line.h"
-#include "motion/machine.h"
+#include "line.h"
+#include "machine.h"
 
 typedef enum {
     WH_SEGMENT_AXES,   /* axes go to target[], synchronised, each at rest at both ends */

@@ -1,13 +1,13 @@
-#include "report/document.h"
+#include "document.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "core/config.h"
-#include "report/document_internal.h"
-#include "report/quaternion.h"
-#include "report/scene.h"
-#include "report/utf8.h"
+#include "../math/config.h"
+#include "../record/quaternion.h"
+#include "../text/utf8.h"
+#include "../view/scene.h"
+#include "document_internal.h"
 
 #define FORMAT 2
 

@@ -4,7 +4,7 @@
  * are from 0, slots from 1. The members:
  *   format (2), title, version, reproduce (the command that makes the run again), parameters { name: value }
  *   source       "run" or "log"; notes: [text], what a log did not tell
- *   run          what `run --json` prints, whole (app/json/record_json.h); of a log what it holds
+ *   run          what `run --json` prints, whole (print/record_json.h); of a log what it holds
  *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s
  *   names        wafers, grippers, stations: [name]; axes: [{ name, unit "mm" or "rad", low, high, speed }] (nulls: not known)
  *   wafer        diameter, thickness, notch (about its z from its x)
@@ -29,7 +29,7 @@
  *                they are within 20 mm and twice near_projxy
  *                clearances [{ pair, limit (null: none), t, gap (null: wider than 20 mm) }]
  *   marks        [{ t, kind, text, at (null: nowhere) }]: events worth a mark in the cell
- *   scene        glTF 2.0 (report/scene.h), without animation
+ *   scene        glTF 2.0 (view/scene.h), without animation
  */
 #ifndef WH_REPORT_DOCUMENT_H
 #define WH_REPORT_DOCUMENT_H
@@ -37,8 +37,8 @@
 #include <jansson.h>
 #include <stdio.h>
 
-#include "report/trace.h"
-#include "script/record.h"
+#include "../record/record.h"
+#include "../record/signals.h"
 
 typedef struct {
     const char *title, *reproduce;

@@ -2,8 +2,8 @@
 #ifndef WH_REPORT_DOCUMENT_INTERNAL_H
 #define WH_REPORT_DOCUMENT_INTERNAL_H
 
-#include "report/document.h"
-#include "report/json_text.h"
+#include "../text/json_text.h"
+#include "document.h"
 
 double wh_document_seconds(const wh_trace_t *trace, int64_t slice);
 

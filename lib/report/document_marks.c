@@ -1,8 +1,8 @@
 /* The document's marks: events that have a place in the cell. */
 #include <string.h>
 
-#include "report/document_internal.h"
-#include "report/utf8.h"
+#include "../text/utf8.h"
+#include "document_internal.h"
 
 static void append(char *text, size_t size, const char *before, const char *part) {
     const size_t length = strlen(text);

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "report/document_internal.h"
-#include "report/utf8.h"
+#include "../text/utf8.h"
+#include "document_internal.h"
 
 /* Decimals that add a hundredth of what thinning leaves, or less: of values, and of slopes, which count for up to 4 s. */
 enum { DECIMALS_S = 6, DECIMALS_OWN_MM = 4, DECIMALS_OWN = 6 };

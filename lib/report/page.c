@@ -1,12 +1,12 @@
-#include "report/page.h"
+#include "page.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-#include "report/packed.h"
-#include "script/embedded.h"
+#include "../script/embedded.h"
+#include "../text/packed.h"
 
 #if !defined(WH_JAVASCRIPT)
 #define WH_JAVASCRIPT "/usr/share/javascript"

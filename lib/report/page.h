@@ -4,7 +4,7 @@
  * lib/report/page, or one of the JavaScript that others wrote (three.min.js, OrbitControls.js, GLTFLoader.js, dygraph.min.js,
  * dygraph.min.css), read when the page is made from where the distribution puts it: /usr/share/javascript, unless the program was
  * built with another JAVASCRIPT= or the environment has WAFERHAND_JAVASCRIPT. @title@ is the page's title, and @document@
- * report/document.h's object, packed (report/packed.h): an hour's is a seventh so.
+ * report/document.h's object, packed (text/packed.h): an hour's is a seventh so.
  */
 #ifndef WH_REPORT_PAGE_H
 #define WH_REPORT_PAGE_H

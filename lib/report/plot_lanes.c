@@ -1,127 +1,201 @@
-#include "report/plot_lanes.h"
-
+/* Plots of lanes over time: signals, who holds what, commands and what the time goes into. */
 #include <stdlib.h>
-#include <string.h>
 
-/* Pixels; names have room for so many letters. */
-enum { ROW = 24, MOST_LETTERS = 28, LEAST_ABOVE = 6, LEAST_PITCH = 3 };
+#include "../record/throughput.h"
+#include "document_internal.h"
+#include "gnuplot_curves.h"
+#include "gnuplot_lanes.h"
 
-#define EDGED "using 1:3:1:2:($3-%g):($3+%g) with boxxyerror lw 0.6 dt 1 fc"
-#define EDGE "border lc rgb '#000000'"
+/* ------------------------------------------------------------------------------------------------- signals */
 
-void wh_lanes_open(wh_lanes_t *lanes, wh_plot_t *plot, size_t count) {
-    memset(lanes, 0, sizeof *lanes);
-    lanes->plot = plot;
-    lanes->count = count;
-    lanes->above = LEAST_ABOVE;
-    lanes->out = open_memstream(&lanes->tics, &lanes->size);
-    if (!lanes->out) {
-        abort();
+/* Of 0 and 1; the last value goes on to the end. */
+static size_t put_steps(const wh_plots_t *plots, wh_plot_t *plot, const wh_steps_t *steps, bool inverted) {
+    double value = 0;
+    for (size_t i = 0; i < steps->count; ++i) {
+        value = inverted ? 1 - steps->steps[i].value : steps->steps[i].value;
+        wh_plot_row(plot, wh_document_seconds(plots->document->trace, steps->steps[i].slice), &value, 1);
     }
-}
-
-double wh_lanes_height(const wh_lanes_t *lanes, size_t lane) {
-    return (double)(lanes->count - 1 - lane);
-}
-
-void wh_lanes_name(wh_lanes_t *lanes, const char *name, const char *what) {
-    char text[WH_NAME_SIZE + 40];
-    (void)snprintf(text, sizeof text, "%s%s%s", name, what[0] != '\0' ? " " : "", what);
-    const size_t letters = wh_plot_width(text);
-    lanes->letters = letters > lanes->letters ? letters : lanes->letters;
-    fputs(lanes->named > 0 ? ", " : "", lanes->out);
-    wh_plot_put_text(lanes->out, text);
-    fprintf(lanes->out, " %g", wh_lanes_height(lanes, lanes->named++));
-}
-
-void wh_lanes_begin(wh_lanes_t *lanes, const wh_plots_t *plots, const char *title) {
-    const size_t letters = lanes->letters < MOST_LETTERS ? lanes->letters : MOST_LETTERS;
-    const wh_plot_frame_t frame = {.panels = 1,
-                                   .panel_height = (int)lanes->count * ROW,
-                                   .left = 14 + (int)(letters * 66 / 10),
-                                   .above = lanes->above,
-                                   .keys_wrap = lanes->above > LEAST_ABOVE};
-    if (fclose(lanes->out) != 0) {
-        abort();
+    if (steps->count > 0) {
+        wh_plot_row(plot, wh_plots_end_s(plots), &value, 1);
     }
-    lanes->duration = wh_plots_end_s(plots) - wh_plots_begin_s(plots);
-    wh_plot_begin(lanes->plot, &frame, title, wh_plots_begin_s(plots), wh_plots_end_s(plots));
-    wh_plot_panel(lanes->plot, "");
-    fprintf(lanes->plot->script, "set yrange [-0.5:%zu.5]\nset ytics scale 0 (%s)\n", lanes->count - 1,
-            lanes->tics);
-    free(lanes->tics);
-    lanes->tics = NULL;
+    return wh_plot_end_block(plot);
 }
 
-void wh_lanes_bar(wh_lanes_t *lanes, size_t lane, double begin, double end) {
-    const double values[] = {end, wh_lanes_height(lanes, lane)};
-    wh_plot_row(lanes->plot, begin, values, 2);
-    ++lanes->bars;
+static void put_gripper_signals(const wh_plots_t *plots, wh_lanes_t *lanes, size_t g) {
+    const wh_trace_t *trace = plots->document->trace;
+    const wh_plot_curves_t level = {{&trace->vacuum[g]}, 1, 1, false, NULL};
+    const char *name = trace->layout->grippers[g].name;
+    wh_plot_block(lanes->plot, name, "t (s), valve is open");
+    wh_lanes_draw_signal(lanes, put_steps(plots, lanes->plot, &trace->valves[g], true), 3 * g, "steps");
+    wh_plot_block(lanes->plot, name, "t (s), vacuum from 0 to 1");
+    wh_lanes_draw_signal(lanes, wh_plot_curves(lanes->plot, &level, wh_plots_slice_s(plots)), 3 * g + 1,
+                         "lines");
+    wh_plot_block(lanes->plot, name, "t (s), vacuum sensor is on");
+    wh_lanes_draw_signal(lanes, put_steps(plots, lanes->plot, &trace->sensors[g], false), 3 * g + 2, "steps");
 }
 
-void wh_lanes_label(wh_lanes_t *lanes, size_t lane, double begin, double end, const char *text,
-                    bool on_dark) {
-    wh_plot_fitting_label(lanes->plot, begin, end, text);
-    fprintf(lanes->plot->script, ", %g center front%s\n", wh_lanes_height(lanes, lane),
-            on_dark ? " textcolor rgb '#ffffff'" : "");
-}
-
-/* A plot command's next part. */
-static void put_part(wh_lanes_t *lanes) {
-    fputs(lanes->drawn++ == 0 ? "plot " : ", \\\n  ", lanes->plot->script);
-}
-
-/* What bars are drawn with: as boxes, or, those of a lane being nearer to each other than LEAST_PITCH on average, as strokes as
- * wide as a lane. Boxes without an edge are sampled where a pixel's middle is, strokes are blended. */
-static void put_styles(const wh_lanes_t *lanes) {
-    FILE *out = lanes->plot->script;
-    fprintf(out,
-            "dense = %d * %zu * abs(to_s - from_s) > (W - %d) * %.12g\n"
-            "bars = dense ? \"using 1:3:($2-$1):(0) with vectors nohead lw %g dt 1 lc\" : \"",
-            LEAST_PITCH, lanes->bars, lanes->plot->frame.left + 10, lanes->duration * (double)lanes->count,
-            2 * WH_LANES_HALF * ROW);
-    fprintf(out, EDGED "\"\n", WH_LANES_HALF, WH_LANES_HALF);
-    fputs("solid = dense ? '' : \"fs solid " EDGE "\"\n"
-          "hatched = dense ? '' : \"fs pattern 4 " EDGE "\"\n"
-          "crossed = dense ? '' : \"fs pattern 2 " EDGE "\"\n",
-          out);
-}
-
-void wh_lanes_draw_bars(wh_lanes_t *lanes, size_t block, const wh_lanes_look_t *look) {
-    if (block == SIZE_MAX) {
+void wh_plots_signals(wh_plots_t *plots) {
+    const wh_layout_t *layout = plots->document->trace->layout;
+    const size_t grippers = layout->machine.gripper_count;
+    wh_lanes_t lanes;
+    wh_plot_t plot;
+    if (!wh_plots_open(plots, &plot, "valves_and_vacuum", NULL)) {
         return;
     }
-    if (lanes->drawn == 0) {
-        put_styles(lanes);
+    wh_lanes_open(&lanes, &plot, 3 * grippers);
+    for (size_t g = 0; g < grippers; ++g) {
+        wh_lanes_name(&lanes, layout->grippers[g].name, "valve open");
+        wh_lanes_name(&lanes, layout->grippers[g].name, "vacuum");
+        wh_lanes_name(&lanes, layout->grippers[g].name, "sensor on");
     }
-    put_part(lanes);
-    fprintf(lanes->plot->script, "'%s.dat' index %zu ", lanes->plot->name, block);
-    if (look->keeps_edge) {
-        fprintf(lanes->plot->script, EDGED " rgb '%s' fs %s " EDGE " ", WH_LANES_HALF, WH_LANES_HALF,
-                look->colour, look->fill);
-    } else {
-        fprintf(lanes->plot->script, "@bars rgb '%s' @%s ", look->colour, look->fill);
+    wh_lanes_begin(&lanes, plots, "Valves, vacuum and its sensors: high is open, full, on");
+    for (size_t g = 0; g < grippers; ++g) {
+        put_gripper_signals(plots, &lanes, g);
     }
-    if (look->text) {
-        fprintf(lanes->plot->script, "title '%s'", look->text);
-    } else {
-        fputs("notitle", lanes->plot->script);
-    }
+    wh_lanes_end(&lanes);
+    wh_plots_close(plots, &plot);
 }
 
-void wh_lanes_draw_signal(wh_lanes_t *lanes, size_t block, size_t lane, const char *style) {
-    if (block == SIZE_MAX) {
+/* ------------------------------------------------------------------------------------------------- holders */
+
+static void put_holds(const wh_plots_t *plots, wh_lanes_t *lanes, size_t g) {
+    const wh_layout_t *layout = plots->document->trace->layout;
+    size_t count = 0;
+    wh_plot_hold_t *holds = wh_plots_holds(plots, (int32_t)g, &count);
+    for (size_t i = 0; i < count; ++i) {
+        wh_lanes_bar(lanes, g, holds[i].begin_s, holds[i].end_s);
+        wh_lanes_label(lanes, g, holds[i].begin_s, holds[i].end_s, layout->wafers[holds[i].wafer].name,
+                       false);
+    }
+    free(holds);
+}
+
+void wh_plots_holders(wh_plots_t *plots) {
+    static const wh_lanes_look_t look = {NULL, "#d8d8d8", "solid", false};
+    const wh_layout_t *layout = plots->document->trace->layout;
+    const size_t grippers = layout->machine.gripper_count;
+    wh_lanes_t lanes;
+    wh_plot_t plot;
+    if (!wh_plots_open(plots, &plot, "holders", NULL)) {
         return;
     }
-    put_part(lanes);
-    fprintf(lanes->plot->script, "'%s.dat' index %zu using 1:(%g+%g*$2) with %s lt 1 notitle",
-            lanes->plot->name, block, wh_lanes_height(lanes, lane) - WH_LANES_HALF, 2 * WH_LANES_HALF, style);
+    wh_lanes_open(&lanes, &plot, grippers);
+    for (size_t g = 0; g < grippers; ++g) {
+        wh_lanes_name(&lanes, layout->grippers[g].name, "holds");
+    }
+    wh_lanes_begin(&lanes, plots, "Who holds which wafer");
+    wh_plot_block(&plot, "holds", "from (s), to (s), lane");
+    for (size_t g = 0; g < grippers; ++g) {
+        put_holds(plots, &lanes, g);
+    }
+    wh_lanes_draw_bars(&lanes, wh_plot_end_block(&plot), &look);
+    wh_lanes_end(&lanes);
+    wh_plots_close(plots, &plot);
 }
 
-/* A plot command without anything is an error: then lanes are drawn that are empty. */
-void wh_lanes_end(wh_lanes_t *lanes) {
-    if (lanes->drawn == 0) {
-        fputs("plot NaN notitle", lanes->plot->script);
+/* ------------------------------------------------------------------------------------------------ commands */
+
+/* Of commands: every other one, so that neighbours can be told apart, and those that failed. */
+enum { EVEN, ODD, FAILED, COMMANDS };
+
+static const wh_lanes_look_t command_looks[COMMANDS] = {{NULL, "#ffffff", "solid", false},
+                                                        {NULL, "#e4e4e4", "solid", false},
+                                                        {"failed", "#000000", "solid", true}};
+
+static int look_of(const wh_record_t *record, size_t command) {
+    return record->commands[command].error != WH_OK ? FAILED : command % 2 == 0 ? EVEN : ODD;
+}
+
+static size_t put_commands(wh_lanes_t *lanes, const wh_record_t *record, int look) {
+    wh_plot_block(lanes->plot, look == FAILED ? "commands that failed" : "commands",
+                  "from (s), to (s), lane");
+    for (size_t i = 0; i < record->command_count; ++i) {
+        const wh_command_record_t *command = &record->commands[i];
+        if (look_of(record, i) == look) {
+            wh_lanes_bar(lanes, 0, command->begin_s, command->end_s);
+            wh_lanes_label(lanes, 0, command->begin_s, command->end_s, command->text, look == FAILED);
+        }
     }
-    fputc('\n', lanes->plot->script);
+    return wh_plot_end_block(lanes->plot);
+}
+
+static const wh_lanes_look_t share_looks[WH_SHARES] = {
+    [WH_SHARE_LOADED] = {"loaded", "#606060", "solid", false},
+    [WH_SHARE_EMPTY] = {"empty", "#c8c8c8", "solid", false},
+    [WH_SHARE_VACUUM] = {"vacuum", "#000000", "hatched", false},
+    [WH_SHARE_HANDOVER] = {"hand-over", "#000000", "crossed", false},
+    [WH_SHARE_WAITING] = {"waiting", "#ffffff", "solid", false}};
+
+/* The robot has the lane below the commands', then come the chucks that turn. SIZE_MAX: none. */
+typedef struct {
+    size_t of[WH_GRIPPERS];
+    size_t count;
+} chuck_lanes_t;
+
+static chuck_lanes_t find_chucks(const wh_activity_t *activity, size_t grippers) {
+    chuck_lanes_t lanes = {.count = 0};
+    for (size_t g = 0; g < grippers; ++g) {
+        lanes.of[g] = SIZE_MAX;
+        for (size_t i = 0; i < activity->interval_count && lanes.of[g] == SIZE_MAX; ++i) {
+            const wh_interval_t *interval = &activity->intervals[i];
+            if (interval->who == WH_BUSY_CHUCK && interval->gripper == (int32_t)g) {
+                lanes.of[g] = 2 + lanes.count++;
+            }
+        }
+    }
+    return lanes;
+}
+
+static size_t put_shares(wh_lanes_t *lanes, const wh_record_t *record, const chuck_lanes_t *chucks,
+                         int share) {
+    wh_plot_block(lanes->plot, share_looks[share].text, "from (s), to (s), lane");
+    for (size_t i = 0; i < record->activity.interval_count; ++i) {
+        const wh_interval_t *interval = &record->activity.intervals[i];
+        const bool moves = interval->who == WH_BUSY_ROBOT || interval->who == WH_BUSY_CHUCK;
+        if (moves && interval->what == 1 + share) {
+            const size_t lane = interval->who == WH_BUSY_ROBOT ? 1 : chucks->of[interval->gripper];
+            wh_lanes_bar(lanes, lane, wh_figures_seconds(record, interval->begin),
+                         wh_figures_seconds(record, interval->end));
+        }
+    }
+    return wh_plot_end_block(lanes->plot);
+}
+
+/* Blocks first, then what draws them: labels must not come within a plot command. */
+static void draw_commands(wh_lanes_t *lanes, const wh_record_t *record, const chuck_lanes_t *chucks) {
+    size_t blocks[COMMANDS + WH_SHARES];
+    for (int look = 0; look < COMMANDS; ++look) {
+        blocks[look] = put_commands(lanes, record, look);
+    }
+    for (int share = 0; share < WH_SHARES; ++share) {
+        blocks[COMMANDS + share] = put_shares(lanes, record, chucks, share);
+    }
+    for (int i = 0; i < COMMANDS + WH_SHARES; ++i) {
+        wh_lanes_draw_bars(lanes, blocks[i], i < COMMANDS ? &command_looks[i] : &share_looks[i - COMMANDS]);
+    }
+}
+
+void wh_plots_commands(wh_plots_t *plots) {
+    const wh_record_t *record = plots->document->record;
+    const wh_layout_t *layout = plots->document->trace->layout;
+    const chuck_lanes_t chucks = find_chucks(&record->activity, layout->machine.gripper_count);
+    const bool has_any = record->command_count > 0 || record->activity.interval_count > 0;
+    wh_lanes_t lanes;
+    wh_plot_t plot;
+    if (!has_any || !wh_plots_open(plots, &plot, "commands", NULL)) {
+        return;
+    }
+    wh_lanes_open(&lanes, &plot, 2 + chucks.count);
+    lanes.above = 20;
+    wh_lanes_name(&lanes, "commands", "");
+    wh_lanes_name(&lanes, "robot", "");
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        if (chucks.of[g] != SIZE_MAX) {
+            wh_lanes_name(&lanes, layout->grippers[g].name, "chuck");
+        }
+    }
+    wh_lanes_begin(&lanes, plots, "Commands, and what the robot's and the chucks' time goes into");
+    draw_commands(&lanes, record, &chucks);
+    wh_lanes_end(&lanes);
+    wh_plots_close(plots, &plot);
 }

@@ -1,4 +1,4 @@
-#include "report/plots.h"
+#include "plots.h"
 
 #include <errno.h>
 #include <spawn.h>
@@ -8,9 +8,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "report/document_internal.h"
-#include "report/plots_internal.h"
-#include "script/record.h"
+#include "../record/record.h"
+#include "document_internal.h"
+#include "plots_internal.h"
 
 extern char **environ;
 

@@ -7,11 +7,11 @@
 #ifndef WH_REPORT_PLOTS_H
 #define WH_REPORT_PLOTS_H
 
-#include "report/document.h"
+#include "document.h"
 
 #define WH_PLOTS_MESSAGE_BYTES 600
 
-/* Writes the plots into a folder, which is made unless it is there: NAME.svg, .gp and .dat of each (report/plot.h). False, and the
+/* Writes the plots into a folder, which is made unless it is there: NAME.svg, .gp and .dat of each (report/gnuplot_file.h). False, and the
  * reason in `message`, when they cannot be; then all files are as they were, unless it was the folder that failed when they
  * were put into their places, each of them whole. `document->run` is not looked at. Cost: a tenth of a second and gnuplot's. */
 bool wh_plots_write(const wh_document_t *document, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]);

@@ -2,8 +2,8 @@
 #ifndef WH_REPORT_PLOTS_INTERNAL_H
 #define WH_REPORT_PLOTS_INTERNAL_H
 
-#include "report/plot.h"
-#include "report/plots.h"
+#include "gnuplot_file.h"
+#include "plots.h"
 
 typedef struct {
     char name[WH_PLOT_NAME_BYTES];

@@ -1,4 +1,4 @@
-/* Files built into the program, made by lib/packaging/embed: the Lua files below lua/, and the page of a report. */
+/* Files built into the program, made by lib/build/embed: the Lua files below lua/, and the page of a report. */
 #ifndef WH_SCRIPT_EMBEDDED_H
 #define WH_SCRIPT_EMBEDDED_H
 

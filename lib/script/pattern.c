@@ -1,10 +1,10 @@
 /* The matcher: one function a pattern item, one recursion (match) with a depth limit. */
-#include "script/pattern.h"
+#include "pattern.h"
 
 #include <ctype.h>
 #include <string.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 #define DEPTH_LIMIT 200
 /* Steps are charged by the lot. */

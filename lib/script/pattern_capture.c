@@ -1,5 +1,5 @@
 /* What a match has captured, as Lua values. */
-#include "script/pattern.h"
+#include "pattern.h"
 
 #include <lauxlib.h>
 

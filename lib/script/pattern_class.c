@@ -1,7 +1,7 @@
 /* Which characters a class or a set of a pattern stands for (in the "C" locale). */
 #include <ctype.h>
 
-#include "script/pattern.h"
+#include "pattern.h"
 
 bool wh_pattern_in_class(int c, int letter) {
     static const struct {

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 static __thread wh_sandbox_t *strict_sandbox = NULL;
 

@@ -1,10 +1,10 @@
-#include "script/reader.h"
+#include "reader.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "core/config.h"
-#include "script/reader_internal.h"
+#include "../math/config.h"
+#include "reader_internal.h"
 
 void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file) {
     memset(reader, 0, sizeof *reader);

@@ -9,7 +9,7 @@
 
 #include <lua.h>
 
-#include "core/vector.h"
+#include "../math/vector.h"
 
 #define WH_READER_DEPTH 8
 

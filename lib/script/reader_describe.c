@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "script/reader_internal.h"
+#include "reader_internal.h"
 
 /* The sign of a NaN depends on the machine, and says nothing. */
 static void describe_number(double value, char *text, size_t size) {

@@ -4,7 +4,7 @@
 
 #include <lauxlib.h>
 
-#include "script/reader.h"
+#include "reader.h"
 
 /* Writes the value on top of the stack as a message shows it. */
 void wh_reader_describe(lua_State *L, char *text, size_t size);

@@ -2,7 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "script/reader_internal.h"
+#include "reader_internal.h"
 
 static bool is_known(const char *name, size_t length, const char *known) {
     if (length == 0 || length != strlen(name) || strchr(name, ' ')) {

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 /* Registry key of the last error's value. The slot always exists (false: none), so that setting it needs no
  * memory. */

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 static void push_type_name(lua_State *L, int index) {
     const int type = luaL_getmetafield(L, index, "__name");

@@ -6,7 +6,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 /* Levels of the call stack that are searched for a line: a runaway recursion has a hundred thousand. */
 #define SEARCHED_LEVELS 1000

@@ -7,7 +7,7 @@
 #include <lauxlib.h>
 #include <lualib.h>
 
-#include "script/sandbox.h"
+#include "sandbox.h"
 
 /* The count hook fires every so many instructions of a coroutine, and at each one once a limit is exhausted.
  */

@@ -1,7 +1,7 @@
 /* Builds what a script finds; sandbox_library.h says what that is. */
-#include "script/sandbox_library.h"
+#include "sandbox_library.h"
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 void wh_library_set(lua_State *L, const luaL_Reg *functions) {
     for (; functions->name != NULL; ++functions) {

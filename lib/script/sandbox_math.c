@@ -2,8 +2,8 @@
  * differs between machines. */
 #include <math.h>
 
-#include "motion/trig.h"
-#include "script/sandbox_internal.h"
+#include "../math/trig.h"
+#include "sandbox_internal.h"
 
 /* As far as wh_sin keeps its promise, rad. */
 #define ANGLE_LIMIT 1e5

@@ -1,7 +1,7 @@
 /* The sandbox's allocator: a cap, a high-water mark, and a price for large blocks. */
 #include <stdlib.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 /* Copying and clearing cost time that no instruction counts: one step per 64 bytes of a long string or large
  * block. */

@@ -2,7 +2,7 @@
 #include <ctype.h>
 #include <string.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 /* Where a person's text goes that Lua code may yet have to make. */
 typedef struct {

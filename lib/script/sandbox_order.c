@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 typedef enum { RANK_NUMBER, RANK_STRING, RANK_BOOLEAN } rank_t;
 

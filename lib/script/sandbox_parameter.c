@@ -2,7 +2,7 @@
 #include <ctype.h>
 #include <string.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 /* Handed to the protected part. */
 typedef struct {

@@ -2,8 +2,8 @@
 #include <ctype.h>
 #include <string.h>
 
-#include "script/pattern.h"
-#include "script/sandbox_internal.h"
+#include "pattern.h"
+#include "sandbox_internal.h"
 
 /* Offset from the subject's begin for a start that may count from the end; beyond the end when there is none.
  */

@@ -1,6 +1,6 @@
 /* pcall, xpcall and coroutines, which pass an exhausted limit on instead of catching it, and keep track of
  * which coroutine runs. */
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 /* ---- pcall, xpcall: as in Lua's base library, the extra value being the results to leave out. ---- */
 

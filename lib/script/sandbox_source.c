@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 static const char *kind_fault(const struct stat *status) {
     if (S_ISDIR(status->st_mode)) {

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 /* Repeating nothing takes Lua's own rep as long as repeating something; all else its memory bounds. */
 static int string_rep(lua_State *L) {

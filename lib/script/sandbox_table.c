@@ -2,7 +2,7 @@
  * in each run (Lua's draws pivots from the clock). */
 #include <limits.h>
 
-#include "script/sandbox_internal.h"
+#include "sandbox_internal.h"
 
 /* A __len could promise anything, and something else when it is asked again. */
 static lua_Integer check_length(lua_State *L) {

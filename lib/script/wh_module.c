@@ -1,13 +1,13 @@
-#include "script/wh_module.h"
+#include "wh_module.h"
 
-#include "script/wh_module_internal.h"
+#include "wh_module_internal.h"
 
 static const struct {
     int number;
     const char *name, *text;
 } catalogue[] = {
 #define WH_STATUS(number, name, text) {(number), #name, text},
-#include "core/status.def"
+#include "../math/status.def"
 #undef WH_STATUS
 };
 

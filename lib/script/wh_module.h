@@ -2,7 +2,7 @@
  *
  *     local wh = require "wh"               -- wh.so on package.cpath; the program brings it along
  *
- * A thin binding: every value and every verdict is the library's, see core/proximity.h and core/grasp.h for
+ * A thin binding: every value and every verdict is the library's, see grasp/proximity.h and grasp/grasp.h for
  * what they mean. Lengths in mm. Indices count from 1; "none" is nil.
  *
  * Tables
@@ -27,7 +27,7 @@
  *         seat         true: a picked wafer is drawn onto the pads; default false
  *         near_projz, near_projxy   neighbourhood for near misses, in (0, 1e6]; default 4.5 and 2 projxy
  *     wh.version       the library's version, such as "1.2.3"
- *     wh.errors        the catalogue core/status.def: NAME -> { number =, text = }
+ *     wh.errors        the catalogue math/status.def: NAME -> { number =, text = }
  *
  * Methods of a cell
  *     cell:step(inputs)      one slice. `inputs` is a list with { pose =, valve = } for each gripper, valve 0
@@ -60,7 +60,7 @@
  * exception is memory that runs out while the events of a step that was done are handed out.
  *
  * Memory: a cell is one userdata, Lua's to free; 4 kB and 104 bytes for each wafer. Costs: as in
- * core/grasp.h, and about a microsecond for each pose that goes in or out.
+ * grasp/grasp.h, and about a microsecond for each pose that goes in or out.
  */
 #ifndef WH_SCRIPT_WH_MODULE_H
 #define WH_SCRIPT_WH_MODULE_H

@@ -1,7 +1,7 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "script/wh_module_internal.h"
+#include "wh_module_internal.h"
 
 #define CELL_TYPE "wh.cell"
 
@@ -29,8 +29,8 @@ static size_t push_wafers(lua_State *L, const wh_field_t *at) {
         wh_lua_refuse(L, at, "table expected, got %s", luaL_typename(L, -1));
     }
     const lua_Integer count = luaL_len(L, -1);
-    if (count < 0 || count > WH_LAYOUT_WAFERS) {
-        wh_lua_refuse(L, at, "%I entries (expected 0 to %d)", (LUAI_UACINT)count, WH_LAYOUT_WAFERS);
+    if (count < 0 || count > WH_MODULE_WAFERS) {
+        wh_lua_refuse(L, at, "%I entries (expected 0 to %d)", (LUAI_UACINT)count, WH_MODULE_WAFERS);
     }
     wh_lua_check_list(L, lua_gettop(L), at, count);
     return (size_t)count;

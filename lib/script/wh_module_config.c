@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "script/wh_module_internal.h"
+#include "wh_module_internal.h"
 
 static wh_check_t read_check(lua_State *L, const wh_field_t *of) {
     const wh_field_t at = wh_lua_field(of, "check");

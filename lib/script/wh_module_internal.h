@@ -5,8 +5,8 @@
 #include <lauxlib.h>
 #include <lua.h>
 
-#include "core/grasp.h"
-#include "script/layout.h"
+#include "../grasp/grasp.h"
+#include "../motion/machine.h"
 
 #if defined(WH_FLOAT)
 #error "waferhand: the Lua module's numbers are double; build it and the library without WH_FLOAT"
@@ -14,6 +14,9 @@
 #if LUA_VERSION_NUM != 504 || LUA_FLOAT_TYPE != LUA_FLOAT_DOUBLE
 #error "waferhand: the Lua module needs Lua 5.4 with double numbers"
 #endif
+
+/* As many wafers as a cell of the module takes. */
+#define WH_MODULE_WAFERS 1000000
 
 /* The path of a value within an argument, such as inputs[2].pose.R, as a chain of the callers' locals. */
 typedef struct wh_field {

@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "script/wh_module_internal.h"
+#include "wh_module_internal.h"
 
 static void take_triple(lua_State *L, const wh_field_t *at, wh_real_t triple[3]) {
     const int list = lua_gettop(L);

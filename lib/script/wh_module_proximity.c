@@ -1,4 +1,4 @@
-#include "script/wh_module_internal.h"
+#include "wh_module_internal.h"
 
 /* An argument that may be missing reads as nil. */
 static void push_argument(lua_State *L, int number) {

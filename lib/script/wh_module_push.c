@@ -1,4 +1,4 @@
-#include "script/wh_module_internal.h"
+#include "wh_module_internal.h"
 
 static void set_number(lua_State *L, const char *name, wh_real_t value) {
     lua_pushnumber(L, value);

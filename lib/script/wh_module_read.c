@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "script/wh_module_internal.h"
+#include "wh_module_internal.h"
 
 /* From the leaf to the root, each step putting one more part before the rest. */
 static const char *push_path(lua_State *L, const wh_field_t *at) {

@@ -1,8 +1,8 @@
-#include "sim/condition.h"
+#include "condition.h"
 
 #include <string.h>
 
-#include "core/hash.h"
+#include "../math/hash.h"
 
 wh_physics_t wh_physics_default(void) {
     wh_physics_t physics;

@@ -2,8 +2,8 @@
 #ifndef WH_SIM_CONDITION_H
 #define WH_SIM_CONDITION_H
 
-#include "core/hold.h"
-#include "sim/faults.h"
+#include "../grasp/hold.h"
+#include "faults.h"
 
 /* What does not change during a run. */
 typedef struct {
@@ -39,7 +39,7 @@ wh_status_t wh_condition_validate(const wh_condition_t *condition, size_t grippe
 /* What the vacuum sensors say: bit g for gripper g. */
 uint32_t wh_condition_sensors(const wh_condition_t *condition, size_t gripper_count);
 
-/* 64 bits over all that the next step depends on. It is wh_grasp_hash(table), continued by wh_hash_word (core/hash.h):
+/* 64 bits over all that the next step depends on. It is wh_grasp_hash(table), continued by wh_hash_word (math/hash.h):
  * for each gripper whose vacuum is not plain, the words 1, its index, level, command and on (a plain one's command is the
  * valve that the table says, its level is 1 and its sensor on while it holds a wafer, and 0 and off while it holds
  * none); for each gripper with positions known, 2, its index, known, before[0], before[1] and slips; for each slot in

@@ -1,4 +1,4 @@
-#include "sim/faults.h"
+#include "faults.h"
 
 #include <string.h>
 

@@ -25,8 +25,8 @@
 #ifndef WH_SIM_FAULTS_H
 #define WH_SIM_FAULTS_H
 
-#include "core/vacuum.h"
-#include "motion/machine.h"
+#include "../grasp/vacuum.h"
+#include "../motion/machine.h"
 
 /* Faults that a run can have at a time. */
 #define WH_FAULTS 16

@@ -1,4 +1,4 @@
-#include "sim/simulator.h"
+#include "simulator.h"
 
 #include <string.h>
 

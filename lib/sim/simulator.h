@@ -3,8 +3,8 @@
 #ifndef WH_SIM_SIMULATOR_H
 #define WH_SIM_SIMULATOR_H
 
-#include "cell/station.h"
-#include "sim/slice.h"
+#include "../cell/station.h"
+#include "slice.h"
 
 /* Looks at each accepted step when table and cell are done with it, and may append events; null: nobody does. `inputs` are
  * the step's own, as faults and vacuum made them. It must not

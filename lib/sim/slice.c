@@ -1,4 +1,4 @@
-#include "sim/slice.h"
+#include "slice.h"
 
 #include <string.h>
 

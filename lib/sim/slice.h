@@ -3,8 +3,8 @@
 #ifndef WH_SIM_SLICE_H
 #define WH_SIM_SLICE_H
 
-#include "motion/track.h"
-#include "sim/condition.h"
+#include "../motion/track.h"
+#include "condition.h"
 
 /* At most so many events in one slice: those of the grasp table, then what the cell, the vacuum, the faults and the
  * collision check have to say. What does not fit is not reported. */

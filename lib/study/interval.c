@@ -1,4 +1,4 @@
-#include "study/interval.h"
+#include "interval.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "study/sum.h"
+#include "sum.h"
 
 #include <math.h>
 

@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "link/messages.h"
-#include "report/utf8.h"
-#include "script/record.h"
-#include "view/cell_internal.h"
+#include "../link/messages.h"
+#include "../record/record.h"
+#include "../text/utf8.h"
+#include "cell_internal.h"
 
 /* Each byte of a name becomes three at most. */
 #define WRITTEN_SIZE (3 * WH_NAME_SIZE)

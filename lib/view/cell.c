@@ -1,9 +1,9 @@
-#include "view/cell.h"
+#include "cell.h"
 
 #include <string.h>
 
-#include "motion/trig.h"
-#include "view/cell_internal.h"
+#include "../math/trig.h"
+#include "cell_internal.h"
 
 /* How far a cover, and then a notch's mark, stand out of the wafer, mm. */
 #define COVER 0.25

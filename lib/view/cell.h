@@ -16,7 +16,7 @@
 #include <waferhand_viewer_draw.h>
 #include <waferhand_viewer_load.h>
 
-#include "script/layout.h"
+#include "../layout/layout.h"
 
 /* mm: beyond what the viewer's camera sees. */
 #define WH_VIEW_AWAY 1e6

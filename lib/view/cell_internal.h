@@ -2,8 +2,8 @@
 #ifndef WH_VIEW_CELL_INTERNAL_H
 #define WH_VIEW_CELL_INTERNAL_H
 
-#include "view/cell.h"
-#include "view/geometry.h"
+#include "cell.h"
+#include "geometry.h"
 
 /* One more body, without shapes, at base; `name` may be null: the folder's. Returns its index. */
 size_t wh_view_add_body(wh_view_cell_t *cell, const char *folder, const char *name);

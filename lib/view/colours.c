@@ -1,4 +1,4 @@
-#include "view/colours.h"
+#include "colours.h"
 
 #define SERIES 6
 

@@ -3,7 +3,7 @@
 #ifndef WH_VIEW_COLOURS_H
 #define WH_VIEW_COLOURS_H
 
-#include "collision/world.h"
+#include "../collision/world.h"
 
 /* As a screen has it (sRGB), 0 to 1. */
 typedef struct {

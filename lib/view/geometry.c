@@ -1,11 +1,11 @@
-#include "view/geometry.h"
+#include "geometry.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "link/messages.h"
-#include "report/mesh.h"
-#include "report/quaternion.h"
+#include "../link/messages.h"
+#include "../record/quaternion.h"
+#include "mesh.h"
 
 #define M_PER_MM 1e-3
 

@@ -10,8 +10,8 @@
 
 #include <waferhand_viewer_geometry.h>
 
-#include "collision/convex.h"
-#include "view/colours.h"
+#include "../collision/convex.h"
+#include "colours.h"
 
 /* waferhand_viewer_geometry.type. */
 enum { WH_VIEW_BOX = 1, WH_VIEW_SPHERE, WH_VIEW_CYLINDER, WH_VIEW_TRIANGLES, WH_VIEW_CAPSULE };

@@ -2,8 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "script/collision.h"
-#include "view/cell_internal.h"
+#include "../layout/collision.h"
+#include "cell_internal.h"
 
 static void *room_for(size_t count, size_t size) {
     void *room = calloc(count + 1, size);

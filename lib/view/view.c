@@ -1,4 +1,4 @@
-#include "view/view.h"
+#include "view.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,9 +7,9 @@
 #ifndef WH_VIEW_VIEW_H
 #define WH_VIEW_VIEW_H
 
-#include "link/node.h"
-#include "link/server.h"
-#include "view/cell.h"
+#include "../link/node.h"
+#include "../link/protocol_server.h"
+#include "cell.h"
 
 #define WH_CHANNEL_VIEWER_LOAD "DRAKE_VIEWER_LOAD_ROBOT"
 #define WH_CHANNEL_VIEWER_DRAW "DRAKE_VIEWER_DRAW"

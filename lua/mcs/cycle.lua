@@ -1,4 +1,4 @@
--- The word that says where a cycle begins, for wafers per hour: see lib/script/figures.h.
+-- The word that says where a cycle begins, for wafers per hour: see lib/record/throughput.h.
 
 -- Kept, for a script may set globals of these names.
 local type = type

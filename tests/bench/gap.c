@@ -4,7 +4,7 @@
 #include <time.h>
 
 #include "collision/gap.h"
-#include "support_convex.h"
+#include "support/convex.h"
 
 enum { ROUNDS = 200, CALLS = 200 };
 

@@ -7,7 +7,7 @@
 
 #include <waferhand.h>
 
-#include "support_random.h"
+#include "support/random.h"
 
 enum { BENCH_COLUMN = 25, BENCH_PITCH = 10, BENCH_GRID = 500 };
 

@@ -8,10 +8,10 @@
 
 #include "app/app.h"
 #include "app/mcs_link.h"
-#include "app/run.h"
-#include "app/study/study.h"
+#include "app/run_options.h"
 #include "fuzz.h"
-#include "script/layout_load.h"
+#include "layout/layout_load.h"
+#include "study/study.h"
 
 #define WORDS 24
 

@@ -1,6 +1,6 @@
 /* What the fuzz targets share. A target is a file *_fuzz.c with LLVMFuzzerTestOneInput, run from the project's root. */
-#ifndef WH_TESTS_FUZZ_H
-#define WH_TESTS_FUZZ_H
+#ifndef WH_TESTS_FUZZ_FUZZ_H
+#define WH_TESTS_FUZZ_FUZZ_H
 
 #include <stdbool.h>
 #include <stddef.h>

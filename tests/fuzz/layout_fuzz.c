@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "fuzz.h"
+#include "layout/layout.h"
 #include "link/cell_layout.h"
 #include "motion/track.h"
-#include "script/layout.h"
 #include "script/sandbox.h"
 #include "sim/simulator.h"
 

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "fuzz.h"
+#include "mcs/session.h"
 #include "script/sandbox_internal.h"
-#include "script/session.h"
 #include "snapshot.h"
 #include "sound_cell.h"
 

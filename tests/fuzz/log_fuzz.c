@@ -8,12 +8,12 @@
 #include <sys/mman.h>
 
 #include "app/app.h"
-#include "app/json/record_json.h"
 #include "fuzz.h"
-#include "link/check.h"
-#include "link/replay.h"
+#include "link/checksum.h"
+#include "log/log_run.h"
+#include "log/replay.h"
+#include "print/record_json.h"
 #include "report/document.h"
-#include "report/log_run.h"
 
 #define HEADER 28
 

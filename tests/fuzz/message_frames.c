@@ -2,9 +2,9 @@
 
 #include <string.h>
 
-#include "core/grasp.h"
 #include "fuzz.h"
-#include "link/check.h"
+#include "grasp/grasp.h"
+#include "link/checksum.h"
 
 /* What to put right, or-ed. */
 enum { FINGERPRINT = 1, IDENTITY = 2, SEQ = 4, HASH = 8, SEAL = 16, SLICE_LATER = 32 };

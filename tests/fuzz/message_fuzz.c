@@ -8,15 +8,15 @@
 
 #include <string.h>
 
-#include "app/json/record_json.h"
-#include "app/table/record_table.h"
-#include "core/restore.h"
 #include "fake_node.h"
 #include "fuzz.h"
+#include "grasp/restore.h"
+#include "layout/layout_load.h"
 #include "link/cell_layout.h"
-#include "link/control.h"
-#include "link/simulation.h"
-#include "script/layout_load.h"
+#include "link/mcs_process.h"
+#include "link/sim_process.h"
+#include "print/record_json.h"
+#include "print/record_table.h"
 
 /* An input's first byte. */
 enum { TO_MOTION_CONTROL = 1, FREE_RUNNING = 2, SWEPT = 4 };
@@ -189,7 +189,7 @@ static bool is_index(int32_t index, size_t count) {
     return index >= 0 && (size_t)index < count;
 }
 
-/* As core/event.h has it: whoever explains an event looks its wafer and grippers up. */
+/* As grasp/event.h has it: whoever explains an event looks its wafer and grippers up. */
 static void check_event(const wh_event_t *event, int64_t seq) {
     const size_t wafers = layout->wafer_count;
     const size_t grippers = layout->machine.gripper_count;

@@ -3,10 +3,10 @@
 #include <jansson.h>
 #include <string.h>
 
-#include "app/json/record_json.h"
-#include "app/table/record_table.h"
 #include "fuzz.h"
-#include "script/mcs.h"
+#include "mcs/mcs.h"
+#include "print/record_json.h"
+#include "print/record_table.h"
 #include "script/sandbox_internal.h"
 #include "snapshot.h"
 #include "sound_cell.h"

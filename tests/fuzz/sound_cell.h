@@ -2,9 +2,9 @@
 #ifndef WH_TESTS_FUZZ_SOUND_CELL_H
 #define WH_TESTS_FUZZ_SOUND_CELL_H
 
-#include "core/restore.h"
 #include "fuzz.h"
-#include "script/mcs.h"
+#include "grasp/restore.h"
+#include "mcs/mcs.h"
 
 /* Its state is one that another table may take over, its axes are within their travel, its slices are all there. */
 static inline void fuzz_check_cell(const wh_mcs_t *mcs) {

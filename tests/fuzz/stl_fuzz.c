@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "fuzz.h"
-#include "script/stl.h"
+#include "layout/stl.h"
 
 static bool is_before(const wh_vec3_t *a, const wh_vec3_t *b) {
     if (a->x != b->x) {

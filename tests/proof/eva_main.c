@@ -6,8 +6,8 @@
  * What the arrays hold, before and between the calls, is otherwise up to the library; what the slice, counters and
  * buckets hold is anything.
  */
-#include "core/hold.h"
-#include "core/restore.h"
+#include "grasp/hold.h"
+#include "grasp/restore.h"
 
 #define GRIPPERS 2
 #define WAFERS 3

@@ -1,4 +1,4 @@
 /* The functions that stand in headers, for WP to prove once. */
-#include "core/grasp_internal.h"
-#include "core/hash.h"
-#include "core/horizon_internal.h"
+#include "grasp/grasp_internal.h"
+#include "grasp/horizon_internal.h"
+#include "math/hash.h"

@@ -6,7 +6,7 @@
 
 #include <waferhand.h>
 
-#include "support_random.h"
+#include "support/random.h"
 
 enum { WAFERS = 25, GRIPPERS = 2, STEPS = 20000 };
 

@@ -6,7 +6,7 @@
 
 #include <waferhand.h>
 
-#include "support_random.h"
+#include "support/random.h"
 
 enum { WAFERS = 5, GRIPPERS = 3, STEPS = 25000, CALLS = 5000 };
 

@@ -2,6 +2,16 @@
 # shellcheck shell=bash
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit
 unset MAKEFLAGS
+# A pattern that matches no file is an error: what moved is not left out in silence.
+shopt -s failglob
+
+# What is proved: the grasp table and all that it stands on.
+# shellcheck disable=SC2034 # for the scripts that ask
+{
+    proved_sources=(lib/math/{abi,pose,status}.c lib/grasp/*.c)
+    proved_headers=(lib/math/{hash,pose,status,vector}.h lib/grasp/*.h)
+    library_rooms=$(sed -n 's/^LIBRARY_ROOMS := //p' lib/build/rooms.mk)
+}
 work=build/verify/$(basename "$0")
 mkdir -p "$work"
 

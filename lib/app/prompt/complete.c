@@ -1,11 +1,11 @@
 /* Completes the word before the cursor. */
-#include "app/prompt/complete.h"
+#include "complete.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "app/style.h"
+#include "../../text/style.h"
 
 static size_t common_length(const wh_candidates_t *candidates) {
     size_t length = strlen(candidates->texts[0]);

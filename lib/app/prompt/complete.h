@@ -6,7 +6,7 @@
 
 #include <histedit.h>
 
-#include "script/session.h"
+#include "../../mcs/session.h"
 
 /* Completes the word before the cursor as far as all candidates agree, the only one with a blank behind it; where they
  * agree no further, lists them below the line. Returns what an editor function returns to libedit. */

@@ -9,11 +9,11 @@
 #include <histedit.h>
 #include <limits.h>
 
-#include "app/prompt/complete.h"
-#include "app/prompt/history.h"
-#include "app/prompt/line_source.h"
-#include "app/signals.h"
-#include "app/style.h"
+#include "../../text/style.h"
+#include "../interrupt.h"
+#include "complete.h"
+#include "history.h"
+#include "line_source.h"
 
 struct wh_editor {
     wh_input_t *input;

@@ -1,4 +1,4 @@
-#include "app/prompt/history.h"
+#include "history.h"
 
 #include <fcntl.h>
 #include <limits.h>
@@ -8,8 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "report/output.h"
-#include "script/session.h"
+#include "../../mcs/session.h"
+#include "../../text/output.h"
 
 void wh_history_path(char *path, size_t size) {
     const char *state = getenv("XDG_STATE_HOME");

@@ -2,7 +2,7 @@
 #ifndef WH_APP_PROMPT_LINE_SOURCE_H
 #define WH_APP_PROMPT_LINE_SOURCE_H
 
-#include "app/input.h"
+#include "../input.h"
 
 typedef enum {
     WH_LINE_READ,   /* a line */

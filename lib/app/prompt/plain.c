@@ -3,8 +3,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "app/prompt/line_source.h"
-#include "app/signals.h"
+#include "../interrupt.h"
+#include "line_source.h"
 
 /* NONE: there was nothing to read after all. */
 static wh_line_event_t read_bytes(wh_plain_t *plain) {

@@ -1,4 +1,4 @@
-#include "app/prompt/prompt.h"
+#include "prompt.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -7,10 +7,10 @@
 #include <strings.h>
 #include <unistd.h>
 
-#include "app/app.h"
-#include "app/prompt/line_source.h"
-#include "app/signals.h"
-#include "app/style.h"
+#include "../../text/style.h"
+#include "../app.h"
+#include "../interrupt.h"
+#include "line_source.h"
 
 struct wh_prompt {
     wh_session_t *session;

@@ -15,7 +15,7 @@
 
 #include <stdbool.h>
 
-#include "script/session.h"
+#include "../../mcs/session.h"
 
 #define WH_PROMPT_WATCHES 8
 

@@ -1,0 +1,91 @@
+#include "interrupt.h"
+
+#include <string.h>
+
+static const int held[] = {SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGWINCH};
+
+#define HELD (sizeof held / sizeof held[0])
+#define HELD_WITHOUT_TERMINAL 3
+
+static struct {
+    size_t count;
+    struct sigaction before[HELD];
+    sigset_t mask_before;
+    sigset_t mask_held;
+    sigset_t mask_running; /* lets the first three in */
+    volatile sig_atomic_t arrived[HELD];
+    wh_session_t *volatile session; /* a command of which runs */
+} signals;
+
+static void on_signal(int number) {
+    for (size_t i = 0; i < HELD; ++i) {
+        signals.arrived[i] |= held[i] == number;
+    }
+    if (signals.session) {
+        wh_session_stop(signals.session);
+    }
+}
+
+void wh_signals_hold(bool terminal) {
+    struct sigaction action;
+    memset(&signals, 0, sizeof signals);
+    memset(&action, 0, sizeof action);
+    action.sa_handler = on_signal;
+    signals.count = terminal ? HELD : HELD_WITHOUT_TERMINAL;
+    sigprocmask(SIG_BLOCK, NULL, &signals.mask_before);
+    signals.mask_held = signals.mask_running = signals.mask_before;
+    for (size_t i = 0; i < signals.count; ++i) {
+        sigaddset(&signals.mask_held, held[i]);
+        if (i >= HELD_WITHOUT_TERMINAL) {
+            sigaddset(&signals.mask_running, held[i]);
+        }
+    }
+    sigprocmask(SIG_SETMASK, &signals.mask_held, NULL);
+    for (size_t i = 0; i < signals.count; ++i) {
+        sigaction(held[i], NULL, &signals.before[i]);
+        if (signals.before[i].sa_handler != SIG_IGN) {
+            sigaction(held[i], &action, NULL);
+        }
+    }
+}
+
+void wh_signals_release(void) {
+    for (size_t i = 0; i < signals.count; ++i) {
+        sigaction(held[i], &signals.before[i], NULL);
+    }
+    sigprocmask(SIG_SETMASK, &signals.mask_before, NULL);
+    signals.count = 0;
+}
+
+const sigset_t *wh_signals_waiting(void) {
+    return &signals.mask_before;
+}
+
+bool wh_signals_pending(void) {
+    for (size_t i = 0; i < signals.count; ++i) {
+        if (signals.arrived[i]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+int wh_signals_take(void) {
+    for (size_t i = 0; i < signals.count; ++i) {
+        if (signals.arrived[i]) {
+            signals.arrived[i] = 0;
+            return held[i];
+        }
+    }
+    return 0;
+}
+
+void wh_signals_stop_session(wh_session_t *session) {
+    if (session) {
+        signals.session = session;
+        sigprocmask(SIG_SETMASK, &signals.mask_running, NULL);
+    } else {
+        sigprocmask(SIG_SETMASK, &signals.mask_held, NULL);
+        signals.session = NULL;
+    }
+}

@@ -1,0 +1,84 @@
+/* Events: what happened in a step, with the values that explain it. */
+#ifndef WH_GRASP_EVENT_H
+#define WH_GRASP_EVENT_H
+
+#include "proximity.h"
+
+/* A step of the grasp table yields at most this many events for each of its grippers. */
+#define WH_EVENTS_PER_GRIPPER 4
+
+typedef enum {
+    /* An open gripper took a free wafer. `measured` is what made it ready. */
+    WH_EVENT_PICKED,
+    /* The gripper's valve closed: its wafer stays where it is. `measured` is the wafer against it. */
+    WH_EVENT_RELEASED,
+    /* In one step `other` let go of the wafer and `gripper` took it: instead of a release and a pick. */
+    WH_EVENT_HANDED_OVER,
+    /* A free wafer came into the neighbourhood of an open, empty gripper and left it again, or the valve
+     * closed, without a pick. `measured` is the closest approach, of slice `measured_slice`, judged between
+     * slices by 0.998 eps_projz as a swept pick is. Not reported when another gripper took that wafer, or this
+     * one another wafer, meanwhile. */
+    WH_EVENT_NEAR_MISS,
+    /* An open, empty gripper was ready on a wafer that `other` held. Reported once, when it ends without a
+     * hand-over (only then it is known that none follows): `measured` and `measured_slice` are of its
+     * beginning. */
+    WH_EVENT_CONTESTED,
+    /* The step was refused and nothing changed: `status` says why; `gripper` is the input that is wrong. */
+    WH_EVENT_BAD_INPUT,
+    /* From the cell, beside the release and with its values: no support is under the wafer, which is `height` mm
+     * above what is below (negative: below base's z = 0 and above no slot). */
+    WH_EVENT_RELEASED_UNSUPPORTED,
+    /* From the cell, beside the release and with its values: wafer `other` lies in the same slot. */
+    WH_EVENT_SLOT_OCCUPIED,
+    /* From the cell, beside the release and with its values: it lies in a slot or on a chuck, but `value` mm beside its
+     * centre, which is above `limit`. */
+    WH_EVENT_PLACED_OFF_CENTRE,
+    /* The same, but tilted against it by `value` rad, which is above `limit`. */
+    WH_EVENT_PLACED_ASKEW,
+    /* From the cell: the wafer was let go above its support and came to lie on it, its centre `value` mm lower. */
+    WH_EVENT_SETTLED,
+    /* From the collision check: parts[0] and parts[1] touch each other where they must not; `at` is the place. */
+    WH_EVENT_HIT,
+    /* The same, where the check could not decide whether they do. */
+    WH_EVENT_UNDECIDED,
+    /* From the collision check: the gap of a watched pair, `value` mm, fell below the `limit` that the layout sets. */
+    WH_EVENT_TOO_CLOSE,
+    /* The gripper's motion asks for more than its pads carry, mm/s^2: `value` against `limit`. */
+    WH_EVENT_SLIPPED,
+    /* The vacuum under a held wafer fell below the sensor's threshold: `value` of the full one, 0 to 1. */
+    WH_EVENT_VACUUM_LOST,
+    /* A fault on purpose begins or ends to act; parts[0] is its index, parts[1] its kind
+     * (sim/faults.h). */
+    WH_EVENT_FAULT_ARMED,
+    WH_EVENT_FAULT_CLEARED
+} wh_event_kind_t;
+
+/* How many kinds there are. */
+#define WH_EVENT_KINDS 18
+
+typedef struct {
+    wh_event_kind_t kind;
+    uint64_t slice;          /* number of the step in which it is reported; the first step is 1 */
+    uint64_t measured_slice; /* number of the step whose values `measured` holds */
+    int32_t wafer;           /* index from 0, or WH_NONE */
+    int32_t gripper;         /* index from 0, or WH_NONE */
+    int32_t other;           /* a second gripper or wafer where the kind names one, else WH_NONE */
+    wh_status_t status;      /* WH_OK but for WH_EVENT_BAD_INPUT */
+    wh_real_t height;        /* mm; 0 where the kind has none */
+    wh_real_t value, limit;  /* what was found and what it was held against; 0 where the kind has none */
+    int32_t parts[2];        /* parts of the collision world, or a fault's index and kind; else WH_NONE */
+    wh_vec3_t at;            /* a contact's place in base, mm; 0 where the kind has none */
+    wh_proximity_t measured; /* all zero where the kind has none */
+} wh_event_t;
+
+/* The caller's array of events: a step sets `count` and writes events[0 .. count-1]. */
+typedef struct {
+    wh_event_t *events;
+    size_t capacity, count;
+} wh_event_list_t;
+
+/* The kind's name in lower case, such as "handed_over": a constant string, never null. */
+/*@ assigns \result \from kind; ensures \result != \null; */
+const char *wh_event_name(wh_event_kind_t kind);
+
+#endif

@@ -1,0 +1,217 @@
+/* The grasp table: who holds which wafer, slice by slice.
+ *
+ * A gripper has one vacuum valve, 0 = open (vacuum on), 1 = closed, a level for a whole slice. wh_grasp_step
+ * does once per slice, in this order:
+ *   1. read all inputs; if one is invalid, refuse the whole step;
+ *   2. release: a wafer whose gripper's valve is now closed stays where its gripper, at this slice's pose,
+ *      carries it;
+ *   3. carry: a held wafer is at base_from_gripper * gripper_from_wafer, the second fixed at the pick;
+ *   4. pick: each open, empty gripper, in the order of their indices, takes of the ready wafers that nobody
+ *      holds the one with the smallest |dr_proj_z|, of equal ones the lowest index. gripper_from_wafer is
+ *      stored as it is: nothing jumps.
+ * So a wafer passes from one gripper to the next within the step in which the first closes, and is never free
+ * in between.
+ *
+ * Checking is `sampled` (the paper's: at the slice's pose) or `swept`: between two slices in which the valve
+ * was open and the gripper empty, its position is taken as linear and its rotation as the quaternion
+ * (1-t) 1 + t q, normalised, with q the turn from the earlier to the later pose, by the shorter way; the wafer is
+ * taken at the first instant within 0.998 eps_projz and the other two limits (of several wafers: earliest,
+ * then |dr_proj_z|, then index), failing that if it is ready at the slice's end, and is then carried to the
+ * slice's end. A wafer released in this slice is checked at its end only.
+ *
+ * Memory is the caller's; nothing is allocated, nothing is static, a table may be copied or moved by its
+ * owner together with its arrays. Calls on one table must not overlap; different tables are independent.
+ * Every call that fails leaves the table as it was, but for `counters.refused`.
+ */
+#ifndef WH_GRASP_GRASP_H
+#define WH_GRASP_GRASP_H
+
+#include "event.h"
+
+typedef enum { WH_CHECK_SAMPLED, WH_CHECK_SWEPT } wh_check_t;
+
+/* A valve's two levels. */
+enum { WH_VALVE_OPEN = 0, WH_VALVE_CLOSED = 1 };
+
+/* Immutable after wh_grasp_init. */
+typedef struct {
+    wh_tolerance_t tolerance;
+    wh_check_t check;
+    /* Draw a wafer onto the pads at the pick, as vacuum does: z of gripper_from_wafer becomes 0 and the wafer
+     * turns by the smallest rotation that takes n1 to n2. */
+    bool seat;
+    /* The neighbourhood for near misses, mm: |dr_proj_z| < near_projz and |dr_proj_xy| < near_projxy; in
+     * (0, 1e6]. */
+    wh_real_t near_projz, near_projxy;
+} wh_grasp_config_t;
+
+/* One wafer. The caller fills in base_from_wafer before wh_grasp_init and only reads afterwards. */
+typedef struct {
+    wh_pose_t base_from_wafer;
+    int32_t holder;      /* the gripper's index, or WH_NONE */
+    int32_t released_by; /* used within a step; WH_NONE between steps */
+} wh_wafer_t;
+
+/* A wafer that an open, empty gripper is keeping an eye on. */
+typedef struct {
+    int32_t wafer;  /* WH_NONE when there is none */
+    int32_t holder; /* of a contested wafer: who holds it; else WH_NONE */
+    uint64_t slice; /* when `measured` was measured */
+    wh_proximity_t measured;
+} wh_encounter_t;
+
+/* One gripper, as the last step left it. Read only. */
+typedef struct {
+    wh_pose_t base_from_gripper;
+    wh_pose_t gripper_from_wafer; /* meaningful while it holds a wafer */
+    int32_t wafer;                /* the wafer it holds, or WH_NONE */
+    int32_t valve;                /* WH_VALVE_*; closed before the first step */
+    wh_encounter_t approach;      /* the closest approach of a free wafer that is near now */
+    wh_encounter_t contest;       /* the beginning of a contest that goes on now */
+} wh_gripper_t;
+
+/* What one gripper does in a slice. */
+typedef struct {
+    wh_pose_t base_from_gripper; /* at the slice's end */
+    int32_t valve;               /* WH_VALVE_OPEN or WH_VALVE_CLOSED, for the whole slice */
+} wh_gripper_input_t;
+
+/* The caller's arrays. They must live as long as the table and belong to it alone. Up to INT32_MAX each.
+ * `buckets`, as many as wh_grasp_buckets says, are for an index over the wafers and for how far each gripper may move
+ * before any can matter to it. They change no result, only the cost of a step; null and 0 are always right. What stands
+ * in them before wh_grasp_init does not matter and is the table's own afterwards: a copy of a table needs buckets of
+ * its own, and wh_grasp_restore to fill them, or has null and 0. */
+typedef struct {
+    wh_wafer_t *wafers;
+    size_t wafer_count;
+    wh_gripper_t *grippers;
+    size_t gripper_count;
+    uint32_t *buckets;
+    size_t bucket_count;
+} wh_grasp_storage_t;
+
+/* Run-time totals; no step depends on them and the hash leaves them out. */
+typedef struct {
+    uint64_t refused; /* calls refused for an invalid argument */
+    uint64_t picked, released, handed_over, near_misses, contested;
+} wh_grasp_counters_t;
+
+typedef struct {
+    wh_grasp_config_t config;
+    wh_grasp_storage_t storage;
+    uint64_t slice; /* steps done */
+    wh_grasp_counters_t counters;
+} wh_grasp_t;
+
+/* Contracts, as below, are what Frama-C proves; their predicates stand in contracts.h. */
+#if defined(__FRAMAC__)
+#include "../math/contracts.h"
+#endif
+/* How many buckets a table of these counts needs: 5 for each wafer, 4 for each gripper and 8. 0 above INT32_MAX / 16
+ * wafers or grippers: such a table can have none. */
+/*@ assigns \nothing;
+    ensures wafer_count <= INT32_MAX / 16 && gripper_count <= INT32_MAX / 16 ?
+              \result == 8 + 4 * gripper_count + 5 * wafer_count : \result == 0; */
+size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count);
+
+/* The same as a constant, for an array. */
+#define WH_GRASP_BUCKETS(wafer_count, gripper_count)                                                         \
+    (8 + 4 * (size_t)(gripper_count) + 5 * (size_t)(wafer_count))
+
+/* The paper's tolerance, sampled, no seating; neighbourhood 4.5 mm and 2 eps_projxy. */
+/*@ assigns \nothing; */
+wh_grasp_config_t wh_grasp_config_default(void);
+
+/* Sets up a table: all wafers free where storage->wafers has them, all grippers empty and closed. Refuses
+ * null pointers (an array may be null when its count is 0), counts above INT32_MAX, fewer buckets than
+ * wh_grasp_buckets says but not 0, invalid wafer poses and configurations outside the ranges above; table and arrays are
+ * then unchanged. Cost: linear in wafers and grippers. */
+/*@ requires table == \null || \valid(table);
+    requires config == \null || \valid_read(config);
+    requires storage == \null || wh_storage_memory(storage);
+    requires storage != \null ==> wh_storage_apart(storage, table);
+    assigns *table, storage->wafers[0 .. storage->wafer_count - 1],
+            storage->grippers[0 .. storage->gripper_count - 1], storage->buckets[0 .. storage->bucket_count - 1];
+    ensures \result == WH_OK ==> wh_table_memory(table) && wh_consistent(table);
+    ensures \result == WH_OK ==> \forall integer w; wh_is_wafer(table, w) ==> wh_holder(table, w) == WH_NONE;
+    ensures \result != WH_OK && table != \null ==> *table == \old(*table); */
+wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
+                          const wh_grasp_storage_t *storage);
+
+/* One slice, as described at the top. `inputs` has one entry for each gripper. `list` receives the events, in
+ * the order picks and hand-overs, releases, near misses and contests, each by gripper; null: not wanted.
+ * Refused, and the table left as it was: a null table or inputs (WH_STATUS_NULL_ARGUMENT), a list with room
+ * for fewer than WH_EVENTS_PER_GRIPPER events for each gripper (WH_STATUS_BAD_CAPACITY), a pose that does not
+ * pass wh_pose_validate, a valve that is neither 0 nor 1; the last two also yield the one event
+ * WH_EVENT_BAD_INPUT, the others leave the list empty. Cost: linear in grippers. Each open, empty gripper adds a look at
+ * each other gripper's wafer and two checks of every wafer, at about a dozen products each. With buckets it adds less than
+ * a dozen products instead while it is within its horizon; beyond it two searches of the wafers around it, which do not
+ * depend on how many there are elsewhere; and the checks of all wafers only where it goes very far in one slice or most
+ * wafers are around it. A release adds a search through the wafers of one cell. */
+/*@ requires table == \null || wh_table_memory(table) && wh_consistent(table);
+    requires wh_list_memory(list) && wh_list_apart(list, table);
+    requires table != \null && inputs != \null ==>
+               \valid_read(inputs + (0 .. table->storage.gripper_count - 1)) && wh_inputs_apart(inputs, table) &&
+             wh_inputs_apart_list(inputs, table, list);
+    assigns table->slice, table->counters, table->storage.wafers[0 .. table->storage.wafer_count - 1],
+            table->storage.grippers[0 .. table->storage.gripper_count - 1],
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
+            list[0 .. wh_given(list) - 1].count, list->events[0 .. wh_room(list) - 1];
+    ensures table != \null ==> wh_consistent(table);
+    ensures table != \null ==> wh_free_at_rest{Pre, Post}(table);
+    ensures table != \null ==> wh_grips_kept{Pre, Post}(table);
+    ensures table != \null && \result != WH_OK ==> \at(table->slice, Pre) == table->slice;
+    ensures table != \null && \result != WH_OK ==> wh_same_arrays{Pre, Post}(table); */
+wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list);
+
+/* Puts a free wafer somewhere else, as a test or an operator may. Refuses a held wafer (WH_STATUS_HELD), an
+ * index out of range and an invalid pose. Its near misses so far are forgotten. Cost: linear in grippers, and with
+ * buckets a search through the wafers of one cell. */
+/*@ requires table == \null || wh_table_memory(table) && wh_consistent(table);
+    requires base_from_wafer == \null || \valid_read(base_from_wafer);
+    assigns table->counters.refused, table->storage.wafers[wafer].base_from_wafer,
+            table->storage.buckets[0 .. table->storage.bucket_count - 1],
+            table->storage.grippers[0 .. table->storage.gripper_count - 1].approach.wafer;
+    ensures table != \null ==> wh_consistent(table);
+    ensures table != \null && \result != WH_OK ==> \at(table->config, Pre) == table->config;
+    ensures table != \null && \result != WH_OK ==> \at(table->storage, Pre) == table->storage;
+    ensures table != \null && \result != WH_OK ==> \at(table->slice, Pre) == table->slice;
+    ensures table != \null && \result != WH_OK ==> wh_same_arrays{Pre, Post}(table);
+    ensures table != \null ==> wh_held_at_rest{Pre, Post}(table); */
+wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer);
+
+/* Where a wafer is and who holds it; either result pointer may be null. WH_STATUS_OUT_OF_RANGE for a bad
+ * index. */
+/*@ requires table == \null || wh_table_memory(table);
+    requires base_from_wafer == \null || \valid(base_from_wafer);
+    requires holder == \null || \valid(holder);
+    assigns *base_from_wafer, *holder;
+    ensures \result == WH_OK && holder != \null ==> *holder == \old(wh_holder(table, wafer));
+    ensures \result == WH_OK <==> table != \null && \old(wh_is_wafer(table, wafer)); */
+wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *base_from_wafer,
+                           int32_t *holder);
+
+/* Which wafer a gripper holds (WH_NONE: none). WH_STATUS_OUT_OF_RANGE for a bad index. */
+/*@ requires table == \null || wh_table_memory(table);
+    requires wafer == \null || \valid(wafer);
+    assigns *wafer;
+    ensures \result == WH_OK ==> *wafer == \old(wh_held(table, gripper));
+    ensures \result == WH_OK <==> table != \null && wafer != \null && \old(wh_is_gripper(table, gripper)); */
+wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafer);
+
+/* 64 bits over everything that the next step depends on, so equal hashes mean equal runs from here on: the
+ * number of steps; for each wafer its pose (R row by row, r) and holder; for each gripper its pose, valve,
+ * wafer, gripper_from_wafer while it holds one, then approach and contest: wafer, and while there is one also
+ * holder, slice and dr, n1_proj_n2, dr_proj_z, dr_proj_xy, dr_proj_xy_norm. Configuration, counters and
+ * buckets are left out. Each number enters as a 64-bit word w, reals by the bits of their type, integers in
+ * two's complement:
+ *
+ *     h = 0x6a09e667f3bcc908
+ *     for each w:  h = (h ^ w) * 0x9e3779b97f4a7c15;  h = h ^ (h >> 32)
+ *
+ * Cost: about 2 ns a word, 13 words for each wafer and up to 50 for each gripper. */
+/*@ requires wh_table_memory(table);
+    assigns \nothing; */
+uint64_t wh_grasp_hash(const wh_grasp_t *table);
+
+#endif

@@ -1,0 +1,90 @@
+#include "horizon_internal.h"
+
+/* The longest that a word holds. */
+#define LONGEST 536870912
+
+#if defined(WH_FLOAT)
+#define ROUNDING (16 * WH_REAL(FLT_EPSILON))
+#else
+#define ROUNDING (16 * WH_REAL(DBL_EPSILON))
+#endif
+
+/* Taken off: a place rounded to units is less than 1.74 of them away, and what is left is far more than the rounding of a
+ * neighbourhood's distances. */
+#define TAKEN_OFF WH_REAL(2)
+
+/* No column of a rotation is longer, so no distance changes by more than this times the gripper's way. */
+#define LONGEST_COLUMN (1 + 3 * WH_ROTATION_TOLERANCE)
+
+wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
+    const wh_vicinity_t limits = wh_index_limits(table);
+    const wh_vec3_t way = wh_vec3_subtract(place, &table->storage.grippers[g].base_from_gripper.r);
+    const wh_real_t moved = wh_real_abs(way.x) + wh_real_abs(way.y) + wh_real_abs(way.z);
+    const wh_real_t half = (limits.projz + limits.projxy) / 2;
+    const wh_real_t most = half > 8 ? half : 8;
+    const wh_real_t least = most / 32;
+    if (moved > most / 2 || moved < least / 32) {
+        return least;
+    }
+    return 32 * moved < most ? 32 * moved : most;
+}
+
+wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_near_t *near, wh_real_t margin) {
+    wh_horizon_t horizon = {.limits = wh_index_limits(table), .measured = table->storage.bucket_count > 0};
+    if (table->storage.grippers[g].approach.wafer != WH_NONE) {
+        horizon.limits.projz = table->config.tolerance.projz;
+        horizon.limits.projxy = table->config.tolerance.projxy;
+    }
+    horizon.gap = near->listed ? margin : (wh_real_t)LONGEST;
+    return horizon;
+}
+
+/* The distance in units, rounded down, for four times which there is room in a word; 0 where none is left. */
+/*@ assigns \nothing; ensures \result <= LONGEST; */
+static uint32_t reach_of(wh_real_t units) {
+    const int32_t reach = wh_index_whole(units);
+    if (reach < 0) {
+        return 0;
+    }
+    return reach < LONGEST ? (uint32_t)reach : LONGEST;
+}
+
+/* A gripper that is has no horizon. */
+/*@ assigns \nothing; */
+static bool is_far(int32_t units) {
+    return units == WH_INDEX_FAR || units == -WH_INDEX_FAR;
+}
+
+void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon) {
+    uint32_t *words = wh_horizon_words(table, g);
+    const int32_t x = wh_index_whole(WH_INDEX_UNITS * place->x);
+    const int32_t y = wh_index_whole(WH_INDEX_UNITS * place->y);
+    const int32_t z = wh_index_whole(WH_INDEX_UNITS * place->z);
+    words[3] = 0;
+    if (is_far(x) || is_far(y) || is_far(z)) {
+        return;
+    }
+    const wh_vicinity_t limits = wh_index_limits(table);
+    const wh_real_t size =
+        wh_real_abs(place->x) + wh_real_abs(place->y) + wh_real_abs(place->z) + limits.projz + limits.projxy;
+    const wh_real_t sure = (horizon->gap - ROUNDING * size) / LONGEST_COLUMN;
+    words[0] = (uint32_t)x;
+    words[1] = (uint32_t)y;
+    words[2] = (uint32_t)z;
+    words[3] = 4 * reach_of(WH_INDEX_UNITS * sure - TAKEN_OFF);
+    if (table->storage.grippers[g].approach.wafer != WH_NONE) {
+        words[3] |= WH_HORIZON_OF_TOLERANCE;
+    }
+    if (words[3] >= 4 * ((uint32_t)TAKEN_OFF)) {
+        words[3] |= WH_HORIZON_HOLDS;
+    }
+}
+
+void wh_horizon_reset(wh_grasp_t *table) {
+    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
+        loop assigns g, table->storage.buckets[0 .. table->storage.bucket_count - 1];
+        loop variant table->storage.gripper_count - g; */
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        wh_horizon_words(table, g)[3] = 0;
+    }
+}

@@ -1,0 +1,305 @@
+#include "drawing.h"
+
+#include <string.h>
+
+#include "../math/trig.h"
+#include "../text/svg.h"
+#include "outline.h"
+
+/* The picture is as wide as the window; its lines and letters are parts of its width. */
+#define LINES_PER_WIDTH 1300
+#define LETTERS_PER_WIDTH 95
+
+/* Both views, in mm of the cell: the box that holds all of it, and where the views' origins are. */
+typedef struct {
+    const wh_layout_check_t *check;
+    FILE *out;
+    wh_vec3_t low, high;
+    double width, height, margin, letter;
+    wh_outline_t outline;
+    bool failed;
+} drawing_t;
+
+/* ------------------------------------------------------------------------------------------------------- size */
+
+static void grow(drawing_t *d, wh_vec3_t low, wh_vec3_t high) {
+    d->low = wh_vec3(low.x < d->low.x ? low.x : d->low.x, low.y < d->low.y ? low.y : d->low.y,
+                     low.z < d->low.z ? low.z : d->low.z);
+    d->high = wh_vec3(high.x > d->high.x ? high.x : d->high.x, high.y > d->high.y ? high.y : d->high.y,
+                      high.z > d->high.z ? high.z : d->high.z);
+}
+
+static const wh_convex_t *convex_of(const wh_layout_t *layout, size_t part) {
+    return part < layout->world.part_count ? &layout->world.parts[part].convex : &layout->world.wafer;
+}
+
+/* Parts and wafers together; none of a layout with more than can be checked. */
+static size_t count_parts(const wh_layout_check_t *check) {
+    return check->has_parts ? check->layout->world.part_count + check->layout->wafer_count : 0;
+}
+
+static void measure(drawing_t *d) {
+    const wh_layout_t *layout = d->check->layout;
+    const wh_real_t reach = layout->machine.robot.travel[WH_AXIS_R].max;
+    grow(d, wh_vec3(-reach, -reach, 0), wh_vec3(reach, reach, 0));
+    for (size_t part = 0; part < count_parts(d->check); ++part) {
+        const wh_pose_t pose = wh_layout_check_place(d->check, (int32_t)part);
+        wh_vec3_t low;
+        wh_vec3_t high;
+        wh_convex_bounds(convex_of(layout, part), &pose, &low, &high);
+        grow(d, low, high);
+    }
+    const double x = (double)(d->high.x - d->low.x);
+    const double y = (double)(d->high.y - d->low.y);
+    const double z = (double)(d->high.z - d->low.z);
+    d->margin = x / 20;
+    d->width = 2 * x + 3 * d->margin;
+    d->letter = d->width / LETTERS_PER_WIDTH;
+    d->height = (y > z ? y : z) + 2 * d->margin + 5 * d->letter;
+}
+
+/* ------------------------------------------------------------------------------------------------------ style */
+
+/* Each colour twice, for light and dark: a viewer that knows no preference takes the first. */
+static const struct {
+    const char *class, *light, *dark, *opacity, *name;
+} inks[] = {
+    {"wall", "#78838f", "#8d99a6", ".16", "obstacle"}, {"shell", "#9aa3ad", "#6f7a86", ".12", "FOUP, body"},
+    {"ledge", "#5b6671", "#a3aeb9", ".5", "ledge"},    {"wafer", "#cf7d12", "#f0a94a", ".04", "wafer"},
+    {"arm", "#2f6bb3", "#6ea4e6", ".3", "arm"},        {"chuck", "#7b4bb0", "#b48be0", ".5", "chuck"},
+    {"blade", "#0b857a", "#3cc4b6", ".5", "blade"},
+};
+
+#define INKS (sizeof inks / sizeof inks[0])
+enum { INK_WALL, INK_SHELL, INK_LEDGE, INK_WAFER, INK_ARM, INK_CHUCK, INK_BLADE };
+
+static void print_style(const drawing_t *d) {
+    fprintf(d->out,
+            "<style>\n.paper { fill: #ffffff } .rule { stroke: #9aa3ad; fill: none } .scale { stroke: "
+            "#1c2733; fill: none }\n"
+            "text { font-family: system-ui, 'DejaVu Sans', sans-serif; font-size: %.1fpx; fill: #1c2733 }\n"
+            ".label { text-anchor: middle; font-size: %.1fpx; paint-order: stroke; stroke: #ffffff; "
+            "stroke-width: %.1f; "
+            "stroke-opacity: .75 }\n"
+            ".title { font-weight: bold } polygon:hover { fill-opacity: .75 }\n",
+            d->letter, 0.85 * d->letter, d->letter / 4);
+    for (size_t i = 0; i < INKS; ++i) {
+        fprintf(d->out, ".%s { fill: %s; stroke: %s; fill-opacity: %s }\n", inks[i].class, inks[i].light,
+                inks[i].light, inks[i].opacity);
+    }
+    fputs(".found { fill: #d11a2a; stroke: #d11a2a; fill-opacity: .6 }\n"
+          "@media (prefers-color-scheme: dark) {\n.paper { fill: #14181d } text { fill: #e4e9ee } "
+          ".label { stroke: #14181d } .rule { stroke: #55606b } .scale { stroke: #e4e9ee }\n",
+          d->out);
+    for (size_t i = 0; i < INKS; ++i) {
+        fprintf(d->out, ".%s { fill: %s; stroke: %s }\n", inks[i].class, inks[i].dark, inks[i].dark);
+    }
+    fputs(".found { fill: #ff5d6c; stroke: #ff5d6c }\n}\n</style>\n", d->out);
+}
+
+/* ------------------------------------------------------------------------------------------------------ parts */
+
+static size_t ink_of(const wh_layout_t *layout, size_t part) {
+    static const size_t of_kind[] = {
+        [WH_PART_FIXED] = INK_WALL,  [WH_PART_LEDGE] = INK_LEDGE, [WH_PART_ARM] = INK_ARM,
+        [WH_PART_BLADE] = INK_BLADE, [WH_PART_CHUCK] = INK_CHUCK, [WH_PART_WAFER] = INK_WAFER};
+    if (part >= layout->world.part_count) {
+        return INK_WAFER;
+    }
+    const wh_part_t *from = &layout->world.parts[part];
+    return from->kind == WH_PART_FIXED && from->owner != WH_NONE ? INK_SHELL : of_kind[from->kind];
+}
+
+/* What the part is a part of. */
+static const char *group_of(const wh_layout_t *layout, size_t part, size_t ink) {
+    if (ink == INK_WALL || ink == INK_WAFER) {
+        return ink == INK_WALL ? "obstacles" : "wafers";
+    }
+    const int32_t owner = layout->world.parts[part].owner;
+    if (ink == INK_SHELL || ink == INK_LEDGE) {
+        return layout->stations[owner].name;
+    }
+    return ink == INK_ARM ? "robot" : layout->grippers[owner].name;
+}
+
+static bool is_found(const wh_layout_check_t *check, size_t part) {
+    for (size_t i = 0; i < check->count; ++i) {
+        const int32_t *parts = check->findings[i].parts;
+        if (parts[0] == (int32_t)part || parts[1] == (int32_t)part) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void draw_part(drawing_t *d, wh_view_t view, size_t part, size_t ink) {
+    const wh_layout_t *layout = d->check->layout;
+    const wh_pose_t pose = wh_layout_check_place(d->check, (int32_t)part);
+    if (!wh_outline_draw(&d->outline, view, convex_of(layout, part), &pose)) {
+        d->failed = true;
+        return;
+    }
+    fprintf(d->out, "<polygon class=\"%s\" points=\"", is_found(d->check, part) ? "found" : inks[ink].class);
+    for (size_t i = 0; i < d->outline.count; ++i) {
+        fprintf(d->out, "%s%.1f,%.1f", i > 0 ? " " : "", d->outline.spots[i].x, d->outline.spots[i].y);
+    }
+    fputs("\"><title>", d->out);
+    wh_svg_text(d->out, wh_layout_part_name(layout, (int32_t)part));
+    fputs("</title></polygon>\n", d->out);
+}
+
+/* Those of inks `first` to `last`, in groups by what they are parts of. */
+static void draw_parts(drawing_t *d, wh_view_t view, size_t first, size_t last) {
+    const wh_layout_t *layout = d->check->layout;
+    const char *group = NULL;
+    for (size_t part = 0; part < count_parts(d->check); ++part) {
+        const size_t ink = ink_of(layout, part);
+        if (ink < first || ink > last) {
+            continue;
+        }
+        const char *wanted = group_of(layout, part, ink);
+        if (wanted != group) {
+            fputs(group ? "</g>\n<g><title>" : "<g><title>", d->out);
+            wh_svg_text(d->out, wanted);
+            fputs("</title>\n", d->out);
+            group = wanted;
+        }
+        draw_part(d, view, part, ink);
+    }
+    fputs(group ? "</g>\n" : "", d->out);
+}
+
+/* ----------------------------------------------------------------------------------------------------- labels */
+
+static void label_at(wh_svg_labels_t *labels, wh_view_t view, wh_vec3_t r, double down, const char *name) {
+    const wh_spot_t spot = wh_outline_spot(view, r);
+    wh_svg_label(labels, spot.x, spot.y + down, name);
+}
+
+static void label_stations(const drawing_t *d, wh_view_t view, wh_svg_labels_t *labels) {
+    const wh_layout_t *layout = d->check->layout;
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        const wh_station_t *place = &layout->places[s];
+        const wh_pose_t last = wh_station_slot(place, place->slots);
+        label_at(labels, view, last.r, view == WH_VIEW_TOP ? 0.3 * d->letter : -1.8 * d->letter,
+                 layout->stations[s].name);
+    }
+}
+
+/* At the lower edge of each, inside where it is large enough. */
+static void label_obstacles(const drawing_t *d, wh_view_t view, wh_svg_labels_t *labels) {
+    const wh_layout_t *layout = d->check->layout;
+    for (size_t part = 0; part < layout->world.part_count; ++part) {
+        const wh_convex_t *convex = &layout->world.parts[part].convex;
+        if (ink_of(layout, part) == INK_WALL) {
+            wh_vec3_t low;
+            wh_vec3_t high;
+            wh_convex_bounds(convex, &convex->body_from_shape, &low, &high);
+            low.x = (low.x + high.x) / 2;
+            label_at(labels, view, low, -0.5 * d->letter, wh_layout_part_name(layout, (int32_t)part));
+        }
+    }
+}
+
+static void label_all(const drawing_t *d, wh_view_t view) {
+    const wh_layout_t *layout = d->check->layout;
+    wh_svg_labels_t labels = {
+        .out = d->out, .size = 0.85 * d->letter, .left = (double)d->low.x, .right = (double)d->high.x};
+    label_stations(d, view, &labels);
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        if (layout->grippers[g].station == WH_NONE) {
+            label_at(&labels, view, d->check->base_from_grippers[g].r,
+                     view == WH_VIEW_TOP ? 0.3 * d->letter : -0.8 * d->letter, layout->grippers[g].name);
+        }
+    }
+    label_at(&labels, view, wh_vec3(0, 0, layout->shapes.lowest / 2), 0.3 * d->letter, "robot");
+    label_obstacles(d, view, &labels);
+}
+
+/* ------------------------------------------------------------------------------------------------------ views */
+
+static void draw_travel(const drawing_t *d, wh_view_t view) {
+    const wh_robot_t *robot = &d->check->layout->machine.robot;
+    if (view == WH_VIEW_SIDE) {
+        fprintf(d->out, "<path class=\"rule\" d=\"M%.1f 0H%.1f\"/>\n", (double)d->low.x, (double)d->high.x);
+        return;
+    }
+    for (int end = 0; end < 2; ++end) {
+        const double radius =
+            (double)(end == 0 ? robot->travel[WH_AXIS_R].min : robot->travel[WH_AXIS_R].max);
+        fprintf(d->out,
+                "<circle class=\"rule\" r=\"%.1f\" stroke-dasharray=\"%.1f\"><title>R = %g mm: how %s the "
+                "robot reaches"
+                "</title></circle>\n",
+                radius, d->letter / 2, radius, end == 0 ? "near" : "far");
+    }
+}
+
+static void draw_view(drawing_t *d, wh_view_t view, double x, double lowest) {
+    fprintf(d->out, "<g transform=\"translate(%.1f %.1f)\">\n", x - (double)d->low.x,
+            d->height - d->margin - 2.5 * d->letter + lowest);
+    draw_travel(d, view);
+    draw_parts(d, view, INK_WALL, INK_LEDGE);
+    draw_parts(d, view, INK_WAFER, INK_WAFER);
+    draw_parts(d, view, INK_ARM, INK_BLADE);
+    label_all(d, view);
+    fputs("</g>\n", d->out);
+}
+
+/* A round length of about a tenth of the picture, and what the colours mean. */
+static void draw_scale(const drawing_t *d) {
+    static const double steps[] = {1, 2, 5, 10};
+    const double wanted = d->width / 10;
+    double length = 1;
+    while (10 * length <= wanted) {
+        length *= 10;
+    }
+    size_t step = 0;
+    while (step < 3 && steps[step + 1] * length <= wanted) {
+        ++step;
+    }
+    length *= steps[step];
+    const double y = d->height - d->margin / 2;
+    const double tick = d->letter / 3;
+    fprintf(
+        d->out,
+        "<path class=\"scale\" d=\"M%.1f %.1fv%.1fh%.1fv%.1f\"/><text x=\"%.1f\" y=\"%.1f\">%g mm</text>\n",
+        d->margin, y - tick, tick, length, -tick, d->margin + length + d->letter / 2, y, length);
+    double x = d->margin + length + 7 * d->letter;
+    for (size_t i = 0; i < INKS; ++i) {
+        fprintf(d->out,
+                "<rect class=\"%s\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/><text x=\"%.1f\" "
+                "y=\"%.1f\">%s</text>\n",
+                inks[i].class, x, y - 0.8 * d->letter, d->letter, d->letter, x + 1.5 * d->letter, y,
+                inks[i].name);
+        x += (3.5 + 0.62 * (double)strlen(inks[i].name)) * d->letter;
+    }
+}
+
+static void draw_title(const drawing_t *d, double x, const char *what) {
+    fprintf(d->out, "<text class=\"title\" x=\"%.1f\" y=\"%.1f\">", x, d->margin / 2 + d->letter);
+    wh_svg_text(d->out, what);
+    fputs("</text>\n", d->out);
+}
+
+int wh_layout_print_svg(const wh_layout_check_t *check, FILE *out) {
+    drawing_t d = {.check = check, .out = out};
+    measure(&d);
+    fprintf(out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.1f %.1f\" stroke-width=\"%.2f\" "
+            "stroke-linejoin=\"round\">\n<title>",
+            d.width, d.height, d.width / LINES_PER_WIDTH);
+    wh_svg_text(out, check->layout->path);
+    fputs("</title>\n", out);
+    print_style(&d);
+    fputs("<rect class=\"paper\" width=\"100%\" height=\"100%\"/>\n", out);
+    const double side = d.width / 2 + d.margin / 2;
+    draw_title(&d, d.margin, "from above");
+    draw_title(&d, side, "from the side");
+    draw_view(&d, WH_VIEW_TOP, d.margin, (double)d.low.y);
+    draw_view(&d, WH_VIEW_SIDE, side, (double)d.low.z);
+    draw_scale(&d);
+    fputs("</svg>\n", out);
+    wh_outline_free(&d.outline);
+    return d.failed || fflush(out) != 0 || ferror(out) ? -1 : 0;
+}

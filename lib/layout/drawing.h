@@ -1,0 +1,13 @@
+/* A cell as a picture: from above and from the side, with every part by name. */
+#ifndef WH_LAYOUT_DRAWING_H
+#define WH_LAYOUT_DRAWING_H
+
+#include <stdio.h>
+
+#include "feasibility.h"
+
+/* Writes an SVG image of the cell with the robot at home; parts that a finding names are marked. Colours follow the
+ * viewer's preference for light or dark. 0, or -1 when memory is out or `out` does not take it (then errno tells). */
+int wh_layout_print_svg(const wh_layout_check_t *check, FILE *out);
+
+#endif

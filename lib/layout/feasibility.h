@@ -1,0 +1,58 @@
+/* What is wrong with a cell before anything moves: `waferhand layout`'s judgement.
+ *
+ * The robot stands at home, the wafers lie where the layout puts them. Lengths in mm.
+ */
+#ifndef WH_LAYOUT_FEASIBILITY_H
+#define WH_LAYOUT_FEASIBILITY_H
+
+#include "layout.h"
+
+typedef enum {
+    WH_FINDING_CONTACT, /* two parts cut each other that must not */
+    WH_FINDING_REACH,   /* an axis does not get to a slot, or to where the way in begins */
+    WH_FINDING_LINKS,   /* the arm's two links do not reach the wrist there */
+    WH_FINDING_WAFER,   /* a wafer lies in no slot */
+    WH_FINDING_ENTRY,   /* the blade does not fit between two wafers */
+    WH_FINDING_LEDGES   /* the blade does not fit between the ledges, or beside the chuck */
+} wh_finding_kind_t;
+
+typedef struct {
+    wh_finding_kind_t kind;
+    char text[512];
+    int32_t parts[2]; /* of a contact; else WH_NONE */
+    int32_t station;  /* or WH_NONE */
+} wh_finding_t;
+
+/* The room that the blade which serves a station has there when it has entered for a GET, as far as the slot. Measured
+ * between the parts, tilt included; 0 where they touch or cut each other. */
+typedef struct {
+    size_t wafers; /* that the layout puts here */
+    bool has_above, has_below, has_beside;
+    wh_real_t above;  /* to the wafer in the slot */
+    wh_real_t below;  /* to the wafer one slot lower; none with a single slot */
+    wh_real_t beside; /* at the slot's height: to its ledges, or to the prealigner's chuck */
+} wh_entry_t;
+
+typedef struct {
+    const wh_layout_t *layout;
+    bool has_parts; /* false: more parts than can be checked; then only reach and wafers were looked at */
+    wh_pose_t base_from_effector, base_from_grippers[WH_GRIPPERS]; /* at home */
+    wh_pose_t base_from_arm[WH_ARM_BODIES];
+    wh_entry_t *entries; /* by station */
+    wh_finding_t *findings;
+    size_t count, capacity;
+    bool out_of_memory;
+} wh_layout_check_t;
+
+/* Looks at all of it. To be freed in any case; false when memory is out. Cost: n log n in parts and wafers, and wafers times
+ * stations. */
+bool wh_layout_check(wh_layout_check_t *check, const wh_layout_t *layout);
+void wh_layout_check_free(wh_layout_check_t *check);
+
+/* The kind in one word, such as "contact": a constant. */
+const char *wh_finding_name(wh_finding_kind_t kind);
+
+/* base_from_part of any part, wafers included: its body at home, where the layout puts it. */
+wh_pose_t wh_layout_check_place(const wh_layout_check_t *check, int32_t part);
+
+#endif

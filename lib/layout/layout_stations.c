@@ -1,0 +1,182 @@
+/* A layout's stations: where they are, and the parameters of GET and PUT. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../math/trig.h"
+#include "layout_internal.h"
+
+#define STATION_FIELDS                                                                                       \
+    "kind at rpy taught slots pitch effector stroke offset retract pickup_speed pickup_acceleration "        \
+    "release "                                                                                               \
+    "vacuum_delay vacuum_check timeout retries wait map_speed check_map handover"
+
+static double default_pitch(double wafer_diameter) {
+    if (wafer_diameter <= 150) {
+        return 4.76;
+    }
+    return wafer_diameter <= 200 ? 6.35 : 10;
+}
+
+/* So that the blade enters about midway between two wafers at that pitch. */
+static double default_stroke(double wafer_diameter) {
+    if (wafer_diameter <= 150) {
+        return 3;
+    }
+    return wafer_diameter <= 200 ? 4 : 6;
+}
+
+static void read_place(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_station_t *station,
+                       wh_station_t *place) {
+    static const wh_vec3_t level = {0, 0, 0};
+    const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", &level);
+    place->base_from_station.r = wh_reader_vector(reader, "at", NULL);
+    place->base_from_station.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
+    place->slots = wh_reader_whole(reader, "slots", station->foup ? 25 : 1, 1,
+                                   station->prealigner ? 1 : WH_LAYOUT_SLOTS);
+    place->pitch = wh_reader_number(reader, "pitch", default_pitch(layout->wafer_diameter), 0.1, 1000);
+    place->chuck = WH_NONE;
+    if (place->base_from_station.R.m[2][2] < WH_REAL(0.7)) {
+        lua_pushliteral(reader->L, "rpy");
+        lua_rawget(reader->L, -2);
+        wh_reader_fail(reader, "rpy", "a station whose z points up, tilted by less than 45 degrees");
+    }
+}
+
+/* A stroke so fast that a whole window passes between two slices would miss wafers without a word. */
+static void check_speed(wh_reader_t *reader, const wh_layout_t *layout, double pickup_speed) {
+    const double step = pickup_speed * (double)layout->slice_us / 1e6;
+    if (layout->grasp.check == WH_CHECK_SAMPLED && step > layout->grasp.tolerance.projz) {
+        lua_pushnumber(reader->L, pickup_speed);
+        wh_reader_fail(
+            reader, "pickup_speed",
+            "at most %.6g mm/s with slices of %lld us, or check = \"swept\", which looks between them",
+            layout->grasp.tolerance.projz * 1e6 / (double)layout->slice_us, (long long)layout->slice_us);
+    }
+}
+
+/* A stroke that begins below the slot underneath would take the wafer there, and say that all is well. */
+static void check_stroke(wh_reader_t *reader, const wh_station_t *place, const wh_layout_station_t *station) {
+    const double below = station->stroke - station->offset;
+    const double farther = below > station->offset ? below : station->offset;
+    if (place->slots > 1 && !(farther < place->pitch)) {
+        lua_pushnumber(reader->L, station->stroke);
+        wh_reader_fail(
+            reader, "stroke",
+            "one that stays within the pitch of %.12g mm; it goes %.12g below and %.12g above the slot",
+            place->pitch, below, station->offset);
+    }
+}
+
+static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, const wh_station_t *place,
+                       wh_layout_station_t *station) {
+    static const char *const handovers[] = {"new_first", "same_slice", NULL};
+    const double release = layout->grasp.seat ? 0 : -layout->grasp.tolerance.projz / 2;
+    station->stroke = wh_reader_number(reader, "stroke", default_stroke(layout->wafer_diameter), 0.01, 1000);
+    station->offset = wh_reader_number(reader, "offset", station->stroke / 2, 0, station->stroke);
+    station->retract = wh_reader_number(reader, "retract", 300, 1, 10000);
+    station->pickup_speed = wh_reader_number(reader, "pickup_speed", 20, 0.001, 10000);
+    station->release =
+        wh_reader_number(reader, "release", release, station->offset - station->stroke, station->offset);
+    station->vacuum_delay = wh_reader_number(reader, "vacuum_delay", 0, 0, 3600);
+    station->timeout = wh_reader_number(reader, "timeout", 0.25, 0, 3600);
+    station->handover = wh_reader_choice(reader, "handover", 0, handovers) == 0 ? WH_HANDOVER_NEW_FIRST
+                                                                                : WH_HANDOVER_SAME_SLICE;
+    station->pickup_acceleration = wh_reader_number(reader, "pickup_acceleration", 0, 0, 1e8);
+    station->wait = wh_reader_number(reader, "wait", 0, 0, 3600);
+    check_stroke(reader, place, station);
+    check_speed(reader, layout, station->pickup_speed);
+}
+
+static void read_checks(wh_reader_t *reader, wh_layout_station_t *station) {
+    static const char *const modes[] = {"both", "get", "put", "none", NULL};
+    station->taught = wh_reader_boolean(reader, "taught", true);
+    station->check = (wh_vacuum_check_t)wh_reader_choice(reader, "vacuum_check", WH_VACUUM_CHECK_BOTH, modes);
+    station->retries = wh_reader_whole(reader, "retries", 0, 0, 100);
+    station->check_map = wh_reader_boolean(reader, "check_map", false);
+    station->map_speed = wh_reader_number(reader, "map_speed", 100, 0.001, 10000);
+}
+
+static int compare_names(const void *a, const void *b) {
+    return strcmp(((const wh_layout_station_t *)a)->name, ((const wh_layout_station_t *)b)->name);
+}
+
+/* The names first, sorted: Lua's own order differs from run to run. */
+static void read_names(wh_reader_t *reader, wh_layout_t *layout) {
+    lua_State *L = reader->L;
+    size_t count = 0;
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        if (++count > WH_LAYOUT_STATIONS) {
+            wh_reader_fail(reader, NULL, "at most %d stations", WH_LAYOUT_STATIONS);
+        }
+    }
+    layout->stations = wh_layout_memory(L, count, sizeof *layout->stations);
+    layout->places = wh_layout_memory(L, count, sizeof *layout->places);
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        size_t length = 0;
+        const char *name = lua_type(L, -2) == LUA_TSTRING ? lua_tolstring(L, -2, &length) : "";
+        if (length == 0 || length >= WH_NAME_SIZE || !wh_reader_is_plain(name, length)) {
+            lua_pushvalue(L, -2);
+            wh_reader_fail(reader, NULL, "stations by name, of 1 to %d bytes", WH_NAME_SIZE - 1);
+        }
+        memcpy(layout->stations[layout->station_count++].name, name, length + 1);
+    }
+    qsort(layout->stations, layout->station_count, sizeof *layout->stations, compare_names);
+}
+
+static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
+    static const char *const kinds[] = {"slots", "prealigner", "foup", NULL};
+    wh_layout_station_t *station = &layout->stations[index];
+    wh_reader_enter(reader, station->name);
+    wh_reader_refuse_unknown(reader, STATION_FIELDS);
+    const int kind = wh_reader_choice(reader, "kind", 0, kinds);
+    station->prealigner = kind == 1;
+    station->foup = kind == 2;
+    read_place(reader, layout, station, &layout->places[index]);
+    read_moves(reader, layout, &layout->places[index], station);
+    read_checks(reader, station);
+    wh_reader_leave(reader);
+}
+
+void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout) {
+    if (!wh_reader_enter(reader, "stations")) {
+        lua_pushnil(reader->L);
+        wh_reader_fail(reader, "stations", "a table of stations by name");
+    }
+    read_names(reader, layout);
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        read_station(reader, layout, s);
+    }
+    wh_layout_place(layout);
+    wh_reader_leave(reader);
+}
+
+static int32_t first_on_robot(const wh_layout_t *layout) {
+    int32_t gripper = 0;
+    while (layout->grippers[gripper].station != WH_NONE) {
+        ++gripper;
+    }
+    return gripper;
+}
+
+static void read_effector(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_station_t *station) {
+    char name[WH_NAME_SIZE];
+    station->effector = first_on_robot(layout);
+    wh_reader_text(reader, "effector", layout->grippers[station->effector].name, name, sizeof name);
+    const int32_t gripper = wh_layout_find_gripper(layout, name);
+    if (gripper == WH_NONE || layout->grippers[gripper].station != WH_NONE) {
+        lua_pushstring(reader->L, name);
+        wh_reader_fail(reader, "effector", "the name of a gripper on = \"robot\"");
+    }
+    station->effector = gripper;
+}
+
+void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout) {
+    wh_reader_enter(reader, "stations");
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        wh_reader_enter(reader, layout->stations[s].name);
+        read_effector(reader, layout, &layout->stations[s]);
+        wh_reader_leave(reader);
+    }
+    wh_reader_leave(reader);
+}

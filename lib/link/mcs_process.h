@@ -1,0 +1,83 @@
+/* Motion control as a process: a client for the slices, and what it tells all about its commands.
+ *
+ * Made to be the partners of a run (mcs/mcs.h): connect opens the client once the layout is known, watch tells the
+ * commands on WAFERHAND_MCS. Requests from others are kept until somebody has time for them, but for STOP: while a command
+ * runs it is answered at once, the command and the requests that wait end with WH_STATUS_STOPPED.
+ */
+#ifndef WH_LINK_MCS_PROCESS_H
+#define WH_LINK_MCS_PROCESS_H
+
+#include "../mcs/mcs.h"
+#include "protocol_client.h"
+
+/* Requests that wait; more are answered with "busy". */
+#define WH_CONTROL_REQUESTS 16
+/* Requests that were answered lately: asked again, they are answered again. */
+#define WH_CONTROL_ANSWERED 64
+
+typedef struct {
+    int64_t seq;
+    char line[WH_LINK_LINE];
+} wh_control_request_t;
+
+typedef struct {
+    int64_t seq; /* 0: free */
+    int32_t error;
+    char line[WH_LINK_LINE];
+    char text[400];
+} wh_control_answer_t;
+
+typedef struct {
+    double rate;         /* 0: lockstep */
+    const char *outputs; /* write the valves to this file, too; may be null */
+    const volatile sig_atomic_t *stop;
+    void (*say)(void *user, const char *text);
+    void *user;
+} wh_control_options_t;
+
+/* Must not be moved once opened. */
+typedef struct {
+    wh_node_t *node;
+    wh_control_options_t options;
+    wh_client_t client;
+    bool connected;
+    wh_sandbox_t *sandbox;       /* of the run or session; null before its first command */
+    wh_link_identity_t identity; /* of the run; and where it is: */
+    int64_t utime, seq;
+    char running[200]; /* the command that goes on; empty: none */
+    int running_line;
+    int64_t request; /* seq of the request being executed, or 0 */
+    int64_t last_beat_us;
+    wh_control_request_t waiting[WH_CONTROL_REQUESTS];
+    size_t first_waiting, waiting_count;
+    wh_control_answer_t answered[WH_CONTROL_ANSWERED];
+    size_t answered_count;
+    uint64_t requests, garbage; /* datagrams on WAFERHAND_REQUEST: sound ones, others */
+    bool named_garbage;
+    uint8_t encoded[8192];
+} wh_control_t;
+
+/* Subscribes to requests. False when LCM has no room. */
+bool wh_control_open(wh_control_t *control, wh_node_t *node, const wh_control_options_t *options);
+
+/* The partners to hand to a run or a session. */
+wh_mcs_partners_t wh_control_partners(wh_control_t *control);
+
+/* While nothing moves: heartbeat to the simulator, what has come from others. To be called at least every 100 ms. */
+void wh_control_idle(wh_control_t *control);
+
+/* Takes the next request out of the queue, if there is one: it is then the one being executed, until
+ * wh_control_answer. */
+bool wh_control_next_request(wh_control_t *control, char line[WH_LINK_LINE]);
+
+/* Answers the request being executed: error is 0 or its number, text what an operator would read. */
+void wh_control_answer(wh_control_t *control, wh_status_t error, const char *line, const char *text);
+
+/* Without a client of its own: the run and the slice that what is told belongs to. */
+void wh_control_follow(wh_control_t *control, const wh_link_identity_t *identity,
+                       const wh_command_t *command);
+
+/* Tells that the run is over. */
+void wh_control_finish(wh_control_t *control);
+
+#endif

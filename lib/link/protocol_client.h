@@ -1,0 +1,82 @@
+/* Motion control's side of the protocol: the slice interface (sim/slice.h) over LCM.
+ *
+ * In lockstep an exchange sends the command, waits for its state, and sends it again until that comes: first after a
+ * few round trips, then less and less often. A simulator that was started anew gets the last state back. Free-running, it sends
+ * one command each slice of wall-clock time and takes the states as they come; the first slice is always in lockstep.
+ * Silence of the simulator is reported within a second, and its return. No state is taken whose hash is not
+ * the one that its own content has, nor one that no grasp table could be in.
+ */
+#ifndef WH_LINK_PROTOCOL_CLIENT_H
+#define WH_LINK_PROTOCOL_CLIENT_H
+
+#include <signal.h>
+
+#include "messages.h"
+#include "node.h"
+
+/* A simulator that has not answered for so long is called silent, us. */
+#define WH_CLIENT_SILENCE_US 500000
+
+typedef struct {
+    uint64_t sent, repeated;     /* commands, and how many of them once more */
+    uint64_t answers, unasked;   /* states taken; states of other runs and slices */
+    uint64_t malformed;          /* datagrams that are no state, or whose hash is wrong */
+    uint64_t restored, silences; /* times that the state was sent back; silences reported */
+    uint64_t unwritten;          /* valves that the file could not be made of */
+    uint64_t late;               /* free-running: slices sent more than a slice late */
+} wh_client_counters_t;
+
+typedef struct {
+    const wh_layout_t *layout;
+    const char *outputs;               /* write the valves to this file, too, before a slice; may be null */
+    double rate;                       /* wall-clock rate of a free-running run; 0: lockstep */
+    const volatile sig_atomic_t *stop; /* not zero: give up; may be null */
+    void (*say)(void *user,
+                const char *text); /* one line for people: silence, return, restart; may be null */
+    void *user;
+    void (*tick)(void *tick_user); /* called once a second of a long motion; may be null */
+    void *tick_user;
+} wh_client_options_t;
+
+/* Written by client*.c. Must not be moved once opened. */
+typedef struct {
+    wh_link_t link; /* first: &client->link is what the MCS talks to */
+    wh_node_t *node;
+    wh_client_options_t options;
+    wh_link_identity_t identity;
+    waferhand_command command;    /* the last one sent */
+    wh_state_t state;             /* the last one taken; status WH_OK */
+    int32_t written[WH_GRIPPERS]; /* the valves in the outputs file; -1 before the first */
+    bool pending;                 /* the last command was given up before its answer came */
+    bool has_state, answered, asked_for_state;
+    wh_status_t refusal; /* why the last command was not stepped */
+    int64_t missed;      /* as the simulator counts */
+    uint64_t hash;       /* of the last state */
+    int64_t resend_us;   /* how long to wait before sending again */
+    int64_t last_heard_us, start_us, last_tick_us;
+    bool silent;
+    wh_client_counters_t counters;
+    wh_link_arrays_t arrays;
+    wh_link_arrays_t spare;
+    wh_event_t events[4 * WH_LINK_EVENTS]; /* of all states since the last exchange */
+    size_t event_count, events_delivered;
+    uint8_t restore[WH_LINK_DATAGRAM]; /* the last state as it came, to be sent back */
+    size_t restore_size;
+    uint8_t encoded[4096];
+} wh_client_t;
+
+/* Subscribes to the states and begins a run with a random number other than 0. False when LCM has no room. */
+bool wh_client_open(wh_client_t *client, wh_node_t *node, const wh_client_options_t *options);
+
+/* A random number for a run, other than 0. */
+int64_t wh_client_draw_run(void);
+
+/* Sends the last command again, so that the simulator knows that we are alive while nothing moves, and notices by the
+ * answer whether it is. To be called now and then between commands; handles what has come. */
+void wh_client_heartbeat(wh_client_t *client);
+
+/* Free-running: waits up to so long for the state of the last command, so that what is asked next is asked of it.
+ * True in lockstep, or when it came. */
+bool wh_client_settle(wh_client_t *client, int64_t timeout_us);
+
+#endif

@@ -1,0 +1,216 @@
+#include "sim_process.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "proximity_message.h"
+
+static void say(const wh_simulation_t *simulation, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static void say(const wh_simulation_t *simulation, const char *format, ...) {
+    char text[200];
+    va_list arguments;
+    if (!simulation->say) {
+        return;
+    }
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    simulation->say(simulation->user, text);
+}
+
+/* ------------------------------------------------------------------------------------------------- sending */
+
+static void publish(wh_simulation_t *simulation, const char *channel, const void *data, int size) {
+    if (!simulation->node) {
+        return;
+    }
+    if (size <= 0 || size > WH_LINK_DATAGRAM ||
+        !wh_node_publish(simulation->node, channel, data, (size_t)size)) {
+        ++simulation->counters.unsent;
+    }
+}
+
+static void tell_cell(wh_simulation_t *simulation) {
+    waferhand_cell *cell = &simulation->cell;
+    cell->utime = simulation->server.state.utime;
+    cell->seq = simulation->server.seq;
+    cell->run = simulation->server.identity.run;
+    simulation->last_cell_us = wh_node_clock_us();
+    publish(simulation, WH_CHANNEL_CELL, simulation->encoded,
+            waferhand_cell_encode(simulation->encoded, 0, (int)sizeof simulation->encoded, cell));
+}
+
+static void tell_proximity(wh_simulation_t *simulation) {
+    const int64_t now = wh_node_clock_us();
+    const bool due = now - simulation->last_proximity_us >= WH_SIMULATION_PROXIMITY_US;
+    waferhand_proximity message;
+    if (!due && simulation->server.state.event_count == 0) {
+        return;
+    }
+    simulation->last_proximity_us = now;
+    wh_link_proximity_to_message(&simulation->server.state, &simulation->server.identity,
+                                 &simulation->server.layout->grasp.tolerance, &message);
+    publish(simulation, WH_CHANNEL_PROXIMITY, simulation->encoded,
+            waferhand_proximity_encode(simulation->encoded, 0, (int)sizeof simulation->encoded, &message));
+}
+
+static void answer(wh_simulation_t *simulation) {
+    publish(simulation, WH_CHANNEL_STATE, simulation->server.encoded, (int)simulation->server.encoded_size);
+}
+
+/* ----------------------------------------------------------------------------------------------- receiving */
+
+static void drop(wh_simulation_t *simulation, const char *channel, size_t size) {
+    ++simulation->counters.garbage;
+    if (!simulation->named_garbage) {
+        simulation->named_garbage = true;
+        say(simulation, "%s: a datagram of %zu bytes is no such message: dropped, like all that follow",
+            channel, size);
+    }
+}
+
+static void heard_motion_control(wh_simulation_t *simulation) {
+    simulation->last_command_us = wh_node_clock_us();
+    if (simulation->silent) {
+        simulation->silent = false;
+        say(simulation, "motion control is back at slice %" PRId64, simulation->server.seq);
+    }
+}
+
+static void act_on(wh_simulation_t *simulation, wh_server_result_t result) {
+    if (result == WH_SERVER_IGNORED) {
+        return;
+    }
+    answer(simulation);
+    if (result == WH_SERVER_NEW_RUN || result == WH_SERVER_RESTORED) {
+        simulation->running = true;
+        say(simulation, "run %016" PRIx64 " %s slice %" PRId64, (uint64_t)simulation->server.identity.run,
+            result == WH_SERVER_NEW_RUN ? "begins with" : "goes on from", simulation->server.seq);
+        tell_cell(simulation);
+    }
+    if (result != WH_SERVER_ANSWERED) {
+        tell_proximity(simulation);
+    }
+}
+
+static void handle_command(wh_simulation_t *simulation, const waferhand_command *message) {
+    const int64_t missed = simulation->server.missed;
+    const wh_server_result_t result = wh_server_command(&simulation->server, message, simulation->valves);
+    if (message->run == simulation->server.identity.run) {
+        heard_motion_control(simulation);
+    }
+    if (simulation->server.missed > missed && missed == 0) {
+        say(simulation, "slices are missing, the first before slice %" PRId64 ": they are counted",
+            simulation->server.seq);
+    }
+    act_on(simulation, result);
+}
+
+static void on_command(void *user, const void *data, size_t size) {
+    wh_simulation_t *simulation = user;
+    waferhand_command message;
+    if (wh_link_decode_command(data, size, &message)) {
+        handle_command(simulation, &message);
+    } else {
+        drop(simulation, WH_CHANNEL_COMMAND, size);
+    }
+}
+
+static void on_restore(void *user, const void *data, size_t size) {
+    wh_simulation_t *simulation = user;
+    waferhand_state message;
+    if (!wh_link_decode_state(data, size, &message)) {
+        drop(simulation, WH_CHANNEL_RESTORE, size);
+        return;
+    }
+    act_on(simulation, wh_server_restore(&simulation->server, &message));
+    (void)waferhand_state_decode_cleanup(&message);
+}
+
+static void on_mcs(void *user, const void *data, size_t size) {
+    wh_simulation_t *simulation = user;
+    waferhand_mcs message;
+    if (!wh_link_decode_mcs(data, size, &message)) {
+        drop(simulation, WH_CHANNEL_MCS, size);
+        return;
+    }
+    if (message.run == simulation->server.identity.run && message.phase == WH_LINK_PHASE_OVER &&
+        simulation->running) {
+        simulation->running = false;
+        say(simulation, "run %016" PRIx64 " is over at slice %" PRId64 ", hash %016" PRIx64,
+            (uint64_t)message.run, simulation->server.seq, wh_server_hash(&simulation->server));
+    }
+    (void)waferhand_mcs_decode_cleanup(&message);
+}
+
+/* Only for the record: requests are motion control's to answer. */
+static void on_request(void *user, const void *data, size_t size) {
+    wh_simulation_t *simulation = user;
+    waferhand_request message;
+    if (!wh_link_decode_request(data, size, &message)) {
+        drop(simulation, WH_CHANNEL_REQUEST, size);
+        return;
+    }
+    (void)waferhand_request_decode_cleanup(&message);
+}
+
+/* -------------------------------------------------------------------------------------------------- opening */
+
+wh_status_t wh_simulation_open(wh_simulation_t *simulation, wh_node_t *node, const wh_layout_t *layout,
+                               void (*say_line)(void *user, const char *text), void *user) {
+    memset(simulation, 0, sizeof *simulation);
+    simulation->node = node;
+    simulation->say = say_line;
+    simulation->user = user;
+    if (wh_server_open(&simulation->server, layout) != WH_OK ||
+        !wh_link_cell_from_layout(layout, &simulation->server.identity, &simulation->cell) ||
+        waferhand_cell_encoded_size(&simulation->cell) > WH_LINK_DATAGRAM) {
+        wh_link_cell_free(&simulation->cell);
+        return WH_STATUS_BAD_CAPACITY;
+    }
+    const bool heard = !node || (wh_node_subscribe(node, WH_CHANNEL_COMMAND, on_command, simulation) &&
+                                 wh_node_subscribe(node, WH_CHANNEL_RESTORE, on_restore, simulation) &&
+                                 wh_node_subscribe(node, WH_CHANNEL_MCS, on_mcs, simulation) &&
+                                 wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, simulation));
+    if (!heard) {
+        return WH_STATUS_NO_NETWORK;
+    }
+    tell_cell(simulation);
+    return WH_OK;
+}
+
+void wh_simulation_publish_to(wh_simulation_t *simulation, wh_node_t *node) {
+    simulation->node = node;
+    tell_cell(simulation);
+}
+
+wh_status_t wh_simulation_step(wh_simulation_t *simulation, const waferhand_command *message,
+                               wh_state_t *state) {
+    handle_command(simulation, message);
+    *state = simulation->server.state;
+    state->status = (wh_status_t)simulation->server.room.message.status;
+    return state->status;
+}
+
+void wh_simulation_tick(wh_simulation_t *simulation) {
+    const int64_t now = wh_node_clock_us();
+    if (now - simulation->last_cell_us >= WH_SIMULATION_CELL_US) {
+        tell_cell(simulation);
+    }
+    if (simulation->running && !simulation->silent &&
+        now - simulation->last_command_us > WH_SIMULATION_SILENCE_US) {
+        simulation->silent = true;
+        ++simulation->counters.silences;
+        say(simulation, "motion control has fallen silent: holding the state of slice %" PRId64,
+            simulation->server.seq);
+    }
+}
+
+void wh_simulation_close(wh_simulation_t *simulation) {
+    wh_server_close(&simulation->server);
+    wh_link_cell_free(&simulation->cell);
+}

@@ -1,0 +1,282 @@
+/* One run of a log: its record and its trace, as motion control would have kept them. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "log_internal.h"
+
+/* What is farther away, mm or rad, no cell has. */
+#define FARTHEST 1e9
+
+/* -------------------------------------------------------------------------------------------------- a run */
+
+static uint64_t last_hash(wh_link_t *link) {
+    return ((wh_log_run_t *)link)->hash;
+}
+
+static int64_t missed_slices(wh_link_t *link) {
+    return ((wh_log_run_t *)link)->missed;
+}
+
+void wh_log_drop_run(wh_log_run_t *run) {
+    wh_trace_close(&run->trace);
+    wh_record_free(&run->record);
+    free(run->collision_memory);
+    run->collision_memory = NULL;
+}
+
+static void watch_collisions(wh_log_run_t *run) {
+    const wh_layout_t *layout = run->cell.layout;
+    if (run->cell.is_whole && layout->collision) {
+        run->collision_memory = malloc(wh_collision_bytes(layout));
+        if (!run->collision_memory) {
+            abort();
+        }
+        run->mcs.collision.layout = layout;
+        run->mcs.collision.memory = run->collision_memory;
+        wh_robot_forward(layout->machine.robot.home, &run->mcs.collision.base_from_effector);
+    }
+}
+
+static void add_command(wh_log_run_t *run, int line, const char *text, double begin_s) {
+    (void)wh_record_add_command(&run->record, line, text, begin_s);
+    run->mcs.running = (int32_t)run->record.command_count - 1;
+}
+
+void wh_log_begin_run(wh_log_run_t *run) {
+    wh_log_drop_run(run);
+    if (run->next_cell.layout) {
+        wh_log_layout_free(&run->cell);
+        run->cell = run->next_cell;
+        memset(&run->next_cell, 0, sizeof run->next_cell);
+    }
+    memset(&run->mcs, 0, sizeof run->mcs);
+    run->gaps = 0;
+    run->refused = 0;
+    if (!run->cell.layout) {
+        return;
+    }
+    run->link.hash = last_hash;
+    run->link.missed = missed_slices;
+    run->mcs.link = &run->link;
+    run->mcs.record = &run->record;
+    run->mcs.layout = run->cell.layout;
+    run->mcs.simulator.cell = run->cell.layout->cell;
+    run->mcs.track.machine = &run->cell.layout->machine;
+    run->mcs.track.slice_us = run->cell.layout->slice_us;
+    run->mcs.running = WH_NONE;
+    run->record.script = wh_record_text(run->options.path);
+    watch_collisions(run);
+    if (run->begin.is_there) {
+        add_command(run, run->begin.line, run->begin.text, 0);
+        run->begin.is_there = false;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- commands */
+
+static void end_command(wh_log_run_t *run, const waferhand_mcs *message) {
+    wh_command_record_t *command = &run->record.commands[run->mcs.running];
+    command->end_s = (double)message->utime / 1e6;
+    if (message->phase == WH_LINK_PHASE_DONE) {
+        wh_mcs_count_puts(&run->mcs);
+    } else {
+        command->error = (wh_status_t)message->error;
+        command->message = wh_record_text(message->text);
+    }
+    run->mcs.running = WH_NONE;
+}
+
+static void begin_command(wh_log_run_t *run, const waferhand_mcs *message, bool ours) {
+    if (ours && run->trace.layout) {
+        add_command(run, message->line, message->command, (double)message->utime / 1e6);
+        return;
+    }
+    run->begin.is_there = true;
+    run->begin.line = message->line;
+    (void)snprintf(run->begin.text, sizeof run->begin.text, "%s", message->command);
+}
+
+/* A command begins once, however often that is said. */
+static bool is_running(const wh_log_run_t *run, const waferhand_mcs *message) {
+    return run->mcs.running != WH_NONE &&
+           strcmp(run->record.commands[run->mcs.running].text, message->command) == 0;
+}
+
+void wh_log_take_mcs(wh_log_run_t *run, const waferhand_mcs *message) {
+    const bool ours = run->is_wanted && run->mcs.record && message->run == run->run;
+    const bool ended = message->phase == WH_LINK_PHASE_DONE || message->phase == WH_LINK_PHASE_FAILED;
+    if (message->phase == WH_LINK_PHASE_BEGINS && !(ours && is_running(run, message))) {
+        begin_command(run, message, ours);
+    } else if (ended && ours && is_running(run, message)) {
+        end_command(run, message);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------- slices */
+
+static bool robot_moves(const wh_log_run_t *run, const double axes[]) {
+    bool moves = false;
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        moves = moves || wh_real_abs(axes[axis] - run->axes[axis]) > 0;
+    }
+    return moves;
+}
+
+static bool is_told_to_wait(const wh_log_run_t *run) {
+    return run->mcs.running == WH_NONE ||
+           strncmp(run->record.commands[run->mcs.running].text, "WAIT", 4) == 0;
+}
+
+/* What a slice that the robot stood still in was for, as far as its valves and sensors tell. */
+static wh_share_t share_standing(const wh_log_run_t *run, const int32_t valves[], const wh_state_t *state) {
+    bool waits = false;
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        if (valves[g] != run->valves[g]) {
+            return WH_SHARE_HANDOVER;
+        }
+        waits = waits || (valves[g] == WH_VALVE_OPEN && (state->sensors >> g & 1U) == 0);
+    }
+    return waits && !is_told_to_wait(run) ? WH_SHARE_VACUUM : WH_SHARE_WAITING;
+}
+
+static wh_task_t task_of(const wh_log_run_t *run, const double axes[], const int32_t valves[],
+                         const wh_state_t *state) {
+    const wh_machine_t *machine = run->mcs.track.machine;
+    const bool robot = robot_moves(run, axes);
+    wh_task_t task = {share_standing(run, valves, state), robot, robot, 0};
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        const int32_t axis = machine->mounts[g].axis;
+        const bool carried = axis == WH_NONE ? robot : wh_real_abs(axes[axis] - run->axes[axis]) > 0;
+        task.moves = task.moves || carried;
+        task.carried |= carried ? 1U << g : 0;
+    }
+    task.robot = robot || !task.moves;
+    return task;
+}
+
+static void count_slice(wh_log_run_t *run, const double axes[], const wh_state_t *state) {
+    wh_track_t *track = &run->mcs.track;
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        track->valves[g] = state->condition->told[g];
+    }
+    run->mcs.task = task_of(run, axes, track->valves, state);
+    wh_mcs_count_slice(&run->mcs);
+    memcpy(run->axes, axes, sizeof run->axes);
+    memcpy(run->valves, track->valves, sizeof run->valves);
+}
+
+static void start(wh_log_run_t *run, bool from_the_beginning) {
+    const wh_machine_t *machine = &run->cell.layout->machine;
+    wh_trace_begin(&run->trace, run->cell.layout, from_the_beginning && run->cell.is_whole);
+    memset(run->axes, 0, sizeof run->axes);
+    memcpy(run->axes, machine->robot.home, sizeof machine->robot.home);
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        run->valves[g] = WH_VALVE_CLOSED;
+    }
+}
+
+/* Those of the state's command, if that is the last one that came; else where they were. */
+static bool find_axes(const wh_log_run_t *run, const waferhand_state *message, double axes[]) {
+    const waferhand_command *command = &run->command;
+    bool known = run->has_command && command->run == message->run && command->seq == message->seq;
+    for (int32_t axis = 0; known && axis < command->axis_count; ++axis) {
+        known = wh_real_abs(command->axis_position[axis]) < FARTHEST;
+    }
+    memcpy(axes, run->axes, sizeof run->axes);
+    for (int32_t axis = 0; known && axis < command->axis_count; ++axis) {
+        axes[axis] = command->axis_position[axis];
+    }
+    return known;
+}
+
+static void take_slice(wh_log_run_t *run, const waferhand_state *message) {
+    double axes[WH_AXES];
+    const bool known = find_axes(run, message, axes);
+    if (!run->trace.layout) {
+        start(run, message->seq == 1);
+    }
+    run->gaps += run->seq > 0 && message->seq > run->seq + 1 ? 1 : 0;
+    run->seq = message->seq;
+    run->mcs.track.slice = message->seq;
+    run->hash = (uint64_t)message->hash;
+    run->missed = message->missed;
+    count_slice(run, axes, &run->mcs.state);
+    if (run->collision_memory) {
+        wh_collision_follow(&run->mcs.collision, &run->mcs.state);
+    }
+    wh_trace_slice(&run->trace, known ? axes : NULL, (size_t)run->command.axis_count, &run->mcs.state);
+    if (wh_log_is_boundary(run)) {
+        wh_trace_mark(&run->trace);
+    }
+}
+
+static void keep_events(wh_log_run_t *run) {
+    const wh_state_t *state = &run->mcs.state;
+    for (size_t i = 0; i < state->event_count; ++i) {
+        wh_record_add_event(&run->record, state->utime, run->mcs.running, &state->events[i]);
+    }
+}
+
+static bool is_place(const wh_pose_t *pose) {
+    return wh_pose_validate(pose) == WH_OK && wh_real_abs(pose->r.x) < FARTHEST &&
+           wh_real_abs(pose->r.y) < FARTHEST && wh_real_abs(pose->r.z) < FARTHEST;
+}
+
+static bool is_index(int32_t index, size_t count) {
+    return index == WH_NONE || (index >= 0 && (size_t)index < count);
+}
+
+static bool are_wafers_sound(const wh_state_t *state) {
+    bool sound = true;
+    for (size_t w = 0; sound && w < state->wafer_count; ++w) {
+        sound = is_index(state->wafers[w].holder, state->gripper_count) &&
+                is_place(&state->wafers[w].base_from_wafer);
+    }
+    return sound;
+}
+
+static bool are_grippers_sound(const wh_state_t *state) {
+    bool sound = true;
+    for (size_t g = 0; sound && g < state->gripper_count; ++g) {
+        const wh_gripper_t *gripper = &state->grippers[g];
+        sound = is_index(gripper->wafer, state->wafer_count) && is_place(&gripper->base_from_gripper) &&
+                (gripper->wafer == WH_NONE || is_place(&gripper->gripper_from_wafer));
+    }
+    return sound;
+}
+
+/* Whether a simulator could have left it so: indices and numbers are used from here on. */
+static bool is_sound(const wh_state_t *state, const wh_layout_t *layout) {
+    return state->wafer_count == layout->wafer_count &&
+           state->gripper_count == layout->machine.gripper_count && state->seq > 0 &&
+           state->seq < INT64_MAX / layout->slice_us &&
+           wh_condition_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
+           are_wafers_sound(state) && are_grippers_sound(state);
+}
+
+void wh_log_take_state(wh_log_run_t *run, const waferhand_state *message) {
+    const wh_layout_t *layout = run->cell.layout;
+    const bool refusal = message->status != WH_OK;
+    const bool is_new = message->seq > run->seq && (!refusal || message->seq > run->refused);
+    if (!layout || !is_new || (uint64_t)message->layout_hash != run->cell.hash ||
+        wh_link_state_from_message(message, &layout->grasp.tolerance, &run->arrays, &run->mcs.state) !=
+            WH_OK ||
+        !is_sound(&run->mcs.state, layout)) {
+        return;
+    }
+    keep_events(run);
+    if (refusal) {
+        run->refused = message->seq;
+    } else {
+        take_slice(run, message);
+    }
+}
+
+void wh_log_finish_run(wh_log_run_t *run) {
+    if (run->mcs.running != WH_NONE) {
+        run->record.commands[run->mcs.running].end_s =
+            (double)(run->mcs.track.slice * run->mcs.track.slice_us) / 1e6;
+    }
+    wh_mcs_finish(&run->mcs);
+    wh_trace_finish(&run->trace);
+}

@@ -1,0 +1,134 @@
+#include "log_layout.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "../layout/layout_load.h"
+#include "../link/cell_layout.h"
+
+/* What a layout has by default. */
+#define DIAMETER 300
+#define THICKNESS 0.775
+
+/* ----------------------------------------------------------------------------------------------------- file */
+
+static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
+                               const wh_log_layout_options_t *options) {
+    const wh_sandbox_limits_t limits = {.print_to = stderr};
+    wh_sandbox_result_t result;
+    struct stat status;
+    if (stat(path, &status) != 0 || !S_ISREG(status.st_mode)) {
+        (void)snprintf(made->note, sizeof made->note, "%.200s, the layout that the log names, is not there",
+                       path);
+        return NULL;
+    }
+    made->sandbox = wh_sandbox_new(&limits);
+    bool taken = made->sandbox != NULL;
+    for (size_t i = 0; taken && i < options->parameter_count; ++i) {
+        taken = wh_sandbox_set_parameter(made->sandbox, options->parameters[i], &result);
+    }
+    const wh_layout_t *layout = taken ? wh_layout_load(made->sandbox, path, &result) : NULL;
+    if (!layout) {
+        (void)snprintf(made->note, sizeof made->note, "%.200s is no layout: %.300s", path,
+                       made->sandbox ? result.message : "no memory");
+    } else if (wh_layout_hash(layout) != made->hash) {
+        (void)snprintf(made->note, sizeof made->note,
+                       "%.200s is not the layout of the log, or has other parameters", path);
+        layout = NULL;
+    }
+    return layout;
+}
+
+/* ---------------------------------------------------------------------------------------------------- shapes */
+
+static void fill_machine(wh_layout_t *layout) {
+    wh_machine_t *machine = &layout->machine;
+    machine->axis_count = WH_ROBOT_AXES;
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        machine->mounts[g].axis = WH_NONE;
+    }
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        const int32_t chuck = layout->places[s].chuck;
+        layout->stations[s].prealigner = chuck != WH_NONE;
+        if (chuck != WH_NONE && machine->mounts[chuck].axis == WH_NONE && machine->axis_count < WH_AXES) {
+            machine->mounts[chuck].axis = (int32_t)machine->axis_count++;
+            machine->mounts[chuck].base_from_station = layout->places[s].base_from_station;
+            layout->grippers[chuck].station = (int32_t)s;
+        }
+    }
+}
+
+static wh_stand_t stand_of(const wh_layout_t *layout, size_t station) {
+    return layout->stations[station].prealigner ? WH_STAND_CHUCK : WH_STAND_LEDGES;
+}
+
+static void add_parts(wh_log_layout_t *made, wh_part_list_t *list) {
+    const wh_layout_t *layout = made->told;
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        wh_shapes_add_station(list, &layout->shapes, &layout->places[s], (int32_t)s, stand_of(layout, s),
+                              layout->stations[s].name);
+    }
+    wh_shapes_add_robot(list, &layout->shapes);
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        wh_shapes_add_gripper(list, &layout->shapes, (int32_t)g, layout->grippers[g].station == WH_NONE,
+                              layout->grippers[g].name);
+    }
+}
+
+static void fill_shapes(wh_log_layout_t *made) {
+    wh_layout_t *layout = made->told;
+    wh_robot_t robot;
+    wh_robot_default(&robot);
+    layout->wafer_diameter = DIAMETER;
+    layout->wafer_thickness = THICKNESS;
+    layout->notch_depth = 1;
+    layout->shapes =
+        wh_shapes_default(DIAMETER, THICKNESS, robot.travel[WH_AXIS_R].max, robot.travel[WH_AXIS_Z].min);
+    size_t count = WH_SHAPES_ROBOT + WH_SHAPES_GRIPPER * layout->machine.gripper_count;
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        count += wh_shapes_count_station(stand_of(layout, s), layout->places[s].slots);
+    }
+    made->parts = calloc(count, sizeof *made->parts);
+    made->names = calloc(count, sizeof *made->names);
+    if (!made->parts || !made->names) {
+        abort();
+    }
+    wh_part_list_t list = {made->parts, made->names, 0, count};
+    add_parts(made, &list);
+    layout->part_names = (const char(*)[WH_PART_NAME_SIZE])made->names;
+    layout->world.parts = made->parts;
+    layout->world.part_count = list.count;
+    layout->world.wafer = wh_shapes_wafer(&layout->shapes);
+    layout->world.arm = layout->shapes.arm;
+}
+
+/* ------------------------------------------------------------------------------------------------- the whole */
+
+bool wh_log_layout_make(wh_log_layout_t *made, const waferhand_cell *cell,
+                        const wh_log_layout_options_t *options) {
+    wh_layout_t *told = wh_link_layout_from_cell(cell);
+    if (!told) {
+        return false;
+    }
+    memset(made, 0, sizeof *made);
+    made->told = told;
+    made->hash = (uint64_t)cell->layout_hash;
+    made->layout = load(made, options->path ? options->path : told->path, options);
+    made->is_whole = made->layout != NULL;
+    if (!made->is_whole) {
+        fill_machine(told);
+        fill_shapes(made);
+        made->layout = told;
+    }
+    return true;
+}
+
+void wh_log_layout_free(wh_log_layout_t *made) {
+    wh_link_layout_free(made->told);
+    wh_sandbox_free(made->sandbox);
+    free(made->parts);
+    free(made->names);
+    memset(made, 0, sizeof *made);
+}

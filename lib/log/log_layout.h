@@ -1,0 +1,37 @@
+/* The cell of a log as a report needs it: with shapes, which the messages do not tell.
+ *
+ * They tell the layout's path and hash. Where the file is there and has this hash, it is the layout; else one is made of
+ * the message, with the shapes that a layout of 300 mm wafers has by default, and the arm's axes are not known.
+ */
+#ifndef WH_LOG_LOG_LAYOUT_H
+#define WH_LOG_LOG_LAYOUT_H
+
+#include "../link/messages.h"
+#include "../script/sandbox.h"
+
+/* Zero it to begin with. Read only. */
+typedef struct {
+    const wh_layout_t *layout; /* null: no cell came yet */
+    bool is_whole;             /* it is the file's */
+    uint64_t hash;
+    char note[600];        /* why it is not, or empty */
+    wh_sandbox_t *sandbox; /* of the file's */
+    wh_layout_t *told;     /* the message's; and what it lacks: */
+    wh_part_t *parts;
+    char (*names)[WH_PART_NAME_SIZE];
+} wh_log_layout_t;
+
+/* Where to look for the file, and the parameters that it takes. */
+typedef struct {
+    const char *path; /* null: the path in the message */
+    const char *const *parameters;
+    size_t parameter_count;
+} wh_log_layout_options_t;
+
+/* Makes it of a message. False when no layout could have made that; nothing is then changed. Aborts when memory is out. */
+bool wh_log_layout_make(wh_log_layout_t *made, const waferhand_cell *cell,
+                        const wh_log_layout_options_t *options);
+
+void wh_log_layout_free(wh_log_layout_t *made);
+
+#endif

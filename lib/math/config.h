@@ -1,0 +1,79 @@
+/* Number type, version and build guards: included by every other header, never needed alone.
+ *
+ * Units everywhere: mm, rad, s, unless a name says otherwise (`_us`, `_deg`).
+ */
+#ifndef WH_MATH_CONFIG_H
+#define WH_MATH_CONFIG_H
+
+#include <float.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* The one place where the version stands; the program, the manual and the pkg-config file read it here. */
+#define WH_VERSION "0.1.0"
+
+/* The same inputs must give the same bits on every machine, which these builds cannot hold. Nor can one that fuses products
+ * and sums, which no macro tells: build everything that includes these headers with -ffp-contract=off
+ * -fno-tree-slp-vectorize, as `make library` and pkg-config's flags do. */
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) ||                 \
+    defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
+#error                                                                                                       \
+    "waferhand: -ffast-math (or a part of it) reorders sums and drops NaN, so verdicts would differ between builds: remove it"
+#endif
+#if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD != 0
+#error                                                                                                       \
+    "waferhand: needs FLT_EVAL_METHOD 0 (no x87 excess precision): on 32-bit x86 build with -msse2 -mfpmath=sse"
+#endif
+
+/* The library's real number: double, or float when built with -DWH_FLOAT. Library and program must agree. */
+#if defined(WH_FLOAT)
+typedef float wh_real_t;
+#define WH_ABI_SYMBOL wh_abi_1_float
+/* How far the largest entry of |R^T R - I| may be from zero. */
+#define WH_ROTATION_TOLERANCE 1e-5F
+#else
+typedef double wh_real_t;
+#define WH_ABI_SYMBOL wh_abi_1_double
+#define WH_ROTATION_TOLERANCE 1e-6
+#endif
+
+/* A literal of the library's number type. */
+#define WH_REAL(literal) ((wh_real_t)(literal))
+
+/* Referring to this symbol from each of the program's files makes the linker refuse a program whose headers
+ * are of another ABI or of the other number type than the library. */
+extern const char WH_ABI_SYMBOL;
+#if !defined(WH_BUILDING_LIBRARY) && defined(__GNUC__)
+static const char *const wh_abi_check __attribute__((used)) = &WH_ABI_SYMBOL;
+#endif
+
+/* Invariants the library relies on. A firmware may define its own before including any header, or switch them
+ * on with -DWH_DEBUG; without either they cost nothing. */
+#if !defined(WH_ASSERT)
+#if defined(WH_DEBUG)
+#include <assert.h>
+#define WH_ASSERT(condition) assert(condition)
+#else
+#define WH_ASSERT(condition) ((void)0)
+#endif
+#endif
+
+/* Keeps a function's memory off its callers' stack: what one part of a step needs, the next one need not carry. Costs a
+ * call; changes no result. */
+#if defined(__GNUC__)
+#define WH_OUT_OF_LINE __attribute__((noinline))
+#else
+#define WH_OUT_OF_LINE
+#endif
+
+/* "No wafer", "no gripper": the index that none has. */
+#define WH_NONE (-1)
+
+/* Whether `index` is one of 0 to count - 1. */
+/*@ assigns \nothing; ensures \result <==> 0 <= index < count; */
+static inline bool wh_is_index(int32_t index, size_t count) {
+    return index >= 0 && (size_t)index < count;
+}
+
+#endif

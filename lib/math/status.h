@@ -1,0 +1,25 @@
+/* Status codes: every call that can fail returns one; zero is success. */
+#ifndef WH_MATH_STATUS_H
+#define WH_MATH_STATUS_H
+
+#include "config.h"
+
+/* WH_STATUS_NULL_ARGUMENT, ...: number, name and text of each stand in math/status.def. */
+typedef enum {
+#define WH_STATUS(number, name, text) WH_STATUS_##name = (number),
+#include "status.def"
+#undef WH_STATUS
+} wh_status_t;
+
+#define WH_OK WH_STATUS_OK
+
+/* The catalogue's text for a status: a constant string in English without a full stop, never null; for a
+ * number that is not in the catalogue "unknown status". Cost: linear in the catalogue. */
+/*@ assigns \result \from status; */
+const char *wh_status_text(wh_status_t status);
+
+/* The catalogue's name for a status, such as "NOT_FINITE"; "UNKNOWN" if it is not in it. Same cost. */
+/*@ assigns \result \from status; */
+const char *wh_status_name(wh_status_t status);
+
+#endif

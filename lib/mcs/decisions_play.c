@@ -1,0 +1,195 @@
+/* A tape, played against the simulator of a trial. */
+#include <string.h>
+
+#include "decisions.h"
+
+/* Slice `at` is where the trial is; `stepped` the last that the simulator was stepped through. The state is the same but
+ * for where grippers are and what they carry along. */
+typedef struct {
+    const wh_tape_t *tape;
+    const wh_reality_t *reality;
+    wh_simulator_t *simulator;
+    wh_tape_watch_t *watch;
+    void *user;
+    bool may_skip, broken;
+    int64_t at, stepped;
+    wh_command_t command;
+    wh_state_t state;
+    size_t next[WH_GRIPPERS]; /* the change of its valve that is still to come */
+    /* Of the running segment. */
+    int32_t waits;
+    uint32_t watched, was_off;
+} player_t;
+
+/* ------------------------------------------------------------------------------------------------------ slices */
+
+static int64_t next_change(const player_t *player, size_t g) {
+    const wh_tape_t *tape = player->tape;
+    return player->next[g] < tape->valve_count[g]
+               ? tape->valves[g][player->next[g]].slice + player->reality->lag[g]
+               : INT64_MAX;
+}
+
+static void load(player_t *player, int64_t slice) {
+    const wh_tape_t *tape = player->tape;
+    wh_command_t *command = &player->command;
+    const wh_pose_t *poses = &tape->poses[(size_t)(slice - 1) * tape->gripper_count];
+    wh_pose_t moved[WH_GRIPPERS];
+    if (player->reality->chucks_moved) {
+        const wh_real_t *axes = &tape->axes[(size_t)(slice - 1) * tape->axis_count];
+        wh_machine_grippers(&player->reality->layout.machine, axes, moved);
+        poses = moved;
+    }
+    for (size_t g = 0; g < tape->gripper_count; ++g) {
+        command->grippers[g].base_from_gripper = poses[g];
+        while (next_change(player, g) <= slice) {
+            command->grippers[g].valve = tape->valves[g][player->next[g]++].valve;
+        }
+    }
+    command->seq = slice;
+    command->utime = slice * player->reality->layout.slice_us;
+}
+
+/* Steps one slice; those since the last one that was stepped have changed nothing. */
+static void step(player_t *player, int64_t slice) {
+    load(player, slice);
+    player->simulator->table.slice = (uint64_t)slice - 1;
+    player->broken = wh_simulator_step(player->simulator, &player->command, &player->state) != WH_OK;
+    player->stepped = slice;
+    if (player->state.event_count > 0) {
+        player->watch(player->user, player->state.events, player->state.event_count);
+    }
+}
+
+/* The last slice up to `to` that is like this one: no valve changes, and no gripper is looking for a wafer. */
+static int64_t quiet_until(const player_t *player, int64_t to) {
+    if (!player->may_skip || player->at == 0) {
+        return player->at;
+    }
+    for (size_t g = 0; g < player->tape->gripper_count; ++g) {
+        const wh_gripper_t *gripper = &player->state.grippers[g];
+        const int64_t change = next_change(player, g);
+        if (gripper->valve == WH_VALVE_OPEN && gripper->wafer == WH_NONE) {
+            return player->at;
+        }
+        to = change <= to ? change - 1 : to;
+    }
+    return to;
+}
+
+static void settle(player_t *player) {
+    if (player->stepped < player->at) {
+        step(player, player->at);
+    }
+}
+
+/* Whether motion control goes on waiting before this slice, as it did. */
+static bool goes_on_waiting(const player_t *player) {
+    return player->waits == WH_NONE || (player->state.sensors >> player->waits & 1U) == 0;
+}
+
+static void advance(player_t *player, int64_t to) {
+    while (player->at < to && !player->broken) {
+        player->broken = !goes_on_waiting(player);
+        const int64_t quiet = quiet_until(player, to);
+        if (quiet > player->at && player->waits == WH_NONE) {
+            player->at = quiet;
+        } else if (!player->broken) {
+            settle(player);
+            step(player, ++player->at);
+        }
+        player->was_off |= ~player->state.sensors;
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- readings */
+
+static int32_t find_lost(const player_t *player) {
+    const wh_tape_t *tape = player->tape;
+    for (size_t g = 0; g < tape->gripper_count; ++g) {
+        size_t i = tape->valve_count[g];
+        while (i > 0 && tape->valves[g][i - 1].slice > player->at) {
+            --i;
+        }
+        const bool open = i > 0 && tape->valves[g][i - 1].valve == WH_VALVE_OPEN;
+        if (open && (player->watched & player->was_off & 1U << g) != 0) {
+            return (int32_t)g;
+        }
+    }
+    return WH_NONE;
+}
+
+static bool begin(player_t *player, const wh_tape_entry_t *entry) {
+    player->waits = entry->index;
+    player->watched = entry->mask & player->state.sensors;
+    player->was_off = 0;
+    return true;
+}
+
+static bool end(player_t *player, const wh_tape_entry_t *entry) {
+    const bool done = goes_on_waiting(player) == (player->waits == WH_NONE);
+    player->waits = WH_NONE;
+    return done == (entry->mask != 0) && find_lost(player) == entry->index;
+}
+
+static bool holds_claim(player_t *player, const wh_tape_entry_t *entry) {
+    settle(player);
+    return !player->broken && wh_tape_judge(&player->tape->claims[entry->index], &player->simulator->cell,
+                                            player->state.wafers) == entry->answer;
+}
+
+/* Whether an entry is what this trial would have written. */
+static bool agrees(player_t *player, const wh_tape_entry_t *entry) {
+    switch (entry->kind) {
+    case WH_TAPE_BEGIN:
+        return begin(player, entry);
+    case WH_TAPE_END:
+        return end(player, entry);
+    case WH_TAPE_SENSOR:
+        return (int32_t)(player->state.sensors >> entry->index & 1U) == entry->answer;
+    case WH_TAPE_HELD:
+        return player->state.grippers[entry->index].wafer == entry->answer;
+    case WH_TAPE_HOLDER:
+        return player->state.wafers[entry->index].holder == entry->answer;
+    case WH_TAPE_CLAIM:
+        return holds_claim(player, entry);
+    default:
+        return false;
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- playing */
+
+static bool may_skip(const wh_reality_t *reality, const wh_simulator_t *simulator) {
+    const wh_physics_t *physics = &reality->layout.physics;
+    return physics->vacuum.build <= 0 && physics->vacuum.vent <= 0 && physics->pads.mass <= 0 &&
+           physics->fault_count == 0 && !simulator->observer.look;
+}
+
+static void start(player_t *player) {
+    const wh_tape_t *tape = player->tape;
+    player->waits = WH_NONE;
+    player->may_skip = may_skip(player->reality, player->simulator);
+    player->command.gripper_count = tape->gripper_count;
+    player->command.axis_count = tape->axis_count;
+    for (size_t g = 0; g < tape->gripper_count; ++g) {
+        player->command.grippers[g].valve = WH_VALVE_CLOSED;
+    }
+    wh_simulator_view(player->simulator, &player->state);
+}
+
+bool wh_tape_play(const wh_tape_t *tape, const wh_reality_t *reality, wh_simulator_t *simulator,
+                  wh_tape_watch_t *watch, void *user) {
+    player_t player = {
+        .tape = tape, .reality = reality, .simulator = simulator, .watch = watch, .user = user};
+    start(&player);
+    for (size_t i = 0; i < tape->entry_count && !player.broken; ++i) {
+        advance(&player, tape->entries[i].slice);
+        if (player.broken || !agrees(&player, &tape->entries[i])) {
+            return false;
+        }
+    }
+    advance(&player, tape->slice_count);
+    settle(&player);
+    return !player.broken;
+}

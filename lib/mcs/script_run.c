@@ -1,0 +1,65 @@
+#include "script_run.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static wh_run_outcome_t refuse(wh_run_t *run, const char *message) {
+    snprintf(run->message, sizeof run->message, "%s", message);
+    return WH_RUN_BAD_INPUT;
+}
+
+/* Whether the script was ended by a numbered error, which is a result, not bad input. */
+static bool ended_by_numbered_error(lua_State *L) {
+    wh_sandbox_push_error(L);
+    bool numbered = false;
+    if (lua_istable(L, -1)) {
+        lua_pushliteral(L, "number");
+        lua_rawget(L, -2);
+        numbered = lua_isinteger(L, -1) != 0;
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    return numbered;
+}
+
+static wh_run_outcome_t conclude(wh_run_t *run, const wh_sandbox_result_t *result) {
+    if (result->status != WH_SANDBOX_OK) {
+        if (result->status != WH_SANDBOX_ERROR || !ended_by_numbered_error(wh_sandbox_state(run->sandbox))) {
+            return refuse(run, result->message);
+        }
+        run->record.failure = wh_record_text(result->message);
+    }
+    wh_mcs_finish(&run->mcs);
+    return run->record.ok ? WH_RUN_MET : WH_RUN_FAILED;
+}
+
+wh_run_outcome_t wh_run_script(wh_run_t *run, const wh_run_options_t *options) {
+    wh_sandbox_result_t result;
+    memset(run, 0, sizeof *run);
+    run->sandbox = wh_sandbox_new(&options->limits);
+    if (!run->sandbox) {
+        return refuse(run, "no memory for Lua");
+    }
+    for (size_t i = 0; i < options->parameter_count; ++i) {
+        if (!wh_sandbox_set_parameter(run->sandbox, options->parameters[i], &result)) {
+            return refuse(run, result.message);
+        }
+    }
+    if (!wh_mcs_open(&run->mcs, run->sandbox, options->script, &run->record, &result)) {
+        return refuse(run, result.message);
+    }
+    run->mcs.keep_segments = options->keep_segments;
+    run->mcs.partners = options->partners;
+    run->mcs.trial = options->trial;
+    run->mcs.tape = options->tape;
+    run->mcs.listener = options->listener;
+    wh_sandbox_run(run->sandbox, options->script, &result);
+    return conclude(run, &result);
+}
+
+void wh_run_close(wh_run_t *run) {
+    wh_mcs_close(&run->mcs);
+    wh_record_free(&run->record);
+    wh_sandbox_free(run->sandbox);
+    run->sandbox = NULL;
+}

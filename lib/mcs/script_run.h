@@ -1,0 +1,39 @@
+/* One script from beginning to end: sandbox, motion control, simulator and record together. */
+#ifndef WH_MCS_SCRIPT_RUN_H
+#define WH_MCS_SCRIPT_RUN_H
+
+#include "mcs.h"
+
+typedef struct {
+    const char *script; /* path */
+    wh_sandbox_limits_t limits;
+    const char *const *parameters; /* NAME=VALUE, as --set hands them over */
+    size_t parameter_count;
+    wh_mcs_partners_t partners; /* all null: the simulator in this process */
+    wh_mcs_listener_t listener; /* all null: nobody listens */
+    bool keep_segments;         /* run->mcs.segments then holds what was played */
+    const wh_trial_t
+        *trial;      /* of a study: the cell then has its errors, if its layout or script says which */
+    wh_tape_t *tape; /* all zero: then keeps what is commanded and read back; null: nobody does */
+} wh_run_options_t;
+
+/* What is left when the script has ended. wh_run_close frees it. */
+typedef struct {
+    wh_sandbox_t *sandbox;
+    wh_mcs_t mcs;
+    wh_record_t record;
+    char message[WH_SANDBOX_MESSAGE_BYTES]; /* why the input was bad */
+} wh_run_t;
+
+typedef enum {
+    WH_RUN_MET,      /* the script ended and all it expected came true */
+    WH_RUN_FAILED,   /* an expectation, the cell, or an uncaught numbered error: the record tells */
+    WH_RUN_BAD_INPUT /* script, layout or parameter is not usable: `message` tells, the record is incomplete */
+} wh_run_outcome_t;
+
+/* Runs a script. `options` and what it points to must outlive the run. */
+wh_run_outcome_t wh_run_script(wh_run_t *run, const wh_run_options_t *options);
+
+void wh_run_close(wh_run_t *run);
+
+#endif

@@ -1,0 +1,261 @@
+#include "session.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include <lauxlib.h>
+
+/* The record forgets what it holds once it has so many commands. */
+#define REMEMBERED_COMMANDS 10000
+
+/* Registry keys: the two functions, and the list that the last completion's texts live in. */
+static char execute_key;
+static char complete_key;
+static char candidates_key;
+
+static bool refuse(wh_session_t *session, const char *message) {
+    snprintf(session->message, sizeof session->message, "%s", message);
+    return false;
+}
+
+/* ------------------------------------------------------------------------------------------------- opening
+ */
+
+/* Runs protected: cell(layout), then the lines. */
+static int open_cell(lua_State *L) {
+    lua_getglobal(L, "cell");
+    lua_pushstring(L, lua_touserdata(L, 1));
+    lua_call(L, 1, 0);
+    wh_mcs_push_lines(L);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &complete_key);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &execute_key);
+    return 0;
+}
+
+static bool set_parameters(wh_session_t *session, const wh_session_options_t *options) {
+    wh_sandbox_result_t result;
+    for (size_t i = 0; i < options->parameter_count; ++i) {
+        if (!wh_sandbox_set_parameter(session->sandbox, options->parameters[i], &result)) {
+            return refuse(session, result.message);
+        }
+    }
+    return true;
+}
+
+bool wh_session_open(wh_session_t *session, const wh_session_options_t *options) {
+    wh_sandbox_result_t result;
+    char layout[4096];
+    memset(session, 0, sizeof *session);
+    session->report = options->report;
+    session->report_user = options->report_user;
+    session->sandbox = wh_sandbox_new(&options->limits);
+    if (!session->sandbox) {
+        return refuse(session, "no memory for Lua");
+    }
+    if ((size_t)snprintf(layout, sizeof layout, "%s", options->layout) >= sizeof layout) {
+        return refuse(session, "the layout's path is too long");
+    }
+    /* A "script" without a folder: so layouts are looked for from the working directory. */
+    if (!set_parameters(session, options) ||
+        !wh_mcs_open(&session->mcs, session->sandbox, "prompt", &session->record, &result)) {
+        return session->message[0] ? false : refuse(session, result.message);
+    }
+    session->mcs.partners = options->partners;
+    lua_State *L = wh_sandbox_state(session->sandbox);
+    lua_pushcfunction(L, open_cell);
+    lua_pushlightuserdata(L, layout);
+    return wh_sandbox_call(L, 1, 0, &result) || refuse(session, result.message);
+}
+
+void wh_session_close(wh_session_t *session) {
+    wh_mcs_close(&session->mcs);
+    wh_record_free(&session->record);
+    wh_sandbox_free(session->sandbox);
+    session->sandbox = NULL;
+}
+
+/* ------------------------------------------------------------------------------------------------- answers
+ */
+
+/* Bytes of the control character at `text`, 0 if it is none: U+0000 to U+001F, U+007F to U+009F. */
+static size_t control_bytes(const unsigned char *text) {
+    if (text[0] < 0x20 || text[0] == 0x7F) {
+        return 1;
+    }
+    return text[0] == 0xC2 && text[1] >= 0x80 && text[1] <= 0x9F ? 2 : 0;
+}
+
+/* Copies a text so that it stays on its line, cut between characters where it does not fit. */
+static void write_answer(char *answer, size_t size, const char *text) {
+    static const char ellipsis[] = "...";
+    const unsigned char *from = (const unsigned char *)text;
+    size_t length = 0;
+    size_t cut = 0; /* the last place at which an ellipsis would fit */
+    while (*from) {
+        char piece[5] = {(char)*from, '\0'};
+        const bool starts_character = (*from & 0xC0U) != 0x80;
+        if (control_bytes(from) > 0 || (from > (const unsigned char *)text && control_bytes(from - 1) == 2)) {
+            snprintf(piece, sizeof piece, "\\x%02X", *from);
+        }
+        cut = starts_character && length + sizeof ellipsis <= size ? length : cut;
+        if (length + strlen(piece) >= size) {
+            snprintf(answer + cut, size - cut, "%s", ellipsis);
+            return;
+        }
+        length += (size_t)snprintf(answer + length, size - length, "%s", piece);
+        ++from;
+    }
+    answer[length] = '\0';
+}
+
+static void write_error(char *answer, size_t size, wh_status_t status, const char *detail) {
+    char text[WH_SANDBOX_MESSAGE_BYTES + 200];
+    snprintf(text, sizeof text, "ERROR %d %s: %s%s%s", (int)status, wh_status_name(status),
+             wh_status_text(status), detail[0] ? "; " : "", detail);
+    write_answer(answer, size, text);
+}
+
+/* ----------------------------------------------------------------------------------------------- executing
+ */
+
+typedef struct {
+    const char *line;
+    char *answer;
+    size_t size;
+    wh_status_t status;
+} request_t;
+
+/* Runs protected. */
+static int execute_line(lua_State *L) {
+    request_t *request = lua_touserdata(L, 1);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &execute_key);
+    lua_pushstring(L, request->line);
+    lua_call(L, 1, 2);
+    if (!lua_isstring(L, -1)) {
+        return luaL_error(L, "the answer is no text"); /* a layout has changed the string library */
+    }
+    request->status = (wh_status_t)lua_tointeger(L, -2);
+    write_answer(request->answer, request->size, lua_tostring(L, -1));
+    return 0;
+}
+
+static wh_status_t status_of(wh_sandbox_reason_t reason) {
+    if (reason == WH_SANDBOX_STOPPED) {
+        return WH_STATUS_STOPPED;
+    }
+    const bool spent = reason == WH_SANDBOX_BUDGET || reason == WH_SANDBOX_MEMORY;
+    return spent ? WH_STATUS_OUT_OF_BUDGET : WH_STATUS_BAD_ARGUMENT;
+}
+
+/* An exhausted limit ends a command past all Lua: its record is closed here. */
+static void close_command(wh_session_t *session, wh_status_t status, const char *message) {
+    wh_mcs_t *mcs = &session->mcs;
+    if (mcs->running == WH_NONE) {
+        return;
+    }
+    wh_command_record_t *command = &session->record.commands[mcs->running];
+    command->error = status;
+    command->message = wh_record_text(message);
+    command->end_s = (double)(mcs->track.slice * mcs->track.slice_us) / 1e6;
+    mcs->running = WH_NONE;
+    if (mcs->partners.watch) {
+        mcs->partners.watch(mcs->partners.user, mcs, command, true);
+    }
+}
+
+static void count_complaints(wh_session_t *session, size_t from) {
+    for (size_t i = from; i < session->record.event_count; ++i) {
+        session->complaints += wh_mcs_is_complaint(&session->record.events[i].event) ? 1 : 0;
+    }
+}
+
+static void perform(wh_session_t *session, request_t *request) {
+    wh_sandbox_result_t result;
+    lua_State *L = wh_sandbox_state(session->sandbox);
+    if (session->record.command_count >= REMEMBERED_COMMANDS) {
+        wh_record_forget(&session->record);
+    }
+    const size_t events = session->record.event_count;
+    wh_sandbox_renew(session->sandbox);
+    lua_pushcfunction(L, execute_line);
+    lua_pushlightuserdata(L, request);
+    if (!wh_sandbox_call(L, 1, 0, &result)) {
+        request->status = status_of(result.status);
+        write_error(request->answer, request->size, request->status,
+                    request->status == WH_STATUS_STOPPED ? "" : result.message);
+        close_command(session, request->status, result.message);
+    }
+    count_complaints(session, events);
+}
+
+wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *answer, size_t size) {
+    request_t request = {line, answer, size, WH_STATUS_BUSY};
+    if (session->executing) {
+        write_error(answer, size, WH_STATUS_BUSY, "");
+        return WH_STATUS_BUSY;
+    }
+    session->executing = 1;
+    if (session->report) {
+        session->report(session->report_user, line, WH_OK, NULL);
+    }
+    perform(session, &request);
+    if (session->report) {
+        session->report(session->report_user, line, request.status, answer);
+    }
+    session->executing = 0;
+    return request.status;
+}
+
+void wh_session_stop(wh_session_t *session) {
+    if (session->executing) {
+        wh_sandbox_stop(session->sandbox);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------- completing
+ */
+
+typedef struct {
+    const char *before;
+    wh_candidates_t *candidates;
+} completion_t;
+
+/* Runs protected. The texts live as long as the list, which the registry keeps. */
+static int complete_line(lua_State *L) {
+    const completion_t *completion = lua_touserdata(L, 1);
+    wh_candidates_t *candidates = completion->candidates;
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &complete_key);
+    lua_pushstring(L, completion->before);
+    lua_call(L, 1, 2);
+    const lua_Integer start = lua_tointeger(L, -2);
+    if (start < 1 || (size_t)start > candidates->start + 1) {
+        return luaL_error(L, "the word begins nowhere in the line");
+    }
+    candidates->start = (size_t)start - 1;
+    luaL_checktype(L, -1, LUA_TTABLE);
+    const size_t count = lua_rawlen(L, -1);
+    for (size_t i = 0; i < count && i < WH_SESSION_CANDIDATES; ++i) {
+        lua_rawgeti(L, -1, (lua_Integer)i + 1);
+        luaL_checktype(L, -1, LUA_TSTRING);
+        candidates->texts[candidates->count++] = lua_tostring(L, -1);
+        lua_pop(L, 1);
+    }
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &candidates_key);
+    return 0;
+}
+
+void wh_session_complete(wh_session_t *session, const char *before, wh_candidates_t *candidates) {
+    completion_t completion = {before, candidates};
+    lua_State *L = wh_sandbox_state(session->sandbox);
+    candidates->start = strlen(before);
+    candidates->count = 0;
+    if (session->executing || candidates->start > WH_SESSION_LINE_BYTES) {
+        return;
+    }
+    wh_sandbox_renew(session->sandbox);
+    lua_pushcfunction(L, complete_line);
+    lua_pushlightuserdata(L, &completion);
+    if (!wh_sandbox_call(L, 1, 0, NULL)) {
+        candidates->count = 0;
+    }
+}

@@ -1,0 +1,82 @@
+/* A session: an operator's lines, executed one by one in a cell that a layout file describes.
+ *
+ * The prompt and WAFERHAND_REQUEST both stand on it. A line is what lua/README.md says in "At the prompt"; it
+ * is read and never run as Lua. Its command goes the way of a script's: recorded, timed, and against the
+ * simulator in this process or whatever `connect` put in its place.
+ *
+ * One thread at a time. A command that fails, is stopped or needs too much leaves the session usable: the
+ * robot stands where it came to.
+ */
+#ifndef WH_MCS_SESSION_H
+#define WH_MCS_SESSION_H
+
+#include <signal.h>
+
+#include "mcs.h"
+
+/* Longest line, without its terminator; a longer one is refused. */
+#define WH_SESSION_LINE_BYTES 1000
+
+/* Room for any answer; one that does not fit a smaller array ends in "...". */
+#define WH_SESSION_ANSWER_BYTES 65536
+
+/* How many candidates a completion gives at most. */
+#define WH_SESSION_CANDIDATES 200
+
+/* Called before a command is executed, with a null answer, and after it with the answer. Must not execute
+ * commands. For publishing on WAFERHAND_MCS. */
+typedef void wh_session_report_t(void *user, const char *line, wh_status_t status, const char *answer);
+
+/* Zero or null fields mean their default. */
+typedef struct {
+    const char *layout;            /* path, relative to the working directory */
+    wh_sandbox_limits_t limits;    /* the instructions are of one command */
+    const char *const *parameters; /* NAME=VALUE, for the layout's `params` */
+    size_t parameter_count;
+    wh_mcs_partners_t partners; /* see mcs/mcs.h */
+    wh_session_report_t *report;
+    void *report_user;
+} wh_session_options_t;
+
+/* Read `mcs`, `record`, `message` and `complaints`; the rest is the session's own. Must not be moved while it
+ * is open. */
+typedef struct {
+    wh_sandbox_t *sandbox;
+    wh_mcs_t mcs;
+    wh_record_t record; /* of the last commands: a session without an end forgets the oldest */
+    char message[WH_SANDBOX_MESSAGE_BYTES]; /* why it could not be opened */
+    size_t complaints; /* how often the cell complained: a wafer let go where it should not have been */
+    wh_session_report_t *report;
+    void *report_user;
+    volatile sig_atomic_t executing;
+} wh_session_t;
+
+/* Reads the layout, sets up the cell and connects. `options` may go afterwards, but what partners.user and
+ * report_user point to may not. False, and the reason in `message`, when layout, parameter or link is not
+ * usable. To be closed either way. */
+bool wh_session_open(wh_session_t *session, const wh_session_options_t *options);
+
+/* Executes a line with a fresh budget. `answer`, of at least 8 bytes, gets one line of printable text without
+ * its end: "OK" and values, or "ERROR 42 WAFER_MISSING: ..."; control characters stand in it as \xNN. Returns the error's
+ * number. Called from within a command (a link's exchange, a report) it answers WH_STATUS_BUSY. */
+wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *answer, size_t size);
+
+/* Ends the running command with WH_STATUS_STOPPED; without one, nothing. For signal handlers of the thread
+ * that executes. Over a link it takes effect when the exchange that is waited for returns, whatever its status. */
+void wh_session_stop(wh_session_t *session);
+
+/* What the word at the end of a text may become. */
+typedef struct {
+    size_t start; /* where the word begins */
+    size_t count;
+    const char *texts[WH_SESSION_CANDIDATES]; /* each replaces all from `start`; until the next call */
+} wh_candidates_t;
+
+/* Completes `before`, the line up to the cursor: a command, or by its position a station, gripper or wafer, an
+ * option or its value. No candidates when there are none or a command is being executed. */
+void wh_session_complete(wh_session_t *session, const char *before, wh_candidates_t *candidates);
+
+/* Frees everything; a session that was never opened must be all zero. */
+void wh_session_close(wh_session_t *session);
+
+#endif

@@ -1,0 +1,110 @@
+#include "trial_cell.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "../math/trig.h"
+
+/* What wh_vacuum_validate allows, s. */
+#define LONGEST_BUILD 3600
+
+static wh_mat3_t turn_of(const wh_displacement_t *drawn) {
+    return wh_mat3_from_rpy_deg(drawn->turn[0], drawn->turn[1], drawn->turn[2]);
+}
+
+static void place_station(wh_pose_t *base_from_station, const wh_displacement_t *drawn) {
+    const wh_mat3_t turn = turn_of(drawn);
+    base_from_station->R = wh_mat3_multiply(&turn, &base_from_station->R);
+    base_from_station->r = wh_vec3_add(&base_from_station->r, &drawn->moved);
+}
+
+/* A chuck goes with its station. */
+static void place_chucks(wh_reality_t *reality, int32_t station, const wh_displacement_t *drawn) {
+    wh_machine_t *machine = &reality->layout.machine;
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        if (machine->mounts[g].axis != WH_NONE && reality->layout.grippers[g].station == station) {
+            place_station(&machine->mounts[g].base_from_station, drawn);
+            reality->chucks_moved = true;
+        }
+    }
+}
+
+static void place_stations(wh_reality_t *reality, const wh_layout_t *layout, wh_station_t *places) {
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        const wh_displacement_t drawn = wh_errors_draw_station(layout->errors, &reality->trial, s);
+        places[s] = layout->places[s];
+        if (wh_displacement_is_any(&drawn)) {
+            place_station(&places[s].base_from_station, &drawn);
+            place_chucks(reality, (int32_t)s, &drawn);
+        }
+    }
+}
+
+static bool is_moved(const wh_station_t *one, const wh_station_t *other) {
+    const wh_pose_t *a = &one->base_from_station;
+    const wh_pose_t *b = &other->base_from_station;
+    wh_real_t apart =
+        wh_real_abs(a->r.x - b->r.x) + wh_real_abs(a->r.y - b->r.y) + wh_real_abs(a->r.z - b->r.z);
+    for (size_t i = 0; i < 9; ++i) {
+        apart += wh_real_abs(a->R.m[i / 3][i % 3] - b->R.m[i / 3][i % 3]);
+    }
+    return apart > 0;
+}
+
+/* The wafer in its slot as the layout has it, then what was drawn: about its own centre, along the slot's axes. */
+static void place_wafers(wh_reality_t *reality, const wh_layout_t *layout, const wh_station_t places[],
+                         wh_wafer_t *start) {
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        const wh_layout_wafer_t *lies = &layout->wafers[w];
+        const wh_displacement_t drawn = wh_errors_draw_wafer(layout->errors, &reality->trial, w);
+        start[w] = layout->start[w];
+        if (!wh_displacement_is_any(&drawn) &&
+            !is_moved(&places[lies->station], &layout->places[lies->station])) {
+            continue;
+        }
+        const wh_pose_t taught = wh_station_slot(&layout->places[lies->station], lies->slot);
+        const wh_pose_t real = wh_station_slot(&places[lies->station], lies->slot);
+        wh_pose_t slot_from_wafer = wh_pose_relative(&taught, &layout->start[w].base_from_wafer);
+        const wh_mat3_t turn = turn_of(&drawn);
+        slot_from_wafer.R = wh_mat3_multiply(&turn, &slot_from_wafer.R);
+        slot_from_wafer.r = wh_vec3_add(&slot_from_wafer.r, &drawn.moved);
+        start[w].base_from_wafer = wh_pose_compose(&real, &slot_from_wafer);
+    }
+}
+
+static int64_t lag_of(const wh_reality_t *reality, wh_real_t seconds) {
+    const double slices = ceil((double)seconds * 1e6 / (double)reality->layout.slice_us);
+    return slices < WH_STUDY_LAG_SLICES ? (int64_t)slices : WH_STUDY_LAG_SLICES;
+}
+
+void wh_reality_fill(wh_reality_t *reality, const wh_layout_t *layout, const wh_trial_t *trial,
+                     wh_station_t *places, wh_wafer_t *start) {
+    reality->trial = *trial;
+    reality->layout = *layout;
+    reality->chucks_moved = false;
+    reality->layout.places = places;
+    reality->layout.start = start;
+    reality->layout.cell.stations = places;
+    place_stations(reality, layout, places);
+    place_wafers(reality, layout, places, start);
+    wh_real_t *build = &reality->layout.physics.vacuum.build;
+    *build += wh_errors_draw_vacuum(layout->errors, trial);
+    *build = *build < LONGEST_BUILD ? *build : LONGEST_BUILD;
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        reality->lag[g] = lag_of(reality, wh_errors_draw_valve(layout->errors, trial, g));
+    }
+}
+
+void wh_reality_delay(wh_reality_t *reality, wh_command_t *command) {
+    uint8_t *now = &reality->told[command->seq % WH_REALITY_PAST];
+    *now = 0;
+    for (size_t g = 0; g < command->gripper_count; ++g) {
+        *now |= (uint8_t)(command->grippers[g].valve == WH_VALVE_CLOSED ? 1U << g : 0);
+    }
+    for (size_t g = 0; g < command->gripper_count; ++g) {
+        const int64_t slice = command->seq - reality->lag[g];
+        const unsigned told = slice < 1 ? ~0U : reality->told[(size_t)slice % WH_REALITY_PAST];
+        const bool closed = (told >> g & 1U) != 0;
+        command->grippers[g].valve = closed ? WH_VALVE_CLOSED : WH_VALVE_OPEN;
+    }
+}

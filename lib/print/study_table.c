@@ -1,0 +1,285 @@
+/* A study's result as tables. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "../math/trig.h"
+#include "../study/interval.h"
+#include "study_print.h"
+#include "table_internal.h"
+
+/* The parts of the run's report that are of use here take its frame. */
+typedef struct {
+    const wh_study_report_t *study;
+    const wh_tally_t *tally;
+    wh_report_t frame;
+} table_t;
+
+static const wh_grid_digits_t percent = {2, 4, false, 0};
+static const wh_grid_digits_t whole = {0, 0, false, 0};
+static const wh_grid_digits_t fine = {4, 4, false, 0};
+
+bool wh_study_is_kept(const wh_study_report_t *report) {
+    const wh_confidence_t success = wh_interval_wilson(report->tally->met, report->tally->trials);
+    return success.low >= report->require;
+}
+
+void wh_study_expected(const char *text, char *expected, size_t size) {
+    static const char *const found[] = {"; found dX ", "; it lies in "};
+    size_t length = strlen(text);
+    for (size_t i = 0; i < sizeof found / sizeof found[0]; ++i) {
+        const char *at = strstr(text, found[i]);
+        length = at ? (size_t)(at - text) : length;
+    }
+    snprintf(expected, size, "%.*s", (int)length, text);
+}
+
+double wh_study_nominal(const wh_study_wafer_t *wafer, size_t q) {
+    const double values[] = {(double)wafer->place.dx, (double)wafer->place.dy, (double)wafer->place.dz,
+                             (double)wh_deg_from_rad(wafer->place.tilt), 0};
+    return values[q];
+}
+
+/* --------------------------------------------------------------------------------------------------- rates */
+
+static void rate_columns(wh_grid_t *grid) {
+    wh_grid_number_column(grid, "%", percent);
+    wh_grid_text_column(grid, "95 %");
+}
+
+/* In percent, with its interval. */
+static void put_rate(wh_grid_t *grid, size_t column, wh_ink_t ink, uint64_t hits, uint64_t trials) {
+    const wh_confidence_t rate = wh_interval_wilson(hits, trials);
+    wh_grid_number(grid, column, ink, 100 * rate.rate);
+    wh_grid_text(grid, column + 1, WH_INK_DIM, "%.4f to %.4f", 100 * rate.low, 100 * rate.high);
+}
+
+static void put_trial(wh_grid_t *grid, size_t column, uint64_t trial) {
+    if (trial != WH_TALLY_NO_TRIAL) {
+        wh_grid_number(grid, column, WH_INK_PLAIN, (double)trial);
+    }
+}
+
+static int finish(const table_t *table, const char *title, wh_grid_t *grid) {
+    if (wh_grid_rows(grid) == 0) {
+        return wh_grid_discard(grid);
+    }
+    wh_report_title(&table->frame, title);
+    return wh_grid_print(grid, table->frame.out);
+}
+
+static int print_expectations(const table_t *table) {
+    wh_grid_t *grid = wh_grid_new(table->frame.style, 2);
+    wh_grid_number_column(grid, "line", whole);
+    wh_grid_text_column(grid, "expected");
+    wh_grid_number_column(grid, "met", whole);
+    rate_columns(grid);
+    wh_grid_number_column(grid, "first missed", whole);
+    for (size_t i = 0; i < table->tally->expectations.count; ++i) {
+        const wh_tally_row_t *row = &table->tally->expectations.rows[i];
+        char expected[200];
+        wh_study_expected(row->text, expected, sizeof expected);
+        wh_grid_row(grid);
+        wh_grid_number(grid, 0, WH_INK_PLAIN, row->line);
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", expected);
+        wh_grid_number(grid, 2, row->bad > 0 ? WH_INK_BAD : WH_INK_GOOD, (double)(row->seen - row->bad));
+        put_rate(grid, 3, WH_INK_PLAIN, row->seen - row->bad, row->seen);
+        put_trial(grid, 5, row->first);
+    }
+    return finish(table, "Expectations", grid);
+}
+
+static int print_errors(const table_t *table) {
+    wh_grid_t *grid = wh_grid_new(table->frame.style, 2);
+    wh_grid_number_column(grid, "line", whole);
+    wh_grid_text_column(grid, "command");
+    wh_grid_text_column(grid, "error");
+    wh_grid_number_column(grid, "trials", whole);
+    rate_columns(grid);
+    wh_grid_number_column(grid, "first", whole);
+    for (size_t i = 0; i < table->tally->errors.count; ++i) {
+        const wh_tally_row_t *row = &table->tally->errors.rows[i];
+        wh_grid_row(grid);
+        wh_grid_number(grid, 0, WH_INK_PLAIN, row->line);
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", row->text);
+        wh_grid_text(grid, 2, WH_INK_BAD, "%d %s", row->place, wh_status_name((wh_status_t)row->place));
+        wh_grid_number(grid, 3, WH_INK_PLAIN, (double)row->bad);
+        put_rate(grid, 4, WH_INK_PLAIN, row->bad, table->tally->trials);
+        put_trial(grid, 6, row->first);
+    }
+    return finish(table, "Errors of commands", grid);
+}
+
+static int print_events(const table_t *table) {
+    wh_grid_t *grid = wh_grid_new(table->frame.style, 1);
+    wh_grid_text_column(grid, "event");
+    wh_grid_number_column(grid, "trials", whole);
+    rate_columns(grid);
+    wh_grid_number_column(grid, "all in all", whole);
+    for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
+        const wh_tally_event_t *event = &table->tally->events[kind];
+        if (event->trials > 0) {
+            const bool bad = wh_report_is_complaint((wh_event_kind_t)kind);
+            wh_grid_row(grid);
+            wh_grid_text(grid, 0, bad ? WH_INK_BAD : WH_INK_PLAIN, "%s",
+                         wh_event_name((wh_event_kind_t)kind));
+            wh_grid_number(grid, 1, WH_INK_PLAIN, (double)event->trials);
+            put_rate(grid, 2, WH_INK_PLAIN, event->trials, table->tally->trials);
+            wh_grid_number(grid, 4, WH_INK_PLAIN, (double)event->total);
+        }
+    }
+    return finish(table, "Events", grid);
+}
+
+/* -------------------------------------------------------------------------------------------------- wafers */
+
+static void add_quantity(wh_grid_t *grid, const wh_study_wafer_t *wafer, const wh_sum_t *sum, size_t q) {
+    static const char *const names[] = {"dX mm", "dY mm", "dz mm", "tilt deg", "off mm"};
+    static const uint32_t permille[] = {1, 50, 500, 950, 999};
+    const double nominal = wh_study_nominal(wafer, q);
+    wh_grid_text(grid, 2, WH_INK_PLAIN, "%s", names[q]);
+    wh_grid_number(grid, 3, WH_INK_PLAIN, nominal + wh_sum_mean(sum));
+    wh_grid_number(grid, 4, WH_INK_PLAIN, wh_sum_deviation(sum));
+    wh_grid_number(grid, 5, WH_INK_PLAIN, nominal + wh_sum_least(sum));
+    for (size_t i = 0; i < sizeof permille / sizeof permille[0]; ++i) {
+        wh_grid_number(grid, 6 + i, WH_INK_PLAIN, nominal + wh_sum_quantile(sum, permille[i]));
+    }
+    wh_grid_number(grid, 11, WH_INK_PLAIN, nominal + wh_sum_most(sum));
+}
+
+static void add_wafer(const table_t *table, wh_grid_t *grid, size_t index) {
+    const wh_study_wafer_t *wafer = &table->study->study->wafers[index];
+    const wh_tally_wafer_t *tally = &table->tally->wafers[index];
+    const wh_layout_t *layout = table->study->study->layout;
+    for (size_t q = 0; q < WH_TALLY_QUANTITIES && tally->of[q].count > 0; ++q) {
+        wh_grid_row(grid);
+        if (q == 0) {
+            wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", layout->wafers[wafer->wafer].name);
+            wh_grid_text(grid, 1, WH_INK_PLAIN, "%s %d", layout->stations[wafer->place.station].name,
+                         wafer->place.slot);
+        }
+        add_quantity(grid, wafer, &tally->of[q], q);
+    }
+}
+
+static int print_wafers(const table_t *table) {
+    static const char *const headings[] = {"mean", "deviation", "min",    "0.1 %", "5 %",
+                                           "50 %", "95 %",      "99.9 %", "max"};
+    wh_grid_t *grid = wh_grid_new(table->frame.style, 3);
+    wh_grid_text_column(grid, "wafer");
+    wh_grid_text_column(grid, "in");
+    wh_grid_text_column(grid, "what");
+    for (size_t i = 0; i < sizeof headings / sizeof headings[0]; ++i) {
+        wh_grid_number_column(grid, headings[i], fine);
+    }
+    for (size_t w = 0; w < table->tally->wafer_count; ++w) {
+        add_wafer(table, grid, w);
+    }
+    int status = finish(table, "Wafers at the end", grid);
+    for (size_t w = 0; w < table->tally->wafer_count; ++w) {
+        const wh_tally_wafer_t *tally = &table->tally->wafers[w];
+        if (tally->elsewhere > 0) {
+            char count[WH_REPORT_NUMBER_SIZE];
+            wh_report_count(count, (int64_t)tally->elsewhere);
+            status |=
+                wh_report_put(&table->frame,
+                              table->study->study->layout->wafers[table->study->study->wafers[w].wafer].name);
+            fprintf(table->frame.out, " ends elsewhere in %s %s, which are not in these figures\n", count,
+                    tally->elsewhere == 1 ? "trial" : "trials");
+        }
+    }
+    return status;
+}
+
+/* --------------------------------------------------------------------------------------------------- worst */
+
+static int print_worst(const table_t *table) {
+    wh_grid_t *grid = wh_grid_new(table->frame.style, 1);
+    wh_grid_number_column(grid, "trial", whole);
+    wh_grid_text_column(grid, "result");
+    wh_grid_number_column(grid, "off mm", fine);
+    const size_t count =
+        table->study->worst < table->tally->worst_count ? table->study->worst : table->tally->worst_count;
+    for (size_t i = 0; i < count; ++i) {
+        const wh_tally_trial_t *trial = &table->tally->worst[i];
+        wh_grid_row(grid);
+        wh_grid_number(grid, 0, WH_INK_PLAIN, (double)trial->trial);
+        wh_grid_text(grid, 1, trial->met ? WH_INK_GOOD : WH_INK_BAD, "%s", trial->met ? "ok" : "failed");
+        if (trial->off <= 1e300) {
+            wh_grid_number(grid, 2, WH_INK_PLAIN, trial->off);
+        } else {
+            wh_grid_text(grid, 2, WH_INK_PLAIN, "elsewhere");
+        }
+    }
+    return finish(table, "Worst trials", grid);
+}
+
+/* ------------------------------------------------------------------------------------------------- around */
+
+static int print_head(const table_t *table) {
+    const wh_study_t *study = table->study->study;
+    char trials[WH_REPORT_NUMBER_SIZE];
+    int status = wh_report_put(&table->frame, study->run.script);
+    fputs(" on ", table->frame.out);
+    status |= wh_report_put(&table->frame, study->layout->path);
+    wh_report_count(trials, (int64_t)table->tally->trials);
+    fprintf(table->frame.out, "\n%s trials of seed %llu\n", trials, (unsigned long long)study->seed);
+    if (!study->nominal.record.ok) {
+        wh_style_print(table->frame.style, table->frame.out, WH_INK_WARN,
+                       "without any errors the script fails already");
+        fputc('\n', table->frame.out);
+    }
+    return status;
+}
+
+static void print_how(const table_t *table) {
+    const wh_study_t *study = table->study->study;
+    char count[WH_REPORT_NUMBER_SIZE];
+    wh_report_count(count, (int64_t)table->tally->whole);
+    if (study->whole) {
+        fprintf(table->frame.out,
+                "each trial ran the script whole, for in the run without errors this was read: %s\n",
+                study->whole);
+    } else {
+        fprintf(table->frame.out,
+                "%s trials ran the script whole, the others are the run without errors, replayed\n", count);
+    }
+}
+
+static void print_summary(const table_t *table) {
+    const wh_study_report_t *report = table->study;
+    const wh_confidence_t success = wh_interval_wilson(table->tally->met, table->tally->trials);
+    FILE *out = table->frame.out;
+    char met[WH_REPORT_NUMBER_SIZE];
+    char trials[WH_REPORT_NUMBER_SIZE];
+    wh_report_count(met, (int64_t)table->tally->met);
+    wh_report_count(trials, (int64_t)table->tally->trials);
+    fputc('\n', out);
+    print_how(table);
+    wh_style_print(table->frame.style, out,
+                   table->tally->met == table->tally->trials ? WH_INK_GOOD : WH_INK_BAD, "%s of %s trials ok",
+                   met, trials);
+    fprintf(out, ": %.4f %%, 95 %% sure from %.4f to %.4f %% (Wilson)\n", 100 * success.rate,
+            100 * success.low, 100 * success.high);
+    if (report->require > 0) {
+        const bool kept = wh_study_is_kept(report);
+        wh_style_print(table->frame.style, out, kept ? WH_INK_GOOD : WH_INK_BAD, "%s",
+                       kept ? "the required " : "not the required ");
+        fprintf(out, "%.10g %%\n", 100 * report->require);
+    }
+    if (table->tally->worst_count > 0 && report->worst > 0) {
+        fprintf(out, "--trial %llu --seed %llu plays the worst one\n",
+                (unsigned long long)table->tally->worst[0].trial, (unsigned long long)report->study->seed);
+    }
+}
+
+int wh_study_print_table(const wh_study_report_t *report, FILE *out, const wh_style_t *style) {
+    const table_t table = {report, report->tally, {&report->study->nominal.record, style, out}};
+    int status = print_head(&table);
+    status |= print_expectations(&table);
+    status |= print_errors(&table);
+    status |= print_events(&table);
+    status |= print_wafers(&table);
+    status |= print_worst(&table);
+    print_summary(&table);
+    return status != 0 || ferror(out) ? -1 : 0;
+}

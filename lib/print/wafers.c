@@ -1,0 +1,155 @@
+/* Where the wafers are at the end, and which of them a gripper carries tilted. */
+#include <stdlib.h>
+
+#include "../math/trig.h"
+#include "table_internal.h"
+
+enum { NAME, HELD_BY, LIES_IN, DX, DY, DZ, TILT };
+
+/* Above this many wafers only those are listed that something happened to. */
+#define LISTED_ALL 30
+
+/* A tilt that is worth a sentence, degrees: what the table shows as more than 0.000. */
+#define TILT_SHOWN_DEG 0.0005
+
+/* By wafer: 1 + index of the last event that names it, and of the last pick by an end-effector; 0: none. */
+typedef struct {
+    size_t *named, *picked;
+} history_t;
+
+static bool is_end_effector(const wh_layout_t *layout, int32_t gripper) {
+    return wh_is_index(gripper, layout->machine.gripper_count) &&
+           layout->grippers[gripper].station == WH_NONE;
+}
+
+static void read_history(const wh_record_t *record, const history_t *history) {
+    for (size_t i = 0; i < record->event_count; ++i) {
+        const wh_event_t *event = &record->events[i].event;
+        if (event->wafer < 0 || (size_t)event->wafer >= record->layout->wafer_count) {
+            continue;
+        }
+        const bool taken = event->kind == WH_EVENT_PICKED || event->kind == WH_EVENT_HANDED_OVER;
+        history->named[event->wafer] = i + 1;
+        if (taken && is_end_effector(record->layout, event->gripper)) {
+            history->picked[event->wafer] = i + 1;
+        }
+    }
+}
+
+static wh_grid_t *new_grid(const wh_report_t *report) {
+    const wh_grid_digits_t tilt = {3, 6, false, 0};
+    wh_grid_t *grid = wh_grid_new(report->style, 1);
+    wh_grid_text_column(grid, "wafer");
+    wh_grid_text_column(grid, "held by");
+    wh_grid_text_column(grid, "lies in");
+    wh_grid_number_column(grid, "dX mm", wh_report_millimetres());
+    wh_grid_number_column(grid, "dY mm", wh_report_millimetres());
+    wh_grid_number_column(grid, "dz mm", wh_report_millimetres());
+    wh_grid_number_column(grid, "tilt deg", tilt);
+    return grid;
+}
+
+static void fill_place(const wh_report_t *report, wh_grid_t *grid, const wh_wafer_record_t *wafer) {
+    const wh_place_t *place = &wafer->place;
+    const char *station = wh_record_station_name(report->record, place->station);
+    if (!station) {
+        wh_grid_text(grid, LIES_IN, wafer->holder == WH_NONE ? WH_INK_BAD : WH_INK_PLAIN, "no slot");
+        return;
+    }
+    wh_grid_text(grid, LIES_IN, WH_INK_PLAIN, "%s %d", station, (int)place->slot);
+    wh_grid_number(grid, DX, WH_INK_PLAIN, (double)place->dx);
+    wh_grid_number(grid, DY, WH_INK_PLAIN, (double)place->dy);
+    wh_grid_number(grid, DZ, WH_INK_PLAIN, (double)place->dz);
+    wh_grid_number(grid, TILT, WH_INK_PLAIN, (double)wh_deg_from_rad(place->tilt));
+}
+
+static void add_wafer(const wh_report_t *report, wh_grid_t *grid, size_t i) {
+    const wh_wafer_record_t *wafer = &report->record->wafers[i];
+    wh_grid_row(grid);
+    wh_grid_text(grid, NAME, WH_INK_PLAIN, "%s", wh_report_wafer(report, (int32_t)i));
+    if (wafer->holder != WH_NONE) {
+        wh_grid_text(grid, HELD_BY, WH_INK_PLAIN, "%s", wh_report_gripper(report, wafer->holder));
+    }
+    fill_place(report, grid, wafer);
+}
+
+/* Returns how many wafers were left out. */
+static size_t add_wafers(const wh_report_t *report, wh_grid_t *grid, const history_t *history) {
+    const wh_record_t *record = report->record;
+    const size_t count = record->layout->wafer_count;
+    size_t left_out = 0;
+    for (size_t i = 0; i < count; ++i) {
+        if (count <= LISTED_ALL || history->named[i] != 0 || record->wafers[i].holder != WH_NONE) {
+            add_wafer(report, grid, i);
+        } else {
+            ++left_out;
+        }
+    }
+    return left_out;
+}
+
+static int say_tilt(const wh_report_t *report, size_t wafer, const wh_event_t *pick, double tilt_deg) {
+    const bool seated = report->record->layout->grasp.seat;
+    const char *degree = wh_style_degree(report->style);
+    int status = wh_report_put(report, wh_report_wafer(report, (int32_t)wafer));
+    fprintf(report->out, seated ? " was at %.3f%s to " : " keeps %.3f%s against ", tilt_deg, degree);
+    status |= wh_report_put(report, wh_report_gripper(report, pick->gripper));
+    if (seated) {
+        fputs(" when it was taken, and was drawn flat onto the pads.\n", report->out);
+    } else {
+        fprintf(report->out, ", its rim %.2f mm from the pads' plane: the robot cannot tilt.\n",
+                wh_report_rim_gap(report, pick));
+    }
+    return status;
+}
+
+static int say_tilts(const wh_report_t *report, const history_t *history) {
+    int status = 0;
+    for (size_t i = 0; i < report->record->layout->wafer_count; ++i) {
+        if (history->picked[i] == 0) {
+            continue;
+        }
+        const wh_event_t *pick = &report->record->events[history->picked[i] - 1].event;
+        const double tilt_deg = wh_report_tilt_deg((double)pick->measured.n1_proj_n2);
+        if (tilt_deg >= TILT_SHOWN_DEG) {
+            status |= say_tilt(report, i, pick, tilt_deg);
+        }
+    }
+    return status;
+}
+
+static int print_wafers(const wh_report_t *report, const history_t *history) {
+    wh_grid_t *grid = new_grid(report);
+    const size_t left_out = add_wafers(report, grid, history);
+    int status = 0;
+    wh_report_title(report, "Wafers");
+    if (left_out < report->record->layout->wafer_count) {
+        status = wh_grid_print(grid, report->out);
+    } else {
+        status = wh_grid_discard(grid);
+    }
+    if (left_out > 0) {
+        char count[WH_REPORT_NUMBER_SIZE];
+        wh_report_count(count, (int64_t)left_out);
+        fprintf(report->out, "%s %s where nothing happened to them\n", count,
+                left_out == 1 ? "wafer lies" : "wafers lie");
+    }
+    return status | say_tilts(report, history);
+}
+
+int wh_report_wafers(const wh_report_t *report) {
+    const wh_layout_t *layout = report->record->layout;
+    if (!layout || layout->wafer_count == 0) {
+        return 0;
+    }
+    const history_t history = {calloc(layout->wafer_count, sizeof(size_t)),
+                               calloc(layout->wafer_count, sizeof(size_t))};
+    int status = -1;
+    if (history.named && history.picked) {
+        read_history(report->record, &history);
+        status = print_wafers(report, &history);
+    }
+    free(history.named);
+    free(history.picked);
+    return status;
+}

@@ -1,0 +1,143 @@
+#include "activity.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "record.h"
+
+/* ---------------------------------------------------------------------------------------------------- tasks */
+
+static bool axis_moves(const wh_track_t *track, const wh_segment_t *segment, size_t axis) {
+    return wh_real_abs(segment->target[axis] - track->axes[axis]) > 0;
+}
+
+static bool robot_moves(const wh_track_t *track, const wh_segment_t *segment) {
+    bool moves = segment->kind == WH_SEGMENT_LINE;
+    for (size_t axis = 0; segment->kind == WH_SEGMENT_AXES && axis < WH_ROBOT_AXES; ++axis) {
+        moves = moves || axis_moves(track, segment, axis);
+    }
+    return moves;
+}
+
+static bool is_carried(const wh_track_t *track, const wh_segment_t *segment, bool robot, size_t g) {
+    const int32_t axis = track->machine->mounts[g].axis;
+    return axis == WH_NONE ? robot
+                           : segment->kind == WH_SEGMENT_AXES && axis_moves(track, segment, (size_t)axis);
+}
+
+static wh_share_t share_standing(const wh_segment_t *segment, bool for_vacuum) {
+    if (segment->kind == WH_SEGMENT_VALVES) {
+        return WH_SHARE_HANDOVER;
+    }
+    return segment->kind == WH_SEGMENT_SENSOR || for_vacuum ? WH_SHARE_VACUUM : WH_SHARE_WAITING;
+}
+
+wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment, bool for_vacuum) {
+    const bool moves = segment->kind == WH_SEGMENT_AXES || segment->kind == WH_SEGMENT_LINE;
+    const bool robot = robot_moves(track, segment);
+    wh_task_t task = {share_standing(segment, for_vacuum), moves, robot || !moves, 0};
+    for (size_t g = 0; moves && g < track->machine->gripper_count; ++g) {
+        task.carried |= is_carried(track, segment, robot, g) ? 1U << g : 0;
+    }
+    return task;
+}
+
+/* ------------------------------------------------------------------------------------------------- counting */
+
+static void add_interval(wh_activity_t *activity, size_t resource, int64_t end) {
+    const size_t beside_robot = resource > 0 ? resource - 1 : 0;
+    activity->intervals = wh_record_grow(activity->intervals, activity->interval_count,
+                                         &activity->interval_capacity, sizeof *activity->intervals);
+    wh_interval_t *added = &activity->intervals[activity->interval_count++];
+    added->who = resource == 0 ? WH_BUSY_ROBOT : (wh_busy_t)(WH_BUSY_CHUCK + beside_robot % 3);
+    added->gripper = resource == 0 ? WH_NONE : (int32_t)(beside_robot / 3);
+    added->what = activity->open[resource].what;
+    added->begin = activity->open[resource].begin;
+    added->end = end;
+}
+
+size_t wh_activity_resource(const wh_interval_t *interval) {
+    return interval->who == WH_BUSY_ROBOT
+               ? 0
+               : (size_t)(3 * interval->gripper + (int32_t)interval->who - (int32_t)WH_BUSY_CHUCK + 1);
+}
+
+static void change(wh_activity_t *activity, size_t resource, int32_t what, int64_t slice) {
+    if (activity->open[resource].what != 0) {
+        add_interval(activity, resource, slice - 1);
+    }
+    activity->open[resource].what = what;
+    activity->open[resource].begin = slice - 1;
+}
+
+static void note(wh_activity_t *activity, size_t resource, int32_t what, int64_t slice) {
+    if (activity->open[resource].what != what) {
+        change(activity, resource, what, slice);
+    }
+}
+
+static void note_gripper(wh_activity_t *activity, size_t g, const wh_task_t *task, const wh_track_t *track,
+                         int32_t held) {
+    const size_t first = 1 + 3 * g;
+    const bool turns = (task->carried >> g & 1U) != 0 && track->machine->mounts[g].axis != WH_NONE;
+    const wh_share_t share = held != WH_NONE ? WH_SHARE_LOADED : WH_SHARE_EMPTY;
+    note(activity, first, turns ? 1 + (int32_t)share : 0, track->slice);
+    note(activity, first + 1, held + 1, track->slice);
+    note(activity, first + 2, track->valves[g] == WH_VALVE_OPEN ? 1 : 0, track->slice);
+}
+
+/* Whether the slice is like the one counted last. */
+static bool goes_on(const wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
+                    const wh_state_t *state) {
+    const wh_task_t *last = &activity->last.task;
+    bool same = activity->last.is_known && task->share == last->share && task->moves == last->moves &&
+                task->robot == last->robot && task->carried == last->carried;
+    for (size_t g = 0; same && g < state->gripper_count; ++g) {
+        same = state->grippers[g].wafer == activity->last.held[g] &&
+               track->valves[g] == activity->last.valves[g];
+    }
+    return same;
+}
+
+static void note_all(wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
+                     const wh_state_t *state) {
+    wh_share_t share = task->moves ? WH_SHARE_EMPTY : task->share;
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        const int32_t held = state->grippers[g].wafer;
+        note_gripper(activity, g, task, track, held);
+        if (held != WH_NONE && (task->carried >> g & 1U) != 0) {
+            share = WH_SHARE_LOADED;
+        }
+        activity->last.held[g] = held;
+        activity->last.valves[g] = track->valves[g];
+    }
+    note(activity, 0, task->robot ? 1 + (int32_t)share : 0, track->slice);
+    activity->last.task = *task;
+    activity->last.share = share;
+    activity->last.is_known = true;
+}
+
+wh_share_t wh_activity_count(wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
+                             const wh_state_t *state) {
+    if (!goes_on(activity, task, track, state)) {
+        note_all(activity, task, track, state);
+    }
+    ++activity->shares[activity->last.share];
+    return activity->last.share;
+}
+
+void wh_activity_end(wh_activity_t *activity, int64_t slice) {
+    for (size_t resource = 0; resource < WH_RESOURCES; ++resource) {
+        note(activity, resource, 0, slice + 1);
+    }
+    activity->last.is_known = false;
+}
+
+void wh_activity_forget(wh_activity_t *activity) {
+    activity->interval_count = 0;
+}
+
+void wh_activity_free(wh_activity_t *activity) {
+    free(activity->intervals);
+    memset(activity, 0, sizeof *activity);
+}

@@ -1,0 +1,85 @@
+/* What a run's time goes into, and who is busy when: counted slice by slice as the motion control software plays.
+ *
+ * Every slice belongs to one share, so the shares of a run add up to its slices. Beside that a log keeps, for the robot
+ * and for each gripper's chuck, wafer and valve, from when to when it was busy and with what. One that is busy with the
+ * same thing over several segments or commands has one interval.
+ */
+#ifndef WH_RECORD_ACTIVITY_H
+#define WH_RECORD_ACTIVITY_H
+
+#include "../motion/track.h"
+#include "../sim/slice.h"
+
+typedef enum {
+    WH_SHARE_LOADED,   /* motion with a wafer on what moves */
+    WH_SHARE_EMPTY,    /* motion without */
+    WH_SHARE_VACUUM,   /* standing still for vacuum: a station's vacuum_delay, then until the sensor is on */
+    WH_SHARE_HANDOVER, /* standing still while valves switch */
+    WH_SHARE_WAITING   /* standing still for anything else, such as WAIT */
+} wh_share_t;
+
+#define WH_SHARES 5
+
+/* Whose time an interval is of. */
+typedef enum {
+    WH_BUSY_ROBOT, /* `what` is 1 + the share that its time goes into; only a chuck turns: not busy */
+    WH_BUSY_CHUCK, /* turns, and `what` is 1 + WH_SHARE_LOADED or WH_SHARE_EMPTY */
+    WH_BUSY_WAFER, /* a gripper holds wafer `what` - 1 */
+    WH_BUSY_VALVE  /* a gripper's valve is open, vacuum on; `what` is 1 */
+} wh_busy_t;
+
+/* The robot, then a chuck, a wafer and a valve for each gripper. */
+#define WH_RESOURCES (1 + 3 * WH_GRIPPERS)
+
+typedef struct {
+    wh_busy_t who;
+    int32_t gripper;    /* index from 0; WH_NONE for the robot */
+    int32_t what;       /* never 0 */
+    int64_t begin, end; /* slices: busy from the end of `begin` to the end of `end`, which is later */
+} wh_interval_t;
+
+/* What a segment asks of the machine, for all of its slices. */
+typedef struct {
+    wh_share_t share; /* when nothing moves */
+    bool moves, robot;
+    uint32_t carried; /* bit g: what gripper g holds goes along */
+} wh_task_t;
+
+/* To be zeroed before a run. Read `shares` and, once it was ended, `intervals`. */
+typedef struct {
+    int64_t shares[WH_SHARES]; /* slices */
+    wh_interval_t *intervals;  /* in the order in which they ended */
+    size_t interval_count, interval_capacity;
+    struct {
+        int32_t what; /* 0: not busy */
+        int64_t begin;
+    } open[WH_RESOURCES];
+    struct {
+        bool is_known;
+        wh_task_t task;
+        wh_share_t share;
+        int32_t held[WH_GRIPPERS], valves[WH_GRIPPERS];
+    } last; /* the slice that was counted last: while nothing changes, nothing is looked at again */
+} wh_activity_t;
+
+/* The task of a segment that will begin where the track stands. `for_vacuum` tells a dwell for vacuum from others. */
+wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment, bool for_vacuum);
+
+/* Counts slice track->slice, which the track has yielded and `state` answers, and returns its share. Aborts when memory
+ * is out. Cost: 4 ns for two grippers. */
+wh_share_t wh_activity_count(wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
+                             const wh_state_t *state);
+
+/* Ends all that is going on with slice `slice`. */
+void wh_activity_end(wh_activity_t *activity, int64_t slice);
+
+/* Which of the WH_RESOURCES an interval is of: 0 is the robot. */
+size_t wh_activity_resource(const wh_interval_t *interval);
+
+/* Drops the intervals that have ended; shares and what is going on stay. */
+void wh_activity_forget(wh_activity_t *activity);
+
+/* Frees the intervals. */
+void wh_activity_free(wh_activity_t *activity);
+
+#endif

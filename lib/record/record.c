@@ -1,0 +1,121 @@
+#include "record.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void *wh_record_grow(void *items, size_t count, size_t *capacity, size_t size) {
+    if (count < *capacity) {
+        return items;
+    }
+    const size_t wanted = *capacity > 0 ? 2 * *capacity : 64;
+    void *grown = realloc(items, wanted * size);
+    if (!grown) {
+        abort();
+    }
+    *capacity = wanted;
+    return grown;
+}
+
+char *wh_record_text(const char *text) {
+    char *copy = strdup(text);
+    if (!copy) {
+        abort();
+    }
+    return copy;
+}
+
+wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s) {
+    record->commands = wh_record_grow(record->commands, record->command_count, &record->command_capacity,
+                                      sizeof *record->commands);
+    wh_command_record_t *command = &record->commands[record->command_count++];
+    command->line = line;
+    command->text = wh_record_text(text);
+    command->error = WH_OK;
+    command->message = NULL;
+    command->begin_s = begin_s;
+    command->end_s = begin_s;
+    memset(command->shares, 0, sizeof command->shares);
+    return command;
+}
+
+void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event) {
+    record->events =
+        wh_record_grow(record->events, record->event_count, &record->event_capacity, sizeof *record->events);
+    wh_event_record_t *added = &record->events[record->event_count++];
+    added->utime = utime;
+    added->command = command;
+    added->event = *event;
+}
+
+void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok) {
+    record->expectations = wh_record_grow(record->expectations, record->expectation_count,
+                                          &record->expectation_capacity, sizeof *record->expectations);
+    wh_expectation_record_t *added = &record->expectations[record->expectation_count++];
+    added->line = line;
+    added->text = wh_record_text(text);
+    added->ok = ok;
+}
+
+void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put) {
+    record->puts =
+        wh_record_grow(record->puts, record->put_count, &record->put_capacity, sizeof *record->puts);
+    record->puts[record->put_count++] = *put;
+}
+
+void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin) {
+    record->cycles =
+        wh_record_grow(record->cycles, record->cycle_count, &record->cycle_capacity, sizeof *record->cycles);
+    wh_cycle_record_t *added = &record->cycles[record->cycle_count++];
+    added->line = line;
+    added->name = wh_record_text(name);
+    added->begin = begin;
+}
+
+void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves) {
+    record->curves = record->curves ? record->curves : malloc(sizeof *curves);
+    if (!record->curves) {
+        abort();
+    }
+    *record->curves = *curves;
+}
+
+void wh_record_begin_reach(wh_record_t *record, size_t stations) {
+    if (!record->reach) {
+        record->reach = calloc(stations + 1, sizeof *record->reach);
+    }
+    if (!record->reach) {
+        abort();
+    }
+}
+
+void wh_record_forget(wh_record_t *record) {
+    for (size_t i = 0; i < record->command_count; ++i) {
+        free(record->commands[i].text);
+        free(record->commands[i].message);
+    }
+    for (size_t i = 0; i < record->expectation_count; ++i) {
+        free(record->expectations[i].text);
+    }
+    for (size_t i = 0; i < record->cycle_count; ++i) {
+        free(record->cycles[i].name);
+    }
+    record->command_count = record->event_count = record->expectation_count = 0;
+    record->put_count = record->cycle_count = 0;
+    wh_activity_forget(&record->activity);
+}
+
+void wh_record_free(wh_record_t *record) {
+    wh_record_forget(record);
+    free(record->commands);
+    free(record->events);
+    free(record->expectations);
+    free(record->puts);
+    free(record->cycles);
+    free(record->reach);
+    free(record->wafers);
+    wh_activity_free(&record->activity);
+    free(record->curves);
+    free(record->script);
+    free(record->failure);
+    memset(record, 0, sizeof *record);
+}

@@ -1,0 +1,112 @@
+/* The record of a run: what was commanded, what happened, what was expected. */
+#ifndef WH_RECORD_RECORD_H
+#define WH_RECORD_RECORD_H
+
+#include "../layout/layout.h"
+#include "activity.h"
+
+typedef struct {
+    int line;                  /* in the script; 0 when unknown */
+    char *text;                /* as an operator would type it: GET A 1 */
+    wh_status_t error;         /* WH_OK: it succeeded */
+    char *message;             /* what the error said, or null */
+    double begin_s, end_s;     /* simulated */
+    int64_t shares[WH_SHARES]; /* slices of it by what they go into */
+} wh_command_record_t;
+
+typedef struct {
+    int64_t utime;
+    int32_t command; /* index of the command during which it happened, or WH_NONE */
+    wh_event_t event;
+} wh_event_record_t;
+
+typedef struct {
+    int line;
+    char *text; /* what was expected, with the value found when it was not met */
+    bool ok;
+} wh_expectation_record_t;
+
+/* A wafer that was set down well: see record/throughput.h. */
+typedef struct {
+    int32_t wafer, station, slot;
+    int64_t slice; /* at the end of the command */
+} wh_put_record_t;
+
+/* A cycle that the script marked. */
+typedef struct {
+    int line;
+    char *name;    /* "" without one */
+    int64_t begin; /* slices before it */
+} wh_cycle_record_t;
+
+/* How near an axis comes to an end of its travel at a station. */
+typedef struct {
+    wh_real_t margin; /* mm or rad, at least 0 */
+    wh_real_t at;     /* where it then stands */
+    bool is_max;      /* the upper end */
+    int32_t slot;     /* where the arm then goes in, from 1; 0: not rehearsed */
+} wh_reach_t;
+
+typedef struct {
+    wh_reach_t axes[WH_ROBOT_AXES];
+} wh_station_reach_t;
+
+/* Where a wafer is at the end. */
+typedef struct {
+    wh_pose_t base_from_wafer;
+    int32_t holder;
+    wh_place_t place; /* place.station is WH_NONE when it lies in no slot */
+} wh_wafer_record_t;
+
+typedef struct {
+    char *script;              /* path as given */
+    const wh_layout_t *layout; /* null when the script named none; lives as long as the record */
+    bool ok;       /* no command failed uncaught, every expectation was met, the cell had no complaint */
+    char *failure; /* the uncaught error's message with file and line, or null */
+    int64_t slices;
+    int64_t missed; /* of them, those that a free-running run lost on the way to the simulator */
+    double simulated_s, wall_s;
+    uint64_t hash;
+    wh_command_record_t *commands;
+    size_t command_count, command_capacity;
+    wh_event_record_t *events;
+    size_t event_count, event_capacity;
+    wh_expectation_record_t *expectations;
+    size_t expectation_count, expectation_capacity;
+    wh_put_record_t *puts; /* in order */
+    size_t put_count, put_capacity;
+    wh_cycle_record_t *cycles; /* in order */
+    size_t cycle_count, cycle_capacity;
+    wh_activity_t activity;
+    wh_station_reach_t *reach; /* layout->station_count of them, from home; null: nothing was rehearsed */
+    wh_wafer_record_t *wafers; /* layout->wafer_count of them */
+    bool checked;              /* for collisions: then these are the smallest gaps */
+    wh_clearance_t clearances[WH_CLEARANCES];
+    wh_curves_t *curves; /* and how they went over time; null unless checked */
+} wh_record_t;
+
+/* Appending; texts are copied. A program that runs out of memory here aborts. */
+wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s);
+void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event);
+void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok);
+void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put);
+void wh_record_begin_reach(wh_record_t *record, size_t stations); /* once; then nothing */
+void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin);
+
+/* Keeps a copy of the curves. */
+void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves);
+
+/* Drops commands, events, expectations, puts, cycles and intervals; script, layout, reach and the sums stay. For
+ * sessions without an end. */
+void wh_record_forget(wh_record_t *record);
+
+/* Room for one more item of `size` bytes, by doubling. */
+void *wh_record_grow(void *items, size_t count, size_t *capacity, size_t size);
+
+/* A copy of the text, to be freed. */
+char *wh_record_text(const char *text);
+
+/* Frees everything that the record holds and zeroes it. */
+void wh_record_free(wh_record_t *record);
+
+#endif

@@ -1,0 +1,135 @@
+/* What a run's page shows over time: collected slice by slice while the run goes, thinned as it comes.
+ *
+ * Axes, vacuum, and each gripper against the wafer that it holds or would take are curves (record/path.h); valves, sensors and where
+ * wafers lie change in steps and are kept as they are. Where grippers and the arm's links are follows from the axes; a gripper
+ * that is elsewhere, for its machine is not the layout's or a log does not tell the axes, has poses of its own from then on
+ * (record/thin.h). All of it is exact at events and wherever wh_trace_mark is called. Slices count as in the run: what is of
+ * slice n is true at its end, slice 0 is before the first.
+ *
+ * Host code: aborts when memory is out. Memory: what thinning leaves, steps, and 4 bytes a wafer.
+ */
+#ifndef WH_RECORD_SIGNALS_H
+#define WH_RECORD_SIGNALS_H
+
+#include "../layout/layout.h"
+#include "../sim/slice.h"
+#include "path.h"
+#include "thin.h"
+
+/* How far what is shown may be off, to begin with: it grows where a signal has more points than it may. */
+#define WH_TRACE_MM 0.02 /* of axes */
+#define WH_TRACE_RAD 2e-5
+#define WH_TRACE_OWN_MM 0.05 /* of poses that do not follow from axes */
+#define WH_TRACE_OWN_RAD 5e-4
+#define WH_TRACE_VACUUM 1e-3
+#define WH_TRACE_PROJZ 0.005
+#define WH_TRACE_PROJXY 0.05
+#define WH_TRACE_PLANAR 1e-6
+
+/* How many points a signal may have beside those that are exact. */
+#define WH_TRACE_POINTS 60000
+
+/* Of these thinning takes so much, and rounding to decimals the rest. */
+#define WH_TRACE_SHARE 0.98
+
+/* A gripper is shown against a wafer while |dr_proj_z| is less than this, mm, and |dr_proj_xy| less than twice the
+ * layout's near_projxy. */
+#define WH_TRACE_REACH 20.0
+
+/* What a gripper is measured by against its nearest wafer. */
+typedef enum {
+    WH_MEASURE_PROJZ,  /* |dr_proj_z|, mm */
+    WH_MEASURE_PROJXY, /* |dr_proj_xy|, mm */
+    WH_MEASURE_PLANAR, /* n1_proj_n2 */
+    WH_MEASURES
+} wh_measure_t;
+
+/* The links of the arm that move: WH_ARM_LIFT to WH_ARM_HAND. */
+#define WH_TRACE_LINKS 4
+
+/* A value that holds from a slice on. */
+typedef struct {
+    int64_t slice;
+    int32_t value;
+} wh_step_t;
+
+typedef struct {
+    wh_step_t *steps;
+    size_t count, capacity;
+} wh_steps_t;
+
+/* Where a wafer lies or hangs from a slice on. */
+typedef struct {
+    int64_t slice;
+    int32_t wafer;
+    int32_t holder; /* a gripper, or WH_NONE */
+    wh_pose_t pose; /* gripper_from_wafer, or base_from_wafer */
+} wh_stay_t;
+
+/* An event that has a place in the cell. */
+typedef struct {
+    wh_event_t event;
+    int64_t utime;
+    bool has_place;
+    wh_vec3_t at;
+} wh_mark_t;
+
+/* Wafers that a gripper may be near to, while it is near to where they were looked for. */
+typedef struct {
+    int32_t *wafers;
+    size_t count, capacity;
+    wh_vec3_t centre;
+    bool is_known;
+} wh_vicinity_t;
+
+/* Zero it to begin with. Read only. */
+typedef struct {
+    const wh_layout_t *layout; /* null before the first slice; borrowed */
+    size_t axis_count;
+    wh_curve_t axes[WH_AXES], vacuum[WH_GRIPPERS];
+    wh_curve_t proximity[WH_GRIPPERS][WH_MEASURES];
+    wh_thin_t own[WH_GRIPPERS]; /* base_from_gripper from its first point on, if any: else of the axes */
+    wh_steps_t valves[WH_GRIPPERS], sensors[WH_GRIPPERS];
+    wh_steps_t nearest[WH_GRIPPERS]; /* the wafer that it is measured against, or WH_NONE */
+    wh_stay_t *stays;                /* in order of time */
+    size_t stay_count, stay_capacity;
+    int32_t *stay_of; /* each wafer's last one */
+    wh_mark_t *marks;
+    size_t mark_count, mark_capacity;
+    int64_t first, last; /* slices */
+    wh_vicinity_t vicinity[WH_GRIPPERS];
+} wh_trace_t;
+
+/* The layout is known: everything is as before the first slice. With `at_home` that is the first sample; without, the next
+ * slice is (of a run of which the beginning is missing). */
+void wh_trace_begin(wh_trace_t *trace, const wh_layout_t *layout, bool at_home);
+
+/* One accepted slice, later than the last one. `axes` has axis_count numbers; null where they are not known. Cost: about 1 us
+ * with two grippers, a pass over all wafers where something happens or a gripper has gone far. */
+void wh_trace_slice(wh_trace_t *trace, const double axes[], size_t axis_count, const wh_state_t *state);
+
+/* What the last slice left is wanted exactly. */
+void wh_trace_mark(wh_trace_t *trace);
+
+/* No more slices. */
+void wh_trace_finish(wh_trace_t *trace);
+
+void wh_trace_close(wh_trace_t *trace);
+
+/* Where a gripper is shown at a slice. Of a finished trace, one that has slices. Cost: log n. */
+void wh_trace_gripper(const wh_trace_t *trace, size_t gripper, int64_t slice, wh_pose_t *base_from_gripper);
+
+/* Where the arm's links are shown; false where no gripper is on the robot. */
+bool wh_trace_links(const wh_trace_t *trace, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]);
+
+/* Between which poses of grippers and links lie on straight lines, or nearly: the points of all that moves them, and so many between two
+ * that none is passed over. Calls `visit` for each of these slices, in order. */
+void wh_trace_walk(const wh_trace_t *trace, void (*visit)(void *user, int64_t slice), void *user);
+
+/* Within: adds the value unless it is the last one. */
+void wh_trace_step(wh_steps_t *steps, int64_t slice, int32_t value);
+
+/* Within: each gripper against the wafer that it holds or would take. */
+void wh_trace_proximity(wh_trace_t *trace, const wh_state_t *state);
+
+#endif

@@ -1,0 +1,99 @@
+/* Where a trace shows grippers and links. */
+#include "../layout/collision.h"
+#include "quaternion.h"
+#include "signals.h"
+
+/* From one point to the next, poses are looked at in at most so many places. */
+#define PLACES 32
+
+static void read_own(const wh_thin_t *own, int64_t slice, wh_pose_t *pose) {
+    double values[7];
+    wh_thin_read(own, slice, values);
+    pose->r = wh_vec3(values[0], values[1], values[2]);
+    wh_quaternion_to_matrix(values + 3, &pose->R);
+}
+
+static void read_grippers(const wh_trace_t *trace, int64_t slice, wh_pose_t poses[WH_GRIPPERS]) {
+    const wh_machine_t *machine = &trace->layout->machine;
+    double axes[WH_AXES] = {0};
+    for (size_t axis = 0; axis < WH_AXES && trace->axes[axis].count > 0; ++axis) {
+        axes[axis] = wh_curve_read(&trace->axes[axis], slice, NULL);
+    }
+    wh_machine_grippers(machine, axes, poses);
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        const wh_thin_t *own = &trace->own[g];
+        if (own->count > 0 && slice >= own->points[0].slice) {
+            read_own(own, slice, &poses[g]);
+        }
+    }
+}
+
+void wh_trace_gripper(const wh_trace_t *trace, size_t gripper, int64_t slice, wh_pose_t *base_from_gripper) {
+    wh_pose_t poses[WH_GRIPPERS];
+    read_grippers(trace, slice, poses);
+    *base_from_gripper = poses[gripper];
+}
+
+bool wh_trace_links(const wh_trace_t *trace, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]) {
+    wh_pose_t poses[WH_GRIPPERS];
+    wh_pose_t base_from_effector;
+    wh_pose_t bodies[WH_ARM_BODIES];
+    read_grippers(trace, slice, poses);
+    if (!wh_collision_effector(&trace->layout->machine, poses, &base_from_effector)) {
+        return false;
+    }
+    wh_arm_place(&trace->layout->shapes.arm, &base_from_effector, bodies);
+    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        base_from_links[i] = bodies[WH_ARM_LIFT + i];
+    }
+    return true;
+}
+
+/* ------------------------------------------------------------------------------------------------------ walk */
+
+/* How far the points of each signal have been passed. */
+typedef struct {
+    size_t axes[WH_AXES], own[WH_GRIPPERS];
+} passed_t;
+
+static int64_t next_of_curve(const wh_curve_t *curve, size_t *at, int64_t slice, int64_t next) {
+    while (*at < curve->count && curve->points[*at].slice <= slice) {
+        ++*at;
+    }
+    return *at < curve->count && curve->points[*at].slice < next ? curve->points[*at].slice : next;
+}
+
+static int64_t next_of_own(const wh_thin_t *own, size_t *at, int64_t slice, int64_t next) {
+    while (*at < own->count && own->points[*at].slice <= slice) {
+        ++*at;
+    }
+    return *at < own->count && own->points[*at].slice < next ? own->points[*at].slice : next;
+}
+
+/* The first slice after `slice` at which a signal has a point, or the trace's last. */
+static int64_t next_point(const wh_trace_t *trace, passed_t *passed, int64_t slice) {
+    int64_t next = trace->last;
+    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
+        next = next_of_curve(&trace->axes[axis], &passed->axes[axis], slice, next);
+    }
+    for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
+        next = next_of_own(&trace->own[g], &passed->own[g], slice, next);
+    }
+    return next;
+}
+
+void wh_trace_walk(const wh_trace_t *trace, void (*visit)(void *user, int64_t slice), void *user) {
+    passed_t passed = {{0}, {0}};
+    int64_t slice = trace->first;
+    visit(user, slice);
+    while (slice < trace->last) {
+        const int64_t next = next_point(trace, &passed, slice);
+        const int64_t width = next - slice;
+        const int64_t places = width < PLACES ? width : PLACES;
+        for (int64_t i = 1; i < places; ++i) {
+            visit(user, slice + (int64_t)((double)width * (double)i / (double)places));
+        }
+        visit(user, next);
+        slice = next;
+    }
+}

@@ -1,0 +1,155 @@
+/* Each gripper against its nearest wafer, over time: the paper's Fig. 9. */
+#include <string.h>
+
+#include "record.h"
+#include "signals.h"
+
+/* With more wafers than these, those near a gripper are looked for anew when it has gone so far, mm. */
+#define FEW_WAFERS 64
+#define ROOM 100.0
+
+static double square_of(const wh_vec3_t *a, const wh_vec3_t *b) {
+    const wh_vec3_t way = wh_vec3_subtract(a, b);
+    return wh_vec3_dot(&way, &way);
+}
+
+/* A wafer within the reach of the plot has its centre so near to the gripper's. */
+static double reach_of(const wh_trace_t *trace) {
+    return WH_TRACE_REACH + 2 * trace->layout->grasp.near_projxy;
+}
+
+/* ------------------------------------------------------------------------------------------------- vicinity */
+
+static void look_around(const wh_trace_t *trace, wh_vicinity_t *vicinity, const wh_state_t *state,
+                        const wh_vec3_t *at) {
+    const double radius = reach_of(trace) + ROOM;
+    const bool few = state->wafer_count <= FEW_WAFERS;
+    vicinity->count = 0;
+    for (size_t w = 0; w < state->wafer_count; ++w) {
+        if (few || square_of(&state->wafers[w].base_from_wafer.r, at) < radius * radius) {
+            vicinity->wafers = wh_record_grow(vicinity->wafers, vicinity->count, &vicinity->capacity,
+                                              sizeof *vicinity->wafers);
+            vicinity->wafers[vicinity->count++] = (int32_t)w;
+        }
+    }
+    vicinity->centre = *at;
+    vicinity->is_known = true;
+}
+
+typedef struct {
+    const wh_state_t *state;
+    const wh_vec3_t *at; /* the gripper */
+    double reach, least;
+    int32_t nearest;
+} search_t;
+
+static void consider(search_t *search, int32_t wafer) {
+    const wh_pose_t *pose = &search->state->wafers[wafer].base_from_wafer;
+    if (square_of(&pose->r, search->at) < search->reach * search->reach) {
+        const wh_vec3_t dr = wh_vec3_subtract(&pose->r, search->at);
+        const wh_vec3_t n1 = wh_mat3_column(&pose->R, 2);
+        const double height = wh_real_abs(wh_vec3_dot(&dr, &n1));
+        if (search->nearest == WH_NONE || height < search->least) {
+            search->least = height;
+            search->nearest = wafer;
+        }
+    }
+}
+
+/* The wafer that it holds, else the one that it would take: with the smallest |dr_proj_z|. */
+static int32_t find_nearest(const wh_trace_t *trace, const wh_vicinity_t *vicinity, const wh_state_t *state,
+                            size_t g) {
+    search_t search = {.state = state,
+                       .at = &state->grippers[g].base_from_gripper.r,
+                       .reach = reach_of(trace),
+                       .nearest = WH_NONE};
+    if (state->grippers[g].wafer != WH_NONE) {
+        return state->grippers[g].wafer;
+    }
+    for (size_t i = 0; i < vicinity->count; ++i) {
+        consider(&search, vicinity->wafers[i]);
+    }
+    /* Wafers that another gripper carries come near by themselves, and are not on the list. */
+    for (size_t other = 0; other < state->gripper_count; ++other) {
+        if (state->grippers[other].wafer != WH_NONE) {
+            consider(&search, state->grippers[other].wafer);
+        }
+    }
+    return search.nearest;
+}
+
+/* ---------------------------------------------------------------------------------------------------- values */
+
+static void take(const wh_proximity_t *p, double values[WH_MEASURES]) {
+    values[WH_MEASURE_PROJZ] = wh_real_abs(p->dr_proj_z);
+    values[WH_MEASURE_PROJXY] = p->dr_proj_xy_norm;
+    values[WH_MEASURE_PLANAR] = p->n1_proj_n2;
+}
+
+/* The nearest wafer and how near, or WH_NONE. */
+static int32_t measure(wh_trace_t *trace, const wh_state_t *state, size_t g, double values[WH_MEASURES]) {
+    const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
+    wh_vicinity_t *vicinity = &trace->vicinity[g];
+    wh_proximity_t p;
+    if (!vicinity->is_known || square_of(&pose->r, &vicinity->centre) > ROOM * ROOM) {
+        look_around(trace, vicinity, state, &pose->r);
+    }
+    const int32_t nearest = find_nearest(trace, vicinity, state, g);
+    if (nearest == WH_NONE || wh_proximity_measure(&state->wafers[nearest].base_from_wafer, pose,
+                                                   &trace->layout->grasp.tolerance, &p) != WH_OK) {
+        return WH_NONE;
+    }
+    take(&p, values);
+    const bool near = values[WH_MEASURE_PROJZ] < WH_TRACE_REACH &&
+                      values[WH_MEASURE_PROJXY] < 2 * trace->layout->grasp.near_projxy;
+    return near ? nearest : WH_NONE;
+}
+
+static void add_gripper(wh_trace_t *trace, const wh_state_t *state, size_t g) {
+    wh_steps_t *steps = &trace->nearest[g];
+    double values[WH_MEASURES] = {0};
+    const int32_t nearest = measure(trace, state, g, values);
+    const bool is_other = steps->count > 0 && steps->steps[steps->count - 1].value != nearest;
+    wh_trace_step(steps, state->seq, nearest);
+    for (size_t m = 0; m < WH_MEASURES; ++m) {
+        if (is_other) {
+            wh_curve_break(&trace->proximity[g][m]);
+        }
+        if (nearest != WH_NONE) {
+            wh_curve_add(&trace->proximity[g][m], state->seq, values[m]);
+        }
+    }
+}
+
+/* The wafer that the gripper was measured against at a slice. */
+static int32_t nearest_at(const wh_steps_t *steps, int64_t slice) {
+    size_t i = steps->count;
+    while (i > 0 && steps->steps[i - 1].slice > slice) {
+        --i;
+    }
+    return i > 0 ? steps->steps[i - 1].value : WH_NONE;
+}
+
+static void insert_past(wh_trace_t *trace, const wh_event_t *event) {
+    const int64_t slice = (int64_t)event->measured_slice;
+    double values[WH_MEASURES];
+    take(&event->measured, values);
+    if (nearest_at(&trace->nearest[event->gripper], slice) == event->wafer) {
+        for (size_t m = 0; m < WH_MEASURES; ++m) {
+            wh_curve_insert(&trace->proximity[event->gripper][m], slice, values[m]);
+        }
+    }
+}
+
+void wh_trace_proximity(wh_trace_t *trace, const wh_state_t *state) {
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        add_gripper(trace, state, g);
+    }
+    for (size_t i = 0; i < state->event_count; ++i) {
+        const wh_event_t *event = &state->events[i];
+        const bool past = event->kind == WH_EVENT_NEAR_MISS || event->kind == WH_EVENT_CONTESTED;
+        if (past && (int64_t)event->measured_slice < state->seq) {
+            insert_past(trace, event);
+        }
+    }
+}

@@ -1,0 +1,255 @@
+/* Plots of curves: proximity, axes, clearances; and offsets at the end. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../math/trig.h"
+#include "document_internal.h"
+#include "gnuplot_curves.h"
+#include "plots_internal.h"
+
+/* ----------------------------------------------------------------------------------------------- proximity */
+
+/* Over the times at which a gripper holds a wafer, with the wafer's name in the first panel. */
+static void shade_holds(const wh_plots_t *plots, wh_plot_t *plot, int32_t gripper) {
+    const wh_layout_t *layout = plots->document->trace->layout;
+    size_t count = 0;
+    wh_plot_hold_t *holds = wh_plots_holds(plots, gripper, &count);
+    for (size_t i = 0; i < count; ++i) {
+        fprintf(plot->script,
+                "set object rect from %.12g, graph 0 to %.12g, graph 1 behind fs solid noborder "
+                "fc rgb '#e4e4e4'\n",
+                holds[i].begin_s, holds[i].end_s);
+        if (plot->panel == 1) {
+            const char *name = layout->wafers[holds[i].wafer].name;
+            wh_plot_fitting_label(plot, holds[i].begin_s, holds[i].end_s, name);
+            fputs(", graph 0.88 center\n", plot->script);
+        }
+    }
+    free(holds);
+}
+
+/* A panel of lengths, which go from nothing to many times the limit: what is below the axis is drawn on it. */
+static void put_length(const wh_plots_t *plots, wh_plot_t *plot, int32_t g, const char *name, int column,
+                       double low, double limit, double high) {
+    char label[60];
+    (void)snprintf(label, sizeof label, "|%s| (mm)", name);
+    wh_plot_panel(plot, label);
+    shade_holds(plots, plot, g);
+    wh_plot_limit_label(plot, '<', limit, "mm");
+    fprintf(plot->script,
+            "low = %.9g\nset logscale y\nset yrange [low:%.9g]\n"
+            "plot '%s.dat' index 0 using 1:($%d > low ? $%d : low) with lines lt 1 notitle",
+            low, high, plot->name, column, column);
+    wh_plot_limit_curve(plot, limit);
+    fputc('\n', plot->script);
+}
+
+static void put_planar(const wh_plots_t *plots, wh_plot_t *plot, int32_t g, double limit) {
+    wh_plot_panel(plot, "n1_proj_n2");
+    shade_holds(plots, plot, g);
+    wh_plot_limit_label(plot, '>', limit, "");
+    fprintf(plot->script, "set yrange [%.9g:%.9g]\nplot '%s.dat' index 0 using 1:4 with lines lt 1 notitle",
+            1 - 2 * (1 - limit), 1 + 0.1 * (1 - limit), plot->name);
+    wh_plot_limit_curve(plot, limit);
+    fputc('\n', plot->script);
+}
+
+static void put_proximity(wh_plots_t *plots, int32_t g) {
+    static const wh_plot_frame_t frame = {
+        .panels = 3, .panel_height = 92, .left = 66, .above = 12, .limits = true};
+    const wh_trace_t *trace = plots->document->trace;
+    const wh_layout_t *layout = trace->layout;
+    const wh_curve_t *curves = trace->proximity[g];
+    const wh_plot_curves_t values = {
+        {&curves[WH_MEASURE_PROJZ], &curves[WH_MEASURE_PROJXY], &curves[WH_MEASURE_PLANAR]},
+        WH_MEASURES,
+        1,
+        false,
+        &trace->nearest[g]};
+    const wh_tolerance_t *limits = &layout->grasp.tolerance;
+    const char *name = layout->grippers[g].name;
+    char title[WH_NAME_SIZE + 100];
+    wh_plot_t plot;
+    if (curves[WH_MEASURE_PROJZ].count == 0 || !wh_plots_open(plots, &plot, "proximity", name)) {
+        return;
+    }
+    (void)snprintf(title, sizeof title, "%s against the wafer that it holds (grey), or else would take",
+                   name);
+    wh_plot_begin(&plot, &frame, title, wh_plots_begin_s(plots), wh_plots_end_s(plots));
+    wh_plot_block(&plot, name, "t (s), |dr_proj_z| (mm), |dr_proj_xy| (mm), n1_proj_n2, wafer (from 0)");
+    (void)wh_plot_curves(&plot, &values, wh_plots_slice_s(plots));
+    put_length(plots, &plot, g, "dr_proj_z", 2, limits->projz / 50, limits->projz,
+               limits->projz * 4 > WH_TRACE_REACH ? limits->projz * 4 : WH_TRACE_REACH);
+    put_length(plots, &plot, g, "dr_proj_xy", 3, limits->projxy / 50000, limits->projxy,
+               2 * layout->grasp.near_projxy);
+    put_planar(plots, &plot, g, limits->planar);
+    wh_plots_close(plots, &plot);
+}
+
+void wh_plots_proximity(wh_plots_t *plots) {
+    for (size_t g = 0; g < plots->document->trace->layout->machine.gripper_count; ++g) {
+        put_proximity(plots, (int32_t)g);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- axes */
+
+typedef struct {
+    const char *label;
+    bool turns, is_speed;
+} axis_panel_t;
+
+static const axis_panel_t axis_panels[] = {{"position (mm)", false, false},
+                                           {"position (\u00b0)", true, false},
+                                           {"speed (mm/s)", false, true},
+                                           {"speed (\u00b0/s)", true, true}};
+#define AXIS_PANELS (sizeof axis_panels / sizeof axis_panels[0])
+
+static bool is_in(const wh_trace_t *trace, size_t axis, const axis_panel_t *panel) {
+    return trace->axes[axis].count > 0 && panel->turns == (axis != WH_AXIS_R && axis != WH_AXIS_Z);
+}
+
+/* What a panel shows: how many curves, and between which values. */
+typedef struct {
+    size_t curves;
+    double low, high;
+} axis_range_t;
+
+static axis_range_t look_at(const wh_trace_t *trace, const axis_panel_t *panel) {
+    axis_range_t range = {0, HUGE_VAL, -HUGE_VAL};
+    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
+        const wh_curve_t *curve = &trace->axes[axis];
+        if (is_in(trace, axis, panel)) {
+            ++range.curves;
+            for (size_t i = 0; i < curve->count; ++i) {
+                const double value = panel->is_speed ? curve->points[i].slope : curve->points[i].value;
+                range.low = value < range.low ? value : range.low;
+                range.high = value > range.high ? value : range.high;
+            }
+        }
+    }
+    return range;
+}
+
+/* Of what stands still gnuplot has no range of its own; a key of many entries is set closer, to fit into one column. */
+static void put_axis_look(wh_plot_t *plot, const axis_range_t *range) {
+    if (range->high - range->low < 1e-6) {
+        fprintf(plot->script, "set yrange [%.9g:%.9g]\n", range->low - 1, range->high + 1);
+    }
+    fprintf(plot->script, "set key width %d\n", range->curves > 2 ? -2 : 0);
+}
+
+static void put_axis_panel(const wh_plots_t *plots, wh_plot_t *plot, const axis_panel_t *panel) {
+    const wh_trace_t *trace = plots->document->trace;
+    const axis_range_t range = look_at(trace, panel);
+    int line = 0;
+    wh_plot_panel(plot, panel->label);
+    put_axis_look(plot, &range);
+    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
+        if (is_in(trace, axis, panel)) {
+            const wh_plot_curves_t curve = {
+                {&trace->axes[axis]}, 1, panel->turns ? WH_PI / 180 : 1, panel->is_speed, NULL};
+            char name[WH_NAME_SIZE + 8];
+            wh_document_name_axis(trace->layout, axis, name, sizeof name);
+            wh_plot_block(plot, name, panel->is_speed ? "t (s), speed" : "t (s), position");
+            const size_t block = wh_plot_curves(plot, &curve, wh_plots_slice_s(plots));
+            ++line;
+            fprintf(plot->script, "%s'%s.dat' index %zu using 1:2 with linespoints pn 9 lt %d title ",
+                    line == 1 ? "plot " : ", \\\n  ", plot->name, block, line);
+            wh_plot_put_text(plot->script, name);
+        }
+    }
+    fputc('\n', plot->script);
+}
+
+void wh_plots_axes(wh_plots_t *plots) {
+    wh_plot_frame_t frame = {.panel_height = 88, .left = 66, .above = 22};
+    wh_plot_t plot;
+    for (size_t i = 0; i < AXIS_PANELS; ++i) {
+        frame.panels += look_at(plots->document->trace, &axis_panels[i]).curves > 0 ? 1 : 0;
+    }
+    if (frame.panels == 0 || !wh_plots_open(plots, &plot, "axes", NULL)) {
+        return;
+    }
+    wh_plot_begin(&plot, &frame, "Axes: where they stand and how fast they are", wh_plots_begin_s(plots),
+                  wh_plots_end_s(plots));
+    for (size_t i = 0; i < AXIS_PANELS; ++i) {
+        if (look_at(plots->document->trace, &axis_panels[i]).curves > 0) {
+            put_axis_panel(plots, &plot, &axis_panels[i]);
+        }
+    }
+    wh_plots_close(plots, &plot);
+}
+
+/* ----------------------------------------------------------------------------------------------- clearances */
+
+/* Gaps are known from WH_CLEARANCE_RANGE down. */
+static bool is_known(const wh_record_t *record, size_t kind) {
+    const bool is_measured =
+        record->checked && record->curves && record->clearances[kind].parts[0] != WH_NONE;
+    for (size_t bin = 0; is_measured && bin < record->curves->count; ++bin) {
+        if (record->curves->gaps[kind][bin] < WH_CLEARANCE_RANGE) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void put_gaps(const wh_plots_t *plots, wh_plot_t *plot, size_t kind) {
+    const wh_curves_t *curves = plots->document->record->curves;
+    wh_plot_block(plot, wh_clearance_name((wh_clearance_kind_t)kind), "t (s), smallest gap until then (mm)");
+    for (size_t bin = 0; bin < curves->count; ++bin) {
+        const int64_t slice = (int64_t)(curves->first + (bin + 1) * curves->slices);
+        const double gap = (double)curves->gaps[kind][bin];
+        if (gap < (double)WH_CLEARANCE_RANGE) {
+            wh_plot_row(plot, wh_document_seconds(plots->document->trace, slice), &gap, 1);
+        } else {
+            wh_plot_gap(plot);
+        }
+    }
+}
+
+static void put_clearance(const wh_plots_t *plots, wh_plot_t *plot, size_t kind) {
+    const double limit = (double)plots->document->trace->layout->world.limits[kind];
+    char words[60];
+    (void)snprintf(words, sizeof words, "%s", wh_clearance_name((wh_clearance_kind_t)kind));
+    for (char *c = words; *c; ++c) {
+        *c = *c == '_' ? ' ' : *c;
+    }
+    wh_plot_panel(plot, "gap (mm)");
+    put_gaps(plots, plot, kind);
+    const size_t block = wh_plot_end_block(plot);
+    if (limit > 0) {
+        wh_plot_limit_label(plot, '>', limit, "mm");
+    }
+    fprintf(plot->script,
+            "set label '%s' at graph 1, graph 1.1 right\n"
+            "low = 0.1\nset logscale y\nset yrange [low:%g]\n"
+            "plot '%s.dat' index %zu using 1:($2 > low ? $2 : low) with linespoints lt 1 pt 7 ps 0.2 notitle",
+            words, (double)WH_CLEARANCE_RANGE, plot->name, block);
+    if (limit > 0) {
+        wh_plot_limit_curve(plot, limit);
+    }
+    fputc('\n', plot->script);
+}
+
+void wh_plots_clearances(wh_plots_t *plots) {
+    const wh_record_t *record = plots->document->record;
+    wh_plot_frame_t frame = {.panel_height = 58, .left = 58, .above = 22, .limits = true};
+    wh_plot_t plot;
+    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+        frame.panels += is_known(record, kind) ? 1 : 0;
+    }
+    if (frame.panels == 0 || !wh_plots_open(plots, &plot, "clearances", NULL)) {
+        return;
+    }
+    wh_plot_begin(&plot, &frame, "The smallest gaps, known from 20 mm down", wh_plots_begin_s(plots),
+                  wh_plots_end_s(plots));
+    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+        if (is_known(record, kind)) {
+            put_clearance(plots, &plot, kind);
+        }
+    }
+    wh_plots_close(plots, &plot);
+}

@@ -1,0 +1,80 @@
+/* Threads that play the blocks of a study. */
+#ifndef WH_STUDY_POOL_H
+#define WH_STUDY_POOL_H
+
+#include <pthread.h>
+
+#include "trial.h"
+
+/* What is kept of a study's progress: which blocks are done, and what came of them. */
+typedef struct {
+    uint64_t block_count;
+    unsigned char *done; /* bit b % 8 of byte b / 8 */
+    uint64_t done_count;
+    wh_tally_t tally;
+} wh_progress_t;
+
+/* Memory that runs out ends the program. */
+void wh_progress_init(wh_progress_t *progress, const wh_study_t *study);
+void wh_progress_free(wh_progress_t *progress);
+bool wh_progress_has(const wh_progress_t *progress, uint64_t block);
+void wh_progress_note(wh_progress_t *progress, uint64_t block);
+
+/* Adds what another has done, none of it done twice. */
+void wh_progress_merge(wh_progress_t *progress, const wh_progress_t *other);
+
+/* Forgets everything. */
+void wh_progress_clear(wh_progress_t *progress);
+
+typedef struct wh_hand wh_hand_t;
+
+/* Fields are read and written under `lock`, but for `stop` and `trials`, which are read and written as atomics. */
+typedef struct {
+    const wh_study_t *study;
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    uint64_t *queue; /* blocks to be played, `from` up to `to` */
+    size_t from, to;
+    bool closed;    /* nothing more will be queued */
+    bool failed;    /* a trial was not usable */
+    size_t working; /* hands that are not waiting */
+    wh_progress_t progress;
+    char message[WH_SANDBOX_MESSAGE_BYTES + 64];
+    bool stop;       /* leave everything and end: see wh_crew_stop */
+    uint64_t trials; /* see wh_crew_trials */
+    wh_hand_t *hands;
+    size_t hand_count;
+} wh_crew_t;
+
+/* Starts `threads` threads, without work yet; `study` must outlive them. Their signals are blocked. False when there is no memory
+ * or thread for them; to be closed either way. */
+bool wh_crew_open(wh_crew_t *crew, const wh_study_t *study, size_t threads);
+
+/* Queues blocks; with `closed` no more will come. */
+void wh_crew_queue(wh_crew_t *crew, const uint64_t blocks[], size_t count, bool closed);
+
+/* Takes up to `most` blocks off the queue, for someone else to play. Returns how many. */
+size_t wh_crew_take(wh_crew_t *crew, uint64_t blocks[], size_t most);
+
+/* How many blocks are queued. */
+size_t wh_crew_queued(wh_crew_t *crew);
+
+/* Whether the hands are idle, all they did is in `progress` and nothing is queued; or someone failed. */
+bool wh_crew_is_idle(wh_crew_t *crew);
+
+/* Lets the hands leave what they are at. */
+void wh_crew_stop(wh_crew_t *crew);
+
+/* How many trials the hands have played so far. */
+uint64_t wh_crew_trials(const wh_crew_t *crew);
+
+/* Whether a trial was not usable; `message` then says why. */
+bool wh_crew_failed(wh_crew_t *crew);
+
+/* Waits up to so many milliseconds for anything to change. */
+void wh_crew_wait(wh_crew_t *crew, int milliseconds);
+
+/* Ends the threads. Blocks that they have not finished are given up. */
+void wh_crew_close(wh_crew_t *crew);
+
+#endif

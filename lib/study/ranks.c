@@ -1,0 +1,220 @@
+#include "ranks.h"
+
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "checkpoint.h"
+
+#define LIBRARY "waferhand_mpi.so"
+
+/* At most so many blocks are sent at a time. */
+#define MOST_BLOCKS 1024
+
+/* What a message to rank 0 begins with; then the progress, or why it failed. */
+enum { WANTS_MORE = 'M', HAS_ENDED = 'E', HAS_FAILED = 'F' };
+
+static int number_of(const char *variable, int fallback) {
+    const char *text = getenv(variable);
+    return text ? (int)strtol(text, NULL, 10) : fallback;
+}
+
+int wh_ranks_named(void) {
+    return number_of("OMPI_COMM_WORLD_RANK", 0);
+}
+
+int wh_ranks_here(void) {
+    const int here = number_of("OMPI_COMM_WORLD_LOCAL_SIZE", 1);
+    return here > 1 ? here : 1;
+}
+
+/* ------------------------------------------------------------------------------------------------------ joining */
+
+/* Beside the program, or where `make install` puts it. */
+static void *open_library(void) {
+    static const char *const places[] = {"/" LIBRARY, "/../lib/waferhand/" LIBRARY};
+    char program[4096];
+    char path[4200];
+    void *library = NULL;
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length <= 0) {
+        return NULL;
+    }
+    program[length] = '\0';
+    *strrchr(program, '/') = '\0';
+    for (size_t i = 0; i < sizeof places / sizeof places[0] && !library; ++i) {
+        snprintf(path, sizeof path, "%s%s", program, places[i]);
+        library = dlopen(path, RTLD_NOW | RTLD_GLOBAL);
+    }
+    return library;
+}
+
+bool wh_ranks_open(wh_ranks_t *ranks) {
+    *ranks = (wh_ranks_t){.size = 1};
+    if (number_of("OMPI_COMM_WORLD_SIZE", 1) <= 1) {
+        return true;
+    }
+    ranks->library = open_library();
+    ranks->calls = ranks->library ? dlsym(ranks->library, "wh_ranks_calls") : NULL;
+    if (!ranks->calls || ranks->calls->version != WH_RANKS_VERSION) {
+        fprintf(stderr, "waferhand study: started by mpirun, but " LIBRARY
+                        " is not there (expected it beside the program: libopenmpi-dev must be installed "
+                        "when it is built)\n");
+        return false;
+    }
+    if (ranks->calls->open(&ranks->rank, &ranks->size) != 0) {
+        fprintf(stderr, "waferhand study: MPI does not start\n");
+        return false;
+    }
+    return true;
+}
+
+void wh_ranks_close(wh_ranks_t *ranks, int status) {
+    if (ranks->calls && status != 0) {
+        ranks->calls->quit(status);
+    }
+    if (ranks->calls) {
+        ranks->calls->close();
+        ranks->calls = NULL;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- rank 0 */
+
+static bool take_progress(wh_crew_t *crew, int from, const char *text, size_t size) {
+    char message[1024];
+    pthread_mutex_lock(&crew->lock);
+    const bool taken = wh_state_read(crew->study, text, size, &crew->progress, message, sizeof message);
+    pthread_mutex_unlock(&crew->lock);
+    if (!taken) {
+        fprintf(stderr, "rank %d: %s\n", from, message);
+    }
+    return taken;
+}
+
+/* Fewer and fewer, so that all end at much the same time. */
+static bool send_blocks(const wh_ranks_t *ranks, wh_crew_t *crew, int to) {
+    uint64_t blocks[MOST_BLOCKS];
+    const size_t share = wh_crew_queued(crew) / (4 * (size_t)ranks->size) + 1;
+    const size_t count = wh_crew_take(crew, blocks, share < MOST_BLOCKS ? share : MOST_BLOCKS);
+    return ranks->calls->send(to, blocks, count * sizeof blocks[0]) == 0;
+}
+
+static bool answer(wh_ranks_t *ranks, wh_crew_t *crew, int from, const char *text, size_t size) {
+    if (size == 0 || text[0] == HAS_FAILED) {
+        fprintf(stderr, "%.*s\n", size > 0 ? (int)size - 1 : 0, text + 1);
+        return false;
+    }
+    if (!take_progress(crew, from, text + 1, size - 1)) {
+        return false;
+    }
+    if (text[0] == HAS_ENDED) {
+        ++ranks->ended;
+        return true;
+    }
+    return send_blocks(ranks, crew, from);
+}
+
+/* A message that has come, to be freed; null when there is none. `sound` becomes false when something is wrong. */
+static char *take_message(const wh_ranks_t *ranks, int *from, size_t *size, bool *sound) {
+    const int any = ranks->calls->look(from, size);
+    if (any <= 0) {
+        *sound = any == 0;
+        return NULL;
+    }
+    char *text = malloc(*size + 1);
+    if (!text) {
+        abort();
+    }
+    *sound = ranks->calls->receive(*from, text, *size) == 0;
+    return text;
+}
+
+bool wh_ranks_serve(wh_ranks_t *ranks, wh_crew_t *crew) {
+    bool sound = true;
+    while (ranks->calls && sound) {
+        int from = 0;
+        size_t size = 0;
+        char *text = take_message(ranks, &from, &size, &sound);
+        if (!text) {
+            break;
+        }
+        sound = sound && answer(ranks, crew, from, text, size);
+        free(text);
+    }
+    return sound;
+}
+
+/* ------------------------------------------------------------------------------------------------------- others */
+
+static bool tell(const wh_ranks_t *ranks, char kind, const char *text) {
+    const size_t size = strlen(text) + 1;
+    char *message = malloc(size + 1);
+    if (!message) {
+        abort();
+    }
+    message[0] = kind;
+    memcpy(message + 1, text, size);
+    const bool sent = ranks->calls->send(0, message, size) == 0;
+    free(message);
+    return sent;
+}
+
+/* What was done since the last time. */
+static bool tell_progress(const wh_ranks_t *ranks, wh_crew_t *crew, char kind) {
+    pthread_mutex_lock(&crew->lock);
+    char *text = wh_state_text(crew->study, &crew->progress);
+    wh_progress_clear(&crew->progress);
+    pthread_mutex_unlock(&crew->lock);
+    const bool told = text && tell(ranks, kind, text);
+    free(text);
+    return told;
+}
+
+/* Queues the blocks that have come, if any have; none at all mean that there are no more. */
+static bool take_blocks(const wh_ranks_t *ranks, wh_crew_t *crew, bool *wanting, bool *more) {
+    int from = 0;
+    size_t size = 0;
+    bool sound = true;
+    char *text = take_message(ranks, &from, &size, &sound);
+    if (text && sound) {
+        uint64_t blocks[MOST_BLOCKS];
+        const size_t count = size / sizeof blocks[0] < MOST_BLOCKS ? size / sizeof blocks[0] : MOST_BLOCKS;
+        memcpy(blocks, text, count * sizeof blocks[0]);
+        *wanting = false;
+        *more = count > 0;
+        wh_crew_queue(crew, blocks, count, count == 0);
+    }
+    free(text);
+    return sound;
+}
+
+/* Asks for more in time, and takes what comes. */
+static bool go_on(const wh_ranks_t *ranks, wh_crew_t *crew, bool *wanting, bool *more) {
+    bool sound = true;
+    if (*more && !*wanting && wh_crew_queued(crew) <= 2 * crew->hand_count) {
+        sound = tell_progress(ranks, crew, WANTS_MORE);
+        *wanting = true;
+    }
+    if (sound && *wanting) {
+        sound = take_blocks(ranks, crew, wanting, more);
+    }
+    wh_crew_wait(crew, *wanting ? 2 : 20);
+    return sound;
+}
+
+bool wh_ranks_help(wh_ranks_t *ranks, wh_crew_t *crew, bool (*interrupted)(void)) {
+    bool wanting = false;
+    bool more = true;
+    bool sound = true;
+    while (sound && !interrupted() && (more || !wh_crew_is_idle(crew))) {
+        sound = !wh_crew_failed(crew) && go_on(ranks, crew, &wanting, &more);
+    }
+    if (wh_crew_failed(crew)) {
+        tell(ranks, HAS_FAILED, crew->message);
+        return false;
+    }
+    return sound && !interrupted() && tell_progress(ranks, crew, HAS_ENDED);
+}

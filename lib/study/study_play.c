@@ -1,0 +1,218 @@
+#include "study_play.h"
+
+#include <errno.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "../text/bar.h"
+#include "checkpoint.h"
+
+/* What is done is kept every so many seconds. */
+#define KEEP_S 1.0
+
+#define MOST_THREADS 1024
+
+/* ----------------------------------------------------------------------------------------------------- signals */
+
+static volatile sig_atomic_t caught;
+
+static void catch_signal(int number) {
+    caught = number;
+}
+
+static bool is_interrupted(void) {
+    return caught != 0;
+}
+
+/* One that was ignored stays ignored, as for a program in the background. */
+static void catch_signals(void) {
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i) {
+        struct sigaction before;
+        struct sigaction action = {.sa_handler = catch_signal};
+        sigemptyset(&action.sa_mask);
+        if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
+            sigaction(numbers[i], &action, NULL);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- state */
+
+/* Where what is done is kept, and when it was last. */
+typedef struct {
+    char *path; /* null: nowhere */
+    bool named; /* by the user: then it stays, and not being able to write is a failure */
+    double kept;
+} keeper_t;
+
+static double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static bool keep(keeper_t *keeper, wh_crew_t *crew) {
+    keeper->kept = seconds_now();
+    if (!keeper->path) {
+        return true;
+    }
+    pthread_mutex_lock(&crew->lock);
+    char *text = wh_state_text(crew->study, &crew->progress);
+    pthread_mutex_unlock(&crew->lock);
+    const bool saved = text && wh_state_save(keeper->path, text);
+    if (!saved && keeper->named) {
+        fprintf(stderr, "%s: %s (expected a file that can be written)\n", keeper->path, strerror(errno));
+    }
+    free(text);
+    if (!saved && !keeper->named) {
+        free(keeper->path);
+        keeper->path = NULL;
+    }
+    return saved || !keeper->named;
+}
+
+static bool open_keeper(keeper_t *keeper, const wh_study_options_t *options, wh_crew_t *crew) {
+    keeper->named = options->state != NULL;
+    keeper->path = keeper->named ? wh_record_text(options->state) : wh_state_default_path(crew->study);
+    keeper->kept = seconds_now();
+    if (!keeper->path) {
+        return true;
+    }
+    const wh_state_found_t found = wh_state_load(keeper->path, crew->study, &crew->progress);
+    return found != WH_STATE_REFUSED && (found == WH_STATE_READ || !keeper->named || keep(keeper, crew));
+}
+
+static void close_keeper(keeper_t *keeper, bool done) {
+    if (keeper->path && !keeper->named && done) {
+        unlink(keeper->path);
+    }
+    free(keeper->path);
+}
+
+/* ------------------------------------------------------------------------------------------------------ playing */
+
+static size_t count_threads(const wh_study_options_t *options) {
+    cpu_set_t processors;
+    if (options->threads > 0) {
+        return options->threads;
+    }
+    if (sched_getaffinity(0, sizeof processors, &processors) != 0) {
+        return 1;
+    }
+    const int count = CPU_COUNT(&processors) / wh_ranks_here();
+    return count < 1 ? 1 : count > MOST_THREADS ? MOST_THREADS : (size_t)count;
+}
+
+static void queue_rest(wh_crew_t *crew) {
+    uint64_t *blocks = calloc((size_t)crew->progress.block_count + 1, sizeof *blocks);
+    size_t count = 0;
+    if (!blocks) {
+        abort();
+    }
+    pthread_mutex_lock(&crew->lock);
+    for (uint64_t block = 0; block < crew->progress.block_count; ++block) {
+        if (!wh_progress_has(&crew->progress, block)) {
+            blocks[count++] = block;
+        }
+    }
+    pthread_mutex_unlock(&crew->lock);
+    wh_crew_queue(crew, blocks, count, true);
+    free(blocks);
+}
+
+static uint64_t trials_done(wh_crew_t *crew) {
+    pthread_mutex_lock(&crew->lock);
+    const uint64_t trials = crew->progress.tally.trials;
+    pthread_mutex_unlock(&crew->lock);
+    return trials;
+}
+
+static bool is_over(wh_crew_t *crew, const wh_ranks_t *ranks) {
+    return wh_crew_is_idle(crew) && ranks->ended == ranks->size - 1;
+}
+
+static bool keep_now_and_then(keeper_t *keeper, wh_crew_t *crew) {
+    return seconds_now() - keeper->kept < KEEP_S || keep(keeper, crew);
+}
+
+static wh_study_end_t how_it_ended(wh_crew_t *crew, const wh_ranks_t *ranks) {
+    return is_interrupted() && !is_over(crew, ranks) ? WH_STUDY_INTERRUPTED : WH_STUDY_DONE;
+}
+
+static wh_study_end_t lead(wh_crew_t *crew, wh_ranks_t *ranks, keeper_t *keeper) {
+    wh_bar_t bar;
+    bool sound = true;
+    queue_rest(crew);
+    wh_bar_open(&bar, stderr, crew->study->trials, trials_done(crew));
+    while (sound && !wh_crew_failed(crew) && !is_interrupted() && !is_over(crew, ranks)) {
+        wh_crew_wait(crew, 50);
+        sound = wh_ranks_serve(ranks, crew) && keep_now_and_then(keeper, crew);
+        wh_bar_show(&bar, trials_done(crew));
+    }
+    wh_bar_close(&bar);
+    if (wh_crew_failed(crew)) {
+        fprintf(stderr, "%s\n", crew->message);
+        return WH_STUDY_FAILED;
+    }
+    return sound ? how_it_ended(crew, ranks) : WH_STUDY_FAILED;
+}
+
+static void tell_interruption(const keeper_t *keeper, wh_crew_t *crew) {
+    fprintf(stderr, "interrupted: %llu of %llu trials are done", (unsigned long long)trials_done(crew),
+            (unsigned long long)crew->study->trials);
+    fprintf(stderr, keeper->path ? ", and kept in %s; the same command goes on from there\n" : "%s\n",
+            keeper->path ? keeper->path : "");
+}
+
+/* Threads that are stopped show what they have done: to be kept, too. */
+static void stop_hands(wh_crew_t *crew) {
+    wh_crew_stop(crew);
+    while (!wh_crew_is_idle(crew)) {
+        wh_crew_wait(crew, 5);
+    }
+}
+
+static wh_study_end_t play_first(wh_crew_t *crew, const wh_study_options_t *options, wh_ranks_t *ranks) {
+    keeper_t keeper;
+    wh_study_end_t end = WH_STUDY_FAILED;
+    if (open_keeper(&keeper, options, crew)) {
+        end = lead(crew, ranks, &keeper);
+        stop_hands(crew);
+        const bool used = keeper.named || end == WH_STUDY_INTERRUPTED;
+        if (used && !keep(&keeper, crew) && end == WH_STUDY_DONE) {
+            end = WH_STUDY_FAILED;
+        }
+        if (end == WH_STUDY_INTERRUPTED) {
+            tell_interruption(&keeper, crew);
+        }
+    }
+    close_keeper(&keeper, end == WH_STUDY_DONE);
+    return end;
+}
+
+wh_study_end_t wh_study_play(const wh_study_t *study, const wh_study_options_t *options, wh_ranks_t *ranks,
+                             wh_progress_t *progress) {
+    wh_crew_t crew;
+    wh_study_end_t end = WH_STUDY_FAILED;
+    catch_signals();
+    if (!wh_crew_open(&crew, study, count_threads(options))) {
+        fprintf(stderr, "waferhand study: no memory or threads (expected fewer with --threads)\n");
+    } else if (ranks->rank > 0) {
+        end = wh_ranks_help(ranks, &crew, is_interrupted) ? WH_STUDY_HELPED : WH_STUDY_FAILED;
+    } else {
+        end = play_first(&crew, options, ranks);
+    }
+    if (end == WH_STUDY_DONE) {
+        wh_progress_init(progress, study);
+        wh_progress_merge(progress, &crew.progress);
+        wh_tally_sort(&progress->tally);
+    }
+    wh_crew_close(&crew);
+    return end;
+}

@@ -1,0 +1,259 @@
+#include "tally.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../math/trig.h"
+
+void wh_tally_init(wh_tally_t *tally, size_t wafer_count) {
+    memset(tally, 0, sizeof *tally);
+    tally->wafer_count = wafer_count;
+    tally->wafers = calloc(wafer_count + 1, sizeof *tally->wafers);
+    if (!tally->wafers) {
+        abort();
+    }
+}
+
+static void clear_rows(wh_tally_rows_t *rows) {
+    for (size_t i = 0; i < rows->count; ++i) {
+        free(rows->rows[i].text);
+    }
+    rows->count = rows->next = 0;
+}
+
+void wh_tally_clear(wh_tally_t *tally) {
+    const wh_tally_rows_t expectations = tally->expectations;
+    const wh_tally_rows_t errors = tally->errors;
+    wh_tally_wafer_t *wafers = tally->wafers;
+    const size_t wafer_count = tally->wafer_count;
+    memset(wafers, 0, wafer_count * sizeof *wafers);
+    memset(tally, 0, sizeof *tally);
+    tally->expectations = expectations;
+    tally->errors = errors;
+    tally->wafers = wafers;
+    tally->wafer_count = wafer_count;
+    clear_rows(&tally->expectations);
+    clear_rows(&tally->errors);
+}
+
+void wh_tally_free(wh_tally_t *tally) {
+    clear_rows(&tally->expectations);
+    clear_rows(&tally->errors);
+    free(tally->expectations.rows);
+    free(tally->errors.rows);
+    free(tally->wafers);
+    memset(tally, 0, sizeof *tally);
+}
+
+/* --------------------------------------------------------------------------------------------------------- rows */
+
+/* Trials come to their rows in much the same order. */
+static wh_tally_row_t *find_row(wh_tally_rows_t *rows, int line, int place) {
+    for (size_t i = 0; i < rows->count; ++i) {
+        const size_t index = (rows->next + i) % rows->count;
+        if (rows->rows[index].line == line && rows->rows[index].place == place) {
+            rows->next = index + 1;
+            return &rows->rows[index];
+        }
+    }
+    return NULL;
+}
+
+wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const char *text, uint64_t named) {
+    wh_tally_row_t *row = find_row(rows, line, place);
+    if (!row) {
+        rows->rows = wh_record_grow(rows->rows, rows->count, &rows->capacity, sizeof *rows->rows);
+        row = &rows->rows[rows->count++];
+        *row = (wh_tally_row_t){
+            line, place, NULL, WH_TALLY_NO_TRIAL, 0, 0, WH_TALLY_NO_TRIAL, WH_TALLY_NO_TRIAL};
+    }
+    if (!row->text || named < row->named) {
+        free(row->text);
+        row->text = wh_record_text(text);
+        row->named = named;
+    }
+    return row;
+}
+
+/* Each trial once, however often a loop comes by. */
+static void count_row(wh_tally_row_t *row, uint64_t trial, bool bad) {
+    row->seen += row->last == trial ? 0 : 1;
+    row->last = trial;
+    if (bad) {
+        ++row->bad;
+        row->first = trial < row->first ? trial : row->first;
+    }
+}
+
+/* How many before this one stand in its line; `before` is that of the one before. */
+static int place_of(const wh_record_t *record, size_t index, int before) {
+    const wh_expectation_record_t *expected = record->expectations;
+    if (index > 0 && expected[index - 1].line == expected[index].line) {
+        return before + 1;
+    }
+    int place = 0;
+    for (size_t i = 0; i < index; ++i) {
+        place += expected[i].line == expected[index].line ? 1 : 0;
+    }
+    return place;
+}
+
+static void add_expectations(wh_tally_t *tally, const wh_outcome_t *outcome) {
+    const wh_record_t *record = outcome->record;
+    int place = 0;
+    for (size_t i = 0; i < record->expectation_count; ++i) {
+        const wh_expectation_record_t *expected = &record->expectations[i];
+        place = place_of(record, i, place);
+        wh_tally_row_t *row =
+            wh_tally_row(&tally->expectations, expected->line, place, expected->text, outcome->trial);
+        count_row(row, outcome->trial, !expected->ok);
+    }
+}
+
+static void add_errors(wh_tally_t *tally, const wh_outcome_t *outcome) {
+    const wh_record_t *record = outcome->record;
+    for (size_t i = 0; i < record->command_count; ++i) {
+        const wh_command_record_t *command = &record->commands[i];
+        if (command->error != WH_OK) {
+            wh_tally_row_t *row = wh_tally_row(&tally->errors, command->line, (int)command->error,
+                                               command->text, outcome->trial);
+            count_row(row, outcome->trial, row->last != outcome->trial);
+        }
+    }
+}
+
+static void merge_rows(wh_tally_rows_t *rows, const wh_tally_rows_t *others) {
+    for (size_t i = 0; i < others->count; ++i) {
+        const wh_tally_row_t *other = &others->rows[i];
+        wh_tally_row_t *row = wh_tally_row(rows, other->line, other->place, other->text, other->named);
+        row->seen += other->seen;
+        row->bad += other->bad;
+        row->first = other->first < row->first ? other->first : row->first;
+    }
+}
+
+static int compare_rows(const void *a, const void *b) {
+    const wh_tally_row_t *one = a;
+    const wh_tally_row_t *other = b;
+    if (one->line != other->line) {
+        return one->line < other->line ? -1 : 1;
+    }
+    return one->place < other->place ? -1 : one->place > other->place ? 1 : 0;
+}
+
+static void sort_rows(wh_tally_rows_t *rows) {
+    if (rows->count > 0) {
+        qsort(rows->rows, rows->count, sizeof *rows->rows, compare_rows);
+    }
+}
+
+void wh_tally_sort(wh_tally_t *tally) {
+    sort_rows(&tally->expectations);
+    sort_rows(&tally->errors);
+}
+
+/* ------------------------------------------------------------------------------------------------------- wafers */
+
+static bool is_there(const wh_study_wafer_t *wafer, const wh_study_wafer_t *nominal) {
+    return wafer->place.station == nominal->place.station && wafer->place.slot == nominal->place.slot &&
+           wafer->holder == nominal->holder;
+}
+
+/* How far it ends off, infinite when it is elsewhere. */
+static double add_wafer(wh_tally_wafer_t *tally, const wh_study_wafer_t *wafer,
+                        const wh_study_wafer_t *nominal) {
+    if (!is_there(wafer, nominal)) {
+        ++tally->elsewhere;
+        return (double)INFINITY;
+    }
+    const wh_place_t *place = &wafer->place;
+    if (place->station == WH_NONE) {
+        return 0;
+    }
+    const double dx = place->dx - nominal->place.dx;
+    const double dy = place->dy - nominal->place.dy;
+    const double off = sqrt(dx * dx + dy * dy);
+    wh_sum_add(&tally->of[WH_TALLY_DX], dx);
+    wh_sum_add(&tally->of[WH_TALLY_DY], dy);
+    wh_sum_add(&tally->of[WH_TALLY_DZ], place->dz - nominal->place.dz);
+    wh_sum_add(&tally->of[WH_TALLY_TILT],
+               wh_deg_from_rad(place->tilt) - wh_deg_from_rad(nominal->place.tilt));
+    wh_sum_add(&tally->of[WH_TALLY_OFF], off);
+    return off;
+}
+
+static void merge_wafers(wh_tally_t *tally, const wh_tally_t *other) {
+    for (size_t w = 0; w < tally->wafer_count; ++w) {
+        tally->wafers[w].elsewhere += other->wafers[w].elsewhere;
+        for (size_t q = 0; q < WH_TALLY_QUANTITIES; ++q) {
+            wh_sum_merge(&tally->wafers[w].of[q], &other->wafers[w].of[q]);
+        }
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- worst */
+
+static bool is_worse(const wh_tally_trial_t *one, const wh_tally_trial_t *other) {
+    if (one->met != other->met) {
+        return !one->met;
+    }
+    if (one->off > other->off || one->off < other->off) {
+        return one->off > other->off;
+    }
+    return one->trial < other->trial;
+}
+
+void wh_tally_note_worst(wh_tally_t *tally, const wh_tally_trial_t *trial) {
+    if (tally->worst_count == WH_STUDY_WORST && !is_worse(trial, &tally->worst[WH_STUDY_WORST - 1])) {
+        return;
+    }
+    size_t place = tally->worst_count < WH_STUDY_WORST ? tally->worst_count++ : WH_STUDY_WORST - 1;
+    while (place > 0 && is_worse(trial, &tally->worst[place - 1])) {
+        tally->worst[place] = tally->worst[place - 1];
+        --place;
+    }
+    tally->worst[place] = *trial;
+}
+
+/* ------------------------------------------------------------------------------------------------- all together */
+
+static void add_events(wh_tally_t *tally, const wh_outcome_t *outcome) {
+    for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
+        tally->events[kind].trials += outcome->events[kind] > 0 ? 1 : 0;
+        tally->events[kind].total += outcome->events[kind];
+    }
+}
+
+void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t *outcome) {
+    wh_tally_trial_t trial = {outcome->trial, outcome->met, 0};
+    ++tally->trials;
+    tally->met += outcome->met ? 1 : 0;
+    tally->whole += outcome->whole ? 1 : 0;
+    tally->ended += outcome->record->failure ? 1 : 0;
+    add_events(tally, outcome);
+    add_expectations(tally, outcome);
+    add_errors(tally, outcome);
+    for (size_t w = 0; w < study->wafer_count; ++w) {
+        const double off = add_wafer(&tally->wafers[w], &outcome->wafers[w], &study->wafers[w]);
+        trial.off = off > trial.off ? off : trial.off;
+    }
+    wh_tally_note_worst(tally, &trial);
+}
+
+void wh_tally_merge(wh_tally_t *tally, const wh_tally_t *other) {
+    tally->trials += other->trials;
+    tally->met += other->met;
+    tally->ended += other->ended;
+    tally->whole += other->whole;
+    for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
+        tally->events[kind].trials += other->events[kind].trials;
+        tally->events[kind].total += other->events[kind].total;
+    }
+    merge_rows(&tally->expectations, &other->expectations);
+    merge_rows(&tally->errors, &other->errors);
+    merge_wafers(tally, other);
+    for (size_t i = 0; i < other->worst_count; ++i) {
+        wh_tally_note_worst(tally, &other->worst[i]);
+    }
+}

@@ -1,0 +1,92 @@
+/* What came of some trials: counts that add up to the same whoever counted which trial. */
+#ifndef WH_STUDY_TALLY_H
+#define WH_STUDY_TALLY_H
+
+#include "study.h"
+#include "sum.h"
+
+/* How far a wafer ends from where the run without errors leaves it: along x, y, z of its slot (mm), its tilt (deg), and in the
+ * slot's plane (mm). */
+typedef enum { WH_TALLY_DX, WH_TALLY_DY, WH_TALLY_DZ, WH_TALLY_TILT, WH_TALLY_OFF } wh_tally_quantity_t;
+#define WH_TALLY_QUANTITIES 5
+
+typedef struct {
+    uint64_t
+        elsewhere; /* trials that leave it in another slot, in none, or with another holder: not in the sums */
+    wh_sum_t of[WH_TALLY_QUANTITIES];
+} wh_tally_wafer_t;
+
+typedef struct {
+    uint64_t trials, total; /* in how many trials, and how often */
+} wh_tally_event_t;
+
+#define WH_TALLY_NO_TRIAL UINT64_MAX
+
+/* An expectation or a command's error, by where it stands in the script. */
+typedef struct {
+    int line;
+    int place;      /* an expectation's among those of its line, from 0; an error's number */
+    char *text;     /* as trial `named` has it */
+    uint64_t named; /* the lowest trial that has it */
+    uint64_t seen;  /* trials that came to it */
+    uint64_t bad;   /* trials in which it was not met, or happened */
+    uint64_t first; /* the lowest of those, or WH_TALLY_NO_TRIAL */
+    uint64_t last;  /* while counting: the trial that was counted last */
+} wh_tally_row_t;
+
+typedef struct {
+    wh_tally_row_t *rows;
+    size_t count, capacity;
+    size_t next; /* probably the one that is asked for next */
+} wh_tally_rows_t;
+
+/* One of the worst trials. */
+typedef struct {
+    uint64_t trial;
+    bool met;
+    double off; /* mm, of the wafer that ends farthest off; infinite when one is elsewhere */
+} wh_tally_trial_t;
+
+/* To be zeroed, then given its wafers. */
+typedef struct {
+    uint64_t trials, met;
+    uint64_t ended; /* by an error that the script did not catch */
+    uint64_t whole; /* ran the script whole: Lua and all */
+    wh_tally_event_t events[WH_EVENT_KINDS];
+    wh_tally_rows_t expectations, errors;
+    size_t wafer_count;
+    wh_tally_wafer_t *wafers;
+    wh_tally_trial_t worst[WH_STUDY_WORST]; /* the worst first */
+    size_t worst_count;
+} wh_tally_t;
+
+/* What came of one trial. */
+typedef struct {
+    uint64_t trial;
+    bool met, whole;
+    const wh_record_t
+        *record; /* commands, expectations and failure are this run's; events and wafers are not looked at */
+    uint32_t events[WH_EVENT_KINDS];
+    wh_study_wafer_t wafers[WH_STUDY_WAFERS];
+} wh_outcome_t;
+
+/* Room for a study's wafers. Memory that runs out ends the program, here and below. */
+void wh_tally_init(wh_tally_t *tally, size_t wafer_count);
+void wh_tally_clear(wh_tally_t *tally);
+void wh_tally_free(wh_tally_t *tally);
+
+void wh_tally_add(wh_tally_t *tally, const wh_study_t *study, const wh_outcome_t *outcome);
+
+/* All that another has counted. The result does not depend on order, to the last bit. */
+void wh_tally_merge(wh_tally_t *tally, const wh_tally_t *other);
+
+/* Puts expectations and errors in the order of line and place, to be printed. */
+void wh_tally_sort(wh_tally_t *tally);
+
+/* The row of these, made if there is none; `text` is kept if this trial is the lowest that has it. */
+wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const char *text, uint64_t named);
+
+/* Puts a trial among the worst, if it is one of them: failed ones before others, then by `off`, then the lower number. */
+void wh_tally_note_worst(wh_tally_t *tally, const wh_tally_trial_t *trial);
+
+#endif

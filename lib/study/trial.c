@@ -1,0 +1,142 @@
+#include "trial.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+bool wh_worker_open(wh_worker_t *worker, const wh_study_t *study) {
+    const wh_layout_t *layout = study->layout;
+    memset(worker, 0, sizeof *worker);
+    worker->study = study;
+    worker->options = study->run;
+    worker->places = calloc(layout->station_count + 1, sizeof *worker->places);
+    worker->start = calloc(layout->wafer_count + 1, sizeof *worker->start);
+    worker->wafers = calloc(layout->wafer_count + 1, sizeof *worker->wafers);
+    return worker->places && worker->start && worker->wafers;
+}
+
+void wh_worker_close(wh_worker_t *worker) {
+    free(worker->places);
+    free(worker->start);
+    free(worker->wafers);
+}
+
+static void begin(wh_worker_t *worker, uint64_t trial) {
+    wh_outcome_t *outcome = &worker->outcome;
+    outcome->trial = trial;
+    outcome->whole = false;
+    memset(outcome->events, 0, sizeof outcome->events);
+}
+
+/* ------------------------------------------------------------------------------------------------------ the tape */
+
+typedef struct {
+    wh_outcome_t *outcome;
+    bool complained;
+} watcher_t;
+
+static void watch(void *user, const wh_event_t events[], size_t count) {
+    watcher_t *watcher = user;
+    for (size_t i = 0; i < count; ++i) {
+        ++watcher->outcome->events[events[i].kind];
+        watcher->complained = watcher->complained || wh_mcs_is_complaint(&events[i]);
+    }
+}
+
+static bool set_up(wh_worker_t *worker) {
+    const wh_layout_t *layout = &worker->reality.layout;
+    const wh_grasp_storage_t storage = {.wafers = worker->wafers,
+                                        .wafer_count = layout->wafer_count,
+                                        .grippers = worker->grippers,
+                                        .gripper_count = layout->machine.gripper_count};
+    memcpy(worker->wafers, worker->start, layout->wafer_count * sizeof *worker->wafers);
+    return wh_simulator_init(&worker->simulator, &layout->grasp, &storage, &layout->cell) == WH_OK &&
+           wh_simulator_set_physics(&worker->simulator, &layout->physics) == WH_OK;
+}
+
+static bool met_but_for_complaints(const wh_record_t *record) {
+    bool met = !record->failure;
+    for (size_t i = 0; i < record->expectation_count; ++i) {
+        met = met && record->expectations[i].ok;
+    }
+    return met;
+}
+
+static void look_at_wafers(wh_worker_t *worker) {
+    for (size_t i = 0; i < worker->study->wafer_count; ++i) {
+        const int32_t w = worker->study->wafers[i].wafer;
+        wh_study_wafer_t *wafer = &worker->outcome.wafers[i];
+        wafer->wafer = w;
+        wafer->holder = worker->wafers[w].holder;
+        if (!wh_cell_locate(&worker->simulator.cell, &worker->wafers[w].base_from_wafer, &wafer->place)) {
+            wafer->place = (wh_place_t){.station = WH_NONE};
+        }
+    }
+}
+
+/* False when the trial reads back what the tape has not: nothing is then counted. */
+static bool replay(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
+    const wh_study_t *study = worker->study;
+    const wh_record_t *record = &study->nominal.record;
+    const wh_trial_t name = {study->seed, trial};
+    watcher_t watcher = {&worker->outcome, false};
+    begin(worker, trial);
+    wh_reality_fill(&worker->reality, study->layout, &name, worker->places, worker->start);
+    if (!set_up(worker) ||
+        !wh_tape_play(&study->tape, &worker->reality, &worker->simulator, watch, &watcher)) {
+        return false;
+    }
+    worker->outcome.record = record;
+    worker->outcome.met = met_but_for_complaints(record) && !watcher.complained;
+    look_at_wafers(worker);
+    wh_tally_add(tally, study, &worker->outcome);
+    return true;
+}
+
+/* ----------------------------------------------------------------------------------------------------- the script */
+
+static void take_record(wh_worker_t *worker, const wh_record_t *record) {
+    wh_outcome_t *outcome = &worker->outcome;
+    outcome->record = record;
+    outcome->met = record->ok;
+    outcome->whole = true;
+    for (size_t i = 0; i < record->event_count; ++i) {
+        ++outcome->events[record->events[i].event.kind];
+    }
+    for (size_t i = 0; i < worker->study->wafer_count; ++i) {
+        const int32_t w = worker->study->wafers[i].wafer;
+        outcome->wafers[i] = (wh_study_wafer_t){w, record->wafers[w].holder, record->wafers[w].place};
+    }
+}
+
+static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message, uint64_t *hash) {
+    const wh_trial_t name = {worker->study->seed, trial};
+    worker->options.trial = &name;
+    begin(worker, trial);
+    const wh_run_outcome_t outcome = wh_run_script(&worker->run, &worker->options);
+    const bool usable = outcome != WH_RUN_BAD_INPUT && worker->run.record.wafers;
+    if (usable) {
+        take_record(worker, &worker->run.record);
+        wh_tally_add(tally, worker->study, &worker->outcome);
+        *hash = worker->run.record.hash;
+    } else {
+        memcpy(message, worker->run.message, WH_SANDBOX_MESSAGE_BYTES);
+    }
+    wh_run_close(&worker->run);
+    return usable;
+}
+
+bool wh_worker_play(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message) {
+    uint64_t hash = 0;
+    return (!worker->study->whole && replay(worker, trial, tally)) ||
+           run_whole(worker, trial, tally, message, &hash);
+}
+
+bool wh_worker_compare(wh_worker_t *worker, uint64_t trial, bool tape, wh_tally_t *tally, uint64_t *hash) {
+    char message[WH_SANDBOX_MESSAGE_BYTES];
+    if (!tape) {
+        return run_whole(worker, trial, tally, message, hash);
+    }
+    const bool played = !worker->study->whole && replay(worker, trial, tally);
+    *hash = played ? wh_simulator_hash(&worker->simulator) : 0;
+    return played;
+}

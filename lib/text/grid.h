@@ -1,0 +1,62 @@
+/* A table of text and numbers for the terminal, printed by libsmartcols.
+ *
+ * Columns first, then rows, then print. Numbers of a column share their decimals, so that they line up on the
+ * point, and get as many as the column's rule asks for. Nothing is ever cut off: a table wider than the
+ * terminal is printed in parts that each begin with the key columns, and rows that would be empty in a later
+ * part are left out there. Running out of memory is remembered and reported by wh_grid_print.
+ */
+#ifndef WH_TEXT_GRID_H
+#define WH_TEXT_GRID_H
+
+#include "style.h"
+
+#define WH_GRID_COLUMNS 16
+
+/* How a column's numbers are printed. */
+typedef struct {
+    int least, most; /* decimals: `least`, and up to `most` where a number has non-zero ones there */
+    bool has_limit;
+    double limit; /* then more decimals until no number is rounded onto its limit or across it */
+} wh_grid_digits_t;
+
+typedef struct wh_grid wh_grid_t;
+
+/* An empty table; its first `keys` columns begin each part. Null when memory is out: every function below
+ * takes null and then does nothing. */
+wh_grid_t *wh_grid_new(const wh_style_t *style, size_t keys);
+
+/* One more column, of text or of numbers (to the right, with a rule). At most WH_GRID_COLUMNS; before the
+ * first row. */
+void wh_grid_text_column(wh_grid_t *grid, const char *heading);
+void wh_grid_number_column(wh_grid_t *grid, const char *heading, wh_grid_digits_t digits);
+
+/* Keeps the last column beside the one before it wherever a part has room for both. */
+void wh_grid_glue(wh_grid_t *grid);
+
+/* One more row, of empty cells. */
+void wh_grid_row(wh_grid_t *grid);
+
+/* Sets a cell of the last row. Text is copied and made printable. */
+__attribute__((format(printf, 4, 5))) void wh_grid_text(wh_grid_t *grid, size_t column, wh_ink_t ink,
+                                                        const char *format, ...);
+void wh_grid_number(wh_grid_t *grid, size_t column, wh_ink_t ink, double value);
+
+/* How many rows there are. */
+size_t wh_grid_rows(const wh_grid_t *grid);
+
+/* Prints the table and frees it. 0, or -1 when memory ran out at any time (then nothing is printed). */
+int wh_grid_print(wh_grid_t *grid, FILE *out);
+
+/* Frees the table without printing it: for one that turned out to have no rows. Returns what wh_grid_print
+ * would. */
+int wh_grid_discard(wh_grid_t *grid);
+
+/* Formats a number by a rule into `text`, with the decimals given, -0 as 0. `decimals` is what
+ * wh_grid_decimals says of it or more. */
+int wh_grid_decimals(const wh_grid_digits_t *digits, double value);
+void wh_grid_format(char *text, size_t size, double value, int decimals);
+
+/* Room for any double with 20 decimals. */
+#define WH_GRID_NUMBER_SIZE 352
+
+#endif

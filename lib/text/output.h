@@ -1,0 +1,24 @@
+/* Files that are there whole or not at all. */
+#ifndef WH_TEXT_OUTPUT_H
+#define WH_TEXT_OUTPUT_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+/* A file being written beside the one that it will replace. Zero it to begin with. */
+typedef struct {
+    FILE *file;
+    const char *path;  /* borrowed */
+    char beside[4096]; /* empty: `path` is no plain file (a pipe, a terminal) and is written to at once */
+} wh_output_t;
+
+/* Opens it; false and errno when it cannot be written. */
+bool wh_output_open(wh_output_t *output, const char *path);
+
+/* Puts it in its place; false and errno when not all of it could be written. Whatever comes of it, it is closed. */
+bool wh_output_commit(wh_output_t *output);
+
+/* Gives it up: what was at its place is still there. Does nothing after wh_output_commit. */
+void wh_output_drop(wh_output_t *output);
+
+#endif

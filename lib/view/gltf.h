@@ -1,0 +1,54 @@
+/* A glTF 2.0 asset being built: accessors, meshes, materials, nodes and one animation over one buffer. Meshes and poses come in
+ * mm and are written in m.
+ *
+ * Host code: aborts when memory is out.
+ */
+#ifndef WH_VIEW_GLTF_H
+#define WH_VIEW_GLTF_H
+
+#include <jansson.h>
+
+#include "../record/thin.h"
+#include "mesh.h"
+
+/* A colour as a renderer wants it: linear, 0 to 1. */
+typedef struct {
+    const char *name;
+    double red, green, blue, opacity;
+    double metallic, roughness;
+} wh_gltf_material_t;
+
+/* What a mesh is made of, one part for each material. */
+typedef struct {
+    const wh_mesh_t *mesh;
+    size_t material;
+} wh_gltf_primitive_t;
+
+/* Zero it to begin with. */
+typedef struct {
+    json_t *accessors, *views, *meshes, *materials, *nodes, *samplers, *channels, *children;
+    uint8_t *bytes;
+    size_t size, capacity;
+} wh_gltf_t;
+
+void wh_gltf_open(wh_gltf_t *gltf);
+
+/* Each returns the index of what it added. */
+size_t wh_gltf_add_material(wh_gltf_t *gltf, const wh_gltf_material_t *material);
+size_t wh_gltf_add_mesh(wh_gltf_t *gltf, const char *name, const wh_gltf_primitive_t primitives[],
+                        size_t count);
+
+/* A node at a place in the cell, mm; `mesh` may be SIZE_MAX: none. `kind` and `index` (null: none) go to its extras, for a
+ * name need not be unique. */
+size_t wh_gltf_add_node(wh_gltf_t *gltf, const char *name, size_t mesh, const wh_pose_t *base_from_node,
+                        const char *kind, size_t index);
+
+/* The node moves: places (m) and turns (quaternions) at rising times in s. */
+void wh_gltf_add_motion(wh_gltf_t *gltf, size_t node, const float times[], const float (*places)[3],
+                        const float (*turns)[4], size_t count);
+
+/* The asset, to be released by the caller: its nodes hang on one called "cell", which turns z up to glTF's y
+ * up. Frees what was collected. */
+json_t *wh_gltf_finish(wh_gltf_t *gltf, const char *name, const char *generator);
+
+#endif

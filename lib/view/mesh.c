@@ -1,0 +1,231 @@
+#include "mesh.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../math/trig.h"
+#include "../record/record.h"
+
+#define CORNERS 48
+#define RINGS 6 /* of half a ball */
+
+static uint32_t add_vertex(wh_mesh_t *mesh, const wh_vec3_t *r, const wh_vec3_t *normal) {
+    mesh->vertices =
+        wh_record_grow(mesh->vertices, mesh->vertex_count, &mesh->vertex_capacity, sizeof *mesh->vertices);
+    float *to = mesh->vertices[mesh->vertex_count];
+    to[0] = (float)r->x;
+    to[1] = (float)r->y;
+    to[2] = (float)r->z;
+    to[3] = (float)normal->x;
+    to[4] = (float)normal->y;
+    to[5] = (float)normal->z;
+    return (uint32_t)mesh->vertex_count++;
+}
+
+static void add_indices(wh_mesh_t *mesh, uint32_t a, uint32_t b, uint32_t c) {
+    const uint32_t corners[3] = {a, b, c};
+    for (size_t i = 0; i < 3; ++i) {
+        mesh->indices =
+            wh_record_grow(mesh->indices, mesh->index_count, &mesh->index_capacity, sizeof *mesh->indices);
+        mesh->indices[mesh->index_count++] = corners[i];
+    }
+}
+
+void wh_mesh_add_triangle(wh_mesh_t *mesh, const wh_vec3_t *a, const wh_vec3_t *b, const wh_vec3_t *c) {
+    const wh_vec3_t ab = wh_vec3_subtract(b, a);
+    const wh_vec3_t ac = wh_vec3_subtract(c, a);
+    wh_vec3_t normal = wh_vec3_cross(&ab, &ac);
+    const double length = wh_vec3_norm(&normal);
+    if (!(length > 0)) {
+        return;
+    }
+    normal = wh_vec3_scale(1 / length, &normal);
+    add_indices(mesh, add_vertex(mesh, a, &normal), add_vertex(mesh, b, &normal),
+                add_vertex(mesh, c, &normal));
+}
+
+static wh_vec3_t placed(const wh_pose_t *pose, double x, double y, double z) {
+    const wh_vec3_t point = {x, y, z};
+    const wh_vec3_t turned = wh_mat3_transform(&pose->R, &point);
+    return wh_vec3_add(&turned, &pose->r);
+}
+
+static uint32_t add_placed(wh_mesh_t *mesh, const wh_pose_t *pose, const wh_vec3_t *r,
+                           const wh_vec3_t *normal) {
+    const wh_vec3_t at = placed(pose, r->x, r->y, r->z);
+    const wh_vec3_t turned = wh_mat3_transform(&pose->R, normal);
+    return add_vertex(mesh, &at, &turned);
+}
+
+/* ---------------------------------------------------------------------------------------------------- boxes */
+
+/* The face across axis `axis`, on the side `sign`. */
+static void add_face(wh_mesh_t *mesh, const wh_pose_t *pose, const double half[3], int axis, double sign) {
+    static const double corners[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    const int second = (axis + 1) % 3;
+    const int third = (axis + 2) % 3;
+    uint32_t added[4];
+    for (size_t i = 0; i < 4; ++i) {
+        double r[3];
+        double n[3] = {0};
+        r[axis] = sign * half[axis];
+        r[second] = corners[i][0] * half[second];
+        r[third] = corners[i][1] * half[third];
+        n[axis] = sign;
+        const wh_vec3_t at = {r[0], r[1], r[2]};
+        const wh_vec3_t normal = {n[0], n[1], n[2]};
+        added[i] = add_placed(mesh, pose, &at, &normal);
+    }
+    const bool outward = sign > 0;
+    add_indices(mesh, added[0], added[outward ? 1 : 2], added[outward ? 2 : 1]);
+    add_indices(mesh, added[0], added[outward ? 2 : 3], added[outward ? 3 : 2]);
+}
+
+static void add_box(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t *pose) {
+    const double half[3] = {convex->half.x, convex->half.y, convex->half.z};
+    for (int axis = 0; axis < 3; ++axis) {
+        add_face(mesh, pose, half, axis, 1);
+        add_face(mesh, pose, half, axis, -1);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- round */
+
+/* A closed ring of vertices about z. */
+static uint32_t add_ring(wh_mesh_t *mesh, const wh_pose_t *pose, double radius, double z, double out,
+                         double up) {
+    const uint32_t first = (uint32_t)mesh->vertex_count;
+    for (int i = 0; i < CORNERS; ++i) {
+        double sine, cosine;
+        wh_sin_cos_deg(360.0 * i / CORNERS, &sine, &cosine);
+        const wh_vec3_t at = {radius * cosine, radius * sine, z};
+        const wh_vec3_t normal = {out * cosine, out * sine, up};
+        (void)add_placed(mesh, pose, &at, &normal);
+    }
+    return first;
+}
+
+/* The band between a ring and the one above it. */
+static void join(wh_mesh_t *mesh, uint32_t lower, uint32_t upper) {
+    for (uint32_t i = 0; i < CORNERS; ++i) {
+        const uint32_t next = (i + 1) % CORNERS;
+        add_indices(mesh, lower + i, lower + next, upper + next);
+        add_indices(mesh, lower + i, upper + next, upper + i);
+    }
+}
+
+static void add_cap(wh_mesh_t *mesh, const wh_pose_t *pose, double radius, double z, double up) {
+    const uint32_t ring = add_ring(mesh, pose, radius, z, 0, up);
+    for (uint32_t i = 1; i + 1 < CORNERS; ++i) {
+        add_indices(mesh, ring, ring + (up > 0 ? i : i + 1), ring + (up > 0 ? i + 1 : i));
+    }
+}
+
+static void add_cylinder(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t *pose) {
+    const double radius = convex->half.x;
+    const double z = convex->half.z;
+    const uint32_t lower = add_ring(mesh, pose, radius, -z, 1, 0);
+    join(mesh, lower, add_ring(mesh, pose, radius, z, 1, 0));
+    add_cap(mesh, pose, radius, -z, -1);
+    add_cap(mesh, pose, radius, z, 1);
+}
+
+/* Rings from pole to pole; the equator is there twice, with the straight part between. */
+static void add_capsule(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t *pose) {
+    uint32_t before = 0;
+    for (int i = -RINGS; i <= RINGS + 1; ++i) {
+        const int step = i > 0 ? i - 1 : i;
+        double sine, cosine;
+        wh_sin_cos_deg(90.0 * step / RINGS, &sine, &cosine);
+        const double z = convex->half.x * sine + (i > 0 ? convex->half.z : -convex->half.z);
+        const uint32_t ring = add_ring(mesh, pose, convex->half.x * cosine, z, cosine, sine);
+        if (i > -RINGS) {
+            join(mesh, before, ring);
+        }
+        before = ring;
+    }
+}
+
+void wh_mesh_add_convex(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t *body_from_shape) {
+    switch (convex->kind) {
+    case WH_CONVEX_BOX:
+        add_box(mesh, convex, body_from_shape);
+        break;
+    case WH_CONVEX_CYLINDER:
+        add_cylinder(mesh, convex, body_from_shape);
+        break;
+    case WH_CONVEX_CAPSULE:
+        add_capsule(mesh, convex, body_from_shape);
+        break;
+    case WH_CONVEX_MESH:
+        wh_mesh_add_hull(mesh, convex, body_from_shape);
+        break;
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- wafers */
+
+#define RIM_CORNERS 96
+
+typedef struct {
+    double x, y;
+} rim_t;
+
+/* Counter-clockwise, from one side of the notch about the wafer to the other, then the notch's tip. */
+static size_t draw_rim(double radius, double notch, double depth, rim_t rim[RIM_CORNERS + 1]) {
+    const double half =
+        depth > 0 ? depth / radius : 0; /* of a notch of 90 degrees: as wide as deep on each side */
+    const double whole = 2 * WH_PI - 2 * half;
+    const int count = RIM_CORNERS;
+    for (int i = 0; i < count; ++i) {
+        double sine, cosine;
+        wh_sin_cos(notch + half + whole * i / (depth > 0 ? count - 1 : count), &sine, &cosine);
+        rim[i].x = radius * cosine;
+        rim[i].y = radius * sine;
+    }
+    if (!(depth > 0)) {
+        return RIM_CORNERS;
+    }
+    double sine, cosine;
+    wh_sin_cos(notch, &sine, &cosine);
+    rim[count].x = (radius - depth) * cosine;
+    rim[count].y = (radius - depth) * sine;
+    return RIM_CORNERS + 1;
+}
+
+/* A fan about the middle. */
+static void add_disc(wh_mesh_t *mesh, const rim_t rim[], size_t count, double z, double up) {
+    const wh_vec3_t normal = {0, 0, up};
+    const wh_vec3_t middle = {0, 0, z};
+    const uint32_t centre = add_vertex(mesh, &middle, &normal);
+    for (size_t i = 0; i < count; ++i) {
+        const wh_vec3_t at = {rim[i].x, rim[i].y, z};
+        (void)add_vertex(mesh, &at, &normal);
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t a = centre + 1 + i;
+        const uint32_t b = centre + 1 + (uint32_t)((i + 1) % count);
+        add_indices(mesh, centre, up > 0 ? a : b, up > 0 ? b : a);
+    }
+}
+
+void wh_mesh_add_wafer(wh_mesh_t *mesh, double radius, double thickness, double notch, double depth) {
+    rim_t rim[RIM_CORNERS + 1];
+    const size_t count = draw_rim(radius, notch, depth, rim);
+    add_disc(mesh, rim, count, 0, -1);
+    add_disc(mesh, rim, count, thickness, 1);
+    for (size_t i = 0; i < count; ++i) {
+        const rim_t *a = &rim[i];
+        const rim_t *b = &rim[(i + 1) % count];
+        const wh_vec3_t corners[4] = {
+            {a->x, a->y, 0}, {b->x, b->y, 0}, {b->x, b->y, thickness}, {a->x, a->y, thickness}};
+        wh_mesh_add_triangle(mesh, &corners[0], &corners[1], &corners[2]);
+        wh_mesh_add_triangle(mesh, &corners[0], &corners[2], &corners[3]);
+    }
+}
+
+void wh_mesh_free(wh_mesh_t *mesh) {
+    free(mesh->vertices);
+    free(mesh->indices);
+    memset(mesh, 0, sizeof *mesh);
+}

@@ -1,0 +1,218 @@
+/* The grasp table beside a slow, obvious model of it: random runs, compared bit for bit after every step. */
+#include "grasp/grasp.h"
+#include "support/grasp_model_compare.h"
+#include "support/pose.h"
+
+#ifndef RUNS
+#define RUNS 30000
+#endif
+
+enum { STEPS = 24 };
+
+/* A run, drawn beforehand, so that a failing one can be repeated with fewer steps. */
+typedef struct {
+    wh_grasp_config_t config;
+    size_t wafers, grippers;
+    wh_wafer_t start[MODEL_WAFERS];
+    wh_gripper_input_t input[STEPS][MODEL_GRIPPERS];
+    bool skip[STEPS];
+} script_t;
+
+/* Level and on a grid, so that values equal each other and the limits; or tilted a little. */
+static wh_pose_t draw_pose(bool grid, double reach, double height) {
+    if (grid) {
+        const double x = (int)wh_test_below(5) * reach / 4;
+        return wh_test_at(x, 0, ((int)wh_test_below(17) - 8) * 0.125);
+    }
+    wh_pose_t pose = wh_test_random_pose(reach);
+    pose.R = wh_test_random_turn(wh_test_below(4) ? 0.09 : 0.2);
+    pose.r.z = WH_REAL(wh_test_uniform(-height, height));
+    return pose;
+}
+
+/* As far from orthonormal as may be, or farther now and then. */
+static void wear_out(wh_mat3_t *R) {
+    const double limit = 0.45 * (double)WH_ROTATION_TOLERANCE;
+    const wh_mat3_t exact = *R;
+    wh_pose_t tried = wh_pose_identity();
+    do {
+        for (int k = 0; k < 9; ++k) {
+            R->m[k / 3][k % 3] = exact.m[k / 3][k % 3] + WH_REAL(wh_test_uniform(-limit, limit));
+        }
+        tried.R = *R;
+    } while (wh_pose_validate(&tried) != WH_OK);
+}
+
+static void spoil(wh_gripper_input_t *input) {
+    const wh_real_t bad[] = {WH_REAL(NAN), WH_REAL(INFINITY), WH_REAL(-INFINITY)};
+    const wh_real_t spoilt = bad[wh_test_below(3)];
+    wh_real_t *entry = input->base_from_gripper.R.m[wh_test_below(3)];
+    entry += wh_test_below(3);
+    switch (wh_test_below(4)) {
+    case 0:
+        *entry = spoilt;
+        break;
+    case 1:
+        input->base_from_gripper.r.y = spoilt;
+        break;
+    case 2:
+        *entry += WH_REAL(0.01);
+        break;
+    default:
+        input->valve = wh_test_below(2) ? 2 : -1;
+    }
+}
+
+/* How a run is drawn. */
+typedef struct {
+    bool grid, worn;
+    double height;
+    uint32_t patience; /* the larger, the rarer a valve is switched */
+} manner_t;
+
+static void draw_input(const manner_t *manner, const wh_gripper_input_t *before, wh_gripper_input_t *input) {
+    input->base_from_gripper =
+        before && wh_test_below(2) ? before->base_from_gripper : draw_pose(manner->grid, 40, manner->height);
+    input->valve = before && wh_test_below(manner->patience) ? before->valve : (int32_t)wh_test_below(2);
+    if (manner->worn) {
+        wear_out(&input->base_from_gripper.R);
+    }
+}
+
+static void draw_start(const manner_t *manner, script_t *s) {
+    for (size_t w = 0; w < s->wafers; ++w) {
+        s->start[w].base_from_wafer = draw_pose(manner->grid, 30, manner->height);
+        if (manner->worn) {
+            wear_out(&s->start[w].base_from_wafer.R);
+        }
+    }
+}
+
+static void draw_script(script_t *s) {
+    manner_t manner = {.grid = wh_test_below(3) == 0};
+    manner.worn = wh_test_below(4) == 0;
+    manner.height = wh_test_uniform(0.4, 6);
+    manner.patience = 2 + wh_test_below(5);
+    memset(s, 0, sizeof *s);
+    s->config = wh_grasp_config_default();
+    s->config.near_projz = wh_test_below(2) ? WH_REAL(4.5) : WH_REAL(1.5);
+    s->config.near_projxy = wh_test_below(2) ? 100 : 30;
+    s->wafers = wh_test_below(MODEL_WAFERS + 1);
+    s->grippers = 2 + wh_test_below(MODEL_GRIPPERS - 1);
+    draw_start(&manner, s);
+    for (size_t step = 0; step < STEPS; ++step) {
+        for (size_t g = 0; g < s->grippers; ++g) {
+            draw_input(&manner, step ? &s->input[step - 1][g] : NULL, &s->input[step][g]);
+        }
+    }
+    for (size_t step = 0; step < STEPS && wh_test_below(4) == 0; ++step) {
+        spoil(&s->input[step][wh_test_below((uint32_t)s->grippers)]);
+        step += wh_test_below(8);
+    }
+}
+
+static void start(pair_t *p, script_t *s) {
+    memset(p, 0, sizeof *p);
+    memcpy(p->wafer, s->start, sizeof p->wafer);
+    const wh_grasp_storage_t storage = {p->wafer, s->wafers, p->gripper, s->grippers, NULL, 0};
+    assert_int_equal(wh_grasp_init(&p->table, &s->config, &storage), WH_OK);
+    p->list.events = p->event;
+    p->list.capacity = WH_EVENTS_PER_GRIPPER * s->grippers;
+    p->model.config = s->config;
+    p->model.wafers = (int)s->wafers;
+    p->model.grippers = (int)s->grippers;
+    for (size_t w = 0; w < s->wafers; ++w) {
+        p->model.wafer[w] = s->start[w].base_from_wafer;
+        p->model.holder[w] = p->model.let_go_by[w] = -1;
+    }
+    for (size_t g = 0; g < s->grippers; ++g) {
+        p->model.holds[g] = -1;
+        p->model.valve[g] = 1;
+        p->model.gripper[g] = wh_pose_identity();
+        p->model.approach[g].wafer = p->model.contest[g].wafer = -1;
+    }
+}
+
+/* One step of both: what is wrong after it, or null. */
+static const char *take_step(pair_t *p, const wh_gripper_input_t *input) {
+    static pair_t before;
+    memcpy(&before, p, sizeof before);
+    const wh_status_t status = wh_grasp_step(&p->table, input, &p->list);
+    const char *wrong = status == model_step(&p->model, input) ? NULL : "the status";
+    wrong = wrong ? wrong : compare_state(p);
+    wrong = wrong ? wrong : compare_events(p);
+    wrong = wrong ? wrong : check_invariants(p, &before);
+    return wrong || status == WH_OK ? wrong : check_refusal(p, &before);
+}
+
+/* Plays the script's steps; the step at which table and model part, or STEPS. */
+static size_t play(pair_t *p, script_t *s, const char **wrong) {
+    start(p, s);
+    for (size_t step = 0; step < STEPS; ++step) {
+        if (s->skip[step]) {
+            continue;
+        }
+        *wrong = take_step(p, s->input[step]);
+        if (*wrong) {
+            return step;
+        }
+    }
+    return STEPS;
+}
+
+/* Leaves out each step without which it still fails, and says what is left. */
+static void explain(pair_t *p, script_t *s, unsigned run, size_t step, const char *wrong) {
+    print_error("run %u, step %zu: %s (%zu wafers, %zu grippers)\n", run, step, wrong, s->wafers,
+                s->grippers);
+    size_t left = STEPS;
+    for (size_t k = STEPS; k-- > 0;) {
+        const char *still;
+        s->skip[k] = true;
+        s->skip[k] = play(p, s, &still) != STEPS;
+        left -= s->skip[k];
+    }
+    print_error("it takes %zu steps:", left);
+    for (size_t k = 0; k < STEPS; ++k) {
+        if (!s->skip[k]) {
+            print_error(" %zu", k);
+        }
+    }
+    step = play(p, s, &wrong);
+    print_error("; then at step %zu: %s\n", step, wrong);
+    fail();
+}
+
+static void table_and_model_agree(void **state) {
+    (void)state;
+    static pair_t pair;
+    static script_t script;
+    wh_grasp_counters_t sum = {0};
+    (void)wh_test_seed();
+    for (unsigned run = 0; run < RUNS; ++run) {
+        const char *wrong = NULL;
+        draw_script(&script);
+        const size_t step = play(&pair, &script, &wrong);
+        if (step != STEPS) {
+            explain(&pair, &script, run, step, wrong);
+        }
+        const wh_grasp_counters_t *c = &pair.table.counters;
+        sum.picked += c->picked;
+        sum.released += c->released;
+        sum.handed_over += c->handed_over;
+        sum.near_misses += c->near_misses;
+        sum.contested += c->contested;
+        sum.refused += c->refused;
+    }
+    printf("%d runs: %llu picked, %llu released, %llu handed over, %llu near misses, %llu contested, %llu "
+           "refused\n",
+           RUNS, (unsigned long long)sum.picked, (unsigned long long)sum.released,
+           (unsigned long long)sum.handed_over, (unsigned long long)sum.near_misses,
+           (unsigned long long)sum.contested, (unsigned long long)sum.refused);
+    assert_true(sum.picked > RUNS && sum.released > RUNS / 2 && sum.handed_over > RUNS / 10 &&
+                sum.near_misses > RUNS / 10 && sum.contested > RUNS / 10 && sum.refused > RUNS / 50);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(table_and_model_agree)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,206 @@
+/* Curves: between their points no sample is off by more than the tolerance, and forced samples are not off at all. */
+#include "support/support.h"
+
+#include "record/path.h"
+
+#define SAMPLES 5000
+#define FIRST 7
+
+typedef struct {
+    double value;
+    bool is_there, forced, breaks;
+} sample_t;
+
+static sample_t samples[SAMPLES];
+
+/* ------------------------------------------------------------------------------------------------- signals */
+
+/* A rest or a move from a sample on: jerk-limited or not, with a jolt now and then, or a gap. */
+typedef struct {
+    double from, way;
+    size_t begin, length;
+    bool is_gap;
+} move_t;
+
+static void begin_move(move_t *move, size_t begin, bool gaps) {
+    static const double ways[] = {0, 0, 1e-3, 1, 400};
+    move->from = begin > 0 && !move->is_gap ? samples[begin - 1].value : wh_test_uniform(-500, 500);
+    move->begin = begin;
+    move->length = 1 + wh_test_below(wh_test_below(2) == 0 ? 40 : 900);
+    move->way = ways[wh_test_below(5)] * wh_test_uniform(-1, 1);
+    move->is_gap = gaps && begin > 0 && wh_test_below(5) == 0;
+}
+
+/* Positions of a robot's moves, and of what jumps. */
+static void make_signal(bool gaps, bool jolts) {
+    move_t move = {.length = 0};
+    for (size_t i = 0; i < SAMPLES; ++i) {
+        if (i == move.begin + move.length) {
+            begin_move(&move, i, gaps);
+        }
+        const double share = (double)(i - move.begin + 1) / (double)move.length;
+        const double smooth = share * share * share * (10 + share * (6 * share - 15));
+        samples[i].value = move.from + smooth * move.way + (jolts && wh_test_below(200) == 0 ? 1 : 0);
+        samples[i].is_there = !move.is_gap;
+        samples[i].forced = wh_test_below(60) == 0;
+        samples[i].breaks = false;
+    }
+}
+
+static void draw(wh_curve_t *curve) {
+    for (size_t i = 0; i < SAMPLES; ++i) {
+        if (samples[i].is_there) {
+            wh_curve_add(curve, (int64_t)i + FIRST, samples[i].value);
+        }
+        if (samples[i].is_there && samples[i].forced) {
+            wh_curve_force(curve);
+        }
+        if (i + 1 < SAMPLES && samples[i].is_there && !samples[i + 1].is_there) {
+            samples[i].breaks = true;
+            wh_curve_break(curve);
+        }
+    }
+    wh_curve_finish(curve);
+}
+
+/* ------------------------------------------------------------------------------------------------- judging */
+
+static void assert_points(const wh_curve_t *curve) {
+    size_t exact = 0;
+    for (size_t i = 0; i < curve->count; ++i) {
+        const wh_curve_point_t *point = &curve->points[i];
+        const sample_t *sample = &samples[point->slice - FIRST];
+        assert_true(i == 0 || point->slice > curve->points[i - 1].slice);
+        assert_near(point->value, sample->value, 0);
+        assert_int_equal(point->ends, sample->breaks);
+        exact += point->exact ? 1 : 0;
+    }
+    assert_int_equal(exact, curve->exact_count);
+    assert_int_equal(curve->points[0].slice, FIRST);
+}
+
+static void assert_within(const wh_curve_t *curve) {
+    for (size_t i = 0; i < SAMPLES; ++i) {
+        const double read = wh_curve_read(curve, (int64_t)i + FIRST, NULL);
+        const sample_t *sample = &samples[i];
+        if (sample->is_there) {
+            assert_near(read, sample->value, sample->forced ? 0 : curve->tolerance * (1 + 1e-9));
+        } else {
+            assert_true(isnan(read));
+        }
+    }
+}
+
+static void check(bool gaps, bool jolts) {
+    wh_curve_t curve;
+    wh_curve_open(&curve, wh_test_decades(1e-4, 1), SIZE_MAX);
+    make_signal(gaps, jolts);
+    draw(&curve);
+    assert_points(&curve);
+    assert_within(&curve);
+    wh_curve_close(&curve);
+}
+
+static void test_values_stay_within_the_tolerance(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    for (int i = 0; i < 80; ++i) {
+        check(false, i % 2 == 0);
+    }
+}
+
+static void test_a_break_is_a_break(void **state) {
+    (void)state;
+    for (int i = 0; i < 80; ++i) {
+        check(true, i % 2 == 0);
+    }
+}
+
+/* The tolerance grows, is told, and holds; forced samples stay, and so do rests. */
+static void test_a_limit_is_kept_and_the_tolerance_told(void **state) {
+    (void)state;
+    for (int i = 0; i < 80; ++i) {
+        wh_curve_t curve;
+        const size_t limit = 20 + wh_test_below(100);
+        wh_curve_open(&curve, wh_test_decades(1e-5, 1e-2), limit);
+        make_signal(i % 2 == 0, i % 3 == 0);
+        draw(&curve);
+        assert_points(&curve);
+        assert_within(&curve);
+        assert_true(curve.limit > limit || curve.count - curve.exact_count <= limit);
+        wh_curve_close(&curve);
+    }
+}
+
+/* Three times the third power of a time: one cubic, whose slope is known. */
+static void test_a_cubic_has_two_points(void **state) {
+    (void)state;
+    wh_curve_t curve;
+    double slope;
+    wh_curve_open(&curve, 1e-3, SIZE_MAX);
+    for (int64_t i = 0; i <= 1000; ++i) {
+        const double t = (double)i / 1000 - 0.5;
+        wh_curve_add(&curve, i, 3 * t * t * t);
+    }
+    wh_curve_finish(&curve);
+    assert_true(curve.count <= 3);
+    assert_near(wh_curve_read(&curve, 500, &slope), 0, 1e-3);
+    assert_near(wh_curve_read(&curve, 300, &slope), -0.024, 1e-3);
+    assert_near(slope * 1000, 0.36, 0.02);
+    assert_near(wh_curve_read(&curve, 5000, &slope), 0.375, 1e-12);
+    assert_near(slope, 0, 0);
+    assert_true(isnan(wh_curve_read(&curve, -1, NULL)));
+    wh_curve_close(&curve);
+}
+
+/* However long; forced samples within it cost no point. */
+static void test_a_rest_has_two_points(void **state) {
+    (void)state;
+    wh_curve_t curve;
+    wh_curve_open(&curve, 0.01, SIZE_MAX);
+    for (int64_t i = 0; i <= 100000; ++i) {
+        wh_curve_add(&curve, i, i < 99999 ? 5 : 6);
+        if (i % 1000 == 500) {
+            wh_curve_force(&curve);
+        }
+    }
+    wh_curve_finish(&curve);
+    assert_int_equal(curve.count, 4);
+    assert_int_equal(curve.points[1].slice, 99998);
+    assert_true(curve.points[0].exact && curve.points[1].exact);
+    assert_near(wh_curve_read(&curve, 54321, NULL), 5, 0);
+    assert_true(curve.sample_capacity <= 256);
+    wh_curve_close(&curve);
+}
+
+static void test_a_sample_is_inserted(void **state) {
+    (void)state;
+    wh_curve_t curve;
+    wh_curve_open(&curve, 10, SIZE_MAX);
+    for (int64_t i = 0; i <= 20; ++i) {
+        wh_curve_add(&curve, i, (double)(i % 2));
+    }
+    wh_curve_break(&curve);
+    wh_curve_add(&curve, 30, 4);
+    wh_curve_insert(&curve, 5, 1);
+    wh_curve_insert(&curve, 5, 1);  /* there already */
+    wh_curve_insert(&curve, 25, 1); /* in a break */
+    wh_curve_insert(&curve, 99, 1);
+    assert_near(wh_curve_read(&curve, 5, NULL), 1, 0);
+    assert_int_equal(curve.count, 4);
+    assert_int_equal(curve.points[1].slice, 5);
+    assert_true(curve.points[1].exact);
+    wh_curve_close(&curve);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_values_stay_within_the_tolerance),
+        cmocka_unit_test(test_a_break_is_a_break),
+        cmocka_unit_test(test_a_limit_is_kept_and_the_tolerance_told),
+        cmocka_unit_test(test_a_cubic_has_two_points),
+        cmocka_unit_test(test_a_rest_has_two_points),
+        cmocka_unit_test(test_a_sample_is_inserted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

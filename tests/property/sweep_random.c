@@ -1,0 +1,272 @@
+/* Swept checking against brute force: the slice sampled at very many instants, with quaternions written here.
+ */
+#include "support/grasp.h"
+
+#if defined(WH_FLOAT)
+#define SLACK 2e-3
+#define HALF_TURN (WH_TEST_PI - 1e-2)
+#else
+#define SLACK 1e-8
+#define HALF_TURN (WH_TEST_PI - 1e-5)
+#endif
+
+typedef struct {
+    double w, x, y, z;
+} quaternion_t;
+
+/* A slice: the gripper begins at `from` and turns by `turn` in its own frame while it travels. */
+typedef struct {
+    wh_pose_t from, to, wafer;
+    quaternion_t turn;
+    double travel[3];
+    wh_grasp_config_t config;
+} slice_t;
+
+typedef struct {
+    double n, z, xy, r[3];
+    double e1[3], n2[3]; /* the gripper's first and third axes */
+} values_t;
+
+static quaternion_t times(quaternion_t a, quaternion_t b) {
+    const quaternion_t c = {
+        a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+        a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+    return c;
+}
+
+/* (2), (3) and (5) at instant t: the rotation (1 - t) 1 + t q, normalised, is applied as Q e3 Q*. */
+static values_t values_at(const slice_t *s, double t) {
+    values_t v;
+    quaternion_t q = {1 - t + t * s->turn.w, t * s->turn.x, t * s->turn.y, t * s->turn.z};
+    const double length = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    q.w /= length;
+    q.x /= length;
+    q.y /= length;
+    q.z /= length;
+    const quaternion_t e1 = {0, 1, 0, 0};
+    const quaternion_t e3 = {0, 0, 0, 1};
+    const quaternion_t back = {q.w, -q.x, -q.y, -q.z};
+    const quaternion_t n = times(times(q, e3), back);
+    const quaternion_t x = times(times(q, e1), back);
+    const double from[3] = {(double)s->from.r.x, (double)s->from.r.y, (double)s->from.r.z};
+    const double wafer[3] = {(double)s->wafer.r.x, (double)s->wafer.r.y, (double)s->wafer.r.z};
+    double p[3] = {0, 0, 0};
+    v.n = 0;
+    for (int i = 0; i < 3; ++i) {
+        v.n2[i] = (double)s->from.R.m[i][0] * n.x + (double)s->from.R.m[i][1] * n.y +
+                  (double)s->from.R.m[i][2] * n.z;
+        v.e1[i] = (double)s->from.R.m[i][0] * x.x + (double)s->from.R.m[i][1] * x.y +
+                  (double)s->from.R.m[i][2] * x.z;
+        v.n += v.n2[i] * (double)s->wafer.R.m[i][2];
+        v.r[i] = from[i] + t * s->travel[i];
+        for (int k = 0; k < 3; ++k) {
+            p[k] += (double)s->wafer.R.m[i][k] * (wafer[i] - v.r[i]);
+        }
+    }
+    v.z = p[2];
+    v.xy = sqrt(p[0] * p[0] + p[1] * p[1]);
+    return v;
+}
+
+/* Positive: ready by that much, in units of the limits; a mm of z, a mm of xy and 0.01 of the cosine count
+ * alike. */
+static double readiness(const slice_t *s, double t) {
+    const values_t v = values_at(s, t);
+    const wh_tolerance_t *limit = &s->config.tolerance;
+    const double z = 0.998 * (double)limit->projz - fabs(v.z);
+    return fmin(fmin(z, (double)limit->projxy - v.xy), (v.n - (double)limit->planar) * 100);
+}
+
+static double closeness(const slice_t *s, const values_t *v) {
+    const double z = v->z / (double)s->config.tolerance.projz;
+    const double xy = v->xy / (double)s->config.tolerance.projxy;
+    return z * z + xy * xy;
+}
+
+/* A turn about any axis or one near n2; small, large, none, or hardly less than half a revolution. */
+static wh_mat3_t draw_turn(quaternion_t *turn) {
+    const double spreads[] = {1, 0.2, 0};
+    const double spread = spreads[wh_test_below(3)];
+    const uint32_t kind = wh_test_below(8);
+    double angle = wh_test_uniform(-0.3, 0.3);
+    double a[3];
+    for (int i = 0; i < 3; ++i) {
+        a[i] = wh_test_uniform(-1, 1) * (i < 2 ? spread : 1);
+    }
+    if (kind < 3) {
+        angle *= 10;
+    } else if (kind == 3) {
+        angle = a[0] < 0 ? HALF_TURN : -HALF_TURN;
+    } else if (kind == 4) {
+        angle = 0;
+    }
+    const double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    turn->w = cos(angle / 2);
+    turn->x = a[0] / length * sin(angle / 2);
+    turn->y = a[1] / length * sin(angle / 2);
+    turn->z = a[2] / length * sin(angle / 2);
+    return wh_test_rotation(a[0], a[1], a[2], angle);
+}
+
+/* A wafer anywhere, and a gripper that passes by it: in the wafer's frame from one point to another. */
+static void draw(slice_t *s) {
+    memset(s, 0, sizeof *s);
+    s->config = wh_grasp_config_default();
+    s->config.check = WH_CHECK_SWEPT;
+    s->wafer = wh_test_random_pose(100);
+    const double reach = wh_test_below(2) ? 90 : 30;
+    const double height = wh_test_below(2) ? 6 : 1;
+    wh_pose_t ends[2];
+    for (int i = 0; i < 2; ++i) {
+        ends[i].R = wh_test_random_turn(0.25);
+        ends[i].r.x = WH_REAL(wh_test_uniform(-reach, reach));
+        ends[i].r.y = WH_REAL(wh_test_uniform(-reach, reach));
+        ends[i].r.z = WH_REAL(wh_test_uniform(-height, height));
+        ends[i] = wh_pose_compose(&s->wafer, &ends[i]);
+    }
+    const wh_mat3_t turn = draw_turn(&s->turn);
+    s->from = ends[0];
+    s->to.R = wh_mat3_multiply(&s->from.R, &turn);
+    s->to.r = ends[1].r;
+    s->travel[0] = (double)s->to.r.x - (double)s->from.r.x;
+    s->travel[1] = (double)s->to.r.y - (double)s->from.r.y;
+    s->travel[2] = (double)s->to.r.z - (double)s->from.r.z;
+}
+
+/* The wafer comes only when the gripper waits open at its beginning: no earlier slice can take it. */
+static void play(cell_t *cell, const slice_t *s) {
+    cell_begin(cell, &s->config);
+    cell->input[0].base_from_gripper = s->from;
+    cell->input[0].valve = OPEN;
+    cell_place(cell, 0, 5000, 0, 0);
+    cell_step(cell);
+    cell_expect_nothing(cell);
+    assert_int_equal(wh_grasp_place(&cell->table, 0, &s->wafer), WH_OK);
+    cell->input[0].base_from_gripper = s->to;
+    cell_step(cell);
+}
+
+/* When the table took the wafer: where on its way the gripper was, by the event. */
+static double instant_of(const slice_t *s, const wh_event_t *e) {
+    const double at[3] = {(double)s->wafer.r.x - (double)e->measured.dr.x - (double)s->from.r.x,
+                          (double)s->wafer.r.y - (double)e->measured.dr.y - (double)s->from.r.y,
+                          (double)s->wafer.r.z - (double)e->measured.dr.z - (double)s->from.r.z};
+    double along = 0;
+    double square = 0;
+    for (int i = 0; i < 3; ++i) {
+        along += at[i] * s->travel[i];
+        square += s->travel[i] * s->travel[i];
+    }
+    return along / square;
+}
+
+/* Taken at t: ready there; the values and gripper_from_wafer are those of t. */
+static void check_pick(const slice_t *s, const cell_t *cell, const wh_event_t *e, double t) {
+    const values_t v = values_at(s, t);
+    assert_true(readiness(s, t) > -SLACK * 100);
+    assert_near(e->measured.dr_proj_z, v.z, SLACK);
+    assert_near(e->measured.dr_proj_xy_norm, v.xy, SLACK);
+    assert_near(e->measured.n1_proj_n2, v.n, SLACK);
+    const wh_pose_t *g = &cell->gripper[0].gripper_from_wafer;
+    double x = 0;
+    double z = 0;
+    double n = 0;
+    double m = 0;
+    const double dr[3] = {(double)s->wafer.r.x - v.r[0], (double)s->wafer.r.y - v.r[1],
+                          (double)s->wafer.r.z - v.r[2]};
+    for (int i = 0; i < 3; ++i) {
+        x += dr[i] * v.e1[i];
+        z += dr[i] * v.n2[i];
+        m += v.e1[i] * (double)s->wafer.R.m[i][0];
+        n += v.n2[i] * (double)s->wafer.R.m[i][0];
+    }
+    assert_near(g->r.x, x, 50 * SLACK);
+    assert_near(g->R.m[0][0], m, SLACK);
+    assert_near(g->r.z, z, SLACK);
+    assert_near(g->R.m[2][0], n, SLACK);
+    const wh_pose_t end = wh_pose_compose(&s->to, g);
+    assert_near(wh_test_difference_r(&end, &cell->wafer[0].base_from_wafer), 0, SLACK);
+}
+
+/* The first of `count` instants at which it is ready by more than rounding; 2 when it never is. */
+static double first_ready(const slice_t *s, int count) {
+    for (int i = 0; i <= count; ++i) {
+        const double t = (double)i / count;
+        if (readiness(s, t) > SLACK * 10) {
+            return t;
+        }
+    }
+    return 2;
+}
+
+typedef struct {
+    int inside, beginning, end, never, near;
+} tally_t;
+
+static void check_near_miss(const slice_t *s, const cell_t *cell, int count, tally_t *tally) {
+    double least = 1e30;
+    bool leaves = false;
+    for (int i = 0; i <= count; ++i) {
+        const values_t v = values_at(s, (double)i / count);
+        const bool is_near = fabs(v.z) < (double)s->config.near_projz && v.xy < (double)s->config.near_projxy;
+        least = is_near ? fmin(least, closeness(s, &v)) : least;
+        leaves = !is_near;
+    }
+    const wh_event_t *e = leaves ? cell_event(cell, WH_EVENT_NEAR_MISS) : NULL;
+    const wh_encounter_t *approach = &cell->gripper[0].approach;
+    if (least > 1e29 || (leaves ? !e : approach->wafer != 0)) {
+        assert_true(least > 1e29);
+        return;
+    }
+    values_t seen;
+    const wh_proximity_t *p = e ? &e->measured : &approach->measured;
+    seen.z = (double)p->dr_proj_z;
+    seen.xy = (double)p->dr_proj_xy_norm;
+    assert_true(closeness(s, &seen) < least * (1 + SLACK) + SLACK);
+    assert_near(sqrt(closeness(s, &seen)), sqrt(least), 40.0 / count + SLACK);
+    assert_false(p->ready);
+    ++tally->near;
+}
+
+static void compare(const slice_t *s, int count, tally_t *tally) {
+    cell_t cell;
+    play(&cell, s);
+    const double expected = first_ready(s, count);
+    const wh_event_t *e = cell_event(&cell, WH_EVENT_PICKED);
+    if (!e) {
+        assert_true(expected > 1);
+        ++tally->never;
+        check_near_miss(s, &cell, count, tally);
+        return;
+    }
+    const double t = instant_of(s, e);
+    if (expected > 1 && t > 1 - 1e-12) {
+        ++tally->end;
+        return;
+    }
+    check_pick(s, &cell, e, t);
+    /* Never later than the samples say. Earlier only by a sample, or at an instant that they step over, which
+     * check_pick has looked at. */
+    assert_true(t <= expected + SLACK * 100 + 1e-5);
+    assert_true(expected > 1 || t >= expected - 1.0 / count - SLACK * 100 || readiness(s, t) > -SLACK * 100);
+    ++*(t < 1e-9 ? &tally->beginning : &tally->inside);
+}
+
+static void picks_at_the_first_instant(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    tally_t tally = {0, 0, 0, 0, 0};
+    for (int run = 0; run < 3040; ++run) {
+        slice_t s;
+        draw(&s);
+        compare(&s, run < 40 ? 100000 : 1500, &tally);
+    }
+    printf("%d picked inside the slice, %d at its beginning, %d at its end; %d never, %d of them near\n",
+           tally.inside, tally.beginning, tally.end, tally.never, tally.near);
+    assert_true(tally.inside > 300 && tally.beginning > 30 && tally.never > 300 && tally.near > 100);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(picks_at_the_first_instant)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

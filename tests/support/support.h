@@ -1,0 +1,80 @@
+/* What every test program needs: cmocka in the order it wants, seeded random numbers, one assert for reals. */
+#ifndef WH_TESTS_SUPPORT_SUPPORT_H
+#define WH_TESTS_SUPPORT_SUPPORT_H
+
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+#include <setjmp.h>
+
+#include <cmocka.h>
+#if defined(__cplusplus)
+}
+#endif
+
+#include "support/random.h"
+
+/* What a long random test divides its rounds by: under sanitizers, which look at how a thing is done, a share is enough. */
+#if defined(__SANITIZE_ADDRESS__)
+#define WH_TEST_SHARE 5
+#else
+#define WH_TEST_SHARE 1
+#endif
+
+static uint64_t wh_test_state;
+static int wh_test_seeded;
+
+/* The run's seed: WH_SEED from the environment, else a fixed one. Printed, so that a failure can be repeated.
+ * Random numbers start afresh from it. */
+static inline uint64_t wh_test_seed(void) {
+    const char *text = getenv("WH_SEED");
+    const uint64_t seed = text ? strtoull(text, NULL, 0) : UINT64_C(20240229);
+    printf("WH_SEED=%llu\n", (unsigned long long)seed);
+    wh_test_state = seed;
+    wh_test_seeded = 1;
+    return seed;
+}
+
+/* 64 random bits of this run. */
+static inline uint64_t wh_test_random(void) {
+    if (!wh_test_seeded) {
+        (void)wh_test_seed();
+    }
+    return wh_test_splitmix(&wh_test_state);
+}
+
+/* In [lo, hi). */
+static inline double wh_test_uniform(double lo, double hi) {
+    return lo + (hi - lo) * ((double)(wh_test_random() >> 11) * (1.0 / 9007199254740992.0));
+}
+
+/* In [lo, hi), both > 0, every decade as likely as any other. */
+static inline double wh_test_decades(double lo, double hi) {
+    return exp(wh_test_uniform(log(lo), log(hi)));
+}
+
+/* In 0 .. n-1; n > 0. */
+static inline uint32_t wh_test_below(uint32_t n) {
+    return (uint32_t)((wh_test_random() >> 32) * n >> 32);
+}
+
+/* Fails unless |a - b| <= tolerance, and for any NaN. */
+#define assert_near(a, b, tolerance)                                                                         \
+    wh_test_assert_near((double)(a), (double)(b), (double)(tolerance), __FILE__, __LINE__)
+
+static inline void wh_test_assert_near(double a, double b, double tolerance, const char *file, int line) {
+    if (!(fabs(a - b) <= tolerance)) {
+        print_error("%.17g is not within %.17g of %.17g\n", a, tolerance, b);
+        _fail(file, line);
+    }
+}
+
+#endif

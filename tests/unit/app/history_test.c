@@ -1,0 +1,152 @@
+/* The prompt's history file: where it is, what is taken from it, how it is kept short and private. */
+#include "support/support.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "app/prompt/history.h"
+
+static char folder[] = "/tmp/waferhand-history-XXXXXX";
+static char path[200];
+static char loaded[WH_HISTORY_LINES * 2][1100];
+static size_t count;
+
+static int make_folder(void **state) {
+    (void)state;
+    strcpy(folder + sizeof folder - 7, "XXXXXX");
+    count = 0;
+    if (!mkdtemp(folder)) {
+        return -1;
+    }
+    snprintf(path, sizeof path, "%s/waferhand/history", folder);
+    return 0;
+}
+
+static int remove_folder(void **state) {
+    char command[300];
+    (void)state;
+    snprintf(command, sizeof command, "rm -rf '%s'", folder);
+    return system(command);
+}
+
+static void take(void *user, const char *text) {
+    assert_ptr_equal(user, &count);
+    assert_true(count < sizeof loaded / sizeof loaded[0]);
+    snprintf(loaded[count++], sizeof loaded[0], "%s", text);
+}
+
+static void load(void) {
+    count = 0;
+    wh_history_load(path, take, &count);
+}
+
+static void write_file(const char *text, size_t size) {
+    wh_history_append(path, "x");
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    assert_int_equal(fwrite(text, 1, size, out), size);
+    fclose(out);
+}
+
+static void test_where_it_is(void **state) {
+    char text[100];
+    (void)state;
+    setenv("HOME", "/home/operator", 1);
+    setenv("XDG_STATE_HOME", "/state", 1);
+    wh_history_path(text, sizeof text);
+    assert_string_equal(text, "/state/waferhand/history");
+    setenv("XDG_STATE_HOME", "relative", 1);
+    wh_history_path(text, sizeof text);
+    assert_string_equal(text, "/home/operator/.local/state/waferhand/history");
+    wh_history_path(text, 20);
+    assert_string_equal(text, "");
+    unsetenv("HOME");
+    wh_history_path(text, sizeof text);
+    assert_string_equal(text, "");
+}
+
+static void test_lines_come_back(void **state) {
+    struct stat about;
+    (void)state;
+    load();
+    assert_int_equal(count, 0);
+    wh_history_append(path, "GET A 1");
+    wh_history_append(path, "PUT \"\xC3\xA4\" 2");
+    load();
+    assert_int_equal(count, 2);
+    assert_string_equal(loaded[0], "GET A 1");
+    assert_string_equal(loaded[1], "PUT \"\xC3\xA4\" 2");
+    assert_int_equal(stat(path, &about), 0);
+    assert_int_equal(about.st_mode & 0777, 0600);
+}
+
+static void test_what_is_no_line_is_left_out(void **state) {
+    static char text[2000];
+    (void)state;
+    const int head = snprintf(text, sizeof text, "GET A 1\n\n\033[2J\nA\tB\n%s", "PUT B 2\n");
+    memset(text + head, 'x', 1001);
+    write_file(text, (size_t)head + 1001);
+    wh_history_append(path, "with\nline end");
+    wh_history_append(path, "");
+    load();
+    assert_int_equal(count, 2);
+    assert_string_equal(loaded[1], "PUT B 2");
+}
+
+static void test_a_long_file_is_cut(void **state) {
+    struct stat about;
+    (void)state;
+    for (int i = 1; i <= 2 * WH_HISTORY_LINES; ++i) {
+        char line[30];
+        snprintf(line, sizeof line, "WAIT %d", i);
+        wh_history_append(path, line);
+    }
+    load();
+    assert_int_equal(count, WH_HISTORY_LINES);
+    assert_string_equal(loaded[0], "WAIT 501");
+    assert_string_equal(loaded[count - 1], "WAIT 1000");
+    assert_int_equal(stat(path, &about), 0);
+    assert_int_equal(about.st_size, 499 * 9 + 10);
+    assert_int_equal(about.st_mode & 0777, 0600);
+    load();
+    assert_int_equal(count, WH_HISTORY_LINES);
+}
+
+static void test_a_huge_file_is_cut(void **state) {
+    static char text[WH_HISTORY_BYTES + 5000];
+    struct stat about;
+    (void)state;
+    memset(text, 'x', sizeof text);
+    memcpy(text + sizeof text - 9, "\nGET A 1\n", 9);
+    write_file(text, sizeof text);
+    load();
+    assert_int_equal(count, 1);
+    assert_int_equal(stat(path, &about), 0);
+    assert_int_equal(about.st_size, 8);
+}
+
+static void test_what_is_no_file_does_no_harm(void **state) {
+    (void)state;
+    wh_history_append(path, "x");
+    unlink(path);
+    assert_int_equal(mkfifo(path, 0600), 0);
+    load();
+    wh_history_append(path, "GET A 1");
+    unlink(path);
+    assert_int_equal(mkdir(path, 0700), 0);
+    load();
+    wh_history_append(path, "GET A 1");
+    wh_history_append("", "GET A 1");
+    wh_history_append("/dev/null/history", "GET A 1");
+    assert_int_equal(count, 0);
+}
+
+int main(void) {
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_where_it_is),          IN_FOLDER(test_lines_come_back),
+        IN_FOLDER(test_what_is_no_line_is_left_out), IN_FOLDER(test_a_long_file_is_cut),
+        IN_FOLDER(test_a_huge_file_is_cut),          IN_FOLDER(test_what_is_no_file_does_no_harm),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

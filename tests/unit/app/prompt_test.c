@@ -1,0 +1,172 @@
+/* The prompt looks after other descriptors while it waits: as LCM's will be. */
+#include "support/support.h"
+
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "app/prompt/prompt.h"
+
+static wh_session_t session;
+static wh_prompt_t *prompt;
+static int input[2], other[2], before;
+static int calls;
+static char answer[200];
+
+static int open_all(void **state) {
+    const wh_session_options_t options = {.layout = "lua/layouts/paper.lua", .limits = {.print_to = stderr}};
+    (void)state;
+    calls = 0;
+    before = dup(STDIN_FILENO);
+    if (pipe(input) != 0 || pipe(other) != 0 || dup2(input[0], STDIN_FILENO) < 0) {
+        return -1;
+    }
+    return wh_session_open(&session, &options) ? 0 : -1;
+}
+
+static int close_all(void **state) {
+    (void)state;
+    wh_prompt_close(prompt);
+    wh_session_close(&session);
+    dup2(before, STDIN_FILENO);
+    const int all[] = {before, input[0], input[1], other[0], other[1]};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i) {
+        close(all[i]);
+    }
+    return 0;
+}
+
+static void put(int fd, const char *text) {
+    assert_int_equal(write(fd, text, strlen(text)), strlen(text));
+}
+
+/* A request from elsewhere: executed; the third one ends the prompt. */
+static void take_request(void *user) {
+    char byte;
+    assert_ptr_equal(user, &calls);
+    assert_int_equal(read(other[0], &byte, 1), 1);
+    wh_session_execute(&session, "WAIT 1", answer, sizeof answer);
+    wh_prompt_say(prompt, "a request was executed");
+    if (++calls == 3) {
+        wh_prompt_leave(prompt);
+    }
+}
+
+static void open_prompt(void) {
+    const wh_prompt_watch_t watch = {other[0], take_request, &calls};
+    prompt = wh_prompt_open(&session);
+    assert_non_null(prompt);
+    assert_true(wh_prompt_watch(prompt, &watch));
+}
+
+static void test_watches_are_called_while_it_waits(void **state) {
+    (void)state;
+    open_prompt();
+    put(other[1], "123");
+    put(input[1], "GET A");
+    assert_int_equal(wh_prompt_run(prompt), 1);
+    assert_int_equal(calls, 3);
+    assert_string_equal(answer, "OK seconds=1");
+    assert_int_equal(session.record.command_count, 3);
+}
+
+static void test_lines_and_requests_take_turns(void **state) {
+    (void)state;
+    open_prompt();
+    put(other[1], "12");
+    put(input[1], "GET A 1\nPUT B 2\n");
+    close(input[1]);
+    assert_int_equal(wh_prompt_run(prompt), 0);
+    assert_true(calls >= 1);
+    assert_int_equal(session.record.command_count, 2 + calls);
+}
+
+static void test_only_so_many_watches(void **state) {
+    const wh_prompt_watch_t watch = {other[0], take_request, &calls};
+    (void)state;
+    open_prompt();
+    for (int i = 1; i < WH_PROMPT_WATCHES; ++i) {
+        assert_true(wh_prompt_watch(prompt, &watch));
+    }
+    assert_false(wh_prompt_watch(prompt, &watch));
+}
+
+static int signal_descriptor;
+
+static void take_signal(void *user) {
+    struct signalfd_siginfo info;
+    (void)user;
+    assert_int_equal(read(signal_descriptor, &info, sizeof info), sizeof info);
+    assert_int_equal(info.ssi_signo, SIGTERM);
+    wh_prompt_leave(prompt);
+}
+
+/* Who has blocked a signal for a signalfd gets it there, also when it comes before the wait. */
+static void test_signalfd(void **state) {
+    sigset_t mask;
+    (void)state;
+    sigemptyset(&mask);
+    sigaddset(&mask, SIGTERM);
+    sigprocmask(SIG_BLOCK, &mask, NULL);
+    signal_descriptor = signalfd(-1, &mask, SFD_CLOEXEC);
+    open_prompt();
+    const wh_prompt_watch_t watch = {signal_descriptor, take_signal, NULL};
+    assert_true(wh_prompt_watch(prompt, &watch));
+    raise(SIGTERM);
+    assert_int_equal(wh_prompt_run(prompt), 1);
+    close(signal_descriptor);
+    wh_prompt_close(prompt); /* which brings back the mask from before it */
+    prompt = NULL;
+    sigprocmask(SIG_UNBLOCK, &mask, NULL);
+}
+
+/* Without one the prompt takes it, also when it comes before the wait; then all is as it was. */
+static void test_signal_before_the_wait(void **state) {
+    struct sigaction action;
+    (void)state;
+    open_prompt();
+    raise(SIGINT);
+    assert_int_equal(wh_prompt_run(prompt), 1);
+    wh_prompt_close(prompt);
+    prompt = NULL;
+    sigaction(SIGINT, NULL, &action);
+    assert_true(action.sa_handler == SIG_DFL);
+}
+
+static void take_long_request(void *user) {
+    char byte;
+    (void)user;
+    assert_int_equal(read(other[0], &byte, 1), 1);
+    wh_session_execute(&session, "WAIT 40000", answer, sizeof answer);
+}
+
+/* A signal stops a watch's command, too, and is then the prompt's. */
+static void test_signal_during_a_request(void **state) {
+    const wh_prompt_watch_t watch = {other[0], take_long_request, NULL};
+    const struct itimerspec soon = {{0, 0}, {0, 100000000}};
+    struct sigevent event = {.sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGTERM};
+    timer_t timer;
+    (void)state;
+    prompt = wh_prompt_open(&session);
+    assert_true(wh_prompt_watch(prompt, &watch));
+    put(other[1], "1");
+    assert_int_equal(timer_create(CLOCK_MONOTONIC, &event, &timer), 0);
+    assert_int_equal(timer_settime(timer, 0, &soon, NULL), 0);
+    assert_int_equal(wh_prompt_run(prompt), 1);
+    assert_memory_equal(answer, "ERROR 52 STOPPED", 16);
+    timer_delete(timer);
+}
+
+int main(void) {
+#define IN_PIPES(test) cmocka_unit_test_setup_teardown(test, open_all, close_all)
+    const struct CMUnitTest tests[] = {
+        IN_PIPES(test_watches_are_called_while_it_waits),
+        IN_PIPES(test_lines_and_requests_take_turns),
+        IN_PIPES(test_only_so_many_watches),
+        IN_PIPES(test_signalfd),
+        IN_PIPES(test_signal_before_the_wait),
+        IN_PIPES(test_signal_during_a_request),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

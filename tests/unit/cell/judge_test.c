@@ -1,0 +1,407 @@
+/* What the cell says of a release. */
+#include "support/station.h"
+
+enum { WAFERS = 3, GRIPPERS = 2, EVENTS = GRIPPERS * WH_EVENTS_PER_GRIPPER };
+
+typedef struct {
+    wh_grasp_t table;
+    wh_wafer_t wafers[WAFERS];
+    wh_gripper_t grippers[GRIPPERS];
+    wh_event_t events[EVENTS];
+    wh_event_list_t list;
+} scene_t;
+
+/* Wafer 0 was just let go of by gripper 0 there; the others lie far away, free. */
+static void let_go(scene_t *scene, const wh_pose_t *base_from_wafer) {
+    memset(scene, 0, sizeof *scene);
+    for (int w = 0; w < WAFERS; ++w) {
+        scene->wafers[w].base_from_wafer = wh_test_at(0, 5000 + 1000 * w, 0);
+    }
+    scene->wafers[0].base_from_wafer = *base_from_wafer;
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = {scene->wafers, WAFERS, scene->grippers, GRIPPERS, NULL, 0};
+    assert_int_equal(wh_grasp_init(&scene->table, &config, &storage), WH_OK);
+    scene->list.events = scene->events;
+    scene->list.capacity = EVENTS;
+    scene->list.count = 1;
+    scene->events[0].kind = WH_EVENT_RELEASED;
+    scene->events[0].slice = 17;
+    scene->events[0].other = WH_NONE;
+}
+
+static size_t judge(scene_t *scene) {
+    return wh_cell_judge(&cell, &scene->table, &scene->list);
+}
+
+static void expect_said(const scene_t *scene, wh_event_kind_t kind, int other, double height) {
+    const wh_event_t *said = &scene->events[1];
+    assert_int_equal(scene->list.count, 2);
+    assert_int_equal(said->kind, kind);
+    assert_int_equal(said->wafer, 0);
+    assert_int_equal(said->gripper, 0);
+    assert_int_equal(said->slice, 17);
+    assert_int_equal(said->other, other);
+    assert_near(said->height, height, 4096 * WH_TEST_ROUNDING);
+}
+
+static void test_a_release_in_a_free_slot_is_fine(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t slot = wh_station_slot(&stations[0], 3);
+    let_go(&scene, &slot);
+    assert_int_equal(judge(&scene), 0);
+    assert_int_equal(scene.list.count, 1);
+}
+
+static void test_only_releases_are_judged(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t in_air = wh_test_at(300, 300, 900);
+    let_go(&scene, &in_air);
+    static const wh_event_kind_t others[] = {WH_EVENT_PICKED, WH_EVENT_HANDED_OVER, WH_EVENT_NEAR_MISS,
+                                             WH_EVENT_CONTESTED};
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
+        scene.events[0].kind = others[i];
+        assert_int_equal(judge(&scene), 0);
+    }
+    /* What stands beyond the list's end is none of its events. */
+    scene.events[1] = scene.events[0];
+    scene.events[1].kind = WH_EVENT_RELEASED;
+    assert_int_equal(judge(&scene), 0);
+    scene.events[0].kind = WH_EVENT_RELEASED;
+    scene.list.count = 0;
+    assert_int_equal(judge(&scene), 0);
+}
+
+static void test_an_unsupported_wafer_and_what_is_below_it(void **state) {
+    (void)state;
+    static const struct {
+        double x, y, z, height;
+    } rows[] = {
+        {300, 300, 900, 900},  /* the floor */
+        {700, 0, 1145, 5},     /* between slots: half a pitch above the top one */
+        {700, 0, 1500, 360},   /* above the stack */
+        {700, 0, 905, 5},      /* between two slots */
+        {700, 0, 895, 895},    /* below the stack: the floor */
+        {700, 50, 1500, 1500}, /* just beside the stack: the limit is strict */
+        {760, 0, 1500, 1500},  /* beside it along x alone */
+        {700, 60, 1500, 1500}, /* along y alone */
+        {760, 50, 1500, 1500}, /* along both */
+        {300, 300, -25, -25},  /* under the floor */
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        scene_t scene;
+        const wh_pose_t wafer = wh_test_at(rows[i].x, rows[i].y, rows[i].z);
+        let_go(&scene, &wafer);
+        assert_int_equal(judge(&scene), 1);
+        expect_said(&scene, WH_EVENT_RELEASED_UNSUPPORTED, WH_NONE, rows[i].height);
+    }
+}
+
+/* Base's origin may be high up in the machine. */
+static void test_a_station_below_bases_origin_supports_too(void **state) {
+    (void)state;
+    scene_t scene;
+    stations[0] = station_at(700, 0, -400, 1, WH_NONE);
+    const wh_pose_t wafer = wh_test_at(700, 0, -388);
+    let_go(&scene, &wafer);
+    assert_int_equal(judge(&scene), 1);
+    expect_said(&scene, WH_EVENT_RELEASED_UNSUPPORTED, WH_NONE, 12);
+}
+
+/* Of the slots below a wafer the nearest counts, wherever its station stands in the list. */
+static void test_the_nearest_slot_below_supports(void **state) {
+    (void)state;
+    for (size_t lower = 0; lower < 2; ++lower) {
+        scene_t scene;
+        stations[lower] = station_at(700, 0, 100, 2, WH_NONE);
+        stations[1 - lower] = station_at(700, 30, 300, 2, WH_NONE);
+        const wh_pose_t wafer = wh_test_at(700, 10, 350);
+        let_go(&scene, &wafer);
+        assert_int_equal(judge(&scene), 1);
+        expect_said(&scene, WH_EVENT_RELEASED_UNSUPPORTED, WH_NONE, 40);
+    }
+}
+
+/* A wafer that leans is in no slot, and yet over the one below its centre. */
+static void test_a_leaning_wafer_is_above_what_is_below(void **state) {
+    (void)state;
+    static const double heights[][2] = {{0, 0}, {0.5, 0.5}, {-0.5, 899.5}};
+    for (size_t i = 0; i < 3; ++i) {
+        scene_t scene;
+        wh_pose_t wafer = wh_test_at(700, 0, 900 + heights[i][0]);
+        wafer.R = wh_mat3_from_rpy_deg(30, 0, 0);
+        let_go(&scene, &wafer);
+        assert_int_equal(judge(&scene), 1);
+        expect_said(&scene, WH_EVENT_RELEASED_UNSUPPORTED, WH_NONE, heights[i][1]);
+    }
+}
+
+/* Neither a station nor a wafer beyond the count is there. */
+static void test_what_is_beyond_a_count_is_not_there(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t slot = wh_station_slot(&stations[0], 3);
+    let_go(&scene, &slot);
+    scene.wafers[WAFERS - 1].base_from_wafer = slot;
+    scene.table.storage.wafer_count = WAFERS - 1;
+    assert_int_equal(judge(&scene), 0);
+    stations[STATIONS - 1] = station_at(300, 300, 100, 1, WH_NONE);
+    cell.count = STATIONS - 1;
+    const wh_pose_t wafer = wh_test_at(300, 300, 120);
+    let_go(&scene, &wafer);
+    assert_int_equal(judge(&scene), 1);
+    expect_said(&scene, WH_EVENT_RELEASED_UNSUPPORTED, WH_NONE, 120);
+}
+
+/* Each release has its own. */
+static void test_two_releases_are_judged_in_turn(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t slot = wh_station_slot(&stations[0], 3);
+    let_go(&scene, &slot);
+    scene.wafers[0].base_from_wafer = wh_test_at(300, 300, 30);
+    scene.wafers[1].base_from_wafer = scene.wafers[2].base_from_wafer = slot;
+    scene.events[1] = scene.events[0];
+    scene.events[1].gripper = 1;
+    scene.events[1].wafer = 1;
+    scene.list.count = 2;
+    assert_int_equal(judge(&scene), 2);
+    assert_int_equal(scene.events[2].kind, WH_EVENT_RELEASED_UNSUPPORTED);
+    assert_near(scene.events[2].height, 30, 0);
+    assert_int_equal(scene.events[3].kind, WH_EVENT_SLOT_OCCUPIED);
+    assert_int_equal(scene.events[3].gripper, 1);
+    assert_int_equal(scene.events[3].other, 2);
+    /* The other way round, with the lower index as the one that lay there. */
+    scene.events[0].wafer = 2;
+    scene.wafers[0].base_from_wafer = slot;
+    scene.wafers[1].base_from_wafer = wh_test_at(300, 300, 30);
+    scene.list.count = 2;
+    assert_int_equal(judge(&scene), 2);
+    assert_int_equal(scene.events[2].other, 0);
+    assert_near(scene.events[3].height, 30, 0);
+}
+
+static void test_an_occupied_slot_names_the_lowest_wafer(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t slot = wh_station_slot(&stations[0], 3);
+    let_go(&scene, &slot);
+    scene.wafers[1].base_from_wafer = wh_test_at(720, 10, 921);
+    scene.wafers[2].base_from_wafer = slot;
+    assert_int_equal(judge(&scene), 1);
+    expect_said(&scene, WH_EVENT_SLOT_OCCUPIED, 1, 0);
+}
+
+static void test_a_neighbours_slot_is_not_this_one(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t slot = wh_station_slot(&stations[0], 3);
+    let_go(&scene, &slot);
+    scene.wafers[1].base_from_wafer = wh_station_slot(&stations[0], 4);
+    scene.wafers[2].base_from_wafer = wh_station_slot(&stations[1], 3);
+    assert_int_equal(judge(&scene), 0);
+    scene.wafers[0].base_from_wafer = wh_station_slot(&stations[1], 3);
+    scene.wafers[1].base_from_wafer = wh_station_slot(&stations[1], 2);
+    scene.wafers[2].base_from_wafer = wh_station_slot(&stations[0], 3);
+    assert_int_equal(judge(&scene), 0);
+}
+
+/* What the chuck holds lies there; what a blade carries over the chuck passes. */
+static void test_a_chucks_wafer_occupies_it_and_a_blades_does_not(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t slot = wh_station_slot(&stations[2], 1);
+    let_go(&scene, &slot);
+    scene.wafers[2].base_from_wafer = slot;
+    scene.wafers[2].holder = 0;
+    assert_int_equal(judge(&scene), 0);
+    scene.wafers[2].holder = stations[2].chuck;
+    assert_int_equal(judge(&scene), 1);
+    expect_said(&scene, WH_EVENT_SLOT_OCCUPIED, 2, 0);
+    scene.wafers[2].holder = WH_NONE;
+    scene.list.count = 1;
+    assert_int_equal(judge(&scene), 1);
+    /* In a plain slot nothing holds what lies there. */
+    const wh_pose_t plain = wh_station_slot(&stations[0], 2);
+    scene.wafers[0].base_from_wafer = scene.wafers[2].base_from_wafer = plain;
+    scene.wafers[2].holder = 0;
+    scene.list.count = 1;
+    assert_int_equal(judge(&scene), 0);
+}
+
+/* ---------------------------------------------------------------------------------------------- limits of placing */
+
+static void test_limits_of_placing(void **state) {
+    (void)state;
+    scene_t scene;
+    cell.off_centre = 5;
+    cell.askew = WH_REAL(0.01);
+    const wh_pose_t centred = wh_test_at(703, 4, 900);
+    let_go(&scene, &centred);
+    assert_int_equal(judge(&scene), 0); /* at the limit is within it */
+    const wh_pose_t aside = wh_test_at(703, 4.01, 900);
+    let_go(&scene, &aside);
+    assert_int_equal(judge(&scene), 1);
+    assert_int_equal(scene.events[1].kind, WH_EVENT_PLACED_OFF_CENTRE);
+    assert_near(scene.events[1].limit, 5, 0);
+    assert_true(scene.events[1].value > 5 && scene.events[1].value < 5.02);
+    wh_pose_t tilted = wh_test_at(700, 6, 900);
+    tilted.R = wh_mat3_from_rpy_deg(1, 0, 0);
+    let_go(&scene, &tilted);
+    assert_int_equal(judge(&scene), 2);
+    assert_int_equal(scene.events[2].kind, WH_EVENT_PLACED_ASKEW);
+    assert_near(scene.events[2].value, wh_rad_from_deg(1), 64 * WH_TEST_ROUNDING);
+    for (int none = -1; none <= 0; ++none) {
+        cell.off_centre = cell.askew = (wh_real_t)none;
+        let_go(&scene, &tilted);
+        assert_int_equal(judge(&scene), 0);
+    }
+    cell.off_centre = cell.askew = 0;
+}
+
+static void test_a_full_list_takes_no_more(void **state) {
+    (void)state;
+    scene_t scene;
+    cell.off_centre = 1;
+    const wh_pose_t aside = wh_test_at(710, 0, 900);
+    let_go(&scene, &aside);
+    scene.list.capacity = 1;
+    assert_int_equal(judge(&scene), 0);
+    assert_int_equal(scene.list.count, 1);
+    const wh_pose_t nowhere = wh_test_at(0, 0, 100);
+    let_go(&scene, &nowhere);
+    scene.list.capacity = 1;
+    assert_int_equal(judge(&scene), 0);
+    cell.off_centre = 0;
+}
+
+/* ------------------------------------------------------------------------------------------------------ settling */
+
+/* Lets go there and settles; returns how many events that made. */
+static size_t settle(scene_t *scene, const wh_pose_t *base_from_wafer) {
+    let_go(scene, base_from_wafer);
+    cell.settle = true;
+    wh_cell_settle(&cell, &scene->table, &scene->list);
+    cell.settle = false;
+    return scene->list.count - 1;
+}
+
+static void test_a_wafer_comes_to_lie_on_its_slot(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t base_from_slot = wh_station_slot(&stations[1], 3);
+    wh_pose_t slot_from_wafer = wh_test_at(3, -2, 0.4);
+    slot_from_wafer.R = wh_mat3_from_rpy_deg(1.5, -0.7, 40);
+    const wh_pose_t start = wh_pose_compose(&base_from_slot, &slot_from_wafer);
+    assert_int_equal(settle(&scene, &start), 1);
+    assert_int_equal(scene.events[1].kind, WH_EVENT_SETTLED);
+    assert_near(scene.events[1].value, 0.4, 4096 * WH_TEST_ROUNDING);
+    const wh_place_t place = wh_station_measure(&stations[1], 3, &scene.wafers[0].base_from_wafer);
+    assert_near(place.dx, 3, 4096 * WH_TEST_ROUNDING);
+    assert_near(place.dy, -2, 4096 * WH_TEST_ROUNDING);
+    assert_near(place.dz, 0, 4096 * WH_TEST_ROUNDING);
+    /* The smallest turn: of the angle between the normals, so nothing is left of the tilt, and x stays where it was to within it. */
+    const wh_vec3_t n = wh_mat3_column(&scene.wafers[0].base_from_wafer.R, 2);
+    const wh_vec3_t up = wh_mat3_column(&base_from_slot.R, 2);
+    assert_near(wh_vec3_dot(&n, &up), 1, 64 * WH_TEST_ROUNDING);
+    const wh_vec3_t from = wh_mat3_column(&start.R, 2);
+    wh_real_t trace = 0;
+    for (size_t column = 0; column < 3; ++column) {
+        const wh_vec3_t a = wh_mat3_column(&start.R, column);
+        const wh_vec3_t b = wh_mat3_column(&scene.wafers[0].base_from_wafer.R, column);
+        trace += wh_vec3_dot(&a, &b);
+    }
+    assert_near((trace - 1) / 2, wh_vec3_dot(&from, &up), 64 * WH_TEST_ROUNDING);
+    assert_int_equal(wh_pose_validate(&scene.wafers[0].base_from_wafer), WH_OK);
+}
+
+static void test_what_does_not_settle(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t above = wh_test_at(700, 0, 900.25);
+    let_go(&scene, &above);
+    wh_cell_settle(&cell, &scene.table, &scene.list); /* not asked for */
+    assert_int_equal(scene.list.count, 1);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 900.25, 0);
+    const wh_pose_t below = wh_test_at(700, 0, 899.9);
+    assert_int_equal(settle(&scene, &below), 0);
+    const wh_pose_t outside = wh_test_at(800, 0, 900.25);
+    assert_int_equal(settle(&scene, &outside), 0);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 900.25, 0);
+    let_go(&scene, &above);
+    scene.events[0].kind = WH_EVENT_HANDED_OVER;
+    cell.settle = true;
+    wh_cell_settle(&cell, &scene.table, &scene.list);
+    cell.settle = false;
+    assert_int_equal(scene.list.count, 1);
+}
+
+/* Each release of a list, and none that stands beyond its end. */
+static void test_each_release_settles_in_turn(void **state) {
+    (void)state;
+    scene_t scene;
+    cell.settle = true;
+    const wh_pose_t nowhere = wh_test_at(300, 300, 900);
+    let_go(&scene, &nowhere);
+    for (int w = 1; w < WAFERS; ++w) {
+        scene.wafers[w].base_from_wafer = wh_test_at(700, 0, 900.25 + 10 * w);
+        scene.events[w] = scene.events[0];
+        scene.events[w].wafer = w;
+    }
+    scene.list.count = 2;
+    wh_cell_settle(&cell, &scene.table, &scene.list);
+    assert_int_equal(scene.list.count, 3);
+    assert_near(scene.wafers[1].base_from_wafer.r.z, 910, 4096 * WH_TEST_ROUNDING);
+    assert_near(scene.wafers[2].base_from_wafer.r.z, 920.25, 0);
+    let_go(&scene, &nowhere);
+    scene.wafers[2].base_from_wafer = wh_test_at(700, 0, 920.25);
+    scene.events[1] = scene.events[0];
+    scene.events[1].wafer = 2;
+    wh_cell_settle(&cell, &scene.table, &scene.list);
+    assert_int_equal(scene.list.count, 1);
+    assert_near(scene.wafers[2].base_from_wafer.r.z, 920.25, 0);
+    cell.settle = false;
+}
+
+/* It comes to lie even where nothing more can be said; and what a gripper holds stays in its hand. */
+static void test_settling_without_room_or_while_held(void **state) {
+    (void)state;
+    scene_t scene;
+    const wh_pose_t above = wh_test_at(700, 0, 900.25);
+    cell.settle = true;
+    let_go(&scene, &above);
+    scene.list.capacity = 1;
+    wh_cell_settle(&cell, &scene.table, &scene.list);
+    assert_int_equal(scene.list.count, 1);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 900, 4096 * WH_TEST_ROUNDING);
+    let_go(&scene, &above);
+    scene.wafers[0].holder = 0;
+    wh_cell_settle(&cell, &scene.table, &scene.list);
+    assert_int_equal(scene.list.count, 1);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 900.25, 0);
+    cell.settle = false;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(test_a_release_in_a_free_slot_is_fine, set_up),
+        cmocka_unit_test_setup(test_only_releases_are_judged, set_up),
+        cmocka_unit_test_setup(test_an_unsupported_wafer_and_what_is_below_it, set_up),
+        cmocka_unit_test_setup(test_a_station_below_bases_origin_supports_too, set_up),
+        cmocka_unit_test_setup(test_the_nearest_slot_below_supports, set_up),
+        cmocka_unit_test_setup(test_a_leaning_wafer_is_above_what_is_below, set_up),
+        cmocka_unit_test_setup(test_what_is_beyond_a_count_is_not_there, set_up),
+        cmocka_unit_test_setup(test_two_releases_are_judged_in_turn, set_up),
+        cmocka_unit_test_setup(test_an_occupied_slot_names_the_lowest_wafer, set_up),
+        cmocka_unit_test_setup(test_a_neighbours_slot_is_not_this_one, set_up),
+        cmocka_unit_test_setup(test_a_chucks_wafer_occupies_it_and_a_blades_does_not, set_up),
+        cmocka_unit_test_setup(test_limits_of_placing, set_up),
+        cmocka_unit_test_setup(test_a_full_list_takes_no_more, set_up),
+        cmocka_unit_test_setup(test_a_wafer_comes_to_lie_on_its_slot, set_up),
+        cmocka_unit_test_setup(test_what_does_not_settle, set_up),
+        cmocka_unit_test_setup(test_each_release_settles_in_turn, set_up),
+        cmocka_unit_test_setup(test_settling_without_room_or_while_held, set_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,97 @@
+/* The messages as LCM sees them: told apart by their fingerprints, and small enough for one datagram. */
+#include "support/support.h"
+
+#include <waferhand_messages.h>
+
+/* What one UDP datagram carries of an LCM message: the longest one less LCM's header and the channel's name.
+ * LCM sends longer messages in fragments, which get lost one by one. */
+enum { DATAGRAM = 65499, WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16, NAME = 64 };
+
+typedef struct {
+    const char *name;
+    int64_t fingerprint;
+} message_t;
+
+/* LCM's fingerprint leaves out a message's name: two with the same members would be taken for each other. */
+static void test_fingerprints_differ(void **state) {
+    (void)state;
+#define MESSAGE(name) {#name, __waferhand_##name##_get_hash()},
+    const message_t messages[] = {WAFERHAND_MESSAGES(MESSAGE)};
+    const size_t count = sizeof(messages) / sizeof(messages[0]);
+    assert_true(count > 1);
+    for (size_t i = 0; i < count; i++) {
+        for (size_t k = 0; k < i; k++) {
+            if (messages[i].fingerprint == messages[k].fingerprint) {
+                fail_msg("%s and %s have the same fingerprint", messages[k].name, messages[i].name);
+            }
+        }
+    }
+}
+
+static void test_largest_state_fits(void **state) {
+    static waferhand_wafer_state wafers[WAFERS];
+    static waferhand_gripper_state grippers[GRIPPERS];
+    static waferhand_event events[EVENTS];
+    static waferhand_fault_slot faults[FAULTS];
+    (void)state;
+    const waferhand_state message = {.wafer_count = WAFERS,
+                                     .gripper_count = GRIPPERS,
+                                     .event_count = EVENTS,
+                                     .fault_count = FAULTS,
+                                     .wafers = wafers,
+                                     .grippers = grippers,
+                                     .events = events,
+                                     .faults = faults};
+    const int size = waferhand_state_encoded_size(&message);
+    print_message("state of %d wafers: %d bytes\n", WAFERS, size);
+    /* Computed by hand: a header of 80, a check of 8, wafers of 100, grippers of 446, events of 156 and slots of
+     * faults of 328 bytes. */
+    assert_int_equal(size, 88 + WAFERS * 100 + GRIPPERS * 446 + EVENTS * 156 + FAULTS * 328);
+    assert_true(size <= DATAGRAM);
+}
+
+/* Wafers and stations with names of 63 bytes each. */
+static void test_large_cell_fits(void **state) {
+    static waferhand_wafer_state wafers[WAFERS];
+    static waferhand_station stations[16];
+    static char name[NAME];
+    char *names[WAFERS];
+    (void)state;
+    memset(name, 'x', sizeof(name) - 1);
+    for (size_t i = 0; i < WAFERS; i++) {
+        names[i] = name;
+    }
+    for (size_t i = 0; i < sizeof(stations) / sizeof(stations[0]); i++) {
+        stations[i].name = name;
+    }
+    const waferhand_cell message = {.layout = name,
+                                    .gripper_count = GRIPPERS,
+                                    .station_count = sizeof(stations) / sizeof(stations[0]),
+                                    .wafer_count = WAFERS,
+                                    .gripper_names = names,
+                                    .valve_names = names,
+                                    .stations = stations,
+                                    .wafer_names = names,
+                                    .wafers = wafers};
+    const int size = waferhand_cell_encoded_size(&message);
+    print_message("cell of %d wafers: %d bytes\n", WAFERS, size);
+    assert_true(size <= DATAGRAM);
+}
+
+static void test_fixed_sizes(void **state) {
+    (void)state;
+    const waferhand_command command = {0};
+    const waferhand_proximity proximity = {0};
+    assert_int_equal(waferhand_command_encoded_size(&command), 1469);
+    assert_int_equal(waferhand_proximity_encoded_size(&proximity), 508);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_fingerprints_differ),
+        cmocka_unit_test(test_largest_state_fits),
+        cmocka_unit_test(test_large_cell_fits),
+        cmocka_unit_test(test_fixed_sizes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,321 @@
+/* A layout's parts for the collision check: defaults by wafer size, obstacles, and what is refused. */
+#include <unistd.h>
+
+#include "support/layout.h"
+
+#include "layout/layout.h"
+
+#define GRIPPERS "grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } }, "
+#define PREALIGNER "P = { kind = 'prealigner', at = { -600, 0, 950 }, rpy = { 0, 0, 180 } }, "
+#define FOUP "F = { kind = 'foup', at = { 760, 0, 900 } }, "
+#define STATIONS "stations = { " FOUP PREALIGNER "}, "
+#define CELL GRIPPERS STATIONS
+
+static int32_t find(const wh_layout_t *layout, const char *name) {
+    for (size_t i = 0; i < layout->world.part_count; ++i) {
+        if (strcmp(layout->part_names[i], name) == 0) {
+            return (int32_t)i;
+        }
+    }
+    return WH_NONE;
+}
+
+static const wh_part_t *part(const wh_layout_t *layout, const char *name) {
+    const int32_t index = find(layout, name);
+    if (index == WH_NONE) {
+        fail_msg("no part \"%s\"", name);
+    }
+    return &layout->world.parts[index];
+}
+
+/* A box from x0 to x1 and so on, of a part that hangs on nothing and is not turned, or in its body's frame. */
+static void expect_box(const wh_layout_t *layout, const char *name, double x0, double x1, double y0,
+                       double y1, double z0, double z1) {
+    const wh_convex_t *convex = &part(layout, name)->convex;
+    assert_int_equal(convex->kind, WH_CONVEX_BOX);
+    const wh_vec3_t *r = &convex->body_from_shape.r;
+    assert_near(r->x - convex->half.x, x0, 1e-9);
+    assert_near(r->x + convex->half.x, x1, 1e-9);
+    assert_near(r->y - convex->half.y, y0, 1e-9);
+    assert_near(r->y + convex->half.y, y1, 1e-9);
+    assert_near(r->z - convex->half.z, z0, 1e-9);
+    assert_near(r->z + convex->half.z, z1, 1e-9);
+}
+
+static void expect_cylinder(const wh_layout_t *layout, const char *name, double radius, double z0,
+                            double z1) {
+    const wh_convex_t *convex = &part(layout, name)->convex;
+    assert_int_equal(convex->kind, WH_CONVEX_CYLINDER);
+    assert_near(convex->half.x, radius, 1e-9);
+    assert_near(convex->body_from_shape.r.z - convex->half.z, z0, 1e-9);
+    assert_near(convex->body_from_shape.r.z + convex->half.z, z1, 1e-9);
+}
+
+/* ------------------------------------------------------------------------------------------------- defaults */
+
+static void test_shapes_of_300_mm(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(CELL);
+    assert_false(layout->collision);
+    expect_box(layout, "EE finger left", -55, 100, 50, 75, -3, 0);
+    expect_box(layout, "EE finger right", -55, 100, -75, -50, -3, 0);
+    expect_box(layout, "EE palm", -80, -55, -75, 75, -3, 0);
+    expect_box(layout, "EE neck", -250, -80, -37.5, 37.5, -3, 0);
+    expect_cylinder(layout, "PA chuck", 40, -20, 0);
+    expect_box(layout, "F ledge 1 left", 685, 835, 140, 152, 899.5, 900);
+    expect_box(layout, "F ledge 25 right", 685, 835, -152, -140, 1139.5, 1140);
+    assert_near(layout->world.wafer.half.x, 150, 0);
+    assert_near(layout->world.wafer.half.z, 0.775 / 2, 1e-12);
+    assert_near(layout->world.wafer.body_from_shape.r.z, 0.775 / 2, 1e-12);
+    assert_near(layout->shapes.arm.link, 0.53 * 650, 1e-9);
+}
+
+static void test_shapes_of_smaller_wafers(void **state) {
+    (void)state;
+    const wh_layout_t *of_200 = read_sound("wafer = { diameter = 200 }, " CELL);
+    expect_box(of_200, "EE palm", -80 / 1.5, -55 / 1.5, -50, 50, -2, 0);
+    expect_box(of_200, "F ledge 2 left", 710, 810, 100 - 10 / 1.5, 102, 905.85, 906.35);
+    assert_near(of_200->stations[0].stroke, 4, 0);
+    assert_near(of_200->stations[0].offset, 2, 0);
+    const wh_layout_t *of_150 = read_sound("wafer = { diameter = 150 }, " CELL);
+    expect_box(of_150, "EE finger left", -27.5, 50, 25, 37.5, -1.5, 0);
+    expect_box(of_150, "F ledge 2 left", 722.5, 797.5, 70, 77, 904.26, 904.76);
+    expect_cylinder(of_150, "PA chuck", 20, -20, 0);
+    assert_near(of_150->stations[0].stroke, 3, 0);
+    assert_near(of_150->stations[0].offset, 1.5, 0);
+}
+
+static void test_foup(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(CELL);
+    expect_box(layout, "F wall left", 602, 923, 158, 163, 875, 1160);
+    expect_box(layout, "F wall right", 602, 923, -163, -158, 875, 1160);
+    expect_box(layout, "F wall behind", 918, 923, -158, 158, 875, 1160);
+    expect_box(layout, "F roof", 602, 923, -163, 163, 1160, 1165);
+    expect_box(layout, "F floor", 602, 923, -163, 163, 870, 875);
+    expect_box(layout, "F load port", 602, 973, -173, 173, 0, 870);
+    assert_int_equal(part(layout, "F roof")->owner, 0);
+    /* Too low for a load port below it. */
+    const wh_layout_t *low =
+        read_sound(GRIPPERS "stations = { F = { kind = 'foup', at = { 760, 0, 49 } }, " PREALIGNER "}");
+    assert_int_equal(find(low, "F load port"), WH_NONE);
+    assert_int_not_equal(find(low, "F floor"), WH_NONE);
+}
+
+static void test_robot(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(CELL);
+    expect_cylinder(layout, "column", 120, 0, 425);
+    expect_cylinder(layout, "lift", 90, -590, -165);
+    expect_box(layout, "upper arm", -35, 379.5, -35, 35, -160, -115);
+    expect_box(layout, "forearm", -35, 379.5, -35, 35, -110, -65);
+    expect_cylinder(layout, "hand", 40, -60, -3);
+    assert_int_equal(part(layout, "forearm")->owner, WH_ARM_FOREARM);
+    const wh_layout_t *low =
+        read_sound("robot = { z = { min = 100 } }, shapes = { arm = { reach = 50 } }, " CELL);
+    assert_int_equal(find(low, "column"), WH_NONE);
+    assert_int_equal(find(low, "EE neck"), WH_NONE);
+}
+
+static void test_names_and_order(void **state) {
+    (void)state;
+    const wh_layout_t *layout =
+        read_sound(CELL "wafers = { { name = 'W', station = 'F', slot = 1 } }, "
+                        "obstacles = { { box = { 1, 1, 1 }, at = { 0, 0, 0 }, on = 'hand' }, "
+                        "{ box = { 1, 1, 1 }, at = { 0, 0, 0 } } }");
+    const int32_t count = (int32_t)layout->world.part_count;
+    /* 50 ledges, 5 walls, a load port, a body and an obstacle; then 5 of the robot, 5 of grippers and one more. */
+    assert_int_equal(count, 58 + 11);
+    assert_int_equal(find(layout, "obstacle 2"), 57);
+    assert_int_equal(find(layout, "obstacle 1"), count - 1);
+    assert_int_equal(layout->hung_count, 1);
+    assert_string_equal(wh_layout_part_name(layout, count), "W");
+    assert_null(wh_layout_part_name(layout, count + 1));
+    assert_null(wh_layout_part_name(layout, -1));
+}
+
+static void test_own_sizes(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        CELL "collision = true, clearance = { blade_wafer_above = 1.5 }, "
+             "shapes = { blade = { thickness = 2, half_width = 60, finger = 20, length = 90, palm = 70 }, "
+             "ledge = { inner = 130, outer = 160, thickness = 3, length = 20 }, "
+             "foup = { room = 10, wall = 2, floor = 30, roof = 40 }, chuck = { radius = 30, height = 12, "
+             "body = 100 }, "
+             "arm = { reach = 200, link = 400, right_handed = true } }");
+    assert_true(layout->collision);
+    assert_near(layout->world.limits[WH_CLEARANCE_BLADE_WAFER_ABOVE], 1.5, 0);
+    assert_near(layout->world.limits[WH_CLEARANCE_BLADE_WAFER_BELOW], 0, 0);
+    expect_box(layout, "EE finger left", -50, 90, 40, 60, -2, 0);
+    expect_box(layout, "EE neck", -200, -70, -30, 30, -2, 0);
+    expect_box(layout, "F ledge 1 right", 750, 770, -160, -130, 897, 900);
+    expect_box(layout, "F roof", 600, 922, -162, 162, 1180, 1182);
+    expect_cylinder(layout, "PA chuck", 30, -12, 0);
+    expect_cylinder(layout, "P body", 100, 950 - 220, 950 - 13);
+    assert_near(layout->world.arm.link, 400, 0);
+    assert_true(layout->world.arm.right_handed);
+}
+
+/* ------------------------------------------------------------------------------------------------ obstacles */
+
+static void test_obstacles_of_each_kind(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        CELL
+        "obstacles = { "
+        "{ name = 'wall', box = { 10, 20, 30 }, at = { 1, 2, 3 }, rpy = { 0, 0, 90 } }, "
+        "{ name = 'post', cylinder = { radius = 5, height = 40 }, at = { 4, 5, 6 }, on = 'base' }, "
+        "{ name = 'hose', capsule = { radius = 3, height = 20 }, at = { 0, 0, -20 }, on = 'upper arm' }, "
+        "{ name = 'camera', box = { 5, 5, 5 }, at = { -100, 0, 10 }, on = 'EE' }, "
+        "{ name = 'cap', box = { 5, 5, 5 }, at = { 0, 0, -10 }, on = 'PA' } }");
+    const wh_part_t *wall = part(layout, "wall");
+    assert_int_equal(wall->kind, WH_PART_FIXED);
+    assert_int_equal(wall->owner, WH_NONE);
+    assert_near(wall->convex.half.y, 10, 0);
+    assert_near(wall->convex.body_from_shape.r.z, 3, 0);
+    assert_near(wall->convex.body_from_shape.R.m[1][0], 1, 0);
+    expect_cylinder(layout, "post", 5, -14, 26);
+    const wh_part_t *hose = part(layout, "hose");
+    assert_int_equal(hose->kind, WH_PART_ARM);
+    assert_int_equal(hose->owner, WH_ARM_UPPER);
+    assert_int_equal(hose->convex.kind, WH_CONVEX_CAPSULE);
+    assert_near(hose->convex.half.z, 10, 0);
+    assert_int_equal(part(layout, "camera")->kind, WH_PART_BLADE);
+    assert_int_equal(part(layout, "cap")->kind, WH_PART_CHUCK);
+    assert_int_equal(part(layout, "cap")->owner, 1);
+    assert_int_equal(layout->hung_count, 3);
+}
+
+/* A corner of a cube, cut off: in inches. */
+static void write_tetrahedron(FILE *file) {
+    static const double corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}};
+    static const int facets[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    fputs("solid corner\n", file);
+    for (int f = 0; f < 4; ++f) {
+        fputs("facet normal 0 0 0\nouter loop\n", file);
+        for (int c = 0; c < 3; ++c) {
+            const double *at = corners[facets[f][c]];
+            fprintf(file, "vertex %g %g %g\n", at[0], at[1], at[2]);
+        }
+        fputs("endloop\nendfacet\n", file);
+    }
+    fputs("endsolid corner\n", file);
+}
+
+static void test_obstacle_of_a_mesh(void **state) {
+    (void)state;
+    char path[] = "/tmp/waferhand_mesh_XXXXXX";
+    char fields[512];
+    const int descriptor = mkstemp(path);
+    assert_true(descriptor >= 0);
+    FILE *file = fdopen(descriptor, "w");
+    assert_non_null(file);
+    write_tetrahedron(file);
+    assert_int_equal(fclose(file), 0);
+    snprintf(fields, sizeof fields,
+             CELL "obstacles = { { name = 'corner', mesh = '%s', unit = 'inch', at = { 7, 0, 0 } } }", path);
+    const wh_layout_t *layout = read_layout(fields);
+    assert_int_equal(unlink(path), 0);
+    assert_non_null(layout);
+    const wh_convex_t *convex = &part(layout, "corner")->convex;
+    assert_int_equal(convex->kind, WH_CONVEX_MESH);
+    assert_int_equal(convex->point_count, 4);
+    wh_vec3_t low;
+    wh_vec3_t high;
+    wh_convex_bounds(convex, &convex->body_from_shape, &low, &high);
+    assert_near(low.x, 7, 1e-9);
+    assert_near(high.x, 7 + 25.4, 1e-9);
+    assert_near(high.y, 50.8, 1e-9);
+    assert_near(high.z, 76.2, 1e-9);
+}
+
+/* -------------------------------------------------------------------------------------------------- refusals */
+
+static void test_bad_obstacles(void **state) {
+    (void)state;
+    static const struct {
+        const char *obstacle, *message;
+    } cases[] = {
+        {"box = { 1, 1, 1 }, cylinder = { radius = 1, height = 1 }, at = { 0, 0, 0 }",
+         "cell.lua: obstacles[1].cylinder: \"cylinder\" (expected one shape; box is given as well)"},
+        {"at = { 0, 0, 0 }",
+         "cell.lua: obstacles[1].box: nothing (expected a shape: box = { x, y, z }, cylinder, "},
+        {"box = { 1, 1, 1 }", "cell.lua: obstacles[1].at: nothing (expected a list of three numbers)"},
+        {"box = { 1, 1, 1 }, at = { 0, 0, 0 }, on = 'nowhere'",
+         "cell.lua: obstacles[1].on: \"nowhere\" (expected \"base\", \"lift\""},
+        {"box = { 1, 0, 1 }, at = { 0, 0, 0 }, name = 'flat'",
+         "cell.lua: obstacles[1]: \"flat\" (expected a shape of at least 0.01 mm"},
+        {"cylinder = { radius = 1 }, at = { 0, 0, 0 }",
+         "cell.lua: obstacles[1].cylinder.height: nothing (expected a number"},
+        {"capsule = { radius = -1, height = 1 }, at = { 0, 0, 0 }",
+         "cell.lua: obstacles[1].capsule.radius: -1 (expected a number"},
+        {"box = { 1, 1, 1 }, at = { 0, 0, 0 }, colour = 1",
+         "cell.lua: obstacles[1].colour: 1 (expected one of the fields"},
+        {"mesh = 'no_such.stl', at = { 0, 0, 0 }",
+         "cell.lua: obstacles[1].unit: nothing (expected the mesh's unit: \"mm\""},
+        {"mesh = 'no_such.stl', unit = 'mm', at = { 0, 0, 0 }",
+         "cell.lua: obstacles[1].mesh: \"no_such.stl\" (expected a convex mesh in an STL file: "
+         "no_such.stl: "},
+        {"mesh = 'no_such.stl', unit = 'ell', at = { 0, 0, 0 }",
+         "cell.lua: obstacles[1].unit: \"ell\" (expected \"mm\""},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        char fields[1024];
+        snprintf(fields, sizeof fields, CELL "obstacles = { { %s } }", cases[i].obstacle);
+        expect_refused(fields, cases[i].message);
+    }
+}
+
+static void test_bad_shapes(void **state) {
+    (void)state;
+    expect_refused(CELL "shapes = { blade = { thickness = 0 } }",
+                   "cell.lua: shapes.blade.thickness: 0 (expected a number from 0.1 to 50)");
+    expect_refused(CELL "shapes = { blade = { finger = 80 } }",
+                   "cell.lua: shapes.blade.finger: 80 (expected a number");
+    expect_refused(CELL "shapes = { ledge = { inner = 152 } }",
+                   "cell.lua: shapes.ledge.inner: 152 (expected a number");
+    expect_refused(CELL "shapes = { arm = { elbow = 1 } }",
+                   "cell.lua: shapes.arm.elbow: 1 (expected one of the fields");
+    expect_refused(CELL "shapes = { chuck = { radius = 0 } }",
+                   "cell.lua: shapes.chuck.radius: 0 (expected a number from 1 to 500)");
+    expect_refused(CELL "shapes = { tail = {} }", "cell.lua: shapes.tail: ");
+    expect_refused(CELL "clearance = { blade_wafer = 1 }",
+                   "cell.lua: clearance.blade_wafer: 1 (expected one of the fields");
+    expect_refused(CELL "clearance = { arm_other = 21 }",
+                   "cell.lua: clearance.arm_other: 21 (expected a number from 0 to 20)");
+    expect_refused(CELL "collision = 1", "cell.lua: collision: 1 (expected true or false)");
+}
+
+#define MANY(n, item) "(function() local t = {} for i = 1, " #n " do t[i] = " item " end return t end)()"
+#define SHELVES                                                                                              \
+    GRIPPERS "stations = (function() local t = { " PREALIGNER "} for i = 1, 50 do "                          \
+             "t['S' .. i] = { at = { 700, 0, 900 }, slots = 1000 } end return t end)(), "
+
+static void test_too_many(void **state) {
+    (void)state;
+    expect_refused(CELL "obstacles = " MANY(1001, "{ box = { 1, 1, 1 }, at = { 0, 0, 0 } }"),
+                   "cell.lua: obstacles: 1001 (expected at most 1000 obstacles)");
+    expect_refused(CELL "obstacles = " MANY(60, "{ box = { 1, 1, 1 }, at = { 0, 0, 0 }, on = 'hand' }"),
+                   "cell.lua: shapes: \"all parts\" (expected parts that can be checked: ");
+    expect_refused(SHELVES "collision = true", "cell.lua: collision: 1000");
+    const wh_layout_t *unchecked = read_sound(SHELVES);
+    assert_int_equal(unchecked->world.part_count, 0);
+    assert_null(wh_layout_part_name(unchecked, 0));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_shapes_of_300_mm),
+        cmocka_unit_test(test_shapes_of_smaller_wafers),
+        cmocka_unit_test(test_foup),
+        cmocka_unit_test(test_robot),
+        cmocka_unit_test(test_names_and_order),
+        cmocka_unit_test(test_own_sizes),
+        cmocka_unit_test(test_obstacles_of_each_kind),
+        cmocka_unit_test(test_obstacle_of_a_mesh),
+        cmocka_unit_test(test_bad_obstacles),
+        cmocka_unit_test(test_bad_shapes),
+        cmocka_unit_test(test_too_many),
+    };
+    return cmocka_run_group_tests(tests, open_sandbox, close_sandbox);
+}

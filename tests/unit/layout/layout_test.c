@@ -1,0 +1,305 @@
+/* Layouts: every field's default and unit, what is refused and how that is said. */
+#include "support/layout.h"
+
+#include "layout/layout.h"
+#include "math/status.h"
+#include "math/trig.h"
+
+#define GRIPPERS "grippers = { { name = 'EE' } }, "
+#define STATIONS "stations = { A = { at = { 700, 0, 900 } } }, "
+
+static void test_defaults_of_the_cell(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(GRIPPERS STATIONS);
+    assert_string_equal(layout->path, "cell.lua");
+    assert_string_equal(layout->tolerance_name, "paper");
+    assert_near(layout->wafer_diameter, 300, 0);
+    assert_near(layout->wafer_thickness, 0.775, 0);
+    assert_near(layout->grasp.tolerance.projz, 0.5, 0);
+    assert_near(layout->grasp.tolerance.projxy, 50, 0);
+    assert_near(layout->grasp.tolerance.planar, 0.99, 0);
+    assert_near(layout->grasp.near_projz, 4.5, 0);
+    assert_near(layout->grasp.near_projxy, 100, 0);
+    assert_int_equal(layout->grasp.check, WH_CHECK_SAMPLED);
+    assert_false(layout->grasp.seat);
+    assert_int_equal(layout->slice_us, 1000);
+    assert_int_equal(layout->wafer_count, 0);
+}
+
+static void test_the_default_robot(void **state) {
+    (void)state;
+    wh_robot_t robot;
+    wh_robot_default(&robot);
+    const wh_machine_t *machine = &read_sound(GRIPPERS STATIONS)->machine;
+    assert_memory_equal(&machine->robot, &robot, sizeof robot);
+    assert_memory_equal(&machine->chuck_limits, &robot.limits[WH_AXIS_YAW], sizeof machine->chuck_limits);
+    assert_int_equal(machine->axis_count, WH_ROBOT_AXES);
+    assert_int_equal(machine->gripper_count, 1);
+    assert_int_equal(machine->mounts[0].axis, WH_NONE);
+}
+
+static void test_defaults_of_a_station(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(GRIPPERS STATIONS);
+    const wh_layout_station_t *station = &layout->stations[0];
+    const wh_station_t *place = &layout->places[0];
+    assert_int_equal(layout->station_count, 1);
+    assert_string_equal(station->name, "A");
+    assert_false(station->prealigner);
+    assert_near(station->stroke, 6, 0);
+    assert_near(station->offset, 3, 0);
+    assert_near(station->retract, 300, 0);
+    assert_near(station->pickup_speed, 20, 0);
+    assert_near(station->release, -0.25, 0);
+    assert_near(station->vacuum_delay, 0, 0);
+    assert_near(station->timeout, 0.25, 0);
+    assert_int_equal(station->handover, WH_HANDOVER_NEW_FIRST);
+    assert_int_equal(place->slots, 1);
+    assert_near(place->pitch, 10, 0);
+    assert_int_equal(place->chuck, WH_NONE);
+    const wh_pose_t level = {wh_mat3_identity(), {700, 0, 900}};
+    assert_memory_equal(&place->base_from_station, &level, sizeof level);
+}
+
+static void test_defaults_that_follow_other_fields(void **state) {
+    (void)state;
+    static const struct {
+        const char *diameter;
+        double thickness, pitch;
+    } rows[] = {{"100", 0.525, 4.76}, {"125", 0.625, 4.76}, {"150", 0.675, 4.76},
+                {"200", 0.725, 6.35}, {"300", 0.775, 10},   {"450", 0.775, 10}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        char fields[200];
+        snprintf(fields, sizeof fields, GRIPPERS STATIONS "wafer = { diameter = %s }", rows[i].diameter);
+        const wh_layout_t *layout = read_sound(fields);
+        assert_near(layout->wafer_thickness, rows[i].thickness, 0);
+        assert_near(layout->places[0].pitch, rows[i].pitch, 0);
+    }
+    assert_near(read_sound(GRIPPERS STATIONS "seat = true")->stations[0].release, 0, 0);
+    const wh_layout_t *layout = read_sound(GRIPPERS STATIONS "tolerance = { projz = 0.4, projxy = 7 }");
+    assert_string_equal(layout->tolerance_name, "own");
+    assert_near(layout->stations[0].release, -0.2, 0);
+    assert_near(layout->grasp.near_projxy, 14, 0);
+    assert_near(layout->grasp.tolerance.planar, 0.99, 0);
+}
+
+static void test_every_field_of_the_cell_is_read(void **state) {
+    (void)state;
+    const wh_layout_t *layout =
+        read_sound(GRIPPERS STATIONS
+                   "wafer = { diameter = 200, thickness = 0.7 }, tolerance = 'strict', check = 'swept', "
+                   "near = { projz = 3, projxy = 60 }, slice = 0.00025, seat = true, collision = false");
+    assert_near(layout->wafer_thickness, 0.7, 0);
+    assert_string_equal(layout->tolerance_name, "strict");
+    assert_near(layout->grasp.tolerance.projxy, 5, 0);
+    assert_int_equal(layout->grasp.check, WH_CHECK_SWEPT);
+    assert_near(layout->grasp.near_projz, 3, 0);
+    assert_near(layout->grasp.near_projxy, 60, 0);
+    assert_int_equal(layout->slice_us, 250);
+    assert_true(layout->grasp.seat);
+}
+
+static void test_degrees_become_radians_and_lengths_stay(void **state) {
+    (void)state;
+    const wh_machine_t *machine =
+        &read_sound(GRIPPERS STATIONS
+                    "robot = { kind = 'TRZY', theta = { min = -90, max = 180, home = 45, speed = 30, "
+                    "acceleration = 60, jerk = 600 }, r = { min = 200, max = 800, home = 250, speed = 500 }, "
+                    "z = { home = 1000 } }, chuck = { speed = 90, acceleration = 180, jerk = 360 }")
+             ->machine;
+    const wh_travel_t *theta = &machine->robot.travel[WH_AXIS_THETA];
+    assert_near(theta->min, -WH_PI / 2, 1e-15);
+    assert_near(theta->max, WH_PI, 0);
+    assert_near(machine->robot.home[WH_AXIS_THETA], WH_PI / 4, 1e-15);
+    assert_near(machine->robot.limits[WH_AXIS_THETA].speed, WH_PI / 6, 1e-15);
+    assert_near(machine->robot.limits[WH_AXIS_THETA].acceleration, WH_PI / 3, 1e-15);
+    assert_near(machine->robot.limits[WH_AXIS_THETA].jerk, 10 * WH_PI / 3, 1e-14);
+    assert_near(machine->robot.travel[WH_AXIS_R].min, 200, 0);
+    assert_near(machine->robot.limits[WH_AXIS_R].speed, 500, 0);
+    assert_near(machine->robot.limits[WH_AXIS_R].jerk, 50000, 0);
+    assert_near(machine->robot.home[WH_AXIS_Z], 1000, 0);
+    assert_near(machine->chuck_limits.speed, WH_PI / 2, 1e-15);
+    assert_near(machine->chuck_limits.jerk, 2 * WH_PI, 1e-15);
+}
+
+static void test_every_field_of_a_station_is_read(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        "grippers = { { name = 'EE', on = 'robot', valve = 'v[0]' }, { name = 'PA', on = 'P' } }, "
+        "stations = { Q = { at = { 700, 1, 900 }, rpy = { 0, 0, 90 }, slots = 13, pitch = 7, stroke = 8, "
+        "offset = 2, retract = 250, pickup_speed = 15, release = -1, vacuum_delay = 0.1, timeout = 0.5, "
+        "handover = 'same_slice' }, P = { kind = 'prealigner', at = { -600, 0, 950 } } }");
+    assert_string_equal(layout->stations[0].name, "P");
+    assert_true(layout->stations[0].prealigner);
+    assert_int_equal(layout->places[0].chuck, 1);
+    const wh_layout_station_t *station = &layout->stations[1];
+    assert_string_equal(station->name, "Q");
+    assert_int_equal(layout->places[1].slots, 13);
+    assert_near(layout->places[1].pitch, 7, 0);
+    assert_near(layout->places[1].base_from_station.R.m[1][0], 1, 0);
+    assert_near(station->stroke, 8, 0);
+    assert_near(station->offset, 2, 0);
+    assert_near(station->retract, 250, 0);
+    assert_near(station->pickup_speed, 15, 0);
+    assert_near(station->release, -1, 0);
+    assert_near(station->vacuum_delay, 0.1, 0);
+    assert_near(station->timeout, 0.5, 0);
+    assert_int_equal(station->handover, WH_HANDOVER_SAME_SLICE);
+    assert_string_equal(layout->grippers[0].valve, "v[0]");
+    assert_string_equal(layout->grippers[1].valve, "PA.valve");
+    assert_int_equal(layout->grippers[1].station, 0);
+    assert_int_equal(layout->machine.mounts[1].axis, WH_ROBOT_AXES);
+    assert_int_equal(layout->machine.axis_count, 5);
+    assert_int_equal(wh_layout_find_station(layout, "Q"), 1);
+    assert_int_equal(wh_layout_find_station(layout, "q"), WH_NONE);
+    assert_int_equal(wh_layout_find_gripper(layout, "PA"), 1);
+}
+
+/* One that says nothing of its place, or that it has none, is the end-effector: its layout's hash is as ever. */
+static void test_what_a_station_asks_of_a_command_is_read(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        "homed = false, grippers = { { name = 'PA', on = 'P' }, { name = 'LOW' }, { name = 'HIGH' } }, "
+        "stations = { P = { kind = 'prealigner', at = { -600, 0, 950 } }, "
+        "Q = { at = { 700, 0, 900 }, taught = false, effector = 'HIGH', pickup_acceleration = 250, "
+        "vacuum_check = 'put', retries = 3, wait = 0.5, map_speed = 80, check_map = true } }");
+    const wh_layout_station_t *plain = &layout->stations[0];
+    const wh_layout_station_t *station = &layout->stations[1];
+    assert_false(layout->homed);
+    assert_true(plain->taught);
+    assert_false(plain->check_map);
+    assert_int_equal(plain->effector, 1);
+    assert_int_equal(plain->check, WH_VACUUM_CHECK_BOTH);
+    assert_int_equal(plain->retries, 0);
+    assert_near(plain->pickup_acceleration, 0, 0);
+    assert_near(plain->wait, 0, 0);
+    assert_near(plain->map_speed, 100, 0);
+    assert_false(station->taught);
+    assert_true(station->check_map);
+    assert_int_equal(station->effector, 2);
+    assert_int_equal(station->check, WH_VACUUM_CHECK_PUT);
+    assert_int_equal(station->retries, 3);
+    assert_near(station->pickup_acceleration, 250, 0);
+    assert_near(station->wait, 0.5, 0);
+    assert_near(station->map_speed, 80, 0);
+}
+
+static void test_a_blade_of_two_sits_where_it_says(void **state) {
+    (void)state;
+    const wh_layout_t *layout =
+        read_sound(STATIONS "grippers = { { name = 'LOWER', at = { 0, 0, 0 }, rpy = { 0, 0, 0 } }, "
+                            "{ name = 'UPPER', at = { 1, 2, 15 }, rpy = { 0, 0, 180 } } }");
+    const wh_mount_t *upper = &layout->machine.mounts[1];
+    assert_false(layout->machine.mounts[0].is_shifted);
+    assert_true(upper->is_shifted);
+    assert_near(upper->effector_from_gripper.r.z, 15, 0);
+    assert_near(upper->effector_from_gripper.R.m[0][0], -1, 0);
+    assert_int_equal(wh_machine_validate(&layout->machine), WH_OK);
+}
+
+static void test_a_blades_place_is_in_the_hash(void **state) {
+    (void)state;
+    const uint64_t plain = wh_layout_hash(read_sound(STATIONS "grippers = { { name = 'EE' } }"));
+    const uint64_t nowhere =
+        wh_layout_hash(read_sound(STATIONS "grippers = { { name = 'EE', at = { 0, 0, 0 } } }"));
+    const uint64_t above =
+        wh_layout_hash(read_sound(STATIONS "grippers = { { name = 'EE', at = { 0, 0, 1 } } }"));
+    assert_true(plain == nowhere);
+    assert_true(plain != above);
+}
+
+static void test_wafers_lie_where_the_slots_frame_says(void **state) {
+    (void)state;
+    const wh_layout_t *layout = read_sound(
+        GRIPPERS "stations = { B = { at = { 0, 700, 900 }, rpy = { 0, 0, 90 }, slots = 3 } }, "
+                 "wafers = { { station = 'B', slot = 1 }, { name = 'W', station = 'B', slot = 3, dx = 13.5, "
+                 "dy = 7.25, dz = 0.5, rpy = { 0, 0, 90 } } }");
+    assert_int_equal(layout->wafer_count, 2);
+    assert_string_equal(layout->wafers[0].name, "Wafer 1");
+    assert_int_equal(wh_layout_find_wafer(layout, "W"), 1);
+    assert_int_equal(layout->wafers[1].slot, 3);
+    const wh_pose_t *start = &layout->start[1].base_from_wafer;
+    assert_near(start->r.x, -7.25, 1e-12);
+    assert_near(start->r.y, 713.5, 1e-12);
+    assert_near(start->r.z, 920.5, 1e-12);
+    assert_near(start->R.m[0][0], -1, 0);
+}
+
+static void test_what_is_wrong_is_named(void **state) {
+    (void)state;
+    static const struct {
+        const char *fields, *message;
+    } rows[] = {
+        {"", "stations: nothing"},
+        {STATIONS, "grippers: nothing"},
+        {GRIPPERS STATIONS "colour = 3", "cell.lua: colour: 3 (expected one of the fields wafer"},
+        {GRIPPERS STATIONS "['check slice'] = 1", "check slice: 1 (expected one of"},
+        {GRIPPERS STATIONS "['check\\0'] = 'swept'", "expected one of the fields"},
+        {GRIPPERS STATIONS "[''] = 1", "expected one of the fields"},
+        {GRIPPERS STATIONS "5", "cell.lua: [1]: 5 (expected one of the fields"},
+        {GRIPPERS STATIONS "slice = 0.0000015", "slice: 1.5e-06 (expected a whole number of microseconds"},
+        {GRIPPERS STATIONS "slice = '0.001'", "slice: \"0.001\" (expected a number"},
+        {GRIPPERS STATIONS "slice = 0/0", "(expected a number from"},
+        {GRIPPERS STATIONS "tolerance = 'loose'", "tolerance: \"loose\" (expected \"paper\" or \"strict\")"},
+        {GRIPPERS STATIONS "tolerance = 3", "tolerance: 3 (expected"},
+        {GRIPPERS STATIONS "collision = 1", "true or false"},
+        {GRIPPERS STATIONS "robot = { kind = 'SCARA' }", "robot.kind: \"SCARA\" (expected \"TRZY\")"},
+        {GRIPPERS STATIONS "robot = { r = { min = 500, max = 400 } }", "robot.r.max: 400"},
+        {GRIPPERS STATIONS "robot = { r = { min = 400 } }",
+         "cell.lua: robot.r.home: 300 (expected a number from 400 to 900)"},
+        {GRIPPERS "stations = { A = { at = { 1, 2 } } }",
+         "cell.lua: stations.A.at: { 1, 2 } (expected a list of three numbers)"},
+        {GRIPPERS "stations = { A = { } }", "stations.A.at: nothing"},
+        {GRIPPERS "stations = { A = { at = { 1, 'x', 3 } } }", "stations.A.at[2]: \"x\""},
+        {GRIPPERS "stations = { A = { at = { 1, 2, 3 }, rpy = { 50, 0, 0 } } }", "stations.A.rpy"},
+        {GRIPPERS "stations = { A = { at = { 1, 2, 3 }, pickup_speed = 501 } }", "at most 500 mm/s"},
+        {GRIPPERS "stations = { { at = { 1, 2, 3 } } }", "stations: 1 (expected stations by name"},
+        {GRIPPERS "stations = { P = { kind = 'prealigner', at = { 1, 2, 3 } } }", "on = \"P\""},
+        {STATIONS "grippers = { { name = 'E' }, { name = 'E' } }", "grippers[2].name: \"E\""},
+        {STATIONS "grippers = { { name = 'E', on = 'A' } }", "grippers[1].on: \"A\""},
+        {STATIONS "grippers = { }", "at least one gripper"},
+        {STATIONS "grippers = { EE = { name = 'EE' } }",
+         "cell.lua: grippers.EE: a table (expected a list: entries 1, 2, ... without names and gaps)"},
+        {GRIPPERS STATIONS "wafers = { { station = 'A' } }", "wafers[1].slot: nothing"},
+        {GRIPPERS STATIONS "wafers = { { station = 'A', slot = 2 } }", "wafers[1].slot: 2"},
+        {GRIPPERS STATIONS "wafers = { { station = 'Z', slot = 1 } }", "wafers[1].station: \"Z\""},
+        {GRIPPERS STATIONS "wafers = { { station = 'A', slot = 1 }, { station = 'A', slot = 1 } }",
+         "wafers[2].slot: 1 (expected a slot of A of its own; \"Wafer 1\""},
+        {GRIPPERS STATIONS "wafers = { w1 = { station = 'A', slot = 1 } }",
+         "cell.lua: wafers.w1: a table (expected a list: entries 1, 2, ... without names and gaps)"},
+        {GRIPPERS STATIONS "wafers = { [1] = { station = 'A', slot = 1 }, [3] = { } }",
+         "cell.lua: wafers[3]: a table (expected a list: entries 1, 2, ... without names and gaps)"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        expect_refused(rows[i].fields, rows[i].message);
+    }
+}
+
+/* Of several unknown fields the same one is named in every run, whatever Lua's order. */
+static void test_the_first_unknown_field_by_name_is_reported(void **state) {
+    (void)state;
+    expect_refused(GRIPPERS STATIONS "zeta = 1, beta = 2, omega = 3, kappa = 4", "cell.lua: beta: 2");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_defaults_of_the_cell, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_the_default_robot, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_defaults_of_a_station, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_defaults_that_follow_other_fields, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_every_field_of_the_cell_is_read, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_degrees_become_radians_and_lengths_stay, open_sandbox,
+                                        close_sandbox),
+        cmocka_unit_test_setup_teardown(test_every_field_of_a_station_is_read, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_what_a_station_asks_of_a_command_is_read, open_sandbox,
+                                        close_sandbox),
+        cmocka_unit_test_setup_teardown(test_a_blade_of_two_sits_where_it_says, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_a_blades_place_is_in_the_hash, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_wafers_lie_where_the_slots_frame_says, open_sandbox,
+                                        close_sandbox),
+        cmocka_unit_test_setup_teardown(test_what_is_wrong_is_named, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(test_the_first_unknown_field_by_name_is_reported, open_sandbox,
+                                        close_sandbox),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,180 @@
+/* Requests to motion control: who waits, who is turned away, and STOP, which waits for nobody. Control, simulation and
+ * whoever asks are in one process, on memq. */
+#include "support/support.h"
+
+#include "link/mcs_process.h"
+#include "link/sim_process.h"
+#include "mcs/session.h"
+
+static wh_node_t node;
+static wh_control_t control;
+static wh_simulation_t simulation;
+static wh_session_t session;
+static char answer[WH_SESSION_ANSWER_BYTES];
+
+/* Lines that are requested when the simulator has stepped `at`. */
+static struct {
+    int64_t at;
+    const char *lines[20];
+    size_t count;
+    int64_t seq;
+} plan;
+
+/* What was answered, by the requests' numbers. */
+static struct {
+    int32_t error[64];
+    int count[64];
+} heard;
+
+static void publish_request(int64_t seq, const char *line) {
+    uint8_t encoded[1200];
+    char text[1001];
+    snprintf(text, sizeof text, "%s", line);
+    const waferhand_request message = {.seq = seq, .command_line = text};
+    const int size = waferhand_request_encode(encoded, 0, (int)sizeof encoded, &message);
+    assert_true(size > 0);
+    assert_true(wh_node_publish(&node, WH_CHANNEL_REQUEST, encoded, (size_t)size));
+}
+
+/* Motion control's own link, and the requests before the slice in which they are due. */
+static wh_link_t asking;
+
+static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
+    (void)link;
+    for (size_t i = 0; command->seq >= plan.at && i < plan.count; ++i) {
+        publish_request(++plan.seq, plan.lines[i]);
+    }
+    plan.count = command->seq >= plan.at ? 0 : plan.count;
+    return control.client.link.exchange(&control.client.link, command, state);
+}
+
+static void on_mcs(void *user, const void *data, size_t size) {
+    waferhand_mcs message;
+    (void)user;
+    assert_true(waferhand_mcs_decode(data, 0, (int)size, &message) > 0);
+    const bool ends = message.phase == WH_LINK_PHASE_DONE || message.phase == WH_LINK_PHASE_FAILED;
+    if (ends && message.request > 0 && message.request < 64) {
+        heard.error[message.request] = message.error;
+        ++heard.count[message.request];
+    }
+    (void)waferhand_mcs_decode_cleanup(&message);
+}
+
+static wh_link_t *connect_all(void *user, wh_mcs_t *mcs) {
+    assert_int_equal(wh_simulation_open(&simulation, &node, mcs->layout, NULL, NULL), WH_OK);
+    assert_ptr_equal(wh_control_partners(user).connect(user, mcs), &control.client.link);
+    asking.exchange = exchange;
+    return &asking;
+}
+
+static int open_all(void **state) {
+    (void)state;
+    const wh_control_options_t options = {.rate = 0};
+    memset(&plan, 0, sizeof plan);
+    memset(&heard, 0, sizeof heard);
+    assert_true(wh_node_open(&node, "memq://"));
+    assert_true(wh_control_open(&control, &node, &options));
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_MCS, on_mcs, NULL));
+    wh_session_options_t wanted = {.layout = "lua/layouts/paper.lua", .limits = {.print_to = stderr}};
+    wanted.partners = wh_control_partners(&control);
+    wanted.partners.connect = connect_all;
+    return wh_session_open(&session, &wanted) ? 0 : -1;
+}
+
+static int close_all(void **state) {
+    (void)state;
+    wh_session_close(&session);
+    wh_simulation_close(&simulation);
+    wh_node_close(&node);
+    return 0;
+}
+
+static wh_status_t execute(const char *line) {
+    return wh_session_execute(&session, line, answer, sizeof answer);
+}
+
+/* As the program does between the prompt's lines. */
+static void execute_requests(void) {
+    char line[WH_LINK_LINE];
+    (void)wh_node_drain(&node, 1000);
+    while (wh_control_next_request(&control, line)) {
+        const wh_status_t status = execute(line);
+        wh_control_answer(&control, status, line, answer);
+    }
+    (void)wh_node_drain(&node, 1000);
+}
+
+static void assert_heard(int64_t seq, wh_status_t error) {
+    assert_int_equal(heard.count[seq], 1);
+    assert_int_equal(heard.error[seq], error);
+}
+
+static void test_requests_wait_for_their_turn(void **state) {
+    (void)state;
+    plan.at = 500;
+    plan.count = 2;
+    plan.lines[0] = "PUT B 2";
+    plan.lines[1] = "GET B 2";
+    assert_int_equal(execute("GET A 1"), WH_OK);
+    execute_requests();
+    assert_heard(1, WH_OK);
+    assert_heard(2, WH_OK);
+}
+
+static void test_one_too_many_is_turned_away(void **state) {
+    (void)state;
+    plan.at = 500;
+    plan.count = WH_CONTROL_REQUESTS + 1;
+    for (size_t i = 0; i < plan.count; ++i) {
+        plan.lines[i] = "AXES";
+    }
+    assert_int_equal(execute("GET A 1"), WH_OK);
+    execute_requests();
+    assert_heard(WH_CONTROL_REQUESTS, WH_OK);
+    assert_heard(WH_CONTROL_REQUESTS + 1, WH_STATUS_BUSY);
+}
+
+/* It ends what runs and what waits; then the arm must be recovered, by whomever. */
+static void test_stop_goes_past_the_queue(void **state) {
+    (void)state;
+    plan.at = 700;
+    plan.count = 3;
+    plan.lines[0] = "GET A 2";
+    plan.lines[1] = "MOVE z=1000";
+    plan.lines[2] = " stop ";
+    assert_int_equal(execute("GET A 1"), WH_STATUS_STOPPED);
+    assert_in_range(session.mcs.track.slice, 700, 710);
+    execute_requests();
+    assert_heard(1, WH_STATUS_STOPPED);
+    assert_heard(2, WH_STATUS_STOPPED);
+    assert_heard(3, WH_OK);
+    assert_int_equal(control.running[0], '\0');
+    assert_int_equal(execute("GET A 1"), WH_STATUS_STOPPED);
+    assert_int_equal(execute("RECOVER"), WH_OK);
+    assert_int_equal(execute("GET A 1"), WH_OK);
+}
+
+static void test_stop_of_nothing(void **state) {
+    (void)state;
+    publish_request(7, "STOP");
+    execute_requests();
+    assert_heard(7, WH_OK);
+    plan.at = 700;
+    plan.count = 1;
+    plan.lines[0] = "STOP NOW";
+    assert_int_equal(execute("GET A 1"), WH_OK);
+    execute_requests();
+    assert_heard(1, WH_STATUS_BAD_ARGUMENT);
+}
+
+#define IN_PAPER(test) cmocka_unit_test_setup_teardown(test, open_all, close_all)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        IN_PAPER(test_requests_wait_for_their_turn),
+        IN_PAPER(test_one_too_many_is_turned_away),
+        IN_PAPER(test_stop_goes_past_the_queue),
+        IN_PAPER(test_stop_of_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,54 @@
+/* A run over messages ends with the bits of a run by calls: client and simulation in one process, on memq. */
+#include "support/support.h"
+
+#include "link/protocol_client.h"
+#include "link/sim_process.h"
+#include "mcs/script_run.h"
+
+static wh_node_t node;
+static wh_client_t client;
+static wh_simulation_t simulation;
+
+static wh_link_t *connect(void *user, wh_mcs_t *mcs) {
+    const wh_client_options_t options = {.layout = mcs->layout};
+    (void)user;
+    assert_int_equal(wh_simulation_open(&simulation, &node, mcs->layout, NULL, NULL), WH_OK);
+    assert_true(wh_client_open(&client, &node, &options));
+    return &client.link;
+}
+
+static uint64_t play(const char *script, bool over_messages) {
+    wh_run_options_t options = {.script = script, .limits = {.print_to = stderr}};
+    wh_run_t run;
+    if (over_messages) {
+        assert_true(wh_node_open(&node, "memq://"));
+        options.partners.connect = connect;
+    }
+    assert_int_equal(wh_run_script(&run, &options), WH_RUN_MET);
+    const uint64_t hash = run.record.hash;
+    if (over_messages) {
+        assert_true(simulation.server.counters.stepped == (uint64_t)run.record.slices);
+        assert_true(simulation.counters.garbage == 0);
+        assert_true(client.counters.malformed == 0);
+        wh_simulation_close(&simulation);
+        wh_node_close(&node);
+    }
+    wh_run_close(&run);
+    return hash;
+}
+
+static void test_examples_have_the_same_hash(void **state) {
+    static const char *const scripts[] = {"lua/examples/01_transfer.lua", "lua/examples/02_prealigner.lua",
+                                          "lua/examples/03_missed_pick.lua"};
+    (void)state;
+    for (size_t i = 0; i < sizeof scripts / sizeof scripts[0]; ++i) {
+        assert_true(play(scripts[i], true) == play(scripts[i], false));
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_examples_have_the_same_hash),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

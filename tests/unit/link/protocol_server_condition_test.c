@@ -1,0 +1,178 @@
+/* The state of a simulator with delayed vacuum, pads and faults: taken over by another in the middle of a run it goes on with
+ * the same bits, and none that no simulator could be in is taken over. */
+#include "support/server.h"
+
+#include "link/cell_layout.h"
+#include "mcs/script_run.h"
+
+#define SCRIPT "tests/end_to_end/data/delayed.lua"
+
+static wh_server_t servers[2];
+static int64_t restart_every;
+static size_t restarts, faults_seen, slips_seen;
+
+static void send(const wh_command_t *command) {
+    waferhand_command decoded;
+    uint8_t bytes[4096];
+    const size_t size = encode_command(command, bytes, sizeof bytes);
+    assert_true(wh_link_decode_command(bytes, size, &decoded));
+    /* Twice, as a network does. */
+    const wh_server_result_t result = wh_server_command(server, &decoded, NULL);
+    assert_true(result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN);
+    assert_int_equal(wh_server_command(server, &decoded, NULL), WH_SERVER_ANSWERED);
+}
+
+/* Another server, which knows nothing, gets the state as it was published. */
+static void restart(const wh_layout_t *layout) {
+    wh_server_t *other = server == servers ? servers + 1 : servers;
+    waferhand_state message;
+    assert_true(wh_link_decode_state(server->encoded, server->encoded_size, &message));
+    assert_int_equal(wh_server_open(other, layout), WH_OK);
+    assert_int_equal(wh_server_restore(other, &message), WH_SERVER_RESTORED);
+    assert_true(wh_server_hash(other) == wh_server_hash(server));
+    assert_int_equal(other->state.sensors, server->state.sensors);
+    (void)waferhand_state_decode_cleanup(&message);
+    server = other;
+    ++restarts;
+}
+
+static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
+    (void)link;
+    send(command);
+    *state = server->state;
+    for (size_t i = 0; i < state->event_count; ++i) {
+        faults_seen += state->events[i].kind == WH_EVENT_FAULT_ARMED ? 1 : 0;
+        slips_seen += state->events[i].kind == WH_EVENT_SLIPPED ? 1 : 0;
+    }
+    if (restart_every > 0 && command->seq % restart_every == 0) {
+        restart(server->layout);
+    }
+    return state->status;
+}
+
+static wh_link_t *connect_server(void *user, wh_mcs_t *mcs) {
+    static wh_link_t link = {exchange, hash_of_server, none_missed};
+    (void)user;
+    server = servers;
+    assert_int_equal(wh_server_open(server, mcs->layout), WH_OK);
+    return &link;
+}
+
+static uint64_t run_with(int64_t every, bool by_call) {
+    wh_run_options_t options = {.script = SCRIPT};
+    wh_run_t run;
+    options.partners.connect = by_call ? NULL : connect_server;
+    restart_every = every;
+    restarts = faults_seen = slips_seen = 0;
+    assert_int_not_equal(wh_run_script(&run, &options), WH_RUN_BAD_INPUT);
+    const uint64_t last = run.record.hash;
+    wh_run_close(&run);
+    return last;
+}
+
+static void test_restarted_again_and_again(void **state) {
+    (void)state;
+    const uint64_t by_call = run_with(0, true);
+    assert_true(run_with(0, false) == by_call);
+    assert_int_equal(faults_seen, 7);
+    assert_int_equal(slips_seen, 1);
+    assert_true(run_with(7, false) == by_call);
+    assert_true(restarts > 1000);
+    assert_int_equal(faults_seen, 7);
+    assert_int_equal(slips_seen, 1);
+    assert_true(run_with(1, false) == by_call);
+}
+
+/* ---------------------------------------------------------------------------------------------- what is refused */
+
+static void no_level(waferhand_state *message) {
+    message->grippers[0].vacuum_level = 2;
+}
+
+static void no_number(waferhand_state *message) {
+    message->grippers[0].vacuum_level = (double)NAN;
+}
+
+static void no_command(waferhand_state *message) {
+    message->grippers[0].valve_command = 2;
+}
+
+static void no_fault(waferhand_state *message) {
+    message->faults[0].it.kind = -1;
+}
+
+static void no_phase(waferhand_state *message) {
+    message->faults[1].phase = 5;
+}
+
+static void other_level(waferhand_state *message) {
+    message->grippers[0].vacuum_level += 1e-9;
+}
+
+static void other_fault(waferhand_state *message) {
+    message->faults[0].it.until_seq += 1;
+}
+
+static void other_position(waferhand_state *message) {
+    message->grippers[0].wafer_before[1][2] += 1e-9;
+}
+
+static void test_no_other_condition_is_taken_over(void **state) {
+    static void (*const changes[])(waferhand_state * message) = {
+        no_level, no_number, no_command, no_fault, no_phase, other_level, other_fault, other_position};
+    static wh_server_t fresh;
+    (void)state;
+    wh_run_options_t options = {.script = SCRIPT};
+    wh_run_t run;
+    options.partners.connect = connect_server;
+    restart_every = 0;
+    assert_int_not_equal(wh_run_script(&run, &options), WH_RUN_BAD_INPUT);
+    assert_int_equal(wh_server_open(&fresh, server->layout), WH_OK);
+    for (size_t i = 0; i < sizeof changes / sizeof changes[0]; ++i) {
+        waferhand_state message;
+        assert_true(wh_link_decode_state(server->encoded, server->encoded_size, &message));
+        message.grippers[0].positions_known = 2;
+        changes[i](&message);
+        assert_int_equal(wh_server_restore(&fresh, &message), WH_SERVER_IGNORED);
+        (void)waferhand_state_decode_cleanup(&message);
+    }
+    assert_int_equal(fresh.counters.restore_refused, sizeof changes / sizeof changes[0]);
+    wh_run_close(&run);
+}
+
+/* What replay makes of the cell's message is the layout's own physics. */
+static void test_the_cell_tells_it_all(void **state) {
+    wh_run_options_t options = {.script = SCRIPT};
+    wh_run_t run;
+    waferhand_cell cell;
+    (void)state;
+    options.partners.connect = connect_server;
+    restart_every = 0;
+    assert_int_not_equal(wh_run_script(&run, &options), WH_RUN_BAD_INPUT);
+    const wh_layout_t *layout = server->layout;
+    const wh_link_identity_t identity = {1, wh_layout_hash(layout)};
+    assert_true(wh_link_cell_from_layout(layout, &identity, &cell));
+    wh_layout_t *made = wh_link_layout_from_cell(&cell);
+    assert_non_null(made);
+    assert_int_equal(made->physics.fault_count, 4);
+    assert_memory_equal(&made->physics.vacuum, &layout->physics.vacuum, sizeof made->physics.vacuum);
+    assert_memory_equal(&made->physics.pads, &layout->physics.pads, sizeof made->physics.pads);
+    assert_true(made->physics.slice_s == layout->physics.slice_s);
+    assert_int_equal(wh_server_open(&servers[0], layout), WH_OK);
+    assert_int_equal(wh_server_open(&servers[1], made), WH_OK);
+    assert_true(wh_server_hash(&servers[0]) == wh_server_hash(&servers[1]));
+    wh_link_layout_free(made);
+    cell.vacuum_sensor_on = 0;
+    assert_null(wh_link_layout_from_cell(&cell));
+    wh_link_cell_free(&cell);
+    wh_run_close(&run);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_restarted_again_and_again),
+        cmocka_unit_test(test_no_other_condition_is_taken_over),
+        cmocka_unit_test(test_the_cell_tells_it_all),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,89 @@
+/* Random numbers of a trial: their moments, their bits, and the logarithm that they need. */
+#include <math.h>
+#include <string.h>
+
+#include "math/deviate.h"
+#include "support/support.h"
+
+static void the_logarithm_is_libms_to_the_last_digits(void **state) {
+    (void)state;
+    for (int exponent = -1021; exponent < 1023; ++exponent) {
+        for (int i = 0; i < 40; ++i) {
+            const double x = ldexp(1 + i / 40.0, exponent);
+            assert_true(fabs(wh_ln(x) - log(x)) <= 1e-15 * fabs(log(x)) + 1e-17);
+        }
+    }
+    for (double u = 1 - 0x1p-20; u < 1; u += 0x1p-27) {
+        assert_true(fabs(wh_ln(u) - log(u)) <= 1e-15 * fabs(log(u)) + 1e-17);
+    }
+    assert_true(wh_ln(1) == 0);
+    assert_true(isnan(wh_ln(0)) && isnan(wh_ln(-1)) && isnan(wh_ln((double)INFINITY)));
+}
+
+/* A number is its name's alone: neighbours in any of the four differ, and nothing remembers. */
+static void a_deviate_depends_on_its_name(void **state) {
+    (void)state;
+    const wh_trial_t trial = {7, 11};
+    const wh_trial_t others[] = {
+        {8, 11}, {7, 12}, {7 + (UINT64_C(1) << 32), 11}, {7, 11 + (UINT64_C(1) << 32)}};
+    const double u = wh_deviate_uniform(&trial, 3, 5);
+    const double n = wh_deviate_normal(&trial, 3, 5);
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) {
+        assert_true(wh_deviate_uniform(&others[i], 3, 5) != u);
+        assert_true(wh_deviate_normal(&others[i], 3, 5) != n);
+    }
+    assert_true(wh_deviate_uniform(&trial, 4, 5) != u && wh_deviate_uniform(&trial, 3, 6) != u);
+    assert_true(wh_deviate_uniform(&trial, 3, 5) == u && wh_deviate_normal(&trial, 3, 5) == n);
+}
+
+/* Moments of n values are off by their standard errors; six of them are never seen. */
+static void deviates_have_their_moments(void **state) {
+    (void)state;
+    enum { N = 200000 };
+    double uniform[2] = {0, 0};
+    double normal[4] = {0, 0, 0, 0};
+    for (uint64_t i = 0; i < N; ++i) {
+        const wh_trial_t trial = {1, i};
+        const double u = wh_deviate_uniform(&trial, 0, 0);
+        const double x = wh_deviate_normal(&trial, 0, 0);
+        assert_true(u > 0 && u < 1 && fabs(x) < 8.6);
+        uniform[0] += u;
+        uniform[1] += u * u;
+        normal[0] += x;
+        normal[1] += x * x;
+        normal[2] += x * x * x;
+        normal[3] += x * x * x * x;
+    }
+    const double root = sqrt((double)N);
+    assert_true(fabs(uniform[0] / N - 0.5) < 6 * sqrt(1 / 12.0) / root);
+    assert_true(fabs(uniform[1] / N - 1 / 3.0) < 6 * sqrt(4 / 45.0) / root);
+    assert_true(fabs(normal[0] / N) < 6 / root);
+    assert_true(fabs(normal[1] / N - 1) < 6 * sqrt(2.0) / root);
+    assert_true(fabs(normal[2] / N) < 6 * sqrt(15.0) / root);
+    assert_true(fabs(normal[3] / N - 3) < 6 * sqrt(96.0) / root);
+}
+
+/* The same bits on every machine: these are of x86-64. In float the cosine is another. */
+static void deviates_keep_their_bits(void **state) {
+    (void)state;
+    uint64_t hash = 0;
+    for (uint64_t i = 0; i < 10000; ++i) {
+        const wh_trial_t trial = {42, i};
+        const double x = wh_deviate_normal(&trial, 1, 2);
+        uint64_t bits;
+        memcpy(&bits, &x, sizeof bits);
+        hash = (hash ^ bits) * UINT64_C(0x9e3779b97f4a7c15);
+    }
+    assert_int_equal(hash, sizeof(wh_real_t) == sizeof(float) ? UINT64_C(0xd7a48fb8099df0a1)
+                                                              : UINT64_C(0xc9c8a8cb81354ca7));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_logarithm_is_libms_to_the_last_digits),
+        cmocka_unit_test(a_deviate_depends_on_its_name),
+        cmocka_unit_test(deviates_have_their_moments),
+        cmocka_unit_test(deviates_keep_their_bits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,218 @@
+/* Poses: products against long double, what counts as a rotation, and how a worn one is mended. */
+#include "math/pose.h"
+#include "support/pose.h"
+
+#define RUNS 20000
+
+/* An oracle in long double: the largest entry of |R^T R - I|. */
+static long double off_orthonormal(const wh_mat3_t *R) {
+    long double most = 0;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            long double sum = i == j ? -1 : 0;
+            for (int k = 0; k < 3; ++k) {
+                sum += (long double)R->m[k][i] * (long double)R->m[k][j];
+            }
+            most = fmaxl(most, fabsl(sum));
+        }
+    }
+    return most;
+}
+
+static wh_pose_t with_R(wh_mat3_t R) {
+    return wh_test_pose(R, 1, 2, 3);
+}
+
+static void accepts(wh_mat3_t R) {
+    const wh_pose_t pose = with_R(R);
+    assert_int_equal(wh_pose_validate(&pose), WH_OK);
+}
+
+static void refuses(wh_mat3_t R) {
+    const wh_pose_t pose = with_R(R);
+    assert_int_equal(wh_pose_validate(&pose), WH_STATUS_NOT_A_ROTATION);
+}
+
+static void compose_is_the_matrix_product(void **state) {
+    (void)state;
+    for (int run = 0; run < RUNS; ++run) {
+        const wh_pose_t a = wh_test_random_pose(1000);
+        const wh_pose_t b = wh_test_random_pose(1000);
+        const wh_pose_t c = wh_pose_compose(&a, &b);
+        const wh_real_t ar[3] = {a.r.x, a.r.y, a.r.z};
+        const wh_real_t br[3] = {b.r.x, b.r.y, b.r.z};
+        const wh_real_t cr[3] = {c.r.x, c.r.y, c.r.z};
+        for (int i = 0; i < 3; ++i) {
+            long double r = (long double)ar[i];
+            for (int j = 0; j < 3; ++j) {
+                long double sum = 0;
+                for (int k = 0; k < 3; ++k) {
+                    sum += (long double)a.R.m[i][k] * (long double)b.R.m[k][j];
+                }
+                assert_near(c.R.m[i][j], sum, 6 * WH_TEST_ROUNDING);
+                r += (long double)a.R.m[i][j] * (long double)br[j];
+            }
+            assert_near(cr[i], r, 6 * 3000 * WH_TEST_ROUNDING);
+        }
+    }
+}
+
+static void relative_undoes_compose(void **state) {
+    (void)state;
+    for (int run = 0; run < RUNS; ++run) {
+        const wh_pose_t base_from_g = wh_test_random_pose(1000);
+        const wh_pose_t g_from_w = wh_test_random_pose(50);
+        const wh_pose_t base_from_w = wh_pose_compose(&base_from_g, &g_from_w);
+        const wh_pose_t again = wh_pose_relative(&base_from_g, &base_from_w);
+        assert_near(wh_test_difference_R(&again, &g_from_w), 0, 16 * WH_TEST_ROUNDING);
+        assert_near(wh_test_difference_r(&again, &g_from_w), 0, 8 * 1100 * WH_TEST_ROUNDING);
+        const wh_pose_t there = wh_pose_compose(&base_from_g, &again);
+        assert_near(wh_test_difference_r(&there, &base_from_w), 0, 8 * 1100 * WH_TEST_ROUNDING);
+    }
+}
+
+static void identity_changes_no_bit(void **state) {
+    (void)state;
+    const wh_pose_t one = wh_pose_identity();
+    for (int run = 0; run < 100; ++run) {
+        const wh_pose_t a = wh_test_random_pose(1000);
+        const wh_pose_t left = wh_pose_compose(&one, &a);
+        const wh_pose_t right = wh_pose_compose(&a, &one);
+        const wh_pose_t from_base = wh_pose_relative(&one, &a);
+        assert_true(wh_test_difference_R(&left, &a) == 0 && wh_test_difference_r(&left, &a) == 0);
+        assert_true(wh_test_difference_R(&right, &a) == 0 && wh_test_difference_r(&right, &a) == 0);
+        assert_true(wh_test_difference_R(&from_base, &a) == 0 && wh_test_difference_r(&from_base, &a) == 0);
+        assert_int_equal(wh_pose_validate(&a), WH_OK);
+    }
+}
+
+static void numbers_that_are_none_are_refused(void **state) {
+    (void)state;
+    const wh_real_t bad[] = {WH_REAL(NAN), WH_REAL(INFINITY), WH_REAL(-INFINITY)};
+    for (size_t b = 0; b < 3; ++b) {
+        for (size_t entry = 0; entry < 12; ++entry) {
+            wh_pose_t pose = wh_test_random_pose(1000);
+            if (entry < 9) {
+                pose.R.m[entry / 3][entry % 3] = bad[b];
+            } else {
+                *(entry == 9 ? &pose.r.x : entry == 10 ? &pose.r.y : &pose.r.z) = bad[b];
+            }
+            assert_int_equal(wh_pose_validate(&pose), WH_STATUS_NOT_FINITE);
+        }
+    }
+}
+
+static void huge_positions_are_poses(void **state) {
+    (void)state;
+    wh_pose_t pose = wh_test_random_pose(1);
+#if defined(WH_FLOAT)
+    const wh_real_t largest = FLT_MAX;
+#else
+    const wh_real_t largest = DBL_MAX;
+#endif
+    pose.r = wh_vec3(largest, -largest, largest);
+    assert_int_equal(wh_pose_validate(&pose), WH_OK);
+    pose.R.m[1][1] = largest;
+    assert_int_equal(wh_pose_validate(&pose), WH_STATUS_NOT_A_ROTATION);
+}
+
+static void mirrored_matrices_are_refused(void **state) {
+    (void)state;
+    for (int run = 0; run < 100; ++run) {
+        wh_mat3_t R = wh_test_random_turn(WH_TEST_PI);
+        const int column = run % 3;
+        for (int i = 0; i < 3; ++i) {
+            R.m[i][column] = -R.m[i][column];
+        }
+        refuses(R);
+        for (int i = 0; i < 3; ++i) {
+            const wh_real_t swapped = R.m[i][0];
+            R.m[i][0] = R.m[i][2];
+            R.m[i][2] = swapped;
+        }
+        accepts(R);
+    }
+    const wh_mat3_t zero = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+    refuses(zero);
+}
+
+static void shear_is_limited_exactly(void **state) {
+    (void)state;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            for (int sign = -1; sign <= 1 && i != j; sign += 2) {
+                wh_mat3_t R = wh_mat3_identity();
+                R.m[i][j] = WH_REAL(sign) * WH_ROTATION_TOLERANCE;
+                accepts(R);
+                R.m[i][j] = wh_test_ulps(R.m[i][j], 1);
+                refuses(R);
+            }
+        }
+    }
+}
+
+static void scale_is_limited(void **state) {
+    (void)state;
+    for (int i = 0; i < 3; ++i) {
+        for (int sign = -1; sign <= 1; sign += 2) {
+            wh_mat3_t R = wh_mat3_identity();
+            R.m[i][i] = WH_REAL(sqrt(1 + sign * 0.98 * (double)WH_ROTATION_TOLERANCE));
+            accepts(R);
+            R.m[i][i] = WH_REAL(sqrt(1 + sign * 1.02 * (double)WH_ROTATION_TOLERANCE));
+            refuses(R);
+        }
+    }
+}
+
+/* Rotations with an error in every entry: the verdict is that of the definition, in long double. */
+static void random_errors_are_judged_by_the_definition(void **state) {
+    (void)state;
+    const double limit = (double)WH_ROTATION_TOLERANCE;
+    int good = 0;
+    int bad = 0;
+    for (int run = 0; run < RUNS; ++run) {
+        wh_mat3_t R = wh_test_random_turn(WH_TEST_PI);
+        for (int k = 0; k < 9; ++k) {
+            R.m[k / 3][k % 3] += WH_REAL(wh_test_uniform(-0.5 * limit, 0.5 * limit));
+        }
+        const double off = (double)off_orthonormal(&R);
+        if (fabs(off - limit) > 16 * WH_TEST_ROUNDING) {
+            (off < limit ? accepts : refuses)(R);
+            ++*(off < limit ? &good : &bad);
+        }
+    }
+    assert_true(good > RUNS / 10 && bad > RUNS / 10);
+}
+
+static void orthonormalise_squares_the_error(void **state) {
+    (void)state;
+    const double limit = (double)WH_ROTATION_TOLERANCE;
+    for (int run = 0; run < RUNS; ++run) {
+        const wh_mat3_t exact = wh_test_random_turn(WH_TEST_PI);
+        wh_mat3_t worn = exact;
+        for (int k = 0; k < 9; ++k) {
+            worn.m[k / 3][k % 3] += WH_REAL(wh_test_uniform(-0.3 * limit, 0.3 * limit));
+        }
+        const wh_pose_t before = with_R(worn);
+        wh_pose_t mended = before;
+        wh_mat3_orthonormalise(&mended.R);
+        assert_near(off_orthonormal(&mended.R), 0, 9 * limit * limit + 16 * WH_TEST_ROUNDING);
+        assert_near(wh_test_difference_R(&mended, &before), 0, 1.5 * limit);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(compose_is_the_matrix_product),
+        cmocka_unit_test(relative_undoes_compose),
+        cmocka_unit_test(identity_changes_no_bit),
+        cmocka_unit_test(numbers_that_are_none_are_refused),
+        cmocka_unit_test(huge_positions_are_poses),
+        cmocka_unit_test(mirrored_matrices_are_refused),
+        cmocka_unit_test(shear_is_limited_exactly),
+        cmocka_unit_test(scale_is_limited),
+        cmocka_unit_test(random_errors_are_judged_by_the_definition),
+        cmocka_unit_test(orthonormalise_squares_the_error),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

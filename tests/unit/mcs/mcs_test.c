@@ -1,0 +1,100 @@
+/* The MCS's host against scripts that do what no operator would. */
+#include "support/support.h"
+
+#include "mcs/script_run.h"
+
+static wh_run_t run;
+
+static int close_run(void **state) {
+    (void)state;
+    wh_run_close(&run);
+    return 0;
+}
+
+static wh_run_outcome_t play(const char *script, uint64_t instructions) {
+    const wh_run_options_t options = {.script = script,
+                                      .limits = {.print_to = stderr, .instructions = instructions}};
+    return wh_run_script(&run, &options);
+}
+
+static void test_a_command_within_a_command_is_refused(void **state) {
+    (void)state;
+    assert_int_equal(play("tests/end_to_end/data/nested_command.lua", 0), WH_RUN_MET);
+    assert_int_equal(run.record.command_count, 3);
+    /* The value's name is asked for before its command begins, and again within it to say what is wrong. */
+    assert_string_equal(run.record.commands[0].text, "WAIT 0.1");
+    assert_string_equal(run.record.commands[1].text, "VALVE EE evil");
+    assert_int_equal(run.record.commands[1].error, WH_STATUS_BAD_VALVE);
+    assert_string_equal(run.record.commands[2].text, "WAIT 0.1");
+    assert_int_equal(run.record.commands[2].error, WH_OK);
+    assert_true(run.record.slices == 200);
+}
+
+static void assert_expected(const char *script, size_t expectations) {
+    const wh_run_outcome_t outcome = play(script, 0);
+    for (size_t i = 0; i < run.record.expectation_count; ++i) {
+        if (!run.record.expectations[i].ok) {
+            print_error("%s\n", run.record.expectations[i].text);
+        }
+    }
+    if (outcome != WH_RUN_MET) {
+        print_error("%s\n", run.record.failure ? run.record.failure : run.message);
+    }
+    assert_int_equal(outcome, WH_RUN_MET);
+    assert_int_equal(run.record.expectation_count, expectations);
+}
+
+static void test_errors_within_a_pattern_name_the_line(void **state) {
+    (void)state;
+    assert_expected("tests/end_to_end/data/error_lines.lua", 2);
+}
+
+static void test_frames_are_measured(void **state) {
+    (void)state;
+    assert_expected("tests/end_to_end/data/measure.lua", 77);
+}
+
+static void test_a_script_may_use_the_names_of_functions(void **state) {
+    (void)state;
+    assert_int_equal(play("tests/end_to_end/data/globals.lua", 0), WH_RUN_MET);
+}
+
+/* Whenever a STOP comes, no wafer is dropped on the way out, and work goes on after HOME. */
+static void test_a_stop_may_come_at_any_time(void **state) {
+    (void)state;
+    static const char *const targets[] = {"to=A", "to=B", "to=P"};
+    for (size_t t = 0; t < sizeof targets / sizeof targets[0]; ++t) {
+        for (int step = 1; step <= 78; ++step) {
+            char at[30];
+            snprintf(at, sizeof at, "at=%.3f", 0.05 * step);
+            const char *const parameters[] = {at, targets[t]};
+            const wh_run_options_t options = {.script = "tests/end_to_end/data/stop_anywhere.lua",
+                                              .limits = {.print_to = stderr},
+                                              .parameters = parameters,
+                                              .parameter_count = 2};
+            if (wh_run_script(&run, &options) != WH_RUN_MET) {
+                fail_msg("%s %s: %s", at, targets[t], run.record.failure ? run.record.failure : run.message);
+            }
+            wh_run_close(&run);
+        }
+    }
+}
+
+static void test_the_record_is_paid_for_from_the_budget(void **state) {
+    (void)state;
+    assert_int_equal(play("tests/end_to_end/data/endless_record.lua", 50000000), WH_RUN_BAD_INPUT);
+    assert_int_equal(wh_sandbox_reason(run.sandbox), WH_SANDBOX_BUDGET);
+    assert_in_range(run.record.expectation_count, 1, 13);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(test_a_command_within_a_command_is_refused, close_run),
+        cmocka_unit_test_teardown(test_errors_within_a_pattern_name_the_line, close_run),
+        cmocka_unit_test_teardown(test_frames_are_measured, close_run),
+        cmocka_unit_test_teardown(test_a_script_may_use_the_names_of_functions, close_run),
+        cmocka_unit_test(test_a_stop_may_come_at_any_time),
+        cmocka_unit_test_teardown(test_the_record_is_paid_for_from_the_budget, close_run),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

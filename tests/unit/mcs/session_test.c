@@ -1,0 +1,521 @@
+/* An operator's lines and their answers, in the paper's cell. */
+#include "support/support.h"
+
+#include <ctype.h>
+
+#include "mcs/session.h"
+
+static wh_session_t session;
+static char answer[WH_SESSION_ANSWER_BYTES];
+
+static int open_paper(void **state) {
+    (void)state;
+    const wh_session_options_t options = {.layout = "lua/layouts/paper.lua", .limits = {.print_to = stderr}};
+    return wh_session_open(&session, &options) ? 0 : -1;
+}
+
+static int close_session(void **state) {
+    (void)state;
+    wh_session_close(&session);
+    return 0;
+}
+
+static wh_status_t execute(const char *line) {
+    return wh_session_execute(&session, line, answer, sizeof answer);
+}
+
+/* The answer begins with `expected`, and is one line that can be printed. */
+static void assert_answer(const char *line, const char *expected) {
+    const wh_status_t status = execute(line);
+    if (strncmp(answer, expected, strlen(expected)) != 0) {
+        fail_msg("%s: answered %s, expected %s", line, answer, expected);
+    }
+    const bool is_error = strncmp(answer, "ERROR ", 6) == 0;
+    assert_int_equal(status, is_error ? strtol(answer + 6, NULL, 10) : 0);
+    for (const char *at = answer; *at; ++at) {
+        assert_false(iscntrl((unsigned char)*at));
+    }
+}
+
+typedef struct {
+    const char *line, *answer;
+} exchange_t;
+
+static void assert_dialogue(const exchange_t *dialogue, size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        assert_answer(dialogue[i].line, dialogue[i].answer);
+    }
+}
+
+#define ASSERT_DIALOGUE(dialogue) assert_dialogue(dialogue, sizeof(dialogue) / sizeof(dialogue)[0])
+
+/* ------------------------------------------------------------------------------------------------- commands
+ */
+
+static void test_every_command(void **state) {
+    (void)state;
+    static const exchange_t dialogue[] = {
+        {"HOLDER \"Wafer 1\"", "OK holder=none"},
+        {"GET A 1", "OK wafer=\"Wafer 1\" seconds=1.965"},
+        {"HOLDER \"Wafer 1\"", "OK holder=EE"},
+        {"PUT B 2", "OK wafer=\"Wafer 1\" seconds="},
+        {"OFFSET \"Wafer 1\" B 2", "OK dx=0 dy="},
+        {"GET B 1", "OK wafer=\"Wafer 2\""},
+        {"PUT P 1 handover=same_slice", "OK wafer=\"Wafer 2\""},
+        {"PROXIMITY \"Wafer 2\" PA", "OK ready=true n1_proj_n2=1 dr_proj_z=0.24"},
+        {"PROXIMITY \"Wafer 2\" EE", "OK ready=false"},
+        {"ROTATE P 90", "OK seconds=0.6"},
+        {"MEASURE P PA", "OK distance=0 dx=0 dy=0 dz=0 angle_deg=0 turn_deg=90"},
+        {"DISTANCE a/1 A/25", "OK distance=240"},
+        {"ANGLE \"Wafer 1\" base", "OK angle_deg=1.5"},
+        {"VALVE EE 0", "OK seconds=0.001"},
+        {"VALVE EE 1", "OK seconds=0.001"},
+        {"MOVE theta=10 r=400", "OK seconds="},
+        {"LINE dz=5 speed=20", "OK seconds="},
+        {"WAIT 0.5", "OK seconds=0.5"},
+        {"WHERE \"Wafer 2\"", "OK wafer=\"Wafer 2\" holder=PA station=P slot=1 dx="},
+        {"STATIONS", "OK station=A slots=25; station=B slots=25; station=P slots=1 chuck=PA"},
+        {"HELP", "OK ANGLE AXES CLEAR DISTANCE FAULT GET HELP"},
+        {"HELP WAIT", "OK WAIT SECONDS: stands still"},
+    };
+    ASSERT_DIALOGUE(dialogue);
+    assert_answer("AXES", "OK theta=");
+    assert_non_null(strstr(answer, " PA=90"));
+    assert_answer("WHERE", "OK wafer=\"Wafer 1\"");
+    assert_non_null(strstr(answer, "; wafer=\"Wafer 2\""));
+    assert_int_equal(session.complaints, 0);
+}
+
+static void test_case_and_spelling(void **state) {
+    (void)state;
+    static const exchange_t dialogue[] = {
+        {"get a 1", "OK wafer=\"Wafer 1\""},
+        {"  PuT    b   2   ", "OK wafer=\"Wafer 1\""},
+        {"holder \"wafer 1\"", "OK holder=none"},
+        {"OFFSET \"Wafer 1\" \"B\" 2", "OK dx=0"},
+        {"MOVE THETA=10", "OK seconds="},
+        {"GET b 1.0 GRIPPER=ee", "OK wafer=\"Wafer 2\""},
+        {"PUT B 1 stroke=8 offset=4e0 release=-.25", "OK wafer=\"Wafer 2\""},
+        {"WAIT +1.5E-1", "OK seconds=0.15"},
+        {"WAIT .5", "OK seconds=0.5"},
+    };
+    ASSERT_DIALOGUE(dialogue);
+}
+
+static void test_commands_are_recorded(void **state) {
+    (void)state;
+    execute("GET A 1");
+    execute("get a 2");
+    execute("FLY");
+    execute("WHERE");
+    assert_int_equal(session.record.command_count, 2);
+    assert_string_equal(session.record.commands[0].text, "GET A 1");
+    assert_near(session.record.commands[0].end_s, 1.965, 1e-9);
+    assert_string_equal(session.record.commands[1].text, "GET A 2");
+    assert_int_equal(session.record.commands[1].error, WH_STATUS_WAFER_ON_GRIPPER);
+}
+
+/* -------------------------------------------------------------------------------------------------- errors
+ */
+
+static void test_errors_have_their_numbers(void **state) {
+    (void)state;
+    static const exchange_t dialogue[] = {
+        {"FLY", "ERROR 47 NO_SUCH_COMMAND: "},
+        {"", "ERROR 47 "},
+        {"   ", "ERROR 47 "},
+        {"\"GET\" A 1", "ERROR 47 "},
+        {"GET=A 1", "ERROR 47 "},
+        {"REHEARSE A 1", "ERROR 47 "},
+        {"QUIT", "ERROR 47 "},
+        {"HELP FLY", "ERROR 47 "},
+        {"GET Q 1", "ERROR 40 NO_SUCH_STATION: no such station; \"Q\" (expected A, B, P)"},
+        {"GET A 26", "ERROR 41 NO_SUCH_SLOT: "},
+        {"GET A 0", "ERROR 41 "},
+        {"GET A 1.5", "ERROR 41 "},
+        {"GET A 3", "ERROR 42 WAFER_MISSING: "},
+        {"PUT A 3", "ERROR 43 NO_WAFER_ON_GRIPPER: "},
+        {"VALVE XX 0", "ERROR 45 NO_SUCH_GRIPPER: "},
+        {"GET A 1 gripper=XX", "ERROR 45 "},
+        {"GET A 1 gripper=PA", "ERROR 45 "},
+        {"HOLDER \"Wafer 9\"", "ERROR 46 NO_SUCH_WAFER: "},
+        {"MEASURE A/26 base", "ERROR 41 NO_SUCH_SLOT: "},
+        {"DISTANCE A nowhere", "ERROR 48 BAD_ARGUMENT: "},
+        {"VALVE EE 2", "ERROR 4 BAD_VALVE: "},
+        {"MOVE z=2000", "ERROR 22 LIMIT_EXCEEDED: "},
+        {"LINE dx=2000", "ERROR 21 OUT_OF_REACH: "},
+        {"ROTATE A 90", "ERROR 49 NOT_A_PREALIGNER: "},
+        {"WAIT -1", "ERROR 48 "},
+        {"GET A 1", "OK "},
+        {"GET A 2", "ERROR 44 WAFER_ON_GRIPPER: "},
+    };
+    ASSERT_DIALOGUE(dialogue);
+}
+
+static void test_bad_arguments(void **state) {
+    (void)state;
+    static const char *const lines[] = {
+        "GET",
+        "GET A",
+        "GET A 1 1",
+        "GET A one",
+        "GET A 0x1",
+        "GET A \"1\"",
+        "GET A 1e",
+        "WAIT inf",
+        "WAIT nan",
+        "WAIT 1e999",
+        "WAIT --1",
+        "WAIT 1,5",
+        "WAIT ",
+        "WAIT 1 2",
+        "GET A 1 speed=3",
+        "GET A 1 stroke=3 stroke=3",
+        "GET A 1 STROKE=3 stroke=3",
+        "GET A 1 stroke=",
+        "GET A 1 stroke=x",
+        "GET A 1 stroke=0",
+        "PUT P 1 handover=maybe",
+        "MOVE",
+        "MOVE x=1",
+        "MOVE 10",
+        "LINE",
+        "LINE dx=1 dx=1",
+        "ROTATE P 1e400",
+        "GET \"A 1",
+        "GET A\"B\" 1",
+        "GET \"A\"B 1",
+        "GET \"A\\n\" 1",
+        "AXES now",
+        "AXES x=1",
+        "HELP GET PUT",
+        "HOLDER Wafer 1",
+        "VALVE EE",
+    };
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; ++i) {
+        assert_answer(lines[i], "ERROR 48 BAD_ARGUMENT: ");
+    }
+    assert_int_equal(session.mcs.track.slice, 0);
+}
+
+static void test_control_characters(void **state) {
+    (void)state;
+    static const char *const lines[] = {
+        "GET\tA 1",   "GET A 1\r",        "GET A 1\nGET A 2", "GET \033[2J 1",  "\001",
+        "GET \177 1", "GET \302\2332J 1", "GET \xFF 1",       "GET \xC0\xAF 1", "GET \xED\xA0\x80 1"};
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; ++i) {
+        assert_answer(lines[i], "ERROR 48 BAD_ARGUMENT: ");
+        assert_null(strchr(answer, '\x9B'));
+    }
+    assert_answer("GET \xC3\xA4 1", "ERROR 40 NO_SUCH_STATION: no such station; \"\xC3\xA4\" (expected");
+}
+
+static void test_line_length(void **state) {
+    (void)state;
+    static char line[3000];
+    memset(line, ' ', sizeof line);
+    memcpy(line, "WAIT 1", 6);
+    line[WH_SESSION_LINE_BYTES] = '\0';
+    assert_answer(line, "OK seconds=1");
+    line[WH_SESSION_LINE_BYTES] = ' ';
+    line[WH_SESSION_LINE_BYTES + 1] = '\0';
+    assert_answer(
+        line, "ERROR 48 BAD_ARGUMENT: a command's argument is out of range or of the wrong kind; the line is "
+              "longer than 1000 bytes");
+    memset(line, '"', sizeof line - 1);
+    line[sizeof line - 1] = '\0';
+    assert_answer(line, "ERROR 48 ");
+}
+
+/* Nothing that is typed runs as Lua, and nothing that is typed changes what a later line means. */
+static void test_injections(void **state) {
+    (void)state;
+    static const char *const lines[] = {
+        "os.exit(3)",
+        "get(\"A\", 1)",
+        "GET A 1); error(\"x\") --",
+        "GET A 1 stroke=6;get=nil",
+        "GET A\") error(\"x 1",
+        "GET \"A\\\") error(\\\"x\" 1",
+        "GET A [[1]]",
+        "GET A 1 __index=1",
+        "GET __index 1",
+        "GET A 1 gripper=%s%s%n%d",
+        "HELP __index",
+        "HELP %s%99999d",
+        "%s%s%s%n",
+        "__index A 1",
+        "HOLDER \"%d %s\"",
+        "MOVE __metatable=1",
+        "GET ../../etc/passwd 1",
+        "GET $(reboot) `reboot`",
+        "cell \"lua/layouts/paper.lua\"",
+        "LOAD \"return 1\"",
+    };
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; ++i) {
+        assert_answer(lines[i], "ERROR 4");
+    }
+    assert_answer("GET A 1", "OK wafer=\"Wafer 1\" seconds=1.965");
+}
+
+static void test_random_lines_leave_it_usable(void **state) {
+    (void)state;
+    static const char pieces[][12] = {
+        "GET", "PUT",     "WHERE", "HELP", "MOVE", " ", " ",  "\"",       "\\",       "=",  "A", "1", "-",
+        "e",   "stroke=", "\x80",  "\x1b", "%s",   "'", "[[", "\xC3\xA4", "gripper=", "0x", "{", "--"};
+    wh_test_seed();
+    for (int i = 0; i < 3000; ++i) {
+        char line[200] = "";
+        wh_candidates_t candidates;
+        for (uint32_t n = wh_test_below(14); n > 0; --n) {
+            strcat(line, pieces[wh_test_below(sizeof pieces / sizeof pieces[0])]);
+        }
+        wh_session_complete(&session, line, &candidates);
+        assert_true(candidates.start <= strlen(line));
+        assert_answer(line, execute(line) == WH_OK ? "OK" : "ERROR ");
+    }
+    assert_int_equal(lua_gettop(wh_sandbox_state(session.sandbox)), 0);
+}
+
+/* --------------------------------------------------------------------------------------- stops and budgets
+ */
+
+/* A link that does what the simulator does and, in a chosen slice, something else. */
+static struct {
+    wh_link_t link;
+    wh_link_t *simulator;
+    int64_t slices, stop_at;
+    bool gives_up;
+    wh_status_t nested;
+} between;
+
+static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *out) {
+    (void)link;
+    if (++between.slices == between.stop_at) {
+        char text[100];
+        between.nested = wh_session_execute(&session, "AXES", text, sizeof text);
+        wh_session_stop(&session);
+        if (between.gives_up) {
+            return WH_STATUS_BUSY; /* as a link may that was waiting for an answer */
+        }
+    }
+    return between.simulator->exchange(between.simulator, command, out);
+}
+
+static uint64_t hash(wh_link_t *link) {
+    (void)link;
+    return between.simulator->hash(between.simulator);
+}
+
+static wh_link_t *connect_between(void *user, wh_mcs_t *mcs) {
+    assert_ptr_equal(user, &between);
+    assert_int_equal(mcs->track.slice, 0);
+    between.simulator = mcs->link;
+    between.link.exchange = exchange;
+    between.link.hash = hash;
+    return &between.link;
+}
+
+static wh_link_t *connect_nowhere(void *user, wh_mcs_t *mcs) {
+    (void)user;
+    (void)mcs;
+    return NULL;
+}
+
+static int open_between(void **state) {
+    (void)state;
+    memset(&between, 0, sizeof between);
+    const wh_session_options_t options = {.layout = "lua/layouts/paper.lua",
+                                          .partners = {.connect = connect_between, .user = &between}};
+    return wh_session_open(&session, &options) ? 0 : -1;
+}
+
+static void test_another_link(void **state) {
+    (void)state;
+    assert_answer("GET A 1", "OK wafer=\"Wafer 1\" seconds=1.965");
+    assert_int_equal(between.slices, 1965);
+}
+
+static void test_stop(void **state) {
+    (void)state;
+    between.stop_at = 700;
+    assert_answer("GET A 1", "ERROR 52 STOPPED: ");
+    assert_int_equal(between.slices, 700);
+    assert_int_equal(between.nested, WH_STATUS_BUSY);
+    assert_int_equal(session.record.commands[0].error, WH_STATUS_STOPPED);
+    assert_near(session.record.commands[0].end_s, 0.7, 1e-9);
+    wh_session_stop(&session);
+    assert_answer("GET A 1",
+                  "ERROR 52 STOPPED: the command was stopped before its end; the arm stands in A: RECOVER");
+    assert_answer("RECOVER", "OK seconds=");
+    assert_answer("GET A 1", "OK wafer=\"Wafer 1\"");
+    assert_answer("PUT B 2", "OK wafer=\"Wafer 1\"");
+}
+
+static void test_stop_of_a_link_that_waits(void **state) {
+    (void)state;
+    between.stop_at = 700;
+    between.gives_up = true;
+    assert_answer("GET A 1", "ERROR 52 STOPPED: ");
+    assert_answer("HOME", "OK seconds=");
+    assert_answer("GET A 1", "OK wafer=\"Wafer 1\"");
+}
+
+static void test_budget_is_for_each_command(void **state) {
+    (void)state;
+    const wh_session_options_t options = {.layout = "lua/layouts/paper.lua",
+                                          .limits = {.instructions = 1000000}};
+    assert_true(wh_session_open(&session, &options));
+    for (int i = 0; i < 30; ++i) {
+        assert_answer("WAIT 40", "OK seconds=40");
+    }
+    assert_answer("WAIT 100", "ERROR 53 OUT_OF_BUDGET: ");
+    assert_answer("WAIT 40", "OK seconds=40");
+    assert_int_equal(session.mcs.running, WH_NONE);
+}
+
+/* ------------------------------------------------------------------------------- answers, reports, opening
+ */
+
+static void test_complaints_are_told(void **state) {
+    (void)state;
+    assert_answer("GET A 1", "OK ");
+    assert_answer("VALVE EE 1", "OK seconds=0.001; released_unsupported \"Wafer 1\", ");
+    assert_int_equal(session.complaints, 1);
+    assert_answer("WAIT 1", "OK seconds=1");
+    assert_int_equal(session.complaints, 1);
+}
+
+static void test_answers_are_cut_between_characters(void **state) {
+    (void)state;
+    char text[64];
+    for (size_t size = 8; size < sizeof text; ++size) {
+        memset(text, '#', sizeof text);
+        wh_session_execute(&session, "GET \xC3\xA4\xC3\xA4\xC3\xA4\xC3\xA4 1", text, size);
+        assert_int_equal(strlen(text), size - 1 - (strlen(text) < size - 1 ? 1 : 0));
+        assert_string_equal(text + strlen(text) - 3, "...");
+    }
+}
+
+static int reports;
+
+static void count_report(void *user, const char *line, wh_status_t status, const char *text) {
+    assert_ptr_equal(user, &reports);
+    assert_string_equal(line, "GET A 3");
+    assert_int_equal(status, text ? WH_STATUS_WAFER_MISSING : WH_OK);
+    ++reports;
+}
+
+static void test_report(void **state) {
+    (void)state;
+    const wh_session_options_t options = {
+        .layout = "lua/layouts/paper.lua", .report = count_report, .report_user = &reports};
+    assert_true(wh_session_open(&session, &options));
+    execute("GET A 3");
+    assert_int_equal(reports, 2);
+}
+
+static void assert_refused(const wh_session_options_t *options, const char *reason) {
+    assert_false(wh_session_open(&session, options));
+    assert_non_null(strstr(session.message, reason));
+    wh_session_close(&session);
+}
+
+static void test_what_cannot_be_opened(void **state) {
+    (void)state;
+    static const char *const bad[] = {"no equals sign"};
+    const wh_session_options_t missing = {.layout = "tests/end_to_end/data/missing.lua"};
+    const wh_session_options_t script = {.layout = "lua/examples/01_transfer.lua"};
+    const wh_session_options_t parameter = {
+        .layout = "lua/layouts/paper.lua", .parameters = bad, .parameter_count = 1};
+    const wh_session_options_t unconnected = {.layout = "lua/layouts/paper.lua",
+                                              .partners = {.connect = connect_nowhere}};
+    assert_refused(&missing, "tests/end_to_end/data/missing.lua: ");
+    assert_refused(&script, "lua/examples/01_transfer.lua:");
+    assert_refused(&parameter, "no equals sign");
+    assert_refused(&unconnected, "lua/layouts/paper.lua: no link to the simulator");
+}
+
+/* ---------------------------------------------------------------------------------------------- completing
+ */
+
+static void assert_candidates(const char *before, size_t start, const char *expected) {
+    wh_candidates_t candidates;
+    char text[1000] = "";
+    wh_session_complete(&session, before, &candidates);
+    for (size_t i = 0; i < candidates.count; ++i) {
+        const size_t length = strlen(text);
+        snprintf(text + length, sizeof text - length, "%s|", candidates.texts[i]);
+    }
+    assert_string_equal(text, expected);
+    assert_int_equal(candidates.start, start);
+}
+
+static void test_completion(void **state) {
+    (void)state;
+    assert_candidates("GE", 0, "GET|");
+    assert_candidates("  h", 2, "HELP|HOLDER|HOME|");
+    assert_candidates("GET ", 4, "A|B|P|");
+    assert_candidates("get b", 4, "B|");
+    assert_candidates("GET A ", 6, "");
+    assert_candidates("GET A 1 g", 8, "gripper=|");
+    assert_candidates("GET A 1 gripper=", 8, "gripper=EE|gripper=PA|");
+    assert_candidates("PUT P 1 stroke=3 handover=s", 17, "handover=same_slice|");
+    assert_candidates("MOVE ", 5, "r=|theta=|yaw=|z=|");
+    assert_candidates("HOLDER W", 7, "\"Wafer 1\"|\"Wafer 2\"|");
+    assert_candidates("HOLDER \"Wafer 1", 7, "\"Wafer 1\"|");
+    assert_candidates("OFFSET \"Wafer 1\" ", 17, "A|B|P|");
+    assert_candidates("WHERE \"Wafer 1\" \"w", 16, "\"Wafer 1\"|\"Wafer 2\"|");
+    assert_candidates("MEASURE b/2", 8, "B/2|B/20|B/21|B/22|B/23|B/24|B/25|");
+    assert_candidates("MEASURE EE ba", 11, "base|");
+    assert_candidates("HELP wa", 5, "WAIT|");
+    assert_candidates("FLY ", 4, "");
+    assert_candidates("GET \"A\"B ", 9, "");
+    assert_candidates("AXES ", 5, "");
+    assert_candidates("GET \xFF", 4, "");
+}
+
+/* A layout's Lua may do to the libraries what it likes: that spoils the answers, and nothing else. */
+static void test_a_layout_that_spoils_the_strings(void **state) {
+    (void)state;
+    static wh_session_t spoilt;
+    const wh_session_options_t options = {.layout = "tests/end_to_end/data/odd_strings_layout.lua",
+                                          .limits = {.print_to = stderr}};
+    wh_candidates_t candidates;
+    assert_true(wh_session_open(&spoilt, &options));
+    assert_int_equal(wh_session_execute(&spoilt, "FOO", answer, sizeof answer), WH_STATUS_BAD_ARGUMENT);
+    assert_int_equal(strncmp(answer, "ERROR 48 BAD_ARGUMENT", 21), 0);
+    wh_session_complete(&spoilt, "GE", &candidates);
+    assert_true(candidates.start <= 2);
+    for (size_t i = 0; i < candidates.count; ++i) {
+        assert_non_null(candidates.texts[i]);
+    }
+    wh_session_close(&spoilt);
+}
+
+int main(void) {
+#define IN_PAPER(test) cmocka_unit_test_setup_teardown(test, open_paper, close_session)
+#define IN_BETWEEN(test) cmocka_unit_test_setup_teardown(test, open_between, close_session)
+    const struct CMUnitTest tests[] = {
+        IN_PAPER(test_every_command),
+        IN_PAPER(test_case_and_spelling),
+        IN_PAPER(test_commands_are_recorded),
+        IN_PAPER(test_errors_have_their_numbers),
+        IN_PAPER(test_bad_arguments),
+        IN_PAPER(test_control_characters),
+        IN_PAPER(test_line_length),
+        IN_PAPER(test_injections),
+        IN_PAPER(test_random_lines_leave_it_usable),
+        IN_PAPER(test_complaints_are_told),
+        IN_PAPER(test_answers_are_cut_between_characters),
+        IN_PAPER(test_completion),
+        IN_BETWEEN(test_another_link),
+        IN_BETWEEN(test_stop),
+        IN_BETWEEN(test_stop_of_a_link_that_waits),
+        cmocka_unit_test_teardown(test_budget_is_for_each_command, close_session),
+        cmocka_unit_test_teardown(test_report, close_session),
+        cmocka_unit_test(test_what_cannot_be_opened),
+        cmocka_unit_test(test_a_layout_that_spoils_the_strings),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,216 @@
+/* Slices counted one after another: whatever changes from one to the next, alone or with others, is noted in that very
+ * slice. The oracle looks at everything anew in each. */
+#include "support/pose.h"
+
+#include "record/activity.h"
+
+enum { GRIPPERS = 3, SLICES = 20000 };
+
+typedef struct {
+    int64_t shares[WH_SHARES];
+    wh_interval_t intervals[4 * SLICES];
+    size_t count;
+    int32_t what[WH_RESOURCES];
+    int64_t begin[WH_RESOURCES];
+} oracle_t;
+
+static oracle_t oracle;
+static wh_activity_t activity;
+static wh_machine_t machine;
+static wh_track_t track;
+static wh_gripper_t grippers[GRIPPERS];
+static wh_state_t answer;
+static wh_task_t task;
+
+/* A gripper on the robot, two on chucks. */
+static int set_up(void **state) {
+    (void)state;
+    memset(&oracle, 0, sizeof oracle);
+    memset(&activity, 0, sizeof activity);
+    memset(&machine, 0, sizeof machine);
+    memset(&track, 0, sizeof track);
+    memset(&task, 0, sizeof task);
+    machine.axis_count = 6;
+    machine.gripper_count = GRIPPERS;
+    for (int32_t g = 0; g < GRIPPERS; ++g) {
+        machine.mounts[g].axis = g == 0 ? WH_NONE : 3 + g;
+        grippers[g].wafer = WH_NONE;
+        track.valves[g] = WH_VALVE_CLOSED;
+    }
+    track.machine = &machine;
+    answer.grippers = grippers;
+    answer.gripper_count = GRIPPERS;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    (void)state;
+    wh_activity_free(&activity);
+    return 0;
+}
+
+/* What resource `r` is busy with in this slice of this share: the meaning of wh_busy_t. */
+static int32_t busy(size_t r, wh_share_t share) {
+    const size_t g = r > 0 ? (r - 1) / 3 : 0;
+    if (r == 0) {
+        return task.robot ? 1 + (int32_t)share : 0;
+    }
+    if (g >= GRIPPERS) {
+        return 0;
+    }
+    if (r == 1 + 3 * g) {
+        const bool turns = g > 0 && (task.carried >> g & 1U) != 0;
+        const wh_share_t own = grippers[g].wafer == WH_NONE ? WH_SHARE_EMPTY : WH_SHARE_LOADED;
+        return turns ? 1 + (int32_t)own : 0;
+    }
+    return r == 2 + 3 * g ? 1 + grippers[g].wafer : track.valves[g] == WH_VALVE_OPEN;
+}
+
+static wh_share_t share_now(void) {
+    bool loaded = false;
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        loaded = loaded || ((task.carried >> g & 1U) != 0 && grippers[g].wafer != WH_NONE);
+    }
+    if (loaded) {
+        return WH_SHARE_LOADED;
+    }
+    return task.moves ? WH_SHARE_EMPTY : task.share;
+}
+
+static void keep(size_t r, int32_t what, int64_t slice) {
+    if (oracle.what[r] == what) {
+        return;
+    }
+    if (oracle.what[r] != 0) {
+        wh_interval_t *kept = &oracle.intervals[oracle.count++];
+        kept->who = r == 0 ? WH_BUSY_ROBOT : (wh_busy_t)(WH_BUSY_CHUCK + (r - 1) % 3);
+        kept->gripper = r == 0 ? WH_NONE : (int32_t)((r - 1) / 3);
+        kept->what = oracle.what[r];
+        kept->begin = oracle.begin[r];
+        kept->end = slice - 1;
+    }
+    oracle.what[r] = what;
+    oracle.begin[r] = slice - 1;
+}
+
+static void count(void) {
+    ++track.slice;
+    const wh_share_t share = share_now();
+    assert_int_equal(wh_activity_count(&activity, &task, &track, &answer), share);
+    ++oracle.shares[share];
+    for (size_t r = 0; r < WH_RESOURCES; ++r) {
+        keep(r, busy(r, share), track.slice);
+    }
+}
+
+/* In no particular order where several end at once. */
+static void compare(void) {
+    assert_memory_equal(activity.shares, oracle.shares, sizeof oracle.shares);
+    assert_int_equal(activity.interval_count, oracle.count);
+    for (size_t i = 0; i < oracle.count; ++i) {
+        const wh_interval_t *wanted = &oracle.intervals[i];
+        size_t found = 0;
+        const size_t from = i > WH_RESOURCES ? i - WH_RESOURCES : 0;
+        for (size_t k = from; k < oracle.count && k < i + WH_RESOURCES; ++k) {
+            const wh_interval_t *is = &activity.intervals[k];
+            found += is->who == wanted->who && is->gripper == wanted->gripper && is->what == wanted->what &&
+                             is->begin == wanted->begin && is->end == wanted->end
+                         ? 1
+                         : 0;
+        }
+        assert_int_equal(found, 1);
+    }
+}
+
+static void end(void) {
+    wh_activity_end(&activity, track.slice);
+    for (size_t r = 0; r < WH_RESOURCES; ++r) {
+        keep(r, 0, track.slice + 1);
+    }
+}
+
+static void change_something(uint64_t what, size_t g) {
+    switch (what) {
+    case 0:
+        task.moves = !task.moves;
+        break;
+    case 1:
+        task.robot = !task.robot;
+        break;
+    case 2:
+        task.carried ^= 1U << g;
+        break;
+    case 3:
+        task.share = (wh_share_t)(WH_SHARE_VACUUM + (int)wh_test_below(3));
+        break;
+    case 4:
+        grippers[g].wafer = (int32_t)wh_test_below(4) - 1;
+        break;
+    case 5:
+        track.valves[g] = WH_VALVE_CLOSED - track.valves[g];
+        break;
+    default:
+        break;
+    }
+}
+
+static void test_each_change_alone(void **state) {
+    (void)state;
+    for (int i = 0; i < SLICES; ++i) {
+        change_something(wh_test_below(12), wh_test_below(GRIPPERS));
+        count();
+    }
+    end();
+    compare();
+}
+
+static void test_several_changes_at_once(void **state) {
+    (void)state;
+    for (int i = 0; i < SLICES / 4; ++i) {
+        for (uint64_t k = wh_test_below(5); k > 0; --k) {
+            change_something(wh_test_below(6), wh_test_below(GRIPPERS));
+        }
+        count();
+    }
+    end();
+    compare();
+}
+
+/* The end ends all, also what then goes on just as it did. */
+static void test_what_goes_on_after_an_end_begins_anew(void **state) {
+    (void)state;
+    task.moves = task.robot = true;
+    task.carried = 3;
+    grippers[0].wafer = 2;
+    track.valves[0] = WH_VALVE_OPEN;
+    for (int i = 0; i < 3; ++i) {
+        count();
+        count();
+        end();
+    }
+    compare();
+    assert_int_equal(activity.interval_count, 3 * 4); /* robot, chuck, wafer, valve */
+}
+
+/* A slice like nothing at all is counted, too, and as what it is. */
+static void test_the_first_slice_is_like_no_other(void **state) {
+    (void)state;
+    for (size_t g = 0; g < GRIPPERS; ++g) {
+        grippers[g].wafer = 0;
+        track.valves[g] = WH_VALVE_OPEN;
+    }
+    count();
+    end();
+    compare();
+    assert_int_equal(activity.interval_count, 2 * GRIPPERS);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_each_change_alone, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_several_changes_at_once, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_what_goes_on_after_an_end_begins_anew, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_the_first_slice_is_like_no_other, set_up, tear_down),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

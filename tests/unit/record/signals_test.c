@@ -1,0 +1,425 @@
+/* What a report shows of a run against the run itself, slice by slice; and its scene against glTF's rules. */
+#include "support/support.h"
+
+#include <jansson.h>
+
+#include "mcs/script_run.h"
+#include "record/quaternion.h"
+#include "report/document.h"
+#include "view/scene.h"
+
+/* A slice as it was. */
+typedef struct {
+    wh_pose_t grippers[WH_GRIPPERS];
+    wh_pose_t wafers[4];
+    double axes[WH_AXES], levels[WH_GRIPPERS];
+    int32_t valves[WH_GRIPPERS], holders[4];
+    uint32_t sensors;
+    bool is_exact;
+} slice_t;
+
+static wh_run_t run;
+static wh_trace_t trace;
+static slice_t *slices; /* by number, 0 not used */
+static size_t slice_count, slice_capacity;
+
+static void on_slice(void *user, const wh_mcs_t *mcs) {
+    (void)user;
+    const wh_state_t *state = &mcs->state;
+    if (!trace.layout) {
+        wh_trace_begin(&trace, mcs->layout, true);
+    }
+    wh_trace_slice(&trace, mcs->command.axes, mcs->command.axis_count, state);
+    slice_count = (size_t)state->seq + 1;
+    if (slice_count > slice_capacity) {
+        slice_capacity = 2 * slice_count + 8192;
+        slices = realloc(slices, slice_capacity * sizeof *slices);
+        assert_non_null(slices);
+    }
+    slice_t *kept = &slices[state->seq];
+    memset(kept, 0, sizeof *kept);
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        kept->grippers[g] = state->grippers[g].base_from_gripper;
+        kept->valves[g] = state->condition->told[g];
+        kept->levels[g] = state->condition->vacuum[g].level;
+    }
+    for (size_t w = 0; w < state->wafer_count && w < 4; ++w) {
+        kept->wafers[w] = state->wafers[w].base_from_wafer;
+        kept->holders[w] = state->wafers[w].holder;
+    }
+    memcpy(kept->axes, mcs->command.axes, sizeof kept->axes);
+    kept->sensors = state->sensors;
+    kept->is_exact = state->event_count > 0;
+}
+
+static void on_boundary(void *user, const wh_mcs_t *mcs) {
+    (void)user;
+    (void)mcs;
+    wh_trace_mark(&trace);
+    if (slice_count > 0) {
+        slices[slice_count - 1].is_exact = true;
+    }
+}
+
+static void play(const char *script) {
+    const wh_run_options_t options = {
+        .script = script, .limits = {.print_to = stderr}, .listener = {on_slice, on_boundary, NULL}};
+    slice_count = 0;
+    assert_int_not_equal(wh_run_script(&run, &options), WH_RUN_BAD_INPUT);
+    wh_trace_finish(&trace);
+    assert_true(slice_count > 1000);
+    assert_int_equal(trace.last, slice_count - 1);
+}
+
+static int close_run(void **state) {
+    (void)state;
+    wh_trace_close(&trace);
+    wh_run_close(&run);
+    free(slices);
+    slices = NULL;
+    slice_capacity = 0;
+    return 0;
+}
+
+/* ------------------------------------------------------------------------------------------------ comparing */
+
+static double angle_between(const wh_mat3_t *a, const wh_mat3_t *b) {
+    double p[4], q[4], turn[3];
+    wh_quaternion_from_matrix(a, NULL, p);
+    wh_quaternion_from_matrix(b, NULL, q);
+    wh_quaternion_turn(p, q, turn);
+    return sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
+}
+
+static void assert_pose(const wh_pose_t *shown, const wh_pose_t *was, double mm, double rad) {
+    assert_near(shown->r.x, was->r.x, mm);
+    assert_near(shown->r.y, was->r.y, mm);
+    assert_near(shown->r.z, was->r.z, mm);
+    assert_near(angle_between(&shown->R, &was->R), 0, rad + 1e-7);
+}
+
+static int32_t step_at(const wh_steps_t *steps, int64_t slice) {
+    int32_t value = 0;
+    for (size_t i = 0; i < steps->count && steps->steps[i].slice <= slice; ++i) {
+        value = steps->steps[i].value;
+    }
+    return value;
+}
+
+static const wh_stay_t *stay_at(int32_t wafer, int64_t slice) {
+    const wh_stay_t *found = NULL;
+    for (size_t i = 0; i < trace.stay_count && trace.stays[i].slice <= slice; ++i) {
+        found = trace.stays[i].wafer == wafer ? &trace.stays[i] : found;
+    }
+    return found;
+}
+
+/* How far a pose may be off: its axes' tolerances, those of angles at the robot's reach. */
+static double room_mm(const slice_t *was) {
+    return was->is_exact ? 1e-9
+                         : 2 * WH_TRACE_MM + WH_TRACE_RAD * trace.layout->machine.robot.travel[WH_AXIS_R].max;
+}
+
+static double room_rad(const slice_t *was) {
+    return was->is_exact ? 0 : 2 * WH_TRACE_RAD;
+}
+
+static void check_gripper(size_t g, int64_t n) {
+    const slice_t *was = &slices[n];
+    wh_pose_t shown;
+    wh_trace_gripper(&trace, g, n, &shown);
+    assert_pose(&shown, &was->grippers[g], room_mm(was), room_rad(was));
+    assert_near(wh_curve_read(&trace.vacuum[g], n, NULL), was->levels[g],
+                was->is_exact ? 0 : WH_TRACE_VACUUM);
+    assert_int_equal(step_at(&trace.valves[g], n), was->valves[g]);
+    assert_int_equal(step_at(&trace.sensors[g], n), was->sensors >> g & 1U);
+}
+
+/* The arm as it was placed for the collision check. */
+static void check_links(int64_t n) {
+    const slice_t *was = &slices[n];
+    wh_pose_t links[WH_TRACE_LINKS], bodies[WH_ARM_BODIES];
+    assert_true(wh_trace_links(&trace, n, links));
+    wh_arm_place(&trace.layout->shapes.arm, &was->grippers[0], bodies);
+    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        /* The elbow goes further than the wrist where the arm is folded or stretched. */
+        assert_pose(&links[i], &bodies[WH_ARM_LIFT + i], 20 * room_mm(was), 40 * room_rad(was));
+    }
+}
+
+/* Held, a wafer is where its gripper shows it: a way out from the gripper's origin its turn counts, too. */
+static void check_wafer(int32_t w, int64_t n) {
+    const slice_t *was = &slices[n];
+    const wh_stay_t *stay = stay_at(w, n);
+    assert_int_equal(stay->holder, was->holders[w]);
+    if (stay->holder == WH_NONE) {
+        assert_memory_equal(&stay->pose, &was->wafers[w], sizeof stay->pose);
+        return;
+    }
+    wh_pose_t gripper;
+    wh_trace_gripper(&trace, (size_t)stay->holder, n, &gripper);
+    const wh_pose_t shown = wh_pose_compose(&gripper, &stay->pose);
+    assert_pose(&shown, &was->wafers[w], room_mm(was) + room_rad(was) * wh_vec3_norm(&stay->pose.r),
+                room_rad(was));
+}
+
+/* Between points a slope is not judged by a tolerance: by a hundredth of what the axis does. */
+static void check_axes(int64_t n) {
+    const double seconds = (double)trace.layout->slice_us / 1e6;
+    for (size_t axis = 0; axis < trace.axis_count; ++axis) {
+        const wh_curve_t *curve = &trace.axes[axis];
+        const double limit = (double)wh_machine_limits(&trace.layout->machine, axis)->speed;
+        double slope;
+        const double value = wh_curve_read(curve, n, &slope);
+        assert_near(value, slices[n].axes[axis], slices[n].is_exact ? 0 : curve->tolerance);
+        if (n > 1) {
+            assert_near(slope / seconds, (slices[n].axes[axis] - slices[n - 1].axes[axis]) / seconds,
+                        0.02 * limit);
+        }
+    }
+}
+
+static void check_all(void) {
+    const wh_layout_t *layout = trace.layout;
+    for (int64_t n = 1; n < (int64_t)slice_count; ++n) {
+        for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+            check_gripper(g, n);
+        }
+        for (size_t w = 0; w < layout->wafer_count && w < 4; ++w) {
+            check_wafer((int32_t)w, n);
+        }
+        check_axes(n);
+        check_links(n);
+    }
+}
+
+/* What the plots of (3) to (5) say at an event is what the event says. */
+static void check_events(size_t expected) {
+    size_t measured = 0;
+    for (size_t i = 0; i < run.record.event_count; ++i) {
+        const wh_event_t *event = &run.record.events[i].event;
+        const bool taken = event->kind == WH_EVENT_PICKED || event->kind == WH_EVENT_NEAR_MISS ||
+                           event->kind == WH_EVENT_HANDED_OVER;
+        if (taken) {
+            const wh_curve_t *curves = trace.proximity[event->gripper];
+            const int64_t slice = (int64_t)event->measured_slice;
+            const wh_proximity_t *p = &event->measured;
+            assert_near(wh_curve_read(&curves[WH_MEASURE_PROJZ], slice, NULL), fabs(p->dr_proj_z), 0);
+            assert_near(wh_curve_read(&curves[WH_MEASURE_PROJXY], slice, NULL), p->dr_proj_xy_norm, 0);
+            assert_near(wh_curve_read(&curves[WH_MEASURE_PLANAR], slice, NULL), p->n1_proj_n2, 0);
+            assert_int_equal(step_at(&trace.nearest[event->gripper], slice), event->wafer);
+            ++measured;
+        }
+    }
+    assert_int_equal(measured, expected);
+}
+
+static void test_transfer(void **state) {
+    (void)state;
+    play("lua/examples/01_transfer.lua");
+    check_all();
+    check_events(2);
+    assert_int_equal(trace.mark_count, 0);
+}
+
+static void test_prealigner(void **state) {
+    (void)state;
+    play("lua/examples/02_prealigner.lua");
+    check_all();
+    check_events(5);
+}
+
+static void test_missed_pick(void **state) {
+    (void)state;
+    play("lua/examples/03_missed_pick.lua");
+    check_all();
+    check_events(2);
+    assert_int_equal(trace.mark_count, 1);
+    assert_int_equal(trace.marks[0].event.kind, WH_EVENT_NEAR_MISS);
+    assert_true(trace.marks[0].has_place);
+}
+
+static void test_vacuum_that_leaks(void **state) {
+    (void)state;
+    play("lua/examples/05_leak.lua");
+    check_all();
+}
+
+/* ------------------------------------------------------------------------------------------------ own poses */
+
+/* From where a gripper leaves what the axes say, it is shown where it is. */
+static void test_a_gripper_that_is_elsewhere(void **state) {
+    (void)state;
+    play("lua/examples/01_transfer.lua");
+    const wh_layout_t *layout = trace.layout;
+    wh_trace_t other = {0};
+    wh_gripper_t grippers[2];
+    wh_condition_t condition;
+    memset(grippers, 0, sizeof grippers);
+    wh_condition_start(&condition, &layout->physics);
+    wh_trace_begin(&other, layout, false);
+    for (int64_t n = 1; n <= 2000; ++n) {
+        for (size_t g = 0; g < 2; ++g) {
+            grippers[g].base_from_gripper = slices[n].grippers[g];
+            grippers[g].wafer = WH_NONE;
+        }
+        grippers[0].base_from_gripper.r.z += n > 900 ? 0.25 : 0;
+        const wh_state_t at = {.seq = n,
+                               .grippers = grippers,
+                               .gripper_count = 2,
+                               .condition = &condition,
+                               .wafers = layout->start,
+                               .wafer_count = layout->wafer_count};
+        wh_trace_slice(&other, n == 1500 ? NULL : slices[n].axes, layout->machine.axis_count, &at);
+    }
+    wh_trace_finish(&other);
+    assert_int_equal(other.own[0].points[0].slice, 901);
+    assert_int_equal(other.own[1].points[0].slice, 1500);
+    for (int64_t n = 1; n <= 2000; ++n) {
+        wh_pose_t shown, was = slices[n].grippers[0];
+        was.r.z += n > 900 ? 0.25 : 0;
+        wh_trace_gripper(&other, 0, n, &shown);
+        assert_pose(&shown, &was, 0.08, 1e-3);
+    }
+    wh_trace_close(&other);
+}
+
+/* --------------------------------------------------------------------------------------------------- scene */
+
+static json_int_t integer(const json_t *object, const char *key) {
+    return json_integer_value(json_object_get(object, key));
+}
+
+static void check_accessors(const json_t *scene) {
+    static const struct {
+        const char *type;
+        json_int_t width;
+    } types[] = {{"SCALAR", 1}, {"VEC3", 3}, {"VEC4", 4}};
+    const json_t *views = json_object_get(scene, "bufferViews");
+    size_t i;
+    json_t *accessor;
+    json_array_foreach(json_object_get(scene, "accessors"), i, accessor) {
+        const json_t *view = json_array_get(views, (size_t)integer(accessor, "bufferView"));
+        const char *type = json_string_value(json_object_get(accessor, "type"));
+        const json_int_t bytes = integer(accessor, "componentType") == 5123 ? 2 : 4;
+        json_int_t width = 0;
+        for (size_t k = 0; k < 3; ++k) {
+            width = strcmp(types[k].type, type) == 0 ? types[k].width : width;
+        }
+        assert_int_equal(integer(view, "byteLength"), bytes * width * integer(accessor, "count"));
+        assert_int_equal(integer(view, "byteOffset") % 4, 0);
+        const json_t *buffer = json_array_get(json_object_get(scene, "buffers"), 0);
+        assert_true(integer(view, "byteOffset") + integer(view, "byteLength") <=
+                    integer(buffer, "byteLength"));
+    }
+}
+
+static const json_t *node(const json_t *scene, const char *name) {
+    size_t i;
+    json_t *found;
+    json_array_foreach(json_object_get(scene, "nodes"), i, found) {
+        if (strcmp(json_string_value(json_object_get(found, "name")), name) == 0) {
+            return found;
+        }
+    }
+    return NULL;
+}
+
+static void test_scene(void **state) {
+    (void)state;
+    static const char *const names[] = {"base", "station A", "station B", "station P",
+                                        "lift", "upper arm", "forearm",   "hand",
+                                        "EE",   "PA",        "Wafer 1",   "Wafer 2"};
+    play("lua/examples/01_transfer.lua");
+    json_t *still = wh_scene_make(&trace, "a run", false);
+    json_t *moving = wh_scene_make(&trace, "a run", true);
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
+        assert_non_null(node(still, names[i]));
+        assert_non_null(json_object_get(node(still, names[i]), "mesh"));
+    }
+    check_accessors(still);
+    check_accessors(moving);
+    assert_null(json_object_get(still, "animations"));
+    const json_t *animation = json_array_get(json_object_get(moving, "animations"), 0);
+    /* Lift, upper arm, forearm, hand, EE and two wafers, each in place and turn. */
+    assert_int_equal(json_array_size(json_object_get(animation, "channels")), 14);
+    const json_t *place = json_object_get(node(still, "Wafer 1"), "translation");
+    assert_near(json_number_value(json_array_get(place, 0)), 0.7, 1e-12);
+    json_decref(still);
+    json_decref(moving);
+}
+
+/* ------------------------------------------------------------------------------------------------- document */
+
+static json_t *document_of(const wh_document_t *document) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    assert_int_equal(wh_document_write(document, out), 0);
+    (void)fclose(out);
+    assert_null(strchr(text, '<'));
+    json_error_t error;
+    json_t *read = json_loads(text, 0, &error);
+    assert_non_null(read);
+    free(text);
+    return read;
+}
+
+static double number_at(const json_t *object, const char *key, size_t i) {
+    return json_number_value(json_array_get(json_object_get(object, key), i));
+}
+
+static void test_document(void **state) {
+    (void)state;
+    static const char *const parameters[] = {"a=1", "b=x=</script>"};
+    play("lua/examples/01_transfer.lua");
+    json_t *object = json_pack("{s:s}", "script", "</script><!--");
+    const wh_document_t document = {.title = "a </title>",
+                                    .reproduce = "waferhand run",
+                                    .source = "run",
+                                    .parameters = parameters,
+                                    .parameter_count = 2,
+                                    .run = object,
+                                    .record = &run.record,
+                                    .trace = &trace};
+    json_t *read = document_of(&document);
+    assert_int_equal(integer(read, "format"), 2);
+    assert_string_equal(json_string_value(json_object_get(read, "title")), "a </title>");
+    assert_string_equal(json_string_value(json_object_get(json_object_get(read, "parameters"), "b")),
+                        "x=</script>");
+    assert_true(json_equal(json_object_get(read, "run"), object));
+    assert_int_equal(json_array_size(json_object_get(read, "slots")), 51);
+    const json_t *tracks = json_object_get(read, "tracks");
+    assert_int_equal(
+        json_array_size(json_object_get(json_array_get(json_object_get(tracks, "grippers"), 0), "t")), 0);
+    const json_t *axis = json_array_get(json_object_get(tracks, "axes"), WH_AXIS_R);
+    const wh_curve_t *curve = &trace.axes[WH_AXIS_R];
+    assert_int_equal(json_array_size(json_object_get(axis, "t")), curve->count);
+    assert_int_equal(json_array_size(json_object_get(axis, "v")), curve->count);
+    assert_int_equal(json_array_size(json_object_get(axis, "slope")), curve->count);
+    for (size_t i = 0; i < curve->count; ++i) {
+        const wh_curve_point_t *point = &curve->points[i];
+        assert_near(number_at(axis, "t", i), (double)point->slice / 1e3, 1e-9);
+        assert_near(number_at(axis, "v", i), point->value, point->exact ? 0 : 1e-4);
+        assert_near(number_at(axis, "slope", i), point->slope * 1e3, 1e-3);
+    }
+    const json_t *machine = json_object_get(read, "machine");
+    const json_t *chuck = json_array_get(json_object_get(machine, "grippers"), 1);
+    assert_int_equal(integer(chuck, "axis"), 4);
+    assert_near(number_at(chuck, "r", 0), -600, 1e-12);
+    json_decref(read);
+    json_decref(object);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(test_transfer, close_run),
+        cmocka_unit_test_teardown(test_prealigner, close_run),
+        cmocka_unit_test_teardown(test_missed_pick, close_run),
+        cmocka_unit_test_teardown(test_vacuum_that_leaks, close_run),
+        cmocka_unit_test_teardown(test_a_gripper_that_is_elsewhere, close_run),
+        cmocka_unit_test_teardown(test_scene, close_run),
+        cmocka_unit_test_teardown(test_document, close_run),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

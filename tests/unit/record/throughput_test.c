@@ -1,0 +1,363 @@
+/* Wafers per hour by the rules of record/throughput.h, and a whole run's figures against times computed by hand. */
+#include "support/support.h"
+
+#include <string.h>
+
+#include "mcs/script_run.h"
+#include "record/throughput.h"
+#include "support/record.h"
+
+/* -------------------------------------------------------------------------------------------------- rules */
+
+static fixture_t f;
+static wh_put_record_t made_puts[16];
+static wh_cycle_record_t made_cycles[8];
+
+/* A and B have 25 slots, P is a prealigner; slices of 1 ms. */
+static void begin(int64_t slices) {
+    fixture_begin(&f);
+    f.places[FIXTURE_A].slots = f.places[FIXTURE_B].slots = 25;
+    f.places[FIXTURE_P].slots = 1;
+    f.stations[FIXTURE_P].prealigner = true;
+    f.record.slices = slices;
+    f.record.puts = made_puts;
+    f.record.cycles = made_cycles;
+}
+
+static void add_put(int64_t slice, int32_t wafer, int32_t station, int32_t slot) {
+    const wh_put_record_t put = {wafer, station, slot, slice};
+    made_puts[f.record.put_count++] = put;
+}
+
+static void add_cycle(int64_t slice) {
+    static char unnamed[] = "";
+    const wh_cycle_record_t cycle = {1, unnamed, slice};
+    made_cycles[f.record.cycle_count++] = cycle;
+}
+
+static void assert_throughput(wh_rank_t rank, size_t wafers, double seconds, size_t first, size_t last) {
+    const wh_throughput_t found = wh_figures_throughput(&f.record);
+    assert_int_equal(found.rank, rank);
+    assert_int_equal(found.puts, f.record.put_count);
+    assert_int_equal(found.wafers, wafers);
+    assert_true(found.seconds == seconds);
+    assert_int_equal(found.first, first);
+    assert_int_equal(found.last, last);
+    if (seconds > 0) {
+        assert_near(found.wafers_per_hour, 3600 * (double)wafers / seconds, 1e-12);
+    }
+}
+
+static void test_a_record_of_nothing(void **state) {
+    (void)state;
+    fixture_empty(&f);
+    assert_throughput(WH_RANK_NONE, 0, 0, 0, 0);
+    begin(0);
+    assert_throughput(WH_RANK_NONE, 0, 0, 0, 0);
+    assert_true(wh_figures_throughput(&f.record).wafers_per_hour == 0);
+}
+
+static void test_without_marks_every_put_counts(void **state) {
+    (void)state;
+    begin(9000);
+    add_put(2000, 0, FIXTURE_B, 1);
+    add_put(4000, 1, FIXTURE_B, 2);
+    add_put(9000, 0, FIXTURE_A, 1);
+    assert_throughput(WH_RANK_SEVERAL, 3, 9, 0, 0);
+    assert_near(wh_figures_throughput(&f.record).wafers_per_hour, 1200, 1e-9);
+}
+
+static void test_what_is_on_its_way_does_not_count(void **state) {
+    (void)state;
+    begin(5000);
+    add_put(1000, 0, FIXTURE_P, 1);
+    assert_throughput(WH_RANK_PREALIGNER, 1, 5, 0, 0);
+    f.places[FIXTURE_A].slots = 1;
+    add_put(2000, 0, FIXTURE_A, 1);
+    assert_throughput(WH_RANK_SINGLE, 1, 5, 0, 0);
+    add_put(3000, 0, FIXTURE_B, 1);
+    add_put(4000, 1, FIXTURE_B, 2);
+    assert_throughput(WH_RANK_SEVERAL, 2, 5, 0, 0);
+    f.stations[FIXTURE_A].foup = true;
+    assert_throughput(WH_RANK_FOUP, 1, 5, 0, 0);
+}
+
+static void test_the_first_cycle_is_left_out(void **state) {
+    (void)state;
+    begin(26000);
+    add_cycle(1000);
+    add_put(10000, 0, FIXTURE_B, 1); /* at the very end of the first */
+    add_cycle(10000);
+    add_put(17000, 1, FIXTURE_B, 2);
+    add_cycle(18000);
+    add_put(26000, 2, FIXTURE_B, 3);
+    assert_throughput(WH_RANK_SEVERAL, 2, 16, 2, 3);
+    assert_near(wh_figures_throughput(&f.record).wafers_per_hour, 450, 1e-9);
+    size_t *wafers = wh_figures_cycle_wafers(&f.record, WH_RANK_SEVERAL);
+    for (size_t i = 0; i < 3; ++i) {
+        assert_int_equal(wafers[i], 1);
+    }
+    free(wafers);
+    assert_true(wh_figures_cycle_end(&f.record, 0) == 10000);
+    assert_true(wh_figures_cycle_end(&f.record, 2) == 26000);
+}
+
+static void test_an_only_cycle_counts(void **state) {
+    (void)state;
+    begin(8000);
+    add_put(1000, 1, FIXTURE_B, 1); /* before the mark */
+    add_cycle(2000);
+    add_put(8000, 0, FIXTURE_B, 2);
+    assert_throughput(WH_RANK_SEVERAL, 1, 6, 1, 1);
+}
+
+static void test_cycles_without_a_slice_are_none(void **state) {
+    (void)state;
+    begin(9000);
+    add_cycle(0);
+    add_cycle(0);
+    add_put(4000, 0, FIXTURE_B, 1);
+    add_cycle(5000);
+    add_put(8000, 1, FIXTURE_B, 2);
+    add_cycle(9000);
+    assert_throughput(WH_RANK_SEVERAL, 1, 4, 3, 3);
+    begin(9000);
+    add_cycle(9000);
+    add_put(8000, 1, FIXTURE_B, 2);
+    assert_throughput(WH_RANK_SEVERAL, 1, 9, 0, 0);
+}
+
+static void test_a_wafer_counts_once_a_cycle(void **state) {
+    (void)state;
+    begin(30000);
+    add_cycle(0);
+    add_cycle(10000);
+    add_put(12000, 0, FIXTURE_B, 1);
+    add_put(14000, 1, FIXTURE_B, 2);
+    add_put(18000, 0, FIXTURE_A, 1);
+    add_cycle(20000);
+    add_put(25000, 0, FIXTURE_P, 1);
+    add_put(28000, 0, FIXTURE_A, 1);
+    assert_throughput(WH_RANK_SEVERAL, 3, 20, 2, 3);
+}
+
+/* ---------------------------------------------------------------------------------------------------- runs */
+
+static wh_run_t run;
+
+static int close_run(void **state) {
+    (void)state;
+    wh_run_close(&run);
+    return 0;
+}
+
+static const wh_record_t *play(const char *script, wh_run_outcome_t outcome) {
+    const wh_run_options_t options = {.script = script, .limits = {.print_to = stderr}};
+    assert_int_equal(wh_run_script(&run, &options), outcome);
+    return &run.record;
+}
+
+static void assert_shares(const int64_t shares[WH_SHARES], int64_t loaded, int64_t empty, int64_t vacuum,
+                          int64_t handover, int64_t waiting) {
+    const int64_t wanted[WH_SHARES] = {loaded, empty, vacuum, handover, waiting};
+    for (size_t share = 0; share < WH_SHARES; ++share) {
+        assert_int_equal(shares[share], wanted[share]);
+    }
+}
+
+/* In ms: 2000 to the other station, 1000 in, 174 of the stroke until the wafer is within 0.51 mm, 226 more of it with
+ * the wafer, 1 for each valve, 100 of vacuum_delay, 1000 out; a PUT has strokes of 250. */
+static void test_split_of_a_cycle(void **state) {
+    (void)state;
+    const wh_record_t *record = play("tests/end_to_end/data/figures_cycles.lua", WH_RUN_MET);
+    assert_int_equal(record->command_count, 9);
+    assert_shares(record->commands[0].shares, 226 + 1000, 1000 + 174, 100, 1, 0);
+    assert_shares(record->commands[3].shares, 226 + 1000, 2000 + 1000 + 174, 100, 1, 0);
+    assert_shares(record->commands[4].shares, 0, 0, 0, 0, 500);
+    assert_shares(record->commands[5].shares, 2000 + 1000 + 250, 250 + 1000, 0, 1, 0);
+    assert_shares(record->activity.shares, 3 * (1226 + 3250), 3 * (1174 + 1250) + 2 * 2000, 300, 6, 1500);
+    int64_t sum = 0;
+    for (size_t share = 0; share < WH_SHARES; ++share) {
+        sum += record->activity.shares[share];
+    }
+    assert_true(sum == record->slices);
+}
+
+static void test_throughput_of_cycles(void **state) {
+    (void)state;
+    const wh_record_t *record = play("tests/end_to_end/data/figures_cycles.lua", WH_RUN_MET);
+    const wh_throughput_t found = wh_figures_throughput(record);
+    assert_int_equal(record->cycle_count, 4);
+    assert_string_equal(record->cycles[1].name, "of slot 2");
+    assert_int_equal(record->cycles[1].line, 4);
+    assert_string_equal(record->cycles[3].name, "");
+    assert_true(record->cycles[1].begin == 7502);
+    assert_int_equal(found.puts, 3);
+    assert_int_equal(found.wafers, 2);
+    assert_int_equal(found.first, 2);
+    assert_int_equal(found.last, 3);
+    assert_near(found.seconds, 19.004, 1e-12);
+    assert_near(found.wafers_per_hour, 2 * 3600 / 19.004, 1e-9);
+}
+
+static const wh_interval_t *interval(const wh_record_t *record, wh_busy_t who, int32_t gripper,
+                                     size_t number) {
+    for (size_t i = 0; i < record->activity.interval_count; ++i) {
+        const wh_interval_t *found = &record->activity.intervals[i];
+        if (found->who == who && found->gripper == gripper && number-- == 0) {
+            return found;
+        }
+    }
+    fail_msg("no such interval");
+    return NULL;
+}
+
+static void assert_interval(const wh_interval_t *found, int32_t what, int64_t from, int64_t to) {
+    assert_int_equal(found->what, what);
+    assert_int_equal(found->begin, from);
+    assert_int_equal(found->end, to);
+}
+
+static void test_intervals(void **state) {
+    (void)state;
+    const wh_record_t *record = play("tests/end_to_end/data/figures_cycles.lua", WH_RUN_MET);
+    assert_interval(interval(record, WH_BUSY_ROBOT, WH_NONE, 0), 1 + WH_SHARE_EMPTY, 0, 1000);
+    assert_interval(interval(record, WH_BUSY_ROBOT, WH_NONE, 1), 1 + WH_SHARE_HANDOVER, 1000, 1001);
+    assert_interval(interval(record, WH_BUSY_ROBOT, WH_NONE, 3), 1 + WH_SHARE_LOADED, 1175, 1401);
+    assert_interval(interval(record, WH_BUSY_ROBOT, WH_NONE, 4), 1 + WH_SHARE_VACUUM, 1401, 1501);
+    assert_interval(interval(record, WH_BUSY_ROBOT, WH_NONE, 6), 1 + WH_SHARE_WAITING, 2501, 3001);
+    /* The valve closes with the slice after 3001 + 2000 + 1000 + 250. */
+    assert_interval(interval(record, WH_BUSY_WAFER, 0, 0), 1 + 0, 1175, 6251);
+    assert_interval(interval(record, WH_BUSY_VALVE, 0, 0), 1, 1000, 6251);
+    assert_interval(interval(record, WH_BUSY_WAFER, 0, 1), 1 + 1, 7502 + 3175, 7502 + 2000 + 6251);
+    assert_int_equal(record->put_count, 3);
+    assert_int_equal(record->puts[2].wafer, 2);
+    assert_int_equal(record->puts[2].slot, 3);
+    assert_true(record->puts[2].slice == 26506);
+}
+
+/* Over the prealigner and back to its own slot is one wafer; what is dropped, or not taken, is none. */
+static void test_prealigner_and_drop(void **state) {
+    (void)state;
+    const wh_record_t *record = play("tests/end_to_end/data/figures_prealigner.lua", WH_RUN_FAILED);
+    const wh_throughput_t found = wh_figures_throughput(record);
+    assert_int_equal(found.rank, WH_RANK_SEVERAL);
+    assert_int_equal(record->put_count, 2);
+    size_t *wafers = wh_figures_cycle_wafers(record, found.rank);
+    assert_int_equal(wafers[0], 1);
+    assert_int_equal(wafers[1], 0);
+    free(wafers);
+    assert_string_equal(record->layout->stations[record->puts[0].station].name, "P");
+    /* The chuck turns with the wafer on it, and the robot stands: by 90 degrees in 0.6 s. */
+    const wh_interval_t *turn = interval(record, WH_BUSY_CHUCK, 1, 0);
+    assert_int_equal(turn->what, 1 + WH_SHARE_LOADED);
+    assert_int_equal(turn->end - turn->begin, 600);
+    assert_shares(record->commands[2].shares, 600, 0, 0, 0, 0);
+    for (size_t i = 0; i < record->activity.interval_count; ++i) {
+        const wh_interval_t *other = &record->activity.intervals[i];
+        assert_true(other->who != WH_BUSY_ROBOT || other->end <= turn->begin || other->begin >= turn->end);
+    }
+}
+
+/* A SWAP puts one wafer on its way while another comes back: one wafer a cycle, not two. */
+static void test_swap(void **state) {
+    (void)state;
+    const wh_record_t *record = play("tests/end_to_end/data/figures_swap.lua", WH_RUN_MET);
+    assert_int_equal(record->put_count, 5);
+    size_t *wafers = wh_figures_cycle_wafers(record, WH_RANK_SEVERAL);
+    assert_int_equal(wafers[0], 1);
+    assert_int_equal(wafers[1], 1);
+    free(wafers);
+    const wh_throughput_t found = wh_figures_throughput(record);
+    assert_int_equal(found.wafers, 1);
+    assert_int_equal(found.first, 2);
+    const double seconds = record->commands[7].end_s - record->commands[5].begin_s;
+    assert_near(found.wafers_per_hour, 3600 / seconds, 1e-9);
+}
+
+/* -------------------------------------------------------------------------------------------------- reach */
+
+static const wh_reach_t *reach(const wh_record_t *record, const char *station, size_t axis) {
+    return &record->reach[wh_layout_find_station(record->layout, station)].axes[axis];
+}
+
+static void assert_reach(const wh_reach_t *found, double margin, double at, bool is_max, int32_t slot) {
+    assert_near(found->margin, margin, 1e-9);
+    assert_near(found->at, at, 1e-9);
+    assert_int_equal(found->is_max, is_max);
+    assert_int_equal(found->slot, slot);
+}
+
+static void test_reach(void **state) {
+    (void)state;
+    const double pi = acos(-1.0);
+    const wh_record_t *record = play("tests/end_to_end/data/figures_cycles.lua", WH_RUN_MET);
+    assert_reach(reach(record, "A", WH_AXIS_R), 100, 400, false, 1);
+    assert_reach(reach(record, "A", WH_AXIS_Z), 297, 897, false, 1);
+    assert_reach(reach(record, "B", WH_AXIS_THETA), 2.5 * pi, pi / 2, true, 1);
+    assert_reach(reach(record, "B", WH_AXIS_YAW), 1.5 * pi, 0, false, 1);
+    /* The line into C passes base's axis at 350 mm, from 461 mm to 461 mm. */
+    assert_reach(reach(record, "C", WH_AXIS_R), 50, 350, false, 1);
+    assert_reach(reach(record, "C", WH_AXIS_THETA), 3 * pi - (pi - atan2(350, 300)), -(pi - atan2(350, 300)),
+                 false, 1);
+    assert_reach(reach(record, "C", WH_AXIS_YAW), 1.5 * pi - (pi - atan2(350, 300)), pi - atan2(350, 300),
+                 true, 1);
+}
+
+static void test_refused_marks(void **state) {
+    (void)state;
+    const wh_record_t *record = play("tests/end_to_end/data/figures_errors.lua", WH_RUN_MET);
+    assert_int_equal(record->expectation_count, 3);
+    /* The level's name is asked for before the command begins, too. */
+    assert_int_equal(record->cycle_count, 1);
+}
+
+/* What a session forgets, and what goes on meanwhile. */
+static void test_forgetting(void **state) {
+    (void)state;
+    static wh_record_t record;
+    static const wh_put_record_t put = {0, 1, 1, 5};
+    static wh_gripper_t gripper = {.wafer = 7};
+    static wh_machine_t machine = {.axis_count = 4, .gripper_count = 1};
+    static wh_track_t track;
+    const wh_state_t answer = {.grippers = &gripper, .gripper_count = 1};
+    const wh_task_t moving = {WH_SHARE_WAITING, true, true, 1};
+    const wh_task_t standing = {WH_SHARE_WAITING, false, true, 0};
+    machine.mounts[0].axis = WH_NONE;
+    track.machine = &machine;
+    track.slice = 1;
+    assert_int_equal(wh_activity_count(&record.activity, &moving, &track, &answer), WH_SHARE_LOADED);
+    track.slice = 2;
+    assert_int_equal(wh_activity_count(&record.activity, &standing, &track, &answer), WH_SHARE_WAITING);
+    wh_record_add_put(&record, &put);
+    wh_record_add_cycle(&record, 1, "name", 0);
+    assert_int_equal(record.activity.interval_count, 1);
+    wh_record_forget(&record);
+    assert_int_equal(record.put_count + record.cycle_count + record.activity.interval_count, 0);
+    assert_shares(record.activity.shares, 1, 0, 0, 0, 1);
+    wh_activity_end(&record.activity, 2);
+    assert_interval(interval(&record, WH_BUSY_ROBOT, WH_NONE, 0), 1 + WH_SHARE_WAITING, 1, 2);
+    assert_interval(interval(&record, WH_BUSY_WAFER, 0, 0), 1 + 7, 0, 2);
+    wh_record_free(&record);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_record_of_nothing),
+        cmocka_unit_test(test_without_marks_every_put_counts),
+        cmocka_unit_test(test_what_is_on_its_way_does_not_count),
+        cmocka_unit_test(test_the_first_cycle_is_left_out),
+        cmocka_unit_test(test_an_only_cycle_counts),
+        cmocka_unit_test(test_cycles_without_a_slice_are_none),
+        cmocka_unit_test(test_a_wafer_counts_once_a_cycle),
+        cmocka_unit_test_teardown(test_split_of_a_cycle, close_run),
+        cmocka_unit_test_teardown(test_throughput_of_cycles, close_run),
+        cmocka_unit_test_teardown(test_intervals, close_run),
+        cmocka_unit_test_teardown(test_prealigner_and_drop, close_run),
+        cmocka_unit_test_teardown(test_swap, close_run),
+        cmocka_unit_test_teardown(test_reach, close_run),
+        cmocka_unit_test_teardown(test_refused_marks, close_run),
+        cmocka_unit_test(test_forgetting),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

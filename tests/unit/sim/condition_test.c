@@ -1,0 +1,155 @@
+/* The simulator's condition: which ones are refused, and what the hash covers. */
+#include "support/faults.h"
+
+#if defined(WH_FLOAT)
+#define HASH UINT64_C(0xded51337dbb365d2)
+#else
+#define HASH UINT64_C(0xf24464e63c42ba4a)
+#endif
+
+static void test_conditions_that_no_simulator_leaves(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
+    bring(0, &f);
+    step(880, CLOSED);
+    const wh_condition_t good = simulator.condition;
+    wh_condition_t bad[14];
+    for (size_t i = 0; i < 14; ++i) {
+        bad[i] = good;
+    }
+    bad[0].vacuum[1].command = 2;
+    bad[1].told[1] = -1;
+    bad[2].carry[1].before[0].z = (wh_real_t)NAN;
+    bad[3].carry[0].before[1].x = (wh_real_t)NAN;
+    bad[4].vacuum[0].level = WH_REAL(1.001);
+    bad[5].vacuum[0].level = (wh_real_t)NAN;
+    bad[6].carry[0].known = 3;
+    bad[7].carry[0].known = -1;
+    bad[8].faults.slots[0].fault.from = 0;
+    bad[9].faults.slots[0].placed.r.x = (wh_real_t)NAN;
+    bad[10].faults.slots[0].before.R.m[0][0] = 2;
+    bad[11].faults.slots[0].phase = (wh_fault_phase_t)4;
+    bad[12].carry[0].before[0].y = (wh_real_t)INFINITY;
+    bad[13].vacuum[1].level = WH_REAL(-0.001);
+    assert_int_equal(wh_condition_validate(&good, GRIPPERS, WAFERS), WH_OK);
+    for (size_t i = 0; i < 14; ++i) {
+        assert_int_not_equal(wh_condition_validate(&bad[i], GRIPPERS, WAFERS), WH_OK);
+    }
+    wh_condition_t more = good;
+    more.faults.count = WH_FAULTS + 1;
+    assert_int_not_equal(wh_condition_validate(&more, GRIPPERS, WAFERS), WH_OK);
+    more = good;
+    more.vacuum[0].command = OPEN;
+    more.told[0] = OPEN;
+    assert_int_equal(wh_condition_validate(&more, GRIPPERS, WAFERS), WH_OK);
+    more = good;
+    more.vacuum[GRIPPERS].level = 7; /* beyond those that there are */
+    more.faults.count = 2;           /* a free slot */
+    assert_int_equal(wh_condition_validate(&more, GRIPPERS, WAFERS), WH_OK);
+    more.faults.slots[0].phase = WH_FAULT_OVER; /* its poses do not matter any more */
+    more.faults.slots[0].placed.r.x = (wh_real_t)NAN;
+    assert_int_equal(wh_condition_validate(&more, GRIPPERS, WAFERS), WH_OK);
+}
+
+/* A fault of gripper 1 where there are 2 grippers and 1 wafer, and the other way round. */
+static void test_grippers_and_wafers_are_counted_apart(void **state) {
+    (void)state;
+    wh_physics_t physics = wh_physics_default();
+    physics.faults[0] = fault_of(WH_FAULT_SENSOR_ON, 1);
+    physics.fault_count = 1;
+    wh_condition_t condition;
+    wh_condition_start(&condition, &physics);
+    assert_int_equal(wh_physics_validate(&physics, 2, 1), WH_OK);
+    assert_int_equal(wh_physics_validate(&physics, 1, 2), WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(wh_condition_validate(&condition, 2, 1), WH_OK);
+    assert_int_equal(wh_condition_validate(&condition, 1, 2), WH_STATUS_OUT_OF_RANGE);
+}
+
+enum { CHANGES = 19 };
+
+static void test_the_hash_covers_each_word(void **state) {
+    (void)state;
+    bring_kind(WH_FAULT_WAFER_SHIFTED, 0);
+    pick();
+    const wh_condition_t good = simulator.condition;
+    static wh_condition_t changed[CHANGES];
+    for (size_t i = 0; i < CHANGES; ++i) {
+        changed[i] = good;
+    }
+    changed[0].vacuum[0].level = WH_REAL(0.5);
+    changed[1].vacuum[0].on = false;
+    changed[2].vacuum[1].command = OPEN;
+    changed[3].carry[0].known = 1;
+    changed[4].carry[0].known = 1;
+    changed[4].carry[0].slips = true;
+    changed[5].carry[0].known = 1;
+    changed[5].carry[0].before[1].x = 1;
+    changed[6].faults.slots[0].phase = WH_FAULT_OVER;
+    changed[7].faults.slots[0].fault.kind = WH_FAULT_WAFER_TILTED;
+    changed[8].faults.slots[0].fault.target = 1;
+    changed[9].faults.slots[0].fault.other = 1;
+    changed[10].faults.slots[0].fault.value = 1;
+    changed[11].faults.slots[0].fault.offset.r.y = 1;
+    changed[12].faults.slots[0].fault.until = 9;
+    changed[13].faults.slots[0].before.r.x = 1;
+    changed[14].faults.slots[0].placed.r.x = 1;
+    changed[15].vacuum[0].level = WH_REAL(0.5);
+    changed[15].vacuum[0].on = false;
+    changed[16] = changed[15];
+    changed[16].vacuum[1].command = OPEN;
+    changed[17].carry[0].known = 1;
+    changed[17].carry[0].before[0].x = 1;
+    changed[18].faults.slots[0].fault.from = 9;
+    for (size_t i = 0; i < CHANGES; ++i) {
+        const uint64_t hash = wh_condition_hash(&changed[i], &simulator.table);
+        assert_true(hash != wh_simulator_hash(&simulator));
+        for (size_t k = 0; k < i; ++k) {
+            assert_true(hash != wh_condition_hash(&changed[k], &simulator.table));
+        }
+    }
+}
+
+/* Whoever keeps a run's hashes compares them with those of another machine, another compiler, another year. */
+static void test_the_hash_is_this_number(void **state) {
+    (void)state;
+    wh_fault_t fault = fault_of(WH_FAULT_LEAK, 0);
+    fault.value = WH_REAL(0.25);
+    bring(1, &fault);
+    pick();
+    wh_condition_t some = simulator.condition;
+    for (int g = 0; g < GRIPPERS; ++g) {
+        some.vacuum[g].level = WH_REAL(0.5);
+        some.vacuum[g].on = true;
+        some.carry[g].known = 1 + g;
+        some.carry[g].before[0] = wh_vec3(1, 2, 3);
+        some.carry[g].before[1] = wh_vec3(4, 5, 6);
+        some.carry[g].slips = g == 0;
+    }
+    assert_true(wh_condition_hash(&some, &simulator.table) == HASH);
+}
+
+static void test_without_any_it_is_the_tables_hash(void **state) {
+    (void)state;
+    pick();
+    assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
+    step(880, CLOSED);
+    assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
+    simulator.condition.faults.count = 1; /* a free slot is none */
+    assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
+    bring_kind(WH_FAULT_SENSOR_ON, 0);
+    step(880, CLOSED);
+    assert_true(wh_simulator_hash(&simulator) != wh_grasp_hash(&simulator.table));
+    wh_faults_clear(&simulator.condition.faults);
+    assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(test_conditions_that_no_simulator_leaves, set_up),
+        cmocka_unit_test_setup(test_grippers_and_wafers_are_counted_apart, set_up),
+        cmocka_unit_test_setup(test_the_hash_covers_each_word, set_up),
+        cmocka_unit_test_setup(test_the_hash_is_this_number, set_up),
+        cmocka_unit_test_setup(test_without_any_it_is_the_tables_hash, set_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

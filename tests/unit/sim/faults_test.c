@@ -1,0 +1,258 @@
+/* Faults on purpose in the simulator: their names, what is refused, when they begin and end. */
+#include "support/faults.h"
+
+static void test_names(void **state) {
+    (void)state;
+    for (int i = 0; i < WH_FAULT_KINDS; ++i) {
+        const char *name = wh_fault_name((wh_fault_kind_t)i);
+        assert_int_equal(strncmp(name, "wafer_", 6) == 0, wh_fault_is_of_wafer((wh_fault_kind_t)i));
+        for (int j = 0; j < i; ++j) {
+            assert_string_not_equal(name, wh_fault_name((wh_fault_kind_t)j));
+        }
+    }
+    assert_string_equal(wh_fault_name((wh_fault_kind_t)WH_FAULT_KINDS), "unknown");
+}
+
+/* ---------------------------------------------------------------------------------------------------- refusals */
+
+static void refuse_fault(const wh_fault_t *fault, wh_status_t status) {
+    const uint64_t hash = wh_simulator_hash(&simulator);
+    bring(0, fault);
+    assert_int_equal(try_step(880, CLOSED), status);
+    --command.seq;
+    assert_int_equal(answer.event_count, 0);
+    assert_true(wh_simulator_hash(&simulator) == hash);
+}
+
+static void test_what_no_cell_can_have_is_refused(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of((wh_fault_kind_t)WH_FAULT_KINDS, 0);
+    refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+    f = fault_of(WH_FAULT_SENSOR_ON, GRIPPERS);
+    refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+    f = fault_of(WH_FAULT_SENSOR_ON, WH_NONE);
+    refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+    f = fault_of(WH_FAULT_WAFER_MISSING, WAFERS);
+    refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+    f.target = 0;
+    f.other = 1;
+    refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+    f = fault_of(WH_FAULT_COMMAND_LOST, 0);
+    refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+    f.target = WH_NONE;
+    f.other = 0;
+    refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+    f = fault_of(WH_FAULT_WAFER_DOUBLED, 0);
+    refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+    f.other = 0;
+    refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+    f = fault_of(WH_FAULT_SENSOR_ON, 0);
+    f.from = 0;
+    refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+    f = fault_of(WH_FAULT_SENSOR_ON, 0);
+    f.until = -1;
+    refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+    f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
+    f.offset.r.x = (wh_real_t)NAN;
+    refuse_fault(&f, WH_STATUS_NOT_FINITE);
+}
+
+static void test_values_have_their_ranges(void **state) {
+    static const struct {
+        wh_fault_kind_t kind;
+        double bad[2];
+    } cases[] = {{WH_FAULT_LEAK, {-1e-9, 1.001}},
+                 {WH_FAULT_SLOW_VACUUM, {-1e-9, 3601}},
+                 {WH_FAULT_SENSOR_ON, {-1, 1}}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        for (size_t k = 0; k < 2; ++k) {
+            wh_fault_t f = fault_of(cases[i].kind, 0);
+            f.value = (wh_real_t)cases[i].bad[k];
+            refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
+        }
+    }
+}
+
+static void test_the_ends_of_the_ranges(void **state) {
+    static const struct {
+        wh_fault_kind_t kind;
+        double value;
+    } cases[] = {
+        {WH_FAULT_LEAK, 0}, {WH_FAULT_LEAK, 1}, {WH_FAULT_SLOW_VACUUM, 0}, {WH_FAULT_SLOW_VACUUM, 3600}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        wh_fault_t f = fault_of(cases[i].kind, 0);
+        f.value = (wh_real_t)cases[i].value;
+        assert_int_equal(wh_fault_validate(&f, GRIPPERS, WAFERS), WH_OK);
+    }
+}
+
+/* Where numbers end, too, a wafer that faults move stays where a table can have it. */
+static void test_no_offset_takes_a_wafer_out_of_the_numbers(void **state) {
+    (void)state;
+    wh_real_t *const parts[] = {&command.faults[0].fault.offset.r.x, &command.faults[0].fault.offset.r.y,
+                                &command.faults[0].fault.offset.r.z};
+    for (size_t i = 0; i < 3; ++i) {
+        bring_kind(WH_FAULT_WAFER_SHIFTED, 0);
+        *parts[i] = WH_REAL(1.001e6);
+        assert_int_equal(try_step(880, CLOSED), WH_STATUS_OUT_OF_RANGE);
+        --command.seq;
+    }
+    const wh_pose_t last = {wafers[0].base_from_wafer.R,
+                            {WH_TEST_LARGEST, -WH_TEST_LARGEST, WH_TEST_LARGEST}};
+    assert_int_equal(wh_grasp_place(&simulator.table, 0, &last), WH_OK);
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
+    f.offset.r = wh_vec3(WH_REAL(1e6), WH_REAL(-1e6), WH_REAL(1e6));
+    f.offset.R = wh_test_rotation(0, 0, 1, 0.1);
+    bring(0, &f);
+    bring(1, &f);
+    step(880, CLOSED);
+    assert_non_null(find(WH_EVENT_FAULT_ARMED));
+    assert_int_equal(wh_pose_validate(&wafers[0].base_from_wafer), WH_OK);
+    assert_int_equal(wh_condition_validate(&simulator.condition, GRIPPERS, WAFERS), WH_OK);
+}
+
+static void test_slots(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 0);
+    bring(-1, &f);
+    assert_int_equal(try_step(880, CLOSED), WH_STATUS_OUT_OF_RANGE);
+    bring(WH_FAULTS, &f);
+    assert_int_equal(try_step(880, CLOSED), WH_STATUS_OUT_OF_RANGE);
+    bring(3, &f);
+    bring(3, &f);
+    assert_int_equal(try_step(880, CLOSED), WH_STATUS_OUT_OF_RANGE);
+    command.fault_count = WH_COMMAND_FAULTS + 1;
+    assert_int_equal(try_step(880, CLOSED), WH_STATUS_OUT_OF_RANGE);
+    bring(3, &f);
+    step(880, CLOSED);
+    /* Taken now, but for the very same fault with another end. */
+    wh_fault_t others[10] = {f, f, f, f, f, f, f, f, f, f};
+    others[0].kind = WH_FAULT_SENSOR_OFF;
+    others[1].target = 1;
+    others[2].from += 1;
+    others[3] = fault_of(WH_FAULT_WAFER_DOUBLED, 0);
+    others[3].other = 1;
+    others[4].offset.r.y = 1;
+    others[5].offset.R = wh_test_rotation(0, 0, 1, 0.1);
+    others[6].offset.r.x = 1;
+    others[7].offset.r.z = 1;
+    others[8].other = 1;
+    others[9].value = 1;
+    for (size_t i = 0; i < 10; ++i) {
+        bring(3, &others[i]);
+        assert_int_equal(try_step(880, CLOSED), WH_STATUS_OUT_OF_RANGE);
+    }
+    f.until = command.seq + 1;
+    bring(3, &f);
+    step(880, CLOSED);
+    expect_event(WH_EVENT_FAULT_CLEARED, WH_NONE, 0, 3);
+    /* Over: free for another; so is one below that was never used. */
+    others[0].from = command.seq + 1;
+    bring(3, &others[0]);
+    step(880, CLOSED);
+    expect_event(WH_EVENT_FAULT_ARMED, WH_NONE, 0, 3);
+    others[0].from = command.seq + 1;
+    bring(1, &others[0]);
+    step(880, CLOSED);
+    expect_event(WH_EVENT_FAULT_ARMED, WH_NONE, 0, 1);
+}
+
+/* Neither the fault nor the input that it would overrule. */
+static void test_a_refused_input_brings_no_fault(void **state) {
+    (void)state;
+    step(880, CLOSED);
+    const uint64_t hash = wh_simulator_hash(&simulator);
+    bring_kind(WH_FAULT_VALVE_STUCK, 0);
+    assert_int_equal(try_step(880, 7), WH_STATUS_BAD_VALVE);
+    assert_non_null(find(WH_EVENT_BAD_INPUT));
+    bring_kind(WH_FAULT_AXIS_STOPPED, 0);
+    assert_int_equal(try_step((double)NAN, CLOSED), WH_STATUS_NOT_FINITE);
+    assert_true(wh_simulator_hash(&simulator) == hash);
+    assert_int_equal(simulator.condition.faults.count, 0);
+}
+
+/* ------------------------------------------------------------------------------------------------------- times */
+
+static void test_a_fault_acts_from_and_until(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 1);
+    f.from = 3;
+    f.until = 5;
+    bring(0, &f);
+    for (int slice = 1; slice <= 6; ++slice) {
+        step(880, CLOSED);
+        assert_int_equal(answer.sensors, slice == 3 || slice == 4 ? 2 : 0);
+        assert_int_equal(find(WH_EVENT_FAULT_ARMED) != NULL, slice == 3);
+        assert_int_equal(find(WH_EVENT_FAULT_CLEARED) != NULL, slice == 5);
+    }
+}
+
+/* Told late that it was to end long ago, it ends now. */
+static void test_an_end_that_has_passed(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 1);
+    bring(0, &f);
+    for (int slice = 1; slice <= 4; ++slice) {
+        step(880, CLOSED);
+        assert_int_equal(answer.sensors, 2);
+    }
+    f.until = 3;
+    bring(0, &f);
+    step(880, CLOSED);
+    expect_event(WH_EVENT_FAULT_CLEARED, WH_NONE, 1, 0);
+    assert_int_equal(answer.sensors, 0);
+}
+
+/* Nothing is left of the fault that a slot had before. */
+static void test_a_slot_that_is_used_again_is_new(void **state) {
+    (void)state;
+    static const wh_pose_t none;
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 1);
+    f.offset = wh_test_at(7, 0, 0);
+    f.until = 2;
+    bring(0, &f);
+    step(880, CLOSED);
+    step(880, CLOSED);
+    const wh_fault_slot_t *slot = &simulator.condition.faults.slots[0];
+    assert_int_equal(slot->phase, WH_FAULT_OVER);
+    assert_true(slot->placed.r.x > 0);
+    bring_kind(WH_FAULT_SENSOR_ON, 0);
+    step(880, CLOSED);
+    assert_memory_equal(&slot->before, &none, sizeof none);
+    assert_memory_equal(&slot->placed, &none, sizeof none);
+}
+
+/* One that is cleared before it began was never there, for whoever reads events. */
+static void test_a_fault_that_never_begins(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 1);
+    f.from = 4;
+    bring(0, &f);
+    step(880, CLOSED);
+    f.until = 2;
+    bring(0, &f);
+    for (int slice = 2; slice <= 6; ++slice) {
+        step(880, CLOSED);
+        assert_int_equal(answer.event_count, 0);
+        assert_int_equal(answer.sensors, 0);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(test_names, set_up),
+        cmocka_unit_test_setup(test_what_no_cell_can_have_is_refused, set_up),
+        cmocka_unit_test_setup(test_values_have_their_ranges, set_up),
+        cmocka_unit_test_setup(test_the_ends_of_the_ranges, set_up),
+        cmocka_unit_test_setup(test_no_offset_takes_a_wafer_out_of_the_numbers, set_up),
+        cmocka_unit_test_setup(test_slots, set_up),
+        cmocka_unit_test_setup(test_a_refused_input_brings_no_fault, set_up),
+        cmocka_unit_test_setup(test_a_fault_acts_from_and_until, set_up),
+        cmocka_unit_test_setup(test_an_end_that_has_passed, set_up),
+        cmocka_unit_test_setup(test_a_slot_that_is_used_again_is_new, set_up),
+        cmocka_unit_test_setup(test_a_fault_that_never_begins, set_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

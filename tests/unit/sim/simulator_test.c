@@ -1,0 +1,250 @@
+/* The simulator: what it refuses, what a state shows, and that the cell has its say. */
+#include "support/pose.h"
+
+#include "sim/simulator.h"
+
+enum { WAFERS = 2, GRIPPERS = 2, OPEN = WH_VALVE_OPEN, CLOSED = WH_VALVE_CLOSED };
+
+static wh_wafer_t wafers[WAFERS];
+static wh_gripper_t grippers[GRIPPERS];
+static wh_station_t station;
+static wh_simulator_t simulator;
+static wh_command_t command;
+static wh_state_t answer;
+
+static wh_grasp_storage_t storage_here(void) {
+    const wh_grasp_storage_t storage = {wafers, WAFERS, grippers, GRIPPERS, NULL, 0};
+    return storage;
+}
+
+static wh_cell_t cell_here(void) {
+    const wh_cell_t cell = {.stations = &station, .count = 1, .tolerance = wh_tolerance_paper()};
+    return cell;
+}
+
+/* Wafer 0 in the station's slot at (700, 0, 900), wafer 1 far away; both grippers wait, closed. */
+static int set_up(void **state) {
+    (void)state;
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = storage_here();
+    const wh_cell_t cell = cell_here();
+    station.base_from_station = wh_test_at(700, 0, 900);
+    station.slots = 1;
+    station.pitch = 10;
+    station.chuck = WH_NONE;
+    wafers[0].base_from_wafer = wh_test_at(700, 0, 900);
+    wafers[1].base_from_wafer = wh_test_at(-700, 0, 900);
+    memset(&simulator, 0x5a, sizeof simulator);
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_OK);
+    memset(&command, 0, sizeof command);
+    command.gripper_count = GRIPPERS;
+    for (int g = 0; g < GRIPPERS; ++g) {
+        command.grippers[g].base_from_gripper = wh_test_at(0, 1000 * g, 0);
+        command.grippers[g].valve = CLOSED;
+    }
+    return 0;
+}
+
+static void step(double x, double z, int valve) {
+    ++command.seq;
+    command.utime = 1000 * command.seq;
+    command.grippers[0].base_from_gripper = wh_test_at(x, 0, z);
+    command.grippers[0].valve = valve;
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+}
+
+static void test_init_refuses_what_it_cannot_use(void **state) {
+    (void)state;
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = storage_here();
+    const wh_cell_t cell = cell_here();
+    const wh_simulator_t before = simulator;
+    wh_grasp_storage_t large = storage;
+    large.gripper_count = WH_GRIPPERS + 1;
+    const wh_cell_t nowhere = {.stations = NULL, .count = 1, .tolerance = cell.tolerance};
+    wh_grasp_config_t wide = config;
+    wide.tolerance.projz = -1;
+    assert_int_equal(wh_simulator_init(NULL, &config, &storage, &cell), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_simulator_init(&simulator, NULL, &storage, &cell), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_simulator_init(&simulator, &config, NULL, &cell), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &nowhere), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_simulator_init(&simulator, &config, &large, &cell), WH_STATUS_BAD_CAPACITY);
+    assert_int_equal(wh_simulator_init(&simulator, &wide, &storage, &cell), WH_STATUS_BAD_TOLERANCE);
+    assert_memory_equal(&simulator, &before, sizeof simulator);
+}
+
+/* As many grippers as a command carries, all of which let go at once, each in the air. */
+static void test_all_grippers_at_once(void **state) {
+    (void)state;
+    static wh_wafer_t many_wafers[WH_GRIPPERS];
+    static wh_gripper_t many_grippers[WH_GRIPPERS];
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = {many_wafers, WH_GRIPPERS, many_grippers, WH_GRIPPERS, NULL, 0};
+    const wh_cell_t cell = cell_here();
+    command.gripper_count = WH_GRIPPERS;
+    for (int g = 0; g < WH_GRIPPERS; ++g) {
+        many_wafers[g].base_from_wafer = wh_test_at(0, 1000 * g, 0);
+        command.grippers[g].base_from_gripper = many_wafers[g].base_from_wafer;
+        command.grippers[g].valve = OPEN;
+    }
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_OK);
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+    assert_int_equal(answer.event_count, WH_GRIPPERS);
+    assert_int_equal(answer.sensors, 255);
+    for (int g = 0; g < WH_GRIPPERS; ++g) {
+        command.grippers[g].valve = CLOSED;
+    }
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+    assert_int_equal(answer.event_count, 2 * WH_GRIPPERS);
+    assert_int_equal(answer.sensors, 0);
+}
+
+static void test_a_cell_without_stations_is_allowed(void **state) {
+    (void)state;
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = storage_here();
+    const wh_cell_t empty = {.stations = NULL, .count = 0, .tolerance = config.tolerance};
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &empty), WH_OK);
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
+}
+
+static void test_the_view_before_the_first_slice(void **state) {
+    (void)state;
+    memset(&answer, 0x5a, sizeof answer);
+    wh_simulator_view(&simulator, &answer);
+    assert_ptr_equal(answer.wafers, wafers);
+    assert_int_equal(answer.wafer_count, WAFERS);
+    assert_ptr_equal(answer.grippers, grippers);
+    assert_int_equal(answer.gripper_count, GRIPPERS);
+    assert_int_equal(answer.event_count, 0);
+    assert_int_equal(answer.sensors, 0);
+}
+
+static void test_a_state_answers_its_command(void **state) {
+    (void)state;
+    command.seq = 41;
+    step(0, 0, CLOSED);
+    assert_int_equal(answer.seq, 42);
+    assert_int_equal(answer.utime, 42000);
+    assert_int_equal(answer.status, WH_OK);
+    assert_int_equal(answer.event_count, 0);
+}
+
+static void test_a_pick_shows_in_holder_sensor_and_events(void **state) {
+    (void)state;
+    step(700, 899.8, OPEN);
+    assert_int_equal(answer.wafers[0].holder, 0);
+    assert_int_equal(answer.sensors, 1);
+    assert_int_equal(answer.event_count, 1);
+    assert_int_equal(answer.events[0].kind, WH_EVENT_PICKED);
+    step(700, 950, OPEN);
+    assert_int_equal(answer.event_count, 0);
+    assert_int_equal(answer.sensors, 1);
+    assert_near(answer.wafers[0].base_from_wafer.r.z, 950.2, 2048 * WH_TEST_ROUNDING);
+}
+
+static void test_each_gripper_has_its_own_sensor_bit(void **state) {
+    (void)state;
+    command.grippers[1].base_from_gripper = wh_test_at(-700, 0, 900);
+    command.grippers[1].valve = OPEN;
+    step(0, 0, CLOSED);
+    assert_int_equal(answer.sensors, 2);
+    step(700, 900, OPEN);
+    assert_int_equal(answer.sensors, 3);
+}
+
+static void test_the_cell_judges_a_release_in_the_same_slice(void **state) {
+    (void)state;
+    step(700, 900, OPEN);
+    step(300, 900, CLOSED);
+    assert_int_equal(answer.sensors, 0);
+    assert_int_equal(answer.event_count, 2);
+    assert_int_equal(answer.events[0].kind, WH_EVENT_RELEASED);
+    assert_int_equal(answer.events[1].kind, WH_EVENT_RELEASED_UNSUPPORTED);
+    assert_near(answer.events[1].height, 900, 2048 * WH_TEST_ROUNDING);
+}
+
+/* A refused command: answered, counted, and nothing has moved. */
+static void expect_refused(wh_status_t status, size_t events) {
+    const uint64_t hash = simulator.link.hash(&simulator.link);
+    const uint64_t refused = simulator.table.counters.refused;
+    command.seq = 77;
+    command.utime = 77000;
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), status);
+    assert_int_equal(answer.status, status);
+    assert_int_equal(answer.seq, 77);
+    assert_int_equal(answer.utime, 77000);
+    assert_int_equal(answer.event_count, events);
+    assert_int_equal(answer.sensors, 1);
+    assert_int_equal(answer.wafer_count, WAFERS);
+    assert_int_equal(simulator.table.counters.refused, refused + 1);
+    assert_true(simulator.link.hash(&simulator.link) == hash);
+}
+
+static void test_a_refused_command_changes_nothing_and_is_counted(void **state) {
+    (void)state;
+    step(700, 900, OPEN);
+    command.grippers[1].valve = 2;
+    expect_refused(WH_STATUS_BAD_VALVE, 1);
+    assert_int_equal(answer.events[0].kind, WH_EVENT_BAD_INPUT);
+    assert_int_equal(answer.events[0].gripper, 1);
+    command.grippers[1].valve = CLOSED;
+    command.grippers[0].base_from_gripper.r.x = (wh_real_t)NAN;
+    expect_refused(WH_STATUS_NOT_FINITE, 1);
+    command.grippers[0].base_from_gripper = wh_test_at(700, 0, 900);
+    static const size_t counts[] = {0, GRIPPERS - 1, GRIPPERS + 1, WH_GRIPPERS + 1, SIZE_MAX};
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; ++i) {
+        command.gripper_count = counts[i];
+        expect_refused(WH_STATUS_OUT_OF_RANGE, 0);
+    }
+}
+
+static void test_null_pointers_touch_nothing(void **state) {
+    (void)state;
+    const uint64_t refused = simulator.table.counters.refused;
+    assert_int_equal(wh_simulator_step(NULL, &command, &answer), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_simulator_step(&simulator, NULL, &answer), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_simulator_step(&simulator, &command, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(simulator.table.counters.refused, refused);
+    assert_int_equal(simulator.table.slice, 0);
+}
+
+static void test_entries_beyond_the_count_are_not_looked_at(void **state) {
+    (void)state;
+    command.grippers[GRIPPERS].valve = 99;
+    command.grippers[GRIPPERS].base_from_gripper.r.x = (wh_real_t)NAN;
+    step(700, 900, OPEN);
+    assert_int_equal(answer.sensors, 1);
+}
+
+/* The interface at which an MCS meets it. */
+static void test_the_link_is_the_simulator(void **state) {
+    (void)state;
+    wh_link_t *link = &simulator.link;
+    command.grippers[0].base_from_gripper = wh_test_at(700, 0, 900);
+    command.grippers[0].valve = OPEN;
+    command.seq = 1;
+    assert_int_equal(link->exchange(link, &command, &answer), WH_OK);
+    assert_int_equal(answer.sensors, 1);
+    assert_true(link->hash(link) == wh_grasp_hash(&simulator.table));
+    assert_int_equal(link->missed(link), 0); /* a call is never late */
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(test_init_refuses_what_it_cannot_use, set_up),
+        cmocka_unit_test_setup(test_all_grippers_at_once, set_up),
+        cmocka_unit_test_setup(test_a_cell_without_stations_is_allowed, set_up),
+        cmocka_unit_test_setup(test_the_view_before_the_first_slice, set_up),
+        cmocka_unit_test_setup(test_a_state_answers_its_command, set_up),
+        cmocka_unit_test_setup(test_a_pick_shows_in_holder_sensor_and_events, set_up),
+        cmocka_unit_test_setup(test_each_gripper_has_its_own_sensor_bit, set_up),
+        cmocka_unit_test_setup(test_the_cell_judges_a_release_in_the_same_slice, set_up),
+        cmocka_unit_test_setup(test_a_refused_command_changes_nothing_and_is_counted, set_up),
+        cmocka_unit_test_setup(test_null_pointers_touch_nothing, set_up),
+        cmocka_unit_test_setup(test_entries_beyond_the_count_are_not_looked_at, set_up),
+        cmocka_unit_test_setup(test_the_link_is_the_simulator, set_up),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
