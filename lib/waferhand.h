@@ -39,7 +39,7 @@
 #include "cell/station.h"
 
 #include "sim/faults.h"
-#include "sim/condition.h"
+#include "sim/physics.h"
 #include "sim/slice.h"
 #include "sim/simulator.h"
 /* clang-format on */

@@ -7,13 +7,13 @@
 #include "interrupt.h"
 
 static void call_watches(wh_input_t *input, const struct pollfd *polled, size_t count) {
-    wh_signals_stop_session(input->session);
+    wh_interrupt_stop_session(input->session);
     for (size_t i = 0; i < count && i < input->watch_count; ++i) {
         if (polled[i].revents != 0) {
             input->watches[i].ready(input->watches[i].user);
         }
     }
-    wh_signals_stop_session(NULL);
+    wh_interrupt_stop_session(NULL);
 }
 
 wh_input_event_t wh_input_wait(wh_input_t *input) {
@@ -24,11 +24,11 @@ wh_input_event_t wh_input_wait(wh_input_t *input) {
             polled[i] = (struct pollfd){.fd = input->watches[i].fd, .events = POLLIN};
         }
         polled[count] = (struct pollfd){.fd = STDIN_FILENO, .events = POLLIN};
-        if (ppoll(polled, count + 1, NULL, wh_signals_waiting()) < 0) {
+        if (ppoll(polled, count + 1, NULL, wh_interrupt_waiting()) < 0) {
             return errno == EINTR ? WH_INPUT_SIGNAL : WH_INPUT_BROKEN;
         }
         call_watches(input, polled, count);
-        if (wh_signals_pending()) {
+        if (wh_interrupt_pending()) {
             return WH_INPUT_SIGNAL;
         }
         if (polled[count].revents != 0 && !input->leaving) {

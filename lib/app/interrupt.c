@@ -26,7 +26,7 @@ static void on_signal(int number) {
     }
 }
 
-void wh_signals_hold(bool terminal) {
+void wh_interrupt_hold(bool terminal) {
     struct sigaction action;
     memset(&signals, 0, sizeof signals);
     memset(&action, 0, sizeof action);
@@ -49,7 +49,7 @@ void wh_signals_hold(bool terminal) {
     }
 }
 
-void wh_signals_release(void) {
+void wh_interrupt_release(void) {
     for (size_t i = 0; i < signals.count; ++i) {
         sigaction(held[i], &signals.before[i], NULL);
     }
@@ -57,11 +57,11 @@ void wh_signals_release(void) {
     signals.count = 0;
 }
 
-const sigset_t *wh_signals_waiting(void) {
+const sigset_t *wh_interrupt_waiting(void) {
     return &signals.mask_before;
 }
 
-bool wh_signals_pending(void) {
+bool wh_interrupt_pending(void) {
     for (size_t i = 0; i < signals.count; ++i) {
         if (signals.arrived[i]) {
             return true;
@@ -70,7 +70,7 @@ bool wh_signals_pending(void) {
     return false;
 }
 
-int wh_signals_take(void) {
+int wh_interrupt_take(void) {
     for (size_t i = 0; i < signals.count; ++i) {
         if (signals.arrived[i]) {
             signals.arrived[i] = 0;
@@ -80,7 +80,7 @@ int wh_signals_take(void) {
     return 0;
 }
 
-void wh_signals_stop_session(wh_session_t *session) {
+void wh_interrupt_stop_session(wh_session_t *session) {
     if (session) {
         signals.session = session;
         sigprocmask(SIG_SETMASK, &signals.mask_running, NULL);

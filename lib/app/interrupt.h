@@ -13,22 +13,22 @@
 
 #include "../mcs/session.h"
 
-/* From here on signals are held; until wh_signals_release. */
-void wh_signals_hold(bool terminal);
+/* From here on signals are held; until wh_interrupt_release. */
+void wh_interrupt_hold(bool terminal);
 
 /* Handlers and mask as they were before. */
-void wh_signals_release(void);
+void wh_interrupt_release(void);
 
 /* The mask to wait with: ppoll then returns with EINTR when a held signal arrives. */
-const sigset_t *wh_signals_waiting(void);
+const sigset_t *wh_interrupt_waiting(void);
 
 /* Whether a signal has arrived and was not yet taken. */
-bool wh_signals_pending(void);
+bool wh_interrupt_pending(void);
 
 /* A signal that has arrived and was not yet taken, 0 if there is none. */
-int wh_signals_take(void);
+int wh_interrupt_take(void);
 
 /* Lets SIGINT, SIGTERM and SIGHUP in, to stop the session's command if one runs; null: holds them again. */
-void wh_signals_stop_session(wh_session_t *session);
+void wh_interrupt_stop_session(wh_session_t *session);
 
 #endif

@@ -39,7 +39,7 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     }
 }
 
-static bool write_svg(const wh_layout_check_t *check, const char *path) {
+static bool write_svg(const wh_feasibility_t *check, const char *path) {
     wh_output_t output = {0};
     const bool written = wh_output_open(&output, path) && wh_layout_print_svg(check, output.file) == 0 &&
                          wh_output_commit(&output);
@@ -50,7 +50,7 @@ static bool write_svg(const wh_layout_check_t *check, const char *path) {
     return written;
 }
 
-static int print(const arguments_t *arguments, const wh_layout_check_t *check) {
+static int print(const arguments_t *arguments, const wh_feasibility_t *check) {
     const wh_style_t style = wh_style_of(stdout);
     const int status =
         arguments->json ? wh_layout_print_json(check, stdout) : wh_layout_print_table(check, stdout, &style);
@@ -62,14 +62,14 @@ static int print(const arguments_t *arguments, const wh_layout_check_t *check) {
 }
 
 static int look_at(const arguments_t *arguments, const wh_layout_t *layout) {
-    wh_layout_check_t check;
+    wh_feasibility_t check;
     int status = WH_EXIT_USAGE;
-    if (!wh_layout_check(&check, layout)) {
+    if (!wh_feasibility(&check, layout)) {
         perror("waferhand");
     } else if (!arguments->svg || write_svg(&check, arguments->svg)) {
         status = print(arguments, &check);
     }
-    wh_layout_check_free(&check);
+    wh_feasibility_free(&check);
     return status;
 }
 

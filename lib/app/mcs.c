@@ -7,7 +7,7 @@
 #include "app.h"
 #include "mcs_link.h"
 #include "prompt/prompt.h"
-#include "run_options.h"
+#include "run_arguments.h"
 
 enum { OPTION_LAYOUT = 2000, OPTION_URL, OPTION_RECORD, OPTION_RATE, OPTION_OUTPUTS };
 
@@ -91,9 +91,9 @@ typedef struct {
 static void execute_requests(attendance_t *attendance) {
     static char answer[WH_SESSION_ANSWER_BYTES];
     char line[WH_LINK_LINE];
-    while (wh_control_next_request(&attendance->link->control, line)) {
+    while (wh_mcs_process_next_request(&attendance->link->control, line)) {
         const wh_status_t status = wh_session_execute(attendance->session, line, answer, sizeof answer);
-        wh_control_answer(&attendance->link->control, status, line, answer);
+        wh_mcs_process_answer(&attendance->link->control, status, line, answer);
     }
 }
 
@@ -107,7 +107,7 @@ static void on_timer(void *user) {
     attendance_t *attendance = user;
     uint64_t expirations;
     if (read(attendance->timer, &expirations, sizeof expirations) > 0) {
-        wh_control_idle(&attendance->link->control);
+        wh_mcs_process_idle(&attendance->link->control);
         execute_requests(attendance);
     }
 }
@@ -145,7 +145,7 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
         .limits = arguments->run.run.limits,
         .parameters = arguments->run.run.parameters,
         .parameter_count = arguments->run.run.parameter_count,
-        .partners = wh_control_partners(&link->control),
+        .partners = wh_mcs_process_partners(&link->control),
     };
     int status = WH_EXIT_USAGE;
     /* Standard output is for answers. */
@@ -164,8 +164,8 @@ static int run_linked(arguments_t *arguments) {
     if (!wh_mcs_link_open(&link, &arguments->link)) {
         return WH_EXIT_USAGE;
     }
-    arguments->run.run.partners = wh_control_partners(&link.control);
-    const int status = arguments->layout ? run_prompt(arguments, &link) : wh_run_and_report(&arguments->run);
+    arguments->run.run.partners = wh_mcs_process_partners(&link.control);
+    const int status = arguments->layout ? run_prompt(arguments, &link) : wh_run_and_print(&arguments->run);
     wh_mcs_link_close(&link);
     return status;
 }

@@ -5,16 +5,16 @@
 
 bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
     static char name[] = "mcs";
-    const wh_control_options_t control = {.rate = options->rate,
-                                          .outputs = options->outputs,
-                                          .stop = &wh_stop_requested,
-                                          .say = wh_say_line,
-                                          .user = name};
+    const wh_mcs_process_options_t control = {.rate = options->rate,
+                                              .outputs = options->outputs,
+                                              .stop = &wh_stop_requested,
+                                              .say = wh_say_line,
+                                              .user = name};
     wh_catch_signals();
     if (!wh_open_node(&link->node, options->url, options->record)) {
         return false;
     }
-    if (!wh_control_open(&link->control, &link->node, &control)) {
+    if (!wh_mcs_process_open(&link->control, &link->node, &control)) {
         fprintf(stderr, "mcs: LCM takes no subscription\n");
         wh_node_close(&link->node);
         return false;
@@ -22,8 +22,8 @@ bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options)
     return true;
 }
 
-static void print_counters(const wh_control_t *control) {
-    const wh_client_counters_t *c = &control->client.counters;
+static void print_counters(const wh_mcs_process_t *control) {
+    const wh_protocol_client_counters_t *c = &control->client.counters;
     /* A command that was sent twice is nothing to speak of. */
     if (control->options.rate <= 0 && c->malformed + c->restored + c->silences == 0) {
         return;
@@ -40,7 +40,7 @@ static void print_counters(const wh_control_t *control) {
 }
 
 void wh_mcs_link_close(wh_mcs_link_t *link) {
-    wh_control_finish(&link->control);
+    wh_mcs_process_finish(&link->control);
     if (link->control.connected) {
         print_counters(&link->control);
     }

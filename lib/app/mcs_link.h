@@ -13,7 +13,7 @@ typedef struct {
 /* Must not be moved once opened. */
 typedef struct {
     wh_node_t node;
-    wh_control_t control;
+    wh_mcs_process_t control;
 } wh_mcs_link_t;
 
 /* Catches signals and opens LCM; says on standard error what is wrong. */

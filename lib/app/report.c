@@ -7,7 +7,7 @@
 #include "../log/log_run.h"
 #include "../text/number.h"
 #include "app.h"
-#include "run_options.h"
+#include "run_arguments.h"
 
 enum { OPTION_LAYOUT = 5000, OPTION_RUN };
 
@@ -57,14 +57,14 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
 }
 
 static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
-    const wh_run_options_t *given = &arguments->run.run;
+    const wh_script_run_options_t *given = &arguments->run.run;
     const wh_log_run_options_t wanted = {
         given->script, arguments->number, {arguments->layout, given->parameters, given->parameter_count}};
     if (!wh_log_run_read(run, &wanted)) {
         fprintf(stderr, "%s\n", run->message);
         return false;
     }
-    char *command = wh_report_command("replay", given->script, NULL, 0);
+    char *command = wh_print_command("replay", given->script, NULL, 0);
     const wh_document_t document = {.title = given->script,
                                     .reproduce = command,
                                     .source = "log",
@@ -73,7 +73,7 @@ static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
                                     .notes = run->notes,
                                     .note_count = run->note_count,
                                     .record = &run->record,
-                                    .trace = &run->trace};
+                                    .signals = &run->signals};
     const bool written = wh_report_files_write(&arguments->run.files, &document);
     free(command);
     return written;
@@ -108,7 +108,7 @@ static int report_script(arguments_t *arguments) {
                 arguments->layout ? "--layout" : "--run");
         return WH_EXIT_USAGE;
     }
-    const int status = wh_run_and_report(&arguments->run);
+    const int status = wh_run_and_print(&arguments->run);
     return status == WH_EXIT_USAGE ? WH_EXIT_USAGE : WH_EXIT_MET;
 }
 

@@ -55,20 +55,20 @@ bool wh_report_files_wanted(const wh_report_files_t *files) {
 /* ------------------------------------------------------------------------------------------------- listening */
 
 static void on_slice(void *user, const wh_mcs_t *mcs) {
-    wh_trace_t *trace = user;
-    if (!trace->layout) {
-        wh_trace_begin(trace, mcs->layout, true);
+    wh_signals_t *signals = user;
+    if (!signals->layout) {
+        wh_signals_begin(signals, mcs->layout, true);
     }
-    wh_trace_slice(trace, mcs->command.axes, mcs->command.axis_count, &mcs->state);
+    wh_signals_slice(signals, mcs->command.axes, mcs->command.axis_count, &mcs->state);
 }
 
 static void on_boundary(void *user, const wh_mcs_t *mcs) {
     (void)mcs;
-    wh_trace_mark(user);
+    wh_signals_mark(user);
 }
 
-wh_mcs_listener_t wh_report_listener(wh_trace_t *trace) {
-    const wh_mcs_listener_t listener = {on_slice, on_boundary, trace};
+wh_mcs_listener_t wh_print_listener(wh_signals_t *signals) {
+    const wh_mcs_listener_t listener = {on_slice, on_boundary, signals};
     return listener;
 }
 
@@ -92,7 +92,7 @@ static void write_word(FILE *out, const char *word) {
     fputc('\'', out);
 }
 
-char *wh_report_command(const char *command, const char *file, const char *const parameters[], size_t count) {
+char *wh_print_command(const char *command, const char *file, const char *const parameters[], size_t count) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
@@ -126,7 +126,7 @@ static bool write_page(const content_t *content, FILE *out, char message[WH_PAGE
 
 static bool write_scene(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]) {
     (void)message;
-    json_t *scene = wh_scene_make(content->document->trace, content->document->title, true);
+    json_t *scene = wh_scene_make(content->document->signals, content->document->title, true);
     const bool written = json_dumpf(scene, out, JSON_COMPACT | JSON_REAL_PRECISION(9)) == 0;
     json_decref(scene);
     return written && fputc('\n', out) != EOF;

@@ -19,10 +19,10 @@ extern const struct argp wh_report_files_argp;
 bool wh_report_files_wanted(const wh_report_files_t *files);
 
 /* What collects a run for them. `trace` is zeroed before the run and must outlive it. */
-wh_mcs_listener_t wh_report_listener(wh_trace_t *trace);
+wh_mcs_listener_t wh_print_listener(wh_signals_t *signals);
 
 /* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and a log. */
-char *wh_report_command(const char *command, const char *file, const char *const parameters[], size_t count);
+char *wh_print_command(const char *command, const char *file, const char *const parameters[], size_t count);
 
 /* Writes those that are wanted, from a document that lacks only `run`, which it makes of the record. Each is there whole or as it was;
  * false, with a line on standard error, when one cannot be written. */

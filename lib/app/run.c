@@ -4,7 +4,7 @@
 #include "../link/broadcast.h"
 #include "app.h"
 #include "link_options.h"
-#include "run_options.h"
+#include "run_arguments.h"
 
 enum { OPTION_LCM = 2000, OPTION_URL, OPTION_RECORD };
 
@@ -59,7 +59,7 @@ static int run_published(arguments_t *arguments) {
     int status = WH_EXIT_USAGE;
     if (wh_broadcast_open(&broadcast, &node, NULL, NULL)) {
         arguments->run.run.partners = wh_broadcast_partners(&broadcast);
-        status = wh_run_and_report(&arguments->run);
+        status = wh_run_and_print(&arguments->run);
         wh_broadcast_close(&broadcast);
     }
     wh_node_close(&node);
@@ -84,7 +84,7 @@ int wh_app_run(int argc, char **argv) {
     argv[0] = name;
     argp_parse(&argp, argc, argv, 0, NULL, &arguments);
     const bool published = arguments.lcm || arguments.record;
-    const int status = published ? run_published(&arguments) : wh_run_and_report(&arguments.run);
+    const int status = published ? run_published(&arguments) : wh_run_and_print(&arguments.run);
     wh_run_arguments_free(&arguments.run);
     return status;
 }

@@ -53,8 +53,8 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     }
 }
 
-static void print_counters(const wh_simulation_t *simulation) {
-    const wh_server_counters_t *c = &simulation->server.counters;
+static void print_counters(const wh_sim_process_t *simulation) {
+    const wh_protocol_server_counters_t *c = &simulation->server.counters;
     fprintf(stderr,
             "sim: %" PRIu64 " commands: %" PRIu64 " stepped, %" PRIu64 " repeated, %" PRIu64
             " stale, %" PRIu64 " refused, %" PRIu64 " of unknown runs, %" PRIu64 " of other layouts, %" PRIu64
@@ -69,7 +69,7 @@ static void print_counters(const wh_simulation_t *simulation) {
 }
 
 /* The file is looked at before each message, so that valves written before a command are in force for it. */
-static void update_valves(wh_outputs_t *outputs, wh_simulation_t *simulation) {
+static void update_valves(wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     if (outputs->count > 0 && (wh_outputs_update(outputs, wh_node_clock_us()) & WH_OUTPUTS_REPORTED) != 0) {
         char *printable = wh_style_printable(outputs->report);
         fprintf(stderr, "sim: %s\n", printable ? printable : outputs->report);
@@ -79,7 +79,7 @@ static void update_valves(wh_outputs_t *outputs, wh_simulation_t *simulation) {
 }
 
 /* Until a message or the file's folder has something, at most 100 ms; the record is made readable when neither had. */
-static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_simulation_t *simulation) {
+static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     struct pollfd ready[] = {{.fd = wh_node_descriptor(node), .events = POLLIN},
                              {.fd = outputs->count > 0 ? wh_outputs_fd(outputs) : -1, .events = POLLIN}};
     int64_t wait_ms = 100;
@@ -106,13 +106,13 @@ static bool open_outputs(wh_outputs_t *outputs, const char *path, size_t count) 
     return problem == 0;
 }
 
-static bool open_view(wh_view_t *view, wh_node_t *node, const wh_layout_t *layout) {
+static bool open_view(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *layout) {
     static const char *const left_out[WH_VIEW_DETAILS] = {
         [WH_VIEW_ALL] = "",
         [WH_VIEW_NO_LEDGES] = "; its ledges are left out",
         [WH_VIEW_BOXES] = "; its ledges are left out, its meshes are boxes",
     };
-    if (wh_view_open(view, node, layout) != WH_OK) {
+    if (wh_viewer_open(view, node, layout) != WH_OK) {
         fprintf(stderr, "%s: --view: too many parts (expected a cell that fits %d bytes)\n", layout->path,
                 WH_VIEW_BYTES);
         return false;
@@ -124,15 +124,15 @@ static bool open_view(wh_view_t *view, wh_node_t *node, const wh_layout_t *layou
 
 /* Whatever was opened; the others are all zero. */
 typedef struct {
-    wh_simulation_t simulation;
+    wh_sim_process_t simulation;
     wh_outputs_t outputs;
-    wh_view_t view;
+    wh_viewer_t view;
 } served_t;
 
 static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *layout,
                         const arguments_t *arguments) {
     static char name[] = "sim";
-    const wh_status_t status = wh_simulation_open(&served->simulation, node, layout, wh_say_line, name);
+    const wh_status_t status = wh_sim_process_open(&served->simulation, node, layout, wh_say_line, name);
     if (status != WH_OK) {
         fprintf(stderr, "%s: %s (expected at most %d wafers, and a cell that fits one datagram)\n",
                 layout->path, wh_status_text(status), WH_LINK_WAFERS);
@@ -146,13 +146,13 @@ static void close_served(served_t *served) {
     if (served->outputs.count > 0) {
         wh_outputs_close(&served->outputs);
     }
-    wh_view_close(&served->view);
-    wh_simulation_close(&served->simulation);
+    wh_viewer_close(&served->view);
+    wh_sim_process_close(&served->simulation);
 }
 
 static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *arguments) {
     static served_t served;
-    wh_simulation_t *simulation = &served.simulation;
+    wh_sim_process_t *simulation = &served.simulation;
     if (!open_served(&served, node, layout, arguments)) {
         close_served(&served);
         return WH_EXIT_USAGE;
@@ -162,9 +162,9 @@ static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *
     int handled = 0;
     while (!wh_stop_requested && handled >= 0) {
         handled = wait_and_handle(node, &served.outputs, simulation);
-        wh_simulation_tick(simulation);
+        wh_sim_process_tick(simulation);
         if (arguments->view) {
-            wh_view_tick(&served.view, &simulation->server);
+            wh_viewer_tick(&served.view, &simulation->server);
         }
     }
     print_counters(simulation);

@@ -7,7 +7,7 @@
 #include "../study/study_play.h"
 #include "../text/number.h"
 #include "app.h"
-#include "run_options.h"
+#include "run_arguments.h"
 
 enum {
     OPTION_TRIALS = 1000,
@@ -112,7 +112,7 @@ static bool take_study(arguments_t *arguments, const struct argp_state *state, i
 
 /* How a script is run, as `run` takes it; false for other options. */
 static bool take_run(arguments_t *arguments, const struct argp_state *state, int key, char *argument) {
-    wh_run_options_t *run = &arguments->run.run;
+    wh_script_run_options_t *run = &arguments->run.run;
     switch (key) {
     case OPTION_JSON:
         arguments->run.json = true;
@@ -133,7 +133,7 @@ static bool take_run(arguments_t *arguments, const struct argp_state *state, int
 
 static error_t parse(int key, char *argument, struct argp_state *state) {
     arguments_t *arguments = state->input;
-    wh_run_options_t *run = &arguments->run.run;
+    wh_script_run_options_t *run = &arguments->run.run;
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &arguments->run.files;
@@ -162,7 +162,7 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
 /* ---------------------------------------------------------------------------------------------------- the study */
 
 static int print(const arguments_t *arguments, const wh_study_t *study, const wh_tally_t *tally) {
-    const wh_study_report_t report = {study, tally, arguments->require, arguments->worst};
+    const wh_study_print_t report = {study, tally, arguments->require, arguments->worst};
     const wh_style_t style = wh_style_of(stdout);
     const int status = arguments->run.json ? wh_study_print_json(&report, stdout)
                                            : wh_study_print_table(&report, stdout, &style);
@@ -227,7 +227,7 @@ static int play_one(arguments_t *arguments) {
                    (unsigned long long)arguments->seed, (unsigned long long)arguments->trial);
     arguments->run.run.trial = &trial;
     arguments->run.command = command;
-    return wh_run_and_report(&arguments->run);
+    return wh_run_and_print(&arguments->run);
 }
 
 int wh_app_study(int argc, char **argv) {

@@ -113,7 +113,7 @@ static plan_t plan_memory(const wh_world_config_t *config) {
     plan.wafers_at = take(&at, config->wafer_count, sizeof(wh_pose_t));
     plan.movers_at = take(&at, plan.movers, sizeof(wh_mover_t));
     plan.pairs_at = take(&at, plan.pairs, sizeof(wh_mover_pair_t));
-    plan.near_at = take(&at, plan.movers * WH_NEAR_CAPACITY, sizeof(wh_near_t));
+    plan.near_at = take(&at, plan.movers * WH_NEAR_CAPACITY, sizeof(wh_pair_t));
     plan.end = at;
     return plan;
 }

@@ -27,7 +27,7 @@ typedef struct {
     int32_t other; /* an item of the tree, or a mover */
     wh_real_t slack;
     wh_vec3_t axis;
-} wh_near_t;
+} wh_pair_t;
 
 /* A convex part that moves: one that hangs on a body, or the wafer that a gripper holds. */
 typedef struct {
@@ -37,7 +37,7 @@ typedef struct {
     wh_real_t radius;      /* of the ball about the body's origin that holds it */
     wh_real_t motion;      /* no point of it went farther in this slice, mm */
     wh_real_t bulge;       /* nor farther from its straight way */
-    wh_near_t *near;       /* things that rest, WH_NEAR_CAPACITY of them */
+    wh_pair_t *near;       /* things that rest, WH_NEAR_CAPACITY of them */
     size_t near_count;
     wh_real_t reach; /* how much farther it may go before the list must be made anew */
     bool crowded;    /* more than the list can hold */
@@ -46,7 +46,7 @@ typedef struct {
 /* A pair of movers. */
 typedef struct {
     int32_t a, b;
-    wh_near_t near;
+    wh_pair_t near;
 } wh_mover_pair_t;
 
 /* The wafer that a blade let go last, until the blade has gone sideways from there. */
@@ -67,7 +67,7 @@ struct wh_world {
     size_t mover_count;
     wh_mover_pair_t *pairs;
     size_t pair_count;
-    wh_near_t *near;
+    wh_pair_t *near;
     int32_t held[WH_WORLD_GRIPPERS];
     wh_left_t left[WH_WORLD_GRIPPERS];
     wh_clearance_t clearances[WH_CLEARANCES];
@@ -121,7 +121,7 @@ void wh_world_list_near(wh_world_t *world, wh_mover_t *mover);
 void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a);
 
 /* Judges one pair for this slice. */
-void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_near_t *near);
+void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_pair_t *near);
 
 /* At the end of a bin: keeps the smallest gaps of its kinds. Changes nothing else. */
 void wh_world_draw_curves(const wh_look_t *look);

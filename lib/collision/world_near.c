@@ -75,7 +75,7 @@ static size_t find_near(wh_world_t *world, wh_mover_t *mover, const wh_box_t *bo
 }
 
 /* What the old list knew of a thing is known still. */
-static bool take_over(const wh_near_t known[], size_t count, wh_near_t *near) {
+static bool take_over(const wh_pair_t known[], size_t count, wh_pair_t *near) {
     for (size_t i = 0; i < count; ++i) {
         if (known[i].other == near->other) {
             *near = known[i];
@@ -87,7 +87,7 @@ static bool take_over(const wh_near_t known[], size_t count, wh_near_t *near) {
 
 void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
     int32_t found[WH_NEAR_CAPACITY];
-    wh_near_t known[WH_NEAR_CAPACITY];
+    wh_pair_t known[WH_NEAR_CAPACITY];
     if (mover->reach > 0) {
         return;
     }
@@ -98,7 +98,7 @@ void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) {
     }
     mover->near_count = find_near(world, mover, &box, found);
     for (size_t i = 0; i < mover->near_count; ++i) {
-        wh_near_t *near = &mover->near[i];
+        wh_pair_t *near = &mover->near[i];
         near->other = found[i];
         if (!take_over(known, known_count, near)) {
             const wh_box_t other = wh_tree_box(&world->tree, found[i]);

@@ -165,7 +165,7 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
 /* --------------------------------------------------------------------------------------------------- judgement */
 
 /* By the plane that parted them last. */
-static bool is_parted(const wh_side_t *a, const wh_side_t *b, wh_real_t needed, wh_near_t *near) {
+static bool is_parted(const wh_side_t *a, const wh_side_t *b, wh_real_t needed, wh_pair_t *near) {
     const wh_vec3_t axis = near->axis;
     if (axis.x == 0 && axis.y == 0 && axis.z == 0) {
         return false;
@@ -181,7 +181,7 @@ static bool is_parted(const wh_side_t *a, const wh_side_t *b, wh_real_t needed, 
 }
 
 static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_clearance_kind_t kind,
-                    wh_near_t *near) {
+                    wh_pair_t *near) {
     wh_world_t *world = look->world;
     wh_gap_t gap;
     wh_gap_t worst;
@@ -203,7 +203,7 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     }
 }
 
-void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_near_t *near) {
+void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_pair_t *near) {
     wh_world_t *world = look->world;
     const wh_clearance_kind_t kind = wh_world_clearance_of(look, a, b);
     const wh_real_t least = kind == WH_CLEARANCES ? 0 : world->clearances[kind].gap;

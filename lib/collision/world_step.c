@@ -2,7 +2,7 @@
 #include "world_internal.h"
 
 /* A pair that was so far apart needs no look: nothing that is kept or judged could come of it. */
-static bool is_far(wh_near_t *near, wh_real_t motion) {
+static bool is_far(wh_pair_t *near, wh_real_t motion) {
     near->slack -= motion;
     return near->slack > WH_CLEARANCE_RANGE;
 }
@@ -19,7 +19,7 @@ static void judge_rest(const wh_look_t *look, wh_mover_t *mover) {
     }
     world->counters.pairs += mover->near_count;
     for (size_t i = 0; i < mover->near_count; ++i) {
-        wh_near_t *near = &mover->near[i];
+        wh_pair_t *near = &mover->near[i];
         if (!is_far(near, mover->motion)) {
             const wh_side_t b = wh_world_side_of_item(world, near->other);
             wh_world_judge(look, &a, &b, near);

@@ -40,8 +40,8 @@ static void report(const wh_watch_t *watch, wh_encounter_t *encounter, wh_event_
     /*@ assert watch->index == \at(watch->index, Pre); */
 }
 
-bool wh_reach_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
-                      const wh_pose_t *base_from_gripper, wh_reach_t *reach) {
+bool wh_closeness_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
+                          const wh_pose_t *base_from_gripper, wh_closeness_t *reach) {
     const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &base_from_gripper->r);
     const wh_vec3_t p = wh_mat3_transform_back(&base_from_wafer->R, &dr);
     reach->z = wh_real_abs(p.z);
@@ -59,9 +59,10 @@ bool wh_reach_measure(const wh_grasp_config_t *config, const wh_pose_t *base_fro
     requires \separated(reach, watch, watch->table);
     assigns *reach;
     ensures reach->t == 1; */
-static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_reach_t *reach) {
+static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_closeness_t *reach) {
     reach->t = 1;
-    return wh_reach_measure(&watch->table->config, &wafer->base_from_wafer, watch->base_from_gripper, reach);
+    return wh_closeness_measure(&watch->table->config, &wafer->base_from_wafer, watch->base_from_gripper,
+                                reach);
 }
 
 /* The closest that the gripper came to the wafer in this slice; false when it did not come near. */
@@ -69,9 +70,9 @@ static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_rea
     requires \separated(closest, watch, watch->table);
     assigns *closest;
     ensures watch->sweep == \null ==> closest->t == 1; */
-static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_reach_t *closest) {
+static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_closeness_t *closest) {
     if (watch->sweep && wafer->released_by == WH_NONE) {
-        return wh_reach_swept(watch, &wafer->base_from_wafer, closest);
+        return wh_closeness_swept(watch, &wafer->base_from_wafer, closest);
     }
     return is_near_now(watch, wafer, closest);
 }
@@ -85,7 +86,7 @@ static wh_real_t closeness(const wh_tolerance_t *tolerance, wh_real_t dr_proj_z,
 }
 
 /*@ requires \valid_read(tolerance) && \valid_read(reach) && \valid_read(measured); assigns \nothing; */
-static bool is_closer(const wh_tolerance_t *tolerance, const wh_reach_t *reach,
+static bool is_closer(const wh_tolerance_t *tolerance, const wh_closeness_t *reach,
                       const wh_proximity_t *measured) {
     return closeness(tolerance, reach->z, reach->xy) <
            closeness(tolerance, measured->dr_proj_z, measured->dr_proj_xy_norm);
@@ -124,7 +125,7 @@ WH_OUT_OF_LINE static void follow_approach(const wh_watch_t *watch) {
         /*@ assert wh_watch_memory(watch) && wh_watched(watch, watch->gripper->approach.wafer); */
         return;
     }
-    wh_reach_t reach;
+    wh_closeness_t reach;
     if (came_near(watch, wafer, &reach) &&
         is_closer(&watch->table->config.tolerance, &reach, &approach->measured)) {
         begin_encounter(watch, approach, approach->wafer, reach.t);
@@ -154,7 +155,7 @@ static bool is_within_horizon(const wh_grasp_t *table, size_t g) {
     ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_contest{Pre, Post}(watch); */
 WH_OUT_OF_LINE static void begin_approach(const wh_watch_t *watch) {
     const wh_vec3_t *end = &watch->base_from_gripper->r;
-    const wh_near_t near =
+    const wh_found_t near =
         wh_index_again(watch->table, (size_t)watch->index, watch->sweep ? &watch->sweep->begin->r : end, end);
     int32_t nearest = WH_NONE;
     wh_real_t least = 0;
@@ -166,7 +167,7 @@ WH_OUT_OF_LINE static void begin_approach(const wh_watch_t *watch) {
     for (size_t i = 0; i < near.count; ++i) {
         const size_t w = wh_index_wafer(watch->table, &near, i);
         const wh_wafer_t *wafer = &watch->table->storage.wafers[w];
-        wh_reach_t reach;
+        wh_closeness_t reach;
         if (wafer->holder == WH_NONE && came_near(watch, wafer, &reach) &&
             (nearest == WH_NONE || reach.z < least || (reach.z == least && (int32_t)w < nearest))) {
             nearest = (int32_t)w;
@@ -273,7 +274,7 @@ static void end_encounters(const wh_watch_t *watch, bool closed) {
     end_contest(watch);
 }
 
-void wh_encounter_follow(const wh_watch_t *watch) {
+void wh_encounter_track(const wh_watch_t *watch) {
     if (watch->gripper->approach.wafer == WH_NONE && !is_within_horizon(watch->table, (size_t)watch->index)) {
         begin_approach(watch);
     }
@@ -322,10 +323,10 @@ static void update(wh_watch_t *watch, bool closed) {
         end_encounters(watch, closed);
         /*@ assert wh_both_watched(watch); */
     } else if (wh_grasp_is_swept(watch->table, (size_t)watch->index) && is_sweep_needed(watch)) {
-        wh_encounter_follow_swept(watch);
+        wh_encounter_track_swept(watch);
         /*@ assert wh_both_watched(watch); */
     } else {
-        wh_encounter_follow(watch);
+        wh_encounter_track(watch);
         /*@ assert wh_both_watched(watch); */
     }
 }

@@ -20,7 +20,7 @@ typedef struct {
     wh_real_t t;
     wh_real_t z;  /* |dr_proj_z| */
     wh_real_t xy; /* |dr_proj_xy| */
-} wh_reach_t;
+} wh_closeness_t;
 
 /*@
   predicate wh_watch_memory{L}(wh_watch_t *w) =
@@ -66,7 +66,7 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
             watch->list->count, watch->list->events[0 .. wh_room(watch->list) - 1];
     ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
     ensures wh_list_grown{Pre, Post}(watch->list, 2) && wh_same_size{Pre, Post}(watch->table); */
-void wh_encounter_follow(const wh_watch_t *watch);
+void wh_encounter_track(const wh_watch_t *watch);
 
 /* The same with a sweep since the last slice, which it makes. */
 /*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2);
@@ -76,18 +76,18 @@ void wh_encounter_follow(const wh_watch_t *watch);
             watch->list->count, watch->list->events[0 .. wh_room(watch->list) - 1];
     ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
     ensures wh_list_grown{Pre, Post}(watch->list, 2) && wh_same_size{Pre, Post}(watch->table); */
-void wh_encounter_follow_swept(wh_watch_t *watch);
+void wh_encounter_track_swept(wh_watch_t *watch);
 
 /* Whether a wafer is in the neighbourhood for near misses; if so, fills in the two distances. */
 /*@ requires \valid_read(config) && \valid_read(base_from_wafer) && \valid_read(base_from_gripper) && \valid(reach);
     assigns reach->z, reach->xy; */
-bool wh_reach_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
-                      const wh_pose_t *base_from_gripper, wh_reach_t *reach);
+bool wh_closeness_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
+                          const wh_pose_t *base_from_gripper, wh_closeness_t *reach);
 
 /* The closest that a gripper with a sweep came to the wafer in this slice; false when it did not come near. */
 /*@ requires wh_watch_memory(watch) && watch->sweep != \null && \valid_read(base_from_wafer) && \valid(closest);
     assigns *closest; */
-bool wh_reach_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_reach_t *closest);
+bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_closeness_t *closest);
 
 /* The values at an instant before the slice's end, judged by the limits that hold there. */
 /*@ requires wh_watch_memory(watch) && watch->sweep != \null && \valid_read(base_from_wafer) && \valid(measured);

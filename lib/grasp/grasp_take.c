@@ -31,8 +31,8 @@ static void keep_better(nearest_t *best, size_t w, const wh_wafer_t *wafer,
 int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper) {
     const wh_real_t margin = wh_horizon_margin(table, g, &base_from_gripper->r);
     const wh_vec3_t *place = &base_from_gripper->r;
-    const wh_near_t near = wh_grasp_is_swept(table, g) ? wh_index_again(table, g, place, place)
-                                                       : wh_index_near(table, g, place, place, margin);
+    const wh_found_t near = wh_grasp_is_swept(table, g) ? wh_index_again(table, g, place, place)
+                                                        : wh_index_near(table, g, place, place, margin);
     wh_horizon_t horizon = wh_horizon_begin(table, g, &near, margin);
     nearest_t best = {.wafer = WH_NONE};
     /*@ loop invariant 0 <= i <= near.count;

@@ -17,7 +17,7 @@
 #define LONGEST_COLUMN (1 + 3 * WH_ROTATION_TOLERANCE)
 
 wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
-    const wh_vicinity_t limits = wh_index_limits(table);
+    const wh_near_limits_t limits = wh_index_limits(table);
     const wh_vec3_t way = wh_vec3_subtract(place, &table->storage.grippers[g].base_from_gripper.r);
     const wh_real_t moved = wh_real_abs(way.x) + wh_real_abs(way.y) + wh_real_abs(way.z);
     const wh_real_t half = (limits.projz + limits.projxy) / 2;
@@ -29,7 +29,7 @@ wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *
     return 32 * moved < most ? 32 * moved : most;
 }
 
-wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_near_t *near, wh_real_t margin) {
+wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin) {
     wh_horizon_t horizon = {.limits = wh_index_limits(table), .measured = table->storage.bucket_count > 0};
     if (table->storage.grippers[g].approach.wafer != WH_NONE) {
         horizon.limits.projz = table->config.tolerance.projz;
@@ -64,7 +64,7 @@ void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const
     if (is_far(x) || is_far(y) || is_far(z)) {
         return;
     }
-    const wh_vicinity_t limits = wh_index_limits(table);
+    const wh_near_limits_t limits = wh_index_limits(table);
     const wh_real_t size =
         wh_real_abs(place->x) + wh_real_abs(place->y) + wh_real_abs(place->z) + limits.projz + limits.projxy;
     const wh_real_t sure = (horizon->gap - ROUNDING * size) / LONGEST_COLUMN;

@@ -15,7 +15,7 @@
 
 /* A horizon that is being measured while wafers are looked at. */
 typedef struct {
-    wh_vicinity_t limits;
+    wh_near_limits_t limits;
     wh_real_t gap; /* the least so far, mm */
     bool measured; /* false: there are no buckets to keep it in */
 } wh_horizon_t;
@@ -78,7 +78,7 @@ wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *
 /*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(near);
     assigns \nothing;
     ensures \result.measured ==> table->storage.bucket_count > 0; */
-wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_near_t *near, wh_real_t margin);
+wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin);
 
 /* Takes a free wafer into account; true when it is not ready, as wh_proximity_ready says it. */
 /*@ requires \valid(horizon) && \valid_read(base_from_wafer) && \valid_read(place);

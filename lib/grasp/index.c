@@ -83,7 +83,7 @@ static uint32_t key_at(const wh_grasp_t *table, const wh_vec3_t *r) {
  * it reach a little farther. */
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && \valid_read(R) && \valid_read(limits);
     assigns table->storage.buckets[0 .. 2]; */
-static void widen(wh_grasp_t *table, const wh_mat3_t *R, const wh_vicinity_t *limits) {
+static void widen(wh_grasp_t *table, const wh_mat3_t *R, const wh_near_limits_t *limits) {
     const wh_real_t loose = 8 * WH_ROTATION_TOLERANCE * (limits->projz + limits->projxy);
     /*@ loop invariant 0 <= axis <= 3;
         loop assigns axis, table->storage.buckets[0 .. 2];
@@ -102,7 +102,7 @@ static void widen(wh_grasp_t *table, const wh_mat3_t *R, const wh_vicinity_t *li
  * are put down tilted later would need too many. */
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && \valid_read(limits);
     assigns table->storage.buckets[3 .. 5]; */
-static void choose_edges(wh_grasp_t *table, const wh_vicinity_t *limits) {
+static void choose_edges(wh_grasp_t *table, const wh_near_limits_t *limits) {
     const uint32_t large = units_of((limits->projz + limits->projxy) / 8);
     /*@ loop invariant 0 <= axis <= 3;
         loop assigns axis, table->storage.buckets[3 .. 5];
@@ -152,7 +152,7 @@ void wh_index_build(wh_grasp_t *table) {
     if (storage->bucket_count == 0) {
         return;
     }
-    const wh_vicinity_t limits = wh_index_limits(table);
+    const wh_near_limits_t limits = wh_index_limits(table);
     storage->buckets[0] = 0;
     storage->buckets[1] = 0;
     storage->buckets[2] = 0;
@@ -179,7 +179,7 @@ void wh_index_move(wh_grasp_t *table, size_t wafer) {
     if (table->storage.bucket_count == 0) {
         return;
     }
-    const wh_vicinity_t limits = wh_index_limits(table);
+    const wh_near_limits_t limits = wh_index_limits(table);
     take_out(table, wafer);
     insert(table, wafer);
     widen(table, &table->storage.wafers[wafer].base_from_wafer.R, &limits);
@@ -293,8 +293,8 @@ static size_t list_box(wh_grasp_t *table, const box_t *box) {
     return count;
 }
 
-wh_near_t wh_index_found(const wh_grasp_t *table) {
-    wh_near_t near = wh_index_all(table);
+wh_found_t wh_index_found(const wh_grasp_t *table) {
+    wh_found_t near = wh_index_all(table);
     if (table->storage.buckets[WH_INDEX_FOUND + 1] <= near.count) {
         near.listed = heads_of(table) + 4 * near.count;
         near.count = table->storage.buckets[WH_INDEX_FOUND + 1];
@@ -302,8 +302,8 @@ wh_near_t wh_index_found(const wh_grasp_t *table) {
     return near;
 }
 
-wh_near_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
-                          wh_real_t margin) {
+wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
+                           wh_real_t margin) {
     box_t box;
     const bool small = enclose(table, from, to, margin, &box);
     table->storage.buckets[WH_INDEX_FOUND] = (uint32_t)g;

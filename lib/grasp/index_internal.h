@@ -40,13 +40,13 @@ static inline int32_t wh_index_whole(wh_real_t units) {
 /* Where a wafer may be taken or watched: within these limits of |dr_proj_z| and |dr_proj_xy|. */
 typedef struct {
     wh_real_t projz, projxy;
-} wh_vicinity_t;
+} wh_near_limits_t;
 
 /* What a search found: wafers' indices in no order, or all wafers where `listed` is null. */
 typedef struct {
     const uint32_t *listed;
     size_t count;
-} wh_near_t;
+} wh_found_t;
 
 /* Anew for all wafers, where the table has buckets. No gripper has a horizon then. */
 /*@ requires wh_table_memory(table);
@@ -62,8 +62,8 @@ void wh_index_move(wh_grasp_t *table, size_t wafer);
 /*@ requires wh_table_memory(table);
     assigns \nothing;
     ensures \result.listed == \null && \result.count == table->storage.wafer_count; */
-static inline wh_near_t wh_index_all(const wh_grasp_t *table) {
-    const wh_near_t near = {NULL, table->storage.wafer_count};
+static inline wh_found_t wh_index_all(const wh_grasp_t *table) {
+    const wh_found_t near = {NULL, table->storage.wafer_count};
     return near;
 }
 
@@ -73,15 +73,15 @@ static inline wh_near_t wh_index_all(const wh_grasp_t *table) {
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures \result.count <= table->storage.wafer_count;
     ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
-wh_near_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
-                          wh_real_t margin);
+wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
+                           wh_real_t margin);
 
 /* What the last search found, by whichever gripper. */
 /*@ requires wh_table_memory(table) && table->storage.bucket_count > 0;
     assigns \nothing;
     ensures \result.count <= table->storage.wafer_count;
     ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
-wh_near_t wh_index_found(const wh_grasp_t *table);
+wh_found_t wh_index_found(const wh_grasp_t *table);
 
 /* The wafers in whose neighbourhood gripper g comes between `from` and `to` or, along one of base's axes, may come by
  * moving less than `margin` from there; and others. All of them where the table has no buckets or as many cells would have
@@ -90,8 +90,8 @@ wh_near_t wh_index_found(const wh_grasp_t *table);
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures \result.count <= table->storage.wafer_count;
     ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
-static inline wh_near_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
-                                      wh_real_t margin) {
+static inline wh_found_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
+                                       const wh_vec3_t *to, wh_real_t margin) {
     return table->storage.bucket_count > 0 ? wh_index_search(table, g, from, to, margin)
                                            : wh_index_all(table);
 }
@@ -102,8 +102,8 @@ static inline wh_near_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3
     assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
     ensures \result.count <= table->storage.wafer_count;
     ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
-static inline wh_near_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
-                                       const wh_vec3_t *to) {
+static inline wh_found_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
+                                        const wh_vec3_t *to) {
     if (table->storage.bucket_count > 0 && table->storage.buckets[WH_INDEX_FOUND] == g) {
         return wh_index_found(table);
     }
@@ -115,16 +115,16 @@ static inline wh_near_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec
     requires near->listed == \null || \valid_read(near->listed + (0 .. near->count - 1));
     assigns \nothing;
     ensures wh_is_wafer(table, \result); */
-static inline size_t wh_index_wafer(const wh_grasp_t *table, const wh_near_t *near, size_t i) {
+static inline size_t wh_index_wafer(const wh_grasp_t *table, const wh_found_t *near, size_t i) {
     const size_t wafer = near->listed ? near->listed[i] : i;
     return wafer < table->storage.wafer_count ? wafer : 0;
 }
 
 /* The neighbourhood, which every ready wafer is in. */
 /*@ requires \valid_read(table); assigns \nothing; */
-static inline wh_vicinity_t wh_index_limits(const wh_grasp_t *table) {
+static inline wh_near_limits_t wh_index_limits(const wh_grasp_t *table) {
     const wh_grasp_config_t *config = &table->config;
-    const wh_vicinity_t limits = {
+    const wh_near_limits_t limits = {
         config->near_projz > config->tolerance.projz ? config->near_projz : config->tolerance.projz,
         config->near_projxy > config->tolerance.projxy ? config->near_projxy : config->tolerance.projxy};
     return limits;

@@ -241,7 +241,7 @@ static void count_refusal(wh_grasp_t *table) {
 /*@ requires wh_table_memory(table);
     requires \valid_read(wafers + (0 .. table->storage.wafer_count - 1)) &&
              \valid_read(grippers + (0 .. table->storage.gripper_count - 1));
-    requires wh_state_apart(wafers, grippers, table);
+    requires wh_checkpoint_apart(wafers, grippers, table);
     requires good_grippers(wafers, table->storage.wafer_count, grippers, table->storage.gripper_count);
     requires good_wafers(wafers, table->storage.wafer_count, grippers, table->storage.gripper_count);
     assigns table->storage.wafers[0 .. table->storage.wafer_count - 1],

@@ -15,7 +15,7 @@
 /*@ requires table == \null || wh_table_memory(table) && wh_consistent(table);
     requires table != \null ==>
                wh_state_memory(wafers, table->storage.wafer_count, grippers, table->storage.gripper_count) &&
-               wh_state_apart(wafers, grippers, table);
+               wh_checkpoint_apart(wafers, grippers, table);
     assigns table->counters.refused, table->slice, table->storage.wafers[0 .. table->storage.wafer_count - 1],
             table->storage.grippers[0 .. table->storage.gripper_count - 1],
             table->storage.buckets[0 .. table->storage.bucket_count - 1];

@@ -3,15 +3,15 @@
 /* Shepperd's way: divide by the largest of the four, so that no digit is lost. */
 /*@ requires \valid_read(R) && \valid(w) && \valid(v); assigns *w, *v; */
 static void quaternion_from_rotation(const wh_mat3_t *R, wh_real_t *w, wh_vec3_t *v) {
-    const wh_real_t trace = R->m[0][0] + R->m[1][1] + R->m[2][2];
+    const wh_real_t signals = R->m[0][0] + R->m[1][1] + R->m[2][2];
     size_t i = 0;
     /*@ loop invariant 1 <= k <= 3 && i < 3; loop assigns i, k; loop variant 3 - k; */
     for (size_t k = 1; k < 3; ++k) {
         i = R->m[k][k] > R->m[i][i] ? k : i;
     }
     wh_real_t q[3];
-    if (trace > R->m[i][i]) {
-        *w = wh_real_sqrt(wh_real_abs(1 + trace)) / 2;
+    if (signals > R->m[i][i]) {
+        *w = wh_real_sqrt(wh_real_abs(1 + signals)) / 2;
         const wh_real_t f = 1 / (4 * *w);
         *v = wh_vec3(f * (R->m[2][1] - R->m[1][2]), f * (R->m[0][2] - R->m[2][0]),
                      f * (R->m[1][0] - R->m[0][1]));
@@ -65,14 +65,14 @@ void wh_sweep_pose_at(const wh_sweep_t *sweep, wh_real_t t, wh_pose_t *pose) {
 }
 
 /*@ requires \valid(part); assigns *part; */
-static bool cut(wh_interval_t *part, wh_real_t first, wh_real_t last) {
+static bool cut(wh_span_t *part, wh_real_t first, wh_real_t last) {
     part->first = first > part->first ? first : part->first;
     part->last = last < part->last ? last : part->last;
     return part->first <= part->last;
 }
 
 /*@ requires \valid(part); assigns *part; */
-static bool cut_slab(wh_interval_t *part, wh_real_t z, wh_real_t travel_z, wh_real_t limit) {
+static bool cut_slab(wh_span_t *part, wh_real_t z, wh_real_t travel_z, wh_real_t limit) {
     if (travel_z == 0) {
         return wh_real_abs(z) <= limit;
     }
@@ -83,7 +83,7 @@ static bool cut_slab(wh_interval_t *part, wh_real_t z, wh_real_t travel_z, wh_re
 
 /* a t^2 + 2 b t + c <= 0, with a the squared travel in the plane */
 /*@ requires \valid(part); assigns *part; */
-static bool cut_cylinder(wh_interval_t *part, wh_real_t a, wh_real_t b, wh_real_t c) {
+static bool cut_cylinder(wh_span_t *part, wh_real_t a, wh_real_t b, wh_real_t c) {
     if (a == 0) {
         return c <= 0;
     }
@@ -100,7 +100,7 @@ static bool cut_cylinder(wh_interval_t *part, wh_real_t a, wh_real_t b, wh_real_
 }
 
 bool wh_sweep_within(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer, wh_real_t projz,
-                     wh_real_t projxy, wh_interval_t *part) {
+                     wh_real_t projxy, wh_span_t *part) {
     const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &sweep->begin->r);
     const wh_vec3_t p = wh_mat3_transform_back(&base_from_wafer->R, &dr);
     const wh_vec3_t d = wh_mat3_transform_back(&base_from_wafer->R, &sweep->travel);
@@ -114,7 +114,7 @@ bool wh_sweep_within(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer, 
 /* From when on n1_proj_n2 > limit: the part's beginning, or the root at which the quadratic
  * c2 t^2 + c1 t + c0 = |Q|^2 (n1_proj_n2 - limit) rises through zero. */
 /*@ requires \valid(part) && wh_sweep_memory(sweep) && \valid_read(base_from_wafer); assigns *part; */
-static bool cut_planar(wh_interval_t *part, const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer,
+static bool cut_planar(wh_span_t *part, const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer,
                        wh_real_t limit) {
     const wh_vec3_t n1 = wh_mat3_column(&base_from_wafer->R, 2);
     const wh_vec3_t m = wh_mat3_transform_back(&sweep->begin->R, &n1);
@@ -144,7 +144,7 @@ bool wh_sweep_first_ready(const wh_sweep_t *sweep, const wh_pose_t *base_from_wa
     /* The limits (7) and (8) are strict, so on their very root the check fails by rounding: look a little
      * later. */
     static const wh_real_t later[] = {0, WH_REAL(1.0 / 1048576), WH_REAL(1.0 / 1024), WH_REAL(0.5)};
-    wh_interval_t part;
+    wh_span_t part;
     if (!wh_sweep_within(sweep, base_from_wafer, WH_SWEEP_INSIDE * tolerance->projz, tolerance->projxy,
                          &part) ||
         !cut_planar(&part, sweep, base_from_wafer, tolerance->planar)) {
@@ -163,8 +163,8 @@ bool wh_sweep_first_ready(const wh_sweep_t *sweep, const wh_pose_t *base_from_wa
     return false;
 }
 
-wh_real_t wh_sweep_closest(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer,
-                           const wh_interval_t *part, wh_real_t projz, wh_real_t projxy) {
+wh_real_t wh_sweep_closest(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer, const wh_span_t *part,
+                           wh_real_t projz, wh_real_t projxy) {
     const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &sweep->begin->r);
     const wh_vec3_t p = wh_mat3_transform_back(&base_from_wafer->R, &dr);
     const wh_vec3_t d = wh_mat3_transform_back(&base_from_wafer->R, &sweep->travel);

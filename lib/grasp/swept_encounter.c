@@ -1,25 +1,25 @@
 #include "encounter_internal.h"
 #include "proximity_internal.h"
 
-void wh_encounter_follow_swept(wh_watch_t *watch) {
+void wh_encounter_track_swept(wh_watch_t *watch) {
     wh_sweep_t sweep;
     wh_sweep_between(&watch->gripper->base_from_gripper, watch->base_from_gripper, &sweep);
     watch->sweep = &sweep;
-    wh_encounter_follow(watch);
+    wh_encounter_track(watch);
     watch->sweep = NULL;
 }
 
 /*@ requires wh_watch_memory(watch) && watch->sweep != \null && \valid_read(base_from_wafer) && \valid(reach);
     assigns reach->z, reach->xy; */
-static bool is_near_at(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_reach_t *reach) {
+static bool is_near_at(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_closeness_t *reach) {
     wh_pose_t then;
     wh_sweep_pose_at(watch->sweep, reach->t, &then);
-    return wh_reach_measure(&watch->table->config, base_from_wafer, &then, reach);
+    return wh_closeness_measure(&watch->table->config, base_from_wafer, &then, reach);
 }
 
-bool wh_reach_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_reach_t *closest) {
+bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_closeness_t *closest) {
     const wh_grasp_config_t *config = &watch->table->config;
-    wh_interval_t part;
+    wh_span_t part;
     if (!wh_sweep_within(watch->sweep, base_from_wafer, config->near_projz, config->near_projxy, &part)) {
         return false;
     }
@@ -29,7 +29,7 @@ bool wh_reach_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, w
         return true;
     }
     /* The closest instant may be the one on the neighbourhood's edge; then the middle tells. */
-    wh_reach_t middle = {.t = (part.first + part.last) / 2};
+    wh_closeness_t middle = {.t = (part.first + part.last) / 2};
     return is_near_at(watch, base_from_wafer, &middle);
 }
 

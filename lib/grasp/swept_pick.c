@@ -34,7 +34,7 @@ static void keep_better(candidate_t *best, const candidate_t *other) {
 static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *sweep) {
     const wh_vec3_t *place = &sweep->end->r;
     const wh_real_t margin = wh_horizon_margin(table, g, place);
-    const wh_near_t near = wh_index_near(table, g, &sweep->begin->r, place, margin);
+    const wh_found_t near = wh_index_near(table, g, &sweep->begin->r, place, margin);
     wh_horizon_t horizon = wh_horizon_begin(table, g, &near, margin);
     candidate_t best = {.wafer = WH_NONE};
     /*@ loop invariant 0 <= i <= near.count;

@@ -49,8 +49,8 @@ wh_status_t wh_vacuum_validate(const wh_vacuum_config_t *config) {
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
-wh_vacuum_upset_t wh_vacuum_sound(void) {
-    const wh_vacuum_upset_t upset = {1, 0};
+wh_vacuum_fault_t wh_vacuum_sound(void) {
+    const wh_vacuum_fault_t upset = {1, 0};
     return upset;
 }
 
@@ -61,7 +61,7 @@ wh_vacuum_t wh_vacuum_start(void) {
 
 /* One slice towards the target. Below WH_REAL's rounding it never passes it, for the share is at most 1. */
 /*@ requires \valid_read(config) && \valid_read(upset); assigns \nothing; */
-static wh_real_t approach(const wh_vacuum_config_t *config, const wh_vacuum_upset_t *upset, wh_real_t level,
+static wh_real_t approach(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, wh_real_t level,
                           wh_real_t target, wh_real_t dt) {
     if (level == target) {
         return target;
@@ -72,7 +72,7 @@ static wh_real_t approach(const wh_vacuum_config_t *config, const wh_vacuum_upse
     return wh_real_abs(target - next) < NEAR ? target : next;
 }
 
-int32_t wh_vacuum_before(const wh_vacuum_config_t *config, const wh_vacuum_upset_t *upset, int32_t command,
+int32_t wh_vacuum_before(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, int32_t command,
                          bool holds, wh_real_t dt, wh_vacuum_t *vacuum) {
     if (command != WH_VALVE_OPEN && command != WH_VALVE_CLOSED) {
         return command;
@@ -85,7 +85,7 @@ int32_t wh_vacuum_before(const wh_vacuum_config_t *config, const wh_vacuum_upset
     return holds && vacuum->level >= config->release ? WH_VALVE_OPEN : WH_VALVE_CLOSED;
 }
 
-bool wh_vacuum_after(const wh_vacuum_config_t *config, const wh_vacuum_upset_t *upset, bool holds,
+bool wh_vacuum_after(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, bool holds,
                      wh_real_t dt, wh_vacuum_t *vacuum) {
     const bool was_on = vacuum->on;
     const bool open = vacuum->command == WH_VALVE_OPEN;

@@ -38,7 +38,7 @@ typedef struct {
 typedef struct {
     wh_real_t full;  /* the level that can be reached, 0 to 1 */
     wh_real_t build; /* a slower time constant upwards, s; 0: none */
-} wh_vacuum_upset_t;
+} wh_vacuum_fault_t;
 
 /* One gripper's vacuum, as the last slice left it. */
 typedef struct {
@@ -62,7 +62,7 @@ wh_status_t wh_vacuum_validate(const wh_vacuum_config_t *config);
 
 /* Nothing wrong: 1 and 0. */
 /*@ assigns \nothing; */
-wh_vacuum_upset_t wh_vacuum_sound(void);
+wh_vacuum_fault_t wh_vacuum_sound(void);
 
 /* Before the first slice: no vacuum, closed, off. */
 /*@ assigns \nothing; */
@@ -73,14 +73,14 @@ wh_vacuum_t wh_vacuum_start(void);
  * argument is checked; `dt` is the slice's length in s. Cost: a division. */
 /*@ requires \valid_read(config) && \valid_read(upset) && \valid(vacuum);
     assigns *vacuum; */
-int32_t wh_vacuum_before(const wh_vacuum_config_t *config, const wh_vacuum_upset_t *upset, int32_t command,
+int32_t wh_vacuum_before(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, int32_t command,
                          bool holds, wh_real_t dt, wh_vacuum_t *vacuum);
 
 /* After the grasp step: the level under an open valve, and the sensor. `holds`: a wafer is on the pads now. True when
  * the sensor went off under a wafer that the command wants held. Nothing is checked. Cost: a division. */
 /*@ requires \valid_read(config) && \valid_read(upset) && \valid(vacuum);
     assigns *vacuum; */
-bool wh_vacuum_after(const wh_vacuum_config_t *config, const wh_vacuum_upset_t *upset, bool holds,
+bool wh_vacuum_after(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, bool holds,
                      wh_real_t dt, wh_vacuum_t *vacuum);
 
 #endif

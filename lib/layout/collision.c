@@ -60,7 +60,7 @@ static wh_grasp_t view_of(const wh_layout_t *layout, const wh_state_t *state) {
     return view;
 }
 
-void wh_collision_follow(wh_collision_t *collision, const wh_state_t *state) {
+void wh_collision_observe(wh_collision_t *collision, const wh_state_t *state) {
     const wh_grasp_t view = view_of(collision->layout, state);
     wh_gripper_input_t inputs[WH_GRIPPERS];
     for (size_t g = 0; g < state->gripper_count; ++g) {

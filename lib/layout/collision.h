@@ -24,7 +24,7 @@ void wh_collision_attach(wh_collision_t *collision, const wh_layout_t *layout, w
 
 /* For who is not the simulator, and hears of each step by its state alone: judges the same, and keeps clearances and curves;
  * what it finds is reported by the simulator. `layout` and `memory` as above. */
-void wh_collision_follow(wh_collision_t *collision, const wh_state_t *state);
+void wh_collision_observe(wh_collision_t *collision, const wh_state_t *state);
 
 /* The end-effector is where a gripper on it says: a fault may keep it from where the axes should have brought it. False,
  * and nothing written, when no gripper is on the robot. */

@@ -12,7 +12,7 @@
 
 /* Both views, in mm of the cell: the box that holds all of it, and where the views' origins are. */
 typedef struct {
-    const wh_layout_check_t *check;
+    const wh_feasibility_t *check;
     FILE *out;
     wh_vec3_t low, high;
     double width, height, margin, letter;
@@ -34,7 +34,7 @@ static const wh_convex_t *convex_of(const wh_layout_t *layout, size_t part) {
 }
 
 /* Parts and wafers together; none of a layout with more than can be checked. */
-static size_t count_parts(const wh_layout_check_t *check) {
+static size_t count_parts(const wh_feasibility_t *check) {
     return check->has_parts ? check->layout->world.part_count + check->layout->wafer_count : 0;
 }
 
@@ -43,7 +43,7 @@ static void measure(drawing_t *d) {
     const wh_real_t reach = layout->machine.robot.travel[WH_AXIS_R].max;
     grow(d, wh_vec3(-reach, -reach, 0), wh_vec3(reach, reach, 0));
     for (size_t part = 0; part < count_parts(d->check); ++part) {
-        const wh_pose_t pose = wh_layout_check_place(d->check, (int32_t)part);
+        const wh_pose_t pose = wh_feasibility_place(d->check, (int32_t)part);
         wh_vec3_t low;
         wh_vec3_t high;
         wh_convex_bounds(convex_of(layout, part), &pose, &low, &high);
@@ -122,7 +122,7 @@ static const char *group_of(const wh_layout_t *layout, size_t part, size_t ink) 
     return ink == INK_ARM ? "robot" : layout->grippers[owner].name;
 }
 
-static bool is_found(const wh_layout_check_t *check, size_t part) {
+static bool is_found(const wh_feasibility_t *check, size_t part) {
     for (size_t i = 0; i < check->count; ++i) {
         const int32_t *parts = check->findings[i].parts;
         if (parts[0] == (int32_t)part || parts[1] == (int32_t)part) {
@@ -132,9 +132,9 @@ static bool is_found(const wh_layout_check_t *check, size_t part) {
     return false;
 }
 
-static void draw_part(drawing_t *d, wh_view_t view, size_t part, size_t ink) {
+static void draw_part(drawing_t *d, wh_projection_t view, size_t part, size_t ink) {
     const wh_layout_t *layout = d->check->layout;
-    const wh_pose_t pose = wh_layout_check_place(d->check, (int32_t)part);
+    const wh_pose_t pose = wh_feasibility_place(d->check, (int32_t)part);
     if (!wh_outline_draw(&d->outline, view, convex_of(layout, part), &pose)) {
         d->failed = true;
         return;
@@ -149,7 +149,7 @@ static void draw_part(drawing_t *d, wh_view_t view, size_t part, size_t ink) {
 }
 
 /* Those of inks `first` to `last`, in groups by what they are parts of. */
-static void draw_parts(drawing_t *d, wh_view_t view, size_t first, size_t last) {
+static void draw_parts(drawing_t *d, wh_projection_t view, size_t first, size_t last) {
     const wh_layout_t *layout = d->check->layout;
     const char *group = NULL;
     for (size_t part = 0; part < count_parts(d->check); ++part) {
@@ -171,12 +171,13 @@ static void draw_parts(drawing_t *d, wh_view_t view, size_t first, size_t last) 
 
 /* ----------------------------------------------------------------------------------------------------- labels */
 
-static void label_at(wh_svg_labels_t *labels, wh_view_t view, wh_vec3_t r, double down, const char *name) {
+static void label_at(wh_svg_labels_t *labels, wh_projection_t view, wh_vec3_t r, double down,
+                     const char *name) {
     const wh_spot_t spot = wh_outline_spot(view, r);
     wh_svg_label(labels, spot.x, spot.y + down, name);
 }
 
-static void label_stations(const drawing_t *d, wh_view_t view, wh_svg_labels_t *labels) {
+static void label_stations(const drawing_t *d, wh_projection_t view, wh_svg_labels_t *labels) {
     const wh_layout_t *layout = d->check->layout;
     for (size_t s = 0; s < layout->station_count; ++s) {
         const wh_station_t *place = &layout->places[s];
@@ -187,7 +188,7 @@ static void label_stations(const drawing_t *d, wh_view_t view, wh_svg_labels_t *
 }
 
 /* At the lower edge of each, inside where it is large enough. */
-static void label_obstacles(const drawing_t *d, wh_view_t view, wh_svg_labels_t *labels) {
+static void label_obstacles(const drawing_t *d, wh_projection_t view, wh_svg_labels_t *labels) {
     const wh_layout_t *layout = d->check->layout;
     for (size_t part = 0; part < layout->world.part_count; ++part) {
         const wh_convex_t *convex = &layout->world.parts[part].convex;
@@ -201,7 +202,7 @@ static void label_obstacles(const drawing_t *d, wh_view_t view, wh_svg_labels_t 
     }
 }
 
-static void label_all(const drawing_t *d, wh_view_t view) {
+static void label_all(const drawing_t *d, wh_projection_t view) {
     const wh_layout_t *layout = d->check->layout;
     wh_svg_labels_t labels = {
         .out = d->out, .size = 0.85 * d->letter, .left = (double)d->low.x, .right = (double)d->high.x};
@@ -218,7 +219,7 @@ static void label_all(const drawing_t *d, wh_view_t view) {
 
 /* ------------------------------------------------------------------------------------------------------ views */
 
-static void draw_travel(const drawing_t *d, wh_view_t view) {
+static void draw_travel(const drawing_t *d, wh_projection_t view) {
     const wh_robot_t *robot = &d->check->layout->machine.robot;
     if (view == WH_VIEW_SIDE) {
         fprintf(d->out, "<path class=\"rule\" d=\"M%.1f 0H%.1f\"/>\n", (double)d->low.x, (double)d->high.x);
@@ -235,7 +236,7 @@ static void draw_travel(const drawing_t *d, wh_view_t view) {
     }
 }
 
-static void draw_view(drawing_t *d, wh_view_t view, double x, double lowest) {
+static void draw_view(drawing_t *d, wh_projection_t view, double x, double lowest) {
     fprintf(d->out, "<g transform=\"translate(%.1f %.1f)\">\n", x - (double)d->low.x,
             d->height - d->margin - 2.5 * d->letter + lowest);
     draw_travel(d, view);
@@ -282,7 +283,7 @@ static void draw_title(const drawing_t *d, double x, const char *what) {
     fputs("</text>\n", d->out);
 }
 
-int wh_layout_print_svg(const wh_layout_check_t *check, FILE *out) {
+int wh_layout_print_svg(const wh_feasibility_t *check, FILE *out) {
     drawing_t d = {.check = check, .out = out};
     measure(&d);
     fprintf(out,

@@ -8,6 +8,6 @@
 
 /* Writes an SVG image of the cell with the robot at home; parts that a finding names are marked. Colours follow the
  * viewer's preference for light or dark. 0, or -1 when memory is out or `out` does not take it (then errno tells). */
-int wh_layout_print_svg(const wh_layout_check_t *check, FILE *out);
+int wh_layout_print_svg(const wh_feasibility_t *check, FILE *out);
 
 #endif

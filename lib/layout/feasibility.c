@@ -15,8 +15,8 @@ const char *wh_finding_name(wh_finding_kind_t kind) {
     return names[kind];
 }
 
-wh_finding_t *wh_layout_check_add(wh_layout_check_t *check, wh_finding_kind_t kind, int32_t station,
-                                  const char *format, ...) {
+wh_finding_t *wh_feasibility_add(wh_feasibility_t *check, wh_finding_kind_t kind, int32_t station,
+                                 const char *format, ...) {
     if (check->count == check->capacity) {
         const size_t capacity = 2 * check->capacity + 16;
         wh_finding_t *grown = realloc(check->findings, capacity * sizeof *grown);
@@ -40,7 +40,7 @@ wh_finding_t *wh_layout_check_add(wh_layout_check_t *check, wh_finding_kind_t ki
 
 /* --------------------------------------------------------------------------------------------------- at home */
 
-static void go_home(wh_layout_check_t *check) {
+static void go_home(wh_feasibility_t *check) {
     const wh_machine_t *machine = &check->layout->machine;
     wh_real_t axes[WH_AXES] = {0};
     memcpy(axes, machine->robot.home, sizeof machine->robot.home);
@@ -49,7 +49,7 @@ static void go_home(wh_layout_check_t *check) {
     wh_arm_place(&check->layout->shapes.arm, &check->base_from_effector, check->base_from_arm);
 }
 
-wh_pose_t wh_layout_check_place(const wh_layout_check_t *check, int32_t part) {
+wh_pose_t wh_feasibility_place(const wh_feasibility_t *check, int32_t part) {
     const wh_world_config_t *world = &check->layout->world;
     if ((size_t)part >= world->part_count) {
         const wh_pose_t *wafer = &check->layout->start[(size_t)part - world->part_count].base_from_wafer;
@@ -72,7 +72,7 @@ wh_pose_t wh_layout_check_place(const wh_layout_check_t *check, int32_t part) {
 
 /* --------------------------------------------------------------------------------------------------- contact */
 
-static void look_at_rest(wh_layout_check_t *check, const wh_grasp_t *table, void *memory) {
+static void look_at_rest(wh_feasibility_t *check, const wh_grasp_t *table, void *memory) {
     const wh_layout_t *layout = check->layout;
     int32_t parts[2];
     wh_world_t *world = wh_world_init(&layout->world, table, &check->base_from_effector,
@@ -81,15 +81,15 @@ static void look_at_rest(wh_layout_check_t *check, const wh_grasp_t *table, void
         return;
     }
     wh_finding_t *finding =
-        wh_layout_check_add(check, WH_FINDING_CONTACT, WH_NONE, "%s and %s touch before anything moves",
-                            wh_layout_part_name(layout, parts[0]), wh_layout_part_name(layout, parts[1]));
+        wh_feasibility_add(check, WH_FINDING_CONTACT, WH_NONE, "%s and %s touch before anything moves",
+                           wh_layout_part_name(layout, parts[0]), wh_layout_part_name(layout, parts[1]));
     if (finding) {
         memcpy(finding->parts, parts, sizeof parts);
     }
 }
 
 /* Everything that rests and the robot at home, as a run begins. */
-static void check_contact(wh_layout_check_t *check) {
+static void check_contact(wh_feasibility_t *check) {
     const wh_layout_t *layout = check->layout;
     wh_gripper_t grippers[WH_GRIPPERS];
     wh_grasp_t table;
@@ -115,7 +115,7 @@ static void check_contact(wh_layout_check_t *check) {
 
 /* ---------------------------------------------------------------------------------------------------- wafers */
 
-static void check_wafers(wh_layout_check_t *check) {
+static void check_wafers(wh_feasibility_t *check) {
     const wh_layout_t *layout = check->layout;
     size_t strays = 0;
     for (size_t w = 0; w < layout->wafer_count; ++w) {
@@ -126,7 +126,7 @@ static void check_wafers(wh_layout_check_t *check) {
             ++strays <= NAMED_STRAYS) {
             place = wh_station_measure(&layout->places[wafer->station], wafer->slot,
                                        &layout->start[w].base_from_wafer);
-            (void)wh_layout_check_add(
+            (void)wh_feasibility_add(
                 check, WH_FINDING_WAFER, wafer->station,
                 "%s lies in no slot: it is %.4g mm beside and %.4g mm above the plane of %s slot %d",
                 wafer->name, (double)wh_real_sqrt(place.dx * place.dx + place.dy * place.dy),
@@ -134,14 +134,14 @@ static void check_wafers(wh_layout_check_t *check) {
         }
     }
     if (strays > NAMED_STRAYS) {
-        (void)wh_layout_check_add(check, WH_FINDING_WAFER, WH_NONE, "%zu more wafers lie in no slot",
-                                  strays - NAMED_STRAYS);
+        (void)wh_feasibility_add(check, WH_FINDING_WAFER, WH_NONE, "%zu more wafers lie in no slot",
+                                 strays - NAMED_STRAYS);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------------- all */
 
-bool wh_layout_check(wh_layout_check_t *check, const wh_layout_t *layout) {
+bool wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout) {
     memset(check, 0, sizeof *check);
     check->layout = layout;
     check->has_parts = layout->part_names != NULL;
@@ -154,16 +154,16 @@ bool wh_layout_check(wh_layout_check_t *check, const wh_layout_t *layout) {
         check_contact(check);
     }
     for (size_t s = 0; s < layout->station_count; ++s) {
-        wh_layout_check_reach(check, s);
+        wh_feasibility_reach(check, s);
         if (check->has_parts) {
-            wh_layout_check_room(check, s);
+            wh_feasibility_room(check, s);
         }
     }
     check_wafers(check);
     return !check->out_of_memory;
 }
 
-void wh_layout_check_free(wh_layout_check_t *check) {
+void wh_feasibility_free(wh_feasibility_t *check) {
     free(check->entries);
     free(check->findings);
     memset(check, 0, sizeof *check);

@@ -42,17 +42,17 @@ typedef struct {
     wh_finding_t *findings;
     size_t count, capacity;
     bool out_of_memory;
-} wh_layout_check_t;
+} wh_feasibility_t;
 
 /* Looks at all of it. To be freed in any case; false when memory is out. Cost: n log n in parts and wafers, and wafers times
  * stations. */
-bool wh_layout_check(wh_layout_check_t *check, const wh_layout_t *layout);
-void wh_layout_check_free(wh_layout_check_t *check);
+bool wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout);
+void wh_feasibility_free(wh_feasibility_t *check);
 
 /* The kind in one word, such as "contact": a constant. */
 const char *wh_finding_name(wh_finding_kind_t kind);
 
 /* base_from_part of any part, wafers included: its body at home, where the layout puts it. */
-wh_pose_t wh_layout_check_place(const wh_layout_check_t *check, int32_t part);
+wh_pose_t wh_feasibility_place(const wh_feasibility_t *check, int32_t part);
 
 #endif

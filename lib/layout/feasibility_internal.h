@@ -4,17 +4,17 @@
 
 #include "feasibility.h"
 
-/* One more finding, or null when memory is out (which wh_layout_check then tells). `parts` are none. */
-__attribute__((format(printf, 4, 5))) wh_finding_t *wh_layout_check_add(wh_layout_check_t *check,
-                                                                        wh_finding_kind_t kind,
-                                                                        int32_t station, const char *format,
-                                                                        ...);
+/* One more finding, or null when memory is out (which wh_feasibility then tells). `parts` are none. */
+__attribute__((format(printf, 4, 5))) wh_finding_t *wh_feasibility_add(wh_feasibility_t *check,
+                                                                       wh_finding_kind_t kind,
+                                                                       int32_t station, const char *format,
+                                                                       ...);
 
 /* base_from_gripper with the end-effector level in a slot, heading in. */
-wh_pose_t wh_layout_check_entry(const wh_station_t *station, int32_t slot);
+wh_pose_t wh_feasibility_entry(const wh_station_t *station, int32_t slot);
 
 /* Looks at each station: reach, and the blade's room. */
-void wh_layout_check_reach(wh_layout_check_t *check, size_t station);
-void wh_layout_check_room(wh_layout_check_t *check, size_t station);
+void wh_feasibility_reach(wh_feasibility_t *check, size_t station);
+void wh_feasibility_room(wh_feasibility_t *check, size_t station);
 
 #endif

@@ -6,7 +6,7 @@
 /* Farther than this nobody asks, mm. */
 #define FAR WH_REAL(1e4)
 
-wh_pose_t wh_layout_check_entry(const wh_station_t *station, int32_t slot) {
+wh_pose_t wh_feasibility_entry(const wh_station_t *station, int32_t slot) {
     const wh_pose_t base_from_slot = wh_station_slot(station, slot);
     const wh_real_t x = base_from_slot.R.m[0][0];
     const wh_real_t y = base_from_slot.R.m[1][0];
@@ -42,7 +42,7 @@ static wh_status_t find_effector(const wh_layout_t *layout, const corner_t *corn
     return status;
 }
 
-static void check_corner(wh_layout_check_t *check, const corner_t *corner) {
+static void check_corner(wh_feasibility_t *check, const corner_t *corner) {
     const wh_layout_t *layout = check->layout;
     const wh_layout_station_t *station = &layout->stations[corner->station];
     const char *where = corner->before ? "the way into " : "";
@@ -52,16 +52,16 @@ static void check_corner(wh_layout_check_t *check, const corner_t *corner) {
         status = find_effector(layout, corner, station->offset - station->stroke, &base_from_effector);
     }
     if (status != WH_OK) {
-        (void)wh_layout_check_add(check, WH_FINDING_REACH, (int32_t)corner->station, "%s%s slot %d: %s",
-                                  where, station->name, (int)corner->slot, wh_status_text(status));
+        (void)wh_feasibility_add(check, WH_FINDING_REACH, (int32_t)corner->station, "%s%s slot %d: %s", where,
+                                 station->name, (int)corner->slot, wh_status_text(status));
     } else if (!wh_arm_reaches(&layout->shapes.arm, &base_from_effector)) {
-        (void)wh_layout_check_add(check, WH_FINDING_LINKS, (int32_t)corner->station,
-                                  "%s%s slot %d: two links of %.4g mm do not reach the wrist", where,
-                                  station->name, (int)corner->slot, (double)layout->shapes.arm.link);
+        (void)wh_feasibility_add(check, WH_FINDING_LINKS, (int32_t)corner->station,
+                                 "%s%s slot %d: two links of %.4g mm do not reach the wrist", where,
+                                 station->name, (int)corner->slot, (double)layout->shapes.arm.link);
     }
 }
 
-void wh_layout_check_reach(wh_layout_check_t *check, size_t station) {
+void wh_feasibility_reach(wh_feasibility_t *check, size_t station) {
     const wh_station_t *place = &check->layout->places[station];
     const wh_real_t retract = check->layout->stations[station].retract;
     if (!check->layout->stations[station].taught) {
@@ -69,7 +69,7 @@ void wh_layout_check_reach(wh_layout_check_t *check, size_t station) {
     }
     for (int32_t slot = 1; slot <= place->slots; slot += place->slots > 1 ? place->slots - 1 : 1) {
         for (int before = 0; before < 2; ++before) {
-            corner_t corner = {station, slot, before == 1, wh_layout_check_entry(place, slot)};
+            corner_t corner = {station, slot, before == 1, wh_feasibility_entry(place, slot)};
             if (corner.before) {
                 const wh_vec3_t in = wh_mat3_column(&corner.pose.R, 0);
                 const wh_vec3_t way = wh_vec3_scale(retract, &in);
@@ -114,7 +114,7 @@ static void measure(room_t *room, const wh_convex_t *other, const wh_pose_t *bas
 
 static room_t enter(const wh_layout_t *layout, size_t station, int32_t slot, wh_real_t height) {
     room_t room = {.layout = layout, .gripper = layout->stations[station].effector};
-    room.base_from_gripper = wh_layout_check_entry(&layout->places[station], slot);
+    room.base_from_gripper = wh_feasibility_entry(&layout->places[station], slot);
     room.base_from_gripper.r.z += height;
     return room;
 }
@@ -132,7 +132,7 @@ static bool measure_wafer(const wh_layout_t *layout, size_t station, int32_t slo
 }
 
 /* At the slot's height, to what carries the wafer: ledges of the first slot, or the chuck. */
-static bool measure_support(const wh_layout_check_t *check, size_t station, wh_real_t *found) {
+static bool measure_support(const wh_feasibility_t *check, size_t station, wh_real_t *found) {
     const wh_layout_t *layout = check->layout;
     const wh_station_t *place = &layout->places[station];
     room_t room = enter(layout, station, 1, 0);
@@ -141,7 +141,7 @@ static bool measure_support(const wh_layout_check_t *check, size_t station, wh_r
         const bool ledge = part->kind == WH_PART_LEDGE && part->owner == (int32_t)station && part->slot == 1;
         const bool chuck = part->kind == WH_PART_CHUCK && part->owner == place->chuck;
         if (ledge || chuck) {
-            const wh_pose_t base_from_part = wh_layout_check_place(check, (int32_t)i);
+            const wh_pose_t base_from_part = wh_feasibility_place(check, (int32_t)i);
             measure(&room, &part->convex, &base_from_part);
         }
     }
@@ -149,9 +149,9 @@ static bool measure_support(const wh_layout_check_t *check, size_t station, wh_r
     return room.found;
 }
 
-static void say_entry(wh_layout_check_t *check, size_t station, const char *which) {
+static void say_entry(wh_feasibility_t *check, size_t station, const char *which) {
     const wh_layout_station_t *s = &check->layout->stations[station];
-    (void)wh_layout_check_add(
+    (void)wh_feasibility_add(
         check, WH_FINDING_ENTRY, (int32_t)station,
         "%s: entering %.4g mm below a slot, the blade touches the wafer %s; pitch %.4g mm, "
         "blade %.4g mm",
@@ -159,7 +159,7 @@ static void say_entry(wh_layout_check_t *check, size_t station, const char *whic
         (double)check->layout->shapes.blade.thickness);
 }
 
-void wh_layout_check_room(wh_layout_check_t *check, size_t station) {
+void wh_feasibility_room(wh_feasibility_t *check, size_t station) {
     const wh_layout_t *layout = check->layout;
     const wh_station_t *place = &layout->places[station];
     const wh_layout_station_t *s = &layout->stations[station];
@@ -176,8 +176,8 @@ void wh_layout_check_room(wh_layout_check_t *check, size_t station) {
         say_entry(check, station, "below");
     }
     if (entry->has_beside && !(entry->beside > 0)) {
-        (void)wh_layout_check_add(check, WH_FINDING_LEDGES, (int32_t)station,
-                                  "%s: the blade touches %s as it rises through the slot", s->name,
-                                  s->prealigner ? "the chuck" : "the ledges");
+        (void)wh_feasibility_add(check, WH_FINDING_LEDGES, (int32_t)station,
+                                 "%s: the blade touches %s as it rises through the slot", s->name,
+                                 s->prealigner ? "the chuck" : "the ledges");
     }
 }

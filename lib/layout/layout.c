@@ -62,10 +62,10 @@ void wh_layout_place(wh_layout_t *layout) {
     layout->cell.tolerance = layout->grasp.tolerance;
 }
 
-void wh_layout_read_reality(lua_State *L, wh_layout_t *reality) {
+void wh_layout_read_reality(lua_State *L, wh_layout_t *trial_cell) {
     wh_reader_t reader;
-    wh_reader_start(&reader, L, reality->path);
-    wh_layout_read_world(&reader, reality);
+    wh_reader_start(&reader, L, trial_cell->path);
+    wh_layout_read_world(&reader, trial_cell);
 }
 
 void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layout) {

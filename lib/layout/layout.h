@@ -10,7 +10,7 @@
 #include "../cell/station.h"
 #include "../collision/world.h"
 #include "../motion/machine.h"
-#include "../sim/condition.h"
+#include "../sim/physics.h"
 #include "errors.h"
 #include "shapes.h"
 
@@ -115,7 +115,7 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path);
 
 /* Reads anew, for a copy of a layout whose stations stand elsewhere, what the collision check knows of them. The layout's
  * table is on top of the stack; the copy must outlive the state. Raises what wh_layout_read does. */
-void wh_layout_read_reality(lua_State *L, wh_layout_t *reality);
+void wh_layout_read_reality(lua_State *L, wh_layout_t *trial_cell);
 
 /* Reads `study` from the table on top of the stack, which the script `path` holds, in place of the layout's own. */
 void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layout);

@@ -7,19 +7,21 @@
 
 #define CIRCLE_CORNERS 48
 
-wh_spot_t wh_outline_spot(wh_view_t view, wh_vec3_t r) {
+wh_spot_t wh_outline_spot(wh_projection_t view, wh_vec3_t r) {
     const wh_spot_t spot = {(double)r.x, -(double)(view == WH_VIEW_TOP ? r.y : r.z)};
     return spot;
 }
 
 /* ------------------------------------------------------------------------------------------------------ points */
 
-static void add(wh_outline_t *outline, wh_view_t view, const wh_pose_t *base_from_shape, wh_vec3_t point) {
+static void add(wh_outline_t *outline, wh_projection_t view, const wh_pose_t *base_from_shape,
+                wh_vec3_t point) {
     const wh_vec3_t turned = wh_mat3_transform(&base_from_shape->R, &point);
     outline->spots[outline->count++] = wh_outline_spot(view, wh_vec3_add(&turned, &base_from_shape->r));
 }
 
-static void add_box(wh_outline_t *outline, wh_view_t view, const wh_convex_t *convex, const wh_pose_t *pose) {
+static void add_box(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
+                    const wh_pose_t *pose) {
     for (unsigned i = 0; i < 8; ++i) {
         const wh_vec3_t corner = {i & 1U ? convex->half.x : -convex->half.x,
                                   i & 2U ? convex->half.y : -convex->half.y,
@@ -28,7 +30,7 @@ static void add_box(wh_outline_t *outline, wh_view_t view, const wh_convex_t *co
     }
 }
 
-static void add_cylinder(wh_outline_t *outline, wh_view_t view, const wh_convex_t *convex,
+static void add_cylinder(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
                          const wh_pose_t *pose) {
     for (int i = 0; i < CIRCLE_CORNERS; ++i) {
         wh_real_t sine, cosine;
@@ -41,7 +43,7 @@ static void add_cylinder(wh_outline_t *outline, wh_view_t view, const wh_convex_
 }
 
 /* A ball looks the same from everywhere. */
-static void add_capsule(wh_outline_t *outline, wh_view_t view, const wh_convex_t *convex,
+static void add_capsule(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
                         const wh_pose_t *pose) {
     const wh_vec3_t axis = wh_mat3_column(&pose->R, 2);
     for (int end = -1; end <= 1; end += 2) {
@@ -57,7 +59,7 @@ static void add_capsule(wh_outline_t *outline, wh_view_t view, const wh_convex_t
     }
 }
 
-static void add_points(wh_outline_t *outline, wh_view_t view, const wh_convex_t *convex,
+static void add_points(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
                        const wh_pose_t *pose) {
     switch (convex->kind) {
     case WH_CONVEX_BOX:
@@ -134,7 +136,7 @@ static bool make_room(wh_outline_t *outline, const wh_convex_t *convex) {
     return true;
 }
 
-bool wh_outline_draw(wh_outline_t *outline, wh_view_t view, const wh_convex_t *convex,
+bool wh_outline_draw(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
                      const wh_pose_t *base_from_shape) {
     if (!make_room(outline, convex)) {
         return false;

@@ -5,7 +5,7 @@
 #include "../collision/convex.h"
 
 /* From above: x to the right, y up. From the side, along base's y: x to the right, z up. */
-typedef enum { WH_VIEW_TOP, WH_VIEW_SIDE } wh_view_t;
+typedef enum { WH_VIEW_TOP, WH_VIEW_SIDE } wh_projection_t;
 
 /* A point of the picture, mm, y down as in a picture. */
 typedef struct {
@@ -19,11 +19,11 @@ typedef struct {
 } wh_outline_t;
 
 /* Where a point is in the picture. */
-wh_spot_t wh_outline_spot(wh_view_t view, wh_vec3_t r);
+wh_spot_t wh_outline_spot(wh_projection_t view, wh_vec3_t r);
 
 /* The convex hull of the part as seen; circles have 48 corners. False when memory is out. Cost: n log n in the points of
  * a mesh. */
-bool wh_outline_draw(wh_outline_t *outline, wh_view_t view, const wh_convex_t *convex,
+bool wh_outline_draw(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
                      const wh_pose_t *base_from_shape);
 
 void wh_outline_free(wh_outline_t *outline);

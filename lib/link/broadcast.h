@@ -10,8 +10,8 @@
 typedef struct {
     wh_link_t link; /* first */
     wh_node_t *node;
-    wh_control_t control; /* tells the commands; its client is not used */
-    wh_simulation_t simulation;
+    wh_mcs_process_t control; /* tells the commands; its client is not used */
+    wh_sim_process_t simulation;
     wh_link_identity_t identity;
     bool connected;
 } wh_broadcast_t;

@@ -10,7 +10,7 @@
 
 /* ------------------------------------------------------------------------------------------------- telling */
 
-static void tell(wh_control_t *control, int32_t phase, int line, wh_status_t error, const char *command,
+static void tell(wh_mcs_process_t *control, int32_t phase, int line, wh_status_t error, const char *command,
                  const char *text) {
     waferhand_mcs message;
     memset(&message, 0, sizeof message);
@@ -36,7 +36,7 @@ static void tell(wh_control_t *control, int32_t phase, int line, wh_status_t err
 }
 
 static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
-    wh_control_t *control = user;
+    wh_mcs_process_t *control = user;
     control->sandbox = mcs->sandbox;
     snprintf(control->running, sizeof control->running, "%s", ended ? "" : command->text);
     control->running_line = command->line;
@@ -45,9 +45,9 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
         return;
     }
     if (control->connected) {
-        (void)wh_client_settle(&control->client, COMMAND_SETTLE_US);
+        (void)wh_protocol_client_settle(&control->client, COMMAND_SETTLE_US);
     }
-    /* A request is answered with its result, by wh_control_answer. */
+    /* A request is answered with its result, by wh_mcs_process_answer. */
     const int64_t request = control->request;
     control->request = 0;
     tell(control, command->error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED, command->line,
@@ -57,7 +57,7 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
 
 /* ------------------------------------------------------------------------------------------------- requests */
 
-static const wh_control_answer_t *find_answer(const wh_control_t *control, int64_t seq) {
+static const wh_mcs_process_answer_t *find_answer(const wh_mcs_process_t *control, int64_t seq) {
     for (size_t i = 0; i < WH_CONTROL_ANSWERED; ++i) {
         if (control->answered[i].seq == seq) {
             return &control->answered[i];
@@ -66,7 +66,7 @@ static const wh_control_answer_t *find_answer(const wh_control_t *control, int64
     return NULL;
 }
 
-static bool is_waiting(const wh_control_t *control, int64_t seq) {
+static bool is_waiting(const wh_mcs_process_t *control, int64_t seq) {
     for (size_t i = 0; i < control->waiting_count; ++i) {
         if (control->waiting[(control->first_waiting + i) % WH_CONTROL_REQUESTS].seq == seq) {
             return true;
@@ -75,7 +75,7 @@ static bool is_waiting(const wh_control_t *control, int64_t seq) {
     return control->request == seq;
 }
 
-static void tell_answer(wh_control_t *control, const wh_control_answer_t *answer) {
+static void tell_answer(wh_mcs_process_t *control, const wh_mcs_process_answer_t *answer) {
     const int64_t executing = control->request;
     control->request = answer->seq;
     tell(control, answer->error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED, 0,
@@ -83,9 +83,9 @@ static void tell_answer(wh_control_t *control, const wh_control_answer_t *answer
     control->request = executing;
 }
 
-static void remember(wh_control_t *control, int64_t seq, wh_status_t error, const char *line,
+static void remember(wh_mcs_process_t *control, int64_t seq, wh_status_t error, const char *line,
                      const char *text) {
-    wh_control_answer_t *answer = &control->answered[control->answered_count++ % WH_CONTROL_ANSWERED];
+    wh_mcs_process_answer_t *answer = &control->answered[control->answered_count++ % WH_CONTROL_ANSWERED];
     answer->seq = seq;
     answer->error = (int32_t)error;
     snprintf(answer->line, sizeof answer->line, "%s", line);
@@ -101,33 +101,33 @@ static bool is_stop(const char *line) {
 }
 
 /* Ends the command that runs; those that wait behind it are not begun. */
-static void stop_all(wh_control_t *control, const waferhand_request *message) {
+static void stop_all(wh_mcs_process_t *control, const waferhand_request *message) {
     char line[WH_LINK_LINE];
     const int64_t executing = control->request;
     wh_sandbox_stop(control->sandbox);
     control->node->interrupted = true; /* also a wait for a simulator that is silent */
-    while (wh_control_next_request(control, line)) {
+    while (wh_mcs_process_next_request(control, line)) {
         remember(control, control->request, WH_STATUS_STOPPED, line, wh_status_text(WH_STATUS_STOPPED));
     }
     control->request = executing;
     remember(control, message->seq, WH_OK, message->command_line, "OK");
 }
 
-static void enqueue(wh_control_t *control, const waferhand_request *message) {
+static void enqueue(wh_mcs_process_t *control, const waferhand_request *message) {
     if (control->waiting_count == WH_CONTROL_REQUESTS) {
-        wh_control_answer_t busy = {.seq = message->seq, .error = WH_STATUS_BUSY};
+        wh_mcs_process_answer_t busy = {.seq = message->seq, .error = WH_STATUS_BUSY};
         snprintf(busy.line, sizeof busy.line, "%s", message->command_line);
         snprintf(busy.text, sizeof busy.text, "%s", wh_status_text(WH_STATUS_BUSY));
         tell_answer(control, &busy);
         return;
     }
-    wh_control_request_t *request =
+    wh_mcs_process_request_t *request =
         &control->waiting[(control->first_waiting + control->waiting_count++) % WH_CONTROL_REQUESTS];
     request->seq = message->seq;
     snprintf(request->line, sizeof request->line, "%s", message->command_line);
 }
 
-static bool is_for_us(const wh_control_t *control, const waferhand_request *message) {
+static bool is_for_us(const wh_mcs_process_t *control, const waferhand_request *message) {
     const wh_link_identity_t *identity = &control->client.identity;
     const bool run = message->run == 0 || (control->connected && message->run == identity->run);
     const bool layout = message->layout_hash == 0 ||
@@ -136,7 +136,7 @@ static bool is_for_us(const wh_control_t *control, const waferhand_request *mess
 }
 
 static void on_request(void *user, const void *data, size_t size) {
-    wh_control_t *control = user;
+    wh_mcs_process_t *control = user;
     waferhand_request message;
     if (!wh_link_decode_request(data, size, &message)) {
         ++control->garbage;
@@ -149,7 +149,7 @@ static void on_request(void *user, const void *data, size_t size) {
     }
     ++control->requests;
     if (is_for_us(control, &message) && !is_waiting(control, message.seq)) {
-        const wh_control_answer_t *answer = find_answer(control, message.seq);
+        const wh_mcs_process_answer_t *answer = find_answer(control, message.seq);
         if (answer) {
             tell_answer(control, answer);
         } else if (control->running[0] != '\0' && is_stop(message.command_line)) {
@@ -161,11 +161,11 @@ static void on_request(void *user, const void *data, size_t size) {
     (void)waferhand_request_decode_cleanup(&message);
 }
 
-bool wh_control_next_request(wh_control_t *control, char line[WH_LINK_LINE]) {
+bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LINE]) {
     if (control->waiting_count == 0) {
         return false;
     }
-    const wh_control_request_t *request = &control->waiting[control->first_waiting];
+    const wh_mcs_process_request_t *request = &control->waiting[control->first_waiting];
     control->first_waiting = (control->first_waiting + 1) % WH_CONTROL_REQUESTS;
     --control->waiting_count;
     control->request = request->seq;
@@ -173,7 +173,7 @@ bool wh_control_next_request(wh_control_t *control, char line[WH_LINK_LINE]) {
     return true;
 }
 
-void wh_control_answer(wh_control_t *control, wh_status_t error, const char *line, const char *text) {
+void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *line, const char *text) {
     const int64_t seq = control->request;
     control->request = 0;
     remember(control, seq, error, line, text);
@@ -182,22 +182,22 @@ void wh_control_answer(wh_control_t *control, wh_status_t error, const char *lin
 /* ------------------------------------------------------------------------------------------------- the run */
 
 static void tell_progress(void *user) {
-    wh_control_t *control = user;
+    wh_mcs_process_t *control = user;
     if (control->running[0] != '\0') {
         tell(control, WH_LINK_PHASE_GOES_ON, control->running_line, WH_OK, control->running, "");
     }
 }
 
 static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
-    wh_control_t *control = user;
-    const wh_client_options_t options = {.layout = mcs->layout,
-                                         .outputs = control->options.outputs,
-                                         .rate = control->options.rate,
-                                         .stop = control->options.stop,
-                                         .say = control->options.say,
-                                         .user = control->options.user,
-                                         .tick = tell_progress,
-                                         .tick_user = control};
+    wh_mcs_process_t *control = user;
+    const wh_protocol_client_options_t options = {.layout = mcs->layout,
+                                                  .outputs = control->options.outputs,
+                                                  .rate = control->options.rate,
+                                                  .stop = control->options.stop,
+                                                  .say = control->options.say,
+                                                  .user = control->options.user,
+                                                  .tick = tell_progress,
+                                                  .tick_user = control};
     if (mcs->layout->wafer_count > WH_LINK_WAFERS) {
         if (control->options.say) {
             control->options.say(control->options.user,
@@ -205,7 +205,7 @@ static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
         }
         return NULL;
     }
-    control->connected = wh_client_open(&control->client, control->node, &options);
+    control->connected = wh_protocol_client_open(&control->client, control->node, &options);
     return control->connected ? &control->client.link : NULL;
 }
 
@@ -216,7 +216,8 @@ static void on_cell(void *user, const void *data, size_t size) {
     (void)size;
 }
 
-bool wh_control_open(wh_control_t *control, wh_node_t *node, const wh_control_options_t *options) {
+bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
+                         const wh_mcs_process_options_t *options) {
     memset(control, 0, sizeof *control);
     control->node = node;
     control->options = *options;
@@ -224,12 +225,12 @@ bool wh_control_open(wh_control_t *control, wh_node_t *node, const wh_control_op
            wh_node_subscribe(node, WH_CHANNEL_CELL, on_cell, control);
 }
 
-wh_mcs_partners_t wh_control_partners(wh_control_t *control) {
+wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
     const wh_mcs_partners_t partners = {.connect = connect_client, .watch = watch, .user = control};
     return partners;
 }
 
-void wh_control_idle(wh_control_t *control) {
+void wh_mcs_process_idle(wh_mcs_process_t *control) {
     const int64_t now = wh_node_clock_us();
     if (now - control->last_beat_us < HEARTBEAT_US) {
         (void)wh_node_drain(control->node, 64);
@@ -237,20 +238,20 @@ void wh_control_idle(wh_control_t *control) {
     }
     control->last_beat_us = now;
     if (control->connected) {
-        wh_client_heartbeat(&control->client);
+        wh_protocol_client_heartbeat(&control->client);
     } else {
         (void)wh_node_drain(control->node, 64);
     }
     tell(control, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
 }
 
-void wh_control_follow(wh_control_t *control, const wh_link_identity_t *identity,
-                       const wh_command_t *command) {
+void wh_mcs_process_set_slice(wh_mcs_process_t *control, const wh_link_identity_t *identity,
+                              const wh_command_t *command) {
     control->identity = *identity;
     control->utime = command->utime;
     control->seq = command->seq;
 }
 
-void wh_control_finish(wh_control_t *control) {
+void wh_mcs_process_finish(wh_mcs_process_t *control) {
     tell(control, WH_LINK_PHASE_OVER, 0, WH_OK, "", "");
 }

@@ -18,14 +18,14 @@
 typedef struct {
     int64_t seq;
     char line[WH_LINK_LINE];
-} wh_control_request_t;
+} wh_mcs_process_request_t;
 
 typedef struct {
     int64_t seq; /* 0: free */
     int32_t error;
     char line[WH_LINK_LINE];
     char text[400];
-} wh_control_answer_t;
+} wh_mcs_process_answer_t;
 
 typedef struct {
     double rate;         /* 0: lockstep */
@@ -33,13 +33,13 @@ typedef struct {
     const volatile sig_atomic_t *stop;
     void (*say)(void *user, const char *text);
     void *user;
-} wh_control_options_t;
+} wh_mcs_process_options_t;
 
 /* Must not be moved once opened. */
 typedef struct {
     wh_node_t *node;
-    wh_control_options_t options;
-    wh_client_t client;
+    wh_mcs_process_options_t options;
+    wh_protocol_client_t client;
     bool connected;
     wh_sandbox_t *sandbox;       /* of the run or session; null before its first command */
     wh_link_identity_t identity; /* of the run; and where it is: */
@@ -48,36 +48,36 @@ typedef struct {
     int running_line;
     int64_t request; /* seq of the request being executed, or 0 */
     int64_t last_beat_us;
-    wh_control_request_t waiting[WH_CONTROL_REQUESTS];
+    wh_mcs_process_request_t waiting[WH_CONTROL_REQUESTS];
     size_t first_waiting, waiting_count;
-    wh_control_answer_t answered[WH_CONTROL_ANSWERED];
+    wh_mcs_process_answer_t answered[WH_CONTROL_ANSWERED];
     size_t answered_count;
     uint64_t requests, garbage; /* datagrams on WAFERHAND_REQUEST: sound ones, others */
     bool named_garbage;
     uint8_t encoded[8192];
-} wh_control_t;
+} wh_mcs_process_t;
 
 /* Subscribes to requests. False when LCM has no room. */
-bool wh_control_open(wh_control_t *control, wh_node_t *node, const wh_control_options_t *options);
+bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node, const wh_mcs_process_options_t *options);
 
 /* The partners to hand to a run or a session. */
-wh_mcs_partners_t wh_control_partners(wh_control_t *control);
+wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control);
 
 /* While nothing moves: heartbeat to the simulator, what has come from others. To be called at least every 100 ms. */
-void wh_control_idle(wh_control_t *control);
+void wh_mcs_process_idle(wh_mcs_process_t *control);
 
 /* Takes the next request out of the queue, if there is one: it is then the one being executed, until
- * wh_control_answer. */
-bool wh_control_next_request(wh_control_t *control, char line[WH_LINK_LINE]);
+ * wh_mcs_process_answer. */
+bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LINE]);
 
 /* Answers the request being executed: error is 0 or its number, text what an operator would read. */
-void wh_control_answer(wh_control_t *control, wh_status_t error, const char *line, const char *text);
+void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *line, const char *text);
 
 /* Without a client of its own: the run and the slice that what is told belongs to. */
-void wh_control_follow(wh_control_t *control, const wh_link_identity_t *identity,
-                       const wh_command_t *command);
+void wh_mcs_process_set_slice(wh_mcs_process_t *control, const wh_link_identity_t *identity,
+                              const wh_command_t *command);
 
 /* Tells that the run is over. */
-void wh_control_finish(wh_control_t *control);
+void wh_mcs_process_finish(wh_mcs_process_t *control);
 
 #endif

@@ -114,7 +114,7 @@ static void put_gripper(const wh_gripper_t *gripper, waferhand_gripper_state *ou
     put_encounter(&gripper->contest, &out->contest);
 }
 
-static void put_condition(const wh_condition_t *condition, size_t g, waferhand_gripper_state *out) {
+static void put_condition(const wh_physics_state_t *condition, size_t g, waferhand_gripper_state *out) {
     out->valve_command = condition->vacuum[g].command;
     out->valve_told = condition->told[g];
     out->vacuum_level = condition->vacuum[g].level;
@@ -193,7 +193,7 @@ static void take_gripper(const waferhand_gripper_state *in, const wh_tolerance_t
     take_encounter(&in->contest, tolerance, &out->contest);
 }
 
-static void take_condition(const waferhand_gripper_state *in, size_t g, wh_condition_t *condition) {
+static void take_condition(const waferhand_gripper_state *in, size_t g, wh_physics_state_t *condition) {
     condition->vacuum[g].command = in->valve_command;
     condition->told[g] = in->valve_told;
     condition->vacuum[g].level = in->vacuum_level;

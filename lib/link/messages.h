@@ -56,7 +56,7 @@ typedef struct {
     wh_wafer_t wafers[WH_LINK_WAFERS];
     wh_gripper_t grippers[WH_GRIPPERS];
     wh_event_t events[WH_LINK_EVENTS];
-    wh_condition_t condition;
+    wh_physics_state_t condition;
 } wh_link_arrays_t;
 
 /* Room for a whole state as a message; `message` points into the arrays. */
@@ -89,7 +89,7 @@ void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t 
                               int64_t missed, wh_link_state_t *message);
 
 /* Back: fills `arrays`, and `state` as a view of them. Refuses counts out of range and events that no step yields
- * (WH_STATUS_OUT_OF_RANGE); wafers and grippers are for wh_grasp_restore to judge, the condition for wh_condition_validate.
+ * (WH_STATUS_OUT_OF_RANGE); wafers and grippers are for wh_grasp_restore to judge, the condition for wh_physics_state_validate.
  * Margins and verdicts of measured values, which do not travel, are made anew from `tolerance`. */
 wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_tolerance_t *tolerance,
                                        wh_link_arrays_t *arrays, wh_state_t *state);

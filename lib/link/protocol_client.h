@@ -24,7 +24,7 @@ typedef struct {
     uint64_t restored, silences; /* times that the state was sent back; silences reported */
     uint64_t unwritten;          /* valves that the file could not be made of */
     uint64_t late;               /* free-running: slices sent more than a slice late */
-} wh_client_counters_t;
+} wh_protocol_client_counters_t;
 
 typedef struct {
     const wh_layout_t *layout;
@@ -36,13 +36,13 @@ typedef struct {
     void *user;
     void (*tick)(void *tick_user); /* called once a second of a long motion; may be null */
     void *tick_user;
-} wh_client_options_t;
+} wh_protocol_client_options_t;
 
 /* Written by client*.c. Must not be moved once opened. */
 typedef struct {
     wh_link_t link; /* first: &client->link is what the MCS talks to */
     wh_node_t *node;
-    wh_client_options_t options;
+    wh_protocol_client_options_t options;
     wh_link_identity_t identity;
     waferhand_command command;    /* the last one sent */
     wh_state_t state;             /* the last one taken; status WH_OK */
@@ -55,7 +55,7 @@ typedef struct {
     int64_t resend_us;   /* how long to wait before sending again */
     int64_t last_heard_us, start_us, last_tick_us;
     bool silent;
-    wh_client_counters_t counters;
+    wh_protocol_client_counters_t counters;
     wh_link_arrays_t arrays;
     wh_link_arrays_t spare;
     wh_event_t events[4 * WH_LINK_EVENTS]; /* of all states since the last exchange */
@@ -63,20 +63,21 @@ typedef struct {
     uint8_t restore[WH_LINK_DATAGRAM]; /* the last state as it came, to be sent back */
     size_t restore_size;
     uint8_t encoded[4096];
-} wh_client_t;
+} wh_protocol_client_t;
 
 /* Subscribes to the states and begins a run with a random number other than 0. False when LCM has no room. */
-bool wh_client_open(wh_client_t *client, wh_node_t *node, const wh_client_options_t *options);
+bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node,
+                             const wh_protocol_client_options_t *options);
 
 /* A random number for a run, other than 0. */
-int64_t wh_client_draw_run(void);
+int64_t wh_protocol_client_draw_run(void);
 
 /* Sends the last command again, so that the simulator knows that we are alive while nothing moves, and notices by the
  * answer whether it is. To be called now and then between commands; handles what has come. */
-void wh_client_heartbeat(wh_client_t *client);
+void wh_protocol_client_heartbeat(wh_protocol_client_t *client);
 
 /* Free-running: waits up to so long for the state of the last command, so that what is asked next is asked of it.
  * True in lockstep, or when it came. */
-bool wh_client_settle(wh_client_t *client, int64_t timeout_us);
+bool wh_protocol_client_settle(wh_protocol_client_t *client, int64_t timeout_us);
 
 #endif

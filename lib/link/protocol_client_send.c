@@ -4,7 +4,7 @@
 #include "checksum.h"
 #include "protocol_client_internal.h"
 
-void wh_client_send(wh_client_t *client) {
+void wh_protocol_client_send(wh_protocol_client_t *client) {
     const int size =
         waferhand_command_encode(client->encoded, 0, (int)sizeof client->encoded, &client->command);
     if (size > 0) {
@@ -13,20 +13,20 @@ void wh_client_send(wh_client_t *client) {
     }
 }
 
-void wh_client_send_again(wh_client_t *client) {
+void wh_protocol_client_send_again(wh_protocol_client_t *client) {
     ++client->counters.repeated;
-    wh_client_send(client);
+    wh_protocol_client_send(client);
 }
 
-void wh_client_restore(wh_client_t *client) {
+void wh_protocol_client_restore(wh_protocol_client_t *client) {
     const bool asked = client->asked_for_state;
     client->asked_for_state = false;
     if (!asked || !client->has_state) {
         return;
     }
     ++client->counters.restored;
-    wh_client_say(client, "the simulator was started anew: it gets the state of slice %" PRId64,
-                  client->state.seq);
+    wh_protocol_client_say(client, "the simulator was started anew: it gets the state of slice %" PRId64,
+                           client->state.seq);
     (void)wh_node_publish(client->node, WH_CHANNEL_RESTORE, client->restore, client->restore_size);
-    wh_client_send_again(client);
+    wh_protocol_client_send_again(client);
 }

@@ -6,7 +6,7 @@
 #include "../grasp/restore.h"
 #include "checksum.h"
 
-static void start_run(wh_server_t *server, int64_t run) {
+static void start_run(wh_protocol_server_t *server, int64_t run) {
     const wh_layout_t *layout = server->layout;
     wh_grasp_storage_t storage = {.wafers = server->arrays.wafers,
                                   .wafer_count = layout->wafer_count,
@@ -30,7 +30,7 @@ static void start_run(wh_server_t *server, int64_t run) {
     server->encoded_size = 0;
 }
 
-wh_status_t wh_server_open(wh_server_t *server, const wh_layout_t *layout) {
+wh_status_t wh_protocol_server_open(wh_protocol_server_t *server, const wh_layout_t *layout) {
     if (layout->wafer_count > WH_LINK_WAFERS) {
         return WH_STATUS_BAD_CAPACITY;
     }
@@ -47,19 +47,20 @@ wh_status_t wh_server_open(wh_server_t *server, const wh_layout_t *layout) {
     return WH_OK;
 }
 
-void wh_server_close(wh_server_t *server) {
+void wh_protocol_server_close(wh_protocol_server_t *server) {
     free(server->collision_memory);
     server->collision_memory = NULL;
 }
 
-uint64_t wh_server_hash(const wh_server_t *server) {
+uint64_t wh_protocol_server_hash(const wh_protocol_server_t *server) {
     return wh_simulator_hash(&server->simulator);
 }
 
 /* -------------------------------------------------------------------------------------------------- answers */
 
-static void encode(wh_server_t *server, const wh_state_t *state, const wh_link_identity_t *identity) {
-    wh_link_state_to_message(state, identity, wh_server_hash(server), server->missed, &server->room);
+static void encode(wh_protocol_server_t *server, const wh_state_t *state,
+                   const wh_link_identity_t *identity) {
+    wh_link_state_to_message(state, identity, wh_protocol_server_hash(server), server->missed, &server->room);
     const int size =
         waferhand_state_encode(server->encoded, 0, (int)sizeof server->encoded, &server->room.message);
     server->encoded_size = size > 0 ? (size_t)size : 0;
@@ -67,8 +68,8 @@ static void encode(wh_server_t *server, const wh_state_t *state, const wh_link_i
 }
 
 /* A command that was not even looked at: its own numbers, the reason, and nothing else. */
-static wh_server_result_t turn_away(wh_server_t *server, const waferhand_command *message,
-                                    wh_status_t reason) {
+static wh_protocol_server_result_t turn_away(wh_protocol_server_t *server, const waferhand_command *message,
+                                             wh_status_t reason) {
     wh_state_t nothing;
     memset(&nothing, 0, sizeof nothing);
     nothing.utime = message->utime;
@@ -79,14 +80,14 @@ static wh_server_result_t turn_away(wh_server_t *server, const waferhand_command
     return WH_SERVER_ANSWERED;
 }
 
-static wh_server_result_t answer_again(wh_server_t *server) {
+static wh_protocol_server_result_t answer_again(wh_protocol_server_t *server) {
     encode(server, &server->state, &server->identity);
     return WH_SERVER_ANSWERED;
 }
 
 /* ------------------------------------------------------------------------------------------------- commands */
 
-static bool is_past(const wh_server_t *server, int64_t run) {
+static bool is_past(const wh_protocol_server_t *server, int64_t run) {
     const size_t count =
         server->past_count < WH_SERVER_PAST_RUNS ? server->past_count : (size_t)WH_SERVER_PAST_RUNS;
     for (size_t i = 0; i < count; ++i) {
@@ -97,14 +98,14 @@ static bool is_past(const wh_server_t *server, int64_t run) {
     return false;
 }
 
-static void leave_run(wh_server_t *server) {
+static void leave_run(wh_protocol_server_t *server) {
     if (server->identity.run != 0) {
         server->past_runs[server->past_count++ % WH_SERVER_PAST_RUNS] = server->identity.run;
     }
 }
 
-static wh_server_result_t step(wh_server_t *server, const waferhand_command *message,
-                               const int32_t valves[]) {
+static wh_protocol_server_result_t step(wh_protocol_server_t *server, const waferhand_command *message,
+                                        const int32_t valves[]) {
     wh_command_t command;
     if (wh_link_command_from_message(message, &command) != WH_OK) {
         ++server->counters.malformed;
@@ -130,16 +131,16 @@ static wh_server_result_t step(wh_server_t *server, const waferhand_command *mes
     return WH_SERVER_STEPPED;
 }
 
-static wh_server_result_t begin_run(wh_server_t *server, const waferhand_command *message,
-                                    const int32_t valves[]) {
+static wh_protocol_server_result_t begin_run(wh_protocol_server_t *server, const waferhand_command *message,
+                                             const int32_t valves[]) {
     leave_run(server);
     start_run(server, message->run);
-    const wh_server_result_t result = step(server, message, valves);
+    const wh_protocol_server_result_t result = step(server, message, valves);
     return result == WH_SERVER_STEPPED ? WH_SERVER_NEW_RUN : result;
 }
 
-static wh_server_result_t go_on(wh_server_t *server, const waferhand_command *message,
-                                const int32_t valves[]) {
+static wh_protocol_server_result_t go_on(wh_protocol_server_t *server, const waferhand_command *message,
+                                         const int32_t valves[]) {
     const bool gap = message->seq > server->seq + 1;
     if (message->seq < server->seq) {
         ++server->counters.stale;
@@ -156,8 +157,9 @@ static wh_server_result_t go_on(wh_server_t *server, const waferhand_command *me
     return step(server, message, valves);
 }
 
-wh_server_result_t wh_server_command(wh_server_t *server, const waferhand_command *message,
-                                     const int32_t valves[]) {
+wh_protocol_server_result_t wh_protocol_server_command(wh_protocol_server_t *server,
+                                                       const waferhand_command *message,
+                                                       const int32_t valves[]) {
     ++server->counters.commands;
     if (message->run == 0 || message->seq < 1 || message->seq > WH_LINK_SLICES) {
         ++server->counters.malformed;
@@ -183,7 +185,7 @@ wh_server_result_t wh_server_command(wh_server_t *server, const waferhand_comman
 
 /* ------------------------------------------------------------------------------------------------- restoring */
 
-static bool is_wanted(const wh_server_t *server, const waferhand_state *message) {
+static bool is_wanted(const wh_protocol_server_t *server, const waferhand_state *message) {
     const bool further = message->run != server->identity.run || message->seq > server->seq;
     return message->run != 0 && message->missed >= 0 && message->missed < message->seq && message->seq >= 1 &&
            message->seq <= WH_LINK_SLICES && message->status == WH_OK &&
@@ -192,7 +194,7 @@ static bool is_wanted(const wh_server_t *server, const waferhand_state *message)
 }
 
 /* Whether the state is one that a table like ours could be in, and the one whose hash it carries. */
-static bool is_sound(wh_server_t *server, const waferhand_state *message, wh_state_t *state) {
+static bool is_sound(wh_protocol_server_t *server, const waferhand_state *message, wh_state_t *state) {
     const wh_layout_t *layout = server->layout;
     if (wh_link_state_from_message(message, &layout->grasp.tolerance, &server->spare, state) != WH_OK ||
         state->wafer_count != layout->wafer_count || state->gripper_count != layout->machine.gripper_count) {
@@ -202,11 +204,11 @@ static bool is_sound(wh_server_t *server, const waferhand_state *message, wh_sta
     as_told.slice = (uint64_t)(message->seq - message->missed);
     as_told.storage.wafers = server->spare.wafers;
     as_told.storage.grippers = server->spare.grippers;
-    return wh_condition_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
-           wh_condition_hash(state->condition, &as_told) == (uint64_t)message->hash;
+    return wh_physics_state_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
+           wh_physics_state_hash(state->condition, &as_told) == (uint64_t)message->hash;
 }
 
-static bool take_over(wh_server_t *server, const waferhand_state *message, const wh_state_t *state) {
+static bool take_over(wh_protocol_server_t *server, const waferhand_state *message, const wh_state_t *state) {
     if (wh_grasp_restore(&server->simulator.table, (uint64_t)(message->seq - message->missed), state->wafers,
                          state->grippers) != WH_OK) {
         return false;
@@ -224,7 +226,8 @@ static bool take_over(wh_server_t *server, const waferhand_state *message, const
     return true;
 }
 
-wh_server_result_t wh_server_restore(wh_server_t *server, const waferhand_state *message) {
+wh_protocol_server_result_t wh_protocol_server_restore(wh_protocol_server_t *server,
+                                                       const waferhand_state *message) {
     wh_state_t state;
     ++server->counters.restores;
     if (!is_wanted(server, message)) {

@@ -4,7 +4,7 @@
  * older one is ignored; one further on is stepped only in a free-running run, and what lies between is counted as
  * missed. A new run begins with seq 1. A run that is not known, or not this far, is answered with
  * UNKNOWN_RUN: then the state comes back as a restore, and the run goes on from it. Used by `sim`, and by `replay`,
- * which so repeats exactly what the simulator did. Nothing is allocated after wh_server_open.
+ * which so repeats exactly what the simulator did. Nothing is allocated after wh_protocol_server_open.
  */
 #ifndef WH_LINK_PROTOCOL_SERVER_H
 #define WH_LINK_PROTOCOL_SERVER_H
@@ -22,7 +22,7 @@ typedef struct {
     uint64_t stepped, repeated, stale, refused, unknown_run, other_layout, run_over, malformed;
     uint64_t restores; /* all of these */
     uint64_t restored, restore_ignored, restore_refused;
-} wh_server_counters_t;
+} wh_protocol_server_counters_t;
 
 typedef struct {
     const wh_layout_t *layout;   /* borrowed */
@@ -36,14 +36,14 @@ typedef struct {
     bool lockstep;          /* the last command's */
     int64_t past_runs[WH_SERVER_PAST_RUNS];
     size_t past_count;
-    wh_server_counters_t counters;
+    wh_protocol_server_counters_t counters;
     wh_link_arrays_t arrays; /* the table's memory */
     uint32_t buckets[WH_GRASP_BUCKETS(WH_LINK_WAFERS, WH_GRIPPERS)];
     wh_link_arrays_t spare; /* a restore is tried here first */
     wh_link_state_t room;
     uint8_t encoded[WH_LINK_DATAGRAM]; /* the answer */
     size_t encoded_size;
-} wh_server_t;
+} wh_protocol_server_t;
 
 /* What a message did. */
 typedef enum {
@@ -52,24 +52,26 @@ typedef enum {
     WH_SERVER_NEW_RUN,  /* the same, and it was the first of a run */
     WH_SERVER_ANSWERED, /* nothing was stepped: `encoded` repeats the state, or says why */
     WH_SERVER_RESTORED  /* the state was taken over: `encoded` repeats it */
-} wh_server_result_t;
+} wh_protocol_server_result_t;
 
 /* Ready for a first run. WH_STATUS_BAD_CAPACITY for a layout of more than WH_LINK_WAFERS wafers. `layout` must outlive
  * the server, which must not be moved afterwards. */
-wh_status_t wh_server_open(wh_server_t *server, const wh_layout_t *layout);
+wh_status_t wh_protocol_server_open(wh_protocol_server_t *server, const wh_layout_t *layout);
 
 /* Frees what a layout with a collision check needed; else there is nothing to free. */
-void wh_server_close(wh_server_t *server);
+void wh_protocol_server_close(wh_protocol_server_t *server);
 
 /* With `valves`, they replace the command's (outputs.txt); null: the command's own. */
-wh_server_result_t wh_server_command(wh_server_t *server, const waferhand_command *message,
-                                     const int32_t valves[]);
+wh_protocol_server_result_t wh_protocol_server_command(wh_protocol_server_t *server,
+                                                       const waferhand_command *message,
+                                                       const int32_t valves[]);
 
 /* Takes a state over if its run is not known or not this far, its layout is ours, it is consistent and its hash is
  * the one that it says. */
-wh_server_result_t wh_server_restore(wh_server_t *server, const waferhand_state *message);
+wh_protocol_server_result_t wh_protocol_server_restore(wh_protocol_server_t *server,
+                                                       const waferhand_state *message);
 
 /* wh_simulator_hash. */
-uint64_t wh_server_hash(const wh_server_t *server);
+uint64_t wh_protocol_server_hash(const wh_protocol_server_t *server);
 
 #endif

@@ -7,10 +7,10 @@
 
 #include "proximity_message.h"
 
-static void say(const wh_simulation_t *simulation, const char *format, ...)
+static void say(const wh_sim_process_t *simulation, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-static void say(const wh_simulation_t *simulation, const char *format, ...) {
+static void say(const wh_sim_process_t *simulation, const char *format, ...) {
     char text[200];
     va_list arguments;
     if (!simulation->say) {
@@ -24,7 +24,7 @@ static void say(const wh_simulation_t *simulation, const char *format, ...) {
 
 /* ------------------------------------------------------------------------------------------------- sending */
 
-static void publish(wh_simulation_t *simulation, const char *channel, const void *data, int size) {
+static void publish(wh_sim_process_t *simulation, const char *channel, const void *data, int size) {
     if (!simulation->node) {
         return;
     }
@@ -34,7 +34,7 @@ static void publish(wh_simulation_t *simulation, const char *channel, const void
     }
 }
 
-static void tell_cell(wh_simulation_t *simulation) {
+static void tell_cell(wh_sim_process_t *simulation) {
     waferhand_cell *cell = &simulation->cell;
     cell->utime = simulation->server.state.utime;
     cell->seq = simulation->server.seq;
@@ -44,7 +44,7 @@ static void tell_cell(wh_simulation_t *simulation) {
             waferhand_cell_encode(simulation->encoded, 0, (int)sizeof simulation->encoded, cell));
 }
 
-static void tell_proximity(wh_simulation_t *simulation) {
+static void tell_proximity(wh_sim_process_t *simulation) {
     const int64_t now = wh_node_clock_us();
     const bool due = now - simulation->last_proximity_us >= WH_SIMULATION_PROXIMITY_US;
     waferhand_proximity message;
@@ -58,13 +58,13 @@ static void tell_proximity(wh_simulation_t *simulation) {
             waferhand_proximity_encode(simulation->encoded, 0, (int)sizeof simulation->encoded, &message));
 }
 
-static void answer(wh_simulation_t *simulation) {
+static void answer(wh_sim_process_t *simulation) {
     publish(simulation, WH_CHANNEL_STATE, simulation->server.encoded, (int)simulation->server.encoded_size);
 }
 
 /* ----------------------------------------------------------------------------------------------- receiving */
 
-static void drop(wh_simulation_t *simulation, const char *channel, size_t size) {
+static void drop(wh_sim_process_t *simulation, const char *channel, size_t size) {
     ++simulation->counters.garbage;
     if (!simulation->named_garbage) {
         simulation->named_garbage = true;
@@ -73,7 +73,7 @@ static void drop(wh_simulation_t *simulation, const char *channel, size_t size) 
     }
 }
 
-static void heard_motion_control(wh_simulation_t *simulation) {
+static void heard_motion_control(wh_sim_process_t *simulation) {
     simulation->last_command_us = wh_node_clock_us();
     if (simulation->silent) {
         simulation->silent = false;
@@ -81,7 +81,7 @@ static void heard_motion_control(wh_simulation_t *simulation) {
     }
 }
 
-static void act_on(wh_simulation_t *simulation, wh_server_result_t result) {
+static void act_on(wh_sim_process_t *simulation, wh_protocol_server_result_t result) {
     if (result == WH_SERVER_IGNORED) {
         return;
     }
@@ -97,9 +97,10 @@ static void act_on(wh_simulation_t *simulation, wh_server_result_t result) {
     }
 }
 
-static void handle_command(wh_simulation_t *simulation, const waferhand_command *message) {
+static void handle_command(wh_sim_process_t *simulation, const waferhand_command *message) {
     const int64_t missed = simulation->server.missed;
-    const wh_server_result_t result = wh_server_command(&simulation->server, message, simulation->valves);
+    const wh_protocol_server_result_t result =
+        wh_protocol_server_command(&simulation->server, message, simulation->valves);
     if (message->run == simulation->server.identity.run) {
         heard_motion_control(simulation);
     }
@@ -111,7 +112,7 @@ static void handle_command(wh_simulation_t *simulation, const waferhand_command 
 }
 
 static void on_command(void *user, const void *data, size_t size) {
-    wh_simulation_t *simulation = user;
+    wh_sim_process_t *simulation = user;
     waferhand_command message;
     if (wh_link_decode_command(data, size, &message)) {
         handle_command(simulation, &message);
@@ -121,18 +122,18 @@ static void on_command(void *user, const void *data, size_t size) {
 }
 
 static void on_restore(void *user, const void *data, size_t size) {
-    wh_simulation_t *simulation = user;
+    wh_sim_process_t *simulation = user;
     waferhand_state message;
     if (!wh_link_decode_state(data, size, &message)) {
         drop(simulation, WH_CHANNEL_RESTORE, size);
         return;
     }
-    act_on(simulation, wh_server_restore(&simulation->server, &message));
+    act_on(simulation, wh_protocol_server_restore(&simulation->server, &message));
     (void)waferhand_state_decode_cleanup(&message);
 }
 
 static void on_mcs(void *user, const void *data, size_t size) {
-    wh_simulation_t *simulation = user;
+    wh_sim_process_t *simulation = user;
     waferhand_mcs message;
     if (!wh_link_decode_mcs(data, size, &message)) {
         drop(simulation, WH_CHANNEL_MCS, size);
@@ -142,14 +143,14 @@ static void on_mcs(void *user, const void *data, size_t size) {
         simulation->running) {
         simulation->running = false;
         say(simulation, "run %016" PRIx64 " is over at slice %" PRId64 ", hash %016" PRIx64,
-            (uint64_t)message.run, simulation->server.seq, wh_server_hash(&simulation->server));
+            (uint64_t)message.run, simulation->server.seq, wh_protocol_server_hash(&simulation->server));
     }
     (void)waferhand_mcs_decode_cleanup(&message);
 }
 
 /* Only for the record: requests are motion control's to answer. */
 static void on_request(void *user, const void *data, size_t size) {
-    wh_simulation_t *simulation = user;
+    wh_sim_process_t *simulation = user;
     waferhand_request message;
     if (!wh_link_decode_request(data, size, &message)) {
         drop(simulation, WH_CHANNEL_REQUEST, size);
@@ -160,13 +161,13 @@ static void on_request(void *user, const void *data, size_t size) {
 
 /* -------------------------------------------------------------------------------------------------- opening */
 
-wh_status_t wh_simulation_open(wh_simulation_t *simulation, wh_node_t *node, const wh_layout_t *layout,
-                               void (*say_line)(void *user, const char *text), void *user) {
+wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, const wh_layout_t *layout,
+                                void (*say_line)(void *user, const char *text), void *user) {
     memset(simulation, 0, sizeof *simulation);
     simulation->node = node;
     simulation->say = say_line;
     simulation->user = user;
-    if (wh_server_open(&simulation->server, layout) != WH_OK ||
+    if (wh_protocol_server_open(&simulation->server, layout) != WH_OK ||
         !wh_link_cell_from_layout(layout, &simulation->server.identity, &simulation->cell) ||
         waferhand_cell_encoded_size(&simulation->cell) > WH_LINK_DATAGRAM) {
         wh_link_cell_free(&simulation->cell);
@@ -183,20 +184,20 @@ wh_status_t wh_simulation_open(wh_simulation_t *simulation, wh_node_t *node, con
     return WH_OK;
 }
 
-void wh_simulation_publish_to(wh_simulation_t *simulation, wh_node_t *node) {
+void wh_sim_process_publish_to(wh_sim_process_t *simulation, wh_node_t *node) {
     simulation->node = node;
     tell_cell(simulation);
 }
 
-wh_status_t wh_simulation_step(wh_simulation_t *simulation, const waferhand_command *message,
-                               wh_state_t *state) {
+wh_status_t wh_sim_process_step(wh_sim_process_t *simulation, const waferhand_command *message,
+                                wh_state_t *state) {
     handle_command(simulation, message);
     *state = simulation->server.state;
     state->status = (wh_status_t)simulation->server.room.message.status;
     return state->status;
 }
 
-void wh_simulation_tick(wh_simulation_t *simulation) {
+void wh_sim_process_tick(wh_sim_process_t *simulation) {
     const int64_t now = wh_node_clock_us();
     if (now - simulation->last_cell_us >= WH_SIMULATION_CELL_US) {
         tell_cell(simulation);
@@ -210,7 +211,7 @@ void wh_simulation_tick(wh_simulation_t *simulation) {
     }
 }
 
-void wh_simulation_close(wh_simulation_t *simulation) {
-    wh_server_close(&simulation->server);
+void wh_sim_process_close(wh_sim_process_t *simulation) {
+    wh_protocol_server_close(&simulation->server);
     wh_link_cell_free(&simulation->cell);
 }

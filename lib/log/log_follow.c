@@ -18,7 +18,7 @@ static int64_t missed_slices(wh_link_t *link) {
 }
 
 void wh_log_drop_run(wh_log_run_t *run) {
-    wh_trace_close(&run->trace);
+    wh_signals_close(&run->signals);
     wh_record_free(&run->record);
     free(run->collision_memory);
     run->collision_memory = NULL;
@@ -87,7 +87,7 @@ static void end_command(wh_log_run_t *run, const waferhand_mcs *message) {
 }
 
 static void begin_command(wh_log_run_t *run, const waferhand_mcs *message, bool ours) {
-    if (ours && run->trace.layout) {
+    if (ours && run->signals.layout) {
         add_command(run, message->line, message->command, (double)message->utime / 1e6);
         return;
     }
@@ -167,7 +167,7 @@ static void count_slice(wh_log_run_t *run, const double axes[], const wh_state_t
 
 static void start(wh_log_run_t *run, bool from_the_beginning) {
     const wh_machine_t *machine = &run->cell.layout->machine;
-    wh_trace_begin(&run->trace, run->cell.layout, from_the_beginning && run->cell.is_whole);
+    wh_signals_begin(&run->signals, run->cell.layout, from_the_beginning && run->cell.is_whole);
     memset(run->axes, 0, sizeof run->axes);
     memcpy(run->axes, machine->robot.home, sizeof machine->robot.home);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
@@ -192,7 +192,7 @@ static bool find_axes(const wh_log_run_t *run, const waferhand_state *message, d
 static void take_slice(wh_log_run_t *run, const waferhand_state *message) {
     double axes[WH_AXES];
     const bool known = find_axes(run, message, axes);
-    if (!run->trace.layout) {
+    if (!run->signals.layout) {
         start(run, message->seq == 1);
     }
     run->gaps += run->seq > 0 && message->seq > run->seq + 1 ? 1 : 0;
@@ -202,11 +202,11 @@ static void take_slice(wh_log_run_t *run, const waferhand_state *message) {
     run->missed = message->missed;
     count_slice(run, axes, &run->mcs.state);
     if (run->collision_memory) {
-        wh_collision_follow(&run->mcs.collision, &run->mcs.state);
+        wh_collision_observe(&run->mcs.collision, &run->mcs.state);
     }
-    wh_trace_slice(&run->trace, known ? axes : NULL, (size_t)run->command.axis_count, &run->mcs.state);
+    wh_signals_slice(&run->signals, known ? axes : NULL, (size_t)run->command.axis_count, &run->mcs.state);
     if (wh_log_is_boundary(run)) {
-        wh_trace_mark(&run->trace);
+        wh_signals_mark(&run->signals);
     }
 }
 
@@ -250,7 +250,7 @@ static bool is_sound(const wh_state_t *state, const wh_layout_t *layout) {
     return state->wafer_count == layout->wafer_count &&
            state->gripper_count == layout->machine.gripper_count && state->seq > 0 &&
            state->seq < INT64_MAX / layout->slice_us &&
-           wh_condition_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
+           wh_physics_state_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
            are_wafers_sound(state) && are_grippers_sound(state);
 }
 
@@ -278,5 +278,5 @@ void wh_log_finish_run(wh_log_run_t *run) {
             (double)(run->mcs.track.slice * run->mcs.track.slice_us) / 1e6;
     }
     wh_mcs_finish(&run->mcs);
-    wh_trace_finish(&run->trace);
+    wh_signals_finish(&run->signals);
 }

@@ -226,7 +226,7 @@ bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options) {
     look_ahead(run, file);
     const wh_log_result_t result = read_events(run, file);
     (void)fclose(file);
-    if (!run->trace.layout || run->trace.last <= 0) {
+    if (!run->signals.layout || run->signals.last <= 0) {
         return refuse(run, result);
     }
     wh_log_finish_run(run);

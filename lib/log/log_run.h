@@ -41,7 +41,7 @@ typedef struct {
     wh_log_layout_t cell, next_cell; /* of the run; and told since, for the next one */
     wh_mcs_t mcs;                    /* as the motion control stood that the log is of */
     wh_record_t record;
-    wh_trace_t trace;
+    wh_signals_t signals;
     void *collision_memory;
     wh_link_arrays_t arrays;
     wh_log_boundary_t *boundaries; /* sorted: messages of them may come late */

@@ -31,7 +31,7 @@ static void note_slice(wh_replay_t *replay, wh_replay_run_t *run) {
     }
     run->last_slice = replay->server.seq;
     run->missed = replay->server.missed;
-    run->hash = wh_server_hash(&replay->server);
+    run->hash = wh_protocol_server_hash(&replay->server);
 }
 
 /* ---------------------------------------------------------------------------------------------- differences */
@@ -75,7 +75,7 @@ static bool gripper_differs(wh_replay_difference_t *difference, const char *of, 
 }
 
 static bool condition_differs(wh_replay_difference_t *difference, const char *of, size_t g,
-                              const wh_condition_t *recorded, const wh_condition_t *replayed) {
+                              const wh_physics_state_t *recorded, const wh_physics_state_t *replayed) {
     return differs(difference, of, "vacuum level", recorded->vacuum[g].level, replayed->vacuum[g].level) ||
            differs(difference, of, "valve's command", recorded->vacuum[g].command,
                    replayed->vacuum[g].command) ||
@@ -111,7 +111,7 @@ static void name_difference(wh_replay_t *replay, const wh_state_t *recorded,
 
 static void take_up(wh_replay_t *replay, const waferhand_state *message) {
     wh_replay_run_t *run = entry(replay, message->run);
-    if (run && wh_server_restore(&replay->server, message) == WH_SERVER_RESTORED) {
+    if (run && wh_protocol_server_restore(&replay->server, message) == WH_SERVER_RESTORED) {
         ++run->taken_up;
         note_slice(replay, run);
     }
@@ -120,7 +120,8 @@ static void take_up(wh_replay_t *replay, const waferhand_state *message) {
 /* Steps the waiting command, with the valves in force when they are known. True when it was stepped. */
 static bool step(wh_replay_t *replay, const int32_t valves[], wh_replay_run_t **run) {
     replay->has_command = false;
-    const wh_server_result_t result = wh_server_command(&replay->server, &replay->command, valves);
+    const wh_protocol_server_result_t result =
+        wh_protocol_server_command(&replay->server, &replay->command, valves);
     if (result != WH_SERVER_STEPPED && result != WH_SERVER_NEW_RUN) {
         return false;
     }
@@ -179,7 +180,7 @@ static void on_cell(wh_replay_t *replay, const void *data, size_t size) {
             wh_replay_finish(replay);
             wh_link_layout_free(replay->layout);
             replay->layout = layout;
-            (void)wh_server_open(&replay->server, layout);
+            (void)wh_protocol_server_open(&replay->server, layout);
             replay->server.identity.layout_hash = (uint64_t)message.layout_hash;
         } else {
             ++replay->garbage;

@@ -38,7 +38,7 @@ typedef struct {
 /* Must not be moved once opened. */
 typedef struct {
     wh_layout_t *layout; /* null: no cell came yet */
-    wh_server_t server;
+    wh_protocol_server_t server;
     wh_replay_run_t runs[WH_REPLAY_RUNS];
     size_t run_count;
     uint64_t runs_left_out;    /* beyond WH_REPLAY_RUNS */

@@ -40,7 +40,7 @@
     (ws == \null || \valid_read(ws + (0 .. wafer_count - 1))) &&
     (gs == \null || \valid_read(gs + (0 .. gripper_count - 1)));
 
-  predicate wh_state_apart{L}(wh_wafer_t *ws, wh_gripper_t *gs, wh_grasp_t *t) =
+  predicate wh_checkpoint_apart{L}(wh_wafer_t *ws, wh_gripper_t *gs, wh_grasp_t *t) =
     \separated(ws + (0 .. t->storage.wafer_count - 1), t,
                t->storage.wafers + (0 .. t->storage.wafer_count - 1),
                t->storage.grippers + (0 .. t->storage.gripper_count - 1)) &&

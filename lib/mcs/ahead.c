@@ -59,13 +59,13 @@ bool wh_ahead_judge(void *user, const wh_mcs_t *mcs, const wh_segment_t *segment
     wh_ahead_t *ahead = user;
     wh_track_t track = mcs->track;
     wh_command_t command = {.fault_count = 0};
-    wh_stance_t stance = {.is_taken = false};
+    wh_machine_cache_t cache = {.is_taken = false};
     wh_state_t state;
     if (segment->kind == WH_SEGMENT_SENSOR || (mcs->judged == 0 && !begin(ahead, mcs))) {
         return false;
     }
     while (wh_track_next(&track, 0) == WH_TRACK_MOVING) {
-        wh_command_follow(&command, &stance, &track);
+        wh_command_from_track(&command, &cache, &track);
         (void)wh_simulator_step(&ahead->simulator, &command, &state);
         const wh_event_t *hit = find_hit(&state);
         if (hit) {

@@ -2,7 +2,7 @@
  *
  * Motion control decides by what it reads: the vacuum sensors in a segment, which wafer a gripper holds, whether a wafer lies
  * where it is expected. A trial of a study in which every such reading is as it was on the tape is commanded slice by slice
- * what the tape has, so that the simulator alone can play it, without Lua: see wh_tape_play. Where a reading differs, motion
+ * what the tape has, so that the simulator alone can play it, without Lua: see wh_decisions_play. Where a reading differs, motion
  * control might have gone another way, and the script is to be run whole. A script that reads measured numbers (offset,
  * proximity, MAP, ...) or faults on purpose makes the tape unfit.
  */
@@ -22,27 +22,27 @@ typedef enum {
     WH_TAPE_HELD,   /* by gripper `index` was wafer `answer` */
     WH_TAPE_HOLDER, /* of wafer `index` was gripper `answer` */
     WH_TAPE_CLAIM   /* number `index` was judged: `answer` */
-} wh_tape_kind_t;
+} wh_decisions_kind_t;
 
 /* An entry: what was read after slice `slice`. */
 typedef struct {
-    wh_tape_kind_t kind;
+    wh_decisions_kind_t kind;
     int32_t index, answer;
     uint32_t mask;
     int64_t slice;
-} wh_tape_entry_t;
+} wh_decisions_entry_t;
 
 /* That a wafer lies in a slot with an offset. */
 typedef struct {
     int32_t wafer, station, slot;
     double dx, dy, tolerance;
-} wh_tape_claim_t;
+} wh_decisions_claim_t;
 
 /* From slice `slice` on a gripper was told this. */
 typedef struct {
     int64_t slice;
     int32_t valve;
-} wh_tape_valve_t;
+} wh_decisions_valve_t;
 
 /* To be zeroed before a run. Of one run; afterwards it is only read, by any number of threads. */
 typedef struct {
@@ -52,40 +52,41 @@ typedef struct {
     int64_t slice_capacity;
     wh_pose_t *poses; /* gripper_count for each slice, slice 1 first */
     wh_real_t *axes;  /* axis_count for each slice */
-    wh_tape_entry_t *entries;
+    wh_decisions_entry_t *entries;
     size_t entry_count, entry_capacity;
-    wh_tape_claim_t *claims;
+    wh_decisions_claim_t *claims;
     size_t claim_count, claim_capacity;
-    wh_tape_valve_t *valves[WH_GRIPPERS]; /* where they change */
+    wh_decisions_valve_t *valves[WH_GRIPPERS]; /* where they change */
     size_t valve_count[WH_GRIPPERS], valve_capacity[WH_GRIPPERS];
-} wh_tape_t;
+} wh_decisions_t;
 
 /* Recording; all of them do nothing with a null tape. Memory that runs out ends the program. */
-void wh_tape_slice(wh_tape_t *tape, const wh_command_t *command);
-void wh_tape_begin(wh_tape_t *tape, const wh_segment_t *segment, uint32_t carried);
-void wh_tape_end(wh_tape_t *tape, bool done, int32_t lost);
-void wh_tape_ask(wh_tape_t *tape, wh_tape_kind_t kind, int32_t index, int32_t answer);
-void wh_tape_claim(wh_tape_t *tape, const wh_tape_claim_t *claim, int32_t verdict);
+void wh_decisions_slice(wh_decisions_t *decisions, const wh_command_t *command);
+void wh_decisions_begin(wh_decisions_t *decisions, const wh_segment_t *segment, uint32_t carried);
+void wh_decisions_end(wh_decisions_t *decisions, bool done, int32_t lost);
+void wh_decisions_ask(wh_decisions_t *decisions, wh_decisions_kind_t kind, int32_t index, int32_t answer);
+void wh_decisions_claim(wh_decisions_t *decisions, const wh_decisions_claim_t *claim, int32_t verdict);
 
 /* The script has read something that a trial's errors change: `what` is a constant text. */
-void wh_tape_measured(wh_tape_t *tape, const char *what);
+void wh_decisions_measured(wh_decisions_t *decisions, const char *what);
 
 /* 0: the wafer does not lie in that slot; 1: it does; 2: with that offset, too. */
-int32_t wh_tape_judge(const wh_tape_claim_t *claim, const wh_cell_t *cell, const wh_wafer_t wafers[]);
+int32_t wh_decisions_judge(const wh_decisions_claim_t *claim, const wh_cell_t *cell,
+                           const wh_wafer_t wafers[]);
 
-void wh_tape_free(wh_tape_t *tape);
+void wh_decisions_free(wh_decisions_t *decisions);
 
 /* ---- Playing ---- */
 
 /* What happened in a trial that a tape was played for. Given with each slice's events. */
-typedef void wh_tape_watch_t(void *user, const wh_event_t events[], size_t count);
+typedef void wh_decisions_watch_t(void *user, const wh_event_t events[], size_t count);
 
 /* Plays the tape of a run of `reality->layout`'s layout against a simulator that was initialised with the reality and not
  * stepped. True when all that was read back is as on the tape: the simulator is then in the very state in which running the script
  * for that trial would leave it, and `watch` has seen each event. False where something was read differently, or the simulator
  * refused a slice: all is then void. Slices in which nothing can happen are skipped: with a plain vacuum, no pads, no faults
  * and nobody looking, those in which each gripper keeps its valve and either is closed or holds a wafer. */
-bool wh_tape_play(const wh_tape_t *tape, const wh_reality_t *reality, wh_simulator_t *simulator,
-                  wh_tape_watch_t *watch, void *user);
+bool wh_decisions_play(const wh_decisions_t *decisions, const wh_trial_cell_t *trial_cell,
+                       wh_simulator_t *simulator, wh_decisions_watch_t *watch, void *user);
 
 #endif

@@ -6,10 +6,10 @@
 /* Slice `at` is where the trial is; `stepped` the last that the simulator was stepped through. The state is the same but
  * for where grippers are and what they carry along. */
 typedef struct {
-    const wh_tape_t *tape;
-    const wh_reality_t *reality;
+    const wh_decisions_t *decisions;
+    const wh_trial_cell_t *trial_cell;
     wh_simulator_t *simulator;
-    wh_tape_watch_t *watch;
+    wh_decisions_watch_t *watch;
     void *user;
     bool may_skip, broken;
     int64_t at, stepped;
@@ -24,30 +24,30 @@ typedef struct {
 /* ------------------------------------------------------------------------------------------------------ slices */
 
 static int64_t next_change(const player_t *player, size_t g) {
-    const wh_tape_t *tape = player->tape;
-    return player->next[g] < tape->valve_count[g]
-               ? tape->valves[g][player->next[g]].slice + player->reality->lag[g]
+    const wh_decisions_t *decisions = player->decisions;
+    return player->next[g] < decisions->valve_count[g]
+               ? decisions->valves[g][player->next[g]].slice + player->trial_cell->lag[g]
                : INT64_MAX;
 }
 
 static void load(player_t *player, int64_t slice) {
-    const wh_tape_t *tape = player->tape;
+    const wh_decisions_t *decisions = player->decisions;
     wh_command_t *command = &player->command;
-    const wh_pose_t *poses = &tape->poses[(size_t)(slice - 1) * tape->gripper_count];
+    const wh_pose_t *poses = &decisions->poses[(size_t)(slice - 1) * decisions->gripper_count];
     wh_pose_t moved[WH_GRIPPERS];
-    if (player->reality->chucks_moved) {
-        const wh_real_t *axes = &tape->axes[(size_t)(slice - 1) * tape->axis_count];
-        wh_machine_grippers(&player->reality->layout.machine, axes, moved);
+    if (player->trial_cell->chucks_moved) {
+        const wh_real_t *axes = &decisions->axes[(size_t)(slice - 1) * decisions->axis_count];
+        wh_machine_grippers(&player->trial_cell->layout.machine, axes, moved);
         poses = moved;
     }
-    for (size_t g = 0; g < tape->gripper_count; ++g) {
+    for (size_t g = 0; g < decisions->gripper_count; ++g) {
         command->grippers[g].base_from_gripper = poses[g];
         while (next_change(player, g) <= slice) {
-            command->grippers[g].valve = tape->valves[g][player->next[g]++].valve;
+            command->grippers[g].valve = decisions->valves[g][player->next[g]++].valve;
         }
     }
     command->seq = slice;
-    command->utime = slice * player->reality->layout.slice_us;
+    command->utime = slice * player->trial_cell->layout.slice_us;
 }
 
 /* Steps one slice; those since the last one that was stepped have changed nothing. */
@@ -66,7 +66,7 @@ static int64_t quiet_until(const player_t *player, int64_t to) {
     if (!player->may_skip || player->at == 0) {
         return player->at;
     }
-    for (size_t g = 0; g < player->tape->gripper_count; ++g) {
+    for (size_t g = 0; g < player->decisions->gripper_count; ++g) {
         const wh_gripper_t *gripper = &player->state.grippers[g];
         const int64_t change = next_change(player, g);
         if (gripper->valve == WH_VALVE_OPEN && gripper->wafer == WH_NONE) {
@@ -105,13 +105,13 @@ static void advance(player_t *player, int64_t to) {
 /* ---------------------------------------------------------------------------------------------------- readings */
 
 static int32_t find_lost(const player_t *player) {
-    const wh_tape_t *tape = player->tape;
-    for (size_t g = 0; g < tape->gripper_count; ++g) {
-        size_t i = tape->valve_count[g];
-        while (i > 0 && tape->valves[g][i - 1].slice > player->at) {
+    const wh_decisions_t *decisions = player->decisions;
+    for (size_t g = 0; g < decisions->gripper_count; ++g) {
+        size_t i = decisions->valve_count[g];
+        while (i > 0 && decisions->valves[g][i - 1].slice > player->at) {
             --i;
         }
-        const bool open = i > 0 && tape->valves[g][i - 1].valve == WH_VALVE_OPEN;
+        const bool open = i > 0 && decisions->valves[g][i - 1].valve == WH_VALVE_OPEN;
         if (open && (player->watched & player->was_off & 1U << g) != 0) {
             return (int32_t)g;
         }
@@ -119,27 +119,28 @@ static int32_t find_lost(const player_t *player) {
     return WH_NONE;
 }
 
-static bool begin(player_t *player, const wh_tape_entry_t *entry) {
+static bool begin(player_t *player, const wh_decisions_entry_t *entry) {
     player->waits = entry->index;
     player->watched = entry->mask & player->state.sensors;
     player->was_off = 0;
     return true;
 }
 
-static bool end(player_t *player, const wh_tape_entry_t *entry) {
+static bool end(player_t *player, const wh_decisions_entry_t *entry) {
     const bool done = goes_on_waiting(player) == (player->waits == WH_NONE);
     player->waits = WH_NONE;
     return done == (entry->mask != 0) && find_lost(player) == entry->index;
 }
 
-static bool holds_claim(player_t *player, const wh_tape_entry_t *entry) {
+static bool holds_claim(player_t *player, const wh_decisions_entry_t *entry) {
     settle(player);
-    return !player->broken && wh_tape_judge(&player->tape->claims[entry->index], &player->simulator->cell,
-                                            player->state.wafers) == entry->answer;
+    return !player->broken &&
+           wh_decisions_judge(&player->decisions->claims[entry->index], &player->simulator->cell,
+                              player->state.wafers) == entry->answer;
 }
 
 /* Whether an entry is what this trial would have written. */
-static bool agrees(player_t *player, const wh_tape_entry_t *entry) {
+static bool agrees(player_t *player, const wh_decisions_entry_t *entry) {
     switch (entry->kind) {
     case WH_TAPE_BEGIN:
         return begin(player, entry);
@@ -160,36 +161,39 @@ static bool agrees(player_t *player, const wh_tape_entry_t *entry) {
 
 /* -------------------------------------------------------------------------------------------------------- playing */
 
-static bool may_skip(const wh_reality_t *reality, const wh_simulator_t *simulator) {
-    const wh_physics_t *physics = &reality->layout.physics;
+static bool may_skip(const wh_trial_cell_t *trial_cell, const wh_simulator_t *simulator) {
+    const wh_physics_t *physics = &trial_cell->layout.physics;
     return physics->vacuum.build <= 0 && physics->vacuum.vent <= 0 && physics->pads.mass <= 0 &&
            physics->fault_count == 0 && !simulator->observer.look;
 }
 
 static void start(player_t *player) {
-    const wh_tape_t *tape = player->tape;
+    const wh_decisions_t *decisions = player->decisions;
     player->waits = WH_NONE;
-    player->may_skip = may_skip(player->reality, player->simulator);
-    player->command.gripper_count = tape->gripper_count;
-    player->command.axis_count = tape->axis_count;
-    for (size_t g = 0; g < tape->gripper_count; ++g) {
+    player->may_skip = may_skip(player->trial_cell, player->simulator);
+    player->command.gripper_count = decisions->gripper_count;
+    player->command.axis_count = decisions->axis_count;
+    for (size_t g = 0; g < decisions->gripper_count; ++g) {
         player->command.grippers[g].valve = WH_VALVE_CLOSED;
     }
     wh_simulator_view(player->simulator, &player->state);
 }
 
-bool wh_tape_play(const wh_tape_t *tape, const wh_reality_t *reality, wh_simulator_t *simulator,
-                  wh_tape_watch_t *watch, void *user) {
-    player_t player = {
-        .tape = tape, .reality = reality, .simulator = simulator, .watch = watch, .user = user};
+bool wh_decisions_play(const wh_decisions_t *decisions, const wh_trial_cell_t *trial_cell,
+                       wh_simulator_t *simulator, wh_decisions_watch_t *watch, void *user) {
+    player_t player = {.decisions = decisions,
+                       .trial_cell = trial_cell,
+                       .simulator = simulator,
+                       .watch = watch,
+                       .user = user};
     start(&player);
-    for (size_t i = 0; i < tape->entry_count && !player.broken; ++i) {
-        advance(&player, tape->entries[i].slice);
-        if (player.broken || !agrees(&player, &tape->entries[i])) {
+    for (size_t i = 0; i < decisions->entry_count && !player.broken; ++i) {
+        advance(&player, decisions->entries[i].slice);
+        if (player.broken || !agrees(&player, &decisions->entries[i])) {
             return false;
         }
     }
-    advance(&player, tape->slice_count);
+    advance(&player, decisions->slice_count);
     settle(&player);
     return !player.broken;
 }

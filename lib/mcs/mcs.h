@@ -51,21 +51,21 @@ struct wh_mcs {
     const wh_layout_t *layout; /* null until a script names one */
     const wh_trial_t
         *trial; /* of a study, whose errors the cell then has; null: the cell is as its layout says */
-    wh_reality_t *reality; /* the trial's; null without one */
-    wh_tape_t *tape;       /* keeps what is commanded and read back; null: nobody does */
+    wh_trial_cell_t *trial_cell; /* the trial's; null without one */
+    wh_decisions_t *decisions;   /* keeps what is commanded and read back; null: nobody does */
     wh_simulator_t simulator;
     wh_collision_t collision;
     wh_link_t *link; /* the simulator's, or whoever stands in for it */
     wh_track_t track;
-    wh_command_t command;  /* the last one sent */
-    wh_stance_t stance;    /* and what it was made of */
-    wh_state_t state;      /* the answer to it */
-    int32_t running;       /* index of the running command in the record, or WH_NONE */
-    bool rehearsing;       /* segments are planned and skipped, not played */
-    bool judging;          /* and `ahead` is asked */
-    size_t judged;         /* how many segments of this rehearsal it was asked about before */
-    wh_track_t kept;       /* the track from before the rehearsal */
-    wh_mcs_ahead_t *ahead; /* null: nobody looks ahead */
+    wh_command_t command;     /* the last one sent */
+    wh_machine_cache_t cache; /* and what it was made of */
+    wh_state_t state;         /* the answer to it */
+    int32_t running;          /* index of the running command in the record, or WH_NONE */
+    bool rehearsing;          /* segments are planned and skipped, not played */
+    bool judging;             /* and `ahead` is asked */
+    size_t judged;            /* how many segments of this rehearsal it was asked about before */
+    wh_track_t kept;          /* the track from before the rehearsal */
+    wh_mcs_ahead_t *ahead;    /* null: nobody looks ahead */
     void *ahead_user;
     int64_t stop_slice;           /* at which a STOP comes; INT64_MAX: none */
     uint32_t was_off;             /* bit g: gripper g's sensor was off in a slice of the running segment */

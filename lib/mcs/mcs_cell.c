@@ -47,7 +47,7 @@ static void *lua_memory(lua_State *L, size_t bytes) {
 }
 
 const wh_layout_t *wh_mcs_real(const wh_mcs_t *mcs) {
-    return mcs->reality ? &mcs->reality->layout : mcs->layout;
+    return mcs->trial_cell ? &mcs->trial_cell->layout : mcs->layout;
 }
 
 /* What a trial draws for the layout whose table is on top of the stack. */
@@ -55,15 +55,15 @@ static const wh_layout_t *make_reality(lua_State *L, wh_mcs_t *mcs, const wh_lay
     if (!mcs->trial || !layout->errors) {
         return layout;
     }
-    wh_reality_t *reality = lua_memory(L, sizeof *reality);
-    wh_reality_fill(reality, layout, mcs->trial,
-                    lua_memory(L, layout->station_count * sizeof *layout->places),
-                    lua_memory(L, layout->wafer_count * sizeof *layout->start));
+    wh_trial_cell_t *trial_cell = lua_memory(L, sizeof *trial_cell);
+    wh_trial_cell_fill(trial_cell, layout, mcs->trial,
+                       lua_memory(L, layout->station_count * sizeof *layout->places),
+                       lua_memory(L, layout->wafer_count * sizeof *layout->start));
     if (layout->collision) {
-        wh_layout_read_reality(L, &reality->layout);
+        wh_layout_read_reality(L, &trial_cell->layout);
     }
-    mcs->reality = reality;
-    return &reality->layout;
+    mcs->trial_cell = trial_cell;
+    return &trial_cell->layout;
 }
 
 /* Valves act late: in front of the simulator, which is part of the MCS's host. */
@@ -71,7 +71,7 @@ static wh_status_t exchange_late(wh_link_t *link, const wh_command_t *command, w
     wh_simulator_t *simulator = (wh_simulator_t *)(void *)link;
     wh_mcs_t *mcs = (wh_mcs_t *)(void *)((char *)simulator - offsetof(wh_mcs_t, simulator));
     wh_command_t late = *command;
-    wh_reality_delay(mcs->reality, &late);
+    wh_trial_cell_delay(mcs->trial_cell, &late);
     return wh_simulator_step(simulator, &late, state);
 }
 
@@ -108,7 +108,7 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
         mcs->ahead_user = ahead;
     }
     mcs->link = &mcs->simulator.link;
-    if (mcs->reality) {
+    if (mcs->trial_cell) {
         mcs->link->exchange = exchange_late;
     }
     wh_simulator_view(&mcs->simulator, &mcs->state);

@@ -31,7 +31,7 @@ static void set_place(lua_State *L, wh_vec3_t at) {
 static int list_hits(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     lua_newtable(L);
-    wh_tape_measured(mcs->tape, "hits");
+    wh_decisions_measured(mcs->decisions, "hits");
     for (size_t i = 0; i < mcs->record->event_count; ++i) {
         const wh_event_record_t *record = &mcs->record->events[i];
         const wh_event_kind_t kind = record->event.kind;
@@ -62,7 +62,7 @@ static int find_kind(const char *name) {
 static int find_clearance(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int kind = find_kind(luaL_checkstring(L, 1));
-    wh_tape_measured(mcs->tape, "clearance");
+    wh_decisions_measured(mcs->decisions, "clearance");
     if (kind == WH_CLEARANCES) {
         lua_pushboolean(L, 0);
         return 1;

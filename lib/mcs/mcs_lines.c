@@ -15,7 +15,7 @@ static int find_held(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     const int32_t wafer = mcs->state.grippers[gripper].wafer;
-    wh_tape_ask(mcs->tape, WH_TAPE_HELD, gripper, wafer);
+    wh_decisions_ask(mcs->decisions, WH_TAPE_HELD, gripper, wafer);
     if (wafer == WH_NONE) {
         return 0;
     }

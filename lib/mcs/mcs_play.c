@@ -19,15 +19,15 @@ static void keep_events(wh_mcs_t *mcs) {
 
 static wh_status_t exchange(wh_mcs_t *mcs) {
     wh_command_t *command = &mcs->command;
-    wh_command_follow(command, &mcs->stance, &mcs->track);
-    wh_tape_slice(mcs->tape, command);
+    wh_command_from_track(command, &mcs->cache, &mcs->track);
+    wh_decisions_slice(mcs->decisions, command);
     const wh_status_t status = mcs->link->exchange(mcs->link, command, &mcs->state);
     command->fault_count = 0;
     if (mcs->state.event_count > 0) {
         keep_events(mcs);
     }
     if (status == WH_OK && mcs->collision.memory && mcs->link != &mcs->simulator.link) {
-        wh_collision_follow(&mcs->collision, &mcs->state);
+        wh_collision_observe(&mcs->collision, &mcs->state);
     }
     if (status == WH_OK && mcs->listener.slice) {
         mcs->listener.slice(mcs->listener.user, mcs);
@@ -158,10 +158,10 @@ static int play(lua_State *L) {
         lua_pushboolean(L, 1);
         return 1;
     }
-    wh_tape_begin(mcs->tape, &segment, carried);
+    wh_decisions_begin(mcs->decisions, &segment, carried);
     const bool done = play_now(L, mcs, &segment) == WH_TRACK_DONE;
     const int32_t lost = find_lost(mcs, watched);
-    wh_tape_end(mcs->tape, done, lost);
+    wh_decisions_end(mcs->decisions, done, lost);
     lua_pushboolean(L, done);
     if (lost == WH_NONE) {
         return 1;

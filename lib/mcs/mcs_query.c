@@ -129,7 +129,7 @@ static int read_sensor(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     const bool on = (mcs->state.sensors >> gripper & 1U) != 0;
-    wh_tape_ask(mcs->tape, WH_TAPE_SENSOR, gripper, on);
+    wh_decisions_ask(mcs->decisions, WH_TAPE_SENSOR, gripper, on);
     lua_pushboolean(L, on);
     return 1;
 }
@@ -147,7 +147,7 @@ static int find_holder(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t wafer = wh_mcs_index(L, 1, mcs->state.wafer_count);
     const int32_t holder = mcs->state.wafers[wafer].holder;
-    wh_tape_ask(mcs->tape, WH_TAPE_HOLDER, wafer, holder);
+    wh_decisions_ask(mcs->decisions, WH_TAPE_HOLDER, wafer, holder);
     push_index(L, holder);
     return 1;
 }
@@ -158,7 +158,7 @@ static int measure(lua_State *L) {
     const wh_wafer_t *wafer = wafer_argument(L, mcs, 1);
     const wh_station_t *station = &wh_mcs_real(mcs)->places[wh_mcs_index(L, 2, mcs->layout->station_count)];
     const int32_t slot = wh_mcs_index(L, 3, (size_t)station->slots) + 1;
-    wh_tape_measured(mcs->tape, "offset");
+    wh_decisions_measured(mcs->decisions, "offset");
     const wh_place_t place = wh_station_measure(station, slot, &wafer->base_from_wafer);
     lua_pushnumber(L, place.dx);
     lua_pushnumber(L, place.dy);
@@ -171,7 +171,7 @@ static int measure(lua_State *L) {
 static int locate(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_place_t place;
-    wh_tape_measured(mcs->tape, "where a wafer lies");
+    wh_decisions_measured(mcs->decisions, "where a wafer lies");
     if (!wh_cell_locate(&mcs->simulator.cell, &wafer_argument(L, mcs, 1)->base_from_wafer, &place)) {
         return 0;
     }
@@ -185,15 +185,15 @@ static int locate(lua_State *L) {
  * others are for telling. */
 static int judge_place(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    wh_tape_claim_t claim;
+    wh_decisions_claim_t claim;
     claim.wafer = wh_mcs_index(L, 1, mcs->state.wafer_count);
     claim.station = wh_mcs_index(L, 2, mcs->layout->station_count);
     claim.slot = wh_mcs_index(L, 3, (size_t)mcs->layout->places[claim.station].slots) + 1;
     claim.dx = luaL_checknumber(L, 4);
     claim.dy = luaL_checknumber(L, 5);
     claim.tolerance = luaL_checknumber(L, 6);
-    const int32_t verdict = wh_tape_judge(&claim, &mcs->simulator.cell, mcs->state.wafers);
-    wh_tape_claim(mcs->tape, &claim, verdict);
+    const int32_t verdict = wh_decisions_judge(&claim, &mcs->simulator.cell, mcs->state.wafers);
+    wh_decisions_claim(mcs->decisions, &claim, verdict);
     const wh_pose_t *base_from_wafer = &mcs->state.wafers[claim.wafer].base_from_wafer;
     wh_place_t place =
         wh_station_measure(&mcs->simulator.cell.stations[claim.station], claim.slot, base_from_wafer);
@@ -211,7 +211,7 @@ static int judge_place(lua_State *L) {
 /* native.wafer_pose(wafer): { r, R }, as the module wh takes it. */
 static int read_wafer_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    wh_tape_measured(mcs->tape, "a wafer's pose");
+    wh_decisions_measured(mcs->decisions, "a wafer's pose");
     wh_lua_push_pose(L, &wafer_argument(L, mcs, 1)->base_from_wafer);
     return 1;
 }
@@ -219,7 +219,7 @@ static int read_wafer_pose(lua_State *L) {
 static wh_pose_t commanded_pose(const wh_mcs_t *mcs, int32_t gripper) {
     wh_pose_t poses[WH_GRIPPERS];
     if (mcs->layout->grippers[gripper].station != WH_NONE) {
-        wh_tape_measured(mcs->tape, "a chuck's pose");
+        wh_decisions_measured(mcs->decisions, "a chuck's pose");
     }
     wh_machine_grippers(&wh_mcs_real(mcs)->machine, mcs->track.axes, poses);
     return poses[gripper];
@@ -250,7 +250,7 @@ static int read_slot_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_station_t *station = &wh_mcs_real(mcs)->places[wh_mcs_index(L, 1, mcs->layout->station_count)];
     const wh_pose_t pose = wh_station_slot(station, wh_mcs_index(L, 2, (size_t)station->slots) + 1);
-    wh_tape_measured(mcs->tape, "where a slot is");
+    wh_decisions_measured(mcs->decisions, "where a slot is");
     wh_lua_push_pose(L, &pose);
     return 1;
 }

@@ -98,7 +98,7 @@ static int begin_cycle(lua_State *L) {
 
 static void look_at_axis(const wh_mcs_t *mcs, size_t axis, wh_real_t at) {
     const wh_travel_t *travel = &mcs->layout->machine.robot.travel[axis];
-    wh_reach_t *least = &mcs->record->reach[mcs->reach_station].axes[axis];
+    wh_travel_margin_t *least = &mcs->record->reach[mcs->reach_station].axes[axis];
     const bool is_max = travel->max - at < at - travel->min;
     const wh_real_t margin = is_max ? travel->max - at : at - travel->min;
     if (least->slot == 0 || margin < least->margin) {

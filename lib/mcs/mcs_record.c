@@ -121,7 +121,7 @@ static int explain(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     char text[360] = "no wafer came near";
-    wh_tape_measured(mcs->tape, "why a wafer was missed");
+    wh_decisions_measured(mcs->decisions, "why a wafer was missed");
     for (size_t i = mcs->record->event_count; i > 0; --i) {
         const wh_event_record_t *record = &mcs->record->events[i - 1];
         if (record->command != mcs->running) {

@@ -90,7 +90,7 @@ static int scan(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_station_t *place = &mcs->layout->places[wh_mcs_index(L, 1, mcs->layout->station_count)];
     int codes[WH_LAYOUT_SLOTS] = {CODE_EMPTY};
-    wh_tape_measured(mcs->tape, "MAP");
+    wh_decisions_measured(mcs->decisions, "MAP");
     wh_sandbox_charge(L, mcs->state.wafer_count);
     for (size_t w = 0; w < mcs->state.wafer_count; ++w) {
         const wh_wafer_t *wafer = &mcs->state.wafers[w];

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static wh_run_outcome_t refuse(wh_run_t *run, const char *message) {
+static wh_script_run_outcome_t refuse(wh_script_run_t *run, const char *message) {
     snprintf(run->message, sizeof run->message, "%s", message);
     return WH_RUN_BAD_INPUT;
 }
@@ -22,7 +22,7 @@ static bool ended_by_numbered_error(lua_State *L) {
     return numbered;
 }
 
-static wh_run_outcome_t conclude(wh_run_t *run, const wh_sandbox_result_t *result) {
+static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_sandbox_result_t *result) {
     if (result->status != WH_SANDBOX_OK) {
         if (result->status != WH_SANDBOX_ERROR || !ended_by_numbered_error(wh_sandbox_state(run->sandbox))) {
             return refuse(run, result->message);
@@ -33,7 +33,7 @@ static wh_run_outcome_t conclude(wh_run_t *run, const wh_sandbox_result_t *resul
     return run->record.ok ? WH_RUN_MET : WH_RUN_FAILED;
 }
 
-wh_run_outcome_t wh_run_script(wh_run_t *run, const wh_run_options_t *options) {
+wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_options_t *options) {
     wh_sandbox_result_t result;
     memset(run, 0, sizeof *run);
     run->sandbox = wh_sandbox_new(&options->limits);
@@ -51,13 +51,13 @@ wh_run_outcome_t wh_run_script(wh_run_t *run, const wh_run_options_t *options) {
     run->mcs.keep_segments = options->keep_segments;
     run->mcs.partners = options->partners;
     run->mcs.trial = options->trial;
-    run->mcs.tape = options->tape;
+    run->mcs.decisions = options->decisions;
     run->mcs.listener = options->listener;
     wh_sandbox_run(run->sandbox, options->script, &result);
     return conclude(run, &result);
 }
 
-void wh_run_close(wh_run_t *run) {
+void wh_script_run_close(wh_script_run_t *run) {
     wh_mcs_close(&run->mcs);
     wh_record_free(&run->record);
     wh_sandbox_free(run->sandbox);

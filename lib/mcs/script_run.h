@@ -13,27 +13,27 @@ typedef struct {
     wh_mcs_listener_t listener; /* all null: nobody listens */
     bool keep_segments;         /* run->mcs.segments then holds what was played */
     const wh_trial_t
-        *trial;      /* of a study: the cell then has its errors, if its layout or script says which */
-    wh_tape_t *tape; /* all zero: then keeps what is commanded and read back; null: nobody does */
-} wh_run_options_t;
+        *trial; /* of a study: the cell then has its errors, if its layout or script says which */
+    wh_decisions_t *decisions; /* all zero: then keeps what is commanded and read back; null: nobody does */
+} wh_script_run_options_t;
 
-/* What is left when the script has ended. wh_run_close frees it. */
+/* What is left when the script has ended. wh_script_run_close frees it. */
 typedef struct {
     wh_sandbox_t *sandbox;
     wh_mcs_t mcs;
     wh_record_t record;
     char message[WH_SANDBOX_MESSAGE_BYTES]; /* why the input was bad */
-} wh_run_t;
+} wh_script_run_t;
 
 typedef enum {
     WH_RUN_MET,      /* the script ended and all it expected came true */
     WH_RUN_FAILED,   /* an expectation, the cell, or an uncaught numbered error: the record tells */
     WH_RUN_BAD_INPUT /* script, layout or parameter is not usable: `message` tells, the record is incomplete */
-} wh_run_outcome_t;
+} wh_script_run_outcome_t;
 
 /* Runs a script. `options` and what it points to must outlive the run. */
-wh_run_outcome_t wh_run_script(wh_run_t *run, const wh_run_options_t *options);
+wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_options_t *options);
 
-void wh_run_close(wh_run_t *run);
+void wh_script_run_close(wh_script_run_t *run);
 
 #endif

@@ -19,23 +19,23 @@ static void place_station(wh_pose_t *base_from_station, const wh_displacement_t 
 }
 
 /* A chuck goes with its station. */
-static void place_chucks(wh_reality_t *reality, int32_t station, const wh_displacement_t *drawn) {
-    wh_machine_t *machine = &reality->layout.machine;
+static void place_chucks(wh_trial_cell_t *trial_cell, int32_t station, const wh_displacement_t *drawn) {
+    wh_machine_t *machine = &trial_cell->layout.machine;
     for (size_t g = 0; g < machine->gripper_count; ++g) {
-        if (machine->mounts[g].axis != WH_NONE && reality->layout.grippers[g].station == station) {
+        if (machine->mounts[g].axis != WH_NONE && trial_cell->layout.grippers[g].station == station) {
             place_station(&machine->mounts[g].base_from_station, drawn);
-            reality->chucks_moved = true;
+            trial_cell->chucks_moved = true;
         }
     }
 }
 
-static void place_stations(wh_reality_t *reality, const wh_layout_t *layout, wh_station_t *places) {
+static void place_stations(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, wh_station_t *places) {
     for (size_t s = 0; s < layout->station_count; ++s) {
-        const wh_displacement_t drawn = wh_errors_draw_station(layout->errors, &reality->trial, s);
+        const wh_displacement_t drawn = wh_errors_draw_station(layout->errors, &trial_cell->trial, s);
         places[s] = layout->places[s];
         if (wh_displacement_is_any(&drawn)) {
             place_station(&places[s].base_from_station, &drawn);
-            place_chucks(reality, (int32_t)s, &drawn);
+            place_chucks(trial_cell, (int32_t)s, &drawn);
         }
     }
 }
@@ -52,11 +52,11 @@ static bool is_moved(const wh_station_t *one, const wh_station_t *other) {
 }
 
 /* The wafer in its slot as the layout has it, then what was drawn: about its own centre, along the slot's axes. */
-static void place_wafers(wh_reality_t *reality, const wh_layout_t *layout, const wh_station_t places[],
+static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_station_t places[],
                          wh_wafer_t *start) {
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         const wh_layout_wafer_t *lies = &layout->wafers[w];
-        const wh_displacement_t drawn = wh_errors_draw_wafer(layout->errors, &reality->trial, w);
+        const wh_displacement_t drawn = wh_errors_draw_wafer(layout->errors, &trial_cell->trial, w);
         start[w] = layout->start[w];
         if (!wh_displacement_is_any(&drawn) &&
             !is_moved(&places[lies->station], &layout->places[lies->station])) {
@@ -72,38 +72,38 @@ static void place_wafers(wh_reality_t *reality, const wh_layout_t *layout, const
     }
 }
 
-static int64_t lag_of(const wh_reality_t *reality, wh_real_t seconds) {
-    const double slices = ceil((double)seconds * 1e6 / (double)reality->layout.slice_us);
+static int64_t lag_of(const wh_trial_cell_t *trial_cell, wh_real_t seconds) {
+    const double slices = ceil((double)seconds * 1e6 / (double)trial_cell->layout.slice_us);
     return slices < WH_STUDY_LAG_SLICES ? (int64_t)slices : WH_STUDY_LAG_SLICES;
 }
 
-void wh_reality_fill(wh_reality_t *reality, const wh_layout_t *layout, const wh_trial_t *trial,
-                     wh_station_t *places, wh_wafer_t *start) {
-    reality->trial = *trial;
-    reality->layout = *layout;
-    reality->chucks_moved = false;
-    reality->layout.places = places;
-    reality->layout.start = start;
-    reality->layout.cell.stations = places;
-    place_stations(reality, layout, places);
-    place_wafers(reality, layout, places, start);
-    wh_real_t *build = &reality->layout.physics.vacuum.build;
+void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_t *trial,
+                        wh_station_t *places, wh_wafer_t *start) {
+    trial_cell->trial = *trial;
+    trial_cell->layout = *layout;
+    trial_cell->chucks_moved = false;
+    trial_cell->layout.places = places;
+    trial_cell->layout.start = start;
+    trial_cell->layout.cell.stations = places;
+    place_stations(trial_cell, layout, places);
+    place_wafers(trial_cell, layout, places, start);
+    wh_real_t *build = &trial_cell->layout.physics.vacuum.build;
     *build += wh_errors_draw_vacuum(layout->errors, trial);
     *build = *build < LONGEST_BUILD ? *build : LONGEST_BUILD;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        reality->lag[g] = lag_of(reality, wh_errors_draw_valve(layout->errors, trial, g));
+        trial_cell->lag[g] = lag_of(trial_cell, wh_errors_draw_valve(layout->errors, trial, g));
     }
 }
 
-void wh_reality_delay(wh_reality_t *reality, wh_command_t *command) {
-    uint8_t *now = &reality->told[command->seq % WH_REALITY_PAST];
+void wh_trial_cell_delay(wh_trial_cell_t *trial_cell, wh_command_t *command) {
+    uint8_t *now = &trial_cell->told[command->seq % WH_REALITY_PAST];
     *now = 0;
     for (size_t g = 0; g < command->gripper_count; ++g) {
         *now |= (uint8_t)(command->grippers[g].valve == WH_VALVE_CLOSED ? 1U << g : 0);
     }
     for (size_t g = 0; g < command->gripper_count; ++g) {
-        const int64_t slice = command->seq - reality->lag[g];
-        const unsigned told = slice < 1 ? ~0U : reality->told[(size_t)slice % WH_REALITY_PAST];
+        const int64_t slice = command->seq - trial_cell->lag[g];
+        const unsigned told = slice < 1 ? ~0U : trial_cell->told[(size_t)slice % WH_REALITY_PAST];
         const bool closed = (told >> g & 1U) != 0;
         command->grippers[g].valve = closed ? WH_VALVE_CLOSED : WH_VALVE_OPEN;
     }

@@ -19,16 +19,16 @@ typedef struct {
     bool chucks_moved;             /* a gripper on a chuck is elsewhere than the layout has it */
     int64_t lag[WH_GRIPPERS];      /* slices that the gripper's valve acts late */
     uint8_t told[WH_REALITY_PAST]; /* bit g of entry n: gripper g's valve was told to close in slice n */
-} wh_reality_t;
+} wh_trial_cell_t;
 
 /* Fills in the reality of a trial. `places` and `start` are room for the layout's stations and wafers; they and `layout`, which
  * has `errors`, must outlive it. The collision world still is the layout's: see wh_layout_read_reality. Deterministic: the
  * same trial gives the same bits. Cost: linear in stations and wafers. */
-void wh_reality_fill(wh_reality_t *reality, const wh_layout_t *layout, const wh_trial_t *trial,
-                     wh_station_t *places, wh_wafer_t *start);
+void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_t *trial,
+                        wh_station_t *places, wh_wafer_t *start);
 
 /* What the valves of slice `command->seq` do, given what they are told: replaces them in the command. To be called for each
  * slice in turn, from 1. */
-void wh_reality_delay(wh_reality_t *reality, wh_command_t *command);
+void wh_trial_cell_delay(wh_trial_cell_t *trial_cell, wh_command_t *command);
 
 #endif

@@ -104,11 +104,11 @@ static bool is_same(wh_real_t a, wh_real_t b) {
 }
 
 /* Bit a: axis a moved since the stance was taken. */
-static uint32_t take_axes(const wh_machine_t *machine, const wh_real_t axes[], wh_stance_t *stance) {
+static uint32_t take_axes(const wh_machine_t *machine, const wh_real_t axes[], wh_machine_cache_t *cache) {
     uint32_t moved = 0;
     for (size_t axis = 0; axis < machine->axis_count; ++axis) {
-        moved |= stance->is_taken && is_same(axes[axis], stance->axes[axis]) ? 0 : 1U << axis;
-        stance->axes[axis] = axes[axis];
+        moved |= cache->is_taken && is_same(axes[axis], cache->axes[axis]) ? 0 : 1U << axis;
+        cache->axes[axis] = axes[axis];
     }
     return moved;
 }
@@ -118,36 +118,36 @@ static bool has_moved(uint32_t moved, size_t axis) {
 }
 
 /* wh_robot_forward, with the sines that are known. */
-static void move_effector(const wh_real_t q[], uint32_t moved, wh_stance_t *stance) {
+static void move_effector(const wh_real_t q[], uint32_t moved, wh_machine_cache_t *cache) {
     const wh_real_t heading = q[WH_AXIS_THETA] + q[WH_AXIS_YAW];
-    wh_pose_t *effector = &stance->base_from_effector;
+    wh_pose_t *effector = &cache->base_from_effector;
     if (has_moved(moved, WH_AXIS_THETA)) {
-        wh_sin_cos(q[WH_AXIS_THETA], &stance->sine, &stance->cosine);
+        wh_sin_cos(q[WH_AXIS_THETA], &cache->sine, &cache->cosine);
     }
-    effector->r = wh_vec3(q[WH_AXIS_R] * stance->cosine, q[WH_AXIS_R] * stance->sine, q[WH_AXIS_Z]);
-    if (!stance->is_taken || !is_same(heading, stance->heading)) {
-        effector->R = is_same(heading, q[WH_AXIS_THETA]) ? wh_mat3_turn_z(stance->sine, stance->cosine)
+    effector->r = wh_vec3(q[WH_AXIS_R] * cache->cosine, q[WH_AXIS_R] * cache->sine, q[WH_AXIS_Z]);
+    if (!cache->is_taken || !is_same(heading, cache->heading)) {
+        effector->R = is_same(heading, q[WH_AXIS_THETA]) ? wh_mat3_turn_z(cache->sine, cache->cosine)
                                                          : wh_mat3_about_z(heading);
     }
-    stance->heading = heading;
+    cache->heading = heading;
 }
 
-void wh_machine_follow(const wh_machine_t *machine, const wh_real_t axes[], wh_stance_t *stance,
+void wh_machine_update(const wh_machine_t *machine, const wh_real_t axes[], wh_machine_cache_t *cache,
                        wh_gripper_input_t grippers[]) {
-    const uint32_t moved = take_axes(machine, axes, stance);
+    const uint32_t moved = take_axes(machine, axes, cache);
     const bool robot = (moved & ((1U << WH_ROBOT_AXES) - 1)) != 0;
     if (robot) {
-        move_effector(axes, moved, stance);
+        move_effector(axes, moved, cache);
     }
     for (size_t g = 0; moved != 0 && g < machine->gripper_count; ++g) {
         const wh_mount_t *mount = &machine->mounts[g];
         if (mount->axis != WH_NONE && has_moved(moved, (size_t)mount->axis)) {
             place_on_chuck(mount, axes[mount->axis], &grippers[g].base_from_gripper);
         } else if (mount->axis == WH_NONE && robot) {
-            place_on_robot(mount, &stance->base_from_effector, &grippers[g].base_from_gripper);
+            place_on_robot(mount, &cache->base_from_effector, &grippers[g].base_from_gripper);
         }
     }
-    stance->is_taken = true;
+    cache->is_taken = true;
 }
 
 wh_status_t wh_machine_inverse(const wh_machine_t *machine, size_t gripper, const wh_vec3_t *at,

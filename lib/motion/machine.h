@@ -35,7 +35,7 @@ typedef struct {
     wh_mount_t mounts[WH_GRIPPERS];
 } wh_machine_t;
 
-/* Where the machine stood when wh_machine_follow was last called: what it need not compute again. All zero before the first
+/* Where the machine stood when wh_machine_update was last called: what it need not compute again. All zero before the first
  * call; written by it only. */
 typedef struct {
     bool is_taken; /* the rest is of `axes` */
@@ -43,7 +43,7 @@ typedef struct {
     wh_real_t sine, cosine; /* of theta */
     wh_real_t heading;      /* theta + yaw */
     wh_pose_t base_from_effector;
-} wh_stance_t;
+} wh_machine_cache_t;
 
 /* WH_OK, or WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE (a count or a mount's axis), WH_STATUS_NOT_LEVEL (a
  * shifted gripper whose z is not the end-effector's, to the last bit), or what wh_robot_validate and
@@ -65,7 +65,7 @@ void wh_machine_grippers(const wh_machine_t *machine, const wh_real_t axes[], wh
 /* The same, bit for bit, for one slice after another: writes base_from_gripper of the grippers that have moved since the
  * last call with this stance; those of the others must be as that call left them. `machine` must be the same in all of
  * them. Cost: what has moved, of the above; a comparison of all axes for one that stands still. */
-void wh_machine_follow(const wh_machine_t *machine, const wh_real_t axes[], wh_stance_t *stance,
+void wh_machine_update(const wh_machine_t *machine, const wh_real_t axes[], wh_machine_cache_t *cache,
                        wh_gripper_input_t grippers[]);
 
 /* The axes that bring gripper `gripper`, which is on the robot, to the point `at` (base, mm) with its x along `heading`:

@@ -27,7 +27,7 @@ static double round_step(double least) {
 }
 
 static int print_scale(wh_gantt_t *gantt) {
-    const double seconds = wh_figures_seconds(gantt->report->record, gantt->slices);
+    const double seconds = wh_throughput_seconds(gantt->report->record, gantt->slices);
     const double step = round_step(seconds * TICK_COLUMNS / (double)gantt->columns);
     int status = 0;
     for (int i = 0; i * step <= seconds; ++i) {
@@ -75,7 +75,7 @@ static int print_cycles(wh_gantt_t *gantt) {
     const char *bar = gantt->report->style->utf8 ? "│" : "|";
     int status = 0;
     for (size_t i = 0; i < record->cycle_count; ++i) {
-        const int64_t end = wh_figures_cycle_end(record, i);
+        const int64_t end = wh_throughput_cycle_end(record, i);
         const size_t first = wh_gantt_column(gantt, record->cycles[i].begin);
         const size_t last = end < gantt->slices ? wh_gantt_column(gantt, end) : gantt->columns;
         char text[WH_REPORT_NUMBER_SIZE];
@@ -91,21 +91,21 @@ static int print_cycles(wh_gantt_t *gantt) {
 
 /* ------------------------------------------------------------------------------------------------ resources */
 
-static void label_of(const wh_report_t *report, const wh_interval_t *interval, char label[LABEL_SIZE]) {
+static void label_of(const wh_printer_t *report, const wh_busy_span_t *interval, char label[LABEL_SIZE]) {
     static const char *const does[] = {"", " turns", " holds", " valve"};
     const bool robot = interval->who == WH_BUSY_ROBOT;
-    snprintf(label, LABEL_SIZE, "%s%s", robot ? "robot" : wh_report_gripper(report, interval->gripper),
+    snprintf(label, LABEL_SIZE, "%s%s", robot ? "robot" : wh_print_gripper(report, interval->gripper),
              does[interval->who]);
 }
 
-static int draw(wh_gantt_t *gantt, const wh_interval_t *interval) {
+static int draw(wh_gantt_t *gantt, const wh_busy_span_t *interval) {
     const size_t first = wh_gantt_column(gantt, interval->begin);
     const size_t last = wh_gantt_column(gantt, interval->end);
     wh_gantt_draw(gantt, interval);
     if (interval->who != WH_BUSY_WAFER) {
         return 0;
     }
-    return wh_gantt_write(gantt, first + 1, last, wh_report_wafer(gantt->report, interval->what - 1));
+    return wh_gantt_write(gantt, first + 1, last, wh_print_wafer(gantt->report, interval->what - 1));
 }
 
 static int print_resource(wh_gantt_t *gantt, size_t resource) {
@@ -113,7 +113,7 @@ static int print_resource(wh_gantt_t *gantt, size_t resource) {
     char label[LABEL_SIZE] = "";
     int status = 0;
     for (size_t i = 0; i < activity->interval_count; ++i) {
-        const wh_interval_t *interval = &activity->intervals[i];
+        const wh_busy_span_t *interval = &activity->intervals[i];
         if (wh_activity_resource(interval) == resource) {
             label_of(gantt->report, interval, label);
             status |= draw(gantt, interval);
@@ -122,7 +122,7 @@ static int print_resource(wh_gantt_t *gantt, size_t resource) {
     return label[0] != '\0' ? status | wh_gantt_print(gantt, label) : 0;
 }
 
-static size_t widest_label(const wh_report_t *report) {
+static size_t widest_label(const wh_printer_t *report) {
     size_t widest = strlen("command");
     for (size_t g = 0; g < report->record->layout->machine.gripper_count; ++g) {
         char *printable = wh_style_printable(report->record->layout->grippers[g].name);
@@ -133,7 +133,7 @@ static size_t widest_label(const wh_report_t *report) {
     return widest;
 }
 
-static void print_legend(const wh_report_t *report) {
+static void print_legend(const wh_printer_t *report) {
     static const char *const meanings[WH_SHARES] = {"moving with a wafer", "moving without",
                                                     "waiting for vacuum", "valves switching", "waiting"};
     const char *before = "";
@@ -147,12 +147,12 @@ static void print_legend(const wh_report_t *report) {
     fprintf(report->out, "%so vacuum on\n", before);
 }
 
-int wh_report_gantt(const wh_report_t *report) {
+int wh_print_gantt(const wh_printer_t *report) {
     wh_gantt_t gantt;
     if (!report->record->layout || report->record->slices == 0) {
         return 0;
     }
-    wh_report_title(report, "Gantt");
+    wh_print_title(report, "Gantt");
     int status = wh_gantt_open(&gantt, report, widest_label(report));
     if (status == 0) {
         status |= print_scale(&gantt);

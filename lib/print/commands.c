@@ -1,7 +1,7 @@
 /* The commands: when each ran, how it ended, and what was taken under which values. */
 #include <stdlib.h>
 
-#include "table_internal.h"
+#include "print_internal.h"
 
 enum { LINE, COMMAND, BEGIN, END, RESULT, TAKEN, MEASURED };
 
@@ -27,33 +27,33 @@ static void link_events(const wh_record_t *record, const chains_t *chains) {
     }
 }
 
-static wh_grid_t *new_grid(const wh_report_t *report) {
+static wh_grid_t *new_grid(const wh_printer_t *report) {
     wh_grid_t *grid = wh_grid_new(report->style, 1);
     const wh_grid_digits_t whole = {0, 0, false, 0};
     wh_grid_number_column(grid, "line", whole);
     wh_grid_text_column(grid, "command");
-    wh_grid_number_column(grid, "begin s", wh_report_seconds());
-    wh_grid_number_column(grid, "end s", wh_report_seconds());
+    wh_grid_number_column(grid, "begin s", wh_print_seconds());
+    wh_grid_number_column(grid, "end s", wh_print_seconds());
     wh_grid_text_column(grid, "result");
     wh_grid_text_column(grid, "taken");
-    wh_report_measured_columns(report, grid);
+    wh_print_measured_columns(report, grid);
     return grid;
 }
 
-static void fill_event(const wh_report_t *report, wh_grid_t *grid, const wh_event_t *event) {
-    const char *wafer = wh_report_wafer(report, event->wafer);
-    const char *gripper = wh_report_gripper(report, event->gripper);
+static void fill_event(const wh_printer_t *report, wh_grid_t *grid, const wh_event_t *event) {
+    const char *wafer = wh_print_wafer(report, event->wafer);
+    const char *gripper = wh_print_gripper(report, event->gripper);
     if (event->kind == WH_EVENT_RELEASED) {
         wh_grid_text(grid, TAKEN, WH_INK_DIM, "%s let go", wafer);
         return;
     }
     if (event->kind == WH_EVENT_HANDED_OVER) {
-        wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s %s %s %s", wafer, wh_report_gripper(report, event->other),
+        wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s %s %s %s", wafer, wh_print_gripper(report, event->other),
                      wh_style_arrow(report->style), gripper);
     } else {
         wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s by %s", wafer, gripper);
     }
-    wh_report_measured(report, grid, MEASURED, event);
+    wh_print_measured(report, grid, MEASURED, event);
 }
 
 static void fill_command(wh_grid_t *grid, const wh_command_record_t *command) {
@@ -69,7 +69,7 @@ static void fill_command(wh_grid_t *grid, const wh_command_record_t *command) {
 }
 
 /* A command's rows: at least one, and one for each of its events. */
-static void add_command(const wh_report_t *report, wh_grid_t *grid, const chains_t *chains, size_t command) {
+static void add_command(const wh_printer_t *report, wh_grid_t *grid, const chains_t *chains, size_t command) {
     const wh_command_record_t *from = &report->record->commands[command];
     size_t event = chains->first[command];
     bool is_first = true;
@@ -90,7 +90,7 @@ static void add_command(const wh_report_t *report, wh_grid_t *grid, const chains
 }
 
 /* What happened while no command ran. */
-static void add_others(const wh_report_t *report, wh_grid_t *grid, const chains_t *chains) {
+static void add_others(const wh_printer_t *report, wh_grid_t *grid, const chains_t *chains) {
     size_t event = chains->first[report->record->command_count];
     for (; event != 0; event = chains->next[event - 1]) {
         const wh_event_record_t *from = &report->record->events[event - 1];
@@ -101,13 +101,13 @@ static void add_others(const wh_report_t *report, wh_grid_t *grid, const chains_
     }
 }
 
-static int print_table(const wh_report_t *report, const chains_t *chains) {
+static int print_table(const wh_printer_t *report, const chains_t *chains) {
     wh_grid_t *grid = new_grid(report);
     for (size_t i = 0; i < report->record->command_count; ++i) {
         add_command(report, grid, chains, i);
     }
     add_others(report, grid, chains);
-    wh_report_title(report, "Commands");
+    wh_print_title(report, "Commands");
     if (wh_grid_rows(grid) == 0) {
         fputs("none\n", report->out);
         return wh_grid_discard(grid);
@@ -115,7 +115,7 @@ static int print_table(const wh_report_t *report, const chains_t *chains) {
     return wh_grid_print(grid, report->out);
 }
 
-int wh_report_commands(const wh_report_t *report) {
+int wh_print_commands(const wh_printer_t *report) {
     const wh_record_t *record = report->record;
     const chains_t chains = {calloc(record->command_count + 1, sizeof(size_t)),
                              calloc(record->event_count + 1, sizeof(size_t))};
@@ -129,27 +129,27 @@ int wh_report_commands(const wh_report_t *report) {
     return status;
 }
 
-static int put_error(const wh_report_t *report, const wh_command_record_t *command) {
+static int put_error(const wh_printer_t *report, const wh_command_record_t *command) {
     const char *message = command->message ? command->message : wh_status_text(command->error);
     int status = 0;
     if (command->line > 0) {
         fprintf(report->out, "line %d: ", command->line);
     }
-    status |= wh_report_put(report, command->text);
+    status |= wh_print_put(report, command->text);
     fputs(": ", report->out);
-    status |= wh_report_put(report, message);
+    status |= wh_print_put(report, message);
     fputc('\n', report->out);
     return status;
 }
 
-int wh_report_errors(const wh_report_t *report) {
+int wh_print_errors(const wh_printer_t *report) {
     int status = 0;
     bool titled = false;
     for (size_t i = 0; i < report->record->command_count; ++i) {
         const wh_command_record_t *command = &report->record->commands[i];
         if (command->error != WH_OK) {
             if (!titled) {
-                wh_report_title(report, "Errors");
+                wh_print_title(report, "Errors");
                 titled = true;
             }
             status |= put_error(report, command);

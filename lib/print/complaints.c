@@ -3,17 +3,17 @@
 
 #include "../math/trig.h"
 #include "../sim/faults.h"
-#include "table_internal.h"
+#include "print_internal.h"
 
 enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_REPORT_MEASURED_COLUMNS };
 
-static wh_grid_t *new_grid(const wh_report_t *report) {
+static wh_grid_t *new_grid(const wh_printer_t *report) {
     wh_grid_t *grid = wh_grid_new(report->style, 1);
-    wh_grid_number_column(grid, "at s", wh_report_seconds());
+    wh_grid_number_column(grid, "at s", wh_print_seconds());
     wh_grid_text_column(grid, "what");
     wh_grid_text_column(grid, "wafer");
     wh_grid_text_column(grid, "gripper");
-    wh_report_measured_columns(report, grid);
+    wh_print_measured_columns(report, grid);
     wh_grid_text_column(grid, "why");
     return grid;
 }
@@ -62,15 +62,15 @@ static void describe_excess(char *text, size_t size, const condition_t *conditio
     }
 }
 
-static void say_condition(const wh_report_t *report, wh_grid_t *grid, const condition_t *condition) {
+static void say_condition(const wh_printer_t *report, wh_grid_t *grid, const condition_t *condition) {
     char limit[WH_REPORT_NUMBER_SIZE];
     char excess[WH_GRID_NUMBER_SIZE];
     char tilt[64] = "";
     const int decimals = decimals_for(-condition->margin, condition->decimals);
-    wh_report_limit(limit, condition->limit);
+    wh_print_limit(limit, condition->limit);
     describe_excess(excess, sizeof excess, condition, decimals);
     if (condition->bit == WH_FAILED_PLANAR) {
-        snprintf(tilt, sizeof tilt, ": tilted by %.3f%s", wh_report_tilt_deg(condition->value),
+        snprintf(tilt, sizeof tilt, ": tilted by %.3f%s", wh_print_tilt_deg(condition->value),
                  wh_style_degree(report->style));
     }
     wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s %.*f is not %s %s (%s)%s", condition->name, decimals,
@@ -78,7 +78,7 @@ static void say_condition(const wh_report_t *report, wh_grid_t *grid, const cond
 }
 
 /* One row for each failed condition, the first of them the event's own. */
-static void say_failed(const wh_report_t *report, wh_grid_t *grid, double at, const wh_proximity_t *p) {
+static void say_failed(const wh_printer_t *report, wh_grid_t *grid, double at, const wh_proximity_t *p) {
     condition_t conditions[3];
     bool is_first = true;
     list_conditions(p, &report->record->layout->grasp.tolerance, conditions);
@@ -98,7 +98,7 @@ static void say_failed(const wh_report_t *report, wh_grid_t *grid, double at, co
     }
 }
 
-static const char *part_name(const wh_report_t *report, int32_t part) {
+static const char *part_name(const wh_printer_t *report, int32_t part) {
     const wh_layout_t *layout = report->record->layout;
     const char *name = layout ? wh_layout_part_name(layout, part) : NULL;
     return name ? name : "more than can be looked at";
@@ -126,7 +126,7 @@ static void say_physics(wh_grid_t *grid, const wh_event_t *event) {
 }
 
 /* Contact and clearances, how a wafer was set down. */
-static void say_of_cell(const wh_report_t *report, wh_grid_t *grid, const wh_event_t *event) {
+static void say_of_cell(const wh_printer_t *report, wh_grid_t *grid, const wh_event_t *event) {
     switch ((int)event->kind) {
     case WH_EVENT_HIT:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s and %s touch at %.3f, %.3f, %.3f mm",
@@ -157,11 +157,11 @@ static void say_of_cell(const wh_report_t *report, wh_grid_t *grid, const wh_eve
     }
 }
 
-static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const wh_event_t *event) {
+static void say_why(const wh_printer_t *report, wh_grid_t *grid, double at, const wh_event_t *event) {
     switch ((int)event->kind) {
     case WH_EVENT_CONTESTED:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "ready, but %s holds it",
-                     wh_report_gripper(report, event->other));
+                     wh_print_gripper(report, event->other));
         break;
     case WH_EVENT_BAD_INPUT:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s", wh_status_text(event->status));
@@ -171,7 +171,7 @@ static void say_why(const wh_report_t *report, wh_grid_t *grid, double at, const
                      (double)event->height);
         break;
     case WH_EVENT_SLOT_OCCUPIED:
-        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s lies in that slot", wh_report_wafer(report, event->other));
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s lies in that slot", wh_print_wafer(report, event->other));
         break;
     case WH_EVENT_NEAR_MISS:
         if (report->record->layout) {
@@ -191,27 +191,27 @@ static void say_what(wh_grid_t *grid, wh_event_kind_t kind) {
     for (char *c = what; *c != '\0'; ++c) {
         *c = *c == '_' ? ' ' : *c;
     }
-    wh_grid_text(grid, WHAT, wh_report_is_complaint(kind) ? WH_INK_BAD : WH_INK_WARN, "%s", what);
+    wh_grid_text(grid, WHAT, wh_print_is_complaint(kind) ? WH_INK_BAD : WH_INK_WARN, "%s", what);
 }
 
-static void add_event(const wh_report_t *report, wh_grid_t *grid, const wh_event_record_t *record) {
+static void add_event(const wh_printer_t *report, wh_grid_t *grid, const wh_event_record_t *record) {
     const wh_event_t *event = &record->event;
     const double at = (double)record->utime / 1e6;
     wh_grid_row(grid);
     wh_grid_number(grid, AT, WH_INK_PLAIN, at);
     say_what(grid, event->kind);
-    wh_grid_text(grid, WAFER, WH_INK_PLAIN, "%s", wh_report_wafer(report, event->wafer));
-    wh_grid_text(grid, GRIPPER, WH_INK_PLAIN, "%s", wh_report_gripper(report, event->gripper));
+    wh_grid_text(grid, WAFER, WH_INK_PLAIN, "%s", wh_print_wafer(report, event->wafer));
+    wh_grid_text(grid, GRIPPER, WH_INK_PLAIN, "%s", wh_print_gripper(report, event->gripper));
     if (event->kind == WH_EVENT_NEAR_MISS || event->kind == WH_EVENT_CONTESTED) {
-        wh_report_measured(report, grid, MEASURED, event);
+        wh_print_measured(report, grid, MEASURED, event);
     }
     say_why(report, grid, at, event);
 }
 
-int wh_report_complaints(const wh_report_t *report) {
+int wh_print_complaints(const wh_printer_t *report) {
     const wh_record_t *record = report->record;
     size_t first = 0;
-    while (first < record->event_count && !wh_report_is_miss(record->events[first].event.kind)) {
+    while (first < record->event_count && !wh_print_is_miss(record->events[first].event.kind)) {
         ++first;
     }
     if (first == record->event_count) {
@@ -219,10 +219,10 @@ int wh_report_complaints(const wh_report_t *report) {
     }
     wh_grid_t *grid = new_grid(report);
     for (size_t i = first; i < record->event_count; ++i) {
-        if (wh_report_is_miss(record->events[i].event.kind)) {
+        if (wh_print_is_miss(record->events[i].event.kind)) {
             add_event(report, grid, &record->events[i]);
         }
     }
-    wh_report_title(report, "Misses and complaints");
+    wh_print_title(report, "Misses and complaints");
     return wh_grid_print(grid, report->out);
 }

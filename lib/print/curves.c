@@ -1,7 +1,7 @@
 /* How the smallest gaps went over a run: a line of blocks for each kind that has a limit or was touched. */
 #include <string.h>
 
-#include "table_internal.h"
+#include "print_internal.h"
 
 /* Columns of a curve, where the terminal has room for its name and scale beside it. */
 #define MOST_COLUMNS 72
@@ -46,7 +46,7 @@ static wh_real_t gap_in_column(const wh_curves_t *curves, const plot_t *plot, si
     return least;
 }
 
-static void draw_curve(const wh_report_t *report, const plot_t *plot) {
+static void draw_curve(const wh_printer_t *report, const plot_t *plot) {
     for (size_t column = 0; column < plot->columns; ++column) {
         const wh_real_t gap = gap_in_column(report->record->curves, plot, column);
         const size_t level = gap < plot->top ? (size_t)(gap / plot->top * LEVELS) : LEVELS - 1;
@@ -64,17 +64,17 @@ static size_t column_of(const wh_curves_t *curves, const plot_t *plot, uint64_t 
     return column < plot->columns ? (size_t)column : plot->columns - 1;
 }
 
-static void print_curve(const wh_report_t *report, const plot_t *plot) {
+static void print_curve(const wh_printer_t *report, const plot_t *plot) {
     const wh_record_t *record = report->record;
     const wh_clearance_t *least = &record->clearances[plot->kind];
     const int indent = (int)column_of(record->curves, plot, least->slice);
-    fprintf(report->out, "%-24s  ", wh_report_clearance(plot->kind));
+    fprintf(report->out, "%-24s  ", wh_print_clearance(plot->kind));
     draw_curve(report, plot);
     fprintf(report->out, "  0 to %g mm\n%26s%*s^ %.3f mm at %.3f s\n", (double)plot->top, "", indent, "",
             (double)least->gap, (double)((int64_t)least->slice * record->layout->slice_us) / 1e6);
 }
 
-static size_t columns_of(const wh_report_t *report) {
+static size_t columns_of(const wh_printer_t *report) {
     const size_t width = report->style->width;
     const size_t room = width > BESIDE_COLUMNS ? width - BESIDE_COLUMNS : 0;
     size_t columns = width == 0 || room > MOST_COLUMNS ? MOST_COLUMNS : room;
@@ -82,7 +82,7 @@ static size_t columns_of(const wh_report_t *report) {
     return columns < report->record->curves->count ? columns : report->record->curves->count;
 }
 
-int wh_report_curves(const wh_report_t *report) {
+int wh_print_curves(const wh_printer_t *report) {
     const wh_record_t *record = report->record;
     bool titled = false;
     if (!record->checked || !record->curves || record->curves->count == 0) {
@@ -95,7 +95,7 @@ int wh_report_curves(const wh_report_t *report) {
             continue;
         }
         if (!titled) {
-            wh_report_title(report, "Clearances over time");
+            wh_print_title(report, "Clearances over time");
             titled = true;
         }
         const plot_t plot = {kind, columns_of(report), top_of(limit, least->gap), limit};

@@ -17,7 +17,7 @@ const char *wh_gantt_mark(const wh_style_t *style, wh_share_t share) {
     return style->utf8 ? utf8[share] : ascii[share];
 }
 
-static const char *mark_of(const wh_style_t *style, const wh_interval_t *interval) {
+static const char *mark_of(const wh_style_t *style, const wh_busy_span_t *interval) {
     switch (interval->who) {
     case WH_BUSY_WAFER:
         return style->utf8 ? "━" : "=";
@@ -32,7 +32,7 @@ static const char *mark_of(const wh_style_t *style, const wh_interval_t *interva
 
 /* ----------------------------------------------------------------------------------------------------- rows */
 
-int wh_gantt_open(wh_gantt_t *gantt, const wh_report_t *report, size_t label_columns) {
+int wh_gantt_open(wh_gantt_t *gantt, const wh_printer_t *report, size_t label_columns) {
     const size_t wanted = report->style->width > label_columns + LEAST_COLUMNS + 2
                               ? report->style->width - label_columns - 2
                               : LEAST_COLUMNS;
@@ -66,7 +66,7 @@ size_t wh_gantt_column(const wh_gantt_t *gantt, int64_t slice) {
 }
 
 /* How much of a column's time lies within an interval, in columns. */
-static double overlap(const wh_gantt_t *gantt, size_t column, const wh_interval_t *interval) {
+static double overlap(const wh_gantt_t *gantt, size_t column, const wh_busy_span_t *interval) {
     const double slices = (double)gantt->slices / (double)gantt->columns;
     const double begin = (double)interval->begin / slices;
     const double end = (double)interval->end / slices;
@@ -75,7 +75,7 @@ static double overlap(const wh_gantt_t *gantt, size_t column, const wh_interval_
     return to > from ? to - from : 0;
 }
 
-void wh_gantt_draw(wh_gantt_t *gantt, const wh_interval_t *interval) {
+void wh_gantt_draw(wh_gantt_t *gantt, const wh_busy_span_t *interval) {
     const size_t last = wh_gantt_column(gantt, interval->end);
     for (size_t column = wh_gantt_column(gantt, interval->begin); column <= last; ++column) {
         wh_gantt_cell_t *cell = &gantt->cells[column];

@@ -2,7 +2,7 @@
 #ifndef WH_PRINT_GANTT_H
 #define WH_PRINT_GANTT_H
 
-#include "table_internal.h"
+#include "print_internal.h"
 
 typedef struct {
     const char *mark; /* one column wide, or null: blank */
@@ -12,7 +12,7 @@ typedef struct {
 } wh_gantt_cell_t;
 
 typedef struct {
-    const wh_report_t *report;
+    const wh_printer_t *report;
     size_t label_columns, columns;
     int64_t slices; /* from the first column to the last: the run's, above 0 */
     wh_gantt_cell_t *cells;
@@ -23,7 +23,7 @@ const char *wh_gantt_mark(const wh_style_t *style, wh_share_t share);
 
 /* An empty row as wide as the terminal leaves beside labels of so many columns, 100 columns without one. -1 when memory
  * is out. To be closed. */
-int wh_gantt_open(wh_gantt_t *gantt, const wh_report_t *report, size_t label_columns);
+int wh_gantt_open(wh_gantt_t *gantt, const wh_printer_t *report, size_t label_columns);
 void wh_gantt_close(wh_gantt_t *gantt);
 
 /* Empties the row. */
@@ -33,7 +33,7 @@ void wh_gantt_clear(wh_gantt_t *gantt);
 size_t wh_gantt_column(const wh_gantt_t *gantt, int64_t slice);
 
 /* Draws an interval; a column shows what takes most of its time. */
-void wh_gantt_draw(wh_gantt_t *gantt, const wh_interval_t *interval);
+void wh_gantt_draw(wh_gantt_t *gantt, const wh_busy_span_t *interval);
 
 /* Writes a text over the marks from column `first` on if it fits before `last`; else nothing. -1 when memory is out. */
 int wh_gantt_write(wh_gantt_t *gantt, size_t first, size_t last, const char *text);

@@ -1,5 +1,5 @@
 /* The hand-overs: what the chuck measured when it took the wafer, in the paper's words. */
-#include "table_internal.h"
+#include "print_internal.h"
 
 /* As many are shown in full. */
 #define SHOWN 8
@@ -14,12 +14,12 @@ static void add_value(wh_grid_t *grid, const char *name, double value) {
 
 static void add_limit(wh_grid_t *grid, const char *relation, double limit, double margin) {
     char number[WH_REPORT_NUMBER_SIZE];
-    wh_report_limit(number, limit);
+    wh_print_limit(number, limit);
     wh_grid_text(grid, LIMIT, WH_INK_PLAIN, "%s %s", relation, number);
     wh_grid_number(grid, MARGIN, margin > 0 ? WH_INK_GOOD : WH_INK_BAD, margin);
 }
 
-static wh_grid_t *new_grid(const wh_report_t *report) {
+static wh_grid_t *new_grid(const wh_printer_t *report) {
     const wh_grid_digits_t digits = {6, 6, false, 0};
     const wh_grid_digits_t margin = {6, 6, true, 0};
     wh_grid_t *grid = wh_grid_new(report->style, 1);
@@ -30,7 +30,7 @@ static wh_grid_t *new_grid(const wh_report_t *report) {
     return grid;
 }
 
-static int print_values(const wh_report_t *report, const wh_proximity_t *p) {
+static int print_values(const wh_printer_t *report, const wh_proximity_t *p) {
     const wh_tolerance_t *limits = &report->record->layout->grasp.tolerance;
     wh_grid_t *grid = new_grid(report);
     add_value(grid, "  |dr_proj_z|", (double)wh_real_abs(p->dr_proj_z));
@@ -45,18 +45,18 @@ static int print_values(const wh_report_t *report, const wh_proximity_t *p) {
     return wh_grid_print(grid, report->out);
 }
 
-static int print_handover(const wh_report_t *report, const wh_event_record_t *record) {
+static int print_handover(const wh_printer_t *report, const wh_event_record_t *record) {
     const wh_event_t *event = &record->event;
     const bool ready = event->measured.ready;
-    const wh_grid_digits_t seconds = wh_report_seconds();
+    const wh_grid_digits_t seconds = wh_print_seconds();
     const double at = (double)record->utime / 1e6;
-    int status = wh_report_put(report, wh_report_wafer(report, event->wafer));
+    int status = wh_print_put(report, wh_print_wafer(report, event->wafer));
     fputs(", ", report->out);
-    status |= wh_report_put(report, wh_report_gripper(report, event->other));
+    status |= wh_print_put(report, wh_print_gripper(report, event->other));
     fprintf(report->out, " %s ", wh_style_arrow(report->style));
-    status |= wh_report_put(report, wh_report_gripper(report, event->gripper));
+    status |= wh_print_put(report, wh_print_gripper(report, event->gripper));
     fprintf(report->out, ", at %.*f s: isReadyToPick", wh_grid_decimals(&seconds, at), at);
-    status |= wh_report_put(report, wh_report_gripper(report, event->gripper));
+    status |= wh_print_put(report, wh_print_gripper(report, event->gripper));
     fputs(": ", report->out);
     wh_style_print(report->style, report->out, ready ? WH_INK_GOOD : WH_INK_BAD, "%s",
                    ready ? "true" : "false");
@@ -64,7 +64,7 @@ static int print_handover(const wh_report_t *report, const wh_event_record_t *re
     return status | print_values(report, &event->measured);
 }
 
-int wh_report_handovers(const wh_report_t *report) {
+int wh_print_handovers(const wh_printer_t *report) {
     const wh_record_t *record = report->record;
     size_t count = 0;
     int status = 0;
@@ -73,7 +73,7 @@ int wh_report_handovers(const wh_report_t *report) {
             continue;
         }
         if (++count <= SHOWN) {
-            wh_report_title(report, "Hand-over");
+            wh_print_title(report, "Hand-over");
             status |= print_handover(report, &record->events[i]);
         }
     }

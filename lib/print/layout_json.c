@@ -6,7 +6,7 @@
 
 /* What is being written, and whether any value could not be made. */
 typedef struct {
-    const wh_layout_check_t *check;
+    const wh_feasibility_t *check;
     bool failed;
 } writer_t;
 
@@ -149,7 +149,7 @@ static json_t *part(writer_t *writer, size_t i) {
     static const char *const shapes_of[] = {"box", "cylinder", "capsule", "mesh"};
     const wh_layout_t *layout = writer->check->layout;
     const wh_part_t *from = &layout->world.parts[i];
-    const wh_pose_t pose = wh_layout_check_place(writer->check, (int32_t)i);
+    const wh_pose_t pose = wh_feasibility_place(writer->check, (int32_t)i);
     json_t *object = json_object();
     put(writer, object, "name", wh_json_text(layout->part_names[i]));
     put(writer, object, "kind", json_string(kinds[from->kind]));
@@ -268,7 +268,7 @@ static void put_checks(writer_t *writer, json_t *root) {
     put(writer, root, "collision", json_boolean(layout->collision));
 }
 
-int wh_layout_print_json(const wh_layout_check_t *check, FILE *out) {
+int wh_layout_print_json(const wh_feasibility_t *check, FILE *out) {
     const wh_layout_t *layout = check->layout;
     writer_t writer = {check, false};
     json_t *root = json_object();

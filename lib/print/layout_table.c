@@ -278,7 +278,7 @@ static int print_heading(const wh_listing_t *listing) {
     return status;
 }
 
-int wh_layout_print_table(const wh_layout_check_t *check, FILE *out, const wh_style_t *style) {
+int wh_layout_print_table(const wh_feasibility_t *check, FILE *out, const wh_style_t *style) {
     const wh_listing_t listing = {check, check->layout, style, out};
     int status = print_heading(&listing);
     status |= print_axes(&listing);

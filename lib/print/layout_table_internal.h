@@ -7,7 +7,7 @@
 
 /* What every part of the listing is given. */
 typedef struct {
-    const wh_layout_check_t *check;
+    const wh_feasibility_t *check;
     const wh_layout_t *layout;
     const wh_style_t *style;
     FILE *out;

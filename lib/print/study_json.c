@@ -1,14 +1,14 @@
 /* A study's result as JSON. */
 #include <math.h>
 
-#include "../study/interval.h"
+#include "../study/wilson.h"
 #include "../text/json_values.h"
 #include "study_print.h"
 
 /* `base` is first, so that the list's functions get at the rest. */
 typedef struct {
     wh_json_writer_t base;
-    const wh_study_report_t *report;
+    const wh_study_print_t *report;
     const wh_tally_t *tally;
     const wh_layout_t *layout;
 } writer_t;
@@ -30,7 +30,7 @@ static void put_text(wh_json_writer_t *writer, json_t *object, const char *key, 
 }
 
 static void put_rate(wh_json_writer_t *writer, json_t *object, uint64_t hits, uint64_t trials) {
-    const wh_confidence_t rate = wh_interval_wilson(hits, trials);
+    const wh_confidence_t rate = wh_wilson_interval(hits, trials);
     put_real(writer, object, "rate", rate.rate);
     put_real(writer, object, "low", rate.low);
     put_real(writer, object, "high", rate.high);
@@ -225,7 +225,7 @@ static json_t *run_without_errors(wh_json_writer_t *writer) {
 }
 
 static void put_head(wh_json_writer_t *writer, json_t *root) {
-    const wh_study_report_t *report = of(writer)->report;
+    const wh_study_print_t *report = of(writer)->report;
     wh_json_put(writer, root, "format", json_integer(1));
     wh_json_put(writer, root, "ok", json_boolean(wh_study_is_kept(report)));
     put_text(writer, root, "script", report->study->run.script);
@@ -240,7 +240,7 @@ static void put_head(wh_json_writer_t *writer, json_t *root) {
     wh_json_put(writer, root, "run_without_errors", run_without_errors(writer));
 }
 
-int wh_study_print_json(const wh_study_report_t *report, FILE *out) {
+int wh_study_print_json(const wh_study_print_t *report, FILE *out) {
     writer_t all = {{&report->study->nominal.record, false}, report, report->tally, report->study->layout};
     wh_json_writer_t *writer = &all.base;
     json_t *root = json_object();

@@ -3,23 +3,23 @@
 #include <string.h>
 
 #include "../math/trig.h"
-#include "../study/interval.h"
+#include "../study/wilson.h"
+#include "print_internal.h"
 #include "study_print.h"
-#include "table_internal.h"
 
 /* The parts of the run's report that are of use here take its frame. */
 typedef struct {
-    const wh_study_report_t *study;
+    const wh_study_print_t *study;
     const wh_tally_t *tally;
-    wh_report_t frame;
+    wh_printer_t frame;
 } table_t;
 
 static const wh_grid_digits_t percent = {2, 4, false, 0};
 static const wh_grid_digits_t whole = {0, 0, false, 0};
 static const wh_grid_digits_t fine = {4, 4, false, 0};
 
-bool wh_study_is_kept(const wh_study_report_t *report) {
-    const wh_confidence_t success = wh_interval_wilson(report->tally->met, report->tally->trials);
+bool wh_study_is_kept(const wh_study_print_t *report) {
+    const wh_confidence_t success = wh_wilson_interval(report->tally->met, report->tally->trials);
     return success.low >= report->require;
 }
 
@@ -48,7 +48,7 @@ static void rate_columns(wh_grid_t *grid) {
 
 /* In percent, with its interval. */
 static void put_rate(wh_grid_t *grid, size_t column, wh_ink_t ink, uint64_t hits, uint64_t trials) {
-    const wh_confidence_t rate = wh_interval_wilson(hits, trials);
+    const wh_confidence_t rate = wh_wilson_interval(hits, trials);
     wh_grid_number(grid, column, ink, 100 * rate.rate);
     wh_grid_text(grid, column + 1, WH_INK_DIM, "%.4f to %.4f", 100 * rate.low, 100 * rate.high);
 }
@@ -63,7 +63,7 @@ static int finish(const table_t *table, const char *title, wh_grid_t *grid) {
     if (wh_grid_rows(grid) == 0) {
         return wh_grid_discard(grid);
     }
-    wh_report_title(&table->frame, title);
+    wh_print_title(&table->frame, title);
     return wh_grid_print(grid, table->frame.out);
 }
 
@@ -118,7 +118,7 @@ static int print_events(const table_t *table) {
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
         const wh_tally_event_t *event = &table->tally->events[kind];
         if (event->trials > 0) {
-            const bool bad = wh_report_is_complaint((wh_event_kind_t)kind);
+            const bool bad = wh_print_is_complaint((wh_event_kind_t)kind);
             wh_grid_row(grid);
             wh_grid_text(grid, 0, bad ? WH_INK_BAD : WH_INK_PLAIN, "%s",
                          wh_event_name((wh_event_kind_t)kind));
@@ -179,10 +179,10 @@ static int print_wafers(const table_t *table) {
         const wh_tally_wafer_t *tally = &table->tally->wafers[w];
         if (tally->elsewhere > 0) {
             char count[WH_REPORT_NUMBER_SIZE];
-            wh_report_count(count, (int64_t)tally->elsewhere);
+            wh_print_count(count, (int64_t)tally->elsewhere);
             status |=
-                wh_report_put(&table->frame,
-                              table->study->study->layout->wafers[table->study->study->wafers[w].wafer].name);
+                wh_print_put(&table->frame,
+                             table->study->study->layout->wafers[table->study->study->wafers[w].wafer].name);
             fprintf(table->frame.out, " ends elsewhere in %s %s, which are not in these figures\n", count,
                     tally->elsewhere == 1 ? "trial" : "trials");
         }
@@ -218,10 +218,10 @@ static int print_worst(const table_t *table) {
 static int print_head(const table_t *table) {
     const wh_study_t *study = table->study->study;
     char trials[WH_REPORT_NUMBER_SIZE];
-    int status = wh_report_put(&table->frame, study->run.script);
+    int status = wh_print_put(&table->frame, study->run.script);
     fputs(" on ", table->frame.out);
-    status |= wh_report_put(&table->frame, study->layout->path);
-    wh_report_count(trials, (int64_t)table->tally->trials);
+    status |= wh_print_put(&table->frame, study->layout->path);
+    wh_print_count(trials, (int64_t)table->tally->trials);
     fprintf(table->frame.out, "\n%s trials of seed %llu\n", trials, (unsigned long long)study->seed);
     if (!study->nominal.record.ok) {
         wh_style_print(table->frame.style, table->frame.out, WH_INK_WARN,
@@ -234,7 +234,7 @@ static int print_head(const table_t *table) {
 static void print_how(const table_t *table) {
     const wh_study_t *study = table->study->study;
     char count[WH_REPORT_NUMBER_SIZE];
-    wh_report_count(count, (int64_t)table->tally->whole);
+    wh_print_count(count, (int64_t)table->tally->whole);
     if (study->whole) {
         fprintf(table->frame.out,
                 "each trial ran the script whole, for in the run without errors this was read: %s\n",
@@ -246,13 +246,13 @@ static void print_how(const table_t *table) {
 }
 
 static void print_summary(const table_t *table) {
-    const wh_study_report_t *report = table->study;
-    const wh_confidence_t success = wh_interval_wilson(table->tally->met, table->tally->trials);
+    const wh_study_print_t *report = table->study;
+    const wh_confidence_t success = wh_wilson_interval(table->tally->met, table->tally->trials);
     FILE *out = table->frame.out;
     char met[WH_REPORT_NUMBER_SIZE];
     char trials[WH_REPORT_NUMBER_SIZE];
-    wh_report_count(met, (int64_t)table->tally->met);
-    wh_report_count(trials, (int64_t)table->tally->trials);
+    wh_print_count(met, (int64_t)table->tally->met);
+    wh_print_count(trials, (int64_t)table->tally->trials);
     fputc('\n', out);
     print_how(table);
     wh_style_print(table->frame.style, out,
@@ -272,7 +272,7 @@ static void print_summary(const table_t *table) {
     }
 }
 
-int wh_study_print_table(const wh_study_report_t *report, FILE *out, const wh_style_t *style) {
+int wh_study_print_table(const wh_study_print_t *report, FILE *out, const wh_style_t *style) {
     const table_t table = {report, report->tally, {&report->study->nominal.record, style, out}};
     int status = print_head(&table);
     status |= print_expectations(&table);

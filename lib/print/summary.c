@@ -2,7 +2,7 @@
 #include <inttypes.h>
 
 #include "../mcs/mcs.h"
-#include "table_internal.h"
+#include "print_internal.h"
 
 enum { MARK, LINE, TEXT };
 
@@ -14,7 +14,7 @@ static size_t count_unmet(const wh_record_t *record) {
     return unmet;
 }
 
-static void add_unmet(const wh_report_t *report, wh_grid_t *grid,
+static void add_unmet(const wh_printer_t *report, wh_grid_t *grid,
                       const wh_expectation_record_t *expectation) {
     wh_grid_row(grid);
     wh_grid_text(grid, MARK, WH_INK_BAD, "%s", wh_style_cross(report->style));
@@ -24,7 +24,7 @@ static void add_unmet(const wh_report_t *report, wh_grid_t *grid,
     wh_grid_text(grid, TEXT, WH_INK_PLAIN, "%s", expectation->text ? expectation->text : "");
 }
 
-static int print_unmet(const wh_report_t *report) {
+static int print_unmet(const wh_printer_t *report) {
     const wh_grid_digits_t whole = {0, 0, false, 0};
     wh_grid_t *grid = wh_grid_new(report->style, 0);
     wh_grid_text_column(grid, "");
@@ -38,14 +38,14 @@ static int print_unmet(const wh_report_t *report) {
     return wh_grid_print(grid, report->out);
 }
 
-int wh_report_expectations(const wh_report_t *report) {
+int wh_print_expectations(const wh_printer_t *report) {
     const size_t count = report->record->expectation_count;
     const size_t unmet = count_unmet(report->record);
     int status = 0;
     if (count == 0) {
         return 0;
     }
-    wh_report_title(report, "Expectations");
+    wh_print_title(report, "Expectations");
     if (unmet > 0) {
         status = print_unmet(report);
     }
@@ -58,11 +58,11 @@ int wh_report_expectations(const wh_report_t *report) {
 
 static void put_counted(FILE *out, int64_t count, const char *one, const char *many) {
     char text[WH_REPORT_NUMBER_SIZE];
-    wh_report_count(text, count);
+    wh_print_count(text, count);
     fprintf(out, "%s %s", text, count == 1 ? one : many);
 }
 
-static void print_times(const wh_report_t *report) {
+static void print_times(const wh_printer_t *report) {
     const wh_record_t *record = report->record;
     fputc('\n', report->out);
     put_counted(report->out, (int64_t)record->command_count, "command", "commands");
@@ -78,13 +78,13 @@ static void print_times(const wh_report_t *report) {
             fprintf(report->out, ", %.1f", times);
         } else {
             char text[WH_REPORT_NUMBER_SIZE];
-            wh_report_count(text, times < 9e15 ? (int64_t)times : INT64_C(9000000000000000));
+            wh_print_count(text, times < 9e15 ? (int64_t)times : INT64_C(9000000000000000));
             fprintf(report->out, ", %s", text);
         }
         fputs(" times faster than real time", report->out);
     }
     fputc('\n', report->out);
-    wh_report_throughput(report);
+    wh_print_throughput(report);
     fprintf(report->out, "hash %016" PRIx64 "\n", record->hash);
 }
 
@@ -107,7 +107,7 @@ static size_t count_errors(const wh_record_t *record) {
 }
 
 /* Errors that the script caught are none. Complaints are, whatever was expected. */
-static void put_reasons(const wh_report_t *report) {
+static void put_reasons(const wh_printer_t *report) {
     const wh_record_t *record = report->record;
     const size_t unmet = count_unmet(record);
     const size_t expected = record->expectation_count;
@@ -125,7 +125,7 @@ static void put_reasons(const wh_report_t *report) {
     }
 }
 
-int wh_report_summary(const wh_report_t *report) {
+int wh_print_summary(const wh_printer_t *report) {
     const wh_record_t *record = report->record;
     int status = 0;
     print_times(report);
@@ -136,7 +136,7 @@ int wh_report_summary(const wh_report_t *report) {
     }
     fputc('\n', report->out);
     if (record->failure) {
-        status = wh_report_put(report, record->failure);
+        status = wh_print_put(report, record->failure);
         fputc('\n', report->out);
     }
     return status;

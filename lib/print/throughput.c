@@ -1,11 +1,11 @@
 /* What a customer asks of a layout: wafers per hour, what the time goes into, reach. */
 #include "../record/throughput.h"
 #include "../math/trig.h"
-#include "table_internal.h"
+#include "print_internal.h"
 
 /* ------------------------------------------------------------------------------------------ wafers per hour */
 
-static void put_window(const wh_report_t *report, const wh_throughput_t *throughput) {
+static void put_window(const wh_printer_t *report, const wh_throughput_t *throughput) {
     fprintf(report->out, ": %zu in %.3f s, ", throughput->wafers, throughput->seconds);
     if (throughput->first == 0) {
         fputs("the whole run", report->out);
@@ -16,7 +16,7 @@ static void put_window(const wh_report_t *report, const wh_throughput_t *through
     }
 }
 
-static void put_share(const wh_report_t *report, int64_t slices, const char *what, const char **before) {
+static void put_share(const wh_printer_t *report, int64_t slices, const char *what, const char **before) {
     const double percent = 100 * (double)slices / (double)report->record->slices;
     if (percent >= 0.05) {
         fprintf(report->out, "%s%.1f %% %s", *before, percent, what);
@@ -24,8 +24,8 @@ static void put_share(const wh_report_t *report, int64_t slices, const char *wha
     }
 }
 
-void wh_report_throughput(const wh_report_t *report) {
-    const wh_throughput_t throughput = wh_figures_throughput(report->record);
+void wh_print_throughput(const wh_printer_t *report) {
+    const wh_throughput_t throughput = wh_throughput(report->record);
     const int64_t *shares = report->record->activity.shares;
     const char *before = "; ";
     if (throughput.wafers == 0 || throughput.slices == 0) {
@@ -44,14 +44,14 @@ void wh_report_throughput(const wh_report_t *report) {
 
 enum { LINE, COMMAND, SECONDS, FIRST_SHARE };
 
-static void add_times(const wh_report_t *report, wh_grid_t *grid, const char *text, int64_t slices,
+static void add_times(const wh_printer_t *report, wh_grid_t *grid, const char *text, int64_t slices,
                       const int64_t shares[WH_SHARES]) {
     wh_grid_text(grid, COMMAND, WH_INK_PLAIN, "%s", text);
-    wh_grid_number(grid, SECONDS, WH_INK_PLAIN, wh_figures_seconds(report->record, slices));
+    wh_grid_number(grid, SECONDS, WH_INK_PLAIN, wh_throughput_seconds(report->record, slices));
     for (size_t share = 0; share < WH_SHARES; ++share) {
         if (shares[share] > 0) {
             wh_grid_number(grid, FIRST_SHARE + share, WH_INK_PLAIN,
-                           wh_figures_seconds(report->record, shares[share]));
+                           wh_throughput_seconds(report->record, shares[share]));
         }
     }
 }
@@ -64,7 +64,7 @@ static int64_t sum_of(const int64_t shares[WH_SHARES]) {
     return sum;
 }
 
-int wh_report_times(const wh_report_t *report) {
+int wh_print_times(const wh_printer_t *report) {
     static const char *const headings[WH_SHARES] = {"with wafer", "without", "vacuum", "valves", "waiting"};
     const wh_record_t *record = report->record;
     const wh_grid_digits_t whole = {0, 0, false, 0};
@@ -74,9 +74,9 @@ int wh_report_times(const wh_report_t *report) {
     wh_grid_t *grid = wh_grid_new(report->style, 2);
     wh_grid_number_column(grid, "line", whole);
     wh_grid_text_column(grid, "command");
-    wh_grid_number_column(grid, "s", wh_report_seconds());
+    wh_grid_number_column(grid, "s", wh_print_seconds());
     for (size_t share = 0; share < WH_SHARES; ++share) {
-        wh_grid_number_column(grid, headings[share], wh_report_seconds());
+        wh_grid_number_column(grid, headings[share], wh_print_seconds());
     }
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
@@ -88,8 +88,8 @@ int wh_report_times(const wh_report_t *report) {
     }
     wh_grid_row(grid);
     add_times(report, grid, "all", sum_of(record->activity.shares), record->activity.shares);
-    wh_report_title(report,
-                    "Time: motion with and without a wafer, standing still for vacuum, valves, waiting");
+    wh_print_title(report,
+                   "Time: motion with and without a wafer, standing still for vacuum, valves, waiting");
     return wh_grid_print(grid, report->out);
 }
 
@@ -98,11 +98,11 @@ int wh_report_times(const wh_report_t *report) {
 /* Below so many mm or degrees a margin is nothing to build upon. */
 #define SLENDER 1.0
 
-static void add_reach(const wh_report_t *report, wh_grid_t *grid, size_t station) {
+static void add_reach(const wh_printer_t *report, wh_grid_t *grid, size_t station) {
     wh_grid_row(grid);
     wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", report->record->layout->stations[station].name);
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        const wh_reach_t *reach = &report->record->reach[station].axes[axis];
+        const wh_travel_margin_t *reach = &report->record->reach[station].axes[axis];
         const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
         const double margin = (double)(turns ? wh_deg_from_rad(reach->margin) : reach->margin);
         if (reach->slot != 0) {
@@ -113,7 +113,7 @@ static void add_reach(const wh_report_t *report, wh_grid_t *grid, size_t station
     }
 }
 
-int wh_report_margins(const wh_report_t *report) {
+int wh_print_margins(const wh_printer_t *report) {
     static const char *const headings[WH_ROBOT_AXES] = {"theta deg", "r mm", "z mm", "yaw deg"};
     const wh_grid_digits_t digits = {1, 3, false, 0};
     const wh_record_t *record = report->record;
@@ -130,7 +130,7 @@ int wh_report_margins(const wh_report_t *report) {
     for (size_t station = 0; station < record->layout->station_count; ++station) {
         add_reach(report, grid, station);
     }
-    wh_report_title(report,
-                    "Reach: how far GET and PUT, coming from home, stay from the ends of the axes' travel");
+    wh_print_title(report,
+                   "Reach: how far GET and PUT, coming from home, stay from the ends of the axes' travel");
     return wh_grid_print(grid, report->out);
 }

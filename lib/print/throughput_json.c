@@ -17,13 +17,13 @@ json_t *wh_json_split(wh_json_writer_t *writer, const int64_t shares[WH_SHARES])
     json_t *object = json_object();
     for (size_t i = 0; i < sizeof parts / sizeof parts[0]; ++i) {
         wh_json_put(writer, object, parts[i].key,
-                    wh_json_real(wh_figures_seconds(wh_json_record(writer), parts[i].slices)));
+                    wh_json_real(wh_throughput_seconds(wh_json_record(writer), parts[i].slices)));
     }
     return object;
 }
 
 static json_t *throughput(wh_json_writer_t *writer) {
-    const wh_throughput_t found = wh_figures_throughput(wh_json_record(writer));
+    const wh_throughput_t found = wh_throughput(wh_json_record(writer));
     json_t *object = json_object();
     wh_json_put(writer, object, "wafers", json_integer((json_int_t)found.wafers));
     wh_json_put(writer, object, "seconds", wh_json_real(found.seconds));
@@ -50,16 +50,16 @@ static json_t *cycle(wh_json_writer_t *writer, size_t i, size_t wafers) {
     json_t *object = json_object();
     wh_json_put(writer, object, "line", json_integer(from->line));
     wh_json_put(writer, object, "name", from->name[0] != '\0' ? wh_json_text(from->name) : json_null());
-    wh_json_put(writer, object, "begin_s", wh_json_real(wh_figures_seconds(record, from->begin)));
+    wh_json_put(writer, object, "begin_s", wh_json_real(wh_throughput_seconds(record, from->begin)));
     wh_json_put(writer, object, "end_s",
-                wh_json_real(wh_figures_seconds(record, wh_figures_cycle_end(record, i))));
+                wh_json_real(wh_throughput_seconds(record, wh_throughput_cycle_end(record, i))));
     wh_json_put(writer, object, "wafers", json_integer((json_int_t)wafers));
     return object;
 }
 
 static json_t *cycles(wh_json_writer_t *writer) {
     const wh_record_t *record = wh_json_record(writer);
-    size_t *wafers = wh_figures_cycle_wafers(record, wh_figures_throughput(record).rank);
+    size_t *wafers = wh_throughput_cycle_wafers(record, wh_throughput(record).rank);
     json_t *list = json_array();
     for (size_t i = 0; i < record->cycle_count; ++i) {
         wh_json_append(writer, list, cycle(writer, i, wafers[i]));
@@ -70,7 +70,7 @@ static json_t *cycles(wh_json_writer_t *writer) {
 
 /* ---------------------------------------------------------------------------------------------------- gantt */
 
-static json_t *interval_what(const wh_json_writer_t *writer, const wh_interval_t *interval) {
+static json_t *interval_what(const wh_json_writer_t *writer, const wh_busy_span_t *interval) {
     static const char *const shares[WH_SHARES] = {"loaded", "empty", "vacuum", "handover", "waiting"};
     switch (interval->who) {
     case WH_BUSY_WAFER:
@@ -84,14 +84,14 @@ static json_t *interval_what(const wh_json_writer_t *writer, const wh_interval_t
     return json_string(shares[interval->what - 1]);
 }
 
-static json_t *interval(wh_json_writer_t *writer, const wh_interval_t *from) {
+static json_t *interval(wh_json_writer_t *writer, const wh_busy_span_t *from) {
     static const char *const resources[] = {"robot", "chuck", "gripper", "valve"};
     const wh_record_t *record = wh_json_record(writer);
     json_t *object = json_object();
     wh_json_put(writer, object, "resource", json_string(resources[from->who]));
     wh_json_put(writer, object, "gripper", wh_json_text(wh_record_gripper_name(record, from->gripper)));
-    wh_json_put(writer, object, "from_s", wh_json_real(wh_figures_seconds(record, from->begin)));
-    wh_json_put(writer, object, "to_s", wh_json_real(wh_figures_seconds(record, from->end)));
+    wh_json_put(writer, object, "from_s", wh_json_real(wh_throughput_seconds(record, from->begin)));
+    wh_json_put(writer, object, "to_s", wh_json_real(wh_throughput_seconds(record, from->end)));
     wh_json_put(writer, object, "what", interval_what(writer, from));
     return object;
 }
@@ -114,7 +114,7 @@ static json_t *gantt(wh_json_writer_t *writer) {
 
 static json_t *reach(wh_json_writer_t *writer, int32_t station, size_t axis) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    const wh_reach_t *from = &wh_json_record(writer)->reach[station].axes[axis];
+    const wh_travel_margin_t *from = &wh_json_record(writer)->reach[station].axes[axis];
     const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
     json_t *object = json_object();
     wh_json_put(writer, object, "station",

@@ -48,7 +48,7 @@ static void add_interval(wh_activity_t *activity, size_t resource, int64_t end) 
     const size_t beside_robot = resource > 0 ? resource - 1 : 0;
     activity->intervals = wh_record_grow(activity->intervals, activity->interval_count,
                                          &activity->interval_capacity, sizeof *activity->intervals);
-    wh_interval_t *added = &activity->intervals[activity->interval_count++];
+    wh_busy_span_t *added = &activity->intervals[activity->interval_count++];
     added->who = resource == 0 ? WH_BUSY_ROBOT : (wh_busy_t)(WH_BUSY_CHUCK + beside_robot % 3);
     added->gripper = resource == 0 ? WH_NONE : (int32_t)(beside_robot / 3);
     added->what = activity->open[resource].what;
@@ -56,7 +56,7 @@ static void add_interval(wh_activity_t *activity, size_t resource, int64_t end) 
     added->end = end;
 }
 
-size_t wh_activity_resource(const wh_interval_t *interval) {
+size_t wh_activity_resource(const wh_busy_span_t *interval) {
     return interval->who == WH_BUSY_ROBOT
                ? 0
                : (size_t)(3 * interval->gripper + (int32_t)interval->who - (int32_t)WH_BUSY_CHUCK + 1);

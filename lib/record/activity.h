@@ -36,7 +36,7 @@ typedef struct {
     int32_t gripper;    /* index from 0; WH_NONE for the robot */
     int32_t what;       /* never 0 */
     int64_t begin, end; /* slices: busy from the end of `begin` to the end of `end`, which is later */
-} wh_interval_t;
+} wh_busy_span_t;
 
 /* What a segment asks of the machine, for all of its slices. */
 typedef struct {
@@ -48,7 +48,7 @@ typedef struct {
 /* To be zeroed before a run. Read `shares` and, once it was ended, `intervals`. */
 typedef struct {
     int64_t shares[WH_SHARES]; /* slices */
-    wh_interval_t *intervals;  /* in the order in which they ended */
+    wh_busy_span_t *intervals; /* in the order in which they ended */
     size_t interval_count, interval_capacity;
     struct {
         int32_t what; /* 0: not busy */
@@ -74,7 +74,7 @@ wh_share_t wh_activity_count(wh_activity_t *activity, const wh_task_t *task, con
 void wh_activity_end(wh_activity_t *activity, int64_t slice);
 
 /* Which of the WH_RESOURCES an interval is of: 0 is the robot. */
-size_t wh_activity_resource(const wh_interval_t *interval);
+size_t wh_activity_resource(const wh_busy_span_t *interval);
 
 /* Drops the intervals that have ended; shares and what is going on stay. */
 void wh_activity_forget(wh_activity_t *activity);

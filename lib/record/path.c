@@ -15,7 +15,7 @@
 #define ROOM 0.95
 #define MERGED 64
 
-void wh_curve_open(wh_curve_t *curve, double tolerance, size_t limit) {
+void wh_path_open(wh_path_t *curve, double tolerance, size_t limit) {
     memset(curve, 0, sizeof *curve);
     curve->tolerance = tolerance;
     curve->limit = limit;
@@ -23,7 +23,7 @@ void wh_curve_open(wh_curve_t *curve, double tolerance, size_t limit) {
     curve->next = 2;
 }
 
-void wh_curve_close(wh_curve_t *curve) {
+void wh_path_close(wh_path_t *curve) {
     free(curve->points);
     free(curve->samples);
     memset(curve, 0, sizeof *curve);
@@ -58,12 +58,12 @@ static double at_slice(const cubic_t *cubic, int64_t slice, double *slope) {
     return cubic->v + x * (cubic->a + x * (cubic->b + x * cubic->c));
 }
 
-static double last_slope(const wh_curve_t *curve) {
+static double last_slope(const wh_path_t *curve) {
     return curve->points[curve->count - 1].slope;
 }
 
 /* Whether one cubic goes from the last point to sample `end`, with that slope there, and misses none between them. */
-static bool fits(const wh_curve_t *curve, size_t end, double slope) {
+static bool fits(const wh_path_t *curve, size_t end, double slope) {
     const wh_sample_t *samples = curve->samples;
     const cubic_t cubic = cubic_of(samples[0].slice, samples[0].value, last_slope(curve), samples[end].slice,
                                    samples[end].value, slope);
@@ -76,7 +76,7 @@ static bool fits(const wh_curve_t *curve, size_t end, double slope) {
 }
 
 /* Over the samples on both sides, but flat enough that a jump is not overshot; over one at an end of all. */
-static double slope_at(const wh_curve_t *curve, size_t i) {
+static double slope_at(const wh_path_t *curve, size_t i) {
     const wh_sample_t *at = &curve->samples[i];
     const wh_sample_t *before = i > 0 ? at - 1 : at;
     const wh_sample_t *after = i + 1 < curve->sample_count ? at + 1 : at;
@@ -95,21 +95,21 @@ static double slope_at(const wh_curve_t *curve, size_t i) {
 
 /* --------------------------------------------------------------------------------------------------- points */
 
-static void add_point(wh_curve_t *curve, const wh_sample_t *sample, double slope, bool exact) {
+static void add_point(wh_path_t *curve, const wh_sample_t *sample, double slope, bool exact) {
     curve->points = wh_record_grow(curve->points, curve->count, &curve->capacity, sizeof *curve->points);
-    const wh_curve_point_t point = {sample->slice, sample->value, slope, exact, false};
+    const wh_path_point_t point = {sample->slice, sample->value, slope, exact, false};
     curve->points[curve->count++] = point;
     curve->exact_count += exact ? 1 : 0;
 }
 
 /* ------------------------------------------------------------------------------------------------- thinning */
 
-static cubic_t cubic_between(const wh_curve_point_t *from, const wh_curve_point_t *to) {
+static cubic_t cubic_between(const wh_path_point_t *from, const wh_path_point_t *to) {
     return cubic_of(from->slice, from->value, from->slope, to->slice, to->value, to->slope);
 }
 
 /* Whether a cubic is near to the one between two neighbouring points. */
-static bool follows(const cubic_t *cubic, const wh_curve_point_t *from, double room) {
+static bool follows(const cubic_t *cubic, const wh_path_point_t *from, double room) {
     const cubic_t fine = cubic_between(from, from + 1);
     const int64_t width = (from + 1)->slice - from->slice;
     const int64_t places = width < PLACES ? width : PLACES;
@@ -122,14 +122,14 @@ static bool follows(const cubic_t *cubic, const wh_curve_point_t *from, double r
     return true;
 }
 
-static bool is_rest(const wh_curve_point_t *from) {
-    const wh_curve_point_t *to = from + 1;
+static bool is_rest(const wh_path_point_t *from) {
+    const wh_path_point_t *to = from + 1;
     return is_same(from->value, to->value) && is_same(from->slope, 0) && is_same(to->slope, 0);
 }
 
 /* Whether one cubic can stand for those from point `i` to point `end`. */
-static bool covers(const wh_curve_t *curve, size_t i, size_t end) {
-    const wh_curve_point_t *points = curve->points;
+static bool covers(const wh_path_t *curve, size_t i, size_t end) {
+    const wh_path_point_t *points = curve->points;
     const cubic_t cubic = cubic_between(&points[i], &points[end]);
     for (size_t k = i; k < end; ++k) {
         const bool stays = k > i && (points[k].exact || points[k].ends || is_rest(&points[k - 1]));
@@ -141,7 +141,7 @@ static bool covers(const wh_curve_t *curve, size_t i, size_t end) {
 }
 
 /* Points of which the others say enough go; off by the tolerance once more. */
-static void thin_again(wh_curve_t *curve) {
+static void thin_again(wh_path_t *curve) {
     size_t kept = 0;
     size_t i = 0;
     while (i + 1 < curve->count) {
@@ -158,7 +158,7 @@ static void thin_again(wh_curve_t *curve) {
 }
 
 /* A signal that jumps without end cannot be thinned: it gets its room, or each sample would cost all of them. */
-static void keep_to_limit(wh_curve_t *curve) {
+static void keep_to_limit(wh_path_t *curve) {
     for (int i = 0; i < 3 && curve->count - curve->exact_count > curve->limit; ++i) {
         thin_again(curve);
     }
@@ -168,7 +168,7 @@ static void keep_to_limit(wh_curve_t *curve) {
 }
 
 /* Sample `i` becomes a point, and the first of those that are kept. */
-static void keep(wh_curve_t *curve, size_t i, double slope, bool exact) {
+static void keep(wh_path_t *curve, size_t i, double slope, bool exact) {
     add_point(curve, &curve->samples[i], slope, exact);
     curve->sample_count -= i;
     memmove(curve->samples, curve->samples + i, curve->sample_count * sizeof *curve->samples);
@@ -182,7 +182,7 @@ static void keep(wh_curve_t *curve, size_t i, double slope, bool exact) {
 /* --------------------------------------------------------------------------------------------------- search */
 
 /* The last sample between `good` and `bad` that was seen to be in reach. */
-static size_t bisect(const wh_curve_t *curve, size_t good, size_t bad) {
+static size_t bisect(const wh_path_t *curve, size_t good, size_t bad) {
     while (bad - good > 1) {
         const size_t middle = good + (bad - good) / 2;
         if (fits(curve, middle, slope_at(curve, middle))) {
@@ -195,7 +195,7 @@ static size_t bisect(const wh_curve_t *curve, size_t good, size_t bad) {
 }
 
 /* Points for the samples up to `end`, whose slopes are known. */
-static void advance(wh_curve_t *curve, size_t end) {
+static void advance(wh_path_t *curve, size_t end) {
     while (curve->next <= end) {
         if (!fits(curve, curve->next, slope_at(curve, curve->next))) {
             const size_t reached = bisect(curve, curve->good, curve->next);
@@ -212,7 +212,7 @@ static void advance(wh_curve_t *curve, size_t end) {
 }
 
 /* Sample `end` becomes a point, and before it as many as that takes. */
-static void settle(wh_curve_t *curve, size_t end, double slope, bool exact) {
+static void settle(wh_path_t *curve, size_t end, double slope, bool exact) {
     while (!fits(curve, end, slope)) {
         const size_t reached = bisect(curve, curve->good < end ? curve->good : 1, end);
         end -= reached;
@@ -224,7 +224,7 @@ static void settle(wh_curve_t *curve, size_t end, double slope, bool exact) {
 /* -------------------------------------------------------------------------------------------------- samples */
 
 /* A point where the rest began, and of the rest the last sample alone. */
-static void come_to_rest(wh_curve_t *curve) {
+static void come_to_rest(wh_path_t *curve) {
     const size_t last = curve->sample_count - 1;
     size_t first = curve->sample_count - curve->equal;
     first += first == 0 && !is_same(last_slope(curve), 0) ? 1 : 0;
@@ -237,7 +237,7 @@ static void come_to_rest(wh_curve_t *curve) {
     curve->is_at_rest = true;
 }
 
-static void push(wh_curve_t *curve, int64_t slice, double value) {
+static void push(wh_path_t *curve, int64_t slice, double value) {
     const size_t count = curve->sample_count;
     curve->equal = count > 0 && is_same(curve->samples[count - 1].value, value) ? curve->equal + 1 : 1;
     curve->samples = wh_record_grow(curve->samples, count, &curve->sample_capacity, sizeof *curve->samples);
@@ -245,13 +245,13 @@ static void push(wh_curve_t *curve, int64_t slice, double value) {
     curve->samples[curve->sample_count++] = sample;
 }
 
-static void begin(wh_curve_t *curve, int64_t slice, double value) {
+static void begin(wh_path_t *curve, int64_t slice, double value) {
     push(curve, slice, value);
     add_point(curve, &curve->samples[0], 0, true);
     curve->is_fresh = true;
 }
 
-void wh_curve_add(wh_curve_t *curve, int64_t slice, double value) {
+void wh_path_add(wh_path_t *curve, int64_t slice, double value) {
     ++curve->of;
     if (curve->sample_count == 0) {
         begin(curve, slice, value);
@@ -282,12 +282,12 @@ void wh_curve_add(wh_curve_t *curve, int64_t slice, double value) {
     }
 }
 
-static void make_exact(wh_curve_t *curve, size_t i) {
+static void make_exact(wh_path_t *curve, size_t i) {
     curve->exact_count += curve->points[i].exact ? 0 : 1;
     curve->points[i].exact = true;
 }
 
-void wh_curve_force(wh_curve_t *curve) {
+void wh_path_force(wh_path_t *curve) {
     if (curve->sample_count == 0) {
         return;
     }
@@ -298,7 +298,7 @@ void wh_curve_force(wh_curve_t *curve) {
     curve->is_forced = curve->sample_count > 1;
 }
 
-void wh_curve_finish(wh_curve_t *curve) {
+void wh_path_finish(wh_path_t *curve) {
     if (curve->sample_count > 1) {
         const size_t last = curve->sample_count - 1;
         settle(curve, last, curve->is_at_rest ? 0 : slope_at(curve, last), true);
@@ -306,9 +306,9 @@ void wh_curve_finish(wh_curve_t *curve) {
     curve->is_forced = false;
 }
 
-void wh_curve_break(wh_curve_t *curve) {
+void wh_path_break(wh_path_t *curve) {
     if (curve->sample_count > 0) {
-        wh_curve_finish(curve);
+        wh_path_finish(curve);
         make_exact(curve, curve->count - 1);
         curve->points[curve->count - 1].ends = true;
         curve->sample_count = 0;
@@ -320,7 +320,7 @@ void wh_curve_break(wh_curve_t *curve) {
 /* -------------------------------------------------------------------------------------------------- reading */
 
 /* The last point at or before the slice. */
-static size_t find(const wh_curve_t *curve, int64_t slice) {
+static size_t find(const wh_path_t *curve, int64_t slice) {
     size_t low = 0;
     size_t high = curve->count;
     while (high - low > 1) {
@@ -334,13 +334,13 @@ static size_t find(const wh_curve_t *curve, int64_t slice) {
     return low;
 }
 
-double wh_curve_read(const wh_curve_t *curve, int64_t slice, double *slope) {
+double wh_path_read(const wh_path_t *curve, int64_t slice, double *slope) {
     const double none = (double)NAN;
     if (curve->count == 0 || slice < curve->points[0].slice) {
         return none;
     }
     const size_t at = find(curve, slice);
-    const wh_curve_point_t *from = &curve->points[at];
+    const wh_path_point_t *from = &curve->points[at];
     if (slope) {
         *slope = slice == from->slice ? from->slope : 0;
     }
@@ -354,9 +354,9 @@ double wh_curve_read(const wh_curve_t *curve, int64_t slice, double *slope) {
     return at_slice(&cubic, slice, slope);
 }
 
-void wh_curve_insert(wh_curve_t *curve, int64_t slice, double value) {
+void wh_path_insert(wh_path_t *curve, int64_t slice, double value) {
     const bool forced = curve->is_forced;
-    wh_curve_finish(curve);
+    wh_path_finish(curve);
     curve->is_forced = forced && curve->sample_count > 1;
     if (curve->count == 0 || slice < curve->points[0].slice ||
         slice > curve->points[curve->count - 1].slice) {
@@ -369,8 +369,8 @@ void wh_curve_insert(wh_curve_t *curve, int64_t slice, double value) {
         }
         return;
     }
-    wh_curve_point_t made = {slice, value, 0, true, false};
-    (void)wh_curve_read(curve, slice, &made.slope);
+    wh_path_point_t made = {slice, value, 0, true, false};
+    (void)wh_path_read(curve, slice, &made.slope);
     curve->points = wh_record_grow(curve->points, curve->count, &curve->capacity, sizeof *curve->points);
     memmove(&curve->points[at + 2], &curve->points[at + 1], (curve->count - at - 1) * sizeof made);
     curve->points[at + 1] = made;

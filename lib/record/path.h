@@ -25,7 +25,7 @@ typedef struct {
     double slope; /* a slice */
     bool exact;   /* on purpose, not for the tolerance's sake */
     bool ends;    /* until the next point there is no signal */
-} wh_curve_point_t;
+} wh_path_point_t;
 
 typedef struct {
     int64_t slice;
@@ -36,7 +36,7 @@ typedef struct {
 typedef struct {
     double tolerance;
     size_t limit;
-    wh_curve_point_t *points;
+    wh_path_point_t *points;
     size_t count, capacity, exact_count;
     int64_t of;           /* samples so far */
     wh_sample_t *samples; /* the last point, unless the signal broke off, and those after it */
@@ -46,30 +46,30 @@ typedef struct {
     bool is_at_rest;   /* since the last point; one sample stands for all */
     bool is_fresh;     /* the last point's slope is not known yet */
     bool is_forced;    /* the last sample is wanted exactly */
-} wh_curve_t;
+} wh_path_t;
 
-void wh_curve_open(wh_curve_t *curve, double tolerance, size_t limit);
+void wh_path_open(wh_path_t *curve, double tolerance, size_t limit);
 
 /* One more sample, of a later slice than the last one. Cost: a few ns at rest, about 50 ns in motion. */
-void wh_curve_add(wh_curve_t *curve, int64_t slice, double value);
+void wh_path_add(wh_path_t *curve, int64_t slice, double value);
 
 /* The last sample is exact. */
-void wh_curve_force(wh_curve_t *curve);
+void wh_path_force(wh_path_t *curve);
 
 /* The last sample becomes a point, so that the points cover all. More samples may follow. */
-void wh_curve_finish(wh_curve_t *curve);
+void wh_path_finish(wh_path_t *curve);
 
 /* The same, and there is no signal from here to the next sample. */
-void wh_curve_break(wh_curve_t *curve);
+void wh_path_break(wh_path_t *curve);
 
 /* A sample that has been, and is wanted exactly after all. It becomes a point unless it is in a break; the samples beside it
  * may then be off by twice the tolerance. */
-void wh_curve_insert(wh_curve_t *curve, int64_t slice, double value);
+void wh_path_insert(wh_path_t *curve, int64_t slice, double value);
 
 /* What the points say of a slice: the last one's value after it, NaN before the first one and in a break. `slope` (a
  * slice) may be null. Cost: log n. */
-double wh_curve_read(const wh_curve_t *curve, int64_t slice, double *slope);
+double wh_path_read(const wh_path_t *curve, int64_t slice, double *slope);
 
-void wh_curve_close(wh_curve_t *curve);
+void wh_path_close(wh_path_t *curve);
 
 #endif

@@ -45,10 +45,10 @@ typedef struct {
     wh_real_t at;     /* where it then stands */
     bool is_max;      /* the upper end */
     int32_t slot;     /* where the arm then goes in, from 1; 0: not rehearsed */
-} wh_reach_t;
+} wh_travel_margin_t;
 
 typedef struct {
-    wh_reach_t axes[WH_ROBOT_AXES];
+    wh_travel_margin_t axes[WH_ROBOT_AXES];
 } wh_station_reach_t;
 
 /* Where a wafer is at the end. */

@@ -19,45 +19,46 @@ static bool turns(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
 }
 
-static void open_curve(wh_curve_t *curve, double tolerance) {
-    wh_curve_open(curve, WH_TRACE_SHARE * tolerance, WH_TRACE_POINTS);
+static void open_curve(wh_path_t *curve, double tolerance) {
+    wh_path_open(curve, WH_TRACE_SHARE * tolerance, WH_TRACE_POINTS);
 }
 
-static void open_tracks(wh_trace_t *trace) {
+static void open_tracks(wh_signals_t *signals) {
     static const double measured[WH_MEASURES] = {WH_TRACE_PROJZ, WH_TRACE_PROJXY, WH_TRACE_PLANAR};
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        open_curve(&trace->vacuum[g], WH_TRACE_VACUUM);
+        open_curve(&signals->vacuum[g], WH_TRACE_VACUUM);
         for (size_t m = 0; m < WH_MEASURES; ++m) {
             /* Half, for points are inserted. */
-            open_curve(&trace->proximity[g][m], measured[m] / 2);
+            open_curve(&signals->proximity[g][m], measured[m] / 2);
         }
-        wh_thin_open(&trace->own[g], 3, WH_TRACE_SHARE * WH_TRACE_OWN_MM, WH_TRACE_SHARE * WH_TRACE_OWN_RAD,
+        wh_thin_open(&signals->own[g], 3, WH_TRACE_SHARE * WH_TRACE_OWN_MM, WH_TRACE_SHARE * WH_TRACE_OWN_RAD,
                      WH_TRACE_POINTS);
     }
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
-        open_curve(&trace->axes[axis], turns(axis) ? WH_TRACE_RAD : WH_TRACE_MM);
+        open_curve(&signals->axes[axis], turns(axis) ? WH_TRACE_RAD : WH_TRACE_MM);
     }
 }
 
-static void add_stay(wh_trace_t *trace, int64_t slice, int32_t wafer, int32_t holder, const wh_pose_t *pose) {
-    trace->stays =
-        wh_record_grow(trace->stays, trace->stay_count, &trace->stay_capacity, sizeof *trace->stays);
+static void add_stay(wh_signals_t *signals, int64_t slice, int32_t wafer, int32_t holder,
+                     const wh_pose_t *pose) {
+    signals->stays =
+        wh_record_grow(signals->stays, signals->stay_count, &signals->stay_capacity, sizeof *signals->stays);
     const wh_stay_t stay = {slice, wafer, holder, *pose};
-    trace->stay_of[wafer] = (int32_t)trace->stay_count;
-    trace->stays[trace->stay_count++] = stay;
+    signals->stay_of[wafer] = (int32_t)signals->stay_count;
+    signals->stays[signals->stay_count++] = stay;
 }
 
 /* As motion control finds it: at home, all valves closed. */
-static void start_at_home(wh_trace_t *trace) {
-    const wh_layout_t *layout = trace->layout;
+static void start_at_home(wh_signals_t *signals) {
+    const wh_layout_t *layout = signals->layout;
     const wh_machine_t *machine = &layout->machine;
     wh_gripper_t grippers[WH_GRIPPERS];
-    wh_condition_t condition;
+    wh_physics_state_t condition;
     wh_pose_t poses[WH_GRIPPERS];
     double axes[WH_AXES] = {0};
     memcpy(axes, machine->robot.home, sizeof machine->robot.home);
     wh_machine_grippers(machine, axes, poses);
-    wh_condition_start(&condition, &layout->physics);
+    wh_physics_state_start(&condition, &layout->physics);
     memset(grippers, 0, sizeof grippers);
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         grippers[g].base_from_gripper = poses[g];
@@ -69,22 +70,22 @@ static void start_at_home(wh_trace_t *trace) {
                               .grippers = grippers,
                               .gripper_count = machine->gripper_count,
                               .condition = &condition};
-    wh_trace_slice(trace, axes, machine->axis_count, &state);
+    wh_signals_slice(signals, axes, machine->axis_count, &state);
 }
 
-void wh_trace_begin(wh_trace_t *trace, const wh_layout_t *layout, bool at_home) {
-    trace->layout = layout;
-    trace->first = trace->last = -1;
-    open_tracks(trace);
-    trace->stay_of = calloc(layout->wafer_count + 1, sizeof *trace->stay_of);
-    if (!trace->stay_of) {
+void wh_signals_begin(wh_signals_t *signals, const wh_layout_t *layout, bool at_home) {
+    signals->layout = layout;
+    signals->first = signals->last = -1;
+    open_tracks(signals);
+    signals->stay_of = calloc(layout->wafer_count + 1, sizeof *signals->stay_of);
+    if (!signals->stay_of) {
         abort();
     }
     for (size_t w = 0; w < layout->wafer_count; ++w) {
-        add_stay(trace, 0, (int32_t)w, WH_NONE, &layout->start[w].base_from_wafer);
+        add_stay(signals, 0, (int32_t)w, WH_NONE, &layout->start[w].base_from_wafer);
     }
     if (at_home) {
-        start_at_home(trace);
+        start_at_home(signals);
     }
 }
 
@@ -108,29 +109,29 @@ static void add_own(wh_thin_t *own, int64_t slice, const wh_pose_t *pose) {
 }
 
 /* What the axes do not say of the grippers. */
-static void add_grippers(wh_trace_t *trace, const double axes[], const wh_state_t *state) {
+static void add_grippers(wh_signals_t *signals, const double axes[], const wh_state_t *state) {
     wh_pose_t expected[WH_GRIPPERS];
     if (axes) {
-        wh_machine_grippers(&trace->layout->machine, axes, expected);
+        wh_machine_grippers(&signals->layout->machine, axes, expected);
     }
     for (size_t g = 0; g < state->gripper_count; ++g) {
         const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
-        if (trace->own[g].of > 0 || !axes || !is_at(pose, &expected[g])) {
-            add_own(&trace->own[g], state->seq, pose);
+        if (signals->own[g].of > 0 || !axes || !is_at(pose, &expected[g])) {
+            add_own(&signals->own[g], state->seq, pose);
         }
     }
 }
 
-static void add_axes(wh_trace_t *trace, const double axes[], size_t axis_count, const wh_state_t *state) {
+static void add_axes(wh_signals_t *signals, const double axes[], size_t axis_count, const wh_state_t *state) {
     for (size_t axis = 0; axis < axis_count; ++axis) {
-        wh_curve_add(&trace->axes[axis], state->seq, axes[axis]);
+        wh_path_add(&signals->axes[axis], state->seq, axes[axis]);
     }
-    trace->axis_count = axis_count > trace->axis_count ? axis_count : trace->axis_count;
+    signals->axis_count = axis_count > signals->axis_count ? axis_count : signals->axis_count;
 }
 
 /* ---------------------------------------------------------------------------------------------------- steps */
 
-void wh_trace_step(wh_steps_t *steps, int64_t slice, int32_t value) {
+void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value) {
     if (steps->count > 0 && steps->steps[steps->count - 1].value == value) {
         return;
     }
@@ -139,11 +140,11 @@ void wh_trace_step(wh_steps_t *steps, int64_t slice, int32_t value) {
     steps->steps[steps->count++].value = value;
 }
 
-static void add_signals(wh_trace_t *trace, const wh_state_t *state) {
+static void add_signals(wh_signals_t *signals, const wh_state_t *state) {
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        wh_trace_step(&trace->valves[g], state->seq, state->condition->told[g]);
-        wh_trace_step(&trace->sensors[g], state->seq, (int32_t)(state->sensors >> g & 1U));
-        wh_curve_add(&trace->vacuum[g], state->seq, state->condition->vacuum[g].level);
+        wh_signals_step(&signals->valves[g], state->seq, state->condition->told[g]);
+        wh_signals_step(&signals->sensors[g], state->seq, (int32_t)(state->sensors >> g & 1U));
+        wh_path_add(&signals->vacuum[g], state->seq, state->condition->vacuum[g].level);
     }
 }
 
@@ -158,28 +159,28 @@ static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
     return same;
 }
 
-static void look_at_wafer(wh_trace_t *trace, const wh_state_t *state, int32_t w, int32_t holder,
+static void look_at_wafer(wh_signals_t *signals, const wh_state_t *state, int32_t w, int32_t holder,
                           const wh_pose_t *pose) {
-    const wh_stay_t *stay = &trace->stays[trace->stay_of[w]];
+    const wh_stay_t *stay = &signals->stays[signals->stay_of[w]];
     if (stay->holder != holder || !is_same(&stay->pose, pose)) {
-        add_stay(trace, state->seq, w, holder, pose);
+        add_stay(signals, state->seq, w, holder, pose);
         for (size_t g = 0; g < state->gripper_count; ++g) {
-            trace->vicinity[g].is_known = false;
+            signals->vicinity[g].is_known = false;
         }
     }
 }
 
-static void add_wafers(wh_trace_t *trace, const wh_state_t *state) {
+static void add_wafers(wh_signals_t *signals, const wh_state_t *state) {
     for (size_t g = 0; g < state->gripper_count; ++g) {
         const wh_gripper_t *gripper = &state->grippers[g];
         if (gripper->wafer != WH_NONE) {
-            look_at_wafer(trace, state, gripper->wafer, (int32_t)g, &gripper->gripper_from_wafer);
+            look_at_wafer(signals, state, gripper->wafer, (int32_t)g, &gripper->gripper_from_wafer);
         }
     }
-    const bool all = state->wafer_count <= WATCHED_WAFERS || state->event_count > 0 || trace->last < 0;
+    const bool all = state->wafer_count <= WATCHED_WAFERS || state->event_count > 0 || signals->last < 0;
     for (size_t w = 0; all && w < state->wafer_count; ++w) {
         if (state->wafers[w].holder == WH_NONE) {
-            look_at_wafer(trace, state, (int32_t)w, WH_NONE, &state->wafers[w].base_from_wafer);
+            look_at_wafer(signals, state, (int32_t)w, WH_NONE, &state->wafers[w].base_from_wafer);
         }
     }
 }
@@ -212,13 +213,13 @@ static bool place_of(const wh_event_t *event, const wh_state_t *state, wh_vec3_t
     return false;
 }
 
-static void add_marks(wh_trace_t *trace, const wh_state_t *state) {
+static void add_marks(wh_signals_t *signals, const wh_state_t *state) {
     for (size_t i = 0; i < state->event_count; ++i) {
         const wh_event_t *event = &state->events[i];
         if (is_marked(event->kind)) {
-            trace->marks =
-                wh_record_grow(trace->marks, trace->mark_count, &trace->mark_capacity, sizeof *trace->marks);
-            wh_mark_t *mark = &trace->marks[trace->mark_count++];
+            signals->marks = wh_record_grow(signals->marks, signals->mark_count, &signals->mark_capacity,
+                                            sizeof *signals->marks);
+            wh_mark_t *mark = &signals->marks[signals->mark_count++];
             memset(mark, 0, sizeof *mark);
             mark->event = *event;
             mark->utime = state->utime;
@@ -229,60 +230,61 @@ static void add_marks(wh_trace_t *trace, const wh_state_t *state) {
 
 /* --------------------------------------------------------------------------------------------------- slices */
 
-typedef void each_curve_t(wh_curve_t *curve);
+typedef void each_curve_t(wh_path_t *curve);
 typedef void each_own_t(wh_thin_t *own);
 
-static void for_each(wh_trace_t *trace, each_curve_t *act, each_own_t *act_on_own) {
+static void for_each(wh_signals_t *signals, each_curve_t *act, each_own_t *act_on_own) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        act(&trace->vacuum[g]);
+        act(&signals->vacuum[g]);
         for (size_t m = 0; m < WH_MEASURES; ++m) {
-            act(&trace->proximity[g][m]);
+            act(&signals->proximity[g][m]);
         }
-        act_on_own(&trace->own[g]);
+        act_on_own(&signals->own[g]);
     }
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
-        act(&trace->axes[axis]);
+        act(&signals->axes[axis]);
     }
 }
 
-void wh_trace_slice(wh_trace_t *trace, const double axes[], size_t axis_count, const wh_state_t *state) {
-    if (!trace->layout || state->seq <= trace->last) {
+void wh_signals_slice(wh_signals_t *signals, const double axes[], size_t axis_count,
+                      const wh_state_t *state) {
+    if (!signals->layout || state->seq <= signals->last) {
         return;
     }
-    trace->first = trace->first < 0 ? state->seq : trace->first;
-    const bool is_whole = axes && axis_count >= trace->layout->machine.axis_count;
-    add_grippers(trace, is_whole ? axes : NULL, state);
+    signals->first = signals->first < 0 ? state->seq : signals->first;
+    const bool is_whole = axes && axis_count >= signals->layout->machine.axis_count;
+    add_grippers(signals, is_whole ? axes : NULL, state);
     if (axes) {
-        add_axes(trace, axes, axis_count, state);
+        add_axes(signals, axes, axis_count, state);
     }
-    add_signals(trace, state);
-    add_wafers(trace, state);
-    wh_trace_proximity(trace, state);
+    add_signals(signals, state);
+    add_wafers(signals, state);
+    wh_signals_proximity(signals, state);
     if (state->event_count > 0) {
-        add_marks(trace, state);
-        wh_trace_mark(trace);
+        add_marks(signals, state);
+        wh_signals_mark(signals);
     }
-    trace->last = state->seq;
+    signals->last = state->seq;
 }
 
-void wh_trace_mark(wh_trace_t *trace) {
-    for_each(trace, wh_curve_force, wh_thin_force);
+void wh_signals_mark(wh_signals_t *signals) {
+    for_each(signals, wh_path_force, wh_thin_force);
 }
 
-void wh_trace_finish(wh_trace_t *trace) {
-    for_each(trace, wh_curve_finish, wh_thin_finish);
+void wh_signals_finish(wh_signals_t *signals) {
+    for_each(signals, wh_path_finish, wh_thin_finish);
 }
 
-void wh_trace_close(wh_trace_t *trace) {
-    for_each(trace, wh_curve_close, wh_thin_close);
+void wh_signals_close(wh_signals_t *signals) {
+    for_each(signals, wh_path_close, wh_thin_close);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        free(trace->valves[g].steps);
-        free(trace->sensors[g].steps);
-        free(trace->nearest[g].steps);
-        free(trace->vicinity[g].wafers);
+        free(signals->valves[g].steps);
+        free(signals->sensors[g].steps);
+        free(signals->nearest[g].steps);
+        free(signals->vicinity[g].wafers);
     }
-    free(trace->stays);
-    free(trace->stay_of);
-    free(trace->marks);
-    memset(trace, 0, sizeof *trace);
+    free(signals->stays);
+    free(signals->stay_of);
+    free(signals->marks);
+    memset(signals, 0, sizeof *signals);
 }

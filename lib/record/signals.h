@@ -3,7 +3,7 @@
  * Axes, vacuum, and each gripper against the wafer that it holds or would take are curves (record/path.h); valves, sensors and where
  * wafers lie change in steps and are kept as they are. Where grippers and the arm's links are follows from the axes; a gripper
  * that is elsewhere, for its machine is not the layout's or a log does not tell the axes, has poses of its own from then on
- * (record/thin.h). All of it is exact at events and wherever wh_trace_mark is called. Slices count as in the run: what is of
+ * (record/thin.h). All of it is exact at events and wherever wh_signals_mark is called. Slices count as in the run: what is of
  * slice n is true at its end, slice 0 is before the first.
  *
  * Host code: aborts when memory is out. Memory: what thinning leaves, steps, and 4 bytes a wafer.
@@ -80,14 +80,14 @@ typedef struct {
     size_t count, capacity;
     wh_vec3_t centre;
     bool is_known;
-} wh_vicinity_t;
+} wh_neighbours_t;
 
 /* Zero it to begin with. Read only. */
 typedef struct {
     const wh_layout_t *layout; /* null before the first slice; borrowed */
     size_t axis_count;
-    wh_curve_t axes[WH_AXES], vacuum[WH_GRIPPERS];
-    wh_curve_t proximity[WH_GRIPPERS][WH_MEASURES];
+    wh_path_t axes[WH_AXES], vacuum[WH_GRIPPERS];
+    wh_path_t proximity[WH_GRIPPERS][WH_MEASURES];
     wh_thin_t own[WH_GRIPPERS]; /* base_from_gripper from its first point on, if any: else of the axes */
     wh_steps_t valves[WH_GRIPPERS], sensors[WH_GRIPPERS];
     wh_steps_t nearest[WH_GRIPPERS]; /* the wafer that it is measured against, or WH_NONE */
@@ -97,39 +97,40 @@ typedef struct {
     wh_mark_t *marks;
     size_t mark_count, mark_capacity;
     int64_t first, last; /* slices */
-    wh_vicinity_t vicinity[WH_GRIPPERS];
-} wh_trace_t;
+    wh_neighbours_t vicinity[WH_GRIPPERS];
+} wh_signals_t;
 
 /* The layout is known: everything is as before the first slice. With `at_home` that is the first sample; without, the next
  * slice is (of a run of which the beginning is missing). */
-void wh_trace_begin(wh_trace_t *trace, const wh_layout_t *layout, bool at_home);
+void wh_signals_begin(wh_signals_t *signals, const wh_layout_t *layout, bool at_home);
 
 /* One accepted slice, later than the last one. `axes` has axis_count numbers; null where they are not known. Cost: about 1 us
  * with two grippers, a pass over all wafers where something happens or a gripper has gone far. */
-void wh_trace_slice(wh_trace_t *trace, const double axes[], size_t axis_count, const wh_state_t *state);
+void wh_signals_slice(wh_signals_t *signals, const double axes[], size_t axis_count, const wh_state_t *state);
 
 /* What the last slice left is wanted exactly. */
-void wh_trace_mark(wh_trace_t *trace);
+void wh_signals_mark(wh_signals_t *signals);
 
 /* No more slices. */
-void wh_trace_finish(wh_trace_t *trace);
+void wh_signals_finish(wh_signals_t *signals);
 
-void wh_trace_close(wh_trace_t *trace);
+void wh_signals_close(wh_signals_t *signals);
 
 /* Where a gripper is shown at a slice. Of a finished trace, one that has slices. Cost: log n. */
-void wh_trace_gripper(const wh_trace_t *trace, size_t gripper, int64_t slice, wh_pose_t *base_from_gripper);
+void wh_signals_gripper(const wh_signals_t *signals, size_t gripper, int64_t slice,
+                        wh_pose_t *base_from_gripper);
 
 /* Where the arm's links are shown; false where no gripper is on the robot. */
-bool wh_trace_links(const wh_trace_t *trace, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]);
+bool wh_signals_links(const wh_signals_t *signals, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]);
 
 /* Between which poses of grippers and links lie on straight lines, or nearly: the points of all that moves them, and so many between two
  * that none is passed over. Calls `visit` for each of these slices, in order. */
-void wh_trace_walk(const wh_trace_t *trace, void (*visit)(void *user, int64_t slice), void *user);
+void wh_signals_walk(const wh_signals_t *signals, void (*visit)(void *user, int64_t slice), void *user);
 
 /* Within: adds the value unless it is the last one. */
-void wh_trace_step(wh_steps_t *steps, int64_t slice, int32_t value);
+void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value);
 
 /* Within: each gripper against the wafer that it holds or would take. */
-void wh_trace_proximity(wh_trace_t *trace, const wh_state_t *state);
+void wh_signals_proximity(wh_signals_t *signals, const wh_state_t *state);
 
 #endif

@@ -13,36 +13,37 @@ static void read_own(const wh_thin_t *own, int64_t slice, wh_pose_t *pose) {
     wh_quaternion_to_matrix(values + 3, &pose->R);
 }
 
-static void read_grippers(const wh_trace_t *trace, int64_t slice, wh_pose_t poses[WH_GRIPPERS]) {
-    const wh_machine_t *machine = &trace->layout->machine;
+static void read_grippers(const wh_signals_t *signals, int64_t slice, wh_pose_t poses[WH_GRIPPERS]) {
+    const wh_machine_t *machine = &signals->layout->machine;
     double axes[WH_AXES] = {0};
-    for (size_t axis = 0; axis < WH_AXES && trace->axes[axis].count > 0; ++axis) {
-        axes[axis] = wh_curve_read(&trace->axes[axis], slice, NULL);
+    for (size_t axis = 0; axis < WH_AXES && signals->axes[axis].count > 0; ++axis) {
+        axes[axis] = wh_path_read(&signals->axes[axis], slice, NULL);
     }
     wh_machine_grippers(machine, axes, poses);
     for (size_t g = 0; g < machine->gripper_count; ++g) {
-        const wh_thin_t *own = &trace->own[g];
+        const wh_thin_t *own = &signals->own[g];
         if (own->count > 0 && slice >= own->points[0].slice) {
             read_own(own, slice, &poses[g]);
         }
     }
 }
 
-void wh_trace_gripper(const wh_trace_t *trace, size_t gripper, int64_t slice, wh_pose_t *base_from_gripper) {
+void wh_signals_gripper(const wh_signals_t *signals, size_t gripper, int64_t slice,
+                        wh_pose_t *base_from_gripper) {
     wh_pose_t poses[WH_GRIPPERS];
-    read_grippers(trace, slice, poses);
+    read_grippers(signals, slice, poses);
     *base_from_gripper = poses[gripper];
 }
 
-bool wh_trace_links(const wh_trace_t *trace, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]) {
+bool wh_signals_links(const wh_signals_t *signals, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]) {
     wh_pose_t poses[WH_GRIPPERS];
     wh_pose_t base_from_effector;
     wh_pose_t bodies[WH_ARM_BODIES];
-    read_grippers(trace, slice, poses);
-    if (!wh_collision_effector(&trace->layout->machine, poses, &base_from_effector)) {
+    read_grippers(signals, slice, poses);
+    if (!wh_collision_effector(&signals->layout->machine, poses, &base_from_effector)) {
         return false;
     }
-    wh_arm_place(&trace->layout->shapes.arm, &base_from_effector, bodies);
+    wh_arm_place(&signals->layout->shapes.arm, &base_from_effector, bodies);
     for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
         base_from_links[i] = bodies[WH_ARM_LIFT + i];
     }
@@ -56,7 +57,7 @@ typedef struct {
     size_t axes[WH_AXES], own[WH_GRIPPERS];
 } passed_t;
 
-static int64_t next_of_curve(const wh_curve_t *curve, size_t *at, int64_t slice, int64_t next) {
+static int64_t next_of_curve(const wh_path_t *curve, size_t *at, int64_t slice, int64_t next) {
     while (*at < curve->count && curve->points[*at].slice <= slice) {
         ++*at;
     }
@@ -71,23 +72,23 @@ static int64_t next_of_own(const wh_thin_t *own, size_t *at, int64_t slice, int6
 }
 
 /* The first slice after `slice` at which a signal has a point, or the trace's last. */
-static int64_t next_point(const wh_trace_t *trace, passed_t *passed, int64_t slice) {
-    int64_t next = trace->last;
-    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
-        next = next_of_curve(&trace->axes[axis], &passed->axes[axis], slice, next);
+static int64_t next_point(const wh_signals_t *signals, passed_t *passed, int64_t slice) {
+    int64_t next = signals->last;
+    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
+        next = next_of_curve(&signals->axes[axis], &passed->axes[axis], slice, next);
     }
-    for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        next = next_of_own(&trace->own[g], &passed->own[g], slice, next);
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
+        next = next_of_own(&signals->own[g], &passed->own[g], slice, next);
     }
     return next;
 }
 
-void wh_trace_walk(const wh_trace_t *trace, void (*visit)(void *user, int64_t slice), void *user) {
+void wh_signals_walk(const wh_signals_t *signals, void (*visit)(void *user, int64_t slice), void *user) {
     passed_t passed = {{0}, {0}};
-    int64_t slice = trace->first;
+    int64_t slice = signals->first;
     visit(user, slice);
-    while (slice < trace->last) {
-        const int64_t next = next_point(trace, &passed, slice);
+    while (slice < signals->last) {
+        const int64_t next = next_point(signals, &passed, slice);
         const int64_t width = next - slice;
         const int64_t places = width < PLACES ? width : PLACES;
         for (int64_t i = 1; i < places; ++i) {

@@ -14,15 +14,15 @@ static double square_of(const wh_vec3_t *a, const wh_vec3_t *b) {
 }
 
 /* A wafer within the reach of the plot has its centre so near to the gripper's. */
-static double reach_of(const wh_trace_t *trace) {
-    return WH_TRACE_REACH + 2 * trace->layout->grasp.near_projxy;
+static double reach_of(const wh_signals_t *signals) {
+    return WH_TRACE_REACH + 2 * signals->layout->grasp.near_projxy;
 }
 
 /* ------------------------------------------------------------------------------------------------- vicinity */
 
-static void look_around(const wh_trace_t *trace, wh_vicinity_t *vicinity, const wh_state_t *state,
+static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, const wh_state_t *state,
                         const wh_vec3_t *at) {
-    const double radius = reach_of(trace) + ROOM;
+    const double radius = reach_of(signals) + ROOM;
     const bool few = state->wafer_count <= FEW_WAFERS;
     vicinity->count = 0;
     for (size_t w = 0; w < state->wafer_count; ++w) {
@@ -57,11 +57,11 @@ static void consider(search_t *search, int32_t wafer) {
 }
 
 /* The wafer that it holds, else the one that it would take: with the smallest |dr_proj_z|. */
-static int32_t find_nearest(const wh_trace_t *trace, const wh_vicinity_t *vicinity, const wh_state_t *state,
-                            size_t g) {
+static int32_t find_nearest(const wh_signals_t *signals, const wh_neighbours_t *vicinity,
+                            const wh_state_t *state, size_t g) {
     search_t search = {.state = state,
                        .at = &state->grippers[g].base_from_gripper.r,
-                       .reach = reach_of(trace),
+                       .reach = reach_of(signals),
                        .nearest = WH_NONE};
     if (state->grippers[g].wafer != WH_NONE) {
         return state->grippers[g].wafer;
@@ -87,36 +87,36 @@ static void take(const wh_proximity_t *p, double values[WH_MEASURES]) {
 }
 
 /* The nearest wafer and how near, or WH_NONE. */
-static int32_t measure(wh_trace_t *trace, const wh_state_t *state, size_t g, double values[WH_MEASURES]) {
+static int32_t measure(wh_signals_t *signals, const wh_state_t *state, size_t g, double values[WH_MEASURES]) {
     const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
-    wh_vicinity_t *vicinity = &trace->vicinity[g];
+    wh_neighbours_t *vicinity = &signals->vicinity[g];
     wh_proximity_t p;
     if (!vicinity->is_known || square_of(&pose->r, &vicinity->centre) > ROOM * ROOM) {
-        look_around(trace, vicinity, state, &pose->r);
+        look_around(signals, vicinity, state, &pose->r);
     }
-    const int32_t nearest = find_nearest(trace, vicinity, state, g);
+    const int32_t nearest = find_nearest(signals, vicinity, state, g);
     if (nearest == WH_NONE || wh_proximity_measure(&state->wafers[nearest].base_from_wafer, pose,
-                                                   &trace->layout->grasp.tolerance, &p) != WH_OK) {
+                                                   &signals->layout->grasp.tolerance, &p) != WH_OK) {
         return WH_NONE;
     }
     take(&p, values);
     const bool near = values[WH_MEASURE_PROJZ] < WH_TRACE_REACH &&
-                      values[WH_MEASURE_PROJXY] < 2 * trace->layout->grasp.near_projxy;
+                      values[WH_MEASURE_PROJXY] < 2 * signals->layout->grasp.near_projxy;
     return near ? nearest : WH_NONE;
 }
 
-static void add_gripper(wh_trace_t *trace, const wh_state_t *state, size_t g) {
-    wh_steps_t *steps = &trace->nearest[g];
+static void add_gripper(wh_signals_t *signals, const wh_state_t *state, size_t g) {
+    wh_steps_t *steps = &signals->nearest[g];
     double values[WH_MEASURES] = {0};
-    const int32_t nearest = measure(trace, state, g, values);
+    const int32_t nearest = measure(signals, state, g, values);
     const bool is_other = steps->count > 0 && steps->steps[steps->count - 1].value != nearest;
-    wh_trace_step(steps, state->seq, nearest);
+    wh_signals_step(steps, state->seq, nearest);
     for (size_t m = 0; m < WH_MEASURES; ++m) {
         if (is_other) {
-            wh_curve_break(&trace->proximity[g][m]);
+            wh_path_break(&signals->proximity[g][m]);
         }
         if (nearest != WH_NONE) {
-            wh_curve_add(&trace->proximity[g][m], state->seq, values[m]);
+            wh_path_add(&signals->proximity[g][m], state->seq, values[m]);
         }
     }
 }
@@ -130,26 +130,26 @@ static int32_t nearest_at(const wh_steps_t *steps, int64_t slice) {
     return i > 0 ? steps->steps[i - 1].value : WH_NONE;
 }
 
-static void insert_past(wh_trace_t *trace, const wh_event_t *event) {
+static void insert_past(wh_signals_t *signals, const wh_event_t *event) {
     const int64_t slice = (int64_t)event->measured_slice;
     double values[WH_MEASURES];
     take(&event->measured, values);
-    if (nearest_at(&trace->nearest[event->gripper], slice) == event->wafer) {
+    if (nearest_at(&signals->nearest[event->gripper], slice) == event->wafer) {
         for (size_t m = 0; m < WH_MEASURES; ++m) {
-            wh_curve_insert(&trace->proximity[event->gripper][m], slice, values[m]);
+            wh_path_insert(&signals->proximity[event->gripper][m], slice, values[m]);
         }
     }
 }
 
-void wh_trace_proximity(wh_trace_t *trace, const wh_state_t *state) {
+void wh_signals_proximity(wh_signals_t *signals, const wh_state_t *state) {
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        add_gripper(trace, state, g);
+        add_gripper(signals, state, g);
     }
     for (size_t i = 0; i < state->event_count; ++i) {
         const wh_event_t *event = &state->events[i];
         const bool past = event->kind == WH_EVENT_NEAR_MISS || event->kind == WH_EVENT_CONTESTED;
         if (past && (int64_t)event->measured_slice < state->seq) {
-            insert_past(trace, event);
+            insert_past(signals, event);
         }
     }
 }

@@ -30,7 +30,7 @@ static void *zeroed(size_t count, size_t size) {
     return memory;
 }
 
-size_t *wh_figures_cycle_wafers(const wh_record_t *record, wh_rank_t rank) {
+size_t *wh_throughput_cycle_wafers(const wh_record_t *record, wh_rank_t rank) {
     size_t *wafers = zeroed(record->cycle_count, sizeof *wafers);
     /* By wafer: 1 + the last cycle in which it counted. */
     size_t *counted = zeroed(record->layout ? record->layout->wafer_count : 0, sizeof *counted);
@@ -49,21 +49,21 @@ size_t *wh_figures_cycle_wafers(const wh_record_t *record, wh_rank_t rank) {
     return wafers;
 }
 
-int64_t wh_figures_cycle_end(const wh_record_t *record, size_t cycle) {
+int64_t wh_throughput_cycle_end(const wh_record_t *record, size_t cycle) {
     return cycle + 1 < record->cycle_count ? record->cycles[cycle + 1].begin : record->slices;
 }
 
-double wh_figures_seconds(const wh_record_t *record, int64_t slices) {
+double wh_throughput_seconds(const wh_record_t *record, int64_t slices) {
     return record->layout ? (double)(slices * record->layout->slice_us) / 1e6 : 0;
 }
 
 static int64_t cycle_slices(const wh_record_t *record, size_t cycle) {
-    return wh_figures_cycle_end(record, cycle) - record->cycles[cycle].begin;
+    return wh_throughput_cycle_end(record, cycle) - record->cycles[cycle].begin;
 }
 
 /* From the cycle after the first that is one, or that one when there is no other. */
 static void count_cycles(const wh_record_t *record, wh_throughput_t *throughput) {
-    size_t *wafers = wh_figures_cycle_wafers(record, throughput->rank);
+    size_t *wafers = wh_throughput_cycle_wafers(record, throughput->rank);
     bool settling = true;
     for (size_t i = 0; i < record->cycle_count; ++i) {
         if (cycle_slices(record, i) == 0) {
@@ -90,7 +90,7 @@ static void count_run(const wh_record_t *record, wh_throughput_t *throughput) {
     throughput->slices = record->slices;
 }
 
-wh_throughput_t wh_figures_throughput(const wh_record_t *record) {
+wh_throughput_t wh_throughput(const wh_record_t *record) {
     wh_throughput_t throughput = {WH_RANK_NONE, 0, 0, 0, 0, 0, 0, 0};
     if (!record->layout) {
         return throughput;
@@ -101,7 +101,7 @@ wh_throughput_t wh_figures_throughput(const wh_record_t *record) {
     if (throughput.first == 0) {
         count_run(record, &throughput);
     }
-    throughput.seconds = wh_figures_seconds(record, throughput.slices);
+    throughput.seconds = wh_throughput_seconds(record, throughput.slices);
     if (throughput.slices > 0) {
         throughput.wafers_per_hour = 3600 * (double)throughput.wafers / throughput.seconds;
     }

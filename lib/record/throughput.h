@@ -38,16 +38,16 @@ typedef struct {
 } wh_throughput_t;
 
 /* All zero for a record without a layout. Cost: linear in puts, cycles and wafers. Aborts when memory is out. */
-wh_throughput_t wh_figures_throughput(const wh_record_t *record);
+wh_throughput_t wh_throughput(const wh_record_t *record);
 
 /* How many wafers are done in each marked cycle, for puts of this rank: an array of record->cycle_count, to be freed.
  * Cost and memory as above. */
-size_t *wh_figures_cycle_wafers(const wh_record_t *record, wh_rank_t rank);
+size_t *wh_throughput_cycle_wafers(const wh_record_t *record, wh_rank_t rank);
 
 /* The slice with which a marked cycle (index from 0) ends. */
-int64_t wh_figures_cycle_end(const wh_record_t *record, size_t cycle);
+int64_t wh_throughput_cycle_end(const wh_record_t *record, size_t cycle);
 
 /* Seconds that so many slices take; 0 for a record without a layout. */
-double wh_figures_seconds(const wh_record_t *record, int64_t slices);
+double wh_throughput_seconds(const wh_record_t *record, int64_t slices);
 
 #endif

@@ -11,8 +11,8 @@
 
 #define FORMAT 2
 
-double wh_document_seconds(const wh_trace_t *trace, int64_t slice) {
-    return (double)(slice * trace->layout->slice_us) / 1e6;
+double wh_document_seconds(const wh_signals_t *signals, int64_t slice) {
+    return (double)(slice * signals->layout->slice_us) / 1e6;
 }
 
 static void put_text(wh_json_text_t *text, const char *key, const char *value) {
@@ -61,7 +61,7 @@ static void put_notes(wh_json_text_t *text, const wh_document_t *document) {
 }
 
 static void put_head(wh_json_text_t *text, const wh_document_t *document) {
-    const wh_trace_t *trace = document->trace;
+    const wh_signals_t *signals = document->signals;
     wh_json_text_integer(text, "format", FORMAT);
     put_text(text, "title", document->title);
     put_text(text, "version", WH_VERSION);
@@ -70,10 +70,10 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     put_text(text, "source", document->source);
     put_notes(text, document);
     wh_json_text_value(text, "run", json_incref(document->run));
-    put_exact(text, "slice_s", (double)trace->layout->slice_us / 1e6);
-    wh_json_text_integer(text, "slices", trace->last > 0 ? trace->last : 0);
-    put_exact(text, "begin_s", wh_document_seconds(trace, trace->first));
-    put_exact(text, "duration_s", wh_document_seconds(trace, trace->last));
+    put_exact(text, "slice_s", (double)signals->layout->slice_us / 1e6);
+    wh_json_text_integer(text, "slices", signals->last > 0 ? signals->last : 0);
+    put_exact(text, "begin_s", wh_document_seconds(signals, signals->first));
+    put_exact(text, "duration_s", wh_document_seconds(signals, signals->last));
 }
 
 /* ---------------------------------------------------------------------------------------------------- names */
@@ -109,8 +109,8 @@ static void put_axis(wh_json_text_t *text, const wh_layout_t *layout, size_t axi
     wh_json_text_end(text, '}');
 }
 
-static void put_names(wh_json_text_t *text, const wh_trace_t *trace) {
-    const wh_layout_t *layout = trace->layout;
+static void put_names(wh_json_text_t *text, const wh_signals_t *signals) {
+    const wh_layout_t *layout = signals->layout;
     wh_json_text_begin(text, "names", '{');
     wh_json_text_begin(text, "wafers", '[');
     for (size_t i = 0; i < layout->wafer_count; ++i) {
@@ -128,7 +128,7 @@ static void put_names(wh_json_text_t *text, const wh_trace_t *trace) {
     }
     wh_json_text_end(text, ']');
     wh_json_text_begin(text, "axes", '[');
-    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
+    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
         put_axis(text, layout, axis);
     }
     wh_json_text_end(text, ']');
@@ -207,18 +207,18 @@ static void put_slots(wh_json_text_t *text, const wh_layout_t *layout) {
 
 int wh_document_write(const wh_document_t *document, FILE *out) {
     wh_json_text_t text = {.out = out};
-    const wh_trace_t *trace = document->trace;
+    const wh_signals_t *signals = document->signals;
     wh_json_text_begin(&text, NULL, '{');
     put_head(&text, document);
-    put_names(&text, trace);
-    put_wafer(&text, trace->layout);
-    put_machine(&text, trace->layout);
-    put_limits(&text, &trace->layout->grasp);
-    put_slots(&text, trace->layout);
-    wh_document_put_thinning(&text, trace);
+    put_names(&text, signals);
+    put_wafer(&text, signals->layout);
+    put_machine(&text, signals->layout);
+    put_limits(&text, &signals->layout->grasp);
+    put_slots(&text, signals->layout);
+    wh_document_put_thinning(&text, signals);
     wh_document_put_tracks(&text, document);
-    wh_document_put_marks(&text, trace);
-    wh_json_text_value(&text, "scene", wh_scene_make(trace, document->title, false));
+    wh_document_put_marks(&text, signals);
+    wh_json_text_value(&text, "scene", wh_scene_make(signals, document->title, false));
     wh_json_text_end(&text, '}');
     fputc('\n', out);
     return text.failed || fflush(out) != 0 || ferror(out) ? -1 : 0;

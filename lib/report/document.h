@@ -47,9 +47,9 @@ typedef struct {
     size_t parameter_count;
     const char *const *notes;
     size_t note_count;
-    json_t *run;               /* borrowed */
-    const wh_record_t *record; /* for its curves and limits; its layout is the trace's */
-    const wh_trace_t *trace;   /* finished */
+    json_t *run;                 /* borrowed */
+    const wh_record_t *record;   /* for its curves and limits; its layout is the trace's */
+    const wh_signals_t *signals; /* finished */
 } wh_document_t;
 
 /* 0, or -1 when `out` does not take it. Aborts when memory is out. */

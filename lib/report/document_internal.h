@@ -5,7 +5,7 @@
 #include "../text/json_text.h"
 #include "document.h"
 
-double wh_document_seconds(const wh_trace_t *trace, int64_t slice);
+double wh_document_seconds(const wh_signals_t *signals, int64_t slice);
 
 /* The robot's axes have names; a chuck's is its gripper's. */
 void wh_document_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size);
@@ -14,8 +14,8 @@ void wh_document_name_axis(const wh_layout_t *layout, size_t axis, char *name, s
 void wh_document_put_pose(wh_json_text_t *text, const wh_pose_t *pose);
 
 /* The document's members of these names. */
-void wh_document_put_thinning(wh_json_text_t *text, const wh_trace_t *trace);
+void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals);
 void wh_document_put_tracks(wh_json_text_t *text, const wh_document_t *document);
-void wh_document_put_marks(wh_json_text_t *text, const wh_trace_t *trace);
+void wh_document_put_marks(wh_json_text_t *text, const wh_signals_t *signals);
 
 #endif

@@ -61,10 +61,10 @@ static void put_mark(wh_json_text_t *text, const wh_layout_t *layout, const wh_m
     wh_json_text_end(text, '}');
 }
 
-void wh_document_put_marks(wh_json_text_t *text, const wh_trace_t *trace) {
+void wh_document_put_marks(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_begin(text, "marks", '[');
-    for (size_t i = 0; i < trace->mark_count; ++i) {
-        put_mark(text, trace->layout, &trace->marks[i]);
+    for (size_t i = 0; i < signals->mark_count; ++i) {
+        put_mark(text, signals->layout, &signals->marks[i]);
     }
     wh_json_text_end(text, ']');
 }

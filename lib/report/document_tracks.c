@@ -33,36 +33,36 @@ static double larger(double a, double b) {
     return a > b ? a : b;
 }
 
-static void count(sums_t *sums, const wh_curve_t *curve, double *tolerance) {
+static void count(sums_t *sums, const wh_path_t *curve, double *tolerance) {
     sums->of += curve->of;
     sums->kept += (int64_t)curve->count;
     *tolerance = larger(curve->tolerance, *tolerance);
 }
 
-static sums_t sum_up(const wh_trace_t *trace) {
+static sums_t sum_up(const wh_signals_t *signals) {
     sums_t sums = {0};
-    for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        const wh_thin_t *own = &trace->own[g];
-        count(&sums, &trace->vacuum[g], &sums.vacuum);
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
+        const wh_thin_t *own = &signals->own[g];
+        count(&sums, &signals->vacuum[g], &sums.vacuum);
         for (size_t m = 0; m < WH_MEASURES; ++m) {
-            count(&sums, &trace->proximity[g][m], &sums.measured[m]);
+            count(&sums, &signals->proximity[g][m], &sums.measured[m]);
         }
         sums.of += own->of;
         sums.kept += (int64_t)own->count;
         sums.own_mm = own->count > 0 ? larger(own->tolerance, sums.own_mm) : sums.own_mm;
         sums.own_rad = own->count > 0 ? larger(own->turn, sums.own_rad) : sums.own_rad;
     }
-    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
-        count(&sums, &trace->axes[axis], is_rad(axis) ? &sums.rad : &sums.mm);
+    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
+        count(&sums, &signals->axes[axis], is_rad(axis) ? &sums.rad : &sums.mm);
     }
     return sums;
 }
 
 /* How far a gripper's origin is from where its axes' curves put it, at most: R and Z off, theta off at the robot's reach. */
-static double gripper_mm(const wh_trace_t *trace, const sums_t *sums) {
-    double reach = trace->layout->machine.robot.travel[WH_AXIS_R].max;
-    for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        const wh_mount_t *mount = &trace->layout->machine.mounts[g];
+static double gripper_mm(const wh_signals_t *signals, const sums_t *sums) {
+    double reach = signals->layout->machine.robot.travel[WH_AXIS_R].max;
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
+        const wh_mount_t *mount = &signals->layout->machine.mounts[g];
         reach += mount->is_shifted ? wh_vec3_norm(&mount->effector_from_gripper.r) : 0;
     }
     const double across = sums->mm + reach * sums->rad;
@@ -74,12 +74,12 @@ static void put_tolerance(wh_json_text_t *text, const char *key, double thinned)
     wh_json_text_number(text, key, thinned / WH_TRACE_SHARE, 9, false);
 }
 
-void wh_document_put_thinning(wh_json_text_t *text, const wh_trace_t *trace) {
-    const sums_t sums = sum_up(trace);
+void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals) {
+    const sums_t sums = sum_up(signals);
     wh_json_text_begin(text, "thinning", '{');
     put_tolerance(text, "mm", sums.mm);
     put_tolerance(text, "rad", sums.rad);
-    put_tolerance(text, "gripper_mm", gripper_mm(trace, &sums));
+    put_tolerance(text, "gripper_mm", gripper_mm(signals, &sums));
     put_tolerance(text, "gripper_rad", larger(2 * sums.rad, sums.own_rad));
     put_tolerance(text, "vacuum", sums.vacuum);
     put_tolerance(text, "projz", 2 * sums.measured[WH_MEASURE_PROJZ]);
@@ -92,17 +92,17 @@ void wh_document_put_thinning(wh_json_text_t *text, const wh_trace_t *trace) {
 
 /* --------------------------------------------------------------------------------------------------- curves */
 
-static void put_second(wh_json_text_t *text, const wh_trace_t *trace, int64_t slice) {
-    wh_json_text_number(text, NULL, wh_document_seconds(trace, slice), DECIMALS_S, false);
+static void put_second(wh_json_text_t *text, const wh_signals_t *signals, int64_t slice) {
+    wh_json_text_number(text, NULL, wh_document_seconds(signals, slice), DECIMALS_S, false);
 }
 
 /* Where a curve breaks off, nulls stand a slice after its last point. */
-static void put_curve_times(wh_json_text_t *text, const wh_trace_t *trace, const wh_curve_t *curve) {
+static void put_curve_times(wh_json_text_t *text, const wh_signals_t *signals, const wh_path_t *curve) {
     wh_json_text_begin(text, "t", '[');
     for (size_t i = 0; i < curve->count; ++i) {
-        put_second(text, trace, curve->points[i].slice);
+        put_second(text, signals, curve->points[i].slice);
         if (curve->points[i].ends) {
-            put_second(text, trace, curve->points[i].slice + 1);
+            put_second(text, signals, curve->points[i].slice + 1);
         }
     }
     wh_json_text_end(text, ']');
@@ -112,11 +112,11 @@ static void put_null(wh_json_text_t *text) {
     wh_json_text_number(text, NULL, HUGE_VAL, 0, false);
 }
 
-static void put_curve(wh_json_text_t *text, const wh_trace_t *trace, const char *key, const wh_curve_t *curve,
-                      decimals_t decimals) {
-    const double slices_a_second = 1e6 / (double)trace->layout->slice_us;
+static void put_curve(wh_json_text_t *text, const wh_signals_t *signals, const char *key,
+                      const wh_path_t *curve, decimals_t decimals) {
+    const double slices_a_second = 1e6 / (double)signals->layout->slice_us;
     wh_json_text_begin(text, key, '{');
-    put_curve_times(text, trace, curve);
+    put_curve_times(text, signals, curve);
     wh_json_text_begin(text, "v", '[');
     for (size_t i = 0; i < curve->count; ++i) {
         wh_json_text_number(text, NULL, curve->points[i].value, decimals.value, curve->points[i].exact);
@@ -136,10 +136,10 @@ static void put_curve(wh_json_text_t *text, const wh_trace_t *trace, const char 
     wh_json_text_end(text, '}');
 }
 
-static void put_axes(wh_json_text_t *text, const wh_trace_t *trace) {
+static void put_axes(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_begin(text, "axes", '[');
-    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
-        put_curve(text, trace, NULL, &trace->axes[axis], is_rad(axis) ? decimals_rad : decimals_mm);
+    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
+        put_curve(text, signals, NULL, &signals->axes[axis], is_rad(axis) ? decimals_rad : decimals_mm);
     }
     wh_json_text_end(text, ']');
 }
@@ -159,14 +159,14 @@ static void put_values(wh_json_text_t *text, const char *key, const wh_thin_t *t
     wh_json_text_end(text, ']');
 }
 
-static void put_own(wh_json_text_t *text, const wh_trace_t *trace) {
+static void put_own(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_begin(text, "grippers", '[');
-    for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        const wh_thin_t *own = &trace->own[g];
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
+        const wh_thin_t *own = &signals->own[g];
         wh_json_text_begin(text, NULL, '{');
         wh_json_text_begin(text, "t", '[');
         for (size_t i = 0; i < own->count; ++i) {
-            put_second(text, trace, own->points[i].slice);
+            put_second(text, signals, own->points[i].slice);
         }
         wh_json_text_end(text, ']');
         put_values(text, "r", own, 0, 3, DECIMALS_OWN_MM);
@@ -178,9 +178,9 @@ static void put_own(wh_json_text_t *text, const wh_trace_t *trace) {
 
 /* --------------------------------------------------------------------------------------------------- wafers */
 
-static void put_stay(wh_json_text_t *text, const wh_trace_t *trace, const wh_stay_t *stay) {
+static void put_stay(wh_json_text_t *text, const wh_signals_t *signals, const wh_stay_t *stay) {
     wh_json_text_begin(text, NULL, '{');
-    wh_json_text_number(text, "t", wh_document_seconds(trace, stay->slice), DECIMALS_S, false);
+    wh_json_text_number(text, "t", wh_document_seconds(signals, stay->slice), DECIMALS_S, false);
     if (stay->holder == WH_NONE) {
         wh_json_text_value(text, "holder", json_null());
     } else {
@@ -191,36 +191,36 @@ static void put_stay(wh_json_text_t *text, const wh_trace_t *trace, const wh_sta
 }
 
 /* Indices of the stays by wafer, each wafer's in order of time: the list holds them in order of time alone. */
-static size_t *sort_stays(const wh_trace_t *trace, size_t *ends) {
-    size_t *sorted = calloc(trace->stay_count + 1, sizeof *sorted);
+static size_t *sort_stays(const wh_signals_t *signals, size_t *ends) {
+    size_t *sorted = calloc(signals->stay_count + 1, sizeof *sorted);
     if (!sorted) {
         abort();
     }
-    for (size_t i = 0; i < trace->stay_count; ++i) {
-        ++ends[trace->stays[i].wafer];
+    for (size_t i = 0; i < signals->stay_count; ++i) {
+        ++ends[signals->stays[i].wafer];
     }
-    for (size_t w = 1; w < trace->layout->wafer_count; ++w) {
+    for (size_t w = 1; w < signals->layout->wafer_count; ++w) {
         ends[w] += ends[w - 1];
     }
-    for (size_t i = trace->stay_count; i > 0; --i) {
-        sorted[--ends[trace->stays[i - 1].wafer]] = i - 1;
+    for (size_t i = signals->stay_count; i > 0; --i) {
+        sorted[--ends[signals->stays[i - 1].wafer]] = i - 1;
     }
     return sorted;
 }
 
-static void put_wafers(wh_json_text_t *text, const wh_trace_t *trace) {
-    const size_t wafers = trace->layout->wafer_count;
+static void put_wafers(wh_json_text_t *text, const wh_signals_t *signals) {
+    const size_t wafers = signals->layout->wafer_count;
     size_t *begins = calloc(wafers + 1, sizeof *begins);
     if (!begins) {
         abort();
     }
-    size_t *sorted = sort_stays(trace, begins);
-    begins[wafers] = trace->stay_count;
+    size_t *sorted = sort_stays(signals, begins);
+    begins[wafers] = signals->stay_count;
     wh_json_text_begin(text, "wafers", '[');
     for (size_t w = 0; w < wafers; ++w) {
         wh_json_text_begin(text, NULL, '[');
         for (size_t i = begins[w]; i < begins[w + 1]; ++i) {
-            put_stay(text, trace, &trace->stays[sorted[i]]);
+            put_stay(text, signals, &signals->stays[sorted[i]]);
         }
         wh_json_text_end(text, ']');
     }
@@ -232,14 +232,14 @@ static void put_wafers(wh_json_text_t *text, const wh_trace_t *trace) {
 /* -------------------------------------------------------------------------------------------------- signals */
 
 /* WH_NONE is null. */
-static void put_steps(wh_json_text_t *text, const wh_trace_t *trace, const char *key,
+static void put_steps(wh_json_text_t *text, const wh_signals_t *signals, const char *key,
                       const wh_steps_t lists[]) {
     wh_json_text_begin(text, key, '[');
-    for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
         wh_json_text_begin(text, NULL, '{');
         wh_json_text_begin(text, "t", '[');
         for (size_t i = 0; i < lists[g].count; ++i) {
-            put_second(text, trace, lists[g].steps[i].slice);
+            put_second(text, signals, lists[g].steps[i].slice);
         }
         wh_json_text_end(text, ']');
         wh_json_text_begin(text, "v", '[');
@@ -256,21 +256,21 @@ static void put_steps(wh_json_text_t *text, const wh_trace_t *trace, const char 
     wh_json_text_end(text, ']');
 }
 
-static void put_vacuum(wh_json_text_t *text, const wh_trace_t *trace) {
+static void put_vacuum(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_begin(text, "vacuum", '[');
-    for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        put_curve(text, trace, NULL, &trace->vacuum[g], decimals_level);
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
+        put_curve(text, signals, NULL, &signals->vacuum[g], decimals_level);
     }
     wh_json_text_end(text, ']');
 }
 
-static void put_proximity(wh_json_text_t *text, const wh_trace_t *trace) {
+static void put_proximity(wh_json_text_t *text, const wh_signals_t *signals) {
     static const char *const names[WH_MEASURES] = {"dr_proj_z", "dr_proj_xy", "n1_proj_n2"};
     wh_json_text_begin(text, "proximity", '[');
-    for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
         wh_json_text_begin(text, NULL, '{');
         for (size_t m = 0; m < WH_MEASURES; ++m) {
-            put_curve(text, trace, names[m], &trace->proximity[g][m], decimals_measure[m]);
+            put_curve(text, signals, names[m], &signals->proximity[g][m], decimals_measure[m]);
         }
         wh_json_text_end(text, '}');
     }
@@ -281,15 +281,15 @@ static void put_proximity(wh_json_text_t *text, const wh_trace_t *trace) {
 
 static void put_clearance(wh_json_text_t *text, const wh_document_t *document, size_t kind) {
     const wh_curves_t *curves = document->record->curves;
-    const wh_trace_t *trace = document->trace;
-    const double limit = (double)trace->layout->world.limits[kind];
+    const wh_signals_t *signals = document->signals;
+    const double limit = (double)signals->layout->world.limits[kind];
     wh_json_text_begin(text, NULL, '{');
     wh_json_text_string(text, "pair", wh_clearance_name((wh_clearance_kind_t)kind));
     wh_json_text_number(text, "limit", limit > 0 ? limit : HUGE_VAL, 0, true);
     wh_json_text_begin(text, "t", '[');
     for (size_t bin = 0; bin < curves->count; ++bin) {
         const int64_t slice = (int64_t)(curves->first + (bin + 1) * curves->slices);
-        wh_json_text_number(text, NULL, wh_document_seconds(trace, slice), DECIMALS_S, false);
+        wh_json_text_number(text, NULL, wh_document_seconds(signals, slice), DECIMALS_S, false);
     }
     wh_json_text_end(text, ']');
     wh_json_text_begin(text, "gap", '[');
@@ -313,16 +313,16 @@ static void put_clearances(wh_json_text_t *text, const wh_document_t *document) 
 }
 
 void wh_document_put_tracks(wh_json_text_t *text, const wh_document_t *document) {
-    const wh_trace_t *trace = document->trace;
+    const wh_signals_t *signals = document->signals;
     wh_json_text_begin(text, "tracks", '{');
-    put_axes(text, trace);
-    put_own(text, trace);
-    put_wafers(text, trace);
-    put_steps(text, trace, "valves", trace->valves);
-    put_steps(text, trace, "sensors", trace->sensors);
-    put_steps(text, trace, "nearest", trace->nearest);
-    put_vacuum(text, trace);
-    put_proximity(text, trace);
+    put_axes(text, signals);
+    put_own(text, signals);
+    put_wafers(text, signals);
+    put_steps(text, signals, "valves", signals->valves);
+    put_steps(text, signals, "sensors", signals->sensors);
+    put_steps(text, signals, "nearest", signals->nearest);
+    put_vacuum(text, signals);
+    put_proximity(text, signals);
     put_clearances(text, document);
     wh_json_text_end(text, '}');
 }

@@ -23,7 +23,7 @@ static void add(list_t *list, int64_t slice) {
 
 /* Into how many lines a cubic is cut: they miss it by at most an eighth of its greatest second derivative, which is at one of
  * its ends, times a line's length squared. */
-static int64_t pieces_of(const wh_curve_point_t *a, const wh_curve_point_t *b, double tolerance) {
+static int64_t pieces_of(const wh_path_point_t *a, const wh_path_point_t *b, double tolerance) {
     const int64_t span = b->slice - a->slice;
     const double rise = b->value - a->value;
     const double from = (double)span * a->slope;
@@ -33,7 +33,7 @@ static int64_t pieces_of(const wh_curve_point_t *a, const wh_curve_point_t *b, d
     return pieces < 1 ? 1 : pieces < (double)span ? (int64_t)pieces : span;
 }
 
-static size_t count_pieces(const wh_curve_t *curve, double tolerance) {
+static size_t count_pieces(const wh_path_t *curve, double tolerance) {
     size_t count = 0;
     for (size_t i = 1; i < curve->count; ++i) {
         count += (size_t)pieces_of(&curve->points[i - 1], &curve->points[i], tolerance);
@@ -42,14 +42,14 @@ static size_t count_pieces(const wh_curve_t *curve, double tolerance) {
 }
 
 /* The slices at which a curve is read; after its end one at which there is none. */
-static void add_curve(list_t *list, const wh_curve_t *curve) {
+static void add_curve(list_t *list, const wh_path_t *curve) {
     const size_t most = 2 * curve->count > WH_PLOT_ROWS ? 2 * curve->count : WH_PLOT_ROWS;
     double tolerance = curve->tolerance;
     while (count_pieces(curve, tolerance) > most) {
         tolerance *= 2;
     }
     for (size_t i = 0; i < curve->count; ++i) {
-        const wh_curve_point_t *point = &curve->points[i];
+        const wh_path_point_t *point = &curve->points[i];
         add(list, point->slice);
         if (point->ends) {
             add(list, point->slice + 1);
@@ -80,7 +80,7 @@ static int32_t follow(const wh_steps_t *steps, size_t *at, int64_t slice) {
 static bool read_row(const wh_plot_curves_t *of, int64_t slice, double slice_s, double values[]) {
     for (size_t k = 0; k < of->count; ++k) {
         double slope = 0;
-        const double value = wh_curve_read(of->curves[k], slice, &slope);
+        const double value = wh_path_read(of->curves[k], slice, &slope);
         values[k] = (of->slopes ? slope / slice_s : value) / of->scale;
         if (isnan(value)) {
             return false;

@@ -9,7 +9,7 @@
 #define WH_PLOT_ROWS 30000
 
 typedef struct {
-    const wh_curve_t *curves[WH_MEASURES]; /* a column each */
+    const wh_path_t *curves[WH_MEASURES]; /* a column each */
     size_t count;
     double scale;             /* what is 1 in the plot */
     bool slopes;              /* a second, instead of values */

@@ -13,7 +13,7 @@ static size_t put_steps(const wh_plots_t *plots, wh_plot_t *plot, const wh_steps
     double value = 0;
     for (size_t i = 0; i < steps->count; ++i) {
         value = inverted ? 1 - steps->steps[i].value : steps->steps[i].value;
-        wh_plot_row(plot, wh_document_seconds(plots->document->trace, steps->steps[i].slice), &value, 1);
+        wh_plot_row(plot, wh_document_seconds(plots->document->signals, steps->steps[i].slice), &value, 1);
     }
     if (steps->count > 0) {
         wh_plot_row(plot, wh_plots_end_s(plots), &value, 1);
@@ -22,20 +22,21 @@ static size_t put_steps(const wh_plots_t *plots, wh_plot_t *plot, const wh_steps
 }
 
 static void put_gripper_signals(const wh_plots_t *plots, wh_lanes_t *lanes, size_t g) {
-    const wh_trace_t *trace = plots->document->trace;
-    const wh_plot_curves_t level = {{&trace->vacuum[g]}, 1, 1, false, NULL};
-    const char *name = trace->layout->grippers[g].name;
+    const wh_signals_t *signals = plots->document->signals;
+    const wh_plot_curves_t level = {{&signals->vacuum[g]}, 1, 1, false, NULL};
+    const char *name = signals->layout->grippers[g].name;
     wh_plot_block(lanes->plot, name, "t (s), valve is open");
-    wh_lanes_draw_signal(lanes, put_steps(plots, lanes->plot, &trace->valves[g], true), 3 * g, "steps");
+    wh_lanes_draw_signal(lanes, put_steps(plots, lanes->plot, &signals->valves[g], true), 3 * g, "steps");
     wh_plot_block(lanes->plot, name, "t (s), vacuum from 0 to 1");
     wh_lanes_draw_signal(lanes, wh_plot_curves(lanes->plot, &level, wh_plots_slice_s(plots)), 3 * g + 1,
                          "lines");
     wh_plot_block(lanes->plot, name, "t (s), vacuum sensor is on");
-    wh_lanes_draw_signal(lanes, put_steps(plots, lanes->plot, &trace->sensors[g], false), 3 * g + 2, "steps");
+    wh_lanes_draw_signal(lanes, put_steps(plots, lanes->plot, &signals->sensors[g], false), 3 * g + 2,
+                         "steps");
 }
 
 void wh_plots_signals(wh_plots_t *plots) {
-    const wh_layout_t *layout = plots->document->trace->layout;
+    const wh_layout_t *layout = plots->document->signals->layout;
     const size_t grippers = layout->machine.gripper_count;
     wh_lanes_t lanes;
     wh_plot_t plot;
@@ -59,7 +60,7 @@ void wh_plots_signals(wh_plots_t *plots) {
 /* ------------------------------------------------------------------------------------------------- holders */
 
 static void put_holds(const wh_plots_t *plots, wh_lanes_t *lanes, size_t g) {
-    const wh_layout_t *layout = plots->document->trace->layout;
+    const wh_layout_t *layout = plots->document->signals->layout;
     size_t count = 0;
     wh_plot_hold_t *holds = wh_plots_holds(plots, (int32_t)g, &count);
     for (size_t i = 0; i < count; ++i) {
@@ -72,7 +73,7 @@ static void put_holds(const wh_plots_t *plots, wh_lanes_t *lanes, size_t g) {
 
 void wh_plots_holders(wh_plots_t *plots) {
     static const wh_lanes_look_t look = {NULL, "#d8d8d8", "solid", false};
-    const wh_layout_t *layout = plots->document->trace->layout;
+    const wh_layout_t *layout = plots->document->signals->layout;
     const size_t grippers = layout->machine.gripper_count;
     wh_lanes_t lanes;
     wh_plot_t plot;
@@ -137,7 +138,7 @@ static chuck_lanes_t find_chucks(const wh_activity_t *activity, size_t grippers)
     for (size_t g = 0; g < grippers; ++g) {
         lanes.of[g] = SIZE_MAX;
         for (size_t i = 0; i < activity->interval_count && lanes.of[g] == SIZE_MAX; ++i) {
-            const wh_interval_t *interval = &activity->intervals[i];
+            const wh_busy_span_t *interval = &activity->intervals[i];
             if (interval->who == WH_BUSY_CHUCK && interval->gripper == (int32_t)g) {
                 lanes.of[g] = 2 + lanes.count++;
             }
@@ -150,12 +151,12 @@ static size_t put_shares(wh_lanes_t *lanes, const wh_record_t *record, const chu
                          int share) {
     wh_plot_block(lanes->plot, share_looks[share].text, "from (s), to (s), lane");
     for (size_t i = 0; i < record->activity.interval_count; ++i) {
-        const wh_interval_t *interval = &record->activity.intervals[i];
+        const wh_busy_span_t *interval = &record->activity.intervals[i];
         const bool moves = interval->who == WH_BUSY_ROBOT || interval->who == WH_BUSY_CHUCK;
         if (moves && interval->what == 1 + share) {
             const size_t lane = interval->who == WH_BUSY_ROBOT ? 1 : chucks->of[interval->gripper];
-            wh_lanes_bar(lanes, lane, wh_figures_seconds(record, interval->begin),
-                         wh_figures_seconds(record, interval->end));
+            wh_lanes_bar(lanes, lane, wh_throughput_seconds(record, interval->begin),
+                         wh_throughput_seconds(record, interval->end));
         }
     }
     return wh_plot_end_block(lanes->plot);
@@ -177,7 +178,7 @@ static void draw_commands(wh_lanes_t *lanes, const wh_record_t *record, const ch
 
 void wh_plots_commands(wh_plots_t *plots) {
     const wh_record_t *record = plots->document->record;
-    const wh_layout_t *layout = plots->document->trace->layout;
+    const wh_layout_t *layout = plots->document->signals->layout;
     const chuck_lanes_t chucks = find_chucks(&record->activity, layout->machine.gripper_count);
     const bool has_any = record->command_count > 0 || record->activity.interval_count > 0;
     wh_lanes_t lanes;

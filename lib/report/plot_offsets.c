@@ -27,7 +27,7 @@ static bool put_data(const wh_plots_t *plots, wh_plot_t *plot) {
     double number = 0;
     bool is_seen = false;
     wh_plot_block(plot, "wafers that lie in slots", "number, dX (mm), dY (mm) in the slot's axes");
-    for (size_t i = 0; i < plots->document->trace->layout->wafer_count; ++i) {
+    for (size_t i = 0; i < plots->document->signals->layout->wafer_count; ++i) {
         if (lies(record, i)) {
             const wh_place_t *place = &record->wafers[i].place;
             const double offsets[] = {(double)place->dx, (double)place->dy};
@@ -42,7 +42,7 @@ static bool put_data(const wh_plots_t *plots, wh_plot_t *plot) {
 
 /* "Wafer 1 in B 2" below each. */
 static void put_names(const wh_plots_t *plots, wh_plot_t *plot) {
-    const wh_layout_t *layout = plots->document->trace->layout;
+    const wh_layout_t *layout = plots->document->signals->layout;
     const wh_record_t *record = plots->document->record;
     size_t number = 0;
     fputs("set xtics rotate by 45 right (", plot->script);
@@ -61,7 +61,7 @@ static void put_names(const wh_plots_t *plots, wh_plot_t *plot) {
 }
 
 void wh_plots_offsets(wh_plots_t *plots) {
-    const size_t count = count_lying(plots->document->record, plots->document->trace->layout);
+    const size_t count = count_lying(plots->document->record, plots->document->signals->layout);
     wh_plot_frame_t frame = {.panels = 1, .panel_height = 190, .left = 66, .above = 22};
     wh_plot_t plot;
     if (count == 0 || !wh_plots_open(plots, &plot, "offsets", NULL)) {

@@ -12,7 +12,7 @@
 
 /* Over the times at which a gripper holds a wafer, with the wafer's name in the first panel. */
 static void shade_holds(const wh_plots_t *plots, wh_plot_t *plot, int32_t gripper) {
-    const wh_layout_t *layout = plots->document->trace->layout;
+    const wh_layout_t *layout = plots->document->signals->layout;
     size_t count = 0;
     wh_plot_hold_t *holds = wh_plots_holds(plots, gripper, &count);
     for (size_t i = 0; i < count; ++i) {
@@ -58,15 +58,15 @@ static void put_planar(const wh_plots_t *plots, wh_plot_t *plot, int32_t g, doub
 static void put_proximity(wh_plots_t *plots, int32_t g) {
     static const wh_plot_frame_t frame = {
         .panels = 3, .panel_height = 92, .left = 66, .above = 12, .limits = true};
-    const wh_trace_t *trace = plots->document->trace;
-    const wh_layout_t *layout = trace->layout;
-    const wh_curve_t *curves = trace->proximity[g];
+    const wh_signals_t *signals = plots->document->signals;
+    const wh_layout_t *layout = signals->layout;
+    const wh_path_t *curves = signals->proximity[g];
     const wh_plot_curves_t values = {
         {&curves[WH_MEASURE_PROJZ], &curves[WH_MEASURE_PROJXY], &curves[WH_MEASURE_PLANAR]},
         WH_MEASURES,
         1,
         false,
-        &trace->nearest[g]};
+        &signals->nearest[g]};
     const wh_tolerance_t *limits = &layout->grasp.tolerance;
     const char *name = layout->grippers[g].name;
     char title[WH_NAME_SIZE + 100];
@@ -88,7 +88,7 @@ static void put_proximity(wh_plots_t *plots, int32_t g) {
 }
 
 void wh_plots_proximity(wh_plots_t *plots) {
-    for (size_t g = 0; g < plots->document->trace->layout->machine.gripper_count; ++g) {
+    for (size_t g = 0; g < plots->document->signals->layout->machine.gripper_count; ++g) {
         put_proximity(plots, (int32_t)g);
     }
 }
@@ -106,8 +106,8 @@ static const axis_panel_t axis_panels[] = {{"position (mm)", false, false},
                                            {"speed (\u00b0/s)", true, true}};
 #define AXIS_PANELS (sizeof axis_panels / sizeof axis_panels[0])
 
-static bool is_in(const wh_trace_t *trace, size_t axis, const axis_panel_t *panel) {
-    return trace->axes[axis].count > 0 && panel->turns == (axis != WH_AXIS_R && axis != WH_AXIS_Z);
+static bool is_in(const wh_signals_t *signals, size_t axis, const axis_panel_t *panel) {
+    return signals->axes[axis].count > 0 && panel->turns == (axis != WH_AXIS_R && axis != WH_AXIS_Z);
 }
 
 /* What a panel shows: how many curves, and between which values. */
@@ -116,11 +116,11 @@ typedef struct {
     double low, high;
 } axis_range_t;
 
-static axis_range_t look_at(const wh_trace_t *trace, const axis_panel_t *panel) {
+static axis_range_t look_at(const wh_signals_t *signals, const axis_panel_t *panel) {
     axis_range_t range = {0, HUGE_VAL, -HUGE_VAL};
-    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
-        const wh_curve_t *curve = &trace->axes[axis];
-        if (is_in(trace, axis, panel)) {
+    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
+        const wh_path_t *curve = &signals->axes[axis];
+        if (is_in(signals, axis, panel)) {
             ++range.curves;
             for (size_t i = 0; i < curve->count; ++i) {
                 const double value = panel->is_speed ? curve->points[i].slope : curve->points[i].value;
@@ -141,17 +141,17 @@ static void put_axis_look(wh_plot_t *plot, const axis_range_t *range) {
 }
 
 static void put_axis_panel(const wh_plots_t *plots, wh_plot_t *plot, const axis_panel_t *panel) {
-    const wh_trace_t *trace = plots->document->trace;
-    const axis_range_t range = look_at(trace, panel);
+    const wh_signals_t *signals = plots->document->signals;
+    const axis_range_t range = look_at(signals, panel);
     int line = 0;
     wh_plot_panel(plot, panel->label);
     put_axis_look(plot, &range);
-    for (size_t axis = 0; axis < trace->axis_count; ++axis) {
-        if (is_in(trace, axis, panel)) {
+    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
+        if (is_in(signals, axis, panel)) {
             const wh_plot_curves_t curve = {
-                {&trace->axes[axis]}, 1, panel->turns ? WH_PI / 180 : 1, panel->is_speed, NULL};
+                {&signals->axes[axis]}, 1, panel->turns ? WH_PI / 180 : 1, panel->is_speed, NULL};
             char name[WH_NAME_SIZE + 8];
-            wh_document_name_axis(trace->layout, axis, name, sizeof name);
+            wh_document_name_axis(signals->layout, axis, name, sizeof name);
             wh_plot_block(plot, name, panel->is_speed ? "t (s), speed" : "t (s), position");
             const size_t block = wh_plot_curves(plot, &curve, wh_plots_slice_s(plots));
             ++line;
@@ -167,7 +167,7 @@ void wh_plots_axes(wh_plots_t *plots) {
     wh_plot_frame_t frame = {.panel_height = 88, .left = 66, .above = 22};
     wh_plot_t plot;
     for (size_t i = 0; i < AXIS_PANELS; ++i) {
-        frame.panels += look_at(plots->document->trace, &axis_panels[i]).curves > 0 ? 1 : 0;
+        frame.panels += look_at(plots->document->signals, &axis_panels[i]).curves > 0 ? 1 : 0;
     }
     if (frame.panels == 0 || !wh_plots_open(plots, &plot, "axes", NULL)) {
         return;
@@ -175,7 +175,7 @@ void wh_plots_axes(wh_plots_t *plots) {
     wh_plot_begin(&plot, &frame, "Axes: where they stand and how fast they are", wh_plots_begin_s(plots),
                   wh_plots_end_s(plots));
     for (size_t i = 0; i < AXIS_PANELS; ++i) {
-        if (look_at(plots->document->trace, &axis_panels[i]).curves > 0) {
+        if (look_at(plots->document->signals, &axis_panels[i]).curves > 0) {
             put_axis_panel(plots, &plot, &axis_panels[i]);
         }
     }
@@ -203,7 +203,7 @@ static void put_gaps(const wh_plots_t *plots, wh_plot_t *plot, size_t kind) {
         const int64_t slice = (int64_t)(curves->first + (bin + 1) * curves->slices);
         const double gap = (double)curves->gaps[kind][bin];
         if (gap < (double)WH_CLEARANCE_RANGE) {
-            wh_plot_row(plot, wh_document_seconds(plots->document->trace, slice), &gap, 1);
+            wh_plot_row(plot, wh_document_seconds(plots->document->signals, slice), &gap, 1);
         } else {
             wh_plot_gap(plot);
         }
@@ -211,7 +211,7 @@ static void put_gaps(const wh_plots_t *plots, wh_plot_t *plot, size_t kind) {
 }
 
 static void put_clearance(const wh_plots_t *plots, wh_plot_t *plot, size_t kind) {
-    const double limit = (double)plots->document->trace->layout->world.limits[kind];
+    const double limit = (double)plots->document->signals->layout->world.limits[kind];
     char words[60];
     (void)snprintf(words, sizeof words, "%s", wh_clearance_name((wh_clearance_kind_t)kind));
     for (char *c = words; *c; ++c) {

@@ -90,17 +90,17 @@ void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot) {
 /* ------------------------------------------------------------------------------------------------------ run */
 
 double wh_plots_slice_s(const wh_plots_t *plots) {
-    return (double)plots->document->trace->layout->slice_us / 1e6;
+    return (double)plots->document->signals->layout->slice_us / 1e6;
 }
 
 double wh_plots_begin_s(const wh_plots_t *plots) {
-    const wh_trace_t *trace = plots->document->trace;
-    return trace->first > 0 ? wh_document_seconds(trace, trace->first) : 0;
+    const wh_signals_t *signals = plots->document->signals;
+    return signals->first > 0 ? wh_document_seconds(signals, signals->first) : 0;
 }
 
 double wh_plots_end_s(const wh_plots_t *plots) {
-    const wh_trace_t *trace = plots->document->trace;
-    return trace->last > 0 ? wh_document_seconds(trace, trace->last) : 0;
+    const wh_signals_t *signals = plots->document->signals;
+    return signals->last > 0 ? wh_document_seconds(signals, signals->last) : 0;
 }
 
 static void add_hold(wh_plot_hold_t **list, size_t *count, size_t *capacity, const wh_plot_hold_t *hold) {
@@ -115,14 +115,14 @@ static void add_hold(wh_plot_hold_t **list, size_t *count, size_t *capacity, con
 
 /* A gripper holds one wafer, so the stays, which come in order of time, end in that order too. */
 wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t *count) {
-    const wh_trace_t *trace = plots->document->trace;
+    const wh_signals_t *signals = plots->document->signals;
     wh_plot_hold_t *list = NULL;
     wh_plot_hold_t open = {0, 0, WH_NONE};
     size_t capacity = 0;
     *count = 0;
-    for (size_t i = 0; i < trace->stay_count; ++i) {
-        const wh_stay_t *stay = &trace->stays[i];
-        const double at = wh_document_seconds(trace, stay->slice);
+    for (size_t i = 0; i < signals->stay_count; ++i) {
+        const wh_stay_t *stay = &signals->stays[i];
+        const double at = wh_document_seconds(signals, stay->slice);
         if (open.wafer != WH_NONE && (stay->wafer == open.wafer || stay->holder == gripper)) {
             open.end_s = at;
             add_hold(&list, count, &capacity, &open);

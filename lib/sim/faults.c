@@ -211,8 +211,8 @@ wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int
 
 /* ------------------------------------------------------------------------------------------------------- acting */
 
-wh_vacuum_upset_t wh_faults_upset(const wh_faults_t *faults, size_t gripper) {
-    wh_vacuum_upset_t upset = wh_vacuum_sound();
+wh_vacuum_fault_t wh_faults_upset(const wh_faults_t *faults, size_t gripper) {
+    wh_vacuum_fault_t upset = wh_vacuum_sound();
     for (size_t i = 0; i < faults->count; ++i) {
         const wh_fault_t *fault = &faults->slots[i].fault;
         if (faults->slots[i].phase != WH_FAULT_ACTING || fault->target != (int32_t)gripper) {

@@ -115,7 +115,7 @@ void wh_faults_take(wh_faults_t *faults, const wh_fault_request_t requests[], si
 wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int64_t seq);
 
 /* What acts on a gripper's vacuum. */
-wh_vacuum_upset_t wh_faults_upset(const wh_faults_t *faults, size_t gripper);
+wh_vacuum_fault_t wh_faults_upset(const wh_faults_t *faults, size_t gripper);
 
 /* Lets stuck valves, stopped axes and lost commands overrule the inputs of a slice; `vacuum` has the valves before. */
 void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, const wh_vacuum_t vacuum[],

@@ -19,7 +19,7 @@ static void take_physics(wh_simulator_t *simulator, const wh_physics_t *physics)
     simulator->slice_s = physics->slice_s;
     simulator->vacuum = physics->vacuum;
     simulator->pads = physics->pads;
-    wh_condition_start(&simulator->condition, physics);
+    wh_physics_state_start(&simulator->condition, physics);
 }
 
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
@@ -143,7 +143,7 @@ static bool holds(const wh_simulator_t *simulator, size_t g) {
 /* What the valves do. Into `vacuum`, for the step may yet be refused. */
 static void switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
-        const wh_vacuum_upset_t upset = wh_faults_upset(&simulator->condition.faults, g);
+        const wh_vacuum_fault_t upset = wh_faults_upset(&simulator->condition.faults, g);
         vacuum[g] = simulator->condition.vacuum[g];
         simulator->inputs[g].valve = wh_vacuum_before(&simulator->vacuum, &upset, simulator->inputs[g].valve,
                                                       holds(simulator, g), simulator->slice_s, &vacuum[g]);
@@ -153,7 +153,7 @@ static void switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
 static void update_vacuum(wh_simulator_t *simulator, const wh_command_t *command,
                           const wh_vacuum_t vacuum[]) {
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
-        const wh_vacuum_upset_t upset = wh_faults_upset(&simulator->condition.faults, g);
+        const wh_vacuum_fault_t upset = wh_faults_upset(&simulator->condition.faults, g);
         wh_vacuum_t *now = &simulator->condition.vacuum[g];
         *now = vacuum[g];
         simulator->condition.told[g] = command->grippers[g].valve;
@@ -165,7 +165,7 @@ static void update_vacuum(wh_simulator_t *simulator, const wh_command_t *command
 
 /* The same where is_direct. */
 static void take_vacuum(wh_simulator_t *simulator, const wh_command_t *command) {
-    wh_condition_t *condition = &simulator->condition;
+    wh_physics_state_t *condition = &simulator->condition;
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
         const bool on = holds(simulator, g);
         condition->vacuum[g].level = on ? 1 : 0;
@@ -229,7 +229,7 @@ static wh_status_t step_direct(wh_simulator_t *simulator, const wh_command_t *co
     return status;
 }
 
-static wh_status_t step_upset(wh_simulator_t *simulator, const wh_command_t *command) {
+static wh_status_t step_with_faults(wh_simulator_t *simulator, const wh_command_t *command) {
     wh_vacuum_t vacuum[WH_GRIPPERS];
     memcpy(simulator->inputs, command->grippers, command->gripper_count * sizeof command->grippers[0]);
     const wh_fault_changes_t changes = apply_faults(simulator, command);
@@ -263,7 +263,8 @@ static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *com
         simulator->event_count = 0;
         return status;
     }
-    return is_direct(simulator, command) ? step_direct(simulator, command) : step_upset(simulator, command);
+    return is_direct(simulator, command) ? step_direct(simulator, command)
+                                         : step_with_faults(simulator, command);
 }
 
 void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) {
@@ -274,7 +275,7 @@ void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) {
     state->gripper_count = table->storage.gripper_count;
     state->events = simulator->events;
     state->event_count = simulator->event_count;
-    state->sensors = wh_condition_sensors(&simulator->condition, table->storage.gripper_count);
+    state->sensors = wh_physics_state_sensors(&simulator->condition, table->storage.gripper_count);
     state->condition = &simulator->condition;
 }
 
@@ -290,5 +291,5 @@ wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *com
 }
 
 uint64_t wh_simulator_hash(const wh_simulator_t *simulator) {
-    return wh_condition_hash(&simulator->condition, &simulator->table);
+    return wh_physics_state_hash(&simulator->condition, &simulator->table);
 }

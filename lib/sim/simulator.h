@@ -24,7 +24,7 @@ typedef struct {
     wh_real_t slice_s;
     wh_vacuum_config_t vacuum;
     wh_pads_t pads;
-    wh_condition_t condition;
+    wh_physics_state_t condition;
     wh_gripper_input_t inputs[WH_GRIPPERS]; /* of the running step, where faults and vacuum make them */
     wh_event_t events[WH_SLICE_EVENTS];
     size_t event_count;
@@ -54,7 +54,7 @@ wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *com
 /* Fills in all of a state but utime, seq and status, without stepping. Cost: linear in grippers. */
 void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state);
 
-/* wh_condition_hash of it. */
+/* wh_physics_state_hash of it. */
 uint64_t wh_simulator_hash(const wh_simulator_t *simulator);
 
 #endif

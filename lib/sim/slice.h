@@ -4,7 +4,7 @@
 #define WH_SIM_SLICE_H
 
 #include "../motion/track.h"
-#include "condition.h"
+#include "physics.h"
 
 /* At most so many events in one slice: those of the grasp table, then what the cell, the vacuum, the faults and the
  * collision check have to say. What does not fit is not reported. */
@@ -25,8 +25,8 @@ typedef struct {
 } wh_command_t;
 
 /* Makes it what the machine does in the slice that the track yielded last; faults are left alone. Of a command that is not
- * all zero, and its stance, nothing else may have been written to by others since. Cost: wh_machine_follow. */
-void wh_command_follow(wh_command_t *command, wh_stance_t *stance, const wh_track_t *track);
+ * all zero, and its stance, nothing else may have been written to by others since. Cost: wh_machine_update. */
+void wh_command_from_track(wh_command_t *command, wh_machine_cache_t *cache, const wh_track_t *track);
 
 /* What has become of it: a view of the simulator's own memory, true until the next exchange. */
 typedef struct {
@@ -39,7 +39,7 @@ typedef struct {
     const wh_event_t *events; /* of this slice, or of the refusal */
     size_t event_count;
     uint32_t sensors; /* bit g: gripper g's vacuum sensor is on */
-    const wh_condition_t *condition;
+    const wh_physics_state_t *condition;
 } wh_state_t;
 
 /* One side's view of the other: by a call within the process, or by messages. */
@@ -47,7 +47,7 @@ typedef struct wh_link wh_link_t;
 struct wh_link {
     /* Steps one slice. Returns state->status, or what kept the answer from coming. */
     wh_status_t (*exchange)(wh_link_t *link, const wh_command_t *command, wh_state_t *state);
-    /* wh_condition_hash of the state after the last exchange. */
+    /* wh_physics_state_hash of the state after the last exchange. */
     uint64_t (*hash)(wh_link_t *link);
     /* Slices of the run that never reached the simulator: 0 but in a free-running run. */
     int64_t (*missed)(wh_link_t *link);

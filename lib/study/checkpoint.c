@@ -12,7 +12,7 @@
 
 /* --------------------------------------------------------------------------------------------------------- file */
 
-bool wh_state_save(const char *path, const char *text) {
+bool wh_checkpoint_save(const char *path, const char *text) {
     wh_output_t output = {0};
     if (!wh_output_open(&output, path)) {
         return false;
@@ -52,7 +52,7 @@ static char *read_file(const char *path, size_t *size) {
     return text;
 }
 
-wh_state_found_t wh_state_load(const char *path, const wh_study_t *study, wh_progress_t *progress) {
+wh_checkpoint_found_t wh_checkpoint_load(const char *path, const wh_study_t *study, wh_progress_t *progress) {
     char message[1024] = "";
     size_t size = 0;
     char *text = read_file(path, &size);
@@ -63,7 +63,7 @@ wh_state_found_t wh_state_load(const char *path, const wh_study_t *study, wh_pro
         fprintf(stderr, "%s: %s (expected a file that can be read)\n", path, strerror(errno));
         return WH_STATE_REFUSED;
     }
-    const bool read = wh_state_read(study, text, size, progress, message, sizeof message);
+    const bool read = wh_checkpoint_read(study, text, size, progress, message, sizeof message);
     free(text);
     if (!read) {
         fprintf(stderr, "%s: %s\n", path, message);
@@ -103,10 +103,10 @@ static bool find_folder(char *folder, size_t size) {
     return make_folder(folder);
 }
 
-char *wh_state_default_path(const wh_study_t *study) {
+char *wh_checkpoint_default_path(const wh_study_t *study) {
     char folder[3900];
     char path[4096];
-    json_t *identity = wh_state_identity(study);
+    json_t *identity = wh_checkpoint_identity(study);
     char *text = identity ? json_dumps(identity, JSON_COMPACT) : NULL;
     json_decref(identity);
     if (!text || !find_folder(folder, sizeof folder)) {

@@ -9,24 +9,24 @@
 #include "pool.h"
 
 /* The progress as text, to be freed; null when memory is out. */
-char *wh_state_text(const wh_study_t *study, const wh_progress_t *progress);
+char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress);
 
 /* Adds what the text has to `progress`, which is unchanged on failure: then `message` says what is wrong, "of another study: its
  * seed is 2 (expected 1)" or "damaged". */
-bool wh_state_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress,
-                   char *message, size_t message_size);
+bool wh_checkpoint_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress,
+                        char *message, size_t message_size);
 
 /* Replaces the file at once: whoever opens it sees the old text or the new one, also after a crash. False, with errno, when that is
  * not possible. */
-bool wh_state_save(const char *path, const char *text);
+bool wh_checkpoint_save(const char *path, const char *text);
 
-typedef enum { WH_STATE_NONE, WH_STATE_READ, WH_STATE_REFUSED } wh_state_found_t;
+typedef enum { WH_STATE_NONE, WH_STATE_READ, WH_STATE_REFUSED } wh_checkpoint_found_t;
 
 /* Reads a file, if there is one; one that is refused is named on stderr. */
-wh_state_found_t wh_state_load(const char *path, const wh_study_t *study, wh_progress_t *progress);
+wh_checkpoint_found_t wh_checkpoint_load(const char *path, const wh_study_t *study, wh_progress_t *progress);
 
 /* Where a study's progress is kept unless the user says so: XDG_STATE_HOME/waferhand/study-HASH. To be freed; null when
  * the environment names no such place. Makes the folder. */
-char *wh_state_default_path(const wh_study_t *study);
+char *wh_checkpoint_default_path(const wh_study_t *study);
 
 #endif

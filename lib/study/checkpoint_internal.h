@@ -7,12 +7,12 @@
 #include "checkpoint.h"
 
 /* Which study it is; null when memory is out. */
-json_t *wh_state_identity(const wh_study_t *study);
+json_t *wh_checkpoint_identity(const wh_study_t *study);
 
 /* Null when memory is out. */
-json_t *wh_state_put_tally(const wh_tally_t *tally);
+json_t *wh_checkpoint_put_tally(const wh_tally_t *tally);
 
 /* Takes a tally of so many wafers from JSON; false when it is none. `tally` is initialised. */
-bool wh_state_take_tally(const json_t *root, wh_tally_t *tally);
+bool wh_checkpoint_take_tally(const json_t *root, wh_tally_t *tally);
 
 #endif

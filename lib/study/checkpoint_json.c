@@ -10,7 +10,7 @@ static json_t *hex(uint64_t value) {
     return json_sprintf("%016llx", (unsigned long long)value);
 }
 
-static json_t *put_parameters(const wh_run_options_t *run) {
+static json_t *put_parameters(const wh_script_run_options_t *run) {
     json_t *list = json_array();
     for (size_t i = 0; i < run->parameter_count; ++i) {
         json_array_append_new(list, wh_json_text(run->parameters[i]));
@@ -19,7 +19,7 @@ static json_t *put_parameters(const wh_run_options_t *run) {
 }
 
 /* In the order in which a difference is told. */
-json_t *wh_state_identity(const wh_study_t *study) {
+json_t *wh_checkpoint_identity(const wh_study_t *study) {
     json_t *root = json_object();
     int status = 0;
     status |= json_object_set_new(root, "version", json_string(WH_VERSION));
@@ -82,18 +82,18 @@ static bool take_progress(const wh_study_t *study, const json_t *root, wh_progre
     for (size_t i = 0; sound && i < json_array_size(blocks); ++i) {
         sound = take_stretch(json_array_get(blocks, i), progress);
     }
-    return sound && wh_state_take_tally(json_object_get(root, "tally"), &progress->tally) &&
+    return sound && wh_checkpoint_take_tally(json_object_get(root, "tally"), &progress->tally) &&
            progress->tally.trials == trials_of(study, progress);
 }
 
 /* ------------------------------------------------------------------------------------------------- there and back */
 
-char *wh_state_text(const wh_study_t *study, const wh_progress_t *progress) {
+char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress) {
     json_t *root = json_object();
     const int status = json_object_set_new(root, "format", json_integer(1)) |
-                       json_object_set_new(root, "study", wh_state_identity(study)) |
+                       json_object_set_new(root, "study", wh_checkpoint_identity(study)) |
                        json_object_set_new(root, "blocks", put_blocks(progress)) |
-                       json_object_set_new(root, "tally", wh_state_put_tally(&progress->tally));
+                       json_object_set_new(root, "tally", wh_checkpoint_put_tally(&progress->tally));
     char *text = status == 0 ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(root);
     return text;
@@ -125,7 +125,7 @@ static bool is_same(const json_t *found, json_t *expected, char *message, size_t
 
 static bool take(const wh_study_t *study, const json_t *root, wh_progress_t *progress, char *message,
                  size_t size) {
-    json_t *identity = wh_state_identity(study);
+    json_t *identity = wh_checkpoint_identity(study);
     if (!identity || !json_is_object(root) || json_integer_value(json_object_get(root, "format")) != 1) {
         snprintf(message, size, "damaged (expected a study's state)");
         json_decref(identity);
@@ -148,8 +148,8 @@ static bool take(const wh_study_t *study, const json_t *root, wh_progress_t *pro
     return sound;
 }
 
-bool wh_state_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress,
-                   char *message, size_t message_size) {
+bool wh_checkpoint_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress,
+                        char *message, size_t message_size) {
     json_t *root = json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL);
     const bool taken = take(study, root, progress, message, message_size);
     json_decref(root);

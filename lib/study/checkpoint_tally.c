@@ -168,7 +168,7 @@ static bool take_events(const json_t *list, wh_tally_t *tally) {
     return sound;
 }
 
-json_t *wh_state_put_tally(const wh_tally_t *tally) {
+json_t *wh_checkpoint_put_tally(const wh_tally_t *tally) {
     json_t *wafers = json_array();
     for (size_t w = 0; w < tally->wafer_count; ++w) {
         json_array_append_new(wafers, put_wafer(&tally->wafers[w]));
@@ -192,7 +192,7 @@ static bool take_wafers(const json_t *list, wh_tally_t *tally) {
     return sound;
 }
 
-bool wh_state_take_tally(const json_t *root, wh_tally_t *tally) {
+bool wh_checkpoint_take_tally(const json_t *root, wh_tally_t *tally) {
     return take_counts(root, tally) && take_events(json_object_get(root, "events"), tally) &&
            take_wafers(json_object_get(root, "wafers"), tally) &&
            take_rows(json_object_get(root, "expectations"), &tally->expectations) &&

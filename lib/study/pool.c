@@ -9,8 +9,8 @@
 /* A hand shows what it has done when it is idle, and every so many seconds. */
 #define SHOW_S 0.3
 
-struct wh_hand {
-    wh_crew_t *crew;
+struct wh_pool_worker {
+    wh_pool_t *pool;
     pthread_t thread;
     bool started;
     wh_worker_t worker;
@@ -25,48 +25,48 @@ static double seconds_now(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-void wh_crew_stop(wh_crew_t *crew) {
-    __atomic_store_n(&crew->stop, true, __ATOMIC_RELAXED);
+void wh_pool_stop(wh_pool_t *pool) {
+    __atomic_store_n(&pool->stop, true, __ATOMIC_RELAXED);
 }
 
-static bool is_stopped(const wh_crew_t *crew) {
-    return __atomic_load_n(&crew->stop, __ATOMIC_RELAXED);
+static bool is_stopped(const wh_pool_t *pool) {
+    return __atomic_load_n(&pool->stop, __ATOMIC_RELAXED);
 }
 
-uint64_t wh_crew_trials(const wh_crew_t *crew) {
-    return __atomic_load_n(&crew->trials, __ATOMIC_RELAXED);
+uint64_t wh_pool_trials(const wh_pool_t *pool) {
+    return __atomic_load_n(&pool->trials, __ATOMIC_RELAXED);
 }
 
 /* ----------------------------------------------------------------------------------------------------- one thread */
 
 /* With the crew's lock held. */
-static void show(wh_hand_t *hand) {
+static void show(wh_pool_worker_t *hand) {
     if (hand->progress.done_count > 0) {
-        wh_progress_merge(&hand->crew->progress, &hand->progress);
+        wh_progress_merge(&hand->pool->progress, &hand->progress);
         wh_progress_clear(&hand->progress);
     }
     hand->shown = seconds_now();
 }
 
-static void fail(wh_hand_t *hand, uint64_t trial, const char *message) {
-    wh_crew_t *crew = hand->crew;
-    pthread_mutex_lock(&crew->lock);
-    if (!crew->failed) {
-        snprintf(crew->message, sizeof crew->message, "trial %llu: %s", (unsigned long long)trial, message);
+static void fail(wh_pool_worker_t *hand, uint64_t trial, const char *message) {
+    wh_pool_t *pool = hand->pool;
+    pthread_mutex_lock(&pool->lock);
+    if (!pool->failed) {
+        snprintf(pool->message, sizeof pool->message, "trial %llu: %s", (unsigned long long)trial, message);
     }
-    crew->failed = true;
-    pthread_mutex_unlock(&crew->lock);
-    wh_crew_stop(crew);
+    pool->failed = true;
+    pthread_mutex_unlock(&pool->lock);
+    wh_pool_stop(pool);
 }
 
 /* A block that is not finished counts for nothing. */
-static void play_block(wh_hand_t *hand, uint64_t block) {
-    wh_crew_t *crew = hand->crew;
-    const uint64_t trials = wh_study_block_trials(crew->study, block);
+static void play_block(wh_pool_worker_t *hand, uint64_t block) {
+    wh_pool_t *pool = hand->pool;
+    const uint64_t trials = wh_study_block_trials(pool->study, block);
     char message[WH_SANDBOX_MESSAGE_BYTES] = "";
     for (uint64_t i = 0; i < trials; ++i) {
         const uint64_t trial = block * WH_STUDY_BLOCK + i;
-        if (is_stopped(crew)) {
+        if (is_stopped(pool)) {
             return;
         }
         if (!wh_worker_play(&hand->worker, trial, &hand->block, message)) {
@@ -74,38 +74,38 @@ static void play_block(wh_hand_t *hand, uint64_t block) {
             return;
         }
     }
-    __atomic_fetch_add(&crew->trials, trials, __ATOMIC_RELAXED);
+    __atomic_fetch_add(&pool->trials, trials, __ATOMIC_RELAXED);
     wh_tally_merge(&hand->progress.tally, &hand->block);
     wh_tally_clear(&hand->block);
     wh_progress_note(&hand->progress, block);
 }
 
 /* The next block, or false when there will be none. */
-static bool next_block(wh_hand_t *hand, uint64_t *block) {
-    wh_crew_t *crew = hand->crew;
-    pthread_mutex_lock(&crew->lock);
-    --crew->working;
-    if (crew->from == crew->to || seconds_now() - hand->shown > SHOW_S) {
+static bool next_block(wh_pool_worker_t *hand, uint64_t *block) {
+    wh_pool_t *pool = hand->pool;
+    pthread_mutex_lock(&pool->lock);
+    --pool->working;
+    if (pool->from == pool->to || seconds_now() - hand->shown > SHOW_S) {
         show(hand);
     }
-    pthread_cond_broadcast(&crew->changed);
-    while (crew->from == crew->to && !crew->closed && !is_stopped(crew)) {
-        pthread_cond_wait(&crew->changed, &crew->lock);
+    pthread_cond_broadcast(&pool->changed);
+    while (pool->from == pool->to && !pool->closed && !is_stopped(pool)) {
+        pthread_cond_wait(&pool->changed, &pool->lock);
     }
-    const bool any = crew->from < crew->to && !is_stopped(crew);
+    const bool any = pool->from < pool->to && !is_stopped(pool);
     if (any) {
-        *block = crew->queue[crew->from++];
-        ++crew->working;
+        *block = pool->queue[pool->from++];
+        ++pool->working;
     } else {
         show(hand);
-        pthread_cond_broadcast(&crew->changed);
+        pthread_cond_broadcast(&pool->changed);
     }
-    pthread_mutex_unlock(&crew->lock);
+    pthread_mutex_unlock(&pool->lock);
     return any;
 }
 
 static void *work(void *argument) {
-    wh_hand_t *hand = argument;
+    wh_pool_worker_t *hand = argument;
     uint64_t block = 0;
     hand->shown = seconds_now();
     while (next_block(hand, &block)) {
@@ -116,102 +116,102 @@ static void *work(void *argument) {
 
 /* ------------------------------------------------------------------------------------------------------ the crew */
 
-static bool start_hand(wh_crew_t *crew, wh_hand_t *hand) {
-    hand->crew = crew;
-    wh_tally_init(&hand->block, crew->study->wafer_count);
-    wh_progress_init(&hand->progress, crew->study);
-    if (!wh_worker_open(&hand->worker, crew->study)) {
+static bool start_hand(wh_pool_t *pool, wh_pool_worker_t *hand) {
+    hand->pool = pool;
+    wh_tally_init(&hand->block, pool->study->wafer_count);
+    wh_progress_init(&hand->progress, pool->study);
+    if (!wh_worker_open(&hand->worker, pool->study)) {
         return false;
     }
-    ++crew->working;
+    ++pool->working;
     hand->started = pthread_create(&hand->thread, NULL, work, hand) == 0;
     return hand->started;
 }
 
-bool wh_crew_open(wh_crew_t *crew, const wh_study_t *study, size_t threads) {
+bool wh_pool_open(wh_pool_t *pool, const wh_study_t *study, size_t threads) {
     sigset_t all;
     sigset_t before;
-    memset(crew, 0, sizeof *crew);
-    crew->study = study;
-    pthread_mutex_init(&crew->lock, NULL);
-    pthread_cond_init(&crew->changed, NULL);
-    wh_progress_init(&crew->progress, study);
-    crew->queue = calloc((size_t)crew->progress.block_count + 1, sizeof *crew->queue);
-    crew->hands = calloc(threads, sizeof *crew->hands);
-    bool started = crew->queue && crew->hands;
+    memset(pool, 0, sizeof *pool);
+    pool->study = study;
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->changed, NULL);
+    wh_progress_init(&pool->progress, study);
+    pool->queue = calloc((size_t)pool->progress.block_count + 1, sizeof *pool->queue);
+    pool->hands = calloc(threads, sizeof *pool->hands);
+    bool started = pool->queue && pool->hands;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
-    pthread_mutex_lock(&crew->lock);
+    pthread_mutex_lock(&pool->lock);
     for (size_t i = 0; i < threads && started; ++i) {
-        ++crew->hand_count;
-        started = start_hand(crew, &crew->hands[i]);
+        ++pool->hand_count;
+        started = start_hand(pool, &pool->hands[i]);
     }
-    pthread_mutex_unlock(&crew->lock);
+    pthread_mutex_unlock(&pool->lock);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
     return started;
 }
 
-void wh_crew_queue(wh_crew_t *crew, const uint64_t blocks[], size_t count, bool closed) {
-    pthread_mutex_lock(&crew->lock);
-    if (crew->from == crew->to) {
-        crew->from = crew->to = 0;
+void wh_pool_queue(wh_pool_t *pool, const uint64_t blocks[], size_t count, bool closed) {
+    pthread_mutex_lock(&pool->lock);
+    if (pool->from == pool->to) {
+        pool->from = pool->to = 0;
     }
-    memcpy(&crew->queue[crew->to], blocks, count * sizeof *blocks);
-    crew->to += count;
-    crew->closed = closed;
-    pthread_cond_broadcast(&crew->changed);
-    pthread_mutex_unlock(&crew->lock);
+    memcpy(&pool->queue[pool->to], blocks, count * sizeof *blocks);
+    pool->to += count;
+    pool->closed = closed;
+    pthread_cond_broadcast(&pool->changed);
+    pthread_mutex_unlock(&pool->lock);
 }
 
-size_t wh_crew_take(wh_crew_t *crew, uint64_t blocks[], size_t most) {
-    pthread_mutex_lock(&crew->lock);
-    const size_t left = crew->to - crew->from;
+size_t wh_pool_take(wh_pool_t *pool, uint64_t blocks[], size_t most) {
+    pthread_mutex_lock(&pool->lock);
+    const size_t left = pool->to - pool->from;
     const size_t count = most < left ? most : left;
-    memcpy(blocks, &crew->queue[crew->from], count * sizeof *blocks);
-    crew->from += count;
-    pthread_mutex_unlock(&crew->lock);
+    memcpy(blocks, &pool->queue[pool->from], count * sizeof *blocks);
+    pool->from += count;
+    pthread_mutex_unlock(&pool->lock);
     return count;
 }
 
-size_t wh_crew_queued(wh_crew_t *crew) {
-    pthread_mutex_lock(&crew->lock);
-    const size_t count = crew->to - crew->from;
-    pthread_mutex_unlock(&crew->lock);
+size_t wh_pool_queued(wh_pool_t *pool) {
+    pthread_mutex_lock(&pool->lock);
+    const size_t count = pool->to - pool->from;
+    pthread_mutex_unlock(&pool->lock);
     return count;
 }
 
-bool wh_crew_failed(wh_crew_t *crew) {
-    pthread_mutex_lock(&crew->lock);
-    const bool failed = crew->failed;
-    pthread_mutex_unlock(&crew->lock);
+bool wh_pool_failed(wh_pool_t *pool) {
+    pthread_mutex_lock(&pool->lock);
+    const bool failed = pool->failed;
+    pthread_mutex_unlock(&pool->lock);
     return failed;
 }
 
-bool wh_crew_is_idle(wh_crew_t *crew) {
-    pthread_mutex_lock(&crew->lock);
-    const bool idle = crew->failed || (crew->working == 0 && (crew->from == crew->to || is_stopped(crew)));
-    pthread_mutex_unlock(&crew->lock);
+bool wh_pool_is_idle(wh_pool_t *pool) {
+    pthread_mutex_lock(&pool->lock);
+    const bool idle = pool->failed || (pool->working == 0 && (pool->from == pool->to || is_stopped(pool)));
+    pthread_mutex_unlock(&pool->lock);
     return idle;
 }
 
-void wh_crew_wait(wh_crew_t *crew, int milliseconds) {
+void wh_pool_wait(wh_pool_t *pool, int milliseconds) {
     struct timespec until;
     clock_gettime(CLOCK_REALTIME, &until);
     until.tv_nsec += (long)milliseconds * 1000000;
     until.tv_sec += until.tv_nsec / 1000000000;
     until.tv_nsec %= 1000000000;
-    pthread_mutex_lock(&crew->lock);
-    pthread_cond_timedwait(&crew->changed, &crew->lock, &until);
-    pthread_mutex_unlock(&crew->lock);
+    pthread_mutex_lock(&pool->lock);
+    pthread_cond_timedwait(&pool->changed, &pool->lock, &until);
+    pthread_mutex_unlock(&pool->lock);
 }
 
-void wh_crew_close(wh_crew_t *crew) {
-    pthread_mutex_lock(&crew->lock);
-    wh_crew_stop(crew);
-    pthread_cond_broadcast(&crew->changed);
-    pthread_mutex_unlock(&crew->lock);
-    for (size_t i = 0; i < crew->hand_count; ++i) {
-        wh_hand_t *hand = &crew->hands[i];
+void wh_pool_close(wh_pool_t *pool) {
+    pthread_mutex_lock(&pool->lock);
+    wh_pool_stop(pool);
+    pthread_cond_broadcast(&pool->changed);
+    pthread_mutex_unlock(&pool->lock);
+    for (size_t i = 0; i < pool->hand_count; ++i) {
+        wh_pool_worker_t *hand = &pool->hands[i];
         if (hand->started) {
             pthread_join(hand->thread, NULL);
         }
@@ -219,9 +219,9 @@ void wh_crew_close(wh_crew_t *crew) {
         wh_tally_free(&hand->block);
         wh_progress_free(&hand->progress);
     }
-    free(crew->queue);
-    free(crew->hands);
-    wh_progress_free(&crew->progress);
-    pthread_cond_destroy(&crew->changed);
-    pthread_mutex_destroy(&crew->lock);
+    free(pool->queue);
+    free(pool->hands);
+    wh_progress_free(&pool->progress);
+    pthread_cond_destroy(&pool->changed);
+    pthread_mutex_destroy(&pool->lock);
 }

@@ -26,7 +26,7 @@ void wh_progress_merge(wh_progress_t *progress, const wh_progress_t *other);
 /* Forgets everything. */
 void wh_progress_clear(wh_progress_t *progress);
 
-typedef struct wh_hand wh_hand_t;
+typedef struct wh_pool_worker wh_pool_worker_t;
 
 /* Fields are read and written under `lock`, but for `stop` and `trials`, which are read and written as atomics. */
 typedef struct {
@@ -40,41 +40,41 @@ typedef struct {
     size_t working; /* hands that are not waiting */
     wh_progress_t progress;
     char message[WH_SANDBOX_MESSAGE_BYTES + 64];
-    bool stop;       /* leave everything and end: see wh_crew_stop */
-    uint64_t trials; /* see wh_crew_trials */
-    wh_hand_t *hands;
+    bool stop;       /* leave everything and end: see wh_pool_stop */
+    uint64_t trials; /* see wh_pool_trials */
+    wh_pool_worker_t *hands;
     size_t hand_count;
-} wh_crew_t;
+} wh_pool_t;
 
 /* Starts `threads` threads, without work yet; `study` must outlive them. Their signals are blocked. False when there is no memory
  * or thread for them; to be closed either way. */
-bool wh_crew_open(wh_crew_t *crew, const wh_study_t *study, size_t threads);
+bool wh_pool_open(wh_pool_t *pool, const wh_study_t *study, size_t threads);
 
 /* Queues blocks; with `closed` no more will come. */
-void wh_crew_queue(wh_crew_t *crew, const uint64_t blocks[], size_t count, bool closed);
+void wh_pool_queue(wh_pool_t *pool, const uint64_t blocks[], size_t count, bool closed);
 
 /* Takes up to `most` blocks off the queue, for someone else to play. Returns how many. */
-size_t wh_crew_take(wh_crew_t *crew, uint64_t blocks[], size_t most);
+size_t wh_pool_take(wh_pool_t *pool, uint64_t blocks[], size_t most);
 
 /* How many blocks are queued. */
-size_t wh_crew_queued(wh_crew_t *crew);
+size_t wh_pool_queued(wh_pool_t *pool);
 
 /* Whether the hands are idle, all they did is in `progress` and nothing is queued; or someone failed. */
-bool wh_crew_is_idle(wh_crew_t *crew);
+bool wh_pool_is_idle(wh_pool_t *pool);
 
 /* Lets the hands leave what they are at. */
-void wh_crew_stop(wh_crew_t *crew);
+void wh_pool_stop(wh_pool_t *pool);
 
 /* How many trials the hands have played so far. */
-uint64_t wh_crew_trials(const wh_crew_t *crew);
+uint64_t wh_pool_trials(const wh_pool_t *pool);
 
 /* Whether a trial was not usable; `message` then says why. */
-bool wh_crew_failed(wh_crew_t *crew);
+bool wh_pool_failed(wh_pool_t *pool);
 
 /* Waits up to so many milliseconds for anything to change. */
-void wh_crew_wait(wh_crew_t *crew, int milliseconds);
+void wh_pool_wait(wh_pool_t *pool, int milliseconds);
 
 /* Ends the threads. Blocks that they have not finished are given up. */
-void wh_crew_close(wh_crew_t *crew);
+void wh_pool_close(wh_pool_t *pool);
 
 #endif

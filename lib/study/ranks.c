@@ -83,11 +83,11 @@ void wh_ranks_close(wh_ranks_t *ranks, int status) {
 
 /* ------------------------------------------------------------------------------------------------------- rank 0 */
 
-static bool take_progress(wh_crew_t *crew, int from, const char *text, size_t size) {
+static bool take_progress(wh_pool_t *pool, int from, const char *text, size_t size) {
     char message[1024];
-    pthread_mutex_lock(&crew->lock);
-    const bool taken = wh_state_read(crew->study, text, size, &crew->progress, message, sizeof message);
-    pthread_mutex_unlock(&crew->lock);
+    pthread_mutex_lock(&pool->lock);
+    const bool taken = wh_checkpoint_read(pool->study, text, size, &pool->progress, message, sizeof message);
+    pthread_mutex_unlock(&pool->lock);
     if (!taken) {
         fprintf(stderr, "rank %d: %s\n", from, message);
     }
@@ -95,26 +95,26 @@ static bool take_progress(wh_crew_t *crew, int from, const char *text, size_t si
 }
 
 /* Fewer and fewer, so that all end at much the same time. */
-static bool send_blocks(const wh_ranks_t *ranks, wh_crew_t *crew, int to) {
+static bool send_blocks(const wh_ranks_t *ranks, wh_pool_t *pool, int to) {
     uint64_t blocks[MOST_BLOCKS];
-    const size_t share = wh_crew_queued(crew) / (4 * (size_t)ranks->size) + 1;
-    const size_t count = wh_crew_take(crew, blocks, share < MOST_BLOCKS ? share : MOST_BLOCKS);
+    const size_t share = wh_pool_queued(pool) / (4 * (size_t)ranks->size) + 1;
+    const size_t count = wh_pool_take(pool, blocks, share < MOST_BLOCKS ? share : MOST_BLOCKS);
     return ranks->calls->send(to, blocks, count * sizeof blocks[0]) == 0;
 }
 
-static bool answer(wh_ranks_t *ranks, wh_crew_t *crew, int from, const char *text, size_t size) {
+static bool answer(wh_ranks_t *ranks, wh_pool_t *pool, int from, const char *text, size_t size) {
     if (size == 0 || text[0] == HAS_FAILED) {
         fprintf(stderr, "%.*s\n", size > 0 ? (int)size - 1 : 0, text + 1);
         return false;
     }
-    if (!take_progress(crew, from, text + 1, size - 1)) {
+    if (!take_progress(pool, from, text + 1, size - 1)) {
         return false;
     }
     if (text[0] == HAS_ENDED) {
         ++ranks->ended;
         return true;
     }
-    return send_blocks(ranks, crew, from);
+    return send_blocks(ranks, pool, from);
 }
 
 /* A message that has come, to be freed; null when there is none. `sound` becomes false when something is wrong. */
@@ -132,7 +132,7 @@ static char *take_message(const wh_ranks_t *ranks, int *from, size_t *size, bool
     return text;
 }
 
-bool wh_ranks_serve(wh_ranks_t *ranks, wh_crew_t *crew) {
+bool wh_ranks_serve(wh_ranks_t *ranks, wh_pool_t *pool) {
     bool sound = true;
     while (ranks->calls && sound) {
         int from = 0;
@@ -141,7 +141,7 @@ bool wh_ranks_serve(wh_ranks_t *ranks, wh_crew_t *crew) {
         if (!text) {
             break;
         }
-        sound = sound && answer(ranks, crew, from, text, size);
+        sound = sound && answer(ranks, pool, from, text, size);
         free(text);
     }
     return sound;
@@ -163,18 +163,18 @@ static bool tell(const wh_ranks_t *ranks, char kind, const char *text) {
 }
 
 /* What was done since the last time. */
-static bool tell_progress(const wh_ranks_t *ranks, wh_crew_t *crew, char kind) {
-    pthread_mutex_lock(&crew->lock);
-    char *text = wh_state_text(crew->study, &crew->progress);
-    wh_progress_clear(&crew->progress);
-    pthread_mutex_unlock(&crew->lock);
+static bool tell_progress(const wh_ranks_t *ranks, wh_pool_t *pool, char kind) {
+    pthread_mutex_lock(&pool->lock);
+    char *text = wh_checkpoint_text(pool->study, &pool->progress);
+    wh_progress_clear(&pool->progress);
+    pthread_mutex_unlock(&pool->lock);
     const bool told = text && tell(ranks, kind, text);
     free(text);
     return told;
 }
 
 /* Queues the blocks that have come, if any have; none at all mean that there are no more. */
-static bool take_blocks(const wh_ranks_t *ranks, wh_crew_t *crew, bool *wanting, bool *more) {
+static bool take_blocks(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting, bool *more) {
     int from = 0;
     size_t size = 0;
     bool sound = true;
@@ -185,36 +185,36 @@ static bool take_blocks(const wh_ranks_t *ranks, wh_crew_t *crew, bool *wanting,
         memcpy(blocks, text, count * sizeof blocks[0]);
         *wanting = false;
         *more = count > 0;
-        wh_crew_queue(crew, blocks, count, count == 0);
+        wh_pool_queue(pool, blocks, count, count == 0);
     }
     free(text);
     return sound;
 }
 
 /* Asks for more in time, and takes what comes. */
-static bool go_on(const wh_ranks_t *ranks, wh_crew_t *crew, bool *wanting, bool *more) {
+static bool go_on(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting, bool *more) {
     bool sound = true;
-    if (*more && !*wanting && wh_crew_queued(crew) <= 2 * crew->hand_count) {
-        sound = tell_progress(ranks, crew, WANTS_MORE);
+    if (*more && !*wanting && wh_pool_queued(pool) <= 2 * pool->hand_count) {
+        sound = tell_progress(ranks, pool, WANTS_MORE);
         *wanting = true;
     }
     if (sound && *wanting) {
-        sound = take_blocks(ranks, crew, wanting, more);
+        sound = take_blocks(ranks, pool, wanting, more);
     }
-    wh_crew_wait(crew, *wanting ? 2 : 20);
+    wh_pool_wait(pool, *wanting ? 2 : 20);
     return sound;
 }
 
-bool wh_ranks_help(wh_ranks_t *ranks, wh_crew_t *crew, bool (*interrupted)(void)) {
+bool wh_ranks_help(wh_ranks_t *ranks, wh_pool_t *pool, bool (*interrupted)(void)) {
     bool wanting = false;
     bool more = true;
     bool sound = true;
-    while (sound && !interrupted() && (more || !wh_crew_is_idle(crew))) {
-        sound = !wh_crew_failed(crew) && go_on(ranks, crew, &wanting, &more);
+    while (sound && !interrupted() && (more || !wh_pool_is_idle(pool))) {
+        sound = !wh_pool_failed(pool) && go_on(ranks, pool, &wanting, &more);
     }
-    if (wh_crew_failed(crew)) {
-        tell(ranks, HAS_FAILED, crew->message);
+    if (wh_pool_failed(pool)) {
+        tell(ranks, HAS_FAILED, pool->message);
         return false;
     }
-    return sound && !interrupted() && tell_progress(ranks, crew, HAS_ENDED);
+    return sound && !interrupted() && tell_progress(ranks, pool, HAS_ENDED);
 }

@@ -25,11 +25,11 @@ bool wh_ranks_open(wh_ranks_t *ranks);
 
 /* Rank 0: takes what has come, adds it to the crew's progress, and sends blocks off its queue to who wants some. False when a
  * rank failed: the reason is on stderr. */
-bool wh_ranks_serve(wh_ranks_t *ranks, wh_crew_t *crew);
+bool wh_ranks_serve(wh_ranks_t *ranks, wh_pool_t *pool);
 
 /* Any other rank: plays what rank 0 sends, until there is no more. False when a trial was not usable, which rank 0 then
  * tells. */
-bool wh_ranks_help(wh_ranks_t *ranks, wh_crew_t *crew, bool (*interrupted)(void));
+bool wh_ranks_help(wh_ranks_t *ranks, wh_pool_t *pool, bool (*interrupted)(void));
 
 /* `status` other than 0 ends all ranks at once with it, when there are others. */
 void wh_ranks_close(wh_ranks_t *ranks, int status);

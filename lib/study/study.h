@@ -21,10 +21,10 @@ typedef struct {
 
 /* What all trials share; nothing of it changes while they run, so any thread may read it. */
 typedef struct {
-    wh_run_options_t run; /* script, parameters, limits; without tape and trial */
+    wh_script_run_options_t run; /* script, parameters, limits; without tape and trial */
     uint64_t seed, trials;
-    wh_run_t nominal; /* the run without errors */
-    wh_tape_t tape;   /* of it */
+    wh_script_run_t nominal;  /* the run without errors */
+    wh_decisions_t decisions; /* of it */
     const wh_layout_t *layout;
     const char *whole; /* why each trial runs the script whole, or null: most replay the tape */
     wh_study_wafer_t wafers[WH_STUDY_WAFERS];

@@ -62,13 +62,13 @@ static const char *why_whole(const wh_study_t *study) {
     if (study->layout->collision) {
         return "collisions are looked for";
     }
-    return study->tape.unfit;
+    return study->decisions.unfit;
 }
 
 bool wh_study_open(wh_study_t *study) {
-    wh_run_options_t options = study->run;
-    options.tape = &study->tape;
-    if (wh_run_script(&study->nominal, &options) == WH_RUN_BAD_INPUT) {
+    wh_script_run_options_t options = study->run;
+    options.decisions = &study->decisions;
+    if (wh_script_run(&study->nominal, &options) == WH_RUN_BAD_INPUT) {
         fprintf(stderr, "%s\n", study->nominal.message);
         return false;
     }
@@ -87,6 +87,6 @@ bool wh_study_open(wh_study_t *study) {
 }
 
 void wh_study_close(wh_study_t *study) {
-    wh_tape_free(&study->tape);
-    wh_run_close(&study->nominal);
+    wh_decisions_free(&study->decisions);
+    wh_script_run_close(&study->nominal);
 }

@@ -57,15 +57,15 @@ static double seconds_now(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static bool keep(keeper_t *keeper, wh_crew_t *crew) {
+static bool keep(keeper_t *keeper, wh_pool_t *pool) {
     keeper->kept = seconds_now();
     if (!keeper->path) {
         return true;
     }
-    pthread_mutex_lock(&crew->lock);
-    char *text = wh_state_text(crew->study, &crew->progress);
-    pthread_mutex_unlock(&crew->lock);
-    const bool saved = text && wh_state_save(keeper->path, text);
+    pthread_mutex_lock(&pool->lock);
+    char *text = wh_checkpoint_text(pool->study, &pool->progress);
+    pthread_mutex_unlock(&pool->lock);
+    const bool saved = text && wh_checkpoint_save(keeper->path, text);
     if (!saved && keeper->named) {
         fprintf(stderr, "%s: %s (expected a file that can be written)\n", keeper->path, strerror(errno));
     }
@@ -77,15 +77,15 @@ static bool keep(keeper_t *keeper, wh_crew_t *crew) {
     return saved || !keeper->named;
 }
 
-static bool open_keeper(keeper_t *keeper, const wh_study_options_t *options, wh_crew_t *crew) {
+static bool open_keeper(keeper_t *keeper, const wh_study_options_t *options, wh_pool_t *pool) {
     keeper->named = options->state != NULL;
-    keeper->path = keeper->named ? wh_record_text(options->state) : wh_state_default_path(crew->study);
+    keeper->path = keeper->named ? wh_record_text(options->state) : wh_checkpoint_default_path(pool->study);
     keeper->kept = seconds_now();
     if (!keeper->path) {
         return true;
     }
-    const wh_state_found_t found = wh_state_load(keeper->path, crew->study, &crew->progress);
-    return found != WH_STATE_REFUSED && (found == WH_STATE_READ || !keeper->named || keep(keeper, crew));
+    const wh_checkpoint_found_t found = wh_checkpoint_load(keeper->path, pool->study, &pool->progress);
+    return found != WH_STATE_REFUSED && (found == WH_STATE_READ || !keeper->named || keep(keeper, pool));
 }
 
 static void close_keeper(keeper_t *keeper, bool done) {
@@ -109,87 +109,87 @@ static size_t count_threads(const wh_study_options_t *options) {
     return count < 1 ? 1 : count > MOST_THREADS ? MOST_THREADS : (size_t)count;
 }
 
-static void queue_rest(wh_crew_t *crew) {
-    uint64_t *blocks = calloc((size_t)crew->progress.block_count + 1, sizeof *blocks);
+static void queue_rest(wh_pool_t *pool) {
+    uint64_t *blocks = calloc((size_t)pool->progress.block_count + 1, sizeof *blocks);
     size_t count = 0;
     if (!blocks) {
         abort();
     }
-    pthread_mutex_lock(&crew->lock);
-    for (uint64_t block = 0; block < crew->progress.block_count; ++block) {
-        if (!wh_progress_has(&crew->progress, block)) {
+    pthread_mutex_lock(&pool->lock);
+    for (uint64_t block = 0; block < pool->progress.block_count; ++block) {
+        if (!wh_progress_has(&pool->progress, block)) {
             blocks[count++] = block;
         }
     }
-    pthread_mutex_unlock(&crew->lock);
-    wh_crew_queue(crew, blocks, count, true);
+    pthread_mutex_unlock(&pool->lock);
+    wh_pool_queue(pool, blocks, count, true);
     free(blocks);
 }
 
-static uint64_t trials_done(wh_crew_t *crew) {
-    pthread_mutex_lock(&crew->lock);
-    const uint64_t trials = crew->progress.tally.trials;
-    pthread_mutex_unlock(&crew->lock);
+static uint64_t trials_done(wh_pool_t *pool) {
+    pthread_mutex_lock(&pool->lock);
+    const uint64_t trials = pool->progress.tally.trials;
+    pthread_mutex_unlock(&pool->lock);
     return trials;
 }
 
-static bool is_over(wh_crew_t *crew, const wh_ranks_t *ranks) {
-    return wh_crew_is_idle(crew) && ranks->ended == ranks->size - 1;
+static bool is_over(wh_pool_t *pool, const wh_ranks_t *ranks) {
+    return wh_pool_is_idle(pool) && ranks->ended == ranks->size - 1;
 }
 
-static bool keep_now_and_then(keeper_t *keeper, wh_crew_t *crew) {
-    return seconds_now() - keeper->kept < KEEP_S || keep(keeper, crew);
+static bool keep_now_and_then(keeper_t *keeper, wh_pool_t *pool) {
+    return seconds_now() - keeper->kept < KEEP_S || keep(keeper, pool);
 }
 
-static wh_study_end_t how_it_ended(wh_crew_t *crew, const wh_ranks_t *ranks) {
-    return is_interrupted() && !is_over(crew, ranks) ? WH_STUDY_INTERRUPTED : WH_STUDY_DONE;
+static wh_study_end_t how_it_ended(wh_pool_t *pool, const wh_ranks_t *ranks) {
+    return is_interrupted() && !is_over(pool, ranks) ? WH_STUDY_INTERRUPTED : WH_STUDY_DONE;
 }
 
-static wh_study_end_t lead(wh_crew_t *crew, wh_ranks_t *ranks, keeper_t *keeper) {
+static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
     wh_bar_t bar;
     bool sound = true;
-    queue_rest(crew);
-    wh_bar_open(&bar, stderr, crew->study->trials, trials_done(crew));
-    while (sound && !wh_crew_failed(crew) && !is_interrupted() && !is_over(crew, ranks)) {
-        wh_crew_wait(crew, 50);
-        sound = wh_ranks_serve(ranks, crew) && keep_now_and_then(keeper, crew);
-        wh_bar_show(&bar, trials_done(crew));
+    queue_rest(pool);
+    wh_bar_open(&bar, stderr, pool->study->trials, trials_done(pool));
+    while (sound && !wh_pool_failed(pool) && !is_interrupted() && !is_over(pool, ranks)) {
+        wh_pool_wait(pool, 50);
+        sound = wh_ranks_serve(ranks, pool) && keep_now_and_then(keeper, pool);
+        wh_bar_show(&bar, trials_done(pool));
     }
     wh_bar_close(&bar);
-    if (wh_crew_failed(crew)) {
-        fprintf(stderr, "%s\n", crew->message);
+    if (wh_pool_failed(pool)) {
+        fprintf(stderr, "%s\n", pool->message);
         return WH_STUDY_FAILED;
     }
-    return sound ? how_it_ended(crew, ranks) : WH_STUDY_FAILED;
+    return sound ? how_it_ended(pool, ranks) : WH_STUDY_FAILED;
 }
 
-static void tell_interruption(const keeper_t *keeper, wh_crew_t *crew) {
-    fprintf(stderr, "interrupted: %llu of %llu trials are done", (unsigned long long)trials_done(crew),
-            (unsigned long long)crew->study->trials);
+static void tell_interruption(const keeper_t *keeper, wh_pool_t *pool) {
+    fprintf(stderr, "interrupted: %llu of %llu trials are done", (unsigned long long)trials_done(pool),
+            (unsigned long long)pool->study->trials);
     fprintf(stderr, keeper->path ? ", and kept in %s; the same command goes on from there\n" : "%s\n",
             keeper->path ? keeper->path : "");
 }
 
 /* Threads that are stopped show what they have done: to be kept, too. */
-static void stop_hands(wh_crew_t *crew) {
-    wh_crew_stop(crew);
-    while (!wh_crew_is_idle(crew)) {
-        wh_crew_wait(crew, 5);
+static void stop_hands(wh_pool_t *pool) {
+    wh_pool_stop(pool);
+    while (!wh_pool_is_idle(pool)) {
+        wh_pool_wait(pool, 5);
     }
 }
 
-static wh_study_end_t play_first(wh_crew_t *crew, const wh_study_options_t *options, wh_ranks_t *ranks) {
+static wh_study_end_t play_first(wh_pool_t *pool, const wh_study_options_t *options, wh_ranks_t *ranks) {
     keeper_t keeper;
     wh_study_end_t end = WH_STUDY_FAILED;
-    if (open_keeper(&keeper, options, crew)) {
-        end = lead(crew, ranks, &keeper);
-        stop_hands(crew);
+    if (open_keeper(&keeper, options, pool)) {
+        end = lead(pool, ranks, &keeper);
+        stop_hands(pool);
         const bool used = keeper.named || end == WH_STUDY_INTERRUPTED;
-        if (used && !keep(&keeper, crew) && end == WH_STUDY_DONE) {
+        if (used && !keep(&keeper, pool) && end == WH_STUDY_DONE) {
             end = WH_STUDY_FAILED;
         }
         if (end == WH_STUDY_INTERRUPTED) {
-            tell_interruption(&keeper, crew);
+            tell_interruption(&keeper, pool);
         }
     }
     close_keeper(&keeper, end == WH_STUDY_DONE);
@@ -198,21 +198,21 @@ static wh_study_end_t play_first(wh_crew_t *crew, const wh_study_options_t *opti
 
 wh_study_end_t wh_study_play(const wh_study_t *study, const wh_study_options_t *options, wh_ranks_t *ranks,
                              wh_progress_t *progress) {
-    wh_crew_t crew;
+    wh_pool_t pool;
     wh_study_end_t end = WH_STUDY_FAILED;
     catch_signals();
-    if (!wh_crew_open(&crew, study, count_threads(options))) {
+    if (!wh_pool_open(&pool, study, count_threads(options))) {
         fprintf(stderr, "waferhand study: no memory or threads (expected fewer with --threads)\n");
     } else if (ranks->rank > 0) {
-        end = wh_ranks_help(ranks, &crew, is_interrupted) ? WH_STUDY_HELPED : WH_STUDY_FAILED;
+        end = wh_ranks_help(ranks, &pool, is_interrupted) ? WH_STUDY_HELPED : WH_STUDY_FAILED;
     } else {
-        end = play_first(&crew, options, ranks);
+        end = play_first(&pool, options, ranks);
     }
     if (end == WH_STUDY_DONE) {
         wh_progress_init(progress, study);
-        wh_progress_merge(progress, &crew.progress);
+        wh_progress_merge(progress, &pool.progress);
         wh_tally_sort(&progress->tally);
     }
-    wh_crew_close(&crew);
+    wh_pool_close(&pool);
     return end;
 }

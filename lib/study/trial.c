@@ -43,7 +43,7 @@ static void watch(void *user, const wh_event_t events[], size_t count) {
 }
 
 static bool set_up(wh_worker_t *worker) {
-    const wh_layout_t *layout = &worker->reality.layout;
+    const wh_layout_t *layout = &worker->trial_cell.layout;
     const wh_grasp_storage_t storage = {.wafers = worker->wafers,
                                         .wafer_count = layout->wafer_count,
                                         .grippers = worker->grippers,
@@ -80,9 +80,9 @@ static bool replay(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
     const wh_trial_t name = {study->seed, trial};
     watcher_t watcher = {&worker->outcome, false};
     begin(worker, trial);
-    wh_reality_fill(&worker->reality, study->layout, &name, worker->places, worker->start);
+    wh_trial_cell_fill(&worker->trial_cell, study->layout, &name, worker->places, worker->start);
     if (!set_up(worker) ||
-        !wh_tape_play(&study->tape, &worker->reality, &worker->simulator, watch, &watcher)) {
+        !wh_decisions_play(&study->decisions, &worker->trial_cell, &worker->simulator, watch, &watcher)) {
         return false;
     }
     worker->outcome.record = record;
@@ -112,7 +112,7 @@ static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, ch
     const wh_trial_t name = {worker->study->seed, trial};
     worker->options.trial = &name;
     begin(worker, trial);
-    const wh_run_outcome_t outcome = wh_run_script(&worker->run, &worker->options);
+    const wh_script_run_outcome_t outcome = wh_script_run(&worker->run, &worker->options);
     const bool usable = outcome != WH_RUN_BAD_INPUT && worker->run.record.wafers;
     if (usable) {
         take_record(worker, &worker->run.record);
@@ -121,7 +121,7 @@ static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, ch
     } else {
         memcpy(message, worker->run.message, WH_SANDBOX_MESSAGE_BYTES);
     }
-    wh_run_close(&worker->run);
+    wh_script_run_close(&worker->run);
     return usable;
 }
 
@@ -131,9 +131,10 @@ bool wh_worker_play(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char
            run_whole(worker, trial, tally, message, &hash);
 }
 
-bool wh_worker_compare(wh_worker_t *worker, uint64_t trial, bool tape, wh_tally_t *tally, uint64_t *hash) {
+bool wh_worker_compare(wh_worker_t *worker, uint64_t trial, bool decisions, wh_tally_t *tally,
+                       uint64_t *hash) {
     char message[WH_SANDBOX_MESSAGE_BYTES];
-    if (!tape) {
+    if (!decisions) {
         return run_whole(worker, trial, tally, message, hash);
     }
     const bool played = !worker->study->whole && replay(worker, trial, tally);

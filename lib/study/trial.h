@@ -7,14 +7,14 @@
 /* What a thread needs for its trials; its own. */
 typedef struct {
     const wh_study_t *study;
-    wh_reality_t reality;
+    wh_trial_cell_t trial_cell;
     wh_station_t *places;
     wh_wafer_t *start, *wafers;
     wh_gripper_t grippers[WH_GRIPPERS];
     wh_simulator_t simulator;
     wh_outcome_t outcome;
-    wh_run_t run; /* while a script runs whole */
-    wh_run_options_t options;
+    wh_script_run_t run; /* while a script runs whole */
+    wh_script_run_options_t options;
 } wh_worker_t;
 
 /* False when memory is out. To be closed either way. */
@@ -27,6 +27,7 @@ bool wh_worker_play(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char
 
 /* The same, always by running the script whole, or, when `tape` is true, never: then false as well where that is not possible.
  * `hash` gets the last state's hash. For comparing the two. */
-bool wh_worker_compare(wh_worker_t *worker, uint64_t trial, bool tape, wh_tally_t *tally, uint64_t *hash);
+bool wh_worker_compare(wh_worker_t *worker, uint64_t trial, bool decisions, wh_tally_t *tally,
+                       uint64_t *hash);
 
 #endif

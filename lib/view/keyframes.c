@@ -30,7 +30,7 @@ static void add_key(wh_keyframes_t *motion, double seconds, const wh_vec3_t *r, 
 /* ---------------------------------------------------------------------------------------------------- paths */
 
 typedef struct {
-    const wh_trace_t *trace;
+    const wh_signals_t *signals;
     wh_paths_t *paths;
 } tracing_t;
 
@@ -42,30 +42,30 @@ static void add_place(wh_thin_t *thin, int64_t slice, const wh_pose_t *pose) {
 
 static void add_places(void *user, int64_t slice) {
     const tracing_t *tracing = user;
-    const wh_trace_t *trace = tracing->trace;
+    const wh_signals_t *signals = tracing->signals;
     wh_pose_t links[WH_TRACE_LINKS];
     wh_pose_t gripper;
-    for (size_t g = 0; g < trace->layout->machine.gripper_count; ++g) {
-        wh_trace_gripper(trace, g, slice, &gripper);
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
+        wh_signals_gripper(signals, g, slice, &gripper);
         add_place(&tracing->paths->grippers[g], slice, &gripper);
     }
-    if (wh_trace_links(trace, slice, links)) {
+    if (wh_signals_links(signals, slice, links)) {
         for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
             add_place(&tracing->paths->links[i], slice, &links[i]);
         }
     }
 }
 
-wh_paths_t wh_paths_of_trace(const wh_trace_t *trace) {
+wh_paths_t wh_paths_of_signals(const wh_signals_t *signals) {
     wh_paths_t paths;
-    tracing_t tracing = {trace, &paths};
+    tracing_t tracing = {signals, &paths};
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         wh_thin_open(&paths.grippers[g], 3, WH_PATHS_MM, WH_PATHS_RAD, WH_PATHS_POINTS);
     }
     for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
         wh_thin_open(&paths.links[i], 3, WH_PATHS_LINK_MM, WH_PATHS_LINK_RAD, WH_PATHS_LINK_POINTS);
     }
-    wh_trace_walk(trace, add_places, &tracing);
+    wh_signals_walk(signals, add_places, &tracing);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         wh_thin_finish(&paths.grippers[g]);
     }
@@ -86,31 +86,32 @@ void wh_paths_free(wh_paths_t *paths) {
 
 /* ------------------------------------------------------------------------------------------------ keyframes */
 
-static double seconds_of(const wh_trace_t *trace, double slice) {
-    return slice * (double)trace->layout->slice_us / 1e6;
+static double seconds_of(const wh_signals_t *signals, double slice) {
+    return slice * (double)signals->layout->slice_us / 1e6;
 }
 
-wh_keyframes_t wh_keyframes_of_track(const wh_trace_t *trace, const wh_thin_t *thin) {
+wh_keyframes_t wh_keyframes_of_track(const wh_signals_t *signals, const wh_thin_t *thin) {
     wh_keyframes_t motion = {0};
     for (size_t i = 0; i < thin->count; ++i) {
         const double *values = thin->points[i].values;
         const wh_vec3_t r = {values[0], values[1], values[2]};
-        add_key(&motion, seconds_of(trace, (double)thin->points[i].slice), &r, values + 3);
+        add_key(&motion, seconds_of(signals, (double)thin->points[i].slice), &r, values + 3);
     }
     return motion;
 }
 
 /* --------------------------------------------------------------------------------------------------- wafers */
 
-static void add_pose(wh_keyframes_t *motion, const wh_trace_t *trace, double slice, const wh_pose_t *pose) {
+static void add_pose(wh_keyframes_t *motion, const wh_signals_t *signals, double slice,
+                     const wh_pose_t *pose) {
     double q[4];
     wh_quaternion_from_matrix(&pose->R, motion->count > 0 ? motion->last : NULL, q);
     memcpy(motion->last, q, sizeof q);
-    add_key(motion, seconds_of(trace, slice), &pose->r, q);
+    add_key(motion, seconds_of(signals, slice), &pose->r, q);
 }
 
 /* Between two points of its gripper, `share` of the way. */
-static void add_held(wh_keyframes_t *motion, const wh_trace_t *trace, const wh_stay_t *stay,
+static void add_held(wh_keyframes_t *motion, const wh_signals_t *signals, const wh_stay_t *stay,
                      const wh_thin_point_t *from, const wh_thin_point_t *to, double share) {
     const double *a = from->values;
     const double *b = to->values;
@@ -121,7 +122,7 @@ static void add_held(wh_keyframes_t *motion, const wh_trace_t *trace, const wh_s
     wh_quaternion_slerp(a + 3, b + 3, share, q);
     wh_quaternion_to_matrix(q, &gripper.R);
     const wh_pose_t pose = wh_pose_compose(&gripper, &stay->pose);
-    add_pose(motion, trace, (double)from->slice + share * (double)(to->slice - from->slice), &pose);
+    add_pose(motion, signals, (double)from->slice + share * (double)(to->slice - from->slice), &pose);
 }
 
 /* So many keyframes keep a wafer that is beside the gripper's origin on its arc: a chord of angle a is off by r a^2 / 8. */
@@ -137,7 +138,7 @@ static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, const double a
     return parts;
 }
 
-static void add_hold(wh_keyframes_t *motion, const wh_trace_t *trace, const wh_thin_t *thin,
+static void add_hold(wh_keyframes_t *motion, const wh_signals_t *signals, const wh_thin_t *thin,
                      const wh_stay_t *stay, int64_t end) {
     for (size_t i = 0; i + 1 < thin->count && thin->points[i].slice < end; ++i) {
         const wh_thin_point_t *from = &thin->points[i];
@@ -147,30 +148,30 @@ static void add_hold(wh_keyframes_t *motion, const wh_trace_t *trace, const wh_t
         }
         const int parts = parts_of(stay, thin, from->values, to->values);
         for (int part = from->slice < stay->slice ? 1 : 0; part < parts; ++part) {
-            add_held(motion, trace, stay, from, to, (double)part / parts);
+            add_held(motion, signals, stay, from, to, (double)part / parts);
         }
         if (to->slice >= end || i + 2 == thin->count) {
-            add_held(motion, trace, stay, from, to, 1);
+            add_held(motion, signals, stay, from, to, 1);
         }
     }
 }
 
-wh_keyframes_t wh_keyframes_of_wafer(const wh_trace_t *trace, const wh_paths_t *paths, int32_t wafer) {
+wh_keyframes_t wh_keyframes_of_wafer(const wh_signals_t *signals, const wh_paths_t *paths, int32_t wafer) {
     wh_keyframes_t motion = {0};
     const wh_stay_t *stay = NULL;
-    for (size_t i = 0; i <= trace->stay_count; ++i) {
-        const bool over = i == trace->stay_count;
-        if (!over && trace->stays[i].wafer != wafer) {
+    for (size_t i = 0; i <= signals->stay_count; ++i) {
+        const bool over = i == signals->stay_count;
+        if (!over && signals->stays[i].wafer != wafer) {
             continue;
         }
-        const int64_t end = over ? trace->last : trace->stays[i].slice;
+        const int64_t end = over ? signals->last : signals->stays[i].slice;
         if (stay && stay->holder != WH_NONE) {
-            add_hold(&motion, trace, &paths->grippers[stay->holder], stay, end);
+            add_hold(&motion, signals, &paths->grippers[stay->holder], stay, end);
         } else if (stay) {
-            add_pose(&motion, trace, (double)stay->slice, &stay->pose);
-            add_pose(&motion, trace, (double)end, &stay->pose);
+            add_pose(&motion, signals, (double)stay->slice, &stay->pose);
+            add_pose(&motion, signals, (double)end, &stay->pose);
         }
-        stay = over ? stay : &trace->stays[i];
+        stay = over ? stay : &signals->stays[i];
     }
     return motion;
 }

@@ -28,15 +28,15 @@ typedef struct {
 #define WH_PATHS_POINTS 60000
 #define WH_PATHS_LINK_POINTS 30000
 
-/* Those of a finished trace. To be freed. Cost: about 1 us for each place of wh_trace_walk. */
-wh_paths_t wh_paths_of_trace(const wh_trace_t *trace);
+/* Those of a finished trace. To be freed. Cost: about 1 us for each place of wh_signals_walk. */
+wh_paths_t wh_paths_of_signals(const wh_signals_t *signals);
 void wh_paths_free(wh_paths_t *paths);
 
 /* A gripper's or a link's own. */
-wh_keyframes_t wh_keyframes_of_track(const wh_trace_t *trace, const wh_thin_t *thin);
+wh_keyframes_t wh_keyframes_of_track(const wh_signals_t *signals, const wh_thin_t *thin);
 
 /* A wafer's: with its gripper while it is held, with as many keyframes as its way round needs. */
-wh_keyframes_t wh_keyframes_of_wafer(const wh_trace_t *trace, const wh_paths_t *paths, int32_t wafer);
+wh_keyframes_t wh_keyframes_of_wafer(const wh_signals_t *signals, const wh_paths_t *paths, int32_t wafer);
 
 /* Moves the node by them, unless it rests, and frees them. */
 void wh_keyframes_add(wh_keyframes_t *motion, wh_gltf_t *gltf, size_t node);

@@ -25,7 +25,7 @@ typedef struct {
 } body_t;
 
 typedef struct {
-    const wh_trace_t *trace;
+    const wh_signals_t *signals;
     const wh_layout_t *layout;
     wh_gltf_t gltf;
     wh_paths_t paths; /* of what moves, where it is animated */
@@ -108,7 +108,7 @@ static void add_moving(scene_t *scene, const wh_pose_t *pose, const wh_thin_t *p
     const size_t mesh = finish_body(scene, body, name);
     const size_t node = wh_gltf_add_node(&scene->gltf, name, mesh, pose, kind, index);
     if (scene->animated) {
-        wh_keyframes_t motion = wh_keyframes_of_track(scene->trace, path);
+        wh_keyframes_t motion = wh_keyframes_of_track(scene->signals, path);
         wh_keyframes_add(&motion, &scene->gltf, node);
     }
 }
@@ -116,7 +116,7 @@ static void add_moving(scene_t *scene, const wh_pose_t *pose, const wh_thin_t *p
 static void add_links(scene_t *scene) {
     static const char *const names[WH_TRACE_LINKS] = {"lift", "upper arm", "forearm", "hand"};
     wh_pose_t poses[WH_TRACE_LINKS];
-    const bool is_there = wh_trace_links(scene->trace, scene->trace->first, poses);
+    const bool is_there = wh_signals_links(scene->signals, scene->signals->first, poses);
     for (size_t i = 0; is_there && i < WH_TRACE_LINKS; ++i) {
         body_t body = {0};
         add_parts(scene, &body, 1U << WH_PART_ARM, (int32_t)(WH_ARM_LIFT + i), NULL);
@@ -129,7 +129,7 @@ static void add_grippers(scene_t *scene) {
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         wh_pose_t pose;
         body_t body = {0};
-        wh_trace_gripper(scene->trace, g, scene->trace->first, &pose);
+        wh_signals_gripper(scene->signals, g, scene->signals->first, &pose);
         add_parts(scene, &body, 1U << WH_PART_BLADE | 1U << WH_PART_CHUCK, (int32_t)g, NULL);
         add_moving(scene, &pose, &scene->paths.grippers[g], &body, layout->grippers[g].name, "gripper", g);
     }
@@ -145,18 +145,18 @@ static void add_wafers(scene_t *scene) {
         const size_t node = wh_gltf_add_node(&scene->gltf, layout->wafers[w].name, mesh,
                                              &layout->start[w].base_from_wafer, "wafer", w);
         if (scene->animated) {
-            wh_keyframes_t motion = wh_keyframes_of_wafer(scene->trace, &scene->paths, (int32_t)w);
+            wh_keyframes_t motion = wh_keyframes_of_wafer(scene->signals, &scene->paths, (int32_t)w);
             wh_keyframes_add(&motion, &scene->gltf, node);
         }
     }
     wh_mesh_free(&body.inks[INK_WAFER]);
 }
 
-json_t *wh_scene_make(const wh_trace_t *trace, const char *name, bool animated) {
-    scene_t scene = {.trace = trace, .layout = trace->layout, .animated = animated};
+json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animated) {
+    scene_t scene = {.signals = signals, .layout = signals->layout, .animated = animated};
     wh_gltf_open(&scene.gltf);
     if (animated) {
-        scene.paths = wh_paths_of_trace(trace);
+        scene.paths = wh_paths_of_signals(signals);
     }
     for (size_t ink = 0; ink < INKS; ++ink) {
         (void)wh_gltf_add_material(&scene.gltf, &materials[ink]);

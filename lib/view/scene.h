@@ -14,6 +14,6 @@
 #include "../record/signals.h"
 
 /* The scene, to be released by the caller. Aborts when memory is out. */
-json_t *wh_scene_make(const wh_trace_t *trace, const char *name, bool animated);
+json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animated);
 
 #endif

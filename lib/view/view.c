@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* Both messages with as much of the cell as there is room for. */
-static bool fit(wh_view_t *view, const wh_layout_t *layout) {
+static bool fit(wh_viewer_t *view, const wh_layout_t *layout) {
     for (int detail = WH_VIEW_ALL; detail < WH_VIEW_DETAILS; ++detail) {
         wh_view_cell_open(&view->cell, layout, (wh_view_detail_t)detail);
         view->load_size = waferhand_viewer_load_encoded_size(&view->cell.load);
@@ -17,7 +17,7 @@ static bool fit(wh_view_t *view, const wh_layout_t *layout) {
     return false;
 }
 
-wh_status_t wh_view_open(wh_view_t *view, wh_node_t *node, const wh_layout_t *layout) {
+wh_status_t wh_viewer_open(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *layout) {
     memset(view, 0, sizeof *view);
     view->node = node;
     if (!fit(view, layout)) {
@@ -27,7 +27,7 @@ wh_status_t wh_view_open(wh_view_t *view, wh_node_t *node, const wh_layout_t *la
     view->draw = malloc((size_t)view->draw_room);
     if (!view->load || !view->draw ||
         waferhand_viewer_load_encode(view->load, 0, view->load_size, &view->cell.load) != view->load_size) {
-        wh_view_close(view);
+        wh_viewer_close(view);
         return WH_STATUS_BAD_CAPACITY;
     }
     view->last_load_us = wh_node_clock_us() - WH_VIEW_LOAD_US;
@@ -35,14 +35,14 @@ wh_status_t wh_view_open(wh_view_t *view, wh_node_t *node, const wh_layout_t *la
     return WH_OK;
 }
 
-static void publish(wh_view_t *view, const char *channel, const uint8_t *data, int size) {
+static void publish(wh_viewer_t *view, const char *channel, const uint8_t *data, int size) {
     if (view->node && (size <= 0 || !wh_node_publish(view->node, channel, data, (size_t)size))) {
         ++view->unsent;
     }
 }
 
 /* Before its first slice a run's grippers are at no place yet. */
-static void look_at(wh_view_t *view, const wh_server_t *server) {
+static void look_at(wh_viewer_t *view, const wh_protocol_server_t *server) {
     wh_pose_t base_from_grippers[WH_GRIPPERS];
     if (server->seq == 0) {
         wh_view_cell_rest(&view->cell);
@@ -55,7 +55,7 @@ static void look_at(wh_view_t *view, const wh_server_t *server) {
     wh_view_cell_move(&view->cell, &look);
 }
 
-void wh_view_tick(wh_view_t *view, const wh_server_t *server) {
+void wh_viewer_tick(wh_viewer_t *view, const wh_protocol_server_t *server) {
     const int64_t now = wh_node_clock_us();
     const bool is_load_due = now - view->last_load_us >= WH_VIEW_LOAD_US;
     const bool is_new = server->identity.run != view->run || server->seq != view->seq;
@@ -76,7 +76,7 @@ void wh_view_tick(wh_view_t *view, const wh_server_t *server) {
             waferhand_viewer_draw_encode(view->draw, 0, view->draw_room, &view->cell.draw));
 }
 
-void wh_view_close(wh_view_t *view) {
+void wh_viewer_close(wh_viewer_t *view) {
     free(view->load);
     free(view->draw);
     wh_view_cell_free(&view->cell);

@@ -31,16 +31,16 @@ typedef struct {
     int64_t run, seq; /* of what went out last */
     int64_t last_load_us, last_draw_us;
     uint64_t loads, draws, unsent;
-} wh_view_t;
+} wh_viewer_t;
 
 /* WH_STATUS_BAD_CAPACITY, and nothing to close, for a cell that does not fit WH_VIEW_BYTES even without its ledges and with
  * boxes for its meshes; view->cell.detail tells what was left out. `node`, which may be null, and `layout` must outlive the
  * view. */
-wh_status_t wh_view_open(wh_view_t *view, wh_node_t *node, const wh_layout_t *layout);
+wh_status_t wh_viewer_open(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *layout);
 
 /* Publishes what is due: to be called after each step and at least every 100 ms. Allocates nothing. */
-void wh_view_tick(wh_view_t *view, const wh_server_t *server);
+void wh_viewer_tick(wh_viewer_t *view, const wh_protocol_server_t *server);
 
-void wh_view_close(wh_view_t *view);
+void wh_viewer_close(wh_viewer_t *view);
 
 #endif

@@ -8,7 +8,7 @@
 
 #include "app/app.h"
 #include "app/mcs_link.h"
-#include "app/run_options.h"
+#include "app/run_arguments.h"
 #include "fuzz.h"
 #include "layout/layout_load.h"
 #include "study/study.h"
@@ -109,7 +109,7 @@ static void check_parameters(const char *const *parameters, size_t count) {
     }
 }
 
-static void check_run(const wh_run_options_t *run) {
+static void check_run(const wh_script_run_options_t *run) {
     check_parameters(run->parameters, run->parameter_count);
     REQUIRE(run->limits.instructions <= UINT64_C(1000000000000000000));
     REQUIRE(run->limits.memory_bytes == 0 || run->limits.memory_bytes >= (size_t)1 << 20);

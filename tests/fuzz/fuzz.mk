@@ -14,7 +14,7 @@ $(B)/fuzz_parts.a: $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS)) $(B)
 # Lua's memory from snapshots; LCM without a network; argp without exits, and nothing behind it.
 $(B)/tests/fuzz/script_fuzz $(B)/tests/fuzz/line_fuzz: $(B)/obj/tests/fuzz/snapshot.o
 $(B)/tests/fuzz/message_fuzz: $(B)/obj/tests/fuzz/fake_node.o $(B)/obj/tests/fuzz/message_frames.o
-$(B)/tests/fuzz/argv_fuzz: LINK += $(foreach name,argp_parse argp_error fopen wh_run_and_report wh_mcs_link_open wh_open_node wh_study_open \
+$(B)/tests/fuzz/argv_fuzz: LINK += $(foreach name,argp_parse argp_error fopen wh_run_and_print wh_mcs_link_open wh_open_node wh_study_open \
     wh_layout_load wh_sandbox_new wh_sandbox_free wh_sandbox_set_parameter,-Wl,--wrap=$(name))
 
 $(FUZZERS:%=$(B)/%): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/fuzz_parts.a $(B)/libwaferhand_collision.a \

@@ -96,7 +96,7 @@ static void report(void) {
                                         .note_count = run.note_count,
                                         .run = record,
                                         .record = &run.record,
-                                        .trace = &run.trace};
+                                        .signals = &run.signals};
         REQUIRE(out != NULL && record != NULL && wh_document_write(&document, out) == 0 && fclose(out) == 0);
         json_t *const read = json_loadb(text, size, 0, NULL);
         REQUIRE(read != NULL && !memchr(text, '<', size));

@@ -54,7 +54,7 @@ static void stay_silent(void *user, const char *text) {
 
 /* Both arrays in a table that takes over only what is sound. */
 static void check_sound(const wh_wafer_t *wafers, const wh_gripper_t *grippers,
-                        const wh_condition_t *condition, uint64_t slice, uint64_t hash) {
+                        const wh_physics_state_t *condition, uint64_t slice, uint64_t hash) {
     static wh_link_arrays_t arrays;
     wh_grasp_t table;
     memset(&table, 0, sizeof table);
@@ -64,22 +64,22 @@ static void check_sound(const wh_wafer_t *wafers, const wh_gripper_t *grippers,
     table.storage.grippers = arrays.grippers;
     table.storage.gripper_count = layout->machine.gripper_count;
     REQUIRE(wh_grasp_restore(&table, slice, wafers, grippers) == WH_OK);
-    REQUIRE(wh_condition_validate(condition, table.storage.gripper_count, table.storage.wafer_count) ==
+    REQUIRE(wh_physics_state_validate(condition, table.storage.gripper_count, table.storage.wafer_count) ==
             WH_OK);
-    REQUIRE(wh_condition_hash(condition, &table) == hash);
+    REQUIRE(wh_physics_state_hash(condition, &table) == hash);
 }
 
 /* ------------------------------------------------------------------------------------------------- any cell */
 
 static void check_cell(const fuzz_frame_t *frame) {
-    static wh_server_t server;
+    static wh_protocol_server_t server;
     waferhand_cell cell;
     if (!wh_link_decode_cell(frame->bytes, frame->size, &cell)) {
         return;
     }
     wh_layout_t *const made = wh_link_layout_from_cell(&cell);
     if (made) {
-        REQUIRE(wh_server_open(&server, made) == WH_OK);
+        REQUIRE(wh_protocol_server_open(&server, made) == WH_OK);
         /* A table of nothing would be one that was refused. */
         REQUIRE(server.simulator.table.storage.gripper_count == (size_t)cell.gripper_count);
         REQUIRE(server.simulator.table.storage.wafer_count == (size_t)cell.wafer_count);
@@ -90,10 +90,10 @@ static void check_cell(const fuzz_frame_t *frame) {
 
 /* ------------------------------------------------------------------------------------------------ simulator */
 
-static wh_simulation_t simulation;
+static wh_sim_process_t simulation;
 
 static void check_counters(void) {
-    const wh_server_counters_t *const c = &simulation.server.counters;
+    const wh_protocol_server_counters_t *const c = &simulation.server.counters;
     REQUIRE(c->commands == c->stepped + c->repeated + c->stale + c->refused + c->unknown_run +
                                c->other_layout + c->run_over + c->malformed);
     REQUIRE(c->restores == c->restored + c->restore_ignored + c->restore_refused);
@@ -101,7 +101,7 @@ static void check_counters(void) {
 
 /* What goes out can be read; a whole state, by another simulator. */
 static void check_published(const char *channel, const void *data, size_t size) {
-    static wh_server_t twin;
+    static wh_protocol_server_t twin;
     waferhand_state message;
     if (strcmp(channel, WH_CHANNEL_STATE) != 0) {
         return;
@@ -109,38 +109,38 @@ static void check_published(const char *channel, const void *data, size_t size) 
     REQUIRE(wh_link_decode_state(data, size, &message));
     if (message.status == WH_OK && message.seq >= 1) {
         if (twin.layout != layout) {
-            REQUIRE(wh_server_open(&twin, layout) == WH_OK);
+            REQUIRE(wh_protocol_server_open(&twin, layout) == WH_OK);
         }
         twin.identity.run = 0;
         twin.past_count = 0;
-        REQUIRE(wh_server_restore(&twin, &message) == WH_SERVER_RESTORED);
-        REQUIRE(wh_server_hash(&twin) == (uint64_t)message.hash);
-        REQUIRE(wh_server_hash(&twin) == wh_server_hash(&simulation.server));
+        REQUIRE(wh_protocol_server_restore(&twin, &message) == WH_SERVER_RESTORED);
+        REQUIRE(wh_protocol_server_hash(&twin) == (uint64_t)message.hash);
+        REQUIRE(wh_protocol_server_hash(&twin) == wh_protocol_server_hash(&simulation.server));
     }
     REQUIRE(waferhand_state_decode_cleanup(&message) == 0);
 }
 
 static void deliver_to_simulator(const fuzz_frame_t *frame) {
-    wh_server_t *const server = &simulation.server;
-    const uint64_t hash = wh_server_hash(server);
+    wh_protocol_server_t *const server = &simulation.server;
+    const uint64_t hash = wh_protocol_server_hash(server);
     const uint64_t done = server->counters.stepped + server->counters.restored;
     const int64_t run = server->identity.run;
     const int64_t seq = server->seq;
     fuzz_deliver(&node, frame->channel, frame->bytes, frame->size);
     check_counters();
     if (done == server->counters.stepped + server->counters.restored && run == server->identity.run) {
-        REQUIRE(wh_server_hash(server) == hash && server->seq == seq);
+        REQUIRE(wh_protocol_server_hash(server) == hash && server->seq == seq);
     }
     const wh_grasp_storage_t *const storage = &server->simulator.table.storage;
     check_sound(storage->wafers, storage->grippers, &server->simulator.condition,
-                server->simulator.table.slice, wh_server_hash(server));
+                server->simulator.table.slice, wh_protocol_server_hash(server));
     REQUIRE(server->seq == (int64_t)server->simulator.table.slice + server->missed);
 }
 
 static void run_simulator(fuzz_frames_t *frames) {
     fuzz_frame_t frame;
     fuzz_on_publish = check_published;
-    REQUIRE(wh_simulation_open(&simulation, &node, layout, stay_silent, NULL) == WH_OK);
+    REQUIRE(wh_sim_process_open(&simulation, &node, layout, stay_silent, NULL) == WH_OK);
     wh_link_identity_t identity = simulation.server.identity;
     frames->identity = &identity;
     while (true) {
@@ -152,14 +152,14 @@ static void run_simulator(fuzz_frames_t *frames) {
         (void)fuzz_check_decoding(&frame);
         deliver_to_simulator(&frame);
         fuzz_clock_us += WH_SIMULATION_SILENCE_US / 2;
-        wh_simulation_tick(&simulation);
+        wh_sim_process_tick(&simulation);
     }
-    wh_simulation_close(&simulation);
+    wh_sim_process_close(&simulation);
 }
 
 /* ------------------------------------------------------------------------------------------- motion control */
 
-static wh_control_t control;
+static wh_mcs_process_t control;
 static fuzz_frames_t *incoming;
 static volatile sig_atomic_t stop;
 static wh_record_t record;
@@ -177,7 +177,7 @@ static bool next_message(wh_node_t *to) {
     }
     /* What the state that is known has as its hash, it has after each datagram. */
     fuzz_deliver(to, frame.channel, frame.bytes, frame.size);
-    const wh_client_t *const client = &control.client;
+    const wh_protocol_client_t *const client = &control.client;
     if (client->has_state) {
         check_sound(client->state.wafers, client->state.grippers, client->state.condition,
                     (uint64_t)(client->state.seq - client->missed), client->hash);
@@ -229,9 +229,9 @@ static void check_report(void) {
 static void take_requests(void) {
     char line[WH_LINK_LINE];
     REQUIRE(control.waiting_count <= WH_CONTROL_REQUESTS);
-    while (wh_control_next_request(&control, line)) {
+    while (wh_mcs_process_next_request(&control, line)) {
         REQUIRE(control.request != 0);
-        wh_control_answer(&control, strlen(line) % 2 == 0 ? WH_OK : WH_STATUS_BAD_ARGUMENT, line, line);
+        wh_mcs_process_answer(&control, strlen(line) % 2 == 0 ? WH_OK : WH_STATUS_BAD_ARGUMENT, line, line);
         REQUIRE(control.request == 0);
     }
 }
@@ -250,11 +250,11 @@ static void fill_command(wh_command_t *command, int64_t seq) {
 
 static wh_link_t *open_control(bool free_running) {
     static wh_mcs_t mcs;
-    const wh_control_options_t options = {
+    const wh_mcs_process_options_t options = {
         .rate = free_running ? 1 : 0, .stop = &stop, .say = stay_silent, .user = NULL};
     mcs.layout = layout;
-    REQUIRE(wh_control_open(&control, &node, &options));
-    const wh_mcs_partners_t partners = wh_control_partners(&control);
+    REQUIRE(wh_mcs_process_open(&control, &node, &options));
+    const wh_mcs_partners_t partners = wh_mcs_process_partners(&control);
     wh_link_t *const link = partners.connect(partners.user, &mcs);
     REQUIRE(link != NULL);
     control.client.identity.run = RUN;
@@ -278,11 +278,11 @@ static void run_motion_control(fuzz_frames_t *frames, bool free_running) {
             check_event(&state.events[i], seq);
             wh_record_add_event(&record, state.utime, WH_NONE, &state.events[i]);
         }
-        wh_control_idle(&control);
+        wh_mcs_process_idle(&control);
         take_requests();
     }
     (void)link->hash(link);
-    wh_control_finish(&control);
+    wh_mcs_process_finish(&control);
     check_report();
 }
 

@@ -144,7 +144,7 @@ static void call_vacuum(void) {
     config.off = real;
     config.release = real;
     (void)wh_vacuum_validate(any_bool() ? &config : NULL);
-    wh_vacuum_upset_t upset = wh_vacuum_sound();
+    wh_vacuum_fault_t upset = wh_vacuum_sound();
     upset.full = real;
     upset.build = real;
     wh_vacuum_t vacuum = wh_vacuum_start();

@@ -52,8 +52,8 @@ static void compare(const char *script, const char *const parameters[], size_t p
     static wh_worker_t worker;
     comparison_t comparison = {.replays = 0};
     memset(&study, 0, sizeof study);
-    study.run =
-        (wh_run_options_t){.script = script, .parameters = parameters, .parameter_count = parameter_count};
+    study.run = (wh_script_run_options_t){
+        .script = script, .parameters = parameters, .parameter_count = parameter_count};
     study.run.limits.print_to = stderr;
     study.seed = 5;
     study.trials = TRIALS;
@@ -112,7 +112,7 @@ static void collisions_are_never_replayed(void **state) {
     static const char *const parameters[] = {"collision=true"};
     static wh_study_t study;
     memset(&study, 0, sizeof study);
-    study.run = (wh_run_options_t){.script = RETRY, .parameters = parameters, .parameter_count = 1};
+    study.run = (wh_script_run_options_t){.script = RETRY, .parameters = parameters, .parameter_count = 1};
     assert_true(wh_study_open(&study));
     assert_non_null(study.whole);
     wh_study_close(&study);

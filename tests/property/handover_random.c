@@ -19,10 +19,10 @@ static double play(const char *handover) {
     for (size_t i = 0; i < 5; ++i) {
         parameters[i] = texts[i];
     }
-    const wh_run_options_t options = {
+    const wh_script_run_options_t options = {
         .script = "tests/end_to_end/data/handover.lua", .parameters = parameters, .parameter_count = 5};
-    wh_run_t run;
-    const wh_run_outcome_t outcome = wh_run_script(&run, &options);
+    wh_script_run_t run;
+    const wh_script_run_outcome_t outcome = wh_script_run(&run, &options);
     if (outcome != WH_RUN_MET) {
         print_error("%s %s %s: %s %s\n", texts[0], texts[1], handover, run.message,
                     run.record.failure ? run.record.failure : "");
@@ -33,7 +33,7 @@ static double play(const char *handover) {
     assert_int_equal(event->kind, WH_EVENT_HANDED_OVER);
     assert_true(event->measured.ready);
     const double margin = event->measured.margin_projz;
-    wh_run_close(&run);
+    wh_script_run_close(&run);
     return margin;
 }
 

@@ -70,7 +70,7 @@ static void count_looks(side_t *side, const wh_gripper_input_t input[]) {
         if (input[g].valve == WH_VALVE_OPEN && table->storage.grippers[g].wafer == WH_NONE) {
             const wh_vec3_t *place = &input[g].base_from_gripper.r;
             const bool covered = wh_horizon_covers(table, g, place);
-            const wh_near_t near = wh_index_near(table, g, place, place, 0);
+            const wh_found_t near = wh_index_near(table, g, place, place, 0);
             ++tally.looks;
             tally.covered += covered;
             *(near.listed ? &tally.listed : &tally.all) += !covered;

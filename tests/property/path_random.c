@@ -47,28 +47,28 @@ static void make_signal(bool gaps, bool jolts) {
     }
 }
 
-static void draw(wh_curve_t *curve) {
+static void draw(wh_path_t *curve) {
     for (size_t i = 0; i < SAMPLES; ++i) {
         if (samples[i].is_there) {
-            wh_curve_add(curve, (int64_t)i + FIRST, samples[i].value);
+            wh_path_add(curve, (int64_t)i + FIRST, samples[i].value);
         }
         if (samples[i].is_there && samples[i].forced) {
-            wh_curve_force(curve);
+            wh_path_force(curve);
         }
         if (i + 1 < SAMPLES && samples[i].is_there && !samples[i + 1].is_there) {
             samples[i].breaks = true;
-            wh_curve_break(curve);
+            wh_path_break(curve);
         }
     }
-    wh_curve_finish(curve);
+    wh_path_finish(curve);
 }
 
 /* ------------------------------------------------------------------------------------------------- judging */
 
-static void assert_points(const wh_curve_t *curve) {
+static void assert_points(const wh_path_t *curve) {
     size_t exact = 0;
     for (size_t i = 0; i < curve->count; ++i) {
-        const wh_curve_point_t *point = &curve->points[i];
+        const wh_path_point_t *point = &curve->points[i];
         const sample_t *sample = &samples[point->slice - FIRST];
         assert_true(i == 0 || point->slice > curve->points[i - 1].slice);
         assert_near(point->value, sample->value, 0);
@@ -79,9 +79,9 @@ static void assert_points(const wh_curve_t *curve) {
     assert_int_equal(curve->points[0].slice, FIRST);
 }
 
-static void assert_within(const wh_curve_t *curve) {
+static void assert_within(const wh_path_t *curve) {
     for (size_t i = 0; i < SAMPLES; ++i) {
-        const double read = wh_curve_read(curve, (int64_t)i + FIRST, NULL);
+        const double read = wh_path_read(curve, (int64_t)i + FIRST, NULL);
         const sample_t *sample = &samples[i];
         if (sample->is_there) {
             assert_near(read, sample->value, sample->forced ? 0 : curve->tolerance * (1 + 1e-9));
@@ -92,13 +92,13 @@ static void assert_within(const wh_curve_t *curve) {
 }
 
 static void check(bool gaps, bool jolts) {
-    wh_curve_t curve;
-    wh_curve_open(&curve, wh_test_decades(1e-4, 1), SIZE_MAX);
+    wh_path_t curve;
+    wh_path_open(&curve, wh_test_decades(1e-4, 1), SIZE_MAX);
     make_signal(gaps, jolts);
     draw(&curve);
     assert_points(&curve);
     assert_within(&curve);
-    wh_curve_close(&curve);
+    wh_path_close(&curve);
 }
 
 static void test_values_stay_within_the_tolerance(void **state) {
@@ -120,77 +120,77 @@ static void test_a_break_is_a_break(void **state) {
 static void test_a_limit_is_kept_and_the_tolerance_told(void **state) {
     (void)state;
     for (int i = 0; i < 80; ++i) {
-        wh_curve_t curve;
+        wh_path_t curve;
         const size_t limit = 20 + wh_test_below(100);
-        wh_curve_open(&curve, wh_test_decades(1e-5, 1e-2), limit);
+        wh_path_open(&curve, wh_test_decades(1e-5, 1e-2), limit);
         make_signal(i % 2 == 0, i % 3 == 0);
         draw(&curve);
         assert_points(&curve);
         assert_within(&curve);
         assert_true(curve.limit > limit || curve.count - curve.exact_count <= limit);
-        wh_curve_close(&curve);
+        wh_path_close(&curve);
     }
 }
 
 /* Three times the third power of a time: one cubic, whose slope is known. */
 static void test_a_cubic_has_two_points(void **state) {
     (void)state;
-    wh_curve_t curve;
+    wh_path_t curve;
     double slope;
-    wh_curve_open(&curve, 1e-3, SIZE_MAX);
+    wh_path_open(&curve, 1e-3, SIZE_MAX);
     for (int64_t i = 0; i <= 1000; ++i) {
         const double t = (double)i / 1000 - 0.5;
-        wh_curve_add(&curve, i, 3 * t * t * t);
+        wh_path_add(&curve, i, 3 * t * t * t);
     }
-    wh_curve_finish(&curve);
+    wh_path_finish(&curve);
     assert_true(curve.count <= 3);
-    assert_near(wh_curve_read(&curve, 500, &slope), 0, 1e-3);
-    assert_near(wh_curve_read(&curve, 300, &slope), -0.024, 1e-3);
+    assert_near(wh_path_read(&curve, 500, &slope), 0, 1e-3);
+    assert_near(wh_path_read(&curve, 300, &slope), -0.024, 1e-3);
     assert_near(slope * 1000, 0.36, 0.02);
-    assert_near(wh_curve_read(&curve, 5000, &slope), 0.375, 1e-12);
+    assert_near(wh_path_read(&curve, 5000, &slope), 0.375, 1e-12);
     assert_near(slope, 0, 0);
-    assert_true(isnan(wh_curve_read(&curve, -1, NULL)));
-    wh_curve_close(&curve);
+    assert_true(isnan(wh_path_read(&curve, -1, NULL)));
+    wh_path_close(&curve);
 }
 
 /* However long; forced samples within it cost no point. */
 static void test_a_rest_has_two_points(void **state) {
     (void)state;
-    wh_curve_t curve;
-    wh_curve_open(&curve, 0.01, SIZE_MAX);
+    wh_path_t curve;
+    wh_path_open(&curve, 0.01, SIZE_MAX);
     for (int64_t i = 0; i <= 100000; ++i) {
-        wh_curve_add(&curve, i, i < 99999 ? 5 : 6);
+        wh_path_add(&curve, i, i < 99999 ? 5 : 6);
         if (i % 1000 == 500) {
-            wh_curve_force(&curve);
+            wh_path_force(&curve);
         }
     }
-    wh_curve_finish(&curve);
+    wh_path_finish(&curve);
     assert_int_equal(curve.count, 4);
     assert_int_equal(curve.points[1].slice, 99998);
     assert_true(curve.points[0].exact && curve.points[1].exact);
-    assert_near(wh_curve_read(&curve, 54321, NULL), 5, 0);
+    assert_near(wh_path_read(&curve, 54321, NULL), 5, 0);
     assert_true(curve.sample_capacity <= 256);
-    wh_curve_close(&curve);
+    wh_path_close(&curve);
 }
 
 static void test_a_sample_is_inserted(void **state) {
     (void)state;
-    wh_curve_t curve;
-    wh_curve_open(&curve, 10, SIZE_MAX);
+    wh_path_t curve;
+    wh_path_open(&curve, 10, SIZE_MAX);
     for (int64_t i = 0; i <= 20; ++i) {
-        wh_curve_add(&curve, i, (double)(i % 2));
+        wh_path_add(&curve, i, (double)(i % 2));
     }
-    wh_curve_break(&curve);
-    wh_curve_add(&curve, 30, 4);
-    wh_curve_insert(&curve, 5, 1);
-    wh_curve_insert(&curve, 5, 1);  /* there already */
-    wh_curve_insert(&curve, 25, 1); /* in a break */
-    wh_curve_insert(&curve, 99, 1);
-    assert_near(wh_curve_read(&curve, 5, NULL), 1, 0);
+    wh_path_break(&curve);
+    wh_path_add(&curve, 30, 4);
+    wh_path_insert(&curve, 5, 1);
+    wh_path_insert(&curve, 5, 1);  /* there already */
+    wh_path_insert(&curve, 25, 1); /* in a break */
+    wh_path_insert(&curve, 99, 1);
+    assert_near(wh_path_read(&curve, 5, NULL), 1, 0);
     assert_int_equal(curve.count, 4);
     assert_int_equal(curve.points[1].slice, 5);
     assert_true(curve.points[1].exact);
-    wh_curve_close(&curve);
+    wh_path_close(&curve);
 }
 
 int main(void) {

@@ -68,7 +68,7 @@ static void the_part_is_where_both_limits_hold(void **state) {
     for (int i = 0; i < ROUNDS; ++i) {
         slice_t s;
         wh_sweep_t sweep;
-        wh_interval_t part;
+        wh_span_t part;
         draw(&s);
         wh_sweep_between(&s.from, &s.to, &sweep);
         const bool within = wh_sweep_within(&sweep, &s.wafer, s.projz, s.projxy, &part);

@@ -10,7 +10,7 @@
 enum { TEST_RUN = 4711 };
 
 /* The one that answers; a test may put another in its place in the middle of a run. */
-static wh_server_t *server;
+static wh_protocol_server_t *server;
 
 static inline waferhand_command message_of(const wh_command_t *command) {
     const wh_link_identity_t identity = {TEST_RUN, server->identity.layout_hash};
@@ -30,7 +30,7 @@ static inline size_t encode_command(const wh_command_t *command, uint8_t bytes[]
 
 static inline uint64_t hash_of_server(wh_link_t *link) {
     (void)link;
-    return wh_server_hash(server);
+    return wh_protocol_server_hash(server);
 }
 
 static inline int64_t none_missed(wh_link_t *link) {

@@ -52,7 +52,7 @@ static void suspend(EditLine *edit) {
 
 /* Whether reading goes on after the signals that have arrived. */
 static bool handle_signals(wh_editor_t *editor) {
-    for (int number = wh_signals_take(); number != 0; number = wh_signals_take()) {
+    for (int number = wh_interrupt_take(); number != 0; number = wh_interrupt_take()) {
         if (number == SIGWINCH) {
             el_resize(editor->edit);
         } else if (number == SIGTSTP) {

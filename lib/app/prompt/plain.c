@@ -22,7 +22,7 @@ static wh_line_event_t fill(wh_plain_t *plain) {
     wh_line_event_t line = WH_LINE_NONE;
     while (line == WH_LINE_NONE) {
         const wh_input_event_t event = wh_input_wait(plain->input);
-        if (event == WH_INPUT_LEAVE || (event == WH_INPUT_SIGNAL && wh_signals_take() != 0)) {
+        if (event == WH_INPUT_LEAVE || (event == WH_INPUT_SIGNAL && wh_interrupt_take() != 0)) {
             line = WH_LINE_LEAVING;
         } else if (event == WH_INPUT_BROKEN) {
             line = WH_LINE_END;

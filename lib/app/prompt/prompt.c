@@ -32,7 +32,7 @@ wh_prompt_t *wh_prompt_open(wh_session_t *session) {
     prompt->input.session = session;
     prompt->plain.input = &prompt->input;
     prompt->style = wh_style_of(stdout);
-    wh_signals_hold(terminal);
+    wh_interrupt_hold(terminal);
     prompt->editor = terminal ? wh_editor_open(&prompt->input, session) : NULL;
     return prompt;
 }
@@ -40,7 +40,7 @@ wh_prompt_t *wh_prompt_open(wh_session_t *session) {
 void wh_prompt_close(wh_prompt_t *prompt) {
     if (prompt) {
         wh_editor_close(prompt->editor);
-        wh_signals_release();
+        wh_interrupt_release();
         free(prompt);
     }
 }
@@ -96,7 +96,7 @@ static void print_answer(wh_prompt_t *prompt, wh_status_t status) {
  * was all that it was for. */
 static bool is_interrupted(const wh_prompt_t *prompt) {
     bool interrupted = false;
-    for (int number = wh_signals_take(); number != 0; number = wh_signals_take()) {
+    for (int number = wh_interrupt_take(); number != 0; number = wh_interrupt_take()) {
         interrupted =
             interrupted || number == SIGTERM || number == SIGHUP || (number == SIGINT && !prompt->editor);
     }
@@ -104,10 +104,10 @@ static bool is_interrupted(const wh_prompt_t *prompt) {
 }
 
 static void execute(wh_prompt_t *prompt, const char *line) {
-    wh_signals_stop_session(prompt->session);
+    wh_interrupt_stop_session(prompt->session);
     const wh_status_t status =
         wh_session_execute(prompt->session, line, prompt->answer, sizeof prompt->answer);
-    wh_signals_stop_session(NULL);
+    wh_interrupt_stop_session(NULL);
     prompt->failed = prompt->failed || status != WH_OK;
     print_answer(prompt, status);
     if (is_interrupted(prompt)) {

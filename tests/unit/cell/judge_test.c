@@ -306,13 +306,13 @@ static void test_a_wafer_comes_to_lie_on_its_slot(void **state) {
     const wh_vec3_t up = wh_mat3_column(&base_from_slot.R, 2);
     assert_near(wh_vec3_dot(&n, &up), 1, 64 * WH_TEST_ROUNDING);
     const wh_vec3_t from = wh_mat3_column(&start.R, 2);
-    wh_real_t trace = 0;
+    wh_real_t signals = 0;
     for (size_t column = 0; column < 3; ++column) {
         const wh_vec3_t a = wh_mat3_column(&start.R, column);
         const wh_vec3_t b = wh_mat3_column(&scene.wafers[0].base_from_wafer.R, column);
-        trace += wh_vec3_dot(&a, &b);
+        signals += wh_vec3_dot(&a, &b);
     }
-    assert_near((trace - 1) / 2, wh_vec3_dot(&from, &up), 64 * WH_TEST_ROUNDING);
+    assert_near((signals - 1) / 2, wh_vec3_dot(&from, &up), 64 * WH_TEST_ROUNDING);
     assert_int_equal(wh_pose_validate(&scene.wafers[0].base_from_wafer), WH_OK);
 }
 

@@ -276,8 +276,8 @@ static void a_seated_wafer_lies_on_the_pads(void **state) {
         assert_near(e->measured.dr_proj_z, -(double)wafer_from_gripper.r.z, 2e4 * WH_TEST_ROUNDING);
         /* trace = 1 + 2 cos of the turn made; n1_proj_n2 = cos of the turn needed */
         const wh_mat3_t turn = wh_mat3_multiply_back(&before.R, &after->R);
-        const double trace = (double)turn.m[0][0] + (double)turn.m[1][1] + (double)turn.m[2][2];
-        assert_near((trace - 1) / 2, e->measured.n1_proj_n2, 64 * WH_TEST_ROUNDING);
+        const double signals = (double)turn.m[0][0] + (double)turn.m[1][1] + (double)turn.m[2][2];
+        assert_near((signals - 1) / 2, e->measured.n1_proj_n2, 64 * WH_TEST_ROUNDING);
         /* In the gripper's plane the centre stays where it was. */
         const wh_pose_t unseated = wh_pose_relative(&cell.input[0].base_from_gripper, &before);
         assert_near(g->r.x, unseated.r.x, 0);

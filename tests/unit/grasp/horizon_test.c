@@ -81,7 +81,7 @@ static void without_buckets_there_are_none(void **state) {
     cell_t cell;
     cell_begin_default(&cell);
     const wh_vec3_t place = cell.gripper[G].base_from_gripper.r;
-    const wh_near_t near = wh_index_all(&cell.table);
+    const wh_found_t near = wh_index_all(&cell.table);
     wh_horizon_t horizon = wh_horizon_begin(&cell.table, G, &near, 5);
     assert_false(horizon.measured);
     assert_true(horizon.gap == LONGEST);
@@ -137,8 +137,8 @@ static void measuring_begins_with_the_margin(void **state) {
     fixture_t fixture;
     begin(&fixture, 4, 60);
     const uint32_t listed = 0;
-    const wh_near_t some = {&listed, 1};
-    const wh_near_t all = wh_index_all(&fixture.cell.table);
+    const wh_found_t some = {&listed, 1};
+    const wh_found_t all = wh_index_all(&fixture.cell.table);
     wh_horizon_t horizon = wh_horizon_begin(&fixture.cell.table, G, &some, 5);
     assert_true(horizon.measured && horizon.gap == 5);
     assert_true(horizon.limits.projz == 4 && horizon.limits.projxy == 60);
@@ -326,7 +326,7 @@ static wh_mat3_t stretched(void) {
 
 /* A gripper at `from` looks at wafer 0 alone. */
 static void look(fixture_t *fixture, const wh_vec3_t *from) {
-    const wh_near_t all = wh_index_all(&fixture->cell.table);
+    const wh_found_t all = wh_index_all(&fixture->cell.table);
     wh_horizon_t horizon = wh_horizon_begin(&fixture->cell.table, G, &all, 0);
     (void)wh_horizon_passes(&horizon, &fixture->cell.wafer[0].base_from_wafer, from);
     wh_horizon_keep(&fixture->cell.table, G, from, &horizon);

@@ -102,7 +102,7 @@ static void limits_are_the_larger_ones(void **state) {
         config->tolerance.projz = sizes[i >> 1 & 1];
         config->near_projxy = sizes[i >> 2 & 1];
         config->tolerance.projxy = sizes[i >> 3];
-        const wh_vicinity_t limits = wh_index_limits(&indexed.cell.table);
+        const wh_near_limits_t limits = wh_index_limits(&indexed.cell.table);
         assert_near(limits.projz, i & 3 ? 5 : 3, 0);
         assert_near(limits.projxy, i >> 2 ? 5 : 3, 0);
     }
@@ -190,7 +190,7 @@ static double place_of(int64_t unit) {
 
 /* Looks at all that is less than a unit from this box: between two places that are the neighbourhood, the margin and two
  * units inside of it. */
-static wh_near_t look_at(indexed_t *indexed, const units_t *units, uint32_t margin, bool back) {
+static wh_found_t look_at(indexed_t *indexed, const units_t *units, uint32_t margin, bool back) {
     double from[3];
     double to[3];
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -204,7 +204,7 @@ static wh_near_t look_at(indexed_t *indexed, const units_t *units, uint32_t marg
                          WH_REAL(place_of((int64_t)margin)));
 }
 
-static bool is_listed(const wh_near_t *near, uint32_t wafer) {
+static bool is_listed(const wh_found_t *near, uint32_t wafer) {
     for (size_t i = 0; i < near->count; ++i) {
         if (near->listed[i] == wafer) {
             return true;
@@ -224,7 +224,7 @@ static void expect_found_inside(indexed_t *indexed, const units_t *units, uint32
                     place_of(corner >> axis & 1 ? units->last[axis] + beyond : units->first[axis] - beyond);
             }
             cell_place(&indexed->cell, 5, at[0], at[1], at[2]);
-            const wh_near_t near = look_at(indexed, units, margin, corner % 2);
+            const wh_found_t near = look_at(indexed, units, margin, corner % 2);
             assert_non_null(near.listed);
             assert_true(is_listed(&near, 5) == (outside == 0));
         }
@@ -309,7 +309,7 @@ static void each_axis_has_cells_of_its_own(void **state) {
         wh_pose_t pose = indexed.wafer[5].base_from_wafer;
         pose.r = (wh_vec3_t){WH_REAL(r[0]), WH_REAL(r[1]), WH_REAL(r[2])};
         assert_int_equal(wh_grasp_place(&indexed.cell.table, 5, &pose), WH_OK);
-        const wh_near_t near = indexed_look(&indexed, at[0], at[1], at[2], 0);
+        const wh_found_t near = indexed_look(&indexed, at[0], at[1], at[2], 0);
         assert_non_null(near.listed);
         assert_true(is_listed(&near, 5));
     }
@@ -355,7 +355,7 @@ static void what_was_found_is_the_same_grippers(void **state) {
     wh_grasp_t *table = &indexed.cell.table;
     const wh_pose_t here = wh_test_at(3000, 2000, 0);
     const wh_pose_t there = wh_test_at(5000, 1000, 0);
-    wh_near_t near = wh_index_again(table, 0, &here.r, &here.r);
+    wh_found_t near = wh_index_again(table, 0, &here.r, &here.r);
     assert_int_equal(near.count, 1);
     assert_int_equal(near.listed[0], 19);
     assert_int_equal(indexed.buckets[WH_INDEX_FOUND], 0);
@@ -401,7 +401,7 @@ static void boxes_end_with_the_range(void **state) {
         indexed_begin_default(&indexed);
         const wh_pose_t at = wh_test_at(axis == 0 ? far : 0, axis == 1 ? far : 0, axis == 2 ? far : 0);
         assert_int_equal(wh_grasp_place(&indexed.cell.table, 5, &at), WH_OK);
-        wh_near_t near = wh_index_near(&indexed.cell.table, 0, &at.r, &at.r, 0);
+        wh_found_t near = wh_index_near(&indexed.cell.table, 0, &at.r, &at.r, 0);
         assert_non_null(near.listed);
         assert_int_equal(near.count, 1);
         assert_int_equal(near.listed[0], 5);

@@ -50,7 +50,7 @@ static void search_finds_what_is_around(void **state) {
     (void)state;
     indexed_t indexed;
     indexed_begin_default(&indexed);
-    wh_near_t near = indexed_look(&indexed, 3000, 2000, 3, 0);
+    wh_found_t near = indexed_look(&indexed, 3000, 2000, 3, 0);
     assert_non_null(near.listed);
     assert_int_equal(near.count, 1);
     assert_int_equal(wh_index_wafer(&indexed.cell.table, &near, 0), 2 * 8 + 3);
@@ -165,7 +165,7 @@ static void horizon_ends_when_a_wafer_moves(void **state) {
     assert_false(covers(&indexed, 3500, 2500, 0));
     cell_move(&indexed.cell, 0, 3500, 2500, 0, OPEN);
     assert_int_equal(indexed.cell.gripper[0].approach.wafer, 7);
-    const wh_near_t near = indexed_look(&indexed, 7000, 0, 0, 0);
+    const wh_found_t near = indexed_look(&indexed, 7000, 0, 0, 0);
     assert_int_equal(near.count, 0);
 }
 
@@ -182,7 +182,7 @@ static void restoring_begins_anew(void **state) {
     wafers[7].base_from_wafer = wh_test_at(3500, 2500, 1);
     assert_int_equal(wh_grasp_restore(&indexed.cell.table, 1, wafers, grippers), WH_OK);
     assert_false(covers(&indexed, 3500, 2500, 0));
-    const wh_near_t near = indexed_look(&indexed, 3500, 2500, 0, 0);
+    const wh_found_t near = indexed_look(&indexed, 3500, 2500, 0, 0);
     assert_int_equal(near.count, 1);
 }
 
@@ -197,7 +197,7 @@ static void far_away_everything_is_found(void **state) {
         cell_move(&indexed.cell, 0, at[0], at[1], at[2], OPEN);
         assert_false(covers(&indexed, at[0], at[1], at[2]));
         cell_place(&indexed.cell, 7, at[0], at[1], at[2]);
-        const wh_near_t near = indexed_look(&indexed, at[0], at[1], at[2], 0);
+        const wh_found_t near = indexed_look(&indexed, at[0], at[1], at[2], 0);
         assert_int_equal(near.count, 1);
         cell_step(&indexed.cell);
         assert_int_equal(indexed.cell.gripper[0].wafer, 7);
@@ -243,7 +243,7 @@ static void endless_lists_end(void **state) {
     cell_place(&indexed.cell, 20, 3400, 2000, 0);
     const wh_pose_t from = wh_test_at(3000, 2000, 3);
     const wh_pose_t to = wh_test_at(3400, 2000, 3);
-    wh_near_t near = wh_index_near(&indexed.cell.table, 0, &from.r, &to.r, 0);
+    wh_found_t near = wh_index_near(&indexed.cell.table, 0, &from.r, &to.r, 0);
     assert_non_null(near.listed);
     assert_int_equal(near.count, 2);
     for (size_t w = 0; w < MANY; ++w) {

@@ -10,7 +10,7 @@ enum { OPEN = WH_VALVE_OPEN, CLOSED = WH_VALVE_CLOSED };
 #define CLOSELY (1e4 * WH_TEST_ROUNDING)
 
 static wh_vacuum_config_t config;
-static wh_vacuum_upset_t upset;
+static wh_vacuum_fault_t upset;
 static wh_vacuum_t vacuum;
 
 static int set_up(void **state) {

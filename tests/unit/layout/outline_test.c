@@ -13,7 +13,7 @@ static int free_outline(void **state) {
     return 0;
 }
 
-static void draw(wh_view_t view, const wh_convex_t *convex, const wh_pose_t *pose) {
+static void draw(wh_projection_t view, const wh_convex_t *convex, const wh_pose_t *pose) {
     assert_true(wh_outline_draw(&outline, view, convex, pose));
 }
 

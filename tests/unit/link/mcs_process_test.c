@@ -7,8 +7,8 @@
 #include "mcs/session.h"
 
 static wh_node_t node;
-static wh_control_t control;
-static wh_simulation_t simulation;
+static wh_mcs_process_t control;
+static wh_sim_process_t simulation;
 static wh_session_t session;
 static char answer[WH_SESSION_ANSWER_BYTES];
 
@@ -61,22 +61,22 @@ static void on_mcs(void *user, const void *data, size_t size) {
 }
 
 static wh_link_t *connect_all(void *user, wh_mcs_t *mcs) {
-    assert_int_equal(wh_simulation_open(&simulation, &node, mcs->layout, NULL, NULL), WH_OK);
-    assert_ptr_equal(wh_control_partners(user).connect(user, mcs), &control.client.link);
+    assert_int_equal(wh_sim_process_open(&simulation, &node, mcs->layout, NULL, NULL), WH_OK);
+    assert_ptr_equal(wh_mcs_process_partners(user).connect(user, mcs), &control.client.link);
     asking.exchange = exchange;
     return &asking;
 }
 
 static int open_all(void **state) {
     (void)state;
-    const wh_control_options_t options = {.rate = 0};
+    const wh_mcs_process_options_t options = {.rate = 0};
     memset(&plan, 0, sizeof plan);
     memset(&heard, 0, sizeof heard);
     assert_true(wh_node_open(&node, "memq://"));
-    assert_true(wh_control_open(&control, &node, &options));
+    assert_true(wh_mcs_process_open(&control, &node, &options));
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_MCS, on_mcs, NULL));
     wh_session_options_t wanted = {.layout = "lua/layouts/paper.lua", .limits = {.print_to = stderr}};
-    wanted.partners = wh_control_partners(&control);
+    wanted.partners = wh_mcs_process_partners(&control);
     wanted.partners.connect = connect_all;
     return wh_session_open(&session, &wanted) ? 0 : -1;
 }
@@ -84,7 +84,7 @@ static int open_all(void **state) {
 static int close_all(void **state) {
     (void)state;
     wh_session_close(&session);
-    wh_simulation_close(&simulation);
+    wh_sim_process_close(&simulation);
     wh_node_close(&node);
     return 0;
 }
@@ -97,9 +97,9 @@ static wh_status_t execute(const char *line) {
 static void execute_requests(void) {
     char line[WH_LINK_LINE];
     (void)wh_node_drain(&node, 1000);
-    while (wh_control_next_request(&control, line)) {
+    while (wh_mcs_process_next_request(&control, line)) {
         const wh_status_t status = execute(line);
-        wh_control_answer(&control, status, line, answer);
+        wh_mcs_process_answer(&control, status, line, answer);
     }
     (void)wh_node_drain(&node, 1000);
 }

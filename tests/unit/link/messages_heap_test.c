@@ -6,7 +6,7 @@
 #include "link/proximity_message.h"
 #include "mcs/script_run.h"
 
-static wh_server_t servers[1];
+static wh_protocol_server_t servers[1];
 static unsigned long calls_in_steps;
 
 static void step(const uint8_t *bytes, size_t size) {
@@ -15,7 +15,7 @@ static void step(const uint8_t *bytes, size_t size) {
     waferhand_proximity proximity;
     const unsigned long before = heap_calls();
     assert_true(wh_link_decode_command(bytes, size, &command));
-    assert_int_not_equal(wh_server_command(server, &command, NULL), WH_SERVER_IGNORED);
+    assert_int_not_equal(wh_protocol_server_command(server, &command, NULL), WH_SERVER_IGNORED);
     wh_link_proximity_to_message(&server->state, &server->identity, &server->layout->grasp.tolerance,
                                  &proximity);
     assert_true(waferhand_proximity_encode(encoded, 0, (int)sizeof encoded, &proximity) > 0);
@@ -34,23 +34,23 @@ static wh_link_t *connect_server(void *user, wh_mcs_t *mcs) {
     static wh_link_t link = {exchange, hash_of_server, none_missed};
     (void)user;
     server = servers;
-    assert_int_equal(wh_server_open(server, mcs->layout), WH_OK);
+    assert_int_equal(wh_protocol_server_open(server, mcs->layout), WH_OK);
     return &link;
 }
 
 static void test_a_step_allocates_nothing(void **state) {
-    const wh_run_options_t options = {.script = "lua/examples/02_prealigner.lua",
-                                      .partners = {.connect = connect_server}};
-    wh_run_t run;
+    const wh_script_run_options_t options = {.script = "lua/examples/02_prealigner.lua",
+                                             .partners = {.connect = connect_server}};
+    wh_script_run_t run;
     (void)state;
 #if !defined(WH_TEST_COUNTS_HEAP)
     skip();
 #endif
-    assert_int_equal(wh_run_script(&run, &options), WH_RUN_MET);
+    assert_int_equal(wh_script_run(&run, &options), WH_RUN_MET);
     assert_true(server->counters.stepped > 10000);
     assert_true(heap_calls() > 0);
     assert_int_equal(calls_in_steps, 0);
-    wh_run_close(&run);
+    wh_script_run_close(&run);
 }
 
 int main(void) {

@@ -6,34 +6,34 @@
 #include "mcs/script_run.h"
 
 static wh_node_t node;
-static wh_client_t client;
-static wh_simulation_t simulation;
+static wh_protocol_client_t client;
+static wh_sim_process_t simulation;
 
 static wh_link_t *connect(void *user, wh_mcs_t *mcs) {
-    const wh_client_options_t options = {.layout = mcs->layout};
+    const wh_protocol_client_options_t options = {.layout = mcs->layout};
     (void)user;
-    assert_int_equal(wh_simulation_open(&simulation, &node, mcs->layout, NULL, NULL), WH_OK);
-    assert_true(wh_client_open(&client, &node, &options));
+    assert_int_equal(wh_sim_process_open(&simulation, &node, mcs->layout, NULL, NULL), WH_OK);
+    assert_true(wh_protocol_client_open(&client, &node, &options));
     return &client.link;
 }
 
 static uint64_t play(const char *script, bool over_messages) {
-    wh_run_options_t options = {.script = script, .limits = {.print_to = stderr}};
-    wh_run_t run;
+    wh_script_run_options_t options = {.script = script, .limits = {.print_to = stderr}};
+    wh_script_run_t run;
     if (over_messages) {
         assert_true(wh_node_open(&node, "memq://"));
         options.partners.connect = connect;
     }
-    assert_int_equal(wh_run_script(&run, &options), WH_RUN_MET);
+    assert_int_equal(wh_script_run(&run, &options), WH_RUN_MET);
     const uint64_t hash = run.record.hash;
     if (over_messages) {
         assert_true(simulation.server.counters.stepped == (uint64_t)run.record.slices);
         assert_true(simulation.counters.garbage == 0);
         assert_true(client.counters.malformed == 0);
-        wh_simulation_close(&simulation);
+        wh_sim_process_close(&simulation);
         wh_node_close(&node);
     }
-    wh_run_close(&run);
+    wh_script_run_close(&run);
     return hash;
 }
 

@@ -11,8 +11,8 @@ typedef void change_t(waferhand_state *message);
 
 static wh_sandbox_t *sandbox;
 static const wh_layout_t *layout;
-static wh_server_t server;
-static wh_client_t client;
+static wh_protocol_server_t server;
+static wh_protocol_client_t client;
 static wh_node_t node;
 static change_t *change;
 
@@ -31,7 +31,7 @@ static int tear_down(void **state) {
     return 0;
 }
 
-/* wh_condition_hash of what the message says. */
+/* wh_physics_state_hash of what the message says. */
 static int64_t hash_of(const waferhand_state *message) {
     static wh_link_arrays_t arrays;
     wh_grasp_t table;
@@ -43,7 +43,7 @@ static int64_t hash_of(const waferhand_state *message) {
     table.storage.wafer_count = (size_t)message->wafer_count;
     table.storage.grippers = arrays.grippers;
     table.storage.gripper_count = (size_t)message->gripper_count;
-    return (int64_t)wh_condition_hash(&arrays.condition, &table);
+    return (int64_t)wh_physics_state_hash(&arrays.condition, &table);
 }
 
 static void tell_changed_state(void) {
@@ -71,7 +71,7 @@ static void on_command(void *user, const void *data, size_t size) {
     (void)user;
     waferhand_command message;
     assert_true(wh_link_decode_command(data, size, &message));
-    (void)wh_server_command(&server, &message, NULL);
+    (void)wh_protocol_server_command(&server, &message, NULL);
     tell_changed_state();
     assert_true(wh_node_publish(&node, WH_CHANNEL_STATE, server.encoded, server.encoded_size));
 }
@@ -79,15 +79,15 @@ static void on_command(void *user, const void *data, size_t size) {
 static uint64_t malformed_after(change_t *what) {
     wh_command_t command = {.seq = 1, .utime = 1000, .gripper_count = 2, .axis_count = 5};
     wh_state_t state = {.status = WH_OK};
-    const wh_client_options_t options = {.layout = layout};
+    const wh_protocol_client_options_t options = {.layout = layout};
     for (size_t g = 0; g < 2; ++g) {
         command.grippers[g].base_from_gripper = wh_pose_identity();
         command.grippers[g].valve = WH_VALVE_CLOSED;
     }
     change = what;
     assert_true(wh_node_open(&node, "memq://"));
-    assert_int_equal(wh_server_open(&server, layout), WH_OK);
-    assert_true(wh_client_open(&client, &node, &options));
+    assert_int_equal(wh_protocol_server_open(&server, layout), WH_OK);
+    assert_true(wh_protocol_client_open(&client, &node, &options));
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, on_command, NULL));
     assert_int_equal(client.link.exchange(&client.link, &command, &state), WH_OK);
     (void)wh_node_drain(&node, 64);
@@ -167,7 +167,7 @@ static void test_impossible_states_are_not(void **state) {
             fail_msg("change %zu was taken", i);
         }
         assert_int_equal(client.event_count, 0);
-        assert_true(client.hash == wh_server_hash(&server));
+        assert_true(client.hash == wh_protocol_server_hash(&server));
     }
 }
 

@@ -7,15 +7,16 @@
 
 static wh_sandbox_t *sandbox;
 static const wh_layout_t *layout;
-static wh_server_t server;
-static wh_server_t restarted;
+static wh_protocol_server_t server;
+static wh_protocol_server_t restarted;
 
 static int set_up(void **state) {
     (void)state;
     wh_sandbox_result_t result;
     sandbox = wh_sandbox_new(NULL);
     layout = wh_layout_load(sandbox, "lua/layouts/paper.lua", &result);
-    return layout && wh_server_open(&server, layout) == WH_OK && wh_server_open(&restarted, layout) == WH_OK
+    return layout && wh_protocol_server_open(&server, layout) == WH_OK &&
+                   wh_protocol_server_open(&restarted, layout) == WH_OK
                ? 0
                : -1;
 }
@@ -46,12 +47,12 @@ static waferhand_command command(int64_t run, int64_t seq) {
     return message;
 }
 
-static wh_server_result_t send(wh_server_t *to, int64_t run, int64_t seq) {
+static wh_protocol_server_result_t send(wh_protocol_server_t *to, int64_t run, int64_t seq) {
     const waferhand_command message = command(run, seq);
-    return wh_server_command(to, &message, NULL);
+    return wh_protocol_server_command(to, &message, NULL);
 }
 
-static int32_t answered_status(const wh_server_t *by) {
+static int32_t answered_status(const wh_protocol_server_t *by) {
     waferhand_state message;
     assert_true(wh_link_decode_state(by->encoded, by->encoded_size, &message));
     const int32_t status = message.status;
@@ -59,13 +60,13 @@ static int32_t answered_status(const wh_server_t *by) {
     return status;
 }
 
-static wh_server_result_t hand_over_state(void (*change)(waferhand_state *message)) {
+static wh_protocol_server_result_t hand_over_state(void (*change)(waferhand_state *message)) {
     waferhand_state message;
     assert_true(wh_link_decode_state(server.encoded, server.encoded_size, &message));
     if (change) {
         change(&message);
     }
-    const wh_server_result_t result = wh_server_restore(&restarted, &message);
+    const wh_protocol_server_result_t result = wh_protocol_server_restore(&restarted, &message);
     (void)waferhand_state_decode_cleanup(&message);
     return result;
 }
@@ -74,11 +75,11 @@ static void test_each_slice_once(void **state) {
     (void)state;
     assert_int_equal(send(&server, 7, 1), WH_SERVER_NEW_RUN);
     assert_int_equal(send(&server, 7, 2), WH_SERVER_STEPPED);
-    const uint64_t hash = wh_server_hash(&server);
+    const uint64_t hash = wh_protocol_server_hash(&server);
     assert_int_equal(send(&server, 7, 2), WH_SERVER_ANSWERED);
     assert_int_equal(answered_status(&server), WH_OK);
     assert_int_equal(send(&server, 7, 1), WH_SERVER_IGNORED);
-    assert_true(wh_server_hash(&server) == hash);
+    assert_true(wh_protocol_server_hash(&server) == hash);
     assert_int_equal(server.counters.stepped, 2);
     assert_int_equal(server.counters.repeated, 1);
     assert_int_equal(server.counters.stale, 1);
@@ -91,7 +92,7 @@ static void test_gaps(void **state) {
     assert_int_equal(answered_status(&server), WH_STATUS_UNKNOWN_RUN);
     waferhand_command free_running = command(7, 4);
     free_running.lockstep = 0;
-    assert_int_equal(wh_server_command(&server, &free_running, NULL), WH_SERVER_STEPPED);
+    assert_int_equal(wh_protocol_server_command(&server, &free_running, NULL), WH_SERVER_STEPPED);
     assert_int_equal(server.missed, 2);
 }
 
@@ -105,7 +106,7 @@ static void test_runs_and_layouts(void **state) {
     assert_int_equal(answered_status(&server), WH_STATUS_RUN_OVER);
     waferhand_command other = command(8, 2);
     other.layout_hash += 1;
-    assert_int_equal(wh_server_command(&server, &other, NULL), WH_SERVER_ANSWERED);
+    assert_int_equal(wh_protocol_server_command(&server, &other, NULL), WH_SERVER_ANSWERED);
     assert_int_equal(answered_status(&server), WH_STATUS_OTHER_LAYOUT);
     assert_int_equal(send(&server, 0, 1), WH_SERVER_IGNORED);
     assert_int_equal(send(&server, 8, 0), WH_SERVER_IGNORED);
@@ -117,12 +118,12 @@ static void test_runs_and_layouts(void **state) {
 static void test_a_refused_command_changes_nothing(void **state) {
     (void)state;
     send(&server, 7, 1);
-    const uint64_t hash = wh_server_hash(&server);
+    const uint64_t hash = wh_protocol_server_hash(&server);
     waferhand_command bad = command(7, 2);
     bad.valve[1] = 2;
-    assert_int_equal(wh_server_command(&server, &bad, NULL), WH_SERVER_ANSWERED);
+    assert_int_equal(wh_protocol_server_command(&server, &bad, NULL), WH_SERVER_ANSWERED);
     assert_int_equal(answered_status(&server), WH_STATUS_BAD_VALVE);
-    assert_true(wh_server_hash(&server) == hash);
+    assert_true(wh_protocol_server_hash(&server) == hash);
     assert_int_equal(send(&server, 7, 1), WH_SERVER_ANSWERED);
     assert_int_equal(server.room.message.event_count, 0);
     assert_int_equal(send(&server, 7, 2), WH_SERVER_STEPPED);
@@ -132,7 +133,7 @@ static void test_valves_from_outside(void **state) {
     static const int32_t open[WH_GRIPPERS] = {0, 0};
     (void)state;
     const waferhand_command message = command(7, 1);
-    assert_int_equal(wh_server_command(&server, &message, open), WH_SERVER_NEW_RUN);
+    assert_int_equal(wh_protocol_server_command(&server, &message, open), WH_SERVER_NEW_RUN);
     assert_int_equal(server.state.grippers[0].valve, 0);
 }
 
@@ -147,7 +148,7 @@ static void test_a_restarted_simulator_goes_on(void **state) {
     assert_int_equal(hand_over_state(NULL), WH_SERVER_IGNORED);
     assert_int_equal(send(&restarted, 7, 6), WH_SERVER_STEPPED);
     send(&server, 7, 6);
-    assert_true(wh_server_hash(&restarted) == wh_server_hash(&server));
+    assert_true(wh_protocol_server_hash(&restarted) == wh_protocol_server_hash(&server));
 }
 
 static void shift_wafer(waferhand_state *message) {
@@ -179,10 +180,10 @@ static void test_no_other_state_is_taken_over(void **state) {
         shift_wafer, hold_twice, spoil_rotation, change_layout, miss_more_than_there_are, drop_wafer};
     (void)state;
     send(&server, 7, 1);
-    const uint64_t hash = wh_server_hash(&restarted);
+    const uint64_t hash = wh_protocol_server_hash(&restarted);
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; ++i) {
         assert_int_equal(hand_over_state(changes[i]), WH_SERVER_IGNORED);
-        assert_true(wh_server_hash(&restarted) == hash);
+        assert_true(wh_protocol_server_hash(&restarted) == hash);
     }
 }
 

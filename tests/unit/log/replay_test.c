@@ -10,7 +10,7 @@
 
 static wh_sandbox_t *sandbox;
 static const wh_layout_t *layout;
-static wh_server_t server;
+static wh_protocol_server_t server;
 static wh_replay_t replay;
 static uint8_t bytes[WH_LINK_DATAGRAM];
 
@@ -27,7 +27,7 @@ static int set_up(void **state) {
     wh_sandbox_result_t result;
     sandbox = wh_sandbox_new(NULL);
     layout = wh_layout_load(sandbox, "lua/layouts/paper.lua", &result);
-    if (!layout || wh_server_open(&server, layout) != WH_OK) {
+    if (!layout || wh_protocol_server_open(&server, layout) != WH_OK) {
         return -1;
     }
     wh_replay_open(&replay);
@@ -74,7 +74,7 @@ static void record_state(void) {
 
 static void simulate(int64_t seq) {
     const waferhand_command message = command(seq);
-    assert_int_not_equal(wh_server_command(&server, &message, NULL), WH_SERVER_IGNORED);
+    assert_int_not_equal(wh_protocol_server_command(&server, &message, NULL), WH_SERVER_IGNORED);
 }
 
 /* As if another simulator had computed another state. */
@@ -107,7 +107,7 @@ static void test_the_same(void **state) {
     }
     assert_int_equal(only_run()->compared, 30);
     assert_false(only_run()->differs);
-    assert_true(only_run()->hash == wh_server_hash(&server));
+    assert_true(only_run()->hash == wh_protocol_server_hash(&server));
     assert_int_equal(replay.server.simulator.table.counters.picked, 1);
 }
 
@@ -178,7 +178,7 @@ static void test_valves_from_outside_are_followed(void **state) {
     static const int32_t closed[WH_GRIPPERS] = {1, 1};
     (void)state;
     const waferhand_command message = command(1);
-    assert_int_not_equal(wh_server_command(&server, &message, closed), WH_SERVER_IGNORED);
+    assert_int_not_equal(wh_protocol_server_command(&server, &message, closed), WH_SERVER_IGNORED);
     record_command(&message);
     record_state();
     assert_int_equal(only_run()->outside_valves, 1);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "math/deviate.h"
+#include "math/trig.h"
 #include "support/support.h"
 
 static void the_logarithm_is_libms_to_the_last_digits(void **state) {

@@ -3,18 +3,18 @@
 
 #include "mcs/script_run.h"
 
-static wh_run_t run;
+static wh_script_run_t run;
 
 static int close_run(void **state) {
     (void)state;
-    wh_run_close(&run);
+    wh_script_run_close(&run);
     return 0;
 }
 
-static wh_run_outcome_t play(const char *script, uint64_t instructions) {
-    const wh_run_options_t options = {.script = script,
-                                      .limits = {.print_to = stderr, .instructions = instructions}};
-    return wh_run_script(&run, &options);
+static wh_script_run_outcome_t play(const char *script, uint64_t instructions) {
+    const wh_script_run_options_t options = {.script = script,
+                                             .limits = {.print_to = stderr, .instructions = instructions}};
+    return wh_script_run(&run, &options);
 }
 
 static void test_a_command_within_a_command_is_refused(void **state) {
@@ -31,7 +31,7 @@ static void test_a_command_within_a_command_is_refused(void **state) {
 }
 
 static void assert_expected(const char *script, size_t expectations) {
-    const wh_run_outcome_t outcome = play(script, 0);
+    const wh_script_run_outcome_t outcome = play(script, 0);
     for (size_t i = 0; i < run.record.expectation_count; ++i) {
         if (!run.record.expectations[i].ok) {
             print_error("%s\n", run.record.expectations[i].text);
@@ -68,14 +68,14 @@ static void test_a_stop_may_come_at_any_time(void **state) {
             char at[30];
             snprintf(at, sizeof at, "at=%.3f", 0.05 * step);
             const char *const parameters[] = {at, targets[t]};
-            const wh_run_options_t options = {.script = "tests/end_to_end/data/stop_anywhere.lua",
-                                              .limits = {.print_to = stderr},
-                                              .parameters = parameters,
-                                              .parameter_count = 2};
-            if (wh_run_script(&run, &options) != WH_RUN_MET) {
+            const wh_script_run_options_t options = {.script = "tests/end_to_end/data/stop_anywhere.lua",
+                                                     .limits = {.print_to = stderr},
+                                                     .parameters = parameters,
+                                                     .parameter_count = 2};
+            if (wh_script_run(&run, &options) != WH_RUN_MET) {
                 fail_msg("%s %s: %s", at, targets[t], run.record.failure ? run.record.failure : run.message);
             }
-            wh_run_close(&run);
+            wh_script_run_close(&run);
         }
     }
 }

@@ -5,17 +5,17 @@
 
 #include "mcs/script_run.h"
 
-static wh_run_t run;
+static wh_script_run_t run;
 
 static int close_run(void **state) {
     (void)state;
-    wh_run_close(&run);
+    wh_script_run_close(&run);
     return 0;
 }
 
-static wh_run_outcome_t play(const char *script) {
-    const wh_run_options_t options = {.script = script, .limits = {.print_to = stderr}};
-    return wh_run_script(&run, &options);
+static wh_script_run_outcome_t play(const char *script) {
+    const wh_script_run_options_t options = {.script = script, .limits = {.print_to = stderr}};
+    return wh_script_run(&run, &options);
 }
 
 static const wh_wafer_record_t *wafer(const char *name) {
@@ -119,7 +119,7 @@ static void test_same_script_gives_same_hash(void **state) {
     (void)state;
     assert_int_equal(play("lua/examples/01_transfer.lua"), WH_RUN_MET);
     const uint64_t hash = run.record.hash;
-    wh_run_close(&run);
+    wh_script_run_close(&run);
     assert_int_equal(play("lua/examples/01_transfer.lua"), WH_RUN_MET);
     assert_true(run.record.hash == hash);
 }

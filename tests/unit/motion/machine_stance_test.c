@@ -9,14 +9,14 @@
 enum { AXES = 6, GRIPPERS = 4 };
 
 static wh_machine_t machine;
-static wh_stance_t stance;
+static wh_machine_cache_t cache;
 static wh_gripper_input_t followed[GRIPPERS];
 
 /* Two blades on the robot, one of them beside the end-effector, and two chucks, one of them tilted. */
 static int set_up(void **state) {
     (void)state;
     memset(&machine, 0, sizeof machine);
-    memset(&stance, 0, sizeof stance);
+    memset(&cache, 0, sizeof cache);
     memset(followed, 0, sizeof followed);
     wh_robot_default(&machine.robot);
     machine.chuck_limits = machine.robot.limits[WH_AXIS_YAW];
@@ -37,7 +37,7 @@ static int set_up(void **state) {
 static void follow(const wh_real_t axes[]) {
     wh_pose_t poses[GRIPPERS];
     wh_machine_grippers(&machine, axes, poses);
-    wh_machine_follow(&machine, axes, &stance, followed);
+    wh_machine_update(&machine, axes, &cache, followed);
     for (int g = 0; g < GRIPPERS; ++g) {
         assert_memory_equal(&followed[g].base_from_gripper, &poses[g], sizeof poses[g]);
     }
@@ -91,7 +91,7 @@ static void test_what_stands_still_is_not_written(void **state) {
         if (axis < AXES) {
             axes[axis] += 1;
         }
-        wh_machine_follow(&machine, axes, &stance, followed);
+        wh_machine_update(&machine, axes, &cache, followed);
         for (int g = 0; g < GRIPPERS; ++g) {
             const int differs =
                 memcmp(&followed[g].base_from_gripper, &mark[g].base_from_gripper, sizeof(wh_pose_t));
@@ -105,12 +105,12 @@ static void test_what_stands_still_is_not_written(void **state) {
 static void test_the_axes_beyond_the_last_are_left_alone(void **state) {
     (void)state;
     wh_real_t axes[AXES + 1] = {0, 300, 900, 0, 0, 0, 7};
-    stance.axes[AXES] = 5;
+    cache.axes[AXES] = 5;
     follow(axes);
     axes[WH_AXIS_R] = 310;
     follow(axes);
-    assert_near(stance.axes[AXES], 5, 0);
-    assert_near(stance.axes[AXES - 1], 0, 0);
+    assert_near(cache.axes[AXES], 5, 0);
+    assert_near(cache.axes[AXES - 1], 0, 0);
 }
 
 /* A command that follows a track says what the track says, and keeps the faults that it is to bring. */
@@ -131,7 +131,7 @@ static void test_a_command_follows_a_track(void **state) {
     int64_t seq = 0;
     while (wh_track_next(&track, 0) == WH_TRACK_MOVING) {
         wh_pose_t poses[GRIPPERS];
-        wh_command_follow(&command, &stance, &track);
+        wh_command_from_track(&command, &cache, &track);
         wh_machine_grippers(&machine, track.axes, poses);
         ++seq;
         assert_int_equal(command.seq, seq);

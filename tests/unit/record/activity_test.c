@@ -8,7 +8,7 @@ enum { GRIPPERS = 3, SLICES = 20000 };
 
 typedef struct {
     int64_t shares[WH_SHARES];
-    wh_interval_t intervals[4 * SLICES];
+    wh_busy_span_t intervals[4 * SLICES];
     size_t count;
     int32_t what[WH_RESOURCES];
     int64_t begin[WH_RESOURCES];
@@ -82,7 +82,7 @@ static void keep(size_t r, int32_t what, int64_t slice) {
         return;
     }
     if (oracle.what[r] != 0) {
-        wh_interval_t *kept = &oracle.intervals[oracle.count++];
+        wh_busy_span_t *kept = &oracle.intervals[oracle.count++];
         kept->who = r == 0 ? WH_BUSY_ROBOT : (wh_busy_t)(WH_BUSY_CHUCK + (r - 1) % 3);
         kept->gripper = r == 0 ? WH_NONE : (int32_t)((r - 1) / 3);
         kept->what = oracle.what[r];
@@ -108,11 +108,11 @@ static void compare(void) {
     assert_memory_equal(activity.shares, oracle.shares, sizeof oracle.shares);
     assert_int_equal(activity.interval_count, oracle.count);
     for (size_t i = 0; i < oracle.count; ++i) {
-        const wh_interval_t *wanted = &oracle.intervals[i];
+        const wh_busy_span_t *wanted = &oracle.intervals[i];
         size_t found = 0;
         const size_t from = i > WH_RESOURCES ? i - WH_RESOURCES : 0;
         for (size_t k = from; k < oracle.count && k < i + WH_RESOURCES; ++k) {
-            const wh_interval_t *is = &activity.intervals[k];
+            const wh_busy_span_t *is = &activity.intervals[k];
             found += is->who == wanted->who && is->gripper == wanted->gripper && is->what == wanted->what &&
                              is->begin == wanted->begin && is->end == wanted->end
                          ? 1

@@ -9,13 +9,13 @@
 #include "support/record.h"
 
 static fixture_t f;
-static wh_interval_t intervals[16];
+static wh_busy_span_t intervals[16];
 static wh_station_reach_t reach[FIXTURE_STATIONS];
 static wh_put_record_t made_puts[4];
 static wh_cycle_record_t made_cycles[4];
 
 static void add_interval(wh_busy_t who, int32_t gripper, int32_t what, int64_t from, int64_t to) {
-    const wh_interval_t interval = {who, gripper, what, from, to};
+    const wh_busy_span_t interval = {who, gripper, what, from, to};
     intervals[f.record.activity.interval_count++] = interval;
 }
 
@@ -181,7 +181,7 @@ static void test_wafers_per_hour(void **state) {
 }
 
 static void set_reach(int32_t station, size_t axis, double margin, double at, bool is_max, int32_t slot) {
-    const wh_reach_t made = {margin, at, is_max, slot};
+    const wh_travel_margin_t made = {margin, at, is_max, slot};
     reach[station].axes[axis] = made;
 }
 

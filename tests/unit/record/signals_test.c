@@ -18,18 +18,18 @@ typedef struct {
     bool is_exact;
 } slice_t;
 
-static wh_run_t run;
-static wh_trace_t trace;
+static wh_script_run_t run;
+static wh_signals_t signals;
 static slice_t *slices; /* by number, 0 not used */
 static size_t slice_count, slice_capacity;
 
 static void on_slice(void *user, const wh_mcs_t *mcs) {
     (void)user;
     const wh_state_t *state = &mcs->state;
-    if (!trace.layout) {
-        wh_trace_begin(&trace, mcs->layout, true);
+    if (!signals.layout) {
+        wh_signals_begin(&signals, mcs->layout, true);
     }
-    wh_trace_slice(&trace, mcs->command.axes, mcs->command.axis_count, state);
+    wh_signals_slice(&signals, mcs->command.axes, mcs->command.axis_count, state);
     slice_count = (size_t)state->seq + 1;
     if (slice_count > slice_capacity) {
         slice_capacity = 2 * slice_count + 8192;
@@ -55,26 +55,26 @@ static void on_slice(void *user, const wh_mcs_t *mcs) {
 static void on_boundary(void *user, const wh_mcs_t *mcs) {
     (void)user;
     (void)mcs;
-    wh_trace_mark(&trace);
+    wh_signals_mark(&signals);
     if (slice_count > 0) {
         slices[slice_count - 1].is_exact = true;
     }
 }
 
 static void play(const char *script) {
-    const wh_run_options_t options = {
+    const wh_script_run_options_t options = {
         .script = script, .limits = {.print_to = stderr}, .listener = {on_slice, on_boundary, NULL}};
     slice_count = 0;
-    assert_int_not_equal(wh_run_script(&run, &options), WH_RUN_BAD_INPUT);
-    wh_trace_finish(&trace);
+    assert_int_not_equal(wh_script_run(&run, &options), WH_RUN_BAD_INPUT);
+    wh_signals_finish(&signals);
     assert_true(slice_count > 1000);
-    assert_int_equal(trace.last, slice_count - 1);
+    assert_int_equal(signals.last, slice_count - 1);
 }
 
 static int close_run(void **state) {
     (void)state;
-    wh_trace_close(&trace);
-    wh_run_close(&run);
+    wh_signals_close(&signals);
+    wh_script_run_close(&run);
     free(slices);
     slices = NULL;
     slice_capacity = 0;
@@ -108,16 +108,17 @@ static int32_t step_at(const wh_steps_t *steps, int64_t slice) {
 
 static const wh_stay_t *stay_at(int32_t wafer, int64_t slice) {
     const wh_stay_t *found = NULL;
-    for (size_t i = 0; i < trace.stay_count && trace.stays[i].slice <= slice; ++i) {
-        found = trace.stays[i].wafer == wafer ? &trace.stays[i] : found;
+    for (size_t i = 0; i < signals.stay_count && signals.stays[i].slice <= slice; ++i) {
+        found = signals.stays[i].wafer == wafer ? &signals.stays[i] : found;
     }
     return found;
 }
 
 /* How far a pose may be off: its axes' tolerances, those of angles at the robot's reach. */
 static double room_mm(const slice_t *was) {
-    return was->is_exact ? 1e-9
-                         : 2 * WH_TRACE_MM + WH_TRACE_RAD * trace.layout->machine.robot.travel[WH_AXIS_R].max;
+    return was->is_exact
+               ? 1e-9
+               : 2 * WH_TRACE_MM + WH_TRACE_RAD * signals.layout->machine.robot.travel[WH_AXIS_R].max;
 }
 
 static double room_rad(const slice_t *was) {
@@ -127,20 +128,20 @@ static double room_rad(const slice_t *was) {
 static void check_gripper(size_t g, int64_t n) {
     const slice_t *was = &slices[n];
     wh_pose_t shown;
-    wh_trace_gripper(&trace, g, n, &shown);
+    wh_signals_gripper(&signals, g, n, &shown);
     assert_pose(&shown, &was->grippers[g], room_mm(was), room_rad(was));
-    assert_near(wh_curve_read(&trace.vacuum[g], n, NULL), was->levels[g],
+    assert_near(wh_path_read(&signals.vacuum[g], n, NULL), was->levels[g],
                 was->is_exact ? 0 : WH_TRACE_VACUUM);
-    assert_int_equal(step_at(&trace.valves[g], n), was->valves[g]);
-    assert_int_equal(step_at(&trace.sensors[g], n), was->sensors >> g & 1U);
+    assert_int_equal(step_at(&signals.valves[g], n), was->valves[g]);
+    assert_int_equal(step_at(&signals.sensors[g], n), was->sensors >> g & 1U);
 }
 
 /* The arm as it was placed for the collision check. */
 static void check_links(int64_t n) {
     const slice_t *was = &slices[n];
     wh_pose_t links[WH_TRACE_LINKS], bodies[WH_ARM_BODIES];
-    assert_true(wh_trace_links(&trace, n, links));
-    wh_arm_place(&trace.layout->shapes.arm, &was->grippers[0], bodies);
+    assert_true(wh_signals_links(&signals, n, links));
+    wh_arm_place(&signals.layout->shapes.arm, &was->grippers[0], bodies);
     for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
         /* The elbow goes further than the wrist where the arm is folded or stretched. */
         assert_pose(&links[i], &bodies[WH_ARM_LIFT + i], 20 * room_mm(was), 40 * room_rad(was));
@@ -157,7 +158,7 @@ static void check_wafer(int32_t w, int64_t n) {
         return;
     }
     wh_pose_t gripper;
-    wh_trace_gripper(&trace, (size_t)stay->holder, n, &gripper);
+    wh_signals_gripper(&signals, (size_t)stay->holder, n, &gripper);
     const wh_pose_t shown = wh_pose_compose(&gripper, &stay->pose);
     assert_pose(&shown, &was->wafers[w], room_mm(was) + room_rad(was) * wh_vec3_norm(&stay->pose.r),
                 room_rad(was));
@@ -165,12 +166,12 @@ static void check_wafer(int32_t w, int64_t n) {
 
 /* Between points a slope is not judged by a tolerance: by a hundredth of what the axis does. */
 static void check_axes(int64_t n) {
-    const double seconds = (double)trace.layout->slice_us / 1e6;
-    for (size_t axis = 0; axis < trace.axis_count; ++axis) {
-        const wh_curve_t *curve = &trace.axes[axis];
-        const double limit = (double)wh_machine_limits(&trace.layout->machine, axis)->speed;
+    const double seconds = (double)signals.layout->slice_us / 1e6;
+    for (size_t axis = 0; axis < signals.axis_count; ++axis) {
+        const wh_path_t *curve = &signals.axes[axis];
+        const double limit = (double)wh_machine_limits(&signals.layout->machine, axis)->speed;
         double slope;
-        const double value = wh_curve_read(curve, n, &slope);
+        const double value = wh_path_read(curve, n, &slope);
         assert_near(value, slices[n].axes[axis], slices[n].is_exact ? 0 : curve->tolerance);
         if (n > 1) {
             assert_near(slope / seconds, (slices[n].axes[axis] - slices[n - 1].axes[axis]) / seconds,
@@ -180,7 +181,7 @@ static void check_axes(int64_t n) {
 }
 
 static void check_all(void) {
-    const wh_layout_t *layout = trace.layout;
+    const wh_layout_t *layout = signals.layout;
     for (int64_t n = 1; n < (int64_t)slice_count; ++n) {
         for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
             check_gripper(g, n);
@@ -201,13 +202,13 @@ static void check_events(size_t expected) {
         const bool taken = event->kind == WH_EVENT_PICKED || event->kind == WH_EVENT_NEAR_MISS ||
                            event->kind == WH_EVENT_HANDED_OVER;
         if (taken) {
-            const wh_curve_t *curves = trace.proximity[event->gripper];
+            const wh_path_t *curves = signals.proximity[event->gripper];
             const int64_t slice = (int64_t)event->measured_slice;
             const wh_proximity_t *p = &event->measured;
-            assert_near(wh_curve_read(&curves[WH_MEASURE_PROJZ], slice, NULL), fabs(p->dr_proj_z), 0);
-            assert_near(wh_curve_read(&curves[WH_MEASURE_PROJXY], slice, NULL), p->dr_proj_xy_norm, 0);
-            assert_near(wh_curve_read(&curves[WH_MEASURE_PLANAR], slice, NULL), p->n1_proj_n2, 0);
-            assert_int_equal(step_at(&trace.nearest[event->gripper], slice), event->wafer);
+            assert_near(wh_path_read(&curves[WH_MEASURE_PROJZ], slice, NULL), fabs(p->dr_proj_z), 0);
+            assert_near(wh_path_read(&curves[WH_MEASURE_PROJXY], slice, NULL), p->dr_proj_xy_norm, 0);
+            assert_near(wh_path_read(&curves[WH_MEASURE_PLANAR], slice, NULL), p->n1_proj_n2, 0);
+            assert_int_equal(step_at(&signals.nearest[event->gripper], slice), event->wafer);
             ++measured;
         }
     }
@@ -219,7 +220,7 @@ static void test_transfer(void **state) {
     play("lua/examples/01_transfer.lua");
     check_all();
     check_events(2);
-    assert_int_equal(trace.mark_count, 0);
+    assert_int_equal(signals.mark_count, 0);
 }
 
 static void test_prealigner(void **state) {
@@ -234,9 +235,9 @@ static void test_missed_pick(void **state) {
     play("lua/examples/03_missed_pick.lua");
     check_all();
     check_events(2);
-    assert_int_equal(trace.mark_count, 1);
-    assert_int_equal(trace.marks[0].event.kind, WH_EVENT_NEAR_MISS);
-    assert_true(trace.marks[0].has_place);
+    assert_int_equal(signals.mark_count, 1);
+    assert_int_equal(signals.marks[0].event.kind, WH_EVENT_NEAR_MISS);
+    assert_true(signals.marks[0].has_place);
 }
 
 static void test_vacuum_that_leaks(void **state) {
@@ -251,13 +252,13 @@ static void test_vacuum_that_leaks(void **state) {
 static void test_a_gripper_that_is_elsewhere(void **state) {
     (void)state;
     play("lua/examples/01_transfer.lua");
-    const wh_layout_t *layout = trace.layout;
-    wh_trace_t other = {0};
+    const wh_layout_t *layout = signals.layout;
+    wh_signals_t other = {0};
     wh_gripper_t grippers[2];
-    wh_condition_t condition;
+    wh_physics_state_t condition;
     memset(grippers, 0, sizeof grippers);
-    wh_condition_start(&condition, &layout->physics);
-    wh_trace_begin(&other, layout, false);
+    wh_physics_state_start(&condition, &layout->physics);
+    wh_signals_begin(&other, layout, false);
     for (int64_t n = 1; n <= 2000; ++n) {
         for (size_t g = 0; g < 2; ++g) {
             grippers[g].base_from_gripper = slices[n].grippers[g];
@@ -270,18 +271,18 @@ static void test_a_gripper_that_is_elsewhere(void **state) {
                                .condition = &condition,
                                .wafers = layout->start,
                                .wafer_count = layout->wafer_count};
-        wh_trace_slice(&other, n == 1500 ? NULL : slices[n].axes, layout->machine.axis_count, &at);
+        wh_signals_slice(&other, n == 1500 ? NULL : slices[n].axes, layout->machine.axis_count, &at);
     }
-    wh_trace_finish(&other);
+    wh_signals_finish(&other);
     assert_int_equal(other.own[0].points[0].slice, 901);
     assert_int_equal(other.own[1].points[0].slice, 1500);
     for (int64_t n = 1; n <= 2000; ++n) {
         wh_pose_t shown, was = slices[n].grippers[0];
         was.r.z += n > 900 ? 0.25 : 0;
-        wh_trace_gripper(&other, 0, n, &shown);
+        wh_signals_gripper(&other, 0, n, &shown);
         assert_pose(&shown, &was, 0.08, 1e-3);
     }
-    wh_trace_close(&other);
+    wh_signals_close(&other);
 }
 
 /* --------------------------------------------------------------------------------------------------- scene */
@@ -331,8 +332,8 @@ static void test_scene(void **state) {
                                         "lift", "upper arm", "forearm",   "hand",
                                         "EE",   "PA",        "Wafer 1",   "Wafer 2"};
     play("lua/examples/01_transfer.lua");
-    json_t *still = wh_scene_make(&trace, "a run", false);
-    json_t *moving = wh_scene_make(&trace, "a run", true);
+    json_t *still = wh_scene_make(&signals, "a run", false);
+    json_t *moving = wh_scene_make(&signals, "a run", true);
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         assert_non_null(node(still, names[i]));
         assert_non_null(json_object_get(node(still, names[i]), "mesh"));
@@ -381,7 +382,7 @@ static void test_document(void **state) {
                                     .parameter_count = 2,
                                     .run = object,
                                     .record = &run.record,
-                                    .trace = &trace};
+                                    .signals = &signals};
     json_t *read = document_of(&document);
     assert_int_equal(integer(read, "format"), 2);
     assert_string_equal(json_string_value(json_object_get(read, "title")), "a </title>");
@@ -393,12 +394,12 @@ static void test_document(void **state) {
     assert_int_equal(
         json_array_size(json_object_get(json_array_get(json_object_get(tracks, "grippers"), 0), "t")), 0);
     const json_t *axis = json_array_get(json_object_get(tracks, "axes"), WH_AXIS_R);
-    const wh_curve_t *curve = &trace.axes[WH_AXIS_R];
+    const wh_path_t *curve = &signals.axes[WH_AXIS_R];
     assert_int_equal(json_array_size(json_object_get(axis, "t")), curve->count);
     assert_int_equal(json_array_size(json_object_get(axis, "v")), curve->count);
     assert_int_equal(json_array_size(json_object_get(axis, "slope")), curve->count);
     for (size_t i = 0; i < curve->count; ++i) {
-        const wh_curve_point_t *point = &curve->points[i];
+        const wh_path_point_t *point = &curve->points[i];
         assert_near(number_at(axis, "t", i), (double)point->slice / 1e3, 1e-9);
         assert_near(number_at(axis, "v", i), point->value, point->exact ? 0 : 1e-4);
         assert_near(number_at(axis, "slope", i), point->slope * 1e3, 1e-3);

@@ -36,7 +36,7 @@ static void add_cycle(int64_t slice) {
 }
 
 static void assert_throughput(wh_rank_t rank, size_t wafers, double seconds, size_t first, size_t last) {
-    const wh_throughput_t found = wh_figures_throughput(&f.record);
+    const wh_throughput_t found = wh_throughput(&f.record);
     assert_int_equal(found.rank, rank);
     assert_int_equal(found.puts, f.record.put_count);
     assert_int_equal(found.wafers, wafers);
@@ -54,7 +54,7 @@ static void test_a_record_of_nothing(void **state) {
     assert_throughput(WH_RANK_NONE, 0, 0, 0, 0);
     begin(0);
     assert_throughput(WH_RANK_NONE, 0, 0, 0, 0);
-    assert_true(wh_figures_throughput(&f.record).wafers_per_hour == 0);
+    assert_true(wh_throughput(&f.record).wafers_per_hour == 0);
 }
 
 static void test_without_marks_every_put_counts(void **state) {
@@ -64,7 +64,7 @@ static void test_without_marks_every_put_counts(void **state) {
     add_put(4000, 1, FIXTURE_B, 2);
     add_put(9000, 0, FIXTURE_A, 1);
     assert_throughput(WH_RANK_SEVERAL, 3, 9, 0, 0);
-    assert_near(wh_figures_throughput(&f.record).wafers_per_hour, 1200, 1e-9);
+    assert_near(wh_throughput(&f.record).wafers_per_hour, 1200, 1e-9);
 }
 
 static void test_what_is_on_its_way_does_not_count(void **state) {
@@ -92,14 +92,14 @@ static void test_the_first_cycle_is_left_out(void **state) {
     add_cycle(18000);
     add_put(26000, 2, FIXTURE_B, 3);
     assert_throughput(WH_RANK_SEVERAL, 2, 16, 2, 3);
-    assert_near(wh_figures_throughput(&f.record).wafers_per_hour, 450, 1e-9);
-    size_t *wafers = wh_figures_cycle_wafers(&f.record, WH_RANK_SEVERAL);
+    assert_near(wh_throughput(&f.record).wafers_per_hour, 450, 1e-9);
+    size_t *wafers = wh_throughput_cycle_wafers(&f.record, WH_RANK_SEVERAL);
     for (size_t i = 0; i < 3; ++i) {
         assert_int_equal(wafers[i], 1);
     }
     free(wafers);
-    assert_true(wh_figures_cycle_end(&f.record, 0) == 10000);
-    assert_true(wh_figures_cycle_end(&f.record, 2) == 26000);
+    assert_true(wh_throughput_cycle_end(&f.record, 0) == 10000);
+    assert_true(wh_throughput_cycle_end(&f.record, 2) == 26000);
 }
 
 static void test_an_only_cycle_counts(void **state) {
@@ -143,17 +143,17 @@ static void test_a_wafer_counts_once_a_cycle(void **state) {
 
 /* ---------------------------------------------------------------------------------------------------- runs */
 
-static wh_run_t run;
+static wh_script_run_t run;
 
 static int close_run(void **state) {
     (void)state;
-    wh_run_close(&run);
+    wh_script_run_close(&run);
     return 0;
 }
 
-static const wh_record_t *play(const char *script, wh_run_outcome_t outcome) {
-    const wh_run_options_t options = {.script = script, .limits = {.print_to = stderr}};
-    assert_int_equal(wh_run_script(&run, &options), outcome);
+static const wh_record_t *play(const char *script, wh_script_run_outcome_t outcome) {
+    const wh_script_run_options_t options = {.script = script, .limits = {.print_to = stderr}};
+    assert_int_equal(wh_script_run(&run, &options), outcome);
     return &run.record;
 }
 
@@ -186,7 +186,7 @@ static void test_split_of_a_cycle(void **state) {
 static void test_throughput_of_cycles(void **state) {
     (void)state;
     const wh_record_t *record = play("tests/end_to_end/data/figures_cycles.lua", WH_RUN_MET);
-    const wh_throughput_t found = wh_figures_throughput(record);
+    const wh_throughput_t found = wh_throughput(record);
     assert_int_equal(record->cycle_count, 4);
     assert_string_equal(record->cycles[1].name, "of slot 2");
     assert_int_equal(record->cycles[1].line, 4);
@@ -200,10 +200,10 @@ static void test_throughput_of_cycles(void **state) {
     assert_near(found.wafers_per_hour, 2 * 3600 / 19.004, 1e-9);
 }
 
-static const wh_interval_t *interval(const wh_record_t *record, wh_busy_t who, int32_t gripper,
-                                     size_t number) {
+static const wh_busy_span_t *interval(const wh_record_t *record, wh_busy_t who, int32_t gripper,
+                                      size_t number) {
     for (size_t i = 0; i < record->activity.interval_count; ++i) {
-        const wh_interval_t *found = &record->activity.intervals[i];
+        const wh_busy_span_t *found = &record->activity.intervals[i];
         if (found->who == who && found->gripper == gripper && number-- == 0) {
             return found;
         }
@@ -212,7 +212,7 @@ static const wh_interval_t *interval(const wh_record_t *record, wh_busy_t who, i
     return NULL;
 }
 
-static void assert_interval(const wh_interval_t *found, int32_t what, int64_t from, int64_t to) {
+static void assert_interval(const wh_busy_span_t *found, int32_t what, int64_t from, int64_t to) {
     assert_int_equal(found->what, what);
     assert_int_equal(found->begin, from);
     assert_int_equal(found->end, to);
@@ -240,21 +240,21 @@ static void test_intervals(void **state) {
 static void test_prealigner_and_drop(void **state) {
     (void)state;
     const wh_record_t *record = play("tests/end_to_end/data/figures_prealigner.lua", WH_RUN_FAILED);
-    const wh_throughput_t found = wh_figures_throughput(record);
+    const wh_throughput_t found = wh_throughput(record);
     assert_int_equal(found.rank, WH_RANK_SEVERAL);
     assert_int_equal(record->put_count, 2);
-    size_t *wafers = wh_figures_cycle_wafers(record, found.rank);
+    size_t *wafers = wh_throughput_cycle_wafers(record, found.rank);
     assert_int_equal(wafers[0], 1);
     assert_int_equal(wafers[1], 0);
     free(wafers);
     assert_string_equal(record->layout->stations[record->puts[0].station].name, "P");
     /* The chuck turns with the wafer on it, and the robot stands: by 90 degrees in 0.6 s. */
-    const wh_interval_t *turn = interval(record, WH_BUSY_CHUCK, 1, 0);
+    const wh_busy_span_t *turn = interval(record, WH_BUSY_CHUCK, 1, 0);
     assert_int_equal(turn->what, 1 + WH_SHARE_LOADED);
     assert_int_equal(turn->end - turn->begin, 600);
     assert_shares(record->commands[2].shares, 600, 0, 0, 0, 0);
     for (size_t i = 0; i < record->activity.interval_count; ++i) {
-        const wh_interval_t *other = &record->activity.intervals[i];
+        const wh_busy_span_t *other = &record->activity.intervals[i];
         assert_true(other->who != WH_BUSY_ROBOT || other->end <= turn->begin || other->begin >= turn->end);
     }
 }
@@ -264,11 +264,11 @@ static void test_swap(void **state) {
     (void)state;
     const wh_record_t *record = play("tests/end_to_end/data/figures_swap.lua", WH_RUN_MET);
     assert_int_equal(record->put_count, 5);
-    size_t *wafers = wh_figures_cycle_wafers(record, WH_RANK_SEVERAL);
+    size_t *wafers = wh_throughput_cycle_wafers(record, WH_RANK_SEVERAL);
     assert_int_equal(wafers[0], 1);
     assert_int_equal(wafers[1], 1);
     free(wafers);
-    const wh_throughput_t found = wh_figures_throughput(record);
+    const wh_throughput_t found = wh_throughput(record);
     assert_int_equal(found.wafers, 1);
     assert_int_equal(found.first, 2);
     const double seconds = record->commands[7].end_s - record->commands[5].begin_s;
@@ -277,11 +277,12 @@ static void test_swap(void **state) {
 
 /* -------------------------------------------------------------------------------------------------- reach */
 
-static const wh_reach_t *reach(const wh_record_t *record, const char *station, size_t axis) {
+static const wh_travel_margin_t *reach(const wh_record_t *record, const char *station, size_t axis) {
     return &record->reach[wh_layout_find_station(record->layout, station)].axes[axis];
 }
 
-static void assert_reach(const wh_reach_t *found, double margin, double at, bool is_max, int32_t slot) {
+static void assert_reach(const wh_travel_margin_t *found, double margin, double at, bool is_max,
+                         int32_t slot) {
     assert_near(found->margin, margin, 1e-9);
     assert_near(found->at, at, 1e-9);
     assert_int_equal(found->is_max, is_max);

@@ -110,7 +110,7 @@ static void test_no_offset_takes_a_wafer_out_of_the_numbers(void **state) {
     step(880, CLOSED);
     assert_non_null(find(WH_EVENT_FAULT_ARMED));
     assert_int_equal(wh_pose_validate(&wafers[0].base_from_wafer), WH_OK);
-    assert_int_equal(wh_condition_validate(&simulator.condition, GRIPPERS, WAFERS), WH_OK);
+    assert_int_equal(wh_physics_state_validate(&simulator.condition, GRIPPERS, WAFERS), WH_OK);
 }
 
 static void test_slots(void **state) {

@@ -71,7 +71,7 @@ static wh_command_t any_command(int64_t seq) {
     return command;
 }
 
-static void compare_conditions(const wh_condition_t *a, const wh_condition_t *b) {
+static void compare_conditions(const wh_physics_state_t *a, const wh_physics_state_t *b) {
     for (int g = 0; g < GRIPPERS; ++g) {
         assert_memory_equal(&a->vacuum[g].level, &b->vacuum[g].level, sizeof a->vacuum[g].level);
         assert_int_equal(a->vacuum[g].command, b->vacuum[g].command);

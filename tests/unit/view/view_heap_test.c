@@ -6,15 +6,15 @@
 #include "mcs/script_run.h"
 #include "view/view.h"
 
-static wh_server_t servers[1];
-static wh_view_t view;
+static wh_protocol_server_t servers[1];
+static wh_viewer_t view;
 static unsigned long calls_in_views;
 
 static void look(void) {
     view.last_draw_us -= WH_VIEW_DRAW_US;
     view.last_load_us -= server->seq % 100 == 0 ? WH_VIEW_LOAD_US : 0;
     const unsigned long before = heap_calls();
-    wh_view_tick(&view, server);
+    wh_viewer_tick(&view, server);
     calls_in_views += heap_calls() - before;
 }
 
@@ -41,7 +41,7 @@ static void compare_all(void) {
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     const waferhand_command message = message_of(command);
     (void)link;
-    assert_int_not_equal(wh_server_command(server, &message, NULL), WH_SERVER_IGNORED);
+    assert_int_not_equal(wh_protocol_server_command(server, &message, NULL), WH_SERVER_IGNORED);
     look();
     compare_all();
     *state = server->state;
@@ -52,27 +52,27 @@ static wh_link_t *connect_server(void *user, wh_mcs_t *mcs) {
     static wh_link_t link = {exchange, hash_of_server, none_missed};
     (void)user;
     server = servers;
-    assert_int_equal(wh_server_open(server, mcs->layout), WH_OK);
-    assert_int_equal(wh_view_open(&view, NULL, mcs->layout), WH_OK);
+    assert_int_equal(wh_protocol_server_open(server, mcs->layout), WH_OK);
+    assert_int_equal(wh_viewer_open(&view, NULL, mcs->layout), WH_OK);
     look();
     return &link;
 }
 
 static void test_a_view_allocates_and_changes_nothing(void **state) {
-    wh_run_options_t options = {.script = "lua/examples/02_prealigner.lua"};
-    wh_run_t plain, run;
+    wh_script_run_options_t options = {.script = "lua/examples/02_prealigner.lua"};
+    wh_script_run_t plain, run;
     (void)state;
-    assert_int_equal(wh_run_script(&plain, &options), WH_RUN_MET);
+    assert_int_equal(wh_script_run(&plain, &options), WH_RUN_MET);
     options.partners.connect = connect_server;
-    assert_int_equal(wh_run_script(&run, &options), WH_RUN_MET);
+    assert_int_equal(wh_script_run(&run, &options), WH_RUN_MET);
     assert_true(view.draws == server->counters.stepped + 1 && view.draws > 10000);
     assert_true(view.loads > 100 && view.unsent == 0);
     assert_int_equal(calls_in_views, 0);
-    assert_true(wh_server_hash(server) == plain.record.hash);
-    wh_view_close(&view);
-    wh_server_close(server);
-    wh_run_close(&run);
-    wh_run_close(&plain);
+    assert_true(wh_protocol_server_hash(server) == plain.record.hash);
+    wh_viewer_close(&view);
+    wh_protocol_server_close(server);
+    wh_script_run_close(&run);
+    wh_script_run_close(&plain);
 }
 
 int main(void) {

@@ -297,7 +297,7 @@ static void test_wafers_and_covers(void **state) {
 static wh_view_detail_t detail_with(wh_part_kind_t kind, size_t count, const wh_convex_t *convex) {
     wh_layout_t own = *read_sound(CELL);
     wh_part_t *parts = calloc(count, sizeof *parts);
-    static wh_view_t view;
+    static wh_viewer_t view;
     assert_non_null(parts);
     for (size_t i = 0; i < count; ++i) {
         parts[i].kind = kind;
@@ -307,10 +307,10 @@ static wh_view_detail_t detail_with(wh_part_kind_t kind, size_t count, const wh_
     own.world.parts = parts;
     own.world.part_count = count;
     wh_view_detail_t detail = WH_VIEW_DETAILS;
-    if (wh_view_open(&view, NULL, &own) == WH_OK) {
+    if (wh_viewer_open(&view, NULL, &own) == WH_OK) {
         detail = view.cell.detail;
         assert_true(view.load_size <= WH_VIEW_BYTES);
-        wh_view_close(&view);
+        wh_viewer_close(&view);
     }
     free(parts);
     return detail;
@@ -329,45 +329,45 @@ static void test_what_a_large_cell_leaves_out(void **state) {
 
 /* ------------------------------------------------------------------------------------------------- sending */
 
-static void step_once(wh_server_t *server) {
+static void step_once(wh_protocol_server_t *server) {
     ++server->seq;
 }
 
 /* The clock's part is played by moving what was noted of it. */
 static void test_what_is_due_when(void **state) {
-    static wh_server_t server;
-    static wh_view_t view;
+    static wh_protocol_server_t server;
+    static wh_viewer_t view;
     (void)state;
     const wh_layout_t *layout = read_sound(CELL);
-    assert_int_equal(wh_server_open(&server, layout), WH_OK);
-    assert_int_equal(wh_view_open(&view, NULL, layout), WH_OK);
-    wh_view_tick(&view, &server);
+    assert_int_equal(wh_protocol_server_open(&server, layout), WH_OK);
+    assert_int_equal(wh_viewer_open(&view, NULL, layout), WH_OK);
+    wh_viewer_tick(&view, &server);
     assert_true(view.loads == 1 && view.draws == 1);
-    wh_view_tick(&view, &server); /* nothing has moved */
+    wh_viewer_tick(&view, &server); /* nothing has moved */
     assert_true(view.loads == 1 && view.draws == 1);
 
     step_once(&server);
     view.last_draw_us = wh_node_clock_us();
     view.last_load_us = view.last_draw_us;
-    wh_view_tick(&view, &server); /* too early */
+    wh_viewer_tick(&view, &server); /* too early */
     assert_true(view.loads == 1 && view.draws == 1);
     view.last_draw_us -= WH_VIEW_DRAW_US;
-    wh_view_tick(&view, &server); /* late, but told */
+    wh_viewer_tick(&view, &server); /* late, but told */
     assert_true(view.loads == 1 && view.draws == 2);
     view.last_draw_us -= WH_VIEW_DRAW_US;
-    wh_view_tick(&view, &server);
+    wh_viewer_tick(&view, &server);
     assert_true(view.loads == 1 && view.draws == 2);
 
     view.last_load_us -= WH_VIEW_LOAD_US;
-    wh_view_tick(&view, &server); /* at rest: both, for those who came later */
+    wh_viewer_tick(&view, &server); /* at rest: both, for those who came later */
     assert_true(view.loads == 2 && view.draws == 3);
     ++server.identity.run;
     view.last_draw_us -= WH_VIEW_DRAW_US;
-    wh_view_tick(&view, &server); /* the same slice of another run */
+    wh_viewer_tick(&view, &server); /* the same slice of another run */
     assert_true(view.loads == 2 && view.draws == 4);
     assert_true(view.unsent == 0);
-    wh_view_close(&view);
-    wh_server_close(&server);
+    wh_viewer_close(&view);
+    wh_protocol_server_close(&server);
 }
 
 int main(void) {

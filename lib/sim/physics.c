@@ -1,4 +1,4 @@
-#include "condition.h"
+#include "physics.h"
 
 #include <string.h>
 
@@ -26,7 +26,7 @@ wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_coun
     return status;
 }
 
-void wh_condition_start(wh_condition_t *condition, const wh_physics_t *physics) {
+void wh_physics_state_start(wh_physics_state_t *condition, const wh_physics_t *physics) {
     memset(condition, 0, sizeof *condition);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         condition->vacuum[g] = wh_vacuum_start();
@@ -48,7 +48,7 @@ static bool is_place(const wh_vec3_t *place) {
     return wh_real_is_finite(place->x) && wh_real_is_finite(place->y) && wh_real_is_finite(place->z);
 }
 
-static wh_status_t check_gripper(const wh_condition_t *condition, size_t g) {
+static wh_status_t check_gripper(const wh_physics_state_t *condition, size_t g) {
     const wh_vacuum_t *vacuum = &condition->vacuum[g];
     const wh_carry_t *carry = &condition->carry[g];
     if (!is_valve(vacuum->command) || !is_valve(condition->told[g])) {
@@ -61,7 +61,8 @@ static wh_status_t check_gripper(const wh_condition_t *condition, size_t g) {
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
-wh_status_t wh_condition_validate(const wh_condition_t *condition, size_t gripper_count, size_t wafer_count) {
+wh_status_t wh_physics_state_validate(const wh_physics_state_t *condition, size_t gripper_count,
+                                      size_t wafer_count) {
     for (size_t g = 0; g < gripper_count; ++g) {
         const wh_status_t status = check_gripper(condition, g);
         if (status != WH_OK) {
@@ -71,7 +72,7 @@ wh_status_t wh_condition_validate(const wh_condition_t *condition, size_t grippe
     return wh_faults_validate(&condition->faults, gripper_count, wafer_count);
 }
 
-uint32_t wh_condition_sensors(const wh_condition_t *condition, size_t gripper_count) {
+uint32_t wh_physics_state_sensors(const wh_physics_state_t *condition, size_t gripper_count) {
     uint32_t sensors = 0;
     for (size_t g = 0; g < gripper_count; ++g) {
         sensors |= condition->vacuum[g].on ? 1U << g : 0U;
@@ -117,7 +118,7 @@ static uint64_t hash_slot(uint64_t hash, const wh_fault_slot_t *slot) {
     return wh_hash_pose(hash, &slot->placed);
 }
 
-uint64_t wh_condition_hash(const wh_condition_t *condition, const wh_grasp_t *table) {
+uint64_t wh_physics_state_hash(const wh_physics_state_t *condition, const wh_grasp_t *table) {
     uint64_t hash = wh_grasp_hash(table);
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         if (!is_plain(&condition->vacuum[g], &table->storage.grippers[g])) {

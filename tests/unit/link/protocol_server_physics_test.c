@@ -7,7 +7,7 @@
 
 #define SCRIPT "tests/end_to_end/data/delayed.lua"
 
-static wh_server_t servers[2];
+static wh_protocol_server_t servers[2];
 static int64_t restart_every;
 static size_t restarts, faults_seen, slips_seen;
 
@@ -17,19 +17,19 @@ static void send(const wh_command_t *command) {
     const size_t size = encode_command(command, bytes, sizeof bytes);
     assert_true(wh_link_decode_command(bytes, size, &decoded));
     /* Twice, as a network does. */
-    const wh_server_result_t result = wh_server_command(server, &decoded, NULL);
+    const wh_protocol_server_result_t result = wh_protocol_server_command(server, &decoded, NULL);
     assert_true(result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN);
-    assert_int_equal(wh_server_command(server, &decoded, NULL), WH_SERVER_ANSWERED);
+    assert_int_equal(wh_protocol_server_command(server, &decoded, NULL), WH_SERVER_ANSWERED);
 }
 
 /* Another server, which knows nothing, gets the state as it was published. */
 static void restart(const wh_layout_t *layout) {
-    wh_server_t *other = server == servers ? servers + 1 : servers;
+    wh_protocol_server_t *other = server == servers ? servers + 1 : servers;
     waferhand_state message;
     assert_true(wh_link_decode_state(server->encoded, server->encoded_size, &message));
-    assert_int_equal(wh_server_open(other, layout), WH_OK);
-    assert_int_equal(wh_server_restore(other, &message), WH_SERVER_RESTORED);
-    assert_true(wh_server_hash(other) == wh_server_hash(server));
+    assert_int_equal(wh_protocol_server_open(other, layout), WH_OK);
+    assert_int_equal(wh_protocol_server_restore(other, &message), WH_SERVER_RESTORED);
+    assert_true(wh_protocol_server_hash(other) == wh_protocol_server_hash(server));
     assert_int_equal(other->state.sensors, server->state.sensors);
     (void)waferhand_state_decode_cleanup(&message);
     server = other;
@@ -54,19 +54,19 @@ static wh_link_t *connect_server(void *user, wh_mcs_t *mcs) {
     static wh_link_t link = {exchange, hash_of_server, none_missed};
     (void)user;
     server = servers;
-    assert_int_equal(wh_server_open(server, mcs->layout), WH_OK);
+    assert_int_equal(wh_protocol_server_open(server, mcs->layout), WH_OK);
     return &link;
 }
 
 static uint64_t run_with(int64_t every, bool by_call) {
-    wh_run_options_t options = {.script = SCRIPT};
-    wh_run_t run;
+    wh_script_run_options_t options = {.script = SCRIPT};
+    wh_script_run_t run;
     options.partners.connect = by_call ? NULL : connect_server;
     restart_every = every;
     restarts = faults_seen = slips_seen = 0;
-    assert_int_not_equal(wh_run_script(&run, &options), WH_RUN_BAD_INPUT);
+    assert_int_not_equal(wh_script_run(&run, &options), WH_RUN_BAD_INPUT);
     const uint64_t last = run.record.hash;
-    wh_run_close(&run);
+    wh_script_run_close(&run);
     return last;
 }
 
@@ -120,35 +120,35 @@ static void other_position(waferhand_state *message) {
 static void test_no_other_condition_is_taken_over(void **state) {
     static void (*const changes[])(waferhand_state * message) = {
         no_level, no_number, no_command, no_fault, no_phase, other_level, other_fault, other_position};
-    static wh_server_t fresh;
+    static wh_protocol_server_t fresh;
     (void)state;
-    wh_run_options_t options = {.script = SCRIPT};
-    wh_run_t run;
+    wh_script_run_options_t options = {.script = SCRIPT};
+    wh_script_run_t run;
     options.partners.connect = connect_server;
     restart_every = 0;
-    assert_int_not_equal(wh_run_script(&run, &options), WH_RUN_BAD_INPUT);
-    assert_int_equal(wh_server_open(&fresh, server->layout), WH_OK);
+    assert_int_not_equal(wh_script_run(&run, &options), WH_RUN_BAD_INPUT);
+    assert_int_equal(wh_protocol_server_open(&fresh, server->layout), WH_OK);
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; ++i) {
         waferhand_state message;
         assert_true(wh_link_decode_state(server->encoded, server->encoded_size, &message));
         message.grippers[0].positions_known = 2;
         changes[i](&message);
-        assert_int_equal(wh_server_restore(&fresh, &message), WH_SERVER_IGNORED);
+        assert_int_equal(wh_protocol_server_restore(&fresh, &message), WH_SERVER_IGNORED);
         (void)waferhand_state_decode_cleanup(&message);
     }
     assert_int_equal(fresh.counters.restore_refused, sizeof changes / sizeof changes[0]);
-    wh_run_close(&run);
+    wh_script_run_close(&run);
 }
 
 /* What replay makes of the cell's message is the layout's own physics. */
 static void test_the_cell_tells_it_all(void **state) {
-    wh_run_options_t options = {.script = SCRIPT};
-    wh_run_t run;
+    wh_script_run_options_t options = {.script = SCRIPT};
+    wh_script_run_t run;
     waferhand_cell cell;
     (void)state;
     options.partners.connect = connect_server;
     restart_every = 0;
-    assert_int_not_equal(wh_run_script(&run, &options), WH_RUN_BAD_INPUT);
+    assert_int_not_equal(wh_script_run(&run, &options), WH_RUN_BAD_INPUT);
     const wh_layout_t *layout = server->layout;
     const wh_link_identity_t identity = {1, wh_layout_hash(layout)};
     assert_true(wh_link_cell_from_layout(layout, &identity, &cell));
@@ -158,14 +158,14 @@ static void test_the_cell_tells_it_all(void **state) {
     assert_memory_equal(&made->physics.vacuum, &layout->physics.vacuum, sizeof made->physics.vacuum);
     assert_memory_equal(&made->physics.pads, &layout->physics.pads, sizeof made->physics.pads);
     assert_true(made->physics.slice_s == layout->physics.slice_s);
-    assert_int_equal(wh_server_open(&servers[0], layout), WH_OK);
-    assert_int_equal(wh_server_open(&servers[1], made), WH_OK);
-    assert_true(wh_server_hash(&servers[0]) == wh_server_hash(&servers[1]));
+    assert_int_equal(wh_protocol_server_open(&servers[0], layout), WH_OK);
+    assert_int_equal(wh_protocol_server_open(&servers[1], made), WH_OK);
+    assert_true(wh_protocol_server_hash(&servers[0]) == wh_protocol_server_hash(&servers[1]));
     wh_link_layout_free(made);
     cell.vacuum_sensor_on = 0;
     assert_null(wh_link_layout_from_cell(&cell));
     wh_link_cell_free(&cell);
-    wh_run_close(&run);
+    wh_script_run_close(&run);
 }
 
 int main(void) {

@@ -1,6 +1,6 @@
 /* What a step of the simulator depends on beside the grasp table: vacuum, motion of held wafers, faults. */
-#ifndef WH_SIM_CONDITION_H
-#define WH_SIM_CONDITION_H
+#ifndef WH_SIM_PHYSICS_H
+#define WH_SIM_PHYSICS_H
 
 #include "../grasp/hold.h"
 #include "faults.h"
@@ -21,7 +21,7 @@ typedef struct {
     int32_t
         told[WH_GRIPPERS]; /* valves as the last command had them, before faults; no step depends on them */
     wh_faults_t faults;
-} wh_condition_t;
+} wh_physics_state_t;
 
 /* Slices of 1 ms, ideal vacuum, no pads, no faults. */
 wh_physics_t wh_physics_default(void);
@@ -30,14 +30,15 @@ wh_physics_t wh_physics_default(void);
 wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count);
 
 /* Before the first slice; `faults` of the physics wait in the first slots. */
-void wh_condition_start(wh_condition_t *condition, const wh_physics_t *physics);
+void wh_physics_state_start(wh_physics_state_t *condition, const wh_physics_t *physics);
 
 /* Whether a simulator could have left it so: WH_OK, WH_STATUS_NOT_FINITE, WH_STATUS_BAD_VALVE or
  * WH_STATUS_OUT_OF_RANGE. */
-wh_status_t wh_condition_validate(const wh_condition_t *condition, size_t gripper_count, size_t wafer_count);
+wh_status_t wh_physics_state_validate(const wh_physics_state_t *condition, size_t gripper_count,
+                                      size_t wafer_count);
 
 /* What the vacuum sensors say: bit g for gripper g. */
-uint32_t wh_condition_sensors(const wh_condition_t *condition, size_t gripper_count);
+uint32_t wh_physics_state_sensors(const wh_physics_state_t *condition, size_t gripper_count);
 
 /* 64 bits over all that the next step depends on. It is wh_grasp_hash(table), continued by wh_hash_word (math/hash.h):
  * for each gripper whose vacuum is not plain, the words 1, its index, level, command and on (a plain one's command is the
@@ -45,6 +46,6 @@ uint32_t wh_condition_sensors(const wh_condition_t *condition, size_t gripper_co
  * none); for each gripper with positions known, 2, its index, known, before[0], before[1] and slips; for each slot in
  * use, 3, its index, phase, kind, target, other, value, offset, from, until, before and placed. So a run with ideal
  * vacuum, without pads and faults, has the table's hash. */
-uint64_t wh_condition_hash(const wh_condition_t *condition, const wh_grasp_t *table);
+uint64_t wh_physics_state_hash(const wh_physics_state_t *condition, const wh_grasp_t *table);
 
 #endif

@@ -1,6 +1,6 @@
 /* A script's run as subcommands offer it: `run SCRIPT` and `mcs SCRIPT` have the same options and report alike. */
-#ifndef WH_APP_RUN_OPTIONS_H
-#define WH_APP_RUN_OPTIONS_H
+#ifndef WH_APP_RUN_ARGUMENTS_H
+#define WH_APP_RUN_ARGUMENTS_H
 
 #include <argp.h>
 
@@ -9,7 +9,7 @@
 
 /* Zero it to begin with; wh_run_arguments_free frees what parsing took. */
 typedef struct {
-    wh_run_options_t run; /* run.script is null when none was named */
+    wh_script_run_options_t run; /* run.script is null when none was named */
     const char **parameters;
     const char *segments_path;
     bool json;
@@ -28,6 +28,6 @@ void wh_run_arguments_init(wh_run_arguments_t *arguments, int argc);
 void wh_run_arguments_free(wh_run_arguments_t *arguments);
 
 /* Runs the script and prints what came of it. Returns the exit status. */
-int wh_run_and_report(wh_run_arguments_t *arguments);
+int wh_run_and_print(wh_run_arguments_t *arguments);
 
 #endif

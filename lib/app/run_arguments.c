@@ -1,5 +1,5 @@
 /* A script's run, for `run` and `mcs`. */
-#include "run_options.h"
+#include "run_arguments.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -98,7 +98,7 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
     }
 }
 
-static int print_result(const wh_run_arguments_t *arguments, const wh_run_t *run) {
+static int print_result(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
     if (arguments->json) {
         return wh_record_print_json(&run->record, stdout);
     }
@@ -109,7 +109,7 @@ static int print_result(const wh_run_arguments_t *arguments, const wh_run_t *run
     return wh_record_print_table_with(&run->record, stdout, &style, arguments->sections);
 }
 
-static bool write_segments(const wh_run_arguments_t *arguments, const wh_run_t *run) {
+static bool write_segments(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
     if (arguments->segments_path && wh_segments_write(&run->mcs, arguments->segments_path) != 0) {
         fprintf(stderr, "%s: %s (expected a file that can be written)\n", arguments->segments_path,
                 strerror(errno));
@@ -118,8 +118,9 @@ static bool write_segments(const wh_run_arguments_t *arguments, const wh_run_t *
     return true;
 }
 
-static bool write_report(const wh_run_arguments_t *arguments, const wh_run_t *run, wh_trace_t *trace) {
-    const wh_run_options_t *script = &arguments->run;
+static bool write_report(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
+                         wh_signals_t *signals) {
+    const wh_script_run_options_t *script = &arguments->run;
     if (!wh_report_files_wanted(&arguments->files)) {
         return true;
     }
@@ -128,31 +129,31 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_run_t *ru
                 script->script);
         return false;
     }
-    if (!trace->layout) {
-        wh_trace_begin(trace, run->record.layout, true);
+    if (!signals->layout) {
+        wh_signals_begin(signals, run->record.layout, true);
     }
-    wh_trace_finish(trace);
-    char *command = wh_report_command(arguments->command ? arguments->command : "run", script->script,
-                                      script->parameters, script->parameter_count);
+    wh_signals_finish(signals);
+    char *command = wh_print_command(arguments->command ? arguments->command : "run", script->script,
+                                     script->parameters, script->parameter_count);
     const wh_document_t document = {.title = script->script,
                                     .reproduce = command,
                                     .source = "run",
                                     .parameters = script->parameters,
                                     .parameter_count = script->parameter_count,
                                     .record = &run->record,
-                                    .trace = trace};
+                                    .signals = signals};
     const bool written = wh_report_files_write(&arguments->files, &document);
     free(command);
     return written;
 }
 
-static int report(const wh_run_arguments_t *arguments, const wh_run_t *run, wh_trace_t *trace,
-                  wh_run_outcome_t outcome) {
+static int report(const wh_run_arguments_t *arguments, const wh_script_run_t *run, wh_signals_t *signals,
+                  wh_script_run_outcome_t outcome) {
     if (outcome == WH_RUN_BAD_INPUT) {
         fprintf(stderr, "%s\n", run->message);
         return WH_EXIT_USAGE;
     }
-    if (!write_segments(arguments, run) || !write_report(arguments, run, trace)) {
+    if (!write_segments(arguments, run) || !write_report(arguments, run, signals)) {
         return WH_EXIT_USAGE;
     }
     if (print_result(arguments, run) != 0 || fflush(stdout) != 0) {
@@ -180,18 +181,18 @@ void wh_run_arguments_free(wh_run_arguments_t *arguments) {
     arguments->parameters = NULL;
 }
 
-int wh_run_and_report(wh_run_arguments_t *arguments) {
-    wh_run_t run;
-    wh_trace_t trace = {0};
+int wh_run_and_print(wh_run_arguments_t *arguments) {
+    wh_script_run_t run;
+    wh_signals_t signals = {0};
     if (wh_report_files_wanted(&arguments->files)) {
-        arguments->run.listener = wh_report_listener(&trace);
+        arguments->run.listener = wh_print_listener(&signals);
     }
     arguments->run.keep_segments = arguments->segments_path != NULL;
     arguments->run.limits.print_to = arguments->json ? stderr : stdout;
-    const wh_run_outcome_t outcome = wh_run_script(&run, &arguments->run);
-    const int status = report(arguments, &run, &trace, outcome);
-    wh_trace_close(&trace);
-    wh_run_close(&run);
+    const wh_script_run_outcome_t outcome = wh_script_run(&run, &arguments->run);
+    const int status = report(arguments, &run, &signals, outcome);
+    wh_signals_close(&signals);
+    wh_script_run_close(&run);
     return status;
 }
 

@@ -1,10 +1,10 @@
-#include "interval.h"
+#include "wilson.h"
 
 #include <math.h>
 
 #define Z 1.959963984540054
 
-wh_confidence_t wh_interval_wilson(uint64_t hits, uint64_t trials) {
+wh_confidence_t wh_wilson_interval(uint64_t hits, uint64_t trials) {
     if (trials == 0) {
         const wh_confidence_t unknown = {0, 0, 1};
         return unknown;

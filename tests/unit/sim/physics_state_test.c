@@ -12,8 +12,8 @@ static void test_conditions_that_no_simulator_leaves(void **state) {
     wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
     bring(0, &f);
     step(880, CLOSED);
-    const wh_condition_t good = simulator.condition;
-    wh_condition_t bad[14];
+    const wh_physics_state_t good = simulator.condition;
+    wh_physics_state_t bad[14];
     for (size_t i = 0; i < 14; ++i) {
         bad[i] = good;
     }
@@ -31,24 +31,24 @@ static void test_conditions_that_no_simulator_leaves(void **state) {
     bad[11].faults.slots[0].phase = (wh_fault_phase_t)4;
     bad[12].carry[0].before[0].y = (wh_real_t)INFINITY;
     bad[13].vacuum[1].level = WH_REAL(-0.001);
-    assert_int_equal(wh_condition_validate(&good, GRIPPERS, WAFERS), WH_OK);
+    assert_int_equal(wh_physics_state_validate(&good, GRIPPERS, WAFERS), WH_OK);
     for (size_t i = 0; i < 14; ++i) {
-        assert_int_not_equal(wh_condition_validate(&bad[i], GRIPPERS, WAFERS), WH_OK);
+        assert_int_not_equal(wh_physics_state_validate(&bad[i], GRIPPERS, WAFERS), WH_OK);
     }
-    wh_condition_t more = good;
+    wh_physics_state_t more = good;
     more.faults.count = WH_FAULTS + 1;
-    assert_int_not_equal(wh_condition_validate(&more, GRIPPERS, WAFERS), WH_OK);
+    assert_int_not_equal(wh_physics_state_validate(&more, GRIPPERS, WAFERS), WH_OK);
     more = good;
     more.vacuum[0].command = OPEN;
     more.told[0] = OPEN;
-    assert_int_equal(wh_condition_validate(&more, GRIPPERS, WAFERS), WH_OK);
+    assert_int_equal(wh_physics_state_validate(&more, GRIPPERS, WAFERS), WH_OK);
     more = good;
     more.vacuum[GRIPPERS].level = 7; /* beyond those that there are */
     more.faults.count = 2;           /* a free slot */
-    assert_int_equal(wh_condition_validate(&more, GRIPPERS, WAFERS), WH_OK);
+    assert_int_equal(wh_physics_state_validate(&more, GRIPPERS, WAFERS), WH_OK);
     more.faults.slots[0].phase = WH_FAULT_OVER; /* its poses do not matter any more */
     more.faults.slots[0].placed.r.x = (wh_real_t)NAN;
-    assert_int_equal(wh_condition_validate(&more, GRIPPERS, WAFERS), WH_OK);
+    assert_int_equal(wh_physics_state_validate(&more, GRIPPERS, WAFERS), WH_OK);
 }
 
 /* A fault of gripper 1 where there are 2 grippers and 1 wafer, and the other way round. */
@@ -57,12 +57,12 @@ static void test_grippers_and_wafers_are_counted_apart(void **state) {
     wh_physics_t physics = wh_physics_default();
     physics.faults[0] = fault_of(WH_FAULT_SENSOR_ON, 1);
     physics.fault_count = 1;
-    wh_condition_t condition;
-    wh_condition_start(&condition, &physics);
+    wh_physics_state_t condition;
+    wh_physics_state_start(&condition, &physics);
     assert_int_equal(wh_physics_validate(&physics, 2, 1), WH_OK);
     assert_int_equal(wh_physics_validate(&physics, 1, 2), WH_STATUS_OUT_OF_RANGE);
-    assert_int_equal(wh_condition_validate(&condition, 2, 1), WH_OK);
-    assert_int_equal(wh_condition_validate(&condition, 1, 2), WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(wh_physics_state_validate(&condition, 2, 1), WH_OK);
+    assert_int_equal(wh_physics_state_validate(&condition, 1, 2), WH_STATUS_OUT_OF_RANGE);
 }
 
 enum { CHANGES = 19 };
@@ -71,8 +71,8 @@ static void test_the_hash_covers_each_word(void **state) {
     (void)state;
     bring_kind(WH_FAULT_WAFER_SHIFTED, 0);
     pick();
-    const wh_condition_t good = simulator.condition;
-    static wh_condition_t changed[CHANGES];
+    const wh_physics_state_t good = simulator.condition;
+    static wh_physics_state_t changed[CHANGES];
     for (size_t i = 0; i < CHANGES; ++i) {
         changed[i] = good;
     }
@@ -101,10 +101,10 @@ static void test_the_hash_covers_each_word(void **state) {
     changed[17].carry[0].before[0].x = 1;
     changed[18].faults.slots[0].fault.from = 9;
     for (size_t i = 0; i < CHANGES; ++i) {
-        const uint64_t hash = wh_condition_hash(&changed[i], &simulator.table);
+        const uint64_t hash = wh_physics_state_hash(&changed[i], &simulator.table);
         assert_true(hash != wh_simulator_hash(&simulator));
         for (size_t k = 0; k < i; ++k) {
-            assert_true(hash != wh_condition_hash(&changed[k], &simulator.table));
+            assert_true(hash != wh_physics_state_hash(&changed[k], &simulator.table));
         }
     }
 }
@@ -116,7 +116,7 @@ static void test_the_hash_is_this_number(void **state) {
     fault.value = WH_REAL(0.25);
     bring(1, &fault);
     pick();
-    wh_condition_t some = simulator.condition;
+    wh_physics_state_t some = simulator.condition;
     for (int g = 0; g < GRIPPERS; ++g) {
         some.vacuum[g].level = WH_REAL(0.5);
         some.vacuum[g].on = true;
@@ -125,7 +125,7 @@ static void test_the_hash_is_this_number(void **state) {
         some.carry[g].before[1] = wh_vec3(4, 5, 6);
         some.carry[g].slips = g == 0;
     }
-    assert_true(wh_condition_hash(&some, &simulator.table) == HASH);
+    assert_true(wh_physics_state_hash(&some, &simulator.table) == HASH);
 }
 
 static void test_without_any_it_is_the_tables_hash(void **state) {
