@@ -47,12 +47,12 @@ static void test_transfers(const char *handover) {
     assert_true(least >= LEAST_MARGIN);
 }
 
-static void test_new_gripper_first(void **state) {
+static void new_gripper_first(void **state) {
     (void)state;
     test_transfers("new_first");
 }
 
-static void test_same_slice(void **state) {
+static void within_the_same_slice(void **state) {
     (void)state;
     test_transfers("same_slice");
 }
@@ -60,8 +60,8 @@ static void test_same_slice(void **state) {
 int main(void) {
     (void)wh_test_seed();
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_new_gripper_first),
-        cmocka_unit_test(test_same_slice),
+        cmocka_unit_test(new_gripper_first),
+        cmocka_unit_test(within_the_same_slice),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,7 +101,7 @@ static void check(bool gaps, bool jolts) {
     wh_path_close(&curve);
 }
 
-static void test_values_stay_within_the_tolerance(void **state) {
+static void values_stay_within_the_tolerance(void **state) {
     (void)state;
     (void)wh_test_seed();
     for (int i = 0; i < 80; ++i) {
@@ -109,7 +109,7 @@ static void test_values_stay_within_the_tolerance(void **state) {
     }
 }
 
-static void test_a_break_is_a_break(void **state) {
+static void a_break_is_a_break(void **state) {
     (void)state;
     for (int i = 0; i < 80; ++i) {
         check(true, i % 2 == 0);
@@ -117,7 +117,7 @@ static void test_a_break_is_a_break(void **state) {
 }
 
 /* The tolerance grows, is told, and holds; forced samples stay, and so do rests. */
-static void test_a_limit_is_kept_and_the_tolerance_told(void **state) {
+static void a_limit_is_kept_and_the_tolerance_told(void **state) {
     (void)state;
     for (int i = 0; i < 80; ++i) {
         wh_path_t curve;
@@ -133,7 +133,7 @@ static void test_a_limit_is_kept_and_the_tolerance_told(void **state) {
 }
 
 /* Three times the third power of a time: one cubic, whose slope is known. */
-static void test_a_cubic_has_two_points(void **state) {
+static void a_cubic_has_two_points(void **state) {
     (void)state;
     wh_path_t curve;
     double slope;
@@ -154,7 +154,7 @@ static void test_a_cubic_has_two_points(void **state) {
 }
 
 /* However long; forced samples within it cost no point. */
-static void test_a_rest_has_two_points(void **state) {
+static void a_rest_has_two_points(void **state) {
     (void)state;
     wh_path_t curve;
     wh_path_open(&curve, 0.01, SIZE_MAX);
@@ -173,7 +173,7 @@ static void test_a_rest_has_two_points(void **state) {
     wh_path_close(&curve);
 }
 
-static void test_a_sample_is_inserted(void **state) {
+static void a_sample_is_inserted(void **state) {
     (void)state;
     wh_path_t curve;
     wh_path_open(&curve, 10, SIZE_MAX);
@@ -195,12 +195,12 @@ static void test_a_sample_is_inserted(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values_stay_within_the_tolerance),
-        cmocka_unit_test(test_a_break_is_a_break),
-        cmocka_unit_test(test_a_limit_is_kept_and_the_tolerance_told),
-        cmocka_unit_test(test_a_cubic_has_two_points),
-        cmocka_unit_test(test_a_rest_has_two_points),
-        cmocka_unit_test(test_a_sample_is_inserted),
+        cmocka_unit_test(values_stay_within_the_tolerance),
+        cmocka_unit_test(a_break_is_a_break),
+        cmocka_unit_test(a_limit_is_kept_and_the_tolerance_told),
+        cmocka_unit_test(a_cubic_has_two_points),
+        cmocka_unit_test(a_rest_has_two_points),
+        cmocka_unit_test(a_sample_is_inserted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -134,7 +134,7 @@ static void check(size_t width, bool turns, size_t limit) {
     wh_thin_close(&thin);
 }
 
-static void test_numbers_stay_within_the_tolerance(void **state) {
+static void numbers_stay_within_the_tolerance(void **state) {
     (void)state;
     (void)wh_test_seed();
     for (int i = 0; i < 60; ++i) {
@@ -142,7 +142,7 @@ static void test_numbers_stay_within_the_tolerance(void **state) {
     }
 }
 
-static void test_poses_stay_within_both_tolerances(void **state) {
+static void poses_stay_within_both_tolerances(void **state) {
     (void)state;
     for (int i = 0; i < 60; ++i) {
         check(3, true, SIZE_MAX);
@@ -150,7 +150,7 @@ static void test_poses_stay_within_both_tolerances(void **state) {
 }
 
 /* The tolerance grows, is told, and holds. */
-static void test_a_limit_is_kept_and_the_tolerance_told(void **state) {
+static void a_limit_is_kept_and_the_tolerance_told(void **state) {
     (void)state;
     for (int i = 0; i < 60; ++i) {
         check(3, wh_test_below(2) == 0, 20 + wh_test_below(200));
@@ -159,7 +159,7 @@ static void test_a_limit_is_kept_and_the_tolerance_told(void **state) {
 
 /* -------------------------------------------------------------------------------------------------- by hand */
 
-static void test_a_straight_line_has_two_points(void **state) {
+static void a_straight_line_has_two_points(void **state) {
     (void)state;
     wh_thin_t thin;
     wh_thin_open(&thin, 1, 1e-3, 0, SIZE_MAX);
@@ -180,7 +180,7 @@ static void test_a_straight_line_has_two_points(void **state) {
 }
 
 /* A forced sample within a rest costs no point, and the rest stays exact. */
-static void test_a_rest_has_two_points(void **state) {
+static void a_rest_has_two_points(void **state) {
     (void)state;
     wh_thin_t thin;
     wh_thin_open(&thin, 1, 0.5, 0, SIZE_MAX);
@@ -199,11 +199,11 @@ static void test_a_rest_has_two_points(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_numbers_stay_within_the_tolerance),
-        cmocka_unit_test(test_poses_stay_within_both_tolerances),
-        cmocka_unit_test(test_a_limit_is_kept_and_the_tolerance_told),
-        cmocka_unit_test(test_a_straight_line_has_two_points),
-        cmocka_unit_test(test_a_rest_has_two_points),
+        cmocka_unit_test(numbers_stay_within_the_tolerance),
+        cmocka_unit_test(poses_stay_within_both_tolerances),
+        cmocka_unit_test(a_limit_is_kept_and_the_tolerance_told),
+        cmocka_unit_test(a_straight_line_has_two_points),
+        cmocka_unit_test(a_rest_has_two_points),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

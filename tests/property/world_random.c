@@ -229,7 +229,7 @@ static void play_run(int run, int counts[2]) {
     ++counts[0];
 }
 
-static void test_contact_and_clearance_are_those_of_a_plain_loop(void **state) {
+static void contact_and_clearance_are_those_of_a_plain_loop(void **state) {
     (void)state;
     const char *given = getenv("WH_SEED");
     int counts[2] = {0, 0};
@@ -244,7 +244,7 @@ static void test_contact_and_clearance_are_those_of_a_plain_loop(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_contact_and_clearance_are_those_of_a_plain_loop),
+        cmocka_unit_test(contact_and_clearance_are_those_of_a_plain_loop),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,7 +48,7 @@ static void write_file(const char *text, size_t size) {
     fclose(out);
 }
 
-static void test_where_it_is(void **state) {
+static void where_it_is(void **state) {
     char text[100];
     (void)state;
     setenv("HOME", "/home/operator", 1);
@@ -65,7 +65,7 @@ static void test_where_it_is(void **state) {
     assert_string_equal(text, "");
 }
 
-static void test_lines_come_back(void **state) {
+static void lines_come_back(void **state) {
     struct stat about;
     (void)state;
     load();
@@ -80,7 +80,7 @@ static void test_lines_come_back(void **state) {
     assert_int_equal(about.st_mode & 0777, 0600);
 }
 
-static void test_what_is_no_line_is_left_out(void **state) {
+static void what_is_no_line_is_left_out(void **state) {
     static char text[2000];
     (void)state;
     const int head = snprintf(text, sizeof text, "GET A 1\n\n\033[2J\nA\tB\n%s", "PUT B 2\n");
@@ -93,7 +93,7 @@ static void test_what_is_no_line_is_left_out(void **state) {
     assert_string_equal(loaded[1], "PUT B 2");
 }
 
-static void test_a_long_file_is_cut(void **state) {
+static void a_long_file_is_cut(void **state) {
     struct stat about;
     (void)state;
     for (int i = 1; i <= 2 * WH_HISTORY_LINES; ++i) {
@@ -112,7 +112,7 @@ static void test_a_long_file_is_cut(void **state) {
     assert_int_equal(count, WH_HISTORY_LINES);
 }
 
-static void test_a_huge_file_is_cut(void **state) {
+static void a_huge_file_is_cut(void **state) {
     static char text[WH_HISTORY_BYTES + 5000];
     struct stat about;
     (void)state;
@@ -125,7 +125,7 @@ static void test_a_huge_file_is_cut(void **state) {
     assert_int_equal(about.st_size, 8);
 }
 
-static void test_what_is_no_file_does_no_harm(void **state) {
+static void what_is_no_file_does_no_harm(void **state) {
     (void)state;
     wh_history_append(path, "x");
     unlink(path);
@@ -144,9 +144,8 @@ static void test_what_is_no_file_does_no_harm(void **state) {
 int main(void) {
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_where_it_is),          IN_FOLDER(test_lines_come_back),
-        IN_FOLDER(test_what_is_no_line_is_left_out), IN_FOLDER(test_a_long_file_is_cut),
-        IN_FOLDER(test_a_huge_file_is_cut),          IN_FOLDER(test_what_is_no_file_does_no_harm),
+        cmocka_unit_test(where_it_is), IN_FOLDER(lines_come_back),    IN_FOLDER(what_is_no_line_is_left_out),
+        IN_FOLDER(a_long_file_is_cut), IN_FOLDER(a_huge_file_is_cut), IN_FOLDER(what_is_no_file_does_no_harm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -60,7 +60,7 @@ static void open_prompt(void) {
     assert_true(wh_prompt_watch(prompt, &watch));
 }
 
-static void test_watches_are_called_while_it_waits(void **state) {
+static void watches_are_called_while_it_waits(void **state) {
     (void)state;
     open_prompt();
     put(other[1], "123");
@@ -71,7 +71,7 @@ static void test_watches_are_called_while_it_waits(void **state) {
     assert_int_equal(session.record.command_count, 3);
 }
 
-static void test_lines_and_requests_take_turns(void **state) {
+static void lines_and_requests_take_turns(void **state) {
     (void)state;
     open_prompt();
     put(other[1], "12");
@@ -82,7 +82,7 @@ static void test_lines_and_requests_take_turns(void **state) {
     assert_int_equal(session.record.command_count, 2 + calls);
 }
 
-static void test_only_so_many_watches(void **state) {
+static void only_so_many_watches(void **state) {
     const wh_prompt_watch_t watch = {other[0], take_request, &calls};
     (void)state;
     open_prompt();
@@ -103,7 +103,7 @@ static void take_signal(void *user) {
 }
 
 /* Who has blocked a signal for a signalfd gets it there, also when it comes before the wait. */
-static void test_signalfd(void **state) {
+static void a_signal_descriptor_wakes_it(void **state) {
     sigset_t mask;
     (void)state;
     sigemptyset(&mask);
@@ -122,7 +122,7 @@ static void test_signalfd(void **state) {
 }
 
 /* Without one the prompt takes it, also when it comes before the wait; then all is as it was. */
-static void test_signal_before_the_wait(void **state) {
+static void signal_before_the_wait(void **state) {
     struct sigaction action;
     (void)state;
     open_prompt();
@@ -142,7 +142,7 @@ static void take_long_request(void *user) {
 }
 
 /* A signal stops a watch's command, too, and is then the prompt's. */
-static void test_signal_during_a_request(void **state) {
+static void signal_during_a_request(void **state) {
     const wh_prompt_watch_t watch = {other[0], take_long_request, NULL};
     const struct itimerspec soon = {{0, 0}, {0, 100000000}};
     struct sigevent event = {.sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGTERM};
@@ -161,12 +161,12 @@ static void test_signal_during_a_request(void **state) {
 int main(void) {
 #define IN_PIPES(test) cmocka_unit_test_setup_teardown(test, open_all, close_all)
     const struct CMUnitTest tests[] = {
-        IN_PIPES(test_watches_are_called_while_it_waits),
-        IN_PIPES(test_lines_and_requests_take_turns),
-        IN_PIPES(test_only_so_many_watches),
-        IN_PIPES(test_signalfd),
-        IN_PIPES(test_signal_before_the_wait),
-        IN_PIPES(test_signal_during_a_request),
+        IN_PIPES(watches_are_called_while_it_waits),
+        IN_PIPES(lines_and_requests_take_turns),
+        IN_PIPES(only_so_many_watches),
+        IN_PIPES(a_signal_descriptor_wakes_it),
+        IN_PIPES(signal_before_the_wait),
+        IN_PIPES(signal_during_a_request),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

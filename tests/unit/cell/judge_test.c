@@ -44,7 +44,7 @@ static void expect_said(const scene_t *scene, wh_event_kind_t kind, int other, d
     assert_near(said->height, height, 4096 * WH_TEST_ROUNDING);
 }
 
-static void test_a_release_in_a_free_slot_is_fine(void **state) {
+static void a_release_in_a_free_slot_is_fine(void **state) {
     (void)state;
     scene_t scene;
     const wh_pose_t slot = wh_station_slot(&stations[0], 3);
@@ -53,7 +53,7 @@ static void test_a_release_in_a_free_slot_is_fine(void **state) {
     assert_int_equal(scene.list.count, 1);
 }
 
-static void test_only_releases_are_judged(void **state) {
+static void only_releases_are_judged(void **state) {
     (void)state;
     scene_t scene;
     const wh_pose_t in_air = wh_test_at(300, 300, 900);
@@ -73,7 +73,7 @@ static void test_only_releases_are_judged(void **state) {
     assert_int_equal(judge(&scene), 0);
 }
 
-static void test_an_unsupported_wafer_and_what_is_below_it(void **state) {
+static void an_unsupported_wafer_and_what_is_below_it(void **state) {
     (void)state;
     static const struct {
         double x, y, z, height;
@@ -99,7 +99,7 @@ static void test_an_unsupported_wafer_and_what_is_below_it(void **state) {
 }
 
 /* Base's origin may be high up in the machine. */
-static void test_a_station_below_bases_origin_supports_too(void **state) {
+static void a_station_below_bases_origin_supports_too(void **state) {
     (void)state;
     scene_t scene;
     stations[0] = station_at(700, 0, -400, 1, WH_NONE);
@@ -110,7 +110,7 @@ static void test_a_station_below_bases_origin_supports_too(void **state) {
 }
 
 /* Of the slots below a wafer the nearest counts, wherever its station stands in the list. */
-static void test_the_nearest_slot_below_supports(void **state) {
+static void the_nearest_slot_below_supports(void **state) {
     (void)state;
     for (size_t lower = 0; lower < 2; ++lower) {
         scene_t scene;
@@ -124,7 +124,7 @@ static void test_the_nearest_slot_below_supports(void **state) {
 }
 
 /* A wafer that leans is in no slot, and yet over the one below its centre. */
-static void test_a_leaning_wafer_is_above_what_is_below(void **state) {
+static void a_leaning_wafer_is_above_what_is_below(void **state) {
     (void)state;
     static const double heights[][2] = {{0, 0}, {0.5, 0.5}, {-0.5, 899.5}};
     for (size_t i = 0; i < 3; ++i) {
@@ -138,7 +138,7 @@ static void test_a_leaning_wafer_is_above_what_is_below(void **state) {
 }
 
 /* Neither a station nor a wafer beyond the count is there. */
-static void test_what_is_beyond_a_count_is_not_there(void **state) {
+static void what_is_beyond_a_count_is_not_there(void **state) {
     (void)state;
     scene_t scene;
     const wh_pose_t slot = wh_station_slot(&stations[0], 3);
@@ -155,7 +155,7 @@ static void test_what_is_beyond_a_count_is_not_there(void **state) {
 }
 
 /* Each release has its own. */
-static void test_two_releases_are_judged_in_turn(void **state) {
+static void two_releases_are_judged_in_turn(void **state) {
     (void)state;
     scene_t scene;
     const wh_pose_t slot = wh_station_slot(&stations[0], 3);
@@ -182,7 +182,7 @@ static void test_two_releases_are_judged_in_turn(void **state) {
     assert_near(scene.events[3].height, 30, 0);
 }
 
-static void test_an_occupied_slot_names_the_lowest_wafer(void **state) {
+static void an_occupied_slot_names_the_lowest_wafer(void **state) {
     (void)state;
     scene_t scene;
     const wh_pose_t slot = wh_station_slot(&stations[0], 3);
@@ -193,7 +193,7 @@ static void test_an_occupied_slot_names_the_lowest_wafer(void **state) {
     expect_said(&scene, WH_EVENT_SLOT_OCCUPIED, 1, 0);
 }
 
-static void test_a_neighbours_slot_is_not_this_one(void **state) {
+static void a_neighbours_slot_is_not_this_one(void **state) {
     (void)state;
     scene_t scene;
     const wh_pose_t slot = wh_station_slot(&stations[0], 3);
@@ -208,7 +208,7 @@ static void test_a_neighbours_slot_is_not_this_one(void **state) {
 }
 
 /* What the chuck holds lies there; what a blade carries over the chuck passes. */
-static void test_a_chucks_wafer_occupies_it_and_a_blades_does_not(void **state) {
+static void a_chucks_wafer_occupies_it_and_a_blades_does_not(void **state) {
     (void)state;
     scene_t scene;
     const wh_pose_t slot = wh_station_slot(&stations[2], 1);
@@ -232,7 +232,7 @@ static void test_a_chucks_wafer_occupies_it_and_a_blades_does_not(void **state) 
 
 /* ---------------------------------------------------------------------------------------------- limits of placing */
 
-static void test_limits_of_placing(void **state) {
+static void limits_of_placing(void **state) {
     (void)state;
     scene_t scene;
     cell.off_centre = 5;
@@ -260,7 +260,7 @@ static void test_limits_of_placing(void **state) {
     cell.off_centre = cell.askew = 0;
 }
 
-static void test_a_full_list_takes_no_more(void **state) {
+static void a_full_list_takes_no_more(void **state) {
     (void)state;
     scene_t scene;
     cell.off_centre = 1;
@@ -287,7 +287,7 @@ static size_t settle(scene_t *scene, const wh_pose_t *base_from_wafer) {
     return scene->list.count - 1;
 }
 
-static void test_a_wafer_comes_to_lie_on_its_slot(void **state) {
+static void a_wafer_comes_to_lie_on_its_slot(void **state) {
     (void)state;
     scene_t scene;
     const wh_pose_t base_from_slot = wh_station_slot(&stations[1], 3);
@@ -316,7 +316,7 @@ static void test_a_wafer_comes_to_lie_on_its_slot(void **state) {
     assert_int_equal(wh_pose_validate(&scene.wafers[0].base_from_wafer), WH_OK);
 }
 
-static void test_what_does_not_settle(void **state) {
+static void what_does_not_settle(void **state) {
     (void)state;
     scene_t scene;
     const wh_pose_t above = wh_test_at(700, 0, 900.25);
@@ -338,7 +338,7 @@ static void test_what_does_not_settle(void **state) {
 }
 
 /* Each release of a list, and none that stands beyond its end. */
-static void test_each_release_settles_in_turn(void **state) {
+static void each_release_settles_in_turn(void **state) {
     (void)state;
     scene_t scene;
     cell.settle = true;
@@ -365,7 +365,7 @@ static void test_each_release_settles_in_turn(void **state) {
 }
 
 /* It comes to lie even where nothing more can be said; and what a gripper holds stays in its hand. */
-static void test_settling_without_room_or_while_held(void **state) {
+static void settling_without_room_or_while_held(void **state) {
     (void)state;
     scene_t scene;
     const wh_pose_t above = wh_test_at(700, 0, 900.25);
@@ -385,23 +385,23 @@ static void test_settling_without_room_or_while_held(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_a_release_in_a_free_slot_is_fine, set_up),
-        cmocka_unit_test_setup(test_only_releases_are_judged, set_up),
-        cmocka_unit_test_setup(test_an_unsupported_wafer_and_what_is_below_it, set_up),
-        cmocka_unit_test_setup(test_a_station_below_bases_origin_supports_too, set_up),
-        cmocka_unit_test_setup(test_the_nearest_slot_below_supports, set_up),
-        cmocka_unit_test_setup(test_a_leaning_wafer_is_above_what_is_below, set_up),
-        cmocka_unit_test_setup(test_what_is_beyond_a_count_is_not_there, set_up),
-        cmocka_unit_test_setup(test_two_releases_are_judged_in_turn, set_up),
-        cmocka_unit_test_setup(test_an_occupied_slot_names_the_lowest_wafer, set_up),
-        cmocka_unit_test_setup(test_a_neighbours_slot_is_not_this_one, set_up),
-        cmocka_unit_test_setup(test_a_chucks_wafer_occupies_it_and_a_blades_does_not, set_up),
-        cmocka_unit_test_setup(test_limits_of_placing, set_up),
-        cmocka_unit_test_setup(test_a_full_list_takes_no_more, set_up),
-        cmocka_unit_test_setup(test_a_wafer_comes_to_lie_on_its_slot, set_up),
-        cmocka_unit_test_setup(test_what_does_not_settle, set_up),
-        cmocka_unit_test_setup(test_each_release_settles_in_turn, set_up),
-        cmocka_unit_test_setup(test_settling_without_room_or_while_held, set_up),
+        cmocka_unit_test_setup(a_release_in_a_free_slot_is_fine, set_up),
+        cmocka_unit_test_setup(only_releases_are_judged, set_up),
+        cmocka_unit_test_setup(an_unsupported_wafer_and_what_is_below_it, set_up),
+        cmocka_unit_test_setup(a_station_below_bases_origin_supports_too, set_up),
+        cmocka_unit_test_setup(the_nearest_slot_below_supports, set_up),
+        cmocka_unit_test_setup(a_leaning_wafer_is_above_what_is_below, set_up),
+        cmocka_unit_test_setup(what_is_beyond_a_count_is_not_there, set_up),
+        cmocka_unit_test_setup(two_releases_are_judged_in_turn, set_up),
+        cmocka_unit_test_setup(an_occupied_slot_names_the_lowest_wafer, set_up),
+        cmocka_unit_test_setup(a_neighbours_slot_is_not_this_one, set_up),
+        cmocka_unit_test_setup(a_chucks_wafer_occupies_it_and_a_blades_does_not, set_up),
+        cmocka_unit_test_setup(limits_of_placing, set_up),
+        cmocka_unit_test_setup(a_full_list_takes_no_more, set_up),
+        cmocka_unit_test_setup(a_wafer_comes_to_lie_on_its_slot, set_up),
+        cmocka_unit_test_setup(what_does_not_settle, set_up),
+        cmocka_unit_test_setup(each_release_settles_in_turn, set_up),
+        cmocka_unit_test_setup(settling_without_room_or_while_held, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,7 +17,7 @@ static void expect_nowhere(const wh_pose_t *wafer) {
     assert_memory_equal(&place, &before, sizeof place);
 }
 
-static void test_each_slot_is_found(void **state) {
+static void each_slot_is_found(void **state) {
     (void)state;
     for (size_t s = 0; s < STATIONS; ++s) {
         for (int slot = 1; slot <= stations[s].slots; ++slot) {
@@ -32,7 +32,7 @@ static void test_each_slot_is_found(void **state) {
     }
 }
 
-static void test_offsets_are_measured_in_the_slots_frame(void **state) {
+static void offsets_are_measured_in_the_slots_frame(void **state) {
     (void)state;
     const wh_pose_t wafer = in_station(1, 13, -7, 42);
     wh_place_t place;
@@ -43,7 +43,7 @@ static void test_offsets_are_measured_in_the_slots_frame(void **state) {
     assert_near(place.dz, 2, 4096 * WH_TEST_ROUNDING);
 }
 
-static void test_tilt_is_between_the_normals(void **state) {
+static void tilt_is_between_the_normals(void **state) {
     (void)state;
     wh_pose_t wafer = wh_test_at(700, 0, 900);
     wafer.R = wh_mat3_from_rpy_deg(WH_REAL(1.5), 0, 70);
@@ -53,7 +53,7 @@ static void test_tilt_is_between_the_normals(void **state) {
 }
 
 /* Half a pitch up is in neither of two slots; the next number below is in the lower one. */
-static void test_the_limit_of_height_is_strict(void **state) {
+static void the_limit_of_height_is_strict(void **state) {
     (void)state;
     const wh_real_t middle = 905;
     wh_pose_t wafer = wh_test_at(700, 0, 905);
@@ -70,7 +70,7 @@ static void test_the_limit_of_height_is_strict(void **state) {
     expect_in(&wafer, 0, 25);
 }
 
-static void test_the_limit_aside_is_strict(void **state) {
+static void the_limit_aside_is_strict(void **state) {
     (void)state;
     wh_pose_t wafer = wh_test_at(730, 40, 900);
     expect_nowhere(&wafer);
@@ -78,7 +78,7 @@ static void test_the_limit_aside_is_strict(void **state) {
     expect_in(&wafer, 0, 1);
 }
 
-static void test_the_limit_of_tilt_is_strict(void **state) {
+static void the_limit_of_tilt_is_strict(void **state) {
     (void)state;
     wh_pose_t wafer = wh_test_at(700, 0, 900);
     cell.tolerance.planar = WH_REAL(0.5);
@@ -93,7 +93,7 @@ static void test_the_limit_of_tilt_is_strict(void **state) {
     expect_nowhere(&wafer);
 }
 
-static void test_far_away_is_nowhere(void **state) {
+static void far_away_is_nowhere(void **state) {
     (void)state;
     static const double far[] = {1e6, 1e12, 1e18, 1e30};
     for (size_t i = 0; i < sizeof far / sizeof far[0]; ++i) {
@@ -106,7 +106,7 @@ static void test_far_away_is_nowhere(void **state) {
     }
 }
 
-static void test_the_nearer_of_two_stations_and_of_equal_ones_the_first(void **state) {
+static void the_nearer_of_two_stations_and_of_equal_ones_the_first(void **state) {
     (void)state;
     stations[1] = station_at(720, 0, 900, 1, WH_NONE);
     wh_pose_t wafer = wh_test_at(711, 0, 900);
@@ -120,7 +120,7 @@ static void test_the_nearer_of_two_stations_and_of_equal_ones_the_first(void **s
 }
 
 /* Slot 1 is the lowest, whatever is below it. */
-static void test_there_is_no_slot_below_the_first(void **state) {
+static void there_is_no_slot_below_the_first(void **state) {
     (void)state;
     for (int tenths = 50; tenths <= 400; ++tenths) {
         const wh_pose_t below = in_station(0, 0, 0, -0.1 * tenths);
@@ -132,15 +132,15 @@ static void test_there_is_no_slot_below_the_first(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_each_slot_is_found, set_up),
-        cmocka_unit_test_setup(test_offsets_are_measured_in_the_slots_frame, set_up),
-        cmocka_unit_test_setup(test_tilt_is_between_the_normals, set_up),
-        cmocka_unit_test_setup(test_the_limit_of_height_is_strict, set_up),
-        cmocka_unit_test_setup(test_the_limit_aside_is_strict, set_up),
-        cmocka_unit_test_setup(test_the_limit_of_tilt_is_strict, set_up),
-        cmocka_unit_test_setup(test_far_away_is_nowhere, set_up),
-        cmocka_unit_test_setup(test_there_is_no_slot_below_the_first, set_up),
-        cmocka_unit_test_setup(test_the_nearer_of_two_stations_and_of_equal_ones_the_first, set_up),
+        cmocka_unit_test_setup(each_slot_is_found, set_up),
+        cmocka_unit_test_setup(offsets_are_measured_in_the_slots_frame, set_up),
+        cmocka_unit_test_setup(tilt_is_between_the_normals, set_up),
+        cmocka_unit_test_setup(the_limit_of_height_is_strict, set_up),
+        cmocka_unit_test_setup(the_limit_aside_is_strict, set_up),
+        cmocka_unit_test_setup(the_limit_of_tilt_is_strict, set_up),
+        cmocka_unit_test_setup(far_away_is_nowhere, set_up),
+        cmocka_unit_test_setup(there_is_no_slot_below_the_first, set_up),
+        cmocka_unit_test_setup(the_nearer_of_two_stations_and_of_equal_ones_the_first, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -52,7 +52,7 @@ static void expect_the_same(const wh_tree_t *tree, const wh_box_t *box) {
     assert_int_equal(count, expected);
 }
 
-static void test_finds_what_a_search_finds(void **state) {
+static void finds_what_a_search_finds(void **state) {
     static const size_t counts[] = {0, 1, 2, 3, 4, 5, 63, 64, 65, MOST};
     (void)state;
     for (size_t c = 0; c < sizeof counts / sizeof counts[0]; ++c) {
@@ -67,7 +67,7 @@ static void test_finds_what_a_search_finds(void **state) {
     }
 }
 
-static void test_follows_boxes_that_change(void **state) {
+static void follows_boxes_that_change(void **state) {
     (void)state;
     for (size_t i = 0; i < MOST; ++i) {
         boxes[i] = draw_box(1000, 50);
@@ -84,7 +84,7 @@ static void test_follows_boxes_that_change(void **state) {
     }
 }
 
-static void test_far_away_and_empty(void **state) {
+static void far_away_and_empty(void **state) {
     (void)state;
     boxes[0] = wh_box_empty();
     boxes[1] = draw_box(1, 1);
@@ -99,7 +99,7 @@ static void test_far_away_and_empty(void **state) {
     expect_the_same(&tree, &grown);
 }
 
-static void test_says_how_many_there_are_beyond_its_room(void **state) {
+static void says_how_many_there_are_beyond_its_room(void **state) {
     (void)state;
     int32_t found[3] = {-7, -7, -7};
     for (size_t i = 0; i < 10; ++i) {
@@ -113,10 +113,10 @@ static void test_says_how_many_there_are_beyond_its_room(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_finds_what_a_search_finds),
-        cmocka_unit_test(test_follows_boxes_that_change),
-        cmocka_unit_test(test_far_away_and_empty),
-        cmocka_unit_test(test_says_how_many_there_are_beyond_its_room),
+        cmocka_unit_test(finds_what_a_search_finds),
+        cmocka_unit_test(follows_boxes_that_change),
+        cmocka_unit_test(far_away_and_empty),
+        cmocka_unit_test(says_how_many_there_are_beyond_its_room),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -109,7 +109,7 @@ static bool is_pair(const int32_t pair[2], int a, int b) {
 
 /* ------------------------------------------------------------------------------------------------------- contact */
 
-static void test_nothing_tunnels_through_a_thin_wall(void **state) {
+static void nothing_tunnels_through_a_thin_wall(void **state) {
     (void)state;
     begin();
     assert_int_equal(go(400, 0, 950, WH_VALVE_CLOSED), 0);
@@ -122,7 +122,7 @@ static void test_nothing_tunnels_through_a_thin_wall(void **state) {
     assert_int_equal(go(400, 0, 950, WH_VALVE_CLOSED), 0); /* the first hit is the run's */
 }
 
-static void test_a_blade_that_scrapes_a_wafer_is_named(void **state) {
+static void a_blade_that_scrapes_a_wafer_is_named(void **state) {
     (void)state;
     begin();
     assert_int_equal(go(520, 0, 900.5, WH_VALVE_CLOSED), 1);
@@ -134,7 +134,7 @@ static void test_a_blade_that_scrapes_a_wafer_is_named(void **state) {
                 WH_CLEARANCE_RANGE, 0);
 }
 
-static void test_a_blade_takes_its_wafer_without_a_hit(void **state) {
+static void a_blade_takes_its_wafer_without_a_hit(void **state) {
     (void)state;
     begin();
     assert_int_equal(go(700, 0, 897, WH_VALVE_CLOSED), 0);
@@ -149,7 +149,7 @@ static void test_a_blade_takes_its_wafer_without_a_hit(void **state) {
     assert_near(least(WH_CLEARANCE_WAFER_LEDGE)->gap, 3, 1e-3);
 }
 
-static void test_a_held_wafer_hits_a_ledge_of_another_slot(void **state) {
+static void a_held_wafer_hits_a_ledge_of_another_slot(void **state) {
     (void)state;
     begin();
     go(700, 0, 899.7, WH_VALVE_OPEN);
@@ -162,7 +162,7 @@ static void test_a_held_wafer_hits_a_ledge_of_another_slot(void **state) {
                 events[0].parts[1] == 4);
 }
 
-static void test_a_wafer_let_go_rests_where_it_is(void **state) {
+static void a_wafer_let_go_rests_where_it_is(void **state) {
     (void)state;
     begin();
     go(700, 0, 899.7, WH_VALVE_OPEN);
@@ -177,7 +177,7 @@ static void test_a_wafer_let_go_rests_where_it_is(void **state) {
     assert_int_equal(events[0].wafer, 0);
 }
 
-static void test_letting_go_on_the_way_is_no_contact(void **state) {
+static void letting_go_on_the_way_is_no_contact(void **state) {
     (void)state;
     config.limits[WH_CLEARANCE_BLADE_WAFER_ABOVE] = 1;
     begin();
@@ -190,7 +190,7 @@ static void test_letting_go_on_the_way_is_no_contact(void **state) {
     assert_near(least(WH_CLEARANCE_BLADE_WAFER_ABOVE)->gap, WH_CLEARANCE_RANGE, 0);
 }
 
-static void test_a_wafer_that_was_put_elsewhere_is_there(void **state) {
+static void a_wafer_that_was_put_elsewhere_is_there(void **state) {
     (void)state;
     begin();
     const wh_pose_t there = wh_test_at(400, 0, 950);
@@ -200,7 +200,7 @@ static void test_a_wafer_that_was_put_elsewhere_is_there(void **state) {
     assert_int_equal(events[0].wafer, 1);
 }
 
-static void test_links_of_the_arm_are_neighbours(void **state) {
+static void links_of_the_arm_are_neighbours(void **state) {
     (void)state;
     begin(); /* hand and forearm cut each other as they are described, blade and hand touch */
     for (int step = 0; step < 20; ++step) {
@@ -210,7 +210,7 @@ static void test_links_of_the_arm_are_neighbours(void **state) {
 
 /* -------------------------------------------------------------------------------------------------- clearances */
 
-static void test_a_limit_is_reported_once(void **state) {
+static void a_limit_is_reported_once(void **state) {
     (void)state;
     config.limits[WH_CLEARANCE_BLADE_WAFER_ABOVE] = 2;
     begin();
@@ -225,7 +225,7 @@ static void test_a_limit_is_reported_once(void **state) {
     assert_true(is_pair(least(WH_CLEARANCE_BLADE_WAFER_ABOVE)->parts, FIXED, PARTS));
 }
 
-static void test_a_full_list_loses_events_but_no_figures(void **state) {
+static void a_full_list_loses_events_but_no_figures(void **state) {
     (void)state;
     begin();
     effector = wh_test_at(520, 0, 900.5);
@@ -238,7 +238,7 @@ static void test_a_full_list_loses_events_but_no_figures(void **state) {
                 0);
 }
 
-static void test_cost_is_flat_in_what_rests_elsewhere(void **state) {
+static void cost_is_flat_in_what_rests_elsewhere(void **state) {
     enum { MANY = 20000 };
     static wh_wafer_t many[MANY];
     wh_world_counters_t counters[2];
@@ -267,7 +267,7 @@ static void test_cost_is_flat_in_what_rests_elsewhere(void **state) {
     assert_true(counters[0].pairs > 0 && counters[0].measured > 0);
 }
 
-static void test_stepping_allocates_nothing(void **state) {
+static void stepping_allocates_nothing(void **state) {
     (void)state;
 #if defined(WH_TEST_COUNTS_HEAP)
     begin();
@@ -291,7 +291,7 @@ static void test_stepping_allocates_nothing(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ before a run */
 
-static void test_what_touches_before_a_run_is_found(void **state) {
+static void what_touches_before_a_run_is_found(void **state) {
     int32_t found[2];
     (void)state;
     begin();
@@ -307,7 +307,7 @@ static void test_what_touches_before_a_run_is_found(void **state) {
     assert_true(is_pair(found, 0, PARTS));
 }
 
-static void test_bad_descriptions_are_refused(void **state) {
+static void bad_descriptions_are_refused(void **state) {
     int32_t part = 77;
     (void)state;
     assert_int_equal(wh_world_validate(NULL, &part), WH_STATUS_NULL_ARGUMENT);
@@ -339,20 +339,20 @@ int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, open_world, close_world)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_count_counts),
-        TEST(test_nothing_tunnels_through_a_thin_wall),
-        TEST(test_a_blade_that_scrapes_a_wafer_is_named),
-        TEST(test_a_blade_takes_its_wafer_without_a_hit),
-        TEST(test_a_held_wafer_hits_a_ledge_of_another_slot),
-        TEST(test_a_wafer_let_go_rests_where_it_is),
-        TEST(test_letting_go_on_the_way_is_no_contact),
-        TEST(test_a_wafer_that_was_put_elsewhere_is_there),
-        TEST(test_links_of_the_arm_are_neighbours),
-        TEST(test_a_limit_is_reported_once),
-        TEST(test_a_full_list_loses_events_but_no_figures),
-        TEST(test_cost_is_flat_in_what_rests_elsewhere),
-        TEST(test_stepping_allocates_nothing),
-        TEST(test_what_touches_before_a_run_is_found),
-        TEST(test_bad_descriptions_are_refused),
+        TEST(nothing_tunnels_through_a_thin_wall),
+        TEST(a_blade_that_scrapes_a_wafer_is_named),
+        TEST(a_blade_takes_its_wafer_without_a_hit),
+        TEST(a_held_wafer_hits_a_ledge_of_another_slot),
+        TEST(a_wafer_let_go_rests_where_it_is),
+        TEST(letting_go_on_the_way_is_no_contact),
+        TEST(a_wafer_that_was_put_elsewhere_is_there),
+        TEST(links_of_the_arm_are_neighbours),
+        TEST(a_limit_is_reported_once),
+        TEST(a_full_list_loses_events_but_no_figures),
+        TEST(cost_is_flat_in_what_rests_elsewhere),
+        TEST(stepping_allocates_nothing),
+        TEST(what_touches_before_a_run_is_found),
+        TEST(bad_descriptions_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

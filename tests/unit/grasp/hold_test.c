@@ -26,13 +26,13 @@ static int set_up(void **state) {
     return 0;
 }
 
-static void test_the_mass_of_silicon(void **state) {
+static void the_mass_of_silicon(void **state) {
     (void)state;
     assert_true(fabs((double)wh_wafer_mass(300, WH_REAL(0.775)) - 0.12759) < 1e-5);
     assert_true(fabs((double)wh_wafer_mass(200, WH_REAL(0.725)) - 0.05305) < 1e-5);
 }
 
-static void test_ranges(void **state) {
+static void ranges(void **state) {
     (void)state;
     wh_pads_t none = wh_pads_none();
     assert_int_equal(wh_pads_validate(NULL), WH_STATUS_NULL_ARGUMENT);
@@ -55,7 +55,7 @@ static void test_ranges(void **state) {
     }
 }
 
-static void test_the_ends_of_the_ranges(void **state) {
+static void the_ends_of_the_ranges(void **state) {
     (void)state;
     const wh_pads_t most = {100, WH_REAL(1e6), 1000, 1000};
     const wh_pads_t least = {0, 0, WH_REAL(1e-6), 0};
@@ -64,7 +64,7 @@ static void test_the_ends_of_the_ranges(void **state) {
 }
 
 /* Level, without vacuum: mu g. With: mu (g + F / m). */
-static void test_the_limit_on_the_level(void **state) {
+static void the_limit_on_the_level(void **state) {
     (void)state;
     for (int i = 0; i <= 10; ++i) {
         const double share = i / 10.0;
@@ -82,7 +82,7 @@ static void test_the_limit_on_the_level(void **state) {
 }
 
 /* Pads tilted by the angle of friction: there it begins to slide by itself. */
-static void test_a_tilted_gripper_at_rest(void **state) {
+static void a_tilted_gripper_at_rest(void **state) {
     (void)state;
     const wh_vec3_t rest = {0, 0, 0};
     const double angle = atan((double)pads.friction);
@@ -92,7 +92,7 @@ static void test_a_tilted_gripper_at_rest(void **state) {
     }
 }
 
-static void test_down_faster_than_gravity_and_vacuum(void **state) {
+static void down_faster_than_gravity_and_vacuum(void **state) {
     (void)state;
     const double limit = 1000 * ((double)pads.gravity + (double)pads.force / (double)pads.mass);
     for (int side = -1; side <= 1; side += 2) {
@@ -104,7 +104,7 @@ static void test_down_faster_than_gravity_and_vacuum(void **state) {
 }
 
 /* What is asked for and what carries are the same number. */
-static void test_at_the_limit_it_holds(void **state) {
+static void at_the_limit_it_holds(void **state) {
     (void)state;
     pads.friction = 1;
     pads.gravity = 8;
@@ -116,7 +116,7 @@ static void test_at_the_limit_it_holds(void **state) {
 }
 
 /* Nothing presses the wafer on the pads: friction carries nothing. A little less, and the wafer is torn off. */
-static void test_without_pressure_friction_carries_nothing(void **state) {
+static void without_pressure_friction_carries_nothing(void **state) {
     (void)state;
     pads.force = pads.gravity = 0;
     const wh_vec3_t aside = wh_vec3(3, 4, 0);
@@ -131,7 +131,7 @@ static void test_without_pressure_friction_carries_nothing(void **state) {
     assert_near(torn.carried, 0, 0);
 }
 
-static void test_the_formula_in_any_frame(void **state) {
+static void the_formula_in_any_frame(void **state) {
     (void)state;
     for (int run = 0; run < 2000; ++run) {
         const wh_mat3_t turn = wh_test_random_turn(1);
@@ -168,7 +168,7 @@ static int run(double acceleration, int slices) {
 }
 
 /* In float the second difference of positions has fewer digits than that. */
-static void test_a_run_of_constant_acceleration(void **state) {
+static void a_run_of_constant_acceleration(void **state) {
     (void)state;
     const double margin = 1e6 * WH_TEST_ROUNDING > 1e-9 ? 0.2 : 1e-9;
     const double limit =
@@ -180,7 +180,7 @@ static void test_a_run_of_constant_acceleration(void **state) {
     assert_true(carry.slips);
 }
 
-static void test_the_first_two_slices_are_not_judged(void **state) {
+static void the_first_two_slices_are_not_judged(void **state) {
     (void)state;
     assert_int_equal(run(1e9, 2), 0);
     memset(&carry, 0, sizeof carry);
@@ -189,7 +189,7 @@ static void test_the_first_two_slices_are_not_judged(void **state) {
 }
 
 /* Along each axis of base a centre that goes 0, 1, 4 mm in quarters of a second gains 2 mm: 32 mm/s^2. */
-static void test_acceleration_along_each_axis(void **state) {
+static void acceleration_along_each_axis(void **state) {
     (void)state;
     static const wh_vec3_t along[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -206,7 +206,7 @@ static void test_acceleration_along_each_axis(void **state) {
     }
 }
 
-static void test_each_excursion_is_told_once(void **state) {
+static void each_excursion_is_told_once(void **state) {
     (void)state;
     const double x[] = {0, 0, 0, 100, 300, 600, 900, 1200, 1500, 1700};
     const bool begins[] = {false, false, false, true, false, false, false, false, false, true};
@@ -218,7 +218,7 @@ static void test_each_excursion_is_told_once(void **state) {
     }
 }
 
-static void test_without_a_wafer_nothing_is_known(void **state) {
+static void without_a_wafer_nothing_is_known(void **state) {
     (void)state;
     wh_hold_t hold;
     run(1e9, 5);
@@ -233,20 +233,20 @@ static void test_without_a_wafer_nothing_is_known(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_the_mass_of_silicon, set_up),
-        cmocka_unit_test_setup(test_ranges, set_up),
-        cmocka_unit_test_setup(test_the_ends_of_the_ranges, set_up),
-        cmocka_unit_test_setup(test_the_limit_on_the_level, set_up),
-        cmocka_unit_test_setup(test_a_tilted_gripper_at_rest, set_up),
-        cmocka_unit_test_setup(test_down_faster_than_gravity_and_vacuum, set_up),
-        cmocka_unit_test_setup(test_at_the_limit_it_holds, set_up),
-        cmocka_unit_test_setup(test_without_pressure_friction_carries_nothing, set_up),
-        cmocka_unit_test_setup(test_the_formula_in_any_frame, set_up),
-        cmocka_unit_test_setup(test_a_run_of_constant_acceleration, set_up),
-        cmocka_unit_test_setup(test_the_first_two_slices_are_not_judged, set_up),
-        cmocka_unit_test_setup(test_acceleration_along_each_axis, set_up),
-        cmocka_unit_test_setup(test_each_excursion_is_told_once, set_up),
-        cmocka_unit_test_setup(test_without_a_wafer_nothing_is_known, set_up),
+        cmocka_unit_test_setup(the_mass_of_silicon, set_up),
+        cmocka_unit_test_setup(ranges, set_up),
+        cmocka_unit_test_setup(the_ends_of_the_ranges, set_up),
+        cmocka_unit_test_setup(the_limit_on_the_level, set_up),
+        cmocka_unit_test_setup(a_tilted_gripper_at_rest, set_up),
+        cmocka_unit_test_setup(down_faster_than_gravity_and_vacuum, set_up),
+        cmocka_unit_test_setup(at_the_limit_it_holds, set_up),
+        cmocka_unit_test_setup(without_pressure_friction_carries_nothing, set_up),
+        cmocka_unit_test_setup(the_formula_in_any_frame, set_up),
+        cmocka_unit_test_setup(a_run_of_constant_acceleration, set_up),
+        cmocka_unit_test_setup(the_first_two_slices_are_not_judged, set_up),
+        cmocka_unit_test_setup(acceleration_along_each_axis, set_up),
+        cmocka_unit_test_setup(each_excursion_is_told_once, set_up),
+        cmocka_unit_test_setup(without_a_wafer_nothing_is_known, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

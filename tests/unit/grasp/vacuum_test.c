@@ -28,7 +28,7 @@ static int32_t slice(int32_t command, bool wafer) {
     return valve;
 }
 
-static void test_the_presets_are_valid(void **state) {
+static void the_presets_are_valid(void **state) {
     (void)state;
     const wh_vacuum_config_t ideal = wh_vacuum_ideal();
     assert_int_equal(wh_vacuum_validate(&config), WH_OK);
@@ -44,7 +44,7 @@ static void refuse(size_t field, double value, wh_status_t status) {
     assert_int_equal(wh_vacuum_validate(&bad), status);
 }
 
-static void test_what_is_out_of_range_is_refused(void **state) {
+static void what_is_out_of_range_is_refused(void **state) {
     /* build, vent, idle, on, off, release: one below, one above */
     static const double bad[6][2] = {{-1e-9, 3601}, {-1e-9, 3601}, {-1e-9, 0.6},
                                      {0.59, 1.01},  {0, 0.71},     {0, 1.01}};
@@ -63,7 +63,7 @@ static void test_what_is_out_of_range_is_refused(void **state) {
     refuse(5, 1, WH_OK);
 }
 
-static void test_ideal_is_who_holds_and_what_is_commanded(void **state) {
+static void ideal_is_who_holds_and_what_is_commanded(void **state) {
     (void)state;
     config = wh_vacuum_ideal();
     for (int i = 0; i < 1000; ++i) {
@@ -77,7 +77,7 @@ static void test_ideal_is_who_holds_and_what_is_commanded(void **state) {
     }
 }
 
-static void test_it_builds_up_only_with_a_wafer(void **state) {
+static void it_builds_up_only_with_a_wafer(void **state) {
     (void)state;
     for (int i = 0; i < 1000; ++i) {
         assert_int_equal(slice(OPEN, false), OPEN);
@@ -96,7 +96,7 @@ static void test_it_builds_up_only_with_a_wafer(void **state) {
     assert_true(vacuum.level == 1);
 }
 
-static void test_a_closed_valve_lets_go_below_the_threshold(void **state) {
+static void a_closed_valve_lets_go_below_the_threshold(void **state) {
     (void)state;
     while (vacuum.level < 1) {
         slice(OPEN, true);
@@ -114,7 +114,7 @@ static void test_a_closed_valve_lets_go_below_the_threshold(void **state) {
     assert_false(vacuum.on);
 }
 
-static void test_nothing_held_is_let_go_at_once(void **state) {
+static void nothing_held_is_let_go_at_once(void **state) {
     (void)state;
     while (vacuum.level < 1) {
         slice(OPEN, true);
@@ -127,7 +127,7 @@ static void test_nothing_held_is_let_go_at_once(void **state) {
     assert_int_equal(slice(CLOSED, true), CLOSED);
 }
 
-static void test_the_sensor_has_two_thresholds(void **state) {
+static void the_sensor_has_two_thresholds(void **state) {
     static const struct {
         double full;
         bool before, after;
@@ -143,7 +143,7 @@ static void test_the_sensor_has_two_thresholds(void **state) {
     }
 }
 
-static void test_a_loss_is_told_once(void **state) {
+static void a_loss_is_told_once(void **state) {
     (void)state;
     while (vacuum.level < 1) {
         slice(OPEN, true);
@@ -162,7 +162,7 @@ static void test_a_loss_is_told_once(void **state) {
 }
 
 /* Neither a wafer that is gone nor a valve that closes is a loss. */
-static void test_what_is_no_loss(void **state) {
+static void what_is_no_loss(void **state) {
     (void)state;
     config = wh_vacuum_ideal();
     slice(OPEN, true);
@@ -175,7 +175,7 @@ static void test_what_is_no_loss(void **state) {
     assert_false(vacuum.on);
 }
 
-static void test_a_slow_pump_is_slower_only(void **state) {
+static void a_slow_pump_is_slower_only(void **state) {
     (void)state;
     upset.build = WH_REAL(0.5);
     slice(OPEN, true);
@@ -191,7 +191,7 @@ static void test_a_slow_pump_is_slower_only(void **state) {
     assert_true(fabs((double)slow - 0.001 / 0.501) < CLOSELY);
 }
 
-static void test_any_slice_keeps_the_level_within_its_range(void **state) {
+static void any_slice_keeps_the_level_within_its_range(void **state) {
     (void)state;
     for (int run = 0; run < 20000; ++run) {
         config.build = (wh_real_t)wh_test_decades(1e-9, 3600);
@@ -208,7 +208,7 @@ static void test_any_slice_keeps_the_level_within_its_range(void **state) {
     }
 }
 
-static void test_no_valve_changes_nothing(void **state) {
+static void no_valve_changes_nothing(void **state) {
     (void)state;
     slice(OPEN, true);
     const wh_vacuum_t before = vacuum;
@@ -219,18 +219,18 @@ static void test_no_valve_changes_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_the_presets_are_valid, set_up),
-        cmocka_unit_test_setup(test_what_is_out_of_range_is_refused, set_up),
-        cmocka_unit_test_setup(test_ideal_is_who_holds_and_what_is_commanded, set_up),
-        cmocka_unit_test_setup(test_it_builds_up_only_with_a_wafer, set_up),
-        cmocka_unit_test_setup(test_a_closed_valve_lets_go_below_the_threshold, set_up),
-        cmocka_unit_test_setup(test_nothing_held_is_let_go_at_once, set_up),
-        cmocka_unit_test_setup(test_the_sensor_has_two_thresholds, set_up),
-        cmocka_unit_test_setup(test_a_loss_is_told_once, set_up),
-        cmocka_unit_test_setup(test_what_is_no_loss, set_up),
-        cmocka_unit_test_setup(test_a_slow_pump_is_slower_only, set_up),
-        cmocka_unit_test_setup(test_any_slice_keeps_the_level_within_its_range, set_up),
-        cmocka_unit_test_setup(test_no_valve_changes_nothing, set_up),
+        cmocka_unit_test_setup(the_presets_are_valid, set_up),
+        cmocka_unit_test_setup(what_is_out_of_range_is_refused, set_up),
+        cmocka_unit_test_setup(ideal_is_who_holds_and_what_is_commanded, set_up),
+        cmocka_unit_test_setup(it_builds_up_only_with_a_wafer, set_up),
+        cmocka_unit_test_setup(a_closed_valve_lets_go_below_the_threshold, set_up),
+        cmocka_unit_test_setup(nothing_held_is_let_go_at_once, set_up),
+        cmocka_unit_test_setup(the_sensor_has_two_thresholds, set_up),
+        cmocka_unit_test_setup(a_loss_is_told_once, set_up),
+        cmocka_unit_test_setup(what_is_no_loss, set_up),
+        cmocka_unit_test_setup(a_slow_pump_is_slower_only, set_up),
+        cmocka_unit_test_setup(any_slice_keeps_the_level_within_its_range, set_up),
+        cmocka_unit_test_setup(no_valve_changes_nothing, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,7 +13,7 @@ typedef struct {
 } message_t;
 
 /* LCM's fingerprint leaves out a message's name: two with the same members would be taken for each other. */
-static void test_fingerprints_differ(void **state) {
+static void fingerprints_differ(void **state) {
     (void)state;
 #define MESSAGE(name) {#name, __waferhand_##name##_get_hash()},
     const message_t messages[] = {WAFERHAND_MESSAGES(MESSAGE)};
@@ -28,7 +28,7 @@ static void test_fingerprints_differ(void **state) {
     }
 }
 
-static void test_largest_state_fits(void **state) {
+static void largest_state_fits(void **state) {
     static waferhand_wafer_state wafers[WAFERS];
     static waferhand_gripper_state grippers[GRIPPERS];
     static waferhand_event events[EVENTS];
@@ -51,7 +51,7 @@ static void test_largest_state_fits(void **state) {
 }
 
 /* Wafers and stations with names of 63 bytes each. */
-static void test_large_cell_fits(void **state) {
+static void large_cell_fits(void **state) {
     static waferhand_wafer_state wafers[WAFERS];
     static waferhand_station stations[16];
     static char name[NAME];
@@ -78,7 +78,7 @@ static void test_large_cell_fits(void **state) {
     assert_true(size <= DATAGRAM);
 }
 
-static void test_fixed_sizes(void **state) {
+static void fixed_sizes(void **state) {
     (void)state;
     const waferhand_command command = {0};
     const waferhand_proximity proximity = {0};
@@ -88,10 +88,10 @@ static void test_fixed_sizes(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fingerprints_differ),
-        cmocka_unit_test(test_largest_state_fits),
-        cmocka_unit_test(test_large_cell_fits),
-        cmocka_unit_test(test_fixed_sizes),
+        cmocka_unit_test(fingerprints_differ),
+        cmocka_unit_test(largest_state_fits),
+        cmocka_unit_test(large_cell_fits),
+        cmocka_unit_test(fixed_sizes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,7 +53,7 @@ static void expect_cylinder(const wh_layout_t *layout, const char *name, double 
 
 /* ------------------------------------------------------------------------------------------------- defaults */
 
-static void test_shapes_of_300_mm(void **state) {
+static void shapes_of_300_mm(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(CELL);
     assert_false(layout->collision);
@@ -70,7 +70,7 @@ static void test_shapes_of_300_mm(void **state) {
     assert_near(layout->shapes.arm.link, 0.53 * 650, 1e-9);
 }
 
-static void test_shapes_of_smaller_wafers(void **state) {
+static void shapes_of_smaller_wafers(void **state) {
     (void)state;
     const wh_layout_t *of_200 = read_sound("wafer = { diameter = 200 }, " CELL);
     expect_box(of_200, "EE palm", -80 / 1.5, -55 / 1.5, -50, 50, -2, 0);
@@ -85,7 +85,7 @@ static void test_shapes_of_smaller_wafers(void **state) {
     assert_near(of_150->stations[0].offset, 1.5, 0);
 }
 
-static void test_foup(void **state) {
+static void a_foup_has_its_shell(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(CELL);
     expect_box(layout, "F wall left", 602, 923, 158, 163, 875, 1160);
@@ -102,7 +102,7 @@ static void test_foup(void **state) {
     assert_int_not_equal(find(low, "F floor"), WH_NONE);
 }
 
-static void test_robot(void **state) {
+static void a_robot_has_its_shapes(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(CELL);
     expect_cylinder(layout, "column", 120, 0, 425);
@@ -117,7 +117,7 @@ static void test_robot(void **state) {
     assert_int_equal(find(low, "EE neck"), WH_NONE);
 }
 
-static void test_names_and_order(void **state) {
+static void names_and_order(void **state) {
     (void)state;
     const wh_layout_t *layout =
         read_sound(CELL "wafers = { { name = 'W', station = 'F', slot = 1 } }, "
@@ -134,7 +134,7 @@ static void test_names_and_order(void **state) {
     assert_null(wh_layout_part_name(layout, -1));
 }
 
-static void test_own_sizes(void **state) {
+static void own_sizes(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
         CELL "collision = true, clearance = { blade_wafer_above = 1.5 }, "
@@ -158,7 +158,7 @@ static void test_own_sizes(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ obstacles */
 
-static void test_obstacles_of_each_kind(void **state) {
+static void obstacles_of_each_kind(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
         CELL
@@ -202,7 +202,7 @@ static void write_tetrahedron(FILE *file) {
     fputs("endsolid corner\n", file);
 }
 
-static void test_obstacle_of_a_mesh(void **state) {
+static void obstacle_of_a_mesh(void **state) {
     (void)state;
     char path[] = "/tmp/waferhand_mesh_XXXXXX";
     char fields[512];
@@ -231,7 +231,7 @@ static void test_obstacle_of_a_mesh(void **state) {
 
 /* -------------------------------------------------------------------------------------------------- refusals */
 
-static void test_bad_obstacles(void **state) {
+static void bad_obstacles(void **state) {
     (void)state;
     static const struct {
         const char *obstacle, *message;
@@ -266,7 +266,7 @@ static void test_bad_obstacles(void **state) {
     }
 }
 
-static void test_bad_shapes(void **state) {
+static void bad_shapes(void **state) {
     (void)state;
     expect_refused(CELL "shapes = { blade = { thickness = 0 } }",
                    "cell.lua: shapes.blade.thickness: 0 (expected a number from 0.1 to 50)");
@@ -291,7 +291,7 @@ static void test_bad_shapes(void **state) {
     GRIPPERS "stations = (function() local t = { " PREALIGNER "} for i = 1, 50 do "                          \
              "t['S' .. i] = { at = { 700, 0, 900 }, slots = 1000 } end return t end)(), "
 
-static void test_too_many(void **state) {
+static void too_many(void **state) {
     (void)state;
     expect_refused(CELL "obstacles = " MANY(1001, "{ box = { 1, 1, 1 }, at = { 0, 0, 0 } }"),
                    "cell.lua: obstacles: 1001 (expected at most 1000 obstacles)");
@@ -305,17 +305,17 @@ static void test_too_many(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shapes_of_300_mm),
-        cmocka_unit_test(test_shapes_of_smaller_wafers),
-        cmocka_unit_test(test_foup),
-        cmocka_unit_test(test_robot),
-        cmocka_unit_test(test_names_and_order),
-        cmocka_unit_test(test_own_sizes),
-        cmocka_unit_test(test_obstacles_of_each_kind),
-        cmocka_unit_test(test_obstacle_of_a_mesh),
-        cmocka_unit_test(test_bad_obstacles),
-        cmocka_unit_test(test_bad_shapes),
-        cmocka_unit_test(test_too_many),
+        cmocka_unit_test(shapes_of_300_mm),
+        cmocka_unit_test(shapes_of_smaller_wafers),
+        cmocka_unit_test(a_foup_has_its_shell),
+        cmocka_unit_test(a_robot_has_its_shapes),
+        cmocka_unit_test(names_and_order),
+        cmocka_unit_test(own_sizes),
+        cmocka_unit_test(obstacles_of_each_kind),
+        cmocka_unit_test(obstacle_of_a_mesh),
+        cmocka_unit_test(bad_obstacles),
+        cmocka_unit_test(bad_shapes),
+        cmocka_unit_test(too_many),
     };
     return cmocka_run_group_tests(tests, open_sandbox, close_sandbox);
 }

@@ -8,7 +8,7 @@
 #define GRIPPERS "grippers = { { name = 'EE' } }, "
 #define STATIONS "stations = { A = { at = { 700, 0, 900 } } }, "
 
-static void test_defaults_of_the_cell(void **state) {
+static void defaults_of_the_cell(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(GRIPPERS STATIONS);
     assert_string_equal(layout->path, "cell.lua");
@@ -26,7 +26,7 @@ static void test_defaults_of_the_cell(void **state) {
     assert_int_equal(layout->wafer_count, 0);
 }
 
-static void test_the_default_robot(void **state) {
+static void the_default_robot(void **state) {
     (void)state;
     wh_robot_t robot;
     wh_robot_default(&robot);
@@ -38,7 +38,7 @@ static void test_the_default_robot(void **state) {
     assert_int_equal(machine->mounts[0].axis, WH_NONE);
 }
 
-static void test_defaults_of_a_station(void **state) {
+static void defaults_of_a_station(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(GRIPPERS STATIONS);
     const wh_layout_station_t *station = &layout->stations[0];
@@ -61,7 +61,7 @@ static void test_defaults_of_a_station(void **state) {
     assert_memory_equal(&place->base_from_station, &level, sizeof level);
 }
 
-static void test_defaults_that_follow_other_fields(void **state) {
+static void defaults_that_follow_other_fields(void **state) {
     (void)state;
     static const struct {
         const char *diameter;
@@ -83,7 +83,7 @@ static void test_defaults_that_follow_other_fields(void **state) {
     assert_near(layout->grasp.tolerance.planar, 0.99, 0);
 }
 
-static void test_every_field_of_the_cell_is_read(void **state) {
+static void every_field_of_the_cell_is_read(void **state) {
     (void)state;
     const wh_layout_t *layout =
         read_sound(GRIPPERS STATIONS
@@ -99,7 +99,7 @@ static void test_every_field_of_the_cell_is_read(void **state) {
     assert_true(layout->grasp.seat);
 }
 
-static void test_degrees_become_radians_and_lengths_stay(void **state) {
+static void degrees_become_radians_and_lengths_stay(void **state) {
     (void)state;
     const wh_machine_t *machine =
         &read_sound(GRIPPERS STATIONS
@@ -122,7 +122,7 @@ static void test_degrees_become_radians_and_lengths_stay(void **state) {
     assert_near(machine->chuck_limits.jerk, 2 * WH_PI, 1e-15);
 }
 
-static void test_every_field_of_a_station_is_read(void **state) {
+static void every_field_of_a_station_is_read(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
         "grippers = { { name = 'EE', on = 'robot', valve = 'v[0]' }, { name = 'PA', on = 'P' } }, "
@@ -156,7 +156,7 @@ static void test_every_field_of_a_station_is_read(void **state) {
 }
 
 /* One that says nothing of its place, or that it has none, is the end-effector: its layout's hash is as ever. */
-static void test_what_a_station_asks_of_a_command_is_read(void **state) {
+static void what_a_station_asks_of_a_command_is_read(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
         "homed = false, grippers = { { name = 'PA', on = 'P' }, { name = 'LOW' }, { name = 'HIGH' } }, "
@@ -184,7 +184,7 @@ static void test_what_a_station_asks_of_a_command_is_read(void **state) {
     assert_near(station->map_speed, 80, 0);
 }
 
-static void test_a_blade_of_two_sits_where_it_says(void **state) {
+static void a_blade_of_two_sits_where_it_says(void **state) {
     (void)state;
     const wh_layout_t *layout =
         read_sound(STATIONS "grippers = { { name = 'LOWER', at = { 0, 0, 0 }, rpy = { 0, 0, 0 } }, "
@@ -197,7 +197,7 @@ static void test_a_blade_of_two_sits_where_it_says(void **state) {
     assert_int_equal(wh_machine_validate(&layout->machine), WH_OK);
 }
 
-static void test_a_blades_place_is_in_the_hash(void **state) {
+static void a_blades_place_is_in_the_hash(void **state) {
     (void)state;
     const uint64_t plain = wh_layout_hash(read_sound(STATIONS "grippers = { { name = 'EE' } }"));
     const uint64_t nowhere =
@@ -208,7 +208,7 @@ static void test_a_blades_place_is_in_the_hash(void **state) {
     assert_true(plain != above);
 }
 
-static void test_wafers_lie_where_the_slots_frame_says(void **state) {
+static void wafers_lie_where_the_slots_frame_says(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(
         GRIPPERS "stations = { B = { at = { 0, 700, 900 }, rpy = { 0, 0, 90 }, slots = 3 } }, "
@@ -225,7 +225,7 @@ static void test_wafers_lie_where_the_slots_frame_says(void **state) {
     assert_near(start->R.m[0][0], -1, 0);
 }
 
-static void test_what_is_wrong_is_named(void **state) {
+static void what_is_wrong_is_named(void **state) {
     (void)state;
     static const struct {
         const char *fields, *message;
@@ -276,29 +276,27 @@ static void test_what_is_wrong_is_named(void **state) {
 }
 
 /* Of several unknown fields the same one is named in every run, whatever Lua's order. */
-static void test_the_first_unknown_field_by_name_is_reported(void **state) {
+static void the_first_unknown_field_by_name_is_reported(void **state) {
     (void)state;
     expect_refused(GRIPPERS STATIONS "zeta = 1, beta = 2, omega = 3, kappa = 4", "cell.lua: beta: 2");
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_defaults_of_the_cell, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_the_default_robot, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_defaults_of_a_station, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_defaults_that_follow_other_fields, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_every_field_of_the_cell_is_read, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_degrees_become_radians_and_lengths_stay, open_sandbox,
+        cmocka_unit_test_setup_teardown(defaults_of_the_cell, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(the_default_robot, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(defaults_of_a_station, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(defaults_that_follow_other_fields, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(every_field_of_the_cell_is_read, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(degrees_become_radians_and_lengths_stay, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(every_field_of_a_station_is_read, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(what_a_station_asks_of_a_command_is_read, open_sandbox,
                                         close_sandbox),
-        cmocka_unit_test_setup_teardown(test_every_field_of_a_station_is_read, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_what_a_station_asks_of_a_command_is_read, open_sandbox,
-                                        close_sandbox),
-        cmocka_unit_test_setup_teardown(test_a_blade_of_two_sits_where_it_says, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_a_blades_place_is_in_the_hash, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_wafers_lie_where_the_slots_frame_says, open_sandbox,
-                                        close_sandbox),
-        cmocka_unit_test_setup_teardown(test_what_is_wrong_is_named, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_the_first_unknown_field_by_name_is_reported, open_sandbox,
+        cmocka_unit_test_setup_teardown(a_blade_of_two_sits_where_it_says, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(a_blades_place_is_in_the_hash, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(wafers_lie_where_the_slots_frame_says, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(what_is_wrong_is_named, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(the_first_unknown_field_by_name_is_reported, open_sandbox,
                                         close_sandbox),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -50,7 +50,7 @@ static wh_pose_t at(double x, double y, double z, double roll, double pitch, dou
     return pose;
 }
 
-static void test_boxes(void **state) {
+static void boxes(void **state) {
     (void)state;
     const wh_convex_t box = {.kind = WH_CONVEX_BOX, .half = {10, 20, 30}};
     const wh_pose_t level = at(100, 200, 300, 0, 0, 0);
@@ -69,7 +69,7 @@ static void test_boxes(void **state) {
     assert_near(area(), 8 * (20 * 30 * fabs(n.x) + 10 * 30 * fabs(n.y) + 10 * 20 * fabs(n.z)) / 2, 1e-6);
 }
 
-static void test_round_shapes(void **state) {
+static void round_shapes(void **state) {
     (void)state;
     const wh_convex_t disc = {.kind = WH_CONVEX_CYLINDER, .half = {150, 0, 0.5}};
     const wh_pose_t level = at(0, 0, 10, 0, 0, 0);
@@ -89,7 +89,7 @@ static void test_round_shapes(void **state) {
     assert_int_equal(outline.count, 48);
 }
 
-static void test_meshes(void **state) {
+static void meshes(void **state) {
     (void)state;
     wh_vec3_t points[200];
     for (size_t i = 0; i < 200; ++i) {
@@ -115,7 +115,7 @@ static void expect_text(const char *text, const char *wanted) {
     assert_string_equal(written, wanted);
 }
 
-static void test_text(void **state) {
+static void text_is_drawn(void **state) {
     (void)state;
     expect_text("a < b & c > \"d\"", "a &lt; b &amp; c &gt; &quot;d&quot;");
     expect_text("Wäfer №3", "Wäfer №3");
@@ -123,7 +123,7 @@ static void test_text(void **state) {
     expect_text("\xef\xbf\xbf", "\xef\xbf\xbd");
 }
 
-static void test_labels_make_room(void **state) {
+static void labels_make_room(void **state) {
     (void)state;
     char written[512] = "";
     FILE *out = fmemopen(written, sizeof written, "w");
@@ -142,11 +142,11 @@ static void test_labels_make_room(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_boxes, free_outline),
-        cmocka_unit_test_teardown(test_round_shapes, free_outline),
-        cmocka_unit_test_teardown(test_meshes, free_outline),
-        cmocka_unit_test(test_text),
-        cmocka_unit_test(test_labels_make_room),
+        cmocka_unit_test_teardown(boxes, free_outline),
+        cmocka_unit_test_teardown(round_shapes, free_outline),
+        cmocka_unit_test_teardown(meshes, free_outline),
+        cmocka_unit_test(text_is_drawn),
+        cmocka_unit_test(labels_make_room),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -109,7 +109,7 @@ static void assert_heard(int64_t seq, wh_status_t error) {
     assert_int_equal(heard.error[seq], error);
 }
 
-static void test_requests_wait_for_their_turn(void **state) {
+static void requests_wait_for_their_turn(void **state) {
     (void)state;
     plan.at = 500;
     plan.count = 2;
@@ -121,7 +121,7 @@ static void test_requests_wait_for_their_turn(void **state) {
     assert_heard(2, WH_OK);
 }
 
-static void test_one_too_many_is_turned_away(void **state) {
+static void one_too_many_is_turned_away(void **state) {
     (void)state;
     plan.at = 500;
     plan.count = WH_CONTROL_REQUESTS + 1;
@@ -135,7 +135,7 @@ static void test_one_too_many_is_turned_away(void **state) {
 }
 
 /* It ends what runs and what waits; then the arm must be recovered, by whomever. */
-static void test_stop_goes_past_the_queue(void **state) {
+static void stop_goes_past_the_queue(void **state) {
     (void)state;
     plan.at = 700;
     plan.count = 3;
@@ -154,7 +154,7 @@ static void test_stop_goes_past_the_queue(void **state) {
     assert_int_equal(execute("GET A 1"), WH_OK);
 }
 
-static void test_stop_of_nothing(void **state) {
+static void stop_of_nothing(void **state) {
     (void)state;
     publish_request(7, "STOP");
     execute_requests();
@@ -171,10 +171,10 @@ static void test_stop_of_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        IN_PAPER(test_requests_wait_for_their_turn),
-        IN_PAPER(test_one_too_many_is_turned_away),
-        IN_PAPER(test_stop_goes_past_the_queue),
-        IN_PAPER(test_stop_of_nothing),
+        IN_PAPER(requests_wait_for_their_turn),
+        IN_PAPER(one_too_many_is_turned_away),
+        IN_PAPER(stop_goes_past_the_queue),
+        IN_PAPER(stop_of_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,7 +38,7 @@ static wh_link_t *connect_server(void *user, wh_mcs_t *mcs) {
     return &link;
 }
 
-static void test_a_step_allocates_nothing(void **state) {
+static void a_step_allocates_nothing(void **state) {
     const wh_script_run_options_t options = {.script = "lua/examples/02_prealigner.lua",
                                              .partners = {.connect = connect_server}};
     wh_script_run_t run;
@@ -56,7 +56,7 @@ static void test_a_step_allocates_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_count_counts),
-        cmocka_unit_test(test_a_step_allocates_nothing),
+        cmocka_unit_test(a_step_allocates_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

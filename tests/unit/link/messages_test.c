@@ -37,7 +37,7 @@ static uint64_t play(const char *script, bool over_messages) {
     return hash;
 }
 
-static void test_examples_have_the_same_hash(void **state) {
+static void examples_have_the_same_hash(void **state) {
     static const char *const scripts[] = {"lua/examples/01_transfer.lua", "lua/examples/02_prealigner.lua",
                                           "lua/examples/03_missed_pick.lua"};
     (void)state;
@@ -48,7 +48,7 @@ static void test_examples_have_the_same_hash(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_examples_have_the_same_hash),
+        cmocka_unit_test(examples_have_the_same_hash),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -149,13 +149,13 @@ static void refuse_a_wafer(waferhand_state *message) {
     message->events[0].kind = WH_EVENT_BAD_INPUT;
 }
 
-static void test_a_possible_state_is_taken(void **state) {
+static void a_possible_state_is_taken(void **state) {
     (void)state;
     assert_int_equal(malformed_after(change_nothing), 0);
     assert_int_equal(client.event_count, 1);
 }
 
-static void test_impossible_states_are_not(void **state) {
+static void impossible_states_are_not(void **state) {
     (void)state;
     static change_t *const changes[] = {
         hold_no_such_wafer,    hold_by_no_such_gripper, put_wafer_nowhere,     switch_half,
@@ -173,8 +173,8 @@ static void test_impossible_states_are_not(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_a_possible_state_is_taken, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_impossible_states_are_not, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_possible_state_is_taken, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(impossible_states_are_not, set_up, tear_down),
     };
     return cmocka_run_group_tests_name("client", tests, NULL, NULL);
 }

@@ -70,7 +70,7 @@ static uint64_t run_with(int64_t every, bool by_call) {
     return last;
 }
 
-static void test_restarted_again_and_again(void **state) {
+static void restarted_again_and_again(void **state) {
     (void)state;
     const uint64_t by_call = run_with(0, true);
     assert_true(run_with(0, false) == by_call);
@@ -117,7 +117,7 @@ static void other_position(waferhand_state *message) {
     message->grippers[0].wafer_before[1][2] += 1e-9;
 }
 
-static void test_no_other_condition_is_taken_over(void **state) {
+static void no_other_condition_is_taken_over(void **state) {
     static void (*const changes[])(waferhand_state * message) = {
         no_level, no_number, no_command, no_fault, no_phase, other_level, other_fault, other_position};
     static wh_protocol_server_t fresh;
@@ -141,7 +141,7 @@ static void test_no_other_condition_is_taken_over(void **state) {
 }
 
 /* What replay makes of the cell's message is the layout's own physics. */
-static void test_the_cell_tells_it_all(void **state) {
+static void the_cell_tells_it_all(void **state) {
     wh_script_run_options_t options = {.script = SCRIPT};
     wh_script_run_t run;
     waferhand_cell cell;
@@ -170,9 +170,9 @@ static void test_the_cell_tells_it_all(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_restarted_again_and_again),
-        cmocka_unit_test(test_no_other_condition_is_taken_over),
-        cmocka_unit_test(test_the_cell_tells_it_all),
+        cmocka_unit_test(restarted_again_and_again),
+        cmocka_unit_test(no_other_condition_is_taken_over),
+        cmocka_unit_test(the_cell_tells_it_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

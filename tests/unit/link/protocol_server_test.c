@@ -71,7 +71,7 @@ static wh_protocol_server_result_t hand_over_state(void (*change)(waferhand_stat
     return result;
 }
 
-static void test_each_slice_once(void **state) {
+static void each_slice_once(void **state) {
     (void)state;
     assert_int_equal(send(&server, 7, 1), WH_SERVER_NEW_RUN);
     assert_int_equal(send(&server, 7, 2), WH_SERVER_STEPPED);
@@ -85,7 +85,7 @@ static void test_each_slice_once(void **state) {
     assert_int_equal(server.counters.stale, 1);
 }
 
-static void test_gaps(void **state) {
+static void gaps(void **state) {
     (void)state;
     send(&server, 7, 1);
     assert_int_equal(send(&server, 7, 3), WH_SERVER_ANSWERED);
@@ -96,7 +96,7 @@ static void test_gaps(void **state) {
     assert_int_equal(server.missed, 2);
 }
 
-static void test_runs_and_layouts(void **state) {
+static void runs_and_layouts(void **state) {
     (void)state;
     send(&server, 7, 1);
     assert_int_equal(send(&server, 8, 5), WH_SERVER_ANSWERED);
@@ -115,7 +115,7 @@ static void test_runs_and_layouts(void **state) {
                                                    server.counters.malformed);
 }
 
-static void test_a_refused_command_changes_nothing(void **state) {
+static void a_refused_command_changes_nothing(void **state) {
     (void)state;
     send(&server, 7, 1);
     const uint64_t hash = wh_protocol_server_hash(&server);
@@ -129,7 +129,7 @@ static void test_a_refused_command_changes_nothing(void **state) {
     assert_int_equal(send(&server, 7, 2), WH_SERVER_STEPPED);
 }
 
-static void test_valves_from_outside(void **state) {
+static void valves_from_outside(void **state) {
     static const int32_t open[WH_GRIPPERS] = {0, 0};
     (void)state;
     const waferhand_command message = command(7, 1);
@@ -137,7 +137,7 @@ static void test_valves_from_outside(void **state) {
     assert_int_equal(server.state.grippers[0].valve, 0);
 }
 
-static void test_a_restarted_simulator_goes_on(void **state) {
+static void a_restarted_simulator_goes_on(void **state) {
     (void)state;
     for (int64_t seq = 1; seq <= 5; ++seq) {
         send(&server, 7, seq);
@@ -175,7 +175,7 @@ static void miss_more_than_there_are(waferhand_state *message) {
     message->missed = INT64_MIN;
 }
 
-static void test_no_other_state_is_taken_over(void **state) {
+static void no_other_state_is_taken_over(void **state) {
     static void (*const changes[])(waferhand_state * message) = {
         shift_wafer, hold_twice, spoil_rotation, change_layout, miss_more_than_there_are, drop_wafer};
     (void)state;
@@ -188,7 +188,7 @@ static void test_no_other_state_is_taken_over(void **state) {
 }
 
 /* Of a sealed message, no other bits pass; cut short, it does not either. */
-static void test_flipped_bits_are_seen(void **state) {
+static void flipped_bits_are_seen(void **state) {
     (void)state;
     uint8_t bytes[2048];
     waferhand_command message = command(7, 1);
@@ -208,14 +208,14 @@ static void test_flipped_bits_are_seen(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_each_slice_once, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_gaps, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_runs_and_layouts, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_a_refused_command_changes_nothing, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_valves_from_outside, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_a_restarted_simulator_goes_on, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_no_other_state_is_taken_over, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_flipped_bits_are_seen, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(each_slice_once, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(gaps, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(runs_and_layouts, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_refused_command_changes_nothing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(valves_from_outside, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_restarted_simulator_goes_on, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(no_other_state_is_taken_over, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(flipped_bits_are_seen, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -95,7 +95,7 @@ static const wh_replay_run_t *only_run(void) {
     return &replay.runs[0];
 }
 
-static void test_the_same(void **state) {
+static void the_same(void **state) {
     (void)state;
     for (int64_t seq = 1; seq <= 30; ++seq) {
         const waferhand_command message = command(seq);
@@ -111,7 +111,7 @@ static void test_the_same(void **state) {
     assert_int_equal(replay.server.simulator.table.counters.picked, 1);
 }
 
-static void test_states_before_their_commands(void **state) {
+static void states_before_their_commands(void **state) {
     (void)state;
     for (int64_t seq = 1; seq <= 5; ++seq) {
         const waferhand_command message = command(seq);
@@ -137,7 +137,7 @@ static void take_wafer(waferhand_state *message) {
     message->hash += 1;
 }
 
-static void test_the_first_difference_is_named(void **state) {
+static void the_first_difference_is_named(void **state) {
     (void)state;
     for (int64_t seq = 1; seq <= 6; ++seq) {
         const waferhand_command message = command(seq);
@@ -160,7 +160,7 @@ static void test_the_first_difference_is_named(void **state) {
     assert_int_equal(run->compared, 4);
 }
 
-static void test_another_command_is_found_out(void **state) {
+static void another_command_is_found_out(void **state) {
     (void)state;
     for (int64_t seq = 1; seq <= 3; ++seq) {
         waferhand_command message = command(seq);
@@ -174,7 +174,7 @@ static void test_another_command_is_found_out(void **state) {
     assert_string_equal(only_run()->difference.what, "EE, position y");
 }
 
-static void test_valves_from_outside_are_followed(void **state) {
+static void valves_from_outside_are_followed(void **state) {
     static const int32_t closed[WH_GRIPPERS] = {1, 1};
     (void)state;
     const waferhand_command message = command(1);
@@ -185,7 +185,7 @@ static void test_valves_from_outside_are_followed(void **state) {
     assert_false(only_run()->differs);
 }
 
-static void test_a_hole_is_bridged(void **state) {
+static void a_hole_is_bridged(void **state) {
     (void)state;
     for (int64_t seq = 1; seq <= 9; ++seq) {
         const waferhand_command message = command(seq);
@@ -213,7 +213,7 @@ static void narrow_near_projxy(waferhand_cell *cell) {
 }
 
 /* Numbers that a layout's file would be refused for, too: their squares are zero, and something divides by them. */
-static void test_cells_that_no_layout_describes(void **state) {
+static void cells_that_no_layout_describes(void **state) {
     static void (*const changes[])(waferhand_cell * cell) = {narrow_projz, narrow_near_projz,
                                                              narrow_near_projxy};
     (void)state;
@@ -229,7 +229,7 @@ static void test_cells_that_no_layout_describes(void **state) {
     }
 }
 
-static void test_garbage_is_counted(void **state) {
+static void garbage_is_counted(void **state) {
     (void)state;
     memset(bytes, 0x5a, 1000);
     wh_replay_event(&replay, WH_CHANNEL_COMMAND, bytes, 1000);
@@ -242,14 +242,14 @@ static void test_garbage_is_counted(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_the_same, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_states_before_their_commands, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_the_first_difference_is_named, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_another_command_is_found_out, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_valves_from_outside_are_followed, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_a_hole_is_bridged, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_cells_that_no_layout_describes, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_garbage_is_counted, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_same, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(states_before_their_commands, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_first_difference_is_named, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(another_command_is_found_out, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(valves_from_outside_are_followed, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_hole_is_bridged, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(cells_that_no_layout_describes, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(garbage_is_counted, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,7 +14,7 @@ static wh_pose_t rolled(double x, double y, double z, double angle) {
     return wh_test_pose(wh_test_rotation(0, 0, 1, angle), x, y, z);
 }
 
-static void test_axes_are_the_first_frame_s(void **state) {
+static void axes_are_the_first_frame_s(void **state) {
     (void)state;
     const wh_pose_t first = rolled(100, 200, 300, WH_TEST_PI / 2);
     const wh_pose_t second = rolled(103, 204, 312, WH_TEST_PI / 2);
@@ -28,7 +28,7 @@ static void test_axes_are_the_first_frame_s(void **state) {
 }
 
 /* About z the z axes stay together, about x they go apart by as much as all turns. */
-static void test_angles_small_and_large(void **state) {
+static void angles_small_and_large(void **state) {
     (void)state;
     static const double angles[] = {0, 1e-12, 1e-8, 1e-3, 0.5, 1.5, 3, WH_TEST_PI - 1e-8, WH_TEST_PI};
     const wh_pose_t base = wh_pose_identity();
@@ -43,7 +43,7 @@ static void test_angles_small_and_large(void **state) {
 }
 
 /* A tilt after a turn: cos t/2 is the product of the two halves' cosines. */
-static void test_a_whole_turn_is_more_than_the_tilt(void **state) {
+static void a_whole_turn_is_more_than_the_tilt(void **state) {
     (void)state;
     const wh_pose_t tilt = turned(0, 0, 0, 0.3);
     const wh_pose_t turn = rolled(0, 0, 0, 1.1);
@@ -55,7 +55,7 @@ static void test_a_whole_turn_is_more_than_the_tilt(void **state) {
 }
 
 /* Either way round it is as far and as much, and both ways lead back. */
-static void test_both_ways(void **state) {
+static void both_ways(void **state) {
     (void)state;
     for (int i = 0; i < 2000; ++i) {
         const wh_pose_t a = wh_test_random_pose(1000);
@@ -76,10 +76,10 @@ static void test_both_ways(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_axes_are_the_first_frame_s),
-        cmocka_unit_test(test_angles_small_and_large),
-        cmocka_unit_test(test_a_whole_turn_is_more_than_the_tilt),
-        cmocka_unit_test(test_both_ways),
+        cmocka_unit_test(axes_are_the_first_frame_s),
+        cmocka_unit_test(angles_small_and_large),
+        cmocka_unit_test(a_whole_turn_is_more_than_the_tilt),
+        cmocka_unit_test(both_ways),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,7 +17,7 @@ static wh_script_run_outcome_t play(const char *script, uint64_t instructions) {
     return wh_script_run(&run, &options);
 }
 
-static void test_a_command_within_a_command_is_refused(void **state) {
+static void a_command_within_a_command_is_refused(void **state) {
     (void)state;
     assert_int_equal(play("tests/end_to_end/data/nested_command.lua", 0), WH_RUN_MET);
     assert_int_equal(run.record.command_count, 3);
@@ -44,23 +44,23 @@ static void assert_expected(const char *script, size_t expectations) {
     assert_int_equal(run.record.expectation_count, expectations);
 }
 
-static void test_errors_within_a_pattern_name_the_line(void **state) {
+static void errors_within_a_pattern_name_the_line(void **state) {
     (void)state;
     assert_expected("tests/end_to_end/data/error_lines.lua", 2);
 }
 
-static void test_frames_are_measured(void **state) {
+static void frames_are_measured(void **state) {
     (void)state;
     assert_expected("tests/end_to_end/data/measure.lua", 77);
 }
 
-static void test_a_script_may_use_the_names_of_functions(void **state) {
+static void a_script_may_use_the_names_of_functions(void **state) {
     (void)state;
     assert_int_equal(play("tests/end_to_end/data/globals.lua", 0), WH_RUN_MET);
 }
 
 /* Whenever a STOP comes, no wafer is dropped on the way out, and work goes on after HOME. */
-static void test_a_stop_may_come_at_any_time(void **state) {
+static void a_stop_may_come_at_any_time(void **state) {
     (void)state;
     static const char *const targets[] = {"to=A", "to=B", "to=P"};
     for (size_t t = 0; t < sizeof targets / sizeof targets[0]; ++t) {
@@ -80,7 +80,7 @@ static void test_a_stop_may_come_at_any_time(void **state) {
     }
 }
 
-static void test_the_record_is_paid_for_from_the_budget(void **state) {
+static void the_record_is_paid_for_from_the_budget(void **state) {
     (void)state;
     assert_int_equal(play("tests/end_to_end/data/endless_record.lua", 50000000), WH_RUN_BAD_INPUT);
     assert_int_equal(wh_sandbox_reason(run.sandbox), WH_SANDBOX_BUDGET);
@@ -89,12 +89,12 @@ static void test_the_record_is_paid_for_from_the_budget(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_a_command_within_a_command_is_refused, close_run),
-        cmocka_unit_test_teardown(test_errors_within_a_pattern_name_the_line, close_run),
-        cmocka_unit_test_teardown(test_frames_are_measured, close_run),
-        cmocka_unit_test_teardown(test_a_script_may_use_the_names_of_functions, close_run),
-        cmocka_unit_test(test_a_stop_may_come_at_any_time),
-        cmocka_unit_test_teardown(test_the_record_is_paid_for_from_the_budget, close_run),
+        cmocka_unit_test_teardown(a_command_within_a_command_is_refused, close_run),
+        cmocka_unit_test_teardown(errors_within_a_pattern_name_the_line, close_run),
+        cmocka_unit_test_teardown(frames_are_measured, close_run),
+        cmocka_unit_test_teardown(a_script_may_use_the_names_of_functions, close_run),
+        cmocka_unit_test(a_stop_may_come_at_any_time),
+        cmocka_unit_test_teardown(the_record_is_paid_for_from_the_budget, close_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,7 +49,7 @@ static size_t count_events(wh_event_kind_t kind) {
     return count;
 }
 
-static void test_transfer_run(void **state) {
+static void transfer_run(void **state) {
     (void)state;
     assert_int_equal(play("lua/examples/01_transfer.lua"), WH_RUN_MET);
     assert_lies_in("Wafer 1", "B", 2);
@@ -67,7 +67,7 @@ static void test_transfer_run(void **state) {
     assert_near(event(WH_EVENT_PICKED, 0)->measured.n1_proj_n2, cos(1.5 * acos(-1.0) / 180), 1e-12);
 }
 
-static void test_prealigner_run(void **state) {
+static void prealigner_run(void **state) {
     (void)state;
     assert_int_equal(play("lua/examples/02_prealigner.lua"), WH_RUN_MET);
     assert_int_equal(count_events(WH_EVENT_HANDED_OVER), 3);
@@ -89,7 +89,7 @@ static void test_prealigner_run(void **state) {
     assert_near(wafer_2->place.dy, 13.794, 1e-9);
 }
 
-static void test_missed_pick_run(void **state) {
+static void missed_pick_run(void **state) {
     (void)state;
     assert_int_equal(play("lua/examples/03_missed_pick.lua"), WH_RUN_MET);
     assert_int_equal(run.record.commands[0].error, WH_STATUS_WAFER_MISSING);
@@ -101,7 +101,7 @@ static void test_missed_pick_run(void **state) {
 }
 
 /* The arm stands before the station when the map is known, and is there still after the refusals. */
-static void test_cross_slotted_run(void **state) {
+static void cross_slotted_run(void **state) {
     (void)state;
     assert_int_equal(play("lua/examples/06_cross_slotted.lua"), WH_RUN_MET);
     assert_string_equal(run.record.commands[0].text, "MAP A");
@@ -115,7 +115,7 @@ static void test_cross_slotted_run(void **state) {
     assert_int_equal(run.record.event_count, 4);
 }
 
-static void test_same_script_gives_same_hash(void **state) {
+static void same_script_gives_same_hash(void **state) {
     (void)state;
     assert_int_equal(play("lua/examples/01_transfer.lua"), WH_RUN_MET);
     const uint64_t hash = run.record.hash;
@@ -126,11 +126,11 @@ static void test_same_script_gives_same_hash(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_transfer_run, close_run),
-        cmocka_unit_test_teardown(test_prealigner_run, close_run),
-        cmocka_unit_test_teardown(test_missed_pick_run, close_run),
-        cmocka_unit_test_teardown(test_cross_slotted_run, close_run),
-        cmocka_unit_test_teardown(test_same_script_gives_same_hash, close_run),
+        cmocka_unit_test_teardown(transfer_run, close_run),
+        cmocka_unit_test_teardown(prealigner_run, close_run),
+        cmocka_unit_test_teardown(missed_pick_run, close_run),
+        cmocka_unit_test_teardown(cross_slotted_run, close_run),
+        cmocka_unit_test_teardown(same_script_gives_same_hash, close_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -52,7 +52,7 @@ static void assert_dialogue(const exchange_t *dialogue, size_t count) {
 /* ------------------------------------------------------------------------------------------------- commands
  */
 
-static void test_every_command(void **state) {
+static void every_command(void **state) {
     (void)state;
     static const exchange_t dialogue[] = {
         {"HOLDER \"Wafer 1\"", "OK holder=none"},
@@ -86,7 +86,7 @@ static void test_every_command(void **state) {
     assert_int_equal(session.complaints, 0);
 }
 
-static void test_case_and_spelling(void **state) {
+static void case_and_spelling(void **state) {
     (void)state;
     static const exchange_t dialogue[] = {
         {"get a 1", "OK wafer=\"Wafer 1\""},
@@ -102,7 +102,7 @@ static void test_case_and_spelling(void **state) {
     ASSERT_DIALOGUE(dialogue);
 }
 
-static void test_commands_are_recorded(void **state) {
+static void commands_are_recorded(void **state) {
     (void)state;
     execute("GET A 1");
     execute("get a 2");
@@ -118,7 +118,7 @@ static void test_commands_are_recorded(void **state) {
 /* -------------------------------------------------------------------------------------------------- errors
  */
 
-static void test_errors_have_their_numbers(void **state) {
+static void errors_have_their_numbers(void **state) {
     (void)state;
     static const exchange_t dialogue[] = {
         {"FLY", "ERROR 47 NO_SUCH_COMMAND: "},
@@ -152,7 +152,7 @@ static void test_errors_have_their_numbers(void **state) {
     ASSERT_DIALOGUE(dialogue);
 }
 
-static void test_bad_arguments(void **state) {
+static void bad_arguments(void **state) {
     (void)state;
     static const char *const lines[] = {
         "GET",
@@ -198,7 +198,7 @@ static void test_bad_arguments(void **state) {
     assert_int_equal(session.mcs.track.slice, 0);
 }
 
-static void test_control_characters(void **state) {
+static void control_characters(void **state) {
     (void)state;
     static const char *const lines[] = {
         "GET\tA 1",   "GET A 1\r",        "GET A 1\nGET A 2", "GET \033[2J 1",  "\001",
@@ -210,7 +210,7 @@ static void test_control_characters(void **state) {
     assert_answer("GET \xC3\xA4 1", "ERROR 40 NO_SUCH_STATION: no such station; \"\xC3\xA4\" (expected");
 }
 
-static void test_line_length(void **state) {
+static void line_length(void **state) {
     (void)state;
     static char line[3000];
     memset(line, ' ', sizeof line);
@@ -228,7 +228,7 @@ static void test_line_length(void **state) {
 }
 
 /* Nothing that is typed runs as Lua, and nothing that is typed changes what a later line means. */
-static void test_injections(void **state) {
+static void injections(void **state) {
     (void)state;
     static const char *const lines[] = {
         "os.exit(3)",
@@ -258,7 +258,7 @@ static void test_injections(void **state) {
     assert_answer("GET A 1", "OK wafer=\"Wafer 1\" seconds=1.965");
 }
 
-static void test_random_lines_leave_it_usable(void **state) {
+static void random_lines_leave_it_usable(void **state) {
     (void)state;
     static const char pieces[][12] = {
         "GET", "PUT",     "WHERE", "HELP", "MOVE", " ", " ",  "\"",       "\\",       "=",  "A", "1", "-",
@@ -330,13 +330,13 @@ static int open_between(void **state) {
     return wh_session_open(&session, &options) ? 0 : -1;
 }
 
-static void test_another_link(void **state) {
+static void another_link(void **state) {
     (void)state;
     assert_answer("GET A 1", "OK wafer=\"Wafer 1\" seconds=1.965");
     assert_int_equal(between.slices, 1965);
 }
 
-static void test_stop(void **state) {
+static void stop(void **state) {
     (void)state;
     between.stop_at = 700;
     assert_answer("GET A 1", "ERROR 52 STOPPED: ");
@@ -352,7 +352,7 @@ static void test_stop(void **state) {
     assert_answer("PUT B 2", "OK wafer=\"Wafer 1\"");
 }
 
-static void test_stop_of_a_link_that_waits(void **state) {
+static void stop_of_a_link_that_waits(void **state) {
     (void)state;
     between.stop_at = 700;
     between.gives_up = true;
@@ -361,7 +361,7 @@ static void test_stop_of_a_link_that_waits(void **state) {
     assert_answer("GET A 1", "OK wafer=\"Wafer 1\"");
 }
 
-static void test_budget_is_for_each_command(void **state) {
+static void budget_is_for_each_command(void **state) {
     (void)state;
     const wh_session_options_t options = {.layout = "lua/layouts/paper.lua",
                                           .limits = {.instructions = 1000000}};
@@ -377,7 +377,7 @@ static void test_budget_is_for_each_command(void **state) {
 /* ------------------------------------------------------------------------------- answers, reports, opening
  */
 
-static void test_complaints_are_told(void **state) {
+static void complaints_are_told(void **state) {
     (void)state;
     assert_answer("GET A 1", "OK ");
     assert_answer("VALVE EE 1", "OK seconds=0.001; released_unsupported \"Wafer 1\", ");
@@ -386,7 +386,7 @@ static void test_complaints_are_told(void **state) {
     assert_int_equal(session.complaints, 1);
 }
 
-static void test_answers_are_cut_between_characters(void **state) {
+static void answers_are_cut_between_characters(void **state) {
     (void)state;
     char text[64];
     for (size_t size = 8; size < sizeof text; ++size) {
@@ -406,7 +406,7 @@ static void count_report(void *user, const char *line, wh_status_t status, const
     ++reports;
 }
 
-static void test_report(void **state) {
+static void a_line_is_reported(void **state) {
     (void)state;
     const wh_session_options_t options = {
         .layout = "lua/layouts/paper.lua", .report = count_report, .report_user = &reports};
@@ -421,7 +421,7 @@ static void assert_refused(const wh_session_options_t *options, const char *reas
     wh_session_close(&session);
 }
 
-static void test_what_cannot_be_opened(void **state) {
+static void what_cannot_be_opened(void **state) {
     (void)state;
     static const char *const bad[] = {"no equals sign"};
     const wh_session_options_t missing = {.layout = "tests/end_to_end/data/missing.lua"};
@@ -451,7 +451,7 @@ static void assert_candidates(const char *before, size_t start, const char *expe
     assert_int_equal(candidates.start, start);
 }
 
-static void test_completion(void **state) {
+static void completion(void **state) {
     (void)state;
     assert_candidates("GE", 0, "GET|");
     assert_candidates("  h", 2, "HELP|HOLDER|HOME|");
@@ -476,7 +476,7 @@ static void test_completion(void **state) {
 }
 
 /* A layout's Lua may do to the libraries what it likes: that spoils the answers, and nothing else. */
-static void test_a_layout_that_spoils_the_strings(void **state) {
+static void a_layout_that_spoils_the_strings(void **state) {
     (void)state;
     static wh_session_t spoilt;
     const wh_session_options_t options = {.layout = "tests/end_to_end/data/odd_strings_layout.lua",
@@ -497,25 +497,25 @@ int main(void) {
 #define IN_PAPER(test) cmocka_unit_test_setup_teardown(test, open_paper, close_session)
 #define IN_BETWEEN(test) cmocka_unit_test_setup_teardown(test, open_between, close_session)
     const struct CMUnitTest tests[] = {
-        IN_PAPER(test_every_command),
-        IN_PAPER(test_case_and_spelling),
-        IN_PAPER(test_commands_are_recorded),
-        IN_PAPER(test_errors_have_their_numbers),
-        IN_PAPER(test_bad_arguments),
-        IN_PAPER(test_control_characters),
-        IN_PAPER(test_line_length),
-        IN_PAPER(test_injections),
-        IN_PAPER(test_random_lines_leave_it_usable),
-        IN_PAPER(test_complaints_are_told),
-        IN_PAPER(test_answers_are_cut_between_characters),
-        IN_PAPER(test_completion),
-        IN_BETWEEN(test_another_link),
-        IN_BETWEEN(test_stop),
-        IN_BETWEEN(test_stop_of_a_link_that_waits),
-        cmocka_unit_test_teardown(test_budget_is_for_each_command, close_session),
-        cmocka_unit_test_teardown(test_report, close_session),
-        cmocka_unit_test(test_what_cannot_be_opened),
-        cmocka_unit_test(test_a_layout_that_spoils_the_strings),
+        IN_PAPER(every_command),
+        IN_PAPER(case_and_spelling),
+        IN_PAPER(commands_are_recorded),
+        IN_PAPER(errors_have_their_numbers),
+        IN_PAPER(bad_arguments),
+        IN_PAPER(control_characters),
+        IN_PAPER(line_length),
+        IN_PAPER(injections),
+        IN_PAPER(random_lines_leave_it_usable),
+        IN_PAPER(complaints_are_told),
+        IN_PAPER(answers_are_cut_between_characters),
+        IN_PAPER(completion),
+        IN_BETWEEN(another_link),
+        IN_BETWEEN(stop),
+        IN_BETWEEN(stop_of_a_link_that_waits),
+        cmocka_unit_test_teardown(budget_is_for_each_command, close_session),
+        cmocka_unit_test_teardown(a_line_is_reported, close_session),
+        cmocka_unit_test(what_cannot_be_opened),
+        cmocka_unit_test(a_layout_that_spoils_the_strings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

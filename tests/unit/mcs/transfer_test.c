@@ -76,7 +76,7 @@ static void assert_answer(const char *line, const char *expected) {
 /* ------------------------------------------------------------------------------------------------- vacuum */
 
 /* The blade goes down again before it leaves: the wafer stays in its slot, and the robot is ready for more. */
-static void test_a_vacuum_that_does_not_come(void **state) {
+static void a_vacuum_that_does_not_come(void **state) {
     (void)state;
     lie(false, 0);
     assert_answer("GET A 1", "ERROR 57 VACUUM_TIMEOUT: ");
@@ -86,7 +86,7 @@ static void test_a_vacuum_that_does_not_come(void **state) {
     assert_answer("GET A 1", "OK wafer=\"Wafer 1\"");
 }
 
-static void test_a_vacuum_that_does_not_come_from_a_chuck(void **state) {
+static void a_vacuum_that_does_not_come_from_a_chuck(void **state) {
     (void)state;
     assert_answer("GET A 1", "OK");
     assert_answer("PUT P 1", "OK");
@@ -97,7 +97,7 @@ static void test_a_vacuum_that_does_not_come_from_a_chuck(void **state) {
     assert_answer("GET P 1 handover=same_slice", "OK wafer=\"Wafer 1\"");
 }
 
-static void test_a_retry_takes_what_the_first_try_did_not(void **state) {
+static void a_retry_takes_what_the_first_try_did_not(void **state) {
     (void)state;
     assert_answer("READY A 1", "OK");
     lie(false, 1700);
@@ -107,7 +107,7 @@ static void test_a_retry_takes_what_the_first_try_did_not(void **state) {
     assert_int_equal(session.complaints, 0);
 }
 
-static void test_a_sensor_that_is_on_too_early(void **state) {
+static void a_sensor_that_is_on_too_early(void **state) {
     (void)state;
     lie(true, 0);
     assert_answer("WAIT 0.1", "OK");
@@ -118,7 +118,7 @@ static void test_a_sensor_that_is_on_too_early(void **state) {
     assert_answer("GET A 1", "ERROR 44 WAFER_ON_GRIPPER: ");
 }
 
-static void test_a_wafer_is_lost_on_the_way(void **state) {
+static void a_wafer_is_lost_on_the_way(void **state) {
     (void)state;
     assert_answer("GET A 1", "OK");
     lie(false, 1);
@@ -130,7 +130,7 @@ static void test_a_wafer_is_lost_on_the_way(void **state) {
 }
 
 /* Lost on the way in: the arm stands in the station, and nothing else goes in before it is out. */
-static void test_a_wafer_is_lost_in_a_station(void **state) {
+static void a_wafer_is_lost_in_a_station(void **state) {
     (void)state;
     assert_answer("GET A 1", "OK");
     assert_answer("READY B 1 gripper=FRONT", "OK");
@@ -144,7 +144,7 @@ static void test_a_wafer_is_lost_in_a_station(void **state) {
     assert_answer("PUT B 1 gripper=FRONT", "OK wafer=\"Wafer 1\"");
 }
 
-static void test_a_sensor_that_is_not_asked(void **state) {
+static void a_sensor_that_is_not_asked(void **state) {
     (void)state;
     lie(false, 0);
     assert_answer("GET A 1 vacuum_check=put", "OK wafer=\"Wafer 1\"");
@@ -157,7 +157,7 @@ static void test_a_sensor_that_is_not_asked(void **state) {
 
 /* --------------------------------------------------------------------------------------------- two blades */
 
-static void test_swap(void **state) {
+static void swap(void **state) {
     (void)state;
     assert_answer("SWAP A 2", "ERROR 43 ");
     assert_answer("GET A 1", "OK");
@@ -174,7 +174,7 @@ static void test_swap(void **state) {
     assert_int_equal(session.complaints, 0);
 }
 
-static void test_map(void **state) {
+static void map(void **state) {
     (void)state;
     assert_answer("MAP A", "OK codes=11000 seconds=");
     assert_answer("GET A 3", "ERROR 42 WAFER_MISSING: ");
@@ -189,7 +189,7 @@ static void test_map(void **state) {
     assert_answer("PUT B 3 gripper=FRONT check_map=true", "ERROR 63 NOT_MAPPED: ");
 }
 
-static void test_parameters_of_one_command(void **state) {
+static void parameters_of_one_command(void **state) {
     (void)state;
     assert_answer("READY A 1", "OK seconds=");
     assert_answer("GET A 1", "OK wafer=\"Wafer 1\" seconds=1.5");
@@ -222,7 +222,7 @@ static bool judge_segment(void *user, const wh_mcs_t *mcs, const wh_segment_t *s
     return false;
 }
 
-static void test_a_collision_ahead(void **state) {
+static void a_collision_ahead(void **state) {
     (void)state;
     session.mcs.ahead = judge_segment;
     session.mcs.ahead_user = &judge;
@@ -246,17 +246,17 @@ static void test_a_collision_ahead(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        IN_DUAL(test_a_vacuum_that_does_not_come),
-        IN_DUAL(test_a_vacuum_that_does_not_come_from_a_chuck),
-        IN_DUAL(test_a_retry_takes_what_the_first_try_did_not),
-        IN_DUAL(test_a_sensor_that_is_on_too_early),
-        IN_DUAL(test_a_wafer_is_lost_on_the_way),
-        IN_DUAL(test_a_wafer_is_lost_in_a_station),
-        IN_DUAL(test_a_sensor_that_is_not_asked),
-        IN_DUAL(test_swap),
-        IN_DUAL(test_map),
-        IN_DUAL(test_parameters_of_one_command),
-        IN_DUAL(test_a_collision_ahead),
+        IN_DUAL(a_vacuum_that_does_not_come),
+        IN_DUAL(a_vacuum_that_does_not_come_from_a_chuck),
+        IN_DUAL(a_retry_takes_what_the_first_try_did_not),
+        IN_DUAL(a_sensor_that_is_on_too_early),
+        IN_DUAL(a_wafer_is_lost_on_the_way),
+        IN_DUAL(a_wafer_is_lost_in_a_station),
+        IN_DUAL(a_sensor_that_is_not_asked),
+        IN_DUAL(swap),
+        IN_DUAL(map),
+        IN_DUAL(parameters_of_one_command),
+        IN_DUAL(a_collision_ahead),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -44,7 +44,7 @@ static void follow(const wh_real_t axes[]) {
 }
 
 /* Any of the axes move, to places where they were before, too; now and then theta and yaw alone, against each other. */
-static void test_the_poses_are_the_machines(void **state) {
+static void the_poses_are_the_machines(void **state) {
     static const wh_real_t angles[] = {0, WH_REAL(-0.0), 1, WH_REAL(-2.5), WH_PI, -WH_PI};
     wh_real_t axes[WH_AXES] = {0, 300, 900, 0, 0, 0};
     (void)state;
@@ -66,7 +66,7 @@ static void test_the_poses_are_the_machines(void **state) {
 }
 
 /* Zeros of different sign are different angles, and what is no number is followed as well. */
-static void test_the_bits_decide(void **state) {
+static void the_bits_decide(void **state) {
     static const wh_real_t angles[] = {0, WH_REAL(-0.0), 0, WH_REAL(NAN), WH_REAL(NAN), 1, WH_REAL(INFINITY)};
     (void)state;
     for (size_t i = 0; i < sizeof angles / sizeof angles[0]; ++i) {
@@ -77,7 +77,7 @@ static void test_the_bits_decide(void **state) {
     }
 }
 
-static void test_what_stands_still_is_not_written(void **state) {
+static void what_stands_still_is_not_written(void **state) {
     wh_real_t axes[AXES] = {0, 300, 900, 0, 0, 0};
     wh_gripper_input_t mark[GRIPPERS];
     (void)state;
@@ -102,7 +102,7 @@ static void test_what_stands_still_is_not_written(void **state) {
 }
 
 /* What stands beyond the axes in use is none of them. */
-static void test_the_axes_beyond_the_last_are_left_alone(void **state) {
+static void the_axes_beyond_the_last_are_left_alone(void **state) {
     (void)state;
     wh_real_t axes[AXES + 1] = {0, 300, 900, 0, 0, 0, 7};
     cache.axes[AXES] = 5;
@@ -114,7 +114,7 @@ static void test_the_axes_beyond_the_last_are_left_alone(void **state) {
 }
 
 /* A command that follows a track says what the track says, and keeps the faults that it is to bring. */
-static void test_a_command_follows_a_track(void **state) {
+static void a_command_follows_a_track(void **state) {
     wh_track_t track;
     wh_command_t command;
     (void)state;
@@ -151,11 +151,11 @@ static void test_a_command_follows_a_track(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_the_poses_are_the_machines, set_up),
-        cmocka_unit_test_setup(test_the_bits_decide, set_up),
-        cmocka_unit_test_setup(test_what_stands_still_is_not_written, set_up),
-        cmocka_unit_test_setup(test_the_axes_beyond_the_last_are_left_alone, set_up),
-        cmocka_unit_test_setup(test_a_command_follows_a_track, set_up),
+        cmocka_unit_test_setup(the_poses_are_the_machines, set_up),
+        cmocka_unit_test_setup(the_bits_decide, set_up),
+        cmocka_unit_test_setup(what_stands_still_is_not_written, set_up),
+        cmocka_unit_test_setup(the_axes_beyond_the_last_are_left_alone, set_up),
+        cmocka_unit_test_setup(a_command_follows_a_track, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

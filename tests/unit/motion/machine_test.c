@@ -20,18 +20,18 @@ static wh_machine_t machine_with_chuck(void) {
     return machine;
 }
 
-static void test_a_sound_machine_passes(void **state) {
+static void a_sound_machine_passes(void **state) {
     (void)state;
     const wh_machine_t machine = machine_with_chuck();
     assert_int_equal(wh_machine_validate(&machine), WH_OK);
 }
 
-static void test_null_is_refused(void **state) {
+static void null_is_refused(void **state) {
     (void)state;
     assert_int_equal(wh_machine_validate(NULL), WH_STATUS_NULL_ARGUMENT);
 }
 
-static void test_counts_out_of_range_are_refused(void **state) {
+static void counts_out_of_range_are_refused(void **state) {
     (void)state;
     static const size_t axes[] = {0, 3, WH_AXES + 1};
     static const size_t grippers[] = {0, WH_GRIPPERS + 1};
@@ -47,7 +47,7 @@ static void test_counts_out_of_range_are_refused(void **state) {
     }
 }
 
-static void test_the_greatest_counts_pass(void **state) {
+static void the_greatest_counts_pass(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_chuck();
     machine.axis_count = WH_AXES;
@@ -60,7 +60,7 @@ static void test_the_greatest_counts_pass(void **state) {
 }
 
 /* Without a chuck: four axes, one gripper on the robot. */
-static void test_the_least_counts_pass(void **state) {
+static void the_least_counts_pass(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_chuck();
     machine.axis_count = WH_ROBOT_AXES;
@@ -70,7 +70,7 @@ static void test_the_least_counts_pass(void **state) {
     assert_int_equal(wh_machine_check_travel(&machine, axes), WH_OK);
 }
 
-static void test_every_mount_is_looked_at(void **state) {
+static void every_mount_is_looked_at(void **state) {
     (void)state;
     for (size_t g = 0; g < 2; ++g) {
         wh_machine_t machine = machine_with_chuck();
@@ -80,7 +80,7 @@ static void test_every_mount_is_looked_at(void **state) {
 }
 
 /* Two chucks and the robot, in any order; what is beyond the counts is neither read nor written. */
-static void test_each_gripper_has_its_pose(void **state) {
+static void each_gripper_has_its_pose(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_chuck();
     machine.axis_count = 6;
@@ -108,7 +108,7 @@ static void test_each_gripper_has_its_pose(void **state) {
     assert_int_equal(wh_machine_check_travel(&machine, far), WH_STATUS_LIMIT_EXCEEDED);
 }
 
-static void test_a_mount_on_no_chuck_axis_is_refused(void **state) {
+static void a_mount_on_no_chuck_axis_is_refused(void **state) {
     (void)state;
     static const int32_t axes[] = {-2, 0, 3, 5, INT32_MAX, INT32_MIN};
     for (size_t i = 0; i < sizeof axes / sizeof axes[0]; ++i) {
@@ -118,7 +118,7 @@ static void test_a_mount_on_no_chuck_axis_is_refused(void **state) {
     }
 }
 
-static void test_a_chuck_that_stands_nowhere_is_refused(void **state) {
+static void a_chuck_that_stands_nowhere_is_refused(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_chuck();
     machine.mounts[1].base_from_station.R.m[0][0] = WH_REAL(-1.1);
@@ -129,14 +129,14 @@ static void test_a_chuck_that_stands_nowhere_is_refused(void **state) {
 }
 
 /* The robot's grippers are where the robot is: what stands in their mount does not matter. */
-static void test_the_robots_mount_is_not_looked_at(void **state) {
+static void the_robots_mount_is_not_looked_at(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_chuck();
     machine.mounts[0].base_from_station.r.x = (wh_real_t)NAN;
     assert_int_equal(wh_machine_validate(&machine), WH_OK);
 }
 
-static void test_bad_limits_are_refused(void **state) {
+static void bad_limits_are_refused(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_chuck();
     machine.chuck_limits.jerk = 0;
@@ -146,7 +146,7 @@ static void test_bad_limits_are_refused(void **state) {
     assert_int_equal(wh_machine_validate(&machine), WH_STATUS_BAD_LIMITS);
 }
 
-static void test_each_axis_has_its_own_limits(void **state) {
+static void each_axis_has_its_own_limits(void **state) {
     (void)state;
     const wh_machine_t machine = machine_with_chuck();
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
@@ -156,7 +156,7 @@ static void test_each_axis_has_its_own_limits(void **state) {
     assert_ptr_equal(wh_machine_limits(&machine, WH_AXES - 1), &machine.chuck_limits);
 }
 
-static void test_travel_is_checked_on_every_axis(void **state) {
+static void travel_is_checked_on_every_axis(void **state) {
     (void)state;
     const wh_machine_t machine = machine_with_chuck();
     const wh_real_t home[] = {0, 300, 900, 0, 0};
@@ -186,7 +186,7 @@ static void test_travel_is_checked_on_every_axis(void **state) {
     }
 }
 
-static void test_the_robots_gripper_is_the_robots_effector(void **state) {
+static void the_robots_gripper_is_the_robots_effector(void **state) {
     (void)state;
     const wh_machine_t machine = machine_with_chuck();
     const wh_real_t axes[] = {WH_REAL(0.7), 512, 1001, WH_REAL(-1.2), 3};
@@ -198,7 +198,7 @@ static void test_the_robots_gripper_is_the_robots_effector(void **state) {
 }
 
 /* Turning by `angle` carries a point on the chuck round its own axis, tilted as the station is. */
-static void test_a_chuck_turns_about_its_own_z(void **state) {
+static void a_chuck_turns_about_its_own_z(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_chuck();
     wh_pose_t *station = &machine.mounts[1].base_from_station;
@@ -220,7 +220,7 @@ static void test_a_chuck_turns_about_its_own_z(void **state) {
 }
 
 /* The chuck's whole travel is within what the sine reduces: a valid pose at both ends. */
-static void test_a_chuck_has_a_pose_over_its_whole_travel(void **state) {
+static void a_chuck_has_a_pose_over_its_whole_travel(void **state) {
     (void)state;
     const wh_machine_t machine = machine_with_chuck();
     for (int end = -1; end <= 1; end += 2) {
@@ -242,7 +242,7 @@ static wh_machine_t machine_with_two_blades(void) {
     return machine;
 }
 
-static void test_a_shifted_gripper_sits_beside_the_effector(void **state) {
+static void a_shifted_gripper_sits_beside_the_effector(void **state) {
     (void)state;
     const wh_machine_t machine = machine_with_two_blades();
     const wh_real_t axes[] = {WH_PI / 2, 500, 1000, 0};
@@ -257,7 +257,7 @@ static void test_a_shifted_gripper_sits_beside_the_effector(void **state) {
 }
 
 /* A flag that is not set leaves every bit alone, whatever stands in the pose. */
-static void test_a_gripper_that_is_not_shifted_is_the_effector(void **state) {
+static void a_gripper_that_is_not_shifted_is_the_effector(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_two_blades();
     const wh_real_t axes[] = {WH_REAL(0.7), 512, 1001, WH_REAL(-1.2)};
@@ -269,7 +269,7 @@ static void test_a_gripper_that_is_not_shifted_is_the_effector(void **state) {
     assert_memory_equal(&poses[1], &poses[0], sizeof poses[0]);
 }
 
-static void test_a_tilted_or_broken_shift_is_refused(void **state) {
+static void a_tilted_or_broken_shift_is_refused(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_two_blades();
     machine.mounts[1].effector_from_gripper.R = wh_mat3_from_rpy_deg(0, WH_REAL(0.01), 90);
@@ -285,7 +285,7 @@ static void test_a_tilted_or_broken_shift_is_refused(void **state) {
 }
 
 /* As slight as that, and seen in any one entry. */
-static void test_the_slightest_tilt_shows(void **state) {
+static void the_slightest_tilt_shows(void **state) {
     static const size_t places[][2] = {{0, 2}, {1, 2}, {2, 0}, {2, 1}, {2, 2}};
     (void)state;
     for (size_t i = 0; i < sizeof places / sizeof places[0]; ++i) {
@@ -296,7 +296,7 @@ static void test_the_slightest_tilt_shows(void **state) {
 }
 
 /* Each gripper comes to the point, with its own x along the heading; the plain one by the robot's own inverse. */
-static void test_the_inverse_brings_each_gripper_there(void **state) {
+static void the_inverse_brings_each_gripper_there(void **state) {
     (void)state;
     wh_machine_t machine = machine_with_two_blades();
     machine.mounts[1].effector_from_gripper.R = wh_mat3_from_rpy_deg(0, 0, 170);
@@ -320,7 +320,7 @@ static void test_the_inverse_brings_each_gripper_there(void **state) {
     }
 }
 
-static void test_the_inverse_refuses_what_the_robots_does(void **state) {
+static void the_inverse_refuses_what_the_robots_does(void **state) {
     (void)state;
     const wh_machine_t machine = machine_with_two_blades();
     const wh_vec3_t at = wh_vec3(350, -420, 1015);
@@ -339,28 +339,28 @@ static void test_the_inverse_refuses_what_the_robots_does(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_shifted_gripper_sits_beside_the_effector),
-        cmocka_unit_test(test_a_gripper_that_is_not_shifted_is_the_effector),
-        cmocka_unit_test(test_a_tilted_or_broken_shift_is_refused),
-        cmocka_unit_test(test_the_slightest_tilt_shows),
-        cmocka_unit_test(test_the_inverse_brings_each_gripper_there),
-        cmocka_unit_test(test_the_inverse_refuses_what_the_robots_does),
-        cmocka_unit_test(test_a_sound_machine_passes),
-        cmocka_unit_test(test_null_is_refused),
-        cmocka_unit_test(test_counts_out_of_range_are_refused),
-        cmocka_unit_test(test_the_greatest_counts_pass),
-        cmocka_unit_test(test_the_least_counts_pass),
-        cmocka_unit_test(test_every_mount_is_looked_at),
-        cmocka_unit_test(test_each_gripper_has_its_pose),
-        cmocka_unit_test(test_a_mount_on_no_chuck_axis_is_refused),
-        cmocka_unit_test(test_a_chuck_that_stands_nowhere_is_refused),
-        cmocka_unit_test(test_the_robots_mount_is_not_looked_at),
-        cmocka_unit_test(test_bad_limits_are_refused),
-        cmocka_unit_test(test_each_axis_has_its_own_limits),
-        cmocka_unit_test(test_travel_is_checked_on_every_axis),
-        cmocka_unit_test(test_the_robots_gripper_is_the_robots_effector),
-        cmocka_unit_test(test_a_chuck_turns_about_its_own_z),
-        cmocka_unit_test(test_a_chuck_has_a_pose_over_its_whole_travel),
+        cmocka_unit_test(a_shifted_gripper_sits_beside_the_effector),
+        cmocka_unit_test(a_gripper_that_is_not_shifted_is_the_effector),
+        cmocka_unit_test(a_tilted_or_broken_shift_is_refused),
+        cmocka_unit_test(the_slightest_tilt_shows),
+        cmocka_unit_test(the_inverse_brings_each_gripper_there),
+        cmocka_unit_test(the_inverse_refuses_what_the_robots_does),
+        cmocka_unit_test(a_sound_machine_passes),
+        cmocka_unit_test(null_is_refused),
+        cmocka_unit_test(counts_out_of_range_are_refused),
+        cmocka_unit_test(the_greatest_counts_pass),
+        cmocka_unit_test(the_least_counts_pass),
+        cmocka_unit_test(every_mount_is_looked_at),
+        cmocka_unit_test(each_gripper_has_its_pose),
+        cmocka_unit_test(a_mount_on_no_chuck_axis_is_refused),
+        cmocka_unit_test(a_chuck_that_stands_nowhere_is_refused),
+        cmocka_unit_test(the_robots_mount_is_not_looked_at),
+        cmocka_unit_test(bad_limits_are_refused),
+        cmocka_unit_test(each_axis_has_its_own_limits),
+        cmocka_unit_test(travel_is_checked_on_every_axis),
+        cmocka_unit_test(the_robots_gripper_is_the_robots_effector),
+        cmocka_unit_test(a_chuck_turns_about_its_own_z),
+        cmocka_unit_test(a_chuck_has_a_pose_over_its_whole_travel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -49,7 +49,7 @@ static int64_t dwell(wh_track_t *track, double seconds) {
     return play(track, &segment);
 }
 
-static void test_starts_at_home_with_closed_valves(void **state) {
+static void starts_at_home_with_closed_valves(void **state) {
     (void)state;
     const wh_track_t track = begin_track(1000);
     const wh_real_t home[] = {0, 300, 900, 0, 0, 0, 0, 0};
@@ -61,7 +61,7 @@ static void test_starts_at_home_with_closed_valves(void **state) {
     assert_ptr_equal(track.machine, &machine);
 }
 
-static void test_init_refuses_and_leaves_the_track(void **state) {
+static void init_refuses_and_leaves_the_track(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
     const wh_track_t before = track;
@@ -76,7 +76,7 @@ static void test_init_refuses_and_leaves_the_track(void **state) {
     assert_memory_equal(&track, &before, sizeof track);
 }
 
-static void test_a_blank_segment_changes_nothing(void **state) {
+static void a_blank_segment_changes_nothing(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
@@ -99,7 +99,7 @@ static void test_a_blank_segment_changes_nothing(void **state) {
 }
 
 /* 2.007 * 1e6 is 2007000.0000000002 in double: rounding must not cost a slice. */
-static void test_a_whole_number_of_slices_is_just_that_many(void **state) {
+static void a_whole_number_of_slices_is_just_that_many(void **state) {
     (void)state;
     static const int64_t slices_us[] = {1, 250, 1000, 10000};
     for (size_t i = 0; i < sizeof slices_us / sizeof slices_us[0]; ++i) {
@@ -112,7 +112,7 @@ static void test_a_whole_number_of_slices_is_just_that_many(void **state) {
     assert_int_equal(dwell(&track, 2.007), 2007);
 }
 
-static void test_a_dwell_is_rounded_up(void **state) {
+static void a_dwell_is_rounded_up(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
     assert_int_equal(dwell(&track, 0), 0);
@@ -124,7 +124,7 @@ static void test_a_dwell_is_rounded_up(void **state) {
 }
 
 /* Whatever the slice, the last one has the target's very bits, and is the first at or after the duration. */
-static void test_moves_end_on_the_targets_bits(void **state) {
+static void moves_end_on_the_targets_bits(void **state) {
     (void)state;
     for (int i = 0; i < 400; ++i) {
         wh_track_t track = begin_track(1 + (int64_t)wh_test_below(20000));
@@ -144,7 +144,7 @@ static void test_moves_end_on_the_targets_bits(void **state) {
 }
 
 /* Slice by slice where the move is at that time, and at its end in the last. */
-static void test_each_slice_of_a_move_is_on_its_plan(void **state) {
+static void each_slice_of_a_move_is_on_its_plan(void **state) {
     (void)state;
     wh_track_t track = begin_track(7000);
     wh_limits_t limits[WH_AXES];
@@ -166,7 +166,7 @@ static void test_each_slice_of_a_move_is_on_its_plan(void **state) {
     assert_int_equal(track.slice, ceil((double)wh_move_duration(&move) / 0.007));
 }
 
-static void test_each_slice_of_a_line_is_on_its_plan(void **state) {
+static void each_slice_of_a_line_is_on_its_plan(void **state) {
     (void)state;
     wh_track_t track = begin_track(7000);
     wh_segment_t segment = blank(&track, WH_SEGMENT_LINE);
@@ -183,7 +183,7 @@ static void test_each_slice_of_a_line_is_on_its_plan(void **state) {
     assert_int_equal(track.slice, ceil((double)wh_line_duration(&line) / 0.007));
 }
 
-static void test_a_line_ends_on_its_end(void **state) {
+static void a_line_ends_on_its_end(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
     wh_segment_t segment = blank(&track, WH_SEGMENT_LINE);
@@ -199,7 +199,7 @@ static void test_a_line_ends_on_its_end(void **state) {
     assert_near(track.axes[WH_AXIS_Z], 870, 1e-4);
 }
 
-static void test_skipping_equals_playing(void **state) {
+static void skipping_equals_playing(void **state) {
     (void)state;
     wh_track_t played = begin_track(1000);
     wh_track_t skipped = played;
@@ -216,7 +216,7 @@ static void test_skipping_equals_playing(void **state) {
     assert_int_equal(wh_track_next(&skipped, 0), WH_TRACK_DONE);
 }
 
-static void test_valves_take_one_slice(void **state) {
+static void valves_take_one_slice(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
     wh_segment_t segment = blank(&track, WH_SEGMENT_VALVES);
@@ -236,7 +236,7 @@ static void test_valves_take_one_slice(void **state) {
     assert_int_equal(track.valves[1], WH_VALVE_CLOSED);
 }
 
-static void test_a_sensor_ends_the_wait(void **state) {
+static void a_sensor_ends_the_wait(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
     wh_segment_t segment = blank(&track, WH_SEGMENT_SENSOR);
@@ -250,7 +250,7 @@ static void test_a_sensor_ends_the_wait(void **state) {
     assert_int_equal(track.slice, 7);
 }
 
-static void test_a_sensor_that_is_on_takes_no_slice(void **state) {
+static void a_sensor_that_is_on_takes_no_slice(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
     wh_segment_t segment = blank(&track, WH_SEGMENT_SENSOR);
@@ -260,7 +260,7 @@ static void test_a_sensor_that_is_on_takes_no_slice(void **state) {
     assert_int_equal(track.slice, 0);
 }
 
-static void test_a_wait_times_out_after_its_slices(void **state) {
+static void a_wait_times_out_after_its_slices(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
     wh_segment_t segment = blank(&track, WH_SEGMENT_SENSOR);
@@ -329,7 +329,7 @@ static void no_kind(wh_segment_t *s) {
 }
 
 /* What the machine's limits make of a segment: longer than a segment may be, or nothing that can be planned. */
-static void test_slow_axes_are_refused(void **state) {
+static void slow_axes_are_refused(void **state) {
     (void)state;
     static const struct {
         double speed;
@@ -362,7 +362,7 @@ static double slow_seconds(const wh_track_t *track, wh_real_t target) {
 }
 
 /* To the last bit: the way is halved until it takes just 1e6 s. */
-static void test_a_segment_of_just_the_longest_duration(void **state) {
+static void a_segment_of_just_the_longest_duration(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
     machine.chuck_limits.speed = WH_REAL(0x1p-17);
@@ -390,7 +390,7 @@ static void test_a_segment_of_just_the_longest_duration(void **state) {
 }
 
 /* All axes that there can be. */
-static void test_a_move_of_every_axis(void **state) {
+static void a_move_of_every_axis(void **state) {
     (void)state;
     wh_track_t track = begin_track(1000);
     machine.axis_count = WH_AXES;
@@ -404,7 +404,7 @@ static void test_a_move_of_every_axis(void **state) {
 }
 
 /* In the middle of another segment: that one goes on as if nobody had asked. */
-static void test_a_refused_segment_leaves_the_track(void **state) {
+static void a_refused_segment_leaves_the_track(void **state) {
     (void)state;
     static const refusal_t refusals[] = {
         {WH_SEGMENT_AXES, far_target, WH_STATUS_OUT_OF_REACH},
@@ -443,24 +443,24 @@ static void test_a_refused_segment_leaves_the_track(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_starts_at_home_with_closed_valves),
-        cmocka_unit_test(test_init_refuses_and_leaves_the_track),
-        cmocka_unit_test(test_a_blank_segment_changes_nothing),
-        cmocka_unit_test(test_a_whole_number_of_slices_is_just_that_many),
-        cmocka_unit_test(test_a_dwell_is_rounded_up),
-        cmocka_unit_test(test_moves_end_on_the_targets_bits),
-        cmocka_unit_test(test_each_slice_of_a_move_is_on_its_plan),
-        cmocka_unit_test(test_each_slice_of_a_line_is_on_its_plan),
-        cmocka_unit_test(test_a_line_ends_on_its_end),
-        cmocka_unit_test(test_skipping_equals_playing),
-        cmocka_unit_test(test_valves_take_one_slice),
-        cmocka_unit_test(test_a_sensor_ends_the_wait),
-        cmocka_unit_test(test_a_sensor_that_is_on_takes_no_slice),
-        cmocka_unit_test(test_a_wait_times_out_after_its_slices),
-        cmocka_unit_test(test_slow_axes_are_refused),
-        cmocka_unit_test(test_a_segment_of_just_the_longest_duration),
-        cmocka_unit_test(test_a_move_of_every_axis),
-        cmocka_unit_test(test_a_refused_segment_leaves_the_track),
+        cmocka_unit_test(starts_at_home_with_closed_valves),
+        cmocka_unit_test(init_refuses_and_leaves_the_track),
+        cmocka_unit_test(a_blank_segment_changes_nothing),
+        cmocka_unit_test(a_whole_number_of_slices_is_just_that_many),
+        cmocka_unit_test(a_dwell_is_rounded_up),
+        cmocka_unit_test(moves_end_on_the_targets_bits),
+        cmocka_unit_test(each_slice_of_a_move_is_on_its_plan),
+        cmocka_unit_test(each_slice_of_a_line_is_on_its_plan),
+        cmocka_unit_test(a_line_ends_on_its_end),
+        cmocka_unit_test(skipping_equals_playing),
+        cmocka_unit_test(valves_take_one_slice),
+        cmocka_unit_test(a_sensor_ends_the_wait),
+        cmocka_unit_test(a_sensor_that_is_on_takes_no_slice),
+        cmocka_unit_test(a_wait_times_out_after_its_slices),
+        cmocka_unit_test(slow_axes_are_refused),
+        cmocka_unit_test(a_segment_of_just_the_longest_duration),
+        cmocka_unit_test(a_move_of_every_axis),
+        cmocka_unit_test(a_refused_segment_leaves_the_track),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -71,7 +71,7 @@ static void assert_real(json_t *object, const char *key, double value) {
     assert_true(bits_of(json_real_value(found)) == bits_of(value));
 }
 
-static void test_head(void **state) {
+static void head(void **state) {
     static const char *const keys[] = {"format", "ok",          "script", "layout", "slices",
                                        "missed", "simulated_s", "wall_s", "hash",   "throughput",
                                        "split",  "commands",    "wafers", "events", "expectations",
@@ -92,7 +92,7 @@ static void test_head(void **state) {
     json_decref(root);
 }
 
-static void test_empty(void **state) {
+static void empty(void **state) {
     static fixture_t f;
     (void)state;
     fixture_empty(&f);
@@ -107,7 +107,7 @@ static void test_empty(void **state) {
     json_decref(root);
 }
 
-static void test_failure_and_commands(void **state) {
+static void failure_and_commands(void **state) {
     static const char *const keys[] = {"line", "text", "error", "begin_s", "end_s", "split", NULL};
     static const char *const keys_failed[] = {"line",  "text",  "error",   "begin_s",
                                               "end_s", "split", "message", NULL};
@@ -128,7 +128,7 @@ static void test_failure_and_commands(void **state) {
     json_decref(root);
 }
 
-static void test_wafers(void **state) {
+static void wafers_are_written(void **state) {
     static const char *const keys[] = {"name", "holder",   "station",   "slot",     "dx",       "dy",
                                        "dz",   "tilt_deg", "notch_deg", "position", "rotation", NULL};
     static const char *const nulls[] = {"holder", "station", "slot", "dx", "dy", "dz", "tilt_deg"};
@@ -166,7 +166,7 @@ static void test_wafers(void **state) {
     "utime", "kind", "wafer", "gripper", "dr_proj_z", "dr_proj_xy", "dr_proj_xy_norm", "n1_proj_n2",         \
         "margins", "failed", "measured_utime"
 
-static void test_event_kinds(void **state) {
+static void event_kinds(void **state) {
     static const char *const picked[] = {EVENT_KEYS, NULL};
     static const char *const handed_over[] = {EVENT_KEYS, "from", NULL};
     static const char *const contested[] = {EVENT_KEYS, "holder", NULL};
@@ -196,7 +196,7 @@ static void test_event_kinds(void **state) {
     json_decref(root);
 }
 
-static void test_event_values(void **state) {
+static void event_values(void **state) {
     static fixture_t f;
     (void)state;
     fixture_failed(&f);
@@ -223,7 +223,7 @@ static void test_event_values(void **state) {
 }
 
 /* Degrees, as the layout has its limit and a wafer its tilt. */
-static void test_askew_in_degrees(void **state) {
+static void askew_in_degrees(void **state) {
     static fixture_t f;
     (void)state;
     fixture_failed(&f);
@@ -242,7 +242,7 @@ static void test_askew_in_degrees(void **state) {
     json_decref(root);
 }
 
-static void test_expectations(void **state) {
+static void expectations_are_written(void **state) {
     static const char *const keys[] = {"line", "text", "ok", NULL};
     static fixture_t f;
     (void)state;
@@ -258,7 +258,7 @@ static void test_expectations(void **state) {
 }
 
 /* Text may be anything, and NaN is no JSON. */
-static void test_hostile_values(void **state) {
+static void hostile_values(void **state) {
     static char wrong[] = "a\xff\xc3\xa4\xe2\x82 \x1b\"\n\xed\xa0\x80", broken[] = "\xf0\x9f";
     static fixture_t f;
     (void)state;
@@ -281,7 +281,7 @@ static void test_hostile_values(void **state) {
     json_decref(root);
 }
 
-static void test_write_error(void **state) {
+static void write_error(void **state) {
     static fixture_t f;
     (void)state;
     FILE *full = fopen("/dev/full", "w");
@@ -316,7 +316,7 @@ static double random_double(uint64_t *state) {
     return value;
 }
 
-static void test_doubles_return_bit_for_bit(void **state) {
+static void doubles_return_bit_for_bit(void **state) {
     static const double special[] = {0.0, -0.0, DBL_MAX, -DBL_MAX, DBL_MIN, -DBL_MIN, 4.9e-324, -4.9e-324};
     enum { COMMANDS = 50000 };
     static wh_command_record_t commands[COMMANDS];
@@ -340,17 +340,17 @@ static void test_doubles_return_bit_for_bit(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_head),
-        cmocka_unit_test(test_empty),
-        cmocka_unit_test(test_failure_and_commands),
-        cmocka_unit_test(test_wafers),
-        cmocka_unit_test(test_event_kinds),
-        cmocka_unit_test(test_event_values),
-        cmocka_unit_test(test_askew_in_degrees),
-        cmocka_unit_test(test_expectations),
-        cmocka_unit_test(test_hostile_values),
-        cmocka_unit_test(test_write_error),
-        cmocka_unit_test(test_doubles_return_bit_for_bit),
+        cmocka_unit_test(head),
+        cmocka_unit_test(empty),
+        cmocka_unit_test(failure_and_commands),
+        cmocka_unit_test(wafers_are_written),
+        cmocka_unit_test(event_kinds),
+        cmocka_unit_test(event_values),
+        cmocka_unit_test(askew_in_degrees),
+        cmocka_unit_test(expectations_are_written),
+        cmocka_unit_test(hostile_values),
+        cmocka_unit_test(write_error),
+        cmocka_unit_test(doubles_return_bit_for_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

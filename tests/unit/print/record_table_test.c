@@ -39,7 +39,7 @@ static void assert_silent(const char *text, const char *unwanted) {
     }
 }
 
-static void test_transfer(void **state) {
+static void transfer(void **state) {
     static fixture_t f;
     (void)state;
     fixture_transfer(&f);
@@ -70,7 +70,7 @@ static void test_transfer(void **state) {
     free(text);
 }
 
-static void test_failed_run(void **state) {
+static void failed_run(void **state) {
     static fixture_t f;
     (void)state;
     fixture_failed(&f);
@@ -90,7 +90,7 @@ static void test_failed_run(void **state) {
     free(text);
 }
 
-static void test_handover(void **state) {
+static void handover(void **state) {
     static fixture_t f;
     (void)state;
     fixture_failed(&f);
@@ -107,7 +107,7 @@ static void test_handover(void **state) {
     free(text);
 }
 
-static void test_empty(void **state) {
+static void empty(void **state) {
     static fixture_t f;
     (void)state;
     fixture_empty(&f);
@@ -119,7 +119,7 @@ static void test_empty(void **state) {
 }
 
 /* Events without a layout have no names and no limits, and are shown all the same. */
-static void test_events_without_layout(void **state) {
+static void events_without_layout(void **state) {
     static fixture_t f;
     (void)state;
     fixture_failed(&f);
@@ -132,7 +132,7 @@ static void test_events_without_layout(void **state) {
     free(text);
 }
 
-static void test_limits_come_from_the_layout(void **state) {
+static void limits_come_from_the_layout(void **state) {
     static fixture_t f;
     (void)state;
     fixture_transfer(&f);
@@ -149,7 +149,7 @@ static void test_limits_come_from_the_layout(void **state) {
 }
 
 /* A value that rounding would put onto its limit or across it gets more decimals. */
-static void test_digits_do_not_hide_the_verdict(void **state) {
+static void digits_do_not_hide_the_verdict(void **state) {
     static fixture_t f;
     (void)state;
     fixture_transfer(&f);
@@ -162,7 +162,7 @@ static void test_digits_do_not_hide_the_verdict(void **state) {
     free(text);
 }
 
-static void test_offsets_show_a_nanometre(void **state) {
+static void offsets_show_a_nanometre(void **state) {
     static fixture_t f;
     (void)state;
     fixture_transfer(&f);
@@ -174,7 +174,7 @@ static void test_offsets_show_a_nanometre(void **state) {
     free(text);
 }
 
-static void test_digits(void **state) {
+static void digits(void **state) {
     const wh_grid_digits_t offset = {4, 9, false, 0}, limited = {4, 4, true, 50};
     char text[WH_GRID_NUMBER_SIZE];
     (void)state;
@@ -193,7 +193,7 @@ static void test_digits(void **state) {
 }
 
 /* Equality fails, and the words say so. */
-static void test_equal_to_the_limit(void **state) {
+static void equal_to_the_limit(void **state) {
     static fixture_t f;
     (void)state;
     fixture_begin(&f);
@@ -242,7 +242,7 @@ static void assert_left_aligned(const wchar_t *line, size_t begin) {
     assert_true(line[begin] != L' ' && line[begin - 1] == L' ' && line[begin - 2] == L' ');
 }
 
-static void test_columns_line_up(void **state) {
+static void columns_line_up(void **state) {
     static const wchar_t *const numbers[] = {L"line",
                                              L"begin s",
                                              L"end s",
@@ -291,7 +291,7 @@ static void remove_escapes(char *text) {
     *to = '\0';
 }
 
-static void test_colour_only_when_asked(void **state) {
+static void colour_only_when_asked(void **state) {
     const wh_style_t colourful = {true, true, 0};
     static fixture_t f;
     (void)state;
@@ -326,7 +326,7 @@ static size_t widest_line(const char *text, const char *from, const char *to) {
 }
 
 /* On a narrow terminal tables are split, never cut: each number is still there. */
-static void test_narrow_terminal(void **state) {
+static void narrow_terminal(void **state) {
     static fixture_t f;
     (void)state;
     fixture_transfer(&f);
@@ -344,7 +344,7 @@ static void test_narrow_terminal(void **state) {
 }
 
 /* The values of the check stay side by side on an ordinary terminal. */
-static void test_measured_columns_stay_together(void **state) {
+static void measured_columns_stay_together(void **state) {
     const wh_style_t terminal = {false, true, 80};
     static fixture_t f;
     (void)state;
@@ -356,7 +356,7 @@ static void test_measured_columns_stay_together(void **state) {
     free(text);
 }
 
-static void test_ascii(void **state) {
+static void ascii_serves_where_utf8_does_not(void **state) {
     const wh_style_t ascii = {false, false, 0};
     static fixture_t f;
     (void)state;
@@ -372,7 +372,7 @@ static void test_ascii(void **state) {
 }
 
 /* What a script wrote reaches the terminal as text. */
-static void test_hostile_text(void **state) {
+static void hostile_text(void **state) {
     static char script[] = "a\033[2Jb", failure[] = "line 1\nline 2\t\x9b\xff";
     static fixture_t f;
     (void)state;
@@ -389,7 +389,7 @@ static void test_hostile_text(void **state) {
 }
 
 /* What happened between commands is not lost, and a command may take more than one wafer. */
-static void test_rows_of_events(void **state) {
+static void rows_of_events(void **state) {
     static fixture_t f;
     (void)state;
     fixture_transfer(&f);
@@ -402,7 +402,7 @@ static void test_rows_of_events(void **state) {
     free(text);
 }
 
-static void test_many_wafers(void **state) {
+static void many_wafers(void **state) {
     enum { MANY = 2000 };
     static wh_layout_wafer_t layout_wafers[MANY];
     static wh_wafer_record_t wafers[MANY];
@@ -426,7 +426,7 @@ static void test_many_wafers(void **state) {
     free(text);
 }
 
-static void test_same_record_same_bytes(void **state) {
+static void same_record_same_bytes(void **state) {
     static fixture_t f;
     (void)state;
     fixture_failed(&f);
@@ -437,7 +437,7 @@ static void test_same_record_same_bytes(void **state) {
     free(second);
 }
 
-static void test_write_error(void **state) {
+static void write_error(void **state) {
     static fixture_t f;
     (void)state;
     FILE *full = fopen("/dev/full", "w");
@@ -451,26 +451,26 @@ static void test_write_error(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_transfer),
-        cmocka_unit_test(test_failed_run),
-        cmocka_unit_test(test_handover),
-        cmocka_unit_test(test_empty),
-        cmocka_unit_test(test_events_without_layout),
-        cmocka_unit_test(test_limits_come_from_the_layout),
-        cmocka_unit_test(test_digits_do_not_hide_the_verdict),
-        cmocka_unit_test(test_offsets_show_a_nanometre),
-        cmocka_unit_test(test_digits),
-        cmocka_unit_test(test_equal_to_the_limit),
-        cmocka_unit_test(test_columns_line_up),
-        cmocka_unit_test(test_colour_only_when_asked),
-        cmocka_unit_test(test_narrow_terminal),
-        cmocka_unit_test(test_measured_columns_stay_together),
-        cmocka_unit_test(test_ascii),
-        cmocka_unit_test(test_hostile_text),
-        cmocka_unit_test(test_rows_of_events),
-        cmocka_unit_test(test_many_wafers),
-        cmocka_unit_test(test_same_record_same_bytes),
-        cmocka_unit_test(test_write_error),
+        cmocka_unit_test(transfer),
+        cmocka_unit_test(failed_run),
+        cmocka_unit_test(handover),
+        cmocka_unit_test(empty),
+        cmocka_unit_test(events_without_layout),
+        cmocka_unit_test(limits_come_from_the_layout),
+        cmocka_unit_test(digits_do_not_hide_the_verdict),
+        cmocka_unit_test(offsets_show_a_nanometre),
+        cmocka_unit_test(digits),
+        cmocka_unit_test(equal_to_the_limit),
+        cmocka_unit_test(columns_line_up),
+        cmocka_unit_test(colour_only_when_asked),
+        cmocka_unit_test(narrow_terminal),
+        cmocka_unit_test(measured_columns_stay_together),
+        cmocka_unit_test(ascii_serves_where_utf8_does_not),
+        cmocka_unit_test(hostile_text),
+        cmocka_unit_test(rows_of_events),
+        cmocka_unit_test(many_wafers),
+        cmocka_unit_test(same_record_same_bytes),
+        cmocka_unit_test(write_error),
     };
     if (!setlocale(LC_CTYPE, "C.UTF-8") && !setlocale(LC_CTYPE, "C.utf8")) {
         print_error("no UTF-8 locale\n");

@@ -154,7 +154,7 @@ static void change_something(uint64_t what, size_t g) {
     }
 }
 
-static void test_each_change_alone(void **state) {
+static void each_change_alone(void **state) {
     (void)state;
     for (int i = 0; i < SLICES; ++i) {
         change_something(wh_test_below(12), wh_test_below(GRIPPERS));
@@ -164,7 +164,7 @@ static void test_each_change_alone(void **state) {
     compare();
 }
 
-static void test_several_changes_at_once(void **state) {
+static void several_changes_at_once(void **state) {
     (void)state;
     for (int i = 0; i < SLICES / 4; ++i) {
         for (uint64_t k = wh_test_below(5); k > 0; --k) {
@@ -177,7 +177,7 @@ static void test_several_changes_at_once(void **state) {
 }
 
 /* The end ends all, also what then goes on just as it did. */
-static void test_what_goes_on_after_an_end_begins_anew(void **state) {
+static void what_goes_on_after_an_end_begins_anew(void **state) {
     (void)state;
     task.moves = task.robot = true;
     task.carried = 3;
@@ -193,7 +193,7 @@ static void test_what_goes_on_after_an_end_begins_anew(void **state) {
 }
 
 /* A slice like nothing at all is counted, too, and as what it is. */
-static void test_the_first_slice_is_like_no_other(void **state) {
+static void the_first_slice_is_like_no_other(void **state) {
     (void)state;
     for (size_t g = 0; g < GRIPPERS; ++g) {
         grippers[g].wafer = 0;
@@ -207,10 +207,10 @@ static void test_the_first_slice_is_like_no_other(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_each_change_alone, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_several_changes_at_once, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_what_goes_on_after_an_end_begins_anew, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(test_the_first_slice_is_like_no_other, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(each_change_alone, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(several_changes_at_once, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(what_goes_on_after_an_end_begins_anew, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_first_slice_is_like_no_other, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

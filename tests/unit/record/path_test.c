@@ -63,7 +63,7 @@ static void step_to(uint64_t slice) {
     }
 }
 
-static void test_bins_hold_the_gaps_at_their_ends(void **state) {
+static void bins_hold_the_gaps_at_their_ends(void **state) {
     (void)state;
     const wh_curves_t *curves = wh_world_curves(world);
     assert_int_equal(curves->first, 0);
@@ -80,7 +80,7 @@ static void test_bins_hold_the_gaps_at_their_ends(void **state) {
 }
 
 /* Slice 1003 is the run's smallest gap, and within a bin. */
-static void test_smallest_gap_is_in_its_bin(void **state) {
+static void smallest_gap_is_in_its_bin(void **state) {
     (void)state;
     step_to(1002);
     ++table.slice;
@@ -95,7 +95,7 @@ static void test_smallest_gap_is_in_its_bin(void **state) {
     assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][101], height_in(1020), 1e-3);
 }
 
-static void test_full_bins_become_half_as_many(void **state) {
+static void full_bins_become_half_as_many(void **state) {
     (void)state;
     const wh_curves_t *curves = wh_world_curves(world);
     step_to(10 * WH_CURVE_BINS - 1);
@@ -114,7 +114,7 @@ static void test_full_bins_become_half_as_many(void **state) {
     assert_int_equal(curves->slices, 40);
 }
 
-static void test_lost_slices_leave_no_gap(void **state) {
+static void lost_slices_leave_no_gap(void **state) {
     (void)state;
     const wh_curves_t *curves = wh_world_curves(world);
     step_to(20);
@@ -131,10 +131,10 @@ static void test_lost_slices_leave_no_gap(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_bins_hold_the_gaps_at_their_ends, open_world, close_world),
-        cmocka_unit_test_setup_teardown(test_smallest_gap_is_in_its_bin, open_world, close_world),
-        cmocka_unit_test_setup_teardown(test_lost_slices_leave_no_gap, open_world, close_world),
-        cmocka_unit_test_setup_teardown(test_full_bins_become_half_as_many, open_world, close_world),
+        cmocka_unit_test_setup_teardown(bins_hold_the_gaps_at_their_ends, open_world, close_world),
+        cmocka_unit_test_setup_teardown(smallest_gap_is_in_its_bin, open_world, close_world),
+        cmocka_unit_test_setup_teardown(lost_slices_leave_no_gap, open_world, close_world),
+        cmocka_unit_test_setup_teardown(full_bins_become_half_as_many, open_world, close_world),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

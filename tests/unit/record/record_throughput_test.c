@@ -75,7 +75,7 @@ static void assert_says(const char *text, const char *wanted) {
 }
 
 /* 49 columns and a label of 8: 40 columns of 250 slices. */
-static void test_gantt(void **state) {
+static void gantt_shows_the_commands(void **state) {
     const wh_style_t style = {false, true, 50};
     (void)state;
     begin();
@@ -95,7 +95,7 @@ static void test_gantt(void **state) {
     free(text);
 }
 
-static void test_gantt_in_ascii(void **state) {
+static void gantt_in_ascii(void **state) {
     const wh_style_t style = {false, false, 50};
     (void)state;
     begin();
@@ -115,7 +115,7 @@ static void test_gantt_in_ascii(void **state) {
 }
 
 /* Without a terminal it has 100 columns, on the narrowest 20, and never a blank at a line's end. */
-static void test_gantt_at_any_width(void **state) {
+static void gantt_at_any_width(void **state) {
     (void)state;
     begin();
     for (size_t width = 0; width < 200; ++width) {
@@ -130,7 +130,7 @@ static void test_gantt_at_any_width(void **state) {
     }
 }
 
-static void test_times(void **state) {
+static void times(void **state) {
     const wh_style_t style = {false, true, 0};
     (void)state;
     begin();
@@ -143,7 +143,7 @@ static void test_times(void **state) {
     free(text);
 }
 
-static void test_sections_are_asked_for(void **state) {
+static void sections_are_asked_for(void **state) {
     const wh_style_t style = {false, true, 0};
     (void)state;
     begin();
@@ -156,7 +156,7 @@ static void test_sections_are_asked_for(void **state) {
     free(text);
 }
 
-static void test_wafers_per_hour(void **state) {
+static void wafers_per_hour_are_counted(void **state) {
     const wh_style_t style = {false, true, 0};
     const wh_put_record_t put = {1, FIXTURE_P, 1, 10000};
     const wh_put_record_t early = {0, FIXTURE_P, 1, 4000};
@@ -194,7 +194,7 @@ static void fill_reach(void) {
     f.record.reach = reach;
 }
 
-static void test_margins(void **state) {
+static void margins(void **state) {
     const wh_style_t style = {false, true, 0};
     (void)state;
     begin();
@@ -235,7 +235,7 @@ static const json_t *element(const json_t *root, const char *list, size_t i) {
     return json_array_get(json_object_get(root, list), i);
 }
 
-static void test_json_sums(void **state) {
+static void json_sums(void **state) {
     const wh_put_record_t put = {1, FIXTURE_P, 1, 10000};
     (void)state;
     begin();
@@ -261,7 +261,7 @@ static void test_json_sums(void **state) {
     json_decref(root);
 }
 
-static void test_json_gantt(void **state) {
+static void json_gantt(void **state) {
     (void)state;
     begin();
     json_t *root = reread();
@@ -284,7 +284,7 @@ static void test_json_gantt(void **state) {
     json_decref(root);
 }
 
-static void test_json_reach(void **state) {
+static void json_reach(void **state) {
     (void)state;
     begin();
     fill_reach();
@@ -299,7 +299,7 @@ static void test_json_reach(void **state) {
     json_decref(root);
 }
 
-static void test_json_of_nothing(void **state) {
+static void json_of_nothing(void **state) {
     (void)state;
     fixture_empty(&f);
     json_t *root = reread();
@@ -314,17 +314,17 @@ static void test_json_of_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_gantt),
-        cmocka_unit_test(test_gantt_in_ascii),
-        cmocka_unit_test(test_gantt_at_any_width),
-        cmocka_unit_test(test_times),
-        cmocka_unit_test(test_sections_are_asked_for),
-        cmocka_unit_test(test_wafers_per_hour),
-        cmocka_unit_test(test_margins),
-        cmocka_unit_test(test_json_sums),
-        cmocka_unit_test(test_json_gantt),
-        cmocka_unit_test(test_json_reach),
-        cmocka_unit_test(test_json_of_nothing),
+        cmocka_unit_test(gantt_shows_the_commands),
+        cmocka_unit_test(gantt_in_ascii),
+        cmocka_unit_test(gantt_at_any_width),
+        cmocka_unit_test(times),
+        cmocka_unit_test(sections_are_asked_for),
+        cmocka_unit_test(wafers_per_hour_are_counted),
+        cmocka_unit_test(margins),
+        cmocka_unit_test(json_sums),
+        cmocka_unit_test(json_gantt),
+        cmocka_unit_test(json_reach),
+        cmocka_unit_test(json_of_nothing),
     };
     if (!setlocale(LC_CTYPE, "C.UTF-8") && !setlocale(LC_CTYPE, "C.utf8")) {
         print_error("no UTF-8 locale\n");

@@ -215,7 +215,7 @@ static void check_events(size_t expected) {
     assert_int_equal(measured, expected);
 }
 
-static void test_transfer(void **state) {
+static void transfer(void **state) {
     (void)state;
     play("lua/examples/01_transfer.lua");
     check_all();
@@ -223,14 +223,14 @@ static void test_transfer(void **state) {
     assert_int_equal(signals.mark_count, 0);
 }
 
-static void test_prealigner(void **state) {
+static void prealigner(void **state) {
     (void)state;
     play("lua/examples/02_prealigner.lua");
     check_all();
     check_events(5);
 }
 
-static void test_missed_pick(void **state) {
+static void missed_pick(void **state) {
     (void)state;
     play("lua/examples/03_missed_pick.lua");
     check_all();
@@ -240,7 +240,7 @@ static void test_missed_pick(void **state) {
     assert_true(signals.marks[0].has_place);
 }
 
-static void test_vacuum_that_leaks(void **state) {
+static void vacuum_that_leaks(void **state) {
     (void)state;
     play("lua/examples/05_leak.lua");
     check_all();
@@ -249,7 +249,7 @@ static void test_vacuum_that_leaks(void **state) {
 /* ------------------------------------------------------------------------------------------------ own poses */
 
 /* From where a gripper leaves what the axes say, it is shown where it is. */
-static void test_a_gripper_that_is_elsewhere(void **state) {
+static void a_gripper_that_is_elsewhere(void **state) {
     (void)state;
     play("lua/examples/01_transfer.lua");
     const wh_layout_t *layout = signals.layout;
@@ -326,7 +326,7 @@ static const json_t *node(const json_t *scene, const char *name) {
     return NULL;
 }
 
-static void test_scene(void **state) {
+static void a_scene_is_made(void **state) {
     (void)state;
     static const char *const names[] = {"base", "station A", "station B", "station P",
                                         "lift", "upper arm", "forearm",   "hand",
@@ -370,7 +370,7 @@ static double number_at(const json_t *object, const char *key, size_t i) {
     return json_number_value(json_array_get(json_object_get(object, key), i));
 }
 
-static void test_document(void **state) {
+static void a_document_is_made(void **state) {
     (void)state;
     static const char *const parameters[] = {"a=1", "b=x=</script>"};
     play("lua/examples/01_transfer.lua");
@@ -414,13 +414,13 @@ static void test_document(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(test_transfer, close_run),
-        cmocka_unit_test_teardown(test_prealigner, close_run),
-        cmocka_unit_test_teardown(test_missed_pick, close_run),
-        cmocka_unit_test_teardown(test_vacuum_that_leaks, close_run),
-        cmocka_unit_test_teardown(test_a_gripper_that_is_elsewhere, close_run),
-        cmocka_unit_test_teardown(test_scene, close_run),
-        cmocka_unit_test_teardown(test_document, close_run),
+        cmocka_unit_test_teardown(transfer, close_run),
+        cmocka_unit_test_teardown(prealigner, close_run),
+        cmocka_unit_test_teardown(missed_pick, close_run),
+        cmocka_unit_test_teardown(vacuum_that_leaks, close_run),
+        cmocka_unit_test_teardown(a_gripper_that_is_elsewhere, close_run),
+        cmocka_unit_test_teardown(a_scene_is_made, close_run),
+        cmocka_unit_test_teardown(a_document_is_made, close_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,7 +48,7 @@ static void assert_throughput(wh_rank_t rank, size_t wafers, double seconds, siz
     }
 }
 
-static void test_a_record_of_nothing(void **state) {
+static void a_record_of_nothing(void **state) {
     (void)state;
     fixture_empty(&f);
     assert_throughput(WH_RANK_NONE, 0, 0, 0, 0);
@@ -57,7 +57,7 @@ static void test_a_record_of_nothing(void **state) {
     assert_true(wh_throughput(&f.record).wafers_per_hour == 0);
 }
 
-static void test_without_marks_every_put_counts(void **state) {
+static void without_marks_every_put_counts(void **state) {
     (void)state;
     begin(9000);
     add_put(2000, 0, FIXTURE_B, 1);
@@ -67,7 +67,7 @@ static void test_without_marks_every_put_counts(void **state) {
     assert_near(wh_throughput(&f.record).wafers_per_hour, 1200, 1e-9);
 }
 
-static void test_what_is_on_its_way_does_not_count(void **state) {
+static void what_is_on_its_way_does_not_count(void **state) {
     (void)state;
     begin(5000);
     add_put(1000, 0, FIXTURE_P, 1);
@@ -82,7 +82,7 @@ static void test_what_is_on_its_way_does_not_count(void **state) {
     assert_throughput(WH_RANK_FOUP, 1, 5, 0, 0);
 }
 
-static void test_the_first_cycle_is_left_out(void **state) {
+static void the_first_cycle_is_left_out(void **state) {
     (void)state;
     begin(26000);
     add_cycle(1000);
@@ -102,7 +102,7 @@ static void test_the_first_cycle_is_left_out(void **state) {
     assert_true(wh_throughput_cycle_end(&f.record, 2) == 26000);
 }
 
-static void test_an_only_cycle_counts(void **state) {
+static void an_only_cycle_counts(void **state) {
     (void)state;
     begin(8000);
     add_put(1000, 1, FIXTURE_B, 1); /* before the mark */
@@ -111,7 +111,7 @@ static void test_an_only_cycle_counts(void **state) {
     assert_throughput(WH_RANK_SEVERAL, 1, 6, 1, 1);
 }
 
-static void test_cycles_without_a_slice_are_none(void **state) {
+static void cycles_without_a_slice_are_none(void **state) {
     (void)state;
     begin(9000);
     add_cycle(0);
@@ -127,7 +127,7 @@ static void test_cycles_without_a_slice_are_none(void **state) {
     assert_throughput(WH_RANK_SEVERAL, 1, 9, 0, 0);
 }
 
-static void test_a_wafer_counts_once_a_cycle(void **state) {
+static void a_wafer_counts_once_a_cycle(void **state) {
     (void)state;
     begin(30000);
     add_cycle(0);
@@ -167,7 +167,7 @@ static void assert_shares(const int64_t shares[WH_SHARES], int64_t loaded, int64
 
 /* In ms: 2000 to the other station, 1000 in, 174 of the stroke until the wafer is within 0.51 mm, 226 more of it with
  * the wafer, 1 for each valve, 100 of vacuum_delay, 1000 out; a PUT has strokes of 250. */
-static void test_split_of_a_cycle(void **state) {
+static void split_of_a_cycle(void **state) {
     (void)state;
     const wh_record_t *record = play("tests/end_to_end/data/figures_cycles.lua", WH_RUN_MET);
     assert_int_equal(record->command_count, 9);
@@ -183,7 +183,7 @@ static void test_split_of_a_cycle(void **state) {
     assert_true(sum == record->slices);
 }
 
-static void test_throughput_of_cycles(void **state) {
+static void throughput_of_cycles(void **state) {
     (void)state;
     const wh_record_t *record = play("tests/end_to_end/data/figures_cycles.lua", WH_RUN_MET);
     const wh_throughput_t found = wh_throughput(record);
@@ -218,7 +218,7 @@ static void assert_interval(const wh_busy_span_t *found, int32_t what, int64_t f
     assert_int_equal(found->end, to);
 }
 
-static void test_intervals(void **state) {
+static void intervals_add_up(void **state) {
     (void)state;
     const wh_record_t *record = play("tests/end_to_end/data/figures_cycles.lua", WH_RUN_MET);
     assert_interval(interval(record, WH_BUSY_ROBOT, WH_NONE, 0), 1 + WH_SHARE_EMPTY, 0, 1000);
@@ -237,7 +237,7 @@ static void test_intervals(void **state) {
 }
 
 /* Over the prealigner and back to its own slot is one wafer; what is dropped, or not taken, is none. */
-static void test_prealigner_and_drop(void **state) {
+static void prealigner_and_drop(void **state) {
     (void)state;
     const wh_record_t *record = play("tests/end_to_end/data/figures_prealigner.lua", WH_RUN_FAILED);
     const wh_throughput_t found = wh_throughput(record);
@@ -260,7 +260,7 @@ static void test_prealigner_and_drop(void **state) {
 }
 
 /* A SWAP puts one wafer on its way while another comes back: one wafer a cycle, not two. */
-static void test_swap(void **state) {
+static void swap(void **state) {
     (void)state;
     const wh_record_t *record = play("tests/end_to_end/data/figures_swap.lua", WH_RUN_MET);
     assert_int_equal(record->put_count, 5);
@@ -289,7 +289,7 @@ static void assert_reach(const wh_travel_margin_t *found, double margin, double 
     assert_int_equal(found->slot, slot);
 }
 
-static void test_reach(void **state) {
+static void reach_is_the_margin_of_travel(void **state) {
     (void)state;
     const double pi = acos(-1.0);
     const wh_record_t *record = play("tests/end_to_end/data/figures_cycles.lua", WH_RUN_MET);
@@ -305,7 +305,7 @@ static void test_reach(void **state) {
                  true, 1);
 }
 
-static void test_refused_marks(void **state) {
+static void refused_marks(void **state) {
     (void)state;
     const wh_record_t *record = play("tests/end_to_end/data/figures_errors.lua", WH_RUN_MET);
     assert_int_equal(record->expectation_count, 3);
@@ -314,7 +314,7 @@ static void test_refused_marks(void **state) {
 }
 
 /* What a session forgets, and what goes on meanwhile. */
-static void test_forgetting(void **state) {
+static void forgetting(void **state) {
     (void)state;
     static wh_record_t record;
     static const wh_put_record_t put = {0, 1, 1, 5};
@@ -344,21 +344,21 @@ static void test_forgetting(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_record_of_nothing),
-        cmocka_unit_test(test_without_marks_every_put_counts),
-        cmocka_unit_test(test_what_is_on_its_way_does_not_count),
-        cmocka_unit_test(test_the_first_cycle_is_left_out),
-        cmocka_unit_test(test_an_only_cycle_counts),
-        cmocka_unit_test(test_cycles_without_a_slice_are_none),
-        cmocka_unit_test(test_a_wafer_counts_once_a_cycle),
-        cmocka_unit_test_teardown(test_split_of_a_cycle, close_run),
-        cmocka_unit_test_teardown(test_throughput_of_cycles, close_run),
-        cmocka_unit_test_teardown(test_intervals, close_run),
-        cmocka_unit_test_teardown(test_prealigner_and_drop, close_run),
-        cmocka_unit_test_teardown(test_swap, close_run),
-        cmocka_unit_test_teardown(test_reach, close_run),
-        cmocka_unit_test_teardown(test_refused_marks, close_run),
-        cmocka_unit_test(test_forgetting),
+        cmocka_unit_test(a_record_of_nothing),
+        cmocka_unit_test(without_marks_every_put_counts),
+        cmocka_unit_test(what_is_on_its_way_does_not_count),
+        cmocka_unit_test(the_first_cycle_is_left_out),
+        cmocka_unit_test(an_only_cycle_counts),
+        cmocka_unit_test(cycles_without_a_slice_are_none),
+        cmocka_unit_test(a_wafer_counts_once_a_cycle),
+        cmocka_unit_test_teardown(split_of_a_cycle, close_run),
+        cmocka_unit_test_teardown(throughput_of_cycles, close_run),
+        cmocka_unit_test_teardown(intervals_add_up, close_run),
+        cmocka_unit_test_teardown(prealigner_and_drop, close_run),
+        cmocka_unit_test_teardown(swap, close_run),
+        cmocka_unit_test_teardown(reach_is_the_margin_of_travel, close_run),
+        cmocka_unit_test_teardown(refused_marks, close_run),
+        cmocka_unit_test(forgetting),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

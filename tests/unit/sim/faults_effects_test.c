@@ -3,7 +3,7 @@
 
 /* ----------------------------------------------------------------------------------------------------- signals */
 
-static void test_no_vacuum(void **state) {
+static void no_vacuum(void **state) {
     (void)state;
     bring_kind(WH_FAULT_NO_VACUUM, 0);
     pick();
@@ -14,7 +14,7 @@ static void test_no_vacuum(void **state) {
     assert_int_equal(answer.grippers[0].wafer, WH_NONE);
 }
 
-static void test_leak(void **state) {
+static void leak(void **state) {
     (void)state;
     pick();
     assert_int_equal(answer.sensors, 1);
@@ -35,7 +35,7 @@ static void test_leak(void **state) {
 }
 
 /* Each gripper has its own faults. */
-static void test_a_neighbours_faults_do_not_count(void **state) {
+static void a_neighbours_faults_do_not_count(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_LEAK, 1);
     bring(0, &f);
@@ -52,7 +52,7 @@ static void test_a_neighbours_faults_do_not_count(void **state) {
 }
 
 /* Until it begins, and when it is over, commands and sensors go through. */
-static void test_only_while_it_acts(void **state) {
+static void only_while_it_acts(void **state) {
     static const wh_fault_kind_t kinds[] = {WH_FAULT_AXIS_STOPPED, WH_FAULT_COMMAND_LOST,
                                             WH_FAULT_VALVE_STUCK, WH_FAULT_SENSOR_ON};
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {
@@ -73,7 +73,7 @@ static void test_only_while_it_acts(void **state) {
 }
 
 /* The worst of several counts. */
-static void test_several_at_one_gripper(void **state) {
+static void several_at_one_gripper(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_LEAK, 0);
     f.value = WH_REAL(0.6);
@@ -94,7 +94,7 @@ static void test_several_at_one_gripper(void **state) {
     assert_int_equal(answer.sensors, 1);
 }
 
-static void test_sensor_off(void **state) {
+static void sensor_off(void **state) {
     (void)state;
     bring_kind(WH_FAULT_SENSOR_OFF, 0);
     pick();
@@ -103,7 +103,7 @@ static void test_sensor_off(void **state) {
     assert_null(find(WH_EVENT_VACUUM_LOST));
 }
 
-static void test_a_valve_stuck(void **state) {
+static void a_valve_stuck(void **state) {
     (void)state;
     bring_kind(WH_FAULT_VALVE_STUCK, 0);
     step(900, OPEN);
@@ -121,7 +121,7 @@ static void test_a_valve_stuck(void **state) {
     assert_int_equal(answer.condition->told[0], CLOSED);
 }
 
-static void test_axes_stopped(void **state) {
+static void axes_stopped(void **state) {
     (void)state;
     step(880, OPEN);
     bring_kind(WH_FAULT_AXIS_STOPPED, 0);
@@ -132,7 +132,7 @@ static void test_axes_stopped(void **state) {
     assert_int_equal(answer.grippers[0].wafer, WH_NONE);
 }
 
-static void test_a_command_lost(void **state) {
+static void a_command_lost(void **state) {
     (void)state;
     step(880, OPEN);
     wh_fault_t f = fault_of(WH_FAULT_COMMAND_LOST, WH_NONE);
@@ -148,7 +148,7 @@ static void test_a_command_lost(void **state) {
     assert_int_equal(answer.grippers[0].wafer, 0);
 }
 
-static void test_in_the_first_slice_nothing_was_before(void **state) {
+static void in_the_first_slice_nothing_was_before(void **state) {
     (void)state;
     bring_kind(WH_FAULT_AXIS_STOPPED, 0);
     step(890, OPEN);
@@ -165,7 +165,7 @@ static void clear_slot(int32_t index) {
     bring(index, &f);
 }
 
-static void test_a_wafer_is_moved_and_put_back(void **state) {
+static void a_wafer_is_moved_and_put_back(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
     f.offset = wh_test_at(3, -4, 5);
@@ -183,7 +183,7 @@ static void test_a_wafer_is_moved_and_put_back(void **state) {
 }
 
 /* Two rotations that each just pass, but not their product. */
-static void test_a_turn_that_just_passes_is_mended(void **state) {
+static void a_turn_that_just_passes_is_mended(void **state) {
     (void)state;
     wh_pose_t worn = wh_test_at(700, 0, 900);
     wh_fault_t f = fault_of(WH_FAULT_WAFER_TILTED, 0);
@@ -198,7 +198,7 @@ static void test_a_turn_that_just_passes_is_mended(void **state) {
     assert_non_null(find(WH_EVENT_FAULT_ARMED));
 }
 
-static void test_doubled_is_onto_the_other(void **state) {
+static void doubled_is_onto_the_other(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_WAFER_DOUBLED, 0);
     f.other = 1;
@@ -209,7 +209,7 @@ static void test_doubled_is_onto_the_other(void **state) {
 }
 
 /* A wafer that somebody took meanwhile stays where it came to. */
-static void test_a_wafer_that_was_taken_is_not_put_back(void **state) {
+static void a_wafer_that_was_taken_is_not_put_back(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
     f.offset = wh_test_at(3, 0, 0);
@@ -236,7 +236,7 @@ static void test_a_wafer_that_was_taken_is_not_put_back(void **state) {
 }
 
 /* Of two faults of one wafer the first may end first, or both at once: in the end it lies where it lay before both. */
-static void test_two_faults_of_one_wafer(void **state) {
+static void two_faults_of_one_wafer(void **state) {
     (void)state;
     for (int together = 0; together < 2; ++together) {
         wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
@@ -273,7 +273,7 @@ static void expect_x_after_clearing(int32_t slot, double x) {
 }
 
 /* Each hands on where it lay to the one that moved it next, and to none of the others. */
-static void test_three_faults_of_one_wafer_among_others(void **state) {
+static void three_faults_of_one_wafer_among_others(void **state) {
     (void)state;
     wh_fault_t waiting = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
     waiting.from = 1000;
@@ -296,7 +296,7 @@ static void test_three_faults_of_one_wafer_among_others(void **state) {
 }
 
 /* The first in the slots is not the only one that acts. */
-static void test_faults_overrule_grippers_each_in_turn(void **state) {
+static void faults_overrule_grippers_each_in_turn(void **state) {
     (void)state;
     step(880, CLOSED);
     const wh_fault_t stuck = fault_of(WH_FAULT_VALVE_STUCK, 1);
@@ -311,7 +311,7 @@ static void test_faults_overrule_grippers_each_in_turn(void **state) {
 }
 
 /* Taken where the fault had put it, it is the gripper's, though it has not moved since. */
-static void test_a_wafer_that_is_held_in_its_place_is_not_put_back(void **state) {
+static void a_wafer_that_is_held_in_its_place_is_not_put_back(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
     f.offset = wh_test_at(7, 0, 0);
@@ -328,7 +328,7 @@ static void test_a_wafer_that_is_held_in_its_place_is_not_put_back(void **state)
     assert_int_equal(simulator.table.counters.refused, 0);
 }
 
-static void test_a_held_wafer_is_waited_for(void **state) {
+static void a_held_wafer_is_waited_for(void **state) {
     (void)state;
     pick();
     bring_kind(WH_FAULT_WAFER_MISSING, 0);
@@ -344,25 +344,25 @@ static void test_a_held_wafer_is_waited_for(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_no_vacuum, set_up),
-        cmocka_unit_test_setup(test_leak, set_up),
-        cmocka_unit_test_setup(test_a_neighbours_faults_do_not_count, set_up),
-        cmocka_unit_test_setup(test_only_while_it_acts, set_up),
-        cmocka_unit_test_setup(test_several_at_one_gripper, set_up),
-        cmocka_unit_test_setup(test_sensor_off, set_up),
-        cmocka_unit_test_setup(test_a_valve_stuck, set_up),
-        cmocka_unit_test_setup(test_axes_stopped, set_up),
-        cmocka_unit_test_setup(test_a_command_lost, set_up),
-        cmocka_unit_test_setup(test_in_the_first_slice_nothing_was_before, set_up),
-        cmocka_unit_test_setup(test_a_wafer_is_moved_and_put_back, set_up),
-        cmocka_unit_test_setup(test_a_turn_that_just_passes_is_mended, set_up),
-        cmocka_unit_test_setup(test_doubled_is_onto_the_other, set_up),
-        cmocka_unit_test_setup(test_a_wafer_that_was_taken_is_not_put_back, set_up),
-        cmocka_unit_test_setup(test_two_faults_of_one_wafer, set_up),
-        cmocka_unit_test_setup(test_three_faults_of_one_wafer_among_others, set_up),
-        cmocka_unit_test_setup(test_faults_overrule_grippers_each_in_turn, set_up),
-        cmocka_unit_test_setup(test_a_wafer_that_is_held_in_its_place_is_not_put_back, set_up),
-        cmocka_unit_test_setup(test_a_held_wafer_is_waited_for, set_up),
+        cmocka_unit_test_setup(no_vacuum, set_up),
+        cmocka_unit_test_setup(leak, set_up),
+        cmocka_unit_test_setup(a_neighbours_faults_do_not_count, set_up),
+        cmocka_unit_test_setup(only_while_it_acts, set_up),
+        cmocka_unit_test_setup(several_at_one_gripper, set_up),
+        cmocka_unit_test_setup(sensor_off, set_up),
+        cmocka_unit_test_setup(a_valve_stuck, set_up),
+        cmocka_unit_test_setup(axes_stopped, set_up),
+        cmocka_unit_test_setup(a_command_lost, set_up),
+        cmocka_unit_test_setup(in_the_first_slice_nothing_was_before, set_up),
+        cmocka_unit_test_setup(a_wafer_is_moved_and_put_back, set_up),
+        cmocka_unit_test_setup(a_turn_that_just_passes_is_mended, set_up),
+        cmocka_unit_test_setup(doubled_is_onto_the_other, set_up),
+        cmocka_unit_test_setup(a_wafer_that_was_taken_is_not_put_back, set_up),
+        cmocka_unit_test_setup(two_faults_of_one_wafer, set_up),
+        cmocka_unit_test_setup(three_faults_of_one_wafer_among_others, set_up),
+        cmocka_unit_test_setup(faults_overrule_grippers_each_in_turn, set_up),
+        cmocka_unit_test_setup(a_wafer_that_is_held_in_its_place_is_not_put_back, set_up),
+        cmocka_unit_test_setup(a_held_wafer_is_waited_for, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,7 @@
 /* Faults on purpose in the simulator: their names, what is refused, when they begin and end. */
 #include "support/faults.h"
 
-static void test_names(void **state) {
+static void faults_have_names(void **state) {
     (void)state;
     for (int i = 0; i < WH_FAULT_KINDS; ++i) {
         const char *name = wh_fault_name((wh_fault_kind_t)i);
@@ -24,7 +24,7 @@ static void refuse_fault(const wh_fault_t *fault, wh_status_t status) {
     assert_true(wh_simulator_hash(&simulator) == hash);
 }
 
-static void test_what_no_cell_can_have_is_refused(void **state) {
+static void what_no_cell_can_have_is_refused(void **state) {
     (void)state;
     wh_fault_t f = fault_of((wh_fault_kind_t)WH_FAULT_KINDS, 0);
     refuse_fault(&f, WH_STATUS_OUT_OF_RANGE);
@@ -57,7 +57,7 @@ static void test_what_no_cell_can_have_is_refused(void **state) {
     refuse_fault(&f, WH_STATUS_NOT_FINITE);
 }
 
-static void test_values_have_their_ranges(void **state) {
+static void values_have_their_ranges(void **state) {
     static const struct {
         wh_fault_kind_t kind;
         double bad[2];
@@ -74,7 +74,7 @@ static void test_values_have_their_ranges(void **state) {
     }
 }
 
-static void test_the_ends_of_the_ranges(void **state) {
+static void the_ends_of_the_ranges(void **state) {
     static const struct {
         wh_fault_kind_t kind;
         double value;
@@ -89,7 +89,7 @@ static void test_the_ends_of_the_ranges(void **state) {
 }
 
 /* Where numbers end, too, a wafer that faults move stays where a table can have it. */
-static void test_no_offset_takes_a_wafer_out_of_the_numbers(void **state) {
+static void no_offset_takes_a_wafer_out_of_the_numbers(void **state) {
     (void)state;
     wh_real_t *const parts[] = {&command.faults[0].fault.offset.r.x, &command.faults[0].fault.offset.r.y,
                                 &command.faults[0].fault.offset.r.z};
@@ -113,7 +113,7 @@ static void test_no_offset_takes_a_wafer_out_of_the_numbers(void **state) {
     assert_int_equal(wh_physics_state_validate(&simulator.condition, GRIPPERS, WAFERS), WH_OK);
 }
 
-static void test_slots(void **state) {
+static void faults_take_slots(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 0);
     bring(-1, &f);
@@ -160,7 +160,7 @@ static void test_slots(void **state) {
 }
 
 /* Neither the fault nor the input that it would overrule. */
-static void test_a_refused_input_brings_no_fault(void **state) {
+static void a_refused_input_brings_no_fault(void **state) {
     (void)state;
     step(880, CLOSED);
     const uint64_t hash = wh_simulator_hash(&simulator);
@@ -175,7 +175,7 @@ static void test_a_refused_input_brings_no_fault(void **state) {
 
 /* ------------------------------------------------------------------------------------------------------- times */
 
-static void test_a_fault_acts_from_and_until(void **state) {
+static void a_fault_acts_from_and_until(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 1);
     f.from = 3;
@@ -190,7 +190,7 @@ static void test_a_fault_acts_from_and_until(void **state) {
 }
 
 /* Told late that it was to end long ago, it ends now. */
-static void test_an_end_that_has_passed(void **state) {
+static void an_end_that_has_passed(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 1);
     bring(0, &f);
@@ -206,7 +206,7 @@ static void test_an_end_that_has_passed(void **state) {
 }
 
 /* Nothing is left of the fault that a slot had before. */
-static void test_a_slot_that_is_used_again_is_new(void **state) {
+static void a_slot_that_is_used_again_is_new(void **state) {
     (void)state;
     static const wh_pose_t none;
     wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 1);
@@ -225,7 +225,7 @@ static void test_a_slot_that_is_used_again_is_new(void **state) {
 }
 
 /* One that is cleared before it began was never there, for whoever reads events. */
-static void test_a_fault_that_never_begins(void **state) {
+static void a_fault_that_never_begins(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 1);
     f.from = 4;
@@ -242,17 +242,17 @@ static void test_a_fault_that_never_begins(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_names, set_up),
-        cmocka_unit_test_setup(test_what_no_cell_can_have_is_refused, set_up),
-        cmocka_unit_test_setup(test_values_have_their_ranges, set_up),
-        cmocka_unit_test_setup(test_the_ends_of_the_ranges, set_up),
-        cmocka_unit_test_setup(test_no_offset_takes_a_wafer_out_of_the_numbers, set_up),
-        cmocka_unit_test_setup(test_slots, set_up),
-        cmocka_unit_test_setup(test_a_refused_input_brings_no_fault, set_up),
-        cmocka_unit_test_setup(test_a_fault_acts_from_and_until, set_up),
-        cmocka_unit_test_setup(test_an_end_that_has_passed, set_up),
-        cmocka_unit_test_setup(test_a_slot_that_is_used_again_is_new, set_up),
-        cmocka_unit_test_setup(test_a_fault_that_never_begins, set_up),
+        cmocka_unit_test_setup(faults_have_names, set_up),
+        cmocka_unit_test_setup(what_no_cell_can_have_is_refused, set_up),
+        cmocka_unit_test_setup(values_have_their_ranges, set_up),
+        cmocka_unit_test_setup(the_ends_of_the_ranges, set_up),
+        cmocka_unit_test_setup(no_offset_takes_a_wafer_out_of_the_numbers, set_up),
+        cmocka_unit_test_setup(faults_take_slots, set_up),
+        cmocka_unit_test_setup(a_refused_input_brings_no_fault, set_up),
+        cmocka_unit_test_setup(a_fault_acts_from_and_until, set_up),
+        cmocka_unit_test_setup(an_end_that_has_passed, set_up),
+        cmocka_unit_test_setup(a_slot_that_is_used_again_is_new, set_up),
+        cmocka_unit_test_setup(a_fault_that_never_begins, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,7 +7,7 @@
 #define HASH UINT64_C(0xf24464e63c42ba4a)
 #endif
 
-static void test_conditions_that_no_simulator_leaves(void **state) {
+static void conditions_that_no_simulator_leaves(void **state) {
     (void)state;
     wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
     bring(0, &f);
@@ -52,7 +52,7 @@ static void test_conditions_that_no_simulator_leaves(void **state) {
 }
 
 /* A fault of gripper 1 where there are 2 grippers and 1 wafer, and the other way round. */
-static void test_grippers_and_wafers_are_counted_apart(void **state) {
+static void grippers_and_wafers_are_counted_apart(void **state) {
     (void)state;
     wh_physics_t physics = wh_physics_default();
     physics.faults[0] = fault_of(WH_FAULT_SENSOR_ON, 1);
@@ -67,7 +67,7 @@ static void test_grippers_and_wafers_are_counted_apart(void **state) {
 
 enum { CHANGES = 19 };
 
-static void test_the_hash_covers_each_word(void **state) {
+static void the_hash_covers_each_word(void **state) {
     (void)state;
     bring_kind(WH_FAULT_WAFER_SHIFTED, 0);
     pick();
@@ -110,7 +110,7 @@ static void test_the_hash_covers_each_word(void **state) {
 }
 
 /* Whoever keeps a run's hashes compares them with those of another machine, another compiler, another year. */
-static void test_the_hash_is_this_number(void **state) {
+static void the_hash_is_this_number(void **state) {
     (void)state;
     wh_fault_t fault = fault_of(WH_FAULT_LEAK, 0);
     fault.value = WH_REAL(0.25);
@@ -128,7 +128,7 @@ static void test_the_hash_is_this_number(void **state) {
     assert_true(wh_physics_state_hash(&some, &simulator.table) == HASH);
 }
 
-static void test_without_any_it_is_the_tables_hash(void **state) {
+static void without_any_it_is_the_tables_hash(void **state) {
     (void)state;
     pick();
     assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
@@ -145,11 +145,11 @@ static void test_without_any_it_is_the_tables_hash(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_conditions_that_no_simulator_leaves, set_up),
-        cmocka_unit_test_setup(test_grippers_and_wafers_are_counted_apart, set_up),
-        cmocka_unit_test_setup(test_the_hash_covers_each_word, set_up),
-        cmocka_unit_test_setup(test_the_hash_is_this_number, set_up),
-        cmocka_unit_test_setup(test_without_any_it_is_the_tables_hash, set_up),
+        cmocka_unit_test_setup(conditions_that_no_simulator_leaves, set_up),
+        cmocka_unit_test_setup(grippers_and_wafers_are_counted_apart, set_up),
+        cmocka_unit_test_setup(the_hash_covers_each_word, set_up),
+        cmocka_unit_test_setup(the_hash_is_this_number, set_up),
+        cmocka_unit_test_setup(without_any_it_is_the_tables_hash, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,7 +55,7 @@ static size_t count(wh_event_kind_t kind) {
     return found;
 }
 
-static void test_what_is_refused(void **state) {
+static void what_is_refused(void **state) {
     (void)state;
     wh_physics_t bad[6] = {physics, physics, physics, physics, physics, physics};
     bad[0].vacuum.on = 0;
@@ -76,7 +76,7 @@ static void test_what_is_refused(void **state) {
 }
 
 /* Random moves and valves: wafers and events of a grasp table alone, bit for bit, and the sensors tell who holds one. */
-static void test_ideal_is_the_paper(void **state) {
+static void ideal_is_the_paper(void **state) {
     static wh_wafer_t plain_wafers[WAFERS];
     static wh_gripper_t plain_grippers[GRIPPERS];
     wh_event_t events[GRIPPERS * WH_EVENTS_PER_GRIPPER];
@@ -108,7 +108,7 @@ static void test_ideal_is_the_paper(void **state) {
     assert_true(held > 10000);
 }
 
-static void test_delayed_goes_its_own_way(void **state) {
+static void delayed_goes_its_own_way(void **state) {
     (void)state;
     physics.vacuum = wh_vacuum_delayed();
     use();
@@ -133,7 +133,7 @@ static void test_delayed_goes_its_own_way(void **state) {
 }
 
 /* One second, and nothing else that takes its time. */
-static void test_a_slow_pump_alone(void **state) {
+static void a_slow_pump_alone(void **state) {
     (void)state;
     physics.vacuum.build = 1;
     use();
@@ -178,7 +178,7 @@ static void run_along(double factor, size_t slips) {
     assert_true(sizeof(wh_real_t) == 4 || begun == slips);
 }
 
-static void test_a_wafer_that_would_slip_is_named(void **state) {
+static void a_wafer_that_would_slip_is_named(void **state) {
     (void)state;
     const double margin = sizeof(wh_real_t) == 4 ? 0.2 : 1e-9;
     run_along(1 - margin, 0);
@@ -186,7 +186,7 @@ static void test_a_wafer_that_would_slip_is_named(void **state) {
 }
 
 /* All grippers take a wafer and jerk it away, in one slice the one, in another the others. */
-static void test_each_gripper_slips_for_itself(void **state) {
+static void each_gripper_slips_for_itself(void **state) {
     (void)state;
     physics.pads.friction = WH_REAL(0.25);
     physics.pads.mass = WH_REAL(0.125);
@@ -216,7 +216,7 @@ static void test_each_gripper_slips_for_itself(void **state) {
 }
 
 /* There a gripper seems to hold a wafer by its vacuum. */
-static void test_what_is_beyond_the_grippers_is_left_alone(void **state) {
+static void what_is_beyond_the_grippers_is_left_alone(void **state) {
     (void)state;
     physics.vacuum = wh_vacuum_delayed();
     use();
@@ -233,7 +233,7 @@ static void test_what_is_beyond_the_grippers_is_left_alone(void **state) {
 }
 
 /* Each fault is told, though many begin in one slice. */
-static void test_all_slots_at_once(void **state) {
+static void all_slots_at_once(void **state) {
     (void)state;
     use();
     simulator.condition.faults.count = WH_FAULTS;
@@ -252,7 +252,7 @@ static void test_all_slots_at_once(void **state) {
 }
 
 /* What the layout has from the beginning. */
-static void test_a_fault_from_the_beginning(void **state) {
+static void a_fault_from_the_beginning(void **state) {
     (void)state;
     wh_fault_t *fault = &physics.faults[0];
     fault->kind = WH_FAULT_WAFER_SHIFTED;
@@ -288,7 +288,7 @@ static void count_placed(void *user, const wh_grasp_t *table, int32_t wafer) {
     ++*placed;
 }
 
-static void test_what_does_not_fit_is_not_told(void **state) {
+static void what_does_not_fit_is_not_told(void **state) {
     (void)state;
     int placed = 0;
     use();
@@ -316,16 +316,16 @@ static void test_what_does_not_fit_is_not_told(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_what_is_refused, set_up),
-        cmocka_unit_test_setup(test_ideal_is_the_paper, set_up),
-        cmocka_unit_test_setup(test_delayed_goes_its_own_way, set_up),
-        cmocka_unit_test_setup(test_a_slow_pump_alone, set_up),
-        cmocka_unit_test_setup(test_a_wafer_that_would_slip_is_named, set_up),
-        cmocka_unit_test_setup(test_each_gripper_slips_for_itself, set_up),
-        cmocka_unit_test_setup(test_what_is_beyond_the_grippers_is_left_alone, set_up),
-        cmocka_unit_test_setup(test_all_slots_at_once, set_up),
-        cmocka_unit_test_setup(test_a_fault_from_the_beginning, set_up),
-        cmocka_unit_test_setup(test_what_does_not_fit_is_not_told, set_up),
+        cmocka_unit_test_setup(what_is_refused, set_up),
+        cmocka_unit_test_setup(ideal_is_the_paper, set_up),
+        cmocka_unit_test_setup(delayed_goes_its_own_way, set_up),
+        cmocka_unit_test_setup(a_slow_pump_alone, set_up),
+        cmocka_unit_test_setup(a_wafer_that_would_slip_is_named, set_up),
+        cmocka_unit_test_setup(each_gripper_slips_for_itself, set_up),
+        cmocka_unit_test_setup(what_is_beyond_the_grippers_is_left_alone, set_up),
+        cmocka_unit_test_setup(all_slots_at_once, set_up),
+        cmocka_unit_test_setup(a_fault_from_the_beginning, set_up),
+        cmocka_unit_test_setup(what_does_not_fit_is_not_told, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -109,14 +109,14 @@ static int step_both(void) {
     return held;
 }
 
-static void test_ideal_vacuum_goes_both_ways(void **state) {
+static void ideal_vacuum_goes_both_ways(void **state) {
     (void)state;
     start_both();
     assert_true(step_both() > SLICES / 2);
 }
 
 /* Levels and sensors that a vacuum with another config left behind: the first slice puts them right. */
-static void test_whatever_the_levels_were(void **state) {
+static void whatever_the_levels_were(void **state) {
     (void)state;
     for (int i = 0; i < 8; ++i) {
         start_both();
@@ -131,7 +131,7 @@ static void test_whatever_the_levels_were(void **state) {
 }
 
 /* Each of them alone keeps a level from being 0 or 1. */
-static void test_vacuum_that_takes_time_or_is_never_gone(void **state) {
+static void vacuum_that_takes_time_or_is_never_gone(void **state) {
     wh_real_t *const times[] = {&physics.vacuum.build, &physics.vacuum.vent, &physics.vacuum.idle};
     (void)state;
     for (size_t i = 0; i < 3; ++i) {
@@ -152,7 +152,7 @@ static void test_vacuum_that_takes_time_or_is_never_gone(void **state) {
     }
 }
 
-static void test_thresholds_do_not_matter(void **state) {
+static void thresholds_do_not_matter(void **state) {
     (void)state;
     physics.vacuum.on = 1;
     physics.vacuum.off = WH_REAL(0.01);
@@ -161,7 +161,7 @@ static void test_thresholds_do_not_matter(void **state) {
     assert_true(step_both() > SLICES / 2);
 }
 
-static void test_pads_are_looked_at_on_both_ways(void **state) {
+static void pads_are_looked_at_on_both_ways(void **state) {
     (void)state;
     physics.pads.mass = WH_REAL(0.128);
     physics.pads.friction = WH_REAL(0.2);
@@ -172,7 +172,7 @@ static void test_pads_are_looked_at_on_both_ways(void **state) {
 }
 
 /* From the very slice in which a command brings it. */
-static void test_a_fault_is_not_overlooked(void **state) {
+static void a_fault_is_not_overlooked(void **state) {
     (void)state;
     start_both();
     for (int64_t seq = 1; seq <= 2; ++seq) {
@@ -199,7 +199,7 @@ static void look(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t
     memcpy(seen, inputs, table->storage.gripper_count * sizeof inputs[0]);
 }
 
-static void test_an_observer_sees_the_steps_inputs(void **state) {
+static void an_observer_sees_the_steps_inputs(void **state) {
     way_t *const ways[] = {&plain, &faulty};
     (void)state;
     start_both();
@@ -225,13 +225,13 @@ static void test_an_observer_sees_the_steps_inputs(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_ideal_vacuum_goes_both_ways, set_up),
-        cmocka_unit_test_setup(test_whatever_the_levels_were, set_up),
-        cmocka_unit_test_setup(test_vacuum_that_takes_time_or_is_never_gone, set_up),
-        cmocka_unit_test_setup(test_thresholds_do_not_matter, set_up),
-        cmocka_unit_test_setup(test_pads_are_looked_at_on_both_ways, set_up),
-        cmocka_unit_test_setup(test_a_fault_is_not_overlooked, set_up),
-        cmocka_unit_test_setup(test_an_observer_sees_the_steps_inputs, set_up),
+        cmocka_unit_test_setup(ideal_vacuum_goes_both_ways, set_up),
+        cmocka_unit_test_setup(whatever_the_levels_were, set_up),
+        cmocka_unit_test_setup(vacuum_that_takes_time_or_is_never_gone, set_up),
+        cmocka_unit_test_setup(thresholds_do_not_matter, set_up),
+        cmocka_unit_test_setup(pads_are_looked_at_on_both_ways, set_up),
+        cmocka_unit_test_setup(a_fault_is_not_overlooked, set_up),
+        cmocka_unit_test_setup(an_observer_sees_the_steps_inputs, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,7 +53,7 @@ static void step(double x, double z, int valve) {
     assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
 }
 
-static void test_init_refuses_what_it_cannot_use(void **state) {
+static void init_refuses_what_it_cannot_use(void **state) {
     (void)state;
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t storage = storage_here();
@@ -75,7 +75,7 @@ static void test_init_refuses_what_it_cannot_use(void **state) {
 }
 
 /* As many grippers as a command carries, all of which let go at once, each in the air. */
-static void test_all_grippers_at_once(void **state) {
+static void all_grippers_at_once(void **state) {
     (void)state;
     static wh_wafer_t many_wafers[WH_GRIPPERS];
     static wh_gripper_t many_grippers[WH_GRIPPERS];
@@ -100,7 +100,7 @@ static void test_all_grippers_at_once(void **state) {
     assert_int_equal(answer.sensors, 0);
 }
 
-static void test_a_cell_without_stations_is_allowed(void **state) {
+static void a_cell_without_stations_is_allowed(void **state) {
     (void)state;
     const wh_grasp_config_t config = wh_grasp_config_default();
     const wh_grasp_storage_t storage = storage_here();
@@ -109,7 +109,7 @@ static void test_a_cell_without_stations_is_allowed(void **state) {
     assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_OK);
 }
 
-static void test_the_view_before_the_first_slice(void **state) {
+static void the_view_before_the_first_slice(void **state) {
     (void)state;
     memset(&answer, 0x5a, sizeof answer);
     wh_simulator_view(&simulator, &answer);
@@ -121,7 +121,7 @@ static void test_the_view_before_the_first_slice(void **state) {
     assert_int_equal(answer.sensors, 0);
 }
 
-static void test_a_state_answers_its_command(void **state) {
+static void a_state_answers_its_command(void **state) {
     (void)state;
     command.seq = 41;
     step(0, 0, CLOSED);
@@ -131,7 +131,7 @@ static void test_a_state_answers_its_command(void **state) {
     assert_int_equal(answer.event_count, 0);
 }
 
-static void test_a_pick_shows_in_holder_sensor_and_events(void **state) {
+static void a_pick_shows_in_holder_sensor_and_events(void **state) {
     (void)state;
     step(700, 899.8, OPEN);
     assert_int_equal(answer.wafers[0].holder, 0);
@@ -144,7 +144,7 @@ static void test_a_pick_shows_in_holder_sensor_and_events(void **state) {
     assert_near(answer.wafers[0].base_from_wafer.r.z, 950.2, 2048 * WH_TEST_ROUNDING);
 }
 
-static void test_each_gripper_has_its_own_sensor_bit(void **state) {
+static void each_gripper_has_its_own_sensor_bit(void **state) {
     (void)state;
     command.grippers[1].base_from_gripper = wh_test_at(-700, 0, 900);
     command.grippers[1].valve = OPEN;
@@ -154,7 +154,7 @@ static void test_each_gripper_has_its_own_sensor_bit(void **state) {
     assert_int_equal(answer.sensors, 3);
 }
 
-static void test_the_cell_judges_a_release_in_the_same_slice(void **state) {
+static void the_cell_judges_a_release_in_the_same_slice(void **state) {
     (void)state;
     step(700, 900, OPEN);
     step(300, 900, CLOSED);
@@ -182,7 +182,7 @@ static void expect_refused(wh_status_t status, size_t events) {
     assert_true(simulator.link.hash(&simulator.link) == hash);
 }
 
-static void test_a_refused_command_changes_nothing_and_is_counted(void **state) {
+static void a_refused_command_changes_nothing_and_is_counted(void **state) {
     (void)state;
     step(700, 900, OPEN);
     command.grippers[1].valve = 2;
@@ -200,7 +200,7 @@ static void test_a_refused_command_changes_nothing_and_is_counted(void **state) 
     }
 }
 
-static void test_null_pointers_touch_nothing(void **state) {
+static void null_pointers_touch_nothing(void **state) {
     (void)state;
     const uint64_t refused = simulator.table.counters.refused;
     assert_int_equal(wh_simulator_step(NULL, &command, &answer), WH_STATUS_NULL_ARGUMENT);
@@ -210,7 +210,7 @@ static void test_null_pointers_touch_nothing(void **state) {
     assert_int_equal(simulator.table.slice, 0);
 }
 
-static void test_entries_beyond_the_count_are_not_looked_at(void **state) {
+static void entries_beyond_the_count_are_not_looked_at(void **state) {
     (void)state;
     command.grippers[GRIPPERS].valve = 99;
     command.grippers[GRIPPERS].base_from_gripper.r.x = (wh_real_t)NAN;
@@ -219,7 +219,7 @@ static void test_entries_beyond_the_count_are_not_looked_at(void **state) {
 }
 
 /* The interface at which an MCS meets it. */
-static void test_the_link_is_the_simulator(void **state) {
+static void the_link_is_the_simulator(void **state) {
     (void)state;
     wh_link_t *link = &simulator.link;
     command.grippers[0].base_from_gripper = wh_test_at(700, 0, 900);
@@ -233,18 +233,18 @@ static void test_the_link_is_the_simulator(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(test_init_refuses_what_it_cannot_use, set_up),
-        cmocka_unit_test_setup(test_all_grippers_at_once, set_up),
-        cmocka_unit_test_setup(test_a_cell_without_stations_is_allowed, set_up),
-        cmocka_unit_test_setup(test_the_view_before_the_first_slice, set_up),
-        cmocka_unit_test_setup(test_a_state_answers_its_command, set_up),
-        cmocka_unit_test_setup(test_a_pick_shows_in_holder_sensor_and_events, set_up),
-        cmocka_unit_test_setup(test_each_gripper_has_its_own_sensor_bit, set_up),
-        cmocka_unit_test_setup(test_the_cell_judges_a_release_in_the_same_slice, set_up),
-        cmocka_unit_test_setup(test_a_refused_command_changes_nothing_and_is_counted, set_up),
-        cmocka_unit_test_setup(test_null_pointers_touch_nothing, set_up),
-        cmocka_unit_test_setup(test_entries_beyond_the_count_are_not_looked_at, set_up),
-        cmocka_unit_test_setup(test_the_link_is_the_simulator, set_up),
+        cmocka_unit_test_setup(init_refuses_what_it_cannot_use, set_up),
+        cmocka_unit_test_setup(all_grippers_at_once, set_up),
+        cmocka_unit_test_setup(a_cell_without_stations_is_allowed, set_up),
+        cmocka_unit_test_setup(the_view_before_the_first_slice, set_up),
+        cmocka_unit_test_setup(a_state_answers_its_command, set_up),
+        cmocka_unit_test_setup(a_pick_shows_in_holder_sensor_and_events, set_up),
+        cmocka_unit_test_setup(each_gripper_has_its_own_sensor_bit, set_up),
+        cmocka_unit_test_setup(the_cell_judges_a_release_in_the_same_slice, set_up),
+        cmocka_unit_test_setup(a_refused_command_changes_nothing_and_is_counted, set_up),
+        cmocka_unit_test_setup(null_pointers_touch_nothing, set_up),
+        cmocka_unit_test_setup(entries_beyond_the_count_are_not_looked_at, set_up),
+        cmocka_unit_test_setup(the_link_is_the_simulator, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

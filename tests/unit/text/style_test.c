@@ -10,7 +10,7 @@
 
 #include "text/style.h"
 
-static void test_colour(void **state) {
+static void colour_is_for_terminals(void **state) {
     (void)state;
     assert_true(wh_style_wants_colour(true, NULL, "xterm"));
     assert_true(wh_style_wants_colour(true, "", "xterm"));
@@ -21,7 +21,7 @@ static void test_colour(void **state) {
     assert_false(wh_style_wants_colour(true, NULL, NULL));
 }
 
-static void test_no_terminal(void **state) {
+static void no_terminal(void **state) {
     char *text = NULL;
     size_t size = 0;
     (void)state;
@@ -42,7 +42,7 @@ static void assert_printable(const char *text, const char *wanted, size_t column
     free(printable);
 }
 
-static void test_printable(void **state) {
+static void text_is_made_printable(void **state) {
     (void)state;
     assert_printable("", "", 0);
     assert_printable("Wäfer №3", "Wäfer №3", 8);
@@ -53,7 +53,7 @@ static void test_printable(void **state) {
     assert_printable("e\xcc\x81", "e\xcc\x81", 1);
 }
 
-static void test_plain_locale(void **state) {
+static void plain_locale(void **state) {
     (void)state;
     assert_non_null(setlocale(LC_CTYPE, "C"));
     assert_false(wh_style_of(stdout).utf8);
@@ -62,10 +62,10 @@ static void test_plain_locale(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_colour),
-        cmocka_unit_test(test_no_terminal),
-        cmocka_unit_test(test_printable),
-        cmocka_unit_test(test_plain_locale),
+        cmocka_unit_test(colour_is_for_terminals),
+        cmocka_unit_test(no_terminal),
+        cmocka_unit_test(text_is_made_printable),
+        cmocka_unit_test(plain_locale),
     };
     if (!setlocale(LC_CTYPE, "C.UTF-8") && !setlocale(LC_CTYPE, "C.utf8")) {
         print_error("no UTF-8 locale\n");

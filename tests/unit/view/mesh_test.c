@@ -71,20 +71,20 @@ static double polygon_area(int corners) {
     return corners * sin(2 * acos(-1.0) / corners) / 2;
 }
 
-static void test_box(void **state) {
+static void a_box_becomes_triangles(void **state) {
     (void)state;
     const wh_convex_t box = {.kind = WH_CONVEX_BOX, .half = {10, 20, 30}};
     check(&box, 8 * 10 * 20 * 30, 1e-4);
 }
 
-static void test_cylinder(void **state) {
+static void a_cylinder_becomes_triangles(void **state) {
     (void)state;
     const wh_convex_t cylinder = {.kind = WH_CONVEX_CYLINDER, .half = {50, 0, 30}};
     check(&cylinder, polygon_area(CORNERS) * 2500 * 60, 1e-4);
 }
 
 /* A ball of facets is a little smaller than the ball. */
-static void test_capsule(void **state) {
+static void a_capsule_becomes_triangles(void **state) {
     (void)state;
     const double ball = 4.0 / 3 * acos(-1.0) * 8000;
     const wh_convex_t capsule = {.kind = WH_CONVEX_CAPSULE, .half = {20, 0, 40}};
@@ -94,7 +94,7 @@ static void test_capsule(void **state) {
 }
 
 /* The hull of a box's corners with points inside and on its faces is the box. */
-static void test_hull(void **state) {
+static void a_hull_becomes_triangles(void **state) {
     (void)state;
     wh_vec3_t points[60];
     for (size_t i = 0; i < 60; ++i) {
@@ -110,7 +110,7 @@ static void test_hull(void **state) {
 }
 
 /* So many points are thinned to the outermost ones. */
-static void test_hull_of_many_points(void **state) {
+static void hull_of_many_points(void **state) {
     (void)state;
     static wh_vec3_t points[5000];
     for (size_t i = 0; i < 5000; ++i) {
@@ -124,7 +124,7 @@ static void test_hull_of_many_points(void **state) {
 }
 
 /* Points in a plane have no hull: nothing is drawn. */
-static void test_flat_points(void **state) {
+static void flat_points(void **state) {
     (void)state;
     const wh_vec3_t points[5] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.2, 0}};
     const wh_convex_t flat = {.kind = WH_CONVEX_MESH, .points = points, .point_count = 5};
@@ -135,7 +135,7 @@ static void test_flat_points(void **state) {
     wh_mesh_free(&mesh);
 }
 
-static void test_wafer(void **state) {
+static void wafer(void **state) {
     (void)state;
     wh_mesh_t plain = {0};
     wh_mesh_t notched = {0};
@@ -163,13 +163,13 @@ static void test_wafer(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_box),
-        cmocka_unit_test(test_cylinder),
-        cmocka_unit_test(test_capsule),
-        cmocka_unit_test(test_hull),
-        cmocka_unit_test(test_hull_of_many_points),
-        cmocka_unit_test(test_flat_points),
-        cmocka_unit_test(test_wafer),
+        cmocka_unit_test(a_box_becomes_triangles),
+        cmocka_unit_test(a_cylinder_becomes_triangles),
+        cmocka_unit_test(a_capsule_becomes_triangles),
+        cmocka_unit_test(a_hull_becomes_triangles),
+        cmocka_unit_test(hull_of_many_points),
+        cmocka_unit_test(flat_points),
+        cmocka_unit_test(wafer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

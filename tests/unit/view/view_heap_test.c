@@ -58,7 +58,7 @@ static wh_link_t *connect_server(void *user, wh_mcs_t *mcs) {
     return &link;
 }
 
-static void test_a_view_allocates_and_changes_nothing(void **state) {
+static void a_view_allocates_and_changes_nothing(void **state) {
     wh_script_run_options_t options = {.script = "lua/examples/02_prealigner.lua"};
     wh_script_run_t plain, run;
     (void)state;
@@ -78,7 +78,7 @@ static void test_a_view_allocates_and_changes_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_count_counts),
-        cmocka_unit_test(test_a_view_allocates_and_changes_nothing),
+        cmocka_unit_test(a_view_allocates_and_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

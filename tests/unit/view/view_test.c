@@ -9,7 +9,7 @@
 /* ------------------------------------------------------------------------------------------------- messages */
 
 /* Taken from pydrake 1.51.1: drake.lcmt_viewer_load_robot._get_packed_fingerprint() and so on. */
-static void test_fingerprints_are_drakes(void **state) {
+static void fingerprints_are_drakes(void **state) {
     (void)state;
     assert_true((uint64_t)__waferhand_viewer_geometry_get_hash() == UINT64_C(0x5d2e34cb3257db07));
     assert_true((uint64_t)__waferhand_viewer_link_get_hash() == UINT64_C(0x51252725af982a63));
@@ -34,7 +34,7 @@ static void assert_unit(const float q[4]) {
 }
 
 /* Rotations that a step accepts are off by up to 1e-6; what is drawn must be one all the same. */
-static void test_turns_are_of_length_one(void **state) {
+static void turns_are_of_length_one(void **state) {
     (void)state;
     for (int i = 0; i < 20000; ++i) {
         const double limit = i % 2 ? 180 : 1e-4;
@@ -80,7 +80,7 @@ static void check_numbers(const wh_convex_t *convex, int type, size_t count, con
     wh_view_geometry_free(&geometry);
 }
 
-static void test_shapes_are_in_metres(void **state) {
+static void shapes_are_in_metres(void **state) {
     const wh_pose_t here = wh_pose_identity();
     const wh_convex_t box = {.kind = WH_CONVEX_BOX, .half = {10, 20, 30}, .body_from_shape = here};
     const wh_convex_t disc = {.kind = WH_CONVEX_CYLINDER, .half = {150, 7, 0.3875}, .body_from_shape = here};
@@ -109,7 +109,7 @@ static wh_vec3_t point_of(const float *points, float index) {
     return wh_vec3((double)at[0], (double)at[1], (double)at[2]);
 }
 
-static void test_mesh_is_a_closed_hull(void **state) {
+static void mesh_is_a_closed_hull(void **state) {
     const wh_convex_t convex = block();
     waferhand_viewer_geometry geometry = made(&convex, false);
     const float *points = geometry.float_data + 2;
@@ -133,7 +133,7 @@ static void test_mesh_is_a_closed_hull(void **state) {
     wh_view_geometry_free(&geometry);
 }
 
-static void test_mesh_as_the_box_about_it(void **state) {
+static void mesh_as_the_box_about_it(void **state) {
     const wh_convex_t convex = block();
     waferhand_viewer_geometry geometry = made(&convex, true);
     (void)state;
@@ -170,7 +170,7 @@ static void check_geometry(const waferhand_viewer_geometry *geometry) {
     assert_unit(geometry->quaternion);
 }
 
-static void test_bodies_of_a_cell(void **state) {
+static void bodies_of_a_cell(void **state) {
     wh_view_cell_t cell;
     (void)state;
     const wh_layout_t *layout = read_sound(CELL);
@@ -204,7 +204,7 @@ static void test_bodies_of_a_cell(void **state) {
 }
 
 /* The viewer's cut at "::", and its own at "/": a body is three steps deep however it is called. */
-static void test_names_of_any_bytes(void **state) {
+static void names_of_any_bytes(void **state) {
     static const char *const names[][2] = {{"\xff/\n", "wafers::%FF%2F%0A"},
                                            {"Gr\xc3\xbc\xc3\x9f", "wafers::Gr\xc3\xbc\xc3\x9f"},
                                            {"\xc3", "wafers::%C3"},
@@ -235,7 +235,7 @@ static void assert_away(const wh_view_cell_t *cell, size_t body) {
     assert_at(cell, body, &away);
 }
 
-static void test_bodies_are_where_they_are(void **state) {
+static void bodies_are_where_they_are(void **state) {
     wh_view_cell_t cell;
     wh_pose_t grippers[2] = {wh_pose_identity(), wh_pose_identity()};
     wh_wafer_t wafers[2];
@@ -272,7 +272,7 @@ static void test_bodies_are_where_they_are(void **state) {
 }
 
 /* A wafer is drawn on its back face; its cover is larger, and the notch's mark larger still. */
-static void test_wafers_and_covers(void **state) {
+static void wafers_and_covers(void **state) {
     wh_view_cell_t cell;
     (void)state;
     wh_view_cell_open(&cell, read_sound(CELL ", wafer = { diameter = 200, thickness = 0.7 }"), WH_VIEW_ALL);
@@ -316,7 +316,7 @@ static wh_view_detail_t detail_with(wh_part_kind_t kind, size_t count, const wh_
     return detail;
 }
 
-static void test_what_a_large_cell_leaves_out(void **state) {
+static void what_a_large_cell_leaves_out(void **state) {
     const wh_convex_t mesh = block();
     const wh_convex_t box = {.kind = WH_CONVEX_BOX, .half = {1, 1, 1}, .body_from_shape = wh_pose_identity()};
     (void)state;
@@ -334,7 +334,7 @@ static void step_once(wh_protocol_server_t *server) {
 }
 
 /* The clock's part is played by moving what was noted of it. */
-static void test_what_is_due_when(void **state) {
+static void what_is_due_when(void **state) {
     static wh_protocol_server_t server;
     static wh_viewer_t view;
     (void)state;
@@ -372,17 +372,17 @@ static void test_what_is_due_when(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fingerprints_are_drakes),
-        cmocka_unit_test(test_turns_are_of_length_one),
-        cmocka_unit_test(test_shapes_are_in_metres),
-        cmocka_unit_test(test_mesh_is_a_closed_hull),
-        cmocka_unit_test(test_mesh_as_the_box_about_it),
-        cmocka_unit_test_setup_teardown(test_bodies_of_a_cell, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_names_of_any_bytes, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_bodies_are_where_they_are, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_wafers_and_covers, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_what_a_large_cell_leaves_out, open_sandbox, close_sandbox),
-        cmocka_unit_test_setup_teardown(test_what_is_due_when, open_sandbox, close_sandbox),
+        cmocka_unit_test(fingerprints_are_drakes),
+        cmocka_unit_test(turns_are_of_length_one),
+        cmocka_unit_test(shapes_are_in_metres),
+        cmocka_unit_test(mesh_is_a_closed_hull),
+        cmocka_unit_test(mesh_as_the_box_about_it),
+        cmocka_unit_test_setup_teardown(bodies_of_a_cell, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(names_of_any_bytes, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(bodies_are_where_they_are, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(wafers_and_covers, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(what_a_large_cell_leaves_out, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(what_is_due_when, open_sandbox, close_sandbox),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
