@@ -5,13 +5,13 @@
 local error, ipairs, pairs, tostring, type = error, ipairs, pairs, tostring, type
 
 return function(native)
-  local names = native.module("mcs/names.lua")(native, wh.errors)
-  local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), names)
-  local questions = native.module("mcs/questions.lua")(native, names)
+  local lookup = native.module("mcs/lookup.lua")(native, wh.errors)
+  local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), lookup)
+  local queries = native.module("mcs/queries.lua")(native, lookup)
   local rehearse, run = commands.rehearse, commands.run
   commands.rehearse, commands.run = nil, nil
-  native.module("mcs/faults.lua")(native, commands, run, names)
-  local figures = native.module("mcs/cycle.lua")(native, names)
+  native.module("mcs/faults.lua")(native, commands, run, lookup)
+  local cycles = native.module("mcs/cycles.lua")(native, lookup)
 
   -- cell "LAYOUT.lua", relative to the script: every slot's ends must be in reach.
   function cell(path)
@@ -41,16 +41,16 @@ return function(native)
     native.study(errors)
   end
 
-  for _, group in ipairs({ commands, questions, figures }) do
+  for _, group in ipairs({ commands, queries, cycles }) do
     for word, action in pairs(group) do
       _G[word] = action
     end
   end
 
   return function()
-    local words = native.module("mcs/words.lua")(native)
-    local vocabulary = native.module("mcs/vocabulary.lua")(native, commands, questions, names, words)
-    local execute = native.module("mcs/lines.lua")(native, vocabulary, words, names)
-    return execute, native.module("mcs/completion.lua")(vocabulary, words)
+    local tokens = native.module("mcs/tokens.lua")(native)
+    local prompt_commands = native.module("mcs/prompt_commands.lua")(native, commands, queries, lookup, tokens)
+    local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup)
+    return execute, native.module("mcs/completion.lua")(prompt_commands, tokens)
   end
 end
