@@ -33,7 +33,7 @@ return function(native, lookup)
   -- Before a command that counts on where the arm stands.
   function arm.check_homed()
     if arm.homed == nil then
-      arm.homed = native.layout().homed
+      arm.homed = native.layout.homed
     end
     if not arm.homed then
       native.fail("NOT_HOMED", "HOME comes first")
@@ -102,7 +102,7 @@ return function(native, lookup)
         arm.inside = nil
       end
       if lost and target.watched then
-        native.fail("WAFER_LOST_ON_WAY", lookup.quote(native.layout().grippers[lost].name) .. " lost its vacuum")
+        native.fail("WAFER_LOST_ON_WAY", lookup.quote(native.layout.grippers[lost].name) .. " lost its vacuum")
       end
       segment = step(ended)
     end

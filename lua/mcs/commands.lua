@@ -20,7 +20,7 @@ return function(native, patterns, lookup)
     if not station.chuck then
       native.fail("NOT_A_PREALIGNER", lookup.quote(station_name))
     end
-    local axis = native.layout().grippers[station.chuck].axis
+    local axis = native.layout.grippers[station.chuck].axis
     local axes = native.axes()
     axes[axis] = axes[axis] + math.rad(lookup.number("degrees", degrees))
     play { axes = axes }
@@ -125,7 +125,7 @@ return function(native, patterns, lookup)
   local function home()
     local axes = native.axes()
     recover()
-    for axis, position in ipairs(native.layout().home) do
+    for axis, position in ipairs(native.layout.home) do
       axes[axis] = position
     end
     arm.play(patterns.single, { segment = { axes = axes } })

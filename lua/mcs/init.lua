@@ -2,9 +2,14 @@
 -- same words of typed lines: a session calls it once the cell is set up, a script's run never does.
 
 -- Kept, for a script may set globals of these names.
-local error, ipairs, pairs, tostring, type = error, ipairs, pairs, tostring, type
+local error, ipairs, pairs, setmetatable, tostring, type = error, ipairs, pairs, setmetatable, tostring, type
 
 return function(native)
+  -- native.layout: the cell's layout, a value that `cell` sets. Before that whoever reads it hears what is missing.
+  setmetatable(native, { __index = function(_, name)
+    return name == "layout" and native.fail("NO_LAYOUT", 'begin the script with cell "LAYOUT.lua"')
+  end })
+
   local lookup = native.module("mcs/lookup.lua")(native, wh.errors)
   local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), lookup)
   local queries = native.module("mcs/queries.lua")(native, lookup)
@@ -18,14 +23,14 @@ return function(native)
     if type(path) ~= "string" then
       error(("cell: %s (expected a layout's path)"):format(tostring(path)), 0)
     end
-    local layout_path = native.cell(path)
-    for name, station in pairs(native.layout().stations) do
+    native.layout = native.cell(path)
+    for name, station in pairs(native.layout.stations) do
       for _, slot in ipairs(station.taught and { 1, station.slots } or {}) do
         native.reach(station.index, slot)
         local problem = rehearse(name, slot)
         if problem then
           local reason = type(problem) == "table" and problem.text or tostring(problem)
-          error(("%s: stations.%s: slot %d (expected one in reach: %s)"):format(layout_path, name, slot, reason), 0)
+          error(("%s: stations.%s: slot %d (expected one in reach: %s)"):format(native.layout.path, name, slot, reason), 0)
         end
       end
     end

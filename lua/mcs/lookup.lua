@@ -31,7 +31,7 @@ return function(native, errors)
   end
 
   function lookup.station(name)
-    local stations = native.layout().stations
+    local stations = native.layout.stations
     if type(name) ~= "string" or not stations[name] then
       native.fail("NO_SUCH_STATION", ("%s (expected %s)"):format(lookup.quote(name), listed(stations)))
     end
@@ -49,7 +49,7 @@ return function(native, errors)
 
   function lookup.gripper(name)
     local known = {}
-    for index, gripper in ipairs(native.layout().grippers) do
+    for index, gripper in ipairs(native.layout.grippers) do
       if gripper.name == name then
         return index
       end
@@ -60,7 +60,7 @@ return function(native, errors)
 
   -- A gripper on the robot: the named one, the one with the index `otherwise`, or the first.
   function lookup.effector(name, otherwise)
-    local grippers = native.layout().grippers
+    local grippers = native.layout.grippers
     if name ~= nil then
       local index = lookup.gripper(name)
       if not grippers[index].on_robot then
@@ -128,7 +128,7 @@ return function(native, errors)
 
   -- The pose of a frame by its name. Of equal names a slot's comes first, as in a report's measuring tool.
   function lookup.frame(what, name)
-    local layout = native.layout()
+    local layout = native.layout
     local text = type(name) == "string" and name or ""
     return slot_frame(layout.stations, text) or station_frame(layout.stations, text)
       or gripper_frame(layout.grippers, text) or wafer_frame(text) or text == "base" and { r = { 0, 0, 0 } }
@@ -138,10 +138,10 @@ return function(native, errors)
   -- Every frame's name.
   function lookup.frames()
     local list = native.wafer_names()
-    for _, gripper in ipairs(native.layout().grippers) do
+    for _, gripper in ipairs(native.layout.grippers) do
       list[#list + 1] = gripper.name
     end
-    for name, station in pairs(native.layout().stations) do
+    for name, station in pairs(native.layout.stations) do
       list[#list + 1] = name
       for slot = 1, station.slots do
         list[#list + 1] = ("%s/%d"):format(name, slot)

@@ -14,7 +14,7 @@ return function(native, commands, queries, lookup, tokens)
 
   local function station_names()
     local list = {}
-    for name in pairs(native.layout().stations) do
+    for name in pairs(native.layout.stations) do
       list[#list + 1] = name
     end
     return list
@@ -22,7 +22,7 @@ return function(native, commands, queries, lookup, tokens)
 
   local function gripper_names()
     local list = {}
-    for index, gripper in ipairs(native.layout().grippers) do
+    for index, gripper in ipairs(native.layout.grippers) do
       list[index] = gripper.name
     end
     return list
@@ -70,7 +70,7 @@ return function(native, commands, queries, lookup, tokens)
 
   local function held_wafers()
     local held = {}
-    for index in ipairs(native.layout().grippers) do
+    for index in ipairs(native.layout.grippers) do
       held[index] = native.held(index)
     end
     return held
@@ -97,7 +97,7 @@ return function(native, commands, queries, lookup, tokens)
     local time = timed(commands.swap, arguments[1], arguments[2], options)
     local after = held_wafers()
     local taken, put_down
-    for index, gripper in ipairs(native.layout().grippers) do
+    for index, gripper in ipairs(native.layout.grippers) do
       taken = taken or gripper.on_robot and not before[index] and after[index]
       put_down = put_down or gripper.on_robot and not after[index] and before[index]
     end
@@ -158,7 +158,7 @@ return function(native, commands, queries, lookup, tokens)
 
   local function where(arguments)
     local list, bytes = {}, 0
-    local layout = native.layout()
+    local layout = native.layout
     local asked = #arguments > 0 and arguments or native.wafer_names()
     for place, name in ipairs(asked) do
       if bytes > LONGEST_ANSWER then
@@ -177,7 +177,7 @@ return function(native, commands, queries, lookup, tokens)
       local turns = name == "theta" or name == "yaw"
       list[axis] = { name, turns and math.deg(at[axis]) or at[axis] }
     end
-    for _, gripper in ipairs(native.layout().grippers) do
+    for _, gripper in ipairs(native.layout.grippers) do
       if gripper.axis then
         list[#list + 1] = { tokens.spell(gripper.name), math.deg(at[gripper.axis]) }
       end
@@ -187,8 +187,8 @@ return function(native, commands, queries, lookup, tokens)
 
   local function stations()
     local list = {}
-    for name, station in pairs(native.layout().stations) do
-      local chuck = station.chuck and { "chuck", native.layout().grippers[station.chuck].name }
+    for name, station in pairs(native.layout.stations) do
+      local chuck = station.chuck and { "chuck", native.layout.grippers[station.chuck].name }
       list[#list + 1] = tokens.pairs { { "station", name }, { "slots", station.slots }, chuck }
     end
     return table.concat(list, "; ")

@@ -15,12 +15,12 @@ return function(native, lookup)
   -- The name of the gripper that holds the wafer, or nil.
   function queries.holder(wafer)
     local gripper = native.holder(lookup.wafer(wafer))
-    return gripper and native.layout().grippers[gripper].name
+    return gripper and native.layout.grippers[gripper].name
   end
 
   -- The check of a wafer against a gripper as they stand now: see wh.proximity.
   function queries.proximity(wafer, gripper)
-    local tolerance = native.layout().tolerance
+    local tolerance = native.layout.tolerance
     return wh.proximity(native.wafer_pose(lookup.wafer(wafer)), native.real_gripper_pose(lookup.gripper(gripper)), tolerance)
   end
 

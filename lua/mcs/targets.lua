@@ -89,7 +89,7 @@ return function(native, lookup, arm)
       end
     end
     check(target, stroke_rules(target, station))
-    check(target, other_rules(target, native.layout()))
+    check(target, other_rules(target, native.layout))
     target.asks = target.vacuum_check == "both" or target.vacuum_check == word
     target.watched = target.asks
     function target.inverse(x, y, z, heading)

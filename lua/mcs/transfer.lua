@@ -78,7 +78,7 @@ return function(native, patterns, lookup, arm, targets)
   local function choose_grippers()
     local empty, loaded, count
     count = 0
-    for index, gripper in ipairs(native.layout().grippers) do
+    for index, gripper in ipairs(native.layout.grippers) do
       if gripper.on_robot then
         count = count + 1
         if native.sensor(index) then
