@@ -9,37 +9,25 @@
 
 /* -------------------------------------------------------------------------------------------------- a run */
 
-static uint64_t last_hash(wh_link_t *link) {
-    return ((wh_log_run_t *)link)->hash;
-}
-
-static int64_t missed_slices(wh_link_t *link) {
-    return ((wh_log_run_t *)link)->missed;
-}
-
 void wh_log_drop_run(wh_log_run_t *run) {
     wh_signals_close(&run->signals);
     wh_record_free(&run->record);
-    free(run->collision_memory);
-    run->collision_memory = NULL;
+    memset(&run->recorder, 0, sizeof run->recorder);
+    memset(&run->state, 0, sizeof run->state);
+    free(run->collision.memory);
+    memset(&run->collision, 0, sizeof run->collision);
 }
 
 static void watch_collisions(wh_log_run_t *run) {
     const wh_layout_t *layout = run->cell.layout;
     if (run->cell.is_whole && layout->collision) {
-        run->collision_memory = malloc(wh_collision_bytes(layout));
-        if (!run->collision_memory) {
+        run->collision.memory = malloc(wh_collision_bytes(layout));
+        if (!run->collision.memory) {
             abort();
         }
-        run->mcs.collision.layout = layout;
-        run->mcs.collision.memory = run->collision_memory;
-        wh_robot_forward(layout->machine.robot.home, &run->mcs.collision.base_from_effector);
+        run->collision.layout = layout;
+        wh_robot_forward(layout->machine.robot.home, &run->collision.base_from_effector);
     }
-}
-
-static void add_command(wh_log_run_t *run, int line, const char *text, double begin_s) {
-    (void)wh_record_add_command(&run->record, line, text, begin_s);
-    run->mcs.running = (int32_t)run->record.command_count - 1;
 }
 
 void wh_log_begin_run(wh_log_run_t *run) {
@@ -49,46 +37,26 @@ void wh_log_begin_run(wh_log_run_t *run) {
         run->cell = run->next_cell;
         memset(&run->next_cell, 0, sizeof run->next_cell);
     }
-    memset(&run->mcs, 0, sizeof run->mcs);
     run->gaps = 0;
     run->refused = 0;
     if (!run->cell.layout) {
         return;
     }
-    run->link.hash = last_hash;
-    run->link.missed = missed_slices;
-    run->mcs.link = &run->link;
-    run->mcs.record = &run->record;
-    run->mcs.layout = run->cell.layout;
-    run->mcs.simulator.cell = run->cell.layout->cell;
-    run->mcs.track.machine = &run->cell.layout->machine;
-    run->mcs.track.slice_us = run->cell.layout->slice_us;
-    run->mcs.running = WH_NONE;
-    run->record.script = wh_record_text(run->options.path);
+    wh_recorder_open(&run->recorder, &run->record, run->options.path);
+    run->recorder.layout = run->cell.layout;
+    run->recorder.cell = &run->cell.layout->cell;
     watch_collisions(run);
     if (run->begin.is_there) {
-        add_command(run, run->begin.line, run->begin.text, 0);
+        wh_recorder_begin(&run->recorder, run->begin.line, run->begin.text, 0);
         run->begin.is_there = false;
     }
 }
 
 /* ------------------------------------------------------------------------------------------------- commands */
 
-static void end_command(wh_log_run_t *run, const waferhand_mcs *message) {
-    wh_command_record_t *command = &run->record.commands[run->mcs.running];
-    command->end_s = (double)message->utime / 1e6;
-    if (message->phase == WH_LINK_PHASE_DONE) {
-        wh_mcs_count_puts(&run->mcs);
-    } else {
-        command->error = (wh_status_t)message->error;
-        command->message = wh_record_text(message->text);
-    }
-    run->mcs.running = WH_NONE;
-}
-
 static void begin_command(wh_log_run_t *run, const waferhand_mcs *message, bool ours) {
     if (ours && run->signals.layout) {
-        add_command(run, message->line, message->command, (double)message->utime / 1e6);
+        wh_recorder_begin(&run->recorder, message->line, message->command, (double)message->utime / 1e6);
         return;
     }
     run->begin.is_there = true;
@@ -96,14 +64,25 @@ static void begin_command(wh_log_run_t *run, const waferhand_mcs *message, bool 
     (void)snprintf(run->begin.text, sizeof run->begin.text, "%s", message->command);
 }
 
+static void end_command(wh_log_run_t *run, const waferhand_mcs *message) {
+    const bool done = message->phase == WH_LINK_PHASE_DONE;
+    wh_recorder_end(&run->recorder, (double)message->utime / 1e6, done ? WH_OK : (wh_status_t)message->error,
+                    message->text, run->state.wafers);
+}
+
+/* The text of the running command, or null. */
+static const char *running_text(const wh_log_run_t *run) {
+    return run->recorder.running == WH_NONE ? NULL : run->record.commands[run->recorder.running].text;
+}
+
 /* A command begins once, however often that is said. */
 static bool is_running(const wh_log_run_t *run, const waferhand_mcs *message) {
-    return run->mcs.running != WH_NONE &&
-           strcmp(run->record.commands[run->mcs.running].text, message->command) == 0;
+    const char *text = running_text(run);
+    return text && strcmp(text, message->command) == 0;
 }
 
 void wh_log_take_mcs(wh_log_run_t *run, const waferhand_mcs *message) {
-    const bool ours = run->is_wanted && run->mcs.record && message->run == run->run;
+    const bool ours = run->is_wanted && run->recorder.record && message->run == run->run;
     const bool ended = message->phase == WH_LINK_PHASE_DONE || message->phase == WH_LINK_PHASE_FAILED;
     if (message->phase == WH_LINK_PHASE_BEGINS && !(ours && is_running(run, message))) {
         begin_command(run, message, ours);
@@ -117,21 +96,21 @@ void wh_log_take_mcs(wh_log_run_t *run, const waferhand_mcs *message) {
 static bool robot_moves(const wh_log_run_t *run, const double axes[]) {
     bool moves = false;
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        moves = moves || wh_real_abs(axes[axis] - run->axes[axis]) > 0;
+        moves = moves || wh_real_abs(axes[axis] - run->told.axes[axis]) > 0;
     }
     return moves;
 }
 
 static bool is_told_to_wait(const wh_log_run_t *run) {
-    return run->mcs.running == WH_NONE ||
-           strncmp(run->record.commands[run->mcs.running].text, "WAIT", 4) == 0;
+    const char *text = running_text(run);
+    return !text || strncmp(text, "WAIT", 4) == 0;
 }
 
 /* What a slice that the robot stood still in was for, as far as its valves and sensors tell. */
 static wh_share_t share_standing(const wh_log_run_t *run, const int32_t valves[], const wh_state_t *state) {
     bool waits = false;
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        if (valves[g] != run->valves[g]) {
+        if (valves[g] != run->told.grippers[g].valve) {
             return WH_SHARE_HANDOVER;
         }
         waits = waits || (valves[g] == WH_VALVE_OPEN && (state->sensors >> g & 1U) == 0);
@@ -141,12 +120,12 @@ static wh_share_t share_standing(const wh_log_run_t *run, const int32_t valves[]
 
 static wh_task_t task_of(const wh_log_run_t *run, const double axes[], const int32_t valves[],
                          const wh_state_t *state) {
-    const wh_machine_t *machine = run->mcs.track.machine;
+    const wh_machine_t *machine = &run->cell.layout->machine;
     const bool robot = robot_moves(run, axes);
     wh_task_t task = {share_standing(run, valves, state), robot, robot, 0};
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         const int32_t axis = machine->mounts[g].axis;
-        const bool carried = axis == WH_NONE ? robot : wh_real_abs(axes[axis] - run->axes[axis]) > 0;
+        const bool carried = axis == WH_NONE ? robot : wh_real_abs(axes[axis] - run->told.axes[axis]) > 0;
         task.moves = task.moves || carried;
         task.carried |= carried ? 1U << g : 0;
     }
@@ -154,24 +133,24 @@ static wh_task_t task_of(const wh_log_run_t *run, const double axes[], const int
     return task;
 }
 
-static void count_slice(wh_log_run_t *run, const double axes[], const wh_state_t *state) {
-    wh_track_t *track = &run->mcs.track;
+static void count_slice(wh_log_run_t *run, int64_t seq, const double axes[]) {
+    const wh_state_t *state = &run->state;
+    run->recorder.task = task_of(run, axes, state->condition->told, state);
+    run->told.seq = seq;
+    memcpy(run->told.axes, axes, sizeof run->told.axes);
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        track->valves[g] = state->condition->told[g];
+        run->told.grippers[g].valve = state->condition->told[g];
     }
-    run->mcs.task = task_of(run, axes, track->valves, state);
-    wh_mcs_count_slice(&run->mcs);
-    memcpy(run->axes, axes, sizeof run->axes);
-    memcpy(run->valves, track->valves, sizeof run->valves);
+    wh_recorder_slice(&run->recorder, &run->told, state);
 }
 
 static void start(wh_log_run_t *run, bool from_the_beginning) {
     const wh_machine_t *machine = &run->cell.layout->machine;
     wh_signals_begin(&run->signals, run->cell.layout, from_the_beginning && run->cell.is_whole);
-    memset(run->axes, 0, sizeof run->axes);
-    memcpy(run->axes, machine->robot.home, sizeof machine->robot.home);
+    memset(&run->told, 0, sizeof run->told);
+    memcpy(run->told.axes, machine->robot.home, sizeof machine->robot.home);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        run->valves[g] = WH_VALVE_CLOSED;
+        run->told.grippers[g].valve = WH_VALVE_CLOSED;
     }
 }
 
@@ -182,7 +161,7 @@ static bool find_axes(const wh_log_run_t *run, const waferhand_state *message, d
     for (int32_t axis = 0; known && axis < command->axis_count; ++axis) {
         known = wh_real_abs(command->axis_position[axis]) < FARTHEST;
     }
-    memcpy(axes, run->axes, sizeof run->axes);
+    memcpy(axes, run->told.axes, sizeof run->told.axes);
     for (int32_t axis = 0; known && axis < command->axis_count; ++axis) {
         axes[axis] = command->axis_position[axis];
     }
@@ -197,23 +176,15 @@ static void take_slice(wh_log_run_t *run, const waferhand_state *message) {
     }
     run->gaps += run->seq > 0 && message->seq > run->seq + 1 ? 1 : 0;
     run->seq = message->seq;
-    run->mcs.track.slice = message->seq;
     run->hash = (uint64_t)message->hash;
     run->missed = message->missed;
-    count_slice(run, axes, &run->mcs.state);
-    if (run->collision_memory) {
-        wh_collision_observe(&run->mcs.collision, &run->mcs.state);
+    count_slice(run, message->seq, axes);
+    if (run->collision.memory) {
+        wh_collision_observe(&run->collision, &run->state);
     }
-    wh_signals_slice(&run->signals, known ? axes : NULL, (size_t)run->command.axis_count, &run->mcs.state);
+    wh_signals_slice(&run->signals, known ? axes : NULL, (size_t)run->command.axis_count, &run->state);
     if (wh_log_is_boundary(run)) {
         wh_signals_mark(&run->signals);
-    }
-}
-
-static void keep_events(wh_log_run_t *run) {
-    const wh_state_t *state = &run->mcs.state;
-    for (size_t i = 0; i < state->event_count; ++i) {
-        wh_record_add_event(&run->record, state->utime, run->mcs.running, &state->events[i]);
     }
 }
 
@@ -259,12 +230,11 @@ void wh_log_take_state(wh_log_run_t *run, const waferhand_state *message) {
     const bool refusal = message->status != WH_OK;
     const bool is_new = message->seq > run->seq && (!refusal || message->seq > run->refused);
     if (!layout || !is_new || (uint64_t)message->layout_hash != run->cell.hash ||
-        wh_link_state_from_message(message, &layout->grasp.tolerance, &run->arrays, &run->mcs.state) !=
-            WH_OK ||
-        !is_sound(&run->mcs.state, layout)) {
+        wh_link_state_from_message(message, &layout->grasp.tolerance, &run->arrays, &run->state) != WH_OK ||
+        !is_sound(&run->state, layout)) {
         return;
     }
-    keep_events(run);
+    wh_recorder_events(&run->recorder, &run->state);
     if (refusal) {
         run->refused = message->seq;
     } else {
@@ -273,10 +243,10 @@ void wh_log_take_state(wh_log_run_t *run, const waferhand_state *message) {
 }
 
 void wh_log_finish_run(wh_log_run_t *run) {
-    if (run->mcs.running != WH_NONE) {
-        run->record.commands[run->mcs.running].end_s =
-            (double)(run->mcs.track.slice * run->mcs.track.slice_us) / 1e6;
+    const wh_recorder_end_t end = {run->state.wafers, run->hash, run->missed, run->collision.world};
+    if (run->recorder.running != WH_NONE) {
+        run->record.commands[run->recorder.running].end_s = wh_recorder_now(&run->recorder);
     }
-    wh_mcs_finish(&run->mcs);
+    wh_recorder_finish(&run->recorder, &end);
     wh_signals_finish(&run->signals);
 }

@@ -118,6 +118,24 @@ void wh_decisions_measured(wh_decisions_t *decisions, const char *what) {
     }
 }
 
+void wh_vacuum_watch_begin(wh_vacuum_watch_t *watch, uint32_t watched) {
+    watch->watched = watched;
+    watch->was_off = 0;
+}
+
+void wh_vacuum_watch_slice(wh_vacuum_watch_t *watch, uint32_t sensors) {
+    watch->was_off |= ~sensors;
+}
+
+int32_t wh_vacuum_watch_lost(const wh_vacuum_watch_t *watch, const int32_t valves[], size_t gripper_count) {
+    for (size_t g = 0; g < gripper_count; ++g) {
+        if ((watch->watched & watch->was_off & 1U << g) != 0 && valves[g] == WH_VALVE_OPEN) {
+            return (int32_t)g;
+        }
+    }
+    return WH_NONE;
+}
+
 int32_t wh_decisions_judge(const wh_decisions_claim_t *claim, const wh_cell_t *cell,
                            const wh_wafer_t wafers[]) {
     const wh_pose_t *base_from_wafer = &wafers[claim->wafer].base_from_wafer;

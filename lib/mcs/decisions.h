@@ -60,6 +60,18 @@ typedef struct {
     size_t valve_count[WH_GRIPPERS], valve_capacity[WH_GRIPPERS];
 } wh_decisions_t;
 
+/* Which gripper lost its wafer during a segment, as its vacuum sensor tells. */
+typedef struct {
+    uint32_t watched; /* bit g: gripper g's sensor was on before, and its wafer could be lost */
+    uint32_t was_off; /* bit g: it was off in a slice since */
+} wh_vacuum_watch_t;
+
+void wh_vacuum_watch_begin(wh_vacuum_watch_t *watch, uint32_t watched);
+void wh_vacuum_watch_slice(wh_vacuum_watch_t *watch, uint32_t sensors);
+
+/* The first of the watched whose sensor went off though its valve is told to be open, or WH_NONE. */
+int32_t wh_vacuum_watch_lost(const wh_vacuum_watch_t *watch, const int32_t valves[], size_t gripper_count);
+
 /* Recording; all of them do nothing with a null tape. Memory that runs out ends the program. */
 void wh_decisions_slice(wh_decisions_t *decisions, const wh_command_t *command);
 void wh_decisions_begin(wh_decisions_t *decisions, const wh_segment_t *segment, uint32_t carried);

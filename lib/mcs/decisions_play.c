@@ -18,7 +18,7 @@ typedef struct {
     size_t next[WH_GRIPPERS]; /* the change of its valve that is still to come */
     /* Of the running segment. */
     int32_t waits;
-    uint32_t watched, was_off;
+    wh_vacuum_watch_t vacuum;
 } player_t;
 
 /* ------------------------------------------------------------------------------------------------------ slices */
@@ -98,7 +98,7 @@ static void advance(player_t *player, int64_t to) {
             settle(player);
             step(player, ++player->at);
         }
-        player->was_off |= ~player->state.sensors;
+        wh_vacuum_watch_slice(&player->vacuum, player->state.sensors);
     }
 }
 
@@ -106,23 +106,20 @@ static void advance(player_t *player, int64_t to) {
 
 static int32_t find_lost(const player_t *player) {
     const wh_decisions_t *decisions = player->decisions;
+    int32_t told[WH_GRIPPERS];
     for (size_t g = 0; g < decisions->gripper_count; ++g) {
         size_t i = decisions->valve_count[g];
         while (i > 0 && decisions->valves[g][i - 1].slice > player->at) {
             --i;
         }
-        const bool open = i > 0 && decisions->valves[g][i - 1].valve == WH_VALVE_OPEN;
-        if (open && (player->watched & player->was_off & 1U << g) != 0) {
-            return (int32_t)g;
-        }
+        told[g] = i > 0 ? decisions->valves[g][i - 1].valve : WH_VALVE_CLOSED;
     }
-    return WH_NONE;
+    return wh_vacuum_watch_lost(&player->vacuum, told, decisions->gripper_count);
 }
 
 static bool begin(player_t *player, const wh_decisions_entry_t *entry) {
     player->waits = entry->index;
-    player->watched = entry->mask & player->state.sensors;
-    player->was_off = 0;
+    wh_vacuum_watch_begin(&player->vacuum, entry->mask & player->state.sensors);
     return true;
 }
 

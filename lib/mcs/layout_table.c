@@ -1,6 +1,6 @@
 /* The layout as a Lua table: handed to lua/mcs once, when the cell is set up. */
 #include "../script/wh_module_internal.h"
-#include "mcs_internal.h"
+#include "native.h"
 
 typedef struct {
     const char *name;

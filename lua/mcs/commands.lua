@@ -5,7 +5,7 @@ local ipairs, math, pairs, table, tostring, type = ipairs, math, pairs, table, t
 
 return function(native, patterns, lookup)
   local arm = native.module("mcs/arm.lua")(native, lookup)
-  local targets = native.module("mcs/targets.lua")(native, lookup, arm)
+  local targets = native.module("mcs/targets.lua")(native, lookup)
   local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets)
 
   ------------------------------------------------------------------------------------------ single moves

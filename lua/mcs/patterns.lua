@@ -1,17 +1,22 @@
 -- Commands as patterns: in which order the arm moves and the valves switch.
 --
--- A pattern is a coroutine body. It yields one segment at a time, a table with one of
---   axes   = { theta, R, Z, yaw, chucks... }     point to point, rad and mm
+-- A pattern is a coroutine body and does nothing but yield requests, so that it can be planned before it is played. A
+-- request is a segment, a table with one of
+--   to     = { x, y, z, heading, gripper }        point to point, to where that gripper is there
+--   axes   = { theta, R, Z, yaw, chucks... }      point to point, rad and mm
 --   line   = { dx, dy, dz }                       straight, at constant heading, mm in base; speed = mm/s and
 --                                                 acceleration = mm/s^2 limit it
 --   valves = { [gripper] = 0 open or 1 closed }   lasts one slice
 --   dwell  = seconds, vacuum = true               `vacuum`: the time counts as waiting for vacuum
 --   sensor = gripper, timeout = seconds           answered with true or false
--- of which `enters = target` begins the way into a station and `leaves = true` ends the way out. It returns what became of
--- the wafer, a word, as the sensors tell.
+-- of which `enters = target` begins the way into a station and `leaves = true` ends the way out; or a question, answered
+-- with true or false, of which a plan knows no more than what to `assume`:
+--   is_on     = gripper                           its vacuum sensor
+--   is_loaded = gripper                           a wafer lies on its pads
+-- It returns what became of the wafer, a word, as the sensors tell.
 --
--- `target` is what the command fills in (lua/mcs/targets.lua): place (of the slot), inverse (a function), gripper, chuck (nil at
--- plain slots), asks (whether the vacuum sensor decides) and the station's parameters. Heights are above the slot's plane.
+-- `target` is what the command fills in (lua/mcs/targets.lua): place (of the slot), gripper, chuck (nil at plain slots),
+-- asks (if the vacuum sensor decides) and the station's parameters. Heights are above the slot's plane.
 
 local yield = coroutine.yield
 
@@ -21,7 +26,7 @@ local OPEN, CLOSED = 0, 1
 local function approach(target, height)
   local p = target.place
   local x, y = p.x - target.retract * p.dir_x, p.y - target.retract * p.dir_y
-  yield { axes = target.inverse(x, y, p.z + height, p.heading) }
+  yield { to = { x = x, y = y, z = p.z + height, heading = p.heading, gripper = target.gripper } }
 end
 
 -- In, and a wait there if the station has one.
@@ -53,6 +58,14 @@ local function hand_over(target, from, to)
   end
 end
 
+local function is_on(gripper, assume)
+  return yield { is_on = gripper, assume = assume }
+end
+
+local function is_loaded(gripper)
+  return yield { is_loaded = gripper, assume = false }
+end
+
 local function holds(target, gripper)
   if target.vacuum_delay > 0 then
     yield { dwell = target.vacuum_delay, vacuum = true }
@@ -76,7 +89,7 @@ local patterns = {}
 
 local function take_from_slot(target)
   switch(target.gripper, OPEN)
-  if target.asks and target.is_on(target.gripper) then
+  if target.asks and is_on(target.gripper, false) then
     switch(target.gripper, CLOSED)
     return "early"
   end
@@ -84,21 +97,21 @@ local function take_from_slot(target)
   if holds(target, target.gripper) then
     return "taken"
   end
-  local found = target.is_loaded(target.gripper) and "late" or "missing"
+  local found = is_loaded(target.gripper) and "late" or "missing"
   set_back(target, target.offset)
   return found
 end
 
 local function take_from_chuck(target)
   local bottom = target.offset - target.stroke
-  local chuck_held = target.is_on(target.chuck)
+  local chuck_held = is_on(target.chuck, true)
   stroke(target, -bottom)
   hand_over(target, target.chuck, target.gripper)
   if holds(target, target.gripper) then
     stroke(target, target.offset)
     return "taken"
   end
-  local found = target.is_loaded(target.gripper) and "late" or "missing"
+  local found = is_loaded(target.gripper) and "late" or "missing"
   yield { valves = { [target.gripper] = CLOSED, [target.chuck] = chuck_held and OPEN or CLOSED } }
   stroke(target, bottom)
   return found
@@ -134,7 +147,7 @@ function patterns.put(target)
   if target.chuck then
     hand_over(target, target.gripper, target.chuck)
     if not holds(target, target.chuck) then
-      became = target.is_loaded(target.chuck) and "loose" or "lost"
+      became = is_loaded(target.chuck) and "loose" or "lost"
     end
   else
     switch(target.gripper, CLOSED)

@@ -4,7 +4,7 @@
 -- Kept, for a script may set globals of these names.
 local ipairs, math, pairs, tostring, type = ipairs, math, pairs, tostring, type
 
-return function(native, lookup, arm)
+return function(native, lookup)
   local targets = {}
 
   local parameters = lookup.parameters
@@ -81,7 +81,6 @@ return function(native, lookup, arm)
     local target = { station = station.name, slot = number, chuck = station.chuck, force = options.force, watched = true }
     target.gripper = gripper or lookup.effector(options.gripper, station.effector)
     target.place = native.slot(station.index, number)
-    target.is_on, target.is_loaded = arm.is_on, arm.is_loaded
     for name in pairs(parameters) do
       target[name] = options[name]
       if target[name] == nil then
@@ -92,9 +91,6 @@ return function(native, lookup, arm)
     check(target, other_rules(target, native.layout))
     target.asks = target.vacuum_check == "both" or target.vacuum_check == word
     target.watched = target.asks
-    function target.inverse(x, y, z, heading)
-      return native.inverse(x, y, z, heading, target.gripper)
-    end
     return target
   end
 

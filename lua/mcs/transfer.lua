@@ -42,34 +42,30 @@ return function(native, patterns, lookup, arm, targets)
     end
   end
 
-  local function get(station, slot, options)
-    local target = targets.at("get", station, slot, options)
-    arm.check_free()
-    check_empty(target)
-    slot_map.check_get(target)
-    arm.rehearse(patterns.get, target, true)
-    slot_map.forget(target)
-    judge_get(target, arm.drive(patterns.get, target))
-    slot_map.note_taken(target)
-  end
+  local transfers = {
+    get = { pattern = patterns.get, check_gripper = check_empty, check_slot = slot_map.check_get, judge = judge_get,
+            note = slot_map.note_taken },
+    put = { pattern = patterns.put, check_gripper = check_loaded, check_slot = slot_map.check_put, judge = judge_put,
+            note = slot_map.note_put },
+  }
 
-  local function put(station, slot, options)
-    local target = targets.at("put", station, slot, options)
+  local function carry(word, station, slot, options)
+    local kind, target = transfers[word], targets.at(word, station, slot, options)
     arm.check_free()
-    check_loaded(target)
-    slot_map.check_put(target)
-    arm.rehearse(patterns.put, target, true)
+    kind.check_gripper(target)
+    kind.check_slot(target)
+    local plan = arm.rehearse(kind.pattern, target, true)
     slot_map.forget(target)
-    judge_put(target, arm.drive(patterns.put, target))
-    slot_map.note_put(target)
+    kind.judge(target, arm.drive(kind.pattern, target, plan))
+    kind.note(target)
   end
 
   function transfer.get(station, slot, options)
-    arm.run(lookup.command("GET", station, slot), get, station, slot, options)
+    arm.run(lookup.command("GET", station, slot), carry, "get", station, slot, options)
   end
 
   function transfer.put(station, slot, options)
-    arm.run(lookup.command("PUT", station, slot), put, station, slot, options)
+    arm.run(lookup.command("PUT", station, slot), carry, "put", station, slot, options)
   end
 
   ---------------------------------------------------------------------------------------------------- SWAP
@@ -107,9 +103,9 @@ return function(native, patterns, lookup, arm, targets)
     arm.check_free()
     check_empty(take)
     slot_map.check_get(take)
-    arm.rehearse(patterns.swap, target, true)
+    local plan = arm.rehearse(patterns.swap, target, true)
     slot_map.forget(take)
-    local became = arm.drive(patterns.swap, target)
+    local became = arm.drive(patterns.swap, target, plan)
     judge_get(take, became)
     judge_put(give, became)
     slot_map.note_put(give)

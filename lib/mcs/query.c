@@ -1,11 +1,44 @@
-/* The MCS host's eyes: where wafers are and who holds them. */
+/* What can be asked of the cell: where wafers are and who holds them, where frames are, what came near to what. What a trial's
+ * errors change is noted in the decisions: a script that reads it is run anew for each trial. */
 #include <stdio.h>
 #include <string.h>
 
 #include "../math/relation.h"
 #include "../math/trig.h"
 #include "../script/wh_module_internal.h"
-#include "mcs_internal.h"
+#include "native.h"
+
+/* native.utime(): simulated microseconds so far. */
+static int read_utime(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    lua_pushinteger(L, mcs->track.slice * mcs->track.slice_us);
+    return 1;
+}
+
+/* native.held(gripper): the name of the wafer that it holds, or nil. */
+static int find_held(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    const int32_t wafer = mcs->state.grippers[gripper].wafer;
+    wh_decisions_ask(mcs->decisions, WH_TAPE_HELD, gripper, wafer);
+    if (wafer == WH_NONE) {
+        return 0;
+    }
+    lua_pushstring(L, mcs->layout->wafers[wafer].name);
+    return 1;
+}
+
+/* native.wafer_names(): a list. */
+static int list_wafers(lua_State *L) {
+    const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
+    wh_sandbox_charge(L, layout->wafer_count);
+    lua_createtable(L, (int)layout->wafer_count, 0);
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        lua_pushstring(L, layout->wafers[w].name);
+        lua_rawseti(L, -2, (lua_Integer)w + 1);
+    }
+    return 1;
+}
 
 /* native.wafer(name): the wafer's index, or nil. */
 static int find_wafer(lua_State *L) {
@@ -50,7 +83,7 @@ static int find_holder(lua_State *L) {
 static int measure(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_wafer_t *wafer = wafer_argument(L, mcs, 1);
-    const wh_station_t *station = &wh_mcs_real(mcs)->places[wh_mcs_index(L, 2, mcs->layout->station_count)];
+    const wh_station_t *station = &mcs->real->places[wh_mcs_index(L, 2, mcs->layout->station_count)];
     const int32_t slot = wh_mcs_index(L, 3, (size_t)station->slots) + 1;
     wh_decisions_measured(mcs->decisions, "offset");
     const wh_place_t place = wh_station_measure(station, slot, &wafer->base_from_wafer);
@@ -66,7 +99,7 @@ static int locate(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_place_t place;
     wh_decisions_measured(mcs->decisions, "where a wafer lies");
-    if (!wh_cell_locate(&mcs->simulator.cell, &wafer_argument(L, mcs, 1)->base_from_wafer, &place)) {
+    if (!wh_cell_locate(&mcs->real->cell, &wafer_argument(L, mcs, 1)->base_from_wafer, &place)) {
         return 0;
     }
     lua_pushstring(L, mcs->layout->stations[place.station].name);
@@ -86,15 +119,15 @@ static int judge_place(lua_State *L) {
     claim.dx = luaL_checknumber(L, 4);
     claim.dy = luaL_checknumber(L, 5);
     claim.tolerance = luaL_checknumber(L, 6);
-    const int32_t verdict = wh_decisions_judge(&claim, &mcs->simulator.cell, mcs->state.wafers);
+    const int32_t verdict = wh_decisions_judge(&claim, &mcs->real->cell, mcs->state.wafers);
     wh_decisions_claim(mcs->decisions, &claim, verdict);
     const wh_pose_t *base_from_wafer = &mcs->state.wafers[claim.wafer].base_from_wafer;
     wh_place_t place =
-        wh_station_measure(&mcs->simulator.cell.stations[claim.station], claim.slot, base_from_wafer);
+        wh_station_measure(&mcs->real->cell.stations[claim.station], claim.slot, base_from_wafer);
     lua_pushinteger(L, verdict);
     lua_pushnumber(L, place.dx);
     lua_pushnumber(L, place.dy);
-    if (!wh_cell_locate(&mcs->simulator.cell, base_from_wafer, &place)) {
+    if (!wh_cell_locate(&mcs->real->cell, base_from_wafer, &place)) {
         return 3;
     }
     lua_pushstring(L, mcs->layout->stations[place.station].name);
@@ -115,7 +148,7 @@ static wh_pose_t commanded_pose(const wh_mcs_t *mcs, int32_t gripper) {
     if (mcs->layout->grippers[gripper].station != WH_NONE) {
         wh_decisions_measured(mcs->decisions, "a chuck's pose");
     }
-    wh_machine_grippers(&wh_mcs_real(mcs)->machine, mcs->track.axes, poses);
+    wh_machine_grippers(&mcs->real->machine, mcs->track.axes, poses);
     return poses[gripper];
 }
 
@@ -142,7 +175,7 @@ static int read_real_gripper_pose(lua_State *L) {
 /* native.slot_pose(station, slot): where that slot really is. */
 static int read_slot_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_station_t *station = &wh_mcs_real(mcs)->places[wh_mcs_index(L, 1, mcs->layout->station_count)];
+    const wh_station_t *station = &mcs->real->places[wh_mcs_index(L, 1, mcs->layout->station_count)];
     const wh_pose_t pose = wh_station_slot(station, wh_mcs_index(L, 2, (size_t)station->slots) + 1);
     wh_decisions_measured(mcs->decisions, "where a slot is");
     wh_lua_push_pose(L, &pose);
@@ -168,7 +201,94 @@ static int relate(lua_State *L) {
     return 6;
 }
 
-const luaL_Reg wh_mcs_query_functions[] = {{"wafer", find_wafer},
+/* ---------------------------------------------------------------------------------------------------- collisions */
+
+static void push_part(lua_State *L, const wh_mcs_t *mcs, int32_t part) {
+    const char *name = wh_layout_part_name(mcs->layout, part);
+    lua_pushstring(L, name ? name : "nothing");
+}
+
+static void set_parts(lua_State *L, const wh_mcs_t *mcs, const int32_t parts[2]) {
+    lua_createtable(L, 2, 0);
+    for (int i = 0; i < 2; ++i) {
+        push_part(L, mcs, parts[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, "parts");
+}
+
+static void set_place(lua_State *L, wh_vec3_t at) {
+    const double values[] = {at.x, at.y, at.z};
+    lua_createtable(L, 3, 0);
+    for (int i = 0; i < 3; ++i) {
+        lua_pushnumber(L, values[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, "at");
+}
+
+/* native.hits(): a list of { kind, parts, at, time } so far. */
+static int list_hits(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    lua_newtable(L);
+    wh_decisions_measured(mcs->decisions, "hits");
+    for (size_t i = 0; i < mcs->recorder.record->event_count; ++i) {
+        const wh_event_record_t *record = &mcs->recorder.record->events[i];
+        const wh_event_kind_t kind = record->event.kind;
+        if (kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED) {
+            lua_createtable(L, 0, 4);
+            lua_pushstring(L, wh_event_name(kind));
+            lua_setfield(L, -2, "kind");
+            set_parts(L, mcs, record->event.parts);
+            set_place(L, record->event.at);
+            lua_pushnumber(L, (double)record->utime / 1e6);
+            lua_setfield(L, -2, "time");
+            lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
+        }
+    }
+    return 1;
+}
+
+static int find_kind(const char *name) {
+    int kind = 0;
+    while (kind < WH_CLEARANCES && strcmp(name, wh_clearance_name((wh_clearance_kind_t)kind)) != 0) {
+        ++kind;
+    }
+    return kind;
+}
+
+/* native.clearance(kind): { gap, limit, time, parts, at } so far, of which only `limit` is there until something was near; nil
+ * where nobody looks; false for a kind that there is not. */
+static int find_clearance(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int kind = find_kind(luaL_checkstring(L, 1));
+    wh_decisions_measured(mcs->decisions, "clearance");
+    if (kind == WH_CLEARANCES) {
+        lua_pushboolean(L, 0);
+        return 1;
+    }
+    if (!mcs->local.collision.world) {
+        return 0;
+    }
+    const wh_clearance_t *least = &wh_world_clearances(mcs->local.collision.world)[kind];
+    lua_createtable(L, 0, 5);
+    lua_pushnumber(L, mcs->layout->world.limits[kind]);
+    lua_setfield(L, -2, "limit");
+    if (least->parts[0] != WH_NONE) {
+        lua_pushnumber(L, least->gap);
+        lua_setfield(L, -2, "gap");
+        lua_pushnumber(L, (double)((int64_t)least->slice * mcs->layout->slice_us) / 1e6);
+        lua_setfield(L, -2, "time");
+        set_parts(L, mcs, least->parts);
+        set_place(L, least->at);
+    }
+    return 1;
+}
+
+const luaL_Reg wh_mcs_query_functions[] = {{"utime", read_utime},
+                                           {"held", find_held},
+                                           {"wafer_names", list_wafers},
+                                           {"wafer", find_wafer},
                                            {"sensor", read_sensor},
                                            {"is_open", read_valve},
                                            {"holder", find_holder},
@@ -180,4 +300,6 @@ const luaL_Reg wh_mcs_query_functions[] = {{"wafer", find_wafer},
                                            {"real_gripper_pose", read_real_gripper_pose},
                                            {"slot_pose", read_slot_pose},
                                            {"relate", relate},
+                                           {"hits", list_hits},
+                                           {"clearance", find_clearance},
                                            {NULL, NULL}};

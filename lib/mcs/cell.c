@@ -1,10 +1,10 @@
-/* The MCS host's cell: finding its layout, and memory for what the layout describes. */
+/* The cell: its layout is found and read, and gets a simulator in this process. */
 #include <stddef.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "ahead.h"
-#include "mcs_internal.h"
+#include "native.h"
 
 static bool is_same_file(const char *a, const char *b) {
     struct stat one;
@@ -46,10 +46,6 @@ static void *lua_memory(lua_State *L, size_t bytes) {
     return memory;
 }
 
-const wh_layout_t *wh_mcs_real(const wh_mcs_t *mcs) {
-    return mcs->trial_cell ? &mcs->trial_cell->layout : mcs->layout;
-}
-
 /* What a trial draws for the layout whose table is on top of the stack. */
 static const wh_layout_t *make_reality(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     if (!mcs->trial || !layout->errors) {
@@ -62,57 +58,91 @@ static const wh_layout_t *make_reality(lua_State *L, wh_mcs_t *mcs, const wh_lay
     if (layout->collision) {
         wh_layout_read_reality(L, &trial_cell->layout);
     }
-    mcs->trial_cell = trial_cell;
+    mcs->local.trial = trial_cell;
     return &trial_cell->layout;
 }
 
-/* Valves act late: in front of the simulator, which is part of the MCS's host. */
+/* Valves act late: in front of the simulator, with which the local cell begins. */
 static wh_status_t exchange_late(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
-    wh_simulator_t *simulator = (wh_simulator_t *)(void *)link;
-    wh_mcs_t *mcs = (wh_mcs_t *)(void *)((char *)simulator - offsetof(wh_mcs_t, simulator));
+    wh_local_cell_t *local = (wh_local_cell_t *)(void *)link;
     wh_command_t late = *command;
-    wh_trial_cell_delay(mcs->trial_cell, &late);
-    return wh_simulator_step(simulator, &late, state);
+    wh_trial_cell_delay(local->trial, &late);
+    return wh_simulator_step(&local->simulator, &late, state);
 }
 
-static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
-    const size_t bytes = layout->wafer_count * sizeof(wh_wafer_t);
-    const wh_layout_t *real = make_reality(L, mcs, layout);
-    wh_grasp_storage_t storage = {0};
+static wh_status_t set_up_simulator(lua_State *L, wh_simulator_t *simulator, const wh_layout_t *real) {
+    const size_t bytes = real->wafer_count * sizeof(wh_wafer_t);
+    wh_grasp_storage_t storage = {.wafer_count = real->wafer_count,
+                                  .gripper_count = real->machine.gripper_count};
     storage.wafers = lua_memory(L, bytes);
-    storage.wafer_count = layout->wafer_count;
-    storage.gripper_count = layout->machine.gripper_count;
     storage.grippers = lua_memory(L, storage.gripper_count * sizeof(wh_gripper_t));
     storage.bucket_count = wh_grasp_buckets(storage.wafer_count, storage.gripper_count);
     storage.buckets = lua_memory(L, storage.bucket_count * sizeof(uint32_t));
     if (bytes > 0) {
         memcpy(storage.wafers, real->start, bytes);
     }
-    wh_status_t status = wh_simulator_init(&mcs->simulator, &layout->grasp, &storage, &real->cell);
-    if (status == WH_OK) {
-        status = wh_simulator_set_physics(&mcs->simulator, &real->physics);
+    const wh_status_t status = wh_simulator_init(simulator, &real->grasp, &storage, &real->cell);
+    return status == WH_OK ? wh_simulator_set_physics(simulator, &real->physics) : status;
+}
+
+static void set_up_local(lua_State *L, wh_local_cell_t *local, const wh_layout_t *real) {
+    const wh_status_t status = set_up_simulator(L, &local->simulator, real);
+    if (status != WH_OK) {
+        luaL_error(L, "%s: %s", real->path, wh_status_text(status));
     }
-    if (status == WH_OK) {
-        status = wh_track_init(&mcs->track, &real->machine, layout->slice_us);
+    if (real->collision) {
+        wh_collision_attach(&local->collision, real, &local->simulator,
+                            lua_memory(L, wh_collision_bytes(real)));
     }
+    if (local->trial) {
+        local->simulator.link.exchange = exchange_late;
+    }
+}
+
+static void set_up_look_ahead(lua_State *L, wh_rehearsal_t *rehearsal, const wh_layout_t *layout) {
+    if (layout->look_ahead && !rehearsal->look_ahead) {
+        wh_ahead_t *ahead = lua_memory(L, sizeof *ahead);
+        wh_ahead_init(ahead, layout, lua_memory(L, wh_ahead_bytes(layout)));
+        rehearsal->look_ahead = wh_ahead_judge;
+        rehearsal->look_ahead_user = ahead;
+    }
+}
+
+static void hear_decisions(void *user, const wh_command_t *command, const wh_state_t *state) {
+    (void)state;
+    wh_decisions_slice(user, command);
+}
+
+static void hear_record(void *user, const wh_command_t *command, const wh_state_t *state) {
+    wh_recorder_events(user, state);
+    wh_recorder_slice(user, command, state);
+}
+
+static void set_up_listeners(wh_mcs_t *mcs) {
+    mcs->recorder.layout = mcs->layout;
+    mcs->recorder.cell = &mcs->real->cell;
+    wh_mcs_listen(mcs, hear_record, &mcs->recorder);
+    if (mcs->decisions) {
+        wh_mcs_listen(mcs, hear_decisions, mcs->decisions);
+    }
+    if (mcs->listener.slice) {
+        wh_mcs_listen(mcs, mcs->listener.slice, mcs->listener.user);
+    }
+}
+
+static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
+    const wh_layout_t *real = make_reality(L, mcs, layout);
+    set_up_local(L, &mcs->local, real);
+    const wh_status_t status = wh_track_init(&mcs->track, &real->machine, layout->slice_us);
     if (status != WH_OK) {
         luaL_error(L, "%s: %s", layout->path, wh_status_text(status));
     }
-    if (layout->collision) {
-        wh_collision_attach(&mcs->collision, real, &mcs->simulator, lua_memory(L, wh_collision_bytes(real)));
-    }
-    if (layout->look_ahead && !mcs->ahead) {
-        wh_ahead_t *ahead = lua_memory(L, sizeof *ahead);
-        wh_ahead_init(ahead, layout, lua_memory(L, wh_ahead_bytes(layout)));
-        mcs->ahead = wh_ahead_judge;
-        mcs->ahead_user = ahead;
-    }
-    mcs->link = &mcs->simulator.link;
-    if (mcs->trial_cell) {
-        mcs->link->exchange = exchange_late;
-    }
-    wh_simulator_view(&mcs->simulator, &mcs->state);
+    set_up_look_ahead(L, &mcs->rehearsal, layout);
+    mcs->link = &mcs->local.simulator.link;
+    wh_simulator_view(&mcs->local.simulator, &mcs->state);
     mcs->layout = layout;
+    mcs->real = real;
+    set_up_listeners(mcs);
     wh_mcs_start_faults(mcs);
 }
 

@@ -1,9 +1,9 @@
-/* The MCS host's geometry: where the axes stand and must go, and where slots are. */
+/* Geometry: where slots are, where the axes stand, and where they must go. */
 #include <stdio.h>
 #include <string.h>
 
 #include "../math/trig.h"
-#include "mcs_internal.h"
+#include "native.h"
 
 static void push_axes(lua_State *L, const wh_mcs_t *mcs, const wh_real_t axes[]) {
     lua_createtable(L, (int)mcs->layout->machine.axis_count, 0);
