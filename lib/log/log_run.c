@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -9,22 +10,6 @@
 #include "log_internal.h"
 
 /* ---------------------------------------------------------------------------------------------------- file */
-
-static FILE *open_file(wh_log_run_t *run, const char *path) {
-    struct stat status;
-    FILE *file = fopen(path, "rb");
-    const bool is_folder = file && fstat(fileno(file), &status) == 0 && S_ISDIR(status.st_mode);
-    if (!file || is_folder) {
-        (void)snprintf(run->message, sizeof run->message,
-                       "%.300s: %s (expected an LCM event log, or a script)", path,
-                       strerror(is_folder ? EISDIR : errno));
-    }
-    if (is_folder) {
-        (void)fclose(file);
-        return NULL;
-    }
-    return file;
-}
 
 bool wh_log_run_is_log(const char *path) {
     static const unsigned char sync[4] = {0xED, 0xA1, 0xDA, 0x01};
@@ -37,11 +22,36 @@ bool wh_log_run_is_log(const char *path) {
     return is_log;
 }
 
-/* Room for one more note. */
-static char *next_note(wh_log_run_t *run) {
+__attribute__((format(printf, 2, 3))) static void note(wh_log_run_t *run, const char *format, ...) {
     char *text = run->text[run->note_count];
+    va_list values;
+    va_start(values, format);
+    (void)vsnprintf(text, sizeof run->text[0], format, values);
+    va_end(values);
     run->notes[run->note_count++] = text;
-    return text;
+}
+
+/* Says why there is nothing to show: the file, then the reason. */
+__attribute__((format(printf, 2, 3))) static bool refuse(wh_log_run_t *run, const char *format, ...) {
+    const int length = snprintf(run->message, sizeof run->message, "%.300s: ", run->options.path);
+    va_list values;
+    va_start(values, format);
+    (void)vsnprintf(run->message + length, sizeof run->message - (size_t)length, format, values);
+    va_end(values);
+    return false;
+}
+
+static FILE *open_file(wh_log_run_t *run) {
+    struct stat status;
+    FILE *file = fopen(run->options.path, "rb");
+    if (!file) {
+        (void)refuse(run, "%s (expected an LCM event log, or a script)", strerror(errno));
+    } else if (fstat(fileno(file), &status) == 0 && S_ISDIR(status.st_mode)) {
+        (void)refuse(run, "%s (expected an LCM event log, or a script)", strerror(EISDIR));
+        (void)fclose(file);
+        return NULL;
+    }
+    return file;
 }
 
 static bool wants(const wh_log_run_t *run) {
@@ -179,47 +189,37 @@ static wh_log_result_t read_events(wh_log_run_t *run, FILE *file) {
 }
 
 static void tell(wh_log_run_t *run, wh_log_result_t result) {
-    (void)snprintf(next_note(run), WH_LOG_NOTE_BYTES,
-                   "From a log: what the script expected and its cycles are not in it.");
+    note(run, "From a log: what the script expected and its cycles are not in it.");
     if (!run->cell.is_whole) {
-        (void)snprintf(next_note(run), WH_LOG_NOTE_BYTES, "Shapes are the defaults of 300 mm wafers: %.140s.",
-                       run->cell.note);
+        note(run, "Shapes are the defaults of 300 mm wafers: %.140s.", run->cell.note);
     }
     if (run->gaps > 0) {
-        (void)snprintf(next_note(run), WH_LOG_NOTE_BYTES, "%zu stretches of slices are not in the log.",
-                       run->gaps);
+        note(run, "%zu stretches of slices are not in the log.", run->gaps);
     }
     if (result == WH_LOG_CUT || result == WH_LOG_DAMAGED) {
-        (void)snprintf(next_note(run), WH_LOG_NOTE_BYTES,
-                       "The log is %s at byte %" PRIu64 ": shown up to there.",
-                       result == WH_LOG_CUT ? "cut off" : "damaged", run->log.offset);
+        note(run, "The log is %s at byte %" PRIu64 ": shown up to there.",
+             result == WH_LOG_CUT ? "cut off" : "damaged", run->log.offset);
     }
 }
 
-static bool refuse(wh_log_run_t *run, wh_log_result_t result) {
-    const char *path = run->options.path;
+static bool refuse_log(wh_log_run_t *run, wh_log_result_t result) {
     if (run->log.count == 0 && result != WH_LOG_END) {
-        (void)snprintf(run->message, sizeof run->message,
-                       "%.300s: no LCM event log (expected one, or a script)", path);
-    } else if (!run->cell.layout && !run->next_cell.layout) {
-        (void)snprintf(
-            run->message, sizeof run->message,
-            "%.300s: no cell in it (expected WAFERHAND_CELL, which a simulator tells once a second)", path);
-    } else if (run->options.number > 0 && run->run_count > 0) {
-        (void)snprintf(run->message, sizeof run->message, "%.300s: no run %zu in it (expected 1 to %zu)",
-                       path, run->options.number, run->run_count);
-    } else {
-        (void)snprintf(run->message, sizeof run->message,
-                       "%.300s: no run in it (expected states on WAFERHAND_STATE, in %" PRIu64 " events)",
-                       path, run->log.count);
+        return refuse(run, "no LCM event log (expected one, or a script)");
     }
-    return false;
+    if (!run->cell.layout && !run->next_cell.layout) {
+        return refuse(run, "no cell in it (expected WAFERHAND_CELL, which a simulator tells once a second)");
+    }
+    if (run->options.number > 0 && run->run_count > 0) {
+        return refuse(run, "no run %zu in it (expected 1 to %zu)", run->options.number, run->run_count);
+    }
+    return refuse(run, "no run in it (expected states on WAFERHAND_STATE, in %" PRIu64 " events)",
+                  run->log.count);
 }
 
 bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options) {
     memset(run, 0, sizeof *run);
     run->options = *options;
-    FILE *file = open_file(run, options->path);
+    FILE *file = open_file(run);
     if (!file) {
         return false;
     }
@@ -227,7 +227,7 @@ bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options) {
     const wh_log_result_t result = read_events(run, file);
     (void)fclose(file);
     if (!run->signals.layout || run->signals.last <= 0) {
-        return refuse(run, result);
+        return refuse_log(run, result);
     }
     wh_log_finish_run(run);
     tell(run, result);

@@ -23,7 +23,7 @@ static bool make_room(wh_decisions_t *decisions, const wh_command_t *command) {
         return true;
     }
     const int64_t wanted = decisions->slice_capacity > 0 ? 2 * decisions->slice_capacity : 4096;
-    if ((size_t)wanted > WH_TAPE_BYTES / bytes) {
+    if ((size_t)wanted > WH_DECISIONS_BYTES / bytes) {
         decisions->unfit = "the run has too many slices";
         return false;
     }
@@ -70,45 +70,21 @@ void wh_decisions_slice(wh_decisions_t *decisions, const wh_command_t *command) 
 
 /* ------------------------------------------------------------------------------------------------------ readings */
 
-static void add_entry(wh_decisions_t *decisions, const wh_decisions_entry_t *entry) {
-    decisions->entries = wh_record_grow(decisions->entries, decisions->entry_count,
-                                        &decisions->entry_capacity, sizeof *decisions->entries);
-    decisions->entries[decisions->entry_count] = *entry;
-    decisions->entries[decisions->entry_count].slice = decisions->slice_count;
-    ++decisions->entry_count;
-}
-
-void wh_decisions_begin(wh_decisions_t *decisions, const wh_segment_t *segment, uint32_t carried) {
+void wh_decisions_read(wh_decisions_t *decisions, wh_decisions_kind_t kind, int32_t index, int32_t answer) {
     if (decisions) {
-        const bool waits = segment->kind == WH_SEGMENT_SENSOR;
-        const wh_decisions_entry_t entry = {
-            .kind = WH_TAPE_BEGIN, .index = waits ? segment->gripper : WH_NONE, .mask = carried};
-        add_entry(decisions, &entry);
-    }
-}
-
-void wh_decisions_end(wh_decisions_t *decisions, bool done, int32_t lost) {
-    if (decisions) {
-        const wh_decisions_entry_t entry = {.kind = WH_TAPE_END, .index = lost, .mask = done ? 1 : 0};
-        add_entry(decisions, &entry);
-    }
-}
-
-void wh_decisions_ask(wh_decisions_t *decisions, wh_decisions_kind_t kind, int32_t index, int32_t answer) {
-    if (decisions) {
-        const wh_decisions_entry_t entry = {.kind = kind, .index = index, .answer = answer};
-        add_entry(decisions, &entry);
+        decisions->entries = wh_record_grow(decisions->entries, decisions->entry_count,
+                                            &decisions->entry_capacity, sizeof *decisions->entries);
+        decisions->entries[decisions->entry_count++] =
+            (wh_decisions_entry_t){kind, index, answer, decisions->slice_count};
     }
 }
 
 void wh_decisions_claim(wh_decisions_t *decisions, const wh_decisions_claim_t *claim, int32_t verdict) {
     if (decisions) {
-        const wh_decisions_entry_t entry = {
-            .kind = WH_TAPE_CLAIM, .index = (int32_t)decisions->claim_count, .answer = verdict};
         decisions->claims = wh_record_grow(decisions->claims, decisions->claim_count,
                                            &decisions->claim_capacity, sizeof *decisions->claims);
-        decisions->claims[decisions->claim_count++] = *claim;
-        add_entry(decisions, &entry);
+        decisions->claims[decisions->claim_count] = *claim;
+        wh_decisions_read(decisions, WH_DECISION_CLAIM, (int32_t)decisions->claim_count++, verdict);
     }
 }
 

@@ -1,4 +1,4 @@
-/* A tape, played against the simulator of a trial. */
+/* The decisions of a run, played against the simulator of a trial. */
 #include <string.h>
 
 #include "decisions.h"
@@ -119,14 +119,14 @@ static int32_t find_lost(const player_t *player) {
 
 static bool begin(player_t *player, const wh_decisions_entry_t *entry) {
     player->waits = entry->index;
-    wh_vacuum_watch_begin(&player->vacuum, entry->mask & player->state.sensors);
+    wh_vacuum_watch_begin(&player->vacuum, (uint32_t)entry->answer & player->state.sensors);
     return true;
 }
 
 static bool end(player_t *player, const wh_decisions_entry_t *entry) {
     const bool done = goes_on_waiting(player) == (player->waits == WH_NONE);
     player->waits = WH_NONE;
-    return done == (entry->mask != 0) && find_lost(player) == entry->index;
+    return done == (entry->answer != 0) && find_lost(player) == entry->index;
 }
 
 static bool holds_claim(player_t *player, const wh_decisions_entry_t *entry) {
@@ -139,17 +139,17 @@ static bool holds_claim(player_t *player, const wh_decisions_entry_t *entry) {
 /* Whether an entry is what this trial would have written. */
 static bool agrees(player_t *player, const wh_decisions_entry_t *entry) {
     switch (entry->kind) {
-    case WH_TAPE_BEGIN:
+    case WH_DECISION_BEGIN:
         return begin(player, entry);
-    case WH_TAPE_END:
+    case WH_DECISION_END:
         return end(player, entry);
-    case WH_TAPE_SENSOR:
+    case WH_DECISION_SENSOR:
         return (int32_t)(player->state.sensors >> entry->index & 1U) == entry->answer;
-    case WH_TAPE_HELD:
+    case WH_DECISION_HELD:
         return player->state.grippers[entry->index].wafer == entry->answer;
-    case WH_TAPE_HOLDER:
+    case WH_DECISION_HOLDER:
         return player->state.wafers[entry->index].holder == entry->answer;
-    case WH_TAPE_CLAIM:
+    case WH_DECISION_CLAIM:
         return holds_claim(player, entry);
     default:
         return false;

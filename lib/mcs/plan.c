@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "../math/trig.h"
+#include "../script/wh_module_internal.h"
 #include "native.h"
 
 static void push_axes(lua_State *L, const wh_mcs_t *mcs, const wh_real_t axes[]) {
@@ -48,16 +49,13 @@ static int find_slot(lua_State *L) {
     const wh_real_t x = base_from_slot.R.m[0][0];
     const wh_real_t y = base_from_slot.R.m[1][0];
     const wh_real_t length = wh_real_sqrt(x * x + y * y);
-    const struct {
-        const char *name;
-        double value;
-    } fields[] = {{"x", base_from_slot.r.x}, {"y", base_from_slot.r.y}, {"z", base_from_slot.r.z},
-                  {"dir_x", x / length},     {"dir_y", y / length},     {"heading", wh_atan2(y, x)}};
     lua_createtable(L, 0, 6);
-    for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i) {
-        lua_pushnumber(L, fields[i].value);
-        lua_setfield(L, -2, fields[i].name);
-    }
+    wh_lua_set_number(L, "x", base_from_slot.r.x);
+    wh_lua_set_number(L, "y", base_from_slot.r.y);
+    wh_lua_set_number(L, "z", base_from_slot.r.z);
+    wh_lua_set_number(L, "dir_x", x / length);
+    wh_lua_set_number(L, "dir_y", y / length);
+    wh_lua_set_number(L, "heading", wh_atan2(y, x));
     return 1;
 }
 

@@ -251,10 +251,13 @@ static int play(lua_State *L) {
     keep_segment(mcs);
     mcs->recorder.task = planned.task;
     wh_vacuum_watch_begin(&mcs->watch, planned.may_lose & mcs->state.sensors);
-    wh_decisions_begin(mcs->decisions, &mcs->track.segment, planned.may_lose);
+    const wh_segment_t *segment = &mcs->track.segment;
+    wh_decisions_read(mcs->decisions, WH_DECISION_BEGIN,
+                      segment->kind == WH_SEGMENT_SENSOR ? segment->gripper : WH_NONE,
+                      (int32_t)planned.may_lose);
     const bool done = play_through(L, mcs) == WH_TRACK_DONE;
     const int32_t lost = wh_vacuum_watch_lost(&mcs->watch, mcs->track.valves, mcs->state.gripper_count);
-    wh_decisions_end(mcs->decisions, done, lost);
+    wh_decisions_read(mcs->decisions, WH_DECISION_END, lost, done);
     lua_pushboolean(L, done);
     if (lost == WH_NONE) {
         return 1;

@@ -20,7 +20,7 @@ static int find_held(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     const int32_t wafer = mcs->state.grippers[gripper].wafer;
-    wh_decisions_ask(mcs->decisions, WH_TAPE_HELD, gripper, wafer);
+    wh_decisions_read(mcs->decisions, WH_DECISION_HELD, gripper, wafer);
     if (wafer == WH_NONE) {
         return 0;
     }
@@ -56,7 +56,7 @@ static int read_sensor(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     const bool on = (mcs->state.sensors >> gripper & 1U) != 0;
-    wh_decisions_ask(mcs->decisions, WH_TAPE_SENSOR, gripper, on);
+    wh_decisions_read(mcs->decisions, WH_DECISION_SENSOR, gripper, on);
     lua_pushboolean(L, on);
     return 1;
 }
@@ -74,7 +74,7 @@ static int find_holder(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t wafer = wh_mcs_index(L, 1, mcs->state.wafer_count);
     const int32_t holder = mcs->state.wafers[wafer].holder;
-    wh_decisions_ask(mcs->decisions, WH_TAPE_HOLDER, wafer, holder);
+    wh_decisions_read(mcs->decisions, WH_DECISION_HOLDER, wafer, holder);
     wh_lua_push_index(L, holder);
     return 1;
 }
@@ -217,16 +217,6 @@ static void set_parts(lua_State *L, const wh_mcs_t *mcs, const int32_t parts[2])
     lua_setfield(L, -2, "parts");
 }
 
-static void set_place(lua_State *L, wh_vec3_t at) {
-    const double values[] = {at.x, at.y, at.z};
-    lua_createtable(L, 3, 0);
-    for (int i = 0; i < 3; ++i) {
-        lua_pushnumber(L, values[i]);
-        lua_rawseti(L, -2, i + 1);
-    }
-    lua_setfield(L, -2, "at");
-}
-
 /* native.hits(): a list of { kind, parts, at, time } so far. */
 static int list_hits(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
@@ -240,9 +230,8 @@ static int list_hits(lua_State *L) {
             lua_pushstring(L, wh_event_name(kind));
             lua_setfield(L, -2, "kind");
             set_parts(L, mcs, record->event.parts);
-            set_place(L, record->event.at);
-            lua_pushnumber(L, (double)record->utime / 1e6);
-            lua_setfield(L, -2, "time");
+            wh_lua_set_triple(L, "at", &record->event.at);
+            wh_lua_set_number(L, "time", (double)record->utime / 1e6);
             lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
         }
     }
@@ -272,15 +261,12 @@ static int find_clearance(lua_State *L) {
     }
     const wh_clearance_t *least = &wh_world_clearances(mcs->local.collision.world)[kind];
     lua_createtable(L, 0, 5);
-    lua_pushnumber(L, mcs->layout->world.limits[kind]);
-    lua_setfield(L, -2, "limit");
+    wh_lua_set_number(L, "limit", mcs->layout->world.limits[kind]);
     if (least->parts[0] != WH_NONE) {
-        lua_pushnumber(L, least->gap);
-        lua_setfield(L, -2, "gap");
-        lua_pushnumber(L, (double)((int64_t)least->slice * mcs->layout->slice_us) / 1e6);
-        lua_setfield(L, -2, "time");
+        wh_lua_set_number(L, "gap", least->gap);
+        wh_lua_set_number(L, "time", (double)((int64_t)least->slice * mcs->layout->slice_us) / 1e6);
         set_parts(L, mcs, least->parts);
-        set_place(L, least->at);
+        wh_lua_set_triple(L, "at", &least->at);
     }
     return 1;
 }
