@@ -30,9 +30,13 @@ void wh_mcs_charge_entry(lua_State *L, size_t text_bytes);
 /* The layout's faults, once it is read. */
 void wh_mcs_start_faults(wh_mcs_t *mcs);
 
-/* The layout as lua/mcs reads it: { path, slice, sampled, homed, tolerance, home: the robot's axes, grippers in order, stations by
- * name }. Lengths in mm, angles in rad, times in s. */
-void wh_mcs_push_layout(lua_State *L, const wh_layout_t *layout);
+/* Plans the segment table at stack index 1 from where the track stands, which has then begun it. Raises if it cannot be. */
+void wh_mcs_plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned);
+
+/* What so many slices cost of the instruction budget: a slice takes as much time as some twenty instructions of Lua. */
+static inline uint64_t wh_mcs_steps(int64_t slices) {
+    return 20 * (uint64_t)slices;
+}
 
 /* Functions of the native table, by file. */
 extern const luaL_Reg wh_mcs_cell_functions[];

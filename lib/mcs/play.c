@@ -1,167 +1,11 @@
-/* Segments: read from Lua, planned, and played slice by slice. */
+/* Segments, played slice by slice. */
 #include <math.h>
 #include <time.h>
 
 #include "native.h"
 
-/* The budget is charged for slices in portions, so that a long wait can be ended within one. A slice costs as much time
- * as some twenty instructions of Lua. */
+/* The budget is charged for slices in portions, so that a long wait can be ended within one. */
 #define SLICES_PER_CHARGE 1024
-#define STEPS_PER_SLICE 20
-
-/* ----------------------------------------------------------------------------------------------------- reading */
-
-static void read_axes_field(lua_State *L, const wh_mcs_t *mcs, wh_segment_t *segment) {
-    segment->kind = WH_SEGMENT_AXES;
-    for (size_t axis = 0; axis < mcs->layout->machine.axis_count; ++axis) {
-        lua_rawgeti(L, -1, (lua_Integer)axis + 1);
-        segment->target[axis] = luaL_checknumber(L, -1);
-        lua_pop(L, 1);
-    }
-}
-
-static void read_line_field(lua_State *L, wh_segment_t *segment) {
-    wh_real_t *const parts[] = {&segment->travel.x, &segment->travel.y, &segment->travel.z};
-    segment->kind = WH_SEGMENT_LINE;
-    for (int i = 0; i < 3; ++i) {
-        lua_rawgeti(L, -1, i + 1);
-        *parts[i] = luaL_checknumber(L, -1);
-        lua_pop(L, 1);
-    }
-    lua_getfield(L, 1, "speed");
-    segment->speed = luaL_optnumber(L, -1, 0);
-    lua_getfield(L, 1, "acceleration");
-    segment->acceleration = luaL_optnumber(L, -1, 0);
-    lua_pop(L, 2);
-}
-
-static void read_valves_field(lua_State *L, wh_segment_t *segment) {
-    segment->kind = WH_SEGMENT_VALVES;
-    for (int g = 0; g < WH_GRIPPERS; ++g) {
-        lua_rawgeti(L, -1, g + 1);
-        segment->valves[g] = (int32_t)luaL_optinteger(L, -1, WH_NONE);
-        lua_pop(L, 1);
-    }
-}
-
-static void read_sensor_field(lua_State *L, wh_segment_t *segment) {
-    segment->kind = WH_SEGMENT_SENSOR;
-    segment->gripper = (int32_t)luaL_checkinteger(L, -1) - 1;
-    lua_getfield(L, 1, "timeout");
-    segment->seconds = luaL_checknumber(L, -1);
-    lua_pop(L, 1);
-}
-
-/* The segment table at stack index 1: one of axes, line (with speed and acceleration), valves, dwell, sensor (with timeout).
- * Raises if it is none. */
-static wh_segment_t read_segment(lua_State *L, const wh_mcs_t *mcs) {
-    static const char *const kinds[] = {"axes", "line", "valves", "dwell", "sensor"};
-    wh_segment_t segment = wh_track_blank(&mcs->track);
-    size_t kind = 0;
-    luaL_checktype(L, 1, LUA_TTABLE);
-    while (kind < 5 && lua_getfield(L, 1, kinds[kind]) == LUA_TNIL) {
-        lua_pop(L, 1);
-        ++kind;
-    }
-    switch (kind) {
-    case 0:
-        read_axes_field(L, mcs, &segment);
-        break;
-    case 1:
-        read_line_field(L, &segment);
-        break;
-    case 2:
-        read_valves_field(L, &segment);
-        break;
-    case 3:
-        segment.seconds = luaL_checknumber(L, -1);
-        break;
-    case 4:
-        read_sensor_field(L, &segment);
-        break;
-    default:
-        luaL_error(L, "a segment needs one of axes, line, valves, dwell, sensor");
-    }
-    lua_settop(L, 1);
-    return segment;
-}
-
-/* ---------------------------------------------------------------------------------------------------- planning */
-
-/* A wafer could be lost from what the segment carries, and from a gripper on the robot in any segment. */
-static uint32_t may_lose(const wh_machine_t *machine, const wh_task_t *task) {
-    uint32_t grippers = task->carried;
-    for (size_t g = 0; g < machine->gripper_count; ++g) {
-        grippers |= machine->mounts[g].axis == WH_NONE ? 1U << g : 0;
-    }
-    return grippers;
-}
-
-/* Plans the segment table at stack index 1 from where the track stands, which has then begun it. Raises if it cannot be. */
-static void plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
-    const wh_segment_t segment = read_segment(L, mcs);
-    lua_getfield(L, 1, "vacuum");
-    const bool for_vacuum = segment.kind == WH_SEGMENT_DWELL && lua_toboolean(L, -1) != 0;
-    lua_pop(L, 1);
-    planned->task = wh_activity_task(&mcs->track, &segment, for_vacuum);
-    planned->may_lose = may_lose(mcs->track.machine, &planned->task);
-    const wh_status_t status = wh_track_begin(&mcs->track, &segment);
-    if (status != WH_OK) {
-        wh_mcs_raise(L, mcs, status, NULL);
-    }
-    planned->track = mcs->track;
-}
-
-static void look_ahead(lua_State *L, wh_mcs_t *mcs) {
-    const wh_rehearsal_t *rehearsal = &mcs->rehearsal;
-    char reason[WH_REHEARSAL_REASON_BYTES] = "";
-    if (rehearsal->is_judged && rehearsal->look_ahead) {
-        if (rehearsal->look_ahead(rehearsal->look_ahead_user, &mcs->track, &mcs->state, rehearsal->count == 0,
-                                  reason)) {
-            wh_mcs_raise(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
-        }
-        wh_sandbox_charge(L, STEPS_PER_SLICE * (uint64_t)mcs->track.segment_slices);
-    }
-}
-
-/* native.plan(segment): within a rehearsal; the number by which the segment can then be played as it was planned. */
-static int plan(lua_State *L) {
-    wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    wh_planned_t planned;
-    luaL_argcheck(L, mcs->rehearsal.is_on, 1, "no rehearsal goes on");
-    plan_segment(L, mcs, &planned);
-    look_ahead(L, mcs);
-    wh_track_skip(&mcs->track);
-    wh_rehearsal_note_reach(&mcs->rehearsal, &mcs->track, mcs->recorder.record);
-    wh_rehearsal_add(&mcs->rehearsal, &planned);
-    lua_pushinteger(L, (lua_Integer)mcs->rehearsal.count);
-    return 1;
-}
-
-/* native.rehearse(on, judged): from now on segments are only planned, and looked at for collisions if judged; off: everything is
- * where it was. */
-static int rehearse(lua_State *L) {
-    wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    wh_rehearsal_end(&mcs->rehearsal, &mcs->track);
-    if (lua_toboolean(L, 1)) {
-        wh_rehearsal_begin(&mcs->rehearsal, &mcs->track, lua_toboolean(L, 2) != 0);
-    }
-    return 0;
-}
-
-/* native.reach(station, slot): what is rehearsed from now on goes there; without arguments: the reach is no longer noted. */
-static int set_reach(lua_State *L) {
-    wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const size_t stations = mcs->layout->station_count;
-    mcs->rehearsal.reach_slot = (int32_t)luaL_optinteger(L, 2, 0);
-    if (mcs->rehearsal.reach_slot != 0) {
-        mcs->rehearsal.reach_station = wh_mcs_index(L, 1, stations);
-        wh_record_begin_reach(mcs->recorder.record, stations);
-    }
-    return 0;
-}
-
-/* ----------------------------------------------------------------------------------------------------- playing */
 
 /* One slice: the command goes in, the state comes out, and whoever listens hears of both. */
 static wh_status_t exchange(wh_mcs_t *mcs) {
@@ -210,7 +54,7 @@ static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
         const int64_t before = mcs->track.slice;
         state = play_portion(mcs, &status);
         /* First, for a link that gave up waiting because of a stop returns with some status too. */
-        wh_sandbox_charge(L, STEPS_PER_SLICE * (uint64_t)(mcs->track.slice - before));
+        wh_sandbox_charge(L, wh_mcs_steps(mcs->track.slice - before));
         if (status != WH_OK) {
             wh_mcs_raise(L, mcs, status, "the simulator refused a slice");
         }
@@ -246,7 +90,7 @@ static int play(lua_State *L) {
     if (lua_isinteger(L, 1)) {
         begin_planned(L, mcs, &planned);
     } else {
-        plan_segment(L, mcs, &planned);
+        wh_mcs_plan_segment(L, mcs, &planned);
     }
     keep_segment(mcs);
     mcs->recorder.task = planned.task;
@@ -274,5 +118,4 @@ static int stop_in(lua_State *L) {
     return 0;
 }
 
-const luaL_Reg wh_mcs_play_functions[] = {{"rehearse", rehearse}, {"plan", plan},       {"reach", set_reach},
-                                          {"play", play},         {"stop_in", stop_in}, {NULL, NULL}};
+const luaL_Reg wh_mcs_play_functions[] = {{"play", play}, {"stop_in", stop_in}, {NULL, NULL}};
