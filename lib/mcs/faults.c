@@ -1,8 +1,8 @@
-/* The MCS host's faults on purpose: a script's go to the simulator with the next slice's command. */
+/* Faults on purpose: a script's go to the simulator with the next slice's command. */
 #include <string.h>
 
 #include "../layout/layout_faults.h"
-#include "mcs_internal.h"
+#include "native.h"
 
 static int64_t next_slice(const wh_mcs_t *mcs) {
     return mcs->track.slice + 1;

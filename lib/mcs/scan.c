@@ -1,4 +1,4 @@
-/* The MCS host's scanner: the codes of a station's slots, as two beams in front of the stack see the wafers.
+/* The scanner: the codes of a station's slots, as two beams in front of the stack see the wafers.
  *
  * The beams stand upright in the station's frame, at x = -0.6 and y = +-0.6 of a wafer's radius, near the edge that
  * the arm comes to. Sweeping along z, each notes the heights of the back faces that it passes. A wafer belongs to the slots
@@ -11,7 +11,7 @@
  * Wafers on the arm are not in the station; those on its chuck are. */
 #include <string.h>
 
-#include "mcs_internal.h"
+#include "native.h"
 
 #define BEAM_SHARE 0.6
 

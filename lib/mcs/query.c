@@ -1,124 +1,51 @@
-/* The MCS host's eyes: what the layout holds, where wafers are and who holds them. */
+/* What can be asked of the cell: where wafers are and who holds them, where frames are, what came near to what. What a trial's
+ * errors change is noted in the decisions: a script that reads it is run anew for each trial. */
 #include <stdio.h>
 #include <string.h>
 
 #include "../math/relation.h"
 #include "../math/trig.h"
 #include "../script/wh_module_internal.h"
-#include "mcs_internal.h"
+#include "native.h"
 
-static void set_number(lua_State *L, const char *name, double value) {
-    lua_pushnumber(L, value);
-    lua_setfield(L, -2, name);
+/* native.utime(): simulated microseconds so far. */
+static int read_utime(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    lua_pushinteger(L, mcs->track.slice * mcs->track.slice_us);
+    return 1;
 }
 
-static void set_boolean(lua_State *L, const char *name, bool value) {
-    lua_pushboolean(L, value);
-    lua_setfield(L, -2, name);
-}
-
-/* Gripper and wafer indices go to Lua from 1; none is nil. */
-static void push_index(lua_State *L, int32_t index) {
-    if (index == WH_NONE) {
-        lua_pushnil(L);
-    } else {
-        lua_pushinteger(L, index + 1);
+/* native.held(gripper): the name of the wafer that it holds, or nil. */
+static int find_held(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    const int32_t wafer = mcs->state.grippers[gripper].wafer;
+    wh_decisions_read(mcs->decisions, WH_DECISION_HELD, gripper, wafer);
+    if (wafer == WH_NONE) {
+        return 0;
     }
+    lua_pushstring(L, mcs->layout->wafers[wafer].name);
+    return 1;
 }
 
-/* ---------------------------------------------------------------------------------------------- the layout
- */
-
-static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) {
-    const wh_layout_station_t *station = &layout->stations[index];
-    static const char *const modes[] = {"both", "get", "put", "none"};
-    lua_createtable(L, 0, 24);
-    lua_pushstring(L, station->name);
-    lua_setfield(L, -2, "name");
-    lua_pushinteger(L, (lua_Integer)index + 1);
-    lua_setfield(L, -2, "index");
-    lua_pushinteger(L, layout->places[index].slots);
-    lua_setfield(L, -2, "slots");
-    set_number(L, "pitch", layout->places[index].pitch);
-    push_index(L, layout->places[index].chuck);
-    lua_setfield(L, -2, "chuck");
-    set_number(L, "stroke", station->stroke);
-    set_number(L, "offset", station->offset);
-    set_number(L, "retract", station->retract);
-    set_number(L, "pickup_speed", station->pickup_speed);
-    set_number(L, "release", station->release);
-    set_number(L, "vacuum_delay", station->vacuum_delay);
-    set_number(L, "timeout", station->timeout);
-    set_number(L, "pickup_acceleration", station->pickup_acceleration);
-    set_number(L, "wait", station->wait);
-    set_number(L, "map_speed", station->map_speed);
-    set_number(L, "retries", station->retries);
-    set_boolean(L, "taught", station->taught);
-    set_boolean(L, "check_map", station->check_map);
-    push_index(L, station->effector);
-    lua_setfield(L, -2, "effector");
-    lua_pushstring(L, modes[station->check]);
-    lua_setfield(L, -2, "vacuum_check");
-    lua_pushstring(L, station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
-    lua_setfield(L, -2, "handover");
-}
-
-static void push_stations(lua_State *L, const wh_layout_t *layout) {
-    lua_createtable(L, 0, (int)layout->station_count);
-    for (size_t s = 0; s < layout->station_count; ++s) {
-        push_station(L, layout, s);
-        lua_setfield(L, -2, layout->stations[s].name);
-    }
-}
-
-static void push_grippers(lua_State *L, const wh_layout_t *layout) {
-    lua_createtable(L, (int)layout->machine.gripper_count, 0);
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        lua_createtable(L, 0, 3);
-        lua_pushstring(L, layout->grippers[g].name);
-        lua_setfield(L, -2, "name");
-        lua_pushboolean(L, layout->grippers[g].station == WH_NONE);
-        lua_setfield(L, -2, "on_robot");
-        push_index(L, layout->machine.mounts[g].axis);
-        lua_setfield(L, -2, "axis");
-        lua_rawseti(L, -2, (lua_Integer)g + 1);
-    }
-}
-
-/* native.layout(): { stations by name, grippers in order, tolerance, slice, sampled, homed, home: the robot's axes }. */
-static int describe_layout(lua_State *L) {
+/* native.wafer_names(): a list. */
+static int list_wafers(lua_State *L) {
     const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
-    lua_createtable(L, 0, 5);
-    push_stations(L, layout);
-    lua_setfield(L, -2, "stations");
-    push_grippers(L, layout);
-    lua_setfield(L, -2, "grippers");
-    lua_createtable(L, 0, 3);
-    set_number(L, "projz", layout->grasp.tolerance.projz);
-    set_number(L, "projxy", layout->grasp.tolerance.projxy);
-    set_number(L, "planar", layout->grasp.tolerance.planar);
-    lua_setfield(L, -2, "tolerance");
-    set_number(L, "slice", (double)layout->slice_us / 1e6);
-    set_boolean(L, "sampled", layout->grasp.check == WH_CHECK_SAMPLED);
-    set_boolean(L, "homed", layout->homed);
-    lua_createtable(L, WH_ROBOT_AXES, 0);
-    for (int axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        lua_pushnumber(L, layout->machine.robot.home[axis]);
-        lua_rawseti(L, -2, axis + 1);
+    wh_sandbox_charge(L, layout->wafer_count);
+    lua_createtable(L, (int)layout->wafer_count, 0);
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        lua_pushstring(L, layout->wafers[w].name);
+        lua_rawseti(L, -2, (lua_Integer)w + 1);
     }
-    lua_setfield(L, -2, "home");
     return 1;
 }
 
 /* native.wafer(name): the wafer's index, or nil. */
 static int find_wafer(lua_State *L) {
     const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
-    push_index(L, wh_layout_find_wafer(layout, luaL_checkstring(L, 1)));
+    wh_lua_push_index(L, wh_layout_find_wafer(layout, luaL_checkstring(L, 1)));
     return 1;
 }
-
-/* ------------------------------------------------------------------------------------------------- the run
- */
 
 static const wh_wafer_t *wafer_argument(lua_State *L, const wh_mcs_t *mcs, int argument) {
     return &mcs->state.wafers[wh_mcs_index(L, argument, mcs->state.wafer_count)];
@@ -129,7 +56,7 @@ static int read_sensor(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
     const bool on = (mcs->state.sensors >> gripper & 1U) != 0;
-    wh_decisions_ask(mcs->decisions, WH_TAPE_SENSOR, gripper, on);
+    wh_decisions_read(mcs->decisions, WH_DECISION_SENSOR, gripper, on);
     lua_pushboolean(L, on);
     return 1;
 }
@@ -147,8 +74,8 @@ static int find_holder(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t wafer = wh_mcs_index(L, 1, mcs->state.wafer_count);
     const int32_t holder = mcs->state.wafers[wafer].holder;
-    wh_decisions_ask(mcs->decisions, WH_TAPE_HOLDER, wafer, holder);
-    push_index(L, holder);
+    wh_decisions_read(mcs->decisions, WH_DECISION_HOLDER, wafer, holder);
+    wh_lua_push_index(L, holder);
     return 1;
 }
 
@@ -156,7 +83,7 @@ static int find_holder(lua_State *L) {
 static int measure(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_wafer_t *wafer = wafer_argument(L, mcs, 1);
-    const wh_station_t *station = &wh_mcs_real(mcs)->places[wh_mcs_index(L, 2, mcs->layout->station_count)];
+    const wh_station_t *station = &mcs->real->places[wh_mcs_index(L, 2, mcs->layout->station_count)];
     const int32_t slot = wh_mcs_index(L, 3, (size_t)station->slots) + 1;
     wh_decisions_measured(mcs->decisions, "offset");
     const wh_place_t place = wh_station_measure(station, slot, &wafer->base_from_wafer);
@@ -172,7 +99,7 @@ static int locate(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_place_t place;
     wh_decisions_measured(mcs->decisions, "where a wafer lies");
-    if (!wh_cell_locate(&mcs->simulator.cell, &wafer_argument(L, mcs, 1)->base_from_wafer, &place)) {
+    if (!wh_cell_locate(&mcs->real->cell, &wafer_argument(L, mcs, 1)->base_from_wafer, &place)) {
         return 0;
     }
     lua_pushstring(L, mcs->layout->stations[place.station].name);
@@ -192,15 +119,15 @@ static int judge_place(lua_State *L) {
     claim.dx = luaL_checknumber(L, 4);
     claim.dy = luaL_checknumber(L, 5);
     claim.tolerance = luaL_checknumber(L, 6);
-    const int32_t verdict = wh_decisions_judge(&claim, &mcs->simulator.cell, mcs->state.wafers);
+    const int32_t verdict = wh_decisions_judge(&claim, &mcs->real->cell, mcs->state.wafers);
     wh_decisions_claim(mcs->decisions, &claim, verdict);
     const wh_pose_t *base_from_wafer = &mcs->state.wafers[claim.wafer].base_from_wafer;
     wh_place_t place =
-        wh_station_measure(&mcs->simulator.cell.stations[claim.station], claim.slot, base_from_wafer);
+        wh_station_measure(&mcs->real->cell.stations[claim.station], claim.slot, base_from_wafer);
     lua_pushinteger(L, verdict);
     lua_pushnumber(L, place.dx);
     lua_pushnumber(L, place.dy);
-    if (!wh_cell_locate(&mcs->simulator.cell, base_from_wafer, &place)) {
+    if (!wh_cell_locate(&mcs->real->cell, base_from_wafer, &place)) {
         return 3;
     }
     lua_pushstring(L, mcs->layout->stations[place.station].name);
@@ -221,7 +148,7 @@ static wh_pose_t commanded_pose(const wh_mcs_t *mcs, int32_t gripper) {
     if (mcs->layout->grippers[gripper].station != WH_NONE) {
         wh_decisions_measured(mcs->decisions, "a chuck's pose");
     }
-    wh_machine_grippers(&wh_mcs_real(mcs)->machine, mcs->track.axes, poses);
+    wh_machine_grippers(&mcs->real->machine, mcs->track.axes, poses);
     return poses[gripper];
 }
 
@@ -248,7 +175,7 @@ static int read_real_gripper_pose(lua_State *L) {
 /* native.slot_pose(station, slot): where that slot really is. */
 static int read_slot_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_station_t *station = &wh_mcs_real(mcs)->places[wh_mcs_index(L, 1, mcs->layout->station_count)];
+    const wh_station_t *station = &mcs->real->places[wh_mcs_index(L, 1, mcs->layout->station_count)];
     const wh_pose_t pose = wh_station_slot(station, wh_mcs_index(L, 2, (size_t)station->slots) + 1);
     wh_decisions_measured(mcs->decisions, "where a slot is");
     wh_lua_push_pose(L, &pose);
@@ -274,7 +201,79 @@ static int relate(lua_State *L) {
     return 6;
 }
 
-const luaL_Reg wh_mcs_query_functions[] = {{"layout", describe_layout},
+/* ---------------------------------------------------------------------------------------------------- collisions */
+
+static void push_part(lua_State *L, const wh_mcs_t *mcs, int32_t part) {
+    const char *name = wh_layout_part_name(mcs->layout, part);
+    lua_pushstring(L, name ? name : "nothing");
+}
+
+static void set_parts(lua_State *L, const wh_mcs_t *mcs, const int32_t parts[2]) {
+    lua_createtable(L, 2, 0);
+    for (int i = 0; i < 2; ++i) {
+        push_part(L, mcs, parts[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, "parts");
+}
+
+/* native.hits(): a list of { kind, parts, at, time } so far. */
+static int list_hits(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    lua_newtable(L);
+    wh_decisions_measured(mcs->decisions, "hits");
+    for (size_t i = 0; i < mcs->recorder.record->event_count; ++i) {
+        const wh_event_record_t *record = &mcs->recorder.record->events[i];
+        const wh_event_kind_t kind = record->event.kind;
+        if (kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED) {
+            lua_createtable(L, 0, 4);
+            lua_pushstring(L, wh_event_name(kind));
+            lua_setfield(L, -2, "kind");
+            set_parts(L, mcs, record->event.parts);
+            wh_lua_set_triple(L, "at", &record->event.at);
+            wh_lua_set_number(L, "time", (double)record->utime / 1e6);
+            lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
+        }
+    }
+    return 1;
+}
+
+static int find_kind(const char *name) {
+    int kind = 0;
+    while (kind < WH_CLEARANCES && strcmp(name, wh_clearance_name((wh_clearance_kind_t)kind)) != 0) {
+        ++kind;
+    }
+    return kind;
+}
+
+/* native.clearance(kind): { gap, limit, time, parts, at } so far, of which only `limit` is there until something was near; nil
+ * where nobody looks; false for a kind that there is not. */
+static int find_clearance(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int kind = find_kind(luaL_checkstring(L, 1));
+    wh_decisions_measured(mcs->decisions, "clearance");
+    if (kind == WH_CLEARANCES) {
+        lua_pushboolean(L, 0);
+        return 1;
+    }
+    if (!mcs->local.collision.world) {
+        return 0;
+    }
+    const wh_clearance_t *least = &wh_world_clearances(mcs->local.collision.world)[kind];
+    lua_createtable(L, 0, 5);
+    wh_lua_set_number(L, "limit", mcs->layout->world.limits[kind]);
+    if (least->parts[0] != WH_NONE) {
+        wh_lua_set_number(L, "gap", least->gap);
+        wh_lua_set_number(L, "time", (double)((int64_t)least->slice * mcs->layout->slice_us) / 1e6);
+        set_parts(L, mcs, least->parts);
+        wh_lua_set_triple(L, "at", &least->at);
+    }
+    return 1;
+}
+
+const luaL_Reg wh_mcs_query_functions[] = {{"utime", read_utime},
+                                           {"held", find_held},
+                                           {"wafer_names", list_wafers},
                                            {"wafer", find_wafer},
                                            {"sensor", read_sensor},
                                            {"is_open", read_valve},
@@ -287,4 +286,6 @@ const luaL_Reg wh_mcs_query_functions[] = {{"layout", describe_layout},
                                            {"real_gripper_pose", read_real_gripper_pose},
                                            {"slot_pose", read_slot_pose},
                                            {"relate", relate},
+                                           {"hits", list_hits},
+                                           {"clearance", find_clearance},
                                            {NULL, NULL}};
