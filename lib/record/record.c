@@ -108,3 +108,19 @@ void wh_record_free(wh_record_t *record) {
     free(record->failure);
     memset(record, 0, sizeof *record);
 }
+
+const char *wh_record_wafer_name(const wh_record_t *record, int32_t wafer) {
+    const wh_layout_t *layout = record->layout;
+    return layout && wh_is_index(wafer, layout->wafer_count) ? layout->wafers[wafer].name : NULL;
+}
+
+const char *wh_record_gripper_name(const wh_record_t *record, int32_t gripper) {
+    const wh_layout_t *layout = record->layout;
+    return layout && wh_is_index(gripper, layout->machine.gripper_count) ? layout->grippers[gripper].name
+                                                                         : NULL;
+}
+
+const char *wh_record_station_name(const wh_record_t *record, int32_t station) {
+    const wh_layout_t *layout = record->layout;
+    return layout && wh_is_index(station, layout->station_count) ? layout->stations[station].name : NULL;
+}
