@@ -4,15 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../record/record.h"
-
-static void *enlarge(void *memory, size_t bytes) {
-    void *grown = realloc(memory, bytes);
-    if (!grown) {
-        abort();
-    }
-    return grown;
-}
+#include "../text/array.h"
 
 /* ------------------------------------------------------------------------------------------------------- slices */
 
@@ -22,18 +14,20 @@ static bool make_room(wh_decisions_t *decisions, const wh_command_t *command) {
     if (decisions->slice_count < decisions->slice_capacity) {
         return true;
     }
-    const int64_t wanted = decisions->slice_capacity > 0 ? 2 * decisions->slice_capacity : 4096;
-    if ((size_t)wanted > WH_DECISIONS_BYTES / bytes) {
+    size_t poses = (size_t)decisions->slice_capacity;
+    size_t axes = poses;
+    const size_t wanted = poses > 0 ? 2 * poses : 4096;
+    if (wanted > WH_DECISIONS_BYTES / bytes) {
         decisions->unfit = "the run has too many slices";
         return false;
     }
     decisions->gripper_count = command->gripper_count;
     decisions->axis_count = command->axis_count;
-    decisions->poses =
-        enlarge(decisions->poses, (size_t)wanted * decisions->gripper_count * sizeof *decisions->poses);
+    decisions->poses = wh_array_reserve(decisions->poses, wanted, &poses,
+                                        decisions->gripper_count * sizeof *decisions->poses);
     decisions->axes =
-        enlarge(decisions->axes, (size_t)wanted * decisions->axis_count * sizeof *decisions->axes);
-    decisions->slice_capacity = wanted;
+        wh_array_reserve(decisions->axes, wanted, &axes, decisions->axis_count * sizeof *decisions->axes);
+    decisions->slice_capacity = (int64_t)wanted;
     return true;
 }
 
@@ -41,8 +35,8 @@ static void keep_valve(wh_decisions_t *decisions, size_t g, int64_t slice, int32
     const size_t count = decisions->valve_count[g];
     const int32_t before = count > 0 ? decisions->valves[g][count - 1].valve : WH_VALVE_CLOSED;
     if (valve != before) {
-        decisions->valves[g] = wh_record_grow(decisions->valves[g], count, &decisions->valve_capacity[g],
-                                              sizeof *decisions->valves[g]);
+        decisions->valves[g] = wh_array_grow(decisions->valves[g], count, &decisions->valve_capacity[g],
+                                             sizeof *decisions->valves[g]);
         decisions->valves[g][count] = (wh_decisions_valve_t){slice, valve};
         ++decisions->valve_count[g];
     }
@@ -72,7 +66,7 @@ void wh_decisions_slice(wh_decisions_t *decisions, const wh_command_t *command) 
 
 void wh_decisions_read(wh_decisions_t *decisions, wh_decisions_kind_t kind, int32_t index, int32_t answer) {
     if (decisions) {
-        decisions->entries = wh_record_grow(decisions->entries, decisions->entry_count,
+        decisions->entries = wh_array_grow(decisions->entries, decisions->entry_count,
                                             &decisions->entry_capacity, sizeof *decisions->entries);
         decisions->entries[decisions->entry_count++] =
             (wh_decisions_entry_t){kind, index, answer, decisions->slice_count};
@@ -81,7 +75,7 @@ void wh_decisions_read(wh_decisions_t *decisions, wh_decisions_kind_t kind, int3
 
 void wh_decisions_claim(wh_decisions_t *decisions, const wh_decisions_claim_t *claim, int32_t verdict) {
     if (decisions) {
-        decisions->claims = wh_record_grow(decisions->claims, decisions->claim_count,
+        decisions->claims = wh_array_grow(decisions->claims, decisions->claim_count,
                                            &decisions->claim_capacity, sizeof *decisions->claims);
         decisions->claims[decisions->claim_count] = *claim;
         wh_decisions_read(decisions, WH_DECISION_CLAIM, (int32_t)decisions->claim_count++, verdict);

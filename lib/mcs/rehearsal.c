@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "../text/array.h"
+
 void wh_rehearsal_begin(wh_rehearsal_t *rehearsal, const wh_track_t *track, bool is_judged) {
     rehearsal->is_on = true;
     rehearsal->is_judged = is_judged;
@@ -10,8 +12,8 @@ void wh_rehearsal_begin(wh_rehearsal_t *rehearsal, const wh_track_t *track, bool
 }
 
 void wh_rehearsal_add(wh_rehearsal_t *rehearsal, const wh_planned_t *planned) {
-    rehearsal->segments = wh_record_grow(rehearsal->segments, rehearsal->count, &rehearsal->capacity,
-                                         sizeof *rehearsal->segments);
+    rehearsal->segments = wh_array_grow(rehearsal->segments, rehearsal->count, &rehearsal->capacity,
+                                        sizeof *rehearsal->segments);
     rehearsal->segments[rehearsal->count++] = *planned;
 }
 
