@@ -8,7 +8,8 @@
 /* How long the end of a free-running command waits for the state of its last slice. */
 #define COMMAND_SETTLE_US 100000
 
-/* ------------------------------------------------------------------------------------------------- telling */
+/* -------------------------------------------------------------------------------------------------
+ * telling */
 
 static void tell(wh_mcs_process_t *control, int32_t phase, int line, wh_status_t error, const char *command,
                  const char *text) {
@@ -55,7 +56,8 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
     control->request = request;
 }
 
-/* ------------------------------------------------------------------------------------------------- requests */
+/* -------------------------------------------------------------------------------------------------
+ * requests */
 
 static const wh_mcs_process_answer_t *find_answer(const wh_mcs_process_t *control, int64_t seq) {
     for (size_t i = 0; i < WH_CONTROL_ANSWERED; ++i) {
@@ -179,7 +181,8 @@ void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const c
     remember(control, seq, error, line, text);
 }
 
-/* ------------------------------------------------------------------------------------------------- the run */
+/* ------------------------------------------------------------------------------------------------- the
+ * run */
 
 static void tell_progress(void *user) {
     wh_mcs_process_t *control = user;

@@ -5,8 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "proximity_message.h"
-
 static void say(const wh_sim_process_t *simulation, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
@@ -22,7 +20,8 @@ static void say(const wh_sim_process_t *simulation, const char *format, ...) {
     simulation->say(simulation->user, text);
 }
 
-/* ------------------------------------------------------------------------------------------------- sending */
+/* -------------------------------------------------------------------------------------------------
+ * sending */
 
 static void publish(wh_sim_process_t *simulation, const char *channel, const void *data, int size) {
     if (!simulation->node) {
@@ -62,7 +61,8 @@ static void answer(wh_sim_process_t *simulation) {
     publish(simulation, WH_CHANNEL_STATE, simulation->server.encoded, (int)simulation->server.encoded_size);
 }
 
-/* ----------------------------------------------------------------------------------------------- receiving */
+/* -----------------------------------------------------------------------------------------------
+ * receiving */
 
 static void drop(wh_sim_process_t *simulation, const char *channel, size_t size) {
     ++simulation->counters.garbage;
@@ -159,7 +159,8 @@ static void on_request(void *user, const void *data, size_t size) {
     (void)waferhand_request_decode_cleanup(&message);
 }
 
-/* -------------------------------------------------------------------------------------------------- opening */
+/* --------------------------------------------------------------------------------------------------
+ * opening */
 
 wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, const wh_layout_t *layout,
                                 void (*say_line)(void *user, const char *text), void *user) {
