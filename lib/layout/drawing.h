@@ -7,7 +7,7 @@
 #include "feasibility.h"
 
 /* Writes an SVG image of the cell with the robot at home; parts that a finding names are marked. Colours follow the
- * viewer's preference for light or dark. 0, or -1 when memory is out or `out` does not take it (then errno tells). */
+ * viewer's preference for light or dark. 0, or -1 if `out` does not take it (errno tells why). */
 int wh_layout_print_svg(const wh_feasibility_t *check, FILE *out);
 
 #endif

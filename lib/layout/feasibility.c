@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../text/array.h"
 #include "feasibility_internal.h"
 
 /* So many wafers in no slot are named, and the others counted. */
@@ -17,16 +18,7 @@ const char *wh_finding_name(wh_finding_kind_t kind) {
 
 wh_finding_t *wh_feasibility_add(wh_feasibility_t *check, wh_finding_kind_t kind, int32_t station,
                                  const char *format, ...) {
-    if (check->count == check->capacity) {
-        const size_t capacity = 2 * check->capacity + 16;
-        wh_finding_t *grown = realloc(check->findings, capacity * sizeof *grown);
-        if (!grown) {
-            check->out_of_memory = true;
-            return NULL;
-        }
-        check->findings = grown;
-        check->capacity = capacity;
-    }
+    check->findings = wh_array_grow(check->findings, check->count, &check->capacity, sizeof *check->findings);
     wh_finding_t *finding = &check->findings[check->count++];
     finding->kind = kind;
     finding->station = station;
@@ -83,9 +75,7 @@ static void look_at_rest(wh_feasibility_t *check, const wh_grasp_t *table, void 
     wh_finding_t *finding =
         wh_feasibility_add(check, WH_FINDING_CONTACT, WH_NONE, "%s and %s touch before anything moves",
                            wh_layout_part_name(layout, parts[0]), wh_layout_part_name(layout, parts[1]));
-    if (finding) {
-        memcpy(finding->parts, parts, sizeof parts);
-    }
+    memcpy(finding->parts, parts, sizeof parts);
 }
 
 /* Everything that rests and the robot at home, as a run begins. */

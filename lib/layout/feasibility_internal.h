@@ -4,7 +4,7 @@
 
 #include "feasibility.h"
 
-/* One more finding, or null when memory is out (which wh_feasibility then tells). `parts` are none. */
+/* One more finding; its `parts` are none. */
 __attribute__((format(printf, 4, 5))) wh_finding_t *wh_feasibility_add(wh_feasibility_t *check,
                                                                        wh_finding_kind_t kind,
                                                                        int32_t station, const char *format,

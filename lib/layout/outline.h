@@ -21,9 +21,9 @@ typedef struct {
 /* Where a point is in the picture. */
 wh_spot_t wh_outline_spot(wh_projection_t view, wh_vec3_t r);
 
-/* The convex hull of the part as seen; circles have 48 corners. False when memory is out. Cost: n log n in the points of
- * a mesh. */
-bool wh_outline_draw(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
+/* The convex hull of the part as seen; circles have 48 corners. If there is no memory, the program ends. Cost: n log n in
+ * the points of a mesh. */
+void wh_outline_draw(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
                      const wh_pose_t *base_from_shape);
 
 void wh_outline_free(wh_outline_t *outline);

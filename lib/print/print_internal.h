@@ -3,7 +3,7 @@
 #define WH_PRINT_PRINT_INTERNAL_H
 
 #include "../text/grid.h"
-#include "record_names.h"
+#include "names.h"
 
 /* What every part is given. */
 typedef struct {

@@ -100,9 +100,6 @@ void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves);
  * sessions without an end. */
 void wh_record_forget(wh_record_t *record);
 
-/* Room for one more item of `size` bytes, by doubling. */
-void *wh_record_grow(void *items, size_t count, size_t *capacity, size_t size);
-
 /* A copy of the text, to be freed. */
 char *wh_record_text(const char *text);
 

@@ -81,8 +81,6 @@ void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size)
 int wh_sandbox_handler(lua_State *L);
 /* Writes "path:line: text" for the error value on L's top and pops it. */
 void wh_sandbox_report(lua_State *L, const wh_sandbox_job_t *job, char message[WH_SANDBOX_MESSAGE_BYTES]);
-/* Copies with the cut marked by "..." and never inside a UTF-8 character. */
-void wh_sandbox_clip(char *to, size_t size, const char *from);
 
 /* ---- sandbox_source.c ---- */
 /* Reads all of a regular file. Returns null and sets *text (malloc'd; the caller frees it) and *size, or says

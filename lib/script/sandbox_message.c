@@ -2,26 +2,13 @@
 #include <ctype.h>
 #include <string.h>
 
+#include "../text/utf8.h"
 #include "sandbox_internal.h"
 
 /* Where a person's text goes that Lua code may yet have to make. */
 typedef struct {
     char text[WH_SANDBOX_MESSAGE_BYTES];
 } described_t;
-
-void wh_sandbox_clip(char *to, size_t size, const char *from) {
-    const size_t length = strlen(from);
-    if (length < size) {
-        memcpy(to, from, length + 1);
-        return;
-    }
-    size_t kept = size - sizeof "...";
-    while (kept > 0 && ((unsigned char)from[kept] & 0xC0) == 0x80) {
-        --kept;
-    }
-    memcpy(to, from, kept);
-    memcpy(to + kept, "...", sizeof "...");
-}
 
 int wh_sandbox_handler(lua_State *L) {
     wh_sandbox_job_t *const job = wh_sandbox_of(L)->job;
@@ -61,14 +48,14 @@ static int describe(lua_State *L) {
         whole[i] = iscntrl((unsigned char)text[i]) ? ' ' : text[i];
     }
     whole[kept] = '\0';
-    wh_sandbox_clip(described->text, sizeof described->text, whole);
+    wh_utf8_clip(described->text, sizeof described->text, whole);
     return 0;
 }
 
 static void make_text(lua_State *L, described_t *described) {
     const wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     if (sandbox->fatal == WH_SANDBOX_OK) {
-        wh_sandbox_clip(described->text, sizeof described->text, "(error object whose __tostring failed)");
+        wh_utf8_clip(described->text, sizeof described->text, "(error object whose __tostring failed)");
         lua_pushcfunction(L, describe);
         lua_pushvalue(L, -2);
         lua_pushlightuserdata(L, described);
@@ -103,5 +90,5 @@ void wh_sandbox_report(lua_State *L, const wh_sandbox_job_t *job, char message[W
     } else {
         snprintf(whole, sizeof whole, "%.1023s: %s", job->path, described.text);
     }
-    wh_sandbox_clip(message, WH_SANDBOX_MESSAGE_BYTES, whole);
+    wh_utf8_clip(message, WH_SANDBOX_MESSAGE_BYTES, whole);
 }

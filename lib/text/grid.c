@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "array.h"
 #include "grid_internal.h"
 
 wh_grid_t *wh_grid_new(const wh_style_t *style, size_t keys) {
@@ -48,16 +49,9 @@ void wh_grid_number_column(wh_grid_t *grid, const char *heading, wh_grid_digits_
 }
 
 static bool reserve_row(wh_grid_t *grid) {
-    if (grid->row_count < grid->row_capacity) {
-        return true;
-    }
-    const size_t capacity = grid->row_capacity == 0 ? 16 : 2 * grid->row_capacity;
-    wh_grid_cell_t *cells = realloc(grid->cells, capacity * grid->column_count * sizeof *cells);
-    if (cells) {
-        grid->cells = cells;
-        grid->row_capacity = capacity;
-    }
-    return cells != NULL;
+    grid->cells = wh_array_grow(grid->cells, grid->row_count, &grid->row_capacity,
+                                grid->column_count * sizeof *grid->cells);
+    return true;
 }
 
 void wh_grid_glue(wh_grid_t *grid) {

@@ -1,4 +1,4 @@
-#include "record_names.h"
+#include "names.h"
 
 const char *wh_record_wafer_name(const wh_record_t *record, int32_t wafer) {
     const wh_layout_t *layout = record->layout;

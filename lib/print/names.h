@@ -1,7 +1,7 @@
 /* Names for a record's indices. Every function returns null for WH_NONE, an index out of range and a record
  * without a layout; the strings are the layout's. */
-#ifndef WH_PRINT_RECORD_NAMES_H
-#define WH_PRINT_RECORD_NAMES_H
+#ifndef WH_PRINT_NAMES_H
+#define WH_PRINT_NAMES_H
 
 #include "../record/throughput.h"
 
