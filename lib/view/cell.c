@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../layout/collision.h"
+#include "../layout/inks.h"
 #include "../math/trig.h"
 #include "../text/array.h"
 #include "../text/utf8.h"
@@ -20,9 +21,50 @@
 /* Each byte of a name becomes three at most. */
 #define WRITTEN_SIZE (3 * WH_NAME_SIZE)
 
-/* -------------------------------------------------------------------------------------------------- bodies */
+/* How far a held wafer's colour goes from its gripper's to the page's behind it. */
+#define PALER 0.42F
 
-/* How many bytes may stay as they are at `text`: none that the viewer would take for part of a path, or could not read. */
+/* ------------------------------------------------------------------------------------------------- colours
+ * Those of the report's page, in light, but less transparent: there are no edges here. */
+
+static wh_view_colour_t colour_of(uint32_t hex, float opacity) {
+    const wh_view_colour_t colour = {(float)(hex >> 16 & 0xffU) / 255, (float)(hex >> 8 & 0xffU) / 255,
+                                     (float)(hex & 0xffU) / 255, opacity};
+    return colour;
+}
+
+static wh_view_colour_t colour_of_gripper(size_t gripper) {
+    return colour_of(wh_ink_series[gripper % WH_INK_SERIES].light, 1);
+}
+
+/* A blade or chuck has its gripper's; obstacles and shells let one look through. */
+static wh_view_colour_t colour_of_part(const wh_part_t *part) {
+    static const float opacities[WH_INKS] = {0.35F, 0.22F, 1, 1, 1, 1, 1};
+    const wh_part_ink_t ink = wh_ink_of(part);
+    if (ink == WH_INK_BLADE || ink == WH_INK_CHUCK) {
+        return colour_of_gripper((size_t)part->owner);
+    }
+    return colour_of(wh_ink_looks[ink].shown.light, opacities[ink]);
+}
+
+static float mixed(float from, float to) {
+    return from + PALER * (to - from);
+}
+
+/* Of a wafer that is held: paler than its gripper. */
+static wh_view_colour_t colour_of_held(size_t gripper) {
+    const wh_view_colour_t pure = colour_of_gripper(gripper);
+    const wh_view_colour_t page = colour_of(wh_ink_stage.light, 1);
+    const wh_view_colour_t pale = {mixed(pure.red, page.red), mixed(pure.green, page.green),
+                                   mixed(pure.blue, page.blue), 1};
+    return pale;
+}
+
+/* --------------------------------------------------------------------------------------------------
+ * bodies */
+
+/* How many bytes may stay as they are at `text`: none that the viewer would take for part of a path, or could
+ * not read. */
 static size_t plain_bytes(const char *text) {
     const unsigned char first = (unsigned char)*text;
     if (first < ' ' || first == 0x7f || first == '/' || first == ':' || first == '%') {
@@ -83,7 +125,8 @@ static void add_shape(wh_view_cell_t *cell, const wh_convex_t *convex, const wh_
                           &body->geom[body->num_geom++]);
 }
 
-/* --------------------------------------------------------------------------------------------------- parts */
+/* ---------------------------------------------------------------------------------------------------
+ * parts */
 
 static void add_parts(wh_view_cell_t *cell, uint32_t kinds, int32_t owner, const wh_pose_t *base_from_body) {
     const wh_world_config_t *world = &cell->layout->world;
@@ -95,7 +138,7 @@ static void add_parts(wh_view_cell_t *cell, uint32_t kinds, int32_t owner, const
         }
         const wh_pose_t *at = &part->convex.body_from_shape;
         const wh_pose_t pose = base_from_body ? wh_pose_relative(base_from_body, at) : *at;
-        const wh_view_colour_t colour = wh_view_colour_of_part(part);
+        const wh_view_colour_t colour = colour_of_part(part);
         add_shape(cell, &part->convex, &pose, &colour);
     }
 }
@@ -131,7 +174,8 @@ static void add_grippers(wh_view_cell_t *cell) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- wafers */
+/* ---------------------------------------------------------------------------------------------------
+ * wafers */
 
 static void add_disc(wh_view_cell_t *cell, double larger, const wh_view_colour_t *colour) {
     wh_convex_t disc = wh_shapes_wafer(&cell->layout->shapes);
@@ -142,7 +186,7 @@ static void add_disc(wh_view_cell_t *cell, double larger, const wh_view_colour_t
 
 static void add_mark(wh_view_cell_t *cell) {
     const wh_convex_t disc = wh_shapes_wafer(&cell->layout->shapes);
-    const wh_view_colour_t colour = wh_view_colour_of_notch();
+    const wh_view_colour_t colour = colour_of(wh_ink_edge.light, 1);
     const double width = MARK_WIDTH * disc.half.x;
     wh_convex_t mark = {.kind = WH_CONVEX_BOX, .body_from_shape = disc.body_from_shape};
     double sine, cosine;
@@ -164,14 +208,14 @@ static void add_mark(wh_view_cell_t *cell) {
 static void add_covers(wh_view_cell_t *cell) {
     cell->covers = (size_t)cell->load.num_links;
     for (size_t g = 0; g < cell->layout->machine.gripper_count; ++g) {
-        const wh_view_colour_t colour = wh_view_colour_of_held(g);
+        const wh_view_colour_t colour = colour_of_held(g);
         (void)add_body(cell, "held", cell->layout->grippers[g].name);
         add_disc(cell, COVER, &colour);
     }
 }
 
 static void add_wafers(wh_view_cell_t *cell) {
-    const wh_view_colour_t colour = wh_view_colour_of_wafer();
+    const wh_view_colour_t colour = colour_of(wh_ink_looks[WH_INK_WAFER].shown.light, 1);
     cell->wafers = (size_t)cell->load.num_links;
     for (size_t w = 0; w < cell->layout->wafer_count; ++w) {
         (void)add_body(cell, "wafers", cell->layout->wafers[w].name);
@@ -180,7 +224,8 @@ static void add_wafers(wh_view_cell_t *cell) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- places */
+/* --------------------------------------------------------------------------------------------------
+ * places */
 
 static void place(wh_view_cell_t *cell, size_t body, const wh_pose_t *base_from_body) {
     wh_view_put_pose(base_from_body, cell->draw.position[body], cell->draw.quaternion[body]);

@@ -51,7 +51,8 @@ static void put_round(waferhand_viewer_geometry *geometry, int8_t type, const wh
     put_lengths(geometry, type, lengths, type == WH_VIEW_SPHERE ? 1 : 2);
 }
 
-/* ---------------------------------------------------------------------------------------------------- hulls */
+/* ----------------------------------------------------------------------------------------------------
+ * hulls */
 
 /* The index of a point, which is added if it is not there yet: a hull's faces share their corners. */
 static uint32_t index_of(triangles_t *triangles, const float at[3]) {
@@ -126,7 +127,8 @@ static void put_hull(waferhand_viewer_geometry *geometry, const wh_convex_t *con
     free(triangles.corners);
 }
 
-/* --------------------------------------------------------------------------------------------------- shapes */
+/* ---------------------------------------------------------------------------------------------------
+ * shapes */
 
 void wh_view_geometry_make(const wh_convex_t *convex, const wh_pose_t *body_from_shape,
                            const wh_view_colour_t *colour, bool as_box, waferhand_viewer_geometry *geometry) {

@@ -27,7 +27,8 @@ static void add_key(wh_keyframes_t *motion, double seconds, const wh_vec3_t *r, 
     ++motion->count;
 }
 
-/* ---------------------------------------------------------------------------------------------------- paths */
+/* ----------------------------------------------------------------------------------------------------
+ * paths */
 
 typedef struct {
     const wh_signals_t *signals;
@@ -84,7 +85,8 @@ void wh_paths_free(wh_paths_t *paths) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ keyframes */
+/* ------------------------------------------------------------------------------------------------
+ * keyframes */
 
 static double seconds_of(const wh_signals_t *signals, double slice) {
     return slice * (double)signals->layout->slice_us / 1e6;
@@ -100,7 +102,8 @@ wh_keyframes_t wh_keyframes_of_track(const wh_signals_t *signals, const wh_thin_
     return motion;
 }
 
-/* --------------------------------------------------------------------------------------------------- wafers */
+/* ---------------------------------------------------------------------------------------------------
+ * wafers */
 
 static void add_pose(wh_keyframes_t *motion, const wh_signals_t *signals, double slice,
                      const wh_pose_t *pose) {
@@ -125,7 +128,8 @@ static void add_held(wh_keyframes_t *motion, const wh_signals_t *signals, const 
     add_pose(motion, signals, (double)from->slice + share * (double)(to->slice - from->slice), &pose);
 }
 
-/* So many keyframes keep a wafer that is beside the gripper's origin on its arc: a chord of angle a is off by r a^2 / 8. */
+/* So many keyframes keep a wafer that is beside the gripper's origin on its arc: a chord of angle a is off by
+ * r a^2 / 8. */
 static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, const double a[], const double b[]) {
     double turn[3];
     wh_quaternion_turn(a + 3, b + 3, turn);
@@ -176,7 +180,8 @@ wh_keyframes_t wh_keyframes_of_wafer(const wh_signals_t *signals, const wh_paths
     return motion;
 }
 
-/* ---------------------------------------------------------------------------------------------------- nodes */
+/* ----------------------------------------------------------------------------------------------------
+ * nodes */
 
 static bool differ(const float a[], const float b[], size_t count) {
     bool same = true;
