@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "../text/array.h"
-#include "quaternion.h"
 
 /* So many wafers are compared in each slice; more, only in slices with events. */
 #define WATCHED_WAFERS 64
@@ -101,13 +100,6 @@ static bool is_at(const wh_pose_t *pose, const wh_pose_t *expected) {
     return same;
 }
 
-static void add_own(wh_thin_t *own, int64_t slice, const wh_pose_t *pose) {
-    double values[7] = {pose->r.x, pose->r.y, pose->r.z};
-    const bool follows = own->of > 0;
-    wh_quaternion_from_matrix(&pose->R, follows ? own->last.values + 3 : NULL, values + 3);
-    wh_thin_add(own, slice, values);
-}
-
 /* What the axes do not say of the grippers. */
 static void add_grippers(wh_signals_t *signals, const double axes[], const wh_state_t *state) {
     wh_pose_t expected[WH_GRIPPERS];
@@ -117,7 +109,7 @@ static void add_grippers(wh_signals_t *signals, const double axes[], const wh_st
     for (size_t g = 0; g < state->gripper_count; ++g) {
         const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
         if (signals->own[g].of > 0 || !axes || !is_at(pose, &expected[g])) {
-            add_own(&signals->own[g], state->seq, pose);
+            wh_thin_add_pose(&signals->own[g], state->seq, pose);
         }
     }
 }

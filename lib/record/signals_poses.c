@@ -1,29 +1,21 @@
 /* Where a trace shows grippers and links. */
 #include "../layout/collision.h"
-#include "quaternion.h"
 #include "signals.h"
 
 /* From one point to the next, poses are looked at in at most so many places. */
 #define PLACES 32
 
-static void read_own(const wh_thin_t *own, int64_t slice, wh_pose_t *pose) {
-    double values[7];
-    wh_thin_read(own, slice, values);
-    pose->r = wh_vec3(values[0], values[1], values[2]);
-    wh_quaternion_to_matrix(values + 3, &pose->R);
-}
-
 static void read_grippers(const wh_signals_t *signals, int64_t slice, wh_pose_t poses[WH_GRIPPERS]) {
     const wh_machine_t *machine = &signals->layout->machine;
     double axes[WH_AXES] = {0};
-    for (size_t axis = 0; axis < WH_AXES && signals->axes[axis].count > 0; ++axis) {
+    for (size_t axis = 0; axis < WH_AXES && signals->axes[axis].list.count > 0; ++axis) {
         axes[axis] = wh_path_read(&signals->axes[axis], slice, NULL);
     }
     wh_machine_grippers(machine, axes, poses);
     for (size_t g = 0; g < machine->gripper_count; ++g) {
         const wh_thin_t *own = &signals->own[g];
-        if (own->count > 0 && slice >= own->points[0].slice) {
-            read_own(own, slice, &poses[g]);
+        if (own->list.count > 0 && slice >= own->list.points[0].slice) {
+            wh_thin_read_pose(own, slice, &poses[g]);
         }
     }
 }
@@ -57,28 +49,14 @@ typedef struct {
     size_t axes[WH_AXES], own[WH_GRIPPERS];
 } passed_t;
 
-static int64_t next_of_curve(const wh_path_t *curve, size_t *at, int64_t slice, int64_t next) {
-    while (*at < curve->count && curve->points[*at].slice <= slice) {
-        ++*at;
-    }
-    return *at < curve->count && curve->points[*at].slice < next ? curve->points[*at].slice : next;
-}
-
-static int64_t next_of_own(const wh_thin_t *own, size_t *at, int64_t slice, int64_t next) {
-    while (*at < own->count && own->points[*at].slice <= slice) {
-        ++*at;
-    }
-    return *at < own->count && own->points[*at].slice < next ? own->points[*at].slice : next;
-}
-
 /* The first slice after `slice` at which a signal has a point, or the trace's last. */
 static int64_t next_point(const wh_signals_t *signals, passed_t *passed, int64_t slice) {
     int64_t next = signals->last;
     for (size_t axis = 0; axis < signals->axis_count; ++axis) {
-        next = next_of_curve(&signals->axes[axis], &passed->axes[axis], slice, next);
+        next = wh_points_next(&signals->axes[axis].list, &passed->axes[axis], slice, next);
     }
     for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
-        next = next_of_own(&signals->own[g], &passed->own[g], slice, next);
+        next = wh_points_next(&signals->own[g].list, &passed->own[g], slice, next);
     }
     return next;
 }

@@ -16,13 +16,13 @@ static void add(list_t *list, int64_t slice) {
     list->slices[list->count++] = slice;
 }
 
-/* Into how many lines a cubic is cut: they miss it by at most an eighth of its greatest second derivative, which is at one of
- * its ends, times a line's length squared. */
-static int64_t pieces_of(const wh_path_point_t *a, const wh_path_point_t *b, double tolerance) {
-    const int64_t span = b->slice - a->slice;
-    const double rise = b->value - a->value;
-    const double from = (double)span * a->slope;
-    const double to = (double)span * b->slope;
+/* Into how many lines the cubic from point `i` is cut. They miss it by at most an eighth of its greatest second derivative,
+ * which is at one of its ends, times a line's length squared. */
+static int64_t pieces_of(const wh_path_t *curve, size_t i, double tolerance) {
+    const int64_t span = curve->list.points[i + 1].slice - curve->list.points[i].slice;
+    const double rise = wh_path_value(curve, i + 1) - wh_path_value(curve, i);
+    const double from = (double)span * wh_path_slope(curve, i);
+    const double to = (double)span * wh_path_slope(curve, i + 1);
     const double bend = fmax(fabs(6 * rise - 4 * from - 2 * to), fabs(6 * rise - 2 * from - 4 * to));
     const double pieces = ceil(sqrt(bend / (8 * tolerance)));
     return pieces < 1 ? 1 : pieces < (double)span ? (int64_t)pieces : span;
@@ -30,28 +30,29 @@ static int64_t pieces_of(const wh_path_point_t *a, const wh_path_point_t *b, dou
 
 static size_t count_pieces(const wh_path_t *curve, double tolerance) {
     size_t count = 0;
-    for (size_t i = 1; i < curve->count; ++i) {
-        count += (size_t)pieces_of(&curve->points[i - 1], &curve->points[i], tolerance);
+    for (size_t i = 0; i + 1 < curve->list.count; ++i) {
+        count += (size_t)pieces_of(curve, i, tolerance);
     }
     return count;
 }
 
 /* The slices at which a curve is read; after its end one at which there is none. */
 static void add_curve(list_t *list, const wh_path_t *curve) {
-    const size_t most = 2 * curve->count > WH_PLOT_ROWS ? 2 * curve->count : WH_PLOT_ROWS;
-    double tolerance = curve->tolerance;
+    const wh_points_t *points = &curve->list;
+    const size_t most = 2 * points->count > WH_PLOT_ROWS ? 2 * points->count : WH_PLOT_ROWS;
+    double tolerance = points->tolerance;
     while (count_pieces(curve, tolerance) > most) {
         tolerance *= 2;
     }
-    for (size_t i = 0; i < curve->count; ++i) {
-        const wh_path_point_t *point = &curve->points[i];
-        add(list, point->slice);
-        if (point->ends) {
-            add(list, point->slice + 1);
-        } else if (i + 1 < curve->count) {
-            const int64_t pieces = pieces_of(point, &point[1], tolerance);
+    for (size_t i = 0; i < points->count; ++i) {
+        const int64_t slice = points->points[i].slice;
+        add(list, slice);
+        if (points->points[i].ends) {
+            add(list, slice + 1);
+        } else if (i + 1 < points->count) {
+            const int64_t pieces = pieces_of(curve, i, tolerance);
             for (int64_t k = 1; k < pieces; ++k) {
-                add(list, point->slice + k * (point[1].slice - point->slice) / pieces);
+                add(list, slice + k * (points->points[i + 1].slice - slice) / pieces);
             }
         }
     }

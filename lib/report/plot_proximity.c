@@ -71,7 +71,7 @@ static void put_proximity(wh_plots_t *plots, int32_t g) {
     const char *name = layout->grippers[g].name;
     char title[WH_NAME_SIZE + 100];
     wh_plot_t plot;
-    if (curves[WH_MEASURE_PROJZ].count == 0 || !wh_plots_open(plots, &plot, "proximity", name)) {
+    if (curves[WH_MEASURE_PROJZ].list.count == 0 || !wh_plots_open(plots, &plot, "proximity", name)) {
         return;
     }
     (void)snprintf(title, sizeof title, "%s against the wafer that it holds (grey), or else would take",
@@ -107,7 +107,7 @@ static const axis_panel_t axis_panels[] = {{"position (mm)", false, false},
 #define AXIS_PANELS (sizeof axis_panels / sizeof axis_panels[0])
 
 static bool is_in(const wh_signals_t *signals, size_t axis, const axis_panel_t *panel) {
-    return signals->axes[axis].count > 0 && panel->turns == (axis != WH_AXIS_R && axis != WH_AXIS_Z);
+    return signals->axes[axis].list.count > 0 && panel->turns == (axis != WH_AXIS_R && axis != WH_AXIS_Z);
 }
 
 /* What a panel shows: how many curves, and between which values. */
@@ -122,8 +122,8 @@ static axis_range_t look_at(const wh_signals_t *signals, const axis_panel_t *pan
         const wh_path_t *curve = &signals->axes[axis];
         if (is_in(signals, axis, panel)) {
             ++range.curves;
-            for (size_t i = 0; i < curve->count; ++i) {
-                const double value = panel->is_speed ? curve->points[i].slope : curve->points[i].value;
+            for (size_t i = 0; i < curve->list.count; ++i) {
+                const double value = panel->is_speed ? wh_path_slope(curve, i) : wh_path_value(curve, i);
                 range.low = value < range.low ? value : range.low;
                 range.high = value > range.high ? value : range.high;
             }
