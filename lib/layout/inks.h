@@ -23,8 +23,8 @@ typedef struct {
     uint32_t light, dark;
 } wh_colour_t;
 
-/* Drawings and glTF tell parts apart by stronger colours than the page and the viewer. There grippers have those
- * of wh_ink_series, so that they and what they hold stand out. */
+/* Drawings and glTF tell parts apart by stronger colours than the page and the viewer. There grippers have
+ * those of wh_ink_series, so that they and what they hold stand out. */
 typedef struct {
     const char *class, *name; /* in a drawing, and in its key */
     wh_colour_t drawn;

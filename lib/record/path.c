@@ -9,8 +9,8 @@
 /* So many equal samples are a rest. */
 #define REST 32
 
-/* To thin again, cubics are compared in so many places, where two may differ by this share of the tolerance: it is the
- * tolerance between them then. So many become one at most. */
+/* To thin again, cubics are compared in so many places, where two may differ by this share of the tolerance:
+ * it is the tolerance between them then. So many become one at most. */
 #define PLACES 16
 #define ROOM 0.95
 #define MERGED 64
@@ -34,7 +34,8 @@ static bool is_same(double a, double b) {
     return !(a < b) && !(a > b);
 }
 
-/* --------------------------------------------------------------------------------------------------- cubics */
+/* ---------------------------------------------------------------------------------------------------
+ * cubics */
 
 /* From a point on: value = v + x (a + x (b + x c)), x from 0 to 1 at the next one. */
 typedef struct {
@@ -63,7 +64,8 @@ static double last_slope(const wh_path_t *curve) {
     return wh_path_slope(curve, curve->list.count - 1);
 }
 
-/* Whether one cubic goes from the last point to sample `end`, with that slope there, and misses none between them. */
+/* Whether one cubic goes from the last point to sample `end`, with that slope there, and misses none between
+ * them. */
 static bool fits(const wh_path_t *curve, size_t end, double slope) {
     const wh_sample_t *samples = curve->samples;
     const cubic_t cubic = cubic_of(samples[0].slice, samples[0].value, last_slope(curve), samples[end].slice,
@@ -94,7 +96,8 @@ static double slope_at(const wh_path_t *curve, size_t i) {
     return fabs(slope) <= least ? slope : copysign(least, slope);
 }
 
-/* ------------------------------------------------------------------------------------------------- thinning */
+/* -------------------------------------------------------------------------------------------------
+ * thinning */
 
 /* From point to point. */
 static cubic_t cubic_between(const wh_path_t *curve, size_t from, size_t to) {
@@ -173,7 +176,8 @@ static void keep(wh_path_t *curve, size_t i, double slope, bool exact) {
     wh_points_keep_to_limit(&curve->list, thin_again, curve);
 }
 
-/* --------------------------------------------------------------------------------------------------- search */
+/* ---------------------------------------------------------------------------------------------------
+ * search */
 
 /* The last sample between `good` and `bad` that was seen to be in reach. */
 static size_t bisect(const wh_path_t *curve, size_t good, size_t bad) {
@@ -215,7 +219,8 @@ static void settle(wh_path_t *curve, size_t end, double slope, bool exact) {
     keep(curve, end, slope, exact);
 }
 
-/* -------------------------------------------------------------------------------------------------- samples */
+/* --------------------------------------------------------------------------------------------------
+ * samples */
 
 /* A point where the rest began, and of the rest the last sample alone. */
 static void come_to_rest(wh_path_t *curve) {
@@ -306,7 +311,8 @@ void wh_path_break(wh_path_t *curve) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- reading */
+/* --------------------------------------------------------------------------------------------------
+ * reading */
 
 double wh_path_read(const wh_path_t *curve, int64_t slice, double *slope) {
     const wh_points_t *list = &curve->list;

@@ -1,12 +1,13 @@
 /* Curves: of a signal that comes sample by sample, the points between which cubics stay within a tolerance.
  *
- * A point has the signal's value and its slope, and between two points the cubic that has both of both counts. What moves with
- * limited jerk is made of such cubics: a move takes about eight points however far it goes, where lines would take
- * hundreds, and the slopes are its speeds. Every point is a sample. At every sample the curve is off by at most the tolerance, at
- * forced ones, at a break's sides and while the signal rests not at all.
+ * A point has the signal's value and its slope, and between two points the cubic that has both of both
+ * counts. What moves with limited jerk is made of such cubics: a move takes about eight points however far it
+ * goes, where lines would take hundreds, and the slopes are its speeds. Every point is a sample. At every
+ * sample the curve is off by at most the tolerance, at forced ones, at a break's sides and while the signal
+ * rests not at all.
  *
- * Samples come in the order of their slices. Those since the last point are kept, at most WH_CURVE_SPAN, until they are too
- * many for one cubic; a rest takes no room. Host code: aborts if out of memory.
+ * Samples come in the order of their slices. Those since the last point are kept, at most WH_CURVE_SPAN,
+ * until they are too many for one cubic; a rest takes no room. Host code: aborts if out of memory.
  */
 #ifndef WH_RECORD_PATH_H
 #define WH_RECORD_PATH_H
@@ -55,12 +56,12 @@ void wh_path_finish(wh_path_t *curve);
 /* The same, and there is no signal from here to the next sample. */
 void wh_path_break(wh_path_t *curve);
 
-/* A sample that has been, and is wanted exactly after all. It becomes a point unless it is in a break; the samples beside it
- * may then be off by twice the tolerance. */
+/* A sample that has been, and is wanted exactly after all. It becomes a point unless it is in a break; the
+ * samples beside it may then be off by twice the tolerance. */
 void wh_path_insert(wh_path_t *curve, int64_t slice, double value);
 
-/* What the points say of a slice: the last one's value after it, NaN before the first one and in a break. `slope` (a
- * slice) may be null. Cost: log n. */
+/* What the points say of a slice: the last one's value after it, NaN before the first one and in a break.
+ * `slope` (a slice) may be null. Cost: log n. */
 double wh_path_read(const wh_path_t *curve, int64_t slice, double *slope);
 
 void wh_path_close(wh_path_t *curve);

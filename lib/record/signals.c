@@ -12,7 +12,8 @@
 #define SAME_MM 1e-9
 #define SAME_ROTATION 1e-12
 
-/* -------------------------------------------------------------------------------------------------- opening */
+/* --------------------------------------------------------------------------------------------------
+ * opening */
 
 static bool turns(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
@@ -88,7 +89,8 @@ void wh_signals_begin(wh_signals_t *signals, const wh_layout_t *layout, bool at_
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- motion */
+/* ---------------------------------------------------------------------------------------------------
+ * motion */
 
 /* Another machine's sines may differ in their last bits. */
 static bool is_at(const wh_pose_t *pose, const wh_pose_t *expected) {
@@ -121,7 +123,8 @@ static void add_axes(wh_signals_t *signals, const double axes[], size_t axis_cou
     signals->axis_count = axis_count > signals->axis_count ? axis_count : signals->axis_count;
 }
 
-/* ---------------------------------------------------------------------------------------------------- steps */
+/* ----------------------------------------------------------------------------------------------------
+ * steps */
 
 void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value) {
     if (steps->count > 0 && steps->steps[steps->count - 1].value == value) {
@@ -140,7 +143,8 @@ static void add_signals(wh_signals_t *signals, const wh_state_t *state) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- wafers */
+/* ---------------------------------------------------------------------------------------------------
+ * wafers */
 
 static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
     const wh_vec3_t way = wh_vec3_subtract(&a->r, &b->r);
@@ -177,7 +181,8 @@ static void add_wafers(wh_signals_t *signals, const wh_state_t *state) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- events */
+/* ---------------------------------------------------------------------------------------------------
+ * events */
 
 /* What went as it should is told by other means. */
 static bool is_marked(wh_event_kind_t kind) {
@@ -220,7 +225,8 @@ static void add_marks(wh_signals_t *signals, const wh_state_t *state) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- slices */
+/* ---------------------------------------------------------------------------------------------------
+ * slices */
 
 typedef void each_curve_t(wh_path_t *curve);
 typedef void each_own_t(wh_thin_t *own);

@@ -42,7 +42,8 @@ bool wh_signals_links(const wh_signals_t *signals, int64_t slice, wh_pose_t base
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------ walk */
+/* ------------------------------------------------------------------------------------------------------
+ * walk */
 
 /* How far the points of each signal have been passed. */
 typedef struct {

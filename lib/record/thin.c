@@ -6,8 +6,9 @@
 #include "../math/vector.h"
 #include "quaternion.h"
 
-/* Two slerps whose ends are apart by no more than d are apart between them by up to d / cos(angle / 4), 1.24 d for
- * WH_THIN_TURN: thinned again with this share of what the tolerance grew by, the sum stays below the tolerance. */
+/* Two slerps whose ends are apart by no more than d are apart between them by up to d / cos(angle / 4), 1.24
+ * d for WH_THIN_TURN: thinned again with this share of what the tolerance grew by, the sum stays below the
+ * tolerance. */
 #define TURN_SHARE 0.8
 
 /* A box's half diagonal is the square root of 3 times its half edge. */
@@ -44,7 +45,8 @@ void wh_thin_close(wh_thin_t *thin) {
     wh_points_close(&thin->list);
 }
 
-/* --------------------------------------------------------------------------------------------------- points */
+/* ---------------------------------------------------------------------------------------------------
+ * points */
 
 static void keep(wh_thin_t *thin, bool exact) {
     wh_points_insert(&thin->list, thin->list.count, thin->last.slice, thin->last.values, exact);
@@ -80,7 +82,8 @@ static void keep_to_limit(wh_thin_t *thin) {
     wh_points_keep_to_limit(&thin->list, thin_again, thin);
 }
 
-/* --------------------------------------------------------------------------------------------------- slopes */
+/* ---------------------------------------------------------------------------------------------------
+ * slopes */
 
 static double turned(const wh_thin_t *thin) {
     const double *turn = thin->moved + linear_width(thin);
@@ -126,7 +129,8 @@ static double slices_to(const wh_thin_t *thin, int64_t slice) {
     return (double)(slice - thin->list.points[thin->list.count - 1].slice);
 }
 
-/* --------------------------------------------------------------------------------------------------- samples */
+/* ---------------------------------------------------------------------------------------------------
+ * samples */
 
 static void take(wh_thin_t *thin, int64_t slice, const double values[]) {
     thin->last.slice = slice;
@@ -190,7 +194,8 @@ void wh_thin_finish(wh_thin_t *thin) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------------------------
+ * reading */
 
 void wh_thin_read(const wh_thin_t *thin, int64_t slice, double values[]) {
     const wh_points_t *list = &thin->list;

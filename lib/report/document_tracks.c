@@ -5,7 +5,8 @@
 
 #include "document_internal.h"
 
-/* Decimals that add a hundredth of what thinning leaves, or less: of values, and of slopes, which count for up to 4 s. */
+/* Decimals that add a hundredth of what thinning leaves, or less: of values, and of slopes, which count for
+ * up to 4 s. */
 enum { DECIMALS_S = 6, DECIMALS_OWN_MM = 4, DECIMALS_OWN = 6 };
 
 typedef struct {
@@ -21,7 +22,8 @@ static bool is_rad(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
 }
 
-/* ------------------------------------------------------------------------------------------------- thinning */
+/* -------------------------------------------------------------------------------------------------
+ * thinning */
 
 typedef struct {
     double mm, rad, own_mm, own_rad, vacuum, measured[WH_MEASURES];
@@ -59,7 +61,8 @@ static sums_t sum_up(const wh_signals_t *signals) {
     return sums;
 }
 
-/* How far a gripper's origin is from where its axes' curves put it, at most: R and Z off, theta off at the robot's reach. */
+/* How far a gripper's origin is from where its axes' curves put it, at most: R and Z off, theta off at the
+ * robot's reach. */
 static double gripper_mm(const wh_signals_t *signals, const sums_t *sums) {
     double reach = signals->layout->machine.robot.travel[WH_AXIS_R].max;
     for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
@@ -91,7 +94,8 @@ void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals)
     wh_json_text_end(text, '}');
 }
 
-/* --------------------------------------------------------------------------------------------------- curves */
+/* ---------------------------------------------------------------------------------------------------
+ * curves */
 
 static void put_second(wh_json_text_t *text, const wh_signals_t *signals, int64_t slice) {
     wh_json_text_number(text, NULL, wh_document_seconds(signals, slice), DECIMALS_S, false);
@@ -157,7 +161,8 @@ static void put_axes(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_end(text, ']');
 }
 
-/* ------------------------------------------------------------------------------------------------ own poses */
+/* ------------------------------------------------------------------------------------------------ own
+ * poses */
 
 static void put_own(wh_json_text_t *text, const wh_signals_t *signals) {
     static const column_t places = {"r", 0, 3, 1, DECIMALS_OWN_MM, true};
@@ -174,7 +179,8 @@ static void put_own(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_end(text, ']');
 }
 
-/* --------------------------------------------------------------------------------------------------- wafers */
+/* ---------------------------------------------------------------------------------------------------
+ * wafers */
 
 static void put_stay(wh_json_text_t *text, const wh_signals_t *signals, const wh_stay_t *stay) {
     wh_json_text_begin(text, NULL, '{');
@@ -188,7 +194,8 @@ static void put_stay(wh_json_text_t *text, const wh_signals_t *signals, const wh
     wh_json_text_end(text, '}');
 }
 
-/* Indices of the stays by wafer, each wafer's in order of time: the list holds them in order of time alone. */
+/* Indices of the stays by wafer, each wafer's in order of time: the list holds them in order of time
+ * alone. */
 static size_t *sort_stays(const wh_signals_t *signals, size_t *ends) {
     size_t *sorted = calloc(signals->stay_count + 1, sizeof *sorted);
     if (!sorted) {
@@ -227,7 +234,8 @@ static void put_wafers(wh_json_text_t *text, const wh_signals_t *signals) {
     free(begins);
 }
 
-/* -------------------------------------------------------------------------------------------------- signals */
+/* --------------------------------------------------------------------------------------------------
+ * signals */
 
 /* WH_NONE is null. */
 static void put_steps(wh_json_text_t *text, const wh_signals_t *signals, const char *key,
@@ -275,7 +283,8 @@ static void put_proximity(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_end(text, ']');
 }
 
-/* ----------------------------------------------------------------------------------------------- clearances */
+/* -----------------------------------------------------------------------------------------------
+ * clearances */
 
 static void put_clearance(wh_json_text_t *text, const wh_document_t *document, size_t kind) {
     const wh_curves_t *curves = document->record->curves;

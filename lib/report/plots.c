@@ -26,7 +26,8 @@ static bool path_of(char path[PATH_BYTES], const char *folder, const char *name,
     return snprintf(path, PATH_BYTES, "%s/%s.%s", folder, name, ending) < PATH_BYTES;
 }
 
-/* ---------------------------------------------------------------------------------------------------- files */
+/* ----------------------------------------------------------------------------------------------------
+ * files */
 
 static bool is_taken(const wh_plots_t *plots, const char *name) {
     for (size_t i = 0; i < plots->count; ++i) {
@@ -88,7 +89,8 @@ void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot) {
     close_file(plots, plot->data);
 }
 
-/* ------------------------------------------------------------------------------------------------------ run */
+/* ------------------------------------------------------------------------------------------------------
+ * run */
 
 double wh_plots_slice_s(const wh_plots_t *plots) {
     return (double)plots->document->signals->layout->slice_us / 1e6;
@@ -140,10 +142,11 @@ wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t 
     return list;
 }
 
-/* -------------------------------------------------------------------------------------------------- gnuplot */
+/* --------------------------------------------------------------------------------------------------
+ * gnuplot */
 
-/* Everybody's, to be freed, but for the letters: gnuplot asks the locale for them, and the plots are UTF-8. Null when memory
- * is out. */
+/* Everybody's, to be freed, but for the letters: gnuplot asks the locale for them, and the plots are UTF-8.
+ * Null when memory is out. */
 static char **environment_of_plots(void) {
     static char letters[] = "LC_ALL=C.UTF-8";
     size_t count = 0;
@@ -164,7 +167,8 @@ static char **environment_of_plots(void) {
     return own;
 }
 
-/* Runs it in their folder, without anybody's settings; 0, an errno, or -1 when it says itself what is wrong. */
+/* Runs it in their folder, without anybody's settings; 0, an errno, or -1 when it says itself what is
+ * wrong. */
 static int start(const wh_plots_t *plots, char *const arguments[]) {
     posix_spawn_file_actions_t actions;
     pid_t process = 0;
@@ -217,7 +221,8 @@ static bool draw_all(const wh_plots_t *plots, char message[WH_PLOTS_MESSAGE_BYTE
     return drawn;
 }
 
-/* ------------------------------------------------------------------------------------------------- placing */
+/* -------------------------------------------------------------------------------------------------
+ * placing */
 
 static bool place(const wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
     char from[PATH_BYTES];

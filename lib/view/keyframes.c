@@ -124,7 +124,8 @@ static void add_held(wh_keyframes_t *motion, const wh_signals_t *signals, const 
     add_pose(motion, signals, (double)from + share * (double)(to - from), &pose);
 }
 
-/* So many keyframes keep a wafer that is beside the gripper's origin on its arc: a chord of angle a is off by r a^2 / 8. */
+/* So many keyframes keep a wafer that is beside the gripper's origin on its arc: a chord of angle a is off by
+ * r a^2 / 8. */
 static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, size_t i) {
     double turn[3];
     wh_quaternion_turn(wh_points_numbers(&thin->list, i) + 3, wh_points_numbers(&thin->list, i + 1) + 3,
