@@ -142,10 +142,10 @@ static void on_request(void *user, const void *data, size_t size) {
     waferhand_request message;
     if (!wh_link_decode_request(data, size, &message)) {
         ++control->garbage;
-        if (!control->named_garbage && control->options.say) {
+        if (!control->named_garbage) {
             control->named_garbage = true;
-            control->options.say(control->options.user, WH_CHANNEL_REQUEST
-                                 ": a datagram is no such message: dropped, like all that follow");
+            wh_node_say(control->options.say, control->options.user,
+                        WH_CHANNEL_REQUEST ": a datagram is no such message: dropped, like all that follow");
         }
         return;
     }
@@ -202,10 +202,8 @@ static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
                                                   .tick = tell_progress,
                                                   .tick_user = control};
     if (mcs->layout->wafer_count > WH_LINK_WAFERS) {
-        if (control->options.say) {
-            control->options.say(control->options.user,
-                                 "the layout has more wafers than a message carries (256)");
-        }
+        wh_node_say(control->options.say, control->options.user,
+                    "the layout has more wafers than a message carries (256)");
         return NULL;
     }
     control->connected = wh_protocol_client_open(&control->client, control->node, &options);

@@ -4,21 +4,24 @@
 
 /* -------------------------------------------------------------------------------------------------- parts */
 
+static void put_vec3(const wh_vec3_t *v, double out[3]) {
+    out[0] = v->x;
+    out[1] = v->y;
+    out[2] = v->z;
+}
+
+static wh_vec3_t take_vec3(const double in[3]) {
+    return wh_vec3(in[0], in[1], in[2]);
+}
+
 void wh_link_put_pose(const wh_pose_t *pose, double position[3], double rotation[9]) {
-    position[0] = pose->r.x;
-    position[1] = pose->r.y;
-    position[2] = pose->r.z;
-    for (size_t i = 0; i < 9; ++i) {
-        rotation[i] = pose->R.m[i / 3][i % 3];
-    }
+    put_vec3(&pose->r, position);
+    memcpy(rotation, pose->R.m, sizeof pose->R.m);
 }
 
 wh_pose_t wh_link_take_pose(const double position[3], const double rotation[9]) {
-    wh_pose_t pose;
-    pose.r = wh_vec3(position[0], position[1], position[2]);
-    for (size_t i = 0; i < 9; ++i) {
-        pose.R.m[i / 3][i % 3] = rotation[i];
-    }
+    wh_pose_t pose = {.r = take_vec3(position)};
+    memcpy(pose.R.m, rotation, sizeof pose.R.m);
     return pose;
 }
 
@@ -58,16 +61,6 @@ static wh_fault_slot_t take_slot(const waferhand_fault_slot *in) {
     slot.before = wh_link_take_pose(in->before_position, in->before_rotation);
     slot.placed = wh_link_take_pose(in->placed_position, in->placed_rotation);
     return slot;
-}
-
-static void put_vec3(const wh_vec3_t *v, double out[3]) {
-    out[0] = v->x;
-    out[1] = v->y;
-    out[2] = v->z;
-}
-
-static wh_vec3_t take_vec3(const double in[3]) {
-    return wh_vec3(in[0], in[1], in[2]);
 }
 
 static void put_measured(const wh_proximity_t *p, waferhand_measurement *out) {

@@ -68,6 +68,10 @@ int wh_node_descriptor(const wh_node_t *node);
 /* Completes the record and closes LCM. */
 void wh_node_close(wh_node_t *node);
 
+/* Says a line of at most 199 bytes, for people; to nobody if `say` is null. */
+void wh_node_say(void (*say)(void *user, const char *text), void *user, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 /* us of wall-clock time, and of a clock that never jumps. */
 int64_t wh_node_wall_us(void);
 int64_t wh_node_clock_us(void);

@@ -1,8 +1,6 @@
 #include "protocol_client.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/random.h>
 
@@ -20,22 +18,6 @@
 #define RESENDS_AT_FIRST_PACE 20
 /* How long a wait may be, so that silence and a stop are noticed in time. */
 #define WAIT_MOST_US 50000
-
-static void say(const wh_protocol_client_t *client, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-/* A line for people. */
-static void say(const wh_protocol_client_t *client, const char *format, ...) {
-    char text[200];
-    va_list arguments;
-    if (!client->options.say) {
-        return;
-    }
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    client->options.say(client->options.user, text);
-}
 
 static bool is_stopped(const wh_protocol_client_t *client) {
     return client->options.stop && *client->options.stop != 0;
@@ -71,7 +53,8 @@ static void restore_simulator(wh_protocol_client_t *client) {
         return;
     }
     ++client->counters.restored;
-    say(client, "the simulator was started anew: it gets the state of slice %" PRId64, client->state.seq);
+    wh_node_say(client->options.say, client->options.user,
+                "the simulator was started anew: it gets the state of slice %" PRId64, client->state.seq);
     (void)wh_node_publish(client->node, WH_CHANNEL_RESTORE, client->restore, client->restore_size);
     send_again(client);
 }
@@ -82,7 +65,7 @@ static void heard(wh_protocol_client_t *client) {
     client->last_heard_us = wh_node_clock_us();
     if (client->silent) {
         client->silent = false;
-        say(client, "the simulator answers again");
+        wh_node_say(client->options.say, client->options.user, "the simulator answers again");
     }
 }
 
@@ -195,8 +178,9 @@ static void notice_silence(wh_protocol_client_t *client, int64_t since_us) {
     if (!client->silent && wh_node_clock_us() - last > WH_CLIENT_SILENCE_US) {
         client->silent = true;
         ++client->counters.silences;
-        say(client, "no answer from the simulator: holding at slice %" PRId64 " until it returns",
-            client->command.seq);
+        wh_node_say(client->options.say, client->options.user,
+                    "no answer from the simulator: holding at slice %" PRId64 " until it returns",
+                    client->command.seq);
     }
 }
 
@@ -284,8 +268,8 @@ static void write_outputs(wh_protocol_client_t *client) {
     if (problem == 0) {
         memcpy(client->written, client->command.valve, count * sizeof(int32_t));
     } else if (client->counters.unwritten++ == 0) {
-        say(client, "%s: %s (expected a file that can be written)", client->options.outputs,
-            strerror(problem));
+        wh_node_say(client->options.say, client->options.user, "%s: %s (expected a file that can be written)",
+                    client->options.outputs, strerror(problem));
     }
 }
 
@@ -356,8 +340,9 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
 static uint64_t last_hash(wh_link_t *link) {
     wh_protocol_client_t *client = (wh_protocol_client_t *)link;
     if (!wh_protocol_client_settle(client, SETTLE_US)) {
-        say(client, "the state of the last slice did not come: the hash is of slice %" PRId64,
-            client->state.seq);
+        wh_node_say(client->options.say, client->options.user,
+                    "the state of the last slice did not come: the hash is of slice %" PRId64,
+                    client->state.seq);
     }
     return client->hash;
 }
