@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 
 #include "../layout/layout_load.h"
-#include "../link/cell_layout.h"
+#include "../link/messages.h"
 
 /* What a layout has by default. */
 #define DIAMETER 300

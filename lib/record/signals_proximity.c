@@ -18,7 +18,8 @@ static double reach_of(const wh_signals_t *signals) {
     return WH_TRACE_REACH + 2 * signals->layout->grasp.near_projxy;
 }
 
-/* ------------------------------------------------------------------------------------------------- vicinity */
+/* -------------------------------------------------------------------------------------------------
+ * vicinity */
 
 static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, const wh_state_t *state,
                         const wh_vec3_t *at) {
@@ -78,7 +79,8 @@ static int32_t find_nearest(const wh_signals_t *signals, const wh_neighbours_t *
     return search.nearest;
 }
 
-/* ---------------------------------------------------------------------------------------------------- values */
+/* ----------------------------------------------------------------------------------------------------
+ * values */
 
 static void take(const wh_proximity_t *p, double values[WH_MEASURES]) {
     values[WH_MEASURE_PROJZ] = wh_real_abs(p->dr_proj_z);

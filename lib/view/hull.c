@@ -29,7 +29,8 @@ typedef struct {
     double flat;
 } hull_t;
 
-/* --------------------------------------------------------------------------------------------------- points */
+/* ---------------------------------------------------------------------------------------------------
+ * points */
 
 static bool is_same(const wh_vec3_t *a, const wh_vec3_t *b) {
     const wh_vec3_t way = wh_vec3_subtract(a, b);
@@ -70,7 +71,8 @@ static void take_points(hull_t *hull, const wh_convex_t *convex) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- faces */
+/* ---------------------------------------------------------------------------------------------------
+ * faces */
 
 static void add_face(hull_t *hull, size_t a, size_t b, size_t c) {
     const wh_vec3_t ab = wh_vec3_subtract(&hull->points[b], &hull->points[a]);
@@ -137,7 +139,8 @@ static void add_point(hull_t *hull, size_t point) {
     drop_seen(hull);
 }
 
-/* ---------------------------------------------------------------------------------------------------- start */
+/* ----------------------------------------------------------------------------------------------------
+ * start */
 
 /* How far a point is from the point, the line or the plane of the first `known` of `start`. */
 static double distance(const hull_t *hull, const size_t start[4], size_t known, size_t i) {

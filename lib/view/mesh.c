@@ -57,7 +57,8 @@ static uint32_t add_placed(wh_mesh_t *mesh, const wh_pose_t *pose, const wh_vec3
     return add_vertex(mesh, &at, &turned);
 }
 
-/* ---------------------------------------------------------------------------------------------------- boxes */
+/* ----------------------------------------------------------------------------------------------------
+ * boxes */
 
 /* The face across axis `axis`, on the side `sign`. */
 static void add_face(wh_mesh_t *mesh, const wh_pose_t *pose, const double half[3], int axis, double sign) {
@@ -89,7 +90,8 @@ static void add_box(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t 
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- round */
+/* ----------------------------------------------------------------------------------------------------
+ * round */
 
 /* A closed ring of vertices about z. */
 static uint32_t add_ring(wh_mesh_t *mesh, const wh_pose_t *pose, double radius, double z, double out,
@@ -163,7 +165,8 @@ void wh_mesh_add_convex(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pos
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- wafers */
+/* ----------------------------------------------------------------------------------------------------
+ * wafers */
 
 #define RIM_CORNERS 96
 

@@ -2,7 +2,7 @@
 #include "support/support.h"
 
 #include "layout/layout_load.h"
-#include "link/checksum.h"
+#include "link/messages.h"
 #include "link/protocol_server.h"
 
 static wh_sandbox_t *sandbox;

@@ -2,8 +2,7 @@
 #include "support/support.h"
 
 #include "layout/layout_load.h"
-#include "link/cell_layout.h"
-#include "link/checksum.h"
+#include "link/messages.h"
 #include "log/replay.h"
 
 #define RUN 4711

@@ -174,7 +174,7 @@ static void check_axes(int64_t n) {
         const double limit = (double)wh_machine_limits(&signals.layout->machine, axis)->speed;
         double slope;
         const double value = wh_path_read(curve, n, &slope);
-        assert_near(value, slices[n].axes[axis], slices[n].is_exact ? 0 : curve->tolerance);
+        assert_near(value, slices[n].axes[axis], slices[n].is_exact ? 0 : curve->list.tolerance);
         if (n > 1) {
             assert_near(slope / seconds, (slices[n].axes[axis] - slices[n - 1].axes[axis]) / seconds,
                         0.02 * limit);
@@ -276,8 +276,8 @@ static void a_gripper_that_is_elsewhere(void **state) {
         wh_signals_slice(&other, n == 1500 ? NULL : slices[n].axes, layout->machine.axis_count, &at);
     }
     wh_signals_finish(&other);
-    assert_int_equal(other.own[0].points[0].slice, 901);
-    assert_int_equal(other.own[1].points[0].slice, 1500);
+    assert_int_equal(other.own[0].list.points[0].slice, 901);
+    assert_int_equal(other.own[1].list.points[0].slice, 1500);
     for (int64_t n = 1; n <= 2000; ++n) {
         wh_pose_t shown, was = slices[n].grippers[0];
         was.r.z += n > 900 ? 0.25 : 0;
@@ -397,14 +397,14 @@ static void a_document_is_made(void **state) {
         json_array_size(json_object_get(json_array_get(json_object_get(tracks, "grippers"), 0), "t")), 0);
     const json_t *axis = json_array_get(json_object_get(tracks, "axes"), WH_AXIS_R);
     const wh_path_t *curve = &signals.axes[WH_AXIS_R];
-    assert_int_equal(json_array_size(json_object_get(axis, "t")), curve->count);
-    assert_int_equal(json_array_size(json_object_get(axis, "v")), curve->count);
-    assert_int_equal(json_array_size(json_object_get(axis, "slope")), curve->count);
-    for (size_t i = 0; i < curve->count; ++i) {
-        const wh_path_point_t *point = &curve->points[i];
+    assert_int_equal(json_array_size(json_object_get(axis, "t")), curve->list.count);
+    assert_int_equal(json_array_size(json_object_get(axis, "v")), curve->list.count);
+    assert_int_equal(json_array_size(json_object_get(axis, "slope")), curve->list.count);
+    for (size_t i = 0; i < curve->list.count; ++i) {
+        const wh_point_t *point = &curve->list.points[i];
         assert_near(number_at(axis, "t", i), (double)point->slice / 1e3, 1e-9);
-        assert_near(number_at(axis, "v", i), point->value, point->exact ? 0 : 1e-4);
-        assert_near(number_at(axis, "slope", i), point->slope * 1e3, 1e-3);
+        assert_near(number_at(axis, "v", i), wh_path_value(curve, i), point->exact ? 0 : 1e-4);
+        assert_near(number_at(axis, "slope", i), wh_path_slope(curve, i) * 1e3, 1e-3);
     }
     const json_t *machine = json_object_get(read, "machine");
     const json_t *chuck = json_array_get(json_object_get(machine, "grippers"), 1);

@@ -1,7 +1,7 @@
-/* Datagrams, looked at before LCM's generated code sees them: that code trusts counts and lengths. */
+/* Datagrams: their check, and a look at them before LCM's generated code, which trusts counts and lengths. */
 #include <string.h>
 
-#include "checksum.h"
+#include "../math/hash.h"
 #include "messages.h"
 
 /* Encoded sizes, which the generated *_encoded_size functions confirm in a test. */
@@ -18,6 +18,43 @@
 #define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
 #define CELL_FIXED (8 + 7 * 8 + 3 + 10 * 8)
 #define STATION_FIXED (12 * 8 + 4 + 8 + 4)
+
+static uint64_t word_at(const uint8_t *bytes, size_t size) {
+    uint64_t word = 0;
+    for (size_t i = 0; i < 8; ++i) {
+        word = word << 8 | (i < size ? bytes[i] : 0U);
+    }
+    return word;
+}
+
+static uint64_t check_of(const uint8_t *bytes, size_t size) {
+    uint64_t hash = WH_HASH_START;
+    for (size_t at = 0; at < size; at += 8) {
+        hash = wh_hash_word(hash, word_at(bytes + at, size - at));
+    }
+    return hash != 0 ? hash : 1;
+}
+
+void wh_link_seal(uint8_t *bytes, size_t size) {
+    if (size < 8) {
+        return;
+    }
+    uint64_t check = check_of(bytes, size - 8);
+    for (size_t i = 1; i <= 8; ++i) {
+        bytes[size - i] = (uint8_t)(check & 0xffU);
+        check >>= 8;
+    }
+}
+
+/* True if the check at its end is right, or 0. */
+static bool is_intact(const void *data, size_t size) {
+    const uint8_t *bytes = data;
+    if (size < 8) {
+        return false;
+    }
+    const uint64_t told = word_at(bytes + size - 8, 8);
+    return told == 0 || told == check_of(bytes, size - 8);
+}
 
 /* A place in a datagram; `good` falls when something would lie beyond its end. */
 typedef struct {
@@ -66,10 +103,11 @@ static walk_t walk_over(const void *data, size_t size) {
     return walk;
 }
 
-/* ------------------------------------------------------------------------------------------------- messages */
+/* -------------------------------------------------------------------------------------------------
+ * messages */
 
 bool wh_link_decode_command(const void *data, size_t size, waferhand_command *message) {
-    return size <= WH_LINK_DATAGRAM && wh_link_is_intact(data, size) &&
+    return size <= WH_LINK_DATAGRAM && is_intact(data, size) &&
            waferhand_command_decode(data, 0, (int)size, message) == (int)size;
 }
 
@@ -82,7 +120,7 @@ bool wh_link_decode_state(const void *data, size_t size, waferhand_state *messag
     const size_t faults = take_count(&walk, WH_FAULTS);
     skip(&walk, STATE_FIXED - STATE_COUNTS - 4 * 4);
     skip(&walk, wafers * WAFER + grippers * GRIPPER + events * EVENT + faults * FAULT_SLOT + CHECK);
-    return ends(&walk) && wh_link_is_intact(data, size) &&
+    return ends(&walk) && is_intact(data, size) &&
            waferhand_state_decode(data, 0, (int)size, message) == (int)size;
 }
 
