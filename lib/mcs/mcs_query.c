@@ -4,7 +4,7 @@
 
 #include "../math/relation.h"
 #include "../math/trig.h"
-#include "../script/wh_module_internal.h"
+#include "../script/wh_module_values.h"
 #include "mcs_internal.h"
 
 static void set_number(lua_State *L, const char *name, double value) {
