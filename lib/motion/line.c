@@ -96,10 +96,6 @@ static bounds_t bounds_of_theta(const passage_t *passage) {
     return bounds;
 }
 
-static wh_real_t greater(wh_real_t a, wh_real_t b) {
-    return a > b ? a : b;
-}
-
 /* The factor in time by which an axis with these bounds must be slowed when the effector moves horizontally
  * with up to `peak`: dq/dt = q' v, d2q/dt2 = q'' v^2 + q' a, d3q/dt3 = q''' v^3 + 3 q'' v a + q' j. */
 static wh_real_t slowing(const bounds_t *q, const wh_limits_t *peak, const wh_limits_t *limits) {
@@ -108,8 +104,8 @@ static wh_real_t slowing(const bounds_t *q, const wh_limits_t *peak, const wh_li
     const wh_real_t speed = q->first * v;
     const wh_real_t acceleration = q->second * v * v + q->first * a;
     const wh_real_t jerk = q->third * v * v * v + 3 * q->second * v * a + q->first * peak->jerk;
-    return greater(speed / limits->speed,
-                   greater(wh_real_sqrt(acceleration / limits->acceleration), wh_cbrt(jerk / limits->jerk)));
+    return wh_real_max(speed / limits->speed,
+                   wh_real_max(wh_real_sqrt(acceleration / limits->acceleration), wh_cbrt(jerk / limits->jerk)));
 }
 
 static wh_real_t slowing_of_line(const wh_line_t *line, const passage_t *passage, wh_real_t share,
@@ -119,9 +115,9 @@ static wh_real_t slowing_of_line(const wh_line_t *line, const passage_t *passage
                               share * wh_profile_peak_jerk(&line->path)};
     const bounds_t R = bounds_of_R(passage);
     const bounds_t theta = bounds_of_theta(passage);
-    const wh_real_t arm = greater(slowing(&R, &peak, &robot->limits[WH_AXIS_R]),
+    const wh_real_t arm = wh_real_max(slowing(&R, &peak, &robot->limits[WH_AXIS_R]),
                                   slowing(&theta, &peak, &robot->limits[WH_AXIS_THETA]));
-    return greater(arm, slowing(&theta, &peak, &robot->limits[WH_AXIS_YAW]));
+    return wh_real_max(arm, slowing(&theta, &peak, &robot->limits[WH_AXIS_YAW]));
 }
 
 /* The limit of a quantity along the line: R's for the horizontal share of it, Z's for the vertical, whichever

@@ -1,7 +1,7 @@
 /* Recordings in memory: what is the same, what differs and how that is named, what is not there. */
 #include "support/support.h"
 
-#include "layout/layout_load.h"
+#include "layout/layout.h"
 #include "link/cell_layout.h"
 #include "link/checksum.h"
 #include "log/replay.h"
