@@ -1,0 +1,1 @@
+#include "waferhand/waferhand.h"
