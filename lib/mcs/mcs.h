@@ -88,7 +88,7 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
                  wh_sandbox_result_t *result);
 
 /* Leaves on the stack of L, within a protected call and after `cell`, what executes a typed line and what
- * completes one: two functions, see lua/mcs/lines.lua and lua/mcs/completion.lua. */
+ * completes one: two functions, see lua/mcs/prompt.lua and lua/mcs/completion.lua. */
 void wh_mcs_push_lines(lua_State *L);
 
 /* Whether the cell complained: a wafer was let go where it should not have been, or an input was refused. */

@@ -131,7 +131,7 @@ static int set_study(lua_State *L) {
     return 0;
 }
 
-/* native.cell(path): reads the layout and sets up the run; returns the layout's path as it will be named. */
+/* native.cell(path): reads the layout and sets up the run; returns the layout as a table. */
 static int set_up_cell(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_of(L);
     const char *name = luaL_checkstring(L, 1);
@@ -151,7 +151,7 @@ static int set_up_cell(lua_State *L) {
     }
     lua_pop(L, 1);
     set_up(L, mcs, layout);
-    lua_pushstring(L, mcs->layout->path);
+    wh_mcs_push_layout(L, layout);
     return 1;
 }
 

@@ -42,6 +42,10 @@ wh_task_t wh_mcs_task(lua_State *L, const wh_mcs_t *mcs, const wh_segment_t *seg
 /* Where a rehearsed segment ends: how near the axes came to their ends. */
 void wh_mcs_look_at_reach(wh_mcs_t *mcs);
 
+/* The layout as lua/mcs reads it: { path, slice, sampled, homed, tolerance, home: the robot's axes, grippers in order, stations by
+ * name }. Lengths in mm, angles in rad, times in s. */
+void wh_mcs_push_layout(lua_State *L, const wh_layout_t *layout);
+
 /* Functions of the native table, by subject. */
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_collision_functions[];

@@ -1,4 +1,4 @@
-/* The MCS host's eyes: what the layout holds, where wafers are and who holds them. */
+/* The MCS host's eyes: where wafers are and who holds them. */
 #include <stdio.h>
 #include <string.h>
 
@@ -7,118 +7,12 @@
 #include "../script/wh_module_values.h"
 #include "mcs_internal.h"
 
-static void set_number(lua_State *L, const char *name, double value) {
-    lua_pushnumber(L, value);
-    lua_setfield(L, -2, name);
-}
-
-static void set_boolean(lua_State *L, const char *name, bool value) {
-    lua_pushboolean(L, value);
-    lua_setfield(L, -2, name);
-}
-
-/* Gripper and wafer indices go to Lua from 1; none is nil. */
-static void push_index(lua_State *L, int32_t index) {
-    if (index == WH_NONE) {
-        lua_pushnil(L);
-    } else {
-        lua_pushinteger(L, index + 1);
-    }
-}
-
-/* ---------------------------------------------------------------------------------------------- the layout
- */
-
-static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) {
-    const wh_layout_station_t *station = &layout->stations[index];
-    static const char *const modes[] = {"both", "get", "put", "none"};
-    lua_createtable(L, 0, 24);
-    lua_pushstring(L, station->name);
-    lua_setfield(L, -2, "name");
-    lua_pushinteger(L, (lua_Integer)index + 1);
-    lua_setfield(L, -2, "index");
-    lua_pushinteger(L, layout->places[index].slots);
-    lua_setfield(L, -2, "slots");
-    set_number(L, "pitch", layout->places[index].pitch);
-    push_index(L, layout->places[index].chuck);
-    lua_setfield(L, -2, "chuck");
-    set_number(L, "stroke", station->stroke);
-    set_number(L, "offset", station->offset);
-    set_number(L, "retract", station->retract);
-    set_number(L, "pickup_speed", station->pickup_speed);
-    set_number(L, "release", station->release);
-    set_number(L, "vacuum_delay", station->vacuum_delay);
-    set_number(L, "timeout", station->timeout);
-    set_number(L, "pickup_acceleration", station->pickup_acceleration);
-    set_number(L, "wait", station->wait);
-    set_number(L, "map_speed", station->map_speed);
-    set_number(L, "retries", station->retries);
-    set_boolean(L, "taught", station->taught);
-    set_boolean(L, "check_map", station->check_map);
-    push_index(L, station->effector);
-    lua_setfield(L, -2, "effector");
-    lua_pushstring(L, modes[station->check]);
-    lua_setfield(L, -2, "vacuum_check");
-    lua_pushstring(L, station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
-    lua_setfield(L, -2, "handover");
-}
-
-static void push_stations(lua_State *L, const wh_layout_t *layout) {
-    lua_createtable(L, 0, (int)layout->station_count);
-    for (size_t s = 0; s < layout->station_count; ++s) {
-        push_station(L, layout, s);
-        lua_setfield(L, -2, layout->stations[s].name);
-    }
-}
-
-static void push_grippers(lua_State *L, const wh_layout_t *layout) {
-    lua_createtable(L, (int)layout->machine.gripper_count, 0);
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        lua_createtable(L, 0, 3);
-        lua_pushstring(L, layout->grippers[g].name);
-        lua_setfield(L, -2, "name");
-        lua_pushboolean(L, layout->grippers[g].station == WH_NONE);
-        lua_setfield(L, -2, "on_robot");
-        push_index(L, layout->machine.mounts[g].axis);
-        lua_setfield(L, -2, "axis");
-        lua_rawseti(L, -2, (lua_Integer)g + 1);
-    }
-}
-
-/* native.layout(): { stations by name, grippers in order, tolerance, slice, sampled, homed, home: the robot's axes }. */
-static int describe_layout(lua_State *L) {
-    const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
-    lua_createtable(L, 0, 5);
-    push_stations(L, layout);
-    lua_setfield(L, -2, "stations");
-    push_grippers(L, layout);
-    lua_setfield(L, -2, "grippers");
-    lua_createtable(L, 0, 3);
-    set_number(L, "projz", layout->grasp.tolerance.projz);
-    set_number(L, "projxy", layout->grasp.tolerance.projxy);
-    set_number(L, "planar", layout->grasp.tolerance.planar);
-    lua_setfield(L, -2, "tolerance");
-    set_number(L, "slice", (double)layout->slice_us / 1e6);
-    set_boolean(L, "sampled", layout->grasp.check == WH_CHECK_SAMPLED);
-    set_boolean(L, "homed", layout->homed);
-    lua_createtable(L, WH_ROBOT_AXES, 0);
-    for (int axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        lua_pushnumber(L, layout->machine.robot.home[axis]);
-        lua_rawseti(L, -2, axis + 1);
-    }
-    lua_setfield(L, -2, "home");
-    return 1;
-}
-
 /* native.wafer(name): the wafer's index, or nil. */
 static int find_wafer(lua_State *L) {
     const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
-    push_index(L, wh_layout_find_wafer(layout, luaL_checkstring(L, 1)));
+    wh_lua_push_index(L, wh_layout_find_wafer(layout, luaL_checkstring(L, 1)));
     return 1;
 }
-
-/* ------------------------------------------------------------------------------------------------- the run
- */
 
 static const wh_wafer_t *wafer_argument(lua_State *L, const wh_mcs_t *mcs, int argument) {
     return &mcs->state.wafers[wh_mcs_index(L, argument, mcs->state.wafer_count)];
@@ -148,7 +42,7 @@ static int find_holder(lua_State *L) {
     const int32_t wafer = wh_mcs_index(L, 1, mcs->state.wafer_count);
     const int32_t holder = mcs->state.wafers[wafer].holder;
     wh_decisions_ask(mcs->decisions, WH_TAPE_HOLDER, wafer, holder);
-    push_index(L, holder);
+    wh_lua_push_index(L, holder);
     return 1;
 }
 
@@ -274,8 +168,7 @@ static int relate(lua_State *L) {
     return 6;
 }
 
-const luaL_Reg wh_mcs_query_functions[] = {{"layout", describe_layout},
-                                           {"wafer", find_wafer},
+const luaL_Reg wh_mcs_query_functions[] = {{"wafer", find_wafer},
                                            {"sensor", read_sensor},
                                            {"is_open", read_valve},
                                            {"holder", find_holder},

@@ -4,8 +4,8 @@
 -- Kept, for a script may set globals of these names.
 local coroutine, error, math, pcall, tostring, type = coroutine, error, math, pcall, tostring, type
 
-return function(native, names)
-  -- inside   the job whose straight line the arm has entered and not left
+return function(native, lookup)
+  -- inside   the target whose straight line the arm has entered and not left
   -- stopped  a command was cut short, and neither RECOVER nor HOME came since
   -- homed    nil: as the layout says
   local arm = { inside = nil, stopped = false, homed = nil }
@@ -24,8 +24,8 @@ return function(native, names)
       return result
     end
     local numbered = type(result) == "table" and math.type(result.number) == "integer" and type(result.text) == "string"
-    local number = numbered and result.number or names.errors.BAD_ARGUMENT.number
-    arm.stopped = arm.stopped or number == names.errors.STOPPED.number
+    local number = numbered and result.number or lookup.errors.BAD_ARGUMENT.number
+    arm.stopped = arm.stopped or number == lookup.errors.STOPPED.number
     native.finish(number, numbered and result.text or tostring(result))
     error(result, 0)
   end
@@ -33,7 +33,7 @@ return function(native, names)
   -- Before a command that counts on where the arm stands.
   function arm.check_homed()
     if arm.homed == nil then
-      arm.homed = native.layout().homed
+      arm.homed = native.layout.homed
     end
     if not arm.homed then
       native.fail("NOT_HOMED", "HOME comes first")
@@ -69,9 +69,9 @@ return function(native, names)
 
   ------------------------------------------------------------------------------------------------ playing
 
-  local function skip_through(pattern, job)
+  local function skip_through(pattern, target)
     local step = coroutine.wrap(pattern)
-    local segment = step(job)
+    local segment = step(target)
     while type(segment) == "table" do
       segment = step(native.play(segment))
     end
@@ -79,10 +79,10 @@ return function(native, names)
 
   -- Plans all of a pattern from where the arm stands, without playing it; raises what is out of reach, and with
   -- `judged` a collision ahead.
-  function arm.rehearse(pattern, job, judged)
+  function arm.rehearse(pattern, target, judged)
     native.rehearse(true, judged)
     rehearsing = true
-    local ok, problem = pcall(skip_through, pattern, job)
+    local ok, problem = pcall(skip_through, pattern, target)
     rehearsing = false
     native.rehearse(false)
     if not ok then
@@ -90,28 +90,28 @@ return function(native, names)
     end
   end
 
-  -- Plays a pattern segment by segment and returns what it does. `job.watched`: a wafer that is lost on the way
+  -- Plays a pattern segment by segment and returns what it does. `target.watched`: a wafer that is lost on the way
   -- ends it after that segment.
-  function arm.drive(pattern, job)
+  function arm.drive(pattern, target)
     local step = coroutine.wrap(pattern)
-    local segment = step(job)
+    local segment = step(target)
     while type(segment) == "table" do
       arm.inside = segment.enters or arm.inside
       local ended, lost = native.play(segment)
       if segment.leaves then
         arm.inside = nil
       end
-      if lost and job.watched then
-        native.fail("WAFER_LOST_ON_WAY", names.quote(native.layout().grippers[lost].name) .. " lost its vacuum")
+      if lost and target.watched then
+        native.fail("WAFER_LOST_ON_WAY", lookup.quote(native.layout.grippers[lost].name) .. " lost its vacuum")
       end
       segment = step(ended)
     end
     return segment
   end
 
-  function arm.play(pattern, job)
-    arm.rehearse(pattern, job, true)
-    return arm.drive(pattern, job)
+  function arm.play(pattern, target)
+    arm.rehearse(pattern, target, true)
+    return arm.drive(pattern, target)
   end
 
   return arm

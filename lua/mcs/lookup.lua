@@ -5,20 +5,20 @@
 local ipairs, math, pairs, table, tonumber, tostring, type = ipairs, math, pairs, table, tonumber, tostring, type
 
 return function(native, errors)
-  local names = { errors = errors }
+  local lookup = { errors = errors }
 
   -- Station parameters that a command may set for itself, what else it may say, and the fields of MOVE and LINE in
   -- order.
-  names.parameters = {
+  lookup.parameters = {
     stroke = "number", offset = "number", retract = "number", pickup_speed = "number", pickup_acceleration = "number",
     release = "number", vacuum_delay = "number", vacuum_check = "string", timeout = "number", retries = "number",
     wait = "number", map_speed = "number", check_map = "boolean", handover = "string",
   }
-  names.options = { gripper = "string", force = "boolean" }
-  names.axes = { "theta", "r", "z", "yaw" }
-  names.line_fields = { "dx", "dy", "dz", "speed" }
+  lookup.options = { gripper = "string", force = "boolean" }
+  lookup.axes = { "theta", "r", "z", "yaw" }
+  lookup.line_fields = { "dx", "dy", "dz", "speed" }
 
-  function names.quote(value)
+  function lookup.quote(value)
     return type(value) == "string" and ('"%s"'):format(value) or tostring(value)
   end
 
@@ -30,41 +30,41 @@ return function(native, errors)
     return table.concat(all, ", ")
   end
 
-  function names.station(name)
-    local stations = native.layout().stations
+  function lookup.station(name)
+    local stations = native.layout.stations
     if type(name) ~= "string" or not stations[name] then
-      native.fail("NO_SUCH_STATION", ("%s (expected %s)"):format(names.quote(name), listed(stations)))
+      native.fail("NO_SUCH_STATION", ("%s (expected %s)"):format(lookup.quote(name), listed(stations)))
     end
     return stations[name]
   end
 
-  function names.slot(station, slot)
+  function lookup.slot(station, slot)
     local whole = math.tointeger(slot)
     if type(slot) ~= "number" or not whole or whole < 1 or whole > station.slots then
       local expected = ("%s has slots 1 to %d"):format(station.name, station.slots)
-      native.fail("NO_SUCH_SLOT", ("%s (%s)"):format(names.quote(slot), expected))
+      native.fail("NO_SUCH_SLOT", ("%s (%s)"):format(lookup.quote(slot), expected))
     end
     return whole
   end
 
-  function names.gripper(name)
+  function lookup.gripper(name)
     local known = {}
-    for index, gripper in ipairs(native.layout().grippers) do
+    for index, gripper in ipairs(native.layout.grippers) do
       if gripper.name == name then
         return index
       end
       known[#known + 1] = gripper.name
     end
-    native.fail("NO_SUCH_GRIPPER", ("%s (expected %s)"):format(names.quote(name), table.concat(known, ", ")))
+    native.fail("NO_SUCH_GRIPPER", ("%s (expected %s)"):format(lookup.quote(name), table.concat(known, ", ")))
   end
 
   -- A gripper on the robot: the named one, the one with the index `otherwise`, or the first.
-  function names.effector(name, otherwise)
-    local grippers = native.layout().grippers
+  function lookup.effector(name, otherwise)
+    local grippers = native.layout.grippers
     if name ~= nil then
-      local index = names.gripper(name)
+      local index = lookup.gripper(name)
       if not grippers[index].on_robot then
-        native.fail("NO_SUCH_GRIPPER", names.quote(name) .. " (expected one on the robot)")
+        native.fail("NO_SUCH_GRIPPER", lookup.quote(name) .. " (expected one on the robot)")
       end
       return index
     end
@@ -78,10 +78,10 @@ return function(native, errors)
     end
   end
 
-  function names.wafer(name)
+  function lookup.wafer(name)
     local index = type(name) == "string" and native.wafer(name) or nil
     if not index then
-      native.fail("NO_SUCH_WAFER", names.quote(name))
+      native.fail("NO_SUCH_WAFER", lookup.quote(name))
     end
     return index
   end
@@ -120,15 +120,15 @@ return function(native, errors)
   local function refuse_frame(what, stations, name)
     local station, slot = split_slot(stations, tostring(name))
     if station then
-      names.slot(station, slot)
+      lookup.slot(station, slot)
     end
     local expected = 'expected "base" or the name of a wafer, a gripper, a station or a slot, such as "A/1"'
-    native.fail("BAD_ARGUMENT", ("%s: %s (%s)"):format(what, names.quote(name), expected))
+    native.fail("BAD_ARGUMENT", ("%s: %s (%s)"):format(what, lookup.quote(name), expected))
   end
 
   -- The pose of a frame by its name. Of equal names a slot's comes first, as in a report's measuring tool.
-  function names.frame(what, name)
-    local layout = native.layout()
+  function lookup.frame(what, name)
+    local layout = native.layout
     local text = type(name) == "string" and name or ""
     return slot_frame(layout.stations, text) or station_frame(layout.stations, text)
       or gripper_frame(layout.grippers, text) or wafer_frame(text) or text == "base" and { r = { 0, 0, 0 } }
@@ -136,12 +136,12 @@ return function(native, errors)
   end
 
   -- Every frame's name.
-  function names.frames()
+  function lookup.frames()
     local list = native.wafer_names()
-    for _, gripper in ipairs(native.layout().grippers) do
+    for _, gripper in ipairs(native.layout.grippers) do
       list[#list + 1] = gripper.name
     end
-    for name, station in pairs(native.layout().stations) do
+    for name, station in pairs(native.layout.stations) do
       list[#list + 1] = name
       for slot = 1, station.slots do
         list[#list + 1] = ("%s/%d"):format(name, slot)
@@ -151,34 +151,34 @@ return function(native, errors)
     return list
   end
 
-  function names.number(what, value)
+  function lookup.number(what, value)
     if type(value) ~= "number" or value ~= value or value - value ~= 0 then
-      native.fail("BAD_ARGUMENT", ("%s: %s (expected a finite number)"):format(what, names.quote(value)))
+      native.fail("BAD_ARGUMENT", ("%s: %s (expected a finite number)"):format(what, lookup.quote(value)))
     end
     return value
   end
 
-  function names.table(what, value)
+  function lookup.table(what, value)
     if type(value) ~= "table" then
-      native.fail("BAD_ARGUMENT", ("%s: %s (expected a table)"):format(what, names.quote(value)))
+      native.fail("BAD_ARGUMENT", ("%s: %s (expected a table)"):format(what, lookup.quote(value)))
     end
     return value
   end
 
   ---------------------------------------------------------------------------------------- a command's text
 
-  function names.number_text(value)
+  function lookup.number_text(value)
     return math.type(value) == "float" and value == value and ("%.10g"):format(value) or tostring(value)
   end
 
   -- The command as the record has it: its word and its arguments.
-  function names.command(word, ...)
+  function lookup.command(word, ...)
     local text = { word }
     for _, value in ipairs({ ... }) do
-      text[#text + 1] = value ~= "" and names.number_text(value) or nil
+      text[#text + 1] = value ~= "" and lookup.number_text(value) or nil
     end
     return table.concat(text, " ")
   end
 
-  return names
+  return lookup
 end

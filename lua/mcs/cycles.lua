@@ -3,16 +3,16 @@
 -- Kept, for a script may set globals of these names.
 local type = type
 
-return function(native, names)
-  local figures = {}
+return function(native, lookup)
+  local cycles = {}
 
   -- cycle() or cycle "name"; it lasts until the next one.
-  function figures.cycle(name)
+  function cycles.cycle(name)
     if name ~= nil and type(name) ~= "string" then
-      native.fail("BAD_ARGUMENT", ("cycle: %s (expected a name, or nothing)"):format(names.quote(name)))
+      native.fail("BAD_ARGUMENT", ("cycle: %s (expected a name, or nothing)"):format(lookup.quote(name)))
     end
     native.cycle(name or "")
   end
 
-  return figures
+  return cycles
 end

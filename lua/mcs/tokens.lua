@@ -4,7 +4,7 @@
 -- name=value is an option; its value may be quoted, too.
 
 return function(native)
-  local words = {}
+  local tokens = {}
 
   -- The longest line, in bytes.
   local LONGEST = 1000
@@ -14,7 +14,7 @@ return function(native)
   end
 
   -- Refuses what is no line of text before anything looks at it.
-  function words.check(line)
+  function tokens.check(line)
     if #line > LONGEST then
       refuse("the line is longer than %d bytes", LONGEST)
     end
@@ -65,7 +65,7 @@ return function(native)
   end
 
   -- A list of { text = , quoted = , name = the option's name or nil, raw = as typed }.
-  function words.split(line)
+  function tokens.split(line)
     local list, at = {}, line:find("[^ ]")
     while at do
       local word, from = {}, at
@@ -84,7 +84,7 @@ return function(native)
   end
 
   -- A decimal number, as people write them: no hexadecimal, no inf, no nan.
-  function words.number(what, word)
+  function tokens.number(what, word)
     local mantissa = word.text:gsub("[eE][+-]?%d+$", "")
     local plain = mantissa:find("^[+-]?%d+%.?%d*$") or mantissa:find("^[+-]?%.%d+$")
     local value = plain and not word.quoted and tonumber(word.text)
@@ -95,7 +95,7 @@ return function(native)
   end
 
   -- Of `known` names the very one, else the one that differs in case alone; else the text as it is.
-  function words.match(text, known)
+  function tokens.match(text, known)
     local found
     for _, name in ipairs(known) do
       if name == text then
@@ -111,7 +111,7 @@ return function(native)
   ------------------------------------------------------------------------------------------------- writing
 
   -- The shortest decimals that read back as the same double.
-  function words.exact(value)
+  function tokens.exact(value)
     if math.type(value) == "integer" then
       return ("%d"):format(value)
     end
@@ -125,7 +125,7 @@ return function(native)
   end
 
   -- A name as it can be typed. None is nobody's name without quotes.
-  function words.spell(name)
+  function tokens.spell(name)
     if name == nil then
       return "none"
     end
@@ -135,15 +135,15 @@ return function(native)
     return '"' .. name:gsub('["\\]', "\\%0") .. '"'
   end
 
-  -- words.pairs { { name, value }, ... }: name=value name=value
-  function words.pairs(list)
+  -- tokens.pairs { { name, value }, ... }: name=value name=value
+  function tokens.pairs(list)
     local text = {}
     for _, pair in ipairs(list) do
       local value = pair[2]
-      text[#text + 1] = pair[1] .. "=" .. (type(value) == "number" and words.exact(value) or words.spell(value))
+      text[#text + 1] = pair[1] .. "=" .. (type(value) == "number" and tokens.exact(value) or tokens.spell(value))
     end
     return table.concat(text, " ")
   end
 
-  return words
+  return tokens
 end

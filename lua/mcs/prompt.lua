@@ -1,18 +1,18 @@
 -- Executes one operator's line by the same words that scripts use, and answers it in one line: OK and values, or
 -- ERROR, a number of the catalogue, its name and the reason. A line is only ever read, never run as Lua.
 
-return function(native, vocabulary, words, names)
+return function(native, prompt_commands, tokens, lookup)
   local function refuse(text, ...)
     native.fail("BAD_ARGUMENT", text:format(...))
   end
 
   -- A word as its kind wants it. A name that is not known passes: the command refuses it by its own number.
   local function convert(what, kind, word)
-    local known = vocabulary.kinds[kind]
+    local known = prompt_commands.kinds[kind]
     if not known then
-      return words.number(what, word)
+      return tokens.number(what, word)
     end
-    local text = words.match(word.text, known())
+    local text = tokens.match(word.text, known())
     if kind == "switch" and (text == "true" or text == "false") then
       return text == "true"
     end
@@ -22,7 +22,7 @@ return function(native, vocabulary, words, names)
   local function take_option(name, command, options, word)
     local kind = command.options and command.options[word.name]
     if not kind then
-      local expected = command.options and ("expected " .. vocabulary.usage(name, true)) or name .. " takes no options"
+      local expected = command.options and ("expected " .. prompt_commands.usage(name, true)) or name .. " takes no options"
       refuse("%s: no such option (%s)", word.raw, expected)
     end
     if options[word.name] ~= nil then
@@ -35,7 +35,7 @@ return function(native, vocabulary, words, names)
     local place = #arguments + 1
     local kind = command.takes[place] or command.repeated and command.takes[#command.takes]
     if not kind then
-      refuse("%s: one too many (expected %s)", word.raw, vocabulary.usage(name))
+      refuse("%s: one too many (expected %s)", word.raw, prompt_commands.usage(name))
     end
     arguments[place] = convert(kind, kind, word)
   end
@@ -51,19 +51,19 @@ return function(native, vocabulary, words, names)
     end
     local needed = #command.takes - (command.optional and 1 or 0)
     if #arguments < needed or command.needs_option and next(options) == nil then
-      refuse("too few words (expected %s)", vocabulary.usage(name))
+      refuse("too few words (expected %s)", prompt_commands.usage(name))
     end
     return arguments, options
   end
 
   local function perform(line)
-    words.check(line)
-    local list = words.split(line)
+    tokens.check(line)
+    local list = tokens.split(line)
     if not list[1] then
       native.fail("NO_SUCH_COMMAND", "an empty line (HELP lists them)")
     end
     local name = list[1].raw:upper()
-    local command = vocabulary.commands[name]
+    local command = prompt_commands.commands[name]
     if not command then
       native.fail("NO_SUCH_COMMAND", list[1].raw .. " (HELP lists them)")
     end
@@ -88,7 +88,7 @@ return function(native, vocabulary, words, names)
     if type(result) == "table" and math.type(result.number) == "integer" then
       return result.number, answer("ERROR", result.text:gsub("^error ", ""), complaints)
     end
-    local bad = names.errors.BAD_ARGUMENT
+    local bad = lookup.errors.BAD_ARGUMENT
     return bad.number, answer("ERROR", ("%d BAD_ARGUMENT: %s"):format(bad.number, tostring(result)), complaints)
   end
 end
