@@ -48,7 +48,8 @@
 #define WH_GAP_TIGHT 5e-7
 /* The greatest distance of a pose from base's origin. */
 #define WH_GAP_FARTHEST 1e6
-/* What is taken off each shape to prove a HIT at all. 2 * sqrt(3) of it is still less than WH_GAP_TOUCH. */
+/* The thickness that is taken off each shape to prove a HIT at all. 2 * sqrt(3) of it is still less than
+ * WH_GAP_TOUCH. */
 #define WH_GAP_CORE 0.28e-3
 
 typedef enum { WH_GAP_CLEAR, WH_GAP_TOUCHING, WH_GAP_HIT, WH_GAP_UNDECIDED } wh_gap_state_t;

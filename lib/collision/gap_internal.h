@@ -12,7 +12,7 @@ typedef struct {
     wh_vec3_t shift;
 } wh_gap_pair_t;
 
-/* What is known of a pair: lower <= signed gap <= upper, each with what proves it. */
+/* The bounds of a pair, lower <= signed gap <= upper, each with what proves it. */
 typedef struct {
     wh_real_t lower, upper;
     wh_vec3_t axis; /* unit: lower = wh_gap_along it */

@@ -22,7 +22,7 @@ typedef struct {
     wh_real_t turn;        /* about its origin, rad; an upper bound */
 } wh_body_t;
 
-/* What is known of a pair: after the last slice the gap was at least `slack`, and `axis` (zero: none yet)
+/* A pair and its state: after the last slice the gap was at least `slack`, and `axis` (zero: none yet)
  * separated them. */
 typedef struct {
     int32_t other; /* an item of the tree, or a mover */

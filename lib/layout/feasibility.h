@@ -1,4 +1,4 @@
-/* What is wrong with a cell before anything moves: the judgement of `waferhand layout`.
+/* Finds what is wrong with a cell before anything moves: the judgement of `waferhand layout`.
  *
  * The robot stands at home; the wafers lie where the layout puts them. Lengths in mm.
  */

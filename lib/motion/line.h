@@ -45,8 +45,8 @@ typedef struct {
     wh_real_t acceleration; /* along it, mm/s^2 */
 } wh_line_caps_t;
 
-/* The same over `travel` (base, mm) with two caps. They must not be negative nor, unless 0, so small that no
- * profile exists. wh_line_plan is this without a cap of acceleration, bit for bit. */
+/* Plans a line over `travel` (base, mm) with two caps. They must not be negative nor, unless 0, so small that
+ * no profile exists. wh_line_plan is this without a cap of acceleration, bit for bit. */
 wh_status_t wh_line_plan_capped(wh_line_t *line, const wh_robot_t *robot,
                                 const wh_real_t from_q[WH_ROBOT_AXES], const wh_vec3_t *travel,
                                 const wh_line_caps_t *caps);

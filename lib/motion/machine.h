@@ -64,9 +64,10 @@ wh_status_t wh_machine_check_travel(const wh_machine_t *machine, const wh_real_t
  * gripper. */
 void wh_machine_grippers(const wh_machine_t *machine, const wh_real_t axes[], wh_pose_t poses[]);
 
-/* The same, bit for bit, for one slice after another. Writes base_from_gripper of the grippers that have
- * moved since the last call with this cache; the others must still have what that call left. `machine` must
- * be the same in all calls. Cost: that of what has moved; a comparison of all axes if nothing has. */
+/* wh_machine_grippers, bit for bit, for one slice after another. Writes base_from_gripper of the grippers
+ * that have moved since the last call with this cache; the others must still have what that call left.
+ * `machine` must be the same in all calls. Cost: that of what has moved; a comparison of all axes if nothing
+ * has. */
 void wh_machine_update(const wh_machine_t *machine, const wh_real_t axes[], wh_machine_cache_t *cache,
                        wh_gripper_input_t grippers[]);
 

@@ -30,7 +30,7 @@ void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file);
 void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *expected, ...)
     __attribute__((noreturn, format(printf, 3, 4)));
 
-/* The same for a value that is a text, which need not be on the stack. */
+/* wh_reader_fail for a value that is a text, which need not be on the stack. */
 void wh_reader_refuse(const wh_reader_t *reader, const char *field, const char *text, const char *expected,
                       ...) __attribute__((noreturn, format(printf, 4, 5)));
 
@@ -68,7 +68,7 @@ bool wh_reader_has(const wh_reader_t *reader, const char *field);
 wh_real_t wh_reader_number(wh_reader_t *reader, const char *field, wh_real_t fallback, wh_real_t min,
                            wh_real_t max);
 
-/* The same for a whole number. A fallback below min means that the field is required. */
+/* wh_reader_number for a whole number. A fallback below min means that the field is required. */
 int32_t wh_reader_whole(wh_reader_t *reader, const char *field, int32_t fallback, int32_t min, int32_t max);
 
 bool wh_reader_boolean(wh_reader_t *reader, const char *field, bool fallback);

@@ -83,13 +83,13 @@ wh_sandbox_t *wh_sandbox_of(lua_State *L);
  * that begins with '#'. */
 bool wh_sandbox_run(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result);
 
-/* The same, but leaves the first returned value (or nil) on L's stack. On failure L's stack is as it was. L
- * is the sandbox's state or, in a C function that Lua called, its state. If a limit is exhausted inside, the
- * calling script ends too. */
+/* Runs a file as wh_sandbox_run does, but leaves the first returned value (or nil) on L's stack. On failure
+ * L's stack is as it was. L is the sandbox's state or, in a C function that Lua called, its state. If a limit
+ * is exhausted inside, the calling script ends too. */
 bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *result);
 
-/* The same for a text in memory: the library's own Lua sources, or a line from the prompt. Messages show
- * `name` in place of a path. The text needs no final zero and is not kept. */
+/* wh_sandbox_evaluate for a text in memory: the library's own Lua sources, or a line from the prompt.
+ * Messages show `name` in place of a path. The text needs no final zero and is not kept. */
 bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, size_t size,
                               wh_sandbox_result_t *result);
 

@@ -97,7 +97,7 @@ bool wh_fault_is_of_wafer(wh_fault_kind_t kind);
  * with these counts cannot have. */
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count);
 
-/* The same for whole slots, such as those of a received state. */
+/* wh_fault_validate for whole slots, such as those of a received state. */
 wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, size_t wafer_count);
 
 /* Frees all slots. */
