@@ -17,7 +17,6 @@ typedef struct {
     wh_vec3_t low, high;
     double width, height, margin, letter;
     wh_outline_t outline;
-    bool failed;
 } drawing_t;
 
 /* --------------------------------------------------------------------------------------------------- size */
@@ -135,10 +134,7 @@ static bool is_found(const wh_feasibility_t *check, size_t part) {
 static void draw_part(drawing_t *d, wh_projection_t view, size_t part, size_t ink) {
     const wh_layout_t *layout = d->check->layout;
     const wh_pose_t pose = wh_feasibility_place(d->check, (int32_t)part);
-    if (!wh_outline_draw(&d->outline, view, convex_of(layout, part), &pose)) {
-        d->failed = true;
-        return;
-    }
+    wh_outline_draw(&d->outline, view, convex_of(layout, part), &pose);
     fprintf(d->out, "<polygon class=\"%s\" points=\"", is_found(d->check, part) ? "found" : inks[ink].class);
     for (size_t i = 0; i < d->outline.count; ++i) {
         fprintf(d->out, "%s%.1f,%.1f", i > 0 ? " " : "", d->outline.spots[i].x, d->outline.spots[i].y);
@@ -302,5 +298,5 @@ int wh_layout_print_svg(const wh_feasibility_t *check, FILE *out) {
     draw_scale(&d);
     fputs("</svg>\n", out);
     wh_outline_free(&d.outline);
-    return d.failed || fflush(out) != 0 || ferror(out) ? -1 : 0;
+    return fflush(out) != 0 || ferror(out) ? -1 : 0;
 }

@@ -7,6 +7,7 @@
 
 #include "../collision/gap.h"
 #include "../math/trig.h"
+#include "../text/array.h"
 
 /* How many of the wafers in no slot are named; the others are counted. */
 #define NAMED_STRAYS 20
@@ -18,21 +19,12 @@ const char *wh_finding_name(wh_finding_kind_t kind) {
     return names[kind];
 }
 
-/* Adds a finding without parts. Null if out of memory; wh_feasibility then returns false. */
+/* Adds a finding without parts. */
 __attribute__((format(printf, 4, 5))) static wh_finding_t *add_finding(wh_feasibility_t *check,
                                                                        wh_finding_kind_t kind,
                                                                        int32_t station, const char *format,
                                                                        ...) {
-    if (check->count == check->capacity) {
-        const size_t capacity = 2 * check->capacity + 16;
-        wh_finding_t *grown = realloc(check->findings, capacity * sizeof *grown);
-        if (!grown) {
-            check->out_of_memory = true;
-            return NULL;
-        }
-        check->findings = grown;
-        check->capacity = capacity;
-    }
+    check->findings = wh_array_grow(check->findings, check->count, &check->capacity, sizeof *check->findings);
     wh_finding_t *finding = &check->findings[check->count++];
     finding->kind = kind;
     finding->station = station;
@@ -78,45 +70,32 @@ wh_pose_t wh_feasibility_place(const wh_feasibility_t *check, int32_t part) {
 
 /* ------------------------------------------------------------------------------------------------ contact */
 
-static void look_at_rest(wh_feasibility_t *check, const wh_grasp_t *table, void *memory) {
-    const wh_layout_t *layout = check->layout;
-    const wh_world_input_t input = {table->slice, table->storage.wafers, table->storage.grippers,
-                                    check->base_from_effector};
-    int32_t parts[2];
-    wh_world_t *world = wh_world_init(&layout->world, &input, memory, wh_world_bytes(&layout->world));
-    if (!world || !wh_world_check_rest(world, &input, parts)) {
-        return;
-    }
-    wh_finding_t *finding =
-        add_finding(check, WH_FINDING_CONTACT, WH_NONE, "%s and %s touch before anything moves",
-                    wh_layout_part_name(layout, parts[0]), wh_layout_part_name(layout, parts[1]));
-    if (finding) {
-        memcpy(finding->parts, parts, sizeof parts);
-    }
-}
-
 /* Checks all that rests against the robot at home, as at the start of a run. */
 static void check_contact(wh_feasibility_t *check) {
     const wh_layout_t *layout = check->layout;
+    const size_t bytes = wh_world_bytes(&layout->world);
+    void *memory = wh_array_new(1, bytes);
+    wh_wafer_t *wafers = wh_array_new(layout->wafer_count, sizeof *wafers);
     wh_gripper_t grippers[WH_GRIPPERS];
-    wh_grasp_t table;
-    const size_t bytes = layout->wafer_count * sizeof(wh_wafer_t);
-    const wh_grasp_storage_t storage = {.wafers = malloc(bytes + 1),
-                                        .wafer_count = layout->wafer_count,
-                                        .grippers = grippers,
-                                        .gripper_count = layout->machine.gripper_count};
-    void *memory = malloc(wh_world_bytes(&layout->world));
-    check->out_of_memory = check->out_of_memory || !storage.wafers || !memory;
-    if (storage.wafers && memory) {
-        memcpy(storage.wafers, layout->start, bytes);
-        if (wh_grasp_init(&table, &layout->grasp, &storage) == WH_OK) {
-            for (size_t g = 0; g < storage.gripper_count; ++g) {
-                grippers[g].base_from_gripper = check->base_from_grippers[g];
-            }
-            look_at_rest(check, &table, memory);
-        }
+    int32_t parts[2];
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        wafers[w].base_from_wafer = layout->start[w].base_from_wafer;
+        wafers[w].holder = WH_NONE;
     }
-    free(storage.wafers);
+    memset(grippers, 0, sizeof grippers);
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        grippers[g].base_from_gripper = check->base_from_grippers[g];
+        grippers[g].wafer = WH_NONE;
+        grippers[g].valve = WH_VALVE_CLOSED;
+    }
+    const wh_world_input_t input = {0, wafers, grippers, check->base_from_effector};
+    if (wh_world_check_rest(wh_world_init(&layout->world, &input, memory, bytes), &input, parts)) {
+        wh_finding_t *finding =
+            add_finding(check, WH_FINDING_CONTACT, WH_NONE, "%s and %s touch before anything moves",
+                        wh_layout_part_name(layout, parts[0]), wh_layout_part_name(layout, parts[1]));
+        memcpy(finding->parts, parts, sizeof parts);
+    }
+    free(wafers);
     free(memory);
 }
 
@@ -326,14 +305,11 @@ static void check_wafers(wh_feasibility_t *check) {
 
 /* ---------------------------------------------------------------------------------------------------- all */
 
-bool wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout) {
+void wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout) {
     memset(check, 0, sizeof *check);
     check->layout = layout;
     check->has_parts = layout->part_names != NULL;
-    check->entries = calloc(layout->station_count + 1, sizeof *check->entries);
-    if (!check->entries) {
-        return false;
-    }
+    check->entries = wh_array_new(layout->station_count, sizeof *check->entries);
     go_home(check);
     if (check->has_parts) {
         check_contact(check);
@@ -345,7 +321,6 @@ bool wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout) {
         }
     }
     check_wafers(check);
-    return !check->out_of_memory;
 }
 
 void wh_feasibility_free(wh_feasibility_t *check) {

@@ -41,12 +41,11 @@ typedef struct {
     wh_entry_t *entries; /* by station */
     wh_finding_t *findings;
     size_t count, capacity;
-    bool out_of_memory;
 } wh_feasibility_t;
 
-/* Checks all of it. Free the result in any case; false if out of memory. Cost: n log n in parts and wafers,
- * and wafers times stations. */
-bool wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout);
+/* Checks all of it. The caller frees the result. The program ends if out of memory. Cost: n log n in parts
+ * and wafers, and wafers times stations. */
+void wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout);
 void wh_feasibility_free(wh_feasibility_t *check);
 
 /* The kind in one word, such as "contact": a constant. */

@@ -23,7 +23,7 @@ wh_spot_t wh_outline_spot(wh_projection_t view, wh_vec3_t r);
 
 /* The convex hull of the part as seen. Circles have 48 corners. False if out of memory. Cost: n log n in the
  * points of a mesh. */
-bool wh_outline_draw(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
+void wh_outline_draw(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
                      const wh_pose_t *base_from_shape);
 
 void wh_outline_free(wh_outline_t *outline);

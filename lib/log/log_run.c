@@ -6,6 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "../text/array.h"
+
 #include "log_internal.h"
 
 /* ---------------------------------------------------------------------------------------------------- file */
@@ -133,8 +135,8 @@ static void note_boundary(wh_log_run_t *run) {
     if (!wh_link_decode_mcs(run->log.data, run->log.size, &message)) {
         return;
     }
-    run->boundaries = wh_record_grow(run->boundaries, run->boundary_count, &run->boundary_capacity,
-                                     sizeof *run->boundaries);
+    run->boundaries =
+        wh_array_grow(run->boundaries, run->boundary_count, &run->boundary_capacity, sizeof *run->boundaries);
     const wh_log_boundary_t boundary = {message.run, message.seq};
     if (message.phase != WH_LINK_PHASE_GOES_ON) {
         run->boundaries[run->boundary_count++] = boundary;

@@ -4,15 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../record/record.h"
-
-static void *enlarge(void *memory, size_t bytes) {
-    void *grown = realloc(memory, bytes);
-    if (!grown) {
-        abort();
-    }
-    return grown;
-}
+#include "../text/array.h"
 
 /* ------------------------------------------------------------------------------------------------------- slices */
 
@@ -22,18 +14,20 @@ static bool make_room(wh_decisions_t *decisions, const wh_command_t *command) {
     if (decisions->slice_count < decisions->slice_capacity) {
         return true;
     }
-    const int64_t wanted = decisions->slice_capacity > 0 ? 2 * decisions->slice_capacity : 4096;
-    if ((size_t)wanted > WH_TAPE_BYTES / bytes) {
+    size_t poses = (size_t)decisions->slice_capacity;
+    size_t axes = poses;
+    const size_t wanted = poses > 0 ? 2 * poses : 4096;
+    if (wanted > WH_TAPE_BYTES / bytes) {
         decisions->unfit = "the run has too many slices";
         return false;
     }
     decisions->gripper_count = command->gripper_count;
     decisions->axis_count = command->axis_count;
-    decisions->poses =
-        enlarge(decisions->poses, (size_t)wanted * decisions->gripper_count * sizeof *decisions->poses);
+    decisions->poses = wh_array_reserve(decisions->poses, wanted, &poses,
+                                        decisions->gripper_count * sizeof *decisions->poses);
     decisions->axes =
-        enlarge(decisions->axes, (size_t)wanted * decisions->axis_count * sizeof *decisions->axes);
-    decisions->slice_capacity = wanted;
+        wh_array_reserve(decisions->axes, wanted, &axes, decisions->axis_count * sizeof *decisions->axes);
+    decisions->slice_capacity = (int64_t)wanted;
     return true;
 }
 
@@ -41,8 +35,8 @@ static void keep_valve(wh_decisions_t *decisions, size_t g, int64_t slice, int32
     const size_t count = decisions->valve_count[g];
     const int32_t before = count > 0 ? decisions->valves[g][count - 1].valve : WH_VALVE_CLOSED;
     if (valve != before) {
-        decisions->valves[g] = wh_record_grow(decisions->valves[g], count, &decisions->valve_capacity[g],
-                                              sizeof *decisions->valves[g]);
+        decisions->valves[g] = wh_array_grow(decisions->valves[g], count, &decisions->valve_capacity[g],
+                                             sizeof *decisions->valves[g]);
         decisions->valves[g][count] = (wh_decisions_valve_t){slice, valve};
         ++decisions->valve_count[g];
     }
@@ -71,8 +65,8 @@ void wh_decisions_slice(wh_decisions_t *decisions, const wh_command_t *command) 
 /* ------------------------------------------------------------------------------------------------------ readings */
 
 static void add_entry(wh_decisions_t *decisions, const wh_decisions_entry_t *entry) {
-    decisions->entries = wh_record_grow(decisions->entries, decisions->entry_count,
-                                        &decisions->entry_capacity, sizeof *decisions->entries);
+    decisions->entries = wh_array_grow(decisions->entries, decisions->entry_count, &decisions->entry_capacity,
+                                       sizeof *decisions->entries);
     decisions->entries[decisions->entry_count] = *entry;
     decisions->entries[decisions->entry_count].slice = decisions->slice_count;
     ++decisions->entry_count;
@@ -105,8 +99,8 @@ void wh_decisions_claim(wh_decisions_t *decisions, const wh_decisions_claim_t *c
     if (decisions) {
         const wh_decisions_entry_t entry = {
             .kind = WH_TAPE_CLAIM, .index = (int32_t)decisions->claim_count, .answer = verdict};
-        decisions->claims = wh_record_grow(decisions->claims, decisions->claim_count,
-                                           &decisions->claim_capacity, sizeof *decisions->claims);
+        decisions->claims = wh_array_grow(decisions->claims, decisions->claim_count,
+                                          &decisions->claim_capacity, sizeof *decisions->claims);
         decisions->claims[decisions->claim_count++] = *claim;
         add_entry(decisions, &entry);
     }

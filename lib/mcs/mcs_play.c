@@ -1,7 +1,8 @@
 /* The MCS host's hands: segments, played slice by slice. */
 #include <math.h>
-#include <time.h>
 
+#include "../text/array.h"
+#include "../text/clock.h"
 #include "mcs_internal.h"
 
 /* The budget is charged for slices in portions, so that a long wait can be ended within one. A slice costs as much time
@@ -35,12 +36,6 @@ static wh_status_t exchange(wh_mcs_t *mcs) {
     return status;
 }
 
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static bool stop_has_come(const wh_mcs_t *mcs) {
     return mcs->track.slice >= mcs->stop_slice;
 }
@@ -49,7 +44,7 @@ static bool stop_has_come(const wh_mcs_t *mcs) {
  * wall-clock rate a portion may take seconds. */
 static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
     wh_track_state_t state = WH_TRACK_MOVING;
-    const double begin = seconds_now();
+    const double begin = wh_clock_seconds();
     for (int i = 0; i < SLICES_PER_CHARGE && *status == WH_OK && state == WH_TRACK_MOVING; ++i) {
         state = wh_track_next(&mcs->track, mcs->state.sensors);
         if (state == WH_TRACK_MOVING) {
@@ -61,7 +56,7 @@ static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
             break;
         }
     }
-    mcs->record->wall_s += seconds_now() - begin;
+    mcs->record->wall_s += wh_clock_seconds() - begin;
     return state;
 }
 
@@ -116,7 +111,7 @@ static int32_t find_lost(const wh_mcs_t *mcs, uint32_t watched) {
 
 static void keep_segment(wh_mcs_t *mcs, const wh_segment_t *segment) {
     mcs->segments =
-        wh_record_grow(mcs->segments, mcs->segment_count, &mcs->segment_capacity, sizeof *mcs->segments);
+        wh_array_grow(mcs->segments, mcs->segment_count, &mcs->segment_capacity, sizeof *mcs->segments);
     mcs->segments[mcs->segment_count++] = *segment;
 }
 

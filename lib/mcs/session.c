@@ -5,6 +5,8 @@
 
 #include <lauxlib.h>
 
+#include "../text/utf8.h"
+
 /* The record forgets what it holds once it has so many commands. */
 #define REMEMBERED_COMMANDS 10000
 
@@ -93,11 +95,10 @@ static void write_answer(char *answer, size_t size, const char *text) {
     size_t cut = 0; /* the last place at which an ellipsis would fit */
     while (*from) {
         char piece[5] = {(char)*from, '\0'};
-        const bool starts_character = (*from & 0xC0U) != 0x80;
         if (control_bytes(from) > 0 || (from > (const unsigned char *)text && control_bytes(from - 1) == 2)) {
             snprintf(piece, sizeof piece, "\\x%02X", *from);
         }
-        cut = starts_character && length + sizeof ellipsis <= size ? length : cut;
+        cut = !wh_utf8_goes_on((char)*from) && length + sizeof ellipsis <= size ? length : cut;
         if (length + strlen(piece) >= size) {
             snprintf(answer + cut, size - cut, "%s", ellipsis);
             return;

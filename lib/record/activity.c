@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "record.h"
+#include "../text/array.h"
 
 /* ---------------------------------------------------------------------------------------------------- tasks */
 
@@ -46,8 +46,8 @@ wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment,
 
 static void add_interval(wh_activity_t *activity, size_t resource, int64_t end) {
     const size_t beside_robot = resource > 0 ? resource - 1 : 0;
-    activity->intervals = wh_record_grow(activity->intervals, activity->interval_count,
-                                         &activity->interval_capacity, sizeof *activity->intervals);
+    activity->intervals = wh_array_grow(activity->intervals, activity->interval_count,
+                                        &activity->interval_capacity, sizeof *activity->intervals);
     wh_busy_span_t *added = &activity->intervals[activity->interval_count++];
     added->who = resource == 0 ? WH_BUSY_ROBOT : (wh_busy_t)(WH_BUSY_CHUCK + beside_robot % 3);
     added->gripper = resource == 0 ? WH_NONE : (int32_t)(beside_robot / 3);

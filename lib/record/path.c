@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "record.h"
+#include "../text/array.h"
 
 /* So many equal samples are a rest. */
 #define REST 32
@@ -96,7 +96,7 @@ static double slope_at(const wh_path_t *curve, size_t i) {
 /* --------------------------------------------------------------------------------------------------- points */
 
 static void add_point(wh_path_t *curve, const wh_sample_t *sample, double slope, bool exact) {
-    curve->points = wh_record_grow(curve->points, curve->count, &curve->capacity, sizeof *curve->points);
+    curve->points = wh_array_grow(curve->points, curve->count, &curve->capacity, sizeof *curve->points);
     const wh_path_point_t point = {sample->slice, sample->value, slope, exact, false};
     curve->points[curve->count++] = point;
     curve->exact_count += exact ? 1 : 0;
@@ -240,7 +240,7 @@ static void come_to_rest(wh_path_t *curve) {
 static void push(wh_path_t *curve, int64_t slice, double value) {
     const size_t count = curve->sample_count;
     curve->equal = count > 0 && is_same(curve->samples[count - 1].value, value) ? curve->equal + 1 : 1;
-    curve->samples = wh_record_grow(curve->samples, count, &curve->sample_capacity, sizeof *curve->samples);
+    curve->samples = wh_array_grow(curve->samples, count, &curve->sample_capacity, sizeof *curve->samples);
     const wh_sample_t sample = {slice, value};
     curve->samples[curve->sample_count++] = sample;
 }
@@ -371,7 +371,7 @@ void wh_path_insert(wh_path_t *curve, int64_t slice, double value) {
     }
     wh_path_point_t made = {slice, value, 0, true, false};
     (void)wh_path_read(curve, slice, &made.slope);
-    curve->points = wh_record_grow(curve->points, curve->count, &curve->capacity, sizeof *curve->points);
+    curve->points = wh_array_grow(curve->points, curve->count, &curve->capacity, sizeof *curve->points);
     memmove(&curve->points[at + 2], &curve->points[at + 1], (curve->count - at - 1) * sizeof made);
     curve->points[at + 1] = made;
     ++curve->count;

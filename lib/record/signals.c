@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../text/array.h"
 #include "quaternion.h"
-#include "record.h"
 
 /* So many wafers are compared in each slice; more, only in slices with events. */
 #define WATCHED_WAFERS 64
@@ -42,7 +42,7 @@ static void open_tracks(wh_signals_t *signals) {
 static void add_stay(wh_signals_t *signals, int64_t slice, int32_t wafer, int32_t holder,
                      const wh_pose_t *pose) {
     signals->stays =
-        wh_record_grow(signals->stays, signals->stay_count, &signals->stay_capacity, sizeof *signals->stays);
+        wh_array_grow(signals->stays, signals->stay_count, &signals->stay_capacity, sizeof *signals->stays);
     const wh_stay_t stay = {slice, wafer, holder, *pose};
     signals->stay_of[wafer] = (int32_t)signals->stay_count;
     signals->stays[signals->stay_count++] = stay;
@@ -135,7 +135,7 @@ void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value) {
     if (steps->count > 0 && steps->steps[steps->count - 1].value == value) {
         return;
     }
-    steps->steps = wh_record_grow(steps->steps, steps->count, &steps->capacity, sizeof *steps->steps);
+    steps->steps = wh_array_grow(steps->steps, steps->count, &steps->capacity, sizeof *steps->steps);
     steps->steps[steps->count].slice = slice;
     steps->steps[steps->count++].value = value;
 }
@@ -217,8 +217,8 @@ static void add_marks(wh_signals_t *signals, const wh_state_t *state) {
     for (size_t i = 0; i < state->event_count; ++i) {
         const wh_event_t *event = &state->events[i];
         if (is_marked(event->kind)) {
-            signals->marks = wh_record_grow(signals->marks, signals->mark_count, &signals->mark_capacity,
-                                            sizeof *signals->marks);
+            signals->marks = wh_array_grow(signals->marks, signals->mark_count, &signals->mark_capacity,
+                                           sizeof *signals->marks);
             wh_mark_t *mark = &signals->marks[signals->mark_count++];
             memset(mark, 0, sizeof *mark);
             mark->event = *event;

@@ -1,7 +1,7 @@
 /* Each gripper against its nearest wafer, over time: the paper's Fig. 9. */
 #include <string.h>
 
-#include "record.h"
+#include "../text/array.h"
 #include "signals.h"
 
 /* With more wafers than these, those near a gripper are looked for anew when it has gone so far, mm. */
@@ -27,8 +27,8 @@ static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, 
     vicinity->count = 0;
     for (size_t w = 0; w < state->wafer_count; ++w) {
         if (few || square_of(&state->wafers[w].base_from_wafer.r, at) < radius * radius) {
-            vicinity->wafers = wh_record_grow(vicinity->wafers, vicinity->count, &vicinity->capacity,
-                                              sizeof *vicinity->wafers);
+            vicinity->wafers = wh_array_grow(vicinity->wafers, vicinity->count, &vicinity->capacity,
+                                             sizeof *vicinity->wafers);
             vicinity->wafers[vicinity->count++] = (int32_t)w;
         }
     }

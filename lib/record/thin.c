@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "../math/vector.h"
+#include "../text/array.h"
 #include "quaternion.h"
-#include "record.h"
 
 /* Two slerps whose ends are apart by no more than d are apart between them by up to d / cos(angle / 4), 1.24 d for
  * WH_THIN_TURN: thinned again with this share of what the tolerance grew by, the sum stays below the tolerance. */
@@ -46,7 +46,7 @@ void wh_thin_close(wh_thin_t *thin) {
 /* --------------------------------------------------------------------------------------------------- points */
 
 static void keep(wh_thin_t *thin, bool exact) {
-    thin->points = wh_record_grow(thin->points, thin->count, &thin->capacity, sizeof *thin->points);
+    thin->points = wh_array_grow(thin->points, thin->count, &thin->capacity, sizeof *thin->points);
     thin->anchor = thin->last;
     thin->anchor.exact = exact;
     thin->points[thin->count++] = thin->anchor;

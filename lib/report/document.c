@@ -5,7 +5,6 @@
 
 #include "../math/config.h"
 #include "../record/quaternion.h"
-#include "../text/utf8.h"
 #include "../view/scene.h"
 #include "document_internal.h"
 

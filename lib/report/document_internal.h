@@ -2,7 +2,7 @@
 #ifndef WH_REPORT_DOCUMENT_INTERNAL_H
 #define WH_REPORT_DOCUMENT_INTERNAL_H
 
-#include "../text/json_text.h"
+#include "../text/json.h"
 #include "document.h"
 
 double wh_document_seconds(const wh_signals_t *signals, int64_t slice);

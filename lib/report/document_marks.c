@@ -1,7 +1,6 @@
 /* The document's marks: events that have a place in the cell. */
 #include <string.h>
 
-#include "../text/utf8.h"
 #include "document_internal.h"
 
 static void append(char *text, size_t size, const char *before, const char *part) {

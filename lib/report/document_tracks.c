@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../text/utf8.h"
 #include "document_internal.h"
 
 /* Decimals that add a hundredth of what thinning leaves, or less: of values, and of slopes, which count for up to 4 s. */

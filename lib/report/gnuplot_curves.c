@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "../text/array.h"
+
 /* Slices, in no order. */
 typedef struct {
     int64_t *slices;
@@ -10,14 +12,7 @@ typedef struct {
 } list_t;
 
 static void add(list_t *list, int64_t slice) {
-    if (list->count == list->capacity) {
-        list->capacity = list->capacity > 0 ? 2 * list->capacity : 256;
-        int64_t *grown = realloc(list->slices, list->capacity * sizeof *grown);
-        if (!grown) {
-            abort();
-        }
-        list->slices = grown;
-    }
+    list->slices = wh_array_grow(list->slices, list->count, &list->capacity, sizeof *list->slices);
     list->slices[list->count++] = slice;
 }
 

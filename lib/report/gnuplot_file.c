@@ -10,14 +10,6 @@ enum { BELOW = 38, RIGHT = 10, RIGHT_OF_LIMITS = 58, KEY_ROWS = 28, COLUMN_MM = 
 
 /* -------------------------------------------------------------------------------------------------- texts */
 
-size_t wh_plot_width(const char *text) {
-    size_t width = 0;
-    for (const char *c = text; *c; ++c) {
-        width += ((unsigned char)*c & 0xC0U) != 0x80U ? 1 : 0;
-    }
-    return width;
-}
-
 static size_t put_character(FILE *out, const char *c) {
     const size_t bytes = wh_utf8_bytes(c);
     const bool is_control = (unsigned char)*c < ' ' || *c == 127;
@@ -139,7 +131,7 @@ void wh_plot_limit_label(wh_plot_t *plot, char side, double limit, const char *u
 }
 
 void wh_plot_fitting_label(wh_plot_t *plot, double begin, double end, const char *text) {
-    fprintf(plot->script, "if (fits(%zu, %.12g, %.12g)) set label ", wh_plot_width(text), begin, end);
+    fprintf(plot->script, "if (fits(%zu, %.12g, %.12g)) set label ", wh_utf8_count(text), begin, end);
     wh_plot_put_text(plot->script, text);
     fprintf(plot->script, " at %.12g", (begin + end) / 2);
 }

@@ -58,9 +58,6 @@ void wh_plot_fitting_label(wh_plot_t *plot, double begin, double end, const char
  * what is no UTF-8 a question mark. */
 void wh_plot_put_text(FILE *out, const char *text);
 
-/* So many characters. */
-size_t wh_plot_width(const char *text);
-
 /* A block of data: what is in it, its columns; rows; a gap in the curve. Returns the index of the block that ends; a block
  * without rows is none, and has SIZE_MAX. */
 void wh_plot_block(wh_plot_t *plot, const char *of, const char *columns);

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../text/utf8.h"
+
 /* Pixels; names have room for so many letters. */
 enum { ROW = 24, MOST_LETTERS = 28, LEAST_ABOVE = 6, LEAST_PITCH = 3 };
 
@@ -27,7 +29,7 @@ double wh_lanes_height(const wh_lanes_t *lanes, size_t lane) {
 void wh_lanes_name(wh_lanes_t *lanes, const char *name, const char *what) {
     char text[WH_NAME_SIZE + 40];
     (void)snprintf(text, sizeof text, "%s%s%s", name, what[0] != '\0' ? " " : "", what);
-    const size_t letters = wh_plot_width(text);
+    const size_t letters = wh_utf8_count(text);
     lanes->letters = letters > lanes->letters ? letters : lanes->letters;
     fputs(lanes->named > 0 ? ", " : "", lanes->out);
     wh_plot_put_text(lanes->out, text);

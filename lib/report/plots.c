@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "../record/record.h"
+#include "../text/array.h"
 #include "document_internal.h"
 #include "plots_internal.h"
 
@@ -70,7 +71,7 @@ bool wh_plots_open(wh_plots_t *plots, wh_plot_t *plot, const char *name, const c
     }
     memset(plot, 0, sizeof *plot);
     choose_name(plots, plot->name, name, of);
-    plots->names = wh_record_grow(plots->names, plots->count, &plots->capacity, sizeof *plots->names);
+    plots->names = wh_array_grow(plots->names, plots->count, &plots->capacity, sizeof *plots->names);
     memcpy(plots->names[plots->count++].name, plot->name, sizeof plot->name);
     plot->data = open_file(plots, plot, "dat");
     plot->script = plot->data ? open_file(plots, plot, "gp") : NULL;
@@ -108,7 +109,7 @@ static void add_hold(wh_plot_hold_t **list, size_t *count, size_t *capacity, con
     if (last && last->wafer == hold->wafer && !(hold->begin_s > last->end_s)) {
         last->end_s = hold->end_s;
     } else {
-        *list = wh_record_grow(*list, *count, capacity, sizeof **list);
+        *list = wh_array_grow(*list, *count, capacity, sizeof **list);
         (*list)[(*count)++] = *hold;
     }
 }

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "../text/utf8.h"
 #include "sandbox_internal.h"
 
 /* ----------------------------------------------------------------------------------------------- messages */
@@ -15,20 +16,6 @@
 typedef struct {
     char text[WH_SANDBOX_MESSAGE_BYTES];
 } described_t;
-
-static void clip(char *to, size_t size, const char *from) {
-    const size_t length = strlen(from);
-    if (length < size) {
-        memcpy(to, from, length + 1);
-        return;
-    }
-    size_t kept = size - sizeof "...";
-    while (kept > 0 && ((unsigned char)from[kept] & 0xC0) == 0x80) {
-        --kept;
-    }
-    memcpy(to, from, kept);
-    memcpy(to + kept, "...", sizeof "...");
-}
 
 static int note_line(lua_State *L) {
     wh_sandbox_job_t *const job = wh_sandbox_of(L)->job;
@@ -68,14 +55,14 @@ static int describe(lua_State *L) {
         whole[i] = iscntrl((unsigned char)text[i]) ? ' ' : text[i];
     }
     whole[kept] = '\0';
-    clip(described->text, sizeof described->text, whole);
+    wh_utf8_clip(described->text, sizeof described->text, whole);
     return 0;
 }
 
 static void make_text(lua_State *L, described_t *described) {
     const wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     if (sandbox->fatal == WH_SANDBOX_OK) {
-        clip(described->text, sizeof described->text, "(error object whose __tostring failed)");
+        wh_utf8_clip(described->text, sizeof described->text, "(error object whose __tostring failed)");
         lua_pushcfunction(L, describe);
         lua_pushvalue(L, -2);
         lua_pushlightuserdata(L, described);
@@ -110,7 +97,7 @@ static void report(lua_State *L, const wh_sandbox_job_t *job, char message[WH_SA
     } else {
         snprintf(whole, sizeof whole, "%.1023s: %s", job->path, described.text);
     }
-    clip(message, WH_SANDBOX_MESSAGE_BYTES, whole);
+    wh_utf8_clip(message, WH_SANDBOX_MESSAGE_BYTES, whole);
 }
 
 /* -------------------------------------------------------------------------------------------------- files */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "../link/messages.h"
-#include "../record/record.h"
+#include "../text/array.h"
 #include "../text/utf8.h"
 #include "cell_internal.h"
 
@@ -57,7 +57,7 @@ static char *path_of(const char *folder, const char *name) {
 size_t wh_view_add_body(wh_view_cell_t *cell, const char *folder, const char *name) {
     const waferhand_viewer_link body = {.name = path_of(folder, name)};
     cell->load.link =
-        wh_record_grow(cell->load.link, (size_t)cell->load.num_links, &cell->capacity, sizeof body);
+        wh_array_grow(cell->load.link, (size_t)cell->load.num_links, &cell->capacity, sizeof body);
     cell->load.link[cell->load.num_links] = body;
     return (size_t)cell->load.num_links++;
 }
@@ -65,18 +65,11 @@ size_t wh_view_add_body(wh_view_cell_t *cell, const char *folder, const char *na
 void wh_view_add_shape(wh_view_cell_t *cell, const wh_convex_t *convex, const wh_pose_t *body_from_shape,
                        const wh_view_colour_t *colour) {
     waferhand_viewer_link *body = &cell->load.link[cell->load.num_links - 1];
-    const size_t count = (size_t)body->num_geom;
-    waferhand_viewer_geometry *shapes = body->geom;
-    /* Full when their number is a power of two; then it doubles. */
-    if ((count & (count - 1)) == 0) {
-        shapes = realloc(shapes, 2 * (count + 1) * sizeof *shapes);
-    }
-    if (!shapes) {
-        abort();
-    }
-    body->geom = shapes;
-    wh_view_geometry_make(convex, body_from_shape, colour, cell->detail >= WH_VIEW_BOXES, &shapes[count]);
-    ++body->num_geom;
+    /* The message's type has no place for a capacity: the array counts as full. */
+    size_t capacity = (size_t)body->num_geom;
+    body->geom = wh_array_grow(body->geom, capacity, &capacity, sizeof *body->geom);
+    wh_view_geometry_make(convex, body_from_shape, colour, cell->detail >= WH_VIEW_BOXES,
+                          &body->geom[body->num_geom++]);
 }
 
 static void free_body(waferhand_viewer_link *body) {

@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "../record/quaternion.h"
+#include "../text/array.h"
+#include "../text/json.h"
 #include "../text/packed.h"
-#include "../text/utf8.h"
 
 /* glTF's numbers for types and targets. */
 enum {
@@ -51,13 +52,7 @@ static json_t *list_of(const double values[], size_t count) {
 
 static size_t add_view(wh_gltf_t *gltf, const void *data, size_t size, int target) {
     const size_t padded = (size + 3) / 4 * 4;
-    if (gltf->size + padded > gltf->capacity) {
-        gltf->capacity = 2 * (gltf->capacity + padded);
-        gltf->bytes = realloc(gltf->bytes, gltf->capacity);
-        if (!gltf->bytes) {
-            abort();
-        }
-    }
+    gltf->bytes = wh_array_reserve(gltf->bytes, gltf->size + padded, &gltf->capacity, 1);
     memset(gltf->bytes + gltf->size, 0, padded);
     memcpy(gltf->bytes + gltf->size, data, size);
     json_t *view = json_pack("{s:i, s:o, s:o}", "buffer", 0, "byteOffset", index_of(gltf->size), "byteLength",

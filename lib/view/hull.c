@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "../math/trig.h"
-#include "../record/record.h"
+#include "../text/array.h"
 #include "mesh.h"
 
 #define MOST_POINTS 512
@@ -85,7 +85,7 @@ static void add_face(hull_t *hull, size_t a, size_t b, size_t c) {
         face.normal = wh_vec3_scale(-1, &face.normal);
         face.offset = -face.offset;
     }
-    hull->faces = wh_record_grow(hull->faces, hull->face_count, &hull->face_capacity, sizeof *hull->faces);
+    hull->faces = wh_array_grow(hull->faces, hull->face_count, &hull->face_capacity, sizeof *hull->faces);
     hull->faces[hull->face_count++] = face;
 }
 

@@ -3,16 +3,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../record/record.h"
+#include "../text/array.h"
 
 /* glTF has metres. */
 #define METRES 0.001
 
 static void add_key(wh_keyframes_t *motion, double seconds, const wh_vec3_t *r, const double q[4]) {
     const size_t i = motion->count;
-    motion->times = wh_record_grow(motion->times, i, &motion->time_capacity, sizeof *motion->times);
-    motion->places = wh_record_grow(motion->places, i, &motion->place_capacity, sizeof *motion->places);
-    motion->turns = wh_record_grow(motion->turns, i, &motion->turn_capacity, sizeof *motion->turns);
+    motion->times = wh_array_grow(motion->times, i, &motion->time_capacity, sizeof *motion->times);
+    motion->places = wh_array_grow(motion->places, i, &motion->place_capacity, sizeof *motion->places);
+    motion->turns = wh_array_grow(motion->turns, i, &motion->turn_capacity, sizeof *motion->turns);
     /* Times must rise; as floats they may not. */
     if (i > 0 && !((float)seconds > motion->times[i - 1])) {
         return;

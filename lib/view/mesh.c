@@ -4,14 +4,14 @@
 #include <string.h>
 
 #include "../math/trig.h"
-#include "../record/record.h"
+#include "../text/array.h"
 
 #define CORNERS 48
 #define RINGS 6 /* of half a ball */
 
 static uint32_t add_vertex(wh_mesh_t *mesh, const wh_vec3_t *r, const wh_vec3_t *normal) {
     mesh->vertices =
-        wh_record_grow(mesh->vertices, mesh->vertex_count, &mesh->vertex_capacity, sizeof *mesh->vertices);
+        wh_array_grow(mesh->vertices, mesh->vertex_count, &mesh->vertex_capacity, sizeof *mesh->vertices);
     float *to = mesh->vertices[mesh->vertex_count];
     to[0] = (float)r->x;
     to[1] = (float)r->y;
@@ -26,7 +26,7 @@ static void add_indices(wh_mesh_t *mesh, uint32_t a, uint32_t b, uint32_t c) {
     const uint32_t corners[3] = {a, b, c};
     for (size_t i = 0; i < 3; ++i) {
         mesh->indices =
-            wh_record_grow(mesh->indices, mesh->index_count, &mesh->index_capacity, sizeof *mesh->indices);
+            wh_array_grow(mesh->indices, mesh->index_count, &mesh->index_capacity, sizeof *mesh->indices);
         mesh->indices[mesh->index_count++] = corners[i];
     }
 }

@@ -1,8 +1,105 @@
-#include "json_text.h"
+#include "json.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "utf8.h"
+
+/* ------------------------------------------------------------------------------------------------- values */
+
+void wh_json_put(json_t *object, const char *key, json_t *value) {
+    if (json_object_set_new(object, key, value) != 0) {
+        abort();
+    }
+}
+
+void wh_json_append(json_t *list, json_t *value) {
+    if (json_array_append_new(list, value) != 0) {
+        abort();
+    }
+}
+
+json_t *wh_json_real(double value) {
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *wh_json_text(const char *text) {
+    if (!text) {
+        return json_null();
+    }
+    json_t *value = json_string(text);
+    if (!value) {
+        char *repaired = wh_utf8_repaired(text);
+        value = json_string(repaired);
+        free(repaired);
+    }
+    return value;
+}
+
+json_t *wh_json_vector(wh_vec3_t v) {
+    return json_pack("[o, o, o]", wh_json_real((double)v.x), wh_json_real((double)v.y),
+                     wh_json_real((double)v.z));
+}
+
+json_t *wh_json_matrix(const wh_mat3_t *m) {
+    return json_pack("[o, o, o]", wh_json_vector(wh_mat3_row(m, 0)), wh_json_vector(wh_mat3_row(m, 1)),
+                     wh_json_vector(wh_mat3_row(m, 2)));
+}
+
+void wh_json_put_real(json_t *object, const char *key, double value) {
+    wh_json_put(object, key, wh_json_real(value));
+}
+
+void wh_json_put_text(json_t *object, const char *key, const char *text) {
+    wh_json_put(object, key, wh_json_text(text));
+}
+
+void wh_json_put_integer(json_t *object, const char *key, json_int_t value) {
+    wh_json_put(object, key, json_integer(value));
+}
+
+json_t *wh_json_list(wh_json_element_t *element, const void *subject, size_t count) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < count; ++i) {
+        wh_json_append(list, element(subject, i));
+    }
+    return list;
+}
+
+/* ----------------------------------------------------------------------------------------------- printing */
+
+static int dump(const json_t *value, FILE *out) {
+    return json_dumpf(value, out, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
+}
+
+static int dump_list(const json_t *list, FILE *out) {
+    size_t i;
+    json_t *element;
+    int status = 0;
+    fputs("[", out);
+    json_array_foreach(list, i, element) {
+        fputs(i == 0 ? "\n    " : ",\n    ", out);
+        status |= dump(element, out);
+    }
+    fputs(json_array_size(list) > 0 ? "\n  ]" : "]", out);
+    return status;
+}
+
+int wh_json_print(json_t *root, FILE *out) {
+    const char *key, *before = "{\n  ";
+    json_t *value;
+    int status = 0;
+    json_object_foreach(root, key, value) {
+        fprintf(out, "%s\"%s\": ", before, key);
+        status |= json_is_array(value) ? dump_list(value, out) : dump(value, out);
+        before = ",\n  ";
+    }
+    fputs("\n}\n", out);
+    return status != 0 || fflush(out) != 0 || ferror(out) ? -1 : 0;
+}
+
+/* ------------------------------------------------------------------------------------------ as it comes */
 
 /* What stands before an element: a comma, and the key of a member. */
 static void lead(wh_json_text_t *text, const char *key) {
