@@ -2,7 +2,6 @@
 
 #include "grasp_internal.h"
 #include "horizon_internal.h"
-#include "proximity_internal.h"
 
 static void report(const wh_watch_t *watch, wh_encounter_t *encounter, wh_event_kind_t kind) {
     if (watch->list) {
@@ -92,9 +91,9 @@ WH_OUT_OF_LINE static void follow_approach(const wh_watch_t *watch) {
 
 /* Nothing that rests came near in this slice. */
 static bool is_within_horizon(const wh_grasp_t *table, size_t g) {
-    return wh_horizon_holds(table, g) &&
+    return wh_horizon_is_clear(table, g) &&
            (!wh_grasp_is_swept(table, g) ||
-            wh_horizon_covers(table, g, &table->storage.grippers[g].base_from_gripper.r));
+            wh_horizon_is_clear_at(table, g, &table->storage.grippers[g].base_from_gripper.r));
 }
 
 /* The nearest free wafer in the neighbourhood, then lowest index, if the gripper follows none yet. */

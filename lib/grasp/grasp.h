@@ -146,6 +146,15 @@ wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *bas
 /* Which wafer a gripper holds (WH_NONE: none). WH_STATUS_OUT_OF_RANGE for a bad index. */
 wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafer);
 
+/* True if the table agrees with itself, as it does between any two calls (Frama-C proves it: tests/proof/README.md):
+ *   - a wafer's holder is WH_NONE, or a gripper that names this wafer: no wafer has two holders;
+ *   - a gripper's wafer is WH_NONE, or a wafer that names this gripper as its holder: no gripper has two wafers;
+ *   - `approach` and `contest` of each gripper name a wafer of the table or WH_NONE;
+ *   - `released_by` of each wafer is WH_NONE.
+ * For tests, and for a firmware that fears that others write into its memory. The table is one that wh_grasp_init accepted.
+ * Cost: linear in wafers and grippers. With -DWH_DEBUG_TABLE each call that changes a table asserts it at its end. */
+bool wh_grasp_is_consistent(const wh_grasp_t *table);
+
 /* 64 bits over everything that the next step depends on, so equal hashes mean equal runs from here on: the
  * number of steps; for each wafer its pose (R row by row, r) and holder; for each gripper its pose, valve,
  * wafer, gripper_from_wafer while it holds one, then approach and contest: wafer, and while there is one also

@@ -1,8 +1,7 @@
-/* Within the core: what the parts of a step share. A step runs through grasp_step.c, grasp_take.c and encounter.c; what
- * may fall between two slices is found by swept_pick.c and swept_encounter.c, by way of sweep.c.
+/* Within the room: what the parts of a step share. A step runs through grasp_step.c, grasp_take.c and encounter.c; swept.c finds
+ * what falls between two slices, by way of sweep.c.
  *
- * What only swept checking needs stands in files of its own, so that its memory is never on the stack of a sampled
- * step.
+ * What only swept checking needs stands in a file of its own, so that its memory is never on the stack of a sampled step.
  */
 #ifndef WH_GRASP_GRASP_INTERNAL_H
 #define WH_GRASP_GRASP_INTERNAL_H
@@ -16,6 +15,10 @@ wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_e
 /* Puts the wafer where a gripper carries it. */
 void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
                     const wh_pose_t *gripper_from_wafer);
+
+/* wh_proximity_measure without its checks, for arguments that have passed them. */
+void wh_proximity_values(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
+                         const wh_tolerance_t *tolerance, wh_proximity_t *result);
 
 /* |dr_proj_z| */
 wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper);

@@ -74,7 +74,7 @@ void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const
         words[3] |= WH_HORIZON_OF_TOLERANCE;
     }
     if (words[3] >= 4 * ((uint32_t)TAKEN_OFF)) {
-        words[3] |= WH_HORIZON_HOLDS;
+        words[3] |= WH_HORIZON_CLEAR;
     }
 }
 

@@ -21,7 +21,7 @@ typedef struct {
 } wh_horizon_t;
 
 /* It was measured against the tolerance; the gripper's pick in this step found that it is within it. */
-enum { WH_HORIZON_OF_TOLERANCE = 1, WH_HORIZON_HOLDS = 2 };
+enum { WH_HORIZON_OF_TOLERANCE = 1, WH_HORIZON_CLEAR = 2 };
 
 static inline uint32_t *wh_horizon_words(const wh_grasp_t *table, size_t g) {
     return &table->storage.buckets[WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g];
@@ -34,7 +34,7 @@ static inline wh_real_t wh_horizon_way(uint32_t word, wh_real_t place) {
 }
 
 /* No wafer that nobody holds matters to gripper g at `place`. */
-static inline bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
+static inline bool wh_horizon_is_clear_at(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
     if (table->storage.bucket_count == 0) {
         return false;
     }
@@ -50,13 +50,13 @@ static inline bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh
 }
 
 /* The same at the slice's end, after the gripper's pick has found it out. */
-static inline bool wh_horizon_holds(const wh_grasp_t *table, size_t g) {
-    return table->storage.bucket_count > 0 && (wh_horizon_words(table, g)[3] & WH_HORIZON_HOLDS) != 0;
+static inline bool wh_horizon_is_clear(const wh_grasp_t *table, size_t g) {
+    return table->storage.bucket_count > 0 && (wh_horizon_words(table, g)[3] & WH_HORIZON_CLEAR) != 0;
 }
 
 /* That it covers the slice's end. */
-static inline void wh_horizon_note(wh_grasp_t *table, size_t g) {
-    wh_horizon_words(table, g)[3] |= WH_HORIZON_HOLDS;
+static inline void wh_horizon_set_clear(wh_grasp_t *table, size_t g) {
+    wh_horizon_words(table, g)[3] |= WH_HORIZON_CLEAR;
 }
 
 /* How far around `place` it pays to look: many times the way of this slice, or little when the gripper jumps. */
@@ -66,8 +66,8 @@ wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *
 wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin);
 
 /* Takes a free wafer into account; true when it is not ready, as wh_proximity_ready says it. */
-static inline bool wh_horizon_passes(wh_horizon_t *horizon, const wh_pose_t *base_from_wafer,
-                                     const wh_vec3_t *place) {
+static inline bool wh_horizon_measure(wh_horizon_t *horizon, const wh_pose_t *base_from_wafer,
+                                      const wh_vec3_t *place) {
     if (!horizon->measured) {
         return false;
     }
@@ -84,12 +84,12 @@ static inline bool wh_horizon_passes(wh_horizon_t *horizon, const wh_pose_t *bas
     return gap > 0;
 }
 
-/* What wh_horizon_keep does where the table has buckets. */
+/* What wh_horizon_set does where the table has buckets. */
 void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon);
 
 /* Keeps it, where there are buckets, for gripper g at `place`. */
-static inline void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place,
-                                   const wh_horizon_t *horizon) {
+static inline void wh_horizon_set(wh_grasp_t *table, size_t g, const wh_vec3_t *place,
+                                  const wh_horizon_t *horizon) {
     if (table->storage.bucket_count > 0) {
         wh_horizon_store(table, g, place, horizon);
     }

@@ -165,5 +165,6 @@ wh_status_t wh_grasp_restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t
     table->slice = slice;
     take_over(table, wafers, grippers);
     wh_index_build(table);
+    WH_ASSERT_CONSISTENT(table);
     return WH_OK;
 }

@@ -59,6 +59,17 @@ static const char *const wh_abi_check __attribute__((used)) = &WH_ABI_SYMBOL;
 #endif
 #endif
 
+/* That wh_grasp_is_consistent says true of a table, after each call that changes one. A macro of its own, since it costs a
+ * look at every wafer and gripper: switched on with -DWH_DEBUG_TABLE, or defined by the firmware. */
+#if !defined(WH_ASSERT_CONSISTENT)
+#if defined(WH_DEBUG_TABLE)
+#include <assert.h>
+#define WH_ASSERT_CONSISTENT(table) assert(wh_grasp_is_consistent(table))
+#else
+#define WH_ASSERT_CONSISTENT(table) ((void)0)
+#endif
+#endif
+
 /* Keeps a function's memory off its callers' stack: what one part of a step needs, the next one need not carry. Costs a
  * call; changes no result. */
 #if defined(__GNUC__)
