@@ -122,10 +122,6 @@ static wh_status_t may_place(const wh_grasp_t *table, size_t wafer, const wh_pos
     return wh_pose_validate(base_from_wafer);
 }
 
-static void count_refusal(wh_grasp_t *table) {
-    ++table->counters.refused;
-}
-
 static void forget(wh_encounter_t *approach, int32_t wafer) {
     if (approach->wafer == wafer) {
         approach->wafer = WH_NONE;
@@ -138,7 +134,7 @@ wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *bas
     }
     const wh_status_t status = may_place(table, wafer, base_from_wafer);
     if (status != WH_OK) {
-        count_refusal(table);
+        ++table->counters.refused;
         return status;
     }
     table->storage.wafers[wafer].base_from_wafer = *base_from_wafer;

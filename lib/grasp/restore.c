@@ -143,10 +143,6 @@ static void copy_grippers(wh_gripper_t to[], const wh_gripper_t from[], size_t c
     }
 }
 
-static void count_refusal(wh_grasp_t *table) {
-    ++table->counters.refused;
-}
-
 static void take_over(wh_grasp_t *table, const wh_wafer_t wafers[], const wh_gripper_t grippers[]) {
     copy_wafers(table->storage.wafers, wafers, table->storage.wafer_count);
     copy_grippers(table->storage.grippers, grippers, table->storage.gripper_count);
@@ -159,7 +155,7 @@ wh_status_t wh_grasp_restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t
     }
     const wh_status_t status = check_all(table, slice, wafers, grippers);
     if (status != WH_OK) {
-        count_refusal(table);
+        ++table->counters.refused;
         return status;
     }
     table->slice = slice;
