@@ -5,11 +5,11 @@
  *   3. Carry.      A held wafer goes where its gripper goes. One loop does 2 and 3.
  *   4. Pick.       Each open, empty gripper takes the best of the ready wafers.
  *
- * Then come the events that are known only after all picks, and each gripper's pose and valve are kept for the next slice.
- * Most slices have no pick, no release and no event: for them move_all is all there is to do.
+ * Then come the events that are known only after all picks, and each gripper's pose and valve are kept for
+ * the next slice. Most slices have no pick, no release and no event: for them move_all is all there is to do.
  *
- * One file, so that the compiler can inline: split into files, a slice costs 50 instructions more and a sampled step 32 bytes
- * of stack more than its limit. */
+ * One file, so that the compiler can inline: split into files, a slice costs 50 instructions more and a
+ * sampled step 32 bytes of stack more than its limit. */
 #include "encounter_internal.h"
 #include "grasp_internal.h"
 #include "horizon_internal.h"
@@ -79,8 +79,9 @@ static wh_status_t validate(wh_grasp_t *table, const wh_gripper_input_t *inputs,
     return WH_OK;
 }
 
-/* A gripper's pose that just passes wh_pose_validate can turn the wafer's into one that does not, and that the table's
- * owner could not hand back to any call: such a one is mended. Mirrored it cannot be, since neither of the two is. */
+/* A gripper's pose that just passes wh_pose_validate can turn the wafer's pose into one that does not. The
+ * table's owner could then hand that pose to no call, so it is mended here. It is never mirrored, since
+ * neither factor is. */
 void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
                     const wh_pose_t *gripper_from_wafer) {
     wh_pose_compose_to(base_from_gripper, gripper_from_wafer, &wafer->base_from_wafer);
@@ -138,7 +139,7 @@ static void pick(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input, w
     }
 }
 
-/* A wafer that was let go and that nobody took. */
+/* Reports a wafer that was let go and that nobody took. */
 static void report_release(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                            wh_event_list_t *list) {
     const int32_t w = table->storage.grippers[g].wafer;
@@ -166,6 +167,7 @@ static void remember(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inpu
     gripper->valve = inputs[g].valve;
 }
 
+/* The two small functions below, pick_next and watch, keep WP's goals small enough for its prover. */
 static void pick_next(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     pick(table, g, &inputs[g], list);
 }
@@ -198,7 +200,7 @@ static void remember_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     }
 }
 
-/* That looking for wafers would find none: none of those at rest matters to gripper g, on its way or at its end. */
+/* True if a search would find no wafer: none at rest matters to gripper g, on its way or at its end. */
 static bool is_far_from_all(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
     const wh_vec3_t *begin = &table->storage.grippers[g].base_from_gripper.r;
     if (!wh_horizon_is_clear_at(table, g, place)) {
@@ -207,8 +209,8 @@ static bool is_far_from_all(const wh_grasp_t *table, size_t g, const wh_vec3_t *
     return !wh_grasp_is_swept(table, g) || wh_horizon_is_clear_at(table, g, begin);
 }
 
-/* What gripper g does in this slice may be more than going on with what it holds, or without: it is watching a wafer, lets
- * go, or is open and not far from all that rest. */
+/* False if gripper g just moves on, with its wafer or without. It may act if it watches a wafer, lets go, or
+ * is open and not far from all wafers at rest. */
 static bool may_act(const wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
     const wh_gripper_t *gripper = &table->storage.grippers[g];
     const bool open = input->valve == WH_VALVE_OPEN;
@@ -221,8 +223,8 @@ static bool may_act(const wh_grasp_t *table, size_t g, const wh_gripper_input_t 
     return open && !is_far_from_all(table, g, &input->base_from_gripper.r);
 }
 
-/* Whether this slice has no pick, no release and nothing to tell: what most slices are. Where a gripper holds a wafer and
- * another one looks for some, they may contest it. */
+/* True if this slice has no pick, no release and no event. If one gripper holds a wafer and another one is
+ * open and empty, the second may contest it. */
 static bool is_uneventful(const wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     bool holding = false;
     bool looking = false;
@@ -247,7 +249,7 @@ static void move(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
     gripper->valve = input->valve;
 }
 
-/* An uneventful slice: the grippers go where they go, and what they hold goes with them. */
+/* An uneventful slice: the grippers move, and what they hold moves with them. */
 static void move_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         move(table, g, &inputs[g]);

@@ -96,8 +96,8 @@ static void pair(wh_grasp_t *table, size_t g, int32_t w) {
     table->storage.grippers[g].wafer = w;
 }
 
-/* The rotation is brought back to orthonormal, so that poses which are so only to WH_ROTATION_TOLERANCE do not add up over
- * many picks. */
+/* The rotation is brought back to orthonormal, so that poses which are so only to WH_ROTATION_TOLERANCE do
+ * not add up over many picks. */
 static void measure_grip(wh_pose_t *gripper_from_wafer, const wh_pose_t *then,
                          const wh_pose_t *base_from_wafer, bool seat) {
     wh_pose_relative_to(then, base_from_wafer, gripper_from_wafer);

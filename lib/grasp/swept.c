@@ -1,5 +1,5 @@
-/* What only swept checking does within a step: picks and near misses between two slices. A file of its own, so that its memory is
- * never on the stack of a sampled step. */
+/* What only swept checking does within a step: picks and near misses between two slices. A file of its own,
+ * so that its memory is never on the stack of a sampled step. */
 #include "encounter_internal.h"
 #include "grasp_internal.h"
 #include "horizon_internal.h"
