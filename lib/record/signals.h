@@ -7,7 +7,7 @@
  * wherever wh_signals_mark is called. Slices count as in the run: what is of slice n is true at its end,
  * slice 0 is before the first.
  *
- * Host code: aborts when memory is out. Memory: what thinning leaves, steps, and 4 bytes a wafer.
+ * Host code: aborts if out of memory. Memory: what thinning leaves, steps, and 4 bytes a wafer.
  */
 #ifndef WH_RECORD_SIGNALS_H
 #define WH_RECORD_SIGNALS_H

@@ -3,7 +3,7 @@
  * The viewer ends on what it does not like: a length that is not above 0, a quaternion that is not of length
  * 1 to 1e-5. So no shape that wh_convex_validate passes yields either.
  *
- * Host code: aborts when memory is out.
+ * Host code: aborts if out of memory.
  */
 #ifndef WH_VIEW_GEOMETRY_H
 #define WH_VIEW_GEOMETRY_H

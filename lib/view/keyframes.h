@@ -6,7 +6,7 @@
 #include "../record/signals.h"
 #include "gltf.h"
 
-/* Keyframes being gathered. Host code: aborts when memory is out. */
+/* Keyframes being gathered. Host code: aborts if out of memory. */
 typedef struct {
     float *times;
     float (*places)[3]; /* m */
