@@ -200,7 +200,7 @@ static void advance(wh_path_t *curve, size_t end) {
             const size_t reached = bisect(curve, curve->good, curve->next);
             end -= reached;
             keep(curve, reached, slope_at(curve, reached), false);
-        } else if (2 * curve->next > WH_CURVE_SPAN) {
+        } else if (2 * curve->next > WH_PATH_SPAN) {
             end -= curve->next;
             keep(curve, curve->next, slope_at(curve, curve->next), false);
         } else {

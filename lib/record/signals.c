@@ -12,8 +12,7 @@
 /* wh_signals_walk looks at no more than so many places from one point to the next. */
 #define PLACES 32
 
-/* So near to where its axes put it a gripper counts as there: another machine's sines may differ in their last
- * bits. */
+/* A gripper this near to where its axes put it is there: another machine's sines may differ in their last bits. */
 #define SAME_MM 1e-9
 #define SAME_ROTATION 1e-12
 
@@ -24,22 +23,22 @@ static bool turns(size_t axis) {
 }
 
 static void open_curve(wh_path_t *curve, double tolerance) {
-    wh_path_open(curve, WH_TRACE_SHARE * tolerance, WH_TRACE_POINTS);
+    wh_path_open(curve, WH_SIGNALS_SHARE * tolerance, WH_SIGNALS_POINTS);
 }
 
 static void open_tracks(wh_signals_t *signals) {
-    static const double measured[WH_MEASURES] = {WH_TRACE_PROJZ, WH_TRACE_PROJXY, WH_TRACE_PLANAR};
+    static const double measured[WH_MEASURES] = {WH_SIGNALS_PROJZ, WH_SIGNALS_PROJXY, WH_SIGNALS_PLANAR};
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        open_curve(&signals->vacuum[g], WH_TRACE_VACUUM);
+        open_curve(&signals->vacuum[g], WH_SIGNALS_VACUUM);
         for (size_t m = 0; m < WH_MEASURES; ++m) {
             /* Half of the tolerance: points that are inserted later may take the other half. */
             open_curve(&signals->proximity[g][m], measured[m] / 2);
         }
-        wh_thin_open(&signals->own[g], 3, WH_TRACE_SHARE * WH_TRACE_OWN_MM, WH_TRACE_SHARE * WH_TRACE_OWN_RAD,
-                     WH_TRACE_POINTS);
+        wh_thin_open(&signals->own[g], 3, WH_SIGNALS_SHARE * WH_SIGNALS_OWN_MM,
+                     WH_SIGNALS_SHARE * WH_SIGNALS_OWN_RAD, WH_SIGNALS_POINTS);
     }
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
-        open_curve(&signals->axes[axis], turns(axis) ? WH_TRACE_RAD : WH_TRACE_MM);
+        open_curve(&signals->axes[axis], turns(axis) ? WH_SIGNALS_RAD : WH_SIGNALS_MM);
     }
 }
 
@@ -301,7 +300,8 @@ void wh_signals_gripper(const wh_signals_t *signals, size_t gripper, int64_t sli
     *base_from_gripper = poses[gripper];
 }
 
-bool wh_signals_links(const wh_signals_t *signals, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]) {
+bool wh_signals_links(const wh_signals_t *signals, int64_t slice,
+                      wh_pose_t base_from_links[WH_SIGNALS_LINKS]) {
     wh_pose_t poses[WH_GRIPPERS];
     wh_pose_t base_from_effector;
     wh_pose_t bodies[WH_ARM_BODIES];
@@ -310,7 +310,7 @@ bool wh_signals_links(const wh_signals_t *signals, int64_t slice, wh_pose_t base
         return false;
     }
     wh_arm_place(&signals->layout->shapes.arm, &base_from_effector, bodies);
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         base_from_links[i] = bodies[WH_ARM_LIFT + i];
     }
     return true;

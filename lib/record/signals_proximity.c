@@ -15,7 +15,7 @@ static double square_of(const wh_vec3_t *a, const wh_vec3_t *b) {
 
 /* Within the plot's range a wafer's centre is at most this far from the gripper's, mm. */
 static double reach_of(const wh_signals_t *signals) {
-    return WH_TRACE_REACH + 2 * signals->layout->grasp.near_projxy;
+    return WH_SIGNALS_REACH + 2 * signals->layout->grasp.near_projxy;
 }
 
 /* ----------------------------------------------------------------------------------------------- vicinity */
@@ -100,7 +100,7 @@ static int32_t measure(wh_signals_t *signals, const wh_state_t *state, size_t g,
         return WH_NONE;
     }
     take(&p, values);
-    const bool near = values[WH_MEASURE_PROJZ] < WH_TRACE_REACH &&
+    const bool near = values[WH_MEASURE_PROJZ] < WH_SIGNALS_REACH &&
                       values[WH_MEASURE_PROJXY] < 2 * signals->layout->grasp.near_projxy;
     return near ? nearest : WH_NONE;
 }

@@ -74,7 +74,7 @@ static double gripper_mm(const wh_signals_t *signals, const sums_t *sums) {
 
 /* The tolerance as it is told: with what rounding adds. */
 static void put_tolerance(wh_json_text_t *text, const char *key, double thinned) {
-    wh_json_text_number(text, key, thinned / WH_TRACE_SHARE, 9, false);
+    wh_json_text_number(text, key, thinned / WH_SIGNALS_SHARE, 9, false);
 }
 
 void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals) {

@@ -86,7 +86,7 @@ static void put_proximity(wh_plots_t *plots, int32_t g) {
     wh_plot_block(&plot, name, "t (s), |dr_proj_z| (mm), |dr_proj_xy| (mm), n1_proj_n2, wafer (from 0)");
     (void)wh_plot_curves(&plot, &values, wh_plots_slice_s(plots));
     put_length(plots, &plot, g, "dr_proj_z", 2, limits->projz / 50, limits->projz,
-               limits->projz * 4 > WH_TRACE_REACH ? limits->projz * 4 : WH_TRACE_REACH);
+               limits->projz * 4 > WH_SIGNALS_REACH ? limits->projz * 4 : WH_SIGNALS_REACH);
     put_length(plots, &plot, g, "dr_proj_xy", 3, limits->projxy / 50000, limits->projxy,
                2 * layout->grasp.near_projxy);
     put_planar(plots, &plot, g, limits->planar);

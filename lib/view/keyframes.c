@@ -37,14 +37,14 @@ typedef struct {
 static void add_places(void *user, int64_t slice) {
     const tracing_t *tracing = user;
     const wh_signals_t *signals = tracing->signals;
-    wh_pose_t links[WH_TRACE_LINKS];
+    wh_pose_t links[WH_SIGNALS_LINKS];
     wh_pose_t gripper;
     for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
         wh_signals_gripper(signals, g, slice, &gripper);
         wh_thin_add_pose(&tracing->paths->grippers[g], slice, &gripper);
     }
     if (wh_signals_links(signals, slice, links)) {
-        for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
             wh_thin_add_pose(&tracing->paths->links[i], slice, &links[i]);
         }
     }
@@ -56,14 +56,14 @@ wh_paths_t wh_paths_of_signals(const wh_signals_t *signals) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         wh_thin_open(&paths.grippers[g], 3, WH_PATHS_MM, WH_PATHS_RAD, WH_PATHS_POINTS);
     }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         wh_thin_open(&paths.links[i], 3, WH_PATHS_LINK_MM, WH_PATHS_LINK_RAD, WH_PATHS_LINK_POINTS);
     }
     wh_signals_walk(signals, add_places, &tracing);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         wh_thin_finish(&paths.grippers[g]);
     }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         wh_thin_finish(&paths.links[i]);
     }
     return paths;
@@ -73,7 +73,7 @@ void wh_paths_free(wh_paths_t *paths) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         wh_thin_close(&paths->grippers[g]);
     }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         wh_thin_close(&paths->links[i]);
     }
 }

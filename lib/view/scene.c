@@ -95,10 +95,10 @@ static void add_moving(scene_t *scene, const wh_pose_t *pose, const wh_thin_t *p
 }
 
 static void add_links(scene_t *scene) {
-    static const char *const names[WH_TRACE_LINKS] = {"lift", "upper arm", "forearm", "hand"};
-    wh_pose_t poses[WH_TRACE_LINKS];
+    static const char *const names[WH_SIGNALS_LINKS] = {"lift", "upper arm", "forearm", "hand"};
+    wh_pose_t poses[WH_SIGNALS_LINKS];
     const bool is_there = wh_signals_links(scene->signals, scene->signals->first, poses);
-    for (size_t i = 0; is_there && i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; is_there && i < WH_SIGNALS_LINKS; ++i) {
         body_t body = {0};
         add_parts(scene, &body, 1U << WH_PART_ARM, (int32_t)(WH_ARM_LIFT + i), NULL);
         add_moving(scene, &poses[i], &scene->paths.links[i], &body, names[i], "link", i);
