@@ -13,8 +13,8 @@ TESTS := $(basename $(TEST_SOURCES))
 # Those of collision are linked with it, and there is no float build of it.
 COLLISION_TESTS := $(basename $(shell grep -lE '^.include "collision/' $(TEST_SOURCES) /dev/null))
 
-# Programs that end-to-end tests use: built with the tests, not run by themselves.
-TOOLS := $(basename $(wildcard tests/end_to_end/tools/*.c))
+# Programs that end-to-end tests use: built with the tests, not run by themselves. Two are built by the tests themselves.
+TOOLS := $(filter-out %/play_segments %/pty_dialogue,$(basename $(wildcard tests/end_to_end/tools/*.c)))
 
 # Programs that measure, to be run by hand: built with the tests too. Those of `make bench` are in tests/bench/bench.mk.
 BENCHES := tests/bench/gap tests/bench/counts

@@ -147,14 +147,14 @@ static wh_world_t *lay_out(const wh_world_config_t *config, const plan_t *plan, 
 
 /* ------------------------------------------------------------------------------------------------------ set-up */
 
-static void set_up_boxes(wh_world_t *world, const wh_grasp_t *table) {
+static void set_up_boxes(wh_world_t *world, const wh_wafer_t wafers[]) {
     const wh_world_config_t *config = world->config;
     for (size_t i = 0; i < world->fixed_count; ++i) {
         const wh_convex_t *convex = &config->parts[i].convex;
         wh_convex_bounds(convex, &convex->body_from_shape, &world->boxes[i].low, &world->boxes[i].high);
     }
     for (size_t w = 0; w < config->wafer_count; ++w) {
-        world->wafers[w] = table->storage.wafers[w].base_from_wafer;
+        world->wafers[w] = wafers[w].base_from_wafer;
         const wh_pose_t base_from_shape = wh_pose_compose(&world->wafers[w], &config->wafer.body_from_shape);
         wh_box_t *box = &world->boxes[world->fixed_count + w];
         wh_convex_bounds(&config->wafer, &base_from_shape, &box->low, &box->high);
@@ -208,9 +208,8 @@ static void set_up_pairs(wh_world_t *world) {
     }
 }
 
-wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_grasp_t *table,
-                          const wh_pose_t *base_from_effector, const wh_pose_t base_from_grippers[],
-                          void *memory, size_t bytes) {
+wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_t *input, void *memory,
+                          size_t bytes) {
     const plan_t plan = plan_memory(config);
     if (!memory || bytes < plan.end) {
         return NULL;
@@ -220,14 +219,14 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_grasp_t *tab
         world->clearances[kind].gap = WH_CLEARANCE_RANGE;
         world->clearances[kind].parts[0] = world->clearances[kind].parts[1] = WH_NONE;
     }
-    world->curves.first = table->slice;
+    world->curves.first = input->slice;
     world->curves.slices = FIRST_BIN;
-    set_up_boxes(world, table);
+    set_up_boxes(world, input->wafers);
     set_up_movers(world);
     set_up_pairs(world);
-    const wh_look_t look = {world, table, NULL};
-    wh_world_move(&look, base_from_effector, base_from_grippers);
-    wh_world_move(&look, base_from_effector, base_from_grippers); /* now before and now are the same */
+    const wh_look_t look = {world, input, NULL};
+    wh_world_move(&look);
+    wh_world_move(&look); /* now before and now are the same */
     return world;
 }
 

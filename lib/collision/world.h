@@ -72,6 +72,15 @@ typedef struct {
     wh_vec3_t at;     /* between the two, base */
 } wh_clearance_t;
 
+/* What a world reads in a slice: of a grasp table after its step, or of a state that tells of one. Wafers and grippers are the
+ * config's wafer_count and gripper_count. */
+typedef struct {
+    uint64_t slice; /* steps so far */
+    const wh_wafer_t *wafers;
+    const wh_gripper_t *grippers;
+    wh_pose_t base_from_effector;
+} wh_world_input_t;
+
 /* A description; immutable while a world uses it. */
 typedef struct {
     const wh_part_t *parts; /* fixed ones and ledges first, then those that hang on something */
@@ -80,6 +89,7 @@ typedef struct {
     wh_arm_t arm;
     size_t gripper_count, wafer_count;
     const wh_cell_t *cell;
+    const wh_grasp_config_t *grasp;  /* how near a gripper comes to a wafer that it may take */
     wh_real_t limits[WH_CLEARANCES]; /* WH_EVENT_TOO_CLOSE below; 0: none */
 } wh_world_config_t;
 
@@ -96,22 +106,20 @@ wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part);
 /* Bytes that wh_world_init needs. */
 size_t wh_world_bytes(const wh_world_config_t *config);
 
-/* Sets a world up in `memory`, aligned as malloc's, from where everything is when a run begins: base_from_effector, the
- * grippers' poses, the table's wafers. `config`, which has passed wh_world_validate, and `memory` must outlive it. Returns null when
- * `bytes` are too few. Cost: n log n in fixed parts and wafers. */
-wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_grasp_t *table,
-                          const wh_pose_t *base_from_effector, const wh_pose_t base_from_grippers[],
-                          void *memory, size_t bytes);
+/* Sets a world up in `memory`, aligned as malloc's, from where everything is when a run begins. `config`, which has passed
+ * wh_world_validate, and `memory` must outlive it; `input` need not. Returns null if `bytes` are too few. Cost: n log n in
+ * fixed parts and wafers. */
+wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_t *input, void *memory,
+                          size_t bytes);
 
-/* One slice: what moved since the last call, and what came of it. `table` is as its step left it. Appends to `list` while
+/* One slice: what moved since the last call, and what came of it. Appends to `list` while
  * there is room (it may be null): at most one WH_EVENT_HIT or WH_EVENT_UNDECIDED in a run, the first, after which contact is judged no
  * more, and one WH_EVENT_TOO_CLOSE for each kind of clearance. Cost: a few nanoseconds for each pair that is near,
  * some tens of microseconds for one that has to be measured; flat in what rests elsewhere. */
-void wh_world_step(wh_world_t *world, const wh_grasp_t *table, const wh_pose_t *base_from_effector,
-                   const wh_pose_t base_from_grippers[], wh_event_list_t *list);
+void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list);
 
-/* Tells the world that a wafer which nobody holds was put elsewhere between two steps. */
-void wh_world_place(wh_world_t *world, const wh_grasp_t *table, int32_t wafer);
+/* Tells the world that a wafer which nobody holds was put there between two steps. */
+void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from_wafer);
 
 /* The smallest gaps so far, by kind: WH_CLEARANCES of them. */
 const wh_clearance_t *wh_world_clearances(const wh_world_t *world);
@@ -121,11 +129,12 @@ const wh_clearance_t *wh_world_clearances(const wh_world_t *world);
 #define WH_CURVE_BINS 600
 
 typedef struct {
-    uint64_t
-        first; /* the table's slice before the first bin: bin i ends with slice first + (i + 1) * slices */
-    uint64_t slices;                              /* in a bin */
-    size_t count;                                 /* bins that are over */
-    wh_real_t gaps[WH_CLEARANCES][WH_CURVE_BINS]; /* WH_CLEARANCE_RANGE: nothing nearer */
+    /* The slice before the first bin: bin i ends with slice first + (i + 1) * slices. */
+    uint64_t first;
+    uint64_t slices; /* in a bin */
+    size_t count;    /* bins that are over */
+    /* WH_CLEARANCE_RANGE: nothing nearer. */
+    wh_real_t gaps[WH_CLEARANCES][WH_CURVE_BINS];
 } wh_curves_t;
 
 const wh_curves_t *wh_world_curves(const wh_world_t *world);
@@ -143,6 +152,6 @@ const wh_world_counters_t *wh_world_counters(const wh_world_t *world);
 
 /* Looks at everything that rests, as `waferhand layout` does before a run: the first two parts that touch or cut each other and
  * must not, to `parts`; false when there are none. Cost: n log n. */
-bool wh_world_check_rest(wh_world_t *world, const wh_grasp_t *table, int32_t parts[2]);
+bool wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int32_t parts[2]);
 
 #endif

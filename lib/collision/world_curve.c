@@ -70,7 +70,7 @@ void wh_world_draw_curves(const wh_look_t *look) {
     wh_curves_t *curves = &world->curves;
     wh_real_t least[WH_CLEARANCES];
     const uint64_t begin = curves->first + curves->count * curves->slices;
-    if (look->table->slice < begin + curves->slices) {
+    if (look->input->slice < begin + curves->slices) {
         return;
     }
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
@@ -84,7 +84,7 @@ void wh_world_draw_curves(const wh_look_t *look) {
     for (size_t i = 0; i < world->pair_count; ++i) {
         measure_pair(look, &world->pairs[i], least);
     }
-    while (look->table->slice >= curves->first + (curves->count + 1) * curves->slices) {
+    while (look->input->slice >= curves->first + (curves->count + 1) * curves->slices) {
         close_bin(curves, least);
     }
 }

@@ -91,7 +91,7 @@ typedef struct {
 /* What a step works on. */
 typedef struct {
     wh_world_t *world;
-    const wh_grasp_t *table;
+    const wh_world_input_t *input;
     wh_event_list_t *list;
 } wh_look_t;
 
@@ -108,8 +108,7 @@ wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *move
 wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item);
 
 /* Takes over where everything is now. Wafers that were taken or let go change between mover and tree. */
-void wh_world_move(const wh_look_t *look, const wh_pose_t *base_from_effector,
-                   const wh_pose_t base_from_grippers[]);
+void wh_world_move(const wh_look_t *look);
 
 /* After the pairs were judged: what was let go rests. */
 void wh_world_settle(const wh_look_t *look);

@@ -115,7 +115,7 @@ static void forget_item(wh_world_t *world, int32_t item) {
     }
 }
 
-/* A wafer lies down where the table has it. */
+/* A wafer lies down where it is now. */
 static void lay_down(wh_world_t *world, int32_t wafer) {
     wh_box_t box;
     const wh_pose_t base_from_shape =
@@ -148,7 +148,7 @@ void wh_world_settle(const wh_look_t *look) {
     wh_world_t *world = look->world;
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
         const int32_t wafer = world->held[g];
-        if (wafer != WH_NONE && look->table->storage.grippers[g].wafer != wafer) {
+        if (wafer != WH_NONE && look->input->grippers[g].wafer != wafer) {
             carry_no_more(world, g);
             world->left[g].wafer = wafer;
             world->left[g].at = world->bodies[wh_world_gripper_body(g)].now.r;
@@ -163,9 +163,9 @@ void wh_world_settle(const wh_look_t *look) {
     }
 }
 
-void wh_world_place(wh_world_t *world, const wh_grasp_t *table, int32_t wafer) {
+void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from_wafer) {
     if (!is_carried(world, wafer)) {
-        world->wafers[wafer] = table->storage.wafers[wafer].base_from_wafer;
+        world->wafers[wafer] = *base_from_wafer;
         lay_down(world, wafer);
         ++world->set_down;
     }
@@ -176,7 +176,7 @@ void wh_world_place(wh_world_t *world, const wh_grasp_t *table, int32_t wafer) {
 static void take_wafers(const wh_look_t *look) {
     wh_world_t *world = look->world;
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
-        const int32_t wafer = look->table->storage.grippers[g].wafer;
+        const int32_t wafer = look->input->grippers[g].wafer;
         if (wafer == WH_NONE || wafer == world->held[g]) {
             continue;
         }
@@ -196,7 +196,7 @@ static void move_held(const wh_look_t *look) {
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
         const int32_t wafer = world->held[g];
         if (wafer != WH_NONE) {
-            world->wafers[wafer] = look->table->storage.wafers[wafer].base_from_wafer;
+            world->wafers[wafer] = look->input->wafers[wafer].base_from_wafer;
             move_body(&world->bodies[wh_world_held_body(g)], &world->wafers[wafer]);
         }
     }
@@ -213,16 +213,15 @@ static void leave_behind(wh_world_t *world, size_t gripper) {
     }
 }
 
-void wh_world_move(const wh_look_t *look, const wh_pose_t *base_from_effector,
-                   const wh_pose_t base_from_grippers[]) {
+void wh_world_move(const wh_look_t *look) {
     wh_world_t *world = look->world;
     wh_pose_t arm[WH_ARM_BODIES];
-    wh_arm_place(&world->config->arm, base_from_effector, arm);
+    wh_arm_place(&world->config->arm, &look->input->base_from_effector, arm);
     for (size_t i = 0; i < WH_ARM_BODIES; ++i) {
         move_body(&world->bodies[i], &arm[i]);
     }
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
-        move_body(&world->bodies[wh_world_gripper_body(g)], &base_from_grippers[g]);
+        move_body(&world->bodies[wh_world_gripper_body(g)], &look->input->grippers[g].base_from_gripper);
         leave_behind(world, g);
     }
     take_wafers(look);

@@ -105,7 +105,7 @@ static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_
     wh_event_t *event = &look->list->events[look->list->count++];
     *event = blank;
     event->kind = kind;
-    event->slice = event->measured_slice = look->table->slice;
+    event->slice = event->measured_slice = look->input->slice;
     event->parts[0] = a->part;
     event->parts[1] = b->part;
     for (int i = 0; i < 2; ++i) {
@@ -147,7 +147,7 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
         return;
     }
     least->gap = found;
-    least->slice = look->table->slice;
+    least->slice = look->input->slice;
     least->parts[0] = a->part;
     least->parts[1] = b->part;
     least->at = gap->at;

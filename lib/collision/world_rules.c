@@ -26,7 +26,7 @@ static bool is_gripper(const wh_side_t *side) {
 }
 
 static const wh_wafer_t *wafer_of(const wh_look_t *look, const wh_side_t *side) {
-    return &look->table->storage.wafers[side->owner];
+    return &look->input->wafers[side->owner];
 }
 
 /* Whether a wafer there lies in this slot, or on the chuck of this gripper, and not below its plane. */
@@ -58,14 +58,14 @@ static void put_in_order(const wh_side_t **a, const wh_side_t **b) {
 
 /* Whether gripper and wafer are meant to come together: within reach, and one takes or gives. */
 static bool do_business(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *gripper) {
-    const wh_grasp_t *table = look->table;
-    const wh_gripper_t *state = &table->storage.grippers[gripper->owner];
+    const wh_grasp_config_t *grasp = look->world->config->grasp;
+    const wh_gripper_t *state = &look->input->grippers[gripper->owner];
     const wh_wafer_t *w = wafer_of(look, wafer);
     const wh_vec3_t dr = wh_vec3_subtract(&w->base_from_wafer.r, &state->base_from_gripper.r);
     const wh_vec3_t local = wh_mat3_transform_back(&state->base_from_gripper.R, &dr);
-    const wh_real_t limit = table->config.tolerance.projxy;
+    const wh_real_t limit = grasp->tolerance.projxy;
     const bool beside = local.x * local.x + local.y * local.y > limit * limit;
-    if (beside || wh_real_abs(local.z) > table->config.near_projz) {
+    if (beside || wh_real_abs(local.z) > grasp->near_projz) {
         return false;
     }
     /* Let go in this slice: the world holds it until the slice is over. */

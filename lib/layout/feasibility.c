@@ -66,10 +66,11 @@ wh_pose_t wh_feasibility_place(const wh_feasibility_t *check, int32_t part) {
 
 static void look_at_rest(wh_feasibility_t *check, const wh_grasp_t *table, void *memory) {
     const wh_layout_t *layout = check->layout;
+    const wh_world_input_t input = {table->slice, table->storage.wafers, table->storage.grippers,
+                                    check->base_from_effector};
     int32_t parts[2];
-    wh_world_t *world = wh_world_init(&layout->world, table, &check->base_from_effector,
-                                      check->base_from_grippers, memory, wh_world_bytes(&layout->world));
-    if (!world || !wh_world_check_rest(world, table, parts)) {
+    wh_world_t *world = wh_world_init(&layout->world, &input, memory, wh_world_bytes(&layout->world));
+    if (!world || !wh_world_check_rest(world, &input, parts)) {
         return;
     }
     wh_finding_t *finding =

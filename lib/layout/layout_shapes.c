@@ -175,6 +175,7 @@ void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout) {
     world->gripper_count = layout->machine.gripper_count;
     world->wafer_count = layout->wafer_count;
     world->cell = &layout->cell;
+    world->grasp = &layout->grasp;
     check_world(reader, layout);
 }
 

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 
 #include "../math/trig.h"
+#include "../record/throughput.h"
 #include "../sim/faults.h"
 #include "../text/json.h"
-#include "names.h"
 
 /* The format's number: goes up when a key changes its meaning or leaves. */
 #define FORMAT 1
@@ -281,7 +281,7 @@ static json_t *throughput(const wh_record_t *record) {
     wh_json_put(object, "first_cycle", found.first > 0 ? json_integer((json_int_t)found.first) : json_null());
     wh_json_put(object, "last_cycle", found.first > 0 ? json_integer((json_int_t)found.last) : json_null());
     wh_json_put_integer(object, "puts", (json_int_t)found.puts);
-    wh_json_put_text(object, "rule", wh_record_rank_text(found.rank));
+    wh_json_put_text(object, "rule", wh_throughput_rule(found.rank));
     return object;
 }
 

@@ -23,8 +23,8 @@ static void put_trial(json_t *object, const char *key, uint64_t trial) {
 /* --------------------------------------------------------------------------------------------------------- rows */
 
 static json_t *expectation(const void *subject, size_t i) {
-    const wh_study_print_t *report = subject;
-    const wh_tally_row_t *row = &report->tally->expectations.rows[i];
+    const wh_study_result_t *result = subject;
+    const wh_tally_row_t *row = &result->tally->expectations.rows[i];
     json_t *object = json_object();
     char expected[4096];
     wh_study_expected(row->text, expected, sizeof expected);
@@ -38,35 +38,35 @@ static json_t *expectation(const void *subject, size_t i) {
 }
 
 static json_t *error(const void *subject, size_t i) {
-    const wh_study_print_t *report = subject;
-    const wh_tally_row_t *row = &report->tally->errors.rows[i];
+    const wh_study_result_t *result = subject;
+    const wh_tally_row_t *row = &result->tally->errors.rows[i];
     json_t *object = json_object();
     wh_json_put_integer(object, "line", row->line);
     wh_json_put_text(object, "text", row->text);
     wh_json_put_integer(object, "error", row->place);
     wh_json_put_text(object, "name", wh_status_name((wh_status_t)row->place));
     put_count(object, "trials", row->bad);
-    put_rate(object, row->bad, report->tally->trials);
+    put_rate(object, row->bad, result->tally->trials);
     put_trial(object, "first", row->first);
     return object;
 }
 
-static json_t *event(const wh_study_print_t *report, size_t kind) {
-    const wh_tally_event_t *counted = &report->tally->events[kind];
+static json_t *event(const wh_study_result_t *result, size_t kind) {
+    const wh_tally_event_t *counted = &result->tally->events[kind];
     json_t *object = json_object();
     wh_json_put_text(object, "kind", wh_event_name((wh_event_kind_t)kind));
     put_count(object, "trials", counted->trials);
-    put_rate(object, counted->trials, report->tally->trials);
+    put_rate(object, counted->trials, result->tally->trials);
     put_count(object, "total", counted->total);
     return object;
 }
 
 /* Those that happened. */
-static json_t *events(const wh_study_print_t *report) {
+static json_t *events(const wh_study_result_t *result) {
     json_t *list = json_array();
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
-        if (report->tally->events[kind].trials > 0) {
-            wh_json_append(list, event(report, kind));
+        if (result->tally->events[kind].trials > 0) {
+            wh_json_append(list, event(result, kind));
         }
     }
     return list;
@@ -92,18 +92,18 @@ static json_t *figures(const wh_sum_t *sum, double nominal) {
 }
 
 static json_t *wafer(const void *subject, size_t i) {
-    const wh_study_print_t *report = subject;
+    const wh_study_result_t *result = subject;
     static const char *const keys[] = {"dx", "dy", "dz", "tilt_deg", "off"};
-    const wh_study_wafer_t *end = &report->study->wafers[i];
-    const wh_tally_wafer_t *tally = &report->tally->wafers[i];
+    const wh_study_wafer_t *end = &result->study->wafers[i];
+    const wh_tally_wafer_t *tally = &result->tally->wafers[i];
     const bool lies = end->place.station != WH_NONE;
     json_t *object = json_object();
-    wh_json_put_text(object, "name", report->study->layout->wafers[end->wafer].name);
+    wh_json_put_text(object, "name", result->study->layout->wafers[end->wafer].name);
     wh_json_put_text(object, "station",
-                     lies ? report->study->layout->stations[end->place.station].name : NULL);
+                     lies ? result->study->layout->stations[end->place.station].name : NULL);
     wh_json_put(object, "slot", lies ? json_integer(end->place.slot) : json_null());
     wh_json_put_text(object, "holder",
-                     end->holder == WH_NONE ? NULL : report->study->layout->grippers[end->holder].name);
+                     end->holder == WH_NONE ? NULL : result->study->layout->grippers[end->holder].name);
     put_count(object, "elsewhere", tally->elsewhere);
     put_count(object, "count", tally->of[0].count);
     for (size_t q = 0; q < WH_TALLY_QUANTITIES; ++q) {
@@ -165,33 +165,33 @@ static json_t *drawn_valves(const wh_layout_t *layout, const wh_trial_t *trial) 
 }
 
 static json_t *worst_trial(const void *subject, size_t i) {
-    const wh_study_print_t *report = subject;
-    const wh_tally_trial_t *worst = &report->tally->worst[i];
-    const wh_trial_t trial = {report->study->seed, worst->trial};
+    const wh_study_result_t *result = subject;
+    const wh_tally_trial_t *worst = &result->tally->worst[i];
+    const wh_trial_t trial = {result->study->seed, worst->trial};
     json_t *object = json_object();
     json_t *drawn = json_object();
     put_count(object, "trial", worst->trial);
     wh_json_put(object, "ok", json_boolean(worst->met));
     wh_json_put_real(object, "off", worst->off);
-    wh_json_put(drawn, "wafers", drawn_wafers(report->study->layout, &trial));
-    wh_json_put(drawn, "stations", drawn_stations(report->study->layout, &trial));
-    wh_json_put(drawn, "valves", drawn_valves(report->study->layout, &trial));
-    wh_json_put_real(drawn, "vacuum_s", (double)wh_errors_draw_vacuum(report->study->layout->errors, &trial));
+    wh_json_put(drawn, "wafers", drawn_wafers(result->study->layout, &trial));
+    wh_json_put(drawn, "stations", drawn_stations(result->study->layout, &trial));
+    wh_json_put(drawn, "valves", drawn_valves(result->study->layout, &trial));
+    wh_json_put_real(drawn, "vacuum_s", (double)wh_errors_draw_vacuum(result->study->layout->errors, &trial));
     wh_json_put(object, "drawn", drawn);
     return object;
 }
 
 /* ---------------------------------------------------------------------------------------------------- all of it */
 
-static json_t *success(const wh_study_print_t *report) {
+static json_t *success(const wh_study_result_t *result) {
     json_t *object = json_object();
-    put_count(object, "met", report->tally->met);
-    put_rate(object, report->tally->met, report->tally->trials);
+    put_count(object, "met", result->tally->met);
+    put_rate(object, result->tally->met, result->tally->trials);
     return object;
 }
 
-static json_t *run_without_errors(const wh_study_print_t *report) {
-    const wh_record_t *record = &report->study->nominal.record;
+static json_t *run_without_errors(const wh_study_result_t *result) {
+    const wh_record_t *record = &result->study->nominal.record;
     json_t *object = json_object();
     wh_json_put(object, "ok", json_boolean(record->ok));
     wh_json_put(object, "hash", json_sprintf("%016llx", (unsigned long long)record->hash));
@@ -200,31 +200,31 @@ static json_t *run_without_errors(const wh_study_print_t *report) {
     return object;
 }
 
-static void put_head(const wh_study_print_t *report, json_t *root) {
+static void put_head(const wh_study_result_t *result, json_t *root) {
     wh_json_put_integer(root, "format", 1);
-    wh_json_put(root, "ok", json_boolean(wh_study_is_kept(report)));
-    wh_json_put_text(root, "script", report->study->run.script);
-    wh_json_put_text(root, "layout", report->study->layout->path);
-    put_count(root, "seed", report->study->seed);
-    put_count(root, "trials", report->tally->trials);
-    wh_json_put(root, "success", success(report));
-    wh_json_put(root, "require", report->require > 0 ? wh_json_real(report->require) : json_null());
-    put_count(root, "ended", report->tally->ended);
-    put_count(root, "whole", report->tally->whole);
-    wh_json_put_text(root, "whole_why", report->study->whole);
-    wh_json_put(root, "run_without_errors", run_without_errors(report));
+    wh_json_put(root, "ok", json_boolean(wh_study_is_kept(result)));
+    wh_json_put_text(root, "script", result->study->run.script);
+    wh_json_put_text(root, "layout", result->study->layout->path);
+    put_count(root, "seed", result->study->seed);
+    put_count(root, "trials", result->tally->trials);
+    wh_json_put(root, "success", success(result));
+    wh_json_put(root, "require", result->require > 0 ? wh_json_real(result->require) : json_null());
+    put_count(root, "ended", result->tally->ended);
+    put_count(root, "whole", result->tally->whole);
+    wh_json_put_text(root, "whole_why", result->study->whole);
+    wh_json_put(root, "run_without_errors", run_without_errors(result));
 }
 
-int wh_study_print_json(const wh_study_print_t *report, FILE *out) {
+int wh_study_print_json(const wh_study_result_t *result, FILE *out) {
     json_t *root = json_object();
     const size_t worst =
-        report->worst < report->tally->worst_count ? report->worst : report->tally->worst_count;
-    put_head(report, root);
-    wh_json_put(root, "expectations", wh_json_list(expectation, report, report->tally->expectations.count));
-    wh_json_put(root, "errors", wh_json_list(error, report, report->tally->errors.count));
-    wh_json_put(root, "events", events(report));
-    wh_json_put(root, "wafers", wh_json_list(wafer, report, report->tally->wafer_count));
-    wh_json_put(root, "worst", wh_json_list(worst_trial, report, worst));
+        result->worst < result->tally->worst_count ? result->worst : result->tally->worst_count;
+    put_head(result, root);
+    wh_json_put(root, "expectations", wh_json_list(expectation, result, result->tally->expectations.count));
+    wh_json_put(root, "errors", wh_json_list(error, result, result->tally->errors.count));
+    wh_json_put(root, "events", events(result));
+    wh_json_put(root, "wafers", wh_json_list(wafer, result, result->tally->wafer_count));
+    wh_json_put(root, "worst", wh_json_list(worst_trial, result, worst));
     const int status = wh_json_print(root, out);
     json_decref(root);
     return status;

@@ -60,6 +60,13 @@ void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_
     added->begin = begin;
 }
 
+bool wh_record_is_complaint(const wh_event_t *event) {
+    static const uint32_t complaints =
+        1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED | 1U << WH_EVENT_BAD_INPUT |
+        1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED;
+    return (complaints >> (unsigned)event->kind & 1U) != 0;
+}
+
 void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves) {
     record->curves = record->curves ? record->curves : malloc(sizeof *curves);
     if (!record->curves) {
@@ -107,4 +114,20 @@ void wh_record_free(wh_record_t *record) {
     free(record->script);
     free(record->failure);
     memset(record, 0, sizeof *record);
+}
+
+const char *wh_record_wafer_name(const wh_record_t *record, int32_t wafer) {
+    const wh_layout_t *layout = record->layout;
+    return layout && wh_is_index(wafer, layout->wafer_count) ? layout->wafers[wafer].name : NULL;
+}
+
+const char *wh_record_gripper_name(const wh_record_t *record, int32_t gripper) {
+    const wh_layout_t *layout = record->layout;
+    return layout && wh_is_index(gripper, layout->machine.gripper_count) ? layout->grippers[gripper].name
+                                                                         : NULL;
+}
+
+const char *wh_record_station_name(const wh_record_t *record, int32_t station) {
+    const wh_layout_t *layout = record->layout;
+    return layout && wh_is_index(station, layout->station_count) ? layout->stations[station].name : NULL;
 }

@@ -81,3 +81,18 @@ bool wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *text, wh_sandbo
     lua_pushlightuserdata(sandbox->main, &assignment);
     return wh_sandbox_call(sandbox->main, 1, 0, result);
 }
+
+wh_sandbox_t *wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
+                                  size_t count, wh_sandbox_result_t *result) {
+    wh_sandbox_t *sandbox = wh_sandbox_new(limits);
+    if (!sandbox) {
+        *result = (wh_sandbox_result_t){WH_SANDBOX_MEMORY, "no memory for Lua"};
+    }
+    for (size_t i = 0; sandbox && i < count; ++i) {
+        if (!wh_sandbox_set_parameter(sandbox, assignments[i], result)) {
+            wh_sandbox_free(sandbox);
+            return NULL;
+        }
+    }
+    return sandbox;
+}

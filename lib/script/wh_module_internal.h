@@ -75,6 +75,12 @@ void wh_lua_push_pose(lua_State *L, const wh_pose_t *pose);
 void wh_lua_push_tolerance(lua_State *L, const wh_tolerance_t *tolerance);
 /* From the library's index: one more, or nil for WH_NONE. */
 void wh_lua_push_index(lua_State *L, int32_t index);
+
+/* Set a field of the table on top of the stack. */
+void wh_lua_set_number(lua_State *L, const char *name, wh_real_t value);
+void wh_lua_set_index(lua_State *L, const char *name, int32_t index);
+void wh_lua_set_triple(lua_State *L, const char *name, const wh_vec3_t *v);
+
 void wh_lua_push_proximity(lua_State *L, const wh_proximity_t *proximity);
 void wh_lua_push_event(lua_State *L, const wh_event_t *event);
 

@@ -1,6 +1,6 @@
 #include "wh_module_internal.h"
 
-static void set_number(lua_State *L, const char *name, wh_real_t value) {
+void wh_lua_set_number(lua_State *L, const char *name, wh_real_t value) {
     lua_pushnumber(L, value);
     lua_setfield(L, -2, name);
 }
@@ -10,7 +10,7 @@ static void set_slice(lua_State *L, const char *name, uint64_t slice) {
     lua_setfield(L, -2, name);
 }
 
-static void set_index(lua_State *L, const char *name, int32_t index) {
+void wh_lua_set_index(lua_State *L, const char *name, int32_t index) {
     wh_lua_push_index(L, index);
     lua_setfield(L, -2, name);
 }
@@ -24,14 +24,14 @@ static void push_triple(lua_State *L, const wh_vec3_t *v) {
     }
 }
 
-static void set_triple(lua_State *L, const char *name, const wh_vec3_t *v) {
+void wh_lua_set_triple(lua_State *L, const char *name, const wh_vec3_t *v) {
     push_triple(L, v);
     lua_setfield(L, -2, name);
 }
 
 void wh_lua_push_pose(lua_State *L, const wh_pose_t *pose) {
     lua_createtable(L, 0, 2);
-    set_triple(L, "r", &pose->r);
+    wh_lua_set_triple(L, "r", &pose->r);
     lua_createtable(L, 3, 0);
     for (size_t i = 0; i < 3; ++i) {
         const wh_vec3_t row = wh_mat3_row(&pose->R, i);
@@ -43,9 +43,9 @@ void wh_lua_push_pose(lua_State *L, const wh_pose_t *pose) {
 
 void wh_lua_push_tolerance(lua_State *L, const wh_tolerance_t *tolerance) {
     lua_createtable(L, 0, 3);
-    set_number(L, "projz", tolerance->projz);
-    set_number(L, "projxy", tolerance->projxy);
-    set_number(L, "planar", tolerance->planar);
+    wh_lua_set_number(L, "projz", tolerance->projz);
+    wh_lua_set_number(L, "projxy", tolerance->projxy);
+    wh_lua_set_number(L, "planar", tolerance->planar);
 }
 
 void wh_lua_push_index(lua_State *L, int32_t index) {
@@ -73,11 +73,11 @@ static void set_failed(lua_State *L, unsigned failed) {
 
 static void set_proximity(lua_State *L, const wh_proximity_t *p) {
     const wh_tolerance_t margin = {p->margin_projz, p->margin_projxy, p->margin_planar};
-    set_triple(L, "dr", &p->dr);
-    set_number(L, "n1_proj_n2", p->n1_proj_n2);
-    set_number(L, "dr_proj_z", p->dr_proj_z);
-    set_triple(L, "dr_proj_xy", &p->dr_proj_xy);
-    set_number(L, "dr_proj_xy_norm", p->dr_proj_xy_norm);
+    wh_lua_set_triple(L, "dr", &p->dr);
+    wh_lua_set_number(L, "n1_proj_n2", p->n1_proj_n2);
+    wh_lua_set_number(L, "dr_proj_z", p->dr_proj_z);
+    wh_lua_set_triple(L, "dr_proj_xy", &p->dr_proj_xy);
+    wh_lua_set_number(L, "dr_proj_xy_norm", p->dr_proj_xy_norm);
     lua_pushboolean(L, p->ready);
     lua_setfield(L, -2, "ready");
     set_failed(L, p->failed);
@@ -96,12 +96,12 @@ void wh_lua_push_event(lua_State *L, const wh_event_t *event) {
     lua_setfield(L, -2, "kind");
     set_slice(L, "slice", event->slice);
     set_slice(L, "measured_slice", event->measured_slice);
-    set_index(L, "wafer", event->wafer);
-    set_index(L, "gripper", event->gripper);
+    wh_lua_set_index(L, "wafer", event->wafer);
+    wh_lua_set_index(L, "gripper", event->gripper);
     if (event->kind == WH_EVENT_HANDED_OVER) {
-        set_index(L, "from", event->other);
+        wh_lua_set_index(L, "from", event->other);
     } else if (event->kind == WH_EVENT_CONTESTED) {
-        set_index(L, "holder", event->other);
+        wh_lua_set_index(L, "holder", event->other);
     }
     set_proximity(L, &event->measured);
 }

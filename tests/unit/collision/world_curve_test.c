@@ -26,22 +26,30 @@ static wh_pose_t at_height(double z) {
     return pose;
 }
 
+/* What the world sees with the blade there. */
+static wh_world_input_t blade_at(wh_pose_t pose) {
+    const wh_world_input_t input = {table.slice, NULL, &gripper, pose};
+    gripper.base_from_gripper = pose;
+    return input;
+}
+
 static int open_world(void **state) {
     (void)state;
     const wh_grasp_config_t grasp = wh_grasp_config_default();
     const wh_grasp_storage_t storage = {.grippers = &gripper, .gripper_count = 1};
-    const wh_pose_t start = at_height(12);
     parts[0] = (wh_part_t){.kind = WH_PART_FIXED, .owner = WH_NONE, .convex = box(100, 100, 10)};
     parts[0].convex.body_from_shape.r.z = -5;
     parts[1] = (wh_part_t){.kind = WH_PART_BLADE, .convex = box(20, 20, 2)};
     parts[1].convex.body_from_shape.r.z = 1;
-    config = (wh_world_config_t){.parts = parts, .part_count = PARTS, .gripper_count = 1, .cell = &cell};
+    config = (wh_world_config_t){
+        .parts = parts, .part_count = PARTS, .gripper_count = 1, .cell = &cell, .grasp = &table.config};
     config.wafer = box(1, 1, 1);
     config.arm.link = 300;
     assert_int_equal(wh_world_validate(&config, NULL), WH_OK);
     assert_int_equal(wh_grasp_init(&table, &grasp, &storage), WH_OK);
     memory = malloc(wh_world_bytes(&config));
-    world = wh_world_init(&config, &table, &start, &start, memory, wh_world_bytes(&config));
+    const wh_world_input_t start = blade_at(at_height(12));
+    world = wh_world_init(&config, &start, memory, wh_world_bytes(&config));
     return world ? 0 : -1;
 }
 
@@ -58,8 +66,8 @@ static double height_in(uint64_t slice) {
 static void step_to(uint64_t slice) {
     while (table.slice < slice) {
         ++table.slice;
-        const wh_pose_t pose = at_height(height_in(table.slice));
-        wh_world_step(world, &table, &pose, &pose, NULL);
+        const wh_world_input_t input = blade_at(at_height(height_in(table.slice)));
+        wh_world_step(world, &input, NULL);
     }
 }
 
@@ -84,8 +92,8 @@ static void smallest_gap_is_in_its_bin(void **state) {
     (void)state;
     step_to(1002);
     ++table.slice;
-    const wh_pose_t dip = at_height(0.5);
-    wh_world_step(world, &table, &dip, &dip, NULL);
+    const wh_world_input_t dip = blade_at(at_height(0.5));
+    wh_world_step(world, &dip, NULL);
     step_to(1020);
     const wh_curves_t *curves = wh_world_curves(world);
     assert_near(wh_world_clearances(world)[WH_CLEARANCE_BLADE_OTHER].gap, 0.5, 1e-3);

@@ -23,13 +23,12 @@ static wh_signals_t signals;
 static slice_t *slices; /* by number, 0 not used */
 static size_t slice_count, slice_capacity;
 
-static void on_slice(void *user, const wh_mcs_t *mcs) {
+static void on_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
     (void)user;
-    const wh_state_t *state = &mcs->state;
-    if (!signals.layout) {
-        wh_signals_begin(&signals, mcs->layout, true);
+    if (state->status != WH_OK) {
+        return;
     }
-    wh_signals_slice(&signals, mcs->command.axes, mcs->command.axis_count, state);
+    wh_signals_slice(&signals, command->axes, command->axis_count, state);
     slice_count = (size_t)state->seq + 1;
     if (slice_count > slice_capacity) {
         slice_capacity = 2 * slice_count + 8192;
@@ -47,15 +46,18 @@ static void on_slice(void *user, const wh_mcs_t *mcs) {
         kept->wafers[w] = state->wafers[w].base_from_wafer;
         kept->holders[w] = state->wafers[w].holder;
     }
-    memcpy(kept->axes, mcs->command.axes, sizeof kept->axes);
+    memcpy(kept->axes, command->axes, sizeof kept->axes);
     kept->sensors = state->sensors;
     kept->is_exact = state->event_count > 0;
 }
 
-static void on_boundary(void *user, const wh_mcs_t *mcs) {
+static void on_boundary(void *user, const wh_layout_t *layout) {
     (void)user;
-    (void)mcs;
-    wh_signals_mark(&signals);
+    if (!signals.layout) {
+        wh_signals_begin(&signals, layout, true);
+    } else if (signals.last > 0) {
+        wh_signals_mark(&signals);
+    }
     if (slice_count > 0) {
         slices[slice_count - 1].is_exact = true;
     }
