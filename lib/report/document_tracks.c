@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../text/array.h"
 #include "document_internal.h"
 
 /* With so many decimals rounding adds at most a hundredth of what thinning leaves. A slope's error counts for
@@ -193,10 +194,7 @@ static void put_stay(wh_json_text_t *text, const wh_signals_t *signals, const wh
 
 /* Indices of the stays, sorted by wafer, then by time. (The list of stays is sorted by time alone.) */
 static size_t *sort_stays(const wh_signals_t *signals, size_t *ends) {
-    size_t *sorted = calloc(signals->stay_count + 1, sizeof *sorted);
-    if (!sorted) {
-        abort();
-    }
+    size_t *sorted = wh_array_new(signals->stay_count, sizeof *sorted);
     for (size_t i = 0; i < signals->stay_count; ++i) {
         ++ends[signals->stays[i].wafer];
     }
@@ -211,10 +209,7 @@ static size_t *sort_stays(const wh_signals_t *signals, size_t *ends) {
 
 static void put_wafers(wh_json_text_t *text, const wh_signals_t *signals) {
     const size_t wafers = signals->layout->wafer_count;
-    size_t *begins = calloc(wafers + 1, sizeof *begins);
-    if (!begins) {
-        abort();
-    }
+    size_t *begins = wh_array_new(wafers + 1, sizeof *begins);
     size_t *sorted = sort_stays(signals, begins);
     begins[wafers] = signals->stay_count;
     wh_json_text_begin(text, "wafers", '[');

@@ -108,12 +108,9 @@ static size_t add_indices(wh_gltf_t *gltf, const wh_mesh_t *mesh) {
     const size_t count = mesh->index_count;
     size_t view;
     if (mesh->vertex_count <= UINT16_MAX) {
-        uint16_t *narrow = malloc(count * sizeof *narrow + 1);
-        for (size_t i = 0; narrow && i < count; ++i) {
+        uint16_t *narrow = wh_array_new(count, sizeof *narrow);
+        for (size_t i = 0; i < count; ++i) {
             narrow[i] = (uint16_t)mesh->indices[i];
-        }
-        if (!narrow) {
-            abort();
         }
         view = add_view(gltf, narrow, count * sizeof *narrow, TARGET_INDICES);
         free(narrow);
@@ -126,10 +123,7 @@ static size_t add_indices(wh_gltf_t *gltf, const wh_mesh_t *mesh) {
 /* Three numbers of each vertex, from `first` on: its place, in m, or its normal. */
 static size_t add_attribute(wh_gltf_t *gltf, const wh_mesh_t *mesh, size_t first) {
     const bool is_place = first == 0;
-    float *values = malloc((3 * mesh->vertex_count + 1) * sizeof *values);
-    if (!values) {
-        abort();
-    }
+    float *values = wh_array_new(3 * mesh->vertex_count, sizeof *values);
     for (size_t i = 0; i < 3 * mesh->vertex_count; ++i) {
         values[i] = mesh->vertices[i / 3][first + i % 3] * (is_place ? (float)METRES : 1);
     }
