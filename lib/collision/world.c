@@ -1,11 +1,12 @@
-/* A world's description and memory. What happens in a slice is in world_move.c, world_near.c and world_pair.c. */
+/* A world's description and memory. What happens in a slice is in world_move.c, world_near.c and
+ * world_pair.c. */
 #include "world.h"
 
 #include <string.h>
 
 #include "world_internal.h"
 
-/* Slices in a bin of the curves, to begin with. */
+/* Slices in a bin of the curves at the start. */
 #define FIRST_BIN 10
 
 const char *wh_clearance_name(wh_clearance_kind_t kind) {
@@ -15,7 +16,7 @@ const char *wh_clearance_name(wh_clearance_kind_t kind) {
     return (unsigned)kind < WH_CLEARANCES ? names[kind] : "unknown";
 }
 
-/* ------------------------------------------------------------------------------------------------ description */
+/* -------------------------------------------------------------------------------------------- description */
 
 static bool hangs(const wh_part_t *part) {
     return part->kind != WH_PART_FIXED && part->kind != WH_PART_LEDGE;
@@ -83,9 +84,10 @@ wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part) {
     return status == WH_OK ? wh_convex_validate(&config->wafer) : status;
 }
 
-/* ----------------------------------------------------------------------------------------------------- memory */
+/* ------------------------------------------------------------------------------------------------- memory */
 
-/* Where the arrays begin in one block; each of a size that keeps the next aligned. */
+/* Where the arrays begin in the block of memory. Their sizes are rounded up, so that the next one is
+ * aligned. */
 typedef struct {
     size_t items, hanging, movers, pairs;
     size_t nodes_at, boxes_at, codes_at, order_at, leaf_at, wafers_at, movers_at, pairs_at, near_at, end;
@@ -145,7 +147,7 @@ static wh_world_t *lay_out(const wh_world_config_t *config, const plan_t *plan, 
     return world;
 }
 
-/* ------------------------------------------------------------------------------------------------------ set-up */
+/* ------------------------------------------------------------------------------------------------- set-up */
 
 static void set_up_boxes(wh_world_t *world, const wh_wafer_t wafers[]) {
     const wh_world_config_t *config = world->config;
@@ -189,7 +191,7 @@ static void set_up_movers(wh_world_t *world) {
     }
 }
 
-/* A mover that stands for a held wafer may meet anything, whichever it is. */
+/* Movers that stand for a held wafer may meet anything, whichever wafer it is. */
 static bool never_meet(const wh_world_t *world, const wh_mover_t *a, const wh_mover_t *b) {
     return a->part != WH_NONE && b->part != WH_NONE &&
            wh_world_belong_together(&world->config->parts[a->part], &world->config->parts[b->part]);
@@ -226,7 +228,7 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_
     set_up_pairs(world);
     const wh_look_t look = {world, input, NULL};
     wh_world_move(&look);
-    wh_world_move(&look); /* now before and now are the same */
+    wh_world_move(&look); /* now `before` and `now` are the same */
     return world;
 }
 

@@ -7,11 +7,11 @@
 #include "inks.h"
 #include "outline.h"
 
-/* The picture is as wide as the window; its lines and letters are parts of its width. */
+/* The picture fills the window's width. Widths of lines and letters are fractions of it. */
 #define LINES_PER_WIDTH 1300
 #define LETTERS_PER_WIDTH 95
 
-/* Both views, in mm of the cell: the box that holds all of it, and where the views' origins are. */
+/* Both views, in mm of the cell: the box that holds all of it, and the sizes that follow from it. */
 typedef struct {
     const wh_feasibility_t *check;
     FILE *out;
@@ -20,7 +20,7 @@ typedef struct {
     wh_outline_t outline;
 } drawing_t;
 
-/* ------------------------------------------------------------------------------------------------------- size */
+/* --------------------------------------------------------------------------------------------------- size */
 
 static void grow(drawing_t *d, wh_vec3_t low, wh_vec3_t high) {
     d->low = wh_vec3(low.x < d->low.x ? low.x : d->low.x, low.y < d->low.y ? low.y : d->low.y,
@@ -33,7 +33,7 @@ static const wh_convex_t *convex_of(const wh_layout_t *layout, size_t part) {
     return part < layout->world.part_count ? &layout->world.parts[part].convex : &layout->world.wafer;
 }
 
-/* Parts and wafers together; none of a layout with more than can be checked. */
+/* Parts and wafers together; 0 if the layout has more parts than can be checked. */
 static size_t count_parts(const wh_feasibility_t *check) {
     return check->has_parts ? check->layout->world.part_count + check->layout->wafer_count : 0;
 }
@@ -58,7 +58,7 @@ static void measure(drawing_t *d) {
     d->height = (y > z ? y : z) + 2 * d->margin + 5 * d->letter;
 }
 
-/* ------------------------------------------------------------------------------------------------------ style */
+/* -------------------------------------------------------------------------------------------------- style */
 
 static void print_style(const drawing_t *d) {
     fprintf(d->out,
@@ -85,13 +85,13 @@ static void print_style(const drawing_t *d) {
     fputs(".found { fill: #ff5d6c; stroke: #ff5d6c }\n}\n</style>\n", d->out);
 }
 
-/* ------------------------------------------------------------------------------------------------------ parts */
+/* -------------------------------------------------------------------------------------------------- parts */
 
 static wh_part_ink_t ink_of(const wh_layout_t *layout, size_t part) {
     return part < layout->world.part_count ? wh_ink_of(&layout->world.parts[part]) : WH_INK_WAFER;
 }
 
-/* What the part is a part of. */
+/* The name of the group that the part belongs to. */
 static const char *group_of(const wh_layout_t *layout, size_t part, wh_part_ink_t ink) {
     if (ink == WH_INK_WALL || ink == WH_INK_WAFER) {
         return ink == WH_INK_WALL ? "obstacles" : "wafers";
@@ -127,7 +127,7 @@ static void draw_part(drawing_t *d, wh_projection_t view, size_t part, wh_part_i
     fputs("</title></polygon>\n", d->out);
 }
 
-/* Those of inks `first` to `last`, in groups by what they are parts of. */
+/* Draws the parts with inks `first` to `last`, in groups. */
 static void draw_parts(drawing_t *d, wh_projection_t view, wh_part_ink_t first, wh_part_ink_t last) {
     const wh_layout_t *layout = d->check->layout;
     const char *group = NULL;
@@ -148,7 +148,7 @@ static void draw_parts(drawing_t *d, wh_projection_t view, wh_part_ink_t first, 
     fputs(group ? "</g>\n" : "", d->out);
 }
 
-/* ----------------------------------------------------------------------------------------------------- labels */
+/* ------------------------------------------------------------------------------------------------- labels */
 
 static void label_at(wh_svg_labels_t *labels, wh_projection_t view, wh_vec3_t r, double down,
                      const char *name) {
@@ -166,7 +166,7 @@ static void label_stations(const drawing_t *d, wh_projection_t view, wh_svg_labe
     }
 }
 
-/* At the lower edge of each, inside where it is large enough. */
+/* Labels stand at the lower edge of each obstacle, inside if there is room. */
 static void label_obstacles(const drawing_t *d, wh_projection_t view, wh_svg_labels_t *labels) {
     const wh_layout_t *layout = d->check->layout;
     for (size_t part = 0; part < layout->world.part_count; ++part) {
@@ -196,7 +196,7 @@ static void label_all(const drawing_t *d, wh_projection_t view) {
     label_obstacles(d, view, &labels);
 }
 
-/* ------------------------------------------------------------------------------------------------------ views */
+/* -------------------------------------------------------------------------------------------------- views */
 
 static void draw_travel(const drawing_t *d, wh_projection_t view) {
     const wh_robot_t *robot = &d->check->layout->machine.robot;
@@ -226,7 +226,7 @@ static void draw_view(drawing_t *d, wh_projection_t view, double x, double lowes
     fputs("</g>\n", d->out);
 }
 
-/* A round length of about a tenth of the picture, and what the colours mean. */
+/* Draws a scale of a round length, about a tenth of the picture, and the meaning of the colours. */
 static void draw_scale(const drawing_t *d) {
     static const double steps[] = {1, 2, 5, 10};
     const double wanted = d->width / 10;

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "../layout/layout_load.h"
+#include "../layout/layout.h"
 #include "../link/messages.h"
 
 /* What a layout has by default. */

@@ -3,7 +3,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "../script/wh_module_internal.h"
+#include "../script/wh_module_values.h"
 #include "ahead.h"
 #include "native.h"
 
@@ -57,7 +57,7 @@ static const wh_layout_t *make_reality(lua_State *L, wh_mcs_t *mcs, const wh_lay
                        lua_memory(L, layout->station_count * sizeof *layout->places),
                        lua_memory(L, layout->wafer_count * sizeof *layout->start));
     if (layout->collision) {
-        wh_layout_read_reality(L, &trial_cell->layout);
+        wh_layout_read_trial_world(L, &trial_cell->layout);
     }
     mcs->local.trial = trial_cell;
     return &trial_cell->layout;

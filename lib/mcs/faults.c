@@ -1,7 +1,6 @@
 /* Faults on purpose: a script's go to the simulator with the next slice's command. */
 #include <string.h>
 
-#include "../layout/layout_faults.h"
 #include "native.h"
 
 static int64_t next_slice(const wh_mcs_t *mcs) {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "../math/trig.h"
-#include "../script/wh_module_internal.h"
+#include "../script/wh_module_values.h"
 #include "native.h"
 
 static void push_axes(lua_State *L, const wh_mcs_t *mcs, const wh_real_t axes[]) {

@@ -5,7 +5,7 @@
 
 #include "../math/relation.h"
 #include "../math/trig.h"
-#include "../script/wh_module_internal.h"
+#include "../script/wh_module_values.h"
 #include "native.h"
 
 /* native.utime(): simulated microseconds so far. */

@@ -78,8 +78,11 @@ $(B)/log/library: $(LIBRARY_SOURCES) $(HEADERS) tests/check/check.mk
 # At most 10 ways through a function, each case of a switch counted, and 60 lines.
 $(B)/log/functions: $(C_FILES) tests/check/functions.awk
 	$(call look,PMCCABE,pmccabe $(C_FILES) 2>&1 | awk -F '\t' -f tests/check/functions.awk)
-$(B)/log/texts: $(C_FILES) tests/check/texts.awk
-	$(call look,TEXTS,awk -v embedded='^lib/($(subst $() ,|,$(LIBRARY_ROOMS)))/' -f tests/check/texts.awk $(C_FILES))
+# Rooms whose lines, banners and members are looked at.
+TIDY_ROOMS := batch motion cell sim collision script layout
+$(B)/log/texts: $(C_FILES) tests/check/texts.awk tests/check/check.mk
+	$(call look,TEXTS,LC_ALL=C awk -v embedded='^lib/($(subst $() ,|,$(LIBRARY_ROOMS)))/' \
+	    -v tidy='^lib/($(subst $() ,|,$(TIDY_ROOMS)))/' -f tests/check/texts.awk $(C_FILES))
 
 LOGS := $(SOURCE_LOGS) $(addprefix $(B)/log/,library program functions texts)
 check-deviations: $(LOGS) lib/DEVIATIONS.md

@@ -11,7 +11,7 @@
 #include "fake_node.h"
 #include "fuzz.h"
 #include "grasp/restore.h"
-#include "layout/layout_load.h"
+#include "layout/layout.h"
 #include "link/mcs_process.h"
 #include "link/messages.h"
 #include "link/sim_process.h"

@@ -1,7 +1,7 @@
 /* Recordings in memory: what is the same, what differs and how that is named, what is not there. */
 #include "support/support.h"
 
-#include "layout/layout_load.h"
+#include "layout/layout.h"
 #include "link/messages.h"
 #include "log/replay.h"
 

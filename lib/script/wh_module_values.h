@@ -1,4 +1,5 @@
-/* Within the module `wh`: values to and from Lua, and errors that name the field they are about. */
+/* The library's values to and from Lua, with errors that name the field they are about: for the module `wh`,
+ * and for motion control's own module. */
 #ifndef WH_SCRIPT_WH_MODULE_INTERNAL_H
 #define WH_SCRIPT_WH_MODULE_INTERNAL_H
 
@@ -15,14 +16,11 @@
 #error "waferhand: the Lua module needs Lua 5.4 with double numbers"
 #endif
 
-/* As many wafers as a cell of the module takes. */
-#define WH_MODULE_WAFERS 1000000
-
 /* The path of a value within an argument, such as inputs[2].pose.R, as a chain of the callers' locals. */
 typedef struct wh_field {
-    const struct wh_field *of; /* null: this is the whole argument */
-    const char *name;          /* null: an entry of a list; "": an argument that goes without a name */
-    lua_Integer index;         /* the entry's, from 1; of a whole argument its number */
+    const struct wh_field *of; /* null: the field is the whole argument */
+    const char *name;          /* null: an entry of a list; "": an argument without a name */
+    lua_Integer index;         /* of the entry, from 1; of a whole argument its number */
 } wh_field_t;
 
 static inline wh_field_t wh_lua_argument(const char *name, int number) {
@@ -43,11 +41,12 @@ static inline wh_field_t wh_lua_entry(const wh_field_t *of, lua_Integer index) {
 /* Raises "bad argument #n to 'f' (path: what)"; `what` is formatted as by lua_pushfstring. Never returns. */
 int wh_lua_refuse(lua_State *L, const wh_field_t *at, const char *what, ...);
 
-/* Raises what wh_pose_validate said; of a number that is not finite also which it is. Never returns. */
+/* Raises the status that wh_pose_validate gave. If a number is not finite, the error names that number. Never
+ * returns. */
 int wh_lua_refuse_pose(lua_State *L, const wh_field_t *at, const wh_pose_t *pose, wh_status_t status);
 
-/* Refuse a value at an absolute stack index that is no table, and keys of its own that are not in `names`
- * (null at its end), or not in 1 to `count`. Nothing is pushed. */
+/* Refuse a value at an absolute stack index that is not a table, and own keys that are not in `names` (null
+ * at its end), or not in 1 to `count`. Nothing is pushed. */
 void wh_lua_check_record(lua_State *L, int index, const wh_field_t *at, const char *const *names);
 void wh_lua_check_list(lua_State *L, int index, const wh_field_t *at, lua_Integer count);
 
@@ -55,25 +54,29 @@ void wh_lua_check_list(lua_State *L, int index, const wh_field_t *at, lua_Intege
 wh_real_t wh_lua_take_number(lua_State *L, const wh_field_t *at);
 lua_Integer wh_lua_take_integer(lua_State *L, const wh_field_t *at, lua_Integer first, lua_Integer last,
                                 const char *expected);
-/* A wafer's or a gripper's index, 1 to `count`, as the library counts. */
+/* A wafer's or a gripper's index: 1 to `count` in Lua, one less in the result. */
 size_t wh_lua_take_index(lua_State *L, const wh_field_t *at, size_t count);
-/* As it stands: whether it is a pose is for the library to say. */
+/* Three numbers and three by three; the library checks later if they are a pose. */
 void wh_lua_take_pose(lua_State *L, const wh_field_t *at, wh_pose_t *pose);
 /* Refuses what wh_pose_validate refuses. */
 void wh_lua_take_valid_pose(lua_State *L, const wh_field_t *at, wh_pose_t *pose);
 /* Refuses what wh_tolerance_validate refuses; nil is "paper". */
 wh_tolerance_t wh_lua_take_tolerance(lua_State *L, const wh_field_t *at);
 
-/* What wh.cell's table, argument 1, says about the rules; the rest of it is for the caller to read. */
-wh_grasp_config_t wh_lua_read_config(lua_State *L, const wh_field_t *of);
-
-/* A field of the table at an absolute index, or `otherwise` where it is nil. */
+/* A field of the table at an absolute index, or `otherwise` if it is nil. */
 wh_real_t wh_lua_get_number(lua_State *L, int index, const wh_field_t *of, const char *name,
                             wh_real_t otherwise);
 
+/* Sets a field of the table on top of the stack. */
+void wh_lua_set_number(lua_State *L, const char *name, wh_real_t value);
+void wh_lua_set_integer(lua_State *L, const char *name, int64_t value);
+void wh_lua_set_boolean(lua_State *L, const char *name, bool value);
+void wh_lua_set_text(lua_State *L, const char *name, const char *text);
+void wh_lua_set_index(lua_State *L, const char *name, int32_t index);
+
 void wh_lua_push_pose(lua_State *L, const wh_pose_t *pose);
 void wh_lua_push_tolerance(lua_State *L, const wh_tolerance_t *tolerance);
-/* From the library's index: one more, or nil for WH_NONE. */
+/* Pushes the library's index plus one, or nil for WH_NONE. */
 void wh_lua_push_index(lua_State *L, int32_t index);
 
 /* Set a field of the table on top of the stack. */
@@ -84,10 +87,7 @@ void wh_lua_set_triple(lua_State *L, const char *name, const wh_vec3_t *v);
 void wh_lua_push_proximity(lua_State *L, const wh_proximity_t *proximity);
 void wh_lua_push_event(lua_State *L, const wh_event_t *event);
 
-/* The module's functions. */
-int wh_lua_proximity(lua_State *L);
-int wh_lua_rim_gap(lua_State *L);
-int wh_lua_tolerance(lua_State *L);
+/* wh.cell. */
 int wh_lua_cell(lua_State *L);
 
 /* Makes the type of cells known to this state. */
