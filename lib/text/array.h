@@ -29,4 +29,13 @@ static inline void *wh_array_grow(void *items, size_t count, size_t *capacity, s
     return wh_array_reserve(items, count + 1, capacity, size);
 }
 
+/* `count` items, all zero, that need not grow. Never null; the caller frees them. */
+static inline void *wh_array_new(size_t count, size_t size) {
+    void *const items = calloc(count + 1, size);
+    if (!items) {
+        abort();
+    }
+    return items;
+}
+
 #endif
