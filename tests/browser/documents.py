@@ -1,5 +1,6 @@
 """Documents and pages for the tests: the program's own, and made worse on purpose."""
 import copy
+import functools
 import json
 import pathlib
 import subprocess
@@ -23,12 +24,18 @@ def report(script, *options):
     subprocess.run([PROGRAM, "report", script, *options], cwd=ROOT, check=True, capture_output=True)
 
 
-def example(name):
-    """An example's document, and the page that the program makes of it."""
+@functools.lru_cache(maxsize=None)
+def made(name):
     FOLDER.mkdir(parents=True, exist_ok=True)
     data, page = FOLDER / f"{name}.json", FOLDER / f"{name}.html"
     report(f"lua/examples/{name}.lua", "--data", data, "-o", page)
-    return json.loads(data.read_text()), page
+    return data.read_text(), page
+
+
+def example(name):
+    """An example's document, the caller's to change, and the page that the program makes of it."""
+    text, page = made(name)
+    return json.loads(text), page
 
 
 def page_of(document, name):

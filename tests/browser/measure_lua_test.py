@@ -3,8 +3,8 @@ import json
 import subprocess
 import unittest
 
+import browser
 from assemble import ROOT
-from browser import Browser
 from documents import FOLDER, PROGRAM
 
 PAIRS = [("base", "EE"), ("EE", "Wafer 1"), ("Wafer 2", "B/10"), ("B/10", "Wafer 2"), ("A", "Wafer 1"), ("A/25", "B/1"),
@@ -37,16 +37,15 @@ class Lua(unittest.TestCase):
         lines = said.splitlines()[:len(COMMANDS) * len(PAIRS)]
         ends = [command["end_s"] for command in json.loads(data.read_text())["run"]["commands"]]
         self.assertEqual(len(ends), len(COMMANDS))
-        browser = Browser()
-        self.addCleanup(browser.close)
-        browser.open(page)
+        shown = browser.plain()
+        shown.open(page)
         for i, line in enumerate(lines):
             t, pair = ends[i // len(PAIRS)], PAIRS[i % len(PAIRS)]
-            browser.js("arguments[0].forEach((name, i) => { document.getElementById('measure-' + i).value = name; })", pair)
-            found = browser.js("return Waferhand.measure.at(arguments[0])", t)
+            shown.js("arguments[0].forEach((name, i) => { document.getElementById('measure-' + i).value = name; })", pair)
+            found = shown.js("return Waferhand.measure.at(arguments[0])", t)
             for key, value in zip(KEYS, line.split()):
                 self.assertAlmostEqual(found[key], float(value), delta=1e-9, msg=(t, pair, key))
-        self.assertEqual(browser.faults(), [])
+        self.assertEqual(shown.faults(), [])
 
 
 if __name__ == "__main__":

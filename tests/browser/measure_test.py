@@ -12,18 +12,14 @@ def setUpModule():
 
 
 class Measure:
-    flags = None
-
     @classmethod
     def setUpClass(cls):
-        cls.page = browser.Browser(cls.flags) if cls.flags else browser.common()
+        cls.page = browser.shared(cls.webgl)
         cls.page.open(path)
 
     @classmethod
     def tearDownClass(cls):
         faults, outside = cls.page.faults(), cls.page.outside()
-        if cls.flags:
-            cls.page.close()
         assert faults == [] and outside == [], (faults, outside)
 
     def choose(self, first, second):
@@ -99,13 +95,14 @@ class Measure:
         self.assertEqual(self.page.js("return Waferhand.measure.selects.map((select) => select.value)"), self.clicked)
         self.page.seek(2.4)
         self.compare(*self.clicked, 2.4)
-        self.page.shoot("measure" if self.flags is None else "measure_without_webgl")
+        self.page.shoot("measure" if self.webgl else "measure_without_webgl")
         self.page.js("document.activeElement.blur()")
         self.page.key("m")
         self.assertFalse(self.page.js("return Waferhand.measure.armed"))
 
 
 class WithWebGL(Measure, unittest.TestCase):
+    webgl = True
     clicked = ["PA", "Wafer 1"]
 
     def spot(self, name):
@@ -117,7 +114,7 @@ class WithWebGL(Measure, unittest.TestCase):
 
 
 class WithoutWebGL(Measure, unittest.TestCase):
-    flags = browser.NO_WEBGL
+    webgl = False
     clicked = ["EE", "Wafer 1"]  # at one spot: the second click there takes the other
 
     def spot(self, name):
