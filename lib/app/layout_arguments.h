@@ -4,7 +4,7 @@
 
 #include <argp.h>
 
-#include "../layout/layout_load.h"
+#include "../layout/layout.h"
 
 typedef struct {
     const char *path;

@@ -162,15 +162,15 @@ static error_t parse(int key, char *argument, struct argp_state *state) {
 /* ---------------------------------------------------------------------------------------------------- the study */
 
 static int print(const arguments_t *arguments, const wh_study_t *study, const wh_tally_t *tally) {
-    const wh_study_print_t report = {study, tally, arguments->require, arguments->worst};
+    const wh_study_result_t result = {study, tally, arguments->require, arguments->worst};
     const wh_style_t style = wh_style_of(stdout);
-    const int status = arguments->run.json ? wh_study_print_json(&report, stdout)
-                                           : wh_study_print_table(&report, stdout, &style);
+    const int status = arguments->run.json ? wh_study_print_json(&result, stdout)
+                                           : wh_study_print_table(&result, stdout, &style);
     if (status != 0 || fflush(stdout) != 0) {
         fprintf(stderr, "standard output: %s\n", strerror(errno));
         return WH_EXIT_USAGE;
     }
-    return wh_study_is_kept(&report) ? WH_EXIT_MET : WH_EXIT_FAILED;
+    return wh_study_is_kept(&result) ? WH_EXIT_MET : WH_EXIT_FAILED;
 }
 
 static int play(const arguments_t *arguments, const wh_study_t *study, wh_ranks_t *ranks) {

@@ -78,7 +78,6 @@ typedef struct {
 } wh_event_list_t;
 
 /* The kind's name in lower case, such as "handed_over": a constant string, never null. */
-/*@ assigns \result \from kind; ensures \result != \null; */
 const char *wh_event_name(wh_event_kind_t kind);
 
 #endif

@@ -36,35 +36,23 @@ typedef struct {
 } wh_carry_t;
 
 /* No wafer is watched. */
-/*@ assigns \nothing; */
 wh_pads_t wh_pads_none(void);
 
 /* WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE or WH_STATUS_OUT_OF_RANGE. A mass of 0 with nothing else than 0
  * passes. */
-/*@ requires pads == \null || \valid_read(pads);
-    assigns \nothing; */
 wh_status_t wh_pads_validate(const wh_pads_t *pads);
 
 /* The mass in kg of a disc of silicon (2.329 g/cm3) of this size in mm: 0.1276 for 300 mm and 0.775 mm. */
-/*@ assigns \nothing; */
 wh_real_t wh_wafer_mass(wh_real_t diameter, wh_real_t thickness);
 
 /* The verdict on one moment: `acceleration` of the wafer in base, mm/s^2. Nothing is checked; the mass is above 0. Cost:
  * a square root and three divisions. */
-/*@ requires \valid_read(pads) && \valid_read(base_from_gripper) && \valid_read(acceleration);
-    assigns \nothing; */
 wh_hold_t wh_hold_judge(const wh_pads_t *pads, wh_real_t level, const wh_mat3_t *base_from_gripper,
                         const wh_vec3_t *acceleration);
 
 /* One slice of a gripper whose wafer's centre is now at `centre` (null: it holds none): the acceleration is the second
  * difference of three positions over slices of `dt` s, so the first two slices after a pick are not judged. `hold` gets
  * the verdict, all zero where there is none. True when a slip begins. Nothing is checked. */
-/*@ requires \valid_read(pads) && \valid_read(base_from_gripper) && \valid(carry) && \valid(hold);
-    requires centre == \null || \valid_read(centre);
-    requires \separated(carry, hold) && \separated(carry, centre) && \separated(carry, base_from_gripper);
-    requires 0 <= carry->known <= 2;
-    assigns *carry, *hold;
-    ensures 0 <= carry->known <= 2; */
 bool wh_carry_update(wh_carry_t *carry, const wh_pads_t *pads, wh_real_t level,
                      const wh_mat3_t *base_from_gripper, const wh_vec3_t *centre, wh_real_t dt,
                      wh_hold_t *hold);

@@ -40,7 +40,6 @@ wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_
 }
 
 /* The distance in units, rounded down, for four times which there is room in a word; 0 where none is left. */
-/*@ assigns \nothing; ensures \result <= LONGEST; */
 static uint32_t reach_of(wh_real_t units) {
     const int32_t reach = wh_index_whole(units);
     if (reach < 0) {
@@ -50,7 +49,6 @@ static uint32_t reach_of(wh_real_t units) {
 }
 
 /* A gripper that is has no horizon. */
-/*@ assigns \nothing; */
 static bool is_far(int32_t units) {
     return units == WH_INDEX_FAR || units == -WH_INDEX_FAR;
 }
@@ -81,9 +79,6 @@ void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const
 }
 
 void wh_horizon_reset(wh_grasp_t *table) {
-    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
-        loop assigns g, table->storage.buckets[0 .. table->storage.bucket_count - 1];
-        loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         wh_horizon_words(table, g)[3] = 0;
     }

@@ -23,24 +23,17 @@ typedef struct {
 /* It was measured against the tolerance; the gripper's pick in this step found that it is within it. */
 enum { WH_HORIZON_OF_TOLERANCE = 1, WH_HORIZON_HOLDS = 2 };
 
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && table->storage.bucket_count > 0;
-    assigns \nothing;
-    ensures \result == table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g); */
 static inline uint32_t *wh_horizon_words(const wh_grasp_t *table, size_t g) {
     return &table->storage.buckets[WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g];
 }
 
 /* The way from a place that a word keeps, along one axis, in units. Two's complement, whatever a cast makes of it. */
-/*@ assigns \nothing; */
 static inline wh_real_t wh_horizon_way(uint32_t word, wh_real_t place) {
     const int32_t from = word > INT32_MAX ? -1 - (int32_t)(UINT32_MAX - word) : (int32_t)word;
     return WH_INDEX_UNITS * place - (wh_real_t)from;
 }
 
 /* No wafer that nobody holds matters to gripper g at `place`. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place);
-    assigns \nothing;
-    ensures \result ==> table->storage.bucket_count > 0; */
 static inline bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
     if (table->storage.bucket_count == 0) {
         return false;
@@ -57,32 +50,22 @@ static inline bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh
 }
 
 /* The same at the slice's end, after the gripper's pick has found it out. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g); assigns \nothing; */
 static inline bool wh_horizon_holds(const wh_grasp_t *table, size_t g) {
     return table->storage.bucket_count > 0 && (wh_horizon_words(table, g)[3] & WH_HORIZON_HOLDS) != 0;
 }
 
 /* That it covers the slice's end. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && table->storage.bucket_count > 0;
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 static inline void wh_horizon_note(wh_grasp_t *table, size_t g) {
     wh_horizon_words(table, g)[3] |= WH_HORIZON_HOLDS;
 }
 
 /* How far around `place` it pays to look: many times the way of this slice, or little when the gripper jumps. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place);
-    assigns \nothing; */
 wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place);
 
 /* Begins to measure what wh_index_near found with this margin. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(near);
-    assigns \nothing;
-    ensures \result.measured ==> table->storage.bucket_count > 0; */
 wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin);
 
 /* Takes a free wafer into account; true when it is not ready, as wh_proximity_ready says it. */
-/*@ requires \valid(horizon) && \valid_read(base_from_wafer) && \valid_read(place);
-    assigns horizon->gap; */
 static inline bool wh_horizon_passes(wh_horizon_t *horizon, const wh_pose_t *base_from_wafer,
                                      const wh_vec3_t *place) {
     if (!horizon->measured) {
@@ -102,15 +85,9 @@ static inline bool wh_horizon_passes(wh_horizon_t *horizon, const wh_pose_t *bas
 }
 
 /* What wh_horizon_keep does where the table has buckets. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place) && \valid_read(horizon);
-    requires table->storage.bucket_count > 0;
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon);
 
 /* Keeps it, where there are buckets, for gripper g at `place`. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(place) && \valid_read(horizon);
-    requires horizon->measured ==> table->storage.bucket_count > 0;
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 static inline void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place,
                                    const wh_horizon_t *horizon) {
     if (table->storage.bucket_count > 0) {
@@ -119,8 +96,6 @@ static inline void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t 
 }
 
 /* No gripper has one, until it looks again. */
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0;
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 void wh_horizon_reset(wh_grasp_t *table);
 
 #endif

@@ -29,7 +29,6 @@
 #define WH_INDEX_FAR 2147483520
 
 /* Rounded towards zero, at most WH_INDEX_FAR from it; a NaN, which is not equal to itself, to that below zero. */
-/*@ assigns \nothing; ensures -WH_INDEX_FAR <= \result <= WH_INDEX_FAR; */
 static inline int32_t wh_index_whole(wh_real_t units) {
     if (units == units && units > -(wh_real_t)WH_INDEX_FAR && units < (wh_real_t)WH_INDEX_FAR) {
         return (int32_t)units;
@@ -49,47 +48,27 @@ typedef struct {
 } wh_found_t;
 
 /* Anew for all wafers, where the table has buckets. No gripper has a horizon then. */
-/*@ requires wh_table_memory(table);
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 void wh_index_build(wh_grasp_t *table);
 
 /* This wafer lies somewhere else from now on. No gripper has a horizon then. */
-/*@ requires wh_table_memory(table) && wafer < table->storage.wafer_count;
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 void wh_index_move(wh_grasp_t *table, size_t wafer);
 
 /* All wafers. */
-/*@ requires wh_table_memory(table);
-    assigns \nothing;
-    ensures \result.listed == \null && \result.count == table->storage.wafer_count; */
 static inline wh_found_t wh_index_all(const wh_grasp_t *table) {
     const wh_found_t near = {NULL, table->storage.wafer_count};
     return near;
 }
 
 /* What wh_index_near does where the table has buckets. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(from) && \valid_read(to);
-    requires table->storage.bucket_count > 0;
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
-    ensures \result.count <= table->storage.wafer_count;
-    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
 wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
                            wh_real_t margin);
 
 /* What the last search found, by whichever gripper. */
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0;
-    assigns \nothing;
-    ensures \result.count <= table->storage.wafer_count;
-    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
 wh_found_t wh_index_found(const wh_grasp_t *table);
 
 /* The wafers in whose neighbourhood gripper g comes between `from` and `to` or, along one of base's axes, may come by
  * moving less than `margin` from there; and others. All of them where the table has no buckets or as many cells would have
  * to be looked at. A step without buckets never has the search's memory on its stack. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(from) && \valid_read(to);
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
-    ensures \result.count <= table->storage.wafer_count;
-    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
 static inline wh_found_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
                                        const wh_vec3_t *to, wh_real_t margin) {
     return table->storage.bucket_count > 0 ? wh_index_search(table, g, from, to, margin)
@@ -98,10 +77,6 @@ static inline wh_found_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec
 
 /* The same without a margin, for a gripper that has searched there in this step: what it found then, unless another one
  * has searched since. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(from) && \valid_read(to);
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
-    ensures \result.count <= table->storage.wafer_count;
-    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
 static inline wh_found_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
                                         const wh_vec3_t *to) {
     if (table->storage.bucket_count > 0 && table->storage.buckets[WH_INDEX_FOUND] == g) {
@@ -111,17 +86,12 @@ static inline wh_found_t wh_index_again(wh_grasp_t *table, size_t g, const wh_ve
 }
 
 /* The i-th wafer that was found. */
-/*@ requires wh_table_memory(table) && \valid_read(near) && i < near->count <= table->storage.wafer_count;
-    requires near->listed == \null || \valid_read(near->listed + (0 .. near->count - 1));
-    assigns \nothing;
-    ensures wh_is_wafer(table, \result); */
 static inline size_t wh_index_wafer(const wh_grasp_t *table, const wh_found_t *near, size_t i) {
     const size_t wafer = near->listed ? near->listed[i] : i;
     return wafer < table->storage.wafer_count ? wafer : 0;
 }
 
 /* The neighbourhood, which every ready wafer is in. */
-/*@ requires \valid_read(table); assigns \nothing; */
 static inline wh_near_limits_t wh_index_limits(const wh_grasp_t *table) {
     const wh_grasp_config_t *config = &table->config;
     const wh_near_limits_t limits = {

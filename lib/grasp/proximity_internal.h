@@ -4,9 +4,6 @@
 
 #include "proximity.h"
 
-/*@ requires \valid_read(base_from_wafer) && \valid_read(base_from_gripper);
-    requires \valid_read(tolerance) && \valid(result);
-    assigns *result; */
 void wh_proximity_values(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                          const wh_tolerance_t *tolerance, wh_proximity_t *result);
 

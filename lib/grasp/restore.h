@@ -12,19 +12,6 @@
  * that does not hold what it is said to hold or holds it with a closed valve or further off than twice
  * projz + projxy, an approached wafer with a holder or a contested one without, slices beyond `slice`
  * (WH_STATUS_OUT_OF_RANGE). Cost: linear in wafers and grippers. */
-/*@ requires table == \null || wh_table_memory(table) && wh_consistent(table);
-    requires table != \null ==>
-               wh_state_memory(wafers, table->storage.wafer_count, grippers, table->storage.gripper_count) &&
-               wh_checkpoint_apart(wafers, grippers, table);
-    assigns table->counters.refused, table->slice, table->storage.wafers[0 .. table->storage.wafer_count - 1],
-            table->storage.grippers[0 .. table->storage.gripper_count - 1],
-            table->storage.buckets[0 .. table->storage.bucket_count - 1];
-    ensures table != \null ==> wh_consistent(table);
-    ensures table != \null && \result == WH_OK ==> table->slice == slice;
-    ensures table != \null && \result != WH_OK ==> \at(table->config, Pre) == table->config;
-    ensures table != \null && \result != WH_OK ==> \at(table->storage, Pre) == table->storage;
-    ensures table != \null && \result != WH_OK ==> \at(table->slice, Pre) == table->slice;
-    ensures table != \null && \result != WH_OK ==> wh_same_arrays{Pre, Post}(table); */
 wh_status_t wh_grasp_restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t wafers[],
                              const wh_gripper_t grippers[]);
 

@@ -9,8 +9,6 @@ void wh_encounter_track_swept(wh_watch_t *watch) {
     watch->sweep = NULL;
 }
 
-/*@ requires wh_watch_memory(watch) && watch->sweep != \null && \valid_read(base_from_wafer) && \valid(reach);
-    assigns reach->z, reach->xy; */
 static bool is_near_at(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_closeness_t *reach) {
     wh_pose_t then;
     wh_sweep_pose_at(watch->sweep, reach->t, &then);

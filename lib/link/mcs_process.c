@@ -8,7 +8,8 @@
 /* How long the end of a free-running command waits for the state of its last slice. */
 #define COMMAND_SETTLE_US 100000
 
-/* ------------------------------------------------------------------------------------------------- telling */
+/* -------------------------------------------------------------------------------------------------
+ * telling */
 
 static void tell(wh_mcs_process_t *control, int32_t phase, int line, wh_status_t error, const char *command,
                  const char *text) {
@@ -55,7 +56,8 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
     control->request = request;
 }
 
-/* ------------------------------------------------------------------------------------------------- requests */
+/* -------------------------------------------------------------------------------------------------
+ * requests */
 
 static const wh_mcs_process_answer_t *find_answer(const wh_mcs_process_t *control, int64_t seq) {
     for (size_t i = 0; i < WH_CONTROL_ANSWERED; ++i) {
@@ -140,10 +142,10 @@ static void on_request(void *user, const void *data, size_t size) {
     waferhand_request message;
     if (!wh_link_decode_request(data, size, &message)) {
         ++control->garbage;
-        if (!control->named_garbage && control->options.say) {
+        if (!control->named_garbage) {
             control->named_garbage = true;
-            control->options.say(control->options.user, WH_CHANNEL_REQUEST
-                                 ": a datagram is no such message: dropped, like all that follow");
+            wh_node_say(control->options.say, control->options.user,
+                        WH_CHANNEL_REQUEST ": a datagram is no such message: dropped, like all that follow");
         }
         return;
     }
@@ -179,7 +181,8 @@ void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const c
     remember(control, seq, error, line, text);
 }
 
-/* ------------------------------------------------------------------------------------------------- the run */
+/* ------------------------------------------------------------------------------------------------- the
+ * run */
 
 static void tell_progress(void *user) {
     wh_mcs_process_t *control = user;
@@ -199,10 +202,8 @@ static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
                                                   .tick = tell_progress,
                                                   .tick_user = control};
     if (mcs->layout->wafer_count > WH_LINK_WAFERS) {
-        if (control->options.say) {
-            control->options.say(control->options.user,
-                                 "the layout has more wafers than a message carries (256)");
-        }
+        wh_node_say(control->options.say, control->options.user,
+                    "the layout has more wafers than a message carries (256)");
         return NULL;
     }
     control->connected = wh_protocol_client_open(&control->client, control->node, &options);

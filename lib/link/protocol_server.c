@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "../grasp/restore.h"
-#include "checksum.h"
 
 static void start_run(wh_protocol_server_t *server, int64_t run) {
     const wh_layout_t *layout = server->layout;
@@ -56,7 +55,8 @@ uint64_t wh_protocol_server_hash(const wh_protocol_server_t *server) {
     return wh_simulator_hash(&server->simulator);
 }
 
-/* -------------------------------------------------------------------------------------------------- answers */
+/* --------------------------------------------------------------------------------------------------
+ * answers */
 
 static void encode(wh_protocol_server_t *server, const wh_state_t *state,
                    const wh_link_identity_t *identity) {
@@ -85,7 +85,8 @@ static wh_protocol_server_result_t answer_again(wh_protocol_server_t *server) {
     return WH_SERVER_ANSWERED;
 }
 
-/* ------------------------------------------------------------------------------------------------- commands */
+/* -------------------------------------------------------------------------------------------------
+ * commands */
 
 static bool is_past(const wh_protocol_server_t *server, int64_t run) {
     const size_t count =
@@ -183,7 +184,8 @@ wh_protocol_server_result_t wh_protocol_server_command(wh_protocol_server_t *ser
     return turn_away(server, message, WH_STATUS_UNKNOWN_RUN);
 }
 
-/* ------------------------------------------------------------------------------------------------- restoring */
+/* -------------------------------------------------------------------------------------------------
+ * restoring */
 
 static bool is_wanted(const wh_protocol_server_t *server, const waferhand_state *message) {
     const bool further = message->run != server->identity.run || message->seq > server->seq;

@@ -71,7 +71,6 @@ static const char *const wh_abi_check __attribute__((used)) = &WH_ABI_SYMBOL;
 #define WH_NONE (-1)
 
 /* Whether `index` is one of 0 to count - 1. */
-/*@ assigns \nothing; ensures \result <==> 0 <= index < count; */
 static inline bool wh_is_index(int32_t index, size_t count) {
     return index >= 0 && (size_t)index < count;
 }

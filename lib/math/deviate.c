@@ -14,7 +14,8 @@
 /* x = m 2^e with m from sqrt(1/2) to sqrt(2); ln m = 2 (s + s^3/3 + s^5/5 + ...) with s = (m - 1) / (m + 1), |s| < 0.1716. */
 double wh_ln(double x) {
     uint64_t bits;
-    if (!(x >= 2.2250738585072014e-308 && x <= 1.7976931348623157e308)) {
+    /* Of an infinite number x - x is no number. */
+    if (!(x >= 2.2250738585072014e-308) || x - x != 0) {
         return (double)NAN;
     }
     memcpy(&bits, &x, sizeof bits);

@@ -1,6 +1,7 @@
 /* The commands: when each ran, how it ended, and what was taken under which values. */
 #include <stdlib.h>
 
+#include "../text/array.h"
 #include "print_internal.h"
 
 enum { LINE, COMMAND, BEGIN, END, RESULT, TAKEN, MEASURED };
@@ -27,33 +28,32 @@ static void link_events(const wh_record_t *record, const chains_t *chains) {
     }
 }
 
-static wh_grid_t *new_grid(const wh_printer_t *report) {
-    wh_grid_t *grid = wh_grid_new(report->style, 1);
-    const wh_grid_digits_t whole = {0, 0, false, 0};
-    wh_grid_number_column(grid, "line", whole);
+static wh_grid_t *new_grid(const wh_printer_t *printer) {
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
+    wh_grid_number_column(grid, "line", wh_grid_whole);
     wh_grid_text_column(grid, "command");
-    wh_grid_number_column(grid, "begin s", wh_print_seconds());
-    wh_grid_number_column(grid, "end s", wh_print_seconds());
+    wh_grid_number_column(grid, "begin s", wh_print_seconds);
+    wh_grid_number_column(grid, "end s", wh_print_seconds);
     wh_grid_text_column(grid, "result");
     wh_grid_text_column(grid, "taken");
-    wh_print_measured_columns(report, grid);
+    wh_print_measured_columns(printer, grid);
     return grid;
 }
 
-static void fill_event(const wh_printer_t *report, wh_grid_t *grid, const wh_event_t *event) {
-    const char *wafer = wh_print_wafer(report, event->wafer);
-    const char *gripper = wh_print_gripper(report, event->gripper);
+static void fill_event(const wh_printer_t *printer, wh_grid_t *grid, const wh_event_t *event) {
+    const char *wafer = wh_print_wafer(printer, event->wafer);
+    const char *gripper = wh_print_gripper(printer, event->gripper);
     if (event->kind == WH_EVENT_RELEASED) {
         wh_grid_text(grid, TAKEN, WH_INK_DIM, "%s let go", wafer);
         return;
     }
     if (event->kind == WH_EVENT_HANDED_OVER) {
-        wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s %s %s %s", wafer, wh_print_gripper(report, event->other),
-                     wh_style_arrow(report->style), gripper);
+        wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s %s %s %s", wafer, wh_print_gripper(printer, event->other),
+                     wh_style_arrow(printer->style), gripper);
     } else {
         wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s by %s", wafer, gripper);
     }
-    wh_print_measured(report, grid, MEASURED, event);
+    wh_print_measured(printer, grid, MEASURED, event);
 }
 
 static void fill_command(wh_grid_t *grid, const wh_command_record_t *command) {
@@ -69,8 +69,9 @@ static void fill_command(wh_grid_t *grid, const wh_command_record_t *command) {
 }
 
 /* A command's rows: at least one, and one for each of its events. */
-static void add_command(const wh_printer_t *report, wh_grid_t *grid, const chains_t *chains, size_t command) {
-    const wh_command_record_t *from = &report->record->commands[command];
+static void add_command(const wh_printer_t *printer, wh_grid_t *grid, const chains_t *chains,
+                        size_t command) {
+    const wh_command_record_t *from = &printer->record->commands[command];
     size_t event = chains->first[command];
     bool is_first = true;
     while (is_first || event != 0) {
@@ -82,7 +83,7 @@ static void add_command(const wh_printer_t *report, wh_grid_t *grid, const chain
             fill_command(grid, from);
         }
         if (event != 0) {
-            fill_event(report, grid, &report->record->events[event - 1].event);
+            fill_event(printer, grid, &printer->record->events[event - 1].event);
             event = chains->next[event - 1];
         }
         is_first = false;
@@ -90,70 +91,63 @@ static void add_command(const wh_printer_t *report, wh_grid_t *grid, const chain
 }
 
 /* What happened while no command ran. */
-static void add_others(const wh_printer_t *report, wh_grid_t *grid, const chains_t *chains) {
-    size_t event = chains->first[report->record->command_count];
+static void add_others(const wh_printer_t *printer, wh_grid_t *grid, const chains_t *chains) {
+    size_t event = chains->first[printer->record->command_count];
     for (; event != 0; event = chains->next[event - 1]) {
-        const wh_event_record_t *from = &report->record->events[event - 1];
+        const wh_event_record_t *from = &printer->record->events[event - 1];
         wh_grid_row(grid);
         wh_grid_text(grid, COMMAND, WH_INK_DIM, "(no command)");
         wh_grid_number(grid, BEGIN, WH_INK_PLAIN, (double)from->utime / 1e6);
-        fill_event(report, grid, &from->event);
+        fill_event(printer, grid, &from->event);
     }
 }
 
-static int print_table(const wh_printer_t *report, const chains_t *chains) {
-    wh_grid_t *grid = new_grid(report);
-    for (size_t i = 0; i < report->record->command_count; ++i) {
-        add_command(report, grid, chains, i);
+static void print_table(const wh_printer_t *printer, const chains_t *chains) {
+    wh_grid_t *grid = new_grid(printer);
+    for (size_t i = 0; i < printer->record->command_count; ++i) {
+        add_command(printer, grid, chains, i);
     }
-    add_others(report, grid, chains);
-    wh_print_title(report, "Commands");
-    if (wh_grid_rows(grid) == 0) {
-        fputs("none\n", report->out);
-        return wh_grid_discard(grid);
+    add_others(printer, grid, chains);
+    wh_print_title(printer, "Commands");
+    if (wh_grid_rows(grid) > 0) {
+        wh_grid_print(grid, printer->out);
+    } else {
+        fputs("none\n", printer->out);
+        wh_grid_free(grid);
     }
-    return wh_grid_print(grid, report->out);
 }
 
-int wh_print_commands(const wh_printer_t *report) {
-    const wh_record_t *record = report->record;
-    const chains_t chains = {calloc(record->command_count + 1, sizeof(size_t)),
-                             calloc(record->event_count + 1, sizeof(size_t))};
-    int status = -1;
-    if (chains.first && chains.next) {
-        link_events(record, &chains);
-        status = print_table(report, &chains);
-    }
+void wh_print_commands(const wh_printer_t *printer) {
+    const wh_record_t *record = printer->record;
+    const chains_t chains = {wh_array_new(record->command_count + 1, sizeof(size_t)),
+                             wh_array_new(record->event_count, sizeof(size_t))};
+    link_events(record, &chains);
+    print_table(printer, &chains);
     free(chains.first);
     free(chains.next);
-    return status;
 }
 
-static int put_error(const wh_printer_t *report, const wh_command_record_t *command) {
+static void put_error(const wh_printer_t *printer, const wh_command_record_t *command) {
     const char *message = command->message ? command->message : wh_status_text(command->error);
-    int status = 0;
     if (command->line > 0) {
-        fprintf(report->out, "line %d: ", command->line);
+        fprintf(printer->out, "line %d: ", command->line);
     }
-    status |= wh_print_put(report, command->text);
-    fputs(": ", report->out);
-    status |= wh_print_put(report, message);
-    fputc('\n', report->out);
-    return status;
+    wh_print_put(printer, command->text);
+    fputs(": ", printer->out);
+    wh_print_put(printer, message);
+    fputc('\n', printer->out);
 }
 
-int wh_print_errors(const wh_printer_t *report) {
-    int status = 0;
+void wh_print_errors(const wh_printer_t *printer) {
     bool titled = false;
-    for (size_t i = 0; i < report->record->command_count; ++i) {
-        const wh_command_record_t *command = &report->record->commands[i];
+    for (size_t i = 0; i < printer->record->command_count; ++i) {
+        const wh_command_record_t *command = &printer->record->commands[i];
         if (command->error != WH_OK) {
             if (!titled) {
-                wh_print_title(report, "Errors");
+                wh_print_title(printer, "Errors");
                 titled = true;
             }
-            status |= put_error(report, command);
+            put_error(printer, command);
         }
     }
-    return status;
 }

@@ -5,15 +5,15 @@
 #include "../sim/faults.h"
 #include "print_internal.h"
 
-enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_REPORT_MEASURED_COLUMNS };
+enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_PRINT_MEASURED_COLUMNS };
 
-static wh_grid_t *new_grid(const wh_printer_t *report) {
-    wh_grid_t *grid = wh_grid_new(report->style, 1);
-    wh_grid_number_column(grid, "at s", wh_print_seconds());
+static wh_grid_t *new_grid(const wh_printer_t *printer) {
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
+    wh_grid_number_column(grid, "at s", wh_print_seconds);
     wh_grid_text_column(grid, "what");
     wh_grid_text_column(grid, "wafer");
     wh_grid_text_column(grid, "gripper");
-    wh_print_measured_columns(report, grid);
+    wh_print_measured_columns(printer, grid);
     wh_grid_text_column(grid, "why");
     return grid;
 }
@@ -62,8 +62,8 @@ static void describe_excess(char *text, size_t size, const condition_t *conditio
     }
 }
 
-static void say_condition(const wh_printer_t *report, wh_grid_t *grid, const condition_t *condition) {
-    char limit[WH_REPORT_NUMBER_SIZE];
+static void say_condition(const wh_printer_t *printer, wh_grid_t *grid, const condition_t *condition) {
+    char limit[WH_PRINT_NUMBER_SIZE];
     char excess[WH_GRID_NUMBER_SIZE];
     char tilt[64] = "";
     const int decimals = decimals_for(-condition->margin, condition->decimals);
@@ -71,17 +71,17 @@ static void say_condition(const wh_printer_t *report, wh_grid_t *grid, const con
     describe_excess(excess, sizeof excess, condition, decimals);
     if (condition->bit == WH_FAILED_PLANAR) {
         snprintf(tilt, sizeof tilt, ": tilted by %.3f%s", wh_print_tilt_deg(condition->value),
-                 wh_style_degree(report->style));
+                 wh_style_degree(printer->style));
     }
     wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s %.*f is not %s %s (%s)%s", condition->name, decimals,
                  condition->value, condition->relation, limit, excess, tilt);
 }
 
 /* One row for each failed condition, the first of them the event's own. */
-static void say_failed(const wh_printer_t *report, wh_grid_t *grid, double at, const wh_proximity_t *p) {
+static void say_failed(const wh_printer_t *printer, wh_grid_t *grid, double at, const wh_proximity_t *p) {
     condition_t conditions[3];
     bool is_first = true;
-    list_conditions(p, &report->record->layout->grasp.tolerance, conditions);
+    list_conditions(p, &printer->record->layout->grasp.tolerance, conditions);
     for (size_t i = 0; i < 3; ++i) {
         if (!(p->failed & conditions[i].bit)) {
             continue;
@@ -90,7 +90,7 @@ static void say_failed(const wh_printer_t *report, wh_grid_t *grid, double at, c
             wh_grid_row(grid);
             wh_grid_number(grid, AT, WH_INK_DIM, at);
         }
-        say_condition(report, grid, &conditions[i]);
+        say_condition(printer, grid, &conditions[i]);
         is_first = false;
     }
     if (is_first) {
@@ -98,8 +98,8 @@ static void say_failed(const wh_printer_t *report, wh_grid_t *grid, double at, c
     }
 }
 
-static const char *part_name(const wh_printer_t *report, int32_t part) {
-    const wh_layout_t *layout = report->record->layout;
+static const char *part_name(const wh_printer_t *printer, int32_t part) {
+    const wh_layout_t *layout = printer->record->layout;
     const char *name = layout ? wh_layout_part_name(layout, part) : NULL;
     return name ? name : "more than can be looked at";
 }
@@ -126,20 +126,20 @@ static void say_physics(wh_grid_t *grid, const wh_event_t *event) {
 }
 
 /* Contact and clearances, how a wafer was set down. */
-static void say_of_cell(const wh_printer_t *report, wh_grid_t *grid, const wh_event_t *event) {
+static void say_of_cell(const wh_printer_t *printer, wh_grid_t *grid, const wh_event_t *event) {
     switch ((int)event->kind) {
     case WH_EVENT_HIT:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s and %s touch at %.3f, %.3f, %.3f mm",
-                     part_name(report, event->parts[0]), part_name(report, event->parts[1]),
+                     part_name(printer, event->parts[0]), part_name(printer, event->parts[1]),
                      (double)event->at.x, (double)event->at.y, (double)event->at.z);
         break;
     case WH_EVENT_UNDECIDED:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "whether %s and %s touch could not be decided",
-                     part_name(report, event->parts[0]), part_name(report, event->parts[1]));
+                     part_name(printer, event->parts[0]), part_name(printer, event->parts[1]));
         break;
     case WH_EVENT_TOO_CLOSE:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s and %s: %.3f mm apart (limit %g mm)",
-                     part_name(report, event->parts[0]), part_name(report, event->parts[1]),
+                     part_name(printer, event->parts[0]), part_name(printer, event->parts[1]),
                      (double)event->value, (double)event->limit);
         break;
     case WH_EVENT_PLACED_OFF_CENTRE:
@@ -148,8 +148,8 @@ static void say_of_cell(const wh_printer_t *report, wh_grid_t *grid, const wh_ev
         break;
     case WH_EVENT_PLACED_ASKEW:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "tilted by %.3f%s (limit %g%s)", wh_deg_from_rad(event->value),
-                     wh_style_degree(report->style), wh_deg_from_rad(event->limit),
-                     wh_style_degree(report->style));
+                     wh_style_degree(printer->style), wh_deg_from_rad(event->limit),
+                     wh_style_degree(printer->style));
         break;
     default:
         say_physics(grid, event);
@@ -157,11 +157,11 @@ static void say_of_cell(const wh_printer_t *report, wh_grid_t *grid, const wh_ev
     }
 }
 
-static void say_why(const wh_printer_t *report, wh_grid_t *grid, double at, const wh_event_t *event) {
+static void say_why(const wh_printer_t *printer, wh_grid_t *grid, double at, const wh_event_t *event) {
     switch ((int)event->kind) {
     case WH_EVENT_CONTESTED:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "ready, but %s holds it",
-                     wh_print_gripper(report, event->other));
+                     wh_print_gripper(printer, event->other));
         break;
     case WH_EVENT_BAD_INPUT:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s", wh_status_text(event->status));
@@ -171,15 +171,15 @@ static void say_why(const wh_printer_t *report, wh_grid_t *grid, double at, cons
                      (double)event->height);
         break;
     case WH_EVENT_SLOT_OCCUPIED:
-        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s lies in that slot", wh_print_wafer(report, event->other));
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s lies in that slot", wh_print_wafer(printer, event->other));
         break;
     case WH_EVENT_NEAR_MISS:
-        if (report->record->layout) {
-            say_failed(report, grid, at, &event->measured);
+        if (printer->record->layout) {
+            say_failed(printer, grid, at, &event->measured);
         }
         break;
     default:
-        say_of_cell(report, grid, event);
+        say_of_cell(printer, grid, event);
         break;
     }
 }
@@ -194,35 +194,34 @@ static void say_what(wh_grid_t *grid, wh_event_kind_t kind) {
     wh_grid_text(grid, WHAT, wh_print_is_complaint(kind) ? WH_INK_BAD : WH_INK_WARN, "%s", what);
 }
 
-static void add_event(const wh_printer_t *report, wh_grid_t *grid, const wh_event_record_t *record) {
+static void add_event(const wh_printer_t *printer, wh_grid_t *grid, const wh_event_record_t *record) {
     const wh_event_t *event = &record->event;
     const double at = (double)record->utime / 1e6;
     wh_grid_row(grid);
     wh_grid_number(grid, AT, WH_INK_PLAIN, at);
     say_what(grid, event->kind);
-    wh_grid_text(grid, WAFER, WH_INK_PLAIN, "%s", wh_print_wafer(report, event->wafer));
-    wh_grid_text(grid, GRIPPER, WH_INK_PLAIN, "%s", wh_print_gripper(report, event->gripper));
+    wh_grid_text(grid, WAFER, WH_INK_PLAIN, "%s", wh_print_wafer(printer, event->wafer));
+    wh_grid_text(grid, GRIPPER, WH_INK_PLAIN, "%s", wh_print_gripper(printer, event->gripper));
     if (event->kind == WH_EVENT_NEAR_MISS || event->kind == WH_EVENT_CONTESTED) {
-        wh_print_measured(report, grid, MEASURED, event);
+        wh_print_measured(printer, grid, MEASURED, event);
     }
-    say_why(report, grid, at, event);
+    say_why(printer, grid, at, event);
 }
 
-int wh_print_complaints(const wh_printer_t *report) {
-    const wh_record_t *record = report->record;
+void wh_print_complaints(const wh_printer_t *printer) {
+    const wh_record_t *record = printer->record;
     size_t first = 0;
     while (first < record->event_count && !wh_print_is_miss(record->events[first].event.kind)) {
         ++first;
     }
     if (first == record->event_count) {
-        return 0;
+        return;
     }
-    wh_grid_t *grid = new_grid(report);
+    wh_grid_t *grid = new_grid(printer);
     for (size_t i = first; i < record->event_count; ++i) {
         if (wh_print_is_miss(record->events[i].event.kind)) {
-            add_event(report, grid, &record->events[i]);
+            add_event(printer, grid, &record->events[i]);
         }
     }
-    wh_print_title(report, "Misses and complaints");
-    return wh_grid_print(grid, report->out);
+    wh_print_titled(printer, "Misses and complaints", grid);
 }

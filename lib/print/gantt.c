@@ -1,17 +1,40 @@
-/* The Gantt table's canvas. */
+/* The Gantt table: the commands, then who was busy when, time along the line. */
 #include <stdlib.h>
 #include <string.h>
 
-#include "gantt.h"
+#include "../record/throughput.h"
+#include "print_internal.h"
 
 /* How wide the time is drawn: as the terminal, but at least and at most, or as here where there is none. */
 #define LEAST_COLUMNS 20
 #define MOST_COLUMNS 400
 #define PIPED_COLUMNS 100
 
+/* Ticks are at least so many columns apart: room for any of their numbers. */
+#define TICK_COLUMNS 10
+
+#define LABEL_SIZE (WH_NAME_SIZE + 16)
+
+/* A column of the row. */
+typedef struct {
+    const char *mark; /* one column wide, or null: blank */
+    double taken;     /* how much of the column the mark's interval takes */
+    char *text;       /* printed from here on instead of the marks, over `wide` columns */
+    size_t wide;
+} cell_t;
+
+/* One row at a time, time along the line. */
+typedef struct {
+    const wh_printer_t *printer;
+    size_t label_columns, columns;
+    int64_t slices; /* from the first column to the last: the run's, above 0 */
+    cell_t *cells;
+} gantt_t;
+
 /* ---------------------------------------------------------------------------------------------------- marks */
 
-const char *wh_gantt_mark(const wh_style_t *style, wh_share_t share) {
+/* What stands for a share, one column wide. */
+static const char *share_mark(const wh_style_t *style, wh_share_t share) {
     static const char *const ascii[WH_SHARES] = {"#", "-", "v", "x", "."};
     static const char *const utf8[WH_SHARES] = {"█", "▒", "v", "x", "·"};
     return style->utf8 ? utf8[share] : ascii[share];
@@ -27,46 +50,40 @@ static const char *mark_of(const wh_style_t *style, const wh_busy_span_t *interv
     case WH_BUSY_CHUCK:
         break;
     }
-    return wh_gantt_mark(style, (wh_share_t)(interval->what - 1));
+    return share_mark(style, (wh_share_t)(interval->what - 1));
 }
 
 /* ----------------------------------------------------------------------------------------------------- rows */
 
-int wh_gantt_open(wh_gantt_t *gantt, const wh_printer_t *report, size_t label_columns) {
-    const size_t wanted = report->style->width > label_columns + LEAST_COLUMNS + 2
-                              ? report->style->width - label_columns - 2
-                              : LEAST_COLUMNS;
-    gantt->report = report;
-    gantt->label_columns = label_columns;
-    gantt->columns = report->style->width == 0 ? PIPED_COLUMNS
-                     : wanted < MOST_COLUMNS   ? wanted
-                                               : MOST_COLUMNS;
-    gantt->slices = report->record->slices;
-    gantt->cells = calloc(gantt->columns, sizeof *gantt->cells);
-    return gantt->cells ? 0 : -1;
-}
-
-void wh_gantt_close(wh_gantt_t *gantt) {
-    wh_gantt_clear(gantt);
-    free(gantt->cells);
-    gantt->cells = NULL;
-}
-
-void wh_gantt_clear(wh_gantt_t *gantt) {
-    for (size_t i = 0; gantt->cells && i < gantt->columns; ++i) {
-        free(gantt->cells[i].text);
-        memset(&gantt->cells[i], 0, sizeof gantt->cells[i]);
+/* A row as wide as the terminal leaves beside labels of so many columns. */
+static gantt_t open_gantt(const wh_printer_t *printer, size_t label_columns) {
+    const size_t width = printer->style->width;
+    const size_t room = width > label_columns + LEAST_COLUMNS + 2 ? width - label_columns - 2 : LEAST_COLUMNS;
+    const size_t columns = width == 0 ? PIPED_COLUMNS : room < MOST_COLUMNS ? room : MOST_COLUMNS;
+    const gantt_t gantt = {printer, label_columns, columns, printer->record->slices,
+                           calloc(columns, sizeof *gantt.cells)};
+    if (!gantt.cells) {
+        abort();
     }
+    return gantt;
 }
 
-size_t wh_gantt_column(const wh_gantt_t *gantt, int64_t slice) {
+static void clear(gantt_t *gantt) {
+    for (size_t i = 0; i < gantt->columns; ++i) {
+        free(gantt->cells[i].text);
+    }
+    memset(gantt->cells, 0, gantt->columns * sizeof *gantt->cells);
+}
+
+/* The column in which a slice ends. */
+static size_t column_of(const gantt_t *gantt, int64_t slice) {
     const double share = (double)slice / (double)gantt->slices;
     const size_t column = (size_t)(share * (double)gantt->columns);
     return column < gantt->columns ? column : gantt->columns - 1;
 }
 
 /* How much of a column's time lies within an interval, in columns. */
-static double overlap(const wh_gantt_t *gantt, size_t column, const wh_busy_span_t *interval) {
+static double overlap(const gantt_t *gantt, size_t column, const wh_busy_span_t *interval) {
     const double slices = (double)gantt->slices / (double)gantt->columns;
     const double begin = (double)interval->begin / slices;
     const double end = (double)interval->end / slices;
@@ -75,46 +92,41 @@ static double overlap(const wh_gantt_t *gantt, size_t column, const wh_busy_span
     return to > from ? to - from : 0;
 }
 
-void wh_gantt_draw(wh_gantt_t *gantt, const wh_busy_span_t *interval) {
-    const size_t last = wh_gantt_column(gantt, interval->end);
-    for (size_t column = wh_gantt_column(gantt, interval->begin); column <= last; ++column) {
-        wh_gantt_cell_t *cell = &gantt->cells[column];
+/* A column shows what takes most of its time. */
+static void draw_marks(gantt_t *gantt, const wh_busy_span_t *interval) {
+    const size_t last = column_of(gantt, interval->end);
+    for (size_t column = column_of(gantt, interval->begin); column <= last; ++column) {
+        cell_t *cell = &gantt->cells[column];
         const double taken = overlap(gantt, column, interval);
         if (taken > cell->taken) {
             cell->taken = taken;
-            cell->mark = mark_of(gantt->report->style, interval);
+            cell->mark = mark_of(gantt->printer->style, interval);
         }
     }
 }
 
-int wh_gantt_write(wh_gantt_t *gantt, size_t first, size_t last, const char *text) {
+/* Writes a text over the marks from column `first` on if it fits before `last`; else nothing. */
+static void write_over(gantt_t *gantt, size_t first, size_t last, const char *text) {
     char *printable = wh_style_printable(text);
-    if (!printable) {
-        return -1;
-    }
     const size_t wide = wh_style_columns(printable);
-    const bool fits = wide > 0 && first < gantt->columns && last <= gantt->columns && first + wide <= last &&
-                      !gantt->cells[first].text;
-    if (!fits) {
+    if (wide > 0 && first < gantt->columns && last <= gantt->columns && first + wide <= last &&
+        !gantt->cells[first].text) {
+        gantt->cells[first].text = printable;
+        gantt->cells[first].wide = wide;
+    } else {
         free(printable);
-        return 0;
     }
-    gantt->cells[first].text = printable;
-    gantt->cells[first].wide = wide;
-    return 0;
 }
 
-int wh_gantt_print(wh_gantt_t *gantt, const char *label) {
-    FILE *out = gantt->report->out;
+/* Prints the row behind its label, and empties it. */
+static void print_row(gantt_t *gantt, const char *label) {
+    FILE *out = gantt->printer->out;
     char *printable = wh_style_printable(label);
-    if (!printable) {
-        return -1;
-    }
     fprintf(out, "%s%*s", printable, (int)(gantt->label_columns - wh_style_columns(printable) + 2), "");
     free(printable);
     size_t blanks = 0; /* not yet printed: none at the line's end */
     for (size_t i = 0; i < gantt->columns;) {
-        const wh_gantt_cell_t *cell = &gantt->cells[i];
+        const cell_t *cell = &gantt->cells[i];
         const char *shown = cell->text ? cell->text : cell->mark;
         if (shown) {
             fprintf(out, "%*s%s", (int)blanks, "", shown);
@@ -123,6 +135,156 @@ int wh_gantt_print(wh_gantt_t *gantt, const char *label) {
         i += cell->text ? cell->wide : 1;
     }
     fputc('\n', out);
-    wh_gantt_clear(gantt);
-    return 0;
+    clear(gantt);
+}
+
+/* ---------------------------------------------------------------------------------------------- time's scale */
+
+/* 1, 2 or 5 times a power of ten that is at least `least`. */
+static double round_step(double least) {
+    static const double steps[] = {1, 2, 5, 10};
+    double power = 1e-6;
+    while (power * 10 <= least) {
+        power *= 10;
+    }
+    size_t i = 0;
+    while (i < 3 && steps[i] * power < least) {
+        ++i;
+    }
+    return steps[i] * power;
+}
+
+static void print_scale(gantt_t *gantt) {
+    const double seconds = wh_throughput_seconds(gantt->printer->record, gantt->slices);
+    const double step = round_step(seconds * TICK_COLUMNS / (double)gantt->columns);
+    for (int i = 0; i * step <= seconds; ++i) {
+        char text[WH_PRINT_NUMBER_SIZE];
+        const size_t column = (size_t)(i * step / seconds * (double)gantt->columns);
+        snprintf(text, sizeof text, "%.10g", i * step);
+        write_over(gantt, column,
+                   column + TICK_COLUMNS < gantt->columns ? column + TICK_COLUMNS : gantt->columns, text);
+    }
+    print_row(gantt, "s");
+}
+
+/* ------------------------------------------------------------------------------------------------- commands */
+
+static int64_t slice_at(const wh_record_t *record, double seconds) {
+    if (!(seconds > 0 && seconds < record->simulated_s)) {
+        return seconds > 0 ? record->slices : 0;
+    }
+    return (int64_t)(seconds * 1e6 / (double)record->layout->slice_us + 0.5);
+}
+
+static void print_commands(gantt_t *gantt) {
+    const wh_record_t *record = gantt->printer->record;
+    const char *bar = gantt->printer->style->utf8 ? "│" : "|";
+    for (size_t i = 0; i < record->command_count; ++i) {
+        const wh_command_record_t *command = &record->commands[i];
+        const size_t first = column_of(gantt, slice_at(record, command->begin_s));
+        const size_t last = command->end_s < record->simulated_s
+                                ? column_of(gantt, slice_at(record, command->end_s))
+                                : gantt->columns;
+        if (command->end_s > command->begin_s) {
+            gantt->cells[first].mark = bar;
+            write_over(gantt, first + 1, last, command->text ? command->text : "");
+        }
+    }
+    print_row(gantt, "command");
+}
+
+/* --------------------------------------------------------------------------------------------------- cycles */
+
+static void print_cycles(gantt_t *gantt) {
+    const wh_record_t *record = gantt->printer->record;
+    const char *bar = gantt->printer->style->utf8 ? "│" : "|";
+    for (size_t i = 0; i < record->cycle_count; ++i) {
+        const int64_t end = wh_throughput_cycle_end(record, i);
+        const size_t first = column_of(gantt, record->cycles[i].begin);
+        const size_t last = end < gantt->slices ? column_of(gantt, end) : gantt->columns;
+        char text[WH_PRINT_NUMBER_SIZE];
+        snprintf(text, sizeof text, "%zu", i + 1);
+        if (end > record->cycles[i].begin) {
+            gantt->cells[first].mark = bar;
+            write_over(gantt, first + 1, last,
+                       record->cycles[i].name[0] != '\0' ? record->cycles[i].name : text);
+        }
+    }
+    if (record->cycle_count > 0) {
+        print_row(gantt, "cycle");
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ resources */
+
+static void label_of(const wh_printer_t *printer, const wh_busy_span_t *interval, char label[LABEL_SIZE]) {
+    static const char *const does[] = {"", " turns", " holds", " valve"};
+    const bool robot = interval->who == WH_BUSY_ROBOT;
+    snprintf(label, LABEL_SIZE, "%s%s", robot ? "robot" : wh_print_gripper(printer, interval->gripper),
+             does[interval->who]);
+}
+
+static void draw(gantt_t *gantt, const wh_busy_span_t *interval) {
+    const size_t first = column_of(gantt, interval->begin);
+    const size_t last = column_of(gantt, interval->end);
+    draw_marks(gantt, interval);
+    if (interval->who == WH_BUSY_WAFER) {
+        write_over(gantt, first + 1, last, wh_print_wafer(gantt->printer, interval->what - 1));
+    }
+}
+
+static void print_resource(gantt_t *gantt, size_t resource) {
+    const wh_activity_t *activity = &gantt->printer->record->activity;
+    char label[LABEL_SIZE] = "";
+    for (size_t i = 0; i < activity->interval_count; ++i) {
+        const wh_busy_span_t *interval = &activity->intervals[i];
+        if (wh_activity_resource(interval) == resource) {
+            label_of(gantt->printer, interval, label);
+            draw(gantt, interval);
+        }
+    }
+    if (label[0] != '\0') {
+        print_row(gantt, label);
+    }
+}
+
+static size_t widest_label(const wh_printer_t *printer) {
+    size_t widest = strlen("command");
+    for (size_t g = 0; g < printer->record->layout->machine.gripper_count; ++g) {
+        char *printable = wh_style_printable(printer->record->layout->grippers[g].name);
+        const size_t wide = wh_style_columns(printable) + strlen(" holds");
+        widest = wide > widest ? wide : widest;
+        free(printable);
+    }
+    return widest;
+}
+
+static void print_legend(const wh_printer_t *printer) {
+    static const char *const meanings[WH_SHARES] = {"moving with a wafer", "moving without",
+                                                    "waiting for vacuum", "valves switching", "waiting"};
+    const char *before = "";
+    for (int share = 0; share < WH_SHARES; ++share) {
+        if (printer->record->activity.shares[share] > 0) {
+            fprintf(printer->out, "%s%s %s", before, share_mark(printer->style, (wh_share_t)share),
+                    meanings[share]);
+            before = ", ";
+        }
+    }
+    fprintf(printer->out, "%so vacuum on\n", before);
+}
+
+void wh_print_gantt(const wh_printer_t *printer) {
+    if (!printer->record->layout || printer->record->slices == 0) {
+        return;
+    }
+    wh_print_title(printer, "Gantt");
+    gantt_t gantt = open_gantt(printer, widest_label(printer));
+    print_scale(&gantt);
+    print_cycles(&gantt);
+    print_commands(&gantt);
+    for (size_t resource = 0; resource < WH_RESOURCES; ++resource) {
+        print_resource(&gantt, resource);
+    }
+    print_legend(printer);
+    free(gantt.cells);
 }

@@ -13,16 +13,16 @@ static void add_value(wh_grid_t *grid, const char *name, double value) {
 }
 
 static void add_limit(wh_grid_t *grid, const char *relation, double limit, double margin) {
-    char number[WH_REPORT_NUMBER_SIZE];
+    char number[WH_PRINT_NUMBER_SIZE];
     wh_print_limit(number, limit);
     wh_grid_text(grid, LIMIT, WH_INK_PLAIN, "%s %s", relation, number);
     wh_grid_number(grid, MARGIN, margin > 0 ? WH_INK_GOOD : WH_INK_BAD, margin);
 }
 
-static wh_grid_t *new_grid(const wh_printer_t *report) {
+static wh_grid_t *new_grid(const wh_printer_t *printer) {
     const wh_grid_digits_t digits = {6, 6, false, 0};
     const wh_grid_digits_t margin = {6, 6, true, 0};
-    wh_grid_t *grid = wh_grid_new(report->style, 1);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
     wh_grid_text_column(grid, "");
     wh_grid_number_column(grid, "measured", digits);
     wh_grid_text_column(grid, "limit");
@@ -30,9 +30,9 @@ static wh_grid_t *new_grid(const wh_printer_t *report) {
     return grid;
 }
 
-static int print_values(const wh_printer_t *report, const wh_proximity_t *p) {
-    const wh_tolerance_t *limits = &report->record->layout->grasp.tolerance;
-    wh_grid_t *grid = new_grid(report);
+static void print_values(const wh_printer_t *printer, const wh_proximity_t *p) {
+    const wh_tolerance_t *limits = &printer->record->layout->grasp.tolerance;
+    wh_grid_t *grid = new_grid(printer);
     add_value(grid, "  |dr_proj_z|", (double)wh_real_abs(p->dr_proj_z));
     add_limit(grid, "<", (double)limits->projz, (double)p->margin_projz);
     add_value(grid, "  |dr_proj_xy|", (double)p->dr_proj_xy_norm);
@@ -42,44 +42,41 @@ static int print_values(const wh_printer_t *report, const wh_proximity_t *p) {
     add_value(grid, "  dr_proj_xy  x", (double)p->dr_proj_xy.x);
     add_value(grid, "              y", (double)p->dr_proj_xy.y);
     add_value(grid, "              z", (double)p->dr_proj_xy.z);
-    return wh_grid_print(grid, report->out);
+    wh_grid_print(grid, printer->out);
 }
 
-static int print_handover(const wh_printer_t *report, const wh_event_record_t *record) {
+static void print_handover(const wh_printer_t *printer, const wh_event_record_t *record) {
     const wh_event_t *event = &record->event;
     const bool ready = event->measured.ready;
-    const wh_grid_digits_t seconds = wh_print_seconds();
     const double at = (double)record->utime / 1e6;
-    int status = wh_print_put(report, wh_print_wafer(report, event->wafer));
-    fputs(", ", report->out);
-    status |= wh_print_put(report, wh_print_gripper(report, event->other));
-    fprintf(report->out, " %s ", wh_style_arrow(report->style));
-    status |= wh_print_put(report, wh_print_gripper(report, event->gripper));
-    fprintf(report->out, ", at %.*f s: isReadyToPick", wh_grid_decimals(&seconds, at), at);
-    status |= wh_print_put(report, wh_print_gripper(report, event->gripper));
-    fputs(": ", report->out);
-    wh_style_print(report->style, report->out, ready ? WH_INK_GOOD : WH_INK_BAD, "%s",
+    wh_print_put(printer, wh_print_wafer(printer, event->wafer));
+    fputs(", ", printer->out);
+    wh_print_put(printer, wh_print_gripper(printer, event->other));
+    fprintf(printer->out, " %s ", wh_style_arrow(printer->style));
+    wh_print_put(printer, wh_print_gripper(printer, event->gripper));
+    fprintf(printer->out, ", at %.*f s: isReadyToPick", wh_grid_decimals(&wh_print_seconds, at), at);
+    wh_print_put(printer, wh_print_gripper(printer, event->gripper));
+    fputs(": ", printer->out);
+    wh_style_print(printer->style, printer->out, ready ? WH_INK_GOOD : WH_INK_BAD, "%s",
                    ready ? "true" : "false");
-    fputc('\n', report->out);
-    return status | print_values(report, &event->measured);
+    fputc('\n', printer->out);
+    print_values(printer, &event->measured);
 }
 
-int wh_print_handovers(const wh_printer_t *report) {
-    const wh_record_t *record = report->record;
+void wh_print_handovers(const wh_printer_t *printer) {
+    const wh_record_t *record = printer->record;
     size_t count = 0;
-    int status = 0;
     for (size_t i = 0; i < record->event_count && record->layout; ++i) {
         if (record->events[i].event.kind != WH_EVENT_HANDED_OVER) {
             continue;
         }
         if (++count <= SHOWN) {
-            wh_print_title(report, "Hand-over");
-            status |= print_handover(report, &record->events[i]);
+            wh_print_title(printer, "Hand-over");
+            print_handover(printer, &record->events[i]);
         }
     }
     if (count > SHOWN) {
-        fprintf(report->out, "\n%zu more hand-overs; their values stand in the table above.\n",
+        fprintf(printer->out, "\n%zu more hand-overs; their values stand in the table above.\n",
                 count - SHOWN);
     }
-    return status;
 }

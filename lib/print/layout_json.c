@@ -1,115 +1,81 @@
 #include "../math/trig.h"
-#include "../text/json_values.h"
+#include "../text/json.h"
 #include "layout_print.h"
 
 #define FORMAT 1
 
-/* What is being written, and whether any value could not be made. */
-typedef struct {
-    const wh_feasibility_t *check;
-    bool failed;
-} writer_t;
-
-static void put(writer_t *writer, json_t *object, const char *key, json_t *value) {
-    if (json_object_set_new(object, key, value) != 0) {
-        writer->failed = true;
-    }
-}
-
-static void put_real(writer_t *writer, json_t *object, const char *key, wh_real_t value) {
-    put(writer, object, key, wh_real_is_finite(value) ? json_real((double)value) : json_null());
-}
-
-static void append(writer_t *writer, json_t *list, json_t *value) {
-    if (json_array_append_new(list, value) != 0) {
-        writer->failed = true;
-    }
-}
-
-static json_t *vector(writer_t *writer, wh_vec3_t v) {
-    json_t *list = json_array();
-    append(writer, list, json_real((double)v.x));
-    append(writer, list, json_real((double)v.y));
-    append(writer, list, json_real((double)v.z));
-    return list;
-}
-
-static void put_pose(writer_t *writer, json_t *object, const wh_pose_t *pose) {
-    json_t *rows = json_array();
-    for (size_t row = 0; row < 3; ++row) {
-        append(writer, rows, vector(writer, wh_mat3_row(&pose->R, row)));
-    }
-    put(writer, object, "at", vector(writer, pose->r));
-    put(writer, object, "rotation", rows);
+static void put_pose(json_t *object, const wh_pose_t *pose) {
+    wh_json_put(object, "at", wh_json_vector(pose->r));
+    wh_json_put(object, "rotation", wh_json_matrix(&pose->R));
 }
 
 /* ------------------------------------------------------------------------------------------------ the machine */
 
-static json_t *axis(writer_t *writer, size_t i) {
+static json_t *axis(const void *subject, size_t i) {
+    const wh_layout_t *layout = subject;
     static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    const wh_robot_t *robot = &writer->check->layout->machine.robot;
+    const wh_robot_t *robot = &layout->machine.robot;
     const wh_real_t unit = i == WH_AXIS_THETA || i == WH_AXIS_YAW ? wh_deg_from_rad(1) : 1;
     json_t *object = json_object();
-    put(writer, object, "name", json_string(names[i]));
-    put_real(writer, object, "min", robot->travel[i].min * unit);
-    put_real(writer, object, "max", robot->travel[i].max * unit);
-    put_real(writer, object, "home", robot->home[i] * unit);
-    put_real(writer, object, "speed", robot->limits[i].speed * unit);
-    put_real(writer, object, "acceleration", robot->limits[i].acceleration * unit);
-    put_real(writer, object, "jerk", robot->limits[i].jerk * unit);
+    wh_json_put_text(object, "name", names[i]);
+    wh_json_put_real(object, "min", robot->travel[i].min * unit);
+    wh_json_put_real(object, "max", robot->travel[i].max * unit);
+    wh_json_put_real(object, "home", robot->home[i] * unit);
+    wh_json_put_real(object, "speed", robot->limits[i].speed * unit);
+    wh_json_put_real(object, "acceleration", robot->limits[i].acceleration * unit);
+    wh_json_put_real(object, "jerk", robot->limits[i].jerk * unit);
     return object;
 }
 
-static json_t *gripper(writer_t *writer, size_t i) {
-    const wh_layout_t *layout = writer->check->layout;
+static json_t *gripper(const void *subject, size_t i) {
+    const wh_layout_t *layout = subject;
     const wh_layout_gripper_t *from = &layout->grippers[i];
     json_t *object = json_object();
-    put(writer, object, "name", wh_json_text(from->name));
-    put(writer, object, "on",
-        wh_json_text(from->station == WH_NONE ? "robot" : layout->stations[from->station].name));
-    put(writer, object, "valve", wh_json_text(from->valve));
+    wh_json_put_text(object, "name", from->name);
+    wh_json_put_text(object, "on", from->station == WH_NONE ? "robot" : layout->stations[from->station].name);
+    wh_json_put_text(object, "valve", from->valve);
     if (layout->machine.mounts[i].is_shifted) {
-        put_pose(writer, object, &layout->machine.mounts[i].effector_from_gripper);
+        put_pose(object, &layout->machine.mounts[i].effector_from_gripper);
     }
     return object;
 }
 
 /* --------------------------------------------------------------------------------------------------- stations */
 
-static void put_gap(writer_t *writer, json_t *object, const char *key, bool has, wh_real_t gap) {
-    put(writer, object, key, has ? json_real((double)gap) : json_null());
+static void put_gap(json_t *object, const char *key, bool has, wh_real_t gap) {
+    wh_json_put(object, key, has ? json_real((double)gap) : json_null());
 }
 
-static json_t *station(writer_t *writer, size_t i) {
-    const wh_layout_t *layout = writer->check->layout;
+static json_t *station(const void *subject, size_t i) {
+    const wh_feasibility_t *check = subject;
+    const wh_layout_t *layout = check->layout;
     const wh_layout_station_t *from = &layout->stations[i];
-    const wh_entry_t *entry = &writer->check->entries[i];
+    const wh_entry_t *entry = &check->entries[i];
     const char *kind = from->foup ? "foup" : "slots";
     json_t *object = json_object();
     json_t *room = json_object();
-    put(writer, object, "name", wh_json_text(from->name));
-    put(writer, object, "kind", json_string(from->prealigner ? "prealigner" : kind));
-    put_pose(writer, object, &layout->places[i].base_from_station);
-    put(writer, object, "slots", json_integer(layout->places[i].slots));
-    put_real(writer, object, "pitch", layout->places[i].pitch);
-    put_real(writer, object, "stroke", from->stroke);
-    put_real(writer, object, "offset", from->offset);
-    put_real(writer, object, "retract", from->retract);
-    put_real(writer, object, "pickup_speed", from->pickup_speed);
-    put(writer, object, "taught", json_boolean(from->taught));
-    put(writer, object, "effector", wh_json_text(layout->grippers[from->effector].name));
-    put(writer, object, "wafers", json_integer((json_int_t)entry->wafers));
-    put_gap(writer, room, "above", entry->has_above, entry->above);
-    put_gap(writer, room, "below", entry->has_below, entry->below);
-    put_gap(writer, room, "beside", entry->has_beside, entry->beside);
-    put(writer, object, "room", room);
+    wh_json_put_text(object, "name", from->name);
+    wh_json_put_text(object, "kind", from->prealigner ? "prealigner" : kind);
+    put_pose(object, &layout->places[i].base_from_station);
+    wh_json_put_integer(object, "slots", layout->places[i].slots);
+    wh_json_put_real(object, "pitch", layout->places[i].pitch);
+    wh_json_put_real(object, "stroke", from->stroke);
+    wh_json_put_real(object, "offset", from->offset);
+    wh_json_put_real(object, "retract", from->retract);
+    wh_json_put_real(object, "pickup_speed", from->pickup_speed);
+    wh_json_put(object, "taught", json_boolean(from->taught));
+    wh_json_put_text(object, "effector", layout->grippers[from->effector].name);
+    wh_json_put_integer(object, "wafers", (json_int_t)entry->wafers);
+    put_gap(room, "above", entry->has_above, entry->above);
+    put_gap(room, "below", entry->has_below, entry->below);
+    put_gap(room, "beside", entry->has_beside, entry->beside);
+    wh_json_put(object, "room", room);
     return object;
 }
 
 /* ------------------------------------------------------------------------------------------------------ shapes */
 
-static json_t *shapes(writer_t *writer) {
-    const wh_shapes_t *from = &writer->check->layout->shapes;
+static json_t *shapes(const wh_shapes_t *from) {
     const struct {
         const char *shape, *size;
         wh_real_t value;
@@ -136,157 +102,145 @@ static json_t *shapes(writer_t *writer) {
     json_t *object = json_object();
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; ++i) {
         if (!json_object_get(object, sizes[i].shape)) {
-            put(writer, object, sizes[i].shape, json_object());
+            wh_json_put(object, sizes[i].shape, json_object());
         }
-        put_real(writer, json_object_get(object, sizes[i].shape), sizes[i].size, sizes[i].value);
+        wh_json_put_real(json_object_get(object, sizes[i].shape), sizes[i].size, sizes[i].value);
     }
-    put(writer, json_object_get(object, "arm"), "right_handed", json_boolean(from->arm.right_handed));
+    wh_json_put(json_object_get(object, "arm"), "right_handed", json_boolean(from->arm.right_handed));
     return object;
 }
 
-static json_t *part(writer_t *writer, size_t i) {
+static json_t *part(const void *subject, size_t i) {
+    const wh_feasibility_t *check = subject;
     static const char *const kinds[] = {"wall", "ledge", "arm", "blade", "chuck", "wafer"};
     static const char *const shapes_of[] = {"box", "cylinder", "capsule", "mesh"};
-    const wh_layout_t *layout = writer->check->layout;
+    const wh_layout_t *layout = check->layout;
     const wh_part_t *from = &layout->world.parts[i];
-    const wh_pose_t pose = wh_feasibility_place(writer->check, (int32_t)i);
+    const wh_pose_t pose = wh_feasibility_place(check, (int32_t)i);
     json_t *object = json_object();
-    put(writer, object, "name", wh_json_text(layout->part_names[i]));
-    put(writer, object, "kind", json_string(kinds[from->kind]));
-    put(writer, object, "shape", json_string(shapes_of[from->convex.kind]));
-    put(writer, object, "half",
-        from->convex.kind == WH_CONVEX_MESH ? json_null() : vector(writer, from->convex.half));
-    put_pose(writer, object, &pose);
+    wh_json_put_text(object, "name", layout->part_names[i]);
+    wh_json_put_text(object, "kind", kinds[from->kind]);
+    wh_json_put_text(object, "shape", shapes_of[from->convex.kind]);
+    wh_json_put(object, "half",
+                from->convex.kind == WH_CONVEX_MESH ? json_null() : wh_json_vector(from->convex.half));
+    put_pose(object, &pose);
     return object;
 }
 
-static json_t *clearances(writer_t *writer) {
+static json_t *clearances(const wh_layout_t *layout) {
     json_t *object = json_object();
     for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
-        put_real(writer, object, wh_clearance_name((wh_clearance_kind_t)kind),
-                 writer->check->layout->world.limits[kind]);
+        wh_json_put_real(object, wh_clearance_name((wh_clearance_kind_t)kind), layout->world.limits[kind]);
     }
     return object;
 }
 
 /* -------------------------------------------------------------------------------------------------------- all */
 
-static json_t *wafer(writer_t *writer, size_t i) {
-    const wh_layout_t *layout = writer->check->layout;
+static json_t *wafer(const void *subject, size_t i) {
+    const wh_layout_t *layout = subject;
     const wh_layout_wafer_t *from = &layout->wafers[i];
     json_t *object = json_object();
-    put(writer, object, "name", wh_json_text(from->name));
-    put(writer, object, "station", wh_json_text(layout->stations[from->station].name));
-    put(writer, object, "slot", json_integer(from->slot));
+    wh_json_put_text(object, "name", from->name);
+    wh_json_put_text(object, "station", layout->stations[from->station].name);
+    wh_json_put_integer(object, "slot", from->slot);
     return object;
 }
 
-static void put_physics(writer_t *writer, json_t *root) {
-    const wh_vacuum_config_t *from = &writer->check->layout->physics.vacuum;
-    const wh_pads_t *pads = &writer->check->layout->physics.pads;
+static void put_physics(const wh_layout_t *layout, json_t *root) {
+    const wh_vacuum_config_t *from = &layout->physics.vacuum;
+    const wh_pads_t *pads = &layout->physics.pads;
     json_t *vacuum = json_object();
-    put_real(writer, vacuum, "build", from->build);
-    put_real(writer, vacuum, "vent", from->vent);
-    put_real(writer, vacuum, "idle", from->idle);
-    put_real(writer, vacuum, "sensor_on", from->on);
-    put_real(writer, vacuum, "sensor_off", from->off);
-    put_real(writer, vacuum, "release", from->release);
-    put(writer, root, "vacuum", vacuum);
+    wh_json_put_real(vacuum, "build", from->build);
+    wh_json_put_real(vacuum, "vent", from->vent);
+    wh_json_put_real(vacuum, "idle", from->idle);
+    wh_json_put_real(vacuum, "sensor_on", from->on);
+    wh_json_put_real(vacuum, "sensor_off", from->off);
+    wh_json_put_real(vacuum, "release", from->release);
+    wh_json_put(root, "vacuum", vacuum);
     if (pads->mass > 0) {
         json_t *object = json_object();
-        put_real(writer, object, "friction", pads->friction);
-        put_real(writer, object, "force", pads->force);
-        put_real(writer, object, "mass", pads->mass);
-        put_real(writer, object, "gravity", pads->gravity);
-        put(writer, root, "pads", object);
+        wh_json_put_real(object, "friction", pads->friction);
+        wh_json_put_real(object, "force", pads->force);
+        wh_json_put_real(object, "mass", pads->mass);
+        wh_json_put_real(object, "gravity", pads->gravity);
+        wh_json_put(root, "pads", object);
     } else {
-        put(writer, root, "pads", json_null());
+        wh_json_put(root, "pads", json_null());
     }
 }
 
-static json_t *fault(writer_t *writer, size_t i) {
-    const wh_layout_t *layout = writer->check->layout;
+static json_t *fault(const void *subject, size_t i) {
+    const wh_layout_t *layout = subject;
     const wh_fault_t *from = &layout->physics.faults[i];
     const double slice_s = (double)layout->slice_us / 1e6;
     const bool endless = from->until == WH_FAULT_FOREVER;
     const bool targeted = from->target != WH_NONE;
     const bool of_wafer = wh_fault_is_of_wafer(from->kind);
     json_t *object = json_object();
-    put(writer, object, "kind", json_string(wh_fault_name(from->kind)));
-    put(writer, object, "gripper",
-        wh_json_text(targeted && !of_wafer ? layout->grippers[from->target].name : NULL));
-    put(writer, object, "wafer",
-        wh_json_text(targeted && of_wafer ? layout->wafers[from->target].name : NULL));
-    put(writer, object, "from_s", json_real((double)(from->from - 1) * slice_s));
-    put(writer, object, "until_s", endless ? json_null() : json_real((double)(from->until - 1) * slice_s));
-    put_real(writer, object, "value", from->value);
+    wh_json_put_text(object, "kind", wh_fault_name(from->kind));
+    wh_json_put_text(object, "gripper", targeted && !of_wafer ? layout->grippers[from->target].name : NULL);
+    wh_json_put_text(object, "wafer", targeted && of_wafer ? layout->wafers[from->target].name : NULL);
+    wh_json_put_real(object, "from_s", (double)(from->from - 1) * slice_s);
+    wh_json_put(object, "until_s", endless ? json_null() : json_real((double)(from->until - 1) * slice_s));
+    wh_json_put_real(object, "value", from->value);
     return object;
 }
 
-static json_t *finding(writer_t *writer, size_t i) {
-    const wh_layout_t *layout = writer->check->layout;
-    const wh_finding_t *from = &writer->check->findings[i];
+static json_t *finding(const void *subject, size_t i) {
+    const wh_feasibility_t *check = subject;
+    const wh_layout_t *layout = check->layout;
+    const wh_finding_t *from = &check->findings[i];
     const bool of_station = from->station != WH_NONE;
     json_t *object = json_object();
-    put(writer, object, "kind", json_string(wh_finding_name(from->kind)));
-    put(writer, object, "text", wh_json_text(from->text));
-    put(writer, object, "station", wh_json_text(of_station ? layout->stations[from->station].name : NULL));
+    wh_json_put_text(object, "kind", wh_finding_name(from->kind));
+    wh_json_put_text(object, "text", from->text);
+    wh_json_put_text(object, "station", of_station ? layout->stations[from->station].name : NULL);
     if (from->parts[0] != WH_NONE) {
         json_t *parts = json_array();
-        append(writer, parts, wh_json_text(wh_layout_part_name(layout, from->parts[0])));
-        append(writer, parts, wh_json_text(wh_layout_part_name(layout, from->parts[1])));
-        put(writer, object, "parts", parts);
+        wh_json_append(parts, wh_json_text(wh_layout_part_name(layout, from->parts[0])));
+        wh_json_append(parts, wh_json_text(wh_layout_part_name(layout, from->parts[1])));
+        wh_json_put(object, "parts", parts);
     }
     return object;
 }
 
-static void put_list(writer_t *writer, json_t *root, const char *key, json_t *element(writer_t *, size_t),
-                     size_t count) {
-    json_t *list = json_array();
-    for (size_t i = 0; i < count; ++i) {
-        append(writer, list, element(writer, i));
-    }
-    put(writer, root, key, list);
-}
-
-static void put_checks(writer_t *writer, json_t *root) {
-    const wh_layout_t *layout = writer->check->layout;
+static void put_checks(const wh_layout_t *layout, json_t *root) {
     json_t *tolerance = json_object();
-    put(writer, root, "wafer_diameter", json_real(layout->wafer_diameter));
-    put(writer, root, "wafer_thickness", json_real(layout->wafer_thickness));
-    put(writer, root, "notch_deg", json_real((double)wh_deg_from_rad((wh_real_t)layout->notch)));
-    put(writer, root, "notch_depth", json_real(layout->notch_depth));
-    put(writer, tolerance, "name", json_string(layout->tolerance_name));
-    put_real(writer, tolerance, "projz", layout->grasp.tolerance.projz);
-    put_real(writer, tolerance, "projxy", layout->grasp.tolerance.projxy);
-    put_real(writer, tolerance, "planar", layout->grasp.tolerance.planar);
-    put(writer, root, "tolerance", tolerance);
-    put(writer, root, "check", json_string(layout->grasp.check == WH_CHECK_SWEPT ? "swept" : "sampled"));
-    put(writer, root, "slice_s", json_real((double)layout->slice_us / 1e6));
-    put(writer, root, "seat", json_boolean(layout->grasp.seat));
-    put(writer, root, "settle", json_boolean(layout->cell.settle));
-    put(writer, root, "collision", json_boolean(layout->collision));
+    wh_json_put_real(root, "wafer_diameter", layout->wafer_diameter);
+    wh_json_put_real(root, "wafer_thickness", layout->wafer_thickness);
+    wh_json_put_real(root, "notch_deg", (double)wh_deg_from_rad((wh_real_t)layout->notch));
+    wh_json_put_real(root, "notch_depth", layout->notch_depth);
+    wh_json_put_text(tolerance, "name", layout->tolerance_name);
+    wh_json_put_real(tolerance, "projz", layout->grasp.tolerance.projz);
+    wh_json_put_real(tolerance, "projxy", layout->grasp.tolerance.projxy);
+    wh_json_put_real(tolerance, "planar", layout->grasp.tolerance.planar);
+    wh_json_put(root, "tolerance", tolerance);
+    wh_json_put_text(root, "check", layout->grasp.check == WH_CHECK_SWEPT ? "swept" : "sampled");
+    wh_json_put_real(root, "slice_s", (double)layout->slice_us / 1e6);
+    wh_json_put(root, "seat", json_boolean(layout->grasp.seat));
+    wh_json_put(root, "settle", json_boolean(layout->cell.settle));
+    wh_json_put(root, "collision", json_boolean(layout->collision));
 }
 
 int wh_layout_print_json(const wh_feasibility_t *check, FILE *out) {
     const wh_layout_t *layout = check->layout;
-    writer_t writer = {check, false};
     json_t *root = json_object();
-    put(&writer, root, "format", json_integer(FORMAT));
-    put(&writer, root, "ok", json_boolean(check->count == 0));
-    put(&writer, root, "layout", wh_json_text(layout->path));
-    put_checks(&writer, root);
-    put_list(&writer, root, "axes", axis, WH_ROBOT_AXES);
-    put_list(&writer, root, "grippers", gripper, layout->machine.gripper_count);
-    put_list(&writer, root, "stations", station, layout->station_count);
-    put_list(&writer, root, "wafers", wafer, layout->wafer_count);
-    put_physics(&writer, root);
-    put_list(&writer, root, "faults", fault, layout->physics.fault_count);
-    put(&writer, root, "shapes", shapes(&writer));
-    put_list(&writer, root, "parts", part, layout->world.part_count);
-    put(&writer, root, "clearance", clearances(&writer));
-    put_list(&writer, root, "findings", finding, check->count);
-    const int status = writer.failed ? -1 : wh_json_print(root, out);
+    wh_json_put_integer(root, "format", FORMAT);
+    wh_json_put(root, "ok", json_boolean(check->count == 0));
+    wh_json_put_text(root, "layout", layout->path);
+    put_checks(layout, root);
+    wh_json_put(root, "axes", wh_json_list(axis, layout, WH_ROBOT_AXES));
+    wh_json_put(root, "grippers", wh_json_list(gripper, layout, layout->machine.gripper_count));
+    wh_json_put(root, "stations", wh_json_list(station, check, layout->station_count));
+    wh_json_put(root, "wafers", wh_json_list(wafer, layout, layout->wafer_count));
+    put_physics(layout, root);
+    wh_json_put(root, "faults", wh_json_list(fault, layout, layout->physics.fault_count));
+    wh_json_put(root, "shapes", shapes(&layout->shapes));
+    wh_json_put(root, "parts", wh_json_list(part, check, layout->world.part_count));
+    wh_json_put(root, "clearance", clearances(layout));
+    wh_json_put(root, "findings", wh_json_list(finding, check, check->count));
+    const int status = wh_json_print(root, out);
     json_decref(root);
     return status;
 }

@@ -7,7 +7,7 @@
 #include "../layout/feasibility.h"
 #include "../text/style.h"
 
-/* Each returns 0, or -1 when memory is out or `out` does not take it. */
+/* Each returns 0, or -1 if `out` does not take it. */
 int wh_layout_print_table(const wh_feasibility_t *check, FILE *out, const wh_style_t *style);
 
 /* One object; its numbers, read back, are the same doubles. Lengths in mm, angles in degrees. */

@@ -1,28 +1,28 @@
 #include <stdlib.h>
 
 #include "../math/trig.h"
-#include "layout_table_internal.h"
+#include "layout_print.h"
+#include "print_internal.h"
+
+#define MS WH_REAL(1e3)
+
+/* What every part of the listing is given. */
+typedef struct {
+    const wh_feasibility_t *check;
+    const wh_layout_t *layout;
+    wh_printer_t frame;
+} listing_t;
 
 static const wh_grid_digits_t whole = {0, 6, false, 0};
 static const wh_grid_digits_t fine = {3, 3, false, 0};
 
-int wh_listing_finish(const wh_listing_t *listing, const char *title, wh_grid_t *grid) {
-    if (wh_grid_rows(grid) == 0) {
-        return wh_grid_discard(grid);
-    }
-    fputc('\n', listing->out);
-    wh_style_print(listing->style, listing->out, WH_INK_BOLD, "%s", title);
-    fputc('\n', listing->out);
-    return wh_grid_print(grid, listing->out);
-}
-
 /* ------------------------------------------------------------------------------------------------ the machine */
 
-static int print_axes(const wh_listing_t *listing) {
+static void print_axes(const listing_t *listing) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
     static const char *const headings[] = {"from", "to", "home", "speed", "acceleration", "jerk"};
     const wh_robot_t *robot = &listing->layout->machine.robot;
-    wh_grid_t *grid = wh_grid_new(listing->style, 1);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
     wh_grid_text_column(grid, "axis");
     for (size_t i = 0; i < 6; ++i) {
         wh_grid_number_column(grid, headings[i], whole);
@@ -41,12 +41,12 @@ static int print_axes(const wh_listing_t *listing) {
         }
         wh_grid_text(grid, 7, WH_INK_DIM, turns ? "deg, s" : "mm, s");
     }
-    return wh_listing_finish(listing, "Robot", grid);
+    wh_print_titled(&listing->frame, "Robot", grid);
 }
 
-static int print_grippers(const wh_listing_t *listing) {
+static void print_grippers(const listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
-    wh_grid_t *grid = wh_grid_new(listing->style, 1);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
     wh_grid_text_column(grid, "gripper");
     wh_grid_text_column(grid, "on");
     wh_grid_text_column(grid, "valve");
@@ -67,14 +67,14 @@ static int print_grippers(const wh_listing_t *listing) {
                            (double)wh_deg_from_rad(wh_atan2(shift->R.m[1][0], shift->R.m[0][0])));
         }
     }
-    return wh_listing_finish(listing, "Grippers", grid);
+    wh_print_titled(&listing->frame, "Grippers", grid);
 }
 
 /* --------------------------------------------------------------------------------------------------- stations */
 
 enum { NAME, KIND, X, Y, Z, HEADING, TILT, SLOTS, PITCH, STROKE, OFFSET, RETRACT, WAFERS };
 
-static void add_station(const wh_listing_t *listing, wh_grid_t *grid, size_t s) {
+static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
     const wh_layout_station_t *station = &listing->layout->stations[s];
     const wh_station_t *place = &listing->layout->places[s];
     const wh_mat3_t *R = &place->base_from_station.R;
@@ -97,10 +97,10 @@ static void add_station(const wh_listing_t *listing, wh_grid_t *grid, size_t s) 
     wh_grid_number(grid, WAFERS, WH_INK_PLAIN, (double)listing->check->entries[s].wafers);
 }
 
-static int print_stations(const wh_listing_t *listing) {
+static void print_stations(const listing_t *listing) {
     static const char *const headings[] = {"x",     "y",      "z",      "heading deg", "tilt deg", "slots",
                                            "pitch", "stroke", "offset", "retract",     "wafers"};
-    wh_grid_t *grid = wh_grid_new(listing->style, 1);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
     wh_grid_text_column(grid, "station");
     wh_grid_text_column(grid, "kind");
     for (size_t i = 0; i < sizeof headings / sizeof headings[0]; ++i) {
@@ -109,7 +109,7 @@ static int print_stations(const wh_listing_t *listing) {
     for (size_t s = 0; s < listing->layout->station_count; ++s) {
         add_station(listing, grid, s);
     }
-    return wh_listing_finish(listing, "Stations", grid);
+    wh_print_titled(&listing->frame, "Stations", grid);
 }
 
 static void add_gap(wh_grid_t *grid, size_t column, bool has, wh_real_t gap) {
@@ -118,8 +118,8 @@ static void add_gap(wh_grid_t *grid, size_t column, bool has, wh_real_t gap) {
     }
 }
 
-static int print_room(const wh_listing_t *listing) {
-    wh_grid_t *grid = wh_grid_new(listing->style, 1);
+static void print_room(const listing_t *listing) {
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
     wh_grid_text_column(grid, "blade entered at");
     wh_grid_number_column(grid, "to the wafer above", fine);
     wh_grid_number_column(grid, "to the one below", fine);
@@ -132,14 +132,86 @@ static int print_room(const wh_listing_t *listing) {
         add_gap(grid, 2, entry->has_below, entry->below);
         add_gap(grid, 3, entry->has_beside, entry->beside);
     }
-    return wh_listing_finish(listing, "Room", grid);
+    wh_print_titled(&listing->frame, "Room", grid);
+}
+
+/* ------------------------------------------------------------------------------------------------ physics */
+
+static void begin(wh_grid_t *grid, const char *what) {
+    wh_grid_row(grid);
+    wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", what);
+}
+
+static void print_holding(const listing_t *listing) {
+    const wh_vacuum_config_t *vacuum = &listing->layout->physics.vacuum;
+    const wh_pads_t *pads = &listing->layout->physics.pads;
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
+    wh_grid_text_column(grid, "of all grippers");
+    wh_grid_text_column(grid, "");
+    if (vacuum->build <= 0 && vacuum->vent <= 0) {
+        begin(grid, "vacuum");
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "ideal: an open valve holds at once");
+    } else {
+        begin(grid, "vacuum");
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "builds in %g ms, vents in %g ms, is at %g without a wafer",
+                     (double)(vacuum->build * MS), (double)(vacuum->vent * MS), (double)vacuum->idle);
+        begin(grid, "thresholds");
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "sensor on at %g, off below %g; lets go below %g",
+                     (double)vacuum->on, (double)vacuum->off, (double)vacuum->release);
+    }
+    if (pads->mass > 0) {
+        begin(grid, "pads");
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "friction %g, %g N of vacuum, a wafer of %.4g kg",
+                     (double)pads->friction, (double)pads->force, (double)pads->mass);
+    }
+    wh_print_titled(&listing->frame, "Holding", grid);
+}
+
+/* ------------------------------------------------------------------------------------------------------ faults */
+
+static const char *target_of(const wh_layout_t *layout, const wh_fault_t *fault) {
+    if (fault->target == WH_NONE) {
+        return "all";
+    }
+    return wh_fault_is_of_wafer(fault->kind) ? layout->wafers[fault->target].name
+                                             : layout->grippers[fault->target].name;
+}
+
+static void add_fault(const listing_t *listing, wh_grid_t *grid, const wh_fault_t *fault) {
+    const double slice_s = (double)listing->layout->slice_us / 1e6;
+    begin(grid, wh_fault_name(fault->kind));
+    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", target_of(listing->layout, fault));
+    wh_grid_text(grid, 2, WH_INK_PLAIN, "%.10g", (double)(fault->from - 1) * slice_s);
+    if (fault->until == WH_FAULT_FOREVER) {
+        wh_grid_text(grid, 3, WH_INK_DIM, "it is cleared");
+    } else {
+        wh_grid_text(grid, 3, WH_INK_PLAIN, "%.10g", (double)(fault->until - 1) * slice_s);
+    }
+    if (fault->kind == WH_FAULT_LEAK || fault->kind == WH_FAULT_SLOW_VACUUM) {
+        wh_grid_text(grid, 4, WH_INK_PLAIN, "%g%s", (double)fault->value,
+                     fault->kind == WH_FAULT_LEAK ? "" : " s");
+    }
+}
+
+static void print_faults(const listing_t *listing) {
+    const wh_physics_t *physics = &listing->layout->physics;
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
+    wh_grid_text_column(grid, "fault");
+    wh_grid_text_column(grid, "of");
+    wh_grid_text_column(grid, "from s");
+    wh_grid_text_column(grid, "until s");
+    wh_grid_text_column(grid, "value");
+    for (size_t i = 0; i < physics->fault_count; ++i) {
+        add_fault(listing, grid, &physics->faults[i]);
+    }
+    wh_print_titled(&listing->frame, "Faults on purpose", grid);
 }
 
 /* ------------------------------------------------------------------------------------------------------ shapes */
 
-static int print_shapes(const wh_listing_t *listing) {
+static void print_shapes(const listing_t *listing) {
     const wh_shapes_t *s = &listing->layout->shapes;
-    wh_grid_t *grid = wh_grid_new(listing->style, 1);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
     wh_grid_text_column(grid, "shape");
     wh_grid_text_column(grid, "size");
     wh_grid_row(grid);
@@ -165,7 +237,7 @@ static int print_shapes(const wh_listing_t *listing) {
     wh_grid_text(grid, 0, WH_INK_PLAIN, "chuck");
     wh_grid_text(grid, 1, WH_INK_PLAIN, "radius %g, %g high; a body of radius %g below it",
                  (double)s->chuck.radius, (double)s->chuck.height, (double)s->chuck.body);
-    return wh_listing_finish(listing, "Shapes, mm", grid);
+    wh_print_titled(&listing->frame, "Shapes, mm", grid);
 }
 
 static void describe_size(wh_grid_t *grid, size_t column, const wh_convex_t *convex) {
@@ -195,9 +267,9 @@ static const char *carrier_of(const wh_layout_t *layout, const wh_part_t *part) 
     return part->kind == WH_PART_ARM ? bodies[part->owner] : layout->grippers[part->owner].name;
 }
 
-static int print_obstacles(const wh_listing_t *listing) {
+static void print_obstacles(const listing_t *listing) {
     const wh_world_config_t *world = &listing->layout->world;
-    wh_grid_t *grid = wh_grid_new(listing->style, 1);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
     wh_grid_text_column(grid, "obstacle");
     wh_grid_text_column(grid, "on");
     wh_grid_text_column(grid, "shape");
@@ -217,11 +289,11 @@ static int print_obstacles(const wh_listing_t *listing) {
             wh_grid_number(grid, 5, WH_INK_PLAIN, (double)part->convex.body_from_shape.r.z);
         }
     }
-    return wh_listing_finish(listing, "Obstacles, mm", grid);
+    wh_print_titled(&listing->frame, "Obstacles, mm", grid);
 }
 
-static int print_limits(const wh_listing_t *listing) {
-    wh_grid_t *grid = wh_grid_new(listing->style, 1);
+static void print_limits(const listing_t *listing) {
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
     wh_grid_text_column(grid, "clearance");
     wh_grid_number_column(grid, "at least mm", whole);
     for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
@@ -231,64 +303,57 @@ static int print_limits(const wh_listing_t *listing) {
             wh_grid_number(grid, 1, WH_INK_PLAIN, (double)listing->layout->world.limits[kind]);
         }
     }
-    return wh_listing_finish(listing, "Clearances", grid);
+    wh_print_titled(&listing->frame, "Clearances", grid);
 }
 
 /* --------------------------------------------------------------------------------------------------- findings */
 
-static int put(const wh_listing_t *listing, const char *text) {
-    char *printable = wh_style_printable(text);
-    fputs(printable ? printable : "", listing->out);
-    free(printable);
-    return printable ? 0 : -1;
-}
-
-static int print_findings(const wh_listing_t *listing) {
-    int status = 0;
-    fputc('\n', listing->out);
+static void print_findings(const listing_t *listing) {
+    fputc('\n', listing->frame.out);
     if (listing->check->count == 0) {
-        wh_style_print(listing->style, listing->out, WH_INK_GOOD, "%s", wh_style_tick(listing->style));
-        fputs(" nothing is wrong with it\n", listing->out);
+        wh_style_print(listing->frame.style, listing->frame.out, WH_INK_GOOD, "%s",
+                       wh_style_tick(listing->frame.style));
+        fputs(" nothing is wrong with it\n", listing->frame.out);
     }
     for (size_t i = 0; i < listing->check->count; ++i) {
-        wh_style_print(listing->style, listing->out, WH_INK_BAD, "%s", wh_style_cross(listing->style));
-        fputc(' ', listing->out);
-        status |= put(listing, listing->check->findings[i].text);
-        fputc('\n', listing->out);
+        wh_style_print(listing->frame.style, listing->frame.out, WH_INK_BAD, "%s",
+                       wh_style_cross(listing->frame.style));
+        fputc(' ', listing->frame.out);
+        wh_style_put(listing->frame.out, listing->check->findings[i].text);
+        fputc('\n', listing->frame.out);
     }
-    return status;
 }
 
-static int print_heading(const wh_listing_t *listing) {
+static void print_heading(const listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
     const wh_tolerance_t *limits = &layout->grasp.tolerance;
-    const int status = put(listing, layout->path);
-    fprintf(listing->out, "\n%zu wafer%s of %g mm, %g mm thick, notch at %g%s\n", layout->wafer_count,
+    wh_style_put(listing->frame.out, layout->path);
+    fprintf(listing->frame.out, "\n%zu wafer%s of %g mm, %g mm thick, notch at %g%s\n", layout->wafer_count,
             layout->wafer_count == 1 ? "" : "s", layout->wafer_diameter, layout->wafer_thickness,
-            (double)wh_deg_from_rad((wh_real_t)layout->notch), wh_style_degree(listing->style));
-    fprintf(listing->out, "tolerance %s: %g mm, %g mm, %.10g; checked %s %g ms\n", layout->tolerance_name,
-            (double)limits->projz, (double)limits->projxy, (double)limits->planar,
+            (double)wh_deg_from_rad((wh_real_t)layout->notch), wh_style_degree(listing->frame.style));
+    fprintf(listing->frame.out, "tolerance %s: %g mm, %g mm, %.10g; checked %s %g ms\n",
+            layout->tolerance_name, (double)limits->projz, (double)limits->projxy, (double)limits->planar,
             layout->grasp.check == WH_CHECK_SWEPT ? "along the whole of each slice of"
                                                   : "once a slice, every",
             (double)layout->slice_us / 1e3);
-    fprintf(listing->out, "wafers %s%s; collisions are %schecked, %zu parts\n",
+    fprintf(listing->frame.out, "wafers %s%s; collisions are %schecked, %zu parts\n",
             layout->grasp.seat ? "are drawn onto the pads" : "stay as they were taken",
             layout->cell.settle ? ", and settle on what they are put down on" : "",
             layout->collision ? "" : "not ", layout->world.part_count + layout->wafer_count);
-    return status;
 }
 
 int wh_layout_print_table(const wh_feasibility_t *check, FILE *out, const wh_style_t *style) {
-    const wh_listing_t listing = {check, check->layout, style, out};
-    int status = print_heading(&listing);
-    status |= print_axes(&listing);
-    status |= print_grippers(&listing);
-    status |= print_stations(&listing);
-    status |= print_room(&listing);
-    status |= wh_listing_print_physics(&listing);
-    status |= print_shapes(&listing);
-    status |= print_obstacles(&listing);
-    status |= print_limits(&listing);
-    status |= print_findings(&listing);
-    return status != 0 || fflush(out) != 0 || ferror(out) ? -1 : 0;
+    const listing_t listing = {check, check->layout, {NULL, style, out}};
+    print_heading(&listing);
+    print_axes(&listing);
+    print_grippers(&listing);
+    print_stations(&listing);
+    print_room(&listing);
+    print_holding(&listing);
+    print_faults(&listing);
+    print_shapes(&listing);
+    print_obstacles(&listing);
+    print_limits(&listing);
+    print_findings(&listing);
+    return fflush(out) != 0 || ferror(out) ? -1 : 0;
 }

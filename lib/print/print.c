@@ -1,4 +1,4 @@
-/* What the report's parts share: names, numbers and the columns of measured values. */
+/* What the tables' parts share: names, numbers and the columns of measured values. */
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,66 +6,51 @@
 #include "../math/trig.h"
 #include "print_internal.h"
 
-void wh_print_title(const wh_printer_t *report, const char *title) {
-    fputc('\n', report->out);
-    wh_style_print(report->style, report->out, WH_INK_BOLD, "%s", title);
-    fputc('\n', report->out);
+void wh_print_title(const wh_printer_t *printer, const char *title) {
+    fputc('\n', printer->out);
+    wh_style_print(printer->style, printer->out, WH_INK_BOLD, "%s", title);
+    fputc('\n', printer->out);
 }
 
-/* The first `length` bytes of a text. */
-static int put_printable(const wh_printer_t *report, const char *text, size_t length) {
-    char *part = strndup(text, length);
-    char *printable = part ? wh_style_printable(part) : NULL;
-    if (printable) {
-        fputs(printable, report->out);
+void wh_print_put(const wh_printer_t *printer, const char *text) {
+    char *copy = wh_record_text(text ? text : "");
+    char *rest = copy;
+    for (char *end = strpbrk(rest, "\n\t"); end; end = strpbrk(rest, "\n\t")) {
+        const char *between = *end == '\n' ? "\n  " : "  ";
+        *end = '\0';
+        wh_style_put(printer->out, rest);
+        fputs(between, printer->out);
+        rest = end + 1;
     }
-    const int status = printable ? 0 : -1;
-    free(part);
-    free(printable);
-    return status;
+    wh_style_put(printer->out, rest);
+    free(copy);
 }
 
-int wh_print_put(const wh_printer_t *report, const char *text) {
-    int status = 0;
-    const char *rest = text ? text : "";
-    while (*rest != '\0') {
-        const size_t length = strcspn(rest, "\n\t");
-        status |= put_printable(report, rest, length);
-        rest += length;
-        if (*rest != '\0') {
-            fputs(*rest == '\n' ? "\n  " : "  ", report->out);
-            ++rest;
-        }
+void wh_print_titled(const wh_printer_t *printer, const char *title, wh_grid_t *grid) {
+    if (wh_grid_rows(grid) > 0) {
+        wh_print_title(printer, title);
+        wh_grid_print(grid, printer->out);
+    } else {
+        wh_grid_free(grid);
     }
-    return status;
 }
 
-const char *wh_print_wafer(const wh_printer_t *report, int32_t wafer) {
-    const char *name = wh_record_wafer_name(report->record, wafer);
+const char *wh_print_wafer(const wh_printer_t *printer, int32_t wafer) {
+    const char *name = wh_record_wafer_name(printer->record, wafer);
     return name ? name : "-";
 }
 
-const char *wh_print_gripper(const wh_printer_t *report, int32_t gripper) {
-    const char *name = wh_record_gripper_name(report->record, gripper);
+const char *wh_print_gripper(const wh_printer_t *printer, int32_t gripper) {
+    const char *name = wh_record_gripper_name(printer->record, gripper);
     return name ? name : "-";
 }
 
-wh_grid_digits_t wh_print_seconds(void) {
-    const wh_grid_digits_t digits = {3, 6, false, 0};
-    return digits;
+void wh_print_limit(char text[WH_PRINT_NUMBER_SIZE], double limit) {
+    snprintf(text, WH_PRINT_NUMBER_SIZE, "%.10g", limit);
 }
 
-wh_grid_digits_t wh_print_millimetres(void) {
-    const wh_grid_digits_t digits = {4, 9, false, 0};
-    return digits;
-}
-
-void wh_print_limit(char text[WH_REPORT_NUMBER_SIZE], double limit) {
-    snprintf(text, WH_REPORT_NUMBER_SIZE, "%.10g", limit);
-}
-
-void wh_print_count(char text[WH_REPORT_NUMBER_SIZE], int64_t count) {
-    char digits[WH_REPORT_NUMBER_SIZE / 2 + 2];
+void wh_print_count(char text[WH_PRINT_NUMBER_SIZE], int64_t count) {
+    char digits[WH_PRINT_NUMBER_SIZE / 2 + 2];
     const int length = snprintf(digits, sizeof digits, "%" PRId64, count);
     size_t to = 0;
     for (int i = 0; i < length; ++i) {
@@ -90,8 +75,8 @@ static wh_vec3_t gripper_normal(const wh_layout_t *layout, int32_t gripper) {
                               : wh_mat3_column(&layout->places[station].base_from_station.R, 2);
 }
 
-double wh_print_rim_gap(const wh_printer_t *report, const wh_event_t *event) {
-    const wh_layout_t *layout = report->record->layout;
+double wh_print_rim_gap(const wh_printer_t *printer, const wh_event_t *event) {
+    const wh_layout_t *layout = printer->record->layout;
     const wh_vec3_t n2 = gripper_normal(layout, event->gripper);
     const double cosine = (double)event->measured.n1_proj_n2;
     const double square = (1 - cosine) * (1 + cosine);
@@ -100,38 +85,38 @@ double wh_print_rim_gap(const wh_printer_t *report, const wh_event_t *event) {
     return centre + layout->wafer_diameter / 2 * sine;
 }
 
-static void limited_column(const wh_printer_t *report, wh_grid_t *grid, const char *value,
+static void limited_column(const wh_printer_t *printer, wh_grid_t *grid, const char *value,
                            const char *relation, double limit, int decimals) {
-    char heading[64 + WH_REPORT_NUMBER_SIZE];
-    char number[WH_REPORT_NUMBER_SIZE];
-    const wh_grid_digits_t digits = {decimals, decimals, report->record->layout != NULL, limit};
+    char heading[64 + WH_PRINT_NUMBER_SIZE];
+    char number[WH_PRINT_NUMBER_SIZE];
+    const wh_grid_digits_t digits = {decimals, decimals, printer->record->layout != NULL, limit};
     wh_print_limit(number, limit);
     snprintf(heading, sizeof heading, "%s %s %s", value, relation, number);
-    wh_grid_number_column(grid, report->record->layout ? heading : value, digits);
+    wh_grid_number_column(grid, printer->record->layout ? heading : value, digits);
 }
 
-void wh_print_measured_columns(const wh_printer_t *report, wh_grid_t *grid) {
+void wh_print_measured_columns(const wh_printer_t *printer, wh_grid_t *grid) {
     static const wh_tolerance_t unknown = {0, 0, 0};
-    const wh_layout_t *layout = report->record->layout;
+    const wh_layout_t *layout = printer->record->layout;
     const wh_tolerance_t *limits = layout ? &layout->grasp.tolerance : &unknown;
     const wh_grid_digits_t rim = {4, 4, false, 0};
-    limited_column(report, grid, "|dr_proj_z|", "<", (double)limits->projz, 4);
+    limited_column(printer, grid, "|dr_proj_z|", "<", (double)limits->projz, 4);
     wh_grid_number_column(grid, "rim gap", rim);
     wh_grid_glue(grid);
-    limited_column(report, grid, "|dr_proj_xy|", "<", (double)limits->projxy, 4);
+    limited_column(printer, grid, "|dr_proj_xy|", "<", (double)limits->projxy, 4);
     wh_grid_glue(grid);
-    limited_column(report, grid, "n1_proj_n2", ">", (double)limits->planar, 6);
+    limited_column(printer, grid, "n1_proj_n2", ">", (double)limits->planar, 6);
     wh_grid_glue(grid);
 }
 
-void wh_print_measured(const wh_printer_t *report, wh_grid_t *grid, size_t first, const wh_event_t *event) {
+void wh_print_measured(const wh_printer_t *printer, wh_grid_t *grid, size_t first, const wh_event_t *event) {
     const wh_proximity_t *p = &event->measured;
     const wh_ink_t projz = p->failed & WH_FAILED_PROJZ ? WH_INK_BAD : WH_INK_PLAIN;
     const wh_ink_t projxy = p->failed & WH_FAILED_PROJXY ? WH_INK_BAD : WH_INK_PLAIN;
     const wh_ink_t planar = p->failed & WH_FAILED_PLANAR ? WH_INK_BAD : WH_INK_PLAIN;
     wh_grid_number(grid, first, projz, (double)wh_real_abs(p->dr_proj_z));
-    if (wh_record_gripper_name(report->record, event->gripper)) {
-        wh_grid_number(grid, first + 1, WH_INK_DIM, wh_print_rim_gap(report, event));
+    if (wh_record_gripper_name(printer->record, event->gripper)) {
+        wh_grid_number(grid, first + 1, WH_INK_DIM, wh_print_rim_gap(printer, event));
     }
     wh_grid_number(grid, first + 2, projxy, (double)p->dr_proj_xy_norm);
     wh_grid_number(grid, first + 3, planar, (double)p->n1_proj_n2);

@@ -43,11 +43,11 @@
 
 #include "../record/record.h"
 
-/* 0, or -1 when memory is out (nothing is then printed) or writing failed. Needs LC_NUMERIC "C" no more than
- * any other locale. Cost: linear in the record, all of it in memory once more. */
+/* 0, or -1 if writing failed. Any LC_NUMERIC gives the same bytes. Cost: linear in the record, all of it in memory once
+ * more. */
 int wh_record_print_json(const wh_record_t *record, FILE *out);
 
-/* The object itself, to be released by the caller; null when memory is out. */
+/* The object itself; the caller releases it. */
 json_t *wh_record_to_json(const wh_record_t *record);
 
 #endif

@@ -1,4 +1,4 @@
-/* A run's record as a report for people.
+/* A run's record as tables for people.
  *
  * In this order, with what has nothing to say left out: what ran and with which tolerance; the commands, each
  * with the wafers that it took and the values (2)-(5) of each pick beside their limits; what the commands
@@ -17,14 +17,14 @@
 
 /* Sections that are printed when asked for, before the expectations. */
 enum {
-    WH_TABLE_GANTT =
-        1, /* who was busy when, time along the line, as wide as the terminal; what each command's time
-                          * went into */
-    WH_TABLE_MARGINS = 2 /* how near the axes come to the ends of their travel at each station */
+    /* Who was busy when, time along the line, as wide as the terminal; what each command's time went into. */
+    WH_TABLE_GANTT = 1,
+    /* How near the axes come to the ends of their travel at each station. */
+    WH_TABLE_MARGINS = 2
 };
 
-/* 0, or -1 when memory is out or writing failed; the report may then be incomplete. `style` is usually
- * wh_style_of(out). Cost: linear in the record. */
+/* 0, or -1 if writing failed (then what is printed may be incomplete). `style` is usually wh_style_of(out). Cost: linear in
+ * the record. */
 int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t *style);
 
 /* The same with sections of the above, added up. */

@@ -33,14 +33,14 @@ typedef struct {
     const wh_tally_t *tally; /* of all trials, sorted */
     double require;          /* the rate that is required; 0: none */
     size_t worst;            /* so many of the worst trials are told */
-} wh_study_print_t;
+} wh_study_result_t;
 
-/* Whether the success rate's interval begins at or above what is required. */
-bool wh_study_is_kept(const wh_study_print_t *report);
+/* True if the success rate's interval begins at or above what is required. */
+bool wh_study_is_kept(const wh_study_result_t *result);
 
-/* 0, or -1 when memory is out or writing failed. */
-int wh_study_print_table(const wh_study_print_t *report, FILE *out, const wh_style_t *style);
-int wh_study_print_json(const wh_study_print_t *report, FILE *out);
+/* 0, or -1 if writing failed. */
+int wh_study_print_table(const wh_study_result_t *result, FILE *out, const wh_style_t *style);
+int wh_study_print_json(const wh_study_result_t *result, FILE *out);
 
 /* An expectation's text without what was found instead. Writes at most `size` bytes. */
 void wh_study_expected(const char *text, char *expected, size_t size);

@@ -7,20 +7,19 @@
 #include "print_internal.h"
 #include "study_print.h"
 
-/* The parts of the run's report that are of use here take its frame. */
+/* The parts of the run's result that are of use here take its frame. */
 typedef struct {
-    const wh_study_print_t *study;
+    const wh_study_result_t *study;
     const wh_tally_t *tally;
     wh_printer_t frame;
 } table_t;
 
 static const wh_grid_digits_t percent = {2, 4, false, 0};
-static const wh_grid_digits_t whole = {0, 0, false, 0};
 static const wh_grid_digits_t fine = {4, 4, false, 0};
 
-bool wh_study_is_kept(const wh_study_print_t *report) {
-    const wh_confidence_t success = wh_wilson_interval(report->tally->met, report->tally->trials);
-    return success.low >= report->require;
+bool wh_study_is_kept(const wh_study_result_t *result) {
+    const wh_confidence_t success = wh_wilson_interval(result->tally->met, result->tally->trials);
+    return success.low >= result->require;
 }
 
 void wh_study_expected(const char *text, char *expected, size_t size) {
@@ -59,21 +58,13 @@ static void put_trial(wh_grid_t *grid, size_t column, uint64_t trial) {
     }
 }
 
-static int finish(const table_t *table, const char *title, wh_grid_t *grid) {
-    if (wh_grid_rows(grid) == 0) {
-        return wh_grid_discard(grid);
-    }
-    wh_print_title(&table->frame, title);
-    return wh_grid_print(grid, table->frame.out);
-}
-
-static int print_expectations(const table_t *table) {
+static void print_expectations(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 2);
-    wh_grid_number_column(grid, "line", whole);
+    wh_grid_number_column(grid, "line", wh_grid_whole);
     wh_grid_text_column(grid, "expected");
-    wh_grid_number_column(grid, "met", whole);
+    wh_grid_number_column(grid, "met", wh_grid_whole);
     rate_columns(grid);
-    wh_grid_number_column(grid, "first missed", whole);
+    wh_grid_number_column(grid, "first missed", wh_grid_whole);
     for (size_t i = 0; i < table->tally->expectations.count; ++i) {
         const wh_tally_row_t *row = &table->tally->expectations.rows[i];
         char expected[200];
@@ -85,17 +76,17 @@ static int print_expectations(const table_t *table) {
         put_rate(grid, 3, WH_INK_PLAIN, row->seen - row->bad, row->seen);
         put_trial(grid, 5, row->first);
     }
-    return finish(table, "Expectations", grid);
+    wh_print_titled(&table->frame, "Expectations", grid);
 }
 
-static int print_errors(const table_t *table) {
+static void print_errors(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 2);
-    wh_grid_number_column(grid, "line", whole);
+    wh_grid_number_column(grid, "line", wh_grid_whole);
     wh_grid_text_column(grid, "command");
     wh_grid_text_column(grid, "error");
-    wh_grid_number_column(grid, "trials", whole);
+    wh_grid_number_column(grid, "trials", wh_grid_whole);
     rate_columns(grid);
-    wh_grid_number_column(grid, "first", whole);
+    wh_grid_number_column(grid, "first", wh_grid_whole);
     for (size_t i = 0; i < table->tally->errors.count; ++i) {
         const wh_tally_row_t *row = &table->tally->errors.rows[i];
         wh_grid_row(grid);
@@ -106,15 +97,15 @@ static int print_errors(const table_t *table) {
         put_rate(grid, 4, WH_INK_PLAIN, row->bad, table->tally->trials);
         put_trial(grid, 6, row->first);
     }
-    return finish(table, "Errors of commands", grid);
+    wh_print_titled(&table->frame, "Errors of commands", grid);
 }
 
-static int print_events(const table_t *table) {
+static void print_events(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 1);
     wh_grid_text_column(grid, "event");
-    wh_grid_number_column(grid, "trials", whole);
+    wh_grid_number_column(grid, "trials", wh_grid_whole);
     rate_columns(grid);
-    wh_grid_number_column(grid, "all in all", whole);
+    wh_grid_number_column(grid, "all in all", wh_grid_whole);
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
         const wh_tally_event_t *event = &table->tally->events[kind];
         if (event->trials > 0) {
@@ -127,7 +118,7 @@ static int print_events(const table_t *table) {
             wh_grid_number(grid, 4, WH_INK_PLAIN, (double)event->total);
         }
     }
-    return finish(table, "Events", grid);
+    wh_print_titled(&table->frame, "Events", grid);
 }
 
 /* -------------------------------------------------------------------------------------------------- wafers */
@@ -161,7 +152,7 @@ static void add_wafer(const table_t *table, wh_grid_t *grid, size_t index) {
     }
 }
 
-static int print_wafers(const table_t *table) {
+static void print_wafers(const table_t *table) {
     static const char *const headings[] = {"mean", "deviation", "min",    "0.1 %", "5 %",
                                            "50 %", "95 %",      "99.9 %", "max"};
     wh_grid_t *grid = wh_grid_new(table->frame.style, 3);
@@ -174,27 +165,25 @@ static int print_wafers(const table_t *table) {
     for (size_t w = 0; w < table->tally->wafer_count; ++w) {
         add_wafer(table, grid, w);
     }
-    int status = finish(table, "Wafers at the end", grid);
+    wh_print_titled(&table->frame, "Wafers at the end", grid);
     for (size_t w = 0; w < table->tally->wafer_count; ++w) {
         const wh_tally_wafer_t *tally = &table->tally->wafers[w];
         if (tally->elsewhere > 0) {
-            char count[WH_REPORT_NUMBER_SIZE];
+            char count[WH_PRINT_NUMBER_SIZE];
             wh_print_count(count, (int64_t)tally->elsewhere);
-            status |=
-                wh_print_put(&table->frame,
-                             table->study->study->layout->wafers[table->study->study->wafers[w].wafer].name);
+            wh_print_put(&table->frame,
+                         table->study->study->layout->wafers[table->study->study->wafers[w].wafer].name);
             fprintf(table->frame.out, " ends elsewhere in %s %s, which are not in these figures\n", count,
                     tally->elsewhere == 1 ? "trial" : "trials");
         }
     }
-    return status;
 }
 
 /* --------------------------------------------------------------------------------------------------- worst */
 
-static int print_worst(const table_t *table) {
+static void print_worst(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 1);
-    wh_grid_number_column(grid, "trial", whole);
+    wh_grid_number_column(grid, "trial", wh_grid_whole);
     wh_grid_text_column(grid, "result");
     wh_grid_number_column(grid, "off mm", fine);
     const size_t count =
@@ -210,17 +199,17 @@ static int print_worst(const table_t *table) {
             wh_grid_text(grid, 2, WH_INK_PLAIN, "elsewhere");
         }
     }
-    return finish(table, "Worst trials", grid);
+    wh_print_titled(&table->frame, "Worst trials", grid);
 }
 
 /* ------------------------------------------------------------------------------------------------- around */
 
-static int print_head(const table_t *table) {
+static void print_head(const table_t *table) {
     const wh_study_t *study = table->study->study;
-    char trials[WH_REPORT_NUMBER_SIZE];
-    int status = wh_print_put(&table->frame, study->run.script);
+    char trials[WH_PRINT_NUMBER_SIZE];
+    wh_print_put(&table->frame, study->run.script);
     fputs(" on ", table->frame.out);
-    status |= wh_print_put(&table->frame, study->layout->path);
+    wh_print_put(&table->frame, study->layout->path);
     wh_print_count(trials, (int64_t)table->tally->trials);
     fprintf(table->frame.out, "\n%s trials of seed %llu\n", trials, (unsigned long long)study->seed);
     if (!study->nominal.record.ok) {
@@ -228,12 +217,11 @@ static int print_head(const table_t *table) {
                        "without any errors the script fails already");
         fputc('\n', table->frame.out);
     }
-    return status;
 }
 
 static void print_how(const table_t *table) {
     const wh_study_t *study = table->study->study;
-    char count[WH_REPORT_NUMBER_SIZE];
+    char count[WH_PRINT_NUMBER_SIZE];
     wh_print_count(count, (int64_t)table->tally->whole);
     if (study->whole) {
         fprintf(table->frame.out,
@@ -246,11 +234,11 @@ static void print_how(const table_t *table) {
 }
 
 static void print_summary(const table_t *table) {
-    const wh_study_print_t *report = table->study;
+    const wh_study_result_t *result = table->study;
     const wh_confidence_t success = wh_wilson_interval(table->tally->met, table->tally->trials);
     FILE *out = table->frame.out;
-    char met[WH_REPORT_NUMBER_SIZE];
-    char trials[WH_REPORT_NUMBER_SIZE];
+    char met[WH_PRINT_NUMBER_SIZE];
+    char trials[WH_PRINT_NUMBER_SIZE];
     wh_print_count(met, (int64_t)table->tally->met);
     wh_print_count(trials, (int64_t)table->tally->trials);
     fputc('\n', out);
@@ -260,26 +248,26 @@ static void print_summary(const table_t *table) {
                    met, trials);
     fprintf(out, ": %.4f %%, 95 %% sure from %.4f to %.4f %% (Wilson)\n", 100 * success.rate,
             100 * success.low, 100 * success.high);
-    if (report->require > 0) {
-        const bool kept = wh_study_is_kept(report);
+    if (result->require > 0) {
+        const bool kept = wh_study_is_kept(result);
         wh_style_print(table->frame.style, out, kept ? WH_INK_GOOD : WH_INK_BAD, "%s",
                        kept ? "the required " : "not the required ");
-        fprintf(out, "%.10g %%\n", 100 * report->require);
+        fprintf(out, "%.10g %%\n", 100 * result->require);
     }
-    if (table->tally->worst_count > 0 && report->worst > 0) {
+    if (table->tally->worst_count > 0 && result->worst > 0) {
         fprintf(out, "--trial %llu --seed %llu plays the worst one\n",
-                (unsigned long long)table->tally->worst[0].trial, (unsigned long long)report->study->seed);
+                (unsigned long long)table->tally->worst[0].trial, (unsigned long long)result->study->seed);
     }
 }
 
-int wh_study_print_table(const wh_study_print_t *report, FILE *out, const wh_style_t *style) {
-    const table_t table = {report, report->tally, {&report->study->nominal.record, style, out}};
-    int status = print_head(&table);
-    status |= print_expectations(&table);
-    status |= print_errors(&table);
-    status |= print_events(&table);
-    status |= print_wafers(&table);
-    status |= print_worst(&table);
+int wh_study_print_table(const wh_study_result_t *result, FILE *out, const wh_style_t *style) {
+    const table_t table = {result, result->tally, {&result->study->nominal.record, style, out}};
+    print_head(&table);
+    print_expectations(&table);
+    print_errors(&table);
+    print_events(&table);
+    print_wafers(&table);
+    print_worst(&table);
     print_summary(&table);
-    return status != 0 || ferror(out) ? -1 : 0;
+    return ferror(out) ? -1 : 0;
 }

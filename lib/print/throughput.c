@@ -5,53 +5,53 @@
 
 /* ------------------------------------------------------------------------------------------ wafers per hour */
 
-static void put_window(const wh_printer_t *report, const wh_throughput_t *throughput) {
-    fprintf(report->out, ": %zu in %.3f s, ", throughput->wafers, throughput->seconds);
+static void put_window(const wh_printer_t *printer, const wh_throughput_t *throughput) {
+    fprintf(printer->out, ": %zu in %.3f s, ", throughput->wafers, throughput->seconds);
     if (throughput->first == 0) {
-        fputs("the whole run", report->out);
+        fputs("the whole run", printer->out);
     } else if (throughput->first == throughput->last) {
-        fprintf(report->out, "cycle %zu", throughput->first);
+        fprintf(printer->out, "cycle %zu", throughput->first);
     } else {
-        fprintf(report->out, "cycles %zu to %zu", throughput->first, throughput->last);
+        fprintf(printer->out, "cycles %zu to %zu", throughput->first, throughput->last);
     }
 }
 
-static void put_share(const wh_printer_t *report, int64_t slices, const char *what, const char **before) {
-    const double percent = 100 * (double)slices / (double)report->record->slices;
+static void put_share(const wh_printer_t *printer, int64_t slices, const char *what, const char **before) {
+    const double percent = 100 * (double)slices / (double)printer->record->slices;
     if (percent >= 0.05) {
-        fprintf(report->out, "%s%.1f %% %s", *before, percent, what);
+        fprintf(printer->out, "%s%.1f %% %s", *before, percent, what);
         *before = ", ";
     }
 }
 
-void wh_print_throughput(const wh_printer_t *report) {
-    const wh_throughput_t throughput = wh_throughput(report->record);
-    const int64_t *shares = report->record->activity.shares;
+void wh_print_throughput(const wh_printer_t *printer) {
+    const wh_throughput_t throughput = wh_throughput(printer->record);
+    const int64_t *shares = printer->record->activity.shares;
     const char *before = "; ";
     if (throughput.wafers == 0 || throughput.slices == 0) {
         return;
     }
-    fprintf(report->out, "%.1f wafers per hour", throughput.wafers_per_hour);
-    put_window(report, &throughput);
-    put_share(report, shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY], "motion", &before);
-    put_share(report, shares[WH_SHARE_VACUUM], "vacuum", &before);
-    put_share(report, shares[WH_SHARE_HANDOVER], "valves", &before);
-    put_share(report, shares[WH_SHARE_WAITING], "waiting", &before);
-    fputc('\n', report->out);
+    fprintf(printer->out, "%.1f wafers per hour", throughput.wafers_per_hour);
+    put_window(printer, &throughput);
+    put_share(printer, shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY], "motion", &before);
+    put_share(printer, shares[WH_SHARE_VACUUM], "vacuum", &before);
+    put_share(printer, shares[WH_SHARE_HANDOVER], "valves", &before);
+    put_share(printer, shares[WH_SHARE_WAITING], "waiting", &before);
+    fputc('\n', printer->out);
 }
 
 /* ---------------------------------------------------------------------------------------------------- times */
 
 enum { LINE, COMMAND, SECONDS, FIRST_SHARE };
 
-static void add_times(const wh_printer_t *report, wh_grid_t *grid, const char *text, int64_t slices,
+static void add_times(const wh_printer_t *printer, wh_grid_t *grid, const char *text, int64_t slices,
                       const int64_t shares[WH_SHARES]) {
     wh_grid_text(grid, COMMAND, WH_INK_PLAIN, "%s", text);
-    wh_grid_number(grid, SECONDS, WH_INK_PLAIN, wh_throughput_seconds(report->record, slices));
+    wh_grid_number(grid, SECONDS, WH_INK_PLAIN, wh_throughput_seconds(printer->record, slices));
     for (size_t share = 0; share < WH_SHARES; ++share) {
         if (shares[share] > 0) {
             wh_grid_number(grid, FIRST_SHARE + share, WH_INK_PLAIN,
-                           wh_throughput_seconds(report->record, shares[share]));
+                           wh_throughput_seconds(printer->record, shares[share]));
         }
     }
 }
@@ -64,19 +64,18 @@ static int64_t sum_of(const int64_t shares[WH_SHARES]) {
     return sum;
 }
 
-int wh_print_times(const wh_printer_t *report) {
+void wh_print_times(const wh_printer_t *printer) {
     static const char *const headings[WH_SHARES] = {"with wafer", "without", "vacuum", "valves", "waiting"};
-    const wh_record_t *record = report->record;
-    const wh_grid_digits_t whole = {0, 0, false, 0};
+    const wh_record_t *record = printer->record;
     if (!record->layout || record->slices == 0) {
-        return 0;
+        return;
     }
-    wh_grid_t *grid = wh_grid_new(report->style, 2);
-    wh_grid_number_column(grid, "line", whole);
+    wh_grid_t *grid = wh_grid_new(printer->style, 2);
+    wh_grid_number_column(grid, "line", wh_grid_whole);
     wh_grid_text_column(grid, "command");
-    wh_grid_number_column(grid, "s", wh_print_seconds());
+    wh_grid_number_column(grid, "s", wh_print_seconds);
     for (size_t share = 0; share < WH_SHARES; ++share) {
-        wh_grid_number_column(grid, headings[share], wh_print_seconds());
+        wh_grid_number_column(grid, headings[share], wh_print_seconds);
     }
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
@@ -84,13 +83,13 @@ int wh_print_times(const wh_printer_t *report) {
         if (command->line > 0) {
             wh_grid_number(grid, LINE, WH_INK_DIM, command->line);
         }
-        add_times(report, grid, command->text ? command->text : "", sum_of(command->shares), command->shares);
+        add_times(printer, grid, command->text ? command->text : "", sum_of(command->shares),
+                  command->shares);
     }
     wh_grid_row(grid);
-    add_times(report, grid, "all", sum_of(record->activity.shares), record->activity.shares);
-    wh_print_title(report,
-                   "Time: motion with and without a wafer, standing still for vacuum, valves, waiting");
-    return wh_grid_print(grid, report->out);
+    add_times(printer, grid, "all", sum_of(record->activity.shares), record->activity.shares);
+    wh_print_titled(
+        printer, "Time: motion with and without a wafer, standing still for vacuum, valves, waiting", grid);
 }
 
 /* ---------------------------------------------------------------------------------------------------- reach */
@@ -98,11 +97,11 @@ int wh_print_times(const wh_printer_t *report) {
 /* Below so many mm or degrees a margin is nothing to build upon. */
 #define SLENDER 1.0
 
-static void add_reach(const wh_printer_t *report, wh_grid_t *grid, size_t station) {
+static void add_reach(const wh_printer_t *printer, wh_grid_t *grid, size_t station) {
     wh_grid_row(grid);
-    wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", report->record->layout->stations[station].name);
+    wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", printer->record->layout->stations[station].name);
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        const wh_travel_margin_t *reach = &report->record->reach[station].axes[axis];
+        const wh_travel_margin_t *reach = &printer->record->reach[station].axes[axis];
         const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
         const double margin = (double)(turns ? wh_deg_from_rad(reach->margin) : reach->margin);
         if (reach->slot != 0) {
@@ -113,14 +112,14 @@ static void add_reach(const wh_printer_t *report, wh_grid_t *grid, size_t statio
     }
 }
 
-int wh_print_margins(const wh_printer_t *report) {
+void wh_print_margins(const wh_printer_t *printer) {
     static const char *const headings[WH_ROBOT_AXES] = {"theta deg", "r mm", "z mm", "yaw deg"};
     const wh_grid_digits_t digits = {1, 3, false, 0};
-    const wh_record_t *record = report->record;
+    const wh_record_t *record = printer->record;
     if (!record->layout || !record->reach) {
-        return 0;
+        return;
     }
-    wh_grid_t *grid = wh_grid_new(report->style, 1);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
     wh_grid_text_column(grid, "station");
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         wh_grid_number_column(grid, headings[axis], digits);
@@ -128,9 +127,9 @@ int wh_print_margins(const wh_printer_t *report) {
         wh_grid_glue(grid);
     }
     for (size_t station = 0; station < record->layout->station_count; ++station) {
-        add_reach(report, grid, station);
+        add_reach(printer, grid, station);
     }
-    wh_print_title(report,
-                   "Reach: how far GET and PUT, coming from home, stay from the ends of the axes' travel");
-    return wh_grid_print(grid, report->out);
+    wh_print_titled(printer,
+                    "Reach: how far GET and PUT, coming from home, stay from the ends of the axes' travel",
+                    grid);
 }

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "../math/trig.h"
+#include "../text/array.h"
 #include "print_internal.h"
 
 enum { NAME, HELD_BY, LIES_IN, DX, DY, DZ, TILT };
@@ -36,22 +37,22 @@ static void read_history(const wh_record_t *record, const history_t *history) {
     }
 }
 
-static wh_grid_t *new_grid(const wh_printer_t *report) {
+static wh_grid_t *new_grid(const wh_printer_t *printer) {
     const wh_grid_digits_t tilt = {3, 6, false, 0};
-    wh_grid_t *grid = wh_grid_new(report->style, 1);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
     wh_grid_text_column(grid, "wafer");
     wh_grid_text_column(grid, "held by");
     wh_grid_text_column(grid, "lies in");
-    wh_grid_number_column(grid, "dX mm", wh_print_millimetres());
-    wh_grid_number_column(grid, "dY mm", wh_print_millimetres());
-    wh_grid_number_column(grid, "dz mm", wh_print_millimetres());
+    wh_grid_number_column(grid, "dX mm", wh_print_millimetres);
+    wh_grid_number_column(grid, "dY mm", wh_print_millimetres);
+    wh_grid_number_column(grid, "dz mm", wh_print_millimetres);
     wh_grid_number_column(grid, "tilt deg", tilt);
     return grid;
 }
 
-static void fill_place(const wh_printer_t *report, wh_grid_t *grid, const wh_wafer_record_t *wafer) {
+static void fill_place(const wh_printer_t *printer, wh_grid_t *grid, const wh_wafer_record_t *wafer) {
     const wh_place_t *place = &wafer->place;
-    const char *station = wh_record_station_name(report->record, place->station);
+    const char *station = wh_record_station_name(printer->record, place->station);
     if (!station) {
         wh_grid_text(grid, LIES_IN, wafer->holder == WH_NONE ? WH_INK_BAD : WH_INK_PLAIN, "no slot");
         return;
@@ -63,24 +64,24 @@ static void fill_place(const wh_printer_t *report, wh_grid_t *grid, const wh_waf
     wh_grid_number(grid, TILT, WH_INK_PLAIN, (double)wh_deg_from_rad(place->tilt));
 }
 
-static void add_wafer(const wh_printer_t *report, wh_grid_t *grid, size_t i) {
-    const wh_wafer_record_t *wafer = &report->record->wafers[i];
+static void add_wafer(const wh_printer_t *printer, wh_grid_t *grid, size_t i) {
+    const wh_wafer_record_t *wafer = &printer->record->wafers[i];
     wh_grid_row(grid);
-    wh_grid_text(grid, NAME, WH_INK_PLAIN, "%s", wh_print_wafer(report, (int32_t)i));
+    wh_grid_text(grid, NAME, WH_INK_PLAIN, "%s", wh_print_wafer(printer, (int32_t)i));
     if (wafer->holder != WH_NONE) {
-        wh_grid_text(grid, HELD_BY, WH_INK_PLAIN, "%s", wh_print_gripper(report, wafer->holder));
+        wh_grid_text(grid, HELD_BY, WH_INK_PLAIN, "%s", wh_print_gripper(printer, wafer->holder));
     }
-    fill_place(report, grid, wafer);
+    fill_place(printer, grid, wafer);
 }
 
 /* Returns how many wafers were left out. */
-static size_t add_wafers(const wh_printer_t *report, wh_grid_t *grid, const history_t *history) {
-    const wh_record_t *record = report->record;
+static size_t add_wafers(const wh_printer_t *printer, wh_grid_t *grid, const history_t *history) {
+    const wh_record_t *record = printer->record;
     const size_t count = record->layout->wafer_count;
     size_t left_out = 0;
     for (size_t i = 0; i < count; ++i) {
         if (count <= LISTED_ALL || history->named[i] != 0 || record->wafers[i].holder != WH_NONE) {
-            add_wafer(report, grid, i);
+            add_wafer(printer, grid, i);
         } else {
             ++left_out;
         }
@@ -88,68 +89,60 @@ static size_t add_wafers(const wh_printer_t *report, wh_grid_t *grid, const hist
     return left_out;
 }
 
-static int say_tilt(const wh_printer_t *report, size_t wafer, const wh_event_t *pick, double tilt_deg) {
-    const bool seated = report->record->layout->grasp.seat;
-    const char *degree = wh_style_degree(report->style);
-    int status = wh_print_put(report, wh_print_wafer(report, (int32_t)wafer));
-    fprintf(report->out, seated ? " was at %.3f%s to " : " keeps %.3f%s against ", tilt_deg, degree);
-    status |= wh_print_put(report, wh_print_gripper(report, pick->gripper));
+static void say_tilt(const wh_printer_t *printer, size_t wafer, const wh_event_t *pick, double tilt_deg) {
+    const bool seated = printer->record->layout->grasp.seat;
+    const char *degree = wh_style_degree(printer->style);
+    wh_print_put(printer, wh_print_wafer(printer, (int32_t)wafer));
+    fprintf(printer->out, seated ? " was at %.3f%s to " : " keeps %.3f%s against ", tilt_deg, degree);
+    wh_print_put(printer, wh_print_gripper(printer, pick->gripper));
     if (seated) {
-        fputs(" when it was taken, and was drawn flat onto the pads.\n", report->out);
+        fputs(" when it was taken, and was drawn flat onto the pads.\n", printer->out);
     } else {
-        fprintf(report->out, ", its rim %.2f mm from the pads' plane: the robot cannot tilt.\n",
-                wh_print_rim_gap(report, pick));
+        fprintf(printer->out, ", its rim %.2f mm from the pads' plane: the robot cannot tilt.\n",
+                wh_print_rim_gap(printer, pick));
     }
-    return status;
 }
 
-static int say_tilts(const wh_printer_t *report, const history_t *history) {
-    int status = 0;
-    for (size_t i = 0; i < report->record->layout->wafer_count; ++i) {
+static void say_tilts(const wh_printer_t *printer, const history_t *history) {
+    for (size_t i = 0; i < printer->record->layout->wafer_count; ++i) {
         if (history->picked[i] == 0) {
             continue;
         }
-        const wh_event_t *pick = &report->record->events[history->picked[i] - 1].event;
+        const wh_event_t *pick = &printer->record->events[history->picked[i] - 1].event;
         const double tilt_deg = wh_print_tilt_deg((double)pick->measured.n1_proj_n2);
         if (tilt_deg >= TILT_SHOWN_DEG) {
-            status |= say_tilt(report, i, pick, tilt_deg);
+            say_tilt(printer, i, pick, tilt_deg);
         }
     }
-    return status;
 }
 
-static int print_wafers(const wh_printer_t *report, const history_t *history) {
-    wh_grid_t *grid = new_grid(report);
-    const size_t left_out = add_wafers(report, grid, history);
-    int status = 0;
-    wh_print_title(report, "Wafers");
-    if (left_out < report->record->layout->wafer_count) {
-        status = wh_grid_print(grid, report->out);
+static void print_wafers(const wh_printer_t *printer, const history_t *history) {
+    wh_grid_t *grid = new_grid(printer);
+    const size_t left_out = add_wafers(printer, grid, history);
+    wh_print_title(printer, "Wafers");
+    if (left_out < printer->record->layout->wafer_count) {
+        wh_grid_print(grid, printer->out);
     } else {
-        status = wh_grid_discard(grid);
+        wh_grid_free(grid);
     }
     if (left_out > 0) {
-        char count[WH_REPORT_NUMBER_SIZE];
+        char count[WH_PRINT_NUMBER_SIZE];
         wh_print_count(count, (int64_t)left_out);
-        fprintf(report->out, "%s %s where nothing happened to them\n", count,
+        fprintf(printer->out, "%s %s where nothing happened to them\n", count,
                 left_out == 1 ? "wafer lies" : "wafers lie");
     }
-    return status | say_tilts(report, history);
+    say_tilts(printer, history);
 }
 
-int wh_print_wafers(const wh_printer_t *report) {
-    const wh_layout_t *layout = report->record->layout;
+void wh_print_wafers(const wh_printer_t *printer) {
+    const wh_layout_t *layout = printer->record->layout;
     if (!layout || layout->wafer_count == 0) {
-        return 0;
+        return;
     }
-    const history_t history = {calloc(layout->wafer_count, sizeof(size_t)),
-                               calloc(layout->wafer_count, sizeof(size_t))};
-    int status = -1;
-    if (history.named && history.picked) {
-        read_history(report->record, &history);
-        status = print_wafers(report, &history);
-    }
+    const history_t history = {wh_array_new(layout->wafer_count, sizeof(size_t)),
+                               wh_array_new(layout->wafer_count, sizeof(size_t))};
+    read_history(printer->record, &history);
+    print_wafers(printer, &history);
     free(history.named);
     free(history.picked);
-    return status;
 }

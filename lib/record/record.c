@@ -3,18 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void *wh_record_grow(void *items, size_t count, size_t *capacity, size_t size) {
-    if (count < *capacity) {
-        return items;
-    }
-    const size_t wanted = *capacity > 0 ? 2 * *capacity : 64;
-    void *grown = realloc(items, wanted * size);
-    if (!grown) {
-        abort();
-    }
-    *capacity = wanted;
-    return grown;
-}
+#include "../text/array.h"
 
 char *wh_record_text(const char *text) {
     char *copy = strdup(text);
@@ -25,8 +14,8 @@ char *wh_record_text(const char *text) {
 }
 
 wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s) {
-    record->commands = wh_record_grow(record->commands, record->command_count, &record->command_capacity,
-                                      sizeof *record->commands);
+    record->commands = wh_array_grow(record->commands, record->command_count, &record->command_capacity,
+                                     sizeof *record->commands);
     wh_command_record_t *command = &record->commands[record->command_count++];
     command->line = line;
     command->text = wh_record_text(text);
@@ -40,7 +29,7 @@ wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const 
 
 void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event) {
     record->events =
-        wh_record_grow(record->events, record->event_count, &record->event_capacity, sizeof *record->events);
+        wh_array_grow(record->events, record->event_count, &record->event_capacity, sizeof *record->events);
     wh_event_record_t *added = &record->events[record->event_count++];
     added->utime = utime;
     added->command = command;
@@ -48,8 +37,8 @@ void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, co
 }
 
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok) {
-    record->expectations = wh_record_grow(record->expectations, record->expectation_count,
-                                          &record->expectation_capacity, sizeof *record->expectations);
+    record->expectations = wh_array_grow(record->expectations, record->expectation_count,
+                                         &record->expectation_capacity, sizeof *record->expectations);
     wh_expectation_record_t *added = &record->expectations[record->expectation_count++];
     added->line = line;
     added->text = wh_record_text(text);
@@ -58,17 +47,24 @@ void wh_record_add_expectation(wh_record_t *record, int line, const char *text, 
 
 void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put) {
     record->puts =
-        wh_record_grow(record->puts, record->put_count, &record->put_capacity, sizeof *record->puts);
+        wh_array_grow(record->puts, record->put_count, &record->put_capacity, sizeof *record->puts);
     record->puts[record->put_count++] = *put;
 }
 
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin) {
     record->cycles =
-        wh_record_grow(record->cycles, record->cycle_count, &record->cycle_capacity, sizeof *record->cycles);
+        wh_array_grow(record->cycles, record->cycle_count, &record->cycle_capacity, sizeof *record->cycles);
     wh_cycle_record_t *added = &record->cycles[record->cycle_count++];
     added->line = line;
     added->name = wh_record_text(name);
     added->begin = begin;
+}
+
+bool wh_record_is_complaint(const wh_event_t *event) {
+    static const uint32_t complaints =
+        1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED | 1U << WH_EVENT_BAD_INPUT |
+        1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED;
+    return (complaints >> (unsigned)event->kind & 1U) != 0;
 }
 
 void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves) {
@@ -118,4 +114,20 @@ void wh_record_free(wh_record_t *record) {
     free(record->script);
     free(record->failure);
     memset(record, 0, sizeof *record);
+}
+
+const char *wh_record_wafer_name(const wh_record_t *record, int32_t wafer) {
+    const wh_layout_t *layout = record->layout;
+    return layout && wh_is_index(wafer, layout->wafer_count) ? layout->wafers[wafer].name : NULL;
+}
+
+const char *wh_record_gripper_name(const wh_record_t *record, int32_t gripper) {
+    const wh_layout_t *layout = record->layout;
+    return layout && wh_is_index(gripper, layout->machine.gripper_count) ? layout->grippers[gripper].name
+                                                                         : NULL;
+}
+
+const char *wh_record_station_name(const wh_record_t *record, int32_t station) {
+    const wh_layout_t *layout = record->layout;
+    return layout && wh_is_index(station, layout->station_count) ? layout->stations[station].name : NULL;
 }

@@ -100,13 +100,20 @@ void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves);
  * sessions without an end. */
 void wh_record_forget(wh_record_t *record);
 
-/* Room for one more item of `size` bytes, by doubling. */
-void *wh_record_grow(void *items, size_t count, size_t *capacity, size_t size);
+/* True if the cell complains by this event: a wafer was let go where it should not have been, something was hit or may have
+ * been, a wafer slipped, or an input was refused. */
+bool wh_record_is_complaint(const wh_event_t *event);
 
 /* A copy of the text, to be freed. */
 char *wh_record_text(const char *text);
 
 /* Frees everything that the record holds and zeroes it. */
 void wh_record_free(wh_record_t *record);
+
+/* Names for the record's indices, the layout's own; null for WH_NONE, an index out of range and a record without a
+ * layout. */
+const char *wh_record_wafer_name(const wh_record_t *record, int32_t wafer);
+const char *wh_record_gripper_name(const wh_record_t *record, int32_t gripper);
+const char *wh_record_station_name(const wh_record_t *record, int32_t station);
 
 #endif

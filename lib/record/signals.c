@@ -3,17 +3,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "quaternion.h"
-#include "record.h"
+#include "../layout/collision.h"
+#include "../text/array.h"
 
 /* So many wafers are compared in each slice; more, only in slices with events. */
 #define WATCHED_WAFERS 64
 
-/* A gripper so near to where its axes put it is there. */
+/* From one point to the next, poses are looked at in at most so many places. */
+#define PLACES 32
+
+/* A gripper so near to where its axes put it is there: another machine's sines may differ in their last bits. */
 #define SAME_MM 1e-9
 #define SAME_ROTATION 1e-12
 
-/* -------------------------------------------------------------------------------------------------- opening */
+/* --------------------------------------------------------------------------------------------------
+ * opening */
 
 static bool turns(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
@@ -42,7 +46,7 @@ static void open_tracks(wh_signals_t *signals) {
 static void add_stay(wh_signals_t *signals, int64_t slice, int32_t wafer, int32_t holder,
                      const wh_pose_t *pose) {
     signals->stays =
-        wh_record_grow(signals->stays, signals->stay_count, &signals->stay_capacity, sizeof *signals->stays);
+        wh_array_grow(signals->stays, signals->stay_count, &signals->stay_capacity, sizeof *signals->stays);
     const wh_stay_t stay = {slice, wafer, holder, *pose};
     signals->stay_of[wafer] = (int32_t)signals->stay_count;
     signals->stays[signals->stay_count++] = stay;
@@ -89,23 +93,17 @@ void wh_signals_begin(wh_signals_t *signals, const wh_layout_t *layout, bool at_
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- motion */
+/* ---------------------------------------------------------------------------------------------------
+ * motion */
 
-/* Another machine's sines may differ in their last bits. */
-static bool is_at(const wh_pose_t *pose, const wh_pose_t *expected) {
-    const wh_vec3_t way = wh_vec3_subtract(&pose->r, &expected->r);
-    bool same = wh_vec3_norm(&way) <= SAME_MM;
+/* True if the two poses differ by at most so much, in place and in each number of the rotation. */
+static bool is_at(const wh_pose_t *a, const wh_pose_t *b, double mm, double rotation) {
+    const wh_vec3_t way = wh_vec3_subtract(&a->r, &b->r);
+    bool same = wh_real_abs(way.x) <= mm && wh_real_abs(way.y) <= mm && wh_real_abs(way.z) <= mm;
     for (size_t i = 0; same && i < 9; ++i) {
-        same = wh_real_abs(pose->R.m[i / 3][i % 3] - expected->R.m[i / 3][i % 3]) <= SAME_ROTATION;
+        same = wh_real_abs(a->R.m[i / 3][i % 3] - b->R.m[i / 3][i % 3]) <= rotation;
     }
     return same;
-}
-
-static void add_own(wh_thin_t *own, int64_t slice, const wh_pose_t *pose) {
-    double values[7] = {pose->r.x, pose->r.y, pose->r.z};
-    const bool follows = own->of > 0;
-    wh_quaternion_from_matrix(&pose->R, follows ? own->last.values + 3 : NULL, values + 3);
-    wh_thin_add(own, slice, values);
 }
 
 /* What the axes do not say of the grippers. */
@@ -116,8 +114,8 @@ static void add_grippers(wh_signals_t *signals, const double axes[], const wh_st
     }
     for (size_t g = 0; g < state->gripper_count; ++g) {
         const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
-        if (signals->own[g].of > 0 || !axes || !is_at(pose, &expected[g])) {
-            add_own(&signals->own[g], state->seq, pose);
+        if (signals->own[g].of > 0 || !axes || !is_at(pose, &expected[g], SAME_MM, SAME_ROTATION)) {
+            wh_thin_add_pose(&signals->own[g], state->seq, pose);
         }
     }
 }
@@ -129,13 +127,14 @@ static void add_axes(wh_signals_t *signals, const double axes[], size_t axis_cou
     signals->axis_count = axis_count > signals->axis_count ? axis_count : signals->axis_count;
 }
 
-/* ---------------------------------------------------------------------------------------------------- steps */
+/* ----------------------------------------------------------------------------------------------------
+ * steps */
 
 void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value) {
     if (steps->count > 0 && steps->steps[steps->count - 1].value == value) {
         return;
     }
-    steps->steps = wh_record_grow(steps->steps, steps->count, &steps->capacity, sizeof *steps->steps);
+    steps->steps = wh_array_grow(steps->steps, steps->count, &steps->capacity, sizeof *steps->steps);
     steps->steps[steps->count].slice = slice;
     steps->steps[steps->count++].value = value;
 }
@@ -148,21 +147,13 @@ static void add_signals(wh_signals_t *signals, const wh_state_t *state) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- wafers */
-
-static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
-    const wh_vec3_t way = wh_vec3_subtract(&a->r, &b->r);
-    bool same = !(wh_real_abs(way.x) > 0) && !(wh_real_abs(way.y) > 0) && !(wh_real_abs(way.z) > 0);
-    for (size_t i = 0; same && i < 9; ++i) {
-        same = !(wh_real_abs(a->R.m[i / 3][i % 3] - b->R.m[i / 3][i % 3]) > 0);
-    }
-    return same;
-}
+/* ---------------------------------------------------------------------------------------------------
+ * wafers */
 
 static void look_at_wafer(wh_signals_t *signals, const wh_state_t *state, int32_t w, int32_t holder,
                           const wh_pose_t *pose) {
     const wh_stay_t *stay = &signals->stays[signals->stay_of[w]];
-    if (stay->holder != holder || !is_same(&stay->pose, pose)) {
+    if (stay->holder != holder || !is_at(&stay->pose, pose, 0, 0)) {
         add_stay(signals, state->seq, w, holder, pose);
         for (size_t g = 0; g < state->gripper_count; ++g) {
             signals->vicinity[g].is_known = false;
@@ -185,7 +176,8 @@ static void add_wafers(wh_signals_t *signals, const wh_state_t *state) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- events */
+/* ---------------------------------------------------------------------------------------------------
+ * events */
 
 /* What went as it should is told by other means. */
 static bool is_marked(wh_event_kind_t kind) {
@@ -217,8 +209,8 @@ static void add_marks(wh_signals_t *signals, const wh_state_t *state) {
     for (size_t i = 0; i < state->event_count; ++i) {
         const wh_event_t *event = &state->events[i];
         if (is_marked(event->kind)) {
-            signals->marks = wh_record_grow(signals->marks, signals->mark_count, &signals->mark_capacity,
-                                            sizeof *signals->marks);
+            signals->marks = wh_array_grow(signals->marks, signals->mark_count, &signals->mark_capacity,
+                                           sizeof *signals->marks);
             wh_mark_t *mark = &signals->marks[signals->mark_count++];
             memset(mark, 0, sizeof *mark);
             mark->event = *event;
@@ -228,7 +220,8 @@ static void add_marks(wh_signals_t *signals, const wh_state_t *state) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- slices */
+/* ---------------------------------------------------------------------------------------------------
+ * slices */
 
 typedef void each_curve_t(wh_path_t *curve);
 typedef void each_own_t(wh_thin_t *own);
@@ -287,4 +280,79 @@ void wh_signals_close(wh_signals_t *signals) {
     free(signals->stay_of);
     free(signals->marks);
     memset(signals, 0, sizeof *signals);
+}
+
+/* -------------------------------------------------------------------------------------------------- poses */
+
+static void read_grippers(const wh_signals_t *signals, int64_t slice, wh_pose_t poses[WH_GRIPPERS]) {
+    const wh_machine_t *machine = &signals->layout->machine;
+    double axes[WH_AXES] = {0};
+    for (size_t axis = 0; axis < WH_AXES && signals->axes[axis].list.count > 0; ++axis) {
+        axes[axis] = wh_path_read(&signals->axes[axis], slice, NULL);
+    }
+    wh_machine_grippers(machine, axes, poses);
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        const wh_thin_t *own = &signals->own[g];
+        if (own->list.count > 0 && slice >= own->list.points[0].slice) {
+            wh_thin_read_pose(own, slice, &poses[g]);
+        }
+    }
+}
+
+void wh_signals_gripper(const wh_signals_t *signals, size_t gripper, int64_t slice,
+                        wh_pose_t *base_from_gripper) {
+    wh_pose_t poses[WH_GRIPPERS];
+    read_grippers(signals, slice, poses);
+    *base_from_gripper = poses[gripper];
+}
+
+bool wh_signals_links(const wh_signals_t *signals, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]) {
+    wh_pose_t poses[WH_GRIPPERS];
+    wh_pose_t base_from_effector;
+    wh_pose_t bodies[WH_ARM_BODIES];
+    read_grippers(signals, slice, poses);
+    if (!wh_collision_effector(&signals->layout->machine, poses, &base_from_effector)) {
+        return false;
+    }
+    wh_arm_place(&signals->layout->shapes.arm, &base_from_effector, bodies);
+    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        base_from_links[i] = bodies[WH_ARM_LIFT + i];
+    }
+    return true;
+}
+
+/* ------------------------------------------------------------------------------------------------------
+ * walk */
+
+/* How far the points of each signal have been passed. */
+typedef struct {
+    size_t axes[WH_AXES], own[WH_GRIPPERS];
+} passed_t;
+
+/* The first slice after `slice` at which a signal has a point, or the trace's last. */
+static int64_t next_point(const wh_signals_t *signals, passed_t *passed, int64_t slice) {
+    int64_t next = signals->last;
+    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
+        next = wh_points_next(&signals->axes[axis].list, &passed->axes[axis], slice, next);
+    }
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
+        next = wh_points_next(&signals->own[g].list, &passed->own[g], slice, next);
+    }
+    return next;
+}
+
+void wh_signals_walk(const wh_signals_t *signals, void (*visit)(void *user, int64_t slice), void *user) {
+    passed_t passed = {{0}, {0}};
+    int64_t slice = signals->first;
+    visit(user, slice);
+    while (slice < signals->last) {
+        const int64_t next = next_point(signals, &passed, slice);
+        const int64_t width = next - slice;
+        const int64_t places = width < PLACES ? width : PLACES;
+        for (int64_t i = 1; i < places; ++i) {
+            visit(user, slice + (int64_t)((double)width * (double)i / (double)places));
+        }
+        visit(user, next);
+        slice = next;
+    }
 }

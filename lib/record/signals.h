@@ -1,10 +1,11 @@
 /* What a run's page shows over time: collected slice by slice while the run goes, thinned as it comes.
  *
- * Axes, vacuum, and each gripper against the wafer that it holds or would take are curves (record/path.h); valves, sensors and where
- * wafers lie change in steps and are kept as they are. Where grippers and the arm's links are follows from the axes; a gripper
- * that is elsewhere, for its machine is not the layout's or a log does not tell the axes, has poses of its own from then on
- * (record/thin.h). All of it is exact at events and wherever wh_signals_mark is called. Slices count as in the run: what is of
- * slice n is true at its end, slice 0 is before the first.
+ * Axes, vacuum, and each gripper against the wafer that it holds or would take are curves (record/path.h);
+ * valves, sensors and where wafers lie change in steps and are kept as they are. Where grippers and the arm's
+ * links are follows from the axes; a gripper that is elsewhere, for its machine is not the layout's or a log
+ * does not tell the axes, has poses of its own from then on (record/thin.h). All of it is exact at events and
+ * wherever wh_signals_mark is called. Slices count as in the run: what is of slice n is true at its end,
+ * slice 0 is before the first.
  *
  * Host code: aborts when memory is out. Memory: what thinning leaves, steps, and 4 bytes a wafer.
  */
@@ -32,8 +33,8 @@
 /* Of these thinning takes so much, and rounding to decimals the rest. */
 #define WH_TRACE_SHARE 0.98
 
-/* A gripper is shown against a wafer while |dr_proj_z| is less than this, mm, and |dr_proj_xy| less than twice the
- * layout's near_projxy. */
+/* A gripper is shown against a wafer while |dr_proj_z| is less than this, mm, and |dr_proj_xy| less than
+ * twice the layout's near_projxy. */
 #define WH_TRACE_REACH 20.0
 
 /* What a gripper is measured by against its nearest wafer. */
@@ -100,12 +101,13 @@ typedef struct {
     wh_neighbours_t vicinity[WH_GRIPPERS];
 } wh_signals_t;
 
-/* The layout is known: everything is as before the first slice. With `at_home` that is the first sample; without, the next
- * slice is (of a run of which the beginning is missing). */
+/* The layout is known: everything is as before the first slice. With `at_home` that is the first sample;
+ * without, the next slice is (of a run of which the beginning is missing). */
 void wh_signals_begin(wh_signals_t *signals, const wh_layout_t *layout, bool at_home);
 
-/* One accepted slice, later than the last one. `axes` has axis_count numbers; null where they are not known. Cost: about 1 us
- * with two grippers, a pass over all wafers where something happens or a gripper has gone far. */
+/* One accepted slice, later than the last one. `axes` has axis_count numbers; null where they are not known.
+ * Cost: about 1 us with two grippers, a pass over all wafers where something happens or a gripper has gone
+ * far. */
 void wh_signals_slice(wh_signals_t *signals, const double axes[], size_t axis_count, const wh_state_t *state);
 
 /* What the last slice left is wanted exactly. */
@@ -123,8 +125,9 @@ void wh_signals_gripper(const wh_signals_t *signals, size_t gripper, int64_t sli
 /* Where the arm's links are shown; false where no gripper is on the robot. */
 bool wh_signals_links(const wh_signals_t *signals, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]);
 
-/* Between which poses of grippers and links lie on straight lines, or nearly: the points of all that moves them, and so many between two
- * that none is passed over. Calls `visit` for each of these slices, in order. */
+/* Between which poses of grippers and links lie on straight lines, or nearly: the points of all that moves
+ * them, and so many between two that none is passed over. Calls `visit` for each of these slices, in
+ * order. */
 void wh_signals_walk(const wh_signals_t *signals, void (*visit)(void *user, int64_t slice), void *user);
 
 /* Within: adds the value unless it is the last one. */

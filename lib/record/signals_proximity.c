@@ -1,7 +1,7 @@
 /* Each gripper against its nearest wafer, over time: the paper's Fig. 9. */
 #include <string.h>
 
-#include "record.h"
+#include "../text/array.h"
 #include "signals.h"
 
 /* With more wafers than these, those near a gripper are looked for anew when it has gone so far, mm. */
@@ -18,7 +18,8 @@ static double reach_of(const wh_signals_t *signals) {
     return WH_TRACE_REACH + 2 * signals->layout->grasp.near_projxy;
 }
 
-/* ------------------------------------------------------------------------------------------------- vicinity */
+/* -------------------------------------------------------------------------------------------------
+ * vicinity */
 
 static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, const wh_state_t *state,
                         const wh_vec3_t *at) {
@@ -27,8 +28,8 @@ static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, 
     vicinity->count = 0;
     for (size_t w = 0; w < state->wafer_count; ++w) {
         if (few || square_of(&state->wafers[w].base_from_wafer.r, at) < radius * radius) {
-            vicinity->wafers = wh_record_grow(vicinity->wafers, vicinity->count, &vicinity->capacity,
-                                              sizeof *vicinity->wafers);
+            vicinity->wafers = wh_array_grow(vicinity->wafers, vicinity->count, &vicinity->capacity,
+                                             sizeof *vicinity->wafers);
             vicinity->wafers[vicinity->count++] = (int32_t)w;
         }
     }
@@ -78,7 +79,8 @@ static int32_t find_nearest(const wh_signals_t *signals, const wh_neighbours_t *
     return search.nearest;
 }
 
-/* ---------------------------------------------------------------------------------------------------- values */
+/* ----------------------------------------------------------------------------------------------------
+ * values */
 
 static void take(const wh_proximity_t *p, double values[WH_MEASURES]) {
     values[WH_MEASURE_PROJZ] = wh_real_abs(p->dr_proj_z);

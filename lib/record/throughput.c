@@ -107,3 +107,14 @@ wh_throughput_t wh_throughput(const wh_record_t *record) {
     }
     return throughput;
 }
+
+const char *wh_throughput_rule(wh_rank_t rank) {
+    static const char *const texts[] = {
+        [WH_RANK_NONE] = NULL,
+        [WH_RANK_PREALIGNER] = "puts onto prealigners",
+        [WH_RANK_SINGLE] = "puts into stations with one slot",
+        [WH_RANK_SEVERAL] = "puts into stations with several slots",
+        [WH_RANK_FOUP] = "puts into FOUPs",
+    };
+    return texts[rank];
+}

@@ -50,4 +50,7 @@ int64_t wh_throughput_cycle_end(const wh_record_t *record, size_t cycle);
 /* Seconds that so many slices take; 0 for a record without a layout. */
 double wh_throughput_seconds(const wh_record_t *record, int64_t slices);
 
+/* Which puts count as wafers, in words; null for WH_RANK_NONE. */
+const char *wh_throughput_rule(wh_rank_t rank);
+
 #endif

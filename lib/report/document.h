@@ -1,7 +1,7 @@
 /* A run as one JSON object: what the page of a report shows, and what other programs may read.
  *
- * Lengths in mm, angles in rad, times in s from the run's begin; poses are r [x, y, z] and the quaternion q [x, y, z, w]; indices
- * are from 0, slots from 1. The members:
+ * Lengths in mm, angles in rad, times in s from the run's begin; poses are r [x, y, z] and the quaternion q
+ * [x, y, z, w]; indices are from 0, slots from 1. The members:
  *   format (2), title, version, reproduce (the command that makes the run again), parameters { name: value }
  *   source       "run" or "log"; notes: [text], what a log did not tell
  *   run          what `run --json` prints, whole (print/record_json.h); of a log what it holds

@@ -2,7 +2,7 @@
 #ifndef WH_REPORT_DOCUMENT_INTERNAL_H
 #define WH_REPORT_DOCUMENT_INTERNAL_H
 
-#include "../text/json_text.h"
+#include "../text/json.h"
 #include "document.h"
 
 double wh_document_seconds(const wh_signals_t *signals, int64_t slice);
@@ -16,6 +16,5 @@ void wh_document_put_pose(wh_json_text_t *text, const wh_pose_t *pose);
 /* The document's members of these names. */
 void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals);
 void wh_document_put_tracks(wh_json_text_t *text, const wh_document_t *document);
-void wh_document_put_marks(wh_json_text_t *text, const wh_signals_t *signals);
 
 #endif

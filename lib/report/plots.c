@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "../record/record.h"
+#include "../text/array.h"
 #include "document_internal.h"
 #include "plots_internal.h"
 
@@ -25,7 +26,8 @@ static bool path_of(char path[PATH_BYTES], const char *folder, const char *name,
     return snprintf(path, PATH_BYTES, "%s/%s.%s", folder, name, ending) < PATH_BYTES;
 }
 
-/* ---------------------------------------------------------------------------------------------------- files */
+/* ----------------------------------------------------------------------------------------------------
+ * files */
 
 static bool is_taken(const wh_plots_t *plots, const char *name) {
     for (size_t i = 0; i < plots->count; ++i) {
@@ -70,7 +72,7 @@ bool wh_plots_open(wh_plots_t *plots, wh_plot_t *plot, const char *name, const c
     }
     memset(plot, 0, sizeof *plot);
     choose_name(plots, plot->name, name, of);
-    plots->names = wh_record_grow(plots->names, plots->count, &plots->capacity, sizeof *plots->names);
+    plots->names = wh_array_grow(plots->names, plots->count, &plots->capacity, sizeof *plots->names);
     memcpy(plots->names[plots->count++].name, plot->name, sizeof plot->name);
     plot->data = open_file(plots, plot, "dat");
     plot->script = plot->data ? open_file(plots, plot, "gp") : NULL;
@@ -87,7 +89,8 @@ void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot) {
     close_file(plots, plot->data);
 }
 
-/* ------------------------------------------------------------------------------------------------------ run */
+/* ------------------------------------------------------------------------------------------------------
+ * run */
 
 double wh_plots_slice_s(const wh_plots_t *plots) {
     return (double)plots->document->signals->layout->slice_us / 1e6;
@@ -108,7 +111,7 @@ static void add_hold(wh_plot_hold_t **list, size_t *count, size_t *capacity, con
     if (last && last->wafer == hold->wafer && !(hold->begin_s > last->end_s)) {
         last->end_s = hold->end_s;
     } else {
-        *list = wh_record_grow(*list, *count, capacity, sizeof **list);
+        *list = wh_array_grow(*list, *count, capacity, sizeof **list);
         (*list)[(*count)++] = *hold;
     }
 }
@@ -139,31 +142,21 @@ wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t 
     return list;
 }
 
-/* -------------------------------------------------------------------------------------------------- gnuplot */
+/* --------------------------------------------------------------------------------------------------
+ * gnuplot */
 
-/* Everybody's, to be freed, but for the letters: gnuplot asks the locale for them, and the plots are UTF-8. Null when memory
- * is out. */
-static char **environment_of_plots(void) {
-    static char letters[] = "LC_ALL=C.UTF-8";
-    size_t count = 0;
-    for (char **entry = environ; entry && *entry; ++entry) {
-        ++count;
+/* For gnuplot the plots' letters are UTF-8, which it asks the locale for. Returns what was there, to be set again and
+ * freed; or null. */
+static char *set_letters(const char *letters) {
+    const char *before = getenv("LC_ALL");
+    char *kept = before ? wh_record_text(before) : NULL;
+    if (!letters || setenv("LC_ALL", letters, 1) != 0) {
+        (void)unsetenv("LC_ALL");
     }
-    char **own = calloc(count + 2, sizeof *own);
-    if (!own) {
-        return NULL;
-    }
-    char **next = own;
-    for (char **entry = environ; entry && *entry; ++entry) {
-        if (strncmp(*entry, "LC_ALL=", 7) != 0) {
-            *next++ = *entry;
-        }
-    }
-    *next = letters;
-    return own;
+    return kept;
 }
 
-/* Runs it in their folder, without anybody's settings; 0, an errno, or -1 when it says itself what is wrong. */
+/* Runs it in the plots' folder, without anybody's settings; 0, an errno, or -1 if it says itself what is wrong. */
 static int start(const wh_plots_t *plots, char *const arguments[]) {
     posix_spawn_file_actions_t actions;
     pid_t process = 0;
@@ -172,12 +165,13 @@ static int start(const wh_plots_t *plots, char *const arguments[]) {
     if (error != 0) {
         return error;
     }
-    char **environment = environment_of_plots();
-    error = environment ? posix_spawn_file_actions_addchdir_np(&actions, plots->folder) : ENOMEM;
+    char *letters = set_letters("C.UTF-8");
+    error = posix_spawn_file_actions_addchdir_np(&actions, plots->folder);
     if (error == 0) {
-        error = posix_spawnp(&process, arguments[0], &actions, NULL, arguments, environment);
+        error = posix_spawnp(&process, arguments[0], &actions, NULL, arguments, environ);
     }
-    free(environment);
+    free(set_letters(letters));
+    free(letters);
     (void)posix_spawn_file_actions_destroy(&actions);
     if (error != 0) {
         return error;
@@ -216,7 +210,8 @@ static bool draw_all(const wh_plots_t *plots, char message[WH_PLOTS_MESSAGE_BYTE
     return drawn;
 }
 
-/* ------------------------------------------------------------------------------------------------- placing */
+/* -------------------------------------------------------------------------------------------------
+ * placing */
 
 static bool place(const wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
     char from[PATH_BYTES];

@@ -1,17 +1,18 @@
-/* The instruction budget: a count hook in every coroutine, charges from C, and the state of having run out.
+/* The instruction budget: a count hook in every coroutine, charges from C functions, and what happens once a
+ * limit is exhausted.
  *
- * An exhausted limit cannot be caught: the hook fires at each instruction from then on, and pcall, xpcall and
- * the coroutine functions (sandbox_protect.c) pass the error on.
+ * A script cannot catch an exhausted limit: from then on the hook fires at each instruction, and pcall,
+ * xpcall and the coroutine functions (sandbox_protect.c) pass the error on.
  */
 #include <inttypes.h>
 #include <string.h>
 
 #include "sandbox_internal.h"
 
-/* Levels of the call stack that are searched for a line: a runaway recursion has a hundred thousand. */
+/* Levels of the call stack that are searched for a line. A runaway recursion has a hundred thousand. */
 #define SEARCHED_LEVELS 1000
 
-/* Registry keys of the messages, made beforehand: raising must not need memory. */
+/* Registry keys of the messages. They are made beforehand, for raising must not need memory. */
 static const char message_keys[WH_SANDBOX_UNREADABLE + 1] = {0};
 
 wh_sandbox_t *wh_sandbox_of(lua_State *L) {
@@ -89,7 +90,7 @@ static int raise_power(lua_State *L, wh_sandbox_t *sandbox) {
     return lua_error(L);
 }
 
-/* Collects what can be collected once the memory stands above the brim; charges for the work. */
+/* Collects garbage if the memory stands above the brim, and charges for the work. */
 static void check_brim(lua_State *L, wh_sandbox_t *sandbox) {
     if (!sandbox->brimming) {
         return;
@@ -98,7 +99,8 @@ static void check_brim(lua_State *L, wh_sandbox_t *sandbox) {
     lua_gc(L, LUA_GCCOLLECT);
     sandbox->brimming = false;
     if (sandbox->memory > wh_sandbox_memory_brim(sandbox)) {
-        sandbox->refused = false; /* it is here, not at an earlier refusal that a collection healed */
+        /* the line to report is here, not that of an earlier refusal, which a collection healed */
+        sandbox->refused = false;
         wh_sandbox_exhaust(L, WH_SANDBOX_MEMORY);
     }
 }

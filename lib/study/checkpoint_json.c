@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "../math/config.h"
-#include "../text/json_values.h"
+#include "../text/json.h"
 #include "checkpoint_internal.h"
 
 static json_t *hex(uint64_t value) {

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "../text/json_values.h"
+#include "../text/json.h"
 #include "checkpoint_internal.h"
 
 /* Whole numbers of 64 bits as JSON has them: 2^63 trials are out of reach. */

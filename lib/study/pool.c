@@ -4,7 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+
+#include "../text/clock.h"
 
 /* A hand shows what it has done when it is idle, and every so many seconds. */
 #define SHOW_S 0.3
@@ -18,12 +19,6 @@ struct wh_pool_worker {
     wh_progress_t progress; /* of the blocks since it was last shown */
     double shown;
 };
-
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 void wh_pool_stop(wh_pool_t *pool) {
     __atomic_store_n(&pool->stop, true, __ATOMIC_RELAXED);
@@ -45,7 +40,7 @@ static void show(wh_pool_worker_t *hand) {
         wh_progress_merge(&hand->pool->progress, &hand->progress);
         wh_progress_clear(&hand->progress);
     }
-    hand->shown = seconds_now();
+    hand->shown = wh_clock_seconds();
 }
 
 static void fail(wh_pool_worker_t *hand, uint64_t trial, const char *message) {
@@ -85,7 +80,7 @@ static bool next_block(wh_pool_worker_t *hand, uint64_t *block) {
     wh_pool_t *pool = hand->pool;
     pthread_mutex_lock(&pool->lock);
     --pool->working;
-    if (pool->from == pool->to || seconds_now() - hand->shown > SHOW_S) {
+    if (pool->from == pool->to || wh_clock_seconds() - hand->shown > SHOW_S) {
         show(hand);
     }
     pthread_cond_broadcast(&pool->changed);
@@ -107,7 +102,7 @@ static bool next_block(wh_pool_worker_t *hand, uint64_t *block) {
 static void *work(void *argument) {
     wh_pool_worker_t *hand = argument;
     uint64_t block = 0;
-    hand->shown = seconds_now();
+    hand->shown = wh_clock_seconds();
     while (next_block(hand, &block)) {
         play_block(hand, block);
     }

@@ -6,10 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "../text/bar.h"
+#include "../text/clock.h"
 #include "checkpoint.h"
 
 /* What is done is kept every so many seconds. */
@@ -51,14 +51,8 @@ typedef struct {
     double kept;
 } keeper_t;
 
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static bool keep(keeper_t *keeper, wh_pool_t *pool) {
-    keeper->kept = seconds_now();
+    keeper->kept = wh_clock_seconds();
     if (!keeper->path) {
         return true;
     }
@@ -80,7 +74,7 @@ static bool keep(keeper_t *keeper, wh_pool_t *pool) {
 static bool open_keeper(keeper_t *keeper, const wh_study_options_t *options, wh_pool_t *pool) {
     keeper->named = options->state != NULL;
     keeper->path = keeper->named ? wh_record_text(options->state) : wh_checkpoint_default_path(pool->study);
-    keeper->kept = seconds_now();
+    keeper->kept = wh_clock_seconds();
     if (!keeper->path) {
         return true;
     }
@@ -138,7 +132,7 @@ static bool is_over(wh_pool_t *pool, const wh_ranks_t *ranks) {
 }
 
 static bool keep_now_and_then(keeper_t *keeper, wh_pool_t *pool) {
-    return seconds_now() - keeper->kept < KEEP_S || keep(keeper, pool);
+    return wh_clock_seconds() - keeper->kept < KEEP_S || keep(keeper, pool);
 }
 
 static wh_study_end_t how_it_ended(wh_pool_t *pool, const wh_ranks_t *ranks) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../math/trig.h"
+#include "../text/array.h"
 
 void wh_tally_init(wh_tally_t *tally, size_t wafer_count) {
     memset(tally, 0, sizeof *tally);
@@ -63,7 +64,7 @@ static wh_tally_row_t *find_row(wh_tally_rows_t *rows, int line, int place) {
 wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const char *text, uint64_t named) {
     wh_tally_row_t *row = find_row(rows, line, place);
     if (!row) {
-        rows->rows = wh_record_grow(rows->rows, rows->count, &rows->capacity, sizeof *rows->rows);
+        rows->rows = wh_array_grow(rows->rows, rows->count, &rows->capacity, sizeof *rows->rows);
         row = &rows->rows[rows->count++];
         *row = (wh_tally_row_t){
             line, place, NULL, WH_TALLY_NO_TRIAL, 0, 0, WH_TALLY_NO_TRIAL, WH_TALLY_NO_TRIAL};

@@ -1,22 +1,17 @@
 #include "bar.h"
 
-#include <time.h>
 #include <unistd.h>
 
-#define CELLS 30
+#include "clock.h"
 
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
+#define CELLS 30
 
 void wh_bar_open(wh_bar_t *bar, FILE *out, uint64_t total, uint64_t begun) {
     bar->out = isatty(fileno(out)) == 1 ? out : NULL;
     bar->style = wh_style_of(out);
     bar->total = total;
     bar->begun = begun;
-    bar->start = seconds_now();
+    bar->start = wh_clock_seconds();
     bar->shown = 0;
 }
 
@@ -28,7 +23,7 @@ static void print_left(const wh_bar_t *bar, uint64_t done, double elapsed) {
 }
 
 void wh_bar_show(wh_bar_t *bar, uint64_t done) {
-    const double now = seconds_now();
+    const double now = wh_clock_seconds();
     if (!bar->out || now - bar->shown < 0.1) {
         return;
     }

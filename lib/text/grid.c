@@ -1,21 +1,112 @@
 #include "grid.h"
 
+#include <libsmartcols.h>
+#include <math.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "grid_internal.h"
+#include "array.h"
+
+/* Between two columns. */
+#define SEPARATOR "  "
+
+/* No double near the limits needs more to be told from them. */
+#define MOST_DECIMALS 20
+
+/* A cell is empty, a text (not null) or a number. */
+typedef struct {
+    char *text;
+    double number;
+    bool is_number;
+    wh_ink_t ink;
+} wh_grid_cell_t;
+
+typedef struct {
+    char *heading;
+    bool to_right;
+    bool glued; /* stays beside the column before it where there is room */
+    wh_grid_digits_t digits;
+    int decimals; /* what the numbers so far need */
+    size_t width; /* columns of the terminal that its widest cell takes */
+} wh_grid_column_t;
+
+struct wh_grid {
+    wh_style_t style;
+    size_t keys;
+    wh_grid_column_t columns[WH_GRID_COLUMNS];
+    size_t column_count;
+    wh_grid_cell_t *cells; /* row by row */
+    size_t row_count, row_capacity;
+};
+
+/* The columns of one part, by their indices. */
+typedef struct {
+    size_t columns[WH_GRID_COLUMNS];
+    size_t count;
+} part_t;
+
+static void *or_abort(void *made) {
+    if (!made) {
+        abort();
+    }
+    return made;
+}
+
+/* ------------------------------------------------------------------------------------------------- digits */
+
+void wh_grid_format(char *text, size_t size, double value, int decimals) {
+    snprintf(text, size, "%.*f", decimals, value);
+    if (text[0] == '-' && strspn(text, "-0.") == strlen(text)) {
+        memmove(text, text + 1, strlen(text));
+    }
+}
+
+/* -1, 0 or 1: below, at, above. */
+static int side_of(double value, double limit) {
+    return (value > limit) - (value < limit);
+}
+
+/* The fewest decimals, from `least` to `most`, that lose nothing of what `most` would show. */
+static int decimals_in_use(double value, int least, int most) {
+    char text[WH_GRID_NUMBER_SIZE];
+    int decimals = most;
+    wh_grid_format(text, sizeof text, value, most);
+    const char *last = text + strlen(text) - 1;
+    while (decimals > least && *last == '0') {
+        --decimals;
+        --last;
+    }
+    return decimals;
+}
+
+int wh_grid_decimals(const wh_grid_digits_t *digits, double value) {
+    char text[WH_GRID_NUMBER_SIZE];
+    if (!isfinite(value)) {
+        return digits->least;
+    }
+    int decimals = decimals_in_use(value, digits->least, digits->most);
+    while (digits->has_limit && decimals < MOST_DECIMALS) {
+        wh_grid_format(text, sizeof text, value, decimals);
+        if (side_of(strtod(text, NULL), digits->limit) == side_of(value, digits->limit)) {
+            break;
+        }
+        ++decimals;
+    }
+    return decimals;
+}
+
+/* ------------------------------------------------------------------------------------------------ filling */
 
 wh_grid_t *wh_grid_new(const wh_style_t *style, size_t keys) {
-    wh_grid_t *grid = calloc(1, sizeof *grid);
-    if (grid) {
-        grid->style = *style;
-        grid->keys = keys;
-    }
+    wh_grid_t *grid = or_abort(calloc(1, sizeof *grid));
+    grid->style = *style;
+    grid->keys = keys;
     return grid;
 }
 
-static void free_grid(wh_grid_t *grid) {
+void wh_grid_free(wh_grid_t *grid) {
     for (size_t i = 0; i < grid->row_count * grid->column_count; ++i) {
         free(grid->cells[i].text);
     }
@@ -27,66 +118,39 @@ static void free_grid(wh_grid_t *grid) {
 }
 
 static void add_column(wh_grid_t *grid, const char *heading, bool to_right, wh_grid_digits_t digits) {
-    if (!grid || grid->column_count == WH_GRID_COLUMNS) {
-        return;
+    if (grid->column_count < WH_GRID_COLUMNS) {
+        wh_grid_column_t *column = &grid->columns[grid->column_count++];
+        column->heading = wh_style_printable(heading);
+        column->to_right = to_right;
+        column->digits = digits;
+        column->decimals = digits.least;
     }
-    wh_grid_column_t *column = &grid->columns[grid->column_count++];
-    column->heading = wh_style_printable(heading);
-    column->to_right = to_right;
-    column->digits = digits;
-    column->decimals = digits.least;
-    grid->failed = grid->failed || !column->heading;
 }
 
 void wh_grid_text_column(wh_grid_t *grid, const char *heading) {
-    const wh_grid_digits_t none = {0, 0, false, 0};
-    add_column(grid, heading, false, none);
+    add_column(grid, heading, false, wh_grid_whole);
 }
 
 void wh_grid_number_column(wh_grid_t *grid, const char *heading, wh_grid_digits_t digits) {
     add_column(grid, heading, true, digits);
 }
 
-static bool reserve_row(wh_grid_t *grid) {
-    if (grid->row_count < grid->row_capacity) {
-        return true;
-    }
-    const size_t capacity = grid->row_capacity == 0 ? 16 : 2 * grid->row_capacity;
-    wh_grid_cell_t *cells = realloc(grid->cells, capacity * grid->column_count * sizeof *cells);
-    if (cells) {
-        grid->cells = cells;
-        grid->row_capacity = capacity;
-    }
-    return cells != NULL;
-}
-
 void wh_grid_glue(wh_grid_t *grid) {
-    if (grid && grid->column_count > 0) {
-        grid->columns[grid->column_count - 1].glued = true;
-    }
+    grid->columns[grid->column_count - 1].glued = true;
 }
 
 void wh_grid_row(wh_grid_t *grid) {
-    if (!grid || grid->failed || grid->column_count == 0) {
-        return;
-    }
-    if (!reserve_row(grid)) {
-        grid->failed = true;
-        return;
-    }
-    wh_grid_cell_t *row = &grid->cells[grid->row_count++ * grid->column_count];
-    memset(row, 0, grid->column_count * sizeof *row);
+    const size_t bytes = grid->column_count * sizeof *grid->cells;
+    grid->cells = wh_array_grow(grid->cells, grid->row_count, &grid->row_capacity, bytes);
+    memset(&grid->cells[grid->row_count++ * grid->column_count], 0, bytes);
 }
 
 size_t wh_grid_rows(const wh_grid_t *grid) {
-    return grid ? grid->row_count : 0;
+    return grid->row_count;
 }
 
-/* A cell of the last row, emptied, or null when there is none. */
+/* A cell of the last row, emptied. */
 static wh_grid_cell_t *last_cell(wh_grid_t *grid, size_t column) {
-    if (!grid || grid->failed || grid->row_count == 0 || column >= grid->column_count) {
-        return NULL;
-    }
     wh_grid_cell_t *cell = &grid->cells[(grid->row_count - 1) * grid->column_count + column];
     free(cell->text);
     memset(cell, 0, sizeof *cell);
@@ -95,27 +159,20 @@ static wh_grid_cell_t *last_cell(wh_grid_t *grid, size_t column) {
 
 void wh_grid_text(wh_grid_t *grid, size_t column, wh_ink_t ink, const char *format, ...) {
     wh_grid_cell_t *cell = last_cell(grid, column);
-    if (!cell) {
-        return;
-    }
     char *raw = NULL;
     va_list arguments;
     va_start(arguments, format);
-    const int length = vasprintf(&raw, format, arguments);
-    va_end(arguments);
-    if (length >= 0) {
-        cell->text = wh_style_printable(raw);
-        cell->ink = ink;
-        free(raw);
+    if (vasprintf(&raw, format, arguments) < 0) {
+        abort();
     }
-    grid->failed = !cell->text;
+    va_end(arguments);
+    cell->text = wh_style_printable(raw);
+    cell->ink = ink;
+    free(raw);
 }
 
 void wh_grid_number(wh_grid_t *grid, size_t column, wh_ink_t ink, double value) {
     wh_grid_cell_t *cell = last_cell(grid, column);
-    if (!cell) {
-        return;
-    }
     const int decimals = wh_grid_decimals(&grid->columns[column].digits, value);
     cell->number = value;
     cell->is_number = true;
@@ -125,10 +182,156 @@ void wh_grid_number(wh_grid_t *grid, size_t column, wh_ink_t ink, double value) 
     }
 }
 
-int wh_grid_discard(wh_grid_t *grid) {
-    const int status = !grid || grid->failed ? -1 : 0;
-    if (grid) {
-        free_grid(grid);
+/* ----------------------------------------------------------------------------------------------- printing */
+
+/* Numbers become text once all of their column are known. */
+static void format_numbers(wh_grid_t *grid) {
+    for (size_t i = 0; i < grid->row_count * grid->column_count; ++i) {
+        wh_grid_cell_t *cell = &grid->cells[i];
+        if (cell->is_number) {
+            char text[WH_GRID_NUMBER_SIZE];
+            wh_grid_format(text, sizeof text, cell->number, grid->columns[i % grid->column_count].decimals);
+            cell->text = or_abort(strdup(text));
+            cell->is_number = false;
+        }
     }
-    return status;
+}
+
+static void measure_columns(wh_grid_t *grid) {
+    for (size_t c = 0; c < grid->column_count; ++c) {
+        wh_grid_column_t *column = &grid->columns[c];
+        column->width = wh_style_columns(column->heading);
+        for (size_t row = 0; row < grid->row_count; ++row) {
+            const char *text = grid->cells[row * grid->column_count + c].text;
+            const size_t width = text ? wh_style_columns(text) : 0;
+            column->width = width > column->width ? width : column->width;
+        }
+    }
+}
+
+/* The column after the one at `column` and those glued to it; their width is added to `width`. */
+static size_t end_of_unit(const wh_grid_t *grid, size_t column, size_t *width) {
+    *width += grid->columns[column++].width;
+    while (column < grid->column_count && grid->columns[column].glued) {
+        *width += strlen(SEPARATOR) + grid->columns[column++].width;
+    }
+    return column;
+}
+
+static size_t add_keys(const wh_grid_t *grid, size_t first, part_t *part) {
+    size_t width = 0;
+    part->count = 0;
+    for (size_t c = 0; c < grid->keys && c < first; ++c) {
+        part->columns[part->count++] = c;
+        width += grid->columns[c].width + strlen(SEPARATOR);
+    }
+    return width;
+}
+
+/* The key columns, then as many from `first` on as the terminal has room for, but at least one, glued ones
+ * together if a part can hold them. Returns the first column that is left for the next part. */
+static size_t plan_part(const wh_grid_t *grid, size_t first, part_t *part) {
+    const size_t room = grid->style.width > 0 ? grid->style.width : SIZE_MAX;
+    size_t width = add_keys(grid, first, part);
+    size_t next = first;
+    while (next < grid->column_count) {
+        size_t with_unit = width;
+        size_t end = end_of_unit(grid, next, &with_unit);
+        if (with_unit > room && next == first) {
+            with_unit = width + grid->columns[next].width;
+            end = next + 1;
+        }
+        if (with_unit > room && next > first) {
+            break;
+        }
+        while (next < end) {
+            part->columns[part->count++] = next++;
+        }
+        width = with_unit + strlen(SEPARATOR);
+    }
+    return next;
+}
+
+/* True if a row says anything in a part beyond its keys. */
+static bool row_speaks(const wh_grid_t *grid, const part_t *part, size_t row) {
+    for (size_t i = 0; i < part->count; ++i) {
+        const char *text = grid->cells[row * grid->column_count + part->columns[i]].text;
+        if (part->columns[i] >= grid->keys && text && text[0] != '\0') {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void add_headings(const wh_grid_t *grid, const part_t *part, struct libscols_table *table) {
+    const char *bold = wh_style_ink(&grid->style, WH_INK_BOLD);
+    for (size_t i = 0; i < part->count; ++i) {
+        const wh_grid_column_t *column = &grid->columns[part->columns[i]];
+        const int flags = column->to_right ? SCOLS_FL_RIGHT : 0;
+        struct libscols_column *added = or_abort(scols_table_new_column(table, column->heading, 0, flags));
+        if (bold) {
+            (void)scols_cell_set_color(scols_column_get_header(added), bold);
+        }
+    }
+}
+
+static void add_line(const wh_grid_t *grid, const part_t *part, size_t row, struct libscols_table *table) {
+    struct libscols_line *line = or_abort(scols_table_new_line(table, NULL));
+    for (size_t i = 0; i < part->count; ++i) {
+        const wh_grid_cell_t *cell = &grid->cells[row * grid->column_count + part->columns[i]];
+        const char *ink = wh_style_ink(&grid->style, cell->ink);
+        if (cell->text && scols_line_set_data(line, i, cell->text) != 0) {
+            abort();
+        }
+        if (cell->text && ink) {
+            (void)scols_cell_set_color(scols_line_get_cell(line, i), ink);
+        }
+    }
+}
+
+/* Lines end where their text ends. */
+static void print_trimmed(const char *text, FILE *out) {
+    while (*text != '\0') {
+        const size_t length = strcspn(text, "\n");
+        size_t end = length;
+        while (end > 0 && text[end - 1] == ' ') {
+            --end;
+        }
+        fwrite(text, 1, end, out);
+        fputc('\n', out);
+        text += length + (text[length] == '\n');
+    }
+}
+
+static void print_part(const wh_grid_t *grid, const part_t *part, FILE *out) {
+    struct libscols_table *table = or_abort(scols_new_table());
+    char *text = NULL;
+    scols_table_enable_noencoding(table, 1);
+    scols_table_enable_colors(table, grid->style.colour);
+    scols_table_set_termforce(table, SCOLS_TERMFORCE_NEVER);
+    (void)scols_table_set_column_separator(table, SEPARATOR);
+    add_headings(grid, part, table);
+    for (size_t row = 0; row < grid->row_count; ++row) {
+        if (row_speaks(grid, part, row)) {
+            add_line(grid, part, row, table);
+        }
+    }
+    if (scols_print_table_to_string(table, &text) != 0) {
+        abort();
+    }
+    print_trimmed(text ? text : "", out);
+    free(text);
+    scols_unref_table(table);
+}
+
+void wh_grid_print(wh_grid_t *grid, FILE *out) {
+    format_numbers(grid);
+    measure_columns(grid);
+    for (size_t first = 0; first < grid->column_count;) {
+        part_t part;
+        fputs(first > 0 ? "\n" : "", out);
+        first = plan_part(grid, first, &part);
+        print_part(grid, &part, out);
+    }
+    wh_grid_free(grid);
 }

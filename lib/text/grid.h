@@ -3,7 +3,7 @@
  * Columns first, then rows, then print. Numbers of a column share their decimals, so that they line up on the
  * point, and get as many as the column's rule asks for. Nothing is ever cut off: a table wider than the
  * terminal is printed in parts that each begin with the key columns, and rows that would be empty in a later
- * part are left out there. Running out of memory is remembered and reported by wh_grid_print.
+ * part are left out there. If there is no memory, the program ends.
  */
 #ifndef WH_TEXT_GRID_H
 #define WH_TEXT_GRID_H
@@ -19,14 +19,16 @@ typedef struct {
     double limit; /* then more decimals until no number is rounded onto its limit or across it */
 } wh_grid_digits_t;
 
+/* Whole numbers. */
+static const wh_grid_digits_t wh_grid_whole = {0, 0, false, 0};
+
 typedef struct wh_grid wh_grid_t;
 
-/* An empty table; its first `keys` columns begin each part. Null when memory is out: every function below
- * takes null and then does nothing. */
+/* An empty table; its first `keys` columns begin each part. */
 wh_grid_t *wh_grid_new(const wh_style_t *style, size_t keys);
 
-/* One more column, of text or of numbers (to the right, with a rule). At most WH_GRID_COLUMNS; before the
- * first row. */
+/* One more column, of text or of numbers (to the right, with a rule). At most WH_GRID_COLUMNS, all of them before
+ * the first row. */
 void wh_grid_text_column(wh_grid_t *grid, const char *heading);
 void wh_grid_number_column(wh_grid_t *grid, const char *heading, wh_grid_digits_t digits);
 
@@ -44,12 +46,9 @@ void wh_grid_number(wh_grid_t *grid, size_t column, wh_ink_t ink, double value);
 /* How many rows there are. */
 size_t wh_grid_rows(const wh_grid_t *grid);
 
-/* Prints the table and frees it. 0, or -1 when memory ran out at any time (then nothing is printed). */
-int wh_grid_print(wh_grid_t *grid, FILE *out);
-
-/* Frees the table without printing it: for one that turned out to have no rows. Returns what wh_grid_print
- * would. */
-int wh_grid_discard(wh_grid_t *grid);
+/* Prints the table and frees it; frees it without printing it. */
+void wh_grid_print(wh_grid_t *grid, FILE *out);
+void wh_grid_free(wh_grid_t *grid);
 
 /* Formats a number by a rule into `text`, with the decimals given, -0 as 0. `decimals` is what
  * wh_grid_decimals says of it or more. */

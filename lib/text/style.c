@@ -77,7 +77,7 @@ static size_t printable_bytes(const char *text) {
 char *wh_style_printable(const char *text) {
     char *copy = malloc(4 * strlen(text) + 1);
     if (!copy) {
-        return NULL;
+        abort();
     }
     char *to = copy;
     while (*text != '\0') {
@@ -92,6 +92,12 @@ char *wh_style_printable(const char *text) {
     }
     *to = '\0';
     return copy;
+}
+
+void wh_style_put(FILE *out, const char *text) {
+    char *printable = wh_style_printable(text);
+    fputs(printable, out);
+    free(printable);
 }
 
 size_t wh_style_columns(const char *printable) {

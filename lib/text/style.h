@@ -1,4 +1,4 @@
-/* How the report may look on a stream: colour, characters beyond ASCII, width; and text made fit to print.
+/* How text may look on a stream: colour, characters beyond ASCII, width; and text made fit to print.
  *
  * The program calls setlocale(LC_CTYPE, "") once at its start and leaves LC_NUMERIC alone: without the first
  * everything is ASCII, and with another LC_NUMERIC the decimal point might be a comma.
@@ -40,9 +40,12 @@ const char *wh_style_arrow(const wh_style_t *style);
 const char *wh_style_degree(const wh_style_t *style);
 
 /* A copy in which every byte that the locale cannot print, line ends and escapes included, stands as \xNN, so
- * that a name or a message can neither break a table nor steer a terminal. The caller frees it; null when
- * memory is out. */
+ * that a name or a message can neither break a table nor steer a terminal. The caller frees it. If there is no
+ * memory, the program ends. */
 char *wh_style_printable(const char *text);
+
+/* Prints a text so. */
+void wh_style_put(FILE *out, const char *text);
 
 /* How many columns a text from wh_style_printable takes on a terminal. */
 size_t wh_style_columns(const char *printable);

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "json_values.h"
+#include "utf8.h"
 
 /* U+FFFE and U+FFFF are UTF-8, but no characters of XML. */
 static bool is_noncharacter(const char *text, size_t bytes) {
@@ -31,21 +31,12 @@ void wh_svg_text(FILE *out, const char *text) {
         if (entity) {
             fputs(entity, out);
         } else if (bytes == 0 || (unsigned char)*text < ' ' || is_noncharacter(text, bytes)) {
-            fputs("\xef\xbf\xbd", out);
+            fputs(WH_UTF8_REPLACEMENT, out);
         } else {
             fwrite(text, 1, bytes, out);
         }
         text += bytes > 0 ? bytes : 1;
     }
-}
-
-/* Of UTF-8: bytes that begin a character. */
-static size_t count_characters(const char *text) {
-    size_t count = 0;
-    for (; *text != '\0'; ++text) {
-        count += ((unsigned char)*text & 0xc0U) != 0x80U ? 1 : 0;
-    }
-    return count;
 }
 
 static bool overlap(const wh_svg_box_t *a, const wh_svg_box_t *b) {
@@ -66,7 +57,7 @@ void wh_svg_label(wh_svg_labels_t *labels, double x, double y, const char *text)
     if (labels->count == WH_SVG_LABELS) {
         return;
     }
-    const double width = 0.6 * labels->size * (double)count_characters(text);
+    const double width = 0.6 * labels->size * (double)wh_utf8_count(text);
     wh_svg_box_t box = {x - width / 2, y - labels->size, width, 1.15 * labels->size};
     box.x = box.x + width < labels->right ? box.x : labels->right - width;
     box.x = box.x > labels->left ? box.x : labels->left;

@@ -3,40 +3,77 @@
 #include <stdlib.h>
 #include <string.h>
 
-size_t wh_utf8_bytes(const char *text) {
-    const size_t left = strlen(text);
-    for (size_t bytes = 1; bytes <= 4 && bytes <= left; ++bytes) {
-        json_t *character = json_stringn(text, bytes);
-        if (character) {
-            json_decref(character);
-            return bytes;
-        }
+/* The bytes of the character that a byte begins: 0 for those that begin none. */
+static size_t length_by(unsigned char lead) {
+    if (lead < 0x80) {
+        return lead != '\0';
     }
-    return 0;
+    return lead < 0xC2 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF5 ? 4 : 0;
 }
 
-static json_t *repaired_text(const char *text) {
-    static const char replacement[] = "\xef\xbf\xbd";
+/* After some leads the second byte has a smaller range: the rest would be longer than needed, a surrogate or too high. */
+static bool may_follow(unsigned char lead, unsigned char second) {
+    switch (lead) {
+    case 0xE0:
+        return second >= 0xA0;
+    case 0xED:
+        return second < 0xA0;
+    case 0xF0:
+        return second >= 0x90;
+    case 0xF4:
+        return second < 0x90;
+    default:
+        return true;
+    }
+}
+
+size_t wh_utf8_bytes(const char *text) {
+    const size_t length = length_by((unsigned char)text[0]);
+    for (size_t i = 1; i < length; ++i) {
+        if (!wh_utf8_goes_on(text[i])) {
+            return 0;
+        }
+    }
+    return length < 2 || may_follow((unsigned char)text[0], (unsigned char)text[1]) ? length : 0;
+}
+
+size_t wh_utf8_count(const char *text) {
+    size_t count = 0;
+    for (; *text != '\0'; ++text) {
+        count += wh_utf8_goes_on(*text) ? 0 : 1;
+    }
+    return count;
+}
+
+size_t wh_utf8_cut(const char *text, size_t length) {
+    while (length > 0 && wh_utf8_goes_on(text[length])) {
+        --length;
+    }
+    return length;
+}
+
+void wh_utf8_clip(char *to, size_t size, const char *from) {
+    const size_t length = strlen(from);
+    if (length < size) {
+        memcpy(to, from, length + 1);
+        return;
+    }
+    const size_t kept = wh_utf8_cut(from, size - sizeof "...");
+    memcpy(to, from, kept);
+    memcpy(to + kept, "...", sizeof "...");
+}
+
+char *wh_utf8_repaired(const char *text) {
     char *repaired = malloc(3 * strlen(text) + 1);
     if (!repaired) {
-        return NULL;
+        abort();
     }
     char *to = repaired;
     while (*text != '\0') {
         const size_t bytes = wh_utf8_bytes(text);
-        memcpy(to, bytes > 0 ? text : replacement, bytes > 0 ? bytes : 3);
-        to += bytes > 0 ? bytes : 3;
+        to = bytes > 0 ? mempcpy(to, text, bytes) : stpcpy(to, WH_UTF8_REPLACEMENT);
         text += bytes > 0 ? bytes : 1;
     }
-    json_t *value = json_stringn(repaired, (size_t)(to - repaired));
-    free(repaired);
-    return value;
-}
-
-json_t *wh_json_text(const char *text) {
-    if (!text) {
-        return json_null();
-    }
-    json_t *value = json_string(text);
-    return value ? value : repaired_text(text);
+    *to = '\0';
+    return repaired;
 }

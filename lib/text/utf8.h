@@ -1,13 +1,32 @@
-/* Text of any bytes as JSON. */
+/* UTF-8 in text of any bytes: which of them are characters, and where a text may be cut. */
 #ifndef WH_TEXT_UTF8_H
 #define WH_TEXT_UTF8_H
 
-#include <jansson.h>
+#include <stdbool.h>
+#include <stddef.h>
 
-/* How long the valid UTF-8 character at `text` is: 0 when there is none. */
+/* The replacement character, U+FFFD. */
+#define WH_UTF8_REPLACEMENT "\xef\xbf\xbd"
+
+/* How many bytes the character at `text` has, 1 to 4; 0 at the end of the text and where no valid character begins (RFC
+ * 3629: nothing longer than needed, no surrogates, nothing above U+10FFFF). */
 size_t wh_utf8_bytes(const char *text);
 
-/* A text, repaired where it is no UTF-8: U+FFFD for each wrong byte; null for null. */
-json_t *wh_json_text(const char *text);
+/* True if the byte goes on with a character that begins before it. */
+static inline bool wh_utf8_goes_on(char byte) {
+    return ((unsigned char)byte & 0xC0U) == 0x80U;
+}
+
+/* How many characters the text has. */
+size_t wh_utf8_count(const char *text);
+
+/* The greatest length up to `length` at which the text can be cut without cutting a character. */
+size_t wh_utf8_cut(const char *text, size_t length);
+
+/* Copies a text into `size` bytes, at least 4. One that is too long is cut between characters and ends in "...". */
+void wh_utf8_clip(char *to, size_t size, const char *from);
+
+/* A copy with U+FFFD for each byte that is no UTF-8. The caller frees it. If there is no memory, the program ends. */
+char *wh_utf8_repaired(const char *text);
 
 #endif

@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "../record/quaternion.h"
+#include "../text/array.h"
+#include "../text/json.h"
 #include "../text/packed.h"
-#include "../text/utf8.h"
 
 /* glTF's numbers for types and targets. */
 enum {
@@ -47,17 +48,12 @@ static json_t *list_of(const double values[], size_t count) {
     return list;
 }
 
-/* -------------------------------------------------------------------------------------------------- buffer */
+/* --------------------------------------------------------------------------------------------------
+ * buffer */
 
 static size_t add_view(wh_gltf_t *gltf, const void *data, size_t size, int target) {
     const size_t padded = (size + 3) / 4 * 4;
-    if (gltf->size + padded > gltf->capacity) {
-        gltf->capacity = 2 * (gltf->capacity + padded);
-        gltf->bytes = realloc(gltf->bytes, gltf->capacity);
-        if (!gltf->bytes) {
-            abort();
-        }
-    }
+    gltf->bytes = wh_array_reserve(gltf->bytes, gltf->size + padded, &gltf->capacity, 1);
     memset(gltf->bytes + gltf->size, 0, padded);
     memcpy(gltf->bytes + gltf->size, data, size);
     json_t *view = json_pack("{s:i, s:o, s:o}", "buffer", 0, "byteOffset", index_of(gltf->size), "byteLength",
@@ -97,9 +93,10 @@ static size_t add_floats(wh_gltf_t *gltf, const float *data, size_t width, size_
     return add_accessor(gltf, view, TYPE_FLOAT, shapes[width], count);
 }
 
-/* ----------------------------------------------------------------------------------------- materials, meshes */
+/* ----------------------------------------------------------------------------------------- materials,
+ * meshes */
 
-size_t wh_gltf_add_material(wh_gltf_t *gltf, const wh_gltf_material_t *material) {
+size_t wh_gltf_add_material(wh_gltf_t *gltf, const wh_ink_material_t *material) {
     const double colour[4] = {material->red, material->green, material->blue, material->opacity};
     const bool clear = material->opacity < 1;
     json_t *made = json_pack("{s:s, s:{s:o, s:f, s:f}, s:s, s:b}", "name", material->name,
@@ -160,7 +157,8 @@ size_t wh_gltf_add_mesh(wh_gltf_t *gltf, const char *name, const wh_gltf_primiti
     return append(gltf->meshes, json_pack("{s:o, s:o}", "name", wh_json_text(name), "primitives", list));
 }
 
-/* ---------------------------------------------------------------------------------------------------- nodes */
+/* ----------------------------------------------------------------------------------------------------
+ * nodes */
 
 size_t wh_gltf_add_node(wh_gltf_t *gltf, const char *name, size_t mesh, const wh_pose_t *base_from_node,
                         const char *kind, size_t index) {
@@ -198,7 +196,8 @@ void wh_gltf_add_motion(wh_gltf_t *gltf, size_t node, const float times[], const
     add_channel(gltf, node, "rotation", input, add_floats(gltf, &turns[0][0], 4, count, 0));
 }
 
-/* ------------------------------------------------------------------------------------------------- finishing */
+/* -------------------------------------------------------------------------------------------------
+ * finishing */
 
 /* The buffer as a URI of its own. */
 static json_t *data_uri(const wh_gltf_t *gltf) {

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "../math/trig.h"
-#include "../record/record.h"
+#include "../text/array.h"
 #include "mesh.h"
 
 #define MOST_POINTS 512
@@ -29,7 +29,8 @@ typedef struct {
     double flat;
 } hull_t;
 
-/* --------------------------------------------------------------------------------------------------- points */
+/* ---------------------------------------------------------------------------------------------------
+ * points */
 
 static bool is_same(const wh_vec3_t *a, const wh_vec3_t *b) {
     const wh_vec3_t way = wh_vec3_subtract(a, b);
@@ -70,7 +71,8 @@ static void take_points(hull_t *hull, const wh_convex_t *convex) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- faces */
+/* ---------------------------------------------------------------------------------------------------
+ * faces */
 
 static void add_face(hull_t *hull, size_t a, size_t b, size_t c) {
     const wh_vec3_t ab = wh_vec3_subtract(&hull->points[b], &hull->points[a]);
@@ -85,7 +87,7 @@ static void add_face(hull_t *hull, size_t a, size_t b, size_t c) {
         face.normal = wh_vec3_scale(-1, &face.normal);
         face.offset = -face.offset;
     }
-    hull->faces = wh_record_grow(hull->faces, hull->face_count, &hull->face_capacity, sizeof *hull->faces);
+    hull->faces = wh_array_grow(hull->faces, hull->face_count, &hull->face_capacity, sizeof *hull->faces);
     hull->faces[hull->face_count++] = face;
 }
 
@@ -137,7 +139,8 @@ static void add_point(hull_t *hull, size_t point) {
     drop_seen(hull);
 }
 
-/* ---------------------------------------------------------------------------------------------------- start */
+/* ----------------------------------------------------------------------------------------------------
+ * start */
 
 /* How far a point is from the point, the line or the plane of the first `known` of `start`. */
 static double distance(const hull_t *hull, const size_t start[4], size_t known, size_t i) {

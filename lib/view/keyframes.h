@@ -20,7 +20,8 @@ typedef struct {
     wh_thin_t grippers[WH_GRIPPERS], links[WH_TRACE_LINKS];
 } wh_paths_t;
 
-/* How far they may be off, to begin with, and how many points a gripper may have, and a link: then it grows. */
+/* How far they may be off, to begin with, and how many points a gripper may have, and a link: then it
+ * grows. */
 #define WH_PATHS_MM 0.05
 #define WH_PATHS_RAD 5e-4
 #define WH_PATHS_LINK_MM 0.5

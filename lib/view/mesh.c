@@ -4,14 +4,14 @@
 #include <string.h>
 
 #include "../math/trig.h"
-#include "../record/record.h"
+#include "../text/array.h"
 
 #define CORNERS 48
 #define RINGS 6 /* of half a ball */
 
 static uint32_t add_vertex(wh_mesh_t *mesh, const wh_vec3_t *r, const wh_vec3_t *normal) {
     mesh->vertices =
-        wh_record_grow(mesh->vertices, mesh->vertex_count, &mesh->vertex_capacity, sizeof *mesh->vertices);
+        wh_array_grow(mesh->vertices, mesh->vertex_count, &mesh->vertex_capacity, sizeof *mesh->vertices);
     float *to = mesh->vertices[mesh->vertex_count];
     to[0] = (float)r->x;
     to[1] = (float)r->y;
@@ -26,7 +26,7 @@ static void add_indices(wh_mesh_t *mesh, uint32_t a, uint32_t b, uint32_t c) {
     const uint32_t corners[3] = {a, b, c};
     for (size_t i = 0; i < 3; ++i) {
         mesh->indices =
-            wh_record_grow(mesh->indices, mesh->index_count, &mesh->index_capacity, sizeof *mesh->indices);
+            wh_array_grow(mesh->indices, mesh->index_count, &mesh->index_capacity, sizeof *mesh->indices);
         mesh->indices[mesh->index_count++] = corners[i];
     }
 }
@@ -57,7 +57,8 @@ static uint32_t add_placed(wh_mesh_t *mesh, const wh_pose_t *pose, const wh_vec3
     return add_vertex(mesh, &at, &turned);
 }
 
-/* ---------------------------------------------------------------------------------------------------- boxes */
+/* ----------------------------------------------------------------------------------------------------
+ * boxes */
 
 /* The face across axis `axis`, on the side `sign`. */
 static void add_face(wh_mesh_t *mesh, const wh_pose_t *pose, const double half[3], int axis, double sign) {
@@ -89,7 +90,8 @@ static void add_box(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t 
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- round */
+/* ----------------------------------------------------------------------------------------------------
+ * round */
 
 /* A closed ring of vertices about z. */
 static uint32_t add_ring(wh_mesh_t *mesh, const wh_pose_t *pose, double radius, double z, double out,
@@ -163,7 +165,8 @@ void wh_mesh_add_convex(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pos
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- wafers */
+/* ----------------------------------------------------------------------------------------------------
+ * wafers */
 
 #define RIM_CORNERS 96
 

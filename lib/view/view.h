@@ -1,8 +1,9 @@
 /* `sim --view`: the cell that a simulator serves, published for Drake's viewer (meldis), live.
  *
- * The bodies go out when it begins and once a second, for viewers that come later and for those that missed them; where they are
- * goes out at most 60 times a second while slices are stepped, once more when they stop, and once a second. All by the wall clock, and none of
- * it is looked at by the simulation, which has the same bits with a view and without.
+ * The bodies go out when it begins and once a second, for viewers that come later and for those that missed
+ * them; where they are goes out at most 60 times a second while slices are stepped, once more when they stop,
+ * and once a second. All by the wall clock, and none of it is looked at by the simulation, which has the same
+ * bits with a view and without.
  */
 #ifndef WH_VIEW_VIEW_H
 #define WH_VIEW_VIEW_H
@@ -33,9 +34,9 @@ typedef struct {
     uint64_t loads, draws, unsent;
 } wh_viewer_t;
 
-/* WH_STATUS_BAD_CAPACITY, and nothing to close, for a cell that does not fit WH_VIEW_BYTES even without its ledges and with
- * boxes for its meshes; view->cell.detail tells what was left out. `node`, which may be null, and `layout` must outlive the
- * view. */
+/* WH_STATUS_BAD_CAPACITY, and nothing to close, for a cell that does not fit WH_VIEW_BYTES even without its
+ * ledges and with boxes for its meshes; view->cell.detail tells what was left out. `node`, which may be null,
+ * and `layout` must outlive the view. */
 wh_status_t wh_viewer_open(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *layout);
 
 /* Publishes what is due: to be called after each step and at least every 100 ms. Allocates nothing. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../../text/style.h"
+#include "../../text/utf8.h"
 
 static size_t common_length(const wh_candidates_t *candidates) {
     size_t length = strlen(candidates->texts[0]);
@@ -16,10 +17,7 @@ static size_t common_length(const wh_candidates_t *candidates) {
         }
         length = same;
     }
-    while (length > 0 && (candidates->texts[0][length] & 0xC0) == 0x80) {
-        --length;
-    }
-    return length;
+    return wh_utf8_cut(candidates->texts[0], length);
 }
 
 static size_t characters_in(const char *text) {

@@ -1,0 +1,214 @@
+#include "json.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "utf8.h"
+
+/* ------------------------------------------------------------------------------------------------- values */
+
+void wh_json_put(json_t *object, const char *key, json_t *value) {
+    if (json_object_set_new(object, key, value) != 0) {
+        abort();
+    }
+}
+
+void wh_json_append(json_t *list, json_t *value) {
+    if (json_array_append_new(list, value) != 0) {
+        abort();
+    }
+}
+
+json_t *wh_json_real(double value) {
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *wh_json_text(const char *text) {
+    if (!text) {
+        return json_null();
+    }
+    json_t *value = json_string(text);
+    if (!value) {
+        char *repaired = wh_utf8_repaired(text);
+        value = json_string(repaired);
+        free(repaired);
+    }
+    return value;
+}
+
+json_t *wh_json_vector(wh_vec3_t v) {
+    return json_pack("[o, o, o]", wh_json_real((double)v.x), wh_json_real((double)v.y),
+                     wh_json_real((double)v.z));
+}
+
+json_t *wh_json_matrix(const wh_mat3_t *m) {
+    return json_pack("[o, o, o]", wh_json_vector(wh_mat3_row(m, 0)), wh_json_vector(wh_mat3_row(m, 1)),
+                     wh_json_vector(wh_mat3_row(m, 2)));
+}
+
+void wh_json_put_real(json_t *object, const char *key, double value) {
+    wh_json_put(object, key, wh_json_real(value));
+}
+
+void wh_json_put_text(json_t *object, const char *key, const char *text) {
+    wh_json_put(object, key, wh_json_text(text));
+}
+
+void wh_json_put_integer(json_t *object, const char *key, json_int_t value) {
+    wh_json_put(object, key, json_integer(value));
+}
+
+json_t *wh_json_list(wh_json_element_t *element, const void *subject, size_t count) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < count; ++i) {
+        wh_json_append(list, element(subject, i));
+    }
+    return list;
+}
+
+/* ----------------------------------------------------------------------------------------------- printing */
+
+static int dump(const json_t *value, FILE *out) {
+    return json_dumpf(value, out, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
+}
+
+static int dump_list(const json_t *list, FILE *out) {
+    size_t i;
+    json_t *element;
+    int status = 0;
+    fputs("[", out);
+    json_array_foreach(list, i, element) {
+        fputs(i == 0 ? "\n    " : ",\n    ", out);
+        status |= dump(element, out);
+    }
+    fputs(json_array_size(list) > 0 ? "\n  ]" : "]", out);
+    return status;
+}
+
+int wh_json_print(json_t *root, FILE *out) {
+    const char *key, *before = "{\n  ";
+    json_t *value;
+    int status = 0;
+    json_object_foreach(root, key, value) {
+        fprintf(out, "%s\"%s\": ", before, key);
+        status |= json_is_array(value) ? dump_list(value, out) : dump(value, out);
+        before = ",\n  ";
+    }
+    fputs("\n}\n", out);
+    return status != 0 || fflush(out) != 0 || ferror(out) ? -1 : 0;
+}
+
+/* ------------------------------------------------------------------------------------------ as it comes */
+
+/* What stands before an element: a comma, and the key of a member. */
+static void lead(wh_json_text_t *text, const char *key) {
+    if (text->follows) {
+        fputc(',', text->out);
+    }
+    if (key) {
+        fprintf(text->out, "\"%s\":", key);
+    }
+    text->follows = true;
+}
+
+void wh_json_text_begin(wh_json_text_t *text, const char *key, char bracket) {
+    lead(text, key);
+    fputc(bracket, text->out);
+    text->follows = false;
+}
+
+void wh_json_text_end(wh_json_text_t *text, char bracket) {
+    fputc(bracket, text->out);
+    text->follows = true;
+}
+
+/* The fewest digits that read back as the same double. */
+static void write_exact(FILE *out, double value) {
+    char digits[40];
+    for (int precision = 15; precision <= 17; ++precision) {
+        (void)snprintf(digits, sizeof digits, "%.*g", precision, value);
+        if (strtod(digits, NULL) == value) {
+            break;
+        }
+    }
+    fputs(digits, out);
+}
+
+/* Without zeros at the end. Whole numbers of units are faster than printf and have its digits. */
+static void write_rounded(FILE *out, double value, int decimals) {
+    static const double powers[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+    char digits[32];
+    char *to = digits + sizeof digits - 1;
+    double units = floor(fabs(value) * powers[decimals] + 0.5);
+    if (!(units < 1e15)) {
+        write_exact(out, value);
+        return;
+    }
+    long long left = (long long)units;
+    const bool negative = value < 0 && left > 0;
+    bool significant = false;
+    *to = '\0';
+    for (int i = 0; i < decimals; ++i, left /= 10) {
+        significant = significant || left % 10 != 0;
+        if (significant) {
+            *--to = (char)('0' + left % 10);
+        }
+    }
+    if (significant) {
+        *--to = '.';
+    }
+    do {
+        *--to = (char)('0' + left % 10);
+        left /= 10;
+    } while (left > 0);
+    if (negative) {
+        *--to = '-';
+    }
+    fputs(to, out);
+}
+
+void wh_json_text_number(wh_json_text_t *text, const char *key, double value, int decimals, bool exact) {
+    lead(text, key);
+    if (!isfinite(value)) {
+        fputs("null", text->out);
+    } else if (exact) {
+        write_exact(text->out, value);
+    } else {
+        write_rounded(text->out, value, decimals);
+    }
+}
+
+void wh_json_text_integer(wh_json_text_t *text, const char *key, long long value) {
+    lead(text, key);
+    fprintf(text->out, "%lld", value);
+}
+
+static int write_escaped(const char *buffer, size_t size, void *user) {
+    FILE *out = user;
+    while (size > 0) {
+        const char *found = memchr(buffer, '<', size);
+        const size_t plain = found ? (size_t)(found - buffer) : size;
+        fwrite(buffer, 1, plain, out);
+        if (found) {
+            fputs("\\u003c", out);
+        }
+        buffer += plain + (found ? 1 : 0);
+        size -= plain + (found ? 1 : 0);
+    }
+    return 0;
+}
+
+void wh_json_text_value(wh_json_text_t *text, const char *key, json_t *value) {
+    lead(text, key);
+    if (!value || json_dump_callback(value, write_escaped, text->out,
+                                     JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17)) != 0) {
+        text->failed = true;
+        fputs("null", text->out);
+    }
+    json_decref(value);
+}
+
+void wh_json_text_string(wh_json_text_t *text, const char *key, const char *value) {
+    wh_json_text_value(text, key, value ? json_string(value) : json_null());
+}

@@ -1,0 +1,67 @@
+/* JSON over jansson: values that are made and printed as a whole, and long lists that are written as they come.
+ *
+ * If there is no memory for a value, the program ends.
+ */
+#ifndef WH_TEXT_JSON_H
+#define WH_TEXT_JSON_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "../math/vector.h"
+
+/* ------------------------------------------------------------------------------------------------- values */
+
+/* Set a member of an object, append an element to a list. Both take the value over. */
+void wh_json_put(json_t *object, const char *key, json_t *value);
+void wh_json_append(json_t *list, json_t *value);
+
+/* A number; null for infinities and NaN, which JSON has not. */
+json_t *wh_json_real(double value);
+
+/* A text, with U+FFFD for each byte that is no UTF-8; null for null. */
+json_t *wh_json_text(const char *text);
+
+/* A vector as a list of its numbers, a matrix as a list of its rows. */
+json_t *wh_json_vector(wh_vec3_t v);
+json_t *wh_json_matrix(const wh_mat3_t *m);
+
+/* A number or a text as a member. */
+void wh_json_put_real(json_t *object, const char *key, double value);
+void wh_json_put_text(json_t *object, const char *key, const char *text);
+void wh_json_put_integer(json_t *object, const char *key, json_int_t value);
+
+/* A list of what `element` makes of 0 to count - 1; `subject` is what it makes them from. */
+typedef json_t *wh_json_element_t(const void *subject, size_t i);
+json_t *wh_json_list(wh_json_element_t *element, const void *subject, size_t count);
+
+/* Prints an object: each of its members on a line, and each element of its lists, for grep, diff and the eye. Numbers get
+ * up to 17 digits. 0, or -1 if `out` does not take it. */
+int wh_json_print(json_t *root, FILE *out);
+
+/* -------------------------------------------------------------------------------------------- as it comes
+ * For long lists of numbers, each with the digits that it needs and no more: jansson has one precision for all. What is
+ * written is safe within an HTML page: every '<' is escaped. */
+
+/* Zero but for `out` to begin with. Commas are set by themselves. */
+typedef struct {
+    FILE *out;
+    bool follows; /* something stands before in the same list or object */
+    bool failed;
+} wh_json_text_t;
+
+/* Begins an object or list, '{' or '[', as an element or, with a key, as a member; and ends it. */
+void wh_json_text_begin(wh_json_text_t *text, const char *key, char bracket);
+void wh_json_text_end(wh_json_text_t *text, char bracket);
+
+/* A number; null for infinities and NaN. Exact: the fewest digits that read back as the same double; else rounded to
+ * `decimals`, at most 9. `key` may be null. */
+void wh_json_text_number(wh_json_text_t *text, const char *key, double value, int decimals, bool exact);
+
+/* A whole number, a text (null: null), or any value of jansson's, which is released. */
+void wh_json_text_integer(wh_json_text_t *text, const char *key, long long value);
+void wh_json_text_string(wh_json_text_t *text, const char *key, const char *value);
+void wh_json_text_value(wh_json_text_t *text, const char *key, json_t *value);
+
+#endif

@@ -1,0 +1,52 @@
+/* Which bytes are characters, against jansson's own check, and where a text is cut. */
+#include "support/support.h"
+
+#include <jansson.h>
+
+#include "text/utf8.h"
+
+/* Every text of up to three bytes, and those of four that begin with a lead of four, whose last byte is at an edge. */
+static void a_character_is_what_jansson_takes_for_one(void **state) {
+    static const unsigned char edges[] = {0x00, 0x7F, 0x80, 0xBF, 0xC0, 0xFF};
+    (void)state;
+    for (unsigned code = 0; code < 1U << 24; code += code >= 0xF50000 || code < 0xC20000 ? 97 : 1) {
+        for (size_t i = 0; i < sizeof edges; i += code < 0xF00000 ? sizeof edges : 1) {
+            const char text[] = {(char)(code >> 16), (char)(code >> 8), (char)code, (char)edges[i], '\0'};
+            const size_t bytes = wh_utf8_bytes(text);
+            json_t *value = json_stringn(text, bytes);
+            assert_true(bytes <= 4 && (bytes > 0 || value));
+            assert_non_null(value);
+            json_decref(value);
+            for (size_t shorter = 1; bytes == 0 && shorter <= strlen(text); ++shorter) {
+                assert_null(json_stringn(text, shorter));
+            }
+        }
+    }
+}
+
+static void cuts_are_between_characters(void **state) {
+    char clipped[8];
+    (void)state;
+    assert_int_equal(wh_utf8_count("aµ→𝄞"), 4);
+    assert_int_equal(wh_utf8_cut("aµ→𝄞", 2), 1);
+    assert_int_equal(wh_utf8_cut("aµ→𝄞", 3), 3);
+    assert_int_equal(wh_utf8_cut("\x80\x80", 1), 0);
+    wh_utf8_clip(clipped, sizeof clipped, "aµ→𝄞");
+    assert_string_equal(clipped, "aµ...");
+    wh_utf8_clip(clipped, sizeof clipped, "aµ→b");
+    assert_string_equal(clipped, "aµ→b");
+}
+
+static void what_is_no_character_is_replaced(void **state) {
+    (void)state;
+    char *repaired = wh_utf8_repaired("a\xff\xc3µ\xed\xa0\x80");
+    assert_string_equal(repaired, "a\xef\xbf\xbd\xef\xbf\xbdµ\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");
+    free(repaired);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_character_is_what_jansson_takes_for_one),
+                                       cmocka_unit_test(cuts_are_between_characters),
+                                       cmocka_unit_test(what_is_no_character_is_replaced)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
