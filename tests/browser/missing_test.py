@@ -4,7 +4,7 @@ import unittest
 
 import browser
 import documents
-from assemble import PAGE, pack
+from documents import PAGE, pack
 
 
 def setUpModule():
