@@ -14,10 +14,6 @@ static inline wh_real_t wh_real_max(wh_real_t a, wh_real_t b) {
     return a > b ? a : b;
 }
 
-static inline wh_real_t wh_real_min(wh_real_t a, wh_real_t b) {
-    return a < b ? a : b;
-}
-
 typedef struct {
     wh_real_t x, y, z;
 } wh_vec3_t;
