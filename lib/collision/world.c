@@ -1,4 +1,5 @@
-/* A world's description and memory. What happens in a slice is in world_move.c, world_near.c and world_pair.c. */
+/* A world's description and memory. What happens in a slice is in world_move.c, world_near.c and
+ * world_pair.c. */
 #include "world.h"
 
 #include <string.h>
@@ -15,7 +16,7 @@ const char *wh_clearance_name(wh_clearance_kind_t kind) {
     return (unsigned)kind < WH_CLEARANCES ? names[kind] : "unknown";
 }
 
-/* ------------------------------------------------------------------------------------------------ description */
+/* -------------------------------------------------------------------------------------------- description */
 
 static bool hangs(const wh_part_t *part) {
     return part->kind != WH_PART_FIXED && part->kind != WH_PART_LEDGE;
@@ -83,7 +84,7 @@ wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part) {
     return status == WH_OK ? wh_convex_validate(&config->wafer) : status;
 }
 
-/* ----------------------------------------------------------------------------------------------------- memory */
+/* ------------------------------------------------------------------------------------------------- memory */
 
 /* Where the arrays begin in one block; each of a size that keeps the next aligned. */
 typedef struct {
@@ -145,7 +146,7 @@ static wh_world_t *lay_out(const wh_world_config_t *config, const plan_t *plan, 
     return world;
 }
 
-/* ------------------------------------------------------------------------------------------------------ set-up */
+/* ------------------------------------------------------------------------------------------------- set-up */
 
 static void set_up_boxes(wh_world_t *world, const wh_wafer_t wafers[]) {
     const wh_world_config_t *config = world->config;

@@ -1,21 +1,23 @@
 /* The cell's bodies and what of them comes near to what, slice by slice.
  *
- * A world is made of convex parts. Fixed ones (FOUPs, ledges, walls) stand in base; the robot's hang on its arm, the
- * grippers' on the grippers; each wafer is one more. After each step of the grasp table the world is told where everything is
- * now. It then says whether anything touched what it must not, between the last slice and this one as well, and keeps
- * the smallest gap of each watched kind of pair with the slice in which it occurred.
+ * A world is made of convex parts. Fixed ones (FOUPs, ledges, walls) stand in base; the robot's hang on its
+ * arm, the grippers' on the grippers; each wafer is one more. After each step of the grasp table the world is
+ * told where everything is now. It then says whether anything touched what it must not, between the last
+ * slice and this one as well, and keeps the smallest gap of each watched kind of pair with the slice in which
+ * it occurred.
  *
- * Between two slices each body's origin goes straight and the body turns at a constant rate about it. Nothing tunnels: a
- * pair counts as apart only when a plane between the two, or the gaps at both ends against the way that their points went,
- * prove it for the whole slice; else the slice is divided until it is proved, contact is found, or the check gives up
- * and says so (WH_EVENT_UNDECIDED). Contact is collision/gap.h's: touching within 1e-3 mm is no hit.
+ * Between two slices each body's origin goes straight and the body turns at a constant rate about it. Nothing
+ * tunnels: a pair counts as apart only when a plane between the two, or the gaps at both ends against the way
+ * that their points went, prove it for the whole slice; else the slice is divided until it is proved, contact
+ * is found, or the check gives up and says so (WH_EVENT_UNDECIDED). Contact is collision/gap.h's: touching
+ * within 1e-3 mm is no hit.
  *
- * What may touch: a gripper's parts and the wafer that it holds, or is about to take or has just let go (within the table's
- * tolerance sideways and near_projz in height, with an open valve, and until it has gone 1 mm sideways); a wafer and the
- * ledges of the slot, or the chuck, that it lies in; neighbours in the chain of the arm; parts that do not move against
- * each other. Nothing else.
+ * What may touch: a gripper's parts and the wafer that it holds, or is about to take or has just let go
+ * (within the table's tolerance sideways and near_projz in height, with an open valve, and until it has gone
+ * 1 mm sideways); a wafer and the ledges of the slot, or the chuck, that it lies in; neighbours in the chain
+ * of the arm; parts that do not move against each other. Nothing else.
  *
- * No heap; the memory is the caller's. A world is judged by, and never changes, wafers and grippers.
+ * No heap; the memory is the caller's. A world reads wafers and grippers and never changes them.
  */
 #ifndef WH_COLLISION_WORLD_H
 #define WH_COLLISION_WORLD_H
@@ -49,7 +51,8 @@ typedef struct {
 
 /* Kinds of pairs whose smallest gap is kept. */
 typedef enum {
-    WH_CLEARANCE_BLADE_WAFER_ABOVE, /* a blade and a wafer above it that it does not hold, nor is about to take */
+    /* A blade and a wafer above or below it that it does not hold, nor is about to take. */
+    WH_CLEARANCE_BLADE_WAFER_ABOVE,
     WH_CLEARANCE_BLADE_WAFER_BELOW,
     WH_CLEARANCE_BLADE_OTHER, /* a blade and ledges, chucks or fixed parts */
     WH_CLEARANCE_WAFER_WAFER, /* a held wafer and another one */
@@ -63,8 +66,8 @@ typedef enum {
 /* Gaps are kept from this one down, mm: what is farther is not near. */
 #define WH_CLEARANCE_RANGE WH_REAL(20.0)
 
-/* The smallest gap of one kind so far. `gap` is WH_CLEARANCE_RANGE until something was nearer. Exact to 1e-3 mm at the ends
- * of slices; 0 when touching or hit. */
+/* The smallest gap of one kind so far. `gap` is WH_CLEARANCE_RANGE until something was nearer. Exact to 1e-3
+ * mm at the ends of slices; 0 when touching or hit. */
 typedef struct {
     wh_real_t gap;
     uint64_t slice;
@@ -72,8 +75,8 @@ typedef struct {
     wh_vec3_t at;     /* between the two, base */
 } wh_clearance_t;
 
-/* What a world reads in a slice: of a grasp table after its step, or of a state that tells of one. Wafers and grippers are the
- * config's wafer_count and gripper_count. */
+/* What a world reads in a slice: of a grasp table after its step, or of a state that tells of one. Wafers and
+ * grippers are the config's wafer_count and gripper_count. */
 typedef struct {
     uint64_t slice; /* steps so far */
     const wh_wafer_t *wafers;
@@ -98,24 +101,26 @@ typedef struct wh_world wh_world_t;
 /* The kind's name, such as "blade_wafer_above": a constant, never null. */
 const char *wh_clearance_name(wh_clearance_kind_t kind);
 
-/* WH_OK, or what is wrong with the description: WH_STATUS_NULL_ARGUMENT; WH_STATUS_BAD_CAPACITY for too many grippers or
- * parts that hang on something; WH_STATUS_OUT_OF_RANGE for an owner, a slot or parts out of order; else what
- * wh_convex_validate says. `part` (may be null) is then the index of the part, or WH_NONE. */
+/* WH_OK, or what is wrong with the description: WH_STATUS_NULL_ARGUMENT; WH_STATUS_BAD_CAPACITY for too many
+ * grippers or parts that hang on something; WH_STATUS_OUT_OF_RANGE for an owner, a slot or parts out of
+ * order; else what wh_convex_validate says. `part` (may be null) is then the index of the part, or
+ * WH_NONE. */
 wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part);
 
 /* Bytes that wh_world_init needs. */
 size_t wh_world_bytes(const wh_world_config_t *config);
 
-/* Sets a world up in `memory`, aligned as malloc's, from where everything is when a run begins. `config`, which has passed
- * wh_world_validate, and `memory` must outlive it; `input` need not. Returns null if `bytes` are too few. Cost: n log n in
- * fixed parts and wafers. */
+/* Sets a world up in `memory`, aligned as malloc's, from where everything is when a run begins. `config`,
+ * which has passed wh_world_validate, and `memory` must outlive it; `input` need not. Returns null if `bytes`
+ * are too few. Cost: n log n in fixed parts and wafers. */
 wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_t *input, void *memory,
                           size_t bytes);
 
-/* One slice: what moved since the last call, and what came of it. Appends to `list` while
- * there is room (it may be null): at most one WH_EVENT_HIT or WH_EVENT_UNDECIDED in a run, the first, after which contact is judged no
- * more, and one WH_EVENT_TOO_CLOSE for each kind of clearance. Cost: a few nanoseconds for each pair that is near,
- * some tens of microseconds for one that has to be measured; flat in what rests elsewhere. */
+/* One slice: what moved since the last call, and what came of it. Appends to `list` while there is room (it
+ * may be null): at most one WH_EVENT_HIT or WH_EVENT_UNDECIDED in a run, the first, after which contact is
+ * judged no more, and one WH_EVENT_TOO_CLOSE for each kind of clearance. Cost: a few nanoseconds for each
+ * pair that is near, some tens of microseconds for one that has to be measured; flat in what rests
+ * elsewhere. */
 void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list);
 
 /* Tells the world that a wafer which nobody holds was put there between two steps. */
@@ -124,8 +129,9 @@ void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from
 /* The smallest gaps so far, by kind: WH_CLEARANCES of them. */
 const wh_clearance_t *wh_world_clearances(const wh_world_t *world);
 
-/* The smallest gaps over time. A run is divided into bins of so many slices, whose number doubles whenever all bins are full, two
- * becoming one. Gaps are measured at the ends of bins, and the run's smallest one is in its bin whenever it occurred. */
+/* The smallest gaps over time. A run is divided into bins of so many slices, whose number doubles whenever
+ * all bins are full, two becoming one. Gaps are measured at the ends of bins, and the run's smallest one is
+ * in its bin whenever it occurred. */
 #define WH_CURVE_BINS 600
 
 typedef struct {
@@ -139,7 +145,7 @@ typedef struct {
 
 const wh_curves_t *wh_world_curves(const wh_world_t *world);
 
-/* How many slices' pairs were looked at in which way, for those who ask where the time goes. */
+/* How many pairs were looked at in which way, over all slices: tells where the time goes. */
 typedef struct {
     uint64_t pairs;    /* near enough to be on a list */
     uint64_t planes;   /* decided by a plane between the two */
@@ -150,8 +156,8 @@ typedef struct {
 
 const wh_world_counters_t *wh_world_counters(const wh_world_t *world);
 
-/* Looks at everything that rests, as `waferhand layout` does before a run: the first two parts that touch or cut each other and
- * must not, to `parts`; false when there are none. Cost: n log n. */
+/* Looks at everything at rest, as `waferhand layout` does before a run. True if two parts touch or cut each
+ * other that must not: the first two then go to `parts`. Cost: n log n. */
 bool wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int32_t parts[2]);
 
 #endif

@@ -1,5 +1,5 @@
-/* The smallest gaps over time. Everything near is measured anew at the end of a bin, beside the lists of what is near: those
- * are the judgement's, and what it finds must not depend on who looks on. */
+/* The smallest gaps over time. Everything near is measured anew at the end of a bin, beside the lists of what
+ * is near: those are the judgement's, and what it finds must not depend on who looks on. */
 #include "world_internal.h"
 
 static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_vec3_t guess,

@@ -1,5 +1,5 @@
-/* Within the collision world: bodies that move (world_move.c), lists of what is near (world_near.c), the judgement of
- * one pair (world_pair.c), who may touch whom (world_rules.c).
+/* Within the collision world: bodies that move (world_move.c), lists of what is near (world_near.c), the
+ * judgement of one pair (world_pair.c), who may touch whom (world_rules.c).
  */
 #ifndef WH_COLLISION_WORLD_INTERNAL_H
 #define WH_COLLISION_WORLD_INTERNAL_H
@@ -7,7 +7,8 @@
 #include "gap.h"
 #include "world.h"
 
-/* How far beyond the range of clearances things are put on a moving part's list, mm; less where too many are there. */
+/* How far beyond the range of clearances things are put on a moving part's list, mm; less where too many are
+ * there. */
 #define WH_NEAR_MARGIN WH_REAL(20.0)
 #define WH_NEAR_LEAST WH_REAL(0.1)
 #define WH_NEAR_CAPACITY 128
@@ -22,7 +23,8 @@ typedef struct {
     wh_real_t turn;        /* about it, rad: never less than it was */
 } wh_body_t;
 
-/* What is known of a pair: the gap is at least `slack`, as of the last slice, and `axis` (zero: none yet) parted them. */
+/* What is known of a pair: the gap is at least `slack`, as of the last slice, and `axis` (zero: none yet)
+ * parted them. */
 typedef struct {
     int32_t other; /* an item of the tree, or a mover */
     wh_real_t slack;
@@ -128,7 +130,7 @@ void wh_world_draw_curves(const wh_look_t *look);
 /* Two parts that never move against each other, or are neighbours by design. */
 bool wh_world_belong_together(const wh_part_t *a, const wh_part_t *b);
 
-/* Whether they may touch as things are. */
+/* True if the two may touch in this slice. */
 bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b);
 
 /* Which clearance the pair counts for, or WH_CLEARANCES: none. */

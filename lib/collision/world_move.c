@@ -26,10 +26,11 @@ const wh_convex_t *wh_world_convex(const wh_world_t *world, int32_t part) {
     return (size_t)part < config->part_count ? &config->parts[part].convex : &config->wafer;
 }
 
-/* ---------------------------------------------------------------------------------------------------- motion */
+/* ------------------------------------------------------------------------------------------------- motion */
 
-/* The angle between two rotations, never less: the matrices' difference has the Frobenius norm 2 sqrt(2) sin(angle / 2), and
- * asin(s) <= s (1 + (pi/2 - 1) s^2) for s from 0 to 1, both sides agreeing at the ends. */
+/* The angle between two rotations, never less: the matrices' difference has the Frobenius norm 2 sqrt(2)
+ * sin(angle / 2), and asin(s) <= s (1 + (pi/2 - 1) s^2) for s from 0 to 1, both sides agreeing at the
+ * ends. */
 static wh_real_t angle_between(const wh_mat3_t *a, const wh_mat3_t *b) {
     wh_real_t sum = 0;
     for (size_t i = 0; i < 9; ++i) {
@@ -61,7 +62,7 @@ static void move_mover(wh_world_t *world, wh_mover_t *mover) {
     mover->reach -= mover->motion;
 }
 
-/* ------------------------------------------------------------------------------------------ taken and let go */
+/* --------------------------------------------------------------------------------------- taken and let go */
 
 static wh_mover_t *mover_of_gripper(wh_world_t *world, size_t gripper) {
     const size_t hanging = world->config->part_count - world->fixed_count;
@@ -171,7 +172,7 @@ void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- the slice */
+/* ---------------------------------------------------------------------------------------------- the slice */
 
 static void take_wafers(const wh_look_t *look) {
     wh_world_t *world = look->world;

@@ -57,8 +57,8 @@ static wh_box_t box_before(const wh_world_t *world, const wh_mover_t *mover) {
     return box;
 }
 
-/* Finds what is near, within a margin that is halved until all of it has room. Where not even the range of clearances has, the
- * list holds what could be touched in this slice, for this slice. */
+/* Finds what is near, within a margin that is halved until all of it has room. Where not even the range of
+ * clearances has, the list holds what could be touched in this slice, for this slice. */
 static size_t find_near(wh_world_t *world, wh_mover_t *mover, const wh_box_t *box, int32_t found[]) {
     wh_real_t margin = WH_CLEARANCE_RANGE + mover->motion + WH_NEAR_MARGIN;
     const wh_real_t least = mover->motion + WH_NEAR_LEAST + WH_GAP_TOUCH;

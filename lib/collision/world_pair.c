@@ -1,4 +1,5 @@
-/* The judgement of one pair for one slice: apart by a plane, by gaps against ways, or by dividing the slice. */
+/* The judgement of one pair for one slice: apart by a plane, by gaps against ways, or by dividing the
+ * slice. */
 #include "world_internal.h"
 
 /* A slice is divided into at most so many steps before the check gives up. */
@@ -10,7 +11,7 @@
 /* Gaps are known better than this, mm: one that is not smaller by more is no new minimum. */
 #define SAME_GAP WH_REAL(1e-4)
 
-/* --------------------------------------------------------------------------------------------- between slices */
+/* ----------------------------------------------------------------------------------------- between slices */
 
 /* base_from_shape at t of the slice, 0 to 1. */
 static wh_pose_t shape_at(const wh_side_t *side, wh_real_t t) {
@@ -31,8 +32,8 @@ static wh_pose_t shape_at(const wh_side_t *side, wh_real_t t) {
     return wh_pose_compose(&pose, &side->convex->body_from_shape);
 }
 
-/* How far on from t, where they are a gap apart along its axis, the pair stays apart: as far as the axis still parts
- * them, by halves, but at least as far as their points need to close the gap. */
+/* How far on from t, where they are a gap apart along its axis, the pair stays apart: as far as the axis
+ * still parts them, by halves, but at least as far as their points need to close the gap. */
 static wh_real_t safe_step(const wh_side_t *a, const wh_side_t *b, wh_real_t t, wh_real_t motion,
                            const wh_gap_t *gap) {
     const wh_real_t least = (gap->gap > WH_GAP_TOUCH ? gap->gap : WH_GAP_TOUCH) / motion;
@@ -69,7 +70,7 @@ static wh_gap_state_t divide(wh_world_t *world, const wh_side_t *a, const wh_sid
     return WH_GAP_UNDECIDED;
 }
 
-/* Whether the pair kept apart within the slice, given its gap at the end. */
+/* True if the pair kept apart within the slice, given the gap at its end. */
 static wh_gap_state_t judge_between(wh_world_t *world, const wh_side_t *a, const wh_side_t *b,
                                     const wh_gap_t *end, wh_gap_t *worst) {
     const wh_real_t motion = a->motion + b->motion;
@@ -94,7 +95,7 @@ static wh_gap_state_t judge_between(wh_world_t *world, const wh_side_t *a, const
     return divide(world, a, b, motion, worst);
 }
 
-/* ------------------------------------------------------------------------------------------------ what came of it */
+/* ---------------------------------------------------------------------------------------- what came of it */
 
 static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_side_t *a,
                           const wh_side_t *b) {
@@ -162,7 +163,7 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- judgement */
+/* ---------------------------------------------------------------------------------------------- judgement */
 
 /* By the plane that parted them last. */
 static bool is_parted(const wh_side_t *a, const wh_side_t *b, wh_real_t needed, wh_pair_t *near) {

@@ -29,7 +29,7 @@ static const wh_wafer_t *wafer_of(const wh_look_t *look, const wh_side_t *side) 
     return &look->input->wafers[side->owner];
 }
 
-/* Whether a wafer there lies in this slot, or on the chuck of this gripper, and not below its plane. */
+/* True if a wafer there lies in the slot of this ledge, or on this chuck, and not below its plane. */
 static bool is_upon(const wh_look_t *look, const wh_pose_t *base_from_wafer, const wh_side_t *support) {
     const wh_cell_t *cell = look->world->config->cell;
     wh_place_t place;
@@ -42,7 +42,7 @@ static bool is_upon(const wh_look_t *look, const wh_pose_t *base_from_wafer, con
     return support->kind == WH_PART_CHUCK && cell->stations[place.station].chuck == support->owner;
 }
 
-/* At both ends of the slice: what comes through from below does not lie there. */
+/* It lies there at both ends of the slice: a wafer that comes through from below does not. */
 static bool lies_in(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *support) {
     const wh_pose_t *now = &look->world->wafers[wafer->owner];
     return is_upon(look, now, support) && (!wafer->body || is_upon(look, &wafer->body->before, support));
@@ -56,7 +56,7 @@ static void put_in_order(const wh_side_t **a, const wh_side_t **b) {
     *a = first;
 }
 
-/* Whether gripper and wafer are meant to come together: within reach, and one takes or gives. */
+/* True if gripper and wafer are meant to come together: they are near, and one takes or gives. */
 static bool do_business(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *gripper) {
     const wh_grasp_config_t *grasp = look->world->config->grasp;
     const wh_gripper_t *state = &look->input->grippers[gripper->owner];
@@ -85,7 +85,7 @@ bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side
     return b->kind == WH_PART_LEDGE && lies_in(look, a, b);
 }
 
-/* ------------------------------------------------------------------------------------------------- clearances */
+/* --------------------------------------------------------------------------------------------- clearances */
 
 /* Of a gripper's part and a wafer that it does not hold. */
 static wh_clearance_kind_t wafer_and_gripper(const wh_look_t *look, const wh_side_t *wafer,

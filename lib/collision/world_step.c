@@ -1,12 +1,13 @@
-/* The world looked at: in a slice, when everything is moved and then each near pair is judged; and at rest, before a run. */
+/* The world looked at: in a slice, when everything is moved and then each near pair is judged; and at rest,
+ * before a run. */
 #include "world_internal.h"
 
 /* So many things near a part are looked at before a run. */
 #define MOST_NEAR 256
 
-/* --------------------------------------------------------------------------------------------------- in a slice */
+/* --------------------------------------------------------------------------------------------- in a slice */
 
-/* A pair that was so far apart needs no look: nothing that is kept or judged could come of it. */
+/* A pair so far apart needs no look: it can neither touch nor count as near. */
 static bool is_far(wh_pair_t *near, wh_real_t motion) {
     near->slack -= motion;
     return near->slack > WH_CLEARANCE_RANGE;
@@ -59,7 +60,7 @@ void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_li
     wh_world_draw_curves(&look);
 }
 
-/* ------------------------------------------------------------------------------------------------ before a run */
+/* ------------------------------------------------------------------------------------------- before a run */
 
 static bool cut(const wh_side_t *a, const wh_side_t *b) {
     wh_gap_t gap;
@@ -67,7 +68,8 @@ static bool cut(const wh_side_t *a, const wh_side_t *b) {
     return gap.state == WH_GAP_HIT || gap.state == WH_GAP_UNDECIDED;
 }
 
-/* The first thing that rests and that this one cuts; fixed parts may cut each other, for one thing is made of several. */
+/* Finds the first thing at rest that this part cuts. Fixed parts are not compared with each other: one thing
+ * is made of several. */
 static bool cuts_rest(const wh_look_t *look, const wh_side_t *a, int32_t self, int32_t *part) {
     int32_t found[MOST_NEAR];
     wh_box_t box;

@@ -12,7 +12,7 @@
 #define DIAMETER 300
 #define THICKNESS 0.775
 
-/* ----------------------------------------------------------------------------------------------------- file */
+/* --------------------------------------------------------------------------------------------------- file */
 
 static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
                                const wh_log_layout_options_t *options) {
@@ -36,7 +36,7 @@ static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
     return layout;
 }
 
-/* ---------------------------------------------------------------------------------------------------- shapes */
+/* ------------------------------------------------------------------------------------------------- shapes */
 
 static void fill_machine(wh_layout_t *layout) {
     wh_machine_t *machine = &layout->machine;
@@ -99,7 +99,7 @@ static void fill_shapes(wh_log_layout_t *made) {
     layout->world.arm = layout->shapes.arm;
 }
 
-/* ------------------------------------------------------------------------------------------------- the whole */
+/* ---------------------------------------------------------------------------------------------- the whole */
 
 bool wh_log_layout_make(wh_log_layout_t *made, const waferhand_cell *cell,
                         const wh_log_layout_options_t *options) {
