@@ -2,7 +2,7 @@
 #ifndef WH_LAYOUT_LAYOUT_OBSTACLES_H
 #define WH_LAYOUT_LAYOUT_OBSTACLES_H
 
-#include "shapes.h"
+#include "layout.h"
 
 typedef struct {
     wh_part_t part;
@@ -16,5 +16,12 @@ typedef struct {
 
 /* Adds those that are fixed, or those that hang on something. */
 void wh_obstacles_add(wh_part_list_t *list, const wh_obstacles_t *obstacles, bool fixed);
+
+/* How many parts stations, robot and grippers of the layout have at most. */
+size_t wh_layout_count_parts(const wh_layout_t *layout);
+
+/* Fills the list with them and the obstacles, for which it must have room, and makes it the parts of the layout's world:
+ * the list's arrays must outlive the layout. */
+void wh_layout_set_parts(wh_layout_t *layout, wh_part_list_t *list, const wh_obstacles_t *obstacles);
 
 #endif

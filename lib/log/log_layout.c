@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include "../layout/layout_load.h"
+#include "../layout/layout_obstacles.h"
 #include "../link/cell_layout.h"
 
 /* What a layout has by default. */
@@ -55,25 +56,9 @@ static void fill_machine(wh_layout_t *layout) {
     }
 }
 
-static wh_stand_t stand_of(const wh_layout_t *layout, size_t station) {
-    return layout->stations[station].prealigner ? WH_STAND_CHUCK : WH_STAND_LEDGES;
-}
-
-static void add_parts(wh_log_layout_t *made, wh_part_list_t *list) {
-    const wh_layout_t *layout = made->told;
-    for (size_t s = 0; s < layout->station_count; ++s) {
-        wh_shapes_add_station(list, &layout->shapes, &layout->places[s], (int32_t)s, stand_of(layout, s),
-                              layout->stations[s].name);
-    }
-    wh_shapes_add_robot(list, &layout->shapes);
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        wh_shapes_add_gripper(list, &layout->shapes, (int32_t)g, layout->grippers[g].station == WH_NONE,
-                              layout->grippers[g].name);
-    }
-}
-
 static void fill_shapes(wh_log_layout_t *made) {
     wh_layout_t *layout = made->told;
+    const wh_obstacles_t none = {NULL, 0};
     wh_robot_t robot;
     wh_robot_default(&robot);
     layout->wafer_diameter = DIAMETER;
@@ -81,22 +66,14 @@ static void fill_shapes(wh_log_layout_t *made) {
     layout->notch_depth = 1;
     layout->shapes =
         wh_shapes_default(DIAMETER, THICKNESS, robot.travel[WH_AXIS_R].max, robot.travel[WH_AXIS_Z].min);
-    size_t count = WH_SHAPES_ROBOT + WH_SHAPES_GRIPPER * layout->machine.gripper_count;
-    for (size_t s = 0; s < layout->station_count; ++s) {
-        count += wh_shapes_count_station(stand_of(layout, s), layout->places[s].slots);
-    }
+    const size_t count = wh_layout_count_parts(layout);
     made->parts = calloc(count, sizeof *made->parts);
     made->names = calloc(count, sizeof *made->names);
     if (!made->parts || !made->names) {
         abort();
     }
     wh_part_list_t list = {made->parts, made->names, 0, count};
-    add_parts(made, &list);
-    layout->part_names = (const char(*)[WH_PART_NAME_SIZE])made->names;
-    layout->world.parts = made->parts;
-    layout->world.part_count = list.count;
-    layout->world.wafer = wh_shapes_wafer(&layout->shapes);
-    layout->world.arm = layout->shapes.arm;
+    wh_layout_set_parts(layout, &list, &none);
 }
 
 /* ---------------------------------------------------------------------------------------------- the whole */

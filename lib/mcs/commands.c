@@ -185,7 +185,7 @@ static int describe_complaints(lua_State *L) {
     luaL_buffinit(L, &text);
     for (size_t i = mark; i < record->event_count; ++i) {
         const wh_event_t *event = &record->events[i].event;
-        if (wh_record_is_complaint(event)) {
+        if (wh_record_is_complaint(event->kind)) {
             luaL_addstring(&text, any ? "; " : "");
             push_complaint(L, mcs->layout, event);
             luaL_addvalue(&text);

@@ -144,32 +144,18 @@ static int read_wafer_pose(lua_State *L) {
     return 1;
 }
 
-static wh_pose_t commanded_pose(const wh_mcs_t *mcs, int32_t gripper) {
+/* native.gripper_pose(gripper, real): where motion control has it, also before the first slice; or, if `real`, where
+ * it is, for a fault may keep it from there. */
+static int read_gripper_pose(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    const bool is_real = lua_toboolean(L, 2) && mcs->state.seq > 0;
     wh_pose_t poses[WH_GRIPPERS];
     if (mcs->layout->grippers[gripper].station != WH_NONE) {
         wh_decisions_measured(mcs->decisions, "a chuck's pose");
     }
     wh_machine_grippers(&mcs->real->machine, mcs->track.axes, poses);
-    return poses[gripper];
-}
-
-/* native.gripper_pose(gripper): where motion control has it, also before the first slice. */
-static int read_gripper_pose(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_pose_t pose = commanded_pose(mcs, wh_mcs_index(L, 1, mcs->state.gripper_count));
-    wh_lua_push_pose(L, &pose);
-    return 1;
-}
-
-/* native.real_gripper_pose(gripper): where it is. A fault may keep it from where motion control has it. */
-static int read_real_gripper_pose(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
-    wh_pose_t pose = commanded_pose(mcs, gripper);
-    if (mcs->state.seq > 0) {
-        pose = mcs->state.grippers[gripper].base_from_gripper;
-    }
-    wh_lua_push_pose(L, &pose);
+    wh_lua_push_pose(L, is_real ? &mcs->state.grippers[gripper].base_from_gripper : &poses[gripper]);
     return 1;
 }
 
@@ -284,7 +270,6 @@ const luaL_Reg wh_mcs_query_functions[] = {{"utime", read_utime},
                                            {"lies", judge_place},
                                            {"wafer_pose", read_wafer_pose},
                                            {"gripper_pose", read_gripper_pose},
-                                           {"real_gripper_pose", read_real_gripper_pose},
                                            {"slot_pose", read_slot_pose},
                                            {"relate", relate},
                                            {"hits", list_hits},

@@ -134,7 +134,7 @@ static wh_status_t status_of(wh_sandbox_reason_t reason) {
 
 static void count_complaints(wh_session_t *session, size_t from) {
     for (size_t i = from; i < session->record.event_count; ++i) {
-        session->complaints += wh_record_is_complaint(&session->record.events[i].event) ? 1 : 0;
+        session->complaints += wh_record_is_complaint(session->record.events[i].event.kind) ? 1 : 0;
     }
 }
 

@@ -102,7 +102,7 @@ void wh_record_forget(wh_record_t *record);
 
 /* True if the cell complains by this event: a wafer was let go where it should not have been, something was
  * hit or may have been, a wafer slipped, or an input was refused. */
-bool wh_record_is_complaint(const wh_event_t *event);
+bool wh_record_is_complaint(wh_event_kind_t kind);
 
 /* Room for one more item of `size` bytes, by doubling. */
 void *wh_record_grow(void *items, size_t count, size_t *capacity, size_t size);

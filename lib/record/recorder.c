@@ -32,7 +32,7 @@ static size_t first_event(const wh_recorder_t *recorder) {
 static bool cell_complained(const wh_record_t *record, size_t from) {
     bool complained = false;
     for (size_t i = from; i < record->event_count; ++i) {
-        complained = complained || wh_record_is_complaint(&record->events[i].event);
+        complained = complained || wh_record_is_complaint(record->events[i].event.kind);
     }
     return complained;
 }

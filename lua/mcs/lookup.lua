@@ -108,7 +108,7 @@ return function(native, errors)
   local function gripper_frame(grippers, name)
     for index, gripper in ipairs(grippers) do
       if gripper.name == name then
-        return native.real_gripper_pose(index)
+        return native.gripper_pose(index, "real")
       end
     end
   end

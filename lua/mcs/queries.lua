@@ -22,7 +22,7 @@ return function(native, lookup)
   function queries.proximity(wafer, gripper)
     local tolerance = native.layout.tolerance
     local base_from_wafer = native.wafer_pose(lookup.wafer(wafer))
-    return wh.proximity(base_from_wafer, native.real_gripper_pose(lookup.gripper(gripper)), tolerance)
+    return wh.proximity(base_from_wafer, native.gripper_pose(lookup.gripper(gripper), "real"), tolerance)
   end
 
   -- How the second frame lies as seen from the first: the distance of the origins; dx, dy, dz in the first
