@@ -277,8 +277,8 @@ static wh_stand_t stand_of(const wh_layout_station_t *station) {
     return station->foup ? WH_STAND_FOUP : WH_STAND_LEDGES;
 }
 
-static size_t count_parts(const wh_layout_t *layout, size_t obstacles) {
-    size_t count = obstacles + WH_SHAPES_ROBOT + WH_SHAPES_GRIPPER * layout->machine.gripper_count;
+size_t wh_layout_count_parts(const wh_layout_t *layout) {
+    size_t count = WH_SHAPES_ROBOT + WH_SHAPES_GRIPPER * layout->machine.gripper_count;
     for (size_t s = 0; s < layout->station_count; ++s) {
         count += wh_shapes_count_station(stand_of(&layout->stations[s]), layout->places[s].slots);
     }
@@ -302,6 +302,25 @@ static void add_parts(wh_layout_t *layout, wh_part_list_t *list, const obstacles
     layout->hung_count = list->count - layout->hung_count;
 }
 
+static void set_parts(wh_layout_t *layout, wh_part_list_t *list, const obstacles_t *obstacles) {
+    wh_world_config_t *world = &layout->world;
+    add_parts(layout, list, obstacles);
+    layout->part_names = (const char(*)[WH_PART_NAME_SIZE])list->names;
+    world->parts = list->parts;
+    world->part_count = list->count;
+    world->wafer = wh_shapes_wafer(&layout->shapes);
+    world->arm = layout->shapes.arm;
+    world->gripper_count = layout->machine.gripper_count;
+    world->wafer_count = layout->wafer_count;
+    world->cell = &layout->cell;
+    world->grasp = &layout->grasp;
+}
+
+void wh_layout_set_parts(wh_layout_t *layout, wh_part_list_t *list) {
+    const obstacles_t none = {NULL, 0};
+    set_parts(layout, list, &none);
+}
+
 static void check_world(wh_reader_t *reader, const wh_layout_t *layout) {
     int32_t part = WH_NONE;
     const wh_status_t status = wh_world_validate(&layout->world, &part);
@@ -315,7 +334,7 @@ void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout) {
     obstacles_t obstacles;
     read_obstacles(reader, layout, &obstacles);
     read_limits(reader, layout);
-    const size_t capacity = count_parts(layout, obstacles.count);
+    const size_t capacity = wh_layout_count_parts(layout) + obstacles.count;
     layout->collision = wh_reader_boolean(reader, "collision", false);
     layout->look_ahead = wh_reader_boolean(reader, "look_ahead", false);
     if (capacity > WH_LAYOUT_PARTS) {
@@ -330,17 +349,7 @@ void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout) {
     wh_part_list_t list = {.capacity = capacity};
     list.parts = wh_layout_memory(reader->L, capacity, sizeof *list.parts);
     list.names = wh_layout_memory(reader->L, capacity, sizeof *list.names);
-    add_parts(layout, &list, &obstacles);
-    layout->part_names = (const char(*)[WH_PART_NAME_SIZE])list.names;
-    wh_world_config_t *world = &layout->world;
-    world->parts = list.parts;
-    world->part_count = list.count;
-    world->wafer = wh_shapes_wafer(&layout->shapes);
-    world->arm = layout->shapes.arm;
-    world->gripper_count = layout->machine.gripper_count;
-    world->wafer_count = layout->wafer_count;
-    world->cell = &layout->cell;
-    world->grasp = &layout->grasp;
+    set_parts(layout, &list, &obstacles);
     check_world(reader, layout);
 }
 

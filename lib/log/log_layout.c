@@ -12,7 +12,7 @@
 #define DIAMETER 300
 #define THICKNESS 0.775
 
-/* ----------------------------------------------------------------------------------------------------- file */
+/* --------------------------------------------------------------------------------------------------- file */
 
 static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
                                const wh_log_layout_options_t *options) {
@@ -36,7 +36,7 @@ static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
     return layout;
 }
 
-/* ---------------------------------------------------------------------------------------------------- shapes */
+/* ------------------------------------------------------------------------------------------------- shapes */
 
 static void fill_machine(wh_layout_t *layout) {
     wh_machine_t *machine = &layout->machine;
@@ -55,23 +55,6 @@ static void fill_machine(wh_layout_t *layout) {
     }
 }
 
-static wh_stand_t stand_of(const wh_layout_t *layout, size_t station) {
-    return layout->stations[station].prealigner ? WH_STAND_CHUCK : WH_STAND_LEDGES;
-}
-
-static void add_parts(wh_log_layout_t *made, wh_part_list_t *list) {
-    const wh_layout_t *layout = made->told;
-    for (size_t s = 0; s < layout->station_count; ++s) {
-        wh_shapes_add_station(list, &layout->shapes, &layout->places[s], (int32_t)s, stand_of(layout, s),
-                              layout->stations[s].name);
-    }
-    wh_shapes_add_robot(list, &layout->shapes);
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        wh_shapes_add_gripper(list, &layout->shapes, (int32_t)g, layout->grippers[g].station == WH_NONE,
-                              layout->grippers[g].name);
-    }
-}
-
 static void fill_shapes(wh_log_layout_t *made) {
     wh_layout_t *layout = made->told;
     wh_robot_t robot;
@@ -81,25 +64,17 @@ static void fill_shapes(wh_log_layout_t *made) {
     layout->notch_depth = 1;
     layout->shapes =
         wh_shapes_default(DIAMETER, THICKNESS, robot.travel[WH_AXIS_R].max, robot.travel[WH_AXIS_Z].min);
-    size_t count = WH_SHAPES_ROBOT + WH_SHAPES_GRIPPER * layout->machine.gripper_count;
-    for (size_t s = 0; s < layout->station_count; ++s) {
-        count += wh_shapes_count_station(stand_of(layout, s), layout->places[s].slots);
-    }
+    const size_t count = wh_layout_count_parts(layout);
     made->parts = calloc(count, sizeof *made->parts);
     made->names = calloc(count, sizeof *made->names);
     if (!made->parts || !made->names) {
         abort();
     }
     wh_part_list_t list = {made->parts, made->names, 0, count};
-    add_parts(made, &list);
-    layout->part_names = (const char(*)[WH_PART_NAME_SIZE])made->names;
-    layout->world.parts = made->parts;
-    layout->world.part_count = list.count;
-    layout->world.wafer = wh_shapes_wafer(&layout->shapes);
-    layout->world.arm = layout->shapes.arm;
+    wh_layout_set_parts(layout, &list);
 }
 
-/* ------------------------------------------------------------------------------------------------- the whole */
+/* ---------------------------------------------------------------------------------------------- the whole */
 
 bool wh_log_layout_make(wh_log_layout_t *made, const waferhand_cell *cell,
                         const wh_log_layout_options_t *options) {

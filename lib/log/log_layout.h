@@ -1,7 +1,8 @@
 /* The cell of a log as a report needs it: with shapes, which the messages do not tell.
  *
- * They tell the layout's path and hash. Where the file is there and has this hash, it is the layout; else one is made of
- * the message, with the shapes that a layout of 300 mm wafers has by default, and the arm's axes are not known.
+ * The messages tell the layout's path and hash. If that file exists and has this hash, it is the layout. Else
+ * a layout is made of the message, with the default shapes of 300 mm wafers; the arm's axes are then not
+ * known.
  */
 #ifndef WH_LOG_LOG_LAYOUT_H
 #define WH_LOG_LOG_LAYOUT_H
@@ -28,7 +29,8 @@ typedef struct {
     size_t parameter_count;
 } wh_log_layout_options_t;
 
-/* Makes it of a message. False when no layout could have made that; nothing is then changed. Aborts when memory is out. */
+/* Makes it of a message. False if no layout could have made that message; nothing is then changed. Aborts if
+ * out of memory. */
 bool wh_log_layout_make(wh_log_layout_t *made, const waferhand_cell *cell,
                         const wh_log_layout_options_t *options);
 

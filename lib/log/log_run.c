@@ -10,10 +10,10 @@
 
 #include "../text/array.h"
 
-/* What is farther away, mm or rad, no cell has. */
+/* No cell has anything farther away, mm or rad. */
 #define FARTHEST 1e9
 
-/* ---------------------------------------------------------------------------------------------------- file */
+/* --------------------------------------------------------------------------------------------------- file */
 
 bool wh_log_run_is_log(const char *path) {
     static const unsigned char sync[4] = {0xED, 0xA1, 0xDA, 0x01};
@@ -122,7 +122,7 @@ static void begin_run(wh_log_run_t *run) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- commands */
+/* ----------------------------------------------------------------------------------------------- commands */
 
 static void begin_command(wh_log_run_t *run, const waferhand_mcs *message, bool ours) {
     if (ours && run->signals.layout) {
@@ -161,7 +161,7 @@ static void take_mcs(wh_log_run_t *run, const waferhand_mcs *message) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- slices */
+/* ------------------------------------------------------------------------------------------------- slices */
 
 static bool robot_moves(const wh_log_run_t *run, const double axes[]) {
     bool moves = false;
@@ -176,7 +176,7 @@ static bool is_told_to_wait(const wh_log_run_t *run) {
     return !text || strncmp(text, "WAIT", 4) == 0;
 }
 
-/* What a slice that the robot stood still in was for, as far as its valves and sensors tell. */
+/* What the robot stood still for in a slice, as far as valves and sensors tell. */
 static wh_share_t share_standing(const wh_log_run_t *run, const int32_t valves[], const wh_state_t *state) {
     bool waits = false;
     for (size_t g = 0; g < state->gripper_count; ++g) {
@@ -224,7 +224,7 @@ static void start(wh_log_run_t *run, bool from_the_beginning) {
     }
 }
 
-/* Those of the state's command, if that is the last one that came; else where they were. */
+/* The axes of the state's command, if that is the last one that came; else where they were. */
 static bool find_axes(const wh_log_run_t *run, const waferhand_state *message, double axes[]) {
     const waferhand_command *command = &run->command;
     bool known = run->has_command && command->run == message->run && command->seq == message->seq;
@@ -286,7 +286,7 @@ static bool are_grippers_sound(const wh_state_t *state) {
     return sound;
 }
 
-/* Whether a simulator could have left it so: indices and numbers are used from here on. */
+/* True if a simulator could have sent this state: its indices and numbers are used from here on. */
 static bool is_sound(const wh_state_t *state, const wh_layout_t *layout) {
     return state->wafer_count == layout->wafer_count &&
            state->gripper_count == layout->machine.gripper_count && state->seq > 0 &&
@@ -321,7 +321,7 @@ static void finish_run(wh_log_run_t *run) {
     wh_signals_finish(&run->signals);
 }
 
-/* ------------------------------------------------------------------------------------------------- messages */
+/* ----------------------------------------------------------------------------------------------- messages */
 
 static void on_cell(wh_log_run_t *run) {
     waferhand_cell message;
@@ -390,7 +390,7 @@ static void take_event(wh_log_run_t *run) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- the whole */
+/* ---------------------------------------------------------------------------------------------- the whole */
 
 static void note_boundary(wh_log_run_t *run) {
     waferhand_mcs message;
@@ -406,8 +406,9 @@ static void note_boundary(wh_log_run_t *run) {
     (void)waferhand_mcs_decode_cleanup(&message);
 }
 
-/* What is needed before it comes. The cell is told once a second: a recording may begin before it, and goes with the first one then.
- * And a command's end may be told after the next slice. */
+/* The first pass over the log. It finds the first cell, for the cell is told once a second and a recording
+ * may begin before that. And it notes the slices with which commands begin and end, for an end may be told
+ * after the next slice. */
 static void look_ahead(wh_log_run_t *run, FILE *file) {
     wh_log_open(&run->log, file);
     while (wh_log_next(&run->log) == WH_LOG_EVENT) {

@@ -1,9 +1,9 @@
 /* A recorded run, read from an LCM event log: what a report shows of it.
  *
- * Commands come from WAFERHAND_MCS, everything else from WAFERHAND_CELL, WAFERHAND_COMMAND and WAFERHAND_STATE: what was recorded, not
- * what stepping it again would give (that is `waferhand replay`'s). A log does not tell what a script expected, its
- * cycles, and why the robot stood still: that vacuum was waited for is taken from an open valve whose sensor is
- * off, in another command than WAIT.
+ * Commands come from WAFERHAND_MCS, everything else from WAFERHAND_CELL, WAFERHAND_COMMAND and
+ * WAFERHAND_STATE: what was recorded, not what stepping it again would give (that is `waferhand replay`'s). A
+ * log does not tell what a script expected, its cycles, and why the robot stood still: it counts as waiting
+ * for vacuum if a valve is open and its sensor off, in another command than WAIT.
  */
 #ifndef WH_LOG_LOG_RUN_H
 #define WH_LOG_LOG_RUN_H
@@ -65,12 +65,12 @@ typedef struct {
     char message[800]; /* why there is nothing to show */
 } wh_log_run_t;
 
-/* Whether a file begins as an event log does. */
+/* True if the file begins as an event log does. */
 bool wh_log_run_is_log(const char *path);
 
-/* Reads the whole log. False, and the reason in `message`, when the file cannot be read, is no log, or has no such run. A log
- * that is cut off or damaged is read up to there, and a note says so. To be closed in any case. Aborts when memory is
- * out. */
+/* Reads the whole log. False, and the reason in `message`, if the file cannot be read, is no log, or has no
+ * such run. A log that is cut off or damaged is read up to there, and a note says so. To be closed in any
+ * case. Aborts if out of memory. */
 bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options);
 
 void wh_log_run_close(wh_log_run_t *run);

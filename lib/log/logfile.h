@@ -1,8 +1,8 @@
 /* LCM event logs, read with care: lcm-logger's format, and ours.
  *
- * Each event is, big-endian: a sync word, its number (8 bytes), a time stamp (8 bytes, us), the lengths of channel and data
- * (4 bytes each), the channel's name, the data. Nothing in a file can make the reader crash or take memory beyond one
- * event of WH_LOG_EVENT_BYTES; larger ones, of other programs, are passed over.
+ * Each event is, big-endian: a sync word, its number (8 bytes), a time stamp (8 bytes, us), the lengths of
+ * channel and data (4 bytes each), the channel's name, the data. Nothing in a file can make the reader crash
+ * or take memory beyond one event of WH_LOG_EVENT_BYTES; larger ones, of other programs, are passed over.
  */
 #ifndef WH_LOG_LOGFILE_H
 #define WH_LOG_LOGFILE_H

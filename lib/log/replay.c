@@ -6,9 +6,9 @@
 #include "../link/messages.h"
 #include "../math/hash.h"
 
-/* ---------------------------------------------------------------------------------------------------- runs */
+/* --------------------------------------------------------------------------------------------------- runs */
 
-/* The entry of a run, made if it is not there; null when there are too many. */
+/* The entry of a run, made if it is not there; null if there are too many. */
 static wh_replay_run_t *entry(wh_replay_t *replay, int64_t run) {
     for (size_t i = replay->run_count; i > 0; --i) {
         if (replay->runs[i - 1].run == run) {
@@ -34,7 +34,7 @@ static void note_slice(wh_replay_t *replay, wh_replay_run_t *run) {
     run->hash = wh_protocol_server_hash(&replay->server);
 }
 
-/* ---------------------------------------------------------------------------------------------- differences */
+/* -------------------------------------------------------------------------------------------- differences */
 
 static bool differs(wh_replay_difference_t *difference, const char *of, const char *what, double recorded,
                     double replayed) {
@@ -107,7 +107,7 @@ static void name_difference(wh_replay_t *replay, const wh_state_t *recorded,
              "the closest approaches, the contests, the faults or the slices' count");
 }
 
-/* ------------------------------------------------------------------------------------------------- stepping */
+/* ----------------------------------------------------------------------------------------------- stepping */
 
 static void take_up(wh_replay_t *replay, const waferhand_state *message) {
     wh_replay_run_t *run = entry(replay, message->run);
@@ -117,7 +117,7 @@ static void take_up(wh_replay_t *replay, const waferhand_state *message) {
     }
 }
 
-/* Steps the waiting command, with the valves in force when they are known. True when it was stepped. */
+/* Steps the waiting command, with the valves in force if they are known. True if it was stepped. */
 static bool step(wh_replay_t *replay, const int32_t valves[], wh_replay_run_t **run) {
     replay->has_command = false;
     const wh_protocol_server_result_t result =
@@ -165,7 +165,7 @@ static void resolve(wh_replay_t *replay, const waferhand_state *message) {
     compare(replay, run, message);
 }
 
-/* ------------------------------------------------------------------------------------------------- messages */
+/* ----------------------------------------------------------------------------------------------- messages */
 
 static void on_cell(wh_replay_t *replay, const void *data, size_t size) {
     waferhand_cell message;
@@ -193,7 +193,7 @@ static bool is_new(const wh_replay_t *replay, int64_t run, int64_t seq) {
     return run != replay->server.identity.run || seq > replay->server.seq;
 }
 
-/* Whether it is the command that waits for its state. */
+/* True if this command waits for its state. */
 static bool is_waiting(const wh_replay_t *replay, int64_t run, int64_t seq) {
     return replay->has_command && replay->command.run == run && replay->command.seq == seq;
 }
@@ -275,7 +275,7 @@ static void on_mcs(wh_replay_t *replay, const void *data, size_t size) {
     (void)waferhand_mcs_decode_cleanup(&message);
 }
 
-/* ------------------------------------------------------------------------------------------------ the whole */
+/* ---------------------------------------------------------------------------------------------- the whole */
 
 void wh_replay_open(wh_replay_t *replay) {
     memset(replay, 0, sizeof *replay);

@@ -1,10 +1,10 @@
-/* A recording stepped again: each recorded command goes through the simulator's own protocol (link/protocol_server.h), and the hash
- * of each slice is compared with the recorded one.
+/* A recording stepped again: each recorded command goes through the simulator's own protocol
+ * (link/protocol_server.h), and the hash of each slice is compared with the recorded one.
  *
- * A command is stepped when its state comes, with the valves that the state says were in force (they may have come
- * from outputs.txt), or without a state when the next command comes. A log that begins in the middle of a run, or that
- * lacks commands, is taken up from the next whole state. The first difference of a run is named; the rest of that run is not
- * compared, for it would differ, too.
+ * A command is stepped when its state comes, with the valves that the state says were in force (they may have
+ * come from outputs.txt), or without a state when the next command comes. A log that begins in the middle of
+ * a run, or that lacks commands, is taken up from the next whole state. The first difference of a run is
+ * named; the rest of that run is not compared, for it would differ, too.
  */
 #ifndef WH_LOG_REPLAY_H
 #define WH_LOG_REPLAY_H

@@ -1,7 +1,8 @@
-/* Looks ahead: plays a command's segments on a copy of the cell before anything moves, and says what would collide.
+/* Looks ahead: plays a command's segments on a copy of the cell before anything moves, and says what would
+ * collide.
  *
- * The copy begins where motion control last saw wafers and grippers, takes and lets go as the paper's rule has it, with vacuum
- * that is there at once, and knows nothing of faults to come.
+ * The copy begins where motion control last saw wafers and grippers. It takes and lets go by the paper's
+ * rule, with vacuum that is there at once, and knows nothing of faults to come.
  */
 #ifndef WH_MCS_AHEAD_H
 #define WH_MCS_AHEAD_H

@@ -13,7 +13,8 @@ static bool is_same_file(const char *a, const char *b) {
     return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_dev == two.st_dev && one.st_ino == two.st_ino;
 }
 
-/* "lua/examples/../layouts" reads better as "lua/layouts": if that is the same file, symbolic links considered. */
+/* Shortens "lua/examples/../layouts" to "lua/layouts", if that is the same file: a symbolic link may make it
+ * another. */
 static const char *push_short_path(lua_State *L, const char *path) {
     const char *up = strstr(path, "/../");
     const char *start = up;
@@ -47,7 +48,7 @@ static void *lua_memory(lua_State *L, size_t bytes) {
     return memory;
 }
 
-/* What a trial draws for the layout whose table is on top of the stack. */
+/* The cell that a trial draws for the layout whose table is on top of the stack. */
 static const wh_layout_t *make_reality(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     if (!mcs->trial || !layout->errors) {
         return layout;
@@ -147,7 +148,7 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     wh_mcs_start_faults(mcs);
 }
 
-/* ----------------------------------------------------------------------------------------------- the layout for Lua */
+/* ------------------------------------------------------------------------------------- the layout for Lua */
 
 static void set_boolean(lua_State *L, const char *name, bool value) {
     lua_pushboolean(L, value);
@@ -195,8 +196,8 @@ static void push_gripper(lua_State *L, const wh_layout_t *layout, size_t g) {
     wh_lua_set_index(L, "axis", layout->machine.mounts[g].axis);
 }
 
-/* { path, slice, sampled, homed, tolerance, home: the robot's axes, grippers in order, stations by name }: lengths in mm, angles
- * in rad, times in s. */
+/* { path, slice, sampled, homed, tolerance, home: the robot's axes, grippers in order, stations by name }:
+ * lengths in mm, angles in rad, times in s. */
 static void push_layout(lua_State *L, const wh_layout_t *layout) {
     lua_createtable(L, 0, 8);
     set_text(L, "path", layout->path);
@@ -225,7 +226,7 @@ static void push_layout(lua_State *L, const wh_layout_t *layout) {
     lua_setfield(L, -2, "home");
 }
 
-/* ---------------------------------------------------------------------------------------------------------- words */
+/* -------------------------------------------------------------------------------------------------- words */
 
 /* Registry key of the script's own study. */
 static const char study_key;

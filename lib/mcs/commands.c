@@ -1,5 +1,5 @@
-/* Commands and what is kept of them: their beginning and end, errors, expectations, cycles, complaints, and why a pick was
- * missed. */
+/* Commands and what is kept of them: their beginning and end, errors, expectations, cycles, complaints, and
+ * why a pick was missed. */
 #include <stdio.h>
 #include <string.h>
 
@@ -104,7 +104,7 @@ static int fail(lua_State *L) {
     wh_mcs_raise(L, wh_mcs_of(L), status_named(luaL_checkstring(L, 1)), luaL_optstring(L, 2, NULL));
 }
 
-/* ------------------------------------------------------------------------------------------ missed picks */
+/* ------------------------------------------------------------------------------------------- missed picks */
 
 static void append(char *text, size_t size, const char *part) {
     const size_t length = strlen(text);
@@ -153,7 +153,7 @@ static int explain(lua_State *L) {
     return 1;
 }
 
-/* ---------------------------------------------------------------------------------------------------- complaints */
+/* --------------------------------------------------------------------------------------------- complaints */
 
 /* native.mark(): how many events the record has. */
 static int count_events(lua_State *L) {
@@ -185,7 +185,7 @@ static int describe_complaints(lua_State *L) {
     luaL_buffinit(L, &text);
     for (size_t i = mark; i < record->event_count; ++i) {
         const wh_event_t *event = &record->events[i].event;
-        if (wh_record_is_complaint(event)) {
+        if (wh_record_is_complaint(event->kind)) {
             luaL_addstring(&text, any ? "; " : "");
             push_complaint(L, mcs->layout, event);
             luaL_addvalue(&text);

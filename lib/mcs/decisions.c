@@ -6,7 +6,7 @@
 
 #include "../text/array.h"
 
-/* ------------------------------------------------------------------------------------------------------- slices */
+/* ------------------------------------------------------------------------------------------------- slices */
 
 static bool make_room(wh_decisions_t *decisions, const wh_command_t *command) {
     const size_t bytes =
@@ -62,7 +62,7 @@ void wh_decisions_slice(wh_decisions_t *decisions, const wh_command_t *command) 
            decisions->axis_count * sizeof *decisions->axes);
 }
 
-/* ------------------------------------------------------------------------------------------------------ readings */
+/* ----------------------------------------------------------------------------------------------- readings */
 
 void wh_decisions_read(wh_decisions_t *decisions, wh_decisions_kind_t kind, int32_t index, int32_t answer) {
     if (decisions) {
@@ -130,10 +130,10 @@ void wh_decisions_free(wh_decisions_t *decisions) {
     memset(decisions, 0, sizeof *decisions);
 }
 
-/* ------------------------------------------------------------------------------------------------------- playing */
+/* ------------------------------------------------------------------------------------------------ playing */
 
-/* Slice `at` is where the trial is; `stepped` the last that the simulator was stepped through. The state is the same but
- * for where grippers are and what they carry along. */
+/* `at` is the slice that the trial has come to, `stepped` the last one that the simulator was stepped
+ * through. In between nothing has changed but where grippers are and what they carry. */
 typedef struct {
     const wh_decisions_t *decisions;
     const wh_trial_cell_t *trial_cell;
@@ -150,7 +150,7 @@ typedef struct {
     wh_vacuum_watch_t vacuum;
 } player_t;
 
-/* ------------------------------------------------------------------------------------------------------ slices */
+/* ------------------------------------------------------------------------------------------------- slices */
 
 static int64_t next_change(const player_t *player, size_t g) {
     const wh_decisions_t *decisions = player->decisions;
@@ -179,7 +179,7 @@ static void load(player_t *player, int64_t slice) {
     command->utime = slice * player->trial_cell->layout.slice_us;
 }
 
-/* Steps one slice; those since the last one that was stepped have changed nothing. */
+/* Steps one slice. The slices that were skipped before it have changed nothing. */
 static void step(player_t *player, int64_t slice) {
     load(player, slice);
     player->simulator->table.slice = (uint64_t)slice - 1;
@@ -190,7 +190,8 @@ static void step(player_t *player, int64_t slice) {
     }
 }
 
-/* The last slice up to `to` that is like this one: no valve changes, and no gripper is looking for a wafer. */
+/* The last slice up to `to` that is like this one: no valve changes, and no gripper is looking for a
+ * wafer. */
 static int64_t quiet_until(const player_t *player, int64_t to) {
     if (!player->may_skip || player->at == 0) {
         return player->at;
@@ -212,7 +213,7 @@ static void settle(player_t *player) {
     }
 }
 
-/* Whether motion control goes on waiting before this slice, as it did. */
+/* True if motion control goes on waiting before this slice, as it did in the run. */
 static bool goes_on_waiting(const player_t *player) {
     return player->waits == WH_NONE || (player->state.sensors >> player->waits & 1U) == 0;
 }
@@ -231,7 +232,7 @@ static void advance(player_t *player, int64_t to) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- readings */
+/* ----------------------------------------------------------------------------------------------- readings */
 
 static int32_t find_lost(const player_t *player) {
     const wh_decisions_t *decisions = player->decisions;
@@ -265,7 +266,7 @@ static bool holds_claim(player_t *player, const wh_decisions_entry_t *entry) {
                               player->state.wafers) == entry->answer;
 }
 
-/* Whether an entry is what this trial would have written. */
+/* True if this trial reads what the run has read. */
 static bool agrees(player_t *player, const wh_decisions_entry_t *entry) {
     switch (entry->kind) {
     case WH_DECISION_BEGIN:
@@ -285,7 +286,7 @@ static bool agrees(player_t *player, const wh_decisions_entry_t *entry) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------------- playing */
+/* ------------------------------------------------------------------------------------------------ playing */
 
 static bool may_skip(const wh_trial_cell_t *trial_cell, const wh_simulator_t *simulator) {
     const wh_physics_t *physics = &trial_cell->layout.physics;

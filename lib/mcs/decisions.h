@@ -1,10 +1,11 @@
 /* The decisions of a run: what motion control commands, slice by slice, and all that it reads back.
  *
- * Motion control decides by what it reads: the vacuum sensors in a segment, which wafer a gripper holds, if a wafer lies
- * where it is expected. If every such reading in a trial of a study is as it was in this run, motion control would command the
- * same in each slice. Then the simulator alone can play the trial, without Lua: see wh_decisions_play. If a reading differs, motion
- * control might go another way, and the script is run whole. A script that reads measured numbers (offset, proximity, MAP, ...) or
- * makes faults on purpose has decisions that are unfit for that.
+ * Motion control decides by what it reads: the vacuum sensors in a segment, which wafer a gripper holds, if a
+ * wafer lies where it is expected. If every such reading in a trial of a study is as it was in this run,
+ * motion control would command the same in each slice. Then the simulator alone can play the trial, without
+ * Lua: see wh_decisions_play. If a reading differs, motion control might go another way, and the script is
+ * run whole. A script that reads measured numbers (offset, proximity, MAP, ...) or makes faults on purpose
+ * has decisions that are unfit for that.
  */
 #ifndef WH_MCS_DECISIONS_H
 #define WH_MCS_DECISIONS_H
@@ -17,10 +18,12 @@
 
 /* What was read, of whom, and the answer. */
 typedef enum {
-    WH_DECISION_BEGIN, /* a segment: `index` is the gripper whose sensor it waits for, or WH_NONE; bit g of `answer`: gripper g
-                         * may lose its wafer in it */
-    WH_DECISION_END, /* of it: `index` is the gripper that lost its wafer, or WH_NONE; `answer` 1: it ran to its end */
-    WH_DECISION_SENSOR, /* of gripper `index` */
+    /* A segment begins: `index` is the gripper whose sensor it waits for, or WH_NONE; bit g of `answer`:
+     * gripper g may lose its wafer in it. */
+    WH_DECISION_BEGIN,
+    /* It has ended: `index` is the gripper that lost its wafer, or WH_NONE; `answer` 1: it ran to its end. */
+    WH_DECISION_END,
+    WH_DECISION_SENSOR, /* the sensor of gripper `index` */
     WH_DECISION_HELD,   /* the wafer that gripper `index` holds */
     WH_DECISION_HOLDER, /* the gripper that holds wafer `index` */
     WH_DECISION_CLAIM   /* claim number `index`: what wh_decisions_judge says */
@@ -33,13 +36,13 @@ typedef struct {
     int64_t slice;
 } wh_decisions_entry_t;
 
-/* That a wafer lies in a slot with an offset. */
+/* A claim to be judged: the wafer lies in this slot with this offset, mm. */
 typedef struct {
     int32_t wafer, station, slot;
     double dx, dy, tolerance;
 } wh_decisions_claim_t;
 
-/* From slice `slice` on a gripper was told this. */
+/* From slice `slice` on a gripper's valve is told this. */
 typedef struct {
     int64_t slice;
     int32_t valve;
@@ -92,12 +95,12 @@ void wh_decisions_free(wh_decisions_t *decisions);
 /* What happened in a trial that is played: the events of a slice. */
 typedef void wh_decisions_watch_t(void *user, const wh_event_t events[], size_t count);
 
-/* Plays the decisions of a run against the simulator of a trial in the same layout, which was initialised with `trial_cell` and
- * not stepped. True if all that is read back is as it was in the run: the simulator is then in the very state in which
- * running the script for that trial would leave it, and `watch` has seen each event. False if something was read
- * differently, or if the simulator refused a slice: all is then void. Slices in which nothing can happen are skipped: with a plain
- * vacuum, no pads, no faults and nobody looking, those in which each gripper keeps its valve and either is closed or holds a
- * wafer. */
+/* Plays the decisions of a run against the simulator of a trial in the same layout, which was initialised
+ * with `trial_cell` and not stepped. True if all that is read back is as it was in the run: the simulator is
+ * then in the very state in which running the script for that trial would leave it, and `watch` has seen each
+ * event. False if something was read differently, or if the simulator refused a slice: all is then void.
+ * Slices in which nothing can happen are skipped: with a plain vacuum, no pads, no faults and nobody looking,
+ * those in which each gripper keeps its valve and either is closed or holds a wafer. */
 bool wh_decisions_play(const wh_decisions_t *decisions, const wh_trial_cell_t *trial_cell,
                        wh_simulator_t *simulator, wh_decisions_watch_t *watch, void *user);
 

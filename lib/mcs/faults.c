@@ -13,8 +13,8 @@ void wh_mcs_start_faults(wh_mcs_t *mcs) {
     memcpy(mcs->faults, physics->faults, sizeof mcs->faults);
 }
 
-/* A slot that was never used, so that numbers are not used again as long as there are others; then the first whose
- * fault is over in the simulator too. */
+/* A slot that was never used, so that a number stands for one fault as long as possible; then the first slot
+ * whose fault is over in the simulator, too. */
 static size_t find_slot(lua_State *L, wh_mcs_t *mcs) {
     size_t slot = mcs->fault_count < WH_FAULTS ? mcs->fault_count : 0;
     while (slot < mcs->fault_count && mcs->faults[slot].until > mcs->track.slice) {
@@ -27,7 +27,7 @@ static size_t find_slot(lua_State *L, wh_mcs_t *mcs) {
     return slot;
 }
 
-/* Puts the fault of a slot on its way, in place of what is on its way to that slot. */
+/* Sends the fault of a slot with the next command, instead of what was to be sent for that slot. */
 static void send(lua_State *L, wh_mcs_t *mcs, size_t slot, const wh_fault_t *fault) {
     wh_command_t *command = &mcs->command;
     size_t place = 0;

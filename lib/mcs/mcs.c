@@ -38,7 +38,7 @@ void wh_mcs_charge_entry(lua_State *L, size_t text_bytes) {
     wh_sandbox_charge(L, STEPS_PER_ENTRY + STEPS_PER_BYTE * (uint64_t)text_bytes);
 }
 
-/* ---------------------------------------------------------------------------------------------- numbered errors */
+/* ---------------------------------------------------------------------------------------- numbered errors */
 
 static int numbered_error_text(lua_State *L) {
     lua_getfield(L, 1, "message");
@@ -82,7 +82,7 @@ int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *de
     abort(); /* lua_error does not return, but its declaration does not say so */
 }
 
-/* ------------------------------------------------------------------------------------------------------ opening */
+/* ------------------------------------------------------------------------------------------------ opening */
 
 /* native.module(name): what an embedded file of lua/mcs returns. */
 static int load_module(lua_State *L) {
@@ -166,7 +166,7 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
     return wh_sandbox_call(L, 1, 0, result);
 }
 
-/* ---------------------------------------------------------------------------------------------------- finishing */
+/* ---------------------------------------------------------------------------------------------- finishing */
 
 void wh_mcs_finish(wh_mcs_t *mcs) {
     wh_recorder_end_t end = {.wafers = mcs->state.wafers};

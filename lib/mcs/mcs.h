@@ -1,9 +1,9 @@
 /* Motion control in the host: what its Lua side (lua/mcs) stands on.
  *
- * Lua decides, this executes: it reads the layout, plans segments and plays them slice by slice against the simulator, and
- * has a recorder keep what comes of it. A slice is a command in and a state out, over a link: of the cell motion control knows what
- * the layout and the states tell. It reaches Lua as a table of functions that only lua/mcs sees; scripts see the operator's
- * words that lua/mcs/init.lua makes of them.
+ * Lua decides, this executes: it reads the layout, plans segments and plays them slice by slice against the
+ * simulator, and has a recorder keep what comes of it. A slice is a command in and a state out, over a link:
+ * of the cell motion control knows what the layout and the states tell. It reaches Lua as a table of
+ * functions that only lua/mcs sees; scripts see the operator's words that lua/mcs/init.lua makes of them.
  */
 #ifndef WH_MCS_MCS_H
 #define WH_MCS_MCS_H
@@ -20,15 +20,17 @@ typedef struct wh_mcs wh_mcs_t;
 
 /* Who else takes part in a run; each function may be null. */
 typedef struct {
-    /* Called once, after the cell was set up and found in reach and before the first slice: returns the link that takes
-     * the place of the simulator in this process, or null if there is none, which ends the script. */
+    /* Called once, after the cell was set up and found in reach and before the first slice: returns the link
+     * that takes the place of the simulator in this process, or null if there is none, which ends the
+     * script. */
     wh_link_t *(*connect)(void *user, wh_mcs_t *mcs);
     /* A command of the record begins (`ended` false) or has ended. */
     void (*watch)(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended);
     void *user;
 } wh_mcs_partners_t;
 
-/* Hears of each slice that was sent: the command, and the state that came back. state->status tells if it was accepted. */
+/* Hears of each slice that was sent: the command, and the state that came back. state->status tells if it was
+ * accepted. */
 typedef void wh_slice_listener_t(void *user, const wh_command_t *command, const wh_state_t *state);
 
 /* Who listens to a run, whoever its partners are; each function may be null. */
@@ -39,7 +41,8 @@ typedef struct {
     void *user;
 } wh_mcs_listener_t;
 
-/* Who hears of slices: decisions, recorder, a collision check beside a simulator elsewhere, the run's listener. */
+/* Who hears of slices: decisions, recorder, a collision check beside a simulator elsewhere, the run's
+ * listener. */
 #define WH_MCS_LISTENERS 4
 
 /* The cell in this process: its simulator, and the collision check of it. */
@@ -49,8 +52,8 @@ typedef struct {
     wh_trial_cell_t *trial; /* null: the cell is as its layout says */
 } wh_local_cell_t;
 
-/* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `decisions` and `rehearsal.look_ahead`, which may be
- * set between opening and the cell. Must not be moved once opened. */
+/* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `decisions` and
+ * `rehearsal.look_ahead`, which may be set between opening and the cell. Must not be moved once opened. */
 struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
     wh_sandbox_t *sandbox;

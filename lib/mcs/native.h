@@ -23,17 +23,19 @@ int32_t wh_mcs_index(lua_State *L, int argument, size_t count);
 /* From now on this is called for each slice. */
 void wh_mcs_listen(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user);
 
-/* The record is outside of Lua's memory cap, so an entry with so much text is paid for from the budget: about as much as a
- * script would spend on making as much text anew. Raises if the budget is spent. */
+/* The record is outside of Lua's memory cap, so an entry with so much text is paid for from the budget: about
+ * as much as a script would spend on making as much text anew. Raises if the budget is spent. */
 void wh_mcs_charge_entry(lua_State *L, size_t text_bytes);
 
 /* The layout's faults, once it is read. */
 void wh_mcs_start_faults(wh_mcs_t *mcs);
 
-/* Plans the segment table at stack index 1 from where the track stands, which has then begun it. Raises if it cannot be. */
+/* Plans the segment table at stack index 1 from where the track stands, which has then begun it. Raises if it
+ * cannot be. */
 void wh_mcs_plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned);
 
-/* What so many slices cost of the instruction budget: a slice takes as much time as some twenty instructions of Lua. */
+/* What so many slices cost of the instruction budget: a slice takes as much time as some twenty instructions
+ * of Lua. */
 static inline uint64_t wh_mcs_steps(int64_t slices) {
     return 20 * (uint64_t)slices;
 }

@@ -21,7 +21,8 @@ static int read_axes(lua_State *L) {
     return 1;
 }
 
-/* native.inverse(x, y, z, heading, gripper): the axes with that gripper of the robot there, from where they stand. */
+/* native.inverse(x, y, z, heading, gripper): the axes with that gripper of the robot there, from where they
+ * stand. */
 static int find_axes(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_vec3_t at = wh_vec3(luaL_checknumber(L, 1), luaL_checknumber(L, 2), luaL_checknumber(L, 3));
@@ -59,7 +60,7 @@ static int find_slot(lua_State *L) {
     return 1;
 }
 
-/* ----------------------------------------------------------------------------------------------------- reading */
+/* ------------------------------------------------------------------------------------------------ reading */
 
 static void read_axes_field(lua_State *L, const wh_mcs_t *mcs, wh_segment_t *segment) {
     segment->kind = WH_SEGMENT_AXES;
@@ -102,8 +103,8 @@ static void read_sensor_field(lua_State *L, wh_segment_t *segment) {
     lua_pop(L, 1);
 }
 
-/* The segment table at stack index 1: one of axes, line (with speed and acceleration), valves, dwell, sensor (with timeout).
- * Raises if it is none. */
+/* The segment table at stack index 1: one of axes, line (with speed and acceleration), valves, dwell, sensor
+ * (with timeout). Raises if it is none. */
 static wh_segment_t read_segment(lua_State *L, const wh_mcs_t *mcs) {
     static const char *const kinds[] = {"axes", "line", "valves", "dwell", "sensor"};
     wh_segment_t segment = wh_track_blank(&mcs->track);
@@ -136,7 +137,7 @@ static wh_segment_t read_segment(lua_State *L, const wh_mcs_t *mcs) {
     return segment;
 }
 
-/* ---------------------------------------------------------------------------------------------------- planning */
+/* ----------------------------------------------------------------------------------------------- planning */
 
 /* A wafer could be lost from what the segment carries, and from a gripper on the robot in any segment. */
 static uint32_t may_lose(const wh_machine_t *machine, const wh_task_t *task) {
@@ -173,7 +174,8 @@ static void look_ahead(lua_State *L, wh_mcs_t *mcs) {
     }
 }
 
-/* native.plan(segment): within a rehearsal; the number by which the segment can then be played as it was planned. */
+/* native.plan(segment): within a rehearsal; the number by which the segment can then be played as it was
+ * planned. */
 static int plan(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_planned_t planned;
@@ -187,8 +189,8 @@ static int plan(lua_State *L) {
     return 1;
 }
 
-/* native.rehearse(on, judged): from now on segments are only planned, and looked at for collisions if judged; off: everything is
- * where it was. */
+/* native.rehearse(on, judged): from now on segments are only planned, and looked at for collisions if judged;
+ * off: everything is where it was. */
 static int rehearse(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_rehearsal_end(&mcs->rehearsal, &mcs->track);
@@ -198,7 +200,8 @@ static int rehearse(lua_State *L) {
     return 0;
 }
 
-/* native.reach(station, slot): what is rehearsed from now on goes there; without arguments: the reach is no longer noted. */
+/* native.reach(station, slot): what is rehearsed from now on goes there; without arguments: the reach is no
+ * longer noted. */
 static int set_reach(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const size_t stations = mcs->layout->station_count;

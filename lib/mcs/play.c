@@ -76,8 +76,8 @@ static void begin_planned(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
     mcs->track = planned->track;
 }
 
-/* native.play(segment or the number of a planned one): true if it ran to its end, false if its sensor did not come on in
- * time; then the gripper that lost its wafer meanwhile, or nil. */
+/* native.play(segment or the number of a planned one): true if it ran to its end, false if its sensor did not
+ * come on in time; then the gripper that lost its wafer meanwhile, or nil. */
 static int play(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_planned_t planned;

@@ -1,5 +1,6 @@
-/* What can be asked of the cell: where wafers are and who holds them, where frames are, what came near to what. What a trial's
- * errors change is noted in the decisions: a script that reads it is run anew for each trial. */
+/* What can be asked of the cell: where wafers are and who holds them, where frames are, what came near to
+ * what. What a trial's errors change is noted in the decisions: a script that reads it is run anew for each
+ * trial. */
 #include <stdio.h>
 #include <string.h>
 
@@ -51,7 +52,7 @@ static const wh_wafer_t *wafer_argument(lua_State *L, const wh_mcs_t *mcs, int a
     return &mcs->state.wafers[wh_mcs_index(L, argument, mcs->state.wafer_count)];
 }
 
-/* native.sensor(gripper): whether its vacuum sensor is on. */
+/* native.sensor(gripper): true if its vacuum sensor is on. */
 static int read_sensor(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
@@ -61,7 +62,7 @@ static int read_sensor(lua_State *L) {
     return 1;
 }
 
-/* native.is_open(gripper): whether its valve is. */
+/* native.is_open(gripper): true if its valve is told to be open. */
 static int read_valve(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
@@ -94,7 +95,7 @@ static int measure(lua_State *L) {
     return 4;
 }
 
-/* native.locate(wafer): station's name and slot, or nil when it lies in none. */
+/* native.locate(wafer): the station's name and the slot, or nil if it lies in none. */
 static int locate(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_place_t place;
@@ -107,9 +108,9 @@ static int locate(lua_State *L) {
     return 2;
 }
 
-/* native.lies(wafer, station, slot, dx, dy, tolerance): 0 when it does not lie in that slot, 1 when it does, 2 when with that
- * offset, too; its offset there; and the name of the station and the slot that it lies in, or nothing. The first decides, the
- * others are for telling. */
+/* native.lies(wafer, station, slot, dx, dy, tolerance): a verdict, 0 if the wafer does not lie in that slot,
+ * 1 if it does, 2 if it does with that offset; its offset there; then the name of the station and the slot
+ * that it lies in, or nothing. Only the verdict may decide anything, the rest is for messages. */
 static int judge_place(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_decisions_claim_t claim;
@@ -143,32 +144,18 @@ static int read_wafer_pose(lua_State *L) {
     return 1;
 }
 
-static wh_pose_t commanded_pose(const wh_mcs_t *mcs, int32_t gripper) {
+/* native.gripper_pose(gripper, real): where motion control has it, also before the first slice; or, if `real`, where
+ * it is, for a fault may keep it from there. */
+static int read_gripper_pose(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    const bool is_real = lua_toboolean(L, 2) && mcs->state.seq > 0;
     wh_pose_t poses[WH_GRIPPERS];
     if (mcs->layout->grippers[gripper].station != WH_NONE) {
         wh_decisions_measured(mcs->decisions, "a chuck's pose");
     }
     wh_machine_grippers(&mcs->real->machine, mcs->track.axes, poses);
-    return poses[gripper];
-}
-
-/* native.gripper_pose(gripper): where motion control has it, also before the first slice. */
-static int read_gripper_pose(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_pose_t pose = commanded_pose(mcs, wh_mcs_index(L, 1, mcs->state.gripper_count));
-    wh_lua_push_pose(L, &pose);
-    return 1;
-}
-
-/* native.real_gripper_pose(gripper): where it is, which a fault may keep from where motion control has it. */
-static int read_real_gripper_pose(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
-    wh_pose_t pose = commanded_pose(mcs, gripper);
-    if (mcs->state.seq > 0) {
-        pose = mcs->state.grippers[gripper].base_from_gripper;
-    }
-    wh_lua_push_pose(L, &pose);
+    wh_lua_push_pose(L, is_real ? &mcs->state.grippers[gripper].base_from_gripper : &poses[gripper]);
     return 1;
 }
 
@@ -182,8 +169,8 @@ static int read_slot_pose(lua_State *L) {
     return 1;
 }
 
-/* native.relate(first, second): how the second of two poses lies as seen from the first: distance, dx, dy, dz, and the angle
- * and the whole turn in degrees. */
+/* native.relate(first, second): how the second of two poses lies as seen from the first: distance, dx, dy,
+ * dz, and the angle and the whole turn in degrees. */
 static int relate(lua_State *L) {
     const wh_field_t arguments[] = {wh_lua_argument("first", 1), wh_lua_argument("second", 2)};
     wh_pose_t poses[2];
@@ -201,7 +188,7 @@ static int relate(lua_State *L) {
     return 6;
 }
 
-/* ---------------------------------------------------------------------------------------------------- collisions */
+/* --------------------------------------------------------------------------------------------- collisions */
 
 static void push_part(lua_State *L, const wh_mcs_t *mcs, int32_t part) {
     const char *name = wh_layout_part_name(mcs->layout, part);
@@ -246,8 +233,8 @@ static int find_kind(const char *name) {
     return kind;
 }
 
-/* native.clearance(kind): { gap, limit, time, parts, at } so far, of which only `limit` is there until something was near; nil
- * where nobody looks; false for a kind that there is not. */
+/* native.clearance(kind): { gap, limit, time, parts, at } so far; only `limit` until something was near. Nil
+ * if nobody looks for collisions, false for an unknown kind. */
 static int find_clearance(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int kind = find_kind(luaL_checkstring(L, 1));
@@ -283,7 +270,6 @@ const luaL_Reg wh_mcs_query_functions[] = {{"utime", read_utime},
                                            {"lies", judge_place},
                                            {"wafer_pose", read_wafer_pose},
                                            {"gripper_pose", read_gripper_pose},
-                                           {"real_gripper_pose", read_real_gripper_pose},
                                            {"slot_pose", read_slot_pose},
                                            {"relate", relate},
                                            {"hits", list_hits},

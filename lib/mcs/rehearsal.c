@@ -30,7 +30,7 @@ void wh_rehearsal_free(wh_rehearsal_t *rehearsal) {
     rehearsal->count = rehearsal->capacity = 0;
 }
 
-/* --------------------------------------------------------------------------------------------------------- reach */
+/* -------------------------------------------------------------------------------------------------- reach */
 
 static void note_axis(const wh_travel_t *travel, wh_real_t at, int32_t slot, wh_travel_margin_t *least) {
     const bool is_max = travel->max - at < at - travel->min;

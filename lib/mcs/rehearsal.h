@@ -1,8 +1,8 @@
 /* A rehearsal: a command is planned to its end before anything moves.
  *
- * The track runs ahead and comes back; each segment is kept as it was planned, so that it is played as it is while motion
- * control gets the answers that the rehearsal assumed. On the way a rehearsal can have someone look for collisions ahead, and
- * can note how near the axes come to the ends of their travel.
+ * The track runs ahead and comes back; each segment is kept as it was planned, so that it is played as it is
+ * while motion control gets the answers that the rehearsal assumed. On the way a rehearsal can have someone
+ * look for collisions ahead, and can note how near the axes come to the ends of their travel.
  */
 #ifndef WH_MCS_REHEARSAL_H
 #define WH_MCS_REHEARSAL_H
@@ -11,9 +11,10 @@
 #include "../record/record.h"
 #include "../sim/slice.h"
 
-/* Judges a segment that `track` has just begun: its valves are as the segments before it leave them. `state` is the last
- * one from the cell, and nothing of the command has been played since; `first`: no segment of this command was judged yet. True
- * if it would collide; `reason`, of WH_REHEARSAL_REASON_BYTES, then says with what. */
+/* Judges a segment that `track` has just begun: its valves are as the segments before it leave them. `state`
+ * is the last one from the cell, and nothing of the command has been played since; `first`: no segment of
+ * this command was judged yet. True if it would collide; `reason`, of WH_REHEARSAL_REASON_BYTES, then says
+ * with what. */
 #define WH_REHEARSAL_REASON_BYTES 200
 typedef bool wh_look_ahead_t(void *user, const wh_track_t *track, const wh_state_t *state, bool first,
                              char *reason);
@@ -25,7 +26,8 @@ typedef struct {
     uint32_t may_lose; /* bit g: gripper g could lose a wafer in it */
 } wh_planned_t;
 
-/* All zero to begin with. Set `look_ahead`, if anybody does, and where the reach is noted; the rest is only to be read. */
+/* All zero to begin with. Set `look_ahead`, if anybody does, and where the reach is noted; the rest is only
+ * to be read. */
 typedef struct {
     bool is_on;             /* segments are planned, not played */
     bool is_judged;         /* and looked at for collisions */
@@ -43,7 +45,8 @@ void wh_rehearsal_begin(wh_rehearsal_t *rehearsal, const wh_track_t *track, bool
 /* Keeps a planned segment. Aborts if out of memory. */
 void wh_rehearsal_add(wh_rehearsal_t *rehearsal, const wh_planned_t *planned);
 
-/* Notes in the record how near the axes come to their ends in the segment that the track has skipped, if that is asked for. */
+/* Notes in the record how near the axes come to their ends in the segment that the track has skipped, if that
+ * is asked for. */
 void wh_rehearsal_note_reach(const wh_rehearsal_t *rehearsal, const wh_track_t *track, wh_record_t *record);
 
 /* If a rehearsal goes on, it is over: the track is where it was. */

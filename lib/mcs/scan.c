@@ -1,7 +1,9 @@
 /* The scanner: the codes of a station's slots, as two beams in front of the stack see the wafers.
  *
- * The beams stand upright in the station's frame, at x = -0.6 and y = +-0.6 of a wafer's radius, near the edge that
- * the arm comes to. Sweeping along z, each notes the heights of the back faces that it passes. A wafer belongs to the slots
+ *   The beams stand upright in the station's frame, at x = -0.6 and y = +-0.6 of a wafer's radius, near
+ *     the edge that
+ *   the arm comes to. Sweeping along z, each notes the heights of the back faces that it passes. A wafer
+ *     belongs to the slots
  * nearest to its two heights.
  *   0 empty    no wafer belongs to the slot
  *   1 single   one does, level to half the pitch
@@ -17,7 +19,7 @@
 
 enum { CODE_EMPTY = 0, CODE_SINGLE = 1, CODE_DOUBLE = 2, CODE_CROSSED = 4 };
 
-/* What one wafer shows: a height above slot 1 for each beam that it breaks. */
+/* What the beams see of one wafer: a height above slot 1 for each beam that it breaks. */
 typedef struct {
     double height[2];
     bool seen[2];

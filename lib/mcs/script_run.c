@@ -8,7 +8,7 @@ static wh_script_run_outcome_t refuse(wh_script_run_t *run, const char *message)
     return WH_RUN_BAD_INPUT;
 }
 
-/* Whether the script was ended by a numbered error, which is a result, not bad input. */
+/* True if a numbered error ended the script: a result, not bad input. */
 static bool ended_by_numbered_error(lua_State *L) {
     wh_sandbox_push_error(L);
     bool numbered = false;

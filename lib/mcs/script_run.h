@@ -12,9 +12,8 @@ typedef struct {
     wh_mcs_partners_t partners; /* all null: the simulator in this process */
     wh_mcs_listener_t listener; /* all null: nobody listens */
     bool keep_segments;         /* run->mcs.segments then holds what was played */
-    const wh_trial_t
-        *trial; /* of a study: the cell then has its errors, if its layout or script says which */
-    wh_decisions_t *decisions; /* all zero: then keeps what is commanded and read back; null: nobody does */
+    const wh_trial_t *trial;    /* of a study: the cell has its errors, if layout or script says which */
+    wh_decisions_t *decisions;  /* all zero: then keeps what is commanded and read back; null: nobody does */
 } wh_script_run_options_t;
 
 /* What is left when the script has ended. wh_script_run_close frees it. */
@@ -26,9 +25,10 @@ typedef struct {
 } wh_script_run_t;
 
 typedef enum {
-    WH_RUN_MET,      /* the script ended and all it expected came true */
-    WH_RUN_FAILED,   /* an expectation, the cell, or an uncaught numbered error: the record tells */
-    WH_RUN_BAD_INPUT /* script, layout or parameter is not usable: `message` tells, the record is incomplete */
+    WH_RUN_MET,    /* the script ended and all it expected came true */
+    WH_RUN_FAILED, /* an expectation, the cell, or an uncaught numbered error: the record tells */
+    /* Script, layout or parameter is not usable: `message` tells, the record is incomplete. */
+    WH_RUN_BAD_INPUT
 } wh_script_run_outcome_t;
 
 /* Runs a script. `options` and what it points to must outlive the run. */

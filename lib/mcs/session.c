@@ -10,7 +10,7 @@
 /* The record forgets what it holds once it has so many commands. */
 #define REMEMBERED_COMMANDS 10000
 
-/* Registry keys: the two functions, and the list that the last completion's texts live in. */
+/* Registry keys: the two functions, and the list that keeps the last completion's texts alive. */
 static char execute_key;
 static char complete_key;
 static char candidates_key;
@@ -20,7 +20,7 @@ static bool refuse(wh_session_t *session, const char *message) {
     return false;
 }
 
-/* ------------------------------------------------------------------------------------------------- opening */
+/* ------------------------------------------------------------------------------------------------ opening */
 
 /* Runs protected: cell(layout), then the prompt. */
 static int open_cell(lua_State *L) {
@@ -63,7 +63,7 @@ void wh_session_close(wh_session_t *session) {
     session->sandbox = NULL;
 }
 
-/* ------------------------------------------------------------------------------------------------- answers */
+/* ------------------------------------------------------------------------------------------------ answers */
 
 /* Bytes of the control character at `text`, 0 if it is none: U+0000 to U+001F, U+007F to U+009F. */
 static size_t control_bytes(const unsigned char *text) {
@@ -73,7 +73,7 @@ static size_t control_bytes(const unsigned char *text) {
     return text[0] == 0xC2 && text[1] >= 0x80 && text[1] <= 0x9F ? 2 : 0;
 }
 
-/* Copies a text so that it stays on its line, cut between characters where it does not fit. */
+/* Copies a text so that it stays on its line. What does not fit is cut off between characters. */
 static void write_answer(char *answer, size_t size, const char *text) {
     static const char ellipsis[] = "...";
     const unsigned char *from = (const unsigned char *)text;
@@ -102,7 +102,7 @@ static void write_error(char *answer, size_t size, wh_status_t status, const cha
     write_answer(answer, size, text);
 }
 
-/* ----------------------------------------------------------------------------------------------- executing */
+/* ---------------------------------------------------------------------------------------------- executing */
 
 typedef struct {
     const char *line;
@@ -135,7 +135,7 @@ static wh_status_t status_of(wh_sandbox_reason_t reason) {
 
 static void count_complaints(wh_session_t *session, size_t from) {
     for (size_t i = from; i < session->record.event_count; ++i) {
-        session->complaints += wh_record_is_complaint(&session->record.events[i].event) ? 1 : 0;
+        session->complaints += wh_record_is_complaint(session->record.events[i].event.kind) ? 1 : 0;
     }
 }
 
@@ -183,7 +183,7 @@ void wh_session_stop(wh_session_t *session) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------- completing */
+/* --------------------------------------------------------------------------------------------- completing */
 
 typedef struct {
     const char *before;

@@ -5,7 +5,7 @@
  * simulator in this process or whatever `connect` put in its place.
  *
  * One thread at a time. A command that fails, is stopped or needs too much leaves the session usable: the
- * robot stands where it came to.
+ * robot stands where it has come to.
  */
 #ifndef WH_MCS_SESSION_H
 #define WH_MCS_SESSION_H
@@ -45,7 +45,7 @@ typedef struct {
     wh_mcs_t mcs;
     wh_record_t record; /* of the last commands: a session without an end forgets the oldest */
     char message[WH_SANDBOX_MESSAGE_BYTES]; /* why it could not be opened */
-    size_t complaints; /* how often the cell complained: a wafer let go where it should not have been */
+    size_t complaints;                      /* how many events were complaints: see wh_record_is_complaint */
     wh_session_report_t *report;
     void *report_user;
     volatile sig_atomic_t executing;
@@ -57,12 +57,14 @@ typedef struct {
 bool wh_session_open(wh_session_t *session, const wh_session_options_t *options);
 
 /* Executes a line with a fresh budget. `answer`, of at least 8 bytes, gets one line of printable text without
- * its end: "OK" and values, or "ERROR 42 WAFER_MISSING: ..."; control characters stand in it as \xNN. Returns the error's
- * number. Called from within a command (a link's exchange, a report) it answers WH_STATUS_BUSY. */
+ * its end: "OK" and values, or "ERROR 42 WAFER_MISSING: ..."; control characters stand in it as \xNN. Returns
+ * the error's number. Called from within a command (a link's exchange, a report) it answers
+ * WH_STATUS_BUSY. */
 wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *answer, size_t size);
 
 /* Ends the running command with WH_STATUS_STOPPED; without one, nothing. For signal handlers of the thread
- * that executes. Over a link it takes effect when the exchange that is waited for returns, whatever its status. */
+ * that executes. Over a link it takes effect when the exchange that is waited for returns, whatever its
+ * status. */
 void wh_session_stop(wh_session_t *session);
 
 /* What the word at the end of a text may become. */
@@ -72,8 +74,8 @@ typedef struct {
     const char *texts[WH_SESSION_CANDIDATES]; /* each replaces all from `start`; until the next call */
 } wh_candidates_t;
 
-/* Completes `before`, the line up to the cursor: a command, or by its position a station, gripper or wafer, an
- * option or its value. No candidates when there are none or a command is being executed. */
+/* Completes `before`, the line up to the cursor: a command, or by its position a station, gripper or wafer,
+ * an option or its value. No candidates while a command is being executed. */
 void wh_session_complete(wh_session_t *session, const char *before, wh_candidates_t *candidates);
 
 /* Frees everything; a session that was never opened must be all zero. */

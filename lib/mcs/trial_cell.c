@@ -51,7 +51,8 @@ static bool is_moved(const wh_station_t *one, const wh_station_t *other) {
     return apart > 0;
 }
 
-/* The wafer in its slot as the layout has it, then what was drawn: about its own centre, along the slot's axes. */
+/* Each wafer lies in its slot as the layout says; then what was drawn moves it along the slot's axes and
+ * turns it about its own centre. */
 static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_station_t places[],
                          wh_wafer_t *start) {
     for (size_t w = 0; w < layout->wafer_count; ++w) {
@@ -96,14 +97,14 @@ void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, 
 }
 
 void wh_trial_cell_delay(wh_trial_cell_t *trial_cell, wh_command_t *command) {
-    uint8_t *now = &trial_cell->told[command->seq % WH_REALITY_PAST];
+    uint8_t *now = &trial_cell->told[command->seq % WH_TRIAL_CELL_PAST];
     *now = 0;
     for (size_t g = 0; g < command->gripper_count; ++g) {
         *now |= (uint8_t)(command->grippers[g].valve == WH_VALVE_CLOSED ? 1U << g : 0);
     }
     for (size_t g = 0; g < command->gripper_count; ++g) {
         const int64_t slice = command->seq - trial_cell->lag[g];
-        const unsigned told = slice < 1 ? ~0U : trial_cell->told[(size_t)slice % WH_REALITY_PAST];
+        const unsigned told = slice < 1 ? ~0U : trial_cell->told[(size_t)slice % WH_TRIAL_CELL_PAST];
         const bool closed = (told >> g & 1U) != 0;
         command->grippers[g].valve = closed ? WH_VALVE_CLOSED : WH_VALVE_OPEN;
     }

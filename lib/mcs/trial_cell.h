@@ -1,7 +1,7 @@
 /* A trial's cell: what a layout describes, with the errors that the trial has drawn.
  *
- * Motion control goes by the layout, the simulator by the reality: stations stand elsewhere than taught and the wafers in
- * them with them, wafers lie beside their places, valves and vacuum act late.
+ * Motion control goes by the layout, the simulator by this cell: stations, with the wafers in them, stand
+ * beside where they were taught, wafers lie beside their places, valves and vacuum act late.
  */
 #ifndef WH_MCS_TRIAL_CELL_H
 #define WH_MCS_TRIAL_CELL_H
@@ -9,25 +9,27 @@
 #include "../layout/layout.h"
 #include "../sim/simulator.h"
 
-/* For so many slices back it is known what the valves were told: a power of two above WH_STUDY_LAG_SLICES. */
-#define WH_REALITY_PAST 8192
+/* So many slices back it is remembered what the valves were told: a power of two above
+ * WH_STUDY_LAG_SLICES. */
+#define WH_TRIAL_CELL_PAST 8192
 
 /* `layout` shares all but places, start, machine, physics and cell with the layout that it was made of. */
 typedef struct {
     wh_trial_t trial;
     wh_layout_t layout;
-    bool chucks_moved;             /* a gripper on a chuck is elsewhere than the layout has it */
-    int64_t lag[WH_GRIPPERS];      /* slices that the gripper's valve acts late */
-    uint8_t told[WH_REALITY_PAST]; /* bit g of entry n: gripper g's valve was told to close in slice n */
+    bool chucks_moved;                /* a gripper on a chuck is elsewhere than the layout has it */
+    int64_t lag[WH_GRIPPERS];         /* slices that the gripper's valve acts late */
+    uint8_t told[WH_TRIAL_CELL_PAST]; /* bit g of entry n: gripper g's valve was told to close in slice n */
 } wh_trial_cell_t;
 
-/* Fills in the reality of a trial. `places` and `start` are room for the layout's stations and wafers; they and `layout`, which
- * has `errors`, must outlive it. The collision world still is the layout's: see wh_layout_read_trial_world. Deterministic: the
- * same trial gives the same bits. Cost: linear in stations and wafers. */
+/* Fills in the cell of a trial. `places` and `start` are room for the layout's stations and wafers; they
+ * and `layout`, which has `errors`, must outlive it. The collision world still is the layout's: see
+ * wh_layout_read_trial_world. Deterministic: the same trial gives the same bits. Cost: linear in stations and
+ * wafers. */
 void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_t *trial,
                         wh_station_t *places, wh_wafer_t *start);
 
-/* What the valves of slice `command->seq` do, given what they are told: replaces them in the command. To be called for each
+/* Replaces what the valves are told in slice `command->seq` by what they do, late. To be called for each
  * slice in turn, from 1. */
 void wh_trial_cell_delay(wh_trial_cell_t *trial_cell, wh_command_t *command);
 

@@ -130,9 +130,5 @@ bool wh_print_is_miss(wh_event_kind_t kind) {
 }
 
 bool wh_print_is_complaint(wh_event_kind_t kind) {
-    static const uint32_t complaints = 1U << WH_EVENT_CONTESTED | 1U << WH_EVENT_BAD_INPUT |
-                                       1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED |
-                                       1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED |
-                                       1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED;
-    return (complaints >> (unsigned)kind & 1U) != 0;
+    return kind == WH_EVENT_CONTESTED || wh_record_is_complaint(kind);
 }

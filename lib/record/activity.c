@@ -5,7 +5,7 @@
 
 #include "../text/array.h"
 
-/* ---------------------------------------------------------------------------------------------------- tasks */
+/* -------------------------------------------------------------------------------------------------- tasks */
 
 static bool axis_moves(const wh_track_t *track, const wh_segment_t *segment, size_t axis) {
     return wh_real_abs(segment->target[axis] - track->axes[axis]) > 0;
@@ -42,7 +42,7 @@ wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment,
     return task;
 }
 
-/* ------------------------------------------------------------------------------------------------- counting */
+/* ----------------------------------------------------------------------------------------------- counting */
 
 static void add_interval(wh_activity_t *activity, size_t resource, int64_t end) {
     const size_t beside_robot = resource > 0 ? resource - 1 : 0;

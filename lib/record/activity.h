@@ -1,8 +1,9 @@
-/* What a run's time goes into, and who is busy when: counted slice by slice as the motion control software plays.
+/* What a run's time goes into, and who is busy when: counted slice by slice as the motion control software
+ * plays.
  *
- * Every slice belongs to one share, so the shares of a run add up to its slices. Beside that a log keeps, for the robot
- * and for each gripper's chuck, wafer and valve, from when to when it was busy and with what. One that is busy with the
- * same thing over several segments or commands has one interval.
+ * Every slice belongs to one share, so the shares of a run add up to its slices. Besides, a log keeps, for
+ * the robot and for each gripper's chuck, wafer and valve, from when to when it was busy and with what. Who
+ * is busy with the same thing over several segments or commands has one interval.
  */
 #ifndef WH_RECORD_ACTIVITY_H
 #define WH_RECORD_ACTIVITY_H
@@ -62,11 +63,12 @@ typedef struct {
     } last; /* the slice that was counted last: while nothing changes, nothing is looked at again */
 } wh_activity_t;
 
-/* The task of a segment that will begin where the track stands. `for_vacuum` tells a dwell for vacuum from others. */
+/* The task of a segment that will begin where the track stands. `for_vacuum` tells a dwell for vacuum from
+ * others. */
 wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment, bool for_vacuum);
 
-/* Counts slice command->seq, which `state` answers, and returns its share. Of the command it reads `seq` and the valves.
- * Aborts if out of memory. Cost: 4 ns for two grippers. */
+/* Counts slice command->seq, which `state` answers, and returns its share. Of the command it reads `seq` and
+ * the valves. Aborts if out of memory. Cost: 4 ns for two grippers. */
 wh_share_t wh_activity_count(wh_activity_t *activity, const wh_machine_t *machine, const wh_task_t *task,
                              const wh_command_t *command, const wh_state_t *state);
 

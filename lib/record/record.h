@@ -22,7 +22,7 @@ typedef struct {
 
 typedef struct {
     int line;
-    char *text; /* what was expected, with the value found when it was not met */
+    char *text; /* what was expected; if it was not met, with the value found */
     bool ok;
 } wh_expectation_record_t;
 
@@ -55,7 +55,7 @@ typedef struct {
 typedef struct {
     wh_pose_t base_from_wafer;
     int32_t holder;
-    wh_place_t place; /* place.station is WH_NONE when it lies in no slot */
+    wh_place_t place; /* place.station is WH_NONE if it lies in no slot */
 } wh_wafer_record_t;
 
 typedef struct {
@@ -96,13 +96,13 @@ void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_
 /* Keeps a copy of the curves. */
 void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves);
 
-/* Drops commands, events, expectations, puts, cycles and intervals; script, layout, reach and the sums stay. For
- * sessions without an end. */
+/* Drops commands, events, expectations, puts, cycles and intervals; script, layout, reach and the sums stay.
+ * For sessions without an end. */
 void wh_record_forget(wh_record_t *record);
 
-/* True if the cell complains by this event: a wafer was let go where it should not have been, something was hit or may have
- * been, a wafer slipped, or an input was refused. */
-bool wh_record_is_complaint(const wh_event_t *event);
+/* True if the cell complains by this event: a wafer was let go where it should not have been, something was
+ * hit or may have been, a wafer slipped, or an input was refused. */
+bool wh_record_is_complaint(wh_event_kind_t kind);
 
 /* A copy of the text, to be freed. */
 char *wh_record_text(const char *text);

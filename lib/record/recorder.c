@@ -14,7 +14,7 @@ double wh_recorder_now(const wh_recorder_t *recorder) {
     return recorder->layout ? (double)(recorder->slice * recorder->layout->slice_us) / 1e6 : 0;
 }
 
-/* ------------------------------------------------------------------------------------------------------- wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static bool locate(const wh_recorder_t *recorder, const wh_wafer_t *wafer, wh_place_t *place) {
     return wh_cell_locate(recorder->cell, &wafer->base_from_wafer, place);
@@ -32,7 +32,7 @@ static size_t first_event(const wh_recorder_t *recorder) {
 static bool cell_complained(const wh_record_t *record, size_t from) {
     bool complained = false;
     for (size_t i = from; i < record->event_count; ++i) {
-        complained = complained || wh_record_is_complaint(&record->events[i].event);
+        complained = complained || wh_record_is_complaint(record->events[i].event.kind);
     }
     return complained;
 }
@@ -71,7 +71,7 @@ static void count_puts(wh_recorder_t *recorder, const wh_wafer_t wafers[]) {
     }
 }
 
-/* ----------------------------------------------------------------------------------------- commands and slices */
+/* ------------------------------------------------------------------------------------ commands and slices */
 
 const wh_command_record_t *wh_recorder_begin(wh_recorder_t *recorder, int line, const char *text,
                                              double begin_s) {
@@ -112,7 +112,7 @@ void wh_recorder_slice(wh_recorder_t *recorder, const wh_command_t *command, con
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ the end */
+/* ------------------------------------------------------------------------------------------------ the end */
 
 static bool is_as_wanted(const wh_record_t *record) {
     bool ok = record->failure == NULL && !cell_complained(record, 0);

@@ -1,14 +1,17 @@
-/* Keeps the record of a run as it goes on: for motion control that plays it, and for whoever follows it from a log.
+/* Keeps the record of a run as it goes on: for motion control that plays it, and for whoever follows it from
+ * a log.
  *
- * Commands begin and end; in between each slice is counted for the running command, with its events. A command that succeeded,
- * and of which the cell had no complaint, has put the wafers that it let go and that lie in a slot: see record/throughput.h.
+ * Commands begin and end; in between each slice is counted for the running command, with its events. A
+ * command that succeeded, and of which the cell had no complaint, has put the wafers that it let go and that
+ * lie in a slot: see record/throughput.h.
  */
 #ifndef WH_RECORD_RECORDER_H
 #define WH_RECORD_RECORDER_H
 
 #include "record.h"
 
-/* Set `layout` and `cell` once they are known, and `task` when a segment begins; the rest is only to be read. */
+/* Set `layout` and `cell` once they are known, and `task` when a segment begins; the rest is only to be
+ * read. */
 typedef struct {
     wh_record_t *record;
     const wh_layout_t *layout; /* null: none yet */
@@ -18,7 +21,8 @@ typedef struct {
     wh_task_t task;            /* of the running segment */
 } wh_recorder_t;
 
-/* Begins a record of `script`, of which a copy is kept. `record` must be all zero and outlive the recorder. */
+/* Begins a record of `script`, of which a copy is kept. `record` must be all zero and outlive the
+ * recorder. */
 void wh_recorder_open(wh_recorder_t *recorder, wh_record_t *record, const char *script);
 
 /* Simulated seconds so far; 0 without a layout. */
@@ -28,8 +32,8 @@ double wh_recorder_now(const wh_recorder_t *recorder);
 const wh_command_record_t *wh_recorder_begin(wh_recorder_t *recorder, int line, const char *text,
                                              double begin_s);
 
-/* The running command has ended: with WH_OK, and `wafers` where they are, or with an error and its message. Null if
- * none was running. */
+/* The running command has ended: with WH_OK, and `wafers` where they are, or with an error and its message.
+ * Null if none was running. */
 const wh_command_record_t *wh_recorder_end(wh_recorder_t *recorder, double end_s, wh_status_t error,
                                            const char *message, const wh_wafer_t wafers[]);
 

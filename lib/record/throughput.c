@@ -61,7 +61,7 @@ static int64_t cycle_slices(const wh_record_t *record, size_t cycle) {
     return wh_throughput_cycle_end(record, cycle) - record->cycles[cycle].begin;
 }
 
-/* From the cycle after the first that is one, or that one when there is no other. */
+/* Counts from the second cycle on, or the first if there is no other; cycles without a slice are none. */
 static void count_cycles(const wh_record_t *record, wh_throughput_t *throughput) {
     size_t *wafers = wh_throughput_cycle_wafers(record, throughput->rank);
     bool settling = true;

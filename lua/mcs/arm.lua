@@ -1,5 +1,5 @@
--- What the controller knows of its arm, and how a command goes: recorded, planned to its end before anything moves,
--- played, and refused while the arm may stand where a GET or PUT must not begin.
+-- What the controller knows of its arm, and how a command goes: recorded, planned to its end before anything
+-- moves, played, and refused while the arm may stand where a GET or PUT must not begin.
 
 -- Kept, for a script may set globals of these names.
 local coroutine, error, ipairs, math, pcall = coroutine, error, ipairs, math, pcall
@@ -12,8 +12,8 @@ return function(native, lookup)
   local arm = { inside = nil, stopped = false, homed = nil }
   local running = false
 
-  -- Runs a command: it is recorded with the script's line, its times and its error number. One that an exhausted
-  -- limit or a STOP from outside ended past all Lua is still `running` when the next begins.
+  -- Runs a command: it is recorded with the script's line, its times and its error number. One that an
+  -- exhausted limit or a STOP from outside ended past all Lua is still `running` when the next begins.
   function arm.run(text, action, ...)
     native.begin(text)
     arm.stopped = arm.stopped or running
@@ -24,7 +24,8 @@ return function(native, lookup)
       native.finish()
       return result
     end
-    local numbered = type(result) == "table" and math.type(result.number) == "integer" and type(result.text) == "string"
+    local numbered = type(result) == "table" and math.type(result.number) == "integer"
+      and type(result.text) == "string"
     local number = numbered and result.number or lookup.errors.BAD_ARGUMENT.number
     arm.stopped = arm.stopped or number == lookup.errors.STOPPED.number
     native.finish(number, numbered and result.text or tostring(result))
@@ -56,7 +57,7 @@ return function(native, lookup)
     arm.inside, arm.stopped = nil, false
   end
 
-  ------------------------------------------------------------------------------------- planning and playing
+  --------------------------------------------------------------------------------------- planning and playing
 
   -- The segment of a request, its axes found for where the gripper shall be.
   local function segment_of(request)
@@ -67,7 +68,8 @@ return function(native, lookup)
     return request
   end
 
-  -- What a pattern is answered while it is only planned: a segment runs to its end, a question has its own assumption.
+  -- What a pattern is answered while it is only planned: a segment runs to its end, a question has its own
+  -- assumption.
   local function assumed(request)
     return request.assume == nil or request.assume
   end
@@ -84,9 +86,9 @@ return function(native, lookup)
     return plan
   end
 
-  -- Plans all of a pattern from where the arm stands, without playing it; raises what is out of reach, and with
-  -- `judged` a collision ahead. Returns the plan: the requests in order and, as `became`, what the pattern returned. It
-  -- can be played until the next one is made.
+  -- Plans all of a pattern from where the arm stands, without playing it; raises what is out of reach, and
+  -- with `judged` a collision ahead. Returns the plan: the requests in order and, as `became`, what the
+  -- pattern returned. It can be played until the next one is made.
   function arm.rehearse(pattern, target, judged)
     native.rehearse(true, judged)
     local ok, result = pcall(plan_through, pattern, target)
@@ -97,8 +99,9 @@ return function(native, lookup)
     return result
   end
 
-  -- Plays a segment or asks a question. `target.watched`: a wafer that is lost on the way is an error after the segment.
-  -- Whether a wafer is on a gripper's pads, whatever its sensor says, the cell knows; a controller would look.
+  -- Plays a segment or asks a question. `target.watched`: a wafer that is lost on the way is an error after
+  -- the segment. The cell knows if a wafer is on a gripper's pads, whatever its sensor says; a
+  -- controller would look.
   local function perform(request, target)
     if request.is_on then
       return native.sensor(request.is_on)

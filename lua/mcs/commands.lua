@@ -8,7 +8,7 @@ return function(native, patterns, lookup)
   local targets = native.module("mcs/targets.lua")(native, lookup)
   local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets)
 
-  ------------------------------------------------------------------------------------------ single moves
+  ----------------------------------------------------------------------------------------------- single moves
 
   -- A wafer that is lost meanwhile is an error, unless it is the way out of trouble.
   local function play(segment)
@@ -104,7 +104,7 @@ return function(native, patterns, lookup)
     arm.run(lookup.command("WAIT", seconds), wait, seconds)
   end
 
-  ------------------------------------------------------------------------------------- STOP and what follows
+  -------------------------------------------------------------------------------------- STOP and what follows
 
   -- Straight out of the station that the arm stands in, if it does.
   local function recover()

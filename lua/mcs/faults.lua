@@ -16,7 +16,8 @@ return function(native, commands, run, lookup)
   end
 
   local function describe(description)
-    local text = { "FAULT", type(description) == "table" and tostring(description.kind) or tostring(description) }
+    local kind = type(description) == "table" and description.kind or description
+    local text = { "FAULT", tostring(kind) }
     for name, value in pairs(type(description) == "table" and description or {}) do
       if name ~= "kind" then
         text[#text + 1] = ("%s=%s"):format(tostring(name), text_of(value))

@@ -1,11 +1,12 @@
--- Makes the operator's words out of what the host offers (`native`) and sets them as globals. Returns what makes the
--- same words of typed lines: a session calls it once the cell is set up, a script's run never does.
+-- Makes the operator's words out of what the host offers (`native`) and sets them as globals. Returns what
+-- makes the same words of typed lines: a session calls it once the cell is set up, a script's run never does.
 
 -- Kept, for a script may set globals of these names.
 local error, ipairs, pairs, setmetatable, tostring, type = error, ipairs, pairs, setmetatable, tostring, type
 
 return function(native)
-  -- native.layout: the cell's layout, a value that `cell` sets. Before that whoever reads it hears what is missing.
+  -- native.layout: the cell's layout, a value that `cell` sets. Before that whoever reads it hears what is
+  -- missing.
   setmetatable(native, { __index = function(_, name)
     return name == "layout" and native.fail("NO_LAYOUT", 'begin the script with cell "LAYOUT.lua"')
   end })
@@ -30,7 +31,8 @@ return function(native)
         local problem = rehearse(name, slot)
         if problem then
           local reason = type(problem) == "table" and problem.text or tostring(problem)
-          error(("%s: stations.%s: slot %d (expected one in reach: %s)"):format(native.layout.path, name, slot, reason), 0)
+          local message = "%s: stations.%s: slot %d (expected one in reach: %s)"
+          error(message:format(native.layout.path, name, slot, reason), 0)
         end
       end
     end
@@ -54,7 +56,8 @@ return function(native)
 
   return function()
     local tokens = native.module("mcs/tokens.lua")(native)
-    local prompt_commands = native.module("mcs/prompt_commands.lua")(native, commands, queries, lookup, tokens)
+    local make_commands = native.module("mcs/prompt_commands.lua")
+    local prompt_commands = make_commands(native, commands, queries, lookup, tokens)
     local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup)
     return execute, native.module("mcs/completion.lua")(prompt_commands, tokens)
   end

@@ -1,18 +1,19 @@
--- From what an operator writes to what the host knows: stations, slots, grippers, wafers, numbers. Each refuses
--- what it does not know with a numbered error that names it.
+-- From what an operator writes to what the host knows: stations, slots, grippers, wafers, numbers. Each
+-- refuses what it does not know with a numbered error that names it.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, math, pairs, table, tonumber, tostring, type = ipairs, math, pairs, table, tonumber, tostring, type
+local ipairs, math, pairs, table = ipairs, math, pairs, table
+local tonumber, tostring, type = tonumber, tostring, type
 
 return function(native, errors)
   local lookup = { errors = errors }
 
-  -- Station parameters that a command may set for itself, what else it may say, and the fields of MOVE and LINE in
-  -- order.
+  -- Station parameters that a command may set for itself, what else it may say, and the fields of MOVE and
+  -- LINE in order.
   lookup.parameters = {
-    stroke = "number", offset = "number", retract = "number", pickup_speed = "number", pickup_acceleration = "number",
-    release = "number", vacuum_delay = "number", vacuum_check = "string", timeout = "number", retries = "number",
-    wait = "number", map_speed = "number", check_map = "boolean", handover = "string",
+    stroke = "number", offset = "number", retract = "number", release = "number", wait = "number",
+    pickup_speed = "number", pickup_acceleration = "number", vacuum_delay = "number", vacuum_check = "string",
+    timeout = "number", retries = "number", map_speed = "number", check_map = "boolean", handover = "string",
   }
   lookup.options = { gripper = "string", force = "boolean" }
   lookup.axes = { "theta", "r", "z", "yaw" }
@@ -86,7 +87,7 @@ return function(native, errors)
     return index
   end
 
-  ------------------------------------------------------------------------------------------------- frames
+  ----------------------------------------------------------------------------------------------------- frames
 
   -- "B/10", where B is a station: that, and what stands for the slot.
   local function split_slot(stations, name)
@@ -107,7 +108,7 @@ return function(native, errors)
   local function gripper_frame(grippers, name)
     for index, gripper in ipairs(grippers) do
       if gripper.name == name then
-        return native.real_gripper_pose(index)
+        return native.gripper_pose(index, "real")
       end
     end
   end
@@ -165,7 +166,7 @@ return function(native, errors)
     return value
   end
 
-  ---------------------------------------------------------------------------------------- a command's text
+  ------------------------------------------------------------------------------------------- a command's text
 
   function lookup.number_text(value)
     return math.type(value) == "float" and value == value and ("%.10g"):format(value) or tostring(value)

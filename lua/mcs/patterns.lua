@@ -1,7 +1,7 @@
 -- Commands as patterns: in which order the arm moves and the valves switch.
 --
--- A pattern is a coroutine body and does nothing but yield requests, so that it can be planned before it is played. A
--- request is a segment, a table with one of
+-- A pattern is a coroutine body and does nothing but yield requests, so that it can be planned before it is
+-- played. A request is a segment, a table with one of
 --   to     = { x, y, z, heading, gripper }        point to point, to where that gripper is there
 --   axes   = { theta, R, Z, yaw, chucks... }      point to point, rad and mm
 --   line   = { dx, dy, dz }                       straight, at constant heading, mm in base; speed = mm/s and
@@ -9,14 +9,15 @@
 --   valves = { [gripper] = 0 open or 1 closed }   lasts one slice
 --   dwell  = seconds, vacuum = true               `vacuum`: the time counts as waiting for vacuum
 --   sensor = gripper, timeout = seconds           answered with true or false
--- of which `enters = target` begins the way into a station and `leaves = true` ends the way out; or a question, answered
--- with true or false, of which a plan knows no more than what to `assume`:
+-- of which `enters = target` begins the way into a station and `leaves = true` ends the way out; or a
+-- question, answered with true or false, of which a plan knows no more than what to `assume`:
 --   is_on     = gripper                           its vacuum sensor
 --   is_loaded = gripper                           a wafer lies on its pads
 -- It returns what became of the wafer, a word, as the sensors tell.
 --
--- `target` is what the command fills in (lua/mcs/targets.lua): place (of the slot), gripper, chuck (nil at plain slots),
--- asks (if the vacuum sensor decides) and the station's parameters. Heights are above the slot's plane.
+-- `target` is what the command fills in (lua/mcs/targets.lua): place (of the slot), gripper, chuck (nil at
+-- plain slots), asks (if the vacuum sensor decides) and the station's parameters. Heights are above the
+-- slot's plane.
 
 local yield = coroutine.yield
 
@@ -31,14 +32,16 @@ end
 
 -- In, and a wait there if the station has one.
 local function enter(target)
-  yield { line = { target.retract * target.place.dir_x, target.retract * target.place.dir_y, 0 }, enters = target }
+  local place, way = target.place, target.retract
+  yield { line = { way * place.dir_x, way * place.dir_y, 0 }, enters = target }
   if target.wait > 0 then
     yield { dwell = target.wait }
   end
 end
 
 local function leave(target)
-  yield { line = { -target.retract * target.place.dir_x, -target.retract * target.place.dir_y, 0 }, leaves = true }
+  local place, way = target.place, -target.retract
+  yield { line = { way * place.dir_x, way * place.dir_y, 0 }, leaves = true }
 end
 
 local function stroke(target, by)
@@ -73,7 +76,8 @@ local function holds(target, gripper)
   return not target.asks or yield { sensor = gripper, timeout = target.timeout }
 end
 
--- Down to where a PUT lets go, valve closed, down below the wafer: whatever lies on the blade stays in the slot.
+-- Down to where a PUT lets go, valve closed, down below the wafer: whatever lies on the blade stays in the
+-- slot.
 local function set_back(target, height)
   if height > target.release then
     stroke(target, target.release - height)
@@ -85,7 +89,7 @@ end
 
 local patterns = {}
 
--------------------------------------------------------------------------------------------------------- GET
+---------------------------------------------------------------------------------------------------------- GET
 
 local function take_from_slot(target)
   switch(target.gripper, OPEN)
@@ -117,9 +121,9 @@ local function take_from_chuck(target)
   return found
 end
 
--- In below the wafer, valve open, up through the slot, out. From a chuck: up to its plane, hand over, out above. Without
--- a wafer down again, `retries` times up once more, and out below: "missing", or "late" when the vacuum did not come
--- though a wafer is there; "early" when the sensor was on before the stroke.
+-- In below the wafer, valve open, up through the slot, out. From a chuck: up to its plane, hand over, out
+-- above. Without a wafer down again, `retries` times up once more, and out below: "missing", or "late" when
+-- the vacuum did not come though a wafer is there; "early" when the sensor was on before the stroke.
 function patterns.get(target)
   local take = target.chuck and take_from_chuck or take_from_slot
   local found
@@ -135,10 +139,10 @@ function patterns.get(target)
   return found
 end
 
--------------------------------------------------------------------------------------------------------- PUT
+---------------------------------------------------------------------------------------------------------- PUT
 
--- In above the slot, down to `release`, switch, down below the wafer, out. "kept", or "lost" when the chuck has not
--- taken it over, "loose" when its vacuum did not come though the wafer lies on it.
+-- In above the slot, down to `release`, switch, down below the wafer, out. "kept", or "lost" when the chuck
+-- has not taken it over, "loose" when its vacuum did not come though the wafer lies on it.
 function patterns.put(target)
   local became = "kept"
   approach(target, target.offset)
@@ -157,7 +161,7 @@ function patterns.put(target)
   return became
 end
 
------------------------------------------------------------------------------------------------------ others
+------------------------------------------------------------------------------------------------------- others
 
 -- A GET with one gripper, and if it took the wafer a PUT with the other.
 function patterns.swap(target)
@@ -176,8 +180,8 @@ function patterns.map(target)
   yield { line = { 0, 0, target.height + 2 * target.margin }, speed = target.map_speed }
 end
 
--- Out of the station that the arm stands in, from where it came to stand: with a wafer up to where a GET leaves, else down
--- to where a PUT does, then straight out. `stands` is the gripper's place.
+-- Out of the station that the arm stands in, from where it came to stand: with a wafer up to where a GET
+-- leaves, else down to where a PUT does, then straight out. `stands` is the gripper's place.
 function patterns.recover(target)
   local p, at = target.place, target.stands
   local height = at[3] - p.z

@@ -1,5 +1,5 @@
--- Executes one operator's line by the same words that scripts use, and answers it in one line: OK and values, or
--- ERROR, a number of the catalogue, its name and the reason. A line is only ever read, never run as Lua.
+-- Executes one operator's line by the same words that scripts use, and answers it in one line: OK and values,
+-- or ERROR, a number of the catalogue, its name and the reason. A line is only ever read, never run as Lua.
 
 return function(native, prompt_commands, tokens, lookup)
   local function refuse(text, ...)
@@ -22,7 +22,10 @@ return function(native, prompt_commands, tokens, lookup)
   local function take_option(name, command, options, word)
     local kind = command.options and command.options[word.name]
     if not kind then
-      local expected = command.options and ("expected " .. prompt_commands.usage(name, true)) or name .. " takes no options"
+      local expected = name .. " takes no options"
+      if command.options then
+        expected = "expected " .. prompt_commands.usage(name, true)
+      end
       refuse("%s: no such option (%s)", word.raw, expected)
     end
     if options[word.name] ~= nil then
@@ -89,6 +92,7 @@ return function(native, prompt_commands, tokens, lookup)
       return result.number, answer("ERROR", result.text:gsub("^error ", ""), complaints)
     end
     local bad = lookup.errors.BAD_ARGUMENT
-    return bad.number, answer("ERROR", ("%d BAD_ARGUMENT: %s"):format(bad.number, tostring(result)), complaints)
+    result = ("%d BAD_ARGUMENT: %s"):format(bad.number, tostring(result))
+    return bad.number, answer("ERROR", result, complaints)
   end
 end

@@ -1,6 +1,7 @@
--- What can be typed: for each command the arguments that it takes, its options, what it does, and how it is answered.
+-- What can be typed: for each command the arguments that it takes, its options, what it does, and how it is
+-- answered.
 --
--- takes     kinds of the arguments in order; the last one may be left out if `optional`, and repeated if `repeated`
+-- takes     kinds of the arguments in order; the last one may be left out if `optional`, repeated if `repeated`
 -- options   kinds of the options by name; with `needs_option` at least one must be there
 -- run       gets the arguments, a list, and the options, a table; returns the answer's values as text or nil
 
@@ -10,7 +11,7 @@ return function(native, commands, queries, lookup, tokens)
   -- WHERE stops after so many bytes: an answer is one line.
   local LONGEST_ANSWER = 60000
 
-  -------------------------------------------------------------------------------------------------- kinds
+  ------------------------------------------------------------------------------------------------------ kinds
 
   local function station_names()
     local list = {}
@@ -59,7 +60,7 @@ return function(native, commands, queries, lookup, tokens)
     return options
   end
 
-  ------------------------------------------------------------------------------------------------ answers
+  ---------------------------------------------------------------------------------------------------- answers
 
   -- Runs a command and returns how long it took.
   local function timed(action, ...)
@@ -126,7 +127,8 @@ return function(native, commands, queries, lookup, tokens)
     end
     return tokens.pairs {
       { "ready", tostring(p.ready) }, { "n1_proj_n2", p.n1_proj_n2 }, { "dr_proj_z", p.dr_proj_z },
-      { "dr_proj_x", p.dr_proj_xy[1] }, { "dr_proj_y", p.dr_proj_xy[2] }, { "dr_proj_xy_norm", p.dr_proj_xy_norm },
+      { "dr_proj_x", p.dr_proj_xy[1] }, { "dr_proj_y", p.dr_proj_xy[2] },
+      { "dr_proj_xy_norm", p.dr_proj_xy_norm },
     } .. " failed=" .. (#failed > 0 and table.concat(failed, ",") or "none")
   end
 
@@ -149,9 +151,11 @@ return function(native, commands, queries, lookup, tokens)
   local function describe_wafer(layout, name, index)
     local station, slot = native.locate(index)
     local holder = native.holder(index)
-    local text = tokens.pairs { { "wafer", name }, { "holder", holder and layout.grippers[holder].name }, { "station", station } }
+    holder = holder and layout.grippers[holder].name
+    local text = tokens.pairs { { "wafer", name }, { "holder", holder }, { "station", station } }
     if station then
-      text = ("%s slot=%d %s"):format(text, slot, offset_text(native.measure(index, layout.stations[station].index, slot)))
+      local offset_there = offset_text(native.measure(index, layout.stations[station].index, slot))
+      text = ("%s slot=%d %s"):format(text, slot, offset_there)
     end
     return text
   end
@@ -244,7 +248,7 @@ return function(native, commands, queries, lookup, tokens)
     return tokens.pairs { { "fault", commands.fault(description) } }
   end
 
-  ----------------------------------------------------------------------------------------------- commands
+  --------------------------------------------------------------------------------------------------- commands
 
   -- A command of the scripts that takes its arguments in order, answered with its time.
   local function moving(action)
@@ -257,6 +261,18 @@ return function(native, commands, queries, lookup, tokens)
   local function stop()
   end
 
+  local function quit()
+    native.fail("NO_SUCH_COMMAND", "QUIT is for the prompt alone")
+  end
+
+  local function clear(arguments)
+    commands.clear_fault(arguments[1])
+  end
+
+  local function holder(arguments)
+    return tokens.pairs { { "holder", queries.holder(arguments[1]) } }
+  end
+
   -- One that takes a table of named numbers.
   local function moving_by_name(action)
     return function(_, options)
@@ -265,40 +281,51 @@ return function(native, commands, queries, lookup, tokens)
   end
 
   prompt_commands.commands = {
-    GET = { takes = { "station", "slot" }, options = station_options, run = get, does = "takes the wafer there" },
-    PUT = { takes = { "station", "slot" }, options = station_options, run = put, does = "sets the wafer down there" },
+    GET = { takes = { "station", "slot" }, options = station_options, run = get,
+            does = "takes the wafer there" },
+    PUT = { takes = { "station", "slot" }, options = station_options, run = put,
+            does = "sets the wafer down there" },
     SWAP = { takes = { "station", "slot" }, options = station_options, run = swap,
              does = "takes the wafer there with the empty gripper and puts down the other's" },
     READY = { takes = { "station", "slot" }, options = station_options, run = moving(commands.ready),
               does = "goes in front of the slot, to where GET or PUT enters" },
     MAP = { takes = { "station" }, options = station_options, run = map,
             does = "sweeps over the slots: 0 empty, 1 single, 2 double, 4 crossed" },
-    HOME = { takes = {}, run = moving(commands.home), does = "out of the station if the arm stands in one, then home" },
-    RECOVER = { takes = {}, run = moving(commands.recover), does = "straight out of the station that the arm stands in" },
+    HOME = { takes = {}, run = moving(commands.home),
+             does = "out of the station if the arm stands in one, then home" },
+    RECOVER = { takes = {}, run = moving(commands.recover),
+                does = "straight out of the station that the arm stands in" },
     STOP = { takes = {}, run = stop, does = "ends the command that runs" },
-    ROTATE = { takes = { "station", "degrees" }, run = moving(commands.rotate), does = "turns a prealigner's chuck by so much" },
-    VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve), does = "0 opens it (vacuum on), 1 closes it" },
-    MOVE = { takes = {}, options = fields(lookup.axes), needs_option = true, run = moving_by_name(commands.move),
+    ROTATE = { takes = { "station", "degrees" }, run = moving(commands.rotate),
+               does = "turns a prealigner's chuck by so much" },
+    VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve),
+              does = "0 opens it (vacuum on), 1 closes it" },
+    MOVE = { takes = {}, options = fields(lookup.axes), needs_option = true,
+             run = moving_by_name(commands.move),
              does = "moves the named axes to these positions, degrees and mm" },
-    LINE = { takes = {}, options = fields(lookup.line_fields), needs_option = true, run = moving_by_name(commands.line),
+    LINE = { takes = {}, options = fields(lookup.line_fields), needs_option = true,
+             run = moving_by_name(commands.line),
              does = "moves the end-effector straight by so much, mm and mm/s" },
     WAIT = { takes = { "seconds" }, run = moving(commands.wait), does = "stands still" },
-    FAULT = { takes = { "fault" }, options = fault_options, run = fault, does = "lets a fault begin, and tells its number" },
-    CLEAR = { takes = { "number" }, does = "ends the fault of this number",
-              run = function(arguments) commands.clear_fault(arguments[1]) end },
-    OFFSET = { takes = { "wafer", "station", "slot" }, run = offset, does = "where the wafer is in that slot's frame" },
-    HOLDER = { takes = { "wafer" }, does = "the gripper that holds the wafer",
-               run = function(arguments) return tokens.pairs { { "holder", queries.holder(arguments[1]) } } end },
-    PROXIMITY = { takes = { "wafer", "gripper" }, run = proximity, does = "the check of the wafer against the gripper" },
+    FAULT = { takes = { "fault" }, options = fault_options, run = fault,
+              does = "lets a fault begin, and tells its number" },
+    CLEAR = { takes = { "number" }, run = clear, does = "ends the fault of this number" },
+    OFFSET = { takes = { "wafer", "station", "slot" }, run = offset,
+               does = "where the wafer is in that slot's frame" },
+    HOLDER = { takes = { "wafer" }, run = holder, does = "the gripper that holds the wafer" },
+    PROXIMITY = { takes = { "wafer", "gripper" }, run = proximity,
+                  does = "the check of the wafer against the gripper" },
     MEASURE = { takes = { "frame", "frame" }, run = measure,
-                does = "how the second frame lies in the first one's axes: a wafer, gripper, station, slot (A/1) or base" },
+                does = "how the second frame lies in the first one's axes: "
+                  .. "a wafer, gripper, station, slot (A/1) or base" },
     DISTANCE = { takes = { "frame", "frame" }, run = distance, does = "of two frames' origins" },
     ANGLE = { takes = { "frame", "frame" }, run = angle, does = "between two frames' z axes" },
-    WHERE = { takes = { "wafer" }, optional = true, repeated = true, run = where, does = "where wafers are; without a name, all" },
+    WHERE = { takes = { "wafer" }, optional = true, repeated = true, run = where,
+              does = "where wafers are; without a name, all" },
     AXES = { takes = {}, run = axes, does = "where the axes stand, degrees and mm" },
     STATIONS = { takes = {}, run = stations, does = "the stations of the cell" },
     HELP = { takes = { "command" }, optional = true, run = help, does = "the commands, or how one is typed" },
-    QUIT = { takes = {}, does = "leaves the prompt", run = function() native.fail("NO_SUCH_COMMAND", "QUIT is for the prompt alone") end },
+    QUIT = { takes = {}, run = quit, does = "leaves the prompt" },
   }
 
   return prompt_commands

@@ -21,14 +21,16 @@ return function(native, lookup)
   -- The check of a wafer against a gripper as they stand now: see wh.proximity.
   function queries.proximity(wafer, gripper)
     local tolerance = native.layout.tolerance
-    return wh.proximity(native.wafer_pose(lookup.wafer(wafer)), native.real_gripper_pose(lookup.gripper(gripper)), tolerance)
+    local base_from_wafer = native.wafer_pose(lookup.wafer(wafer))
+    return wh.proximity(base_from_wafer, native.gripper_pose(lookup.gripper(gripper), "real"), tolerance)
   end
 
-  -- How the second frame lies as seen from the first: the distance of the origins; dx, dy, dz in the first frame's axes, mm;
-  -- the angle between the z axes, and the whole turn, degrees. A frame is the name of a wafer, a gripper, a station (its
-  -- slot 1) or a slot, such as "B/10", or "base".
+  -- How the second frame lies as seen from the first: the distance of the origins; dx, dy, dz in the first
+  -- frame's axes, mm; the angle between the z axes, and the whole turn, degrees. A frame is the name of a
+  -- wafer, a gripper, a station (its slot 1) or a slot, such as "B/10", or "base".
   function queries.measure(first, second)
-    local distance, dx, dy, dz, angle, turn = native.relate(lookup.frame("measure", first), lookup.frame("measure", second))
+    local base_from_first = lookup.frame("measure", first)
+    local distance, dx, dy, dz, angle, turn = native.relate(base_from_first, lookup.frame("measure", second))
     return { distance = distance, dx = dx, dy = dy, dz = dz, angle = angle, turn = turn }
   end
 
@@ -42,13 +44,14 @@ return function(native, lookup)
     return (select(5, native.relate(lookup.frame("angle", first), lookup.frame("angle", second))))
   end
 
-  -- What hit what so far: a list of { kind = "hit" or "undecided", parts = both names, at = { x, y, z }, time = s }.
+  -- What hit what so far: a list of { kind = "hit" or "undecided", parts = both names, at = { x, y, z }, time
+  -- = s }.
   function queries.hits()
     return native.hits()
   end
 
-  -- The smallest gap of a kind so far, mm, its limit or nil, when (s), and both parts' names; nil for a gap that never was
-  -- within range, and in a cell that is not checked here.
+  -- The smallest gap of a kind so far, mm, its limit or nil, when (s), and both parts' names; nil for a gap
+  -- that never was within range, and in a cell that is not checked here.
   function queries.clearance(kind)
     local found = native.clearance(tostring(kind))
     if found == false then
@@ -77,8 +80,10 @@ return function(native, lookup)
     lookup.number("dx", dx)
     lookup.number("dy", dy)
     local index, station = lookup.wafer(wafer), lookup.station(station_name)
-    local verdict, x, y, found, at = native.lies(index, station.index, lookup.slot(station, slot), dx, dy, tolerance)
-    local text = ("%s in %s slot %d with dX %.10g, dY %.10g to %.3g mm"):format(wafer, station_name, slot, dx, dy, tolerance)
+    local place = lookup.slot(station, slot)
+    local verdict, x, y, found, at = native.lies(index, station.index, place, dx, dy, tolerance)
+    local text = "%s in %s slot %d with dX %.10g, dY %.10g to %.3g mm"
+    text = text:format(wafer, station_name, slot, dx, dy, tolerance)
     if verdict == 0 then
       text = ("%s; it %s"):format(text, where(found, at))
     elseif verdict == 1 then

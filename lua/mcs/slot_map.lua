@@ -1,5 +1,5 @@
--- The slot map: what the controller knows of each slot, from the last MAP and from its own GETs and PUTs since. It
--- never looks into the cell: what it has not seen is unknown, and unknown slots may be entered.
+-- The slot map: what the controller knows of each slot, from the last MAP and from its own GETs and PUTs
+-- since. It never looks into the cell: what it has not seen is unknown, and unknown slots may be entered.
 
 -- Kept, for a script may set globals of these names.
 local ipairs = ipairs
@@ -10,7 +10,7 @@ return function(native)
   local EMPTY, SINGLE, DOUBLE, CROSSED = 0, 1, 2, 4
   local WORDS = { [EMPTY] = "empty", [SINGLE] = "single", [DOUBLE] = "doubled", [CROSSED] = "crossed" }
 
-  -- By station: codes by slot, and whether the station has been mapped.
+  -- By station: codes by slot, and if the station has been mapped.
   local known = {}
 
   local function of_station(station)
@@ -54,7 +54,7 @@ return function(native)
     end
   end
 
-  -- Whether the blade may go in, and what is known of the slot; `force` asks nothing of the map.
+  -- Refuses if the blade may not go in, or for what is known of the slot; `force` asks nothing of the map.
   local function check_entry(target, judge)
     if not target.force then
       check_mapped(target)

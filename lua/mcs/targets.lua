@@ -1,5 +1,5 @@
--- What a command at a station works on: its place, its gripper, and the station's parameters, each of which the
--- command may set for itself. All is checked before anything moves.
+-- What a command at a station works on: its place, its gripper, and the station's parameters, each of which
+-- the command may set for itself. All is checked before anything moves.
 
 -- Kept, for a script may set globals of these names.
 local ipairs, math, pairs, tostring, type = ipairs, math, pairs, tostring, type
@@ -41,7 +41,8 @@ return function(native, lookup)
       { "stroke", math.max(target.stroke - target.offset, target.offset) < pitch,
         ("within the pitch of %.10g mm below and above the slot"):format(pitch) },
       { "retract", target.retract > 0, "above 0" },
-      { "release", target.release >= target.offset - target.stroke and target.release <= target.offset, "within the stroke" },
+      { "release", target.release >= target.offset - target.stroke and target.release <= target.offset,
+        "within the stroke" },
     }
   end
 
@@ -51,21 +52,26 @@ return function(native, lookup)
       { "pickup_speed", target.pickup_speed > 0, "above 0" },
       { "pickup_speed", not layout.sampled or target.pickup_speed <= window,
         ('at most %.10g mm/s with these slices, or a layout with check = "swept"'):format(window) },
-      { "pickup_acceleration", target.pickup_acceleration == 0 or target.pickup_acceleration >= 1e-6, "0, or 1e-6 or more" },
+      { "pickup_acceleration", target.pickup_acceleration == 0 or target.pickup_acceleration >= 1e-6,
+        "0, or 1e-6 or more" },
       { "map_speed", target.map_speed > 0, "above 0" },
       { "vacuum_delay", target.vacuum_delay >= 0, "0 or more" },
       { "timeout", target.timeout >= 0, "0 or more" },
       { "wait", target.wait >= 0, "0 or more" },
-      { "retries", math.tointeger(target.retries) and target.retries >= 0 and target.retries <= 100, "a whole number from 0 to 100" },
+      { "retries", math.tointeger(target.retries) and target.retries >= 0 and target.retries <= 100,
+        "a whole number from 0 to 100" },
       { "handover", is_one_of(target.handover, "new_first", "same_slice"), '"new_first" or "same_slice"' },
-      { "vacuum_check", is_one_of(target.vacuum_check, "both", "get", "put", "none"), '"both", "get", "put" or "none"' },
+      { "vacuum_check", is_one_of(target.vacuum_check, "both", "get", "put", "none"),
+        '"both", "get", "put" or "none"' },
     }
   end
 
   local function check(target, rules)
     for _, rule in ipairs(rules) do
       if not rule[2] then
-        native.fail("BAD_ARGUMENT", ("%s: %s (expected %s)"):format(rule[1], lookup.quote(target[rule[1]]), rule[3]))
+        local name, expected = rule[1], rule[3]
+        local value = lookup.quote(target[name])
+        native.fail("BAD_ARGUMENT", ("%s: %s (expected %s)"):format(name, value, expected))
       end
     end
   end
@@ -78,7 +84,7 @@ return function(native, lookup)
     if not station.taught then
       native.fail("NOT_TAUGHT", lookup.quote(station.name))
     end
-    local target = { station = station.name, slot = number, chuck = station.chuck, force = options.force, watched = true }
+    local target = { station = station.name, slot = number, chuck = station.chuck, force = options.force }
     target.gripper = gripper or lookup.effector(options.gripper, station.effector)
     target.place = native.slot(station.index, number)
     for name in pairs(parameters) do

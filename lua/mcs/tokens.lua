@@ -1,7 +1,7 @@
 -- A typed line's words, and answers in the same spelling: what this reads it can read back.
 --
--- Words stand between blanks. A name with blanks stands in double quotes, in which \" is a quote and \\ a backslash.
--- name=value is an option; its value may be quoted, too.
+-- Words stand between blanks. A name with blanks stands in double quotes, in which \" is a quote and \\ a
+-- backslash. name=value is an option; its value may be quoted, too.
 
 return function(native)
   local tokens = {}
@@ -27,7 +27,7 @@ return function(native)
     end
   end
 
-  -------------------------------------------------------------------------------------------------- reading
+  ---------------------------------------------------------------------------------------------------- reading
 
   -- The text of the quotes that open at `at`, and the place after them.
   local function read_quoted(line, at)
@@ -108,7 +108,7 @@ return function(native)
     return found or text
   end
 
-  ------------------------------------------------------------------------------------------------- writing
+  ---------------------------------------------------------------------------------------------------- writing
 
   -- The shortest decimals that read back as the same double.
   function tokens.exact(value)
@@ -140,7 +140,8 @@ return function(native)
     local text = {}
     for _, pair in ipairs(list) do
       local value = pair[2]
-      text[#text + 1] = pair[1] .. "=" .. (type(value) == "number" and tokens.exact(value) or tokens.spell(value))
+      value = type(value) == "number" and tokens.exact(value) or tokens.spell(value)
+      text[#text + 1] = pair[1] .. "=" .. value
     end
     return table.concat(text, " ")
   end

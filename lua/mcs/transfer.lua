@@ -1,4 +1,5 @@
--- The operator's words that carry wafers: GET, PUT, SWAP; READY, which only goes there; MAP, which only looks.
+-- The operator's words that carry wafers: GET, PUT, SWAP; READY, which only goes there; MAP, which only
+-- looks.
 
 -- Kept, for a script may set globals of these names.
 local ipairs, pcall = ipairs, pcall
@@ -8,7 +9,7 @@ return function(native, patterns, lookup, arm, targets)
 
   local slot_map = native.module("mcs/slot_map.lua")(native)
 
-  --------------------------------------------------------------------------------------------- GET and PUT
+  ------------------------------------------------------------------------------------------------ GET and PUT
 
   -- A sensor that is on behind a closed valve says nothing of wafers.
   local function check_empty(target)
@@ -43,10 +44,10 @@ return function(native, patterns, lookup, arm, targets)
   end
 
   local transfers = {
-    get = { pattern = patterns.get, check_gripper = check_empty, check_slot = slot_map.check_get, judge = judge_get,
-            note = slot_map.note_taken },
-    put = { pattern = patterns.put, check_gripper = check_loaded, check_slot = slot_map.check_put, judge = judge_put,
-            note = slot_map.note_put },
+    get = { pattern = patterns.get, check_gripper = check_empty, check_slot = slot_map.check_get,
+            judge = judge_get, note = slot_map.note_taken },
+    put = { pattern = patterns.put, check_gripper = check_loaded, check_slot = slot_map.check_put,
+            judge = judge_put, note = slot_map.note_put },
   }
 
   local function carry(word, station, slot, options)
@@ -68,7 +69,7 @@ return function(native, patterns, lookup, arm, targets)
     arm.run(lookup.command("PUT", station, slot), carry, "put", station, slot, options)
   end
 
-  ---------------------------------------------------------------------------------------------------- SWAP
+  ------------------------------------------------------------------------------------------------------- SWAP
 
   -- The robot's grippers: the first empty one and the first that holds a wafer, as the sensors tell.
   local function choose_grippers()
@@ -116,7 +117,7 @@ return function(native, patterns, lookup, arm, targets)
     arm.run(lookup.command("SWAP", station, slot), swap, station, slot, options)
   end
 
-  --------------------------------------------------------------------------------------------------- READY
+  ------------------------------------------------------------------------------------------------------ READY
 
   local function ready(station, slot, options)
     local target = targets.at("get", station, slot, options)
@@ -130,7 +131,7 @@ return function(native, patterns, lookup, arm, targets)
     arm.run(lookup.command("READY", station, slot), ready, station, slot, options)
   end
 
-  ----------------------------------------------------------------------------------------------------- MAP
+  -------------------------------------------------------------------------------------------------------- MAP
 
   local function map(name, options)
     local target = targets.at("get", name, 1, options)
@@ -149,9 +150,10 @@ return function(native, patterns, lookup, arm, targets)
     return arm.run(lookup.command("MAP", station), map, station, options)
   end
 
-  ----------------------------------------------------------------------------------------------- rehearsal
+  -------------------------------------------------------------------------------------------------- rehearsal
 
-  -- Plans GET and PUT at a slot from where the arm stands, without playing them; returns what is out of reach.
+  -- Plans GET and PUT at a slot from where the arm stands, without playing them; returns what is out of
+  -- reach.
   function transfer.rehearse(station, slot)
     local _, problem = pcall(function()
       arm.rehearse(patterns.get, targets.at("get", station, slot))
