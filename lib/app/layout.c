@@ -8,36 +8,31 @@
 #include "app.h"
 #include "layout_arguments.h"
 
-enum { OPTION_JSON = 1000, OPTION_SVG };
-
 typedef struct {
     wh_layout_arguments_t layout;
     const char *svg;
     bool json;
 } arguments_t;
 
-static const struct argp_option options[] = {
-    {"json", OPTION_JSON, NULL, 0, "Print one JSON object instead of tables", 0},
-    {"svg", OPTION_SVG, "FILE", 0, "Also draw the cell into FILE, from above and from the side", 0},
-    {0},
-};
+static const wh_option_t options[] = {{"json", 0, NULL, "Print one JSON object instead of tables",
+                                       WH_OPTION_FLAG, .variable = offsetof(arguments_t, json)},
+                                      {"svg", 0, "FILE",
+                                       "Also draw the cell into FILE, from above and from the side",
+                                       WH_OPTION_TEXT, .variable = offsetof(arguments_t, svg)},
+                                      {0}};
 
-static error_t parse(int key, char *argument, struct argp_state *state) {
-    arguments_t *arguments = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &arguments->layout;
-        return 0;
-    case OPTION_JSON:
-        arguments->json = true;
-        return 0;
-    case OPTION_SVG:
-        arguments->svg = argument;
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
+static const wh_option_table_t tables[] = {
+    {options, 0, NULL}, {wh_layout_options, offsetof(arguments_t, layout), NULL}, {0}};
+
+static const wh_command_line_t command_line = {
+    .name = "layout",
+    .synopsis = "LAYOUT",
+    .about = "Lists what a layout describes, checks it before anything moves, and draws it.\v"
+             "Exit status: 0 if nothing is wrong with it, 1 if something is, 2 for wrong usage or a bad "
+             "input file.",
+    .tables = tables,
+    .operand = "layout",
+    .operand_variable = offsetof(arguments_t, layout.path)};
 
 static bool write_svg(const wh_feasibility_t *check, const char *path) {
     wh_output_t output = {0};
@@ -73,29 +68,11 @@ static int look_at(const arguments_t *arguments, const wh_layout_t *layout) {
     return status;
 }
 
-static int run(const arguments_t *arguments) {
-    const wh_layout_t *layout = wh_layout_arguments_load(&arguments->layout);
-    return layout ? look_at(arguments, layout) : WH_EXIT_USAGE;
-}
-
 int wh_app_layout(int argc, char **argv) {
-    static const struct argp_child children[] = {{&wh_layout_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {
-        options,
-        parse,
-        NULL,
-        "Lists what a layout describes, checks it before anything moves, and draws it.\v"
-        "Exit status: 0 if nothing is wrong with it, 1 if something is, 2 for wrong usage or a "
-        "bad input file.",
-        children,
-        NULL,
-        NULL};
-    static char name[] = "waferhand layout";
     arguments_t arguments = {0};
-    wh_layout_arguments_init(&arguments.layout, argc);
-    argv[0] = name;
-    argp_parse(&argp, argc, argv, 0, NULL, &arguments);
-    const int status = run(&arguments);
+    wh_options_parse(&command_line, argc, argv, &arguments);
+    const wh_layout_t *layout = wh_layout_arguments_load(&arguments.layout);
+    const int status = layout ? look_at(&arguments, layout) : WH_EXIT_USAGE;
     wh_layout_arguments_free(&arguments.layout);
     return status;
 }
