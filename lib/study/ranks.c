@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../text/array.h"
 #include "checkpoint.h"
 
 #define LIBRARY "waferhand_mpi.so"
@@ -124,10 +125,7 @@ static char *take_message(const wh_ranks_t *ranks, int *from, size_t *size, bool
         *sound = any == 0;
         return NULL;
     }
-    char *text = malloc(*size + 1);
-    if (!text) {
-        abort();
-    }
+    char *text = wh_array_new(*size, 1);
     *sound = ranks->calls->receive(*from, text, *size) == 0;
     return text;
 }
@@ -151,10 +149,7 @@ bool wh_ranks_serve(wh_ranks_t *ranks, wh_pool_t *pool) {
 
 static bool tell(const wh_ranks_t *ranks, char kind, const char *text) {
     const size_t size = strlen(text) + 1;
-    char *message = malloc(size + 1);
-    if (!message) {
-        abort();
-    }
+    char *message = wh_array_new(size + 1, 1);
     message[0] = kind;
     memcpy(message + 1, text, size);
     const bool sent = ranks->calls->send(0, message, size) == 0;
@@ -194,7 +189,7 @@ static bool take_blocks(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting,
 /* Asks for more in time, and takes what comes. */
 static bool go_on(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting, bool *more) {
     bool sound = true;
-    if (*more && !*wanting && wh_pool_queued(pool) <= 2 * pool->hand_count) {
+    if (*more && !*wanting && wh_pool_queued(pool) <= 2 * pool->worker_count) {
         sound = tell_progress(ranks, pool, WANTS_MORE);
         *wanting = true;
     }

@@ -23,7 +23,7 @@ int wh_ranks_here(void);
  * program that speaks MPI is missing or does not start. */
 bool wh_ranks_open(wh_ranks_t *ranks);
 
-/* Rank 0: takes what has come, adds it to the crew's progress, and sends blocks off its queue to who wants some. False when a
+/* Rank 0: takes what has come, adds it to the pool's progress, and sends blocks off its queue to who wants some. False when a
  * rank failed: the reason is on stderr. */
 bool wh_ranks_serve(wh_ranks_t *ranks, wh_pool_t *pool);
 

@@ -21,12 +21,12 @@ typedef struct {
 
 /* What all trials share; nothing of it changes while they run, so any thread may read it. */
 typedef struct {
-    wh_script_run_options_t run; /* script, parameters, limits; without tape and trial */
+    wh_script_run_options_t run; /* script, parameters, limits; without decisions and trial */
     uint64_t seed, trials;
     wh_script_run_t nominal;  /* the run without errors */
     wh_decisions_t decisions; /* of it */
     const wh_layout_t *layout;
-    const char *whole; /* why each trial runs the script whole, or null: most replay the tape */
+    const char *whole; /* why each trial runs the script whole, or null: most replay the decisions */
     wh_study_wafer_t wafers[WH_STUDY_WAFERS];
     size_t wafer_count;
     uint64_t script_hash, layout_hash; /* of the files' text */

@@ -10,10 +10,7 @@
 void wh_tally_init(wh_tally_t *tally, size_t wafer_count) {
     memset(tally, 0, sizeof *tally);
     tally->wafer_count = wafer_count;
-    tally->wafers = calloc(wafer_count + 1, sizeof *tally->wafers);
-    if (!tally->wafers) {
-        abort();
-    }
+    tally->wafers = wh_array_new(wafer_count, sizeof *tally->wafers);
 }
 
 static void clear_rows(wh_tally_rows_t *rows) {

@@ -1,6 +1,7 @@
 #include "output.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -78,4 +79,32 @@ void wh_output_drop(wh_output_t *output) {
         (void)unlink(output->beside);
         output->beside[0] = '\0';
     }
+}
+
+/* -------------------------------------------------------------------------------------------------- state */
+
+void wh_output_state_path(const char *name, char *path, size_t size) {
+    const char *state = getenv("XDG_STATE_HOME");
+    const char *home = getenv("HOME");
+    int length = -1;
+    /* The XDG specification has relative paths ignored. */
+    if (state && state[0] == '/') {
+        length = snprintf(path, size, "%s/waferhand/%s", state, name);
+    } else if (home && home[0] == '/') {
+        length = snprintf(path, size, "%s/.local/state/waferhand/%s", home, name);
+    }
+    if (length < 0 || (size_t)length >= size) {
+        path[0] = '\0';
+    }
+}
+
+bool wh_output_make_folders(const char *path) {
+    char folder[PATH_MAX];
+    bool made = (size_t)snprintf(folder, sizeof folder, "%s", path) < sizeof folder;
+    for (char *slash = strchr(folder + 1, '/'); made && slash; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        made = mkdir(folder, 0700) == 0 || errno == EEXIST;
+        *slash = '/';
+    }
+    return made;
 }

@@ -21,4 +21,11 @@ bool wh_output_commit(wh_output_t *output);
 /* Gives it up: what was at its place is still there. Does nothing after wh_output_commit. */
 void wh_output_drop(wh_output_t *output);
 
+/* Where the program keeps a file for the next time: $XDG_STATE_HOME/waferhand/NAME, or ~/.local/state/waferhand/NAME. Empty
+ * if the environment names no such place, or if `size` bytes do not hold it. */
+void wh_output_state_path(const char *name, char *path, size_t size);
+
+/* Makes the folders that a file is to be in, for their owner alone. False and errno if that was not possible. */
+bool wh_output_make_folders(const char *path);
+
 #endif

@@ -9,6 +9,7 @@
 #include <histedit.h>
 #include <limits.h>
 
+#include "../../text/output.h"
 #include "../../text/style.h"
 #include "../interrupt.h"
 #include "complete.h"
@@ -124,7 +125,7 @@ static void open_history(wh_editor_t *editor) {
     }
     history(editor->history, &event, H_SETSIZE, WH_HISTORY_LINES);
     history(editor->history, &event, H_SETUNIQUE, 1);
-    wh_history_path(editor->history_path, sizeof editor->history_path);
+    wh_output_state_path("history", editor->history_path, sizeof editor->history_path);
     wh_history_load(editor->history_path, enter_line, editor->history);
     el_set(editor->edit, EL_HIST, history, editor->history);
 }

@@ -1,7 +1,6 @@
 #include "history.h"
 
 #include <fcntl.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,21 +9,6 @@
 
 #include "../../mcs/session.h"
 #include "../../text/output.h"
-
-void wh_history_path(char *path, size_t size) {
-    const char *state = getenv("XDG_STATE_HOME");
-    const char *home = getenv("HOME");
-    int length = -1;
-    /* The XDG specification has relative paths ignored. */
-    if (state && state[0] == '/') {
-        length = snprintf(path, size, "%s/waferhand/history", state);
-    } else if (home && home[0] == '/') {
-        length = snprintf(path, size, "%s/.local/state/waferhand/history", home);
-    }
-    if (length < 0 || (size_t)length >= size) {
-        path[0] = '\0';
-    }
-}
 
 /* ------------------------------------------------------------------------------------------------- reading
  */
@@ -105,16 +89,6 @@ void wh_history_load(const char *path, void (*line)(void *user, const char *text
     free(text);
 }
 
-static void make_folders(const char *path) {
-    char folder[PATH_MAX];
-    snprintf(folder, sizeof folder, "%s", path);
-    for (char *slash = strchr(folder + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
-        *slash = '\0';
-        mkdir(folder, 0700);
-        *slash = '/';
-    }
-}
-
 void wh_history_append(const char *path, const char *line) {
     static const int how = O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK;
     char text[WH_SESSION_LINE_BYTES + 2];
@@ -122,8 +96,7 @@ void wh_history_append(const char *path, const char *line) {
         return;
     }
     int fd = open(path, how, 0600);
-    if (fd < 0) {
-        make_folders(path);
+    if (fd < 0 && wh_output_make_folders(path)) {
         fd = open(path, how, 0600);
     }
     if (fd >= 0) {
