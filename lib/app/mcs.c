@@ -33,6 +33,11 @@ static const wh_option_table_t tables[] = {{options, 0, NULL},
                                            {wh_run_files_options, offsetof(arguments_t, run.files), NULL},
                                            {0}};
 
+/* True if something is to come of a script's run that a prompt has not. */
+static bool wants_run(const wh_run_arguments_t *run) {
+    return run->json || run->gantt || run->margins || run->segments_path || wh_run_files_wanted(&run->files);
+}
+
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (!arguments->run.run.script && !arguments->layout) {
@@ -41,8 +46,7 @@ static void check(const void *given, struct argp_state *state) {
     if (arguments->run.run.script && arguments->layout) {
         argp_error(state, "--layout: %s (a script names its layout itself)", arguments->layout);
     }
-    if (arguments->layout && (arguments->run.json || arguments->run.gantt || arguments->run.margins ||
-                              arguments->run.segments_path || wh_run_files_wanted(&arguments->run.files))) {
+    if (arguments->layout && wants_run(&arguments->run)) {
         argp_error(state,
                    "--json, --gantt, --margins, --segments, --report, --gltf and --data go with a script");
     }
