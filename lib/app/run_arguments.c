@@ -6,8 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../print/record_json.h"
-#include "../print/record_table.h"
+#include "../print/record_print.h"
 #include "../text/style.h"
 #include "app.h"
 #include "segments.h"
@@ -41,7 +40,7 @@ static int print_result(const wh_run_arguments_t *arguments, const wh_script_run
     const wh_style_t style = wh_style_of(stdout);
     const unsigned sections =
         (arguments->gantt ? WH_TABLE_GANTT : 0U) | (arguments->margins ? WH_TABLE_MARGINS : 0U);
-    return wh_record_print_table_with(&run->record, stdout, &style, sections);
+    return wh_record_print_table(&run->record, stdout, &style, sections);
 }
 
 static bool write_segments(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
@@ -91,8 +90,7 @@ static int hand_on(const wh_run_arguments_t *arguments, const wh_script_run_t *r
     if (!write_segments(arguments, run) || !write_report(arguments, run, signals)) {
         return WH_EXIT_USAGE;
     }
-    if (print_result(arguments, run) != 0 || fflush(stdout) != 0) {
-        fprintf(stderr, "standard output: %s\n", strerror(errno));
+    if (!wh_app_is_printed(print_result(arguments, run))) {
         return WH_EXIT_USAGE;
     }
     /* The table ends with it; where that is not on the same screen it would be missed. */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../print/record_json.h"
+#include "../print/record_print.h"
 #include "../record/record.h"
 #include "../report/page.h"
 #include "../report/plots.h"

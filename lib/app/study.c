@@ -84,8 +84,7 @@ static int print(const arguments_t *arguments, const wh_study_t *study, const wh
     const wh_style_t style = wh_style_of(stdout);
     const int status = arguments->run.json ? wh_study_print_json(&result, stdout)
                                            : wh_study_print_table(&result, stdout, &style);
-    if (status != 0 || fflush(stdout) != 0) {
-        fprintf(stderr, "standard output: %s\n", strerror(errno));
+    if (!wh_app_is_printed(status)) {
         return WH_EXIT_USAGE;
     }
     return wh_study_is_kept(&result) ? WH_EXIT_MET : WH_EXIT_FAILED;

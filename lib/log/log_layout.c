@@ -7,6 +7,7 @@
 
 #include "../layout/layout_load.h"
 #include "../link/cell_layout.h"
+#include "../text/array.h"
 
 /* What a layout has by default. */
 #define DIAMETER 300
@@ -90,11 +91,8 @@ static void fill_shapes(wh_log_layout_t *made) {
     for (size_t s = 0; s < layout->station_count; ++s) {
         count += wh_shapes_count_station(stand_of(layout, s), layout->places[s].slots);
     }
-    made->parts = calloc(count, sizeof *made->parts);
-    made->names = calloc(count, sizeof *made->names);
-    if (!made->parts || !made->names) {
-        abort();
-    }
+    made->parts = wh_array_new(count, sizeof *made->parts);
+    made->names = wh_array_new(count, sizeof *made->names);
     wh_part_list_t list = {made->parts, made->names, 0, count};
     add_parts(made, &list);
     layout->part_names = (const char(*)[WH_PART_NAME_SIZE])made->names;

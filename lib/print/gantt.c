@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "../record/throughput.h"
+#include "../text/array.h"
 #include "print_internal.h"
 
 /* How wide the time is drawn: as the terminal, but at least and at most, or as here where there is none. */
@@ -61,10 +62,7 @@ static gantt_t open_gantt(const wh_printer_t *printer, size_t label_columns) {
     const size_t room = width > label_columns + LEAST_COLUMNS + 2 ? width - label_columns - 2 : LEAST_COLUMNS;
     const size_t columns = width == 0 ? PIPED_COLUMNS : room < MOST_COLUMNS ? room : MOST_COLUMNS;
     const gantt_t gantt = {printer, label_columns, columns, printer->record->slices,
-                           calloc(columns, sizeof *gantt.cells)};
-    if (!gantt.cells) {
-        abort();
-    }
+                           wh_array_new(columns, sizeof *gantt.cells)};
     return gantt;
 }
 

@@ -77,10 +77,7 @@ void wh_signals_begin(wh_signals_t *signals, const wh_layout_t *layout, bool at_
     signals->layout = layout;
     signals->first = signals->last = -1;
     open_tracks(signals);
-    signals->stay_of = calloc(layout->wafer_count + 1, sizeof *signals->stay_of);
-    if (!signals->stay_of) {
-        abort();
-    }
+    signals->stay_of = wh_array_new(layout->wafer_count + 1, sizeof *signals->stay_of);
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         add_stay(signals, 0, (int32_t)w, WH_NONE, &layout->start[w].base_from_wafer);
     }

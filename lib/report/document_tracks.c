@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../text/array.h"
 #include "document_internal.h"
 
 /* Decimals that add a hundredth of what thinning leaves, or less: of values, and of slopes, which count for up to 4 s. */
@@ -191,10 +192,7 @@ static void put_stay(wh_json_text_t *text, const wh_signals_t *signals, const wh
 
 /* Indices of the stays by wafer, each wafer's in order of time: the list holds them in order of time alone. */
 static size_t *sort_stays(const wh_signals_t *signals, size_t *ends) {
-    size_t *sorted = calloc(signals->stay_count + 1, sizeof *sorted);
-    if (!sorted) {
-        abort();
-    }
+    size_t *sorted = wh_array_new(signals->stay_count + 1, sizeof *sorted);
     for (size_t i = 0; i < signals->stay_count; ++i) {
         ++ends[signals->stays[i].wafer];
     }
@@ -209,10 +207,7 @@ static size_t *sort_stays(const wh_signals_t *signals, size_t *ends) {
 
 static void put_wafers(wh_json_text_t *text, const wh_signals_t *signals) {
     const size_t wafers = signals->layout->wafer_count;
-    size_t *begins = calloc(wafers + 1, sizeof *begins);
-    if (!begins) {
-        abort();
-    }
+    size_t *begins = wh_array_new(wafers + 1, sizeof *begins);
     size_t *sorted = sort_stays(signals, begins);
     begins[wafers] = signals->stay_count;
     wh_json_text_begin(text, "wafers", '[');

@@ -46,10 +46,7 @@ static char *path_of(const char *folder, const char *name) {
         write_name(name, written);
     }
     const size_t size = strlen(folder) + strlen(written) + 3;
-    char *path = calloc(size, 1);
-    if (!path) {
-        abort();
-    }
+    char *path = wh_array_new(size, 1);
     (void)snprintf(path, size, "%s%s%s", folder, name ? "::" : "", written);
     return path;
 }

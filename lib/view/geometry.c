@@ -5,6 +5,7 @@
 
 #include "../link/messages.h"
 #include "../record/quaternion.h"
+#include "../text/array.h"
 #include "mesh.h"
 
 #define M_PER_MM 1e-3
@@ -16,14 +17,6 @@ typedef struct {
     uint32_t *corners;
     size_t corner_count;
 } triangles_t;
-
-static void *room_for(size_t count, size_t size) {
-    void *room = calloc(count + 1, size);
-    if (!room) {
-        abort();
-    }
-    return room;
-}
 
 void wh_view_put_pose(const wh_pose_t *pose, float position[3], float quaternion[4]) {
     double q[4];
@@ -42,7 +35,7 @@ static void put_lengths(waferhand_viewer_geometry *geometry, int8_t type, const 
                         size_t count) {
     geometry->type = type;
     geometry->num_float_data = (int32_t)count;
-    geometry->float_data = room_for(count, sizeof *geometry->float_data);
+    geometry->float_data = wh_array_new(count, sizeof *geometry->float_data);
     for (size_t i = 0; i < count; ++i) {
         geometry->float_data[i] = (float)(lengths[i] * M_PER_MM);
     }
@@ -77,8 +70,8 @@ static triangles_t triangles_of(const wh_convex_t *convex) {
     wh_mesh_t mesh = {0};
     triangles_t triangles = {0};
     wh_mesh_add_hull(&mesh, convex, &here);
-    triangles.points = room_for(mesh.vertex_count, sizeof *triangles.points);
-    triangles.corners = room_for(mesh.index_count, sizeof *triangles.corners);
+    triangles.points = wh_array_new(mesh.vertex_count, sizeof *triangles.points);
+    triangles.corners = wh_array_new(mesh.index_count, sizeof *triangles.corners);
     for (size_t i = 0; i < mesh.index_count; ++i) {
         triangles.corners[triangles.corner_count++] = index_of(&triangles, mesh.vertices[mesh.indices[i]]);
     }
@@ -89,7 +82,7 @@ static triangles_t triangles_of(const wh_convex_t *convex) {
 static void put_triangles(waferhand_viewer_geometry *geometry, const triangles_t *triangles) {
     const size_t count = 2 + 3 * triangles->point_count + triangles->corner_count;
     const size_t triangle_count = triangles->corner_count / 3;
-    float *to = room_for(count, sizeof *to);
+    float *to = wh_array_new(count, sizeof *to);
     geometry->type = WH_VIEW_TRIANGLES;
     geometry->num_float_data = (int32_t)count;
     geometry->float_data = to;

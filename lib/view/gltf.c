@@ -126,10 +126,7 @@ static size_t add_indices(wh_gltf_t *gltf, const wh_mesh_t *mesh) {
 /* Of each vertex three numbers from `first` on: its place in m, or its normal. */
 static size_t add_attribute(wh_gltf_t *gltf, const wh_mesh_t *mesh, size_t first) {
     const bool is_place = first == 0;
-    float *values = malloc((3 * mesh->vertex_count + 1) * sizeof *values);
-    if (!values) {
-        abort();
-    }
+    float *values = wh_array_new(3 * mesh->vertex_count, sizeof *values);
     for (size_t i = 0; i < 3 * mesh->vertex_count; ++i) {
         values[i] = mesh->vertices[i / 3][first + i % 3] * (is_place ? (float)METRES : 1);
     }

@@ -182,10 +182,7 @@ static bool start(hull_t *hull) {
 }
 
 void wh_mesh_add_hull(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t *body_from_shape) {
-    hull_t *hull = calloc(1, sizeof *hull);
-    if (!hull) {
-        abort();
-    }
+    hull_t *hull = wh_array_new(1, sizeof *hull);
     take_points(hull, convex);
     const size_t points = start(hull) ? hull->count : 0;
     for (size_t i = 0; i < points; ++i) {

@@ -3,15 +3,8 @@
 #include <string.h>
 
 #include "../layout/collision.h"
+#include "../text/array.h"
 #include "cell_internal.h"
-
-static void *room_for(size_t count, size_t size) {
-    void *room = calloc(count + 1, size);
-    if (!room) {
-        abort();
-    }
-    return room;
-}
 
 void wh_view_place(wh_view_cell_t *cell, size_t body, const wh_pose_t *base_from_body) {
     wh_view_put_pose(base_from_body, cell->draw.position[body], cell->draw.quaternion[body]);
@@ -22,11 +15,11 @@ void wh_view_draw_open(wh_view_cell_t *cell) {
     const wh_pose_t here = wh_pose_identity();
     waferhand_viewer_draw *draw = &cell->draw;
     draw->num_links = cell->load.num_links;
-    draw->link_name = room_for(count, sizeof *draw->link_name);
-    draw->robot_num = room_for(count, sizeof *draw->robot_num);
-    draw->position = room_for(count, sizeof *draw->position);
-    draw->quaternion = room_for(count, sizeof *draw->quaternion);
-    cell->places = room_for(count, sizeof *cell->places);
+    draw->link_name = wh_array_new(count, sizeof *draw->link_name);
+    draw->robot_num = wh_array_new(count, sizeof *draw->robot_num);
+    draw->position = wh_array_new(count, sizeof *draw->position);
+    draw->quaternion = wh_array_new(count, sizeof *draw->quaternion);
+    cell->places = wh_array_new(count, sizeof *cell->places);
     for (size_t i = 0; i < count; ++i) {
         draw->link_name[i] = cell->load.link[i].name;
         draw->position[i] = cell->places[i];

@@ -217,8 +217,7 @@ static wh_line_event_t take_lines(wh_prompt_t *prompt) {
 
 int wh_prompt_run(wh_prompt_t *prompt) {
     const wh_line_event_t event = take_lines(prompt);
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        fprintf(stderr, "standard output: %s\n", strerror(errno));
+    if (!wh_app_is_printed(0)) {
         return WH_EXIT_USAGE;
     }
     const bool failed = !prompt->editor && (prompt->failed || prompt->session->complaints > 0);

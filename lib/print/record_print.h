@@ -1,6 +1,15 @@
-/* A run's record as JSON, for programs.
+/* A run's record, for people and for programs.
  *
- * One object, its lists with one element a line. The keys, in this order: format (1), ok, failure (only when
+ * As tables, in this order, with what has nothing to say left out: what ran and with which tolerance; the commands, each
+ * with the wafers that it took and the values (2)-(5) of each pick beside their limits; what the commands
+ * that failed said; each hand-over as the chuck saw it; misses and complaints in plain words; where the
+ * wafers are, and which of them a gripper carries tilted; the expectations; wafers per hour; and the verdict.
+ *
+ * Lengths in mm, angles in degrees, times in simulated seconds. Numbers have as many decimals as it takes not
+ * to be rounded onto a limit or across it; offsets show 1e-9 mm. The same record gives the same bytes, but
+ * for the wall time in the last lines. Nothing is cut off at any width.
+ *
+ * As JSON, one object, its lists with one element a line. The keys, in this order: format (1), ok, failure (only when
  * the run ended in one), script, layout (path or null), slices, missed, simulated_s, wall_s, hash (16 hex digits),
  *   throughput:   { wafers, seconds, wafers_per_hour, first_cycle, last_cycle (of the marked cycles that count, from 1;
  *                 null: the whole run counts), puts (all of the run), rule (which puts count, in words; null: there
@@ -35,13 +44,25 @@
  * denormals included. NaN and infinities, which JSON has not, are null. Text that is no UTF-8 gets U+FFFD for
  * each wrong byte.
  */
-#ifndef WH_PRINT_RECORD_JSON_H
-#define WH_PRINT_RECORD_JSON_H
+#ifndef WH_PRINT_RECORD_PRINT_H
+#define WH_PRINT_RECORD_PRINT_H
 
 #include <jansson.h>
-#include <stdio.h>
 
 #include "../record/record.h"
+#include "../text/style.h"
+
+/* Sections that are printed when asked for, before the expectations. */
+enum {
+    /* Who was busy when, time along the line, as wide as the terminal; what each command's time went into. */
+    WH_TABLE_GANTT = 1,
+    /* How near the axes come to the ends of their travel at each station. */
+    WH_TABLE_MARGINS = 2
+};
+
+/* With these sections, added up. 0, or -1 if writing failed (then what is printed may be incomplete). `style` is usually
+ * wh_style_of(out). Cost: linear in the record. */
+int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t *style, unsigned sections);
 
 /* 0, or -1 if writing failed. Any LC_NUMERIC gives the same bytes. Cost: linear in the record, all of it in memory once
  * more. */
