@@ -10,7 +10,8 @@
 
 enum { WH_EXIT_MET = 0, WH_EXIT_FAILED = 1, WH_EXIT_USAGE = 2 };
 
-/* True if all that was to be printed has left; else says so on standard error. `status` is 0 if it could be made. */
+/* True if all that was to be printed has left; else says so on standard error. `status` is 0 if it could be
+ * made. */
 static inline bool wh_app_is_printed(int status) {
     const bool printed = status == 0 && fflush(stdout) == 0 && !ferror(stdout);
     if (!printed) {

@@ -65,7 +65,7 @@ bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options)
 
 static void print_counters(const wh_mcs_process_t *control) {
     const wh_protocol_client_counters_t *c = &control->client.counters;
-    /* A command that was sent twice is nothing to speak of. */
+    /* Repeated commands alone are normal: nothing is printed. */
     if (control->options.rate <= 0 && c->malformed + c->restored + c->silences == 0) {
         return;
     }

@@ -1,4 +1,5 @@
-/* How `run`, `sim` and `mcs` open LCM and a log of its messages, and how `sim` and `mcs` are ended by signals. */
+/* How `run`, `sim` and `mcs` open LCM and a log of its messages, and how `sim` and `mcs` are ended by
+ * signals. */
 #ifndef WH_APP_CONNECTION_H
 #define WH_APP_CONNECTION_H
 
@@ -9,10 +10,11 @@
 /* Set by SIGINT and SIGTERM once wh_catch_signals was called. */
 extern volatile sig_atomic_t wh_stop_requested;
 
-/* From now on SIGINT and SIGTERM ask for an end instead of making one, and interrupt waits. */
+/* From now on SIGINT and SIGTERM set wh_stop_requested and interrupt waits. They no longer end the
+ * process. */
 void wh_catch_signals(void);
 
-/* Opens the node, and the record when a path is given. On failure says so on standard error. */
+/* Opens the node, and the record if a path is given. Says on standard error why it fails. */
 bool wh_open_node(wh_node_t *node, const char *url, const char *record_path);
 
 /* Prints "NAME: text" on standard error; `user` is the name. */
@@ -34,7 +36,7 @@ typedef struct {
 /* Catches signals and opens LCM; says on standard error what is wrong. */
 bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
 
-/* Ends the run for all who listen, says what was lost on the way, and closes. */
+/* Tells all listeners that the run is over, prints which messages were lost, and closes. */
 void wh_mcs_link_close(wh_mcs_link_t *link);
 
 #endif

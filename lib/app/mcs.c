@@ -33,7 +33,7 @@ static const wh_option_table_t tables[] = {{options, 0, NULL},
                                            {wh_run_files_options, offsetof(arguments_t, run.files), NULL},
                                            {0}};
 
-/* True if something is to come of a script's run that a prompt has not. */
+/* True if an output is wanted that only a script's run has. */
 static bool wants_run(const wh_run_arguments_t *run) {
     return run->json || run->gantt || run->margins || run->segments_path || wh_run_files_wanted(&run->files);
 }
@@ -135,7 +135,7 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
         .partners = wh_mcs_process_partners(&link->control),
     };
     int status = WH_EXIT_USAGE;
-    /* Standard output is for answers. */
+    /* Standard output is for answers: what scripts print goes to standard error. */
     wanted.limits.print_to = stderr;
     if (wh_session_open(&session, &wanted)) {
         status = take_commands(&session, link);

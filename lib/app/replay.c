@@ -37,10 +37,10 @@ static const wh_command_line_t command_line = {
 typedef struct {
     wh_log_result_t result;
     uint64_t offset, events;
-    uint64_t first_garbage; /* byte; meaningful when there is garbage */
+    uint64_t first_garbage; /* byte; valid if there is garbage */
 } ending_t;
 
-/* ------------------------------------------------------------------------------------------------ for people */
+/* --------------------------------------------------------------------------------------------- for people */
 
 static void print_run(const wh_replay_run_t *run) {
     printf("run %016" PRIx64 ": slices %" PRId64 " to %" PRId64 ", %" PRId64 " compared, hash %016" PRIx64
@@ -95,7 +95,7 @@ static void print_table(const char *path, const wh_replay_t *replay, const endin
     puts(ok ? "every slice that was compared is as recorded" : "not shown to be as recorded");
 }
 
-/* ---------------------------------------------------------------------------------------------- for programs */
+/* ------------------------------------------------------------------------------------------- for programs */
 
 static json_t *run_to_json(const wh_replay_run_t *run) {
     char id[17];
@@ -152,7 +152,8 @@ static FILE *open_log(const char *path) {
 
 static wh_log_t record;
 
-/* The cell is told once a second: a recording may begin before it, and goes with the first one then. */
+/* Finds the first message that describes the cell. It is sent once a second, so a recording may begin before
+ * it. */
 static void find_cell(FILE *file, wh_replay_t *replay) {
     wh_log_open(&record, file);
     while (!replay->layout && wh_log_next(&record) == WH_LOG_EVENT) {

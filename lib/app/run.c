@@ -37,7 +37,7 @@ static const wh_command_line_t command_line = {
     .operand = "script",
     .operand_variable = offsetof(arguments_t, run.run.script)};
 
-/* With messages: published where LCM is, or within the process for the record's sake. */
+/* Runs with messages: over LCM, or within the process if only a record of them is wanted. */
 static int run_published(arguments_t *arguments) {
     static wh_broadcast_t broadcast;
     wh_node_t node;

@@ -93,7 +93,8 @@ static int hand_on(const wh_run_arguments_t *arguments, const wh_script_run_t *r
     if (!wh_app_is_printed(print_result(arguments, run))) {
         return WH_EXIT_USAGE;
     }
-    /* The table ends with it; where that is not on the same screen it would be missed. */
+    /* The table ends with the failure. Without a terminal nobody sees the table, so it goes to standard
+     * error, too. */
     if (run->record.failure && (arguments->json || !isatty(STDOUT_FILENO))) {
         fprintf(stderr, "%s\n", run->record.failure);
     }

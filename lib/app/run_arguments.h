@@ -1,4 +1,5 @@
-/* A script's run as subcommands offer it: `run SCRIPT` and `mcs SCRIPT` have the same options and print alike. */
+/* A script's run as subcommands offer it: `run SCRIPT` and `mcs SCRIPT` have the same options and print
+ * alike. */
 #ifndef WH_APP_RUN_ARGUMENTS_H
 #define WH_APP_RUN_ARGUMENTS_H
 
@@ -12,8 +13,8 @@ typedef struct {
     double budget, memory_mib; /* 0: the defaults */
     const char *segments_path;
     bool json, gantt, margins;
-    bool quiet;          /* print neither tables nor, without `json`, anything else */
-    const char *command; /* of the program, that plays it again; null: run */
+    bool quiet;          /* print no tables, and nothing at all without `json` */
+    const char *command; /* the subcommand that plays it again; null: run */
     wh_run_files_t files;
 } wh_run_arguments_t;
 

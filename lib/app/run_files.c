@@ -28,7 +28,7 @@ bool wh_run_files_wanted(const wh_run_files_t *files) {
     return files->page || files->scene || files->document || files->plots;
 }
 
-/* ------------------------------------------------------------------------------------------------- listening */
+/* ---------------------------------------------------------------------------------------------- listening */
 
 static void on_slice(void *user, const wh_mcs_t *mcs) {
     wh_signals_t *signals = user;
@@ -48,7 +48,7 @@ wh_mcs_listener_t wh_run_files_listener(wh_signals_t *signals) {
     return listener;
 }
 
-/* -------------------------------------------------------------------------------------------------- command */
+/* ------------------------------------------------------------------------------------------------ command */
 
 /* A stream whose text the caller frees. */
 static FILE *open_text(char **text, size_t *size) {
@@ -59,7 +59,7 @@ static FILE *open_text(char **text, size_t *size) {
     return out;
 }
 
-/* As a shell reads it back. */
+/* Writes a word so that a shell reads it back unchanged. */
 static void write_word(FILE *out, const char *word) {
     const char *plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=+,:@%";
     if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
@@ -92,7 +92,7 @@ char *wh_run_files_command(const char *command, const char *file, const char *co
     return text;
 }
 
-/* --------------------------------------------------------------------------------------------------- writing */
+/* ------------------------------------------------------------------------------------------------ writing */
 
 typedef struct {
     const wh_document_t *document;
@@ -100,7 +100,7 @@ typedef struct {
     size_t size;
 } content_t;
 
-/* Writes one of the files; false and `message`, or errno and an empty one. */
+/* Writes one of the files. On failure returns false, with a message, or with errno and an empty message. */
 typedef bool writer_t(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]);
 
 static bool write_page(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]) {

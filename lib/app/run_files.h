@@ -1,4 +1,5 @@
-/* The files that a run is written to, and their options: those of `report`, `run`, `mcs` and `study --trial` alike. */
+/* The files that a run is written to, and their options: those of `report`, `run`, `mcs` and `study --trial`
+ * alike. */
 #ifndef WH_APP_RUN_FILES_H
 #define WH_APP_RUN_FILES_H
 
@@ -18,15 +19,17 @@ extern const wh_option_t wh_run_files_options[];
 /* True if any is wanted. */
 bool wh_run_files_wanted(const wh_run_files_t *files);
 
-/* What collects a run for them. `signals` are zero before the run and must outlive it. */
+/* Returns the listener that collects a run for them. `signals` are zero before the run and must outlive
+ * it. */
 wh_mcs_listener_t wh_run_files_listener(wh_signals_t *signals);
 
-/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and a log. */
+/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and
+ * a log. */
 char *wh_run_files_command(const char *command, const char *file, const char *const parameters[],
                            size_t count);
 
-/* Writes those that are wanted, from a document that lacks only `run`, which is made of the record. Each file is there whole
- * or as it was. False, with a line on standard error, if one cannot be written. */
+/* Writes those that are wanted, from a document that lacks only `run`, which is made of the record. Each file
+ * is there whole or as it was. False, with a line on standard error, if one cannot be written. */
 bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *document);
 
 #endif

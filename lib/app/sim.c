@@ -65,7 +65,8 @@ static void update_valves(wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     simulation->valves = outputs->count > 0 ? outputs->valves : NULL;
 }
 
-/* Until a message or the file's folder has something, at most 100 ms; the record is made readable when neither had. */
+/* Waits for a message or a change of the file, at most 100 ms. If neither comes, flushes the record, so that
+ * others can read it. */
 static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     struct pollfd ready[] = {{.fd = wh_node_descriptor(node), .events = POLLIN},
                              {.fd = outputs->count > 0 ? wh_outputs_fd(outputs) : -1, .events = POLLIN}};
@@ -109,7 +110,7 @@ static bool open_view(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *lay
     return true;
 }
 
-/* Whatever was opened; the others are all zero. */
+/* Members that were not opened are all zero. */
 typedef struct {
     wh_sim_process_t simulation;
     wh_outputs_t outputs;

@@ -9,7 +9,7 @@
 
 #define MOST_TRIALS 1000000000
 
-/* What --trial is if it is not given. */
+/* The trial if --trial is not given. */
 #define NO_TRIAL UINT64_MAX
 
 typedef struct {
@@ -77,7 +77,7 @@ static const wh_command_line_t command_line = {
     .operand_variable = offsetof(arguments_t, run.run.script),
     .check = check};
 
-/* ---------------------------------------------------------------------------------------------------- the study */
+/* ---------------------------------------------------------------------------------------------- the study */
 
 static int print(const arguments_t *arguments, const wh_study_t *study, const wh_tally_t *tally) {
     const wh_study_result_t result = {study, tally, arguments->require, (size_t)arguments->worst};
@@ -109,7 +109,7 @@ static int play(const arguments_t *arguments, const wh_study_t *study, wh_ranks_
     }
 }
 
-/* What a script prints would stand among what others print. */
+/* Scripts print into /dev/null: the output of many trials would be mixed. */
 static int study_with(const arguments_t *arguments, FILE *nowhere) {
     static wh_study_t study;
     wh_ranks_t ranks;

@@ -75,7 +75,7 @@ uint64_t wh_pool_trials(const wh_pool_t *pool) {
     return __atomic_load_n(&pool->trials, __ATOMIC_RELAXED);
 }
 
-/* ----------------------------------------------------------------------------------------------------- one thread */
+/* --------------------------------------------------------------------------------------------- one thread */
 
 /* With the pool's lock held. */
 static void show(wh_pool_worker_t *worker) {
@@ -97,7 +97,7 @@ static void fail(wh_pool_worker_t *worker, uint64_t trial, const char *message) 
     wh_pool_stop(pool);
 }
 
-/* A block that is not finished counts for nothing. */
+/* Plays a block. One that is not finished is not counted. */
 static void play_block(wh_pool_worker_t *worker, uint64_t block) {
     wh_pool_t *pool = worker->pool;
     const uint64_t trials = wh_study_block_trials(pool->study, block);

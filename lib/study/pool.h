@@ -28,7 +28,8 @@ void wh_progress_clear(wh_progress_t *progress);
 
 typedef struct wh_pool_worker wh_pool_worker_t;
 
-/* Fields are read and written under `lock`, but for `stop` and `trials`, which are read and written as atomics. */
+/* Fields are read and written under `lock`, but for `stop` and `trials`, which are read and written as
+ * atomics. */
 typedef struct {
     const wh_study_t *study;
     pthread_mutex_t lock;
@@ -46,8 +47,8 @@ typedef struct {
     size_t worker_count;
 } wh_pool_t;
 
-/* Starts `threads` threads, without work yet; `study` must outlive them. Their signals are blocked. False when there is no memory
- * or thread for them; to be closed either way. */
+/* Starts `threads` threads, without work yet; `study` must outlive them. Their signals are blocked. False
+ * when there is no memory or thread for them; to be closed either way. */
 bool wh_pool_open(wh_pool_t *pool, const wh_study_t *study, size_t threads);
 
 /* Queues blocks; with `closed` no more will come. */
@@ -59,7 +60,8 @@ size_t wh_pool_take(wh_pool_t *pool, uint64_t blocks[], size_t most);
 /* How many blocks are queued. */
 size_t wh_pool_queued(wh_pool_t *pool);
 
-/* True if the workers are idle, all they did is in `progress` and nothing is queued; or if a trial was not usable. */
+/* True if the workers are idle, all they did is in `progress` and nothing is queued; or if a trial was not
+ * usable. */
 bool wh_pool_is_idle(wh_pool_t *pool);
 
 /* Makes the workers leave what they are at. */

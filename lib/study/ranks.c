@@ -31,9 +31,9 @@ int wh_ranks_here(void) {
     return here > 1 ? here : 1;
 }
 
-/* ------------------------------------------------------------------------------------------------------ joining */
+/* ------------------------------------------------------------------------------------------------ joining */
 
-/* Beside the program, or where `make install` puts it. */
+/* Loads the library: it is beside the program, or where `make install` puts it. */
 static void *open_library(void) {
     static const char *const places[] = {"/" LIBRARY, "/../lib/waferhand/" LIBRARY};
     char program[4096];
@@ -82,7 +82,7 @@ void wh_ranks_close(wh_ranks_t *ranks, int status) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- rank 0 */
+/* ------------------------------------------------------------------------------------------------- rank 0 */
 
 static bool take_progress(wh_pool_t *pool, int from, const char *text, size_t size) {
     char message[1024];
@@ -95,7 +95,7 @@ static bool take_progress(wh_pool_t *pool, int from, const char *text, size_t si
     return taken;
 }
 
-/* Fewer and fewer, so that all end at much the same time. */
+/* Sends fewer and fewer blocks, so that all ranks end at about the same time. */
 static bool send_blocks(const wh_ranks_t *ranks, wh_pool_t *pool, int to) {
     uint64_t blocks[MOST_BLOCKS];
     const size_t share = wh_pool_queued(pool) / (4 * (size_t)ranks->size) + 1;
@@ -118,7 +118,8 @@ static bool answer(wh_ranks_t *ranks, wh_pool_t *pool, int from, const char *tex
     return send_blocks(ranks, pool, from);
 }
 
-/* A message that has come, to be freed; null when there is none. `sound` becomes false when something is wrong. */
+/* A message that has come, to be freed; null when there is none. `sound` becomes false when something is
+ * wrong. */
 static char *take_message(const wh_ranks_t *ranks, int *from, size_t *size, bool *sound) {
     const int any = ranks->calls->look(from, size);
     if (any <= 0) {
@@ -145,7 +146,7 @@ bool wh_ranks_serve(wh_ranks_t *ranks, wh_pool_t *pool) {
     return sound;
 }
 
-/* ------------------------------------------------------------------------------------------------------- others */
+/* ------------------------------------------------------------------------------------------------- others */
 
 static bool tell(const wh_ranks_t *ranks, char kind, const char *text) {
     const size_t size = strlen(text) + 1;
@@ -157,7 +158,7 @@ static bool tell(const wh_ranks_t *ranks, char kind, const char *text) {
     return sent;
 }
 
-/* What was done since the last time. */
+/* Tells what was done since the last message. */
 static bool tell_progress(const wh_ranks_t *ranks, wh_pool_t *pool, char kind) {
     pthread_mutex_lock(&pool->lock);
     char *text = wh_checkpoint_text(pool->study, &pool->progress);
@@ -186,7 +187,7 @@ static bool take_blocks(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting,
     return sound;
 }
 
-/* Asks for more in time, and takes what comes. */
+/* Asks for more blocks before the queue is empty, and takes those that come. */
 static bool go_on(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting, bool *more) {
     bool sound = true;
     if (*more && !*wanting && wh_pool_queued(pool) <= 2 * pool->worker_count) {

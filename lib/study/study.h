@@ -7,7 +7,7 @@
 /* Trials are shared out by so many, and kept by so many. */
 #define WH_STUDY_BLOCK 256
 
-/* Of so many wafers it is told where they end up: the first that the run without errors takes. */
+/* The end is told of so many wafers: the first ones that the run without errors takes. */
 #define WH_STUDY_WAFERS 100
 
 /* So many of the worst trials are known. */
@@ -32,8 +32,8 @@ typedef struct {
     uint64_t script_hash, layout_hash; /* of the files' text */
 } wh_study_t;
 
-/* Plays the run without errors and gets ready for trials. Zero `study` but for run, seed and trials, and close it either
- * way. False, and the reason on stderr, when script, layout or study are not usable. */
+/* Plays the run without errors and gets ready for trials. Zero `study` but for run, seed and trials, and
+ * close it either way. False, and the reason on stderr, when script, layout or study are not usable. */
 bool wh_study_open(wh_study_t *study);
 void wh_study_close(wh_study_t *study);
 

@@ -21,7 +21,7 @@
 /* The bar is so wide. */
 #define CELLS 30
 
-/* ----------------------------------------------------------------------------------------------------- signals */
+/* ------------------------------------------------------------------------------------------------ signals */
 
 static volatile sig_atomic_t caught;
 
@@ -33,7 +33,7 @@ static bool is_interrupted(void) {
     return caught != 0;
 }
 
-/* One that was ignored stays ignored, as for a program in the background. */
+/* A signal that was ignored stays ignored, as for a program in the background. */
 static void catch_signals(void) {
     static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i) {
@@ -46,9 +46,9 @@ static void catch_signals(void) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- state */
+/* -------------------------------------------------------------------------------------------------- state */
 
-/* Where what is done is kept, and when it was last. */
+/* Where progress is kept, and when it was kept last. */
 typedef struct {
     char *path; /* null: nowhere */
     bool named; /* by the user: then it stays, and not being able to write is a failure */
@@ -145,7 +145,7 @@ static void bar_close(const bar_t *bar) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ playing */
+/* ------------------------------------------------------------------------------------------------ playing */
 
 static size_t count_threads(const wh_study_options_t *options) {
     cpu_set_t processors;
@@ -217,7 +217,7 @@ static void tell_interruption(const keeper_t *keeper, wh_pool_t *pool) {
             keeper->path ? keeper->path : "");
 }
 
-/* Threads that are stopped show what they have done: to be kept, too. */
+/* Stops the workers and waits until all that they have done is in the progress. */
 static void stop_workers(wh_pool_t *pool) {
     wh_pool_stop(pool);
     while (!wh_pool_is_idle(pool)) {

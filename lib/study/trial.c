@@ -28,7 +28,7 @@ static void begin(wh_worker_t *worker, uint64_t trial) {
     memset(outcome->events, 0, sizeof outcome->events);
 }
 
-/* ------------------------------------------------------------------------------------------------------ the decisions */
+/* ------------------------------------------------------------------------------------------ the decisions */
 
 typedef struct {
     wh_outcome_t *outcome;
@@ -93,7 +93,7 @@ static bool replay(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
     return true;
 }
 
-/* ----------------------------------------------------------------------------------------------------- the script */
+/* --------------------------------------------------------------------------------------------- the script */
 
 static void take_record(wh_worker_t *worker, const wh_record_t *record) {
     wh_outcome_t *outcome = &worker->outcome;

@@ -1,14 +1,14 @@
 /* Options of a command line, each bound to a variable by one line of a table, over argp.
  *
- *     typedef struct { const char *script; bool json; double rate; } arguments_t;
  *     static const wh_option_t options[] = {
- *         {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG, .variable = offsetof(arguments_t, json)},
- *         {"rate", 0, "FACTOR", "Run free at this factor of real time", WH_OPTION_REAL, .variable = offsetof(arguments_t, rate), 1e-3, 1e3,
- *          "a number from 0.001 to 1000"},
+ *         {"json", 0, NULL, "Print JSON", WH_OPTION_FLAG, .variable = offsetof(arguments_t, json)},
+ *         {"rate", 0, "FACTOR", "Run free at this factor of real time", WH_OPTION_REAL,
+ *          .variable = offsetof(arguments_t, rate), 1e-3, 1e3, "a number from 0.001 to 1000"},
  *         {0}};
  *
- * Variables are found by their offsets within a structure, so that tables are constant and commands can share them. What is
- * not given stays as it was. Wrong usage ends the program, as argp does: "--rate: x (expected a number from 0.001 to 1000)".
+ * Variables are found by their offsets within a structure, so that tables are constant and commands can share
+ * them. What is not given stays as it was. Wrong usage ends the program, as argp does:
+ * "--rate: x (expected a number from 0.001 to 1000)".
  */
 #ifndef WH_TEXT_OPTIONS_H
 #define WH_TEXT_OPTIONS_H

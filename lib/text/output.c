@@ -12,7 +12,7 @@ static bool is_plain(const char *path) {
     return stat(path, &status) != 0 || S_ISREG(status.st_mode);
 }
 
-/* As any new file would have it, or as the one that it replaces has it. */
+/* The permissions of the file that is replaced, or those of any new file. */
 static mode_t mode_of(const char *path) {
     struct stat status;
     if (stat(path, &status) == 0) {
@@ -49,7 +49,7 @@ bool wh_output_open(wh_output_t *output, const char *path) {
     return output->file != NULL;
 }
 
-/* On the disk, not only on its way to it: a power cut after the renaming must not leave an empty file. */
+/* True if all bytes are on the disk: a power cut after the renaming must not leave an empty file. */
 static bool is_stored(const wh_output_t *output) {
     return fflush(output->file) == 0 && !ferror(output->file) &&
            (output->beside[0] == '\0' || fsync(fileno(output->file)) == 0);

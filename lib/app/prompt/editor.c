@@ -22,7 +22,7 @@ struct wh_editor {
     History *history;
     char history_path[PATH_MAX];
     char *line;            /* the last one */
-    wh_line_event_t event; /* why the last character did not come */
+    wh_line_event_t event; /* why there is no further character */
     bool reading;
     mbstate_t decoding;
 };
@@ -41,7 +41,7 @@ static char *prompt_text(EditLine *edit) {
 
 /* --------------------------------------------------------------------------------------------- characters */
 
-/* The terminal as the shell expects it while we are stopped. */
+/* Stops the process; until it goes on the terminal is as the shell expects it. */
 static void suspend(EditLine *edit) {
     el_set(edit, EL_PREP_TERM, 0);
     raise(SIGSTOP);
@@ -81,7 +81,8 @@ static bool wait_for_byte(wh_editor_t *editor) {
     }
 }
 
-/* libedit's way to get a character: 1, or 0 for the end, or -1. Bytes that are none in the locale are dropped. */
+/* Reads a character for libedit. Returns 1, 0 at the end of the input, or -1. Bytes that are no characters of
+ * the locale are dropped. */
 static int read_character(EditLine *edit, wchar_t *character) {
     wh_editor_t *editor = editor_of(edit);
     while (wait_for_byte(editor)) {
@@ -127,7 +128,7 @@ static void open_history(wh_editor_t *editor) {
     el_set(editor->edit, EL_HIST, history, editor->history);
 }
 
-/* Without the blanks at its end, which completion leaves there. */
+/* Adds a line to the history, without the blanks that completion leaves at its end. */
 static void remember(wh_editor_t *editor, char *line) {
     size_t length = strlen(line);
     while (length > 0 && line[length - 1] == ' ') {
@@ -158,7 +159,7 @@ static size_t characters_in(const char *text) {
     return count == (size_t)-1 ? strlen(text) : count;
 }
 
-/* Candidates in columns below the line. */
+/* Prints the candidates in columns below the line. */
 static void list_candidates(const wh_candidates_t *candidates) {
     const wh_style_t style = wh_style_of(stdout);
     size_t column = 0;
@@ -189,8 +190,9 @@ static void replace_word(EditLine *edit, const char *word, const wh_candidates_t
     el_insertstr(edit, text);
 }
 
-/* Completes the word before the cursor as far as all candidates agree, the only one with a blank behind it; where they agree
- * no further, lists them below the line. Returns what an editor function returns to libedit. */
+/* Completes the word before the cursor as far as all candidates agree, the only one with a blank behind it;
+ * where they agree no further, lists them below the line. Returns what an editor function returns to
+ * libedit. */
 static unsigned char complete(EditLine *edit, int key) {
     wh_candidates_t candidates;
     const LineInfo *line = el_line(edit);
@@ -218,13 +220,13 @@ static unsigned char complete(EditLine *edit, int key) {
 
 /* ------------------------------------------------------------------------------------------------- editor */
 
-/* What ~/.editrc says comes last. */
+/* Reads ~/.editrc last, so that the user's settings win. */
 static void set_up(wh_editor_t *editor) {
     el_set(editor->edit, EL_CLIENTDATA, editor);
     el_set(editor->edit, EL_SIGNAL, 0);
     el_set(editor->edit, EL_PROMPT, prompt_text);
     el_set(editor->edit, EL_EDITOR, "emacs");
-    /* Wide, for of narrow names libedit makes copies that it never frees. */
+    /* The wide function: of narrow names libedit makes copies that it never frees. */
     el_wset(editor->edit, EL_ADDFN, L"wh-complete", L"completes a command or a name", complete);
     el_set(editor->edit, EL_BIND, "^I", "wh-complete", NULL);
     el_set(editor->edit, EL_BIND, "^R", "em-inc-search-prev", NULL);
@@ -254,7 +256,8 @@ wh_line_event_t wh_editor_read(wh_editor_t *editor, const char **line) {
     editor->event = WH_LINE_END;
     memset(&editor->decoding, 0, sizeof editor->decoding);
     editor->reading = true;
-    /* libedit itself would do it after it has shown the prompt: a Ctrl-D in between would be lost. */
+    /* libedit itself prepares the terminal after it has shown the prompt: a Ctrl-D in between would be
+     * lost. */
     el_set(editor->edit, EL_PREP_TERM, 1);
     const char *typed = el_gets(editor->edit, &length);
     editor->reading = false;

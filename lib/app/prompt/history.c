@@ -19,7 +19,7 @@ static char *read_text(const char *path) {
     char *text = NULL;
     const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd >= 0 && fstat(fd, &about) == 0 && S_ISREG(about.st_mode)) {
-        /* Of a longer file the end. */
+        /* Only the end of a long file is read. */
         const off_t skipped = about.st_size > WH_HISTORY_BYTES ? about.st_size - WH_HISTORY_BYTES : 0;
         text = calloc(1, WH_HISTORY_BYTES + 1);
         const ssize_t bytes = text ? pread(fd, text, WH_HISTORY_BYTES, skipped) : 0;
@@ -59,7 +59,7 @@ static size_t gather(char *text, const char *lines[WH_HISTORY_LINES]) {
 /* ------------------------------------------------------------------------------------------------- writing
  */
 
-/* Replaces the file by these lines, at once. */
+/* Replaces the file by these lines, as a whole. */
 static void rewrite(const char *path, const char *const lines[], size_t first, size_t count) {
     wh_output_t output = {0};
     if (!wh_output_open(&output, path)) {

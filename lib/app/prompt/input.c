@@ -18,9 +18,9 @@ static struct {
     struct sigaction before[HELD];
     sigset_t mask_before;
     sigset_t mask_held;
-    sigset_t mask_running; /* lets the first three in */
+    sigset_t mask_running; /* does not hold the first three */
     volatile sig_atomic_t arrived[HELD];
-    wh_session_t *volatile session; /* a command of which runs */
+    wh_session_t *volatile session; /* whose command runs now, or null */
 } signals;
 
 static void on_signal(int number) {

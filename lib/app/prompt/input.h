@@ -1,9 +1,10 @@
 /* Where the prompt waits: for standard input, for signals, and for the descriptors of others.
  *
- * While a prompt is open, signals arrive only where it waits and while a command runs, so that none is missed between a
- * look and a wait. Held are SIGINT, SIGTERM, SIGHUP, and for a terminal SIGTSTP and SIGWINCH; one that was ignored when the
- * program began stays ignored, one that its caller had blocked (for a signalfd) stays blocked. During a command the first
- * three stop it, the others wait. One thread, one prompt: what is held is the process's.
+ * While a prompt is open, signals arrive only where it waits and while a command runs, so that none is missed
+ * between a look and a wait. Held are SIGINT, SIGTERM, SIGHUP, and for a terminal SIGTSTP and SIGWINCH; one
+ * that was ignored when the program began stays ignored, one that its caller had blocked (for a signalfd)
+ * stays blocked. During a command the first three stop it, the others wait. One thread, one prompt: what is
+ * held is the process's.
  */
 #ifndef WH_APP_PROMPT_INPUT_H
 #define WH_APP_PROMPT_INPUT_H
@@ -30,13 +31,13 @@ wh_input_event_t wh_input_wait(wh_input_t *input);
 
 /* ------------------------------------------------------------------------------------------------ signals */
 
-/* From here on signals are held; until wh_interrupt_release. */
+/* Holds signals until wh_interrupt_release. */
 void wh_interrupt_hold(bool terminal);
 
-/* Handlers and mask as they were before. */
+/* Restores handlers and mask. */
 void wh_interrupt_release(void);
 
-/* A signal that has arrived and was not yet taken, 0 if there is none. */
+/* Takes one of the signals that have arrived. Returns 0 if there is none. */
 int wh_interrupt_take(void);
 
 /* Lets SIGINT, SIGTERM and SIGHUP in, to stop the session's command if one runs; null: holds them again. */

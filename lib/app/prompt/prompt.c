@@ -16,7 +16,7 @@ typedef struct {
     wh_input_t *input;
     char buffer[4096];
     size_t begin, end;
-    char line[WH_SESSION_LINE_BYTES + 2]; /* one more than a session takes: it then says so */
+    char line[WH_SESSION_LINE_BYTES + 2]; /* one more than a session takes, so that it refuses longer lines */
 } plain_t;
 
 struct wh_prompt {
@@ -74,7 +74,7 @@ void wh_prompt_leave(wh_prompt_t *prompt) {
 
 /* -------------------------------------------------------------------------------------------- plain lines */
 
-/* NONE: there was nothing to read after all. */
+/* WH_LINE_NONE if there was nothing to read. */
 static wh_line_event_t read_bytes(plain_t *plain) {
     const ssize_t bytes = read(STDIN_FILENO, plain->buffer, sizeof plain->buffer);
     plain->begin = 0;
@@ -109,7 +109,8 @@ static wh_line_event_t finish(plain_t *plain, size_t length) {
     return WH_LINE_READ;
 }
 
-/* The next line, in plain->line: without its end, cut if it is too long, a byte 0 replaced by 1, which is refused too. */
+/* The next line, in plain->line: without its end, cut if it is too long, a byte 0 replaced by 1, which is
+ * refused too. */
 static wh_line_event_t read_plain(plain_t *plain) {
     size_t length = 0;
     for (bool any = false;; any = true) {
@@ -145,7 +146,7 @@ static void print_answer(wh_prompt_t *prompt, wh_status_t status) {
         return;
     }
     char *printable = wh_style_printable(prompt->answer);
-    /* Behind the terminal's own ^C. */
+    /* The terminal has printed ^C: the answer begins on a new line. */
     if (status == WH_STATUS_STOPPED) {
         putchar('\n');
     }
@@ -154,8 +155,8 @@ static void print_answer(wh_prompt_t *prompt, wh_status_t status) {
     free(printable);
 }
 
-/* True if a signal that came during the command ends the prompt: at a terminal Ctrl-C has ended the command, which
- * was all that it was for. */
+/* True if a signal that came during the command ends the prompt. At a terminal Ctrl-C ends only the
+ * command. */
 static bool is_interrupted(const wh_prompt_t *prompt) {
     bool interrupted = false;
     for (int number = wh_interrupt_take(); number != 0; number = wh_interrupt_take()) {
@@ -182,7 +183,7 @@ static bool is_quit(const char *line) {
     return strncasecmp(line, "QUIT", 4) == 0 && line[4 + strspn(line + 4, " ")] == '\0';
 }
 
-/* A line that was cut may have said something behind its blanks. */
+/* True for blank lines and comments. A line of blanks that was cut does not count: its end is unknown. */
 static bool says_nothing(const char *line) {
     const size_t blanks = strspn(line, " ");
     return line[blanks] == '#' || (blanks <= WH_SESSION_LINE_BYTES && line[blanks] == '\0');
@@ -202,7 +203,7 @@ static bool take_line(wh_prompt_t *prompt, const char *line) {
     return fflush(stdout) == 0 && !prompt->input.leaving;
 }
 
-/* Reads and executes lines: END or LEAVING, as what ended them. */
+/* Reads and executes lines. Returns WH_LINE_END or WH_LINE_LEAVING. */
 static wh_line_event_t take_lines(wh_prompt_t *prompt) {
     const char *line = NULL;
     wh_line_event_t event = WH_LINE_NONE;
