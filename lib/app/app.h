@@ -3,7 +3,22 @@
 #ifndef WH_APP_APP_H
 #define WH_APP_APP_H
 
+#include <errno.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
 enum { WH_EXIT_MET = 0, WH_EXIT_FAILED = 1, WH_EXIT_USAGE = 2 };
+
+/* True if all that was to be printed has left; else says so on standard error. `status` is 0 if it could be
+ * made. */
+static inline bool wh_app_is_printed(int status) {
+    const bool printed = status == 0 && fflush(stdout) == 0 && !ferror(stdout);
+    if (!printed) {
+        fprintf(stderr, "standard output: %s\n", strerror(errno));
+    }
+    return printed;
+}
 
 int wh_app_run(int argc, char **argv);
 int wh_app_mcs(int argc, char **argv);

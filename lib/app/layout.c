@@ -8,7 +8,37 @@
 #include "app.h"
 #include "layout_arguments.h"
 
-enum { OPTION_JSON = 1000, OPTION_SVG };
+/* -------------------------------------------------------------------------------------- what sim has, too */
+
+const wh_option_t wh_layout_options[] = {{"set", 0, "NAME=VALUE", "Hand the layout a parameter: params.NAME",
+                                          WH_OPTION_LIST,
+                                          .variable = offsetof(wh_layout_arguments_t, parameters)},
+                                         {0}};
+
+const wh_layout_t *wh_layout_arguments_load(wh_layout_arguments_t *arguments) {
+    wh_sandbox_result_t result;
+    arguments->sandbox = wh_sandbox_new(NULL);
+    if (!arguments->sandbox) {
+        perror("waferhand");
+        return NULL;
+    }
+    bool taken = true;
+    for (size_t i = 0; taken && i < arguments->parameters.count; ++i) {
+        taken = wh_sandbox_set_parameter(arguments->sandbox, arguments->parameters.items[i], &result);
+    }
+    const wh_layout_t *layout = taken ? wh_layout_load(arguments->sandbox, arguments->path, &result) : NULL;
+    if (!layout) {
+        fprintf(stderr, "%s\n", result.message);
+    }
+    return layout;
+}
+
+void wh_layout_arguments_free(wh_layout_arguments_t *arguments) {
+    wh_sandbox_free(arguments->sandbox);
+    wh_option_list_free(&arguments->parameters);
+}
+
+/* ------------------------------------------------------------------------------------------------- layout */
 
 typedef struct {
     wh_layout_arguments_t layout;
@@ -16,28 +46,25 @@ typedef struct {
     bool json;
 } arguments_t;
 
-static const struct argp_option options[] = {
-    {"json", OPTION_JSON, NULL, 0, "Print one JSON object instead of tables", 0},
-    {"svg", OPTION_SVG, "FILE", 0, "Also draw the cell into FILE, from above and from the side", 0},
-    {0},
-};
+static const wh_option_t options[] = {{"json", 0, NULL, "Print one JSON object instead of tables",
+                                       WH_OPTION_FLAG, .variable = offsetof(arguments_t, json)},
+                                      {"svg", 0, "FILE",
+                                       "Also draw the cell into FILE, from above and from the side",
+                                       WH_OPTION_TEXT, .variable = offsetof(arguments_t, svg)},
+                                      {0}};
 
-static error_t parse(int key, char *argument, struct argp_state *state) {
-    arguments_t *arguments = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &arguments->layout;
-        return 0;
-    case OPTION_JSON:
-        arguments->json = true;
-        return 0;
-    case OPTION_SVG:
-        arguments->svg = argument;
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
+static const wh_option_table_t tables[] = {
+    {options, 0, NULL}, {wh_layout_options, offsetof(arguments_t, layout), NULL}, {0}};
+
+static const wh_command_line_t command_line = {
+    .name = "layout",
+    .synopsis = "LAYOUT",
+    .about = "Lists what a layout describes, checks it before anything moves, and draws it.\v"
+             "Exit status: 0 if nothing is wrong with it, 1 if something is, 2 for wrong usage or a bad "
+             "input file.",
+    .tables = tables,
+    .operand = "layout",
+    .operand_variable = offsetof(arguments_t, layout.path)};
 
 static bool write_svg(const wh_feasibility_t *check, const char *path) {
     wh_output_t output = {0};
@@ -54,8 +81,7 @@ static int print(const arguments_t *arguments, const wh_feasibility_t *check) {
     const wh_style_t style = wh_style_of(stdout);
     const int status =
         arguments->json ? wh_layout_print_json(check, stdout) : wh_layout_print_table(check, stdout, &style);
-    if (status != 0 || fflush(stdout) != 0) {
-        fprintf(stderr, "standard output: %s\n", strerror(errno));
+    if (!wh_app_is_printed(status)) {
         return WH_EXIT_USAGE;
     }
     return check->count > 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
@@ -72,29 +98,11 @@ static int look_at(const arguments_t *arguments, const wh_layout_t *layout) {
     return status;
 }
 
-static int run(const arguments_t *arguments) {
-    const wh_layout_t *layout = wh_layout_arguments_load(&arguments->layout);
-    return layout ? look_at(arguments, layout) : WH_EXIT_USAGE;
-}
-
 int wh_app_layout(int argc, char **argv) {
-    static const struct argp_child children[] = {{&wh_layout_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {
-        options,
-        parse,
-        NULL,
-        "Lists what a layout describes, checks it before anything moves, and draws it.\v"
-        "Exit status: 0 if nothing is wrong with it, 1 if something is, 2 for wrong usage or a "
-        "bad input file.",
-        children,
-        NULL,
-        NULL};
-    static char name[] = "waferhand layout";
     arguments_t arguments = {0};
-    wh_layout_arguments_init(&arguments.layout, argc);
-    argv[0] = name;
-    argp_parse(&argp, argc, argv, 0, NULL, &arguments);
-    const int status = run(&arguments);
+    wh_options_parse(&command_line, argc, argv, &arguments);
+    const wh_layout_t *layout = wh_layout_arguments_load(&arguments.layout);
+    const int status = layout ? look_at(&arguments, layout) : WH_EXIT_USAGE;
     wh_layout_arguments_free(&arguments.layout);
     return status;
 }

@@ -2,26 +2,22 @@
 #ifndef WH_APP_LAYOUT_ARGUMENTS_H
 #define WH_APP_LAYOUT_ARGUMENTS_H
 
-#include <argp.h>
-
 #include "../layout/layout.h"
+#include "../text/options.h"
 
+/* Zero it to begin with. */
 typedef struct {
     const char *path;
-    const char **parameters; /* room for one for each argument */
-    size_t parameter_count;
+    wh_option_list_t parameters;
     wh_sandbox_t *sandbox; /* in which the layout is read, and which owns it */
 } wh_layout_arguments_t;
 
-/* LAYOUT and --set, as a child of a subcommand's parser; its input is a wh_layout_arguments_t that
- * wh_layout_arguments_init has seen. */
-extern const struct argp wh_layout_argp;
+/* --set, into a wh_layout_arguments_t; the path is the subcommand's operand. */
+extern const wh_option_t wh_layout_options[];
 
-/* Room for as many parameters as there are arguments; ends the program when there is no memory. */
-void wh_layout_arguments_init(wh_layout_arguments_t *arguments, int argc);
+/* Reads the layout. Null if it or a parameter is refused: standard error then says why. */
+const wh_layout_t *wh_layout_arguments_load(wh_layout_arguments_t *arguments);
+
 void wh_layout_arguments_free(wh_layout_arguments_t *arguments);
-
-/* Reads the layout. Null when it or a parameter is refused: standard error then says why. */
-const wh_layout_t *wh_layout_arguments_load(const wh_layout_arguments_t *arguments);
 
 #endif

@@ -35,7 +35,7 @@ static void print_help(FILE *out) {
 }
 
 int main(int argc, char **argv) {
-    /* Only what characters are: numbers and sorting stay those of the "C" locale. */
+    /* The locale says which bytes are characters. Numbers and sorting stay those of the "C" locale. */
     setlocale(LC_CTYPE, "");
     argp_err_exit_status = WH_EXIT_USAGE;
     argp_program_version = "waferhand " WH_VERSION;

@@ -3,13 +3,10 @@
 #include <sys/timerfd.h>
 #include <unistd.h>
 
-#include "../text/number.h"
 #include "app.h"
-#include "mcs_link.h"
+#include "connection.h"
 #include "prompt/prompt.h"
 #include "run_arguments.h"
-
-enum { OPTION_LAYOUT = 2000, OPTION_URL, OPTION_RECORD, OPTION_RATE, OPTION_OUTPUTS };
 
 typedef struct {
     wh_run_arguments_t run;
@@ -17,67 +14,57 @@ typedef struct {
     const char *layout;
 } arguments_t;
 
-static const struct argp_option options[] = {
-    {"layout", OPTION_LAYOUT, "FILE", 0,
-     "Take commands from a prompt and from WAFERHAND_REQUEST, in the cell of this layout", 0},
-    {"lcm-url", OPTION_URL, "URL", 0, "Where LCM is (default " WH_NODE_URL ")", 0},
-    {"record", OPTION_RECORD, "FILE", 0, "Write all messages into an LCM event log", 0},
-    {"rate", OPTION_RATE, "FACTOR", 0, "Run free at this factor of real time instead of in lockstep", 0},
-    {"outputs", OPTION_OUTPUTS, "FILE", 0, "Write the valves to this file, too, one value per gripper", 0},
-    {0},
-};
+static const wh_option_t options[] = {
+    {"layout", 0, "FILE",
+     "Take commands from a prompt and from WAFERHAND_REQUEST, in the cell of this layout", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, layout)},
+    {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL ")", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, link.url)},
+    {"record", 0, "FILE", "Write all messages into an LCM event log", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, link.record)},
+    {"rate", 0, "FACTOR", "Run free at this factor of real time instead of in lockstep", WH_OPTION_REAL,
+     .variable = offsetof(arguments_t, link.rate), 1e-3, 1e3, "a number from 0.001 to 1000"},
+    {"outputs", 0, "FILE", "Write the valves to this file, too, one value per gripper", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, link.outputs)},
+    {0}};
 
-static void check(const arguments_t *arguments, struct argp_state *state) {
+static const wh_option_table_t tables[] = {{options, 0, NULL},
+                                           {wh_run_options, offsetof(arguments_t, run), NULL},
+                                           {wh_run_files_options, offsetof(arguments_t, run.files), NULL},
+                                           {0}};
+
+/* True if an output is wanted that only a script's run has. */
+static bool wants_run(const wh_run_arguments_t *run) {
+    return run->json || run->gantt || run->margins || run->segments_path || wh_run_files_wanted(&run->files);
+}
+
+static void check(const void *given, struct argp_state *state) {
+    const arguments_t *arguments = given;
     if (!arguments->run.run.script && !arguments->layout) {
         argp_error(state, "which script, or which --layout?");
     }
     if (arguments->run.run.script && arguments->layout) {
         argp_error(state, "--layout: %s (a script names its layout itself)", arguments->layout);
     }
-    if (arguments->layout &&
-        (arguments->run.json || arguments->run.sections || arguments->run.segments_path ||
-         wh_report_files_wanted(&arguments->run.files))) {
+    if (arguments->layout && wants_run(&arguments->run)) {
         argp_error(state,
                    "--json, --gantt, --margins, --segments, --report, --gltf and --data go with a script");
     }
 }
 
-static double take_rate(const struct argp_state *state, const char *text) {
-    double rate = 0;
-    if (!wh_number_read(text, 1e-3, 1e3, &rate)) {
-        argp_error(state, "--rate: %s (expected a number from 0.001 to 1000)", text);
-    }
-    return rate;
-}
-
-static error_t parse(int key, char *argument, struct argp_state *state) {
-    arguments_t *arguments = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &arguments->run;
-        return 0;
-    case OPTION_LAYOUT:
-        arguments->layout = argument;
-        return 0;
-    case OPTION_URL:
-        arguments->link.url = argument;
-        return 0;
-    case OPTION_RECORD:
-        arguments->link.record = argument;
-        return 0;
-    case OPTION_OUTPUTS:
-        arguments->link.outputs = argument;
-        return 0;
-    case OPTION_RATE:
-        arguments->link.rate = take_rate(state, argument);
-        return 0;
-    case ARGP_KEY_END:
-        check(arguments, state);
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
+static const wh_command_line_t command_line = {
+    .name = "mcs",
+    .synopsis = "SCRIPT\n--layout FILE",
+    .about = "Motion control over LCM: plays a script against the simulator, or takes an operator's commands "
+             "such as GET A 1 "
+             "from standard input and WAFERHAND_REQUEST and answers each in one line.\v"
+             "Exit status: 0 if all expectations were met or all commands succeeded, 1 if not or if the cell "
+             "failed, "
+             "2 for wrong usage or a bad input file. At a terminal commands may fail.",
+    .tables = tables,
+    .operand = "script",
+    .operand_variable = offsetof(arguments_t, run.run.script),
+    .check = check};
 
 /* --------------------------------------------------------------------------------------------- the prompt */
 
@@ -148,7 +135,7 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
         .partners = wh_mcs_process_partners(&link->control),
     };
     int status = WH_EXIT_USAGE;
-    /* Standard output is for answers. */
+    /* Standard output is for answers: what scripts print goes to standard error. */
     wanted.limits.print_to = stderr;
     if (wh_session_open(&session, &wanted)) {
         status = take_commands(&session, link);
@@ -171,25 +158,9 @@ static int run_linked(arguments_t *arguments) {
 }
 
 int wh_app_mcs(int argc, char **argv) {
-    static const struct argp_child children[] = {{&wh_run_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {
-        options,
-        parse,
-        "SCRIPT\n--layout FILE",
-        "Motion control over LCM: plays a script against the simulator, or takes an operator's commands such "
-        "as GET A 1 "
-        "from standard input and WAFERHAND_REQUEST and answers each in one line.\v"
-        "Exit status: 0 if all expectations were met or all commands succeeded, 1 if not or if the cell "
-        "failed, "
-        "2 for wrong usage or a bad input file. At a terminal commands may fail.",
-        children,
-        NULL,
-        NULL};
-    static char name[] = "waferhand mcs";
     arguments_t arguments = {0};
-    wh_run_arguments_init(&arguments.run, argc);
-    argv[0] = name;
-    argp_parse(&argp, argc, argv, 0, NULL, &arguments);
+    wh_options_parse(&command_line, argc, argv, &arguments);
+    wh_run_arguments_take(&arguments.run);
     const int status = run_linked(&arguments);
     wh_run_arguments_free(&arguments.run);
     return status;

@@ -1,60 +1,52 @@
 /* waferhand report RUN */
-#include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../log/log_run.h"
-#include "../text/number.h"
 #include "app.h"
 #include "run_arguments.h"
-
-enum { OPTION_LAYOUT = 5000, OPTION_RUN };
 
 typedef struct {
     wh_run_arguments_t run; /* run.run.script is RUN, whatever it is */
     const char *layout;
-    size_t number;
+    uint64_t number; /* 0: the last */
 } arguments_t;
 
-static const struct argp_option options[] = {
-    {"layout", OPTION_LAYOUT, "FILE", 0, "Of a log: its layout's file, if it is not where the log says", 0},
-    {"run", OPTION_RUN, "N", 0, "Of a log: its N-th run (default: the last)", 0},
-    {0},
-};
+static const wh_option_t options[] = {
+    {"layout", 0, "FILE", "Of a log: its layout's file, if it is not where the log says", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, layout)},
+    {"run", 0, "N", "Of a log: its N-th run (default: the last)", WH_OPTION_COUNT,
+     .variable = offsetof(arguments_t, number), .least = 1, .expected = "a whole number from 1"},
+    {0}};
 
-static size_t run_number(const struct argp_state *state, const char *text) {
-    uint64_t number = 0;
-    if (!wh_number_read_whole(text, &number) || number == 0) {
-        argp_error(state, "--run: %s (expected a whole number from 1)", text);
+static const wh_option_table_t tables[] = {{options, 0, NULL},
+                                           {wh_run_options, offsetof(arguments_t, run), NULL},
+                                           {wh_run_files_options, offsetof(arguments_t, run.files), NULL},
+                                           {0}};
+
+static void check(const void *given, struct argp_state *state) {
+    const arguments_t *arguments = given;
+    if (!arguments->run.run.script) {
+        argp_error(state, "of which run?");
     }
-    return number;
-}
-
-static error_t parse(int key, char *argument, struct argp_state *state) {
-    arguments_t *arguments = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &arguments->run;
-        return 0;
-    case OPTION_LAYOUT:
-        arguments->layout = argument;
-        return 0;
-    case OPTION_RUN:
-        arguments->number = run_number(state, argument);
-        return 0;
-    case ARGP_KEY_END:
-        if (!arguments->run.run.script) {
-            argp_error(state, "of which run?");
-        }
-        if (!wh_report_files_wanted(&arguments->run.files)) {
-            argp_error(state, "into which file? (-o FILE, --gltf FILE, --data FILE or --svg DIR)");
-        }
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
+    if (!wh_run_files_wanted(&arguments->run.files)) {
+        argp_error(state, "into which file? (-o FILE, --gltf FILE, --data FILE or --svg DIR)");
     }
 }
+
+static const wh_command_line_t command_line = {
+    .name = "report",
+    .synopsis = "RUN",
+    .about =
+        "Makes a page of a run, which is a script that is run again, or an LCM event log: the cell in "
+        "motion, plots "
+        "and tables, in one file that opens without a network; or its plots for print.\v"
+        "Exit status: 0 if it was written, whatever came of the run; 2 for wrong usage or a bad input file.",
+    .tables = tables,
+    .operand = "script",
+    .operand_variable = offsetof(arguments_t, run.run.script),
+    .check = check};
 
 static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
     const wh_script_run_options_t *given = &arguments->run.run;
@@ -64,7 +56,7 @@ static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
         fprintf(stderr, "%s\n", run->message);
         return false;
     }
-    char *command = wh_print_command("replay", given->script, NULL, 0);
+    char *command = wh_run_files_command("replay", given->script, NULL, 0);
     const wh_document_t document = {.title = given->script,
                                     .reproduce = command,
                                     .source = "log",
@@ -74,7 +66,7 @@ static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
                                     .note_count = run->note_count,
                                     .record = &run->record,
                                     .signals = &run->signals};
-    const bool written = wh_report_files_write(&arguments->run.files, &document);
+    const bool written = wh_run_files_write(&arguments->run.files, &document);
     free(command);
     return written;
 }
@@ -113,23 +105,9 @@ static int report_script(arguments_t *arguments) {
 }
 
 int wh_app_report(int argc, char **argv) {
-    static const struct argp_child children[] = {{&wh_run_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {
-        options,
-        parse,
-        "RUN",
-        "Makes a page of a run, which is a script that is run again, or an LCM event log: the cell in "
-        "motion, plots "
-        "and tables, in one file that opens without a network; or its plots for print.\v"
-        "Exit status: 0 if it was written, whatever came of the run; 2 for wrong usage or a bad input file.",
-        children,
-        NULL,
-        NULL};
-    static char name[] = "waferhand report";
     arguments_t arguments = {.run = {.quiet = true}};
-    wh_run_arguments_init(&arguments.run, argc);
-    argv[0] = name;
-    argp_parse(&argp, argc, argv, 0, NULL, &arguments);
+    wh_options_parse(&command_line, argc, argv, &arguments);
+    wh_run_arguments_take(&arguments.run);
     const bool is_log = wh_log_run_is_log(arguments.run.run.script);
     const int status = is_log ? report_log(&arguments) : report_script(&arguments);
     wh_run_arguments_free(&arguments.run);

@@ -6,97 +6,29 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../print/record_json.h"
-#include "../print/record_table.h"
-#include "../text/number.h"
+#include "../print/record_print.h"
 #include "../text/style.h"
 #include "app.h"
 #include "segments.h"
 
-enum {
-    OPTION_JSON = 1000,
-    OPTION_SEGMENTS,
-    OPTION_SET,
-    OPTION_TRUST,
-    OPTION_BUDGET,
-    OPTION_MEMORY,
-    OPTION_GANTT,
-    OPTION_MARGINS
-};
-
-static const struct argp_option options[] = {
-    {"json", OPTION_JSON, NULL, 0, "Print the result as one JSON object", 0},
-    {"gantt", OPTION_GANTT, NULL, 0, "Also print who was busy when, and what each command's time went into",
-     0},
-    {"margins", OPTION_MARGINS, NULL, 0,
-     "Also print how near the axes come to the ends of their travel at each station", 0},
-    {"segments", OPTION_SEGMENTS, "FILE", 0,
-     "Write the motion that was played as C source for a firmware test", 0},
-    {"set", OPTION_SET, "NAME=VALUE", 0, "Hand the script a parameter: params.NAME", 0},
-    {"trust", OPTION_TRUST, NULL, 0, "Let the script use all of Lua, files and native modules too", 0},
-    {"budget", OPTION_BUDGET, "N", 0,
-     "End the script after N steps of Lua and simulated slices (default 1e9)", 0},
-    {"memory", OPTION_MEMORY, "MIB", 0, "Let the script use so many MiB of memory (default 256)", 0},
-    {0},
-};
-
-/* A whole number in a range, given as 1000000 or 1e6. */
-static double whole_number(const struct argp_state *state, const char *name, const char *text, double max) {
-    double value = 0;
-    if (!wh_number_read(text, 1, max, &value)) {
-        argp_error(state, "--%s: %s (expected a number from 1 to %g)", name, text, max);
-    }
-    return value;
-}
-
-/* An option without an argument; false when it is none. */
-static bool take_flag(wh_run_arguments_t *arguments, int key) {
-    switch (key) {
-    case OPTION_JSON:
-        arguments->json = true;
-        return true;
-    case OPTION_GANTT:
-        arguments->sections |= WH_TABLE_GANTT;
-        return true;
-    case OPTION_MARGINS:
-        arguments->sections |= WH_TABLE_MARGINS;
-        return true;
-    case OPTION_TRUST:
-        arguments->run.limits.trust = true;
-        return true;
-    default:
-        return false;
-    }
-}
-
-static error_t parse(int key, char *argument, struct argp_state *state) {
-    wh_run_arguments_t *arguments = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &arguments->files;
-        return 0;
-    case OPTION_SEGMENTS:
-        arguments->segments_path = argument;
-        return 0;
-    case OPTION_SET:
-        arguments->parameters[arguments->run.parameter_count++] = argument;
-        return 0;
-    case OPTION_BUDGET:
-        arguments->run.limits.instructions = (uint64_t)whole_number(state, "budget", argument, 1e18);
-        return 0;
-    case OPTION_MEMORY:
-        arguments->run.limits.memory_bytes = (size_t)(whole_number(state, "memory", argument, 1e6) * 1048576);
-        return 0;
-    case ARGP_KEY_ARG:
-        if (arguments->run.script) {
-            argp_error(state, "%s: one script is enough", argument);
-        }
-        arguments->run.script = argument;
-        return 0;
-    default:
-        return take_flag(arguments, key) ? 0 : ARGP_ERR_UNKNOWN;
-    }
-}
+const wh_option_t wh_run_options[] = {
+    {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
+     .variable = offsetof(wh_run_arguments_t, json)},
+    {"gantt", 0, NULL, "Also print who was busy when, and what each command's time went into", WH_OPTION_FLAG,
+     .variable = offsetof(wh_run_arguments_t, gantt)},
+    {"margins", 0, NULL, "Also print how near the axes come to the ends of their travel at each station",
+     WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, margins)},
+    {"segments", 0, "FILE", "Write the motion that was played as C source for a firmware test",
+     WH_OPTION_TEXT, .variable = offsetof(wh_run_arguments_t, segments_path)},
+    {"set", 0, "NAME=VALUE", "Hand the script a parameter: params.NAME", WH_OPTION_LIST,
+     .variable = offsetof(wh_run_arguments_t, parameters)},
+    {"trust", 0, NULL, "Let the script use all of Lua, files and native modules too", WH_OPTION_FLAG,
+     .variable = offsetof(wh_run_arguments_t, run.limits.trust)},
+    {"budget", 0, "N", "End the script after N steps of Lua and simulated slices (default 1e9)",
+     WH_OPTION_REAL, .variable = offsetof(wh_run_arguments_t, budget), 1, 1e18, "a number from 1 to 1e+18"},
+    {"memory", 0, "MIB", "Let the script use so many MiB of memory (default 256)", WH_OPTION_REAL,
+     .variable = offsetof(wh_run_arguments_t, memory_mib), 1, 1e6, "a number from 1 to 1e+06"},
+    {0}};
 
 static int print_result(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
     if (arguments->json) {
@@ -106,7 +38,9 @@ static int print_result(const wh_run_arguments_t *arguments, const wh_script_run
         return 0;
     }
     const wh_style_t style = wh_style_of(stdout);
-    return wh_record_print_table_with(&run->record, stdout, &style, arguments->sections);
+    const unsigned sections =
+        (arguments->gantt ? WH_TABLE_GANTT : 0U) | (arguments->margins ? WH_TABLE_MARGINS : 0U);
+    return wh_record_print_table(&run->record, stdout, &style, sections);
 }
 
 static bool write_segments(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
@@ -121,7 +55,7 @@ static bool write_segments(const wh_run_arguments_t *arguments, const wh_script_
 static bool write_report(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                          wh_signals_t *signals) {
     const wh_script_run_options_t *script = &arguments->run;
-    if (!wh_report_files_wanted(&arguments->files)) {
+    if (!wh_run_files_wanted(&arguments->files)) {
         return true;
     }
     if (!run->record.layout) {
@@ -133,8 +67,8 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
         wh_signals_begin(signals, run->record.layout, true);
     }
     wh_signals_finish(signals);
-    char *command = wh_print_command(arguments->command ? arguments->command : "run", script->script,
-                                     script->parameters, script->parameter_count);
+    char *command = wh_run_files_command(arguments->command ? arguments->command : "run", script->script,
+                                         script->parameters, script->parameter_count);
     const wh_document_t document = {.title = script->script,
                                     .reproduce = command,
                                     .source = "run",
@@ -142,13 +76,13 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
                                     .parameter_count = script->parameter_count,
                                     .record = &run->record,
                                     .signals = signals};
-    const bool written = wh_report_files_write(&arguments->files, &document);
+    const bool written = wh_run_files_write(&arguments->files, &document);
     free(command);
     return written;
 }
 
-static int report(const wh_run_arguments_t *arguments, const wh_script_run_t *run, wh_signals_t *signals,
-                  wh_script_run_outcome_t outcome) {
+static int hand_on(const wh_run_arguments_t *arguments, const wh_script_run_t *run, wh_signals_t *signals,
+                   wh_script_run_outcome_t outcome) {
     if (outcome == WH_RUN_BAD_INPUT) {
         fprintf(stderr, "%s\n", run->message);
         return WH_EXIT_USAGE;
@@ -156,45 +90,39 @@ static int report(const wh_run_arguments_t *arguments, const wh_script_run_t *ru
     if (!write_segments(arguments, run) || !write_report(arguments, run, signals)) {
         return WH_EXIT_USAGE;
     }
-    if (print_result(arguments, run) != 0 || fflush(stdout) != 0) {
-        fprintf(stderr, "standard output: %s\n", strerror(errno));
+    if (!wh_app_is_printed(print_result(arguments, run))) {
         return WH_EXIT_USAGE;
     }
-    /* The table ends with it; where that is not on the same screen it would be missed. */
+    /* The table ends with the failure. Without a terminal nobody sees the table, so it goes to standard
+     * error, too. */
     if (run->record.failure && (arguments->json || !isatty(STDOUT_FILENO))) {
         fprintf(stderr, "%s\n", run->record.failure);
     }
     return outcome == WH_RUN_MET ? WH_EXIT_MET : WH_EXIT_FAILED;
 }
 
-void wh_run_arguments_init(wh_run_arguments_t *arguments, int argc) {
-    arguments->parameters = calloc((size_t)argc + 1, sizeof *arguments->parameters);
-    if (!arguments->parameters) {
-        perror("waferhand");
-        exit(WH_EXIT_USAGE);
-    }
-    arguments->run.parameters = arguments->parameters;
+void wh_run_arguments_take(wh_run_arguments_t *arguments) {
+    arguments->run.parameters = arguments->parameters.items;
+    arguments->run.parameter_count = arguments->parameters.count;
+    arguments->run.limits.instructions = (uint64_t)arguments->budget;
+    arguments->run.limits.memory_bytes = (size_t)(arguments->memory_mib * 1048576);
 }
 
 void wh_run_arguments_free(wh_run_arguments_t *arguments) {
-    free(arguments->parameters);
-    arguments->parameters = NULL;
+    wh_option_list_free(&arguments->parameters);
 }
 
 int wh_run_and_print(wh_run_arguments_t *arguments) {
     wh_script_run_t run;
     wh_signals_t signals = {0};
-    if (wh_report_files_wanted(&arguments->files)) {
-        arguments->run.listener = wh_print_listener(&signals);
+    if (wh_run_files_wanted(&arguments->files)) {
+        arguments->run.listener = wh_run_files_listener(&signals);
     }
     arguments->run.keep_segments = arguments->segments_path != NULL;
     arguments->run.limits.print_to = arguments->json ? stderr : stdout;
     const wh_script_run_outcome_t outcome = wh_script_run(&run, &arguments->run);
-    const int status = report(arguments, &run, &signals, outcome);
+    const int status = hand_on(arguments, &run, &signals, outcome);
     wh_signals_close(&signals);
     wh_script_run_close(&run);
     return status;
 }
-
-static const struct argp_child children[] = {{&wh_report_files_argp, 0, NULL, 0}, {0}};
-const struct argp wh_run_argp = {options, parse, NULL, NULL, children, NULL, NULL};

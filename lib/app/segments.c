@@ -26,7 +26,7 @@ static void write_limits(FILE *out, const wh_limits_t *limits) {
     fprintf(out, "{%a, %a, %a}", limits->speed, limits->acceleration, limits->jerk);
 }
 
-/* ------------------------------------------------------------------------------------------------- machine */
+/* ------------------------------------------------------------------------------------------------ machine */
 
 static void write_robot(FILE *out, const wh_robot_t *robot) {
     fputs("    .robot = {.travel = {", out);
@@ -60,7 +60,7 @@ static void write_machine(FILE *out, const wh_machine_t *machine) {
     fputs("    }};\n\n", out);
 }
 
-/* ------------------------------------------------------------------------------------------------ segments */
+/* ----------------------------------------------------------------------------------------------- segments */
 
 static void write_valves(FILE *out, const int32_t valves[]) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
@@ -100,12 +100,12 @@ static void write_segments(FILE *out, const wh_mcs_t *mcs) {
     for (size_t i = 0; i < mcs->segment_count; ++i) {
         write_segment(out, &mcs->segments[i]);
     }
-    /* An empty array would be no C99: one that does nothing, beyond the count. */
+    /* C99 has no empty arrays, so one segment that does nothing follows the counted ones. */
     fprintf(out, "    {.kind = WH_SEGMENT_DWELL}};\nstatic const size_t played_segment_count = %zu;\n\n",
             mcs->segment_count);
 }
 
-/* -------------------------------------------------------------------------------------------------- wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static void write_config(FILE *out, const wh_grasp_config_t *config) {
     fprintf(out,

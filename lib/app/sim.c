@@ -2,7 +2,6 @@
 #include <inttypes.h>
 #include <poll.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "../link/outputs.h"
@@ -10,10 +9,8 @@
 #include "../text/style.h"
 #include "../view/view.h"
 #include "app.h"
+#include "connection.h"
 #include "layout_arguments.h"
-#include "link_options.h"
-
-enum { OPTION_URL = 1000, OPTION_RECORD, OPTION_OUTPUTS, OPTION_VIEW };
 
 typedef struct {
     wh_layout_arguments_t layout;
@@ -21,37 +18,27 @@ typedef struct {
     bool view;
 } arguments_t;
 
-static const struct argp_option options[] = {
-    {"lcm-url", OPTION_URL, "URL", 0, "Where LCM is (default " WH_NODE_URL ")", 0},
-    {"record", OPTION_RECORD, "FILE", 0, "Write all messages into an LCM event log", 0},
-    {"outputs", OPTION_OUTPUTS, "FILE", 0, "Take the valves from this file, one value per gripper, 0 or 1",
-     0},
-    {"view", OPTION_VIEW, NULL, 0, "Publish the cell for Drake's viewer, live; `make view` starts one", 0},
-    {0},
-};
+static const wh_option_t options[] = {
+    {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL ")", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, url)},
+    {"record", 0, "FILE", "Write all messages into an LCM event log", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, record)},
+    {"outputs", 0, "FILE", "Take the valves from this file, one value per gripper, 0 or 1", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, outputs)},
+    {"view", 0, NULL, "Publish the cell for Drake's viewer, live; `make view` starts one", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, view)},
+    {0}};
 
-static error_t parse(int key, char *argument, struct argp_state *state) {
-    arguments_t *arguments = state->input;
-    switch (key) {
-    case ARGP_KEY_INIT:
-        state->child_inputs[0] = &arguments->layout;
-        return 0;
-    case OPTION_URL:
-        arguments->url = argument;
-        return 0;
-    case OPTION_RECORD:
-        arguments->record = argument;
-        return 0;
-    case OPTION_OUTPUTS:
-        arguments->outputs = argument;
-        return 0;
-    case OPTION_VIEW:
-        arguments->view = true;
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
+static const wh_option_table_t tables[] = {
+    {options, 0, NULL}, {wh_layout_options, offsetof(arguments_t, layout), NULL}, {0}};
+
+static const wh_command_line_t command_line = {
+    .name = "sim",
+    .synopsis = "LAYOUT",
+    .about = "Simulates the layout's cell for whoever sends commands over LCM, until SIGINT or SIGTERM.",
+    .tables = tables,
+    .operand = "layout",
+    .operand_variable = offsetof(arguments_t, layout.path)};
 
 static void print_counters(const wh_sim_process_t *simulation) {
     const wh_protocol_server_counters_t *c = &simulation->server.counters;
@@ -71,14 +58,15 @@ static void print_counters(const wh_sim_process_t *simulation) {
 /* The file is looked at before each message, so that valves written before a command are in force for it. */
 static void update_valves(wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     if (outputs->count > 0 && (wh_outputs_update(outputs, wh_node_clock_us()) & WH_OUTPUTS_REPORTED) != 0) {
-        char *printable = wh_style_printable(outputs->report);
-        fprintf(stderr, "sim: %s\n", printable ? printable : outputs->report);
-        free(printable);
+        fputs("sim: ", stderr);
+        wh_style_put(stderr, outputs->report);
+        fputc('\n', stderr);
     }
     simulation->valves = outputs->count > 0 ? outputs->valves : NULL;
 }
 
-/* Until a message or the file's folder has something, at most 100 ms; the record is made readable when neither had. */
+/* Waits for a message or a change of the file, at most 100 ms. If neither comes, flushes the record, so that
+ * others can read it. */
 static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     struct pollfd ready[] = {{.fd = wh_node_descriptor(node), .events = POLLIN},
                              {.fd = outputs->count > 0 ? wh_outputs_fd(outputs) : -1, .events = POLLIN}};
@@ -122,7 +110,7 @@ static bool open_view(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *lay
     return true;
 }
 
-/* Whatever was opened; the others are all zero. */
+/* Members that were not opened are all zero. */
 typedef struct {
     wh_sim_process_t simulation;
     wh_outputs_t outputs;
@@ -172,7 +160,7 @@ static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *
     return handled < 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
 }
 
-static int run(const arguments_t *arguments) {
+static int run(arguments_t *arguments) {
     const wh_layout_t *layout = wh_layout_arguments_load(&arguments->layout);
     if (!layout) {
         return WH_EXIT_USAGE;
@@ -188,17 +176,8 @@ static int run(const arguments_t *arguments) {
 }
 
 int wh_app_sim(int argc, char **argv) {
-    static const struct argp_child children[] = {{&wh_layout_argp, 0, NULL, 0}, {0}};
-    static const struct argp argp = {
-        options,  parse,
-        NULL,     "Simulates the layout's cell for whoever sends commands over LCM, until SIGINT or SIGTERM.",
-        children, NULL,
-        NULL};
-    static char name[] = "waferhand sim";
     arguments_t arguments = {0};
-    wh_layout_arguments_init(&arguments.layout, argc);
-    argv[0] = name;
-    argp_parse(&argp, argc, argv, 0, NULL, &arguments);
+    wh_options_parse(&command_line, argc, argv, &arguments);
     const int status = run(&arguments);
     wh_layout_arguments_free(&arguments.layout);
     return status;

@@ -7,6 +7,7 @@
 
 #include "../layout/layout.h"
 #include "../link/messages.h"
+#include "../text/array.h"
 
 /* What a layout has by default. */
 #define DIAMETER 300
@@ -65,11 +66,8 @@ static void fill_shapes(wh_log_layout_t *made) {
     layout->shapes =
         wh_shapes_default(DIAMETER, THICKNESS, robot.travel[WH_AXIS_R].max, robot.travel[WH_AXIS_Z].min);
     const size_t count = wh_layout_count_parts(layout);
-    made->parts = calloc(count, sizeof *made->parts);
-    made->names = calloc(count, sizeof *made->names);
-    if (!made->parts || !made->names) {
-        abort();
-    }
+    made->parts = wh_array_new(count, sizeof *made->parts);
+    made->names = wh_array_new(count, sizeof *made->names);
     wh_part_list_t list = {made->parts, made->names, 0, count};
     wh_layout_set_parts(layout, &list);
 }

@@ -1,7 +1,8 @@
-/* The smallest gaps of a run: of what, between which two parts, when, against which limit; and how they went over time. */
+/* The smallest gaps of a run: of what, between which two parts, when, against which limit; and how they went
+ * over time. */
 #include "print_internal.h"
 
-/* Columns of a curve, where the terminal has room for its name and scale beside it. */
+/* Columns of a curve. Its name and its scale stand beside it. */
 #define MOST_COLUMNS 72
 #define LEAST_COLUMNS 20
 #define BESIDE_COLUMNS 42
@@ -85,7 +86,7 @@ static const char *block(const wh_style_t *style, size_t level) {
     return style->utf8 ? blocks[level] : letters[level];
 }
 
-/* A round scale in which limit and minimum can be told from much. */
+/* A round scale, at least three times limit and minimum. */
 static wh_real_t top_of(wh_real_t limit, wh_real_t least) {
     static const wh_real_t tops[] = {1, 2, 5, 10};
     const wh_real_t wanted = 3 * (limit > least ? limit : least);
@@ -118,7 +119,7 @@ static void draw_curve(const wh_printer_t *printer, const plot_t *plot) {
     }
 }
 
-/* Where in the curve the run's smallest gap is. */
+/* The column with the run's smallest gap. */
 static size_t column_of(const wh_curves_t *curves, const plot_t *plot, uint64_t slice) {
     const uint64_t all = curves->count * curves->slices;
     const uint64_t at = slice > curves->first ? slice - curves->first - 1 : 0;

@@ -18,7 +18,7 @@ static wh_grid_t *new_grid(const wh_printer_t *printer) {
     return grid;
 }
 
-/* Decimals enough that a difference shows, from `least` on. */
+/* The fewest decimals, at least `least`, with which the difference is not zero. */
 static int decimals_for(double difference, int least) {
     int decimals = least;
     double unit = 1;

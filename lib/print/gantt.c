@@ -3,14 +3,16 @@
 #include <string.h>
 
 #include "../record/throughput.h"
+#include "../text/array.h"
 #include "print_internal.h"
 
-/* How wide the time is drawn: as the terminal, but at least and at most, or as here where there is none. */
+/* How many columns the time takes: what the terminal has room for, within these limits; PIPED_COLUMNS without
+ * a terminal. */
 #define LEAST_COLUMNS 20
 #define MOST_COLUMNS 400
 #define PIPED_COLUMNS 100
 
-/* Ticks are at least so many columns apart: room for any of their numbers. */
+/* Ticks are at least so many columns apart, so that their numbers fit. */
 #define TICK_COLUMNS 10
 
 #define LABEL_SIZE (WH_NAME_SIZE + 16)
@@ -31,7 +33,7 @@ typedef struct {
     cell_t *cells;
 } gantt_t;
 
-/* ---------------------------------------------------------------------------------------------------- marks */
+/* -------------------------------------------------------------------------------------------------- marks */
 
 /* What stands for a share, one column wide. */
 static const char *share_mark(const wh_style_t *style, wh_share_t share) {
@@ -53,7 +55,7 @@ static const char *mark_of(const wh_style_t *style, const wh_busy_span_t *interv
     return share_mark(style, (wh_share_t)(interval->what - 1));
 }
 
-/* ----------------------------------------------------------------------------------------------------- rows */
+/* --------------------------------------------------------------------------------------------------- rows */
 
 /* A row as wide as the terminal leaves beside labels of so many columns. */
 static gantt_t open_gantt(const wh_printer_t *printer, size_t label_columns) {
@@ -61,10 +63,7 @@ static gantt_t open_gantt(const wh_printer_t *printer, size_t label_columns) {
     const size_t room = width > label_columns + LEAST_COLUMNS + 2 ? width - label_columns - 2 : LEAST_COLUMNS;
     const size_t columns = width == 0 ? PIPED_COLUMNS : room < MOST_COLUMNS ? room : MOST_COLUMNS;
     const gantt_t gantt = {printer, label_columns, columns, printer->record->slices,
-                           calloc(columns, sizeof *gantt.cells)};
-    if (!gantt.cells) {
-        abort();
-    }
+                           wh_array_new(columns, sizeof *gantt.cells)};
     return gantt;
 }
 
@@ -138,7 +137,7 @@ static void print_row(gantt_t *gantt, const char *label) {
     clear(gantt);
 }
 
-/* ---------------------------------------------------------------------------------------------- time's scale */
+/* ------------------------------------------------------------------------------------------- time's scale */
 
 /* 1, 2 or 5 times a power of ten that is at least `least`. */
 static double round_step(double least) {
@@ -167,7 +166,7 @@ static void print_scale(gantt_t *gantt) {
     print_row(gantt, "s");
 }
 
-/* ------------------------------------------------------------------------------------------------- commands */
+/* ----------------------------------------------------------------------------------------------- commands */
 
 static int64_t slice_at(const wh_record_t *record, double seconds) {
     if (!(seconds > 0 && seconds < record->simulated_s)) {
@@ -193,7 +192,7 @@ static void print_commands(gantt_t *gantt) {
     print_row(gantt, "command");
 }
 
-/* --------------------------------------------------------------------------------------------------- cycles */
+/* ------------------------------------------------------------------------------------------------- cycles */
 
 static void print_cycles(gantt_t *gantt) {
     const wh_record_t *record = gantt->printer->record;
@@ -215,7 +214,7 @@ static void print_cycles(gantt_t *gantt) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ resources */
+/* ---------------------------------------------------------------------------------------------- resources */
 
 static void label_of(const wh_printer_t *printer, const wh_busy_span_t *interval, char label[LABEL_SIZE]) {
     static const char *const does[] = {"", " turns", " holds", " valve"};

@@ -9,7 +9,7 @@ static void put_pose(json_t *object, const wh_pose_t *pose) {
     wh_json_put(object, "rotation", wh_json_matrix(&pose->R));
 }
 
-/* ------------------------------------------------------------------------------------------------ the machine */
+/* -------------------------------------------------------------------------------------------- the machine */
 
 static json_t *axis(const void *subject, size_t i) {
     const wh_layout_t *layout = subject;
@@ -40,7 +40,7 @@ static json_t *gripper(const void *subject, size_t i) {
     return object;
 }
 
-/* --------------------------------------------------------------------------------------------------- stations */
+/* ----------------------------------------------------------------------------------------------- stations */
 
 static void put_gap(json_t *object, const char *key, bool has, wh_real_t gap) {
     wh_json_put(object, key, has ? json_real((double)gap) : json_null());
@@ -73,7 +73,7 @@ static json_t *station(const void *subject, size_t i) {
     return object;
 }
 
-/* ------------------------------------------------------------------------------------------------------ shapes */
+/* ------------------------------------------------------------------------------------------------- shapes */
 
 static json_t *shapes(const wh_shapes_t *from) {
     const struct {
@@ -135,7 +135,7 @@ static json_t *clearances(const wh_layout_t *layout) {
     return object;
 }
 
-/* -------------------------------------------------------------------------------------------------------- all */
+/* ---------------------------------------------------------------------------------------------------- all */
 
 static json_t *wafer(const void *subject, size_t i) {
     const wh_layout_t *layout = subject;

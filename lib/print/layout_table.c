@@ -16,7 +16,7 @@ typedef struct {
 static const wh_grid_digits_t whole = {0, 6, false, 0};
 static const wh_grid_digits_t fine = {3, 3, false, 0};
 
-/* ------------------------------------------------------------------------------------------------ the machine */
+/* -------------------------------------------------------------------------------------------- the machine */
 
 static void print_axes(const listing_t *listing) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
@@ -70,7 +70,7 @@ static void print_grippers(const listing_t *listing) {
     wh_print_titled(&listing->frame, "Grippers", grid);
 }
 
-/* --------------------------------------------------------------------------------------------------- stations */
+/* ----------------------------------------------------------------------------------------------- stations */
 
 enum { NAME, KIND, X, Y, Z, HEADING, TILT, SLOTS, PITCH, STROKE, OFFSET, RETRACT, WAFERS };
 
@@ -167,7 +167,7 @@ static void print_holding(const listing_t *listing) {
     wh_print_titled(&listing->frame, "Holding", grid);
 }
 
-/* ------------------------------------------------------------------------------------------------------ faults */
+/* ------------------------------------------------------------------------------------------------- faults */
 
 static const char *target_of(const wh_layout_t *layout, const wh_fault_t *fault) {
     if (fault->target == WH_NONE) {
@@ -207,7 +207,7 @@ static void print_faults(const listing_t *listing) {
     wh_print_titled(&listing->frame, "Faults on purpose", grid);
 }
 
-/* ------------------------------------------------------------------------------------------------------ shapes */
+/* ------------------------------------------------------------------------------------------------- shapes */
 
 static void print_shapes(const listing_t *listing) {
     const wh_shapes_t *s = &listing->layout->shapes;
@@ -306,7 +306,7 @@ static void print_limits(const listing_t *listing) {
     wh_print_titled(&listing->frame, "Clearances", grid);
 }
 
-/* --------------------------------------------------------------------------------------------------- findings */
+/* ----------------------------------------------------------------------------------------------- findings */
 
 static void print_findings(const listing_t *listing) {
     fputc('\n', listing->frame.out);

@@ -1,4 +1,4 @@
-#include "record_json.h"
+#include "record_print.h"
 
 #include <stdlib.h>
 

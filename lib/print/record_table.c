@@ -1,4 +1,4 @@
-#include "record_table.h"
+#include "record_print.h"
 
 #include "../mcs/mcs.h"
 #include "print_internal.h"
@@ -176,12 +176,7 @@ static void print_summary(const wh_printer_t *printer) {
 
 /* ---------------------------------------------------------------------------------------------------- all */
 
-int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t *style) {
-    return wh_record_print_table_with(record, out, style, 0);
-}
-
-int wh_record_print_table_with(const wh_record_t *record, FILE *out, const wh_style_t *style,
-                               unsigned sections) {
+int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t *style, unsigned sections) {
     const wh_printer_t printer = {record, style, out};
     print_heading(&printer);
     wh_print_commands(&printer);

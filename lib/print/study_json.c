@@ -20,7 +20,7 @@ static void put_trial(json_t *object, const char *key, uint64_t trial) {
     wh_json_put(object, key, trial == WH_TALLY_NO_TRIAL ? json_null() : json_integer((json_int_t)trial));
 }
 
-/* --------------------------------------------------------------------------------------------------------- rows */
+/* --------------------------------------------------------------------------------------------------- rows */
 
 static json_t *expectation(const void *subject, size_t i) {
     const wh_study_result_t *result = subject;
@@ -61,7 +61,7 @@ static json_t *event(const wh_study_result_t *result, size_t kind) {
     return object;
 }
 
-/* Those that happened. */
+/* Only events that happened. */
 static json_t *events(const wh_study_result_t *result) {
     json_t *list = json_array();
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
@@ -72,7 +72,7 @@ static json_t *events(const wh_study_result_t *result) {
     return list;
 }
 
-/* ------------------------------------------------------------------------------------------------------- wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static json_t *figures(const wh_sum_t *sum, double nominal) {
     static const struct {
@@ -113,7 +113,7 @@ static json_t *wafer(const void *subject, size_t i) {
     return object;
 }
 
-/* -------------------------------------------------------------------------------------------------------- worst */
+/* -------------------------------------------------------------------------------------------------- worst */
 
 static json_t *displacement(const char *name, const wh_displacement_t *drawn, const char *const keys[6]) {
     const double values[] = {(double)drawn->moved.x, (double)drawn->moved.y, (double)drawn->moved.z,
@@ -181,7 +181,7 @@ static json_t *worst_trial(const void *subject, size_t i) {
     return object;
 }
 
-/* ---------------------------------------------------------------------------------------------------- all of it */
+/* ---------------------------------------------------------------------------------------------- all of it */
 
 static json_t *success(const wh_study_result_t *result) {
     json_t *object = json_object();

@@ -2,25 +2,28 @@
  *
  * As JSON one object, format 1, its lists with one element a line:
  *   format, ok (whether `require` is kept; true without it), script, layout, seed, trials,
- *   success:      { met, rate, low, high }: trials that met all expectations without an uncaught error or a complaint of the
- *                 cell; low and high are Wilson's interval at 95 % here and below
+ *   success:      { met, rate, low, high }: trials that met all expectations without an uncaught error or a
+ *                 complaint of the cell; low and high are Wilson's interval at 95 % here and below
  *   require       (or null), ended (trials whose script ended by an uncaught error),
  *   whole         (trials that ran the script whole), whole_why (why all did, or null),
  *   run_without_errors: { ok, hash, slices, simulated_s }
  * and the lists
- *   expectations: line, text, seen (trials that came to it), met, rate, low, high, first_missed (the lowest trial, or null)
- *   errors:       line, text (of the command, as the first trial has it), error, name, trials (in which it happened), rate, low,
- *                 high, first
+ *   expectations: line, text, seen (trials that came to it), met, rate, low, high, first_missed (the lowest
+ *                 trial, or null)
+ *   errors:       line, text (of the command, as the first trial has it), error, name, trials (in which it
+ *                 happened), rate, low, high, first
  *   events:       kind, trials (with one or more), rate, low, high, total
- *   wafers:       name, station, slot, holder (where the run without errors leaves it; null: nowhere), elsewhere (trials that
- *                 leave it anywhere else; the figures are of the others), count, and for dx, dy, dz (mm), tilt_deg, and off
- *                 (mm, beside where the run without errors leaves it): { mean, deviation, min, p0_1, p1, p5, p50, p95, p99,
- *                 p99_9, max }
- *   worst:        trial, ok, off (of the wafer farthest off; null: one is elsewhere), drawn: { wafers, stations, valves,
- *                 vacuum_s } what the trial drew: of each wafer { name, dx, dy, dz, tilt_x, tilt_y, turn }, of each station
- *                 { name, x, y, z, roll, pitch, yaw } (mm, degrees), of each valve { gripper, slices }, which act so late; only
- *                 of what is drawn. Failed trials come first, then the farther off.
- * Equal studies give equal bytes, whatever threads, ranks and interruptions; reading a number back gives the same double.
+ *   wafers:       name, station, slot, holder (where the run without errors leaves it; null: nowhere),
+ *                 elsewhere (trials that leave it anywhere else; the figures are of the others), count, and
+ *                 for dx, dy, dz (mm), tilt_deg, and off (mm, beside where the run without errors leaves
+ *                 it): { mean, deviation, min, p0_1, p1, p5, p50, p95, p99, p99_9, max }
+ *   worst:        trial, ok, off (of the wafer farthest off; null: one is elsewhere), drawn: { wafers,
+ *                 stations, valves, vacuum_s } what the trial drew: of each wafer { name, dx, dy, dz,
+ *                 tilt_x, tilt_y, turn }, of each station { name, x, y, z, roll, pitch, yaw } (mm,
+ *                 degrees), of each valve { gripper, slices }, which act so late; only of what is drawn.
+ *                 Failed trials come first, then the farther off.
+ * Equal studies give equal bytes, whatever threads, ranks and interruptions; reading a number back gives
+ * the same double.
  */
 #ifndef WH_PRINT_STUDY_PRINT_H
 #define WH_PRINT_STUDY_PRINT_H

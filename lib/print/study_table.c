@@ -38,7 +38,7 @@ double wh_study_nominal(const wh_study_wafer_t *wafer, size_t q) {
     return values[q];
 }
 
-/* --------------------------------------------------------------------------------------------------- rates */
+/* -------------------------------------------------------------------------------------------------- rates */
 
 static void rate_columns(wh_grid_t *grid) {
     wh_grid_number_column(grid, "%", percent);
@@ -121,7 +121,7 @@ static void print_events(const table_t *table) {
     wh_print_titled(&table->frame, "Events", grid);
 }
 
-/* -------------------------------------------------------------------------------------------------- wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static void add_quantity(wh_grid_t *grid, const wh_study_wafer_t *wafer, const wh_sum_t *sum, size_t q) {
     static const char *const names[] = {"dX mm", "dY mm", "dz mm", "tilt deg", "off mm"};
@@ -179,7 +179,7 @@ static void print_wafers(const table_t *table) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- worst */
+/* -------------------------------------------------------------------------------------------------- worst */
 
 static void print_worst(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 1);

@@ -3,7 +3,7 @@
 #include "../math/trig.h"
 #include "print_internal.h"
 
-/* ------------------------------------------------------------------------------------------ wafers per hour */
+/* ---------------------------------------------------------------------------------------- wafers per hour */
 
 static void put_window(const wh_printer_t *printer, const wh_throughput_t *throughput) {
     fprintf(printer->out, ": %zu in %.3f s, ", throughput->wafers, throughput->seconds);
@@ -40,7 +40,7 @@ void wh_print_throughput(const wh_printer_t *printer) {
     fputc('\n', printer->out);
 }
 
-/* ---------------------------------------------------------------------------------------------------- times */
+/* -------------------------------------------------------------------------------------------------- times */
 
 enum { LINE, COMMAND, SECONDS, FIRST_SHARE };
 
@@ -92,7 +92,7 @@ void wh_print_times(const wh_printer_t *printer) {
         printer, "Time: motion with and without a wafer, standing still for vacuum, valves, waiting", grid);
 }
 
-/* ---------------------------------------------------------------------------------------------------- reach */
+/* -------------------------------------------------------------------------------------------------- reach */
 
 /* Below so many mm or degrees a margin is nothing to build upon. */
 #define SLENDER 1.0

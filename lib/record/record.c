@@ -68,19 +68,15 @@ bool wh_record_is_complaint(wh_event_kind_t kind) {
 }
 
 void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves) {
-    record->curves = record->curves ? record->curves : malloc(sizeof *curves);
     if (!record->curves) {
-        abort();
+        record->curves = wh_array_new(1, sizeof *curves);
     }
     *record->curves = *curves;
 }
 
 void wh_record_begin_reach(wh_record_t *record, size_t stations) {
     if (!record->reach) {
-        record->reach = calloc(stations + 1, sizeof *record->reach);
-    }
-    if (!record->reach) {
-        abort();
+        record->reach = wh_array_new(stations + 1, sizeof *record->reach);
     }
 }
 

@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "../text/array.h"
+
 static wh_rank_t rank_of(const wh_record_t *record, const wh_put_record_t *put) {
     const wh_layout_station_t *station = &record->layout->stations[put->station];
     if (station->prealigner) {
@@ -22,18 +24,10 @@ static wh_rank_t highest_rank(const wh_record_t *record) {
     return highest;
 }
 
-static void *zeroed(size_t count, size_t size) {
-    void *memory = calloc(count + 1, size);
-    if (!memory) {
-        abort();
-    }
-    return memory;
-}
-
 size_t *wh_throughput_cycle_wafers(const wh_record_t *record, wh_rank_t rank) {
-    size_t *wafers = zeroed(record->cycle_count, sizeof *wafers);
+    size_t *wafers = wh_array_new(record->cycle_count, sizeof *wafers);
     /* By wafer: 1 + the last cycle in which it counted. */
-    size_t *counted = zeroed(record->layout ? record->layout->wafer_count : 0, sizeof *counted);
+    size_t *counted = wh_array_new(record->layout ? record->layout->wafer_count : 0, sizeof *counted);
     size_t after = 0; /* how many cycles have begun */
     for (size_t i = 0; i < record->put_count; ++i) {
         const wh_put_record_t *put = &record->puts[i];

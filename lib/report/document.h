@@ -4,7 +4,7 @@
  * [x, y, z, w]; indices are from 0, slots from 1. The members:
  *   format (2), title, version, reproduce (the command that makes the run again), parameters { name: value }
  *   source       "run" or "log"; notes: [text], what a log did not tell
- *   run          what `run --json` prints, whole (print/record_json.h); of a log what it holds
+ *   run          what `run --json` prints, whole (print/record_print.h); of a log what it holds
  *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s
  *   names        wafers, grippers, stations: [name]; axes: [{ name, unit "mm" or "rad", low, high, speed }]
  *                (nulls: not known)

@@ -1,16 +1,328 @@
 #include "checkpoint.h"
 
 #include <errno.h>
-#include <jansson.h>
+#include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "../math/hash.h"
+#include "../text/json.h"
 #include "../text/output.h"
-#include "checkpoint_internal.h"
 
-/* --------------------------------------------------------------------------------------------------------- file */
+/* -------------------------------------------------------------------------------------------- which study */
+
+static json_t *hex(uint64_t value) {
+    return json_sprintf("%016llx", (unsigned long long)value);
+}
+
+static json_t *parameter(const void *subject, size_t i) {
+    return wh_json_text(((const wh_script_run_options_t *)subject)->parameters[i]);
+}
+
+/* In the order in which a difference is told. */
+static json_t *identity_of(const wh_study_t *study) {
+    const wh_script_run_options_t *run = &study->run;
+    json_t *root = json_object();
+    wh_json_put_text(root, "version", WH_VERSION);
+    wh_json_put_text(root, "script", run->script);
+    wh_json_put_text(root, "layout", study->layout->path);
+    wh_json_put(root, "seed", hex(study->seed));
+    wh_json_put_integer(root, "trials", (json_int_t)study->trials);
+    wh_json_put(root, "parameters", wh_json_list(parameter, run, run->parameter_count));
+    wh_json_put(root, "script_text", hex(study->script_hash));
+    wh_json_put(root, "layout_text", hex(study->layout_hash));
+    wh_json_put_integer(root, "budget", (json_int_t)run->limits.instructions);
+    wh_json_put_integer(root, "memory", (json_int_t)run->limits.memory_bytes);
+    wh_json_put(root, "run_without_errors", hex(study->nominal.record.hash));
+    return root;
+}
+
+static void describe(const json_t *value, char *text, size_t size) {
+    char *dumped = value ? json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
+    snprintf(text, size, "%.200s", dumped ? dumped : "nothing");
+    free(dumped);
+}
+
+/* True if it is this study's; else the message tells the first difference. */
+static bool is_same(const json_t *found, const wh_study_t *study, char *message, size_t size) {
+    json_t *expected = identity_of(study);
+    const char *key;
+    json_t *value;
+    bool same = true;
+    json_object_foreach(expected, key, value) {
+        const json_t *other = json_object_get(found, key);
+        if (same && (!other || !json_equal(other, value))) {
+            char one[256];
+            char two[256];
+            describe(other, one, sizeof one);
+            describe(value, two, sizeof two);
+            snprintf(message, size, "of another study: its %s is %s (expected %s)", key, one, two);
+            same = false;
+        }
+    }
+    json_decref(expected);
+    return same;
+}
+
+/* --------------------------------------------------------------------------------------------------- sums */
+
+/* Whole numbers of 64 bits as JSON has them: 2^63 trials are out of reach. */
+static bool take_count(const json_t *value, uint64_t *number) {
+    const json_int_t found = json_integer_value(value);
+    *number = (uint64_t)found;
+    return json_is_integer(value) && found >= 0;
+}
+
+static bool take_counts(const json_t *root, const char *const keys[], uint64_t *const numbers[],
+                        size_t count) {
+    bool sound = true;
+    for (size_t i = 0; i < count; ++i) {
+        sound = take_count(json_object_get(root, keys[i]), numbers[i]) && sound;
+    }
+    return sound;
+}
+
+static json_t *put_sum(const wh_sum_t *sum) {
+    const wh_uint128_t total = (wh_uint128_t)sum->sum;
+    json_t *bins = json_array();
+    for (size_t i = 0; i < WH_SUM_BINS; ++i) {
+        if (sum->bins[i] > 0) {
+            wh_json_append(bins, json_integer((json_int_t)i));
+            wh_json_append(bins, json_integer((json_int_t)sum->bins[i]));
+        }
+    }
+    return json_pack("{s:I, s:[I, I], s:[I, I], s:I, s:I, s:o}", "count", (json_int_t)sum->count, "sum",
+                     (json_int_t)(total >> 64), (json_int_t)(uint64_t)total, "squares",
+                     (json_int_t)(sum->squares >> 64), (json_int_t)(uint64_t)sum->squares, "least",
+                     (json_int_t)sum->least, "most", (json_int_t)sum->most, "bins", bins);
+}
+
+static bool take_bins(const json_t *bins, wh_sum_t *sum) {
+    uint64_t total = 0;
+    bool sound = json_array_size(bins) % 2 == 0;
+    for (size_t i = 0; sound && i < json_array_size(bins); i += 2) {
+        uint64_t bin = 0;
+        sound = take_count(json_array_get(bins, i), &bin) && bin < WH_SUM_BINS &&
+                take_count(json_array_get(bins, i + 1), &sum->bins[bin]);
+        total += sound ? sum->bins[bin] : 0;
+    }
+    return sound && total == sum->count;
+}
+
+static bool take_sum(json_t *root, wh_sum_t *sum) {
+    json_int_t count, high, low, high_squares, low_squares, least, most;
+    json_t *bins;
+    if (json_unpack(root, "{s:I, s:[I, I], s:[I, I], s:I, s:I, s:o}", "count", &count, "sum", &high, &low,
+                    "squares", &high_squares, &low_squares, "least", &least, "most", &most, "bins",
+                    &bins) != 0) {
+        return false;
+    }
+    sum->count = (uint64_t)count;
+    sum->sum = (wh_int128_t)((wh_uint128_t)(uint64_t)high << 64 | (uint64_t)low);
+    sum->squares = (wh_uint128_t)(uint64_t)high_squares << 64 | (uint64_t)low_squares;
+    sum->least = least;
+    sum->most = most;
+    return count >= 0 && least >= -WH_SUM_MOST && most <= WH_SUM_MOST && take_bins(bins, sum);
+}
+
+static json_t *put_wafer(const void *subject, size_t w) {
+    const wh_tally_wafer_t *wafer = &((const wh_tally_t *)subject)->wafers[w];
+    json_t *list = json_pack("[I]", (json_int_t)wafer->elsewhere);
+    for (size_t q = 0; q < WH_TALLY_QUANTITIES; ++q) {
+        wh_json_append(list, put_sum(&wafer->of[q]));
+    }
+    return list;
+}
+
+static bool take_wafers(const json_t *list, wh_tally_t *tally) {
+    bool sound = json_array_size(list) == tally->wafer_count;
+    for (size_t w = 0; sound && w < tally->wafer_count; ++w) {
+        const json_t *wafer = json_array_get(list, w);
+        sound = take_count(json_array_get(wafer, 0), &tally->wafers[w].elsewhere);
+        for (size_t q = 0; sound && q < WH_TALLY_QUANTITIES; ++q) {
+            sound = take_sum(json_array_get(wafer, q + 1), &tally->wafers[w].of[q]);
+        }
+    }
+    return sound;
+}
+
+/* --------------------------------------------------------------------------------------------------- rows */
+
+static json_t *put_row(const void *subject, size_t i) {
+    const wh_tally_row_t *row = &((const wh_tally_rows_t *)subject)->rows[i];
+    return json_pack("[i, i, o, I, I, I, I]", row->line, row->place, wh_json_text(row->text),
+                     (json_int_t)row->named, (json_int_t)row->seen, (json_int_t)row->bad,
+                     (json_int_t)row->first);
+}
+
+static bool take_rows(const json_t *list, wh_tally_rows_t *rows) {
+    bool sound = json_is_array(list);
+    for (size_t i = 0; sound && i < json_array_size(list); ++i) {
+        int line, place;
+        const char *text;
+        json_int_t named, seen, bad, first;
+        sound = json_unpack(json_array_get(list, i), "[i, i, s, I, I, I, I]", &line, &place, &text, &named,
+                            &seen, &bad, &first) == 0 &&
+                named >= 0 && seen >= 0 && bad >= 0;
+        if (sound) {
+            wh_tally_row_t *row = wh_tally_row(rows, line, place, text, (uint64_t)named);
+            row->seen = (uint64_t)seen;
+            row->bad = (uint64_t)bad;
+            row->first = (uint64_t)first;
+        }
+    }
+    return sound;
+}
+
+/* Infinite is null. */
+static json_t *put_worst(const void *subject, size_t i) {
+    const wh_tally_trial_t *trial = &((const wh_tally_t *)subject)->worst[i];
+    return json_pack("[I, b, o]", (json_int_t)trial->trial, trial->met, wh_json_real(trial->off));
+}
+
+static bool take_worst(const json_t *list, wh_tally_t *tally) {
+    bool sound = json_is_array(list) && json_array_size(list) <= WH_STUDY_WORST;
+    for (size_t i = 0; sound && i < json_array_size(list); ++i) {
+        json_int_t number;
+        int met;
+        const json_t *off;
+        sound = json_unpack(json_array_get(list, i), "[I, b, o]", &number, &met, &off) == 0 && number >= 0;
+        if (sound) {
+            const wh_tally_trial_t trial = {(uint64_t)number, met != 0,
+                                            json_is_null(off) ? (double)INFINITY : json_number_value(off)};
+            wh_tally_note_worst(tally, &trial);
+        }
+    }
+    return sound;
+}
+
+static json_t *put_events(const wh_tally_t *tally) {
+    json_t *list = json_array();
+    for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
+        wh_json_append(list, json_integer((json_int_t)tally->events[kind].trials));
+        wh_json_append(list, json_integer((json_int_t)tally->events[kind].total));
+    }
+    return list;
+}
+
+static bool take_events(const json_t *list, wh_tally_t *tally) {
+    bool sound = json_array_size(list) == (size_t)2 * WH_EVENT_KINDS;
+    for (size_t kind = 0; sound && kind < WH_EVENT_KINDS; ++kind) {
+        sound = take_count(json_array_get(list, 2 * kind), &tally->events[kind].trials) &&
+                take_count(json_array_get(list, 2 * kind + 1), &tally->events[kind].total);
+    }
+    return sound;
+}
+
+static json_t *put_tally(const wh_tally_t *tally) {
+    json_t *root = json_object();
+    wh_json_put_integer(root, "trials", (json_int_t)tally->trials);
+    wh_json_put_integer(root, "met", (json_int_t)tally->met);
+    wh_json_put_integer(root, "ended", (json_int_t)tally->ended);
+    wh_json_put_integer(root, "whole", (json_int_t)tally->whole);
+    wh_json_put(root, "events", put_events(tally));
+    wh_json_put(root, "expectations", wh_json_list(put_row, &tally->expectations, tally->expectations.count));
+    wh_json_put(root, "errors", wh_json_list(put_row, &tally->errors, tally->errors.count));
+    wh_json_put(root, "wafers", wh_json_list(put_wafer, tally, tally->wafer_count));
+    wh_json_put(root, "worst", wh_json_list(put_worst, tally, tally->worst_count));
+    return root;
+}
+
+static bool take_tally(const json_t *root, wh_tally_t *tally) {
+    static const char *const keys[] = {"trials", "met", "ended", "whole"};
+    uint64_t *const numbers[] = {&tally->trials, &tally->met, &tally->ended, &tally->whole};
+    return take_counts(root, keys, numbers, 4) && take_events(json_object_get(root, "events"), tally) &&
+           take_wafers(json_object_get(root, "wafers"), tally) &&
+           take_rows(json_object_get(root, "expectations"), &tally->expectations) &&
+           take_rows(json_object_get(root, "errors"), &tally->errors) &&
+           take_worst(json_object_get(root, "worst"), tally);
+}
+
+/* ------------------------------------------------------------------------------------------------- blocks */
+
+static json_t *put_blocks(const wh_progress_t *progress) {
+    json_t *list = json_array();
+    for (uint64_t block = 0; block < progress->block_count; ++block) {
+        const uint64_t first = block;
+        while (block < progress->block_count && wh_progress_has(progress, block)) {
+            ++block;
+        }
+        if (block > first) {
+            wh_json_append(list, json_pack("[I, I]", (json_int_t)first, (json_int_t)block - 1));
+        }
+    }
+    return list;
+}
+
+static bool take_stretch(const json_t *pair, wh_progress_t *progress) {
+    const json_int_t first = json_integer_value(json_array_get(pair, 0));
+    const json_int_t last = json_integer_value(json_array_get(pair, 1));
+    if (json_array_size(pair) != 2 || first < 0 || last < first || (uint64_t)last >= progress->block_count) {
+        return false;
+    }
+    for (uint64_t block = (uint64_t)first; block <= (uint64_t)last; ++block) {
+        wh_progress_note(progress, block);
+    }
+    return true;
+}
+
+static uint64_t trials_of(const wh_study_t *study, const wh_progress_t *progress) {
+    uint64_t trials = 0;
+    for (uint64_t block = 0; block < progress->block_count; ++block) {
+        trials += wh_progress_has(progress, block) ? wh_study_block_trials(study, block) : 0;
+    }
+    return trials;
+}
+
+static bool take_progress(const wh_study_t *study, const json_t *root, wh_progress_t *progress) {
+    const json_t *blocks = json_object_get(root, "blocks");
+    bool sound = json_is_array(blocks);
+    for (size_t i = 0; sound && i < json_array_size(blocks); ++i) {
+        sound = take_stretch(json_array_get(blocks, i), progress);
+    }
+    return sound && take_tally(json_object_get(root, "tally"), &progress->tally) &&
+           progress->tally.trials == trials_of(study, progress);
+}
+
+/* ----------------------------------------------------------------------------------------- there and back */
+
+char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress) {
+    json_t *root = json_object();
+    wh_json_put_integer(root, "format", 1);
+    wh_json_put(root, "study", identity_of(study));
+    wh_json_put(root, "blocks", put_blocks(progress));
+    wh_json_put(root, "tally", put_tally(&progress->tally));
+    char *text = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    json_decref(root);
+    return text;
+}
+
+/* Releases the root. */
+static bool take(const wh_study_t *study, json_t *root, wh_progress_t *progress, char *message, size_t size) {
+    const bool is_state = json_integer_value(json_object_get(root, "format")) == 1;
+    bool sound = is_state && is_same(json_object_get(root, "study"), study, message, size);
+    const bool is_ours = sound;
+    if (is_ours) {
+        wh_progress_t taken;
+        wh_progress_init(&taken, study);
+        sound = take_progress(study, root, &taken);
+        if (sound) {
+            wh_progress_merge(progress, &taken);
+        }
+        wh_progress_free(&taken);
+    }
+    if (!sound && (is_ours || !is_state)) {
+        snprintf(message, size, "damaged (expected a study's state)");
+    }
+    json_decref(root);
+    return sound;
+}
+
+bool wh_checkpoint_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress,
+                        char *message, size_t message_size) {
+    return take(study, json_loadb(text, size, JSON_REJECT_DUPLICATES, NULL), progress, message, message_size);
+}
 
 bool wh_checkpoint_save(const char *path, const char *text) {
     wh_output_t output = {0};
@@ -21,104 +333,40 @@ bool wh_checkpoint_save(const char *path, const char *text) {
     return wh_output_commit(&output);
 }
 
-/* All of a file; null, with errno, when it cannot be read. */
-static char *read_file(const char *path, size_t *size) {
-    FILE *file = fopen(path, "r");
-    char *text = NULL;
-    size_t capacity = 0;
-    size_t got = 1;
-    *size = 0;
-    while (file && got > 0) {
-        if (*size == capacity) {
-            capacity = capacity > 0 ? 2 * capacity : 65536;
-            char *grown = realloc(text, capacity);
-            if (!grown) {
-                abort();
-            }
-            text = grown;
-        }
-        got = fread(text + *size, 1, capacity - *size, file);
-        *size += got;
-    }
-    if (file && ferror(file)) {
-        free(text);
-        text = NULL;
-    }
-    if (file) {
-        const int reason = errno;
-        fclose(file);
-        errno = reason;
-    }
-    return text;
-}
-
 wh_checkpoint_found_t wh_checkpoint_load(const char *path, const wh_study_t *study, wh_progress_t *progress) {
     char message[1024] = "";
-    size_t size = 0;
-    char *text = read_file(path, &size);
-    if (!text) {
-        if (errno == ENOENT) {
-            return WH_STATE_NONE;
-        }
-        fprintf(stderr, "%s: %s (expected a file that can be read)\n", path, strerror(errno));
-        return WH_STATE_REFUSED;
+    FILE *file = fopen(path, "r");
+    if (!file && errno == ENOENT) {
+        return WH_CHECKPOINT_NONE;
     }
-    const bool read = wh_checkpoint_read(study, text, size, progress, message, sizeof message);
-    free(text);
+    json_t *root = file ? json_loadf(file, JSON_REJECT_DUPLICATES, NULL) : NULL;
+    bool read = file && !ferror(file);
+    if (!read) {
+        snprintf(message, sizeof message, "%s (expected a file that can be read)", strerror(errno));
+    }
+    read = read && take(study, root, progress, message, sizeof message);
     if (!read) {
         fprintf(stderr, "%s: %s\n", path, message);
     }
-    return read ? WH_STATE_READ : WH_STATE_REFUSED;
-}
-
-/* ------------------------------------------------------------------------------------------------------- default */
-
-static uint64_t hash_text(uint64_t hash, const char *text) {
-    for (const char *c = text; *c; ++c) {
-        hash = wh_hash_word(hash, (unsigned char)*c);
+    if (file) {
+        fclose(file);
     }
-    return wh_hash_word(hash, 0);
-}
-
-static bool make_folder(const char *path) {
-    return mkdir(path, 0777) == 0 || errno == EEXIST;
-}
-
-/* The folder to keep states in, with the ones above it. */
-static bool find_folder(char *folder, size_t size) {
-    const char *state = getenv("XDG_STATE_HOME");
-    const char *home = getenv("HOME");
-    if (state && state[0] == '/') {
-        snprintf(folder, size, "%s", state);
-        return make_folder(folder);
-    }
-    if (!home || home[0] != '/') {
-        return false;
-    }
-    snprintf(folder, size, "%s/.local", home);
-    if (!make_folder(folder)) {
-        return false;
-    }
-    snprintf(folder, size, "%s/.local/state", home);
-    return make_folder(folder);
+    return read ? WH_CHECKPOINT_READ : WH_CHECKPOINT_REFUSED;
 }
 
 char *wh_checkpoint_default_path(const wh_study_t *study) {
-    char folder[3900];
-    char path[4096];
-    json_t *identity = wh_checkpoint_identity(study);
-    char *text = identity ? json_dumps(identity, JSON_COMPACT) : NULL;
-    json_decref(identity);
-    if (!text || !find_folder(folder, sizeof folder)) {
-        free(text);
-        return NULL;
+    char name[40];
+    char path[PATH_MAX];
+    json_t *identity = identity_of(study);
+    char *text = json_dumps(identity, JSON_COMPACT);
+    uint64_t hash = WH_HASH_START;
+    for (const char *c = text; *c; ++c) {
+        hash = wh_hash_word(hash, (unsigned char)*c);
     }
-    const uint64_t hash = hash_text(WH_HASH_START, text);
+    hash = wh_hash_word(hash, 0);
     free(text);
-    snprintf(path, sizeof path, "%s/waferhand", folder);
-    if (!make_folder(path)) {
-        return NULL;
-    }
-    snprintf(path, sizeof path, "%s/waferhand/study-%016llx", folder, (unsigned long long)hash);
-    return wh_record_text(path);
+    json_decref(identity);
+    snprintf(name, sizeof name, "study-%016llx", (unsigned long long)hash);
+    wh_output_state_path(name, path, sizeof path);
+    return path[0] != '\0' && wh_output_make_folders(path) ? wh_record_text(path) : NULL;
 }

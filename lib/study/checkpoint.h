@@ -1,32 +1,33 @@
 /* A study's progress as text: in a file, to go on from, and on its way to another rank.
  *
- * JSON. `study` says which study it is of: version, script, layout, parameters, seed, trials, and a hash of each file's text and
- * of the run without errors. `blocks` are the first and last of each stretch of finished blocks; the rest is the tally.
+ * JSON. `study` says which study it is of: version, script, layout, parameters, seed, trials, and a hash of
+ * each file's text and of the run without errors. `blocks` are the first and last of each stretch of finished
+ * blocks; the rest is the tally.
  */
 #ifndef WH_STUDY_CHECKPOINT_H
 #define WH_STUDY_CHECKPOINT_H
 
 #include "pool.h"
 
-/* The progress as text, to be freed; null when memory is out. */
+/* The progress as text, to be freed. */
 char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress);
 
-/* Adds what the text has to `progress`, which is unchanged on failure: then `message` says what is wrong, "of another study: its
- * seed is 2 (expected 1)" or "damaged". */
+/* Adds what the text has to `progress`, which is unchanged on failure: then `message` says what is wrong, "of
+ * another study: its seed is 2 (expected 1)" or "damaged". */
 bool wh_checkpoint_read(const wh_study_t *study, const char *text, size_t size, wh_progress_t *progress,
                         char *message, size_t message_size);
 
-/* Replaces the file at once: whoever opens it sees the old text or the new one, also after a crash. False, with errno, when that is
- * not possible. */
+/* Replaces the file at once: whoever opens it sees the old text or the new one, also after a crash. False,
+ * with errno, when that is not possible. */
 bool wh_checkpoint_save(const char *path, const char *text);
 
-typedef enum { WH_STATE_NONE, WH_STATE_READ, WH_STATE_REFUSED } wh_checkpoint_found_t;
+typedef enum { WH_CHECKPOINT_NONE, WH_CHECKPOINT_READ, WH_CHECKPOINT_REFUSED } wh_checkpoint_found_t;
 
 /* Reads a file, if there is one; one that is refused is named on stderr. */
 wh_checkpoint_found_t wh_checkpoint_load(const char *path, const wh_study_t *study, wh_progress_t *progress);
 
-/* Where a study's progress is kept unless the user says so: XDG_STATE_HOME/waferhand/study-HASH. To be freed; null when
- * the environment names no such place. Makes the folder. */
+/* Where a study's progress is kept unless the user names a file: "study-HASH" of wh_output_state_path. Makes
+ * the folder. To be freed; null if there is no such place. */
 char *wh_checkpoint_default_path(const wh_study_t *study);
 
 #endif

@@ -5,20 +5,63 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../text/array.h"
 #include "../text/clock.h"
 
-/* A hand shows what it has done when it is idle, and every so many seconds. */
+/* A worker shows what it has done when it is idle, and every so many seconds. */
 #define SHOW_S 0.3
 
 struct wh_pool_worker {
     wh_pool_t *pool;
     pthread_t thread;
     bool started;
-    wh_worker_t worker;
+    wh_worker_t player;
     wh_tally_t block;       /* of the running block */
     wh_progress_t progress; /* of the blocks since it was last shown */
     double shown;
 };
+
+/* ----------------------------------------------------------------------------------------------- progress */
+
+void wh_progress_init(wh_progress_t *progress, const wh_study_t *study) {
+    progress->block_count = wh_study_blocks(study);
+    progress->done_count = 0;
+    progress->done = wh_array_new((size_t)progress->block_count / 8 + 1, 1);
+    wh_tally_init(&progress->tally, study->wafer_count);
+}
+
+void wh_progress_free(wh_progress_t *progress) {
+    free(progress->done);
+    progress->done = NULL;
+    wh_tally_free(&progress->tally);
+}
+
+void wh_progress_clear(wh_progress_t *progress) {
+    memset(progress->done, 0, (size_t)progress->block_count / 8 + 1);
+    progress->done_count = 0;
+    wh_tally_clear(&progress->tally);
+}
+
+bool wh_progress_has(const wh_progress_t *progress, uint64_t block) {
+    return (progress->done[block / 8] >> block % 8 & 1) != 0;
+}
+
+void wh_progress_note(wh_progress_t *progress, uint64_t block) {
+    if (!wh_progress_has(progress, block)) {
+        progress->done[block / 8] = (unsigned char)(progress->done[block / 8] | 1U << block % 8);
+        ++progress->done_count;
+    }
+}
+
+void wh_progress_merge(wh_progress_t *progress, const wh_progress_t *other) {
+    for (size_t i = 0; i <= (size_t)progress->block_count / 8; ++i) {
+        progress->done[i] |= other->done[i];
+    }
+    progress->done_count += other->done_count;
+    wh_tally_merge(&progress->tally, &other->tally);
+}
+
+/* ------------------------------------------------------------------------------------- asked from outside */
 
 void wh_pool_stop(wh_pool_t *pool) {
     __atomic_store_n(&pool->stop, true, __ATOMIC_RELAXED);
@@ -32,19 +75,19 @@ uint64_t wh_pool_trials(const wh_pool_t *pool) {
     return __atomic_load_n(&pool->trials, __ATOMIC_RELAXED);
 }
 
-/* ----------------------------------------------------------------------------------------------------- one thread */
+/* --------------------------------------------------------------------------------------------- one thread */
 
-/* With the crew's lock held. */
-static void show(wh_pool_worker_t *hand) {
-    if (hand->progress.done_count > 0) {
-        wh_progress_merge(&hand->pool->progress, &hand->progress);
-        wh_progress_clear(&hand->progress);
+/* With the pool's lock held. */
+static void show(wh_pool_worker_t *worker) {
+    if (worker->progress.done_count > 0) {
+        wh_progress_merge(&worker->pool->progress, &worker->progress);
+        wh_progress_clear(&worker->progress);
     }
-    hand->shown = wh_clock_seconds();
+    worker->shown = wh_clock_seconds();
 }
 
-static void fail(wh_pool_worker_t *hand, uint64_t trial, const char *message) {
-    wh_pool_t *pool = hand->pool;
+static void fail(wh_pool_worker_t *worker, uint64_t trial, const char *message) {
+    wh_pool_t *pool = worker->pool;
     pthread_mutex_lock(&pool->lock);
     if (!pool->failed) {
         snprintf(pool->message, sizeof pool->message, "trial %llu: %s", (unsigned long long)trial, message);
@@ -54,9 +97,9 @@ static void fail(wh_pool_worker_t *hand, uint64_t trial, const char *message) {
     wh_pool_stop(pool);
 }
 
-/* A block that is not finished counts for nothing. */
-static void play_block(wh_pool_worker_t *hand, uint64_t block) {
-    wh_pool_t *pool = hand->pool;
+/* Plays a block. One that is not finished is not counted. */
+static void play_block(wh_pool_worker_t *worker, uint64_t block) {
+    wh_pool_t *pool = worker->pool;
     const uint64_t trials = wh_study_block_trials(pool->study, block);
     char message[WH_SANDBOX_MESSAGE_BYTES] = "";
     for (uint64_t i = 0; i < trials; ++i) {
@@ -64,24 +107,24 @@ static void play_block(wh_pool_worker_t *hand, uint64_t block) {
         if (is_stopped(pool)) {
             return;
         }
-        if (!wh_worker_play(&hand->worker, trial, &hand->block, message)) {
-            fail(hand, trial, message);
+        if (!wh_worker_play(&worker->player, trial, &worker->block, message)) {
+            fail(worker, trial, message);
             return;
         }
     }
     __atomic_fetch_add(&pool->trials, trials, __ATOMIC_RELAXED);
-    wh_tally_merge(&hand->progress.tally, &hand->block);
-    wh_tally_clear(&hand->block);
-    wh_progress_note(&hand->progress, block);
+    wh_tally_merge(&worker->progress.tally, &worker->block);
+    wh_tally_clear(&worker->block);
+    wh_progress_note(&worker->progress, block);
 }
 
 /* The next block, or false when there will be none. */
-static bool next_block(wh_pool_worker_t *hand, uint64_t *block) {
-    wh_pool_t *pool = hand->pool;
+static bool next_block(wh_pool_worker_t *worker, uint64_t *block) {
+    wh_pool_t *pool = worker->pool;
     pthread_mutex_lock(&pool->lock);
     --pool->working;
-    if (pool->from == pool->to || wh_clock_seconds() - hand->shown > SHOW_S) {
-        show(hand);
+    if (pool->from == pool->to || wh_clock_seconds() - worker->shown > SHOW_S) {
+        show(worker);
     }
     pthread_cond_broadcast(&pool->changed);
     while (pool->from == pool->to && !pool->closed && !is_stopped(pool)) {
@@ -92,7 +135,7 @@ static bool next_block(wh_pool_worker_t *hand, uint64_t *block) {
         *block = pool->queue[pool->from++];
         ++pool->working;
     } else {
-        show(hand);
+        show(worker);
         pthread_cond_broadcast(&pool->changed);
     }
     pthread_mutex_unlock(&pool->lock);
@@ -100,27 +143,25 @@ static bool next_block(wh_pool_worker_t *hand, uint64_t *block) {
 }
 
 static void *work(void *argument) {
-    wh_pool_worker_t *hand = argument;
+    wh_pool_worker_t *worker = argument;
     uint64_t block = 0;
-    hand->shown = wh_clock_seconds();
-    while (next_block(hand, &block)) {
-        play_block(hand, block);
+    worker->shown = wh_clock_seconds();
+    while (next_block(worker, &block)) {
+        play_block(worker, block);
     }
     return NULL;
 }
 
-/* ------------------------------------------------------------------------------------------------------ the crew */
+/* ----------------------------------------------------------------------------------------------- the pool */
 
-static bool start_hand(wh_pool_t *pool, wh_pool_worker_t *hand) {
-    hand->pool = pool;
-    wh_tally_init(&hand->block, pool->study->wafer_count);
-    wh_progress_init(&hand->progress, pool->study);
-    if (!wh_worker_open(&hand->worker, pool->study)) {
-        return false;
-    }
+static bool start_worker(wh_pool_t *pool, wh_pool_worker_t *worker) {
+    worker->pool = pool;
+    wh_tally_init(&worker->block, pool->study->wafer_count);
+    wh_progress_init(&worker->progress, pool->study);
+    wh_worker_open(&worker->player, pool->study);
     ++pool->working;
-    hand->started = pthread_create(&hand->thread, NULL, work, hand) == 0;
-    return hand->started;
+    worker->started = pthread_create(&worker->thread, NULL, work, worker) == 0;
+    return worker->started;
 }
 
 bool wh_pool_open(wh_pool_t *pool, const wh_study_t *study, size_t threads) {
@@ -131,15 +172,15 @@ bool wh_pool_open(wh_pool_t *pool, const wh_study_t *study, size_t threads) {
     pthread_mutex_init(&pool->lock, NULL);
     pthread_cond_init(&pool->changed, NULL);
     wh_progress_init(&pool->progress, study);
-    pool->queue = calloc((size_t)pool->progress.block_count + 1, sizeof *pool->queue);
-    pool->hands = calloc(threads, sizeof *pool->hands);
-    bool started = pool->queue && pool->hands;
+    pool->queue = wh_array_new((size_t)pool->progress.block_count, sizeof *pool->queue);
+    pool->workers = wh_array_new(threads, sizeof *pool->workers);
+    bool started = true;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     pthread_mutex_lock(&pool->lock);
     for (size_t i = 0; i < threads && started; ++i) {
-        ++pool->hand_count;
-        started = start_hand(pool, &pool->hands[i]);
+        ++pool->worker_count;
+        started = start_worker(pool, &pool->workers[i]);
     }
     pthread_mutex_unlock(&pool->lock);
     pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -205,17 +246,17 @@ void wh_pool_close(wh_pool_t *pool) {
     wh_pool_stop(pool);
     pthread_cond_broadcast(&pool->changed);
     pthread_mutex_unlock(&pool->lock);
-    for (size_t i = 0; i < pool->hand_count; ++i) {
-        wh_pool_worker_t *hand = &pool->hands[i];
-        if (hand->started) {
-            pthread_join(hand->thread, NULL);
+    for (size_t i = 0; i < pool->worker_count; ++i) {
+        wh_pool_worker_t *worker = &pool->workers[i];
+        if (worker->started) {
+            pthread_join(worker->thread, NULL);
         }
-        wh_worker_close(&hand->worker);
-        wh_tally_free(&hand->block);
-        wh_progress_free(&hand->progress);
+        wh_worker_close(&worker->player);
+        wh_tally_free(&worker->block);
+        wh_progress_free(&worker->progress);
     }
     free(pool->queue);
-    free(pool->hands);
+    free(pool->workers);
     wh_progress_free(&pool->progress);
     pthread_cond_destroy(&pool->changed);
     pthread_mutex_destroy(&pool->lock);

@@ -28,7 +28,8 @@ void wh_progress_clear(wh_progress_t *progress);
 
 typedef struct wh_pool_worker wh_pool_worker_t;
 
-/* Fields are read and written under `lock`, but for `stop` and `trials`, which are read and written as atomics. */
+/* Fields are read and written under `lock`, but for `stop` and `trials`, which are read and written as
+ * atomics. */
 typedef struct {
     const wh_study_t *study;
     pthread_mutex_t lock;
@@ -37,17 +38,17 @@ typedef struct {
     size_t from, to;
     bool closed;    /* nothing more will be queued */
     bool failed;    /* a trial was not usable */
-    size_t working; /* hands that are not waiting */
+    size_t working; /* workers that are not waiting */
     wh_progress_t progress;
     char message[WH_SANDBOX_MESSAGE_BYTES + 64];
     bool stop;       /* leave everything and end: see wh_pool_stop */
     uint64_t trials; /* see wh_pool_trials */
-    wh_pool_worker_t *hands;
-    size_t hand_count;
+    wh_pool_worker_t *workers;
+    size_t worker_count;
 } wh_pool_t;
 
-/* Starts `threads` threads, without work yet; `study` must outlive them. Their signals are blocked. False when there is no memory
- * or thread for them; to be closed either way. */
+/* Starts `threads` threads, without work yet; `study` must outlive them. Their signals are blocked. False
+ * when there is no memory or thread for them; to be closed either way. */
 bool wh_pool_open(wh_pool_t *pool, const wh_study_t *study, size_t threads);
 
 /* Queues blocks; with `closed` no more will come. */
@@ -59,16 +60,17 @@ size_t wh_pool_take(wh_pool_t *pool, uint64_t blocks[], size_t most);
 /* How many blocks are queued. */
 size_t wh_pool_queued(wh_pool_t *pool);
 
-/* Whether the hands are idle, all they did is in `progress` and nothing is queued; or someone failed. */
+/* True if the workers are idle, all they did is in `progress` and nothing is queued; or if a trial was not
+ * usable. */
 bool wh_pool_is_idle(wh_pool_t *pool);
 
-/* Lets the hands leave what they are at. */
+/* Makes the workers leave what they are at. */
 void wh_pool_stop(wh_pool_t *pool);
 
-/* How many trials the hands have played so far. */
+/* How many trials the workers have played so far. */
 uint64_t wh_pool_trials(const wh_pool_t *pool);
 
-/* Whether a trial was not usable; `message` then says why. */
+/* True if a trial was not usable; `message` then says why. */
 bool wh_pool_failed(wh_pool_t *pool);
 
 /* Waits up to so many milliseconds for anything to change. */

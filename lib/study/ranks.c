@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../text/array.h"
 #include "checkpoint.h"
 
 #define LIBRARY "waferhand_mpi.so"
@@ -30,9 +31,9 @@ int wh_ranks_here(void) {
     return here > 1 ? here : 1;
 }
 
-/* ------------------------------------------------------------------------------------------------------ joining */
+/* ------------------------------------------------------------------------------------------------ joining */
 
-/* Beside the program, or where `make install` puts it. */
+/* Loads the library: it is beside the program, or where `make install` puts it. */
 static void *open_library(void) {
     static const char *const places[] = {"/" LIBRARY, "/../lib/waferhand/" LIBRARY};
     char program[4096];
@@ -81,7 +82,7 @@ void wh_ranks_close(wh_ranks_t *ranks, int status) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- rank 0 */
+/* ------------------------------------------------------------------------------------------------- rank 0 */
 
 static bool take_progress(wh_pool_t *pool, int from, const char *text, size_t size) {
     char message[1024];
@@ -94,7 +95,7 @@ static bool take_progress(wh_pool_t *pool, int from, const char *text, size_t si
     return taken;
 }
 
-/* Fewer and fewer, so that all end at much the same time. */
+/* Sends fewer and fewer blocks, so that all ranks end at about the same time. */
 static bool send_blocks(const wh_ranks_t *ranks, wh_pool_t *pool, int to) {
     uint64_t blocks[MOST_BLOCKS];
     const size_t share = wh_pool_queued(pool) / (4 * (size_t)ranks->size) + 1;
@@ -117,17 +118,15 @@ static bool answer(wh_ranks_t *ranks, wh_pool_t *pool, int from, const char *tex
     return send_blocks(ranks, pool, from);
 }
 
-/* A message that has come, to be freed; null when there is none. `sound` becomes false when something is wrong. */
+/* A message that has come, to be freed; null when there is none. `sound` becomes false when something is
+ * wrong. */
 static char *take_message(const wh_ranks_t *ranks, int *from, size_t *size, bool *sound) {
     const int any = ranks->calls->look(from, size);
     if (any <= 0) {
         *sound = any == 0;
         return NULL;
     }
-    char *text = malloc(*size + 1);
-    if (!text) {
-        abort();
-    }
+    char *text = wh_array_new(*size, 1);
     *sound = ranks->calls->receive(*from, text, *size) == 0;
     return text;
 }
@@ -147,14 +146,11 @@ bool wh_ranks_serve(wh_ranks_t *ranks, wh_pool_t *pool) {
     return sound;
 }
 
-/* ------------------------------------------------------------------------------------------------------- others */
+/* ------------------------------------------------------------------------------------------------- others */
 
 static bool tell(const wh_ranks_t *ranks, char kind, const char *text) {
     const size_t size = strlen(text) + 1;
-    char *message = malloc(size + 1);
-    if (!message) {
-        abort();
-    }
+    char *message = wh_array_new(size + 1, 1);
     message[0] = kind;
     memcpy(message + 1, text, size);
     const bool sent = ranks->calls->send(0, message, size) == 0;
@@ -162,7 +158,7 @@ static bool tell(const wh_ranks_t *ranks, char kind, const char *text) {
     return sent;
 }
 
-/* What was done since the last time. */
+/* Tells what was done since the last message. */
 static bool tell_progress(const wh_ranks_t *ranks, wh_pool_t *pool, char kind) {
     pthread_mutex_lock(&pool->lock);
     char *text = wh_checkpoint_text(pool->study, &pool->progress);
@@ -191,10 +187,10 @@ static bool take_blocks(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting,
     return sound;
 }
 
-/* Asks for more in time, and takes what comes. */
+/* Asks for more blocks before the queue is empty, and takes those that come. */
 static bool go_on(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting, bool *more) {
     bool sound = true;
-    if (*more && !*wanting && wh_pool_queued(pool) <= 2 * pool->hand_count) {
+    if (*more && !*wanting && wh_pool_queued(pool) <= 2 * pool->worker_count) {
         sound = tell_progress(ranks, pool, WANTS_MORE);
         *wanting = true;
     }

@@ -34,7 +34,7 @@ static bool hash_file(const char *path, uint64_t *hash) {
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------- wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static bool is_known(const wh_study_t *study, int32_t wafer) {
     bool known = false;
@@ -56,7 +56,7 @@ static void choose_wafers(wh_study_t *study) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ opening */
+/* ------------------------------------------------------------------------------------------------ opening */
 
 static const char *why_whole(const wh_study_t *study) {
     if (study->layout->collision) {

@@ -8,8 +8,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "../text/bar.h"
+#include "../text/array.h"
 #include "../text/clock.h"
+#include "../text/style.h"
 #include "checkpoint.h"
 
 /* What is done is kept every so many seconds. */
@@ -17,7 +18,10 @@
 
 #define MOST_THREADS 1024
 
-/* ----------------------------------------------------------------------------------------------------- signals */
+/* The bar is so wide. */
+#define CELLS 30
+
+/* ------------------------------------------------------------------------------------------------ signals */
 
 static volatile sig_atomic_t caught;
 
@@ -29,7 +33,7 @@ static bool is_interrupted(void) {
     return caught != 0;
 }
 
-/* One that was ignored stays ignored, as for a program in the background. */
+/* A signal that was ignored stays ignored, as for a program in the background. */
 static void catch_signals(void) {
     static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i) {
@@ -42,9 +46,9 @@ static void catch_signals(void) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- state */
+/* -------------------------------------------------------------------------------------------------- state */
 
-/* Where what is done is kept, and when it was last. */
+/* Where progress is kept, and when it was kept last. */
 typedef struct {
     char *path; /* null: nowhere */
     bool named; /* by the user: then it stays, and not being able to write is a failure */
@@ -79,7 +83,8 @@ static bool open_keeper(keeper_t *keeper, const wh_study_options_t *options, wh_
         return true;
     }
     const wh_checkpoint_found_t found = wh_checkpoint_load(keeper->path, pool->study, &pool->progress);
-    return found != WH_STATE_REFUSED && (found == WH_STATE_READ || !keeper->named || keep(keeper, pool));
+    return found != WH_CHECKPOINT_REFUSED &&
+           (found == WH_CHECKPOINT_READ || !keeper->named || keep(keeper, pool));
 }
 
 static void close_keeper(keeper_t *keeper, bool done) {
@@ -89,7 +94,58 @@ static void close_keeper(keeper_t *keeper, bool done) {
     free(keeper->path);
 }
 
-/* ------------------------------------------------------------------------------------------------------ playing */
+/* ---------------------------------------------------------------------------------------------------- bar */
+
+/* How far the study is, as a line on a terminal; nothing anywhere else. */
+typedef struct {
+    FILE *out; /* null: no terminal */
+    wh_style_t style;
+    uint64_t total, begun; /* trials, and those done before */
+    double start, shown;   /* s */
+} bar_t;
+
+static void bar_open(bar_t *bar, FILE *out, uint64_t total, uint64_t begun) {
+    bar->out = isatty(fileno(out)) == 1 ? out : NULL;
+    bar->style = wh_style_of(out);
+    bar->total = total;
+    bar->begun = begun;
+    bar->start = wh_clock_seconds();
+    bar->shown = 0;
+}
+
+static void print_left(const bar_t *bar, uint64_t done, double elapsed) {
+    if (done > bar->begun && elapsed > 1) {
+        const double left = elapsed * (double)(bar->total - done) / (double)(done - bar->begun);
+        fprintf(bar->out, ", %d:%02d left", (int)(left / 60), (int)left % 60);
+    }
+}
+
+/* Ten times a second at most. */
+static void bar_show(bar_t *bar, uint64_t done) {
+    const double now = wh_clock_seconds();
+    if (!bar->out || now - bar->shown < 0.1) {
+        return;
+    }
+    bar->shown = now;
+    const int full = (int)((double)CELLS * (double)done / (double)bar->total);
+    fputs("\r\033[K[", bar->out);
+    for (int cell = 0; cell < CELLS; ++cell) {
+        fputs(cell < full ? (bar->style.utf8 ? "█" : "#") : " ", bar->out);
+    }
+    fprintf(bar->out, "] %.1f %% of %llu trials", 100 * (double)done / (double)bar->total,
+            (unsigned long long)bar->total);
+    print_left(bar, done, now - bar->start);
+    fflush(bar->out);
+}
+
+static void bar_close(const bar_t *bar) {
+    if (bar->out) {
+        fputs("\r\033[K", bar->out);
+        fflush(bar->out);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ playing */
 
 static size_t count_threads(const wh_study_options_t *options) {
     cpu_set_t processors;
@@ -104,11 +160,8 @@ static size_t count_threads(const wh_study_options_t *options) {
 }
 
 static void queue_rest(wh_pool_t *pool) {
-    uint64_t *blocks = calloc((size_t)pool->progress.block_count + 1, sizeof *blocks);
+    uint64_t *blocks = wh_array_new((size_t)pool->progress.block_count, sizeof *blocks);
     size_t count = 0;
-    if (!blocks) {
-        abort();
-    }
     pthread_mutex_lock(&pool->lock);
     for (uint64_t block = 0; block < pool->progress.block_count; ++block) {
         if (!wh_progress_has(&pool->progress, block)) {
@@ -140,16 +193,16 @@ static wh_study_end_t how_it_ended(wh_pool_t *pool, const wh_ranks_t *ranks) {
 }
 
 static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
-    wh_bar_t bar;
+    bar_t bar;
     bool sound = true;
     queue_rest(pool);
-    wh_bar_open(&bar, stderr, pool->study->trials, trials_done(pool));
+    bar_open(&bar, stderr, pool->study->trials, trials_done(pool));
     while (sound && !wh_pool_failed(pool) && !is_interrupted() && !is_over(pool, ranks)) {
         wh_pool_wait(pool, 50);
         sound = wh_ranks_serve(ranks, pool) && keep_now_and_then(keeper, pool);
-        wh_bar_show(&bar, trials_done(pool));
+        bar_show(&bar, trials_done(pool));
     }
-    wh_bar_close(&bar);
+    bar_close(&bar);
     if (wh_pool_failed(pool)) {
         fprintf(stderr, "%s\n", pool->message);
         return WH_STUDY_FAILED;
@@ -164,8 +217,8 @@ static void tell_interruption(const keeper_t *keeper, wh_pool_t *pool) {
             keeper->path ? keeper->path : "");
 }
 
-/* Threads that are stopped show what they have done: to be kept, too. */
-static void stop_hands(wh_pool_t *pool) {
+/* Stops the workers and waits until all that they have done is in the progress. */
+static void stop_workers(wh_pool_t *pool) {
     wh_pool_stop(pool);
     while (!wh_pool_is_idle(pool)) {
         wh_pool_wait(pool, 5);
@@ -177,7 +230,7 @@ static wh_study_end_t play_first(wh_pool_t *pool, const wh_study_options_t *opti
     wh_study_end_t end = WH_STUDY_FAILED;
     if (open_keeper(&keeper, options, pool)) {
         end = lead(pool, ranks, &keeper);
-        stop_hands(pool);
+        stop_workers(pool);
         const bool used = keeper.named || end == WH_STUDY_INTERRUPTED;
         if (used && !keep(&keeper, pool) && end == WH_STUDY_DONE) {
             end = WH_STUDY_FAILED;

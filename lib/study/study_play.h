@@ -1,4 +1,5 @@
-/* A study from beginning to end: threads, ranks, the state that it goes on from, and its progress on a terminal. */
+/* A study from beginning to end: threads, ranks, the state that it goes on from, and its progress on a
+ * terminal. */
 #ifndef WH_STUDY_STUDY_PLAY_H
 #define WH_STUDY_STUDY_PLAY_H
 
@@ -18,8 +19,8 @@ typedef enum {
     WH_STUDY_HELPED       /* another rank has the result */
 } wh_study_end_t;
 
-/* Plays what is not yet done of an opened study. `progress` is filled in, to be freed by wh_progress_free, when the study is
- * done. */
+/* Plays what is not yet done of an opened study. `progress` is filled in, to be freed by wh_progress_free,
+ * when the study is done. */
 wh_study_end_t wh_study_play(const wh_study_t *study, const wh_study_options_t *options, wh_ranks_t *ranks,
                              wh_progress_t *progress);
 

@@ -12,7 +12,7 @@ static int64_t whole_of(double value) {
     return scaled < (double)WH_SUM_MOST ? (int64_t)scaled : WH_SUM_MOST;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- bins */
+/* --------------------------------------------------------------------------------------------------- bins */
 
 static uint32_t side_of(uint64_t size) {
     uint32_t doublings = 0;
@@ -40,7 +40,7 @@ static double middle_of(uint32_t bin) {
     return bin < WH_SUM_SIDE ? -middle_of_side(WH_SUM_SIDE - 1 - bin) : middle_of_side(bin - WH_SUM_SIDE);
 }
 
-/* -------------------------------------------------------------------------------------------------------- adding */
+/* ------------------------------------------------------------------------------------------------- adding */
 
 void wh_sum_add(wh_sum_t *sum, double value) {
     const int64_t whole = whole_of(value);
@@ -74,14 +74,14 @@ void wh_sum_merge(wh_sum_t *sum, const wh_sum_t *other) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- figures */
+/* ------------------------------------------------------------------------------------------------ figures */
 
 double wh_sum_mean(const wh_sum_t *sum) {
     return sum->count == 0 ? 0 : (double)sum->sum / (double)sum->count * UNIT;
 }
 
-/* Of squares about a whole number near the mean: exact until the two last steps. Unsigned products wrap, and what they
- * wrap to is what fits. */
+/* Of squares about a whole number near the mean: exact until the two last steps. Unsigned products wrap, and
+ * what they wrap to is what fits. */
 double wh_sum_deviation(const wh_sum_t *sum) {
     if (sum->count < 2) {
         return 0;

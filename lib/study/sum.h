@@ -1,8 +1,9 @@
 /* What a measured quantity does over many trials: mean, standard deviation, extremes, quantiles.
  *
- * Values are kept as whole multiples of 2^-30 (about 1e-9 mm or degrees) in exact integer sums, and counted in bins that are the
- * same for every study. So adding is commutative and associative to the last bit: whatever threads and machines shared
- * the trials, in whatever order their sums came together, the result is the same.
+ * Values are kept as whole multiples of 2^-30 (about 1e-9 mm or degrees) in exact integer sums, and counted
+ * in bins that are the same for every study. So adding is commutative and associative to the last bit:
+ * whatever threads and machines shared the trials, in whatever order their sums came together, the result is
+ * the same.
  */
 #ifndef WH_STUDY_SUM_H
 #define WH_STUDY_SUM_H
@@ -41,8 +42,9 @@ double wh_sum_deviation(const wh_sum_t *sum);
 double wh_sum_least(const wh_sum_t *sum);
 double wh_sum_most(const wh_sum_t *sum);
 
-/* The value that a share of `permille` / 1000 of the values does not exceed: the smallest whose rank is at least that, as the
- * middle of its bin, which is within 1/128 of the value, and within least and most. 0 when nothing was counted. */
+/* The value that a share of `permille` / 1000 of the values does not exceed: the smallest whose rank is at
+ * least that, as the middle of its bin, which is within 1/128 of the value, and within least and most. 0 when
+ * nothing was counted. */
 double wh_sum_quantile(const wh_sum_t *sum, uint32_t permille);
 
 #endif

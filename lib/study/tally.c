@@ -10,10 +10,7 @@
 void wh_tally_init(wh_tally_t *tally, size_t wafer_count) {
     memset(tally, 0, sizeof *tally);
     tally->wafer_count = wafer_count;
-    tally->wafers = calloc(wafer_count + 1, sizeof *tally->wafers);
-    if (!tally->wafers) {
-        abort();
-    }
+    tally->wafers = wh_array_new(wafer_count, sizeof *tally->wafers);
 }
 
 static void clear_rows(wh_tally_rows_t *rows) {
@@ -47,9 +44,9 @@ void wh_tally_free(wh_tally_t *tally) {
     memset(tally, 0, sizeof *tally);
 }
 
-/* --------------------------------------------------------------------------------------------------------- rows */
+/* --------------------------------------------------------------------------------------------------- rows */
 
-/* Trials come to their rows in much the same order. */
+/* The search begins behind the last row found: most trials come to their rows in the same order. */
 static wh_tally_row_t *find_row(wh_tally_rows_t *rows, int line, int place) {
     for (size_t i = 0; i < rows->count; ++i) {
         const size_t index = (rows->next + i) % rows->count;
@@ -77,7 +74,7 @@ wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const c
     return row;
 }
 
-/* Each trial once, however often a loop comes by. */
+/* Counts each trial once, even if a loop reaches the line again. */
 static void count_row(wh_tally_row_t *row, uint64_t trial, bool bad) {
     row->seen += row->last == trial ? 0 : 1;
     row->last = trial;
@@ -87,7 +84,7 @@ static void count_row(wh_tally_row_t *row, uint64_t trial, bool bad) {
     }
 }
 
-/* How many before this one stand in its line; `before` is that of the one before. */
+/* How many expectations precede this one in its line. `before` is the place of the expectation before it. */
 static int place_of(const wh_record_t *record, size_t index, int before) {
     const wh_expectation_record_t *expected = record->expectations;
     if (index > 0 && expected[index - 1].line == expected[index].line) {
@@ -154,14 +151,14 @@ void wh_tally_sort(wh_tally_t *tally) {
     sort_rows(&tally->errors);
 }
 
-/* ------------------------------------------------------------------------------------------------------- wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static bool is_there(const wh_study_wafer_t *wafer, const wh_study_wafer_t *nominal) {
     return wafer->place.station == nominal->place.station && wafer->place.slot == nominal->place.slot &&
            wafer->holder == nominal->holder;
 }
 
-/* How far it ends off, infinite when it is elsewhere. */
+/* How far off the wafer ends; infinite if it is elsewhere. */
 static double add_wafer(wh_tally_wafer_t *tally, const wh_study_wafer_t *wafer,
                         const wh_study_wafer_t *nominal) {
     if (!is_there(wafer, nominal)) {
@@ -193,7 +190,7 @@ static void merge_wafers(wh_tally_t *tally, const wh_tally_t *other) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------------- worst */
+/* -------------------------------------------------------------------------------------------------- worst */
 
 static bool is_worse(const wh_tally_trial_t *one, const wh_tally_trial_t *other) {
     if (one->met != other->met) {
@@ -217,7 +214,7 @@ void wh_tally_note_worst(wh_tally_t *tally, const wh_tally_trial_t *trial) {
     tally->worst[place] = *trial;
 }
 
-/* ------------------------------------------------------------------------------------------------- all together */
+/* ------------------------------------------------------------------------------------------- all together */
 
 static void add_events(wh_tally_t *tally, const wh_outcome_t *outcome) {
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {

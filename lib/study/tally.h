@@ -1,18 +1,19 @@
-/* What came of some trials: counts that add up to the same whoever counted which trial. */
+/* Results of trials, as counts: the sums are the same whichever process counted which trial. */
 #ifndef WH_STUDY_TALLY_H
 #define WH_STUDY_TALLY_H
 
 #include "study.h"
 #include "sum.h"
 
-/* How far a wafer ends from where the run without errors leaves it: along x, y, z of its slot (mm), its tilt (deg), and in the
- * slot's plane (mm). */
+/* How far a wafer ends from where the run without errors leaves it: along x, y, z of its slot (mm), its tilt
+ * (deg), and in the slot's plane (mm). */
 typedef enum { WH_TALLY_DX, WH_TALLY_DY, WH_TALLY_DZ, WH_TALLY_TILT, WH_TALLY_OFF } wh_tally_quantity_t;
 #define WH_TALLY_QUANTITIES 5
 
 typedef struct {
     uint64_t
-        elsewhere; /* trials that leave it in another slot, in none, or with another holder: not in the sums */
+        /* trials that leave it in another slot, in none, or with another holder: not in the sums */
+        elsewhere;
     wh_sum_t of[WH_TALLY_QUANTITIES];
 } wh_tally_wafer_t;
 
@@ -37,7 +38,7 @@ typedef struct {
 typedef struct {
     wh_tally_row_t *rows;
     size_t count, capacity;
-    size_t next; /* probably the one that is asked for next */
+    size_t next; /* where the next search begins */
 } wh_tally_rows_t;
 
 /* One of the worst trials. */
@@ -86,7 +87,8 @@ void wh_tally_sort(wh_tally_t *tally);
 /* The row of these, made if there is none; `text` is kept if this trial is the lowest that has it. */
 wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const char *text, uint64_t named);
 
-/* Puts a trial among the worst, if it is one of them: failed ones before others, then by `off`, then the lower number. */
+/* Puts a trial among the worst, if it is one of them: failed ones before others, then by `off`, then the
+ * lower number. */
 void wh_tally_note_worst(wh_tally_t *tally, const wh_tally_trial_t *trial);
 
 #endif

@@ -3,15 +3,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool wh_worker_open(wh_worker_t *worker, const wh_study_t *study) {
+#include "../text/array.h"
+
+void wh_worker_open(wh_worker_t *worker, const wh_study_t *study) {
     const wh_layout_t *layout = study->layout;
     memset(worker, 0, sizeof *worker);
     worker->study = study;
     worker->options = study->run;
-    worker->places = calloc(layout->station_count + 1, sizeof *worker->places);
-    worker->start = calloc(layout->wafer_count + 1, sizeof *worker->start);
-    worker->wafers = calloc(layout->wafer_count + 1, sizeof *worker->wafers);
-    return worker->places && worker->start && worker->wafers;
+    worker->places = wh_array_new(layout->station_count, sizeof *worker->places);
+    worker->start = wh_array_new(layout->wafer_count, sizeof *worker->start);
+    worker->wafers = wh_array_new(layout->wafer_count, sizeof *worker->wafers);
 }
 
 void wh_worker_close(wh_worker_t *worker) {
@@ -27,7 +28,7 @@ static void begin(wh_worker_t *worker, uint64_t trial) {
     memset(outcome->events, 0, sizeof outcome->events);
 }
 
-/* ------------------------------------------------------------------------------------------------------ the tape */
+/* ------------------------------------------------------------------------------------------ the decisions */
 
 typedef struct {
     wh_outcome_t *outcome;
@@ -73,7 +74,7 @@ static void look_at_wafers(wh_worker_t *worker) {
     }
 }
 
-/* False when the trial reads back what the tape has not: nothing is then counted. */
+/* False if the trial reads back what the decisions have not: nothing is then counted. */
 static bool replay(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
     const wh_study_t *study = worker->study;
     const wh_record_t *record = &study->nominal.record;
@@ -92,7 +93,7 @@ static bool replay(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
     return true;
 }
 
-/* ----------------------------------------------------------------------------------------------------- the script */
+/* --------------------------------------------------------------------------------------------- the script */
 
 static void take_record(wh_worker_t *worker, const wh_record_t *record) {
     wh_outcome_t *outcome = &worker->outcome;

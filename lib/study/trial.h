@@ -1,10 +1,11 @@
-/* One trial of a study, by replaying the tape or by running the script whole. */
+/* One trial of a study, by replaying the decisions of the run without errors or by running the script
+ * whole. */
 #ifndef WH_STUDY_TRIAL_H
 #define WH_STUDY_TRIAL_H
 
 #include "tally.h"
 
-/* What a thread needs for its trials; its own. */
+/* What a thread needs for its trials. Each has its own. */
 typedef struct {
     const wh_study_t *study;
     wh_trial_cell_t trial_cell;
@@ -17,16 +18,16 @@ typedef struct {
     wh_script_run_options_t options;
 } wh_worker_t;
 
-/* False when memory is out. To be closed either way. */
-bool wh_worker_open(wh_worker_t *worker, const wh_study_t *study);
+/* To be closed. If there is no memory, the program ends. */
+void wh_worker_open(wh_worker_t *worker, const wh_study_t *study);
 void wh_worker_close(wh_worker_t *worker);
 
-/* Plays a trial and adds what came of it. False when the script turned out not to be usable in it: `message`, of
- * WH_SANDBOX_MESSAGE_BYTES, then says why. */
+/* Plays a trial and adds what came of it. False when the script turned out not to be usable in it: `message`,
+ * of WH_SANDBOX_MESSAGE_BYTES, then says why. */
 bool wh_worker_play(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message);
 
-/* The same, always by running the script whole, or, when `tape` is true, never: then false as well where that is not possible.
- * `hash` gets the last state's hash. For comparing the two. */
+/* For comparing both ways: plays a trial by its decisions alone, or by running the script whole. False, too,
+ * if the decisions do not suffice. `hash` gets the hash of the last state. */
 bool wh_worker_compare(wh_worker_t *worker, uint64_t trial, bool decisions, wh_tally_t *tally,
                        uint64_t *hash);
 

@@ -9,9 +9,10 @@ typedef struct {
     double low, high; /* 0 <= low <= rate <= high <= 1 */
 } wh_confidence_t;
 
-/* Wilson's score interval at 95 % (z = 1.959964): the rates p from which the one found is at most z standard deviations
- * sqrt(p (1 - p) / trials) away (E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209). It holds for few trials and for rates at 0
- * or 1, where it has a width. Without trials: 0 to 1. `hits` is at most `trials`, that at most 2^53. */
+/* Wilson's score interval at 95 % (z = 1.959964): the rates p from which the one found is at most z standard
+ * deviations sqrt(p (1 - p) / trials) away (E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209). It holds for
+ * few trials and for rates at 0 or 1, where it has a width. Without trials: 0 to 1. `hits` is at most
+ * `trials`, that at most 2^53. */
 wh_confidence_t wh_wilson_interval(uint64_t hits, uint64_t trials);
 
 #endif

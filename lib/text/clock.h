@@ -1,4 +1,4 @@
-/* The clock on the wall, for waiting and for progress: no result depends on it. */
+/* The clock, for waits and progress alone: no result depends on it. */
 #ifndef WH_TEXT_CLOCK_H
 #define WH_TEXT_CLOCK_H
 

@@ -12,7 +12,7 @@
 /* Between two columns. */
 #define SEPARATOR "  "
 
-/* No double near the limits needs more to be told from them. */
+/* With so many decimals every double differs from a limit beside it. */
 #define MOST_DECIMALS 20
 
 /* A cell is empty, a text (not null) or a number. */
@@ -184,7 +184,7 @@ void wh_grid_number(wh_grid_t *grid, size_t column, wh_ink_t ink, double value) 
 
 /* ----------------------------------------------------------------------------------------------- printing */
 
-/* Numbers become text once all of their column are known. */
+/* Numbers become text when all rows are known: a column's numbers share their decimals. */
 static void format_numbers(wh_grid_t *grid) {
     for (size_t i = 0; i < grid->row_count * grid->column_count; ++i) {
         wh_grid_cell_t *cell = &grid->cells[i];
@@ -209,7 +209,7 @@ static void measure_columns(wh_grid_t *grid) {
     }
 }
 
-/* The column after the one at `column` and those glued to it; their width is added to `width`. */
+/* Adds the width of a column and of those glued to it. Returns the column after them. */
 static size_t end_of_unit(const wh_grid_t *grid, size_t column, size_t *width) {
     *width += grid->columns[column++].width;
     while (column < grid->column_count && grid->columns[column].glued) {
@@ -289,7 +289,7 @@ static void add_line(const wh_grid_t *grid, const part_t *part, size_t row, stru
     }
 }
 
-/* Lines end where their text ends. */
+/* Prints lines without the blanks at their ends. */
 static void print_trimmed(const char *text, FILE *out) {
     while (*text != '\0') {
         const size_t length = strcspn(text, "\n");

@@ -27,8 +27,8 @@ typedef struct wh_grid wh_grid_t;
 /* An empty table; its first `keys` columns begin each part. */
 wh_grid_t *wh_grid_new(const wh_style_t *style, size_t keys);
 
-/* One more column, of text or of numbers (to the right, with a rule). At most WH_GRID_COLUMNS, all of them before
- * the first row. */
+/* One more column, of text or of numbers (to the right, with a rule). At most WH_GRID_COLUMNS, all of them
+ * before the first row. */
 void wh_grid_text_column(wh_grid_t *grid, const char *heading);
 void wh_grid_number_column(wh_grid_t *grid, const char *heading, wh_grid_digits_t digits);
 

@@ -135,7 +135,8 @@ static void write_exact(FILE *out, double value) {
     fputs(digits, out);
 }
 
-/* Without zeros at the end. Whole numbers of units are faster than printf and have its digits. */
+/* Writes no zeros at the end. Counting in units of the last decimal is faster than printf and gives the same
+ * digits. */
 static void write_rounded(FILE *out, double value, int decimals) {
     static const double powers[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
     char digits[32];

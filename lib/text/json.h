@@ -1,4 +1,5 @@
-/* JSON over jansson: values that are made and printed as a whole, and long lists that are written as they come.
+/* JSON over jansson: values that are made and printed as a whole, and long lists that are written as they
+ * come.
  *
  * If there is no memory for a value, the program ends.
  */
@@ -36,13 +37,11 @@ void wh_json_put_integer(json_t *object, const char *key, json_int_t value);
 typedef json_t *wh_json_element_t(const void *subject, size_t i);
 json_t *wh_json_list(wh_json_element_t *element, const void *subject, size_t count);
 
-/* Prints an object: each of its members on a line, and each element of its lists, for grep, diff and the eye. Numbers get
- * up to 17 digits. 0, or -1 if `out` does not take it. */
+/* Prints an object: each of its members on a line, and each element of its lists, for grep, diff and the eye.
+ * Numbers get up to 17 digits. 0, or -1 if `out` does not take it. */
 int wh_json_print(json_t *root, FILE *out);
 
-/* -------------------------------------------------------------------------------------------- as it comes
- * For long lists of numbers, each with the digits that it needs and no more: jansson has one precision for all. What is
- * written is safe within an HTML page: every '<' is escaped. */
+/* -------------------------------------------------------------------------------------------- as it comes */
 
 /* Zero but for `out` to begin with. Commas are set by themselves. */
 typedef struct {
@@ -55,8 +54,8 @@ typedef struct {
 void wh_json_text_begin(wh_json_text_t *text, const char *key, char bracket);
 void wh_json_text_end(wh_json_text_t *text, char bracket);
 
-/* A number; null for infinities and NaN. Exact: the fewest digits that read back as the same double; else rounded to
- * `decimals`, at most 9. `key` may be null. */
+/* A number; null for infinities and NaN. Exact: the fewest digits that read back as the same double; else
+ * rounded to `decimals`, at most 9. `key` may be null. */
 void wh_json_text_number(wh_json_text_t *text, const char *key, double value, int decimals, bool exact);
 
 /* A whole number, a text (null: null), or any value of jansson's, which is released. */

@@ -1,6 +1,7 @@
 #include "output.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -11,7 +12,7 @@ static bool is_plain(const char *path) {
     return stat(path, &status) != 0 || S_ISREG(status.st_mode);
 }
 
-/* As any new file would have it, or as the one that it replaces has it. */
+/* The permissions of the file that is replaced, or those of any new file. */
 static mode_t mode_of(const char *path) {
     struct stat status;
     if (stat(path, &status) == 0) {
@@ -48,7 +49,7 @@ bool wh_output_open(wh_output_t *output, const char *path) {
     return output->file != NULL;
 }
 
-/* On the disk, not only on its way to it: a power cut after the renaming must not leave an empty file. */
+/* True if all bytes are on the disk: a power cut after the renaming must not leave an empty file. */
 static bool is_stored(const wh_output_t *output) {
     return fflush(output->file) == 0 && !ferror(output->file) &&
            (output->beside[0] == '\0' || fsync(fileno(output->file)) == 0);
@@ -78,4 +79,32 @@ void wh_output_drop(wh_output_t *output) {
         (void)unlink(output->beside);
         output->beside[0] = '\0';
     }
+}
+
+/* -------------------------------------------------------------------------------------------------- state */
+
+void wh_output_state_path(const char *name, char *path, size_t size) {
+    const char *state = getenv("XDG_STATE_HOME");
+    const char *home = getenv("HOME");
+    int length = -1;
+    /* The XDG specification has relative paths ignored. */
+    if (state && state[0] == '/') {
+        length = snprintf(path, size, "%s/waferhand/%s", state, name);
+    } else if (home && home[0] == '/') {
+        length = snprintf(path, size, "%s/.local/state/waferhand/%s", home, name);
+    }
+    if (length < 0 || (size_t)length >= size) {
+        path[0] = '\0';
+    }
+}
+
+bool wh_output_make_folders(const char *path) {
+    char folder[PATH_MAX];
+    bool made = (size_t)snprintf(folder, sizeof folder, "%s", path) < sizeof folder;
+    for (char *slash = strchr(folder + 1, '/'); made && slash; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        made = mkdir(folder, 0700) == 0 || errno == EEXIST;
+        *slash = '/';
+    }
+    return made;
 }

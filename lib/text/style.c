@@ -64,7 +64,7 @@ const char *wh_style_degree(const wh_style_t *style) {
     return style->utf8 ? "°" : " deg";
 }
 
-/* The bytes of the printable character at `text`, or 0 when there is none. */
+/* How many bytes the printable character at `text` has; 0 if there is none. */
 static size_t printable_bytes(const char *text) {
     wchar_t character;
     mbstate_t state;

@@ -6,7 +6,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* Writes text so that it is content or an attribute's value of well-formed XML; what is no UTF-8 becomes U+FFFD. */
+/* Writes text so that it is content or an attribute's value of well-formed XML; what is no UTF-8 becomes
+ * U+FFFD. */
 void wh_svg_text(FILE *out, const char *text);
 
 /* So many labels are placed at most; more would cover the picture. */

@@ -11,7 +11,8 @@ static size_t length_by(unsigned char lead) {
     return lead < 0xC2 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF5 ? 4 : 0;
 }
 
-/* After some leads the second byte has a smaller range: the rest would be longer than needed, a surrogate or too high. */
+/* After some leads the second byte has a smaller range: the rest would be longer than needed, a surrogate or
+ * too high. */
 static bool may_follow(unsigned char lead, unsigned char second) {
     switch (lead) {
     case 0xE0:

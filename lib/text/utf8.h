@@ -8,8 +8,8 @@
 /* The replacement character, U+FFFD. */
 #define WH_UTF8_REPLACEMENT "\xef\xbf\xbd"
 
-/* How many bytes the character at `text` has, 1 to 4; 0 at the end of the text and where no valid character begins (RFC
- * 3629: nothing longer than needed, no surrogates, nothing above U+10FFFF). */
+/* How many bytes the character at `text` has, 1 to 4; 0 at the end of the text and where no valid character
+ * begins (RFC 3629: nothing longer than needed, no surrogates, nothing above U+10FFFF). */
 size_t wh_utf8_bytes(const char *text);
 
 /* True if the byte goes on with a character that begins before it. */
@@ -23,10 +23,12 @@ size_t wh_utf8_count(const char *text);
 /* The greatest length up to `length` at which the text can be cut without cutting a character. */
 size_t wh_utf8_cut(const char *text, size_t length);
 
-/* Copies a text into `size` bytes, at least 4. One that is too long is cut between characters and ends in "...". */
+/* Copies a text into `size` bytes, at least 4. One that is too long is cut between characters and ends in
+ * "...". */
 void wh_utf8_clip(char *to, size_t size, const char *from);
 
-/* A copy with U+FFFD for each byte that is no UTF-8. The caller frees it. If there is no memory, the program ends. */
+/* A copy with U+FFFD for each byte that is no UTF-8. The caller frees it. If there is no memory, the program
+ * ends. */
 char *wh_utf8_repaired(const char *text);
 
 #endif

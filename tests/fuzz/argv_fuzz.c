@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "app/app.h"
-#include "app/mcs_link.h"
+#include "app/connection.h"
 #include "app/run_arguments.h"
 #include "fuzz.h"
 #include "layout/layout.h"
@@ -25,21 +25,12 @@ static int word_count;
 /* argp_error ends the process; here it ends the parser's call, which then fails. */
 static jmp_buf parser_call;
 static argp_parser_t own_parser;
-static argp_parser_t child_parser;
 
-static error_t guard(argp_parser_t parser, int key, char *argument, struct argp_state *state) {
+static error_t parse_own(int key, char *argument, struct argp_state *state) {
     if (setjmp(parser_call) != 0) {
         return EINVAL;
     }
-    return parser(key, argument, state);
-}
-
-static error_t parse_own(int key, char *argument, struct argp_state *state) {
-    return guard(own_parser, key, argument, state);
-}
-
-static error_t parse_child(int key, char *argument, struct argp_state *state) {
-    return guard(child_parser, key, argument, state);
+    return own_parser(key, argument, state);
 }
 
 void __wrap_argp_error(const struct argp_state *state, const char *format, ...)
@@ -64,19 +55,9 @@ void __wrap_argp_error(const struct argp_state *state, const char *format, ...) 
 error_t __wrap_argp_parse(const struct argp *argp, int argc, char **argv, unsigned flags, int *end,
                           void *input) {
     struct argp own = *argp;
-    struct argp child;
-    struct argp_child children[2] = {{0}};
     own_parser = argp->parser;
     own.parser = parse_own;
-    if (argp->children) {
-        REQUIRE(argp->children[0].argp != NULL && argp->children[1].argp == NULL);
-        child = *argp->children[0].argp;
-        child_parser = child.parser;
-        child.parser = parse_child;
-        children[0] = argp->children[0];
-        children[0].argp = &child;
-        own.children = children;
-    }
+    REQUIRE(!argp->children);
     const error_t error =
         __real_argp_parse(&own, argc, argv, flags | ARGP_NO_EXIT | ARGP_NO_ERRS, end, input);
     refused = refused || error != 0;

@@ -12,7 +12,7 @@
 #include "link/messages.h"
 #include "log/log_run.h"
 #include "log/replay.h"
-#include "print/record_json.h"
+#include "print/record_print.h"
 #include "report/document.h"
 
 #define HEADER 28

@@ -15,8 +15,7 @@
 #include "link/mcs_process.h"
 #include "link/messages.h"
 #include "link/sim_process.h"
-#include "print/record_json.h"
-#include "print/record_table.h"
+#include "print/record_print.h"
 
 /* An input's first byte. */
 enum { TO_MOTION_CONTROL = 1, FREE_RUNNING = 2, SWEPT = 4 };
@@ -221,7 +220,7 @@ static void check_report(void) {
             record.wafers[w].holder = record.wafers[w].place.station = WH_NONE;
         }
         REQUIRE(wh_record_print_json(&record, nowhere) == 0);
-        REQUIRE(wh_record_print_table(&record, nowhere, &style) == 0);
+        REQUIRE(wh_record_print_table(&record, nowhere, &style, 0) == 0);
     }
     wh_record_free(&record);
 }

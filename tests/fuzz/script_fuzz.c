@@ -5,8 +5,7 @@
 
 #include "fuzz.h"
 #include "mcs/mcs.h"
-#include "print/record_json.h"
-#include "print/record_table.h"
+#include "print/record_print.h"
 #include "script/sandbox_internal.h"
 #include "snapshot.h"
 #include "sound_cell.h"
@@ -84,7 +83,7 @@ static void check_report(void) {
     REQUIRE(json_array_size(json_object_get(json, "wafers")) == mcs.layout->wafer_count);
     json_decref(json);
     free(text);
-    REQUIRE(wh_record_print_table_with(&record, nowhere, &style, WH_TABLE_GANTT | WH_TABLE_MARGINS) == 0);
+    REQUIRE(wh_record_print_table(&record, nowhere, &style, WH_TABLE_GANTT | WH_TABLE_MARGINS) == 0);
 }
 
 /* A sandbox that an input has been through does its work once it has a new budget. */

@@ -57,7 +57,8 @@ static void compare(const char *script, const char *const parameters[], size_t p
     study.run.limits.print_to = stderr;
     study.seed = 5;
     study.trials = TRIALS;
-    assert_true(wh_study_open(&study) && wh_worker_open(&worker, &study));
+    assert_true(wh_study_open(&study));
+    wh_worker_open(&worker, &study);
     wh_tally_init(&comparison.replayed, study.wafer_count);
     wh_tally_init(&comparison.whole, study.wafer_count);
     for (uint64_t trial = 0; trial < study.trials; ++trial) {

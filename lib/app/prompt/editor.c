@@ -1,4 +1,5 @@
-/* Lines from a terminal: libedit's editing, waiting of our own. */
+#include "editor.h"
+
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,11 +10,10 @@
 #include <histedit.h>
 #include <limits.h>
 
+#include "../../text/output.h"
 #include "../../text/style.h"
-#include "../interrupt.h"
-#include "complete.h"
+#include "../../text/utf8.h"
 #include "history.h"
-#include "line_source.h"
 
 struct wh_editor {
     wh_input_t *input;
@@ -22,7 +22,7 @@ struct wh_editor {
     History *history;
     char history_path[PATH_MAX];
     char *line;            /* the last one */
-    wh_line_event_t event; /* why the last character did not come */
+    wh_line_event_t event; /* why there is no further character */
     bool reading;
     mbstate_t decoding;
 };
@@ -39,10 +39,9 @@ static char *prompt_text(EditLine *edit) {
     return text;
 }
 
-/* ---------------------------------------------------------------------------------------------- characters
- */
+/* --------------------------------------------------------------------------------------------- characters */
 
-/* The terminal as the shell expects it while we are stopped. */
+/* Stops the process; until it goes on the terminal is as the shell expects it. */
 static void suspend(EditLine *edit) {
     el_set(edit, EL_PREP_TERM, 0);
     raise(SIGSTOP);
@@ -50,7 +49,7 @@ static void suspend(EditLine *edit) {
     el_set(edit, EL_REFRESH);
 }
 
-/* Whether reading goes on after the signals that have arrived. */
+/* True if reading goes on after the signals that have arrived. */
 static bool handle_signals(wh_editor_t *editor) {
     for (int number = wh_interrupt_take(); number != 0; number = wh_interrupt_take()) {
         if (number == SIGWINCH) {
@@ -82,7 +81,8 @@ static bool wait_for_byte(wh_editor_t *editor) {
     }
 }
 
-/* libedit's way to get a character: 1, or 0 for the end, or -1. Bytes that are none in the locale are dropped. */
+/* Reads a character for libedit. Returns 1, 0 at the end of the input, or -1. Bytes that are no characters of
+ * the locale are dropped. */
 static int read_character(EditLine *edit, wchar_t *character) {
     wh_editor_t *editor = editor_of(edit);
     while (wait_for_byte(editor)) {
@@ -108,8 +108,7 @@ static int read_character(EditLine *edit, wchar_t *character) {
     return -1;
 }
 
-/* ------------------------------------------------------------------------------------------------- history
- */
+/* ------------------------------------------------------------------------------------------------ history */
 
 static void enter_line(void *user, const char *text) {
     HistEvent event;
@@ -124,12 +123,12 @@ static void open_history(wh_editor_t *editor) {
     }
     history(editor->history, &event, H_SETSIZE, WH_HISTORY_LINES);
     history(editor->history, &event, H_SETUNIQUE, 1);
-    wh_history_path(editor->history_path, sizeof editor->history_path);
+    wh_output_state_path("history", editor->history_path, sizeof editor->history_path);
     wh_history_load(editor->history_path, enter_line, editor->history);
     el_set(editor->edit, EL_HIST, history, editor->history);
 }
 
-/* Without the blanks at its end, which completion leaves there. */
+/* Adds a line to the history, without the blanks that completion leaves at its end. */
 static void remember(wh_editor_t *editor, char *line) {
     size_t length = strlen(line);
     while (length > 0 && line[length - 1] == ' ') {
@@ -141,21 +140,93 @@ static void remember(wh_editor_t *editor, char *line) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- editor
- */
+/* --------------------------------------------------------------------------------------------- completion */
 
-static unsigned char complete(EditLine *edit, int key) {
-    (void)key;
-    return wh_prompt_complete(edit, editor_of(edit)->session);
+static size_t common_length(const wh_candidates_t *candidates) {
+    size_t length = strlen(candidates->texts[0]);
+    for (size_t i = 1; i < candidates->count; ++i) {
+        size_t same = 0;
+        while (same < length && candidates->texts[0][same] == candidates->texts[i][same]) {
+            ++same;
+        }
+        length = same;
+    }
+    return wh_utf8_cut(candidates->texts[0], length);
 }
 
-/* What ~/.editrc says comes last. */
+static size_t characters_in(const char *text) {
+    const size_t count = mbstowcs(NULL, text, 0);
+    return count == (size_t)-1 ? strlen(text) : count;
+}
+
+/* Prints the candidates in columns below the line. */
+static void list_candidates(const wh_candidates_t *candidates) {
+    const wh_style_t style = wh_style_of(stdout);
+    size_t column = 0;
+    size_t widest = 0;
+    for (size_t i = 0; i < candidates->count; ++i) {
+        const size_t width = strlen(candidates->texts[i]) + 2;
+        widest = width > widest ? width : widest;
+    }
+    putchar('\n');
+    for (size_t i = 0; i < candidates->count; ++i) {
+        char *text = wh_style_printable(candidates->texts[i]);
+        column += widest;
+        const bool last = column + widest > style.width || i + 1 == candidates->count;
+        printf("%-*s%s", last ? 0 : (int)widest, text, last ? "\n" : "");
+        column = last ? 0 : column;
+        free(text);
+    }
+    fflush(stdout);
+}
+
+/* The word's text becomes `length` bytes of the first candidate, and a blank when it is the only one. */
+static void replace_word(EditLine *edit, const char *word, const wh_candidates_t *candidates, size_t length) {
+    char text[WH_NAME_SIZE * 2 + 100];
+    const char *first = candidates->texts[0];
+    const bool finished = candidates->count == 1 && length > 0 && first[length - 1] != '=';
+    snprintf(text, sizeof text, "%.*s%s", (int)length, first, finished ? " " : "");
+    el_deletestr(edit, (int)characters_in(word));
+    el_insertstr(edit, text);
+}
+
+/* Completes the word before the cursor as far as all candidates agree, the only one with a blank behind it;
+ * where they agree no further, lists them below the line. Returns what an editor function returns to
+ * libedit. */
+static unsigned char complete(EditLine *edit, int key) {
+    wh_candidates_t candidates;
+    const LineInfo *line = el_line(edit);
+    char *before = strndup(line->buffer, (size_t)(line->cursor - line->buffer));
+    unsigned char result = CC_ERROR;
+    if (!before) {
+        return CC_ERROR;
+    }
+    (void)key;
+    wh_session_complete(editor_of(edit)->session, before, &candidates);
+    if (candidates.count > 0) {
+        const char *word = before + candidates.start;
+        const size_t length = common_length(&candidates);
+        if (candidates.count == 1 || length > strlen(word)) {
+            replace_word(edit, word, &candidates, length);
+            result = CC_REFRESH;
+        } else {
+            list_candidates(&candidates);
+            result = CC_REDISPLAY;
+        }
+    }
+    free(before);
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------- editor */
+
+/* Reads ~/.editrc last, so that the user's settings win. */
 static void set_up(wh_editor_t *editor) {
     el_set(editor->edit, EL_CLIENTDATA, editor);
     el_set(editor->edit, EL_SIGNAL, 0);
     el_set(editor->edit, EL_PROMPT, prompt_text);
     el_set(editor->edit, EL_EDITOR, "emacs");
-    /* Wide, for of narrow names libedit makes copies that it never frees. */
+    /* The wide function: of narrow names libedit makes copies that it never frees. */
     el_wset(editor->edit, EL_ADDFN, L"wh-complete", L"completes a command or a name", complete);
     el_set(editor->edit, EL_BIND, "^I", "wh-complete", NULL);
     el_set(editor->edit, EL_BIND, "^R", "em-inc-search-prev", NULL);
@@ -185,7 +256,8 @@ wh_line_event_t wh_editor_read(wh_editor_t *editor, const char **line) {
     editor->event = WH_LINE_END;
     memset(&editor->decoding, 0, sizeof editor->decoding);
     editor->reading = true;
-    /* libedit itself would do it after it has shown the prompt: a Ctrl-D in between would be lost. */
+    /* libedit itself prepares the terminal after it has shown the prompt: a Ctrl-D in between would be
+     * lost. */
     el_set(editor->edit, EL_PREP_TERM, 1);
     const char *typed = el_gets(editor->edit, &length);
     editor->reading = false;
@@ -202,10 +274,10 @@ wh_line_event_t wh_editor_read(wh_editor_t *editor, const char **line) {
 }
 
 void wh_editor_say(wh_editor_t *editor, const char *text) {
-    char *printable = wh_style_printable(text);
-    printf("%s%s\n", editor->reading ? "\r\033[K" : "", printable ? printable : "");
+    fputs(editor->reading ? "\r\033[K" : "", stdout);
+    wh_style_put(stdout, text);
+    putchar('\n');
     fflush(stdout);
-    free(printable);
     if (editor->reading) {
         el_set(editor->edit, EL_REFRESH);
     }

@@ -1,7 +1,6 @@
 #include "history.h"
 
 #include <fcntl.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,21 +9,6 @@
 
 #include "../../mcs/session.h"
 #include "../../text/output.h"
-
-void wh_history_path(char *path, size_t size) {
-    const char *state = getenv("XDG_STATE_HOME");
-    const char *home = getenv("HOME");
-    int length = -1;
-    /* The XDG specification has relative paths ignored. */
-    if (state && state[0] == '/') {
-        length = snprintf(path, size, "%s/waferhand/history", state);
-    } else if (home && home[0] == '/') {
-        length = snprintf(path, size, "%s/.local/state/waferhand/history", home);
-    }
-    if (length < 0 || (size_t)length >= size) {
-        path[0] = '\0';
-    }
-}
 
 /* ------------------------------------------------------------------------------------------------- reading
  */
@@ -35,7 +19,7 @@ static char *read_text(const char *path) {
     char *text = NULL;
     const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd >= 0 && fstat(fd, &about) == 0 && S_ISREG(about.st_mode)) {
-        /* Of a longer file the end. */
+        /* Only the end of a long file is read. */
         const off_t skipped = about.st_size > WH_HISTORY_BYTES ? about.st_size - WH_HISTORY_BYTES : 0;
         text = calloc(1, WH_HISTORY_BYTES + 1);
         const ssize_t bytes = text ? pread(fd, text, WH_HISTORY_BYTES, skipped) : 0;
@@ -75,7 +59,7 @@ static size_t gather(char *text, const char *lines[WH_HISTORY_LINES]) {
 /* ------------------------------------------------------------------------------------------------- writing
  */
 
-/* Replaces the file by these lines, at once. */
+/* Replaces the file by these lines, as a whole. */
 static void rewrite(const char *path, const char *const lines[], size_t first, size_t count) {
     wh_output_t output = {0};
     if (!wh_output_open(&output, path)) {
@@ -105,16 +89,6 @@ void wh_history_load(const char *path, void (*line)(void *user, const char *text
     free(text);
 }
 
-static void make_folders(const char *path) {
-    char folder[PATH_MAX];
-    snprintf(folder, sizeof folder, "%s", path);
-    for (char *slash = strchr(folder + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
-        *slash = '\0';
-        mkdir(folder, 0700);
-        *slash = '/';
-    }
-}
-
 void wh_history_append(const char *path, const char *line) {
     static const int how = O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NONBLOCK;
     char text[WH_SESSION_LINE_BYTES + 2];
@@ -122,8 +96,7 @@ void wh_history_append(const char *path, const char *line) {
         return;
     }
     int fd = open(path, how, 0600);
-    if (fd < 0) {
-        make_folders(path);
+    if (fd < 0 && wh_output_make_folders(path)) {
         fd = open(path, how, 0600);
     }
     if (fd >= 0) {

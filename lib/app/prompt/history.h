@@ -1,20 +1,16 @@
 /* The prompt's history: a file of the lines that were typed, oldest first, for the next time.
  *
- * It is $XDG_STATE_HOME/waferhand/history, or ~/.local/state/waferhand/history, readable by its owner alone.
- * Each line is appended as it is typed, so that a killed program and two prompts at a time lose nothing; a
- * file that has grown long is cut when it is read. Whatever goes wrong with it, the prompt works without.
+ * It is where wh_output_state_path puts "history", readable by its owner alone; without such a place the path
+ * is empty. Each line is appended as it is typed, so that a killed program and two prompts at a time lose
+ * nothing; a file that has grown long is cut when it is read. Whatever goes wrong with it, the prompt works
+ * without.
  */
 #ifndef WH_APP_PROMPT_HISTORY_H
 #define WH_APP_PROMPT_HISTORY_H
 
-#include <stddef.h>
-
-/* So many lines are kept; a file of twice as many, or of this many bytes, is cut to them. */
+/* The last lines are kept. A file of twice as many lines, or of so many bytes, is cut to them. */
 #define WH_HISTORY_LINES 500
 #define WH_HISTORY_BYTES 1048576
-
-/* Writes the file's path; empty when the environment names no place for it. */
-void wh_history_path(char *path, size_t size);
 
 /* Calls `line` for each of the last WH_HISTORY_LINES lines. Takes nothing but a regular file; lines with
  * control characters and lines longer than a session takes are left out. */

@@ -9,14 +9,21 @@
 
 #include "../../text/style.h"
 #include "../app.h"
-#include "../interrupt.h"
-#include "line_source.h"
+#include "editor.h"
+
+/* Lines from a pipe or a file: bytes, whatever they are. */
+typedef struct {
+    wh_input_t *input;
+    char buffer[4096];
+    size_t begin, end;
+    char line[WH_SESSION_LINE_BYTES + 2]; /* one more than a session takes, so that it refuses longer lines */
+} plain_t;
 
 struct wh_prompt {
     wh_session_t *session;
     wh_input_t input;
     wh_editor_t *editor; /* null: plain */
-    wh_plain_t plain;
+    plain_t plain;
     wh_style_t style;
     bool failed; /* a command did */
     char answer[WH_SESSION_ANSWER_BYTES];
@@ -65,15 +72,72 @@ void wh_prompt_leave(wh_prompt_t *prompt) {
     prompt->input.leaving = true;
 }
 
-/* ------------------------------------------------------------------------------------------------ the loop
- */
+/* -------------------------------------------------------------------------------------------- plain lines */
+
+/* WH_LINE_NONE if there was nothing to read. */
+static wh_line_event_t read_bytes(plain_t *plain) {
+    const ssize_t bytes = read(STDIN_FILENO, plain->buffer, sizeof plain->buffer);
+    plain->begin = 0;
+    plain->end = bytes > 0 ? (size_t)bytes : 0;
+    if (bytes > 0) {
+        return WH_LINE_READ;
+    }
+    return bytes < 0 && (errno == EINTR || errno == EAGAIN) ? WH_LINE_NONE : WH_LINE_END;
+}
+
+/* Fills the empty buffer. */
+static wh_line_event_t fill(plain_t *plain) {
+    wh_line_event_t line = WH_LINE_NONE;
+    while (line == WH_LINE_NONE) {
+        const wh_input_event_t event = wh_input_wait(plain->input);
+        if (event == WH_INPUT_LEAVE || (event == WH_INPUT_SIGNAL && wh_interrupt_take() != 0)) {
+            line = WH_LINE_LEAVING;
+        } else if (event == WH_INPUT_BROKEN) {
+            line = WH_LINE_END;
+        } else if (event == WH_INPUT_READY) {
+            line = read_bytes(plain);
+        }
+    }
+    return line;
+}
+
+static wh_line_event_t finish(plain_t *plain, size_t length) {
+    if (length > 0 && length <= WH_SESSION_LINE_BYTES && plain->line[length - 1] == '\r') {
+        --length;
+    }
+    plain->line[length] = '\0';
+    return WH_LINE_READ;
+}
+
+/* The next line, in plain->line: without its end, cut if it is too long, a byte 0 replaced by 1, which is
+ * refused too. */
+static wh_line_event_t read_plain(plain_t *plain) {
+    size_t length = 0;
+    for (bool any = false;; any = true) {
+        if (plain->begin == plain->end) {
+            const wh_line_event_t event = fill(plain);
+            if (event != WH_LINE_READ) {
+                return event == WH_LINE_END && any ? finish(plain, length) : event;
+            }
+        }
+        const char byte = plain->buffer[plain->begin++];
+        if (byte == '\n') {
+            return finish(plain, length);
+        }
+        if (length <= WH_SESSION_LINE_BYTES) {
+            plain->line[length++] = byte != '\0' ? byte : '\1';
+        }
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------- the loop */
 
 static wh_line_event_t read_line(wh_prompt_t *prompt, const char **line) {
     if (prompt->editor) {
         return wh_editor_read(prompt->editor, line);
     }
     *line = prompt->plain.line;
-    return wh_plain_read(&prompt->plain);
+    return read_plain(&prompt->plain);
 }
 
 static void print_answer(wh_prompt_t *prompt, wh_status_t status) {
@@ -82,18 +146,17 @@ static void print_answer(wh_prompt_t *prompt, wh_status_t status) {
         return;
     }
     char *printable = wh_style_printable(prompt->answer);
-    /* Behind the terminal's own ^C. */
+    /* The terminal has printed ^C: the answer begins on a new line. */
     if (status == WH_STATUS_STOPPED) {
         putchar('\n');
     }
-    wh_style_print(&prompt->style, stdout, status == WH_OK ? WH_INK_PLAIN : WH_INK_BAD, "%s",
-                   printable ? printable : "");
+    wh_style_print(&prompt->style, stdout, status == WH_OK ? WH_INK_PLAIN : WH_INK_BAD, "%s", printable);
     putchar('\n');
     free(printable);
 }
 
-/* Whether a signal that came during the command ends the prompt: at a terminal Ctrl-C has ended the command, which
- * was all that it was for. */
+/* True if a signal that came during the command ends the prompt. At a terminal Ctrl-C ends only the
+ * command. */
 static bool is_interrupted(const wh_prompt_t *prompt) {
     bool interrupted = false;
     for (int number = wh_interrupt_take(); number != 0; number = wh_interrupt_take()) {
@@ -120,13 +183,13 @@ static bool is_quit(const char *line) {
     return strncasecmp(line, "QUIT", 4) == 0 && line[4 + strspn(line + 4, " ")] == '\0';
 }
 
-/* A line that was cut may have said something behind its blanks. */
+/* True for blank lines and comments. A line of blanks that was cut does not count: its end is unknown. */
 static bool says_nothing(const char *line) {
     const size_t blanks = strspn(line, " ");
     return line[blanks] == '#' || (blanks <= WH_SESSION_LINE_BYTES && line[blanks] == '\0');
 }
 
-/* Whether the prompt goes on after this line. */
+/* True if the prompt goes on after this line. */
 static bool take_line(wh_prompt_t *prompt, const char *line) {
     if (is_quit(line)) {
         if (!prompt->editor) {
@@ -140,7 +203,7 @@ static bool take_line(wh_prompt_t *prompt, const char *line) {
     return fflush(stdout) == 0 && !prompt->input.leaving;
 }
 
-/* Reads and executes lines: END or LEAVING, as what ended them. */
+/* Reads and executes lines. Returns WH_LINE_END or WH_LINE_LEAVING. */
 static wh_line_event_t take_lines(wh_prompt_t *prompt) {
     const char *line = NULL;
     wh_line_event_t event = WH_LINE_NONE;
@@ -155,8 +218,7 @@ static wh_line_event_t take_lines(wh_prompt_t *prompt) {
 
 int wh_prompt_run(wh_prompt_t *prompt) {
     const wh_line_event_t event = take_lines(prompt);
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        fprintf(stderr, "standard output: %s\n", strerror(errno));
+    if (!wh_app_is_printed(0)) {
         return WH_EXIT_USAGE;
     }
     const bool failed = !prompt->editor && (prompt->failed || prompt->session->complaints > 0);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "app/prompt/history.h"
+#include "text/output.h"
 
 static char folder[] = "/tmp/waferhand-history-XXXXXX";
 static char path[200];
@@ -53,15 +54,15 @@ static void where_it_is(void **state) {
     (void)state;
     setenv("HOME", "/home/operator", 1);
     setenv("XDG_STATE_HOME", "/state", 1);
-    wh_history_path(text, sizeof text);
+    wh_output_state_path("history", text, sizeof text);
     assert_string_equal(text, "/state/waferhand/history");
     setenv("XDG_STATE_HOME", "relative", 1);
-    wh_history_path(text, sizeof text);
+    wh_output_state_path("history", text, sizeof text);
     assert_string_equal(text, "/home/operator/.local/state/waferhand/history");
-    wh_history_path(text, 20);
+    wh_output_state_path("history", text, 20);
     assert_string_equal(text, "");
     unsetenv("HOME");
-    wh_history_path(text, sizeof text);
+    wh_output_state_path("history", text, sizeof text);
     assert_string_equal(text, "");
 }
 

@@ -9,7 +9,7 @@
 #include <jansson.h>
 #include <stdlib.h>
 
-#include "print/record_json.h"
+#include "print/record_print.h"
 #include "support/record.h"
 
 /* Prints a record and parses it again. */

@@ -4,8 +4,7 @@
 #include <jansson.h>
 #include <locale.h>
 
-#include "print/record_json.h"
-#include "print/record_table.h"
+#include "print/record_print.h"
 #include "support/record.h"
 
 static fixture_t f;
@@ -62,7 +61,7 @@ static char *print(const wh_style_t *style, unsigned sections) {
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     assert_non_null(out);
-    assert_int_equal(wh_record_print_table_with(&f.record, out, style, sections), 0);
+    assert_int_equal(wh_record_print_table(&f.record, out, style, sections), 0);
     fclose(out);
     return text;
 }

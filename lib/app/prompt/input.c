@@ -1,6 +1,12 @@
-#include "interrupt.h"
+#include "input.h"
 
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
 #include <string.h>
+#include <unistd.h>
+
+/* ------------------------------------------------------------------------------------------------ signals */
 
 static const int held[] = {SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGWINCH};
 
@@ -12,9 +18,9 @@ static struct {
     struct sigaction before[HELD];
     sigset_t mask_before;
     sigset_t mask_held;
-    sigset_t mask_running; /* lets the first three in */
+    sigset_t mask_running; /* does not hold the first three */
     volatile sig_atomic_t arrived[HELD];
-    wh_session_t *volatile session; /* a command of which runs */
+    wh_session_t *volatile session; /* whose command runs now, or null */
 } signals;
 
 static void on_signal(int number) {
@@ -57,11 +63,7 @@ void wh_interrupt_release(void) {
     signals.count = 0;
 }
 
-const sigset_t *wh_interrupt_waiting(void) {
-    return &signals.mask_before;
-}
-
-bool wh_interrupt_pending(void) {
+static bool is_pending(void) {
     for (size_t i = 0; i < signals.count; ++i) {
         if (signals.arrived[i]) {
             return true;
@@ -88,4 +90,39 @@ void wh_interrupt_stop_session(wh_session_t *session) {
         sigprocmask(SIG_SETMASK, &signals.mask_held, NULL);
         signals.session = NULL;
     }
+}
+
+/* ------------------------------------------------------------------------------------------------ waiting */
+
+static void call_watches(wh_input_t *input, const struct pollfd *polled, size_t count) {
+    wh_interrupt_stop_session(input->session);
+    for (size_t i = 0; i < count && i < input->watch_count; ++i) {
+        if (polled[i].revents != 0) {
+            input->watches[i].ready(input->watches[i].user);
+        }
+    }
+    wh_interrupt_stop_session(NULL);
+}
+
+wh_input_event_t wh_input_wait(wh_input_t *input) {
+    struct pollfd polled[WH_PROMPT_WATCHES + 1];
+    while (!input->leaving) {
+        const size_t count = input->watch_count;
+        for (size_t i = 0; i < count; ++i) {
+            polled[i] = (struct pollfd){.fd = input->watches[i].fd, .events = POLLIN};
+        }
+        polled[count] = (struct pollfd){.fd = STDIN_FILENO, .events = POLLIN};
+        /* With the mask as it was before, so that ppoll ends with EINTR when a held signal arrives. */
+        if (ppoll(polled, count + 1, NULL, &signals.mask_before) < 0) {
+            return errno == EINTR ? WH_INPUT_SIGNAL : WH_INPUT_BROKEN;
+        }
+        call_watches(input, polled, count);
+        if (is_pending()) {
+            return WH_INPUT_SIGNAL;
+        }
+        if (polled[count].revents != 0 && !input->leaving) {
+            return WH_INPUT_READY;
+        }
+    }
+    return WH_INPUT_LEAVE;
 }

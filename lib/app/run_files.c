@@ -1,58 +1,34 @@
-#include "report_files.h"
+#include "run_files.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../print/record_json.h"
+#include "../print/record_print.h"
 #include "../record/record.h"
 #include "../report/page.h"
 #include "../report/plots.h"
 #include "../text/output.h"
 #include "../view/scene.h"
 
-enum { OPTION_GLTF = 4000, OPTION_DATA, OPTION_SVG };
+const wh_option_t wh_run_files_options[] = {
+    {"report", 'o', "FILE", "Write a page to look at and to mail: the cell in motion, plots and tables",
+     WH_OPTION_TEXT, .variable = offsetof(wh_run_files_t, page)},
+    {"gltf", 0, "FILE", "Write the cell in motion as glTF 2.0, for Blender and other viewers", WH_OPTION_TEXT,
+     .variable = offsetof(wh_run_files_t, scene)},
+    {"data", 0, "FILE", "Write the page's data alone, as JSON", WH_OPTION_TEXT,
+     .variable = offsetof(wh_run_files_t, document)},
+    {"svg", 0, "DIR",
+     "Write the plots into this folder, for print: each as SVG, with the data and the gnuplot script that it "
+     "is made of",
+     WH_OPTION_TEXT, .variable = offsetof(wh_run_files_t, plots)},
+    {0}};
 
-static const struct argp_option options[] = {
-    {"report", 'o', "FILE", 0, "Write a page to look at and to mail: the cell in motion, plots and tables",
-     0},
-    {"gltf", OPTION_GLTF, "FILE", 0, "Write the cell in motion as glTF 2.0, for Blender and other viewers",
-     0},
-    {"data", OPTION_DATA, "FILE", 0, "Write the page's data alone, as JSON", 0},
-    {"svg", OPTION_SVG, "DIR", 0,
-     "Write the plots into this folder, for print: each as SVG, with the data and the gnuplot script that "
-     "it is made of",
-     0},
-    {0},
-};
-
-static error_t parse(int key, char *argument, struct argp_state *state) {
-    wh_report_files_t *files = state->input;
-    switch (key) {
-    case 'o':
-        files->page = argument;
-        return 0;
-    case OPTION_GLTF:
-        files->scene = argument;
-        return 0;
-    case OPTION_DATA:
-        files->document = argument;
-        return 0;
-    case OPTION_SVG:
-        files->plots = argument;
-        return 0;
-    default:
-        return ARGP_ERR_UNKNOWN;
-    }
-}
-
-const struct argp wh_report_files_argp = {options, parse, NULL, NULL, NULL, NULL, NULL};
-
-bool wh_report_files_wanted(const wh_report_files_t *files) {
+bool wh_run_files_wanted(const wh_run_files_t *files) {
     return files->page || files->scene || files->document || files->plots;
 }
 
-/* ------------------------------------------------------------------------------------------------- listening */
+/* ---------------------------------------------------------------------------------------------- listening */
 
 static void on_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
     if (state->status == WH_OK) {
@@ -69,14 +45,23 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
     }
 }
 
-wh_mcs_listener_t wh_print_listener(wh_signals_t *signals) {
+wh_mcs_listener_t wh_run_files_listener(wh_signals_t *signals) {
     const wh_mcs_listener_t listener = {on_slice, on_boundary, signals};
     return listener;
 }
 
-/* -------------------------------------------------------------------------------------------------- command */
+/* ------------------------------------------------------------------------------------------------ command */
 
-/* As a shell reads it back. */
+/* A stream whose text the caller frees. */
+static FILE *open_text(char **text, size_t *size) {
+    FILE *out = open_memstream(text, size);
+    if (!out) {
+        abort();
+    }
+    return out;
+}
+
+/* Writes a word so that a shell reads it back unchanged. */
 static void write_word(FILE *out, const char *word) {
     const char *plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=+,:@%";
     if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
@@ -94,13 +79,11 @@ static void write_word(FILE *out, const char *word) {
     fputc('\'', out);
 }
 
-char *wh_print_command(const char *command, const char *file, const char *const parameters[], size_t count) {
+char *wh_run_files_command(const char *command, const char *file, const char *const parameters[],
+                           size_t count) {
     char *text = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) {
-        return NULL;
-    }
+    FILE *out = open_text(&text, &size);
     fprintf(out, "waferhand %s ", command);
     write_word(out, file);
     for (size_t i = 0; i < count; ++i) {
@@ -111,7 +94,7 @@ char *wh_print_command(const char *command, const char *file, const char *const 
     return text;
 }
 
-/* --------------------------------------------------------------------------------------------------- writing */
+/* ------------------------------------------------------------------------------------------------ writing */
 
 typedef struct {
     const wh_document_t *document;
@@ -119,7 +102,7 @@ typedef struct {
     size_t size;
 } content_t;
 
-/* Writes one of the files; false and `message`, or errno and an empty one. */
+/* Writes one of the files. On failure returns false, with a message, or with errno and an empty message. */
 typedef bool writer_t(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]);
 
 static bool write_page(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]) {
@@ -166,30 +149,21 @@ static bool write_plots(const wh_document_t *document, const char *folder) {
     return true;
 }
 
-/* The document as text, to be freed; null when memory is out. */
-static char *text_of(const wh_document_t *document, size_t *size) {
-    char *text = NULL;
-    FILE *out = open_memstream(&text, size);
-    const bool written = out && wh_document_write(document, out) == 0;
-    if (out && (fclose(out) != 0 || !written)) {
-        free(text);
-        return NULL;
-    }
-    return text;
-}
-
-bool wh_report_files_write(const wh_report_files_t *files, const wh_document_t *document) {
+bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *document) {
     wh_document_t whole = *document;
-    whole.run = wh_record_to_json(document->record);
+    char *text = NULL;
     content_t content = {.document = &whole};
-    char *text = whole.run ? text_of(&whole, &content.size) : NULL;
+    FILE *out = open_text(&text, &content.size);
+    whole.run = wh_record_to_json(document->record);
+    bool written = wh_document_write(&whole, out) == 0;
+    written = fclose(out) == 0 && written;
     content.text = text;
-    if (!text) {
+    if (!written) {
         fprintf(stderr, "%s: no memory for the report\n", document->title);
     }
-    const bool written = text && write_file(&content, files->document, write_document) &&
-                         write_file(&content, files->scene, write_scene) &&
-                         write_file(&content, files->page, write_page) && write_plots(&whole, files->plots);
+    written = written && write_file(&content, files->document, write_document) &&
+              write_file(&content, files->scene, write_scene) &&
+              write_file(&content, files->page, write_page) && write_plots(&whole, files->plots);
     free(text);
     json_decref(whole.run);
     return written;

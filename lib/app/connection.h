@@ -1,0 +1,42 @@
+/* How `run`, `sim` and `mcs` open LCM and a log of its messages, and how `sim` and `mcs` are ended by
+ * signals. */
+#ifndef WH_APP_CONNECTION_H
+#define WH_APP_CONNECTION_H
+
+#include <signal.h>
+
+#include "../link/mcs_process.h"
+
+/* Set by SIGINT and SIGTERM once wh_catch_signals was called. */
+extern volatile sig_atomic_t wh_stop_requested;
+
+/* From now on SIGINT and SIGTERM set wh_stop_requested and interrupt waits. They no longer end the
+ * process. */
+void wh_catch_signals(void);
+
+/* Opens the node, and the record if a path is given. Says on standard error why it fails. */
+bool wh_open_node(wh_node_t *node, const char *url, const char *record_path);
+
+/* Prints "NAME: text" on standard error; `user` is the name. */
+void wh_say_line(void *user, const char *text);
+
+/* --------------------------------------------------------------------------------------- motion control's */
+
+typedef struct {
+    const char *url, *record, *outputs; /* null: the default, no record, no outputs.txt */
+    double rate;                        /* 0: lockstep */
+} wh_mcs_link_options_t;
+
+/* Must not be moved once opened. */
+typedef struct {
+    wh_node_t node;
+    wh_mcs_process_t control;
+} wh_mcs_link_t;
+
+/* Catches signals and opens LCM; says on standard error what is wrong. */
+bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
+
+/* Tells all listeners that the run is over, prints which messages were lost, and closes. */
+void wh_mcs_link_close(wh_mcs_link_t *link);
+
+#endif

@@ -1,0 +1,27 @@
+/* Lines from a terminal, edited by libedit: history, completion of the word before the cursor. */
+#ifndef WH_APP_PROMPT_EDITOR_H
+#define WH_APP_PROMPT_EDITOR_H
+
+#include "input.h"
+
+typedef enum {
+    WH_LINE_READ,   /* a line */
+    WH_LINE_NONE,   /* it was given up */
+    WH_LINE_END,    /* the input has ended */
+    WH_LINE_LEAVING /* a signal or a watch ended the prompt */
+} wh_line_event_t;
+
+typedef struct wh_editor wh_editor_t;
+
+/* On standard input and output; null if libedit refuses them. */
+wh_editor_t *wh_editor_open(wh_input_t *input, wh_session_t *session);
+
+/* The next line, without its end; it lives until the next call. */
+wh_line_event_t wh_editor_read(wh_editor_t *editor, const char **line);
+
+/* Prints a text above the line that is being edited. */
+void wh_editor_say(wh_editor_t *editor, const char *text);
+
+void wh_editor_close(wh_editor_t *editor);
+
+#endif

@@ -1,0 +1,81 @@
+/* A run's record, for people and for programs.
+ *
+ * As tables, in this order, with what has nothing to say left out: what ran and with which tolerance; the
+ * commands, each with the wafers that it took and the values (2)-(5) of each pick beside their limits; what
+ * the commands that failed said; each hand-over as the chuck saw it; misses and complaints in plain words;
+ * where the wafers are, and which of them a gripper carries tilted; the expectations; wafers per hour; and
+ * the verdict.
+ *
+ * Lengths in mm, angles in degrees, times in simulated seconds. Numbers have as many decimals as it takes
+ * not to be rounded onto a limit or across it; offsets show 1e-9 mm. The same record gives the same bytes,
+ * but for the wall time in the last lines. Nothing is cut off at any width.
+ *
+ * As JSON, one object, its lists with one element a line. The keys, in this order: format (1), ok, failure
+ * (only when the run ended in one), script, layout (path or null), slices, missed, simulated_s, wall_s,
+ * hash (16 hex digits),
+ *   throughput:   { wafers, seconds, wafers_per_hour, first_cycle, last_cycle (of the marked cycles that
+ *                 count, from 1; null: the whole run counts), puts (all of the run), rule (which puts
+ *                 count, in words; null: there are none) }: see record/throughput.h
+ *   split:        { motion_s, of it loaded_s and empty_s, vacuum_s, handover_s (valves switching),
+ *                 waiting_s }: what the run's time went into; motion, vacuum, handover and waiting add up
+ *                 to simulated_s
+ * and the lists
+ *   commands:     line, text, error (0: none), begin_s, end_s, split (of the command); message where there
+ *                 is one
+ *   wafers:       name, holder (or null), station, slot, dx, dy, dz (mm), tilt_deg (all six null when it
+ *                 lies in no slot), notch_deg (where its notch points, about the station's z from its x; in
+ *                 no slot about base's), position [3] (mm), rotation [3][3] (row by row)
+ *   events:       utime (us), kind, wafer, gripper (names or null), dr_proj_z, dr_proj_xy [3],
+ *                 dr_proj_xy_norm (mm), n1_proj_n2, margins { projz, projxy, planar }, failed (a list of
+ *                 "projz", "projxy", "planar"), measured_utime (us, null without a layout); and by kind:
+ *                 from (handed_over: the gripper that let go), holder (contested), other (slot_occupied:
+ *                 the wafer that lies there), height (released_unsupported, mm), status and message
+ *                 (bad_input, whose measured values are null)
+ *   clearances:   kind, gap, limit, utime, parts [2], at [3] (null where nothing was near; limit null:
+ *                 none): the smallest gaps of a run whose collisions were checked
+ *   clearance_curves: kind, times_s, gaps (mm; null: wider than 20): for the kinds that were ever near, the
+ *                 smallest gap in each of at most 600 stretches of time, by when it ends; measured then,
+ *                 and the run's smallest
+ *   expectations: line, text, ok
+ *   cycles:       line, name (or null), begin_s, end_s, wafers: those that the script marked
+ *   gantt:        resource ("robot", or "gripper", "valve" or "chuck" of a gripper), gripper (name or
+ *                 null), from_s, to_s, what: the robot's and a chuck's time as "loaded" or "empty"
+ *                 (motion), "vacuum", "handover", "waiting"; the wafer that a gripper holds; "open" for a
+ *                 valve; in the order of resource and time
+ *   reach:        station, slot, axis ("theta", "r", "z", "yaw"), margin, at, end ("min" or "max"), unit
+ *                 ("mm" or "deg"): how near each axis comes to an end of its travel in GET and PUT at the
+ *                 first and last slot of each station, coming from home: the smaller end, where the axis
+ *                 then stands, and the slot
+ *
+ * Numbers have 17 significant digits where they need them: reading them back gives the same double, -0 and
+ * denormals included. NaN and infinities, which JSON has not, are null. Text that is no UTF-8 gets U+FFFD
+ * for each wrong byte.
+ */
+#ifndef WH_PRINT_RECORD_PRINT_H
+#define WH_PRINT_RECORD_PRINT_H
+
+#include <jansson.h>
+
+#include "../record/record.h"
+#include "../text/style.h"
+
+/* Sections that are printed when asked for, before the expectations. */
+enum {
+    /* Who was busy when, time along the line, as wide as the terminal; what each command's time went into. */
+    WH_TABLE_GANTT = 1,
+    /* How near the axes come to the ends of their travel at each station. */
+    WH_TABLE_MARGINS = 2
+};
+
+/* With these sections, added up. 0, or -1 if writing failed (then what is printed may be incomplete). `style`
+ * is usually wh_style_of(out). Cost: linear in the record. */
+int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t *style, unsigned sections);
+
+/* 0, or -1 if writing failed. Any LC_NUMERIC gives the same bytes. Cost: linear in the record, all of it in
+ * memory once more. */
+int wh_record_print_json(const wh_record_t *record, FILE *out);
+
+/* The object itself; the caller releases it. */
+json_t *wh_record_to_json(const wh_record_t *record);
+
+#endif

@@ -1,0 +1,70 @@
+/* Options of a command line, each bound to a variable by one line of a table, over argp.
+ *
+ *     static const wh_option_t options[] = {
+ *         {"json", 0, NULL, "Print JSON", WH_OPTION_FLAG, .variable = offsetof(arguments_t, json)},
+ *         {"rate", 0, "FACTOR", "Run free at this factor of real time", WH_OPTION_REAL,
+ *          .variable = offsetof(arguments_t, rate), 1e-3, 1e3, "a number from 0.001 to 1000"},
+ *         {0}};
+ *
+ * Variables are found by their offsets within a structure, so that tables are constant and commands can share
+ * them. What is not given stays as it was. Wrong usage ends the program, as argp does:
+ * "--rate: x (expected a number from 0.001 to 1000)".
+ */
+#ifndef WH_TEXT_OPTIONS_H
+#define WH_TEXT_OPTIONS_H
+
+#include <argp.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+typedef enum {
+    WH_OPTION_FLAG,  /* bool: becomes true */
+    WH_OPTION_TEXT,  /* const char *: the last one given */
+    WH_OPTION_LIST,  /* wh_option_list_t: all, in order */
+    WH_OPTION_REAL,  /* double, from `least` to `most` */
+    WH_OPTION_WHOLE, /* uint64_t, from `least` to `most`, which a double must hold: 1000000 or 1e6 */
+    WH_OPTION_COUNT  /* uint64_t of up to 64 bits in decimal digits, from `least` */
+} wh_option_kind_t;
+
+typedef struct {
+    const char *name;     /* without its dashes; null ends a table */
+    char letter;          /* its short name, or 0 */
+    const char *argument; /* as --help names it; null for a flag */
+    const char *help;
+    wh_option_kind_t kind;
+    size_t variable; /* offset */
+    double least, most;
+    const char *expected; /* of a number, in words: what is said of another one */
+} wh_option_t;
+
+/* Texts given by a list's option; they live as long as argv. To be freed by wh_option_list_free. */
+typedef struct {
+    const char **items;
+    size_t count, capacity;
+} wh_option_list_t;
+
+void wh_option_list_free(wh_option_list_t *list);
+
+/* One table of a command. */
+typedef struct {
+    const wh_option_t *options; /* null ends a list of tables */
+    size_t base;                /* offset of the structure that it fills in, within the command's */
+    const char *heading;        /* above these options in --help, or null */
+} wh_option_table_t;
+
+typedef struct {
+    const char *name;     /* the subcommand's, as in "waferhand run" */
+    const char *synopsis; /* its operands, as --help names them */
+    const char *about;    /* what it does; behind \v, what follows the options */
+    const wh_option_table_t *tables;
+    const char *operand; /* what the only argument is, such as "script" */
+    size_t operand_variable;
+    /* Looks at what was given together and refuses by argp_error. Null: the operand must be given. */
+    void (*check)(const void *arguments, struct argp_state *state);
+} wh_command_line_t;
+
+/* Fills in the arguments. */
+void wh_options_parse(const wh_command_line_t *line, int argc, char **argv, void *arguments);
+
+#endif
