@@ -31,6 +31,8 @@ static char *copy_text(lua_State *L, const char *text) {
     return copy;
 }
 
+/* The order matters: limits of later fields depend on earlier ones. Strokes are checked against the slice,
+ * grippers name stations, wafers lie in them, and shapes follow the wafer's size. */
 wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_reader_t reader;
     wh_layout_t *layout = wh_layout_memory(L, 1, sizeof *layout);

@@ -109,6 +109,8 @@ static uint64_t hash_fault(uint64_t hash, const wh_fault_t *fault) {
     return wh_hash_word(hash, (uint64_t)fault->until);
 }
 
+/* Recordings and messages carry this hash: what is new goes behind, and only where it differs from the
+ * default. */
 uint64_t wh_layout_hash(const wh_layout_t *layout) {
     uint64_t hash = hash_checks(WH_HASH_START, layout);
     hash = hash_machine(hash, layout);

@@ -14,6 +14,8 @@ static wh_real_t to_layout(bool turns, wh_real_t value) {
     return turns ? wh_deg_from_rad(value) : value;
 }
 
+/* Conversion to degrees and back would round: a field with the value that is shown keeps the default's
+ * bits. */
 static wh_real_t read_quantity(wh_reader_t *reader, const char *field, bool turns, wh_real_t fallback,
                                wh_real_t min, wh_real_t max) {
     const wh_real_t shown = to_layout(turns, fallback);

@@ -266,6 +266,7 @@ static void keep_error(lua_State *L) {
     lua_rawsetp(L, LUA_REGISTRYINDEX, &error_key);
 }
 
+/* The outermost job starts with a clean slate; inner ones share what the outer one has exhausted. */
 static void enter(lua_State *L, wh_sandbox_job_t *job) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     if (sandbox->job == NULL) {
@@ -328,6 +329,8 @@ static bool conclude(lua_State *L, wh_sandbox_job_t *job, int base, int status, 
     return status == LUA_OK;
 }
 
+/* Compiles and runs in one protected call, for compiling may run out of memory too. While it compiles, `^`
+ * with a fractional exponent is left for the run: constant folding must not raise the error. */
 static int load_and_run(lua_State *L) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     wh_sandbox_job_t *const job = lua_touserdata(L, 1);

@@ -114,6 +114,8 @@ static void check_stop_and_budget(lua_State *L, const wh_sandbox_t *sandbox) {
     }
 }
 
+/* The alarm set the count to 1: after it the hook goes back to its usual pace, so that a false alarm costs
+ * little. */
 static void check_limits(lua_State *L, wh_sandbox_t *sandbox) {
     const int count = lua_gethookcount(L);
     if (count != WH_SANDBOX_GRANULE) {

@@ -39,6 +39,7 @@ static int table_concat(lua_State *L) {
     return wh_library_call_stock(L);
 }
 
+/* A range too large for the stack is not charged: Lua's own unpack refuses it at once. */
 static int table_unpack(lua_State *L) {
     const lua_Integer length = check_length(L);
     const lua_Integer first = luaL_optinteger(L, 2, 1);
