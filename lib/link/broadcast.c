@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+/* The command goes out as a client would send it, but the simulator is called, so that nothing can be lost
+ * between the two. */
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     wh_broadcast_t *broadcast = (wh_broadcast_t *)link;
     waferhand_command message;

@@ -110,6 +110,7 @@ static void stop_all(wh_mcs_process_t *control, const waferhand_request *message
 
 static void enqueue(wh_mcs_process_t *control, const waferhand_request *message) {
     if (control->waiting_count == WH_CONTROL_REQUESTS) {
+        /* Not remembered: asked again, the request may find room. */
         wh_mcs_process_answer_t busy = {.seq = message->seq, .error = WH_STATUS_BUSY};
         snprintf(busy.line, sizeof busy.line, "%s", message->command_line);
         snprintf(busy.text, sizeof busy.text, "%s", wh_status_text(WH_STATUS_BUSY));
@@ -144,6 +145,7 @@ static void on_request(void *user, const void *data, size_t size) {
     }
     ++control->requests;
     if (is_for_us(control, &message) && !is_waiting(control, message.seq)) {
+        /* A request that comes again is answered again, not executed again: the answer may have been lost. */
         const wh_mcs_process_answer_t *answer = find_answer(control, message.seq);
         if (answer) {
             tell_answer(control, answer);

@@ -97,6 +97,7 @@ static bool is_past(const wh_protocol_server_t *server, int64_t run) {
     return false;
 }
 
+/* Remembers the run, so that a late command of it does not begin it again. */
 static void leave_run(wh_protocol_server_t *server) {
     if (server->identity.run != 0) {
         server->past_runs[server->past_count++ % WH_SERVER_PAST_RUNS] = server->identity.run;
@@ -149,6 +150,7 @@ static wh_protocol_server_result_t go_on(wh_protocol_server_t *server, const waf
         ++server->counters.repeated;
         return answer_again(server);
     }
+    /* Nothing is skipped in lockstep: this simulator was started anew and lacks the slices between. */
     if (gap && message->lockstep != 0) {
         ++server->counters.unknown_run;
         return turn_away(server, message, WH_STATUS_UNKNOWN_RUN);

@@ -144,6 +144,7 @@ static void put_wafer(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_end(text, '}');
 }
 
+/* On the robot the pose is the gripper's in the end-effector's frame, of a chuck the station's in base. */
 static void put_mount(wh_json_text_t *text, const wh_mount_t *mount) {
     const wh_pose_t identity = wh_pose_identity();
     wh_json_text_begin(text, NULL, '{');

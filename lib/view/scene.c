@@ -227,7 +227,7 @@ static void move_node(keyframes_t *motion, wh_gltf_t *gltf, size_t node) {
     memset(motion, 0, sizeof *motion);
 }
 
-/* --------------------------------------------------------------------------------------------------- nodes */
+/* -------------------------------------------------------------------------------------------------- nodes */
 
 /* A node's meshes, one for each ink, while its parts are gathered. */
 typedef struct {
