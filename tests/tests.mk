@@ -20,4 +20,6 @@ TOOLS := $(filter-out %/play_segments %/pty_dialogue,$(basename $(wildcard tests
 BENCHES := tests/bench/gap tests/bench/counts
 LIBRARY_TESTS := $(filter-out $(PROGRAM_TESTS) $(COLLISION_TESTS),$(filter tests/unit/% tests/firmware/% tests/property/horizon_random,$(TESTS)))
 
-END_TO_END := $(shell awk 'FNR == 1 && /^.!/ { print FILENAME }' $(filter-out $(patsubst %/.,%,$(wildcard tests/end_to_end/*/.)),$(wildcard tests/end_to_end/*)) /dev/null)
+# The longest first, so that no processor waits for them at the end.
+LONGEST := tests/end_to_end/report_page tests/end_to_end/same_bits
+END_TO_END := $(LONGEST) $(filter-out $(LONGEST),$(shell awk 'FNR == 1 && /^.!/ { print FILENAME }' $(filter-out $(patsubst %/.,%,$(wildcard tests/end_to_end/*/.)),$(wildcard tests/end_to_end/*)) /dev/null))
