@@ -2,16 +2,13 @@
 
 #include <string.h>
 
+/* The command goes out as a client would send it, but the simulator is called, so that nothing can be lost
+ * between the two. */
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     wh_broadcast_t *broadcast = (wh_broadcast_t *)link;
-    uint8_t encoded[2048];
     waferhand_command message;
     wh_link_command_to_message(command, &broadcast->identity, true, &message);
-    const int size = waferhand_command_encode(encoded, 0, (int)sizeof encoded, &message);
-    if (size > 0) {
-        wh_link_seal(encoded, (size_t)size);
-        (void)wh_node_publish(broadcast->node, WH_CHANNEL_COMMAND, encoded, (size_t)size);
-    }
+    wh_protocol_client_publish(broadcast->node, &message);
     wh_mcs_process_set_slice(&broadcast->control, &broadcast->identity, command);
     return wh_sim_process_step(&broadcast->simulation, &message, state);
 }

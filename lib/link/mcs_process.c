@@ -10,8 +10,9 @@
 
 /* ------------------------------------------------------------------------------------------------ telling */
 
-static void tell(wh_mcs_process_t *control, int32_t phase, int line, wh_status_t error, const char *command,
-                 const char *text) {
+/* `request` is the one that this answers or goes on with; 0: none. */
+static void tell(wh_mcs_process_t *control, int64_t request, int32_t phase, int line, wh_status_t error,
+                 const char *command, const char *text) {
     waferhand_mcs message;
     memset(&message, 0, sizeof message);
     if (control->connected) {
@@ -24,7 +25,7 @@ static void tell(wh_mcs_process_t *control, int32_t phase, int line, wh_status_t
     message.run = control->identity.run;
     message.layout_hash = (int64_t)control->identity.layout_hash;
     message.phase = phase;
-    message.request = control->request;
+    message.request = request;
     message.line = line;
     message.error = (int32_t)error;
     message.command = wh_link_borrowed(command);
@@ -41,18 +42,15 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
     snprintf(control->running, sizeof control->running, "%s", ended ? "" : command->text);
     control->running_line = command->line;
     if (!ended) {
-        tell(control, WH_LINK_PHASE_BEGINS, command->line, WH_OK, command->text, "");
+        tell(control, control->request, WH_LINK_PHASE_BEGINS, command->line, WH_OK, command->text, "");
         return;
     }
     if (control->connected) {
         (void)wh_protocol_client_settle(&control->client, COMMAND_SETTLE_US);
     }
     /* Not as the request's answer: that carries its result, and wh_mcs_process_answer sends it. */
-    const int64_t request = control->request;
-    control->request = 0;
-    tell(control, command->error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED, command->line,
+    tell(control, 0, command->error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED, command->line,
          command->error, command->text, command->message ? command->message : "");
-    control->request = request;
 }
 
 /* ----------------------------------------------------------------------------------------------- requests */
@@ -76,11 +74,8 @@ static bool is_waiting(const wh_mcs_process_t *control, int64_t seq) {
 }
 
 static void tell_answer(wh_mcs_process_t *control, const wh_mcs_process_answer_t *answer) {
-    const int64_t executing = control->request;
-    control->request = answer->seq;
-    tell(control, answer->error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED, 0,
+    tell(control, answer->seq, answer->error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED, 0,
          (wh_status_t)answer->error, answer->line, answer->text);
-    control->request = executing;
 }
 
 static void remember(wh_mcs_process_t *control, int64_t seq, wh_status_t error, const char *line,
@@ -115,6 +110,7 @@ static void stop_all(wh_mcs_process_t *control, const waferhand_request *message
 
 static void enqueue(wh_mcs_process_t *control, const waferhand_request *message) {
     if (control->waiting_count == WH_CONTROL_REQUESTS) {
+        /* Not remembered: asked again, the request may find room. */
         wh_mcs_process_answer_t busy = {.seq = message->seq, .error = WH_STATUS_BUSY};
         snprintf(busy.line, sizeof busy.line, "%s", message->command_line);
         snprintf(busy.text, sizeof busy.text, "%s", wh_status_text(WH_STATUS_BUSY));
@@ -149,6 +145,7 @@ static void on_request(void *user, const void *data, size_t size) {
     }
     ++control->requests;
     if (is_for_us(control, &message) && !is_waiting(control, message.seq)) {
+        /* A request that comes again is answered again, not executed again: the answer may have been lost. */
         const wh_mcs_process_answer_t *answer = find_answer(control, message.seq);
         if (answer) {
             tell_answer(control, answer);
@@ -184,7 +181,8 @@ void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const c
 static void tell_progress(void *user) {
     wh_mcs_process_t *control = user;
     if (control->running[0] != '\0') {
-        tell(control, WH_LINK_PHASE_GOES_ON, control->running_line, WH_OK, control->running, "");
+        tell(control, control->request, WH_LINK_PHASE_GOES_ON, control->running_line, WH_OK, control->running,
+             "");
     }
 }
 
@@ -240,7 +238,7 @@ void wh_mcs_process_idle(wh_mcs_process_t *control) {
     } else {
         (void)wh_node_drain(control->node, 64);
     }
-    tell(control, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
+    tell(control, control->request, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
 }
 
 void wh_mcs_process_set_slice(wh_mcs_process_t *control, const wh_link_identity_t *identity,
@@ -251,5 +249,5 @@ void wh_mcs_process_set_slice(wh_mcs_process_t *control, const wh_link_identity_
 }
 
 void wh_mcs_process_finish(wh_mcs_process_t *control) {
-    tell(control, WH_LINK_PHASE_OVER, 0, WH_OK, "", "");
+    tell(control, control->request, WH_LINK_PHASE_OVER, 0, WH_OK, "", "");
 }

@@ -356,6 +356,31 @@ wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_
     return WH_OK;
 }
 
+wh_grasp_t wh_link_table(const waferhand_state *message, const wh_layout_t *layout,
+                         wh_link_arrays_t *arrays) {
+    wh_grasp_t table;
+    memset(&table, 0, sizeof table);
+    table.config = layout->grasp;
+    table.slice = (uint64_t)(message->seq - message->missed);
+    table.storage.wafers = arrays->wafers;
+    table.storage.wafer_count = layout->wafer_count;
+    table.storage.grippers = arrays->grippers;
+    table.storage.gripper_count = layout->machine.gripper_count;
+    return table;
+}
+
+bool wh_link_state_is_sound(const waferhand_state *message, const wh_layout_t *layout,
+                            wh_link_arrays_t *arrays, wh_state_t *state) {
+    if (wh_link_state_from_message(message, &layout->grasp.tolerance, arrays, state) != WH_OK ||
+        state->wafer_count != layout->wafer_count || state->gripper_count != layout->machine.gripper_count ||
+        message->missed < 0 || message->missed >= message->seq) {
+        return false;
+    }
+    const wh_grasp_t table = wh_link_table(message, layout, arrays);
+    return wh_physics_state_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
+           wh_physics_state_hash(state->condition, &table) == (uint64_t)message->hash;
+}
+
 /* ---------------------------------------------------------------------------------------------- proximity */
 
 static int32_t find_nearest(const wh_state_t *state, const wh_gripper_t *gripper) {

@@ -101,6 +101,14 @@ void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t 
 wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_tolerance_t *tolerance,
                                        wh_link_arrays_t *arrays, wh_state_t *state);
 
+/* The same, and true only if the state is one of this layout, its physics are sound, and its hash is the one
+ * that it carries. Whether a grasp table could be in it, wh_grasp_restore finds out. */
+bool wh_link_state_is_sound(const waferhand_state *message, const wh_layout_t *layout,
+                            wh_link_arrays_t *arrays, wh_state_t *state);
+
+/* A grasp table with the layout's rules over the wafers and grippers of a sound state. */
+wh_grasp_t wh_link_table(const waferhand_state *message, const wh_layout_t *layout, wh_link_arrays_t *arrays);
+
 /* The values of the paper's Fig. 9: each gripper of the state against the wafer whose origin is nearest to
  * its own; held ones count too. Cost: linear in grippers times wafers. */
 void wh_link_proximity_to_message(const wh_state_t *state, const wh_link_identity_t *identity,

@@ -71,6 +71,7 @@ static void record(wh_node_t *node, const char *channel, const void *data, size_
 static void receive(const lcm_recv_buf_t *message, const char *channel, void *user) {
     const wh_node_subscriber_t *subscriber = user;
     ++subscriber->node->received;
+    /* Recorded before it is handled: the log has each message before what follows from it. */
     record(subscriber->node, channel, message->data, message->data_size);
     subscriber->handler(subscriber->user, message->data, message->data_size);
 }
@@ -84,6 +85,7 @@ bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *
     subscriber->handler = handler;
     subscriber->user = user;
     lcm_subscription_t *subscription = lcm_subscribe(node->lcm, channel, receive, subscriber);
+    /* No limit: a queue that drops would look like a network that loses. */
     return subscription && lcm_subscription_set_queue_capacity(subscription, 0) == 0;
 }
 
@@ -95,6 +97,7 @@ bool wh_node_publish(wh_node_t *node, const char *channel, const void *data, siz
 
 int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
     struct pollfd ready = {.fd = lcm_get_fileno(node->lcm), .events = POLLIN};
+    /* LCM's own wait counts in ms, which may be longer than a slice. */
     const int64_t us = timeout_us > 0 ? timeout_us : 0;
     const struct timespec timeout = {.tv_sec = us / 1000000, .tv_nsec = us % 1000000 * 1000};
     const int count = ppoll(&ready, 1, &timeout, NULL);

@@ -30,19 +30,18 @@ static bool is_free_running(const wh_protocol_client_t *client) {
 
 /* ------------------------------------------------------------------------------------------------ sending */
 
-/* A lost command is no error here: whoever waits for the answer sends it again. */
-static void send_command(wh_protocol_client_t *client) {
-    const int size =
-        waferhand_command_encode(client->encoded, 0, (int)sizeof client->encoded, &client->command);
+void wh_protocol_client_publish(wh_node_t *node, const waferhand_command *command) {
+    uint8_t encoded[4096];
+    const int size = waferhand_command_encode(encoded, 0, (int)sizeof encoded, command);
     if (size > 0) {
-        wh_link_seal(client->encoded, (size_t)size);
-        (void)wh_node_publish(client->node, WH_CHANNEL_COMMAND, client->encoded, (size_t)size);
+        wh_link_seal(encoded, (size_t)size);
+        (void)wh_node_publish(node, WH_CHANNEL_COMMAND, encoded, (size_t)size);
     }
 }
 
 static void send_again(wh_protocol_client_t *client) {
     ++client->counters.repeated;
-    send_command(client);
+    wh_protocol_client_publish(client->node, &client->command);
 }
 
 /* Sends the last state, then the command, if a simulator that was started anew has asked for it. */
@@ -69,36 +68,14 @@ static void heard(wh_protocol_client_t *client) {
     }
 }
 
-/* A grasp table with the layout's rules over a state's wafers and grippers. */
-static wh_grasp_t table_over(const wh_protocol_client_t *client, wh_link_arrays_t *arrays,
-                             const wh_state_t *state, int64_t missed) {
-    wh_grasp_t table;
-    memset(&table, 0, sizeof table);
-    table.config = client->options.layout->grasp;
-    table.slice = (uint64_t)(state->seq - missed);
-    table.storage.wafers = arrays->wafers;
-    table.storage.wafer_count = state->wafer_count;
-    table.storage.grippers = arrays->grippers;
-    table.storage.gripper_count = state->gripper_count;
-    return table;
-}
-
-/* Copies the state to client->arrays. False if its hash is not the one that it carries, or no grasp table
- * could be in it. */
-static bool take_over(wh_protocol_client_t *client, const wh_state_t *state, const waferhand_state *message) {
-    const wh_grasp_t as_told = table_over(client, &client->spare, state, message->missed);
-    wh_grasp_t table = table_over(client, &client->arrays, state, message->missed);
-    return wh_physics_state_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
-           wh_physics_state_hash(state->condition, &as_told) == (uint64_t)message->hash &&
-           wh_grasp_restore(&table, as_told.slice, state->wafers, state->grippers) == WH_OK;
-}
-
-static bool is_sound(wh_protocol_client_t *client, const waferhand_state *message, wh_state_t *state) {
+/* Copies the state to client->arrays. False if it is not sound, or no grasp table could be in it. */
+static bool take_over(wh_protocol_client_t *client, const waferhand_state *message, wh_state_t *state) {
     const wh_layout_t *layout = client->options.layout;
-    return wh_link_state_from_message(message, &layout->grasp.tolerance, &client->spare, state) == WH_OK &&
-           state->wafer_count == layout->wafer_count &&
-           state->gripper_count == layout->machine.gripper_count && message->missed >= 0 &&
-           message->missed < message->seq && take_over(client, state, message);
+    if (!wh_link_state_is_sound(message, layout, &client->spare, state)) {
+        return false;
+    }
+    wh_grasp_t table = wh_link_table(message, layout, &client->arrays);
+    return wh_grasp_restore(&table, table.slice, state->wafers, state->grippers) == WH_OK;
 }
 
 static void keep_events(wh_protocol_client_t *client, const wh_state_t *state) {
@@ -152,7 +129,7 @@ static void take_message(wh_protocol_client_t *client, const waferhand_state *me
         take_refusal(client, message);
     } else if (!wanted) {
         ++client->counters.unasked;
-    } else if (!is_sound(client, message, &state)) {
+    } else if (!take_over(client, message, &state)) {
         ++client->counters.malformed;
     } else {
         take(client, message, &state, data, size);
@@ -331,7 +308,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     forget_delivered_events(client);
     write_outputs(client);
     ++client->counters.sent;
-    send_command(client);
+    wh_protocol_client_publish(client->node, &client->command);
     tick(client);
     const wh_status_t status = free_running ? await_due_time(client) : await_answer(client);
     client->pending = !free_running && !client->answered && client->refusal == WH_OK;

@@ -63,12 +63,14 @@ typedef struct {
     size_t event_count, events_delivered;
     uint8_t restore[WH_LINK_DATAGRAM]; /* the last state as it came, to be sent back */
     size_t restore_size;
-    uint8_t encoded[4096];
 } wh_protocol_client_t;
 
 /* Subscribes to the states and begins a run with a random number other than 0. False when LCM has no room. */
 bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node,
                              const wh_protocol_client_options_t *options);
+
+/* Sends a command. One that is lost is no error: whoever waits for the answer sends it again. */
+void wh_protocol_client_publish(wh_node_t *node, const waferhand_command *command);
 
 /* A random number for a run, other than 0. */
 int64_t wh_protocol_client_draw_run(void);

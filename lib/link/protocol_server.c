@@ -97,6 +97,7 @@ static bool is_past(const wh_protocol_server_t *server, int64_t run) {
     return false;
 }
 
+/* Remembers the run, so that a late command of it does not begin it again. */
 static void leave_run(wh_protocol_server_t *server) {
     if (server->identity.run != 0) {
         server->past_runs[server->past_count++ % WH_SERVER_PAST_RUNS] = server->identity.run;
@@ -149,6 +150,7 @@ static wh_protocol_server_result_t go_on(wh_protocol_server_t *server, const waf
         ++server->counters.repeated;
         return answer_again(server);
     }
+    /* Nothing is skipped in lockstep: this simulator was started anew and lacks the slices between. */
     if (gap && message->lockstep != 0) {
         ++server->counters.unknown_run;
         return turn_away(server, message, WH_STATUS_UNKNOWN_RUN);
@@ -192,21 +194,6 @@ static bool is_wanted(const wh_protocol_server_t *server, const waferhand_state 
            !is_past(server, message->run);
 }
 
-/* True if a grasp table like ours could be in this state, and its hash is the one that it carries. */
-static bool is_sound(wh_protocol_server_t *server, const waferhand_state *message, wh_state_t *state) {
-    const wh_layout_t *layout = server->layout;
-    if (wh_link_state_from_message(message, &layout->grasp.tolerance, &server->spare, state) != WH_OK ||
-        state->wafer_count != layout->wafer_count || state->gripper_count != layout->machine.gripper_count) {
-        return false;
-    }
-    wh_grasp_t as_told = server->simulator.table;
-    as_told.slice = (uint64_t)(message->seq - message->missed);
-    as_told.storage.wafers = server->spare.wafers;
-    as_told.storage.grippers = server->spare.grippers;
-    return wh_physics_state_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
-           wh_physics_state_hash(state->condition, &as_told) == (uint64_t)message->hash;
-}
-
 static bool take_over(wh_protocol_server_t *server, const waferhand_state *message, const wh_state_t *state) {
     if (wh_grasp_restore(&server->simulator.table, (uint64_t)(message->seq - message->missed), state->wafers,
                          state->grippers) != WH_OK) {
@@ -233,7 +220,8 @@ wh_protocol_server_result_t wh_protocol_server_restore(wh_protocol_server_t *ser
         ++server->counters.restore_ignored;
         return WH_SERVER_IGNORED;
     }
-    if (!is_sound(server, message, &state) || !take_over(server, message, &state)) {
+    if (!wh_link_state_is_sound(message, server->layout, &server->spare, &state) ||
+        !take_over(server, message, &state)) {
         ++server->counters.restore_refused;
         return WH_SERVER_IGNORED;
     }

@@ -68,6 +68,7 @@ static void act_on(wh_sim_process_t *simulation, wh_protocol_server_result_t res
     if (result == WH_SERVER_IGNORED) {
         return;
     }
+    /* First of all: motion control waits for the answer. */
     answer(simulation);
     if (result == WH_SERVER_NEW_RUN || result == WH_SERVER_RESTORED) {
         simulation->running = true;
@@ -85,6 +86,7 @@ static void handle_command(wh_sim_process_t *simulation, const waferhand_command
     const int64_t missed = simulation->server.missed;
     const wh_protocol_server_result_t result =
         wh_protocol_server_command(&simulation->server, message, simulation->valves);
+    /* Late commands of an old run are no sign of life. */
     if (message->run == simulation->server.identity.run) {
         heard_motion_control(simulation);
     }

@@ -12,9 +12,12 @@
 /* wh_signals_walk looks at no more than so many places from one point to the next. */
 #define PLACES 32
 
-/* This near to where its axes put it a gripper is there: another machine's sines may differ in their last bits. */
+/* This near to where its axes put it a gripper is there: another machine's sines may differ in their last
+ * bits. */
 #define SAME_MM 1e-9
 #define SAME_ROTATION 1e-12
+
+const char *const wh_signals_link_names[WH_SIGNALS_LINKS] = {"lift", "upper arm", "forearm", "hand"};
 
 /* ------------------------------------------------------------------------------------------------ opening */
 

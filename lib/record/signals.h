@@ -45,8 +45,9 @@ typedef enum {
     WH_MEASURES
 } wh_measure_t;
 
-/* The links of the arm that move: WH_ARM_LIFT to WH_ARM_HAND. */
+/* The links of the arm that move, WH_ARM_LIFT to WH_ARM_HAND, and their names. */
 #define WH_SIGNALS_LINKS 4
+extern const char *const wh_signals_link_names[WH_SIGNALS_LINKS];
 
 /* A value that holds from a slice on. */
 typedef struct {

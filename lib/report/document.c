@@ -144,6 +144,7 @@ static void put_wafer(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_end(text, '}');
 }
 
+/* On the robot the pose is the gripper's in the end-effector's frame, of a chuck the station's in base. */
 static void put_mount(wh_json_text_t *text, const wh_mount_t *mount) {
     const wh_pose_t identity = wh_pose_identity();
     wh_json_text_begin(text, NULL, '{');
@@ -158,7 +159,6 @@ static void put_mount(wh_json_text_t *text, const wh_mount_t *mount) {
 }
 
 static void put_machine(wh_json_text_t *text, const wh_layout_t *layout) {
-    static const char *const names[WH_SIGNALS_LINKS] = {"lift", "upper arm", "forearm", "hand"};
     const wh_arm_t *arm = &layout->shapes.arm;
     wh_json_text_begin(text, "machine", '{');
     wh_json_text_begin(text, "grippers", '[');
@@ -168,7 +168,7 @@ static void put_machine(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_end(text, ']');
     wh_json_text_begin(text, "links", '[');
     for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
-        wh_json_text_string(text, NULL, names[i]);
+        wh_json_text_string(text, NULL, wh_signals_link_names[i]);
     }
     wh_json_text_end(text, ']');
     wh_json_text_begin(text, "arm", '{');

@@ -17,9 +17,6 @@ enum {
     TARGET_INDICES = 34963
 };
 
-/* glTF has metres. */
-#define METRES 0.001
-
 void wh_gltf_open(wh_gltf_t *gltf) {
     memset(gltf, 0, sizeof *gltf);
     json_t **const lists[] = {&gltf->accessors, &gltf->views,    &gltf->meshes,   &gltf->materials,
@@ -125,7 +122,7 @@ static size_t add_attribute(wh_gltf_t *gltf, const wh_mesh_t *mesh, size_t first
     const bool is_place = first == 0;
     float *values = wh_array_new(3 * mesh->vertex_count, sizeof *values);
     for (size_t i = 0; i < 3 * mesh->vertex_count; ++i) {
-        values[i] = mesh->vertices[i / 3][first + i % 3] * (is_place ? (float)METRES : 1);
+        values[i] = mesh->vertices[i / 3][first + i % 3] * (is_place ? (float)WH_GLTF_METRES : 1);
     }
     const size_t accessor = add_floats(gltf, values, 3, mesh->vertex_count, TARGET_VERTICES);
     if (is_place) {
@@ -153,8 +150,8 @@ size_t wh_gltf_add_mesh(wh_gltf_t *gltf, const char *name, const wh_gltf_primiti
 
 size_t wh_gltf_add_node(wh_gltf_t *gltf, const char *name, size_t mesh, const wh_pose_t *base_from_node,
                         const char *kind, size_t index) {
-    const double place[3] = {METRES * base_from_node->r.x, METRES * base_from_node->r.y,
-                             METRES * base_from_node->r.z};
+    const double place[3] = {WH_GLTF_METRES * base_from_node->r.x, WH_GLTF_METRES * base_from_node->r.y,
+                             WH_GLTF_METRES * base_from_node->r.z};
     double turn[4];
     wh_quaternion_from_matrix(&base_from_node->R, NULL, turn);
     json_t *node = json_pack("{s:o, s:o, s:o}", "name", wh_json_text(name), "translation", list_of(place, 3),

@@ -11,6 +11,9 @@
 #include "../layout/inks.h"
 #include "mesh.h"
 
+/* In a millimetre: glTF has metres. */
+#define WH_GLTF_METRES 0.001
+
 /* What a mesh is made of, one part for each material. */
 typedef struct {
     const wh_mesh_t *mesh;

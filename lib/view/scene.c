@@ -1,11 +1,233 @@
 #include "scene.h"
 
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "../layout/inks.h"
 #include "../math/config.h"
+#include "../record/quaternion.h"
+#include "../text/array.h"
 #include "gltf.h"
-#include "keyframes.h"
+
+/* Keyframes being gathered. */
+typedef struct {
+    float *times;
+    float (*places)[3]; /* m */
+    float (*turns)[4];
+    size_t count, time_capacity, place_capacity, turn_capacity;
+    double last[4]; /* the last quaternion */
+} keyframes_t;
+
+/* Poses of grippers and links, on straight lines from one to the next. */
+typedef struct {
+    wh_thin_t grippers[WH_GRIPPERS], links[WH_SIGNALS_LINKS];
+} paths_t;
+
+/* Tolerances to begin with, and the number of points beyond which they grow, for grippers and for links. */
+#define PATHS_MM 0.05
+#define PATHS_RAD 5e-4
+#define PATHS_LINK_MM 0.5
+#define PATHS_LINK_RAD 2e-3
+#define PATHS_POINTS 60000
+#define PATHS_LINK_POINTS 30000
+
+static void add_key(keyframes_t *motion, double seconds, const wh_vec3_t *r, const double q[4]) {
+    const size_t i = motion->count;
+    motion->times = wh_array_grow(motion->times, i, &motion->time_capacity, sizeof *motion->times);
+    motion->places = wh_array_grow(motion->places, i, &motion->place_capacity, sizeof *motion->places);
+    motion->turns = wh_array_grow(motion->turns, i, &motion->turn_capacity, sizeof *motion->turns);
+    /* Times must rise, and two slices may be the same time as a float. */
+    if (i > 0 && !((float)seconds > motion->times[i - 1])) {
+        return;
+    }
+    motion->times[i] = (float)seconds;
+    motion->places[i][0] = (float)(WH_GLTF_METRES * r->x);
+    motion->places[i][1] = (float)(WH_GLTF_METRES * r->y);
+    motion->places[i][2] = (float)(WH_GLTF_METRES * r->z);
+    for (size_t c = 0; c < 4; ++c) {
+        motion->turns[i][c] = (float)q[c];
+    }
+    ++motion->count;
+}
+
+/* -------------------------------------------------------------------------------------------------- paths */
+
+typedef struct {
+    const wh_signals_t *signals;
+    paths_t *paths;
+} tracing_t;
+
+static void add_places(void *user, int64_t slice) {
+    const tracing_t *tracing = user;
+    const wh_signals_t *signals = tracing->signals;
+    wh_pose_t links[WH_SIGNALS_LINKS];
+    wh_pose_t gripper;
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
+        wh_signals_gripper(signals, g, slice, &gripper);
+        wh_thin_add_pose(&tracing->paths->grippers[g], slice, &gripper);
+    }
+    if (wh_signals_links(signals, slice, links)) {
+        for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
+            wh_thin_add_pose(&tracing->paths->links[i], slice, &links[i]);
+        }
+    }
+}
+
+static void for_each_path(paths_t *paths, void (*act)(wh_thin_t *path)) {
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        act(&paths->grippers[g]);
+    }
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
+        act(&paths->links[i]);
+    }
+}
+
+/* Cost: about 1 us for each place of wh_signals_walk. */
+static paths_t paths_of_signals(const wh_signals_t *signals) {
+    paths_t paths;
+    tracing_t tracing = {signals, &paths};
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        wh_thin_open(&paths.grippers[g], 3, PATHS_MM, PATHS_RAD, PATHS_POINTS);
+    }
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
+        wh_thin_open(&paths.links[i], 3, PATHS_LINK_MM, PATHS_LINK_RAD, PATHS_LINK_POINTS);
+    }
+    wh_signals_walk(signals, add_places, &tracing);
+    for_each_path(&paths, wh_thin_finish);
+    return paths;
+}
+
+/* ---------------------------------------------------------------------------------------------- keyframes */
+
+static double seconds_of(const wh_signals_t *signals, double slice) {
+    return slice * (double)signals->layout->slice_us / 1e6;
+}
+
+static keyframes_t keyframes_of_track(const wh_signals_t *signals, const wh_thin_t *thin) {
+    keyframes_t motion = {0};
+    for (size_t i = 0; i < thin->list.count; ++i) {
+        const double *values = wh_points_numbers(&thin->list, i);
+        const wh_vec3_t r = {values[0], values[1], values[2]};
+        add_key(&motion, seconds_of(signals, (double)thin->list.points[i].slice), &r, values + 3);
+    }
+    return motion;
+}
+
+/* ------------------------------------------------------------------------------------------------- wafers */
+
+static void add_pose(keyframes_t *motion, const wh_signals_t *signals, double slice, const wh_pose_t *pose) {
+    double q[4];
+    wh_quaternion_from_matrix(&pose->R, motion->count > 0 ? motion->last : NULL, q);
+    memcpy(motion->last, q, sizeof q);
+    add_key(motion, seconds_of(signals, slice), &pose->r, q);
+}
+
+/* Between point `i` of its gripper and the next, `share` of the way. */
+static void add_held(keyframes_t *motion, const wh_signals_t *signals, const wh_stay_t *stay,
+                     const wh_thin_t *thin, size_t i, double share) {
+    const double *a = wh_points_numbers(&thin->list, i);
+    const double *b = wh_points_numbers(&thin->list, i + 1);
+    const int64_t from = thin->list.points[i].slice;
+    const int64_t to = thin->list.points[i + 1].slice;
+    wh_pose_t gripper;
+    double q[4];
+    gripper.r =
+        wh_vec3(a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2]));
+    wh_quaternion_slerp(a + 3, b + 3, share, q);
+    wh_quaternion_to_matrix(q, &gripper.R);
+    const wh_pose_t pose = wh_pose_compose(&gripper, &stay->pose);
+    add_pose(motion, signals, (double)from + share * (double)(to - from), &pose);
+}
+
+/* How many straight lines a wafer takes that goes round its gripper's origin: the chord of an angle a is off
+ * by r a^2 / 8. */
+static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, size_t i) {
+    double turn[3];
+    wh_quaternion_turn(wh_points_numbers(&thin->list, i) + 3, wh_points_numbers(&thin->list, i + 1) + 3,
+                       turn);
+    const double square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
+    const double off = wh_vec3_norm(&stay->pose.r) * square / 8;
+    int parts = 1;
+    while ((double)(parts * parts) * thin->list.tolerance < off && parts < 256) {
+        ++parts;
+    }
+    return parts;
+}
+
+static void add_hold(keyframes_t *motion, const wh_signals_t *signals, const wh_thin_t *thin,
+                     const wh_stay_t *stay, int64_t end) {
+    const wh_points_t *list = &thin->list;
+    for (size_t i = 0; i + 1 < list->count && list->points[i].slice < end; ++i) {
+        const int64_t next = list->points[i + 1].slice;
+        if (next <= stay->slice) {
+            continue;
+        }
+        const int parts = parts_of(stay, thin, i);
+        for (int part = list->points[i].slice < stay->slice ? 1 : 0; part < parts; ++part) {
+            add_held(motion, signals, stay, thin, i, (double)part / parts);
+        }
+        if (next >= end || i + 2 == list->count) {
+            add_held(motion, signals, stay, thin, i, 1);
+        }
+    }
+}
+
+/* While a wafer is held it moves with its gripper, with more keyframes where that turns. */
+static keyframes_t keyframes_of_wafer(const wh_signals_t *signals, const paths_t *paths, int32_t wafer) {
+    keyframes_t motion = {0};
+    const wh_stay_t *stay = NULL;
+    for (size_t i = 0; i <= signals->stay_count; ++i) {
+        const bool over = i == signals->stay_count;
+        if (!over && signals->stays[i].wafer != wafer) {
+            continue;
+        }
+        const int64_t end = over ? signals->last : signals->stays[i].slice;
+        if (stay && stay->holder != WH_NONE) {
+            add_hold(&motion, signals, &paths->grippers[stay->holder], stay, end);
+        } else if (stay) {
+            add_pose(&motion, signals, (double)stay->slice, &stay->pose);
+            add_pose(&motion, signals, (double)end, &stay->pose);
+        }
+        stay = over ? stay : &signals->stays[i];
+    }
+    return motion;
+}
+
+/* -------------------------------------------------------------------------------------------------- nodes */
+
+static bool differ(const float a[], const float b[], size_t count) {
+    bool same = true;
+    for (size_t i = 0; i < count; ++i) {
+        same = same && !(a[i] < b[i]) && !(a[i] > b[i]);
+    }
+    return !same;
+}
+
+static bool rests(const keyframes_t *motion) {
+    for (size_t i = 1; i < motion->count; ++i) {
+        if (differ(motion->places[i], motion->places[0], 3) ||
+            differ(motion->turns[i], motion->turns[0], 4)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Moves the node by the keyframes unless it rests, and frees them. */
+static void move_node(keyframes_t *motion, wh_gltf_t *gltf, size_t node) {
+    if (!rests(motion)) {
+        const float(*places)[3] = (const float(*)[3])motion->places;
+        const float(*turns)[4] = (const float(*)[4])motion->turns;
+        wh_gltf_add_motion(gltf, node, motion->times, places, turns, motion->count);
+    }
+    free(motion->times);
+    free(motion->places);
+    free(motion->turns);
+    memset(motion, 0, sizeof *motion);
+}
+
+/* -------------------------------------------------------------------------------------------------- nodes */
 
 /* A node's meshes, one for each ink, while its parts are gathered. */
 typedef struct {
@@ -16,7 +238,7 @@ typedef struct {
     const wh_signals_t *signals;
     const wh_layout_t *layout;
     wh_gltf_t gltf;
-    wh_paths_t paths; /* of what moves, where it is animated */
+    paths_t paths; /* of what moves, where it is animated */
     bool animated;
 } scene_t;
 
@@ -89,19 +311,18 @@ static void add_moving(scene_t *scene, const wh_pose_t *pose, const wh_thin_t *p
     const size_t mesh = finish_body(scene, body, name);
     const size_t node = wh_gltf_add_node(&scene->gltf, name, mesh, pose, kind, index);
     if (scene->animated) {
-        wh_keyframes_t motion = wh_keyframes_of_track(scene->signals, path);
-        wh_keyframes_add(&motion, &scene->gltf, node);
+        keyframes_t motion = keyframes_of_track(scene->signals, path);
+        move_node(&motion, &scene->gltf, node);
     }
 }
 
 static void add_links(scene_t *scene) {
-    static const char *const names[WH_SIGNALS_LINKS] = {"lift", "upper arm", "forearm", "hand"};
     wh_pose_t poses[WH_SIGNALS_LINKS];
     const bool is_there = wh_signals_links(scene->signals, scene->signals->first, poses);
     for (size_t i = 0; is_there && i < WH_SIGNALS_LINKS; ++i) {
         body_t body = {0};
         add_parts(scene, &body, 1U << WH_PART_ARM, (int32_t)(WH_ARM_LIFT + i), NULL);
-        add_moving(scene, &poses[i], &scene->paths.links[i], &body, names[i], "link", i);
+        add_moving(scene, &poses[i], &scene->paths.links[i], &body, wh_signals_link_names[i], "link", i);
     }
 }
 
@@ -126,8 +347,8 @@ static void add_wafers(scene_t *scene) {
         const size_t node = wh_gltf_add_node(&scene->gltf, layout->wafers[w].name, mesh,
                                              &layout->start[w].base_from_wafer, "wafer", w);
         if (scene->animated) {
-            wh_keyframes_t motion = wh_keyframes_of_wafer(scene->signals, &scene->paths, (int32_t)w);
-            wh_keyframes_add(&motion, &scene->gltf, node);
+            keyframes_t motion = keyframes_of_wafer(scene->signals, &scene->paths, (int32_t)w);
+            move_node(&motion, &scene->gltf, node);
         }
     }
     wh_mesh_free(&body.inks[WH_INK_WAFER]);
@@ -137,7 +358,7 @@ json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animat
     scene_t scene = {.signals = signals, .layout = signals->layout, .animated = animated};
     wh_gltf_open(&scene.gltf);
     if (animated) {
-        scene.paths = wh_paths_of_signals(signals);
+        scene.paths = paths_of_signals(signals);
     }
     for (size_t ink = 0; ink < WH_INKS; ++ink) {
         (void)wh_gltf_add_material(&scene.gltf, &wh_ink_materials[ink]);
@@ -147,6 +368,6 @@ json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animat
     add_links(&scene);
     add_grippers(&scene);
     add_wafers(&scene);
-    wh_paths_free(&scene.paths);
+    for_each_path(&scene.paths, wh_thin_close);
     return wh_gltf_finish(&scene.gltf, name, "waferhand " WH_VERSION);
 }

@@ -5,7 +5,7 @@
  * in their own frames. A node's extras tell { kind: "base", "obstacles", "station", "link", "gripper" or
  * "wafer", index: from 0 }. Shapes are those that the collision check has (layout/shapes.h); wafers have
  * their notch. The nodes stand as before the run; with `animated` an animation "run" moves them, wafers too,
- * to within the tolerances of keyframes.h and of the signals.
+ * to within 0.05 mm and what the signals are off; links to within 0.5 mm.
  */
 #ifndef WH_VIEW_SCENE_H
 #define WH_VIEW_SCENE_H

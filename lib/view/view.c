@@ -58,6 +58,7 @@ static void look_at(wh_viewer_t *view, const wh_protocol_server_t *server) {
 void wh_viewer_tick(wh_viewer_t *view, const wh_protocol_server_t *server) {
     const int64_t now = wh_node_clock_us();
     const bool is_load_due = now - view->last_load_us >= WH_VIEW_LOAD_US;
+    /* A slice is shown once; while nothing moves, only the second's beat goes on. */
     const bool is_new = server->identity.run != view->run || server->seq != view->seq;
     if (!is_load_due && (!is_new || now - view->last_draw_us < WH_VIEW_DRAW_US)) {
         return;
