@@ -14,10 +14,10 @@
  *
  * Checking is `sampled` (the paper's: at the slice's pose) or `swept`: between two slices in which the valve
  * was open and the gripper empty, its position is taken as linear and its rotation as the quaternion
- * (1-t) 1 + t q, normalised, with q the turn from the earlier to the later pose, by the shorter way; the wafer is
- * taken at the first instant within 0.998 eps_projz and the other two limits (of several wafers: earliest,
- * then |dr_proj_z|, then index), failing that if it is ready at the slice's end, and is then carried to the
- * slice's end. A wafer released in this slice is checked at its end only.
+ * (1-t) 1 + t q, normalised, with q the turn from the earlier to the later pose, by the shorter way. The
+ * wafer is taken at the first instant within 0.998 eps_projz and the other two limits (of several wafers:
+ * earliest, then |dr_proj_z|, then index), failing that if it is ready at the slice's end, and is then
+ * carried to the slice's end. A wafer released in this slice is checked at its end only.
  *
  * Memory is the caller's; nothing is allocated, nothing is static, a table may be copied or moved by its
  * owner together with its arrays. Calls on one table must not overlap; different tables are independent.
