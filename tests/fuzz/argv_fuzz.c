@@ -86,7 +86,7 @@ error_t __wrap_argp_parse(const struct argp *argp, int argc, char **argv, unsign
 
 /* ------------------------------------------------------------------------------------- where the work begins */
 
-int __wrap_wh_run_and_report(wh_run_arguments_t *arguments);
+int __wrap_wh_run_and_print(wh_run_arguments_t *arguments);
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
 bool __wrap_wh_study_open(wh_study_t *study);
 bool __wrap_wh_open_node(wh_node_t *node, const char *url, const char *record_path);
@@ -116,7 +116,7 @@ static void check_run(const wh_script_run_options_t *run) {
     REQUIRE(run->limits.memory_bytes <= (size_t)1000000 << 20);
 }
 
-int __wrap_wh_run_and_report(wh_run_arguments_t *arguments) {
+int __wrap_wh_run_and_print(wh_run_arguments_t *arguments) {
     reached = true;
     if (!refused) {
         REQUIRE(arguments->run.script != NULL);
