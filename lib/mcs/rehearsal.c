@@ -43,18 +43,22 @@ static void note_axis(const wh_travel_t *travel, wh_real_t at, int32_t slot, wh_
     }
 }
 
-/* Where a line passes base's axis, R is least between its ends; all else runs one way. */
+/* R is least between the ends of a line that passes base's axis; all else runs one way. False if this one
+ * does not. */
 static bool passes_axis(const wh_line_t *line, wh_real_t *least_R) {
     const wh_real_t outward = line->direction.x;
     const wh_real_t level = outward * outward + line->direction.y * line->direction.y;
     const wh_real_t R = line->from[WH_AXIS_R];
+    if (!(outward < 0 && -R * outward < level * line->path.distance)) {
+        return false; /* such as a line straight up, whose level is 0 */
+    }
     *least_R = R * wh_real_abs(line->direction.y) / wh_real_sqrt(level);
-    return outward < 0 && -R * outward < level * line->path.distance;
+    return true;
 }
 
 void wh_rehearsal_note_reach(const wh_rehearsal_t *rehearsal, const wh_track_t *track, wh_record_t *record) {
     const wh_travel_t *travel = track->machine->robot.travel;
-    wh_real_t least_R;
+    wh_real_t least_R = 0;
     if (rehearsal->reach_slot == 0) {
         return;
     }
