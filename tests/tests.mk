@@ -13,11 +13,13 @@ TESTS := $(basename $(TEST_SOURCES))
 # Those of collision are linked with it, and there is no float build of it.
 COLLISION_TESTS := $(basename $(shell grep -lE '^.include "collision/' $(TEST_SOURCES) /dev/null))
 
-# Programs that end-to-end tests use: built with the tests, not run by themselves.
-TOOLS := $(basename $(wildcard tests/end_to_end/tools/*.c))
+# Programs that end-to-end tests use: built with the tests, not run by themselves. Two are built by the tests themselves.
+TOOLS := $(filter-out %/play_segments %/pty_dialogue,$(basename $(wildcard tests/end_to_end/tools/*.c)))
 
 # Programs that measure, to be run by hand: built with the tests too. Those of `make bench` are in tests/bench/bench.mk.
 BENCHES := tests/bench/gap tests/bench/counts
 LIBRARY_TESTS := $(filter-out $(PROGRAM_TESTS) $(COLLISION_TESTS),$(filter tests/unit/% tests/firmware/% tests/property/horizon_random,$(TESTS)))
 
-END_TO_END := $(shell awk 'FNR == 1 && /^.!/ { print FILENAME }' $(filter-out $(patsubst %/.,%,$(wildcard tests/end_to_end/*/.)),$(wildcard tests/end_to_end/*)) /dev/null)
+# The longest first, so that no processor waits for them at the end.
+LONGEST := tests/end_to_end/report_page tests/end_to_end/same_bits
+END_TO_END := $(LONGEST) $(filter-out $(LONGEST),$(shell awk 'FNR == 1 && /^.!/ { print FILENAME }' $(filter-out $(patsubst %/.,%,$(wildcard tests/end_to_end/*/.)),$(wildcard tests/end_to_end/*)) /dev/null))

@@ -90,9 +90,8 @@ static int print(const arguments_t *arguments, const wh_feasibility_t *check) {
 static int look_at(const arguments_t *arguments, const wh_layout_t *layout) {
     wh_feasibility_t check;
     int status = WH_EXIT_USAGE;
-    if (!wh_feasibility(&check, layout)) {
-        perror("waferhand");
-    } else if (!arguments->svg || write_svg(&check, arguments->svg)) {
+    wh_feasibility(&check, layout);
+    if (!arguments->svg || write_svg(&check, arguments->svg)) {
         status = print(arguments, &check);
     }
     wh_feasibility_free(&check);

@@ -2,7 +2,7 @@
 #ifndef WH_APP_LAYOUT_ARGUMENTS_H
 #define WH_APP_LAYOUT_ARGUMENTS_H
 
-#include "../layout/layout_load.h"
+#include "../layout/layout.h"
 #include "../text/options.h"
 
 /* Zero it to begin with. */

@@ -30,17 +30,19 @@ bool wh_run_files_wanted(const wh_run_files_t *files) {
 
 /* ---------------------------------------------------------------------------------------------- listening */
 
-static void on_slice(void *user, const wh_mcs_t *mcs) {
-    wh_signals_t *signals = user;
-    if (!signals->layout) {
-        wh_signals_begin(signals, mcs->layout, true);
+static void on_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
+    if (state->status == WH_OK) {
+        wh_signals_slice(user, command->axes, command->axis_count, state);
     }
-    wh_signals_slice(signals, mcs->command.axes, mcs->command.axis_count, &mcs->state);
 }
 
-static void on_boundary(void *user, const wh_mcs_t *mcs) {
-    (void)mcs;
-    wh_signals_mark(user);
+static void on_boundary(void *user, const wh_layout_t *layout) {
+    wh_signals_t *signals = user;
+    if (!signals->layout) {
+        wh_signals_begin(signals, layout, true);
+    } else if (signals->last > 0) {
+        wh_signals_mark(signals);
+    }
 }
 
 wh_mcs_listener_t wh_run_files_listener(wh_signals_t *signals) {

@@ -137,8 +137,9 @@ static void write_all(FILE *out, const wh_mcs_t *mcs) {
     write_segments(out, mcs);
     write_config(out, &mcs->layout->grasp);
     write_wafers(out, mcs->layout);
-    fprintf(out, "static const int64_t played_slices = %" PRId64 ";\n", mcs->record->slices);
-    fprintf(out, "static const uint64_t played_hash = UINT64_C(0x%016" PRIx64 ");\n", mcs->record->hash);
+    fprintf(out, "static const int64_t played_slices = %" PRId64 ";\n", mcs->recorder.record->slices);
+    fprintf(out, "static const uint64_t played_hash = UINT64_C(0x%016" PRIx64 ");\n",
+            mcs->recorder.record->hash);
 }
 
 int wh_segments_write(const wh_mcs_t *mcs, const char *path) {

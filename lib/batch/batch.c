@@ -10,7 +10,8 @@ static size_t smaller(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
-/* A sphere about the mean of the wafers' origins, by a hundred-thousandth too large for what is rounded. */
+/* A sphere about the mean of the wafers' origins. It is too large by a hundred-thousandth, which covers the
+ * rounding to float. */
 static void put_sphere(float *sphere, const wh_pose_t *wafers, size_t count) {
     wh_vec3_t sum = {0, 0, 0};
     for (size_t i = 0; i < count; ++i) {
@@ -27,7 +28,8 @@ static void put_sphere(float *sphere, const wh_pose_t *wafers, size_t count) {
     sphere[3 * WH_BATCH_LANES] = (float)(farthest * WH_REAL(1.00001));
 }
 
-/* The numbers of a block of wafers. One that cannot be sieved is left to the check. */
+/* Writes the numbers of a block of wafers. A wafer that cannot be sieved gets NaN, which leaves it to the
+ * check. */
 static void put_block(const wh_batch_t *batch, size_t block) {
     const size_t first = block * WH_BATCH_LANES;
     const size_t count = smaller(batch->wafer_count - first, WH_BATCH_LANES);
@@ -65,7 +67,7 @@ wh_status_t wh_batch_init(wh_batch_t *batch, wh_pose_t *base_from_wafers, size_t
     if (!batch || (wafer_count != 0 && (!base_from_wafers || !numbers))) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    /* the other way round, the product might not fit */
+    /* a division, for the product might not fit */
     if (wafer_count > INT32_MAX || number_count / 64 < WH_BATCH_LINES(wafer_count)) {
         return WH_STATUS_BAD_CAPACITY;
     }

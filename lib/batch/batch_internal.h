@@ -1,14 +1,14 @@
-/* Within the batch: which wafers may be ready, by a sieve that never holds back one that is. */
+/* Shared within the batch: a sieve for wafers that may be ready. It never holds back one that is. */
 #ifndef WH_BATCH_BATCH_INTERNAL_H
 #define WH_BATCH_BATCH_INTERNAL_H
 
 #include "batch.h"
 
-/* Numbers of a block of spheres, and of a block of wafers, as many for the origins as for n1; wafers of a tile, 32 blocks, which
- * stay in the nearest cache while grippers go over them in turns. */
+/* Numbers of a block of spheres, and of a block of wafers (as many for the origins as for n1), and the wafers
+ * of a tile. A tile is 32 blocks: it stays in the nearest cache while grippers take turns. */
 enum { WH_BATCH_SPHERES = 4 * WH_BATCH_LANES, WH_BATCH_BLOCK = 3 * WH_BATCH_LANES, WH_BATCH_TILE = 1024 };
 
-/* Blocks that follow one another: where their numbers begin. */
+/* A run of blocks: where their numbers begin. */
 typedef struct {
     const float *spheres;
     const float *origins;
@@ -16,8 +16,8 @@ typedef struct {
     size_t block_count; /* 1 to WH_BATCH_LANES */
 } wh_batch_tile_t;
 
-/* Holds back spheres whose centre is farther from (x, y, z) than radius + reach, and wafers whose origin is farther than reach, or
- * along n1 than the limit. Comparisons are such that a NaN anywhere holds nothing back. */
+/* Holds back spheres whose centre is farther from (x, y, z) than radius + reach, and wafers whose origin is
+ * farther than reach, or farther along n1 than limit. The comparisons let every NaN pass. */
 typedef struct {
     float x;
     float y;
@@ -26,12 +26,12 @@ typedef struct {
     float limit;
 } wh_batch_sieve_t;
 
-/* Whether a point is near enough to base's origin, in mm, that squares fit into float. NaN is not. */
+/* True if a point, in mm, is so near to base's origin that squares fit into float. False for NaN. */
 static inline bool wh_batch_fits(const wh_vec3_t *r) {
     return wh_real_abs(r->x) + wh_real_abs(r->y) + wh_real_abs(r->z) < WH_REAL(1e15);
 }
 
-/* Where the wafers' origins begin, and where n1. */
+/* Where the wafers' origins begin, and where their n1 begin. */
 static inline size_t wh_batch_origins(size_t wafer_count) {
     return (wafer_count + WH_BATCH_TILE - 1) / WH_BATCH_TILE * WH_BATCH_SPHERES;
 }
@@ -40,7 +40,7 @@ static inline size_t wh_batch_normals(size_t wafer_count) {
     return wh_batch_origins(wafer_count) + WH_BATCH_WORDS(wafer_count) * WH_BATCH_BLOCK;
 }
 
-/* Where the lowest bit is that is set; one must be. */
+/* The index of the lowest bit that is set; there must be one. */
 static inline size_t wh_batch_lowest(uint32_t bits) {
 #if defined(__GNUC__)
     return (size_t)__builtin_ctz(bits);
@@ -52,7 +52,8 @@ static inline size_t wh_batch_lowest(uint32_t bits) {
 #endif
 }
 
-/* A word for each block, a bit for each wafer that passes. Returns a bit for each word that may have one set. */
+/* Writes a word for each block, with a bit for each wafer that passes. Returns a bit for each word that may
+ * have one set. */
 uint32_t wh_batch_sieve_portable(const wh_batch_sieve_t *sieve, const wh_batch_tile_t *tile, uint32_t *words);
 
 #if defined(__GNUC__) && defined(__x86_64__)

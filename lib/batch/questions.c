@@ -1,6 +1,6 @@
 #include "batch_internal.h"
 
-/* As many wafers as grippers go over in turns. */
+/* The wafers over which grippers take turns. */
 typedef struct {
     const wh_batch_t *batch;
     size_t first; /* the index of its first wafer */
@@ -20,9 +20,9 @@ static tile_t tile_at(const wh_batch_t *batch, size_t first) {
     return tile;
 }
 
-/* Where a ready wafer may be. Its pose is valid, so it is no farther away than both limits together, but for a thousandth. To
- * these comes what is rounded on the way, in units of float's last place at most 3 of the gripper's distance from base's
- * origin and 14 of the limits: 4 and 16 are taken. */
+/* The region in which a ready wafer can be. Its pose is valid, so it is no farther away than both limits
+ * together, plus a thousandth. Rounding adds, in units of float's last place, at most 3 of the gripper's
+ * distance from base's origin and 14 of the limits: 4 and 16 are taken. */
 static wh_batch_sieve_t sieve_around(const wh_vec3_t *r, const wh_tolerance_t *tolerance) {
     const wh_real_t limits = tolerance->projz + tolerance->projxy;
     const wh_real_t origin = wh_real_abs(r->x) + wh_real_abs(r->y) + wh_real_abs(r->z);
@@ -47,7 +47,8 @@ static uint32_t sieve_tile(const tile_t *tile, const wh_batch_sieve_t *sieve, ui
     return wh_batch_sieve_portable(sieve, &tile->numbers, words);
 }
 
-/* Of a block's 32 wafers from `first` on, the ready ones of those that passed. A lane may pass that has no wafer. */
+/* Checks those of a block's 32 wafers, from `first` on, that passed the sieve. A lane without a wafer may
+ * pass. */
 static uint32_t check(const wh_batch_t *batch, size_t first, uint32_t passed, const wh_pose_t *gripper,
                       const wh_tolerance_t *tolerance) {
     uint32_t ready = 0;
@@ -68,7 +69,7 @@ static size_t count_bits(uint32_t bits) {
     return count;
 }
 
-/* The tile's ready wafers, one bit each; returns how many. */
+/* Finds the tile's ready wafers, one bit each; returns how many. */
 static size_t answer(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
                      uint32_t *words) {
     const wh_batch_sieve_t sieve = sieve_around(&gripper->r, tolerance);
@@ -96,7 +97,7 @@ size_t wh_batch_ready(const wh_batch_t *batch, const wh_pose_t *base_from_grippe
     return ready;
 }
 
-/* The first `capacity` ready wafers of the tile; returns how many there are. */
+/* Lists the first `capacity` ready wafers of the tile; returns how many there are. */
 static size_t list_tile(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
                         int32_t *wafers, size_t capacity) {
     uint32_t words[WH_BATCH_LANES];
@@ -127,7 +128,7 @@ static wh_real_t distance(const wh_pose_t *wafer, const wh_pose_t *gripper) {
     return wh_real_abs(wh_vec3_dot(&dr, &n1));
 }
 
-/* The best of `before`, from the tiles before, and of the tile's. */
+/* The best wafer of the tile and of `before`, which is the best of the earlier tiles. */
 static int32_t better(const tile_t *tile, const wh_pose_t *gripper, const wh_tolerance_t *tolerance,
                       int32_t before) {
     const wh_pose_t *wafers = tile->batch->base_from_wafers;

@@ -2,12 +2,13 @@
 
 #include "batch_internal.h"
 
-/* How far beyond the sieve each of 32 is: not at all where it is not above 0. */
+/* How far each of 32 is beyond the sieve: it passes if that is not above 0. */
 typedef struct {
     float by[WH_BATCH_LANES];
 } beyond_t;
 
-/* Mostly all are: that is found out first, for compilers that do several at a time. */
+/* Mostly all 32 are held back. A first loop finds that out, which compilers turn into code for several at a
+ * time. */
 static uint32_t passed(const beyond_t *beyond) {
     uint32_t held_back = 0;
     for (size_t i = 0; i < WH_BATCH_LANES; ++i) {

@@ -3,7 +3,7 @@
 #if WH_BATCH_HAS_AVX2
 #include <string.h>
 
-/* Vectors and their operators are the compiler's. */
+/* gcc and clang know vector types and their operators. */
 #define AVX2 __attribute__((target("avx2")))
 #define VECTOR __attribute__((vector_size(32)))
 
@@ -55,7 +55,8 @@ AVX2 static inline uint32_t beyond_reach(const wh_batch_sieve_t *sieve, const fl
     return bits_of(dot(&d, &d) > sieve->reach * sieve->reach);
 }
 
-/* The inner loop of wafers in any order: written out, which compilers do not at -O2. */
+/* The inner loop if neighbours are not near each other. Written out, because compilers at -O2 do not unroll
+ * it. */
 AVX2 static inline uint32_t near_origins(const wh_batch_sieve_t *sieve, const float *origins) {
     const uint32_t beyond = beyond_reach(sieve, origins) | beyond_reach(sieve, &origins[8]) << 8 |
                             beyond_reach(sieve, &origins[16]) << 16 | beyond_reach(sieve, &origins[24]) << 24;

@@ -1,6 +1,7 @@
-#include "cell_internal.h"
+/* What the cell says of a release, and how the wafer then comes to lie. */
+#include "station.h"
 
-/* How far a wafer is above what is under it: the nearest slot plane below, or base's floor. */
+/* A wafer's height above its support: the nearest slot plane below, or base's floor. */
 static wh_real_t height_above_support(const wh_cell_t *cell, const wh_pose_t *base_from_wafer) {
     wh_real_t height = base_from_wafer->r.z;
     bool found = false;
@@ -18,7 +19,7 @@ static wh_real_t height_above_support(const wh_cell_t *cell, const wh_pose_t *ba
     return height;
 }
 
-/* Whether a wafer lies in this very slot. One that a blade holds over it does not: it passes. */
+/* True if a wafer lies in this very slot. A wafer that a blade holds over the slot only passes. */
 static bool occupies(const wh_cell_t *cell, const wh_wafer_t *wafer, const wh_place_t *place) {
     wh_place_t other;
     return (wafer->holder == WH_NONE || wafer->holder == cell->stations[place->station].chuck) &&
@@ -36,7 +37,8 @@ static int32_t find_other(const wh_cell_t *cell, const wh_grasp_t *table, int32_
     return WH_NONE;
 }
 
-wh_event_t *wh_cell_append(size_t release, wh_event_list_t *list, wh_event_kind_t kind) {
+/* A copy of the list's events[release] as another kind, appended to the list; null if it is full. */
+static wh_event_t *append_as(size_t release, wh_event_list_t *list, wh_event_kind_t kind) {
     if (list->count >= list->capacity) {
         return NULL;
     }
@@ -49,7 +51,7 @@ wh_event_t *wh_cell_append(size_t release, wh_event_list_t *list, wh_event_kind_
 static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
                               size_t release) {
     const int32_t wafer = list->events[release].wafer;
-    wh_event_t *said = wh_cell_append(release, list, WH_EVENT_RELEASED_UNSUPPORTED);
+    wh_event_t *said = append_as(release, list, WH_EVENT_RELEASED_UNSUPPORTED);
     if (said != NULL) {
         said->height = height_above_support(cell, &table->storage.wafers[wafer].base_from_wafer);
     }
@@ -58,16 +60,16 @@ static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh
 static void judge_occupied(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
                            size_t release, const wh_place_t *place) {
     const int32_t other = find_other(cell, table, list->events[release].wafer, place);
-    wh_event_t *said = other == WH_NONE ? NULL : wh_cell_append(release, list, WH_EVENT_SLOT_OCCUPIED);
+    wh_event_t *said = other == WH_NONE ? NULL : append_as(release, list, WH_EVENT_SLOT_OCCUPIED);
     if (said != NULL) {
         said->other = other;
     }
 }
 
-/* Says that `found` is above a limit that is set. */
+/* Reports that `found` is above a limit, if there is one. */
 static void judge_limit(wh_event_list_t *list, size_t release, wh_event_kind_t kind, wh_real_t found,
                         wh_real_t limit) {
-    wh_event_t *said = limit > 0 && found > limit ? wh_cell_append(release, list, kind) : NULL;
+    wh_event_t *said = limit > 0 && found > limit ? append_as(release, list, kind) : NULL;
     if (said != NULL) {
         said->value = found;
         said->limit = limit;
@@ -96,4 +98,51 @@ size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_li
         }
     }
     return list->count - count;
+}
+
+/* ----------------------------------------------------------------------------------------------- settling */
+
+/* Turns R by the smallest rotation that takes its third column to n, which is less than a right angle
+ * away. */
+static void turn_towards(wh_mat3_t *R, const wh_vec3_t *n) {
+    const wh_vec3_t from = wh_mat3_column(R, 2);
+    const wh_vec3_t axis = wh_vec3_cross(&from, n); /* as long as the sine of the angle */
+    const wh_real_t share = 1 / (1 + wh_vec3_dot(&from, n));
+    for (size_t column = 0; column < 3; ++column) {
+        const wh_vec3_t v = wh_mat3_column(R, column);
+        const wh_vec3_t aside = wh_vec3_cross(&axis, &v);
+        const wh_real_t along = share * wh_vec3_dot(&axis, &v);
+        const wh_real_t cosine = wh_vec3_dot(&from, n);
+        R->m[0][column] = cosine * v.x + aside.x + along * axis.x;
+        R->m[1][column] = cosine * v.y + aside.y + along * axis.y;
+        R->m[2][column] = cosine * v.z + aside.z + along * axis.z;
+    }
+    wh_mat3_orthonormalise(R);
+}
+
+static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list, size_t release) {
+    const int32_t wafer = list->events[release].wafer;
+    wh_place_t place;
+    wh_pose_t pose = table->storage.wafers[wafer].base_from_wafer;
+    if (!wh_cell_locate(cell, &pose, &place) || !(place.dz > 0)) {
+        return;
+    }
+    const wh_vec3_t up = wh_mat3_column(&cell->stations[place.station].base_from_station.R, 2);
+    const wh_vec3_t down = wh_vec3_scale(place.dz, &up);
+    pose.r = wh_vec3_subtract(&pose.r, &down);
+    turn_towards(&pose.R, &up);
+    const bool moved = wh_grasp_place(table, (size_t)wafer, &pose) == WH_OK;
+    wh_event_t *said = moved ? append_as(release, list, WH_EVENT_SETTLED) : NULL;
+    if (said != NULL) {
+        said->value = place.dz;
+    }
+}
+
+void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list) {
+    const size_t count = list->count;
+    for (size_t i = 0; cell->settle && i < count; ++i) {
+        if (list->events[i].kind == WH_EVENT_RELEASED) {
+            settle(cell, table, list, i);
+        }
+    }
 }

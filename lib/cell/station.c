@@ -25,8 +25,8 @@ wh_place_t wh_station_measure(const wh_station_t *station, int32_t slot, const w
     return place;
 }
 
-/* The slot whose plane is nearest to a height above slot 1, by comparison rather than by conversion: a height
- * far away does not fit an integer. */
+/* The slot whose plane is nearest to a height above slot 1. It compares before it converts: a height far away
+ * does not fit an integer. */
 static int32_t nearest_slot(const wh_station_t *station, wh_real_t height) {
     const wh_real_t position = height / station->pitch + WH_REAL(0.5);
     if (!(position >= 0)) {

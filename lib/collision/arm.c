@@ -17,7 +17,7 @@ static wh_pose_t level_at(const wh_vec3_t *r, wh_real_t x, wh_real_t y) {
     return pose;
 }
 
-/* The same with its x from `from` to `to`, or along `fallback` where the two are one. */
+/* A level body at `from` with its x towards `to`, or along `fallback` if the two points are one. */
 static wh_pose_t level_towards(const wh_vec3_t *from, const wh_vec3_t *to, const wh_pose_t *fallback) {
     const wh_real_t dx = to->x - from->x;
     const wh_real_t dy = to->y - from->y;
@@ -28,7 +28,7 @@ static wh_pose_t level_towards(const wh_vec3_t *from, const wh_vec3_t *to, const
     return level_at(from, dx / length, dy / length);
 }
 
-/* Half-way to the wrist and to the side by what is missing to the link's length. */
+/* The elbow: half-way to the wrist, and aside by what is missing to the link's length. */
 static wh_vec3_t elbow_of(const wh_arm_t *arm, const wh_pose_t *base_from_shoulder, wh_real_t distance) {
     const wh_real_t half = distance / 2;
     const wh_real_t rest = arm->link * arm->link - half * half;

@@ -1,16 +1,17 @@
-/* Where the links of a TRZY robot's arm are: what theta, R, Z and yaw leave to the builder, the elbow.
+/* Where the links of a TRZY robot's arm are. theta, R, Z and yaw leave one choice to the builder: the elbow.
  *
- * The arm is of the usual kind: a column that is lifted and turns, an upper arm and a forearm of equal length that fold
- * over each other, and a wrist that carries the end-effector, `reach` behind its origin. The wrist is where the
- * end-effector's pose puts it, and the elbow at the point from which both links reach, on the left seen from the column
- * (on the right with `right_handed`). All links are level; mm in base. No heap, no trigonometry.
+ * The arm is of the usual kind: a column that lifts and turns, an upper arm and a forearm of equal length
+ * that fold over each other, and a wrist that carries the end-effector, `reach` behind its origin. The
+ * end-effector's pose gives the wrist. The elbow is the point from which both links reach, on the left as
+ * seen from the column (on the right with `right_handed`). All links are level; mm in base. No heap, no
+ * trigonometry.
  */
 #ifndef WH_COLLISION_ARM_H
 #define WH_COLLISION_ARM_H
 
 #include "../math/pose.h"
 
-/* The bodies of the robot, in the order in which they hang on each other. */
+/* The bodies of the robot, each hanging on the one before it. */
 typedef enum {
     WH_ARM_BASE,    /* base itself: the column's foot */
     WH_ARM_LIFT,    /* at (0, 0, Z), not turned */
@@ -26,12 +27,12 @@ typedef struct {
     bool right_handed;
 } wh_arm_t;
 
-/* Whether both links together reach the wrist of this end-effector's pose. */
+/* True if both links together reach the wrist of this end-effector's pose. */
 bool wh_arm_reaches(const wh_arm_t *arm, const wh_pose_t *base_from_effector);
 
-/* bodies[WH_ARM_BODIES]: base_from_body. Where the links are too short they point at the wrist; where the wrist is above
- * the column's axis (to 1e-9 mm) the arm folds along the end-effector's x. Arguments are not checked. Cost: three square
- * roots. */
+/* Writes bodies[WH_ARM_BODIES]: base_from_body. If the links are too short, they point at the wrist. If the
+ * wrist is above the column's axis (to 1e-9 mm), the arm folds along the end-effector's x. Arguments are not
+ * checked. Cost: three square roots. */
 void wh_arm_place(const wh_arm_t *arm, const wh_pose_t *base_from_effector, wh_pose_t bodies[]);
 
 #endif

@@ -1,10 +1,6 @@
 #include "convex_internal.h"
 
-static wh_real_t larger(wh_real_t a, wh_real_t b) {
-    return a > b ? a : b;
-}
-
-/* With the sign of d, and nothing for none: the middle of a face or of an edge. */
+/* `half` with the sign of d; 0 for 0, which is the middle of a face or of an edge. */
 static wh_real_t towards(wh_real_t half, wh_real_t d) {
     if (d > 0) {
         return half;
@@ -12,7 +8,7 @@ static wh_real_t towards(wh_real_t half, wh_real_t d) {
     return d < 0 ? -half : 0;
 }
 
-/* ------------------------------------------------------------------------------------------------ validate */
+/* ----------------------------------------------------------------------------------------------- validate */
 
 static bool is_finite(const wh_vec3_t *v) {
     return wh_real_is_finite(v->x) && wh_real_is_finite(v->y) && wh_real_is_finite(v->z);
@@ -37,7 +33,7 @@ static wh_status_t validate_sizes(const wh_convex_t *shape) {
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
-/* The measure by which a point sticks out of what the points before it span: a point, a line, a plane. */
+/* How far a point sticks out of what the points before it span: a point, a line or a plane. */
 static wh_vec3_t out_of_point(const wh_vec3_t *from, const wh_vec3_t *along) {
     (void)along;
     return *from;
@@ -51,7 +47,7 @@ static wh_vec3_t out_of_plane(const wh_vec3_t *from, const wh_vec3_t *along) {
     return wh_vec3_scale(wh_vec3_dot(along, from), along);
 }
 
-/* The point that sticks out farthest, measured by `out`, seen from the first point. */
+/* The point that sticks out farthest, measured by `out`, as seen from the first point. */
 static wh_vec3_t farthest_out(const wh_convex_t *mesh, wh_vec3_t (*out)(const wh_vec3_t *, const wh_vec3_t *),
                               const wh_vec3_t *along, wh_real_t *most) {
     wh_vec3_t best = {0, 0, 0};
@@ -126,7 +122,7 @@ wh_status_t wh_convex_validate(const wh_convex_t *shape) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- support */
+/* ------------------------------------------------------------------------------------------------ support */
 
 static wh_vec3_t mesh_support(const wh_convex_t *mesh, const wh_vec3_t *direction) {
     const wh_vec3_t *best = &mesh->points[0];
@@ -188,13 +184,13 @@ wh_vec3_t wh_convex_centre(const wh_convex_t *shape) {
     return wh_vec3_scale(1 / (wh_real_t)shape->point_count, &sum);
 }
 
-/* -------------------------------------------------------------------------------------------------- bounds */
+/* ------------------------------------------------------------------------------------------------- bounds */
 
 static wh_real_t mesh_radius(const wh_convex_t *mesh, const wh_vec3_t *origin) {
     wh_real_t most = 0;
     for (size_t i = 0; i < mesh->point_count; ++i) {
         const wh_vec3_t from = wh_vec3_subtract(&mesh->points[i], origin);
-        most = larger(most, wh_vec3_norm(&from));
+        most = wh_real_max(most, wh_vec3_norm(&from));
     }
     return most;
 }
@@ -219,7 +215,8 @@ wh_real_t wh_convex_radius(const wh_convex_t *shape) {
     return wh_real_sqrt((beside + half->x) * (beside + half->x) + z * z);
 }
 
-/* How far a shape with a centre reaches from it along one of base's axes, given as that row of its rotation. */
+/* How far a shape reaches from its centre along one of base's axes, given as that row of its rotation. Not
+ * for meshes. */
 static wh_real_t reach_along(const wh_convex_t *shape, const wh_vec3_t *row) {
     const wh_vec3_t *half = &shape->half;
     const wh_real_t z = wh_real_abs(row->z) * half->z;
@@ -238,7 +235,7 @@ static void mesh_interval(const wh_convex_t *mesh, const wh_vec3_t *row, wh_real
     for (size_t i = 1; i < mesh->point_count; ++i) {
         const wh_real_t height = wh_vec3_dot(&mesh->points[i], row);
         *low = height < *low ? height : *low;
-        *high = larger(*high, height);
+        *high = wh_real_max(*high, height);
     }
 }
 

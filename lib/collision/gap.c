@@ -6,16 +6,17 @@
 #error "waferhand: needs a libccd in double precision"
 #endif
 
-/* Enough for the hardest pairs by a factor of ten. */
+/* Ten times what the hardest pairs need. */
 static const wh_gap_budget_t usual = {500, 2000};
-/* Turns of the axis of a shallow overlap; each is a search of its own. */
+/* The most turns of the axis of a shallow overlap; each is a search of its own. */
 static const int turns = 30;
-/* More than any length here. */
+/* Greater than any length here. */
 static const wh_real_t far_away = 1e30;
 
 /* ------------------------------------------------------------------------------------------ along an axis */
 
-/* Returns what the axis proves; `at`: in the middle between the two points that are farthest along it. */
+/* Returns the gap that the axis proves. `at`: the middle between the two points that are farthest along
+ * it. */
 static wh_real_t along(const wh_gap_pair_t *pair, const wh_vec3_t *axis, wh_vec3_t *at) {
     const wh_vec3_t back = wh_vec3_scale(-1, axis);
     const wh_vec3_t on_a = wh_convex_support(pair->a, pair->base_from_a, *axis);
@@ -33,7 +34,7 @@ wh_real_t wh_gap_along(const wh_convex_t *a, const wh_pose_t *base_from_a, const
     return along(&pair, &axis, &at);
 }
 
-/* Keeps the axis when it proves more than the one before. */
+/* Keeps the axis if it proves more than the one before. */
 static void try_axis(const wh_gap_pair_t *pair, const wh_vec3_t *axis, wh_gap_bounds_t *bounds) {
     wh_vec3_t at;
     const wh_real_t lower = along(pair, axis, &at);
@@ -44,7 +45,7 @@ static void try_axis(const wh_gap_pair_t *pair, const wh_vec3_t *axis, wh_gap_bo
     }
 }
 
-/* False for the zero vector and for what is none. */
+/* False for the zero vector and for one that is not finite. */
 static bool to_unit(wh_vec3_t *v) {
     const wh_real_t length = wh_vec3_norm(v);
     if (!(length > 0 && length < far_away)) {
@@ -60,7 +61,7 @@ static wh_vec3_t centre_in_base(const wh_convex_t *shape, const wh_pose_t *base_
     return wh_vec3_add(&turned, &base_from_shape->r);
 }
 
-/* The normals of a shape's flat faces on the side where the other shape's centre is. */
+/* Tries the normals of a shape's flat faces on the side of the other shape's centre. */
 static void try_faces(const wh_gap_pair_t *pair, const wh_convex_t *shape, const wh_pose_t *base_from_shape,
                       const wh_vec3_t *towards_b, wh_gap_bounds_t *bounds) {
     const size_t end = wh_convex_faces_end(shape);
@@ -75,7 +76,7 @@ static void try_faces(const wh_gap_pair_t *pair, const wh_convex_t *shape, const
     }
 }
 
-/* The axes that cost little: the line between the centres, and faces. */
+/* Tries the axes that cost little: the line between the centres, and faces. */
 static void try_easy_axes(const wh_gap_pair_t *pair, wh_gap_bounds_t *bounds) {
     const wh_vec3_t from = centre_in_base(pair->a, pair->base_from_a);
     const wh_vec3_t to = centre_in_base(pair->b, pair->base_from_b);
@@ -88,17 +89,17 @@ static void try_easy_axes(const wh_gap_pair_t *pair, wh_gap_bounds_t *bounds) {
     try_faces(pair, pair->b, pair->base_from_b, &towards_b, bounds);
 }
 
-/* -------------------------------------------------------------------------------------------------- libccd */
+/* ------------------------------------------------------------------------------------------------- libccd */
 
-/* A shape with some of its surface taken off, as libccd sees it. When the budget is spent its points run away from the other's,
- * so that libccd, which has no bound of its own here, finds an end. */
+/* A shape with some of its surface taken off, as libccd sees it. When the budget is spent, its points move
+ * away from the other shape's: libccd has no bound of its own here, and then ends. */
 typedef struct {
     wh_convex_t shape;
     const wh_pose_t *base_from_shape;
     wh_vec3_t centre;
-    wh_real_t shrunk; /* a mesh is scaled by this about its centre */
+    wh_real_t shrunk; /* the scale of a mesh about its centre */
     int *left;
-    wh_vec3_t *asked; /* the last direction, for a alone */
+    wh_vec3_t *asked; /* the last direction; only for a */
 } core_t;
 
 static core_t core_of(const wh_convex_t *shape, const wh_pose_t *base_from_shape, wh_real_t taken, int *left,
@@ -141,8 +142,8 @@ static void core_centre(const void *object, ccd_vec3_t *centre) {
     ccdVec3Set(centre, core->centre.x, core->centre.y, core->centre.z);
 }
 
-/* Whether the cores overlap: HIT or CLEAR, or UNDECIDED when `supports` calls did not do. `*asked`: the last direction,
- * which parts cores that are clear. */
+/* HIT if the cores overlap, CLEAR if not, UNDECIDED if `supports` calls were too few. `*asked`: the last
+ * direction, which separates cores that are clear. */
 static wh_gap_state_t cores_overlap(const wh_gap_pair_t *pair, wh_real_t taken, int supports,
                                     wh_vec3_t *asked) {
     int left = supports;
@@ -162,11 +163,11 @@ static wh_gap_state_t cores_overlap(const wh_gap_pair_t *pair, wh_real_t taken, 
     return overlap ? WH_GAP_HIT : WH_GAP_CLEAR;
 }
 
-/* ------------------------------------------------------------------------------------------------- contact */
+/* ------------------------------------------------------------------------------------------------ contact */
 
-/* Turns the axis of a shallow overlap until it proves the least depth there is nearby: with b moved along the axis until
- * it is just clear, the axis between the nearest points is never worse, for their distance is at most the one along the
- * first. */
+/* Turns the axis of a shallow overlap until it proves the least depth nearby. b is moved along the axis until
+ * it is just clear; the axis between the nearest points is then never worse, for their distance is at most
+ * that along the first axis. */
 static void turn_axis(const wh_gap_pair_t *pair, int steps, wh_gap_bounds_t *bounds) {
     for (int turn = 0; turn < turns && bounds->lower < -WH_GAP_TOUCH; ++turn) {
         const wh_real_t before = bounds->lower;
@@ -181,7 +182,8 @@ static void turn_axis(const wh_gap_pair_t *pair, int steps, wh_gap_bounds_t *bou
     }
 }
 
-/* Whether two shapes overlap with `taken` mm off the surface of each, by libccd. An axis that parts them is tried. */
+/* Asks libccd if two shapes overlap with `taken` mm off the surface of each. If an axis separates them, tries
+ * that axis. */
 static wh_gap_state_t ask(const wh_gap_pair_t *pair, wh_real_t taken, int supports, wh_gap_bounds_t *bounds) {
     wh_vec3_t asked = {0, 0, 0};
     const wh_gap_state_t answer = cores_overlap(pair, taken, supports, &asked);
@@ -191,7 +193,8 @@ static wh_gap_state_t ask(const wh_gap_pair_t *pair, wh_real_t taken, int suppor
     return answer;
 }
 
-/* The state of two shapes that no axis yet proves to be at most touching: HIT, or CLEAR when one does by now. */
+/* The state of two shapes if no axis yet proves a depth of at most WH_GAP_TOUCH: HIT, or CLEAR if an axis
+ * proves it by now. */
 static wh_gap_state_t overlap(const wh_gap_pair_t *pair, const wh_gap_budget_t *budget,
                               wh_gap_bounds_t *bounds) {
     const bool mesh = pair->a->kind == WH_CONVEX_MESH || pair->b->kind == WH_CONVEX_MESH;
@@ -221,7 +224,7 @@ static wh_gap_state_t contact(const wh_gap_pair_t *pair, const wh_gap_budget_t *
     return bounds->upper <= WH_GAP_TOUCH + WH_GAP_TIGHT ? WH_GAP_TOUCHING : WH_GAP_UNDECIDED;
 }
 
-/* ------------------------------------------------------------------------------------------------- measure */
+/* ------------------------------------------------------------------------------------------------ measure */
 
 static wh_gap_state_t measure(const wh_gap_pair_t *pair, wh_real_t enough, const wh_gap_budget_t *budget,
                               wh_gap_bounds_t *bounds) {

@@ -1,31 +1,36 @@
 /* The gap between two convex shapes: how far apart they are, and whether they touch or hit.
  *
- * The signed gap of two shapes is the most that a direction can separate them by: the largest, over all unit axes, of
- * wh_gap_along. Above 0 it is their distance; below, the depth by which one must be moved for them to come apart. So
- * every axis gives a lower bound that two support calls prove, and every point of one shape beside a point of the
- * other an upper bound. Both close in on each other, step by step, until the gap is known:
+ * The signed gap of two shapes is the largest separation that a direction gives: the maximum of wh_gap_along
+ * over all unit axes. Above 0 it is their distance. Below 0 it is the depth by which one must be moved until
+ * they come apart. So every axis gives a lower bound, proved by two support calls, and every pair of points,
+ * one of each shape, gives an upper bound. Both close in on each other, step by step, until the gap is known:
  *
  *     CLEAR      an axis proves a gap above WH_GAP_TOUCH;
- *     TOUCHING   an axis proves it to be no deeper than WH_GAP_TOUCH, and two points that it is no wider (to WH_GAP_TIGHT);
- *     HIT        libccd finds that the shapes overlap with WH_GAP_TOUCH / 2 taken off the surface of each: that is a
- *                proof of a depth of WH_GAP_TOUCH. Edges and corners recede more than faces, so it finds every overlap
- *                deeper than 1.74 WH_GAP_TOUCH. For those between, axes are turned until none proves less depth; and
- *                if libccd finds an overlap with WH_GAP_CORE taken off each, so that no axis can, they hit as well;
- *     UNDECIDED  none was reached within the bounded number of steps, or an argument is no pose. Never a guess.
+ *     TOUCHING   an axis proves it to be no deeper than WH_GAP_TOUCH, and two points that it is no wider
+ *                (to WH_GAP_TIGHT);
+ *     HIT        libccd finds that the shapes overlap with WH_GAP_TOUCH / 2 taken off the surface of each,
+ *                which proves a depth of WH_GAP_TOUCH. Edges and corners recede more than faces, so this
+ *                finds every overlap deeper than 1.74 WH_GAP_TOUCH. For those between, axes are turned until
+ *                none proves less depth. If libccd finds an overlap with WH_GAP_CORE taken off each, so that
+ *                no axis can, they hit as well;
+ *     UNDECIDED  the bounded number of steps reached none of these, or an argument is not a pose. Never a
+ *                guess.
  *
- * So a HIT is at least 2 WH_GAP_CORE deep, and at least WH_GAP_TOUCH where the turned axes found the least depth. Off a
- * mesh, surface is taken by shrinking it towards the mean of its points until the farthest has moved so far: faces
- * nearer to the mean recede less, and its HIT is proven for a depth above 0 only and else by the axes tried.
+ * So a HIT is at least 2 WH_GAP_CORE deep, and at least WH_GAP_TOUCH if the turned axes found the least
+ * depth. Surface is taken off a mesh by shrinking it towards the mean of its points until the farthest point
+ * has moved that far. Faces nearer to the mean recede less: a HIT of a mesh is proven only for a depth above
+ * 0, and else by the axes that were tried.
  *
- * From libccd comes yes or no, and an axis that is then looked at as every other: gap, axis and place of what is CLEAR
- * are sums of our own, with the same bits everywhere.
+ * libccd gives yes or no, and an axis that is then checked like every other. Gap, axis and place of CLEAR are
+ * our own sums, with the same bits everywhere.
  *
- * The steps are those of E. G. Gilbert, D. W. Johnson and S. S. Keerthi, A fast procedure for computing the distance
- * between complex objects in three-dimensional space, IEEE Journal of Robotics and Automation 4 (1988) 193-203. libccd's
- * yes or no is portal refinement: G. Snethen, Complex collision made simple, Game Programming Gems 7 (2008) 165-178.
+ * The steps are those of E. G. Gilbert, D. W. Johnson and S. S. Keerthi, A fast procedure for computing the
+ * distance between complex objects in three-dimensional space, IEEE Journal of Robotics and Automation 4
+ * (1988) 193-203. libccd's yes or no is portal refinement: G. Snethen, Complex collision made simple, Game
+ * Programming Gems 7 (2008) 165-178.
  *
- * Units: mm. Poses are those of the shapes, base_from_shape. Shapes must pass wh_convex_validate, or nothing is said of
- * what comes out. Nothing is allocated, no argument is kept, all is reentrant. Double only.
+ * Units: mm. Poses are those of the shapes, base_from_shape. Shapes must pass wh_convex_validate, else the
+ * results mean nothing. Nothing is allocated, no argument is kept, all is reentrant. Double only.
  */
 #ifndef WH_COLLISION_GAP_H
 #define WH_COLLISION_GAP_H
@@ -36,39 +41,43 @@
 #error "waferhand: lib/collision is there in double only"
 #endif
 
-/* Within this of 0, shapes touch. */
+/* Shapes whose gap is within this of 0 touch, mm. */
 #define WH_GAP_TOUCH 1e-3
-/* The gap of CLEAR is this close to the true one, for shapes within 1e4 mm of base's origin and of each other. */
+/* The gap of CLEAR is this close to the true one, for shapes within 1e4 mm of base's origin and of each
+ * other. */
 #define WH_GAP_TIGHT 5e-7
-/* No pose may be farther from base's origin. */
+/* The greatest distance of a pose from base's origin. */
 #define WH_GAP_FARTHEST 1e6
-/* What is taken off each shape to prove a HIT at all: 2 * sqrt(3) of it are still less than WH_GAP_TOUCH. */
+/* The thickness that is taken off each shape to prove a HIT at all. 2 * sqrt(3) of it is still less than
+ * WH_GAP_TOUCH. */
 #define WH_GAP_CORE 0.28e-3
 
 typedef enum { WH_GAP_CLEAR, WH_GAP_TOUCHING, WH_GAP_HIT, WH_GAP_UNDECIDED } wh_gap_state_t;
 
 typedef struct {
     wh_gap_state_t state;
-    /* CLEAR: a proven lower bound, within WH_GAP_TIGHT of the true gap unless it is above `enough`; else 0. */
+    /* CLEAR: a proven lower bound, within WH_GAP_TIGHT of the true gap unless it is above `enough`;
+     * else 0. */
     wh_real_t gap;
-    /* Unit, base, from a to b. CLEAR: wh_gap_along it is `gap` to rounding. Else the best that was found; zero for an
-     * argument that is no pose. */
+    /* Unit, base, from a to b. CLEAR: wh_gap_along this axis is `gap` to rounding. Else the best axis that
+     * was found; zero if an argument is not a pose. */
     wh_vec3_t axis;
-    /* Base. In the middle between two nearest points; where faces are parallel, of some nearest points. Of a gap above
-     * `enough`, between the points farthest along the axis. HIT: a point of both, or midway of an overlap of balls.
-     * UNDECIDED: whatever was found last. */
+    /* Base. The middle between two nearest points; if faces are parallel, between some nearest points. If the
+     * gap is above `enough`, between the points farthest along the axis. HIT: a point of both shapes, or the
+     * middle of an overlap of balls. UNDECIDED: what was found last. */
     wh_vec3_t at;
 } wh_gap_t;
 
-/* Signed separation of a and b along a unit axis (base, from a to b): min over b minus max over a of axis.x; above 0 it
- * proves them apart by that much. Cost: 20 ns, for a mesh linear in its points. */
+/* Signed separation of a and b along a unit axis (base, from a to b): min over b minus max over a of axis.x.
+ * Above 0 it proves them apart by that much. Cost: 20 ns, for a mesh linear in its points. */
 wh_real_t wh_gap_along(const wh_convex_t *a, const wh_pose_t *base_from_a, const wh_convex_t *b,
                        const wh_pose_t *base_from_b, wh_vec3_t axis);
 
-/* `guess`: an axis to try first, of any length (zero: none), such as the last slice's. `enough` (mm, >= 0): a gap above
- * which its exact size does not matter. The shapes swapped give the same gap to WH_GAP_TIGHT. Cost: 70 ns when the guess
- * proves enough, 0.3 us when a face does, else 0.3 to 1 us, with two curved edges up to 6 us; overlaps about 10 us, those
- * less than 2 WH_GAP_TOUCH deep up to 0.2 ms. For a mesh linear in its points. */
+/* `guess`: an axis to try first, of any length (zero: none), such as the last slice's. `enough` (mm, >= 0):
+ * the exact size of a gap above this does not matter. The shapes swapped give the same gap to WH_GAP_TIGHT.
+ * Cost: 70 ns if the guess proves enough, 0.3 us if a face does, else 0.3 to 1 us, with two curved edges up
+ * to 6 us; overlaps about 10 us, those less than 2 WH_GAP_TOUCH deep up to 0.2 ms. For a mesh linear in its
+ * points. */
 void wh_gap_measure(const wh_convex_t *a, const wh_pose_t *base_from_a, const wh_convex_t *b,
                     const wh_pose_t *base_from_b, wh_real_t enough, wh_vec3_t guess, wh_gap_t *gap);
 

@@ -1,31 +1,31 @@
-/* How gap.c and nearest.c share their work. Not installed. */
+/* Shared by gap.c and nearest.c. Not installed. */
 #ifndef WH_COLLISION_GAP_INTERNAL_H
 #define WH_COLLISION_GAP_INTERNAL_H
 
 #include "convex_internal.h"
 #include "gap.h"
 
-/* The two shapes, and by how much b is thought to be moved. */
+/* The two shapes. b is measured as if moved by `shift`. */
 typedef struct {
     const wh_convex_t *a, *b;
     const wh_pose_t *base_from_a, *base_from_b;
     wh_vec3_t shift;
 } wh_gap_pair_t;
 
-/* What is known of a pair: lower <= signed gap <= upper, each with what proves it. */
+/* The bounds of a pair, lower <= signed gap <= upper, each with what proves it. */
 typedef struct {
     wh_real_t lower, upper;
     wh_vec3_t axis; /* unit: lower = wh_gap_along it */
-    wh_vec3_t at;   /* between the points that upper is the distance of */
+    wh_vec3_t at;   /* between the two points whose distance is `upper` */
 } wh_gap_bounds_t;
 
-/* How much may be spent: steps of wh_nearest_bounds, and libccd's calls of the support function. */
+/* The most work: steps of wh_nearest_bounds, and libccd's calls of the support function. */
 typedef struct {
     int steps, supports;
 } wh_gap_budget_t;
 
-/* Narrows `bounds` from their axis on until they are WH_GAP_TIGHT, or lower is above `enough`, or no step helps any more.
- * bounds->axis must be a unit vector; bounds->upper may be infinite. */
+/* Narrows `bounds`, starting at their axis, until they are WH_GAP_TIGHT, or lower is above `enough`, or no
+ * step helps any more. bounds->axis must be a unit vector; bounds->upper may be infinite. */
 void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds);
 
 /* wh_gap_measure within a budget, for tests. */

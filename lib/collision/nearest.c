@@ -1,11 +1,11 @@
 #include "gap_internal.h"
 
-/* A point of each kernel; `between` is from a's to b's. */
+/* A point of each kernel; `between` goes from a's to b's. */
 typedef struct {
     wh_vec3_t on_a, on_b, between;
 } pair_point_t;
 
-/* Up to four of them, and the weights by which they add up to the point nearest to the origin. */
+/* Up to four of them, with the weights by which they add up to the point nearest to the origin. */
 typedef struct {
     pair_point_t points[4];
     wh_real_t weights[4];
@@ -31,7 +31,7 @@ static pair_point_t support(const wh_gap_pair_t *pair, const wh_vec3_t *axis) {
     return point;
 }
 
-/* ------------------------------------------------------------------- the origin in the plane of a few points */
+/* ---------------------------------------------------------------- the origin in the plane of a few points */
 
 static bool weigh_line(const wh_vec3_t *a, const wh_vec3_t *b, wh_real_t weights[4]) {
     const wh_vec3_t along = wh_vec3_subtract(b, a);
@@ -70,16 +70,16 @@ static bool weigh_tetrahedron(const wh_vec3_t *const p[4], wh_real_t weights[4])
     return weights[0] > 0 && weights[1] > 0 && weights[2] > 0 && weights[3] > 0;
 }
 
-/* Some points of a simplex, and what lies nearest to the origin in the line, plane or space through them. */
+/* Some points of a simplex, and the point nearest to the origin in the line, plane or space through them. */
 typedef struct {
     size_t count;
     size_t index[4];
-    wh_real_t weights[4]; /* adding up to 1 */
+    wh_real_t weights[4]; /* they add up to 1 */
     wh_vec3_t nearest;
-    wh_real_t squared; /* its distance */
+    wh_real_t squared; /* the square of its distance */
 } part_t;
 
-/* False unless the nearest lies within the points. */
+/* False unless the nearest point lies within the points. */
 static bool weigh(const simplex_t *simplex, part_t *part) {
     const wh_vec3_t *p[4] = {NULL, NULL, NULL, NULL};
     for (size_t i = 0; i < part->count; ++i) {
@@ -111,7 +111,7 @@ static bool weigh(const simplex_t *simplex, part_t *part) {
     return true;
 }
 
-/* The points whose bits are set in `chosen`, and the last one. */
+/* Chooses the points whose bits are set in `chosen`, and the last one. */
 static void choose(part_t *part, unsigned chosen, size_t last) {
     part->count = 0;
     for (size_t i = 0; i < last; ++i) {
@@ -122,8 +122,9 @@ static void choose(part_t *part, unsigned chosen, size_t last) {
     part->index[part->count++] = last;
 }
 
-/* The nearest of all is looked for in each part that has the last point, for the others have been looked at before, but
- * in none that is part of one whose nearest lies within; the simplex becomes that part. Returns its squared distance. */
+/* Looks for the nearest point in each part that has the last point; the others were checked before. Skips
+ * parts of a part whose own nearest point lies within it. The simplex becomes the best part. Returns its
+ * squared distance. */
 static wh_real_t reduce(simplex_t *simplex, wh_vec3_t *nearest) {
     const size_t last = simplex->count - 1;
     part_t best = {.count = 0};
@@ -145,7 +146,7 @@ static wh_real_t reduce(simplex_t *simplex, wh_vec3_t *nearest) {
     return best.squared;
 }
 
-/* ---------------------------------------------------------------------------------------------- step by step */
+/* ------------------------------------------------------------------------------------------- step by step */
 
 static bool has(const simplex_t *simplex, const pair_point_t *point) {
     for (size_t i = 0; i < simplex->count; ++i) {
@@ -157,8 +158,8 @@ static bool has(const simplex_t *simplex, const pair_point_t *point) {
     return false;
 }
 
-/* The direction of the nearest point: what is left of it across the line or plane that the points span. Weights have
- * rounding errors along long thin triangles that would turn it. */
+/* The direction of the nearest point, taken across the line or plane that the points span. The nearest point
+ * itself has rounding errors along long thin triangles, which would turn the direction. */
 static wh_vec3_t across(const simplex_t *simplex, const wh_vec3_t *nearest) {
     if (simplex->count != 2 && simplex->count != 3) {
         return *nearest;
@@ -182,8 +183,8 @@ static wh_vec3_t across(const simplex_t *simplex, const wh_vec3_t *nearest) {
     return wh_vec3_scale(part / squared, &normal);
 }
 
-/* In the middle between the two surfaces, or of their overlap, given a unit axis between the points of the kernels and
- * the distance of these. */
+/* The middle between the two surfaces, or of their overlap, given a unit axis between the points of the
+ * kernels and their distance. */
 static wh_vec3_t middle(const wh_gap_pair_t *pair, const simplex_t *simplex, const wh_vec3_t *axis,
                         wh_real_t distance) {
     wh_vec3_t on_a = {0, 0, 0};

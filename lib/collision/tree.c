@@ -1,6 +1,6 @@
 #include "tree.h"
 
-/* Beyond any cell; finite, so that differences stay numbers. */
+/* Beyond any cell, but finite, so that differences stay numbers. */
 #define FAR WH_REAL(1e30)
 
 wh_box_t wh_box_empty(void) {
@@ -31,20 +31,16 @@ static wh_real_t least(wh_real_t a, wh_real_t b) {
     return a < b ? a : b;
 }
 
-static wh_real_t most(wh_real_t a, wh_real_t b) {
-    return a > b ? a : b;
-}
-
 static wh_box_t join(const wh_box_t *a, const wh_box_t *b) {
-    const wh_box_t both = {
-        {least(a->low.x, b->low.x), least(a->low.y, b->low.y), least(a->low.z, b->low.z)},
-        {most(a->high.x, b->high.x), most(a->high.y, b->high.y), most(a->high.z, b->high.z)}};
+    const wh_box_t both = {{least(a->low.x, b->low.x), least(a->low.y, b->low.y), least(a->low.z, b->low.z)},
+                           {wh_real_max(a->high.x, b->high.x), wh_real_max(a->high.y, b->high.y),
+                            wh_real_max(a->high.z, b->high.z)}};
     return both;
 }
 
-/* -------------------------------------------------------------------------------------------------- the order */
+/* ---------------------------------------------------------------------------------------------- the order */
 
-/* The lower 21 bits of v, two zeros between each and the next. */
+/* Spreads the lower 21 bits of v: two zeros between each and the next. */
 static uint64_t spread(uint64_t v) {
     v &= 0x1fffff;
     v = (v | v << 32) & 0x1f00000000ffff;
@@ -54,7 +50,7 @@ static uint64_t spread(uint64_t v) {
     return (v | v << 2) & 0x1249249249249249;
 }
 
-/* One coordinate on a raster of 2^21 steps of 1/16 mm about base's origin, which a cell does not leave by much. */
+/* A coordinate on a raster of 2^21 steps of 1/16 mm about base's origin. Cells hardly extend beyond it. */
 static uint64_t raster(wh_real_t low, wh_real_t high) {
     const wh_real_t steps = 8 * (low + high) + WH_REAL(1048576);
     if (!(steps > 0)) {
@@ -100,7 +96,7 @@ static void sort(wh_tree_t *tree) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- the tree */
+/* ----------------------------------------------------------------------------------------------- the tree */
 
 static size_t leaves_for(size_t count) {
     size_t leaves = 1;
@@ -144,7 +140,7 @@ wh_box_t wh_tree_box(const wh_tree_t *tree, int32_t item) {
     return tree->nodes[tree->leaves + (size_t)tree->leaf_of[item]];
 }
 
-/* The next node in the order of a walk that does not go below `node`; 0 at its end. */
+/* The next node of a walk that does not go below `node`; 0 at the end. */
 static size_t next_beside(size_t node) {
     while (node & 1U) {
         node /= 2;

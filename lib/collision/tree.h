@@ -1,33 +1,35 @@
-/* A tree of axis-aligned boxes over things that rest: who may be near a place costs the logarithm of how many there are.
+/* A tree of axis-aligned boxes over things that rest. Asking what is near a place costs the logarithm of how
+ * many there are.
  *
- * Items are numbered from 0. The tree is complete and lies in one array, node i above nodes 2 i and 2 i + 1, its leaves
- * in the order of a space-filling curve (Morton's) when it was built. A box that changes is mended upwards; the order
- * stays until the tree is built anew. No heap, no recursion; the arrays are the caller's.
+ * Items are numbered from 0. The tree is complete and lies in one array, node i above nodes 2 i and 2 i + 1.
+ * Its leaves are in the order of a space-filling curve (Morton's) at the time it was built. If a box changes,
+ * the nodes above it are updated; the order stays until the tree is built again. No heap, no recursion; the
+ * arrays are the caller's.
  */
 #ifndef WH_COLLISION_TREE_H
 #define WH_COLLISION_TREE_H
 
 #include "../math/vector.h"
 
-/* From `low` to `high`, mm in base. One with low above high is empty: it overlaps nothing. */
+/* From `low` to `high`, mm in base. A box with low above high is empty: it overlaps nothing. */
 typedef struct {
     wh_vec3_t low, high;
 } wh_box_t;
 
-/* Written by the functions below only. */
+/* Only the functions below write to it, except for what wh_tree_build asks of the caller. */
 typedef struct {
     wh_box_t *nodes;  /* wh_tree_nodes(count) of them: node 1 is the root */
     int32_t *order;   /* count: item at each leaf */
     int32_t *leaf_of; /* count: leaf of each item */
-    uint64_t *codes;  /* count: used while building */
+    uint64_t *codes;  /* count: used only by wh_tree_build */
     size_t count;     /* items, up to 2^28 */
-    size_t leaves;    /* the power of two from count on */
+    size_t leaves;    /* the least power of two that is at least count */
 } wh_tree_t;
 
 /* The box of nothing. */
 wh_box_t wh_box_empty(void);
 
-/* Whether two boxes have a point in common, their surfaces included. */
+/* True if two boxes have a point in common, surfaces included. */
 bool wh_box_overlap(const wh_box_t *a, const wh_box_t *b);
 
 /* The box enlarged by `margin` (mm) to all sides; an empty one stays empty. */
@@ -36,18 +38,20 @@ wh_box_t wh_box_grown(const wh_box_t *box, wh_real_t margin);
 /* How many nodes a tree of so many items has. */
 size_t wh_tree_nodes(size_t count);
 
-/* Builds the tree over boxes[0 .. count - 1]; tree->nodes, order, leaf_of, codes and count are filled in by the caller.
- * Items with an empty box are there, and found by nobody. The same boxes give the same tree. Cost: n log n. */
+/* Builds the tree over boxes[0 .. count - 1]. The caller has filled in tree->nodes, order, leaf_of, codes and
+ * count. Items with an empty box are in the tree, but no search finds them. The same boxes give the same
+ * tree. Cost: n log n. */
 void wh_tree_build(wh_tree_t *tree, const wh_box_t boxes[]);
 
 /* Gives an item another box. Cost: log n. */
 void wh_tree_set(wh_tree_t *tree, int32_t item, const wh_box_t *box);
 
-/* The item's box as it was last set. */
+/* The item's box as it was set last. */
 wh_box_t wh_tree_box(const wh_tree_t *tree, int32_t item);
 
-/* The items whose boxes overlap this one, in the leaves' order: at most `capacity` are written to `found`; returns how
- * many there are. Cost: log n and linear in those found, as long as the tree is well ordered. */
+/* Finds the items whose boxes overlap this one, in the leaves' order. Writes at most `capacity` of them to
+ * `found`; returns how many there are. Cost: log n and linear in those found, as long as the tree is well
+ * ordered. */
 size_t wh_tree_find(const wh_tree_t *tree, const wh_box_t *box, int32_t found[], size_t capacity);
 
 #endif

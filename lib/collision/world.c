@@ -1,11 +1,12 @@
-/* A world's description and memory. What happens in a slice is in world_move.c, world_near.c and world_pair.c. */
+/* A world's description and memory. What happens in a slice is in world_move.c, world_near.c and
+ * world_pair.c. */
 #include "world.h"
 
 #include <string.h>
 
 #include "world_internal.h"
 
-/* Slices in a bin of the curves, to begin with. */
+/* Slices in a bin of the curves at the start. */
 #define FIRST_BIN 10
 
 const char *wh_clearance_name(wh_clearance_kind_t kind) {
@@ -15,7 +16,7 @@ const char *wh_clearance_name(wh_clearance_kind_t kind) {
     return (unsigned)kind < WH_CLEARANCES ? names[kind] : "unknown";
 }
 
-/* ------------------------------------------------------------------------------------------------ description */
+/* -------------------------------------------------------------------------------------------- description */
 
 static bool hangs(const wh_part_t *part) {
     return part->kind != WH_PART_FIXED && part->kind != WH_PART_LEDGE;
@@ -83,9 +84,10 @@ wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part) {
     return status == WH_OK ? wh_convex_validate(&config->wafer) : status;
 }
 
-/* ----------------------------------------------------------------------------------------------------- memory */
+/* ------------------------------------------------------------------------------------------------- memory */
 
-/* Where the arrays begin in one block; each of a size that keeps the next aligned. */
+/* Where the arrays begin in the block of memory. Their sizes are rounded up, so that the next one is
+ * aligned. */
 typedef struct {
     size_t items, hanging, movers, pairs;
     size_t nodes_at, boxes_at, codes_at, order_at, leaf_at, wafers_at, movers_at, pairs_at, near_at, end;
@@ -145,16 +147,16 @@ static wh_world_t *lay_out(const wh_world_config_t *config, const plan_t *plan, 
     return world;
 }
 
-/* ------------------------------------------------------------------------------------------------------ set-up */
+/* ------------------------------------------------------------------------------------------------- set-up */
 
-static void set_up_boxes(wh_world_t *world, const wh_grasp_t *table) {
+static void set_up_boxes(wh_world_t *world, const wh_wafer_t wafers[]) {
     const wh_world_config_t *config = world->config;
     for (size_t i = 0; i < world->fixed_count; ++i) {
         const wh_convex_t *convex = &config->parts[i].convex;
         wh_convex_bounds(convex, &convex->body_from_shape, &world->boxes[i].low, &world->boxes[i].high);
     }
     for (size_t w = 0; w < config->wafer_count; ++w) {
-        world->wafers[w] = table->storage.wafers[w].base_from_wafer;
+        world->wafers[w] = wafers[w].base_from_wafer;
         const wh_pose_t base_from_shape = wh_pose_compose(&world->wafers[w], &config->wafer.body_from_shape);
         wh_box_t *box = &world->boxes[world->fixed_count + w];
         wh_convex_bounds(&config->wafer, &base_from_shape, &box->low, &box->high);
@@ -189,7 +191,7 @@ static void set_up_movers(wh_world_t *world) {
     }
 }
 
-/* A mover that stands for a held wafer may meet anything, whichever it is. */
+/* Movers that stand for a held wafer may meet anything, whichever wafer it is. */
 static bool never_meet(const wh_world_t *world, const wh_mover_t *a, const wh_mover_t *b) {
     return a->part != WH_NONE && b->part != WH_NONE &&
            wh_world_belong_together(&world->config->parts[a->part], &world->config->parts[b->part]);
@@ -208,9 +210,8 @@ static void set_up_pairs(wh_world_t *world) {
     }
 }
 
-wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_grasp_t *table,
-                          const wh_pose_t *base_from_effector, const wh_pose_t base_from_grippers[],
-                          void *memory, size_t bytes) {
+wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_t *input, void *memory,
+                          size_t bytes) {
     const plan_t plan = plan_memory(config);
     if (!memory || bytes < plan.end) {
         return NULL;
@@ -220,14 +221,14 @@ wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_grasp_t *tab
         world->clearances[kind].gap = WH_CLEARANCE_RANGE;
         world->clearances[kind].parts[0] = world->clearances[kind].parts[1] = WH_NONE;
     }
-    world->curves.first = table->slice;
+    world->curves.first = input->slice;
     world->curves.slices = FIRST_BIN;
-    set_up_boxes(world, table);
+    set_up_boxes(world, input->wafers);
     set_up_movers(world);
     set_up_pairs(world);
-    const wh_look_t look = {world, table, NULL};
-    wh_world_move(&look, base_from_effector, base_from_grippers);
-    wh_world_move(&look, base_from_effector, base_from_grippers); /* now before and now are the same */
+    const wh_look_t look = {world, input, NULL};
+    wh_world_move(&look);
+    wh_world_move(&look); /* now `before` and `now` are the same */
     return world;
 }
 

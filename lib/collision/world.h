@@ -1,21 +1,26 @@
-/* The cell's bodies and what of them comes near to what, slice by slice.
+/* The cell's bodies, and which of them come near to each other, slice by slice.
  *
- * A world is made of convex parts. Fixed ones (FOUPs, ledges, walls) stand in base; the robot's hang on its arm, the
- * grippers' on the grippers; each wafer is one more. After each step of the grasp table the world is told where everything is
- * now. It then says whether anything touched what it must not, between the last slice and this one as well, and keeps
- * the smallest gap of each watched kind of pair with the slice in which it occurred.
+ * A world is made of convex parts. Fixed ones (FOUPs, ledges, walls) stand in base; the robot's hang on its
+ * arm, the grippers' on the grippers; each wafer is one more part. After each step of the grasp table the
+ * world is told where everything is. It then says if anything touched that must not, between the last slice
+ * and this one as well. It keeps the smallest gap of each watched kind of pair, with the slice in which it
+ * occurred.
  *
- * Between two slices each body's origin goes straight and the body turns at a constant rate about it. Nothing tunnels: a
- * pair counts as apart only when a plane between the two, or the gaps at both ends against the way that their points went,
- * prove it for the whole slice; else the slice is divided until it is proved, contact is found, or the check gives up
- * and says so (WH_EVENT_UNDECIDED). Contact is collision/gap.h's: touching within 1e-3 mm is no hit.
+ * Between two slices each body's origin moves straight, and the body turns at a constant rate about it.
+ * Nothing tunnels. A pair counts as apart only if that is proved for the whole slice: by a plane between the
+ * two, or by the gaps at both ends against the distance that their points moved. Else the slice is divided
+ * until it is proved, contact is found, or the check gives up and says so (WH_EVENT_UNDECIDED). Contact is
+ * that of collision/gap.h: touching within 1e-3 mm is not a hit.
  *
- * What may touch: a gripper's parts and the wafer that it holds, or is about to take or has just let go (within the table's
- * tolerance sideways and near_projz in height, with an open valve, and until it has gone 1 mm sideways); a wafer and the
- * ledges of the slot, or the chuck, that it lies in; neighbours in the chain of the arm; parts that do not move against
- * each other. Nothing else.
+ * These may touch, and nothing else:
+ *   - a gripper's parts and the wafer that it holds, is about to take or has just let go: within the
+ *     tolerance sideways and near_projz in height, with an open valve, and until the gripper has gone 1 mm
+ *     sideways;
+ *   - a wafer and the ledges of its slot, or the chuck that it lies on;
+ *   - neighbours in the chain of the arm;
+ *   - parts that do not move against each other.
  *
- * No heap; the memory is the caller's. A world is judged by, and never changes, wafers and grippers.
+ * No heap; the memory is the caller's. A world reads wafers and grippers and never changes them.
  */
 #ifndef WH_COLLISION_WORLD_H
 #define WH_COLLISION_WORLD_H
@@ -25,13 +30,13 @@
 #include "convex.h"
 #include "tree.h"
 
-/* Grippers and parts on them, of one world. */
+/* The most grippers of a world. */
 #define WH_WORLD_GRIPPERS 8
-#define WH_WORLD_MOVING 64 /* parts of robot and grippers together */
+#define WH_WORLD_MOVING 64 /* the most parts of robot and grippers together */
 
-/* What a part is to the rules of who may touch whom. */
+/* The kind of a part, for the rules of what may touch what. */
 typedef enum {
-    WH_PART_FIXED, /* walls, tables, shells; `owner` is not looked at: the caller's */
+    WH_PART_FIXED, /* walls, tables, shells; `owner` is the caller's */
     WH_PART_LEDGE, /* of station `owner`, slot `slot` */
     WH_PART_ARM,   /* of the robot's body `owner`, a wh_arm_body_t */
     WH_PART_BLADE, /* of gripper `owner`, which is on the robot */
@@ -39,7 +44,8 @@ typedef enum {
     WH_PART_WAFER  /* wafer `owner` */
 } wh_part_kind_t;
 
-/* Its convex.body_from_shape is in base for fixed parts and ledges, else in the frame of what it hangs on. */
+/* convex.body_from_shape is in base for fixed parts and ledges, else in the frame of the body that the part
+ * hangs on. */
 typedef struct {
     wh_part_kind_t kind;
     int32_t owner;
@@ -49,7 +55,8 @@ typedef struct {
 
 /* Kinds of pairs whose smallest gap is kept. */
 typedef enum {
-    WH_CLEARANCE_BLADE_WAFER_ABOVE, /* a blade and a wafer above it that it does not hold, nor is about to take */
+    /* a blade and a wafer above it that it does not hold and is not about to take */
+    WH_CLEARANCE_BLADE_WAFER_ABOVE,
     WH_CLEARANCE_BLADE_WAFER_BELOW,
     WH_CLEARANCE_BLADE_OTHER, /* a blade and ledges, chucks or fixed parts */
     WH_CLEARANCE_WAFER_WAFER, /* a held wafer and another one */
@@ -60,17 +67,26 @@ typedef enum {
     WH_CLEARANCES
 } wh_clearance_kind_t;
 
-/* Gaps are kept from this one down, mm: what is farther is not near. */
+/* Larger gaps are not kept, mm: such parts are not near. */
 #define WH_CLEARANCE_RANGE WH_REAL(20.0)
 
-/* The smallest gap of one kind so far. `gap` is WH_CLEARANCE_RANGE until something was nearer. Exact to 1e-3 mm at the ends
- * of slices; 0 when touching or hit. */
+/* The smallest gap of one kind so far. `gap` is WH_CLEARANCE_RANGE until something was nearer; 0 for touching
+ * or hit. Exact to 1e-3 mm at the ends of slices. */
 typedef struct {
     wh_real_t gap;
     uint64_t slice;
     int32_t parts[2]; /* WH_NONE until then */
     wh_vec3_t at;     /* between the two, base */
 } wh_clearance_t;
+
+/* What a world reads in a slice: of a grasp table after its step, or of a received state. There are
+ * wafer_count wafers and gripper_count grippers, as in the config. */
+typedef struct {
+    uint64_t slice; /* steps so far */
+    const wh_wafer_t *wafers;
+    const wh_gripper_t *grippers;
+    wh_pose_t base_from_effector;
+} wh_world_input_t;
 
 /* A description; immutable while a world uses it. */
 typedef struct {
@@ -80,7 +96,9 @@ typedef struct {
     wh_arm_t arm;
     size_t gripper_count, wafer_count;
     const wh_cell_t *cell;
-    wh_real_t limits[WH_CLEARANCES]; /* WH_EVENT_TOO_CLOSE below; 0: none */
+    /* its tolerance says how near a gripper comes to a wafer that it may take */
+    const wh_grasp_config_t *grasp;
+    wh_real_t limits[WH_CLEARANCES]; /* a gap below it gives WH_EVENT_TOO_CLOSE; 0: none */
 } wh_world_config_t;
 
 typedef struct wh_world wh_world_t;
@@ -88,61 +106,62 @@ typedef struct wh_world wh_world_t;
 /* The kind's name, such as "blade_wafer_above": a constant, never null. */
 const char *wh_clearance_name(wh_clearance_kind_t kind);
 
-/* WH_OK, or what is wrong with the description: WH_STATUS_NULL_ARGUMENT; WH_STATUS_BAD_CAPACITY for too many grippers or
- * parts that hang on something; WH_STATUS_OUT_OF_RANGE for an owner, a slot or parts out of order; else what
- * wh_convex_validate says. `part` (may be null) is then the index of the part, or WH_NONE. */
+/* WH_OK, or what is wrong with the description: WH_STATUS_NULL_ARGUMENT; WH_STATUS_BAD_CAPACITY for too
+ * many grippers or parts that hang on something; WH_STATUS_OUT_OF_RANGE for an owner, a slot or parts
+ * out of order; else what wh_convex_validate says. `part` (may be null) is then the index of the part,
+ * or WH_NONE. */
 wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part);
 
 /* Bytes that wh_world_init needs. */
 size_t wh_world_bytes(const wh_world_config_t *config);
 
-/* Sets a world up in `memory`, aligned as malloc's, from where everything is when a run begins: base_from_effector, the
- * grippers' poses, the table's wafers. `config`, which has passed wh_world_validate, and `memory` must outlive it. Returns null when
- * `bytes` are too few. Cost: n log n in fixed parts and wafers. */
-wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_grasp_t *table,
-                          const wh_pose_t *base_from_effector, const wh_pose_t base_from_grippers[],
-                          void *memory, size_t bytes);
+/* Sets a world up in `memory`, aligned as malloc's, from where everything is when a run begins. `config`,
+ * which has passed wh_world_validate, and `memory` must outlive it; `input` need not. Returns null if `bytes`
+ * are too few. Cost: n log n in fixed parts and wafers. */
+wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_t *input, void *memory,
+                          size_t bytes);
 
-/* One slice: what moved since the last call, and what came of it. `table` is as its step left it. Appends to `list` while
- * there is room (it may be null): at most one WH_EVENT_HIT or WH_EVENT_UNDECIDED in a run, the first, after which contact is judged no
- * more, and one WH_EVENT_TOO_CLOSE for each kind of clearance. Cost: a few nanoseconds for each pair that is near,
- * some tens of microseconds for one that has to be measured; flat in what rests elsewhere. */
-void wh_world_step(wh_world_t *world, const wh_grasp_t *table, const wh_pose_t *base_from_effector,
-                   const wh_pose_t base_from_grippers[], wh_event_list_t *list);
+/* One slice: judges all that moved since the last call. Appends to `list`, which may be null, while there is
+ * room: at most one WH_EVENT_HIT or WH_EVENT_UNDECIDED in a run, the first, after which contact is no longer
+ * judged, and one WH_EVENT_TOO_CLOSE for each kind of clearance. Cost: a few nanoseconds for each pair that
+ * is near, some tens of microseconds for one that has to be measured; independent of what rests elsewhere. */
+void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list);
 
-/* Tells the world that a wafer which nobody holds was put elsewhere between two steps. */
-void wh_world_place(wh_world_t *world, const wh_grasp_t *table, int32_t wafer);
+/* Tells the world that a wafer that nobody holds was put there between two steps. */
+void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from_wafer);
 
 /* The smallest gaps so far, by kind: WH_CLEARANCES of them. */
 const wh_clearance_t *wh_world_clearances(const wh_world_t *world);
 
-/* The smallest gaps over time. A run is divided into bins of so many slices, whose number doubles whenever all bins are full, two
- * becoming one. Gaps are measured at the ends of bins, and the run's smallest one is in its bin whenever it occurred. */
+/* The smallest gaps over time. A run is divided into bins of equal numbers of slices. When all bins are full,
+ * two become one, and bins hold twice as many slices. Gaps are measured at the ends of bins. The run's
+ * smallest gap is in its bin whenever it occurred. */
 #define WH_CURVE_BINS 600
 
 typedef struct {
-    uint64_t
-        first; /* the table's slice before the first bin: bin i ends with slice first + (i + 1) * slices */
-    uint64_t slices;                              /* in a bin */
-    size_t count;                                 /* bins that are over */
-    wh_real_t gaps[WH_CLEARANCES][WH_CURVE_BINS]; /* WH_CLEARANCE_RANGE: nothing nearer */
+    /* The slice before the first bin: bin i ends with slice first + (i + 1) * slices. */
+    uint64_t first;
+    uint64_t slices; /* in a bin */
+    size_t count;    /* finished bins */
+    /* WH_CLEARANCE_RANGE: nothing nearer. */
+    wh_real_t gaps[WH_CLEARANCES][WH_CURVE_BINS];
 } wh_curves_t;
 
 const wh_curves_t *wh_world_curves(const wh_world_t *world);
 
-/* How many slices' pairs were looked at in which way, for those who ask where the time goes. */
+/* How the pairs of all slices were decided, for those who ask where the time goes. */
 typedef struct {
-    uint64_t pairs;    /* near enough to be on a list */
-    uint64_t planes;   /* decided by a plane between the two */
-    uint64_t measured; /* measured */
+    uint64_t pairs;    /* pairs near enough to be on a list */
+    uint64_t planes;   /* pairs decided by a plane between the two */
+    uint64_t measured; /* pairs measured */
     uint64_t divided;  /* slices divided */
-    uint64_t relisted; /* lists made anew */
+    uint64_t relisted; /* lists made again */
 } wh_world_counters_t;
 
 const wh_world_counters_t *wh_world_counters(const wh_world_t *world);
 
-/* Looks at everything that rests, as `waferhand layout` does before a run: the first two parts that touch or cut each other and
- * must not, to `parts`; false when there are none. Cost: n log n. */
-bool wh_world_check_rest(wh_world_t *world, const wh_grasp_t *table, int32_t parts[2]);
+/* Checks everything that rests, as `waferhand layout` does before a run. Writes the first two parts that
+ * overlap and must not to `parts`; false if there are none. Cost: n log n. */
+bool wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int32_t parts[2]);
 
 #endif

@@ -1,5 +1,5 @@
-/* The smallest gaps over time. Everything near is measured anew at the end of a bin, beside the lists of what is near: those
- * are the judgement's, and what it finds must not depend on who looks on. */
+/* The smallest gaps over time. At the end of a bin everything near is measured again, without the lists of
+ * what is near. Those belong to the judgement, whose result must not depend on who watches. */
 #include "world_internal.h"
 
 static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_vec3_t guess,
@@ -40,14 +40,12 @@ static void measure_pair(const wh_look_t *look, const wh_mover_pair_t *pair, wh_
     }
 }
 
-/* Two bins become one. */
+/* Makes one bin of each two. */
 static void halve(wh_curves_t *curves) {
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
         wh_real_t *gaps = curves->gaps[kind];
         for (size_t bin = 0; bin < WH_CURVE_BINS / 2; ++bin) {
-            const wh_real_t first = gaps[2 * bin];
-            const wh_real_t second = gaps[2 * bin + 1];
-            gaps[bin] = first < second ? first : second;
+            gaps[bin] = gaps[2 * bin] < gaps[2 * bin + 1] ? gaps[2 * bin] : gaps[2 * bin + 1];
         }
     }
     curves->count = WH_CURVE_BINS / 2;
@@ -64,13 +62,13 @@ static void close_bin(wh_curves_t *curves, const wh_real_t least[]) {
     }
 }
 
-/* Slices that nobody saw, as a free-running run may lose some, are in bins that show what came after them. */
+/* If slices are lost, as in a free-running run, their bins show what came after them. */
 void wh_world_draw_curves(const wh_look_t *look) {
     wh_world_t *world = look->world;
     wh_curves_t *curves = &world->curves;
     wh_real_t least[WH_CLEARANCES];
     const uint64_t begin = curves->first + curves->count * curves->slices;
-    if (look->table->slice < begin + curves->slices) {
+    if (look->input->slice < begin + curves->slices) {
         return;
     }
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
@@ -84,7 +82,7 @@ void wh_world_draw_curves(const wh_look_t *look) {
     for (size_t i = 0; i < world->pair_count; ++i) {
         measure_pair(look, &world->pairs[i], least);
     }
-    while (look->table->slice >= curves->first + (curves->count + 1) * curves->slices) {
+    while (look->input->slice >= curves->first + (curves->count + 1) * curves->slices) {
         close_bin(curves, least);
     }
 }

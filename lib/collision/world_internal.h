@@ -1,28 +1,29 @@
-/* Within the collision world: bodies that move (world_move.c), lists of what is near (world_near.c), the judgement of
- * one pair (world_pair.c), who may touch whom (world_rules.c).
- */
+/* Shared within the collision world: bodies that move (world_move.c), lists of what is near (world_near.c),
+ * the judgement of one pair (world_pair.c), what may touch what (world_rules.c). */
 #ifndef WH_COLLISION_WORLD_INTERNAL_H
 #define WH_COLLISION_WORLD_INTERNAL_H
 
 #include "gap.h"
 #include "world.h"
 
-/* How far beyond the range of clearances things are put on a moving part's list, mm; less where too many are there. */
+/* How far beyond the range of clearances things are put on a moving part's list, mm; less if too many are
+ * there. */
 #define WH_NEAR_MARGIN WH_REAL(20.0)
 #define WH_NEAR_LEAST WH_REAL(0.1)
 #define WH_NEAR_CAPACITY 128
 
-/* After so many wafers have been set down elsewhere the tree is built anew. */
+/* After this many wafers have been set down elsewhere the tree is built again. */
 #define WH_REST_REBUILD 32
 
-/* Something that moves, at both ends of the slice. */
+/* A body that moves, at both ends of the slice. */
 typedef struct {
     wh_pose_t before, now; /* base_from_body */
     wh_real_t way;         /* of its origin, mm */
-    wh_real_t turn;        /* about it, rad: never less than it was */
+    wh_real_t turn;        /* about its origin, rad; an upper bound */
 } wh_body_t;
 
-/* What is known of a pair: the gap is at least `slack`, as of the last slice, and `axis` (zero: none yet) parted them. */
+/* A pair and its state: after the last slice the gap was at least `slack`, and `axis` (zero: none yet)
+ * separated them. */
 typedef struct {
     int32_t other; /* an item of the tree, or a mover */
     wh_real_t slack;
@@ -34,13 +35,13 @@ typedef struct {
     int32_t part;          /* WH_NONE: this gripper holds none */
     int32_t body;          /* index in world->bodies */
     wh_pose_t before, now; /* base_from_shape */
-    wh_real_t radius;      /* of the ball about the body's origin that holds it */
-    wh_real_t motion;      /* no point of it went farther in this slice, mm */
-    wh_real_t bulge;       /* nor farther from its straight way */
-    wh_pair_t *near;       /* things that rest, WH_NEAR_CAPACITY of them */
+    wh_real_t radius;      /* of a ball about the body's origin that holds the part */
+    wh_real_t motion;      /* the most that a point of it moved in this slice, mm */
+    wh_real_t bulge;       /* the most that a point left its straight way */
+    wh_pair_t *near;       /* things that rest, room for WH_NEAR_CAPACITY */
     size_t near_count;
-    wh_real_t reach; /* how much farther it may go before the list must be made anew */
-    bool crowded;    /* more than the list can hold */
+    wh_real_t reach; /* how much farther it may move before the list must be made again */
+    bool crowded;    /* more things are near than the list can hold */
 } wh_mover_t;
 
 /* A pair of movers. */
@@ -49,7 +50,7 @@ typedef struct {
     wh_pair_t near;
 } wh_mover_pair_t;
 
-/* The wafer that a blade let go last, until the blade has gone sideways from there. */
+/* The wafer that a gripper let go last, until the gripper has gone sideways from there. */
 typedef struct {
     int32_t wafer;
     wh_vec3_t at;
@@ -57,11 +58,11 @@ typedef struct {
 
 struct wh_world {
     const wh_world_config_t *config;
-    size_t fixed_count; /* parts that hang on nothing: items 0 .. of the tree; then the wafers */
+    size_t fixed_count; /* parts that hang on nothing. The tree's items are these, then the wafers */
     wh_tree_t tree;
-    wh_box_t *boxes;                                         /* of the tree's items, when it is built */
+    wh_box_t *boxes;                                         /* of the tree's items, for building it */
     wh_pose_t *wafers;                                       /* base_from_wafer, as of the last slice */
-    size_t set_down;                                         /* since the tree was built */
+    size_t set_down;                                         /* wafers set down since the tree was built */
     wh_body_t bodies[WH_ARM_BODIES + 2 * WH_WORLD_GRIPPERS]; /* arm, grippers, what each holds */
     wh_mover_t *movers;
     size_t mover_count;
@@ -72,12 +73,12 @@ struct wh_world {
     wh_left_t left[WH_WORLD_GRIPPERS];
     wh_clearance_t clearances[WH_CLEARANCES];
     bool too_close[WH_CLEARANCES]; /* reported */
-    bool struck;                   /* contact was reported and is judged no more */
+    bool struck;                   /* contact was reported and is no longer judged */
     wh_curves_t curves;
     wh_world_counters_t counters;
 };
 
-/* One of a pair, as the judgement sees it. */
+/* One part of a pair, as the judgement sees it. */
 typedef struct {
     int32_t part;
     wh_part_kind_t kind;
@@ -88,19 +89,20 @@ typedef struct {
     wh_real_t motion, bulge;
 } wh_side_t;
 
-/* What a step works on. */
+/* The arguments of a step. */
 typedef struct {
     wh_world_t *world;
-    const wh_grasp_t *table;
+    const wh_world_input_t *input;
     wh_event_list_t *list;
 } wh_look_t;
 
-/* The tree's items and the parts' numbers: fixed parts, then (behind those that hang) wafers. */
+/* From the tree's items to part numbers and back. Parts are numbered: fixed parts, those that hang,
+ * wafers. */
 int32_t wh_world_part_of_item(const wh_world_t *world, int32_t item);
 int32_t wh_world_item_of_wafer(const wh_world_t *world, int32_t wafer);
 const wh_convex_t *wh_world_convex(const wh_world_t *world, int32_t part);
 
-/* Body index of what gripper g is, and of what it holds. */
+/* The body index of a gripper, and of the wafer that it holds. */
 int32_t wh_world_gripper_body(size_t gripper);
 int32_t wh_world_held_body(size_t gripper);
 
@@ -108,31 +110,30 @@ wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *move
 wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item);
 
 /* Takes over where everything is now. Wafers that were taken or let go change between mover and tree. */
-void wh_world_move(const wh_look_t *look, const wh_pose_t *base_from_effector,
-                   const wh_pose_t base_from_grippers[]);
+void wh_world_move(const wh_look_t *look);
 
-/* After the pairs were judged: what was let go rests. */
+/* Called after the pairs were judged: what was let go rests from now on. */
 void wh_world_settle(const wh_look_t *look);
 
-/* Makes the mover's list anew if it went as far as the list reaches. */
+/* Makes the mover's list again if it has moved as far as the list reaches. */
 void wh_world_list_near(wh_world_t *world, wh_mover_t *mover);
 
-/* More is near to this mover than its list can hold: contact is undecided. */
+/* Reports contact as undecided: more is near to this mover than its list can hold. */
 void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a);
 
 /* Judges one pair for this slice. */
 void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_pair_t *near);
 
-/* At the end of a bin: keeps the smallest gaps of its kinds. Changes nothing else. */
+/* Keeps the smallest gaps at the end of a bin. Changes nothing else. */
 void wh_world_draw_curves(const wh_look_t *look);
 
-/* Two parts that never move against each other, or are neighbours by design. */
+/* True for parts that never move against each other, or are neighbours by design. */
 bool wh_world_belong_together(const wh_part_t *a, const wh_part_t *b);
 
-/* Whether they may touch as things are. */
+/* True if the two may touch now. */
 bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b);
 
-/* Which clearance the pair counts for, or WH_CLEARANCES: none. */
+/* The clearance that the pair counts for; WH_CLEARANCES: none. */
 wh_clearance_kind_t wh_world_clearance_of(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b);
 
 #endif

@@ -1,7 +1,7 @@
 /* Where everything is now, and what of it rests. */
 #include "world_internal.h"
 
-/* A gripper has left the wafer that it let go once it has gone so far sideways, mm. */
+/* A gripper has left the wafer that it let go when it has gone this far sideways, mm. */
 #define LEFT_BEHIND WH_REAL(1.0)
 
 int32_t wh_world_gripper_body(size_t gripper) {
@@ -26,10 +26,11 @@ const wh_convex_t *wh_world_convex(const wh_world_t *world, int32_t part) {
     return (size_t)part < config->part_count ? &config->parts[part].convex : &config->wafer;
 }
 
-/* ---------------------------------------------------------------------------------------------------- motion */
+/* ------------------------------------------------------------------------------------------------- motion */
 
-/* The angle between two rotations, never less: the matrices' difference has the Frobenius norm 2 sqrt(2) sin(angle / 2), and
- * asin(s) <= s (1 + (pi/2 - 1) s^2) for s from 0 to 1, both sides agreeing at the ends. */
+/* An upper bound of the angle between two rotations. The Frobenius norm of the matrices' difference is 2
+ * sqrt(2) sin(angle / 2), and asin(s) <= s (1 + (pi/2 - 1) s^2) for s from 0 to 1, with equality at both
+ * ends. */
 static wh_real_t angle_between(const wh_mat3_t *a, const wh_mat3_t *b) {
     wh_real_t sum = 0;
     for (size_t i = 0; i < 9; ++i) {
@@ -61,14 +62,14 @@ static void move_mover(wh_world_t *world, wh_mover_t *mover) {
     mover->reach -= mover->motion;
 }
 
-/* ------------------------------------------------------------------------------------------ taken and let go */
+/* --------------------------------------------------------------------------------------- taken and let go */
 
 static wh_mover_t *mover_of_gripper(wh_world_t *world, size_t gripper) {
     const size_t hanging = world->config->part_count - world->fixed_count;
     return &world->movers[hanging + gripper];
 }
 
-/* Nothing is known any more of what this mover is near to. */
+/* Forgets what is known of this mover's pairs with other movers. */
 static void forget_pairs(wh_world_t *world, const wh_mover_t *mover) {
     const int32_t index = (int32_t)(mover - world->movers);
     for (size_t i = 0; i < world->pair_count; ++i) {
@@ -97,12 +98,15 @@ static void begin_to_carry(wh_world_t *world, size_t gripper, int32_t wafer) {
     relist_all(world);
 }
 
-static void carry_no_more(wh_world_t *world, size_t gripper) {
+/* The gripper lets its wafer go, and stays beside it for now. */
+static void end_carrying(wh_world_t *world, size_t gripper) {
+    world->left[gripper].wafer = world->held[gripper];
+    world->left[gripper].at = world->bodies[wh_world_gripper_body(gripper)].now.r;
     world->held[gripper] = WH_NONE;
     mover_of_gripper(world, gripper)->part = WH_NONE;
 }
 
-/* What lists knew of a wafer that was elsewhere is not true any more. */
+/* Forgets what the lists know of an item that has moved. */
 static void forget_item(wh_world_t *world, int32_t item) {
     for (size_t m = 0; m < world->mover_count; ++m) {
         wh_mover_t *mover = &world->movers[m];
@@ -115,7 +119,7 @@ static void forget_item(wh_world_t *world, int32_t item) {
     }
 }
 
-/* A wafer lies down where the table has it. */
+/* Puts a wafer into the tree where it lies now. */
 static void lay_down(wh_world_t *world, int32_t wafer) {
     wh_box_t box;
     const wh_pose_t base_from_shape =
@@ -148,10 +152,8 @@ void wh_world_settle(const wh_look_t *look) {
     wh_world_t *world = look->world;
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
         const int32_t wafer = world->held[g];
-        if (wafer != WH_NONE && look->table->storage.grippers[g].wafer != wafer) {
-            carry_no_more(world, g);
-            world->left[g].wafer = wafer;
-            world->left[g].at = world->bodies[wh_world_gripper_body(g)].now.r;
+        if (wafer != WH_NONE && look->input->grippers[g].wafer != wafer) {
+            end_carrying(world, g);
             if (!is_carried(world, wafer)) {
                 lay_down(world, wafer);
                 ++world->set_down;
@@ -163,28 +165,26 @@ void wh_world_settle(const wh_look_t *look) {
     }
 }
 
-void wh_world_place(wh_world_t *world, const wh_grasp_t *table, int32_t wafer) {
+void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from_wafer) {
     if (!is_carried(world, wafer)) {
-        world->wafers[wafer] = table->storage.wafers[wafer].base_from_wafer;
+        world->wafers[wafer] = *base_from_wafer;
         lay_down(world, wafer);
         ++world->set_down;
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- the slice */
+/* ---------------------------------------------------------------------------------------------- the slice */
 
 static void take_wafers(const wh_look_t *look) {
     wh_world_t *world = look->world;
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
-        const int32_t wafer = look->table->storage.grippers[g].wafer;
+        const int32_t wafer = look->input->grippers[g].wafer;
         if (wafer == WH_NONE || wafer == world->held[g]) {
             continue;
         }
         for (size_t other = 0; other < world->config->gripper_count; ++other) {
             if (world->held[other] == wafer) {
-                carry_no_more(world, other);
-                world->left[other].wafer = wafer;
-                world->left[other].at = world->bodies[wh_world_gripper_body(other)].now.r;
+                end_carrying(world, other);
             }
         }
         begin_to_carry(world, g, wafer);
@@ -196,13 +196,13 @@ static void move_held(const wh_look_t *look) {
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
         const int32_t wafer = world->held[g];
         if (wafer != WH_NONE) {
-            world->wafers[wafer] = look->table->storage.wafers[wafer].base_from_wafer;
+            world->wafers[wafer] = look->input->wafers[wafer].base_from_wafer;
             move_body(&world->bodies[wh_world_held_body(g)], &world->wafers[wafer]);
         }
     }
 }
 
-/* A gripper that has gone sideways from where it let a wafer go has nothing to do with it any more. */
+/* Ends a gripper's permission to touch the wafer that it let go, once it has gone sideways from there. */
 static void leave_behind(wh_world_t *world, size_t gripper) {
     const wh_vec3_t *r = &world->bodies[wh_world_gripper_body(gripper)].now.r;
     wh_left_t *left = &world->left[gripper];
@@ -213,16 +213,15 @@ static void leave_behind(wh_world_t *world, size_t gripper) {
     }
 }
 
-void wh_world_move(const wh_look_t *look, const wh_pose_t *base_from_effector,
-                   const wh_pose_t base_from_grippers[]) {
+void wh_world_move(const wh_look_t *look) {
     wh_world_t *world = look->world;
     wh_pose_t arm[WH_ARM_BODIES];
-    wh_arm_place(&world->config->arm, base_from_effector, arm);
+    wh_arm_place(&world->config->arm, &look->input->base_from_effector, arm);
     for (size_t i = 0; i < WH_ARM_BODIES; ++i) {
         move_body(&world->bodies[i], &arm[i]);
     }
     for (size_t g = 0; g < world->config->gripper_count; ++g) {
-        move_body(&world->bodies[wh_world_gripper_body(g)], &base_from_grippers[g]);
+        move_body(&world->bodies[wh_world_gripper_body(g)], &look->input->grippers[g].base_from_gripper);
         leave_behind(world, g);
     }
     take_wafers(look);

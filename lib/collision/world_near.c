@@ -1,4 +1,4 @@
-/* What rests near a moving part: a list that is good until the part has gone as far as it reaches. */
+/* What rests near a moving part: a list that is good until the part has moved as far as it reaches. */
 #include "world_internal.h"
 
 wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *mover) {
@@ -38,7 +38,7 @@ wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item) {
     return side;
 }
 
-/* How far two boxes are apart along base's axes, and along which. */
+/* How far two boxes are apart along base's axes; `axis` is the one with the largest gap. */
 static wh_real_t box_gap(const wh_box_t *a, const wh_box_t *b, wh_vec3_t *axis) {
     const wh_real_t gaps[6] = {b->low.x - a->high.x, a->low.x - b->high.x, b->low.y - a->high.y,
                                a->low.y - b->high.y, b->low.z - a->high.z, a->low.z - b->high.z};
@@ -57,8 +57,8 @@ static wh_box_t box_before(const wh_world_t *world, const wh_mover_t *mover) {
     return box;
 }
 
-/* Finds what is near, within a margin that is halved until all of it has room. Where not even the range of clearances has, the
- * list holds what could be touched in this slice, for this slice. */
+/* Finds what is near within a margin, which is halved until all of it has room. If there is not even room for
+ * the range of clearances, the list holds what could be touched in this slice, for this slice only. */
 static size_t find_near(wh_world_t *world, wh_mover_t *mover, const wh_box_t *box, int32_t found[]) {
     wh_real_t margin = WH_CLEARANCE_RANGE + mover->motion + WH_NEAR_MARGIN;
     const wh_real_t least = mover->motion + WH_NEAR_LEAST + WH_GAP_TOUCH;
@@ -74,7 +74,7 @@ static size_t find_near(wh_world_t *world, wh_mover_t *mover, const wh_box_t *bo
     }
 }
 
-/* What the old list knew of a thing is known still. */
+/* Keeps what the old list knew of a thing. False if it was not on that list. */
 static bool take_over(const wh_pair_t known[], size_t count, wh_pair_t *near) {
     for (size_t i = 0; i < count; ++i) {
         if (known[i].other == near->other) {

@@ -1,18 +1,19 @@
-/* The judgement of one pair for one slice: apart by a plane, by gaps against ways, or by dividing the slice. */
+/* The judgement of one pair for one slice. Three ways prove that the pair stayed apart: a plane, the gaps
+ * against the distances moved, or dividing the slice. */
 #include "world_internal.h"
 
-/* A slice is divided into at most so many steps before the check gives up. */
+/* The most steps of a divided slice before the check gives up. */
 #define MOST_STEPS 256
 
-/* Halves of a slice that are tried at most: shorter ones are shorter than any way that matters. */
+/* The most halvings of a step: a shorter one is below any distance that matters. */
 #define MOST_HALVINGS 40
 
-/* Gaps are known better than this, mm: one that is not smaller by more is no new minimum. */
+/* Gaps are known better than this, mm. A gap that is smaller by less is not a new minimum. */
 #define SAME_GAP WH_REAL(1e-4)
 
-/* --------------------------------------------------------------------------------------------- between slices */
+/* ----------------------------------------------------------------------------------------- between slices */
 
-/* base_from_shape at t of the slice, 0 to 1. */
+/* base_from_shape at time t of the slice, 0 to 1. */
 static wh_pose_t shape_at(const wh_side_t *side, wh_real_t t) {
     if (!side->body) {
         return side->now;
@@ -31,8 +32,8 @@ static wh_pose_t shape_at(const wh_side_t *side, wh_real_t t) {
     return wh_pose_compose(&pose, &side->convex->body_from_shape);
 }
 
-/* How far on from t, where they are a gap apart along its axis, the pair stays apart: as far as the axis still parts
- * them, by halves, but at least as far as their points need to close the gap. */
+/* The time after t for which the pair stays apart, given its gap and axis at t. It is as long as the axis
+ * still separates them (found by halving), and at least as long as their points need to close the gap. */
 static wh_real_t safe_step(const wh_side_t *a, const wh_side_t *b, wh_real_t t, wh_real_t motion,
                            const wh_gap_t *gap) {
     const wh_real_t least = (gap->gap > WH_GAP_TOUCH ? gap->gap : WH_GAP_TOUCH) / motion;
@@ -51,7 +52,7 @@ static wh_real_t safe_step(const wh_side_t *a, const wh_side_t *b, wh_real_t t, 
     return least;
 }
 
-/* Goes through the slice by steps that cannot reach contact, for as long as there is a gap. */
+/* Goes through the slice in steps that cannot reach contact, as long as there is a gap. */
 static wh_gap_state_t divide(wh_world_t *world, const wh_side_t *a, const wh_side_t *b, wh_real_t motion,
                              wh_gap_t *gap) {
     wh_real_t t = 0;
@@ -69,7 +70,7 @@ static wh_gap_state_t divide(wh_world_t *world, const wh_side_t *a, const wh_sid
     return WH_GAP_UNDECIDED;
 }
 
-/* Whether the pair kept apart within the slice, given its gap at the end. */
+/* The pair's state within the slice, given its gap at the end. */
 static wh_gap_state_t judge_between(wh_world_t *world, const wh_side_t *a, const wh_side_t *b,
                                     const wh_gap_t *end, wh_gap_t *worst) {
     const wh_real_t motion = a->motion + b->motion;
@@ -94,7 +95,7 @@ static wh_gap_state_t judge_between(wh_world_t *world, const wh_side_t *a, const
     return divide(world, a, b, motion, worst);
 }
 
-/* ------------------------------------------------------------------------------------------------ what came of it */
+/* ---------------------------------------------------------------------------------------- what came of it */
 
 static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_side_t *a,
                           const wh_side_t *b) {
@@ -105,7 +106,7 @@ static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_
     wh_event_t *event = &look->list->events[look->list->count++];
     *event = blank;
     event->kind = kind;
-    event->slice = event->measured_slice = look->table->slice;
+    event->slice = event->measured_slice = look->input->slice;
     event->parts[0] = a->part;
     event->parts[1] = b->part;
     for (int i = 0; i < 2; ++i) {
@@ -147,7 +148,7 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
         return;
     }
     least->gap = found;
-    least->slice = look->table->slice;
+    least->slice = look->input->slice;
     least->parts[0] = a->part;
     least->parts[1] = b->part;
     least->at = gap->at;
@@ -162,9 +163,9 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- judgement */
+/* ---------------------------------------------------------------------------------------------- judgement */
 
-/* By the plane that parted them last. */
+/* True if the plane that separated the pair last still does, by at least `needed` at the slice's end. */
 static bool is_parted(const wh_side_t *a, const wh_side_t *b, wh_real_t needed, wh_pair_t *near) {
     const wh_vec3_t axis = near->axis;
     if (axis.x == 0 && axis.y == 0 && axis.z == 0) {

@@ -1,11 +1,11 @@
-/* Who may touch whom, and which clearance a pair counts for. */
+/* What may touch what, and which clearance a pair counts for. */
 #include "world_internal.h"
 
 static bool is_on_robot(const wh_part_t *part) {
     return part->kind == WH_PART_ARM || part->kind == WH_PART_BLADE;
 }
 
-/* Place in the chain of the arm; blades hang on the hand. */
+/* The part's place in the chain of the arm. Blades hang on the hand. */
 static int32_t link_of(const wh_part_t *part) {
     return part->kind == WH_PART_ARM ? part->owner : (int32_t)WH_ARM_BODIES;
 }
@@ -26,10 +26,11 @@ static bool is_gripper(const wh_side_t *side) {
 }
 
 static const wh_wafer_t *wafer_of(const wh_look_t *look, const wh_side_t *side) {
-    return &look->table->storage.wafers[side->owner];
+    return &look->input->wafers[side->owner];
 }
 
-/* Whether a wafer there lies in this slot, or on the chuck of this gripper, and not below its plane. */
+/* True if a wafer at this pose lies in the ledge's slot, or on the gripper's chuck, and not below its
+ * plane. */
 static bool is_upon(const wh_look_t *look, const wh_pose_t *base_from_wafer, const wh_side_t *support) {
     const wh_cell_t *cell = look->world->config->cell;
     wh_place_t place;
@@ -42,13 +43,13 @@ static bool is_upon(const wh_look_t *look, const wh_pose_t *base_from_wafer, con
     return support->kind == WH_PART_CHUCK && cell->stations[place.station].chuck == support->owner;
 }
 
-/* At both ends of the slice: what comes through from below does not lie there. */
+/* True if the wafer lies there at both ends of the slice. A wafer that comes through from below does not. */
 static bool lies_in(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *support) {
     const wh_pose_t *now = &look->world->wafers[wafer->owner];
     return is_upon(look, now, support) && (!wafer->body || is_upon(look, &wafer->body->before, support));
 }
 
-/* Puts the wafer of a pair first, then the gripper: rules are told once. */
+/* Puts the wafer of a pair first, so that each rule is written once. */
 static void put_in_order(const wh_side_t **a, const wh_side_t **b) {
     const bool swap = (*b)->kind == WH_PART_WAFER && (*a)->kind != WH_PART_WAFER;
     const wh_side_t *const first = swap ? *b : *a;
@@ -56,19 +57,20 @@ static void put_in_order(const wh_side_t **a, const wh_side_t **b) {
     *a = first;
 }
 
-/* Whether gripper and wafer are meant to come together: within reach, and one takes or gives. */
+/* True if gripper and wafer are meant to come together: they are within reach, and the gripper takes or
+ * gives. */
 static bool do_business(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *gripper) {
-    const wh_grasp_t *table = look->table;
-    const wh_gripper_t *state = &table->storage.grippers[gripper->owner];
+    const wh_grasp_config_t *grasp = look->world->config->grasp;
+    const wh_gripper_t *state = &look->input->grippers[gripper->owner];
     const wh_wafer_t *w = wafer_of(look, wafer);
     const wh_vec3_t dr = wh_vec3_subtract(&w->base_from_wafer.r, &state->base_from_gripper.r);
     const wh_vec3_t local = wh_mat3_transform_back(&state->base_from_gripper.R, &dr);
-    const wh_real_t limit = table->config.tolerance.projxy;
+    const wh_real_t limit = grasp->tolerance.projxy;
     const bool beside = local.x * local.x + local.y * local.y > limit * limit;
-    if (beside || wh_real_abs(local.z) > table->config.near_projz) {
+    if (beside || wh_real_abs(local.z) > grasp->near_projz) {
         return false;
     }
-    /* Let go in this slice: the world holds it until the slice is over. */
+    /* Let go in this slice: the world keeps it as held until the slice is over. */
     const bool released = look->world->held[gripper->owner] == wafer->owner;
     return state->valve == WH_VALVE_OPEN || w->holder != WH_NONE || gripper->kind == WH_PART_CHUCK ||
            released || look->world->left[gripper->owner].wafer == wafer->owner;
@@ -85,9 +87,9 @@ bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side
     return b->kind == WH_PART_LEDGE && lies_in(look, a, b);
 }
 
-/* ------------------------------------------------------------------------------------------------- clearances */
+/* --------------------------------------------------------------------------------------------- clearances */
 
-/* Of a gripper's part and a wafer that it does not hold. */
+/* For a gripper's part and a wafer that it does not hold. */
 static wh_clearance_kind_t wafer_and_gripper(const wh_look_t *look, const wh_side_t *wafer,
                                              const wh_side_t *gripper) {
     if (do_business(look, wafer, gripper)) {

@@ -2,42 +2,18 @@
 
 #include "grasp_internal.h"
 #include "horizon_internal.h"
-#include "proximity_internal.h"
 
-/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1);
-    requires encounter == &watch->gripper->approach || encounter == &watch->gripper->contest;
-    assigns encounter->wafer, encounter->holder,
-            watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
-    ensures encounter->wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 1);
-    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table);
-    ensures encounter == &watch->gripper->approach || wh_same_approach{Pre, Post}(watch);
-    ensures encounter == &watch->gripper->contest || wh_same_contest{Pre, Post}(watch); */
 static void report(const wh_watch_t *watch, wh_encounter_t *encounter, wh_event_kind_t kind) {
-    /*@ assert \valid(encounter) && \separated(encounter, watch, watch->table, watch->list); */
-    /*@ assert watch->list != \null ==> \separated(watch->gripper, watch->list->events + (0 .. watch->list->capacity - 1)); */
     if (watch->list) {
         wh_event_t *event = wh_event_append(watch->table, watch->list, kind);
-        /*@ assert \separated(event, watch, watch->table, watch->list, encounter) &&
-                   \separated(event, watch->gripper); */
-        /*@ assert wh_list_grown{Pre, Here}(watch->list, 1); */
-        /*@ assert wh_same_size{Pre, Here}(watch->table) && watch->index == \at(watch->index, Pre); */
-        /*@ assert wh_same_approach{Pre, Here}(watch) && wh_same_contest{Pre, Here}(watch); */
-        /*@ assert wh_table_memory(watch->table) && wh_list_apart(watch->list, watch->table); */
-        /*@ assert wh_watch_memory(watch); */
         event->wafer = encounter->wafer;
         event->gripper = watch->index;
         event->other = encounter->holder;
         event->measured = encounter->measured;
         event->measured_slice = encounter->slice;
     }
-    /*@ assert wh_list_grown{Pre, Here}(watch->list, 1); */
-    /*@ assert wh_same_size{Pre, Here}(watch->table) && watch->index == \at(watch->index, Pre); */
-    /*@ assert wh_same_approach{Pre, Here}(watch) && wh_same_contest{Pre, Here}(watch); */
-    /*@ assert wh_table_memory(watch->table) && wh_list_apart(watch->list, watch->table); */
-    /*@ assert wh_watch_memory(watch); */
     encounter->wafer = WH_NONE;
     encounter->holder = WH_NONE;
-    /*@ assert watch->index == \at(watch->index, Pre); */
 }
 
 bool wh_closeness_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
@@ -55,21 +31,13 @@ bool wh_closeness_measure(const wh_grasp_config_t *config, const wh_pose_t *base
     return false;
 }
 
-/*@ requires wh_watch_memory(watch) && \valid_read(wafer) && \valid(reach);
-    requires \separated(reach, watch, watch->table);
-    assigns *reach;
-    ensures reach->t == 1; */
 static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_closeness_t *reach) {
     reach->t = 1;
     return wh_closeness_measure(&watch->table->config, &wafer->base_from_wafer, watch->base_from_gripper,
                                 reach);
 }
 
-/* The closest that the gripper came to the wafer in this slice; false when it did not come near. */
-/*@ requires wh_watch_memory(watch) && \valid_read(wafer) && \valid(closest);
-    requires \separated(closest, watch, watch->table);
-    assigns *closest;
-    ensures watch->sweep == \null ==> closest->t == 1; */
+/* How close the gripper came to the wafer in this slice; false if it did not come near. */
 static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_closeness_t *closest) {
     if (watch->sweep && wafer->released_by == WH_NONE) {
         return wh_closeness_swept(watch, &wafer->base_from_wafer, closest);
@@ -78,33 +46,23 @@ static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_close
 }
 
 /* The square that "closest" is measured by: both distances in units of their tolerance. */
-/*@ requires \valid_read(tolerance); assigns \nothing; */
 static wh_real_t closeness(const wh_tolerance_t *tolerance, wh_real_t dr_proj_z, wh_real_t dr_proj_xy) {
     const wh_real_t z = dr_proj_z / tolerance->projz;
     const wh_real_t xy = dr_proj_xy / tolerance->projxy;
     return z * z + xy * xy;
 }
 
-/*@ requires \valid_read(tolerance) && \valid_read(reach) && \valid_read(measured); assigns \nothing; */
 static bool is_closer(const wh_tolerance_t *tolerance, const wh_closeness_t *reach,
                       const wh_proximity_t *measured) {
     return closeness(tolerance, reach->z, reach->xy) <
            closeness(tolerance, measured->dr_proj_z, measured->dr_proj_xy_norm);
 }
 
-/*@ requires wh_watch_memory(watch) && wh_is_wafer(watch->table, w) && (watch->sweep != \null || t >= 1);
-    requires encounter == &watch->gripper->approach || encounter == &watch->gripper->contest;
-    assigns *encounter;
-    ensures encounter->wafer == w && wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table);
-    ensures encounter == &watch->gripper->approach || wh_same_approach{Pre, Post}(watch);
-    ensures encounter == &watch->gripper->contest || wh_same_contest{Pre, Post}(watch); */
 static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, int32_t w, wh_real_t t) {
-    /*@ assert \valid(encounter) && \separated(encounter, watch, watch->table, watch->list); */
     const wh_wafer_t *wafer = &watch->table->storage.wafers[w];
     encounter->wafer = w;
     encounter->holder = wafer->holder;
     encounter->slice = watch->table->slice;
-    /*@ assert wh_watch_memory(watch); */
     if (t < 1) {
         wh_measure_swept(watch, &wafer->base_from_wafer, t, &encounter->measured);
     } else {
@@ -113,16 +71,11 @@ static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, 
     }
 }
 
-/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_is_wafer(watch->table, watch->gripper->approach.wafer);
-    assigns watch->gripper->approach, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
-    ensures wh_watched(watch, watch->gripper->approach.wafer) && wh_list_grown{Pre, Post}(watch->list, 1);
-    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_contest{Pre, Post}(watch); */
 WH_OUT_OF_LINE static void follow_approach(const wh_watch_t *watch) {
     wh_encounter_t *approach = &watch->gripper->approach;
     const wh_wafer_t *wafer = &watch->table->storage.wafers[approach->wafer];
     if (wafer->holder != WH_NONE) {
         approach->wafer = WH_NONE;
-        /*@ assert wh_watch_memory(watch) && wh_watched(watch, watch->gripper->approach.wafer); */
         return;
     }
     wh_closeness_t reach;
@@ -130,29 +83,20 @@ WH_OUT_OF_LINE static void follow_approach(const wh_watch_t *watch) {
         is_closer(&watch->table->config.tolerance, &reach, &approach->measured)) {
         begin_encounter(watch, approach, approach->wafer, reach.t);
     }
-    /*@ assert wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_list_grown{Pre, Here}(watch->list, 0); */
-    /*@ assert wh_same_size{Pre, Here}(watch->table) && wh_same_contest{Pre, Here}(watch); */
-    /*@ assert wh_is_wafer(watch->table, watch->gripper->approach.wafer); */
     if (!is_near_now(watch, wafer, &reach)) {
         ++watch->table->counters.near_misses;
         report(watch, approach, WH_EVENT_NEAR_MISS);
     }
 }
 
-/* Nothing that rests came near in this slice. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g); assigns \nothing; */
+/* True if no wafer at rest came near in this slice. */
 static bool is_within_horizon(const wh_grasp_t *table, size_t g) {
-    return wh_horizon_holds(table, g) &&
+    return wh_horizon_is_clear(table, g) &&
            (!wh_grasp_is_swept(table, g) ||
-            wh_horizon_covers(table, g, &table->storage.grippers[g].base_from_gripper.r));
+            wh_horizon_is_clear_at(table, g, &table->storage.grippers[g].base_from_gripper.r));
 }
 
 /* The nearest free wafer in the neighbourhood, then lowest index, if the gripper follows none yet. */
-/*@ requires wh_watch_memory(watch) && watch->gripper->approach.wafer == WH_NONE;
-    assigns watch->gripper->approach,
-            watch->table->storage.buckets[0 .. watch->table->storage.bucket_count - 1];
-    ensures wh_watched(watch, watch->gripper->approach.wafer);
-    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_contest{Pre, Post}(watch); */
 WH_OUT_OF_LINE static void begin_approach(const wh_watch_t *watch) {
     const wh_vec3_t *end = &watch->base_from_gripper->r;
     const wh_found_t near =
@@ -160,10 +104,6 @@ WH_OUT_OF_LINE static void begin_approach(const wh_watch_t *watch) {
     int32_t nearest = WH_NONE;
     wh_real_t least = 0;
     wh_real_t when = 0;
-    /*@ loop invariant 0 <= i <= near.count && (nearest == WH_NONE || wh_is_wafer(watch->table, nearest));
-        loop invariant nearest == WH_NONE || watch->sweep != \null || when == 1;
-        loop assigns i, nearest, least, when;
-        loop variant near.count - i; */
     for (size_t i = 0; i < near.count; ++i) {
         const size_t w = wh_index_wafer(watch->table, &near, i);
         const wh_wafer_t *wafer = &watch->table->storage.wafers[w];
@@ -181,10 +121,6 @@ WH_OUT_OF_LINE static void begin_approach(const wh_watch_t *watch) {
 }
 
 /* A contest that is over is reported unless the wafer went on to another holder. */
-/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_watched(watch, watch->gripper->contest.wafer);
-    assigns watch->gripper->contest, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
-    ensures watch->gripper->contest.wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 1);
-    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_approach{Pre, Post}(watch); */
 static void end_contest(const wh_watch_t *watch) {
     wh_encounter_t *contest = &watch->gripper->contest;
     if (contest->wafer == WH_NONE) {
@@ -199,9 +135,6 @@ static void end_contest(const wh_watch_t *watch) {
     report(watch, contest, WH_EVENT_CONTESTED);
 }
 
-/*@ requires wh_watch_memory(watch) && wh_watched(watch, watch->gripper->contest.wafer);
-    assigns \nothing;
-    ensures \result ==> watch->gripper->contest.wafer != WH_NONE; */
 static bool contest_goes_on(const wh_watch_t *watch) {
     const wh_encounter_t *contest = &watch->gripper->contest;
     if (contest->wafer == WH_NONE) {
@@ -213,18 +146,11 @@ static bool contest_goes_on(const wh_watch_t *watch) {
                               &watch->table->config.tolerance);
 }
 
-/* Of the held wafers that are ready the one with the smallest |dr_proj_z|, then lowest index; WH_NONE: none. */
-/*@ requires wh_watch_memory(watch);
-    assigns \nothing;
-    ensures \result == WH_NONE || wh_is_wafer(watch->table, \result) && wh_holder(watch->table, \result) != WH_NONE; */
+/* The held wafer that is ready, with the smallest |dr_proj_z|, then lowest index; WH_NONE: none. */
 WH_OUT_OF_LINE static int32_t find_held(const wh_watch_t *watch) {
     const wh_grasp_storage_t *storage = &watch->table->storage;
     int32_t best = WH_NONE;
     wh_real_t least = 0;
-    /*@ loop invariant 0 <= g <= storage->gripper_count;
-        loop invariant best == WH_NONE || wh_is_wafer(watch->table, best) && wh_holder(watch->table, best) != WH_NONE;
-        loop assigns g, best, least;
-        loop variant storage->gripper_count - g; */
     for (size_t g = 0; g < storage->gripper_count; ++g) {
         const size_t w = (size_t)storage->grippers[g].wafer;
         if (w < storage->wafer_count && storage->wafers[w].holder == (int32_t)g &&
@@ -240,12 +166,9 @@ WH_OUT_OF_LINE static int32_t find_held(const wh_watch_t *watch) {
     return best;
 }
 
-/* The wafer that the gripper would take if nobody held it. A contest that goes on is kept even when another held wafer has
- * come nearer: it would be reported each time that the two change places, and before its own hand-over. */
-/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 1) && wh_watched(watch, watch->gripper->contest.wafer);
-    assigns watch->gripper->contest, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
-    ensures wh_watched(watch, watch->gripper->contest.wafer) && wh_list_grown{Pre, Post}(watch->list, 1);
-    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table) && wh_same_approach{Pre, Post}(watch); */
+/* Follows the wafer that the gripper would take if nobody held it. A contest that goes on is kept even if
+ * another held wafer has come nearer: else it would be reported each time that the two change places, and
+ * before its own hand-over. */
 WH_OUT_OF_LINE static void follow_contest(const wh_watch_t *watch) {
     if (contest_goes_on(watch)) {
         return;
@@ -258,11 +181,6 @@ WH_OUT_OF_LINE static void follow_contest(const wh_watch_t *watch) {
 }
 
 /* The gripper closed or took a wafer: what it was watching is over. */
-/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2) && wh_watched(watch, watch->gripper->approach.wafer) &&
-             wh_watched(watch, watch->gripper->contest.wafer);
-    assigns watch->gripper->approach, watch->gripper->contest, watch->table->counters, watch->list[0 .. wh_given(watch->list) - 1].count, watch->list->events[0 .. wh_room(watch->list) - 1];
-    ensures watch->gripper->approach.wafer == WH_NONE && watch->gripper->contest.wafer == WH_NONE && wh_list_grown{Pre, Post}(watch->list, 2);
-    ensures wh_watch_memory(watch) && wh_same_size{Pre, Post}(watch->table); */
 static void end_encounters(const wh_watch_t *watch, bool closed) {
     wh_encounter_t *approach = &watch->gripper->approach;
     if (approach->wafer != WH_NONE && closed &&
@@ -284,55 +202,37 @@ void wh_encounter_track(const wh_watch_t *watch) {
     follow_contest(watch);
 }
 
-/* Of an approach that goes on, or of one that may begin. */
-/*@ requires wh_watch_memory(watch); assigns \nothing; */
+/* True if an approach goes on or may begin. */
 static bool is_sweep_needed(const wh_watch_t *watch) {
     return watch->gripper->approach.wafer != WH_NONE ||
            !is_within_horizon(watch->table, (size_t)watch->index);
 }
 
-/*@ requires wh_table_memory(table); assigns \nothing; */
 static bool is_any_held(const wh_grasp_t *table) {
     bool held = false;
-    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
-        loop assigns g, held;
-        loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         held = held || table->storage.grippers[g].wafer != WH_NONE;
     }
     return held;
 }
 
-/* It watches nothing, nothing that rests is near, and there is nothing to contest. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g); assigns \nothing; */
+/* True if the gripper watches nothing, no wafer at rest is near, and there is nothing to contest. */
 static bool is_idle(const wh_grasp_t *table, size_t g) {
     const wh_gripper_t *gripper = &table->storage.grippers[g];
     return gripper->approach.wafer == WH_NONE && gripper->contest.wafer == WH_NONE &&
            gripper->wafer == WH_NONE && is_within_horizon(table, g) && !is_any_held(table);
 }
 
-/*@ requires wh_watch_memory(watch) && wh_list_ready(watch->list, 2);
-    requires wh_watched(watch, watch->gripper->approach.wafer) && wh_watched(watch, watch->gripper->contest.wafer);
-    assigns watch->sweep, watch->gripper->approach, watch->gripper->contest, watch->table->counters,
-            watch->table->storage.buckets[0 .. watch->table->storage.bucket_count - 1],
-            watch->list->count, watch->list->events[0 .. wh_room(watch->list) - 1];
-    ensures wh_both_watched(watch);
-    ensures wh_list_grown{Pre, Post}(watch->list, 2) && wh_same_size{Pre, Post}(watch->table); */
 static void update(wh_watch_t *watch, bool closed) {
     if (closed || watch->gripper->wafer != WH_NONE) {
         end_encounters(watch, closed);
-        /*@ assert wh_both_watched(watch); */
     } else if (wh_grasp_is_swept(watch->table, (size_t)watch->index) && is_sweep_needed(watch)) {
         wh_encounter_track_swept(watch);
-        /*@ assert wh_both_watched(watch); */
     } else {
         wh_encounter_track(watch);
-        /*@ assert wh_both_watched(watch); */
     }
 }
 
-/* Said of `watch` below, so that it is kept for the provers that it has no sweep. */
-/*@ predicate sweep_at{L}(wh_sweep_t **place, wh_sweep_t *sweep) = *place == sweep; */
 void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
     if (is_idle(table, gripper)) {
@@ -340,34 +240,5 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
     }
     wh_watch_t watch = {
         table, &table->storage.grippers[gripper], &input->base_from_gripper, NULL, list, (int32_t)gripper};
-    /*@ assert wh_table_memory(table) && wh_list_ready(list, 2); */
-    /*@ assert sweep_at(&watch.sweep, \null); */
-    /*@ assert \separated(&watch, list, table, table->storage.wafers + (0 .. table->storage.wafer_count - 1),
-                          table->storage.grippers + (0 .. table->storage.gripper_count - 1)); */
-    /*@ assert list != \null ==> \separated(&watch, list->events + (0 .. list->capacity - 1)); */
-    /*@ assert wh_watch_memory(&watch); */
-    /*@ assert \forall integer i; wh_is_gripper(table, i) ==>
-          \separated(&table->storage.grippers[i], list->events + (0 .. wh_room(list) - 1)); */
-    /*@ assert \forall integer i; wh_is_gripper(table, i) && i != gripper ==>
-          \separated(&table->storage.grippers[i], &table->storage.grippers[gripper]); */
-    /*@ assert \separated(&table->storage.grippers[gripper], list->events + (0 .. wh_room(list) - 1)); */
-    /*@ assert \forall integer i; wh_is_gripper(table, i) && i != gripper ==>
-          \separated(&table->storage.grippers[i].gripper_from_wafer, &table->storage.grippers[gripper].approach,
-                     list->events + (0 .. wh_room(list) - 1)) &&
-          \separated(&table->storage.grippers[i].gripper_from_wafer, &table->storage.grippers[gripper].contest); */
     update(&watch, input->valve == WH_VALVE_CLOSED);
-    /*@ assert wh_same_size{Pre, Here}(table); */
-    /*@ assert table->storage.grippers == \at(table->storage.grippers, Pre); */
-    /*@ assert table->storage.grippers[gripper].wafer == \at(table->storage.grippers[gripper].wafer, Pre); */
-    /*@ assert \forall integer i; wh_is_gripper{Pre}(table, i) && i != gripper ==>
-          table->storage.grippers[i].wafer == \at(table->storage.grippers[i].wafer, Pre); */
-    /*@ assert wh_same_held{Pre, Here}(table); */
-    /*@ assert \forall integer i; wh_is_gripper{Pre}(table, i) && i != gripper ==>
-          table->storage.grippers[i].approach.wafer == \at(table->storage.grippers[i].approach.wafer, Pre); */
-    /*@ assert \forall integer i; wh_is_gripper{Pre}(table, i) && i != gripper ==>
-          table->storage.grippers[i].contest.wafer == \at(table->storage.grippers[i].contest.wafer, Pre); */
-    /*@ assert wh_other_watched{Pre, Here}(table, gripper); */
-    /*@ assert wh_same_grip{Pre, Here}(table, gripper); */
-    /*@ assert \forall integer i; wh_is_gripper{Pre}(table, i) && i != gripper ==> wh_same_grip{Pre, Here}(table, i); */
-    /*@ assert wh_same_grips{Pre, Here}(table); */
 }

@@ -13,7 +13,6 @@ wh_grasp_config_t wh_grasp_config_default(void) {
     return config;
 }
 
-/*@ requires \valid_read(config); assigns \nothing; */
 static wh_status_t validate_config(const wh_grasp_config_t *config) {
     const bool near_good = config->near_projz > 0 && config->near_projz <= WH_REAL(1e6) &&
                            config->near_projxy > 0 && config->near_projxy <= WH_REAL(1e6);
@@ -23,8 +22,6 @@ static wh_status_t validate_config(const wh_grasp_config_t *config) {
     return near_good ? wh_tolerance_validate(&config->tolerance) : WH_STATUS_BAD_TOLERANCE;
 }
 
-/*@ assigns \nothing;
-    ensures \result == WH_OK ==> count <= INT32_MAX && (given || count == 0); */
 static wh_status_t validate_array(bool given, size_t count) {
     if (!given && count > 0) {
         return WH_STATUS_NULL_ARGUMENT;
@@ -32,9 +29,6 @@ static wh_status_t validate_array(bool given, size_t count) {
     return count > INT32_MAX ? WH_STATUS_BAD_CAPACITY : WH_OK;
 }
 
-/*@ requires \valid_read(storage);
-    assigns \nothing;
-    ensures \result == WH_OK ==> wh_enough_buckets(storage) && (storage->buckets != \null || storage->bucket_count == 0); */
 static wh_status_t validate_buckets(const wh_grasp_storage_t *storage) {
     const size_t needed = wh_grasp_buckets(storage->wafer_count, storage->gripper_count);
     const wh_status_t status = validate_array(storage->buckets != NULL, storage->bucket_count);
@@ -44,9 +38,6 @@ static wh_status_t validate_buckets(const wh_grasp_storage_t *storage) {
     return needed > 0 && needed <= storage->bucket_count ? WH_OK : WH_STATUS_BAD_CAPACITY;
 }
 
-/*@ requires wh_storage_memory(storage);
-    assigns \nothing;
-    ensures \result == WH_OK ==> wh_storage_good(storage); */
 static wh_status_t validate_storage(const wh_grasp_storage_t *storage) {
     wh_status_t status = validate_array(storage->wafers != NULL, storage->wafer_count);
     if (status == WH_OK) {
@@ -55,18 +46,12 @@ static wh_status_t validate_storage(const wh_grasp_storage_t *storage) {
     if (status == WH_OK) {
         status = validate_buckets(storage);
     }
-    /*@ loop invariant status == WH_OK ==> wh_storage_good(storage);
-        loop assigns w, status;
-        loop variant storage->wafer_count - w; */
     for (size_t w = 0; w < storage->wafer_count && status == WH_OK; ++w) {
         status = wh_pose_validate(&storage->wafers[w].base_from_wafer);
     }
     return status;
 }
 
-/*@ requires \valid(encounter);
-    assigns *encounter;
-    ensures encounter->wafer == WH_NONE; */
 static void clear_encounter(wh_encounter_t *encounter) {
     static const wh_encounter_t zero = {0};
     *encounter = zero;
@@ -74,9 +59,6 @@ static void clear_encounter(wh_encounter_t *encounter) {
     encounter->holder = WH_NONE;
 }
 
-/*@ requires \valid(gripper);
-    assigns *gripper;
-    ensures wh_cleared(gripper); */
 static void clear_gripper(wh_gripper_t *gripper) {
     gripper->base_from_gripper = wh_pose_identity();
     gripper->gripper_from_wafer = wh_pose_identity();
@@ -86,50 +68,25 @@ static void clear_gripper(wh_gripper_t *gripper) {
     gripper->valve = WH_VALVE_CLOSED;
 }
 
-/*@ requires \valid(grippers + (0 .. count - 1));
-    assigns grippers[0 .. count - 1];
-    ensures \forall integer g; 0 <= g < count ==> wh_cleared(grippers + g); */
 static void clear_grippers(wh_gripper_t grippers[], size_t count) {
-    /*@ loop invariant 0 <= g <= count;
-        loop invariant \forall integer i; 0 <= i < g ==> wh_cleared(grippers + i);
-        loop assigns g, grippers[0 .. count - 1];
-        loop variant count - g; */
     for (size_t g = 0; g < count; ++g) {
         clear_gripper(&grippers[g]);
     }
 }
 
-/*@ requires \valid(wafers + (0 .. count - 1));
-    assigns wafers[0 .. count - 1];
-    ensures \forall integer w; 0 <= w < count ==>
-              wafers[w].holder == WH_NONE && wafers[w].released_by == WH_NONE; */
 static void free_wafers(wh_wafer_t wafers[], size_t count) {
-    /*@ loop invariant 0 <= w <= count;
-        loop invariant \forall integer i; 0 <= i < w ==>
-                         wafers[i].holder == WH_NONE && wafers[i].released_by == WH_NONE;
-        loop assigns w, wafers[0 .. count - 1];
-        loop variant count - w; */
     for (size_t w = 0; w < count; ++w) {
         wafers[w].holder = WH_NONE;
         wafers[w].released_by = WH_NONE;
     }
 }
 
-/*@ requires \valid(table) && \valid_read(config) && \valid_read(storage) && \separated(table, storage);
-    assigns *table;
-    ensures table->storage.wafers == storage->wafers;
-    ensures table->storage.wafer_count == storage->wafer_count;
-    ensures table->storage.grippers == storage->grippers;
-    ensures table->storage.gripper_count == storage->gripper_count;
-    ensures table->storage.buckets == storage->buckets;
-    ensures table->storage.bucket_count == storage->bucket_count; */
 static void begin(wh_grasp_t *table, const wh_grasp_config_t *config, const wh_grasp_storage_t *storage) {
     static const wh_grasp_counters_t none = {0};
     table->config = *config;
     table->slice = 0;
     table->counters = none;
     table->storage = *storage;
-    /*@ assert storage->wafers == \at(storage->wafers, Pre); */
 }
 
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
@@ -146,26 +103,12 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
     }
     begin(table, config, storage);
     free_wafers(storage->wafers, storage->wafer_count);
-    /*@ assert \forall integer w; wh_is_wafer(table, w) ==> wh_holder(table, w) == WH_NONE; */
-    /*@ assert \forall integer w; wh_is_wafer(table, w) ==> wh_released_by(table, w) == WH_NONE; */
     clear_grippers(storage->grippers, storage->gripper_count);
-    /*@ assert table->storage.wafer_count == \at(storage->wafer_count, Pre) &&
-               table->storage.gripper_count == \at(storage->gripper_count, Pre); */
-    /*@ assert table->storage.wafers == \at(storage->wafers, Pre) &&
-               table->storage.grippers == \at(storage->grippers, Pre); */
-    /*@ assert wh_table_memory(table); */
-    /*@ assert \forall integer g; wh_is_gripper(table, g) ==> wh_cleared(table->storage.grippers + g); */
-    /*@ assert \forall integer w; wh_is_wafer(table, w) ==> wh_holder(table, w) == WH_NONE; */
-    /*@ assert \forall integer w; wh_is_wafer(table, w) ==> wh_released_by(table, w) == WH_NONE; */
     wh_index_build(table);
+    WH_ASSERT_CONSISTENT(table);
     return WH_OK;
 }
 
-/*@ requires wh_table_memory(table);
-    requires base_from_wafer == \null || \valid_read(base_from_wafer);
-    assigns \nothing;
-    ensures \result == WH_OK ==> base_from_wafer != \null && wh_is_wafer(table, wafer) &&
-                                  wh_holder(table, wafer) == WH_NONE; */
 static wh_status_t may_place(const wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer) {
     if (!base_from_wafer) {
         return WH_STATUS_NULL_ARGUMENT;
@@ -179,15 +122,6 @@ static wh_status_t may_place(const wh_grasp_t *table, size_t wafer, const wh_pos
     return wh_pose_validate(base_from_wafer);
 }
 
-/*@ requires \valid(table);
-    assigns table->counters.refused; */
-static void count_refusal(wh_grasp_t *table) {
-    ++table->counters.refused;
-}
-
-/*@ requires \valid(approach);
-    assigns approach->wafer;
-    ensures approach->wafer == WH_NONE || approach->wafer == \old(approach->wafer); */
 static void forget(wh_encounter_t *approach, int32_t wafer) {
     if (approach->wafer == wafer) {
         approach->wafer = WH_NONE;
@@ -200,24 +134,15 @@ wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *bas
     }
     const wh_status_t status = may_place(table, wafer, base_from_wafer);
     if (status != WH_OK) {
-        count_refusal(table);
+        ++table->counters.refused;
         return status;
     }
     table->storage.wafers[wafer].base_from_wafer = *base_from_wafer;
-    /*@ assert \forall integer w; wh_is_wafer(table, w) && w != wafer ==> wh_same_pose{Pre, Here}(table, w); */
-    /*@ loop invariant 0 <= g <= table->storage.gripper_count;
-        loop invariant wh_same_holders{Pre, Here}(table);
-        loop invariant wh_same_releases{Pre, Here}(table);
-        loop invariant wh_same_held{Pre, Here}(table);
-        loop invariant wh_encounters(table);
-        loop assigns g, table->storage.grippers[0 .. table->storage.gripper_count - 1].approach.wafer;
-        loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         forget(&table->storage.grippers[g].approach, (int32_t)wafer);
     }
     wh_index_move(table, wafer);
-    /*@ assert wh_paired(table); */
-    /*@ assert wh_none_released(table); */
+    WH_ASSERT_CONSISTENT(table);
     return WH_OK;
 }
 
@@ -249,7 +174,45 @@ wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafe
     return WH_OK;
 }
 
-/*@ requires \valid_read(encounter); assigns \nothing; */
+static bool is_paired_wafer(const wh_grasp_storage_t *storage, size_t w) {
+    const wh_wafer_t *wafer = &storage->wafers[w];
+    if (wafer->holder == WH_NONE) {
+        return true;
+    }
+    return wh_is_index(wafer->holder, storage->gripper_count) &&
+           storage->grippers[wafer->holder].wafer == (int32_t)w;
+}
+
+static bool is_paired_gripper(const wh_grasp_storage_t *storage, size_t g) {
+    const wh_gripper_t *gripper = &storage->grippers[g];
+    if (gripper->wafer == WH_NONE) {
+        return true;
+    }
+    return wh_is_index(gripper->wafer, storage->wafer_count) &&
+           storage->wafers[gripper->wafer].holder == (int32_t)g;
+}
+
+static bool names_wafer_or_none(const wh_encounter_t *encounter, size_t wafer_count) {
+    return encounter->wafer == WH_NONE || wh_is_index(encounter->wafer, wafer_count);
+}
+
+bool wh_grasp_is_consistent(const wh_grasp_t *table) {
+    const wh_grasp_storage_t *storage = &table->storage;
+    for (size_t w = 0; w < storage->wafer_count; ++w) {
+        if (!is_paired_wafer(storage, w) || storage->wafers[w].released_by != WH_NONE) {
+            return false;
+        }
+    }
+    for (size_t g = 0; g < storage->gripper_count; ++g) {
+        if (!is_paired_gripper(storage, g) ||
+            !names_wafer_or_none(&storage->grippers[g].approach, storage->wafer_count) ||
+            !names_wafer_or_none(&storage->grippers[g].contest, storage->wafer_count)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static uint64_t hash_encounter(uint64_t hash, const wh_encounter_t *encounter) {
     hash = wh_hash_int(hash, encounter->wafer);
     if (encounter->wafer == WH_NONE) {
@@ -265,7 +228,6 @@ static uint64_t hash_encounter(uint64_t hash, const wh_encounter_t *encounter) {
     return wh_hash_real(hash, p->dr_proj_xy_norm);
 }
 
-/*@ requires \valid_read(gripper); assigns \nothing; */
 static uint64_t hash_gripper(uint64_t hash, const wh_gripper_t *gripper) {
     hash = wh_hash_pose(hash, &gripper->base_from_gripper);
     hash = wh_hash_int(hash, gripper->valve);
@@ -279,12 +241,10 @@ static uint64_t hash_gripper(uint64_t hash, const wh_gripper_t *gripper) {
 
 uint64_t wh_grasp_hash(const wh_grasp_t *table) {
     uint64_t hash = wh_hash_word(WH_HASH_START, table->slice);
-    /*@ loop assigns w, hash; loop variant table->storage.wafer_count - w; */
     for (size_t w = 0; w < table->storage.wafer_count; ++w) {
         hash = wh_hash_pose(hash, &table->storage.wafers[w].base_from_wafer);
         hash = wh_hash_int(hash, table->storage.wafers[w].holder);
     }
-    /*@ loop assigns g, hash; loop variant table->storage.gripper_count - g; */
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         hash = hash_gripper(hash, &table->storage.grippers[g]);
     }

@@ -9,24 +9,20 @@ wh_pads_t wh_pads_none(void) {
     return pads;
 }
 
-/*@ assigns \nothing; */
 static bool is_within(wh_real_t value, wh_real_t most) {
     return value >= 0 && value <= most;
 }
 
-/*@ requires \valid_read(pads); assigns \nothing; */
 static bool is_finite(const wh_pads_t *pads) {
     return wh_real_is_finite(pads->friction) && wh_real_is_finite(pads->force) &&
            wh_real_is_finite(pads->mass) && wh_real_is_finite(pads->gravity);
 }
 
-/*@ requires \valid_read(pads); assigns \nothing; */
 static bool are_pads(const wh_pads_t *pads) {
     return is_within(pads->friction, 100) && is_within(pads->force, WH_REAL(1e6)) &&
            is_within(pads->gravity, 1000) && is_within(pads->mass, 1000) && pads->mass >= WH_REAL(1e-6);
 }
 
-/*@ requires \valid_read(pads); assigns \nothing; */
 static bool is_none(const wh_pads_t *pads) {
     return pads->mass == 0 && pads->friction == 0 && pads->force == 0 && pads->gravity == 0;
 }
@@ -67,7 +63,6 @@ wh_hold_t wh_hold_judge(const wh_pads_t *pads, wh_real_t level, const wh_mat3_t 
 }
 
 /* Second difference; the differences first, for they are small and exact. */
-/*@ requires \valid_read(carry) && \valid_read(centre); assigns \nothing; */
 static wh_vec3_t acceleration_of(const wh_carry_t *carry, const wh_vec3_t *centre, wh_real_t dt) {
     const wh_vec3_t now = wh_vec3_subtract(centre, &carry->before[0]);
     const wh_vec3_t then = wh_vec3_subtract(&carry->before[0], &carry->before[1]);

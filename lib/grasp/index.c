@@ -5,9 +5,6 @@
 /* A cell's shortest edge as a power of two of the unit: 16 mm. */
 #define SMALLEST 10U
 
-/*@ predicate in_buckets{L}(wh_grasp_t *t, uint32_t *p) =
-      \base_addr(p) == \base_addr(t->storage.buckets) && 0 <= p - t->storage.buckets < t->storage.bucket_count; */
-
 size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) {
     const size_t most = (size_t)INT32_MAX / 16;
     if (wafer_count > most || gripper_count > most) {
@@ -16,78 +13,55 @@ size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) {
     return WH_GRASP_BUCKETS(wafer_count, gripper_count);
 }
 
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0;
-    assigns \nothing;
-    ensures \result == table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * table->storage.gripper_count); */
 static uint32_t *heads_of(const wh_grasp_t *table) {
     return &table->storage.buckets[WH_INDEX_HORIZONS + WH_HORIZON_WORDS * table->storage.gripper_count];
 }
 
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && w < table->storage.wafer_count;
-    assigns \nothing;
-    ensures \result == table->storage.buckets + (WH_INDEX_HORIZONS + WH_HORIZON_WORDS * table->storage.gripper_count +
-                                                 2 * (table->storage.wafer_count + w)); */
 static uint32_t *node_of(const wh_grasp_t *table, size_t w) {
     return heads_of(table) + 2 * (table->storage.wafer_count + w);
 }
 
 /* A distance in units, rounded up, at most half of a word. */
-/*@ assigns \nothing; ensures \result <= 1 << 30; */
 static uint32_t units_of(wh_real_t mm) {
     const uint32_t most = UINT32_C(1) << 30;
     const uint32_t units = (uint32_t)wh_index_whole(WH_INDEX_UNITS * mm + 1);
     return units < most ? units : most;
 }
 
-/* A place along an axis in units, upwards from 2^31 below zero: the farther, the larger the number, and of two places no
- * farther apart than they are, but for the rounding to units. */
-/*@ assigns \nothing; */
+/* A place along an axis in units, upwards from 2^31 below zero: the farther, the larger the number, and of
+ * two places no farther apart than they are, but for the rounding to units. */
 static uint32_t place_of(wh_real_t mm) {
     return (UINT32_C(1) << 31) + (uint32_t)wh_index_whole(WH_INDEX_UNITS * mm);
 }
 
-/*@ assigns \nothing; */
 static uint32_t key_of(uint32_t x, uint32_t y, uint32_t z) {
     uint32_t key = x * UINT32_C(0x9e3779b1) + y * UINT32_C(0x85ebca77) + z * UINT32_C(0xc2b2ae3d);
     key = (key ^ (key >> 15)) * UINT32_C(0x2c1b3c6d);
     return key ^ (key >> 13);
 }
 
-/* One of `count` for this key. */
-/*@ requires 0 < count <= UINT32_MAX; assigns \nothing; ensures \result < count; */
+/* Maps a key to one of `count` numbers. */
 static size_t share_of(uint32_t key, uint64_t count) {
-    /*@ assert 0 <= key * count <= UINT32_MAX * count; */
     return (size_t)((key * count) >> 32);
 }
 
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && table->storage.wafer_count > 0;
-    assigns \nothing; ensures in_buckets(table, \result); */
 static uint32_t *head_of(const wh_grasp_t *table, uint32_t key) {
     return &heads_of(table)[share_of(key, 2 * (uint64_t)table->storage.wafer_count)];
 }
 
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && axis < 3;
-    assigns \nothing; ensures \result < 32; */
 static uint32_t shift_of(const wh_grasp_t *table, size_t axis) {
     return table->storage.buckets[WH_INDEX_SHIFTS + axis] & 31;
 }
 
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && \valid_read(r);
-    assigns \nothing; */
 static uint32_t key_at(const wh_grasp_t *table, const wh_vec3_t *r) {
     return key_of(place_of(r->x) >> shift_of(table, 0), place_of(r->y) >> shift_of(table, 1),
                   place_of(r->z) >> shift_of(table, 2));
 }
 
-/* A disc of this radius and half this height reaches so far along an axis of base; a rotation that is almost one lets
- * it reach a little farther. */
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && \valid_read(R) && \valid_read(limits);
-    assigns table->storage.buckets[0 .. 2]; */
+/* A disc of this radius and half this height reaches so far along an axis of base; a rotation that is almost
+ * one lets it reach a little farther. */
 static void widen(wh_grasp_t *table, const wh_mat3_t *R, const wh_near_limits_t *limits) {
     const wh_real_t loose = 8 * WH_ROTATION_TOLERANCE * (limits->projz + limits->projxy);
-    /*@ loop invariant 0 <= axis <= 3;
-        loop assigns axis, table->storage.buckets[0 .. 2];
-        loop variant 3 - axis; */
     for (size_t axis = 0; axis < 3; ++axis) {
         const wh_real_t *row = R->m[axis];
         const wh_real_t reach = wh_real_abs(row[2]) * limits->projz +
@@ -98,21 +72,13 @@ static void widen(wh_grasp_t *table, const wh_mat3_t *R, const wh_near_limits_t 
     }
 }
 
-/* A cell is as long as the widest neighbourhood, so that a search looks at two along an axis; longer where wafers that
- * are put down tilted later would need too many. */
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && \valid_read(limits);
-    assigns table->storage.buckets[3 .. 5]; */
+/* A cell is as long as the widest neighbourhood, so that a search looks at two along an axis; longer where
+ * wafers that are put down tilted later would need too many. */
 static void choose_edges(wh_grasp_t *table, const wh_near_limits_t *limits) {
     const uint32_t large = units_of((limits->projz + limits->projxy) / 8);
-    /*@ loop invariant 0 <= axis <= 3;
-        loop assigns axis, table->storage.buckets[3 .. 5];
-        loop variant 3 - axis; */
     for (size_t axis = 0; axis < 3; ++axis) {
         const uint32_t extent = table->storage.buckets[WH_INDEX_EXTENTS + axis];
         uint32_t shift = SMALLEST;
-        /*@ loop invariant SMALLEST <= edge <= 31 && SMALLEST <= shift <= edge;
-            loop assigns edge, shift;
-            loop variant 31 - edge; */
         for (uint32_t edge = SMALLEST; edge < 31; ++edge) {
             shift += (1U << edge) / 2 < extent || (1U << edge) < large ? 1 : 0;
         }
@@ -120,8 +86,6 @@ static void choose_edges(wh_grasp_t *table, const wh_near_limits_t *limits) {
     }
 }
 
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && w < table->storage.wafer_count;
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 static void insert(wh_grasp_t *table, size_t w) {
     uint32_t *node = node_of(table, w);
     node[1] = key_at(table, &table->storage.wafers[w].base_from_wafer.r);
@@ -130,14 +94,8 @@ static void insert(wh_grasp_t *table, size_t w) {
     *head = (uint32_t)w;
 }
 
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && w < table->storage.wafer_count;
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
 static void take_out(wh_grasp_t *table, size_t w) {
     uint32_t *link = head_of(table, node_of(table, w)[1]);
-    /*@ loop invariant 0 <= i <= table->storage.wafer_count;
-        loop invariant in_buckets(table, link);
-        loop assigns i, link;
-        loop variant table->storage.wafer_count - i; */
     for (size_t i = 0; i < table->storage.wafer_count && *link < table->storage.wafer_count; ++i) {
         if (*link == w) {
             *link = node_of(table, w)[0];
@@ -157,18 +115,12 @@ void wh_index_build(wh_grasp_t *table) {
     storage->buckets[1] = 0;
     storage->buckets[2] = 0;
     storage->buckets[WH_INDEX_FOUND] = UINT32_MAX;
-    /*@ loop invariant 0 <= w <= storage->wafer_count;
-        loop assigns w, table->storage.buckets[0 .. table->storage.bucket_count - 1];
-        loop variant storage->wafer_count - w; */
     for (size_t w = 0; w < storage->wafer_count; ++w) {
         widen(table, &storage->wafers[w].base_from_wafer.R, &limits);
         heads_of(table)[2 * w] = NO_WAFER;
         heads_of(table)[2 * w + 1] = NO_WAFER;
     }
     choose_edges(table, &limits);
-    /*@ loop invariant 0 <= w <= storage->wafer_count;
-        loop assigns w, table->storage.buckets[0 .. table->storage.bucket_count - 1];
-        loop variant storage->wafer_count - w; */
     for (size_t w = 0; w < storage->wafer_count; ++w) {
         insert(table, w);
     }
@@ -191,10 +143,8 @@ typedef struct {
     uint32_t first[3], count[3];
 } box_t;
 
-/* False when the cells along this axis are more than `most`. Two units for what the two places were rounded by. */
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && axis < 3 && margin <= 1 << 30 && \valid(box);
-    assigns box->first[axis], box->count[axis];
-    ensures \result ==> most > 0 && box->count[axis] <= most; */
+/* False when the cells along this axis are more than `most`. Two units for what the two places were rounded
+ * by. */
 static bool span(const wh_grasp_t *table, box_t *box, size_t axis, wh_real_t from, wh_real_t to,
                  uint32_t margin, size_t most) {
     const uint32_t extent = table->storage.buckets[WH_INDEX_EXTENTS + axis] & (uint32_t)INT32_MAX;
@@ -212,12 +162,7 @@ static bool span(const wh_grasp_t *table, box_t *box, size_t axis, wh_real_t fro
     return true;
 }
 
-/* False when looking at all wafers is less work. */
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0;
-    requires \valid_read(from) && \valid_read(to) && \valid(box);
-    assigns *box;
-    ensures \result ==> table->storage.wafer_count > 0;
-    ensures \result ==> box->count[0] <= INT32_MAX && box->count[1] <= INT32_MAX && box->count[2] <= INT32_MAX; */
+/* The cells around the way. False if looking at all wafers is less work. */
 static bool enclose(const wh_grasp_t *table, const wh_vec3_t *from, const wh_vec3_t *to, wh_real_t margin,
                     box_t *box) {
     const size_t most = table->storage.wafer_count;
@@ -231,19 +176,12 @@ static bool enclose(const wh_grasp_t *table, const wh_vec3_t *from, const wh_vec
     return level <= most && level * box->count[2] <= most;
 }
 
-/* Appends the cell's wafers to the `count` that were found; returns how many that makes, one more than all for too
- * many. */
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && table->storage.wafer_count > 0;
-    requires count <= table->storage.wafer_count + 1;
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
-    ensures \result <= table->storage.wafer_count + 1; */
+/* Appends the cell's wafers to the `count` that were found; returns how many that makes, one more than all
+ * for too many. */
 static size_t list_cell(wh_grasp_t *table, uint32_t key, size_t count) {
     const size_t all = table->storage.wafer_count;
     uint32_t *listed = heads_of(table) + 4 * all;
     size_t w = *head_of(table, key);
-    /*@ loop invariant 0 <= i <= all && count <= all + 1;
-        loop assigns i, w, count, table->storage.buckets[0 .. table->storage.bucket_count - 1];
-        loop variant all - i; */
     for (size_t i = 0; i < all && w < all && count <= all; ++i) {
         const uint32_t *node = node_of(table, w);
         if (node[1] == key) {
@@ -257,35 +195,17 @@ static size_t list_cell(wh_grasp_t *table, uint32_t key, size_t count) {
     return count;
 }
 
-/* The same for the cells that are above each other. */
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && table->storage.wafer_count > 0;
-    requires count <= table->storage.wafer_count + 1 && \valid_read(box);
-    requires \separated(box, table->storage.buckets + (0 .. table->storage.bucket_count - 1));
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
-    ensures \result <= table->storage.wafer_count + 1; */
+/* Appends the wafers of the cells that are above each other. */
 static size_t list_column(wh_grasp_t *table, const box_t *box, uint32_t x, uint32_t y, size_t count) {
-    /*@ loop invariant 0 <= i <= box->count[2] && count <= table->storage.wafer_count + 1;
-        loop assigns i, count, table->storage.buckets[0 .. table->storage.bucket_count - 1];
-        loop variant box->count[2] - i; */
     for (uint32_t i = 0; i < box->count[2]; ++i) {
         count = list_cell(table, key_of(x, y, box->first[2] + i), count);
     }
     return count;
 }
 
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0 && table->storage.wafer_count > 0;
-    requires \valid_read(box) && \separated(box, table->storage.buckets + (0 .. table->storage.bucket_count - 1));
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
-    ensures \result <= table->storage.wafer_count + 1; */
 static size_t list_box(wh_grasp_t *table, const box_t *box) {
     size_t count = 0;
-    /*@ loop invariant 0 <= i <= box->count[0] && count <= table->storage.wafer_count + 1;
-        loop assigns i, count, table->storage.buckets[0 .. table->storage.bucket_count - 1];
-        loop variant box->count[0] - i; */
     for (uint32_t i = 0; i < box->count[0]; ++i) {
-        /*@ loop invariant 0 <= j <= box->count[1] && count <= table->storage.wafer_count + 1;
-            loop assigns j, count, table->storage.buckets[0 .. table->storage.bucket_count - 1];
-            loop variant box->count[1] - j; */
         for (uint32_t j = 0; j < box->count[1]; ++j) {
             count = list_column(table, box, box->first[0] + i, box->first[1] + j, count);
         }

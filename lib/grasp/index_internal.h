@@ -1,15 +1,17 @@
-/* Within the core: a grid over the wafers in the caller's buckets, so that a step looks only at those around a gripper.
+/* Within the room: a grid over the wafers in the caller's buckets, so that a step looks only at those around
+ * a gripper.
  *
  * All of it lives in wh_grasp_storage_t.buckets, in this order:
- *   3 words   how far along base's x, y and z any wafer's neighbourhood reaches from its origin, in units of 1/64 mm;
+ *   3 words   how far along base's x, y and z any wafer's neighbourhood reaches from its origin, in units of
+ *             1/64 mm;
  *   3 words   the edges of a cell along them, as powers of two of the unit;
  *   2 words   the gripper that searched last, and how many wafers it found, more than there are for all;
  *   4 words   for each gripper: its horizon (horizon_internal.h);
  *   2 words   for each wafer: the heads of the cells' lists, found by hashing the cell's place;
  *   2 words   for each wafer: the next in its list, and its cell's key;
  *   1 word    for each wafer: what the last search found.
- * A wafer keeps its cell while a gripper holds it. Whatever stands in a word, no search leaves the arrays or goes on for
- * ever.
+ * A wafer keeps its cell while a gripper holds it. Whatever stands in a word, no search leaves the arrays or
+ * goes on for ever.
  */
 #ifndef WH_GRASP_INDEX_INTERNAL_H
 #define WH_GRASP_INDEX_INTERNAL_H
@@ -28,8 +30,7 @@
 /* Beyond this, 33 km, all places are one. */
 #define WH_INDEX_FAR 2147483520
 
-/* Rounded towards zero, at most WH_INDEX_FAR from it; a NaN, which is not equal to itself, to that below zero. */
-/*@ assigns \nothing; ensures -WH_INDEX_FAR <= \result <= WH_INDEX_FAR; */
+/* Rounds towards zero, to at most WH_INDEX_FAR from it. A NaN becomes -WH_INDEX_FAR. */
 static inline int32_t wh_index_whole(wh_real_t units) {
     if (units == units && units > -(wh_real_t)WH_INDEX_FAR && units < (wh_real_t)WH_INDEX_FAR) {
         return (int32_t)units;
@@ -48,60 +49,37 @@ typedef struct {
     size_t count;
 } wh_found_t;
 
-/* Anew for all wafers, where the table has buckets. No gripper has a horizon then. */
-/*@ requires wh_table_memory(table);
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
+/* Builds the index anew for all wafers, if the table has buckets. No gripper has a horizon then. */
 void wh_index_build(wh_grasp_t *table);
 
-/* This wafer lies somewhere else from now on. No gripper has a horizon then. */
-/*@ requires wh_table_memory(table) && wafer < table->storage.wafer_count;
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1]; */
+/* Tells the index that this wafer lies somewhere else from now on. No gripper has a horizon then. */
 void wh_index_move(wh_grasp_t *table, size_t wafer);
 
 /* All wafers. */
-/*@ requires wh_table_memory(table);
-    assigns \nothing;
-    ensures \result.listed == \null && \result.count == table->storage.wafer_count; */
 static inline wh_found_t wh_index_all(const wh_grasp_t *table) {
     const wh_found_t near = {NULL, table->storage.wafer_count};
     return near;
 }
 
-/* What wh_index_near does where the table has buckets. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(from) && \valid_read(to);
-    requires table->storage.bucket_count > 0;
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
-    ensures \result.count <= table->storage.wafer_count;
-    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
+/* What wh_index_near does if the table has buckets. */
 wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
                            wh_real_t margin);
 
 /* What the last search found, by whichever gripper. */
-/*@ requires wh_table_memory(table) && table->storage.bucket_count > 0;
-    assigns \nothing;
-    ensures \result.count <= table->storage.wafer_count;
-    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
 wh_found_t wh_index_found(const wh_grasp_t *table);
 
-/* The wafers in whose neighbourhood gripper g comes between `from` and `to` or, along one of base's axes, may come by
- * moving less than `margin` from there; and others. All of them where the table has no buckets or as many cells would have
- * to be looked at. A step without buckets never has the search's memory on its stack. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(from) && \valid_read(to);
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
-    ensures \result.count <= table->storage.wafer_count;
-    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
+/* The wafers in whose neighbourhood gripper g comes between `from` and `to` or, along one of base's axes, may
+ * come by moving less than `margin` from there; and others. All of them where the table has no buckets or as
+ * many cells would have to be looked at. A step without buckets never has the search's memory on its
+ * stack. */
 static inline wh_found_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
                                        const wh_vec3_t *to, wh_real_t margin) {
     return table->storage.bucket_count > 0 ? wh_index_search(table, g, from, to, margin)
                                            : wh_index_all(table);
 }
 
-/* The same without a margin, for a gripper that has searched there in this step: what it found then, unless another one
- * has searched since. */
-/*@ requires wh_table_memory(table) && wh_is_gripper(table, g) && \valid_read(from) && \valid_read(to);
-    assigns table->storage.buckets[0 .. table->storage.bucket_count - 1];
-    ensures \result.count <= table->storage.wafer_count;
-    ensures \result.listed == \null || \valid_read(\result.listed + (0 .. \result.count - 1)); */
+/* wh_index_near without a margin, for a gripper that has searched there in this step. Returns what that
+ * search found, unless another gripper has searched since. */
 static inline wh_found_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
                                         const wh_vec3_t *to) {
     if (table->storage.bucket_count > 0 && table->storage.buckets[WH_INDEX_FOUND] == g) {
@@ -111,17 +89,12 @@ static inline wh_found_t wh_index_again(wh_grasp_t *table, size_t g, const wh_ve
 }
 
 /* The i-th wafer that was found. */
-/*@ requires wh_table_memory(table) && \valid_read(near) && i < near->count <= table->storage.wafer_count;
-    requires near->listed == \null || \valid_read(near->listed + (0 .. near->count - 1));
-    assigns \nothing;
-    ensures wh_is_wafer(table, \result); */
 static inline size_t wh_index_wafer(const wh_grasp_t *table, const wh_found_t *near, size_t i) {
     const size_t wafer = near->listed ? near->listed[i] : i;
     return wafer < table->storage.wafer_count ? wafer : 0;
 }
 
 /* The neighbourhood, which every ready wafer is in. */
-/*@ requires \valid_read(table); assigns \nothing; */
 static inline wh_near_limits_t wh_index_limits(const wh_grasp_t *table) {
     const wh_grasp_config_t *config = &table->config;
     const wh_near_limits_t limits = {

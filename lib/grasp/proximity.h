@@ -41,45 +41,30 @@ typedef struct {
 
 /* The paper's reference parameters, "paper": 0.5 mm, 50 mm, 0.99. The last is 8.1 degrees, which leaves the
  * rim of a 300 mm wafer 21 mm out of plane: see wh_proximity_rim_gap. */
-/*@ assigns \nothing; */
 wh_tolerance_t wh_tolerance_paper(void);
 
 /* "strict": 0.5 mm, 5 mm, 0.99998; the rim of a 300 mm wafer is out of plane by less than 1 mm. */
-/*@ assigns \nothing; */
 wh_tolerance_t wh_tolerance_strict(void);
 
-/* How many presets there are, and which: `index` is 0 to WH_TOLERANCE_PRESETS - 1, anything else gives null and leaves
- * `tolerance` as it was. Returns the preset's name, a constant string. */
+/* How many presets there are, and which: `index` is 0 to WH_TOLERANCE_PRESETS - 1, anything else gives null
+ * and leaves `tolerance` as it was. Returns the preset's name, a constant string. */
 #define WH_TOLERANCE_PRESETS 2
-/*@ requires \valid(tolerance);
-    assigns *tolerance \from index; assigns \result \from index;
-    ensures index >= WH_TOLERANCE_PRESETS ==> \result == \null && *tolerance == \old(*tolerance); */
 const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance);
 
 /* WH_STATUS_BAD_TOLERANCE when a limit is NaN or out of the range given at wh_tolerance_t. */
-/*@ requires \valid_read(tolerance);
-    assigns \nothing;
-    ensures \result == WH_OK || \result == WH_STATUS_BAD_TOLERANCE; */
 wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance);
 
 /* Measures, for a person: all values, margins and reasons. Refuses null pointers, poses that do not pass
  * wh_pose_validate and bad tolerances; `result` is then unchanged. Cost: about 100 products and a square
  * root. */
-/*@ requires base_from_wafer == \null || \valid_read(base_from_wafer);
-    requires base_from_gripper == \null || \valid_read(base_from_gripper);
-    requires tolerance == \null || \valid_read(tolerance);
-    requires result == \null || \valid(result);
-    assigns *result;
-    ensures \result != WH_OK && result != \null ==> *result == \old(*result); */
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                  const wh_tolerance_t *tolerance, wh_proximity_t *result);
 
-/* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit. No argument is checked:
- * poses and tolerance must be valid ones, except that a NaN anywhere gives false. Cost: 3 products where the wafer is
- * too high or too low, 15 within the limit (6), and a square root near the limit (7). It stands here so that compilers
- * put it into the caller's loop; for hundreds of wafers and more at once see batch/batch.h. */
-/*@ requires \valid_read(base_from_wafer) && \valid_read(base_from_gripper) && \valid_read(tolerance);
-    assigns \nothing; */
+/* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit. No argument is
+ * checked: poses and tolerance must be valid ones, except that a NaN anywhere gives false. Cost: 3 products
+ * where the wafer is too high or too low, 15 within the limit (6), and a square root near the limit (7). It
+ * stands here so that compilers put it into the caller's loop; for hundreds of wafers and more at once see
+ * batch/batch.h. */
 static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                       const wh_tolerance_t *tolerance) {
     const wh_mat3_t *w = &base_from_wafer->R;
@@ -90,7 +75,6 @@ static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh
         return false;
     }
     wh_real_t square = 0;
-    /*@ loop invariant 0 <= i <= 2; loop assigns i, square; loop variant 2 - i; */
     for (size_t i = 0; i < 2; ++i) {
         const wh_real_t along = w->m[0][i] * dr.x + w->m[1][i] * dr.y + w->m[2][i] * dr.z;
         /* (1)-(8) never look at the gripper's first two axes: a NaN there comes in as what must be zero. */
@@ -101,18 +85,13 @@ static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh
     return wh_real_root_below(square, tolerance->projxy) && wh_vec3_dot(&n1, &n2) > tolerance->planar;
 }
 
-/* Margins, failed conditions and verdict anew from the values (1)-(5) that `measured` holds, as when they have travelled
- * in a message. Arguments are not checked; a NaN fails its condition. */
-/*@ requires \valid_read(tolerance) && \valid(measured);
-    assigns *measured;
-    ensures measured->ready <==> measured->failed == 0; */
+/* Margins, failed conditions and verdict anew from the values (1)-(5) that `measured` holds, as when they
+ * have travelled in a message. Arguments are not checked; a NaN fails its condition. */
 void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *measured);
 
 /* How far the farthest point of a wafer's rim (radius in mm) is from the gripper's contact plane: the number
  * that the centre's distance (3) hides when the wafer is tilted. Arguments are not checked. Cost: one square
  * root. */
-/*@ requires \valid_read(base_from_wafer) && \valid_read(base_from_gripper);
-    assigns \nothing; */
 wh_real_t wh_proximity_rim_gap(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                wh_real_t radius);
 

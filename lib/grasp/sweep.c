@@ -1,11 +1,9 @@
 #include "sweep_internal.h"
 
 /* Shepperd's way: divide by the largest of the four, so that no digit is lost. */
-/*@ requires \valid_read(R) && \valid(w) && \valid(v); assigns *w, *v; */
 static void quaternion_from_rotation(const wh_mat3_t *R, wh_real_t *w, wh_vec3_t *v) {
     const wh_real_t signals = R->m[0][0] + R->m[1][1] + R->m[2][2];
     size_t i = 0;
-    /*@ loop invariant 1 <= k <= 3 && i < 3; loop assigns i, k; loop variant 3 - k; */
     for (size_t k = 1; k < 3; ++k) {
         i = R->m[k][k] > R->m[i][i] ? k : i;
     }
@@ -27,7 +25,6 @@ static void quaternion_from_rotation(const wh_mat3_t *R, wh_real_t *w, wh_vec3_t
     *v = wh_vec3(q[0], q[1], q[2]);
 }
 
-/*@ requires \valid_read(v); assigns \nothing; */
 static wh_mat3_t rotation_from_quaternion(wh_real_t w, const wh_vec3_t *v) {
     const wh_real_t f = 2 / (w * w + wh_vec3_dot(v, v));
     const wh_real_t x = v->x;
@@ -64,14 +61,12 @@ void wh_sweep_pose_at(const wh_sweep_t *sweep, wh_real_t t, wh_pose_t *pose) {
     wh_mat3_multiply_to(&sweep->begin->R, &turn, &pose->R);
 }
 
-/*@ requires \valid(part); assigns *part; */
 static bool cut(wh_span_t *part, wh_real_t first, wh_real_t last) {
     part->first = first > part->first ? first : part->first;
     part->last = last < part->last ? last : part->last;
     return part->first <= part->last;
 }
 
-/*@ requires \valid(part); assigns *part; */
 static bool cut_slab(wh_span_t *part, wh_real_t z, wh_real_t travel_z, wh_real_t limit) {
     if (travel_z == 0) {
         return wh_real_abs(z) <= limit;
@@ -82,7 +77,6 @@ static bool cut_slab(wh_span_t *part, wh_real_t z, wh_real_t travel_z, wh_real_t
 }
 
 /* a t^2 + 2 b t + c <= 0, with a the squared travel in the plane */
-/*@ requires \valid(part); assigns *part; */
 static bool cut_cylinder(wh_span_t *part, wh_real_t a, wh_real_t b, wh_real_t c) {
     if (a == 0) {
         return c <= 0;
@@ -113,7 +107,6 @@ bool wh_sweep_within(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer, 
 
 /* From when on n1_proj_n2 > limit: the part's beginning, or the root at which the quadratic
  * c2 t^2 + c1 t + c0 = |Q|^2 (n1_proj_n2 - limit) rises through zero. */
-/*@ requires \valid(part) && wh_sweep_memory(sweep) && \valid_read(base_from_wafer); assigns *part; */
 static bool cut_planar(wh_span_t *part, const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer,
                        wh_real_t limit) {
     const wh_vec3_t n1 = wh_mat3_column(&base_from_wafer->R, 2);
@@ -150,7 +143,6 @@ bool wh_sweep_first_ready(const wh_sweep_t *sweep, const wh_pose_t *base_from_wa
         !cut_planar(&part, sweep, base_from_wafer, tolerance->planar)) {
         return false;
     }
-    /*@ loop assigns i, *t; */
     for (size_t i = 0; i < sizeof later / sizeof later[0]; ++i) {
         const wh_real_t instant = part.first + later[i] * (part.last - part.first);
         wh_pose_t base_from_gripper;

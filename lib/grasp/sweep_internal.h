@@ -1,4 +1,4 @@
-/* Within the core: a gripper's motion between two slices, and when a resting wafer comes within its reach.
+/* Within the room: a gripper's motion between two slices, and when a resting wafer comes within its reach.
  *
  * With the wafer at rest (3) is linear and (5) squared is quadratic in t, and with the rotation interpolated
  * as the normalised quaternion (1-t) 1 + t q so is (2) times the quaternion's squared length: all three
@@ -25,34 +25,21 @@ typedef struct {
     wh_real_t first, last;
 } wh_span_t;
 
-/*@ predicate wh_sweep_memory{L}(wh_sweep_t *s) = \valid_read(s) && \valid_read(s->begin) && \valid_read(s->end); */
-
-/*@ requires \valid_read(begin) && \valid_read(end) && \valid(sweep);
-    assigns *sweep;
-    ensures sweep->begin == begin && sweep->end == end; */
 void wh_sweep_between(const wh_pose_t *begin, const wh_pose_t *end, wh_sweep_t *sweep);
 
 /* The pose at t in [0, 1]; at 1 exactly `end`. */
-/*@ requires wh_sweep_memory(sweep) && \valid(pose) && \separated(pose, sweep) && \separated(pose, sweep->begin);
-    assigns *pose; */
 void wh_sweep_pose_at(const wh_sweep_t *sweep, wh_real_t t, wh_pose_t *pose);
 
 /* The part of the slice in which |dr_proj_z| <= projz and |dr_proj_xy| <= projxy; false when there is none.
  */
-/*@ requires wh_sweep_memory(sweep) && \valid_read(base_from_wafer) && \valid(part);
-    assigns *part; */
 bool wh_sweep_within(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer, wh_real_t projz,
                      wh_real_t projxy, wh_span_t *part);
 
 /* The first instant at which the wafer is ready, by the rule in grasp.h; false when there is none. */
-/*@ requires wh_sweep_memory(sweep) && \valid_read(base_from_wafer) && \valid_read(tolerance) && \valid(t);
-    assigns *t; */
 bool wh_sweep_first_ready(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer,
                           const wh_tolerance_t *tolerance, wh_real_t *t);
 
 /* The instant within `part` at which (dr_proj_z / projz)^2 + (|dr_proj_xy| / projxy)^2 is smallest. */
-/*@ requires wh_sweep_memory(sweep) && \valid_read(base_from_wafer) && \valid_read(part);
-    assigns \nothing; */
 wh_real_t wh_sweep_closest(const wh_sweep_t *sweep, const wh_pose_t *base_from_wafer, const wh_span_t *part,
                            wh_real_t projz, wh_real_t projxy);
 

@@ -15,24 +15,20 @@ wh_vacuum_config_t wh_vacuum_delayed(void) {
     return config;
 }
 
-/*@ assigns \nothing; */
 static bool is_share(wh_real_t value) {
     return value > 0 && value <= 1;
 }
 
-/*@ assigns \nothing; */
 static bool is_time(wh_real_t value) {
     return value >= 0 && value <= LONGEST;
 }
 
-/*@ requires \valid_read(config); assigns \nothing; */
 static bool is_finite(const wh_vacuum_config_t *config) {
     return wh_real_is_finite(config->build) && wh_real_is_finite(config->vent) &&
            wh_real_is_finite(config->idle) && wh_real_is_finite(config->on) &&
            wh_real_is_finite(config->off) && wh_real_is_finite(config->release);
 }
 
-/*@ requires \valid_read(config); assigns \nothing; */
 static bool are_thresholds(const wh_vacuum_config_t *config) {
     return is_share(config->off) && is_share(config->release) && config->off <= config->on &&
            config->on <= 1 && config->idle >= 0 && config->idle < config->off;
@@ -60,7 +56,6 @@ wh_vacuum_t wh_vacuum_start(void) {
 }
 
 /* One slice towards the target. Below WH_REAL's rounding it never passes it, for the share is at most 1. */
-/*@ requires \valid_read(config) && \valid_read(upset); assigns \nothing; */
 static wh_real_t approach(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, wh_real_t level,
                           wh_real_t target, wh_real_t dt) {
     if (level == target) {

@@ -19,62 +19,49 @@ bool wh_collision_effector(const wh_machine_t *machine, const wh_pose_t base_fro
     return false;
 }
 
-static void look(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
-                 wh_event_list_t *list) {
-    wh_collision_t *collision = user;
-    wh_pose_t grippers[WH_GRIPPERS];
-    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        grippers[g] = inputs[g].base_from_gripper;
+/* After a step that left wafers and grippers so. */
+static void look_at(wh_collision_t *collision, uint64_t slice, const wh_wafer_t wafers[],
+                    const wh_gripper_t grippers[], wh_event_list_t *list) {
+    const wh_layout_t *layout = collision->layout;
+    wh_pose_t poses[WH_GRIPPERS];
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        poses[g] = grippers[g].base_from_gripper;
     }
-    (void)wh_collision_effector(&collision->layout->machine, grippers, &collision->base_from_effector);
+    (void)wh_collision_effector(&layout->machine, poses, &collision->base_from_effector);
+    const wh_world_input_t input = {slice, wafers, grippers, collision->base_from_effector};
     if (collision->world) {
-        wh_world_step(collision->world, table, &collision->base_from_effector, grippers, list);
+        wh_world_step(collision->world, &input, list);
     } else {
-        collision->world = wh_world_init(&collision->layout->world, table, &collision->base_from_effector,
-                                         grippers, collision->memory, wh_collision_bytes(collision->layout));
+        collision->world =
+            wh_world_init(&layout->world, &input, collision->memory, wh_collision_bytes(layout));
     }
 }
 
-static void placed(void *user, const wh_grasp_t *table, int32_t wafer) {
-    wh_collision_t *collision = user;
+static void place(wh_collision_t *collision, const wh_wafer_t wafers[], int32_t wafer) {
     if (collision->world) {
-        wh_world_place(collision->world, table, wafer);
+        wh_world_place(collision->world, wafer, &wafers[wafer].base_from_wafer);
     }
 }
 
-/* A table that is nothing but a view of a state, which is never written to. */
-static wh_grasp_t view_of(const wh_layout_t *layout, const wh_state_t *state) {
-    union {
-        const wh_wafer_t *constant;
-        wh_wafer_t *plain;
-    } wafers = {state->wafers};
-    union {
-        const wh_gripper_t *constant;
-        wh_gripper_t *plain;
-    } grippers = {state->grippers};
-    wh_grasp_t view = {.config = layout->grasp, .slice = (uint64_t)state->seq};
-    view.storage.wafers = wafers.plain;
-    view.storage.wafer_count = state->wafer_count;
-    view.storage.grippers = grippers.plain;
-    view.storage.gripper_count = state->gripper_count;
-    return view;
+static void on_step(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
+                    wh_event_list_t *list) {
+    (void)inputs; /* the table's grippers are there by now */
+    look_at(user, table->slice, table->storage.wafers, table->storage.grippers, list);
+}
+
+static void on_placed(void *user, const wh_grasp_t *table, int32_t wafer) {
+    place(user, table->storage.wafers, wafer);
 }
 
 void wh_collision_observe(wh_collision_t *collision, const wh_state_t *state) {
-    const wh_grasp_t view = view_of(collision->layout, state);
-    wh_gripper_input_t inputs[WH_GRIPPERS];
-    for (size_t g = 0; g < state->gripper_count; ++g) {
-        inputs[g].base_from_gripper = state->grippers[g].base_from_gripper;
-        inputs[g].valve = state->grippers[g].valve;
-    }
     for (size_t i = 0; i < state->event_count; ++i) {
         const wh_event_t *event = &state->events[i];
         const bool by_fault = event->kind == WH_EVENT_FAULT_ARMED || event->kind == WH_EVENT_FAULT_CLEARED;
         if (by_fault && event->wafer != WH_NONE) {
-            placed(collision, &view, event->wafer);
+            place(collision, state->wafers, event->wafer);
         }
     }
-    look(collision, inputs, &view, NULL);
+    look_at(collision, (uint64_t)state->seq, state->wafers, state->grippers, NULL);
 }
 
 size_t wh_collision_bytes(const wh_layout_t *layout) {
@@ -87,5 +74,5 @@ void wh_collision_attach(wh_collision_t *collision, const wh_layout_t *layout, w
     collision->memory = memory;
     collision->world = NULL;
     wh_robot_forward(layout->machine.robot.home, &collision->base_from_effector);
-    simulator->observer = (wh_observer_t){look, placed, collision};
+    simulator->observer = (wh_observer_t){on_step, on_placed, collision};
 }

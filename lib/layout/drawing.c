@@ -4,13 +4,14 @@
 
 #include "../math/trig.h"
 #include "../text/svg.h"
+#include "inks.h"
 #include "outline.h"
 
-/* The picture is as wide as the window; its lines and letters are parts of its width. */
+/* The picture fills the window's width. Widths of lines and letters are fractions of it. */
 #define LINES_PER_WIDTH 1300
 #define LETTERS_PER_WIDTH 95
 
-/* Both views, in mm of the cell: the box that holds all of it, and where the views' origins are. */
+/* Both views, in mm of the cell: the box that holds all of it, and the sizes that follow from it. */
 typedef struct {
     const wh_feasibility_t *check;
     FILE *out;
@@ -19,7 +20,7 @@ typedef struct {
     wh_outline_t outline;
 } drawing_t;
 
-/* ------------------------------------------------------------------------------------------------------- size */
+/* --------------------------------------------------------------------------------------------------- size */
 
 static void grow(drawing_t *d, wh_vec3_t low, wh_vec3_t high) {
     d->low = wh_vec3(low.x < d->low.x ? low.x : d->low.x, low.y < d->low.y ? low.y : d->low.y,
@@ -32,7 +33,7 @@ static const wh_convex_t *convex_of(const wh_layout_t *layout, size_t part) {
     return part < layout->world.part_count ? &layout->world.parts[part].convex : &layout->world.wafer;
 }
 
-/* Parts and wafers together; none of a layout with more than can be checked. */
+/* Parts and wafers together; 0 if the layout has more parts than can be checked. */
 static size_t count_parts(const wh_feasibility_t *check) {
     return check->has_parts ? check->layout->world.part_count + check->layout->wafer_count : 0;
 }
@@ -57,20 +58,7 @@ static void measure(drawing_t *d) {
     d->height = (y > z ? y : z) + 2 * d->margin + 5 * d->letter;
 }
 
-/* ------------------------------------------------------------------------------------------------------ style */
-
-/* Each colour twice, for light and dark: a viewer that knows no preference takes the first. */
-static const struct {
-    const char *class, *light, *dark, *opacity, *name;
-} inks[] = {
-    {"wall", "#78838f", "#8d99a6", ".16", "obstacle"}, {"shell", "#9aa3ad", "#6f7a86", ".12", "FOUP, body"},
-    {"ledge", "#5b6671", "#a3aeb9", ".5", "ledge"},    {"wafer", "#cf7d12", "#f0a94a", ".04", "wafer"},
-    {"arm", "#2f6bb3", "#6ea4e6", ".3", "arm"},        {"chuck", "#7b4bb0", "#b48be0", ".5", "chuck"},
-    {"blade", "#0b857a", "#3cc4b6", ".5", "blade"},
-};
-
-#define INKS (sizeof inks / sizeof inks[0])
-enum { INK_WALL, INK_SHELL, INK_LEDGE, INK_WAFER, INK_ARM, INK_CHUCK, INK_BLADE };
+/* -------------------------------------------------------------------------------------------------- style */
 
 static void print_style(const drawing_t *d) {
     fprintf(d->out,
@@ -82,43 +70,37 @@ static void print_style(const drawing_t *d) {
             "stroke-opacity: .75 }\n"
             ".title { font-weight: bold } polygon:hover { fill-opacity: .75 }\n",
             d->letter, 0.85 * d->letter, d->letter / 4);
-    for (size_t i = 0; i < INKS; ++i) {
-        fprintf(d->out, ".%s { fill: %s; stroke: %s; fill-opacity: %s }\n", inks[i].class, inks[i].light,
-                inks[i].light, inks[i].opacity);
+    for (const wh_ink_look_t *ink = wh_ink_looks; ink < wh_ink_looks + WH_INKS; ++ink) {
+        fprintf(d->out, ".%s { fill: #%06x; stroke: #%06x; fill-opacity: %s }\n", ink->class,
+                ink->drawn.light, ink->drawn.light, ink->opacity);
     }
     fputs(".found { fill: #d11a2a; stroke: #d11a2a; fill-opacity: .6 }\n"
           "@media (prefers-color-scheme: dark) {\n.paper { fill: #14181d } text { fill: #e4e9ee } "
           ".label { stroke: #14181d } .rule { stroke: #55606b } .scale { stroke: #e4e9ee }\n",
           d->out);
-    for (size_t i = 0; i < INKS; ++i) {
-        fprintf(d->out, ".%s { fill: %s; stroke: %s }\n", inks[i].class, inks[i].dark, inks[i].dark);
+    /* A viewer that knows no preference takes the light ones. */
+    for (const wh_ink_look_t *ink = wh_ink_looks; ink < wh_ink_looks + WH_INKS; ++ink) {
+        fprintf(d->out, ".%s { fill: #%06x; stroke: #%06x }\n", ink->class, ink->drawn.dark, ink->drawn.dark);
     }
     fputs(".found { fill: #ff5d6c; stroke: #ff5d6c }\n}\n</style>\n", d->out);
 }
 
-/* ------------------------------------------------------------------------------------------------------ parts */
+/* -------------------------------------------------------------------------------------------------- parts */
 
-static size_t ink_of(const wh_layout_t *layout, size_t part) {
-    static const size_t of_kind[] = {
-        [WH_PART_FIXED] = INK_WALL,  [WH_PART_LEDGE] = INK_LEDGE, [WH_PART_ARM] = INK_ARM,
-        [WH_PART_BLADE] = INK_BLADE, [WH_PART_CHUCK] = INK_CHUCK, [WH_PART_WAFER] = INK_WAFER};
-    if (part >= layout->world.part_count) {
-        return INK_WAFER;
-    }
-    const wh_part_t *from = &layout->world.parts[part];
-    return from->kind == WH_PART_FIXED && from->owner != WH_NONE ? INK_SHELL : of_kind[from->kind];
+static wh_part_ink_t ink_of(const wh_layout_t *layout, size_t part) {
+    return part < layout->world.part_count ? wh_ink_of(&layout->world.parts[part]) : WH_INK_WAFER;
 }
 
-/* What the part is a part of. */
-static const char *group_of(const wh_layout_t *layout, size_t part, size_t ink) {
-    if (ink == INK_WALL || ink == INK_WAFER) {
-        return ink == INK_WALL ? "obstacles" : "wafers";
+/* The name of the group that the part belongs to. */
+static const char *group_of(const wh_layout_t *layout, size_t part, wh_part_ink_t ink) {
+    if (ink == WH_INK_WALL || ink == WH_INK_WAFER) {
+        return ink == WH_INK_WALL ? "obstacles" : "wafers";
     }
     const int32_t owner = layout->world.parts[part].owner;
-    if (ink == INK_SHELL || ink == INK_LEDGE) {
+    if (ink == WH_INK_SHELL || ink == WH_INK_LEDGE) {
         return layout->stations[owner].name;
     }
-    return ink == INK_ARM ? "robot" : layout->grippers[owner].name;
+    return ink == WH_INK_ARM ? "robot" : layout->grippers[owner].name;
 }
 
 static bool is_found(const wh_feasibility_t *check, size_t part) {
@@ -131,11 +113,12 @@ static bool is_found(const wh_feasibility_t *check, size_t part) {
     return false;
 }
 
-static void draw_part(drawing_t *d, wh_projection_t view, size_t part, size_t ink) {
+static void draw_part(drawing_t *d, wh_projection_t view, size_t part, wh_part_ink_t ink) {
     const wh_layout_t *layout = d->check->layout;
     const wh_pose_t pose = wh_feasibility_place(d->check, (int32_t)part);
     wh_outline_draw(&d->outline, view, convex_of(layout, part), &pose);
-    fprintf(d->out, "<polygon class=\"%s\" points=\"", is_found(d->check, part) ? "found" : inks[ink].class);
+    fprintf(d->out, "<polygon class=\"%s\" points=\"",
+            is_found(d->check, part) ? "found" : wh_ink_looks[ink].class);
     for (size_t i = 0; i < d->outline.count; ++i) {
         fprintf(d->out, "%s%.1f,%.1f", i > 0 ? " " : "", d->outline.spots[i].x, d->outline.spots[i].y);
     }
@@ -144,12 +127,12 @@ static void draw_part(drawing_t *d, wh_projection_t view, size_t part, size_t in
     fputs("</title></polygon>\n", d->out);
 }
 
-/* Those of inks `first` to `last`, in groups by what they are parts of. */
-static void draw_parts(drawing_t *d, wh_projection_t view, size_t first, size_t last) {
+/* Draws the parts with inks `first` to `last`, in groups. */
+static void draw_parts(drawing_t *d, wh_projection_t view, wh_part_ink_t first, wh_part_ink_t last) {
     const wh_layout_t *layout = d->check->layout;
     const char *group = NULL;
     for (size_t part = 0; part < count_parts(d->check); ++part) {
-        const size_t ink = ink_of(layout, part);
+        const wh_part_ink_t ink = ink_of(layout, part);
         if (ink < first || ink > last) {
             continue;
         }
@@ -165,7 +148,7 @@ static void draw_parts(drawing_t *d, wh_projection_t view, size_t first, size_t 
     fputs(group ? "</g>\n" : "", d->out);
 }
 
-/* ----------------------------------------------------------------------------------------------------- labels */
+/* ------------------------------------------------------------------------------------------------- labels */
 
 static void label_at(wh_svg_labels_t *labels, wh_projection_t view, wh_vec3_t r, double down,
                      const char *name) {
@@ -183,12 +166,12 @@ static void label_stations(const drawing_t *d, wh_projection_t view, wh_svg_labe
     }
 }
 
-/* At the lower edge of each, inside where it is large enough. */
+/* Labels stand at the lower edge of each obstacle, inside if there is room. */
 static void label_obstacles(const drawing_t *d, wh_projection_t view, wh_svg_labels_t *labels) {
     const wh_layout_t *layout = d->check->layout;
     for (size_t part = 0; part < layout->world.part_count; ++part) {
         const wh_convex_t *convex = &layout->world.parts[part].convex;
-        if (ink_of(layout, part) == INK_WALL) {
+        if (ink_of(layout, part) == WH_INK_WALL) {
             wh_vec3_t low;
             wh_vec3_t high;
             wh_convex_bounds(convex, &convex->body_from_shape, &low, &high);
@@ -213,7 +196,7 @@ static void label_all(const drawing_t *d, wh_projection_t view) {
     label_obstacles(d, view, &labels);
 }
 
-/* ------------------------------------------------------------------------------------------------------ views */
+/* -------------------------------------------------------------------------------------------------- views */
 
 static void draw_travel(const drawing_t *d, wh_projection_t view) {
     const wh_robot_t *robot = &d->check->layout->machine.robot;
@@ -236,14 +219,14 @@ static void draw_view(drawing_t *d, wh_projection_t view, double x, double lowes
     fprintf(d->out, "<g transform=\"translate(%.1f %.1f)\">\n", x - (double)d->low.x,
             d->height - d->margin - 2.5 * d->letter + lowest);
     draw_travel(d, view);
-    draw_parts(d, view, INK_WALL, INK_LEDGE);
-    draw_parts(d, view, INK_WAFER, INK_WAFER);
-    draw_parts(d, view, INK_ARM, INK_BLADE);
+    draw_parts(d, view, WH_INK_WALL, WH_INK_LEDGE);
+    draw_parts(d, view, WH_INK_WAFER, WH_INK_WAFER);
+    draw_parts(d, view, WH_INK_ARM, WH_INK_BLADE);
     label_all(d, view);
     fputs("</g>\n", d->out);
 }
 
-/* A round length of about a tenth of the picture, and what the colours mean. */
+/* Draws a scale of a round length, about a tenth of the picture, and the meaning of the colours. */
 static void draw_scale(const drawing_t *d) {
     static const double steps[] = {1, 2, 5, 10};
     const double wanted = d->width / 10;
@@ -263,13 +246,13 @@ static void draw_scale(const drawing_t *d) {
         "<path class=\"scale\" d=\"M%.1f %.1fv%.1fh%.1fv%.1f\"/><text x=\"%.1f\" y=\"%.1f\">%g mm</text>\n",
         d->margin, y - tick, tick, length, -tick, d->margin + length + d->letter / 2, y, length);
     double x = d->margin + length + 7 * d->letter;
-    for (size_t i = 0; i < INKS; ++i) {
+    for (size_t i = 0; i < WH_INKS; ++i) {
         fprintf(d->out,
                 "<rect class=\"%s\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/><text x=\"%.1f\" "
                 "y=\"%.1f\">%s</text>\n",
-                inks[i].class, x, y - 0.8 * d->letter, d->letter, d->letter, x + 1.5 * d->letter, y,
-                inks[i].name);
-        x += (3.5 + 0.62 * (double)strlen(inks[i].name)) * d->letter;
+                wh_ink_looks[i].class, x, y - 0.8 * d->letter, d->letter, d->letter, x + 1.5 * d->letter, y,
+                wh_ink_looks[i].name);
+        x += (3.5 + 0.62 * (double)strlen(wh_ink_looks[i].name)) * d->letter;
     }
 }
 

@@ -1,4 +1,4 @@
-/* A cell as a picture: from above and from the side, with every part by name. */
+/* A cell as a picture, from above and from the side, with every part by name. */
 #ifndef WH_LAYOUT_DRAWING_H
 #define WH_LAYOUT_DRAWING_H
 
@@ -6,8 +6,9 @@
 
 #include "feasibility.h"
 
-/* Writes an SVG image of the cell with the robot at home; parts that a finding names are marked. Colours follow the
- * viewer's preference for light or dark. 0, or -1 if `out` does not take it (errno tells why). */
+/* Writes an SVG image of the cell with the robot at home. Parts that a finding names are marked. Colours
+ * follow the viewer's preference for light or dark. 0, or -1 if out of memory or if `out` fails (then errno
+ * says why). */
 int wh_layout_print_svg(const wh_feasibility_t *check, FILE *out);
 
 #endif

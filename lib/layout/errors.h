@@ -1,7 +1,8 @@
 /* The errors of a study: how wide each is, and what a trial draws of it.
  *
- * Placement says where a wafer lies in its slot, teaching how far a station really stands from where it was taught, timing by
- * how much valves and vacuum act late. Lengths in mm, angles in degrees, times in s. A width of 0 is drawn as 0.
+ * Placement says where a wafer lies in its slot. Teaching says how far a station stands from where it was
+ * taught. Timing says how late valves and vacuum act. Lengths in mm, angles in degrees, times in s. A width
+ * of 0 draws 0.
  */
 #ifndef WH_LAYOUT_ERRORS_H
 #define WH_LAYOUT_ERRORS_H
@@ -20,7 +21,8 @@ typedef struct {
     wh_shape_t shape;
 } wh_spread_t;
 
-/* Where a wafer lies, in its slot's frame: beside, above, tilted about the slot's x and y (each is drawn), turned about z. */
+/* Where a wafer lies in its slot's frame: beside and above, tilted about the slot's x and y (one draw each),
+ * and turned about z. */
 typedef enum {
     WH_PLACEMENT_DX,
     WH_PLACEMENT_DY,
@@ -30,7 +32,8 @@ typedef enum {
 } wh_placement_field_t;
 #define WH_PLACEMENT_FIELDS 5
 
-/* Where a station stands: moved along base's axes, turned about lines through slot 1 along base's fixed x, y, z. */
+/* Where a station stands: moved along base's axes, and turned about lines through slot 1 that are parallel to
+ * base's fixed x, y, z. */
 typedef enum {
     WH_TEACHING_X,
     WH_TEACHING_Y,
@@ -49,27 +52,28 @@ typedef struct {
     wh_spread_t of[WH_TEACHING_FIELDS];
 } wh_teaching_t;
 
-/* One for each wafer, station and gripper of a layout. A delay is the size of what is drawn: never early. */
+/* One entry for each wafer, station and gripper of a layout. A delay is the magnitude of the draw: never
+ * early. */
 typedef struct {
     wh_placement_t *wafers;
     wh_teaching_t *stations;
-    wh_spread_t valves[WH_GRIPPERS]; /* each gripper's valve acts so late */
-    wh_spread_t vacuum;              /* the vacuum's time constant upwards is so much longer */
+    wh_spread_t valves[WH_GRIPPERS]; /* how late each gripper's valve acts */
+    wh_spread_t vacuum;              /* added to the time constant with which vacuum builds up */
 } wh_errors_t;
 
-/* What a trial has drawn. */
+/* What a trial drew. */
 typedef struct {
     wh_vec3_t moved;   /* mm */
     wh_real_t turn[3]; /* about x, y, z; deg */
 } wh_displacement_t;
 
-/* Each depends on seed, trial, field and index alone. Cost: about 70 ns for each width that is not 0. */
+/* Each draw depends on seed, trial, field and index alone. Cost: about 70 ns for each width that is not 0. */
 wh_displacement_t wh_errors_draw_wafer(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer);
 wh_displacement_t wh_errors_draw_station(const wh_errors_t *errors, const wh_trial_t *trial, size_t station);
 wh_real_t wh_errors_draw_valve(const wh_errors_t *errors, const wh_trial_t *trial, size_t gripper);
 wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *trial);
 
-/* Whether anything of it is not 0. */
+/* True if any of it is not 0. */
 bool wh_displacement_is_any(const wh_displacement_t *displacement);
 
 #endif

@@ -5,7 +5,8 @@
 
 #include "layout_internal.h"
 
-/* The registry's list of what a layout owns: never cleared, for a record may outlive a second `cell`. */
+/* The registry's list of all memory of layouts. It is never cleared, for a record may outlive a second
+ * `cell`. */
 static char owned_key;
 
 void *wh_layout_memory(lua_State *L, size_t count, size_t size) {
@@ -62,7 +63,7 @@ void wh_layout_place(wh_layout_t *layout) {
     layout->cell.tolerance = layout->grasp.tolerance;
 }
 
-void wh_layout_read_reality(lua_State *L, wh_layout_t *trial_cell) {
+void wh_layout_read_trial_world(lua_State *L, wh_layout_t *trial_cell) {
     wh_reader_t reader;
     wh_reader_start(&reader, L, trial_cell->path);
     wh_layout_read_world(&reader, trial_cell);
@@ -78,29 +79,49 @@ void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layou
     lua_pop(L, 1);
 }
 
-int32_t wh_layout_find_station(const wh_layout_t *layout, const char *name) {
-    for (size_t s = 0; s < layout->station_count; ++s) {
-        if (strcmp(layout->stations[s].name, name) == 0) {
-            return (int32_t)s;
+/* The index of the item with that name; each of them begins with its name. WH_NONE if there is none. */
+static int32_t find(const void *items, size_t count, size_t size, const char *name) {
+    for (size_t i = 0; i < count; ++i) {
+        if (strcmp((const char *)items + i * size, name) == 0) {
+            return (int32_t)i;
         }
     }
     return WH_NONE;
+}
+
+int32_t wh_layout_find_station(const wh_layout_t *layout, const char *name) {
+    return find(layout->stations, layout->station_count, sizeof *layout->stations, name);
 }
 
 int32_t wh_layout_find_gripper(const wh_layout_t *layout, const char *name) {
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        if (strcmp(layout->grippers[g].name, name) == 0) {
-            return (int32_t)g;
-        }
-    }
-    return WH_NONE;
+    return find(layout->grippers, layout->machine.gripper_count, sizeof layout->grippers[0], name);
 }
 
 int32_t wh_layout_find_wafer(const wh_layout_t *layout, const char *name) {
-    for (size_t w = 0; w < layout->wafer_count; ++w) {
-        if (strcmp(layout->wafers[w].name, name) == 0) {
-            return (int32_t)w;
-        }
+    return find(layout->wafers, layout->wafer_count, sizeof *layout->wafers, name);
+}
+
+typedef struct {
+    const char *path;
+    const wh_layout_t *layout;
+} load_t;
+
+/* Runs protected; the argument is a load_t. */
+static int load(lua_State *L) {
+    load_t *job = lua_touserdata(L, 1);
+    wh_sandbox_result_t result;
+    if (!wh_sandbox_evaluate(L, job->path, &result)) {
+        lua_pushstring(L, result.message);
+        return lua_error(L);
     }
-    return WH_NONE;
+    job->layout = wh_layout_read(L, job->path);
+    return 0;
+}
+
+const wh_layout_t *wh_layout_load(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result) {
+    lua_State *L = wh_sandbox_state(sandbox);
+    load_t job = {path, NULL};
+    lua_pushcfunction(L, load);
+    lua_pushlightuserdata(L, &job);
+    return wh_sandbox_call(L, 1, 0, result) ? job.layout : NULL;
 }

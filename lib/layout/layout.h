@@ -10,38 +10,40 @@
 #include "../cell/station.h"
 #include "../collision/world.h"
 #include "../motion/machine.h"
+#include "../script/reader.h"
+#include "../script/sandbox.h"
 #include "../sim/physics.h"
 #include "errors.h"
 #include "shapes.h"
 
-/* Longest name of a station, gripper, wafer or valve, with its terminator. */
+/* The longest name of a station, gripper, wafer or valve, with its terminator. */
 #define WH_NAME_SIZE 64
 
-/* How many wafers, stations and slots of a station a layout may have. */
+/* The most wafers, stations, and slots of a station that a layout may have. */
 #define WH_LAYOUT_WAFERS 1000000
 #define WH_LAYOUT_STATIONS 1000
 #define WH_LAYOUT_SLOTS 1000
 
-/* How many parts a collision check may have, and how many of them a layout may add by itself. */
+/* The most parts that a collision check may have, and the most obstacles among them. */
 #define WH_LAYOUT_PARTS 100000
 #define WH_LAYOUT_OBSTACLES 1000
 
-/* A valve acts at most so many slices late in a trial of a study. */
+/* The most slices by which a valve acts late in a trial of a study. */
 #define WH_STUDY_LAG_SLICES 8000
 
 typedef struct {
     char name[WH_NAME_SIZE];
     char valve[WH_NAME_SIZE]; /* the output's name, such as eeVacValve[0] */
-    int32_t station;          /* the prealigner whose chuck it is, or WH_NONE: the robot's end-effector */
+    int32_t station;          /* the prealigner whose chuck it is; WH_NONE: on the robot's end-effector */
 } wh_layout_gripper_t;
 
-/* In which order the valves switch when a chuck and an end-effector pass a wafer on. */
+/* The order in which the valves switch when a chuck and an end-effector pass a wafer on. */
 typedef enum {
     WH_HANDOVER_NEW_FIRST, /* the new gripper opens a slice before the old one closes */
     WH_HANDOVER_SAME_SLICE
 } wh_handover_t;
 
-/* Whose success the vacuum sensor decides; a command whose it does not goes through its motions and trusts them. */
+/* Which commands wait for the vacuum sensor. The others move and assume success. */
 typedef enum {
     WH_VACUUM_CHECK_BOTH,
     WH_VACUUM_CHECK_GET,
@@ -49,7 +51,7 @@ typedef enum {
     WH_VACUUM_CHECK_NONE
 } wh_vacuum_check_t;
 
-/* The station parameters that GET and PUT use; geometry is in wh_layout_t.places at the same index. */
+/* The station parameters that GET and PUT use. The geometry is in wh_layout_t.places at the same index. */
 typedef struct {
     char name[WH_NAME_SIZE];
     bool prealigner;
@@ -59,17 +61,18 @@ typedef struct {
     wh_real_t retract;      /* how far before the slot the end-effector enters the line */
     wh_real_t pickup_speed; /* of the strokes, mm/s */
     wh_real_t release;      /* height above the slot's plane at which a PUT switches the valves */
-    wh_real_t vacuum_delay; /* after the stroke before the sensor is asked, s */
-    wh_real_t timeout;      /* how long the sensor is then waited for, s */
+    wh_real_t vacuum_delay; /* from the stroke's end until the sensor is asked, s */
+    wh_real_t timeout;      /* the longest wait for the sensor after that, s */
     wh_handover_t handover;
-    bool taught;                   /* false: every command at it is refused */
+    bool taught;                   /* false: every command at the station is refused */
     bool check_map;                /* GET and PUT need a MAP first */
-    wh_vacuum_check_t check;       /* which commands the sensor decides */
+    wh_vacuum_check_t check;       /* which commands wait for the sensor */
     wh_real_t pickup_acceleration; /* of the strokes, mm/s^2; 0: the axes' own */
     wh_real_t wait;                /* in the station before the stroke, s */
     wh_real_t map_speed;           /* of a MAP's sweep, mm/s */
-    int32_t retries;               /* how often a GET that took nothing goes up again */
-    int32_t effector; /* the gripper on the robot that serves it unless a command says otherwise */
+    int32_t retries;               /* how often a GET that took nothing repeats its stroke */
+    /* the gripper on the robot that serves the station unless a command names another one */
+    int32_t effector;
 } wh_layout_station_t;
 
 typedef struct {
@@ -77,57 +80,64 @@ typedef struct {
     int32_t station, slot; /* slot from 1 */
 } wh_layout_wafer_t;
 
-/* Lives as long as the Lua state that it was read in. Nothing in it changes during a run. */
+/* Lives as long as the Lua state that read it. Nothing in it changes during a run. */
 typedef struct {
-    const char *path;        /* as it was asked for */
+    const char *path;        /* as the caller named it */
     char tolerance_name[16]; /* the preset's, or "own" */
     double wafer_diameter, wafer_thickness;
-    double notch,
-        notch_depth; /* its direction in the wafer's frame, rad about e3 from e1, and how deep, mm */
+    double notch, notch_depth; /* direction of the notch, rad about e3 from e1, and its depth, mm */
     wh_grasp_config_t grasp;
     int64_t slice_us;
-    wh_physics_t physics; /* vacuum, pads, faults from the beginning */
+    wh_physics_t physics; /* vacuum, pads, faults at the start */
     wh_machine_t machine; /* machine.gripper_count is the number of grippers */
-    bool homed;           /* false: HOME comes before whatever counts on where the arm stands */
+    bool homed;           /* false: commands that rely on the arm's position need a HOME first */
     wh_layout_gripper_t grippers[WH_GRIPPERS];
     size_t station_count;
     wh_layout_station_t *stations; /* sorted by name */
     wh_station_t *places;
     size_t wafer_count;
     wh_layout_wafer_t *wafers;
-    wh_wafer_t *start; /* where each wafer is when a run begins */
-    wh_cell_t cell;    /* places, with the tolerance and how wafers are set down */
-    bool collision;    /* check it while stepping */
+    wh_wafer_t *start; /* where each wafer is at the start */
+    wh_cell_t cell;    /* the places, with the tolerance and how wafers are set down */
+    bool collision;    /* check for contact in each slice */
     bool look_ahead;   /* and before each command that moves */
     wh_shapes_t shapes;
-    wh_world_config_t world; /* whether it is checked or not; without parts when they are too many */
+    wh_world_config_t world; /* filled in also without a check; without parts if there are too many */
     const char (*part_names)[WH_PART_NAME_SIZE];
-    wh_errors_t *errors; /* what a study draws; null: the layout has no `study` */
-    size_t hung_count;   /* of the world's parts the last so many: obstacles on the robot and on grippers */
+    wh_errors_t *errors; /* what a study draws; null: no `study` */
+    size_t hung_count; /* how many of the last parts of `world` are obstacles on the robot and on grippers */
 } wh_layout_t;
 
-/* Reads the table on top of L's stack (what the layout file returned, which is left there), fills in the
- * defaults and checks everything that can be checked without moving: fields, ranges, names, who lies and who
- * rides where, strokes against slices. Raises a Lua error that names file, field path, value and what was
- * expected. The layout's memory is Lua's; the reference is kept in the registry. Cost: linear in wafers, plus
- * a sort. */
+/* Reads the table on top of L's stack, which the layout file returned; it stays there. Fills in the defaults
+ * and checks all that can be checked without moving: fields, ranges, names, who lies and who rides where,
+ * strokes against slices. Raises a Lua error that names file, field path, value and what was expected. Lua
+ * owns the layout's memory; the registry keeps the reference. Cost: linear in wafers, plus a sort. */
 wh_layout_t *wh_layout_read(lua_State *L, const char *path);
 
-/* Reads anew, for a copy of a layout whose stations stand elsewhere, what the collision check knows of them. The layout's
- * table is on top of the stack; the copy must outlive the state. Raises what wh_layout_read does. */
-void wh_layout_read_reality(lua_State *L, wh_layout_t *trial_cell);
+/* Runs the file in the sandbox and reads what it returns. Null, and the reason in `result`, if that fails.
+ * The layout lives as long as the sandbox. */
+const wh_layout_t *wh_layout_load(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result);
 
-/* Reads `study` from the table on top of the stack, which the script `path` holds, in place of the layout's own. */
+/* Reads the fault that the reader is at: a table with its kind, gripper or wafer, time and size. Raises the
+ * reader's errors. `first` is the slice that `after = 0` means. */
+wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, int64_t first);
+
+/* Reads the collision world again, for a copy of a layout whose stations stand elsewhere. The layout's table
+ * is on top of the stack. The copy must outlive the state. Raises what wh_layout_read does. */
+void wh_layout_read_trial_world(lua_State *L, wh_layout_t *trial_cell);
+
+/* Reads `study` from the table on top of the stack and replaces the layout's own. Errors name the script
+ * `path`. */
 void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layout);
 
-/* Makes `cell` of the places and the tolerance, which are read by then. */
+/* Fills in `cell` from the places and the tolerance, which must have been read. */
 void wh_layout_place(wh_layout_t *layout);
 
-/* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults, machine, and of stations, grippers and
- * wafers the names and places. The path is left out. Cost: linear. */
+/* 64 bits over all that two processes must agree on: slice, tolerances, checking, vacuum, pads, faults,
+ * machine, and the names and places of stations, grippers and wafers. The path is left out. Cost: linear. */
 uint64_t wh_layout_hash(const wh_layout_t *layout);
 
-/* What a part of the collision world is called, a wafer's number among them; null when there is none. */
+/* The name of a part of the collision world, wafers included; null if there is no such part. */
 const char *wh_layout_part_name(const wh_layout_t *layout, int32_t part);
 
 /* The index of a name, or WH_NONE. Cost: linear. */

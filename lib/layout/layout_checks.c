@@ -1,4 +1,4 @@
-/* The parts of a layout that judge a run: wafer, tolerance, neighbourhood, checking, slice, seating. */
+/* The fields of a layout that judge a run: wafer, tolerance, neighbourhood, checking, slice, seating. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,10 +18,9 @@ static double default_thickness(double diameter) {
     return standard[4].thickness;
 }
 
-/* A mark of the wafer by which people and prealigners tell how it is turned; its shape stays a disc. */
+/* The notch shows people and prealigners how the wafer is turned. For the checks the wafer stays a disc. */
 static void read_notch(wh_reader_t *reader, wh_layout_t *layout) {
-    if (wh_reader_enter(reader, "notch")) {
-        wh_reader_refuse_unknown(reader, "at depth");
+    if (wh_reader_open(reader, "notch", "at depth")) {
         layout->notch = wh_rad_from_deg(wh_reader_number(reader, "at", 0, -360, 360));
         layout->notch_depth = wh_reader_number(reader, "depth", 1, 0, layout->wafer_diameter / 4);
         wh_reader_leave(reader);
@@ -32,8 +31,7 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout) {
     layout->wafer_diameter = 300;
     layout->wafer_thickness = default_thickness(300);
     layout->notch_depth = 1;
-    if (wh_reader_enter(reader, "wafer")) {
-        wh_reader_refuse_unknown(reader, "diameter thickness notch");
+    if (wh_reader_open(reader, "wafer", "diameter thickness notch")) {
         layout->wafer_diameter = wh_reader_number(reader, "diameter", 300, 1, 1000);
         layout->wafer_thickness =
             wh_reader_number(reader, "thickness", default_thickness(layout->wafer_diameter), 0.01, 100);
@@ -43,8 +41,7 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout) {
 }
 
 static void read_limits(wh_reader_t *reader, wh_tolerance_t *tolerance) {
-    wh_reader_enter(reader, "tolerance");
-    wh_reader_refuse_unknown(reader, "projz projxy planar");
+    (void)wh_reader_open(reader, "tolerance", "projz projxy planar");
     tolerance->projz = wh_reader_number(reader, "projz", tolerance->projz, 1e-9, 1e6);
     tolerance->projxy = wh_reader_number(reader, "projxy", tolerance->projxy, 1e-6, 1e6);
     tolerance->planar = wh_reader_number(reader, "planar", tolerance->planar, 0, 0.999999999999);
@@ -58,15 +55,12 @@ static void read_tolerance(wh_reader_t *reader, wh_layout_t *layout) {
         presets[i] = wh_tolerance_preset(i, &layout->grasp.tolerance);
     }
     layout->grasp.tolerance = wh_tolerance_paper();
-    lua_pushliteral(reader->L, "tolerance");
-    lua_rawget(reader->L, -2);
-    const bool is_table = lua_istable(reader->L, -1);
-    const bool is_other = !is_table && !lua_isnil(reader->L, -1) && lua_type(reader->L, -1) != LUA_TSTRING;
-    if (is_other) {
+    const int type = wh_reader_push(reader, "tolerance");
+    if (type != LUA_TTABLE && type != LUA_TNIL && type != LUA_TSTRING) {
         wh_reader_fail(reader, "tolerance", "\"paper\", \"strict\" or { projz = , projxy = , planar = }");
     }
     lua_pop(reader->L, 1);
-    if (is_table) {
+    if (type == LUA_TTABLE) {
         read_limits(reader, &layout->grasp.tolerance);
     } else {
         const int preset = wh_reader_choice(reader, "tolerance", 0, presets);
@@ -78,8 +72,7 @@ static void read_tolerance(wh_reader_t *reader, wh_layout_t *layout) {
 static void read_near(wh_reader_t *reader, wh_layout_t *layout) {
     const wh_real_t twice = 2 * layout->grasp.tolerance.projxy;
     layout->grasp.near_projxy = twice < WH_REAL(1e6) ? twice : WH_REAL(1e6);
-    if (wh_reader_enter(reader, "near")) {
-        wh_reader_refuse_unknown(reader, "projz projxy");
+    if (wh_reader_open(reader, "near", "projz projxy")) {
         layout->grasp.near_projz = wh_reader_number(reader, "projz", layout->grasp.near_projz, 1e-9, 1e6);
         layout->grasp.near_projxy = wh_reader_number(reader, "projxy", layout->grasp.near_projxy, 1e-9, 1e6);
         wh_reader_leave(reader);
@@ -97,11 +90,10 @@ static void read_slice(wh_reader_t *reader, wh_layout_t *layout) {
     }
 }
 
-/* How a wafer that was let go comes to lie, and from when on that is worth a word. */
+/* How a released wafer comes to lie, and the limits above which its place is reported. */
 static void read_placing(wh_reader_t *reader, wh_cell_t *cell) {
     cell->settle = wh_reader_boolean(reader, "settle", false);
-    if (wh_reader_enter(reader, "placing")) {
-        wh_reader_refuse_unknown(reader, "off_centre askew");
+    if (wh_reader_open(reader, "placing", "off_centre askew")) {
         cell->off_centre = wh_reader_number(reader, "off_centre", 0, 0, 1000);
         cell->askew = wh_rad_from_deg(wh_reader_number(reader, "askew", 0, 0, 90));
         wh_reader_leave(reader);

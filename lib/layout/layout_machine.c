@@ -1,4 +1,4 @@
-/* A layout's robot and what its grippers ride on. */
+/* A layout's robot, and the mounts of its grippers. */
 #include <stdio.h>
 #include <string.h>
 
@@ -27,7 +27,7 @@ static void read_axis_limits(wh_reader_t *reader, bool turns, wh_limits_t *limit
     limits->jerk = read_quantity(reader, "jerk", turns, limits->jerk, 1e-6, 1e10);
 }
 
-/* Defaults are checked too: a travel of one's own may leave the default home outside. */
+/* Checks defaults too: a travel that the layout gives may exclude the default home. */
 static void check_travel(wh_reader_t *reader, bool turns, const wh_travel_t *travel, wh_real_t home) {
     const double min = to_layout(turns, travel->min);
     const double max = to_layout(turns, travel->max);
@@ -61,10 +61,9 @@ static void read_axis(wh_reader_t *reader, wh_robot_t *robot, size_t axis, const
 static void read_robot(wh_reader_t *reader, wh_robot_t *robot) {
     static const char *const kinds[] = {"TRZY", NULL};
     static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    if (!wh_reader_enter(reader, "robot")) {
+    if (!wh_reader_open(reader, "robot", "kind theta r z yaw")) {
         return;
     }
-    wh_reader_refuse_unknown(reader, "kind theta r z yaw");
     wh_reader_choice(reader, "kind", 0, kinds);
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         read_axis(reader, robot, axis, names[axis]);
@@ -82,25 +81,25 @@ void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout) {
     machine->chuck_limits = machine->robot.limits[WH_AXIS_YAW];
     read_robot(reader, &machine->robot);
     layout->homed = wh_reader_boolean(reader, "homed", true);
-    if (wh_reader_enter(reader, "chuck")) {
-        wh_reader_refuse_unknown(reader, "speed acceleration jerk");
+    if (wh_reader_open(reader, "chuck", "speed acceleration jerk")) {
         read_axis_limits(reader, true, &machine->chuck_limits);
         wh_reader_leave(reader);
     }
 }
 
-/* Gives a gripper the chuck of a prealigner, and the chuck an axis. */
-static void mount_on_chuck(wh_reader_t *reader, wh_layout_t *layout, size_t g, int32_t station) {
+/* Mounts a gripper on the chuck of a prealigner, and gives the chuck an axis. */
+static void mount_on_chuck(wh_reader_t *reader, wh_layout_t *layout, size_t g, const char *on) {
     wh_machine_t *machine = &layout->machine;
+    const int32_t station = wh_layout_find_station(layout, on);
     if (station == WH_NONE || !layout->stations[station].prealigner) {
-        wh_reader_fail(reader, "on", "\"robot\" or the name of a station of kind \"prealigner\"");
+        wh_reader_refuse(reader, "on", on, "\"robot\" or the name of a station of kind \"prealigner\"");
     }
     if (layout->places[station].chuck != WH_NONE) {
-        wh_reader_fail(reader, "on", "a prealigner without a gripper; grippers[%d] is on this one",
-                       (int)layout->places[station].chuck + 1);
+        wh_reader_refuse(reader, "on", on, "a prealigner without a gripper; grippers[%d] is on this one",
+                         (int)layout->places[station].chuck + 1);
     }
     if (machine->axis_count == WH_AXES) {
-        wh_reader_fail(reader, "on", "at most %d grippers on prealigners", WH_AXES - WH_ROBOT_AXES);
+        wh_reader_refuse(reader, "on", on, "at most %d grippers on prealigners", WH_AXES - WH_ROBOT_AXES);
     }
     layout->places[station].chuck = (int32_t)g;
     layout->grippers[g].station = station;
@@ -108,20 +107,12 @@ static void mount_on_chuck(wh_reader_t *reader, wh_layout_t *layout, size_t g, i
     machine->mounts[g].base_from_station = layout->places[station].base_from_station;
 }
 
-static bool has_field(const wh_reader_t *reader, const char *field) {
-    lua_pushstring(reader->L, field);
-    const bool there = lua_rawget(reader->L, -2) != LUA_TNIL;
-    lua_pop(reader->L, 1);
-    return there;
-}
-
 static void fail_at_vector(wh_reader_t *reader, const char *field, const char *expected) {
-    lua_pushstring(reader->L, field);
-    lua_rawget(reader->L, -2);
+    (void)wh_reader_push(reader, field);
     wh_reader_fail(reader, field, "%s", expected);
 }
 
-/* Where a blade of several sits on the end-effector. One that says nothing of it is the end-effector itself. */
+/* The place of a blade on the end-effector. Without `at` and `rpy` the gripper is the end-effector itself. */
 static void read_shift(wh_reader_t *reader, wh_mount_t *mount) {
     static const wh_vec3_t none = {0, 0, 0};
     const wh_vec3_t at = wh_reader_vector(reader, "at", &none);
@@ -139,7 +130,7 @@ static void read_shift(wh_reader_t *reader, wh_mount_t *mount) {
 static void refuse_shift(wh_reader_t *reader) {
     static const char *const fields[] = {"at", "rpy"};
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i) {
-        if (has_field(reader, fields[i])) {
+        if (wh_reader_has(reader, fields[i])) {
             fail_at_vector(reader, fields[i], "nothing: a chuck sits where its station is");
         }
     }
@@ -156,9 +147,7 @@ static void read_mount(wh_reader_t *reader, wh_layout_t *layout, size_t g) {
         read_shift(reader, &layout->machine.mounts[g]);
     } else {
         refuse_shift(reader);
-        lua_pushstring(reader->L, on);
-        mount_on_chuck(reader, layout, g, wh_layout_find_station(layout, on));
-        lua_pop(reader->L, 1);
+        mount_on_chuck(reader, layout, g, on);
     }
 }
 
@@ -171,13 +160,11 @@ static void read_gripper(wh_reader_t *reader, wh_layout_t *layout) {
     snprintf(valve, sizeof valve, "%.40s.valve", gripper->name);
     wh_reader_text(reader, "valve", valve, gripper->valve, sizeof gripper->valve);
     if (wh_layout_find_gripper(layout, gripper->name) != WH_NONE) {
-        lua_pushstring(reader->L, gripper->name);
-        wh_reader_fail(reader, "name", "a name that no other gripper has");
+        wh_reader_refuse(reader, "name", gripper->name, "a name that no other gripper has");
     }
     for (size_t other = 0; other < g; ++other) {
         if (strcmp(layout->grippers[other].valve, gripper->valve) == 0) {
-            lua_pushstring(reader->L, gripper->valve);
-            wh_reader_fail(reader, "valve", "an output that switches no other gripper");
+            wh_reader_refuse(reader, "valve", gripper->valve, "an output that switches no other gripper");
         }
     }
     read_mount(reader, layout, g);

@@ -1,7 +1,11 @@
-/* The parts of a layout about vacuum and holding. */
+/* The fields of a layout about vacuum, holding and faults. */
+#include <math.h>
 #include <string.h>
 
+#include "../math/trig.h"
 #include "layout_internal.h"
+
+/* ------------------------------------------------------------------------------------------------- vacuum */
 
 static const char *const models[] = {"ideal", "delayed", NULL};
 
@@ -9,7 +13,7 @@ static wh_vacuum_config_t model_of(int choice) {
     return choice == 0 ? wh_vacuum_ideal() : wh_vacuum_delayed();
 }
 
-/* Each threshold within the next one's: what is said is what the layout has, not what became of it. */
+/* Each default is moved within the limits of the fields before it, so that no value is changed later. */
 static void read_levels(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
     vacuum->on = wh_reader_number(reader, "sensor_on", vacuum->on, 0.01, 1);
     const wh_real_t off = vacuum->off < vacuum->on ? vacuum->off : vacuum->on;
@@ -20,8 +24,7 @@ static void read_levels(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
 }
 
 static void read_vacuum_table(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
-    wh_reader_enter(reader, "vacuum");
-    wh_reader_refuse_unknown(reader, "model build vent idle sensor_on sensor_off release");
+    (void)wh_reader_open(reader, "vacuum", "model build vent idle sensor_on sensor_off release");
     *vacuum = model_of(wh_reader_choice(reader, "model", 1, models));
     vacuum->build = wh_reader_number(reader, "build", vacuum->build, 0, 3600);
     vacuum->vent = wh_reader_number(reader, "vent", vacuum->vent, 0, 3600);
@@ -30,9 +33,7 @@ static void read_vacuum_table(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
 }
 
 static void read_vacuum(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
-    lua_pushliteral(reader->L, "vacuum");
-    lua_rawget(reader->L, -2);
-    const int type = lua_type(reader->L, -1);
+    const int type = wh_reader_push(reader, "vacuum");
     if (type != LUA_TTABLE && type != LUA_TNIL && type != LUA_TSTRING) {
         wh_reader_fail(reader, "vacuum", "\"ideal\", \"delayed\" or { model = , build = , vent = , ... }");
     }
@@ -46,10 +47,9 @@ static void read_vacuum(wh_reader_t *reader, wh_vacuum_config_t *vacuum) {
 
 static void read_pads(wh_reader_t *reader, const wh_layout_t *layout, wh_pads_t *pads) {
     const wh_real_t mass = wh_wafer_mass(layout->wafer_diameter, layout->wafer_thickness);
-    if (!wh_reader_enter(reader, "pads")) {
+    if (!wh_reader_open(reader, "pads", "friction force mass gravity")) {
         return;
     }
-    wh_reader_refuse_unknown(reader, "friction force mass gravity");
     pads->friction = wh_reader_number(reader, "friction", WH_REAL(NAN), 0, 100);
     pads->force = wh_reader_number(reader, "force", WH_REAL(NAN), 0, 1e6);
     pads->mass = wh_reader_number(reader, "mass", mass, 1e-6, 1000);
@@ -62,4 +62,167 @@ void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout) {
     layout->physics.slice_s = (wh_real_t)layout->slice_us / 1e6;
     read_vacuum(reader, &layout->physics.vacuum);
     read_pads(reader, layout, &layout->physics.pads);
+}
+
+/* ------------------------------------------------------------------------------------------------- faults */
+
+/* Below everything in a cell, mm. */
+#define FAR_BELOW WH_REAL(-1e5)
+/* The longest time of a fault, s. */
+#define LONGEST 1e6
+
+/* The fields of each kind. */
+static const char *const fields[WH_FAULT_KINDS] = {
+    [WH_FAULT_NO_VACUUM] = "kind after lasting gripper",
+    [WH_FAULT_SLOW_VACUUM] = "kind after lasting gripper value",
+    [WH_FAULT_SENSOR_ON] = "kind after lasting gripper",
+    [WH_FAULT_SENSOR_OFF] = "kind after lasting gripper",
+    [WH_FAULT_LEAK] = "kind after lasting gripper value",
+    [WH_FAULT_VALVE_STUCK] = "kind after lasting gripper",
+    [WH_FAULT_AXIS_STOPPED] = "kind after lasting gripper",
+    [WH_FAULT_COMMAND_LOST] = "kind after lasting",
+    [WH_FAULT_WAFER_MISSING] = "kind after lasting wafer",
+    [WH_FAULT_WAFER_DOUBLED] = "kind after lasting wafer onto",
+    [WH_FAULT_WAFER_CROSSED] = "kind after lasting wafer value",
+    [WH_FAULT_WAFER_SHIFTED] = "kind after lasting wafer dx dy dz",
+    [WH_FAULT_WAFER_TILTED] = "kind after lasting wafer rpy",
+};
+
+static wh_fault_kind_t read_kind(wh_reader_t *reader) {
+    const char *names[WH_FAULT_KINDS + 1] = {NULL};
+    for (int i = 0; i < WH_FAULT_KINDS; ++i) {
+        names[i] = wh_fault_name((wh_fault_kind_t)i);
+    }
+    const int kind = wh_reader_choice(reader, "kind", WH_NONE, names);
+    if (kind == WH_NONE) {
+        lua_pushnil(reader->L);
+        wh_reader_fail(reader, "kind", "the kind of a fault, such as \"%s\"", names[0]);
+    }
+    return (wh_fault_kind_t)kind;
+}
+
+/* The first gripper on the robot, unless the fault names one. */
+static int32_t read_gripper(wh_reader_t *reader, const wh_layout_t *layout) {
+    char name[WH_NAME_SIZE];
+    size_t first = 0;
+    while (layout->grippers[first].station != WH_NONE) {
+        ++first;
+    }
+    wh_reader_text(reader, "gripper", layout->grippers[first].name, name, sizeof name);
+    const int32_t gripper = wh_layout_find_gripper(layout, name);
+    if (gripper == WH_NONE) {
+        wh_reader_refuse(reader, "gripper", name, "the name of a gripper of this layout");
+    }
+    return gripper;
+}
+
+static int32_t read_wafer(wh_reader_t *reader, const wh_layout_t *layout, const char *field) {
+    char name[WH_NAME_SIZE];
+    wh_reader_text(reader, field, NULL, name, sizeof name);
+    const int32_t wafer = wh_layout_find_wafer(layout, name);
+    if (wafer == WH_NONE) {
+        wh_reader_refuse(reader, field, name, "the name of a wafer of this layout");
+    }
+    return wafer;
+}
+
+static int32_t read_onto(wh_reader_t *reader, const wh_layout_t *layout, int32_t wafer) {
+    const int32_t onto = read_wafer(reader, layout, "onto");
+    if (onto == wafer) {
+        wh_reader_refuse(reader, "onto", layout->wafers[onto].name,
+                         "another wafer than the one that is put there");
+    }
+    return onto;
+}
+
+/* Turned about the wafer's x, which is the way in: one edge lies `height` above the other, the lower one in
+ * the slot's plane. */
+static wh_pose_t crossed(wh_reader_t *reader, const wh_layout_t *layout, int32_t wafer) {
+    const wh_real_t pitch = layout->places[layout->wafers[wafer].station].pitch;
+    const wh_real_t most = layout->wafer_diameter / 2;
+    const wh_real_t height = wh_reader_number(reader, "value", pitch < most ? pitch : most, 0, most);
+    const wh_real_t sine = height / layout->wafer_diameter;
+    const wh_real_t cosine = wh_real_sqrt(1 - sine * sine);
+    const wh_pose_t pose = {{{{1, 0, 0}, {0, cosine, -sine}, {0, sine, cosine}}}, {0, 0, height / 2}};
+    return pose;
+}
+
+static wh_pose_t read_offset(wh_reader_t *reader, const wh_layout_t *layout, const wh_fault_t *fault) {
+    wh_pose_t pose = wh_pose_identity();
+    if (fault->kind == WH_FAULT_WAFER_MISSING) {
+        pose.r.z = FAR_BELOW;
+    } else if (fault->kind == WH_FAULT_WAFER_DOUBLED) {
+        pose.r.z = layout->wafer_thickness;
+    } else if (fault->kind == WH_FAULT_WAFER_CROSSED) {
+        pose = crossed(reader, layout, fault->target);
+    } else if (fault->kind == WH_FAULT_WAFER_SHIFTED) {
+        pose.r.x = wh_reader_number(reader, "dx", 0, -1000, 1000);
+        pose.r.y = wh_reader_number(reader, "dy", 0, -1000, 1000);
+        pose.r.z = wh_reader_number(reader, "dz", 0, -1000, 1000);
+    } else if (fault->kind == WH_FAULT_WAFER_TILTED) {
+        const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", NULL);
+        pose.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
+    }
+    return pose;
+}
+
+static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault_t *fault) {
+    fault->target = WH_NONE;
+    fault->other = WH_NONE;
+    if (wh_fault_is_of_wafer(fault->kind)) {
+        fault->target = read_wafer(reader, layout, "wafer");
+    } else if (fault->kind != WH_FAULT_COMMAND_LOST) {
+        fault->target = read_gripper(reader, layout);
+    }
+    if (fault->kind == WH_FAULT_WAFER_DOUBLED) {
+        fault->other = read_onto(reader, layout, fault->target);
+    }
+}
+
+static wh_real_t read_value(wh_reader_t *reader, wh_fault_kind_t kind) {
+    if (kind == WH_FAULT_SLOW_VACUUM) {
+        return wh_reader_number(reader, "value", WH_REAL(NAN), 0, 3600);
+    }
+    return kind == WH_FAULT_LEAK ? wh_reader_number(reader, "value", WH_REAL(NAN), 0, 1) : 0;
+}
+
+static int64_t slices_of(const wh_layout_t *layout, wh_real_t seconds) {
+    return llround(seconds * 1e6 / (double)layout->slice_us);
+}
+
+/* Without `lasting` the fault stays until it is cleared; with it, for one slice at least. */
+static void read_times(wh_reader_t *reader, const wh_layout_t *layout, int64_t first, wh_fault_t *fault) {
+    const wh_real_t lasting = wh_reader_number(reader, "lasting", -1, 0, LONGEST);
+    const int64_t slices = slices_of(layout, lasting);
+    fault->from = first + slices_of(layout, wh_reader_number(reader, "after", 0, 0, LONGEST));
+    fault->until = lasting < 0 ? WH_FAULT_FOREVER : fault->from + (slices > 1 ? slices : 1);
+}
+
+wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, int64_t first) {
+    wh_fault_t fault;
+    memset(&fault, 0, sizeof fault);
+    fault.kind = read_kind(reader);
+    wh_reader_refuse_unknown(reader, fields[fault.kind]);
+    read_target(reader, layout, &fault);
+    fault.value = read_value(reader, fault.kind);
+    fault.offset = read_offset(reader, layout, &fault);
+    read_times(reader, layout, first, &fault);
+    return fault;
+}
+
+void wh_layout_read_faults(wh_reader_t *reader, wh_layout_t *layout) {
+    if (!wh_reader_enter(reader, "faults")) {
+        return;
+    }
+    const size_t count = wh_reader_list(reader);
+    if (count > WH_FAULTS) {
+        wh_reader_fail(reader, NULL, "at most %d faults", WH_FAULTS);
+    }
+    for (size_t i = 0; i < count; ++i) {
+        wh_reader_enter_item(reader, (lua_Integer)i + 1);
+        layout->physics.faults[i] = wh_layout_read_fault(reader, layout, 1);
+        wh_reader_leave(reader);
+    }
+    layout->physics.fault_count = count;
+    wh_reader_leave(reader);
 }

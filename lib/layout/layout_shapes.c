@@ -1,14 +1,184 @@
-/* A layout's shapes for the collision check: defaults by wafer size, changed where the layout says so. */
+/* A layout's parts for the collision check: shapes by wafer size, and obstacles. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "../math/trig.h"
 #include "layout_internal.h"
+#include "stl.h"
 
-static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
-    if (!wh_reader_enter(reader, "blade")) {
+typedef struct {
+    wh_part_t part;
+    char name[WH_PART_NAME_SIZE];
+} obstacle_t;
+
+typedef struct {
+    obstacle_t *items;
+    size_t count;
+} obstacles_t;
+
+/* Adds the fixed obstacles, or those that hang on something. */
+static void add_obstacles(wh_part_list_t *list, const obstacles_t *obstacles, bool fixed) {
+    for (size_t i = 0; i < obstacles->count; ++i) {
+        const wh_part_t *part = &obstacles->items[i].part;
+        if ((part->kind == WH_PART_FIXED) == fixed) {
+            wh_shapes_add(list, part, "%s", obstacles->items[i].name);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- shapes */
+
+static void read_box(wh_reader_t *reader, wh_convex_t *convex) {
+    const wh_vec3_t size = wh_reader_vector(reader, "box", NULL);
+    convex->kind = WH_CONVEX_BOX;
+    convex->half = wh_vec3_scale(WH_REAL(0.5), &size);
+}
+
+/* `cylinder` and `capsule` are { radius = , height = } about their middle. A capsule's height does not count
+ * its caps. */
+static void read_round(wh_reader_t *reader, const char *field, wh_convex_kind_t kind, wh_convex_t *convex) {
+    wh_reader_enter(reader, field);
+    wh_reader_refuse_unknown(reader, "radius height");
+    convex->kind = kind;
+    convex->half.x = wh_reader_number(reader, "radius", WH_REAL(NAN), WH_CONVEX_THINNEST, 1e4);
+    convex->half.z = wh_reader_number(reader, "height", WH_REAL(NAN),
+                                      kind == WH_CONVEX_CAPSULE ? 0 : WH_CONVEX_THINNEST, 1e4) /
+                     2;
+    wh_reader_leave(reader);
+}
+
+/* A path relative to the layout's own folder. */
+static void path_of(char *path, size_t size, const wh_layout_t *layout, const char *name) {
+    const char *slash = strrchr(layout->path, '/');
+    const int folder = name[0] == '/' || !slash ? 0 : (int)(slash - layout->path) + 1;
+    snprintf(path, size, "%.*s%s", folder, layout->path, name);
+}
+
+static void read_mesh(wh_reader_t *reader, const wh_layout_t *layout, wh_convex_t *convex) {
+    static const char *const units[] = {"mm", "cm", "m", "inch", NULL};
+    static const double mm_per_unit[] = {1, 10, 1000, 25.4};
+    char name[512];
+    char path[1024];
+    char message[512];
+    wh_vec3_t *points = NULL;
+    wh_reader_text(reader, "mesh", NULL, name, sizeof name);
+    const int unit = wh_reader_choice(reader, "unit", -1, units);
+    if (unit < 0) {
+        lua_pushnil(reader->L);
+        wh_reader_fail(reader, "unit", "the mesh's unit: \"mm\", \"cm\", \"m\" or \"inch\"");
+    }
+    path_of(path, sizeof path, layout, name);
+    if (!wh_stl_read(path, mm_per_unit[unit], &points, &convex->point_count, message, sizeof message)) {
+        wh_reader_refuse(reader, "mesh", name, "a convex mesh in an STL file: %s", message);
+    }
+    wh_vec3_t *kept = wh_layout_memory(reader->L, convex->point_count, sizeof *kept);
+    memcpy(kept, points, convex->point_count * sizeof *kept);
+    free(points);
+    convex->kind = WH_CONVEX_MESH;
+    convex->points = kept;
+}
+
+static void read_shape(wh_reader_t *reader, const wh_layout_t *layout, wh_convex_t *convex) {
+    static const char *const kinds[] = {"box", "cylinder", "capsule", "mesh"};
+    int given = -1;
+    for (int i = 0; i < 4; ++i) {
+        if (wh_reader_has(reader, kinds[i])) {
+            if (given >= 0) {
+                wh_reader_refuse(reader, kinds[i], kinds[i], "one shape; %s is given as well", kinds[given]);
+            }
+            given = i;
+        }
+    }
+    switch (given) {
+    case 0:
+        read_box(reader, convex);
+        break;
+    case 1:
+        read_round(reader, "cylinder", WH_CONVEX_CYLINDER, convex);
+        break;
+    case 2:
+        read_round(reader, "capsule", WH_CONVEX_CAPSULE, convex);
+        break;
+    case 3:
+        read_mesh(reader, layout, convex);
+        break;
+    default:
+        lua_pushnil(reader->L);
+        wh_reader_fail(reader, "box", "a shape: box = { x, y, z }, cylinder, capsule or mesh");
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------- place */
+
+/* What the obstacle hangs on: base, a body of the arm, or a gripper. */
+static void read_mount(wh_reader_t *reader, const wh_layout_t *layout, wh_part_t *part) {
+    static const char *const bodies[WH_ARM_BODIES] = {"column", "lift", "upper arm", "forearm", "hand"};
+    char on[WH_NAME_SIZE];
+    wh_reader_text(reader, "on", "base", on, sizeof on);
+    part->kind = WH_PART_FIXED;
+    part->owner = WH_NONE;
+    if (strcmp(on, "base") == 0) {
         return;
     }
-    wh_reader_refuse_unknown(reader, "thickness half_width finger length palm");
+    for (int32_t body = 0; body < (int32_t)WH_ARM_BODIES; ++body) {
+        if (strcmp(on, bodies[body]) == 0) {
+            part->kind = WH_PART_ARM;
+            part->owner = body;
+            return;
+        }
+    }
+    part->owner = wh_layout_find_gripper(layout, on);
+    if (part->owner == WH_NONE) {
+        wh_reader_refuse(reader, "on", on,
+                         "\"base\", \"lift\", \"upper arm\", \"forearm\", \"hand\" or a gripper's name");
+    }
+    part->kind = layout->grippers[part->owner].station == WH_NONE ? WH_PART_BLADE : WH_PART_CHUCK;
+}
+
+static void read_obstacle(wh_reader_t *reader, const wh_layout_t *layout, size_t index,
+                          obstacle_t *obstacle) {
+    static const wh_vec3_t level = {0, 0, 0};
+    char fallback[WH_NAME_SIZE];
+    wh_convex_t *convex = &obstacle->part.convex;
+    wh_reader_refuse_unknown(reader, "name on at rpy box cylinder capsule mesh unit");
+    snprintf(fallback, sizeof fallback, "obstacle %zu", index + 1);
+    wh_reader_text(reader, "name", fallback, obstacle->name, WH_NAME_SIZE);
+    read_mount(reader, layout, &obstacle->part);
+    read_shape(reader, layout, convex);
+    const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", &level);
+    convex->body_from_shape.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
+    convex->body_from_shape.r = wh_reader_vector(reader, "at", NULL);
+    const wh_status_t status = wh_convex_validate(convex);
+    if (status != WH_OK) {
+        wh_reader_refuse(reader, NULL, obstacle->name, "a shape of at least %g mm in each direction: %s",
+                         (double)WH_CONVEX_THINNEST, wh_status_text(status));
+    }
+}
+
+static void read_obstacles(wh_reader_t *reader, const wh_layout_t *layout, obstacles_t *obstacles) {
+    memset(obstacles, 0, sizeof *obstacles);
+    if (!wh_reader_enter(reader, "obstacles")) {
+        return;
+    }
+    obstacles->count = wh_reader_list(reader);
+    if (obstacles->count > WH_LAYOUT_OBSTACLES) {
+        lua_pushinteger(reader->L, (lua_Integer)obstacles->count);
+        wh_reader_fail(reader, NULL, "at most %d obstacles", WH_LAYOUT_OBSTACLES);
+    }
+    obstacles->items = wh_layout_memory(reader->L, obstacles->count, sizeof *obstacles->items);
+    for (size_t i = 0; i < obstacles->count; ++i) {
+        wh_reader_enter_item(reader, (lua_Integer)i + 1);
+        read_obstacle(reader, layout, i, &obstacles->items[i]);
+        wh_reader_leave(reader);
+    }
+    wh_reader_leave(reader);
+}
+
+static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
+    if (!wh_reader_open(reader, "blade", "thickness half_width finger length palm")) {
+        return;
+    }
     blade->thickness = wh_reader_number(reader, "thickness", blade->thickness, 0.1, 50);
     blade->half_width = wh_reader_number(reader, "half_width", blade->half_width, 1, 500);
     blade->finger = wh_reader_number(
@@ -20,10 +190,9 @@ static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
 }
 
 static void read_arm(wh_reader_t *reader, wh_arm_t *arm) {
-    if (!wh_reader_enter(reader, "arm")) {
+    if (!wh_reader_open(reader, "arm", "reach link right_handed")) {
         return;
     }
-    wh_reader_refuse_unknown(reader, "reach link right_handed");
     arm->reach = wh_reader_number(reader, "reach", arm->reach, 0, 2000);
     arm->link = wh_reader_number(reader, "link", arm->link, 10, 5000);
     arm->right_handed = wh_reader_boolean(reader, "right_handed", arm->right_handed);
@@ -31,10 +200,9 @@ static void read_arm(wh_reader_t *reader, wh_arm_t *arm) {
 }
 
 static void read_ledge(wh_reader_t *reader, wh_ledge_t *ledge) {
-    if (!wh_reader_enter(reader, "ledge")) {
+    if (!wh_reader_open(reader, "ledge", "inner outer thickness length")) {
         return;
     }
-    wh_reader_refuse_unknown(reader, "inner outer thickness length");
     ledge->outer = wh_reader_number(reader, "outer", ledge->outer, 1, 2000);
     ledge->inner =
         wh_reader_number(reader, "inner", ledge->inner < ledge->outer ? ledge->inner : 0.9 * ledge->outer, 0,
@@ -45,10 +213,9 @@ static void read_ledge(wh_reader_t *reader, wh_ledge_t *ledge) {
 }
 
 static void read_shell(wh_reader_t *reader, wh_shell_t *shell) {
-    if (!wh_reader_enter(reader, "foup")) {
+    if (!wh_reader_open(reader, "foup", "room wall floor roof")) {
         return;
     }
-    wh_reader_refuse_unknown(reader, "room wall floor roof");
     shell->room = wh_reader_number(reader, "room", shell->room, 0.1, 500);
     shell->wall = wh_reader_number(reader, "wall", shell->wall, 0.1, 100);
     shell->floor = wh_reader_number(reader, "floor", shell->floor, 1, 500);
@@ -57,10 +224,9 @@ static void read_shell(wh_reader_t *reader, wh_shell_t *shell) {
 }
 
 static void read_chuck(wh_reader_t *reader, wh_spindle_t *chuck) {
-    if (!wh_reader_enter(reader, "chuck")) {
+    if (!wh_reader_open(reader, "chuck", "radius height body")) {
         return;
     }
-    wh_reader_refuse_unknown(reader, "radius height body");
     chuck->radius = wh_reader_number(reader, "radius", chuck->radius, 1, 500);
     chuck->height = wh_reader_number(reader, "height", chuck->height, 1, 200);
     chuck->body = wh_reader_number(reader, "body", chuck->body, 1, 1000);
@@ -72,8 +238,7 @@ void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout) {
     wh_shapes_t *shapes = &layout->shapes;
     *shapes = wh_shapes_default(layout->wafer_diameter, layout->wafer_thickness, travel[WH_AXIS_R].max,
                                 travel[WH_AXIS_Z].min);
-    if (wh_reader_enter(reader, "shapes")) {
-        wh_reader_refuse_unknown(reader, "blade arm ledge foup chuck");
+    if (wh_reader_open(reader, "shapes", "blade arm ledge foup chuck")) {
         read_blade(reader, &shapes->blade);
         read_arm(reader, &shapes->arm);
         read_ledge(reader, &shapes->ledge);
@@ -83,7 +248,7 @@ void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- clearances */
+/* --------------------------------------------------------------------------------------------- clearances */
 
 static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
     char known[256] = "";
@@ -103,7 +268,7 @@ static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
     wh_reader_leave(reader);
 }
 
-/* ------------------------------------------------------------------------------------------------------- parts */
+/* -------------------------------------------------------------------------------------------------- parts */
 
 static wh_stand_t stand_of(const wh_layout_station_t *station) {
     if (station->prealigner) {
@@ -120,20 +285,20 @@ static size_t count_parts(const wh_layout_t *layout, size_t obstacles) {
     return count;
 }
 
-/* Fixed parts come first, then those that hang on something. */
-static void add_parts(wh_layout_t *layout, wh_part_list_t *list, const wh_obstacles_t *obstacles) {
+/* Fixed parts come first, then those that hang on something: wh_world_validate asks for that order. */
+static void add_parts(wh_layout_t *layout, wh_part_list_t *list, const obstacles_t *obstacles) {
     for (size_t s = 0; s < layout->station_count; ++s) {
         wh_shapes_add_station(list, &layout->shapes, &layout->places[s], (int32_t)s,
                               stand_of(&layout->stations[s]), layout->stations[s].name);
     }
-    wh_obstacles_add(list, obstacles, true);
+    add_obstacles(list, obstacles, true);
     wh_shapes_add_robot(list, &layout->shapes);
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         wh_shapes_add_gripper(list, &layout->shapes, (int32_t)g, layout->grippers[g].station == WH_NONE,
                               layout->grippers[g].name);
     }
     layout->hung_count = list->count;
-    wh_obstacles_add(list, obstacles, false);
+    add_obstacles(list, obstacles, false);
     layout->hung_count = list->count - layout->hung_count;
 }
 
@@ -141,14 +306,14 @@ static void check_world(wh_reader_t *reader, const wh_layout_t *layout) {
     int32_t part = WH_NONE;
     const wh_status_t status = wh_world_validate(&layout->world, &part);
     if (status != WH_OK) {
-        lua_pushstring(reader->L, part == WH_NONE ? "all parts" : layout->part_names[part]);
-        wh_reader_fail(reader, "shapes", "parts that can be checked: %s", wh_status_text(status));
+        wh_reader_refuse(reader, "shapes", part == WH_NONE ? "all parts" : layout->part_names[part],
+                         "parts that can be checked: %s", wh_status_text(status));
     }
 }
 
 void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout) {
-    wh_obstacles_t obstacles;
-    wh_layout_read_obstacles(reader, layout, &obstacles);
+    obstacles_t obstacles;
+    read_obstacles(reader, layout, &obstacles);
     read_limits(reader, layout);
     const size_t capacity = count_parts(layout, obstacles.count);
     layout->collision = wh_reader_boolean(reader, "collision", false);
@@ -175,6 +340,7 @@ void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout) {
     world->gripper_count = layout->machine.gripper_count;
     world->wafer_count = layout->wafer_count;
     world->cell = &layout->cell;
+    world->grasp = &layout->grasp;
     check_world(reader, layout);
 }
 

@@ -1,10 +1,14 @@
-/* A layout's stations: where they are, and the parameters of GET and PUT. */
+/* A layout's stations and wafers: places, the parameters of GET and PUT, and where wafers lie when a run
+ * begins. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../math/trig.h"
 #include "layout_internal.h"
+
+/* ----------------------------------------------------------------------------------------------- stations */
 
 #define STATION_FIELDS                                                                                       \
     "kind at rpy taught slots pitch effector stroke offset retract pickup_speed pickup_acceleration "        \
@@ -18,7 +22,7 @@ static double default_pitch(double wafer_diameter) {
     return wafer_diameter <= 200 ? 6.35 : 10;
 }
 
-/* So that the blade enters about midway between two wafers at that pitch. */
+/* With this stroke the blade enters about midway between two wafers at that pitch. */
 static double default_stroke(double wafer_diameter) {
     if (wafer_diameter <= 150) {
         return 3;
@@ -37,13 +41,13 @@ static void read_place(wh_reader_t *reader, const wh_layout_t *layout, const wh_
     place->pitch = wh_reader_number(reader, "pitch", default_pitch(layout->wafer_diameter), 0.1, 1000);
     place->chuck = WH_NONE;
     if (place->base_from_station.R.m[2][2] < WH_REAL(0.7)) {
-        lua_pushliteral(reader->L, "rpy");
-        lua_rawget(reader->L, -2);
+        (void)wh_reader_push(reader, "rpy");
         wh_reader_fail(reader, "rpy", "a station whose z points up, tilted by less than 45 degrees");
     }
 }
 
-/* A stroke so fast that a whole window passes between two slices would miss wafers without a word. */
+/* Refuses a stroke that passes the whole tolerance window between two slices: it would miss wafers in
+ * silence. */
 static void check_speed(wh_reader_t *reader, const wh_layout_t *layout, double pickup_speed) {
     const double step = pickup_speed * (double)layout->slice_us / 1e6;
     if (layout->grasp.check == WH_CHECK_SAMPLED && step > layout->grasp.tolerance.projz) {
@@ -55,7 +59,8 @@ static void check_speed(wh_reader_t *reader, const wh_layout_t *layout, double p
     }
 }
 
-/* A stroke that begins below the slot underneath would take the wafer there, and say that all is well. */
+/* Refuses a stroke that begins below the slot underneath: it would take the wrong wafer and report
+ * success. */
 static void check_stroke(wh_reader_t *reader, const wh_station_t *place, const wh_layout_station_t *station) {
     const double below = station->stroke - station->offset;
     const double farther = below > station->offset ? below : station->offset;
@@ -101,7 +106,7 @@ static int compare_names(const void *a, const void *b) {
     return strcmp(((const wh_layout_station_t *)a)->name, ((const wh_layout_station_t *)b)->name);
 }
 
-/* The names first, sorted: Lua's own order differs from run to run. */
+/* Reads the names first and sorts them: Lua's own order differs from run to run. */
 static void read_names(wh_reader_t *reader, wh_layout_t *layout) {
     lua_State *L = reader->L;
     size_t count = 0;
@@ -165,8 +170,7 @@ static void read_effector(wh_reader_t *reader, const wh_layout_t *layout, wh_lay
     wh_reader_text(reader, "effector", layout->grippers[station->effector].name, name, sizeof name);
     const int32_t gripper = wh_layout_find_gripper(layout, name);
     if (gripper == WH_NONE || layout->grippers[gripper].station != WH_NONE) {
-        lua_pushstring(reader->L, name);
-        wh_reader_fail(reader, "effector", "the name of a gripper on = \"robot\"");
+        wh_reader_refuse(reader, "effector", name, "the name of a gripper on = \"robot\"");
     }
     station->effector = gripper;
 }
@@ -178,5 +182,115 @@ void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout) {
         read_effector(reader, layout, &layout->stations[s]);
         wh_reader_leave(reader);
     }
+    wh_reader_leave(reader);
+}
+
+/* ------------------------------------------------------------------------------------------------- wafers */
+
+static void read_position(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_wafer_t *wafer,
+                          wh_pose_t *base_from_wafer) {
+    static const wh_vec3_t none = {0, 0, 0};
+    const wh_pose_t base_from_slot = wh_station_slot(&layout->places[wafer->station], wafer->slot);
+    const wh_vec3_t rpy = wh_reader_vector(reader, "rpy", &none);
+    wh_pose_t slot_from_wafer;
+    slot_from_wafer.r.x = wh_reader_number(reader, "dx", 0, -1000, 1000);
+    slot_from_wafer.r.y = wh_reader_number(reader, "dy", 0, -1000, 1000);
+    slot_from_wafer.r.z = wh_reader_number(reader, "dz", 0, -1000, 1000);
+    slot_from_wafer.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
+    *base_from_wafer = wh_pose_compose(&base_from_slot, &slot_from_wafer);
+}
+
+static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t w) {
+    char station[WH_NAME_SIZE];
+    char fallback[WH_NAME_SIZE];
+    wh_layout_wafer_t *wafer = &layout->wafers[w];
+    wh_reader_refuse_unknown(reader, "name station slot dx dy dz rpy");
+    snprintf(fallback, sizeof fallback, "Wafer %zu", w + 1);
+    wh_reader_text(reader, "name", fallback, wafer->name, sizeof wafer->name);
+    wh_reader_text(reader, "station", NULL, station, sizeof station);
+    wafer->station = wh_layout_find_station(layout, station);
+    if (wafer->station == WH_NONE) {
+        wh_reader_refuse(reader, "station", station, "the name of a station of this layout");
+    }
+    wafer->slot = wh_reader_whole(reader, "slot", 0, 1, layout->places[wafer->station].slots);
+    read_position(reader, layout, wafer, &layout->start[w].base_from_wafer);
+}
+
+/* Pointers are sorted: the wafers themselves stay in their order. */
+typedef const wh_layout_wafer_t *entry_t;
+
+static int compare_wafer_names(const void *a, const void *b) {
+    const wh_layout_wafer_t *one = *(const entry_t *)a;
+    const wh_layout_wafer_t *two = *(const entry_t *)b;
+    const int order = strcmp(one->name, two->name);
+    return order != 0 ? order : (one < two ? -1 : 1);
+}
+
+static int compare_slots(const void *a, const void *b) {
+    const wh_layout_wafer_t *one = *(const entry_t *)a;
+    const wh_layout_wafer_t *two = *(const entry_t *)b;
+    if (one->station != two->station) {
+        return one->station < two->station ? -1 : 1;
+    }
+    if (one->slot != two->slot) {
+        return one->slot < two->slot ? -1 : 1;
+    }
+    return one < two ? -1 : 1;
+}
+
+static void fail_at(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_wafer_t *wafer,
+                    const char *field, const char *expected) {
+    char path[40];
+    snprintf(path, sizeof path, "[%d].%s", (int)(wafer - layout->wafers) + 1, field);
+    wh_reader_fail(reader, path, "%s", expected);
+}
+
+/* Sorting puts wafers with the same name side by side. */
+static void refuse_same_name(wh_reader_t *reader, const wh_layout_t *layout, entry_t *order) {
+    qsort(order, layout->wafer_count, sizeof *order, compare_wafer_names);
+    for (size_t i = 1; i < layout->wafer_count; ++i) {
+        if (strcmp(order[i - 1]->name, order[i]->name) == 0) {
+            lua_pushstring(reader->L, order[i]->name);
+            fail_at(reader, layout, order[i], "name", "a name that no other wafer has");
+        }
+    }
+}
+
+static void refuse_same_slot(wh_reader_t *reader, const wh_layout_t *layout, entry_t *order) {
+    qsort(order, layout->wafer_count, sizeof *order, compare_slots);
+    for (size_t i = 1; i < layout->wafer_count; ++i) {
+        const wh_layout_wafer_t *wafer = order[i];
+        const wh_layout_wafer_t *before = order[i - 1];
+        if (before->station == wafer->station && before->slot == wafer->slot) {
+            char expected[200];
+            snprintf(expected, sizeof expected, "a slot of %s of its own; \"%s\" lies in this one",
+                     layout->stations[wafer->station].name, before->name);
+            lua_pushinteger(reader->L, wafer->slot);
+            fail_at(reader, layout, wafer, "slot", expected);
+        }
+    }
+}
+
+void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout) {
+    if (!wh_reader_enter(reader, "wafers")) {
+        return;
+    }
+    const size_t count = wh_reader_list(reader);
+    if (count > WH_LAYOUT_WAFERS) {
+        wh_reader_fail(reader, NULL, "at most %d wafers", WH_LAYOUT_WAFERS);
+    }
+    layout->wafers = wh_layout_memory(reader->L, count, sizeof *layout->wafers);
+    layout->start = wh_layout_memory(reader->L, count, sizeof *layout->start);
+    for (; layout->wafer_count < count; ++layout->wafer_count) {
+        wh_reader_enter_item(reader, (lua_Integer)layout->wafer_count + 1);
+        read_wafer(reader, layout, layout->wafer_count);
+        wh_reader_leave(reader);
+    }
+    entry_t *order = wh_layout_memory(reader->L, count, sizeof *order);
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        order[w] = &layout->wafers[w];
+    }
+    refuse_same_name(reader, layout, order);
+    refuse_same_slot(reader, layout, order);
     wh_reader_leave(reader);
 }

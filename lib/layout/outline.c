@@ -13,7 +13,7 @@ wh_spot_t wh_outline_spot(wh_projection_t view, wh_vec3_t r) {
     return spot;
 }
 
-/* ------------------------------------------------------------------------------------------------------ points */
+/* ------------------------------------------------------------------------------------------------- points */
 
 static void add(wh_outline_t *outline, wh_projection_t view, const wh_pose_t *base_from_shape,
                 wh_vec3_t point) {
@@ -43,7 +43,7 @@ static void add_cylinder(wh_outline_t *outline, wh_projection_t view, const wh_c
     }
 }
 
-/* A ball looks the same from everywhere. */
+/* The two balls of a capsule: each is the same circle from every side. */
 static void add_capsule(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
                         const wh_pose_t *pose) {
     const wh_vec3_t axis = wh_mat3_column(&pose->R, 2);
@@ -80,7 +80,7 @@ static void add_points(wh_outline_t *outline, wh_projection_t view, const wh_con
     }
 }
 
-/* -------------------------------------------------------------------------------------------------------- hull */
+/* --------------------------------------------------------------------------------------------------- hull */
 
 static int compare(const void *a, const void *b) {
     const wh_spot_t *one = a;
@@ -91,7 +91,7 @@ static int compare(const void *a, const void *b) {
     return (one->y > two->y) - (one->y < two->y);
 }
 
-/* Whether the way from a over b to c turns right or goes straight on. */
+/* True if the way from a over b to c turns right or goes straight on. */
 static bool turns_not(const wh_spot_t *a, const wh_spot_t *b, const wh_spot_t *c) {
     return (b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x) <= 0;
 }
@@ -104,7 +104,8 @@ static size_t push(wh_spot_t *hull, size_t count, size_t base, wh_spot_t spot) {
     return count + 1;
 }
 
-/* Andrew's monotone chain: once along the sorted spots below them, and back above; the hull is put behind the spots. */
+/* Andrew's monotone chain: along the sorted spots for the lower side, and back for the upper one. The hull is
+ * built behind the spots. */
 static void keep_hull(wh_outline_t *outline) {
     const size_t count = outline->count;
     wh_spot_t *spots = outline->spots;
@@ -124,7 +125,7 @@ static void keep_hull(wh_outline_t *outline) {
 
 static void make_room(wh_outline_t *outline, const wh_convex_t *convex) {
     const size_t points = convex->kind == WH_CONVEX_MESH ? convex->point_count : 2 * (size_t)CIRCLE_CORNERS;
-    const size_t needed = 3 * points + 2; /* the spots, and a hull that visits each twice at most */
+    const size_t needed = 3 * points + 2; /* the spots, and a hull that visits each of them twice at most */
     outline->spots = wh_array_reserve(outline->spots, needed, &outline->capacity, sizeof *outline->spots);
     outline->count = 0;
 }

@@ -1,4 +1,4 @@
-/* The outline of a convex part as one sees it from above or from the side. */
+/* The outline of a convex part, seen from above or from the side. */
 #ifndef WH_LAYOUT_OUTLINE_H
 #define WH_LAYOUT_OUTLINE_H
 
@@ -7,22 +7,22 @@
 /* From above: x to the right, y up. From the side, along base's y: x to the right, z up. */
 typedef enum { WH_VIEW_TOP, WH_VIEW_SIDE } wh_projection_t;
 
-/* A point of the picture, mm, y down as in a picture. */
+/* A point of the picture, mm; y points down. */
 typedef struct {
     double x, y;
 } wh_spot_t;
 
-/* Corners in order; `spots` is the outline's own. Zero it to begin with: memory is kept from use to use. */
+/* Corners in order. The outline owns `spots`. Start with all zero; the memory is kept from use to use. */
 typedef struct {
     wh_spot_t *spots;
     size_t count, capacity;
 } wh_outline_t;
 
-/* Where a point is in the picture. */
+/* The place of a point in the picture. */
 wh_spot_t wh_outline_spot(wh_projection_t view, wh_vec3_t r);
 
-/* The convex hull of the part as seen; circles have 48 corners. If there is no memory, the program ends. Cost: n log n in
- * the points of a mesh. */
+/* The convex hull of the part as seen. Circles have 48 corners. False if out of memory. Cost: n log n in the
+ * points of a mesh. */
 void wh_outline_draw(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
                      const wh_pose_t *base_from_shape);
 

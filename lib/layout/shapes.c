@@ -1,10 +1,10 @@
-/* Default shapes of a cell. The figures are of the usual size, no maker's data. */
+/* Default shapes of a cell. The figures are of the usual size, not a maker's data. */
 #include "shapes.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 
-/* Heights of the arm's links below the end-effector's contact plane, mm: they fold over each other. */
+/* Heights of the arm's links below the end-effector's contact plane, mm: the links fold over each other. */
 enum { HAND_BOTTOM = -60, FOREARM_TOP = -65, FOREARM_BOTTOM = -110, UPPER_TOP = -115, UPPER_BOTTOM = -160 };
 enum { LIFT_TOP = -165, LINK_HALF_WIDTH = 35, HAND_RADIUS = 40, LIFT_RADIUS = 90, COLUMN_RADIUS = 120 };
 enum { BODY_BOTTOM = -220 }; /* of a prealigner, below the chuck's upper side */
@@ -33,7 +33,7 @@ wh_shapes_t wh_shapes_default(wh_real_t diameter, wh_real_t thickness, wh_real_t
     return shapes;
 }
 
-/* ----------------------------------------------------------------------------------------------------- adding */
+/* ------------------------------------------------------------------------------------------------- adding */
 
 void wh_shapes_add(wh_part_list_t *list, const wh_part_t *part, const char *name, ...) {
     va_list values;
@@ -62,7 +62,7 @@ wh_convex_t wh_shapes_wafer(const wh_shapes_t *shapes) {
     return cylinder(shapes->wafer_radius, 0, shapes->wafer_thickness);
 }
 
-/* ----------------------------------------------------------------------------------------------------- robot */
+/* -------------------------------------------------------------------------------------------------- robot */
 
 static void add_arm(wh_part_list_t *list, wh_arm_body_t body, wh_convex_t convex, const char *name) {
     const wh_part_t part = {.kind = WH_PART_ARM, .owner = (int32_t)body, .convex = convex};
@@ -73,7 +73,7 @@ static wh_convex_t link_box(const wh_arm_t *arm, wh_real_t bottom, wh_real_t top
     return box(-LINK_HALF_WIDTH, arm->link + LINK_HALF_WIDTH, -LINK_HALF_WIDTH, LINK_HALF_WIDTH, bottom, top);
 }
 
-/* The lift slides in the column, which ends where the lift's head stops at its lowest. */
+/* The lift slides in the column. The column ends where the lift's head stops at its lowest. */
 void wh_shapes_add_robot(wh_part_list_t *list, const wh_shapes_t *shapes) {
     const wh_real_t column = shapes->lowest + LIFT_TOP - 10;
     if (column > 20) {
@@ -114,7 +114,7 @@ void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int3
     wh_shapes_add(list, &part, "%s chuck", name);
 }
 
-/* ---------------------------------------------------------------------------------------------------- stations */
+/* ----------------------------------------------------------------------------------------------- stations */
 
 size_t wh_shapes_count_station(wh_stand_t stand, int32_t slots) {
     switch (stand) {
@@ -124,8 +124,6 @@ size_t wh_shapes_count_station(wh_stand_t stand, int32_t slots) {
         return 2 * (size_t)slots + 6;
     case WH_STAND_CHUCK:
         return 1;
-    case WH_STAND_NOTHING:
-        break;
     }
     return 0;
 }
@@ -191,8 +189,6 @@ void wh_shapes_add_station(wh_part_list_t *list, const wh_shapes_t *shapes, cons
     case WH_STAND_CHUCK:
         add_fixed(list, station, index, cylinder(shapes->chuck.body, BODY_BOTTOM, -shapes->chuck.height - 1),
                   name, "body");
-        break;
-    case WH_STAND_NOTHING:
         break;
     }
 }

@@ -1,5 +1,5 @@
-/* The parts of a cell for the collision check: what a layout says of them, and what it leaves to defaults that fit
- * wafers of 150, 200 and 300 mm.
+/* The parts of a cell for the collision check: what a layout says of them, and defaults that fit wafers of
+ * 150, 200 and 300 mm.
  *
  * A part has a name for reports: "A ledge 3 left", "EE finger right", "forearm", "wall".
  */
@@ -10,16 +10,17 @@
 
 #define WH_PART_NAME_SIZE 96
 
-/* A horseshoe blade, in the gripper's frame: the contact plane is its upper side. mm. */
+/* A horseshoe blade in the gripper's frame: its upper side is the contact plane. mm. */
 typedef struct {
     wh_real_t thickness;
     wh_real_t half_width; /* of the horseshoe */
     wh_real_t finger;     /* width of a finger, less than half_width */
-    wh_real_t length;     /* the fingers reach so far before the gripper's origin */
-    wh_real_t palm;       /* the horseshoe ends so far behind it, and the neck begins */
+    wh_real_t length;     /* from the gripper's origin forward to the finger tips */
+    wh_real_t palm;       /* from the gripper's origin back to the horseshoe's end, where the neck begins */
 } wh_blade_t;
 
-/* The ledges that carry a wafer left and right, in the slot's frame: their upper side is the slot's plane. mm. */
+/* The ledges that carry a wafer left and right, in the slot's frame: their upper side is the slot's plane.
+ * mm. */
 typedef struct {
     wh_real_t inner, outer; /* from the middle to both edges, inner < outer */
     wh_real_t thickness;
@@ -28,19 +29,19 @@ typedef struct {
 
 /* The shell of a FOUP around its slots, open towards the robot. mm. */
 typedef struct {
-    wh_real_t room;        /* between a centred wafer's rim and the walls, at the sides and behind */
+    wh_real_t room;        /* between a centred wafer's rim and the walls */
     wh_real_t wall;        /* thickness */
     wh_real_t floor, roof; /* from the first slot's plane down, from the last one's up, to the inside */
 } wh_shell_t;
 
-/* A prealigner's chuck, the wafer lying on its upper side, and the body below it. mm. */
+/* A prealigner's chuck, on whose upper side the wafer lies, and the body below it. mm. */
 typedef struct {
     wh_real_t radius, height;
     wh_real_t body; /* radius of the body, which begins 1 mm below the chuck */
 } wh_spindle_t;
 
-/* What stands where slots are. */
-typedef enum { WH_STAND_LEDGES, WH_STAND_FOUP, WH_STAND_CHUCK, WH_STAND_NOTHING } wh_stand_t;
+/* What carries the wafers of a station. */
+typedef enum { WH_STAND_LEDGES, WH_STAND_FOUP, WH_STAND_CHUCK } wh_stand_t;
 
 typedef struct {
     wh_real_t wafer_radius, wafer_thickness;
@@ -52,14 +53,15 @@ typedef struct {
     wh_spindle_t chuck;
 } wh_shapes_t;
 
-/* Parts with their names, being collected. */
+/* Parts with their names, while they are collected. */
 typedef struct {
     wh_part_t *parts;
     char (*names)[WH_PART_NAME_SIZE];
     size_t count, capacity;
 } wh_part_list_t;
 
-/* The defaults for wafers of a size and for a robot whose R reaches to `farthest` and Z down to `lowest`. */
+/* The defaults for wafers of a diameter and thickness, and a robot whose R reaches to `farthest` and Z down
+ * to `lowest`. */
 wh_shapes_t wh_shapes_default(wh_real_t diameter, wh_real_t thickness, wh_real_t farthest, wh_real_t lowest);
 
 /* How many parts the functions below add at most. */
@@ -67,18 +69,19 @@ size_t wh_shapes_count_station(wh_stand_t stand, int32_t slots);
 #define WH_SHAPES_ROBOT 5
 #define WH_SHAPES_GRIPPER 5
 
-/* A station's ledges, shell and load port, or its prealigner's body: parts that are fixed, `owner` being `index`. */
+/* Adds a station's ledges, shell and load port, or its prealigner's body: fixed parts with the owner
+ * `index`. */
 void wh_shapes_add_station(wh_part_list_t *list, const wh_shapes_t *shapes, const wh_station_t *station,
                            int32_t index, wh_stand_t stand, const char *name);
 
-/* The robot's column and arm. */
+/* Adds the robot's column and arm. */
 void wh_shapes_add_robot(wh_part_list_t *list, const wh_shapes_t *shapes);
 
-/* A gripper's blade, or its chuck. */
+/* Adds a gripper's blade, or its chuck. */
 void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper, bool on_robot,
                            const char *name);
 
-/* One more part; its name is cut to fit. There must be room. */
+/* Adds a part, for which there must be room. Its name is cut to fit. */
 void wh_shapes_add(wh_part_list_t *list, const wh_part_t *part, const char *name, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -1,21 +1,33 @@
 #include "stl.h"
 
+#include <endian.h>
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
-#include "stl_internal.h"
+#include "../text/array.h"
 
-/* What the numbers of a file are rounded to, in parts of the largest: seven digits, or a single float. */
+/* The rounding of a file's numbers, relative to the largest: seven digits, or a single float. */
 static const wh_real_t file_digits = 1e-6;
+enum { HEAD = 80, COUNT = 4, FACET = 50, NORMAL = 12, WORD = 64 };
 
 typedef struct {
-    wh_real_t size, coordinate;
-} extent_t;
+    const char *path;
+    const char *at, *end; /* the rest, which is still to be read */
+    const char *begin;
+    unsigned line;
+    wh_real_t mm_per_unit;
+    wh_vec3_t *corners; /* three for each facet, room for WH_STL_FACETS */
+    size_t facets;
+    char *message;
+    size_t message_size;
+} stl_t;
 
-bool wh_stl_refuse(wh_stl_t *stl, const char *format, ...) {
+/* Writes the path and the formatted text into the message, and returns false. */
+__attribute__((format(printf, 2, 3))) static bool refuse(stl_t *stl, const char *format, ...) {
     const int length = snprintf(stl->message, stl->message_size, "%s", stl->path);
     if (length >= 0 && (size_t)length < stl->message_size) {
         va_list arguments;
@@ -26,11 +38,186 @@ bool wh_stl_refuse(wh_stl_t *stl, const char *format, ...) {
     return false;
 }
 
-/* -------------------------------------------------------------------------------------------------- the points */
-
-static wh_real_t larger(wh_real_t a, wh_real_t b) {
-    return a > b ? a : b;
+/* Adds one corner. `where` is its place in the file, for the message. */
+static bool take_corner(stl_t *stl, const double xyz[3], size_t corner, const char *where) {
+    double scaled[3];
+    for (size_t i = 0; i < 3; ++i) {
+        scaled[i] = xyz[i] * stl->mm_per_unit;
+        if (!(scaled[i] >= -WH_CONVEX_LARGEST && scaled[i] <= WH_CONVEX_LARGEST)) {
+            return refuse(stl, "%s: a coordinate of %g times %g mm (expected -%g to %g mm)", where, xyz[i],
+                          stl->mm_per_unit, WH_CONVEX_LARGEST, WH_CONVEX_LARGEST);
+        }
+    }
+    stl->corners[3 * stl->facets + corner] = wh_vec3(scaled[0], scaled[1], scaled[2]);
+    return true;
 }
+
+static bool too_many(stl_t *stl) {
+    return refuse(stl, ": more than %d facets", WH_STL_FACETS);
+}
+
+/* ------------------------------------------------------------------------------------------------- binary */
+
+static uint32_t little_endian(const char *bytes) {
+    uint32_t value;
+    memcpy(&value, bytes, sizeof value);
+    return le32toh(value);
+}
+
+static double single(const char *bytes) {
+    const uint32_t bits = little_endian(bytes);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return (double)value;
+}
+
+static bool read_binary(stl_t *stl) {
+    const uint32_t count = little_endian(stl->begin + HEAD);
+    for (stl->at = stl->begin + HEAD + COUNT; stl->facets < count; ++stl->facets, stl->at += FACET) {
+        for (size_t corner = 0; corner < 3; ++corner) {
+            const char *bytes = stl->at + NORMAL + 12 * corner;
+            const double xyz[3] = {single(bytes), single(bytes + 4), single(bytes + 8)};
+            char where[WORD];
+            (void)snprintf(where, sizeof where, ": byte %zu", (size_t)(bytes - stl->begin));
+            if (!take_corner(stl, xyz, corner, where)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/* -------------------------------------------------------------------------------------------------- ASCII */
+
+static bool is_space(char c) {
+    return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+/* Reads the next word, cut if it is long, with every unprintable byte as '?'; empty at the end. stl->line is
+ * its line. */
+static void next_word(stl_t *stl, char word[WORD]) {
+    for (; stl->at < stl->end && is_space(*stl->at); ++stl->at) {
+        stl->line += *stl->at == '\n';
+    }
+    size_t length = 0;
+    for (; stl->at < stl->end && !is_space(*stl->at); ++stl->at) {
+        if (length < WORD - 1) {
+            word[length++] = *stl->at;
+            if (*stl->at < ' ' || *stl->at > '~') {
+                word[length - 1] = '?';
+            }
+        }
+    }
+    word[length] = '\0';
+}
+
+static void skip_line(stl_t *stl) {
+    while (stl->at < stl->end && *stl->at != '\n') {
+        ++stl->at;
+    }
+}
+
+static bool refuse_word(stl_t *stl, const char *word, const char *expected) {
+    if (word[0] == '\0') {
+        return refuse(stl, ":%u: the file ends (expected %s)", stl->line, expected);
+    }
+    return refuse(stl, ":%u: \"%s\" (expected %s)", stl->line, word, expected);
+}
+
+static bool expect(stl_t *stl, const char *keyword) {
+    char word[WORD];
+    next_word(stl, word);
+    return strcasecmp(word, keyword) == 0 || refuse_word(stl, word, keyword);
+}
+
+static bool read_number(stl_t *stl, double *number) {
+    char word[WORD];
+    next_word(stl, word);
+    char *behind = word;
+    *number = strtod(word, &behind);
+    return (behind != word && *behind == '\0' && *number - *number == 0) ||
+           refuse_word(stl, word, "a number");
+}
+
+static bool read_vertex(stl_t *stl, size_t corner) {
+    double xyz[3];
+    if (!expect(stl, "vertex")) {
+        return false;
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        if (!read_number(stl, &xyz[i])) {
+            return false;
+        }
+    }
+    char where[WORD];
+    (void)snprintf(where, sizeof where, ":%u", stl->line);
+    return take_corner(stl, xyz, corner, where);
+}
+
+/* Reads what follows the word `facet`. The normal may be anything: some programs write none. */
+static bool read_facet(stl_t *stl) {
+    char ignored[WORD];
+    if (!expect(stl, "normal")) {
+        return false;
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        next_word(stl, ignored);
+    }
+    if (!expect(stl, "outer") || !expect(stl, "loop")) {
+        return false;
+    }
+    for (size_t corner = 0; corner < 3; ++corner) {
+        if (!read_vertex(stl, corner)) {
+            return false;
+        }
+    }
+    return expect(stl, "endloop") && expect(stl, "endfacet");
+}
+
+static bool read_text(stl_t *stl) {
+    char word[WORD];
+    stl->line = 1;
+    next_word(stl, word);
+    skip_line(stl);
+    for (next_word(stl, word); strcasecmp(word, "facet") == 0; next_word(stl, word)) {
+        if (stl->facets == WH_STL_FACETS) {
+            return too_many(stl);
+        }
+        if (!read_facet(stl)) {
+            return false;
+        }
+        ++stl->facets;
+    }
+    if (strcasecmp(word, "endsolid") != 0) {
+        return refuse_word(stl, word, "facet or endsolid");
+    }
+    skip_line(stl);
+    next_word(stl, word);
+    return word[0] == '\0' || refuse_word(stl, word, "the end of the file: one solid");
+}
+
+/* Binary files may begin with `solid` too, but only a binary file has the length that its count asks for. */
+static bool read_facets(stl_t *stl) {
+    const size_t length = (size_t)(stl->end - stl->begin);
+    if (length >= HEAD + COUNT) {
+        const uint32_t count = little_endian(stl->begin + HEAD);
+        if (length == HEAD + COUNT + FACET * (size_t)count) {
+            return count <= WH_STL_FACETS ? read_binary(stl) : too_many(stl);
+        }
+    }
+    char word[WORD];
+    next_word(stl, word);
+    stl->at = stl->begin;
+    if (strcasecmp(word, "solid") == 0) {
+        return read_text(stl);
+    }
+    return refuse(stl,
+                  ": %zu bytes (expected the word solid, or 80 bytes, a count of facets, and 50 bytes for "
+                  "each)",
+                  length);
+}
+
+/* --------------------------------------------------------------------------------------------- the points */
 
 static int compare_numbers(wh_real_t a, wh_real_t b) {
     return (a > b) - (a < b);
@@ -44,16 +231,11 @@ static int compare(const void *left, const void *right) {
     return order != 0 ? order : compare_numbers(a->z, b->z);
 }
 
-/* The different ones of the corners, sorted, in memory of their own; null when there is none. */
+/* The different corners, sorted, in memory of their own. */
 static wh_vec3_t *different(const wh_vec3_t *corners, size_t corner_count, size_t *count) {
-    wh_vec3_t *points = malloc((corner_count + 1) * sizeof *points);
-    if (points == NULL) {
-        return NULL;
-    }
-    if (corner_count > 0) {
-        memcpy(points, corners, corner_count * sizeof *points);
-        qsort(points, corner_count, sizeof *points, compare);
-    }
+    wh_vec3_t *points = wh_array_new(corner_count, sizeof *points);
+    memcpy(points, corners, corner_count * sizeof *points);
+    qsort(points, corner_count, sizeof *points, compare);
     *count = 0;
     for (size_t i = 0; i < corner_count; ++i) {
         if (*count == 0 || compare(&points[*count - 1], &points[i]) != 0) {
@@ -63,7 +245,11 @@ static wh_vec3_t *different(const wh_vec3_t *corners, size_t corner_count, size_
     return points;
 }
 
-/* The longest edge of the box around them, and their largest coordinate. */
+/* The longest edge of the box around the points, and their largest coordinate. */
+typedef struct {
+    wh_real_t size, coordinate;
+} extent_t;
+
 static extent_t extent_of(const wh_vec3_t *points, size_t count) {
     const wh_convex_t mesh = {.kind = WH_CONVEX_MESH, .points = points, .point_count = count};
     const wh_pose_t here = wh_pose_identity();
@@ -74,13 +260,13 @@ static extent_t extent_of(const wh_vec3_t *points, size_t count) {
     const wh_real_t to[3] = {high.x, high.y, high.z};
     extent_t extent = {0, 0};
     for (size_t i = 0; i < 3; ++i) {
-        extent.size = larger(extent.size, to[i] - from[i]);
-        extent.coordinate = larger(extent.coordinate, larger(-from[i], to[i]));
+        extent.size = wh_real_max(extent.size, to[i] - from[i]);
+        extent.coordinate = wh_real_max(extent.coordinate, wh_real_max(-from[i], to[i]));
     }
     return extent;
 }
 
-/* The unit normal of a facet, and how high it stands on its longest edge; 0 for one that has no normal. */
+/* The unit normal of a facet. Returns the facet's height on its longest edge; 0 if it has no normal. */
 static wh_real_t normal_of(const wh_vec3_t *corners, wh_vec3_t *normal) {
     const wh_vec3_t ab = wh_vec3_subtract(&corners[1], &corners[0]);
     const wh_vec3_t ac = wh_vec3_subtract(&corners[2], &corners[0]);
@@ -91,12 +277,12 @@ static wh_real_t normal_of(const wh_vec3_t *corners, wh_vec3_t *normal) {
         return 0;
     }
     *normal = wh_vec3_scale(1 / area, normal);
-    return area / larger(wh_vec3_norm(&ab), larger(wh_vec3_norm(&ac), wh_vec3_norm(&bc)));
+    return area / wh_real_max(wh_vec3_norm(&ab), wh_real_max(wh_vec3_norm(&ac), wh_vec3_norm(&bc)));
 }
 
-/* No plane of a facet may have corners on both sides. The thinner the facet, the more the rounding of the file's numbers
- * turns its plane; one that is turned too far tells nothing. */
-static bool check_facet(wh_stl_t *stl, size_t facet, const wh_vec3_t *points, size_t count, extent_t extent) {
+/* Refuses a body that has corners on both sides of a facet's plane. The thinner the facet, the more the
+ * rounding of the file's numbers turns its plane. A facet whose plane may be turned too far says nothing. */
+static bool check_facet(stl_t *stl, size_t facet, const wh_vec3_t *points, size_t count, extent_t extent) {
     const wh_vec3_t *corners = &stl->corners[3 * facet];
     wh_vec3_t normal;
     const wh_real_t height = normal_of(corners, &normal);
@@ -108,11 +294,11 @@ static bool check_facet(wh_stl_t *stl, size_t facet, const wh_vec3_t *points, si
     wh_real_t behind = 0;
     for (size_t i = 0; i < count; ++i) {
         const wh_vec3_t from = wh_vec3_subtract(&points[i], &corners[0]);
-        before = larger(before, wh_vec3_dot(&from, &normal));
-        behind = larger(behind, -wh_vec3_dot(&from, &normal));
+        before = wh_real_max(before, wh_vec3_dot(&from, &normal));
+        behind = wh_real_max(behind, -wh_vec3_dot(&from, &normal));
     }
     if (before > flat && behind > flat) {
-        return wh_stl_refuse(
+        return refuse(
             stl,
             ": facet %zu has corners %g and %g mm off its plane, on either side (expected a convex body)",
             facet + 1, before, behind);
@@ -120,18 +306,17 @@ static bool check_facet(wh_stl_t *stl, size_t facet, const wh_vec3_t *points, si
     return true;
 }
 
-static bool check(wh_stl_t *stl, const wh_vec3_t *points, size_t count) {
+static bool check(stl_t *stl, const wh_vec3_t *points, size_t count) {
     if (count > WH_STL_POINTS) {
-        return wh_stl_refuse(stl, ": %zu different corners (expected at most %d)", count, WH_STL_POINTS);
+        return refuse(stl, ": %zu different corners (expected at most %d)", count, WH_STL_POINTS);
     }
     const wh_convex_t mesh = {.kind = WH_CONVEX_MESH,
                               .points = points,
                               .point_count = count,
                               .body_from_shape = wh_pose_identity()};
     if (wh_convex_validate(&mesh) != WH_OK) {
-        return wh_stl_refuse(
-            stl, ": %zu facets with %zu different corners (expected a body, at least %g mm thick)",
-            stl->facets, count, WH_CONVEX_THINNEST);
+        return refuse(stl, ": %zu facets with %zu different corners (expected a body, at least %g mm thick)",
+                      stl->facets, count, WH_CONVEX_THINNEST);
     }
     const extent_t extent = extent_of(points, count);
     for (size_t facet = 0; facet < stl->facets; ++facet) {
@@ -142,66 +327,53 @@ static bool check(wh_stl_t *stl, const wh_vec3_t *points, size_t count) {
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------ the file */
-
-static bool parse(wh_stl_t *stl, wh_vec3_t **points, size_t *count) {
-    if (!wh_stl_read_facets(stl)) {
-        return false;
-    }
-    size_t found = 0;
-    wh_vec3_t *mine = different(stl->corners, 3 * stl->facets, &found);
-    if (mine == NULL) {
-        return wh_stl_refuse(stl, ": out of memory");
-    }
-    if (!check(stl, mine, found)) {
-        free(mine);
-        return false;
-    }
-    *points = mine;
-    *count = found;
-    return true;
-}
+/* ----------------------------------------------------------------------------------------------- the file */
 
 bool wh_stl_parse(const char *path, const char *bytes, size_t length, wh_real_t mm_per_unit,
                   wh_vec3_t **points, size_t *count, char *message, size_t size) {
-    wh_stl_t stl = {.path = path,
-                    .at = bytes,
-                    .end = bytes + length,
-                    .begin = bytes,
-                    .line = 1,
-                    .mm_per_unit = mm_per_unit,
-                    .message = message,
-                    .message_size = size};
+    stl_t stl = {.path = path,
+                 .at = bytes,
+                 .end = bytes + length,
+                 .begin = bytes,
+                 .line = 1,
+                 .mm_per_unit = mm_per_unit,
+                 .message = message,
+                 .message_size = size};
     if (!(mm_per_unit > 0 && wh_real_is_finite(mm_per_unit))) {
-        return wh_stl_refuse(&stl, ": %g mm a unit (expected a positive number)", mm_per_unit);
+        return refuse(&stl, ": %g mm a unit (expected a positive number)", mm_per_unit);
     }
     if (length > WH_STL_BYTES) {
-        return wh_stl_refuse(&stl, ": more than %zu bytes", WH_STL_BYTES);
+        return refuse(&stl, ": more than %zu bytes", WH_STL_BYTES);
     }
-    stl.corners = malloc(3 * (size_t)WH_STL_FACETS * sizeof *stl.corners);
-    if (stl.corners == NULL) {
-        return wh_stl_refuse(&stl, ": out of memory");
+    bool good = false;
+    stl.corners = wh_array_new(3 * (size_t)WH_STL_FACETS, sizeof *stl.corners);
+    if (read_facets(&stl)) {
+        size_t found = 0;
+        wh_vec3_t *mine = different(stl.corners, 3 * stl.facets, &found);
+        good = check(&stl, mine, found);
+        if (good) {
+            *points = mine;
+            *count = found;
+        } else {
+            free(mine);
+        }
     }
-    const bool good = parse(&stl, points, count);
     free(stl.corners);
     return good;
 }
 
 bool wh_stl_read(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, size_t *count, char *message,
                  size_t size) {
-    wh_stl_t stl = {.path = path, .message = message, .message_size = size};
+    stl_t stl = {.path = path, .message = message, .message_size = size};
     FILE *file = fopen(path, "rb");
     if (file == NULL) {
-        return wh_stl_refuse(&stl, ": %s", strerror(errno));
+        return refuse(&stl, ": %s", strerror(errno));
     }
-    char *bytes = malloc(WH_STL_BYTES + 1);
-    const size_t length = bytes == NULL ? 0 : fread(bytes, 1, WH_STL_BYTES + 1, file);
-    bool good = false;
-    if (bytes == NULL || ferror(file) != 0) {
-        (void)wh_stl_refuse(&stl, ": %s", strerror(errno));
-    } else {
-        good = wh_stl_parse(path, bytes, length, mm_per_unit, points, count, message, size);
-    }
+    char *bytes = wh_array_new(WH_STL_BYTES + 1, 1);
+    const size_t length = fread(bytes, 1, WH_STL_BYTES + 1, file);
+    const bool good = ferror(file) != 0
+                          ? refuse(&stl, ": %s", strerror(errno))
+                          : wh_stl_parse(path, bytes, length, mm_per_unit, points, count, message, size);
     free(bytes);
     (void)fclose(file);
     return good;

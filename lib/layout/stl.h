@@ -1,31 +1,39 @@
 /* Reads a convex body from an STL file, ASCII or binary, as the points of a convex mesh (collision/convex.h).
  *
- * STL has no unit, so the caller says it. Facets serve one purpose: to see that the body is convex. Their normals are not
- * looked at, nor is which way round their corners go, nor whether they close. The format: M. Burns, Automated Fabrication,
- * 1993, section 6.5. Host code: it allocates.
+ * STL has no unit, so the caller gives it. The facets serve one purpose: to see that the body is convex.
+ * Their normals, the order of their corners and gaps between them are ignored. The format: M. Burns,
+ * Automated Fabrication, 1993, section 6.5. Host code: it allocates,
+ * and the program ends if out of memory.
  */
 #ifndef WH_LAYOUT_STL_H
 #define WH_LAYOUT_STL_H
 
 #include "../collision/convex.h"
 
-/* The largest file, most facets and most different corners that are read. */
+/* The largest file, the most facets and the most different corners. */
 #define WH_STL_BYTES ((size_t)16 << 20)
 #define WH_STL_FACETS 16384
 #define WH_STL_POINTS 4096
-/* A corner may stand out of a facet's plane by this much of the body's size, and for thin facets by what seven digits
- * leave open; what the facets enclose may then be that much smaller than the hull of the points. */
+/* A corner may stand out of a facet's plane by this fraction of the body's size; for thin facets also by what
+ * seven digits leave open. The body that the facets enclose may be smaller than the hull of the points by
+ * that much. */
 #define WH_STL_FLAT 1e-4
 
-/* The different corners of the file's only solid, in mm, sorted by x, y, z: *points is from malloc and the caller's to
- * free. Together they are a mesh that wh_convex_validate finds good. `mm_per_unit`: such as 1, 25.4 or 1000.
- * False, and one line that names file, line (ASCII) or byte (binary) or facet (from 1), value and what was expected in
- * `message`, with *points and *count unchanged: the file cannot be read, is too large, is no STL or is cut off; a
- * coordinate is not finite or beyond WH_CONVEX_LARGEST; the body is not convex or is flat. Cost: facets times points. */
+/* Reads the different corners of the file's only solid, in mm, sorted by x, y, z. *points is from malloc and
+ * the caller's to free. wh_convex_validate accepts the mesh of these points. `mm_per_unit`: such as 1, 25.4
+ * or 1000.
+ *
+ * False with *points and *count unchanged: the file cannot be read, is too large, is no STL or is cut off; a
+ * coordinate is not finite or beyond WH_CONVEX_LARGEST; the body is not convex or is flat. `message` then has
+ * one line that names the file, the line (ASCII), byte (binary) or facet (from 1), the value and what was
+ * expected.
+ *
+ * Cost: facets times points.
+ */
 bool wh_stl_read(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, size_t *count, char *message,
                  size_t size);
 
-/* The same from memory; `path` is what the message calls it. */
+/* wh_stl_read from memory; messages call it `path`. */
 bool wh_stl_parse(const char *path, const char *bytes, size_t length, wh_real_t mm_per_unit,
                   wh_vec3_t **points, size_t *count, char *message, size_t size);
 

@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#include "checksum.h"
-
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     wh_broadcast_t *broadcast = (wh_broadcast_t *)link;
     uint8_t encoded[2048];

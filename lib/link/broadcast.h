@@ -1,5 +1,5 @@
-/* `run --lcm`: motion control and simulator in one process, coupled by calls, while all that would travel between them
- * is published for whoever watches, and recorded. */
+/* `run --lcm`: motion control and simulator in one process, coupled by calls, while all that would travel
+ * between them is published for whoever watches, and recorded. */
 #ifndef WH_LINK_BROADCAST_H
 #define WH_LINK_BROADCAST_H
 

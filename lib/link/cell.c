@@ -1,8 +1,7 @@
-/* The cell of a layout as a message. */
+/* The cell of a layout as a message, and back. */
 #include <stdlib.h>
 #include <string.h>
 
-#include "fault_message.h"
 #include "messages.h"
 
 static bool make_room(const wh_layout_t *layout, waferhand_cell *message) {
@@ -95,4 +94,133 @@ void wh_link_cell_free(waferhand_cell *message) {
     free(message->wafers);
     free(message->faults);
     memset(message, 0, sizeof *message);
+}
+
+/* ----------------------------------------------------------------------------------------------- and back */
+
+static bool take_name(const char *from, char to[WH_NAME_SIZE]) {
+    const size_t length = strlen(from);
+    if (length == 0 || length >= WH_NAME_SIZE) {
+        return false;
+    }
+    memcpy(to, from, length + 1);
+    return true;
+}
+
+static bool take_pose(const double position[3], const double rotation[9], wh_pose_t *pose) {
+    *pose = wh_link_take_pose(position, rotation);
+    return wh_pose_validate(pose) == WH_OK;
+}
+
+/* True if a layout's file may say this of a tolerance or a neighbourhood. */
+static bool is_limit(double mm) {
+    return mm >= 1e-9 && mm <= 1e6;
+}
+
+static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
+    wh_grasp_config_t *grasp = &layout->grasp;
+    grasp->tolerance.projz = cell->eps_projz;
+    grasp->tolerance.projxy = cell->eps_projxy;
+    grasp->tolerance.planar = cell->eps_planar;
+    grasp->near_projz = cell->near_projz;
+    grasp->near_projxy = cell->near_projxy;
+    grasp->check = cell->check != 0 ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED;
+    grasp->seat = cell->seat != 0;
+    layout->slice_us = cell->slice_us;
+    return wh_tolerance_validate(&grasp->tolerance) == WH_OK && is_limit(cell->eps_projz) &&
+           is_limit(cell->near_projz) && is_limit(cell->near_projxy) && cell->slice_us >= 1 &&
+           cell->slice_us <= 1000000;
+}
+
+static bool take_placing(const waferhand_cell *from, wh_cell_t *cell) {
+    cell->settle = from->settle != 0;
+    cell->off_centre = from->off_centre;
+    cell->askew = from->askew;
+    return from->off_centre >= 0 && from->off_centre <= 1e6 && from->askew >= 0 && from->askew <= 10;
+}
+
+static bool take_station(const waferhand_station *from, size_t grippers, wh_layout_station_t *station,
+                         wh_station_t *place) {
+    place->slots = from->slots;
+    place->pitch = from->pitch;
+    place->chuck = from->chuck;
+    return take_name(from->name, station->name) &&
+           take_pose(from->position, from->rotation, &place->base_from_station) && from->slots >= 1 &&
+           from->slots <= WH_LAYOUT_SLOTS && from->pitch > 0 && from->pitch <= 1e6 &&
+           from->chuck >= WH_NONE && from->chuck < (int32_t)grippers;
+}
+
+static bool take_lists(const waferhand_cell *cell, wh_layout_t *layout) {
+    bool sound = true;
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        sound = take_name(cell->gripper_names[g], layout->grippers[g].name) && sound;
+        layout->grippers[g].station = WH_NONE;
+    }
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        sound = take_station(&cell->stations[s], layout->machine.gripper_count, &layout->stations[s],
+                             &layout->places[s]) &&
+                sound;
+    }
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        const waferhand_wafer_state *from = &cell->wafers[w];
+        sound = take_name(cell->wafer_names[w], layout->wafers[w].name) &&
+                take_pose(from->position, from->rotation, &layout->start[w].base_from_wafer) && sound;
+    }
+    return sound;
+}
+
+/* The layout has times in s, the message has slices in us; lib/layout/layout_physics.c converts them the same
+ * way. */
+static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
+    wh_physics_t *physics = &layout->physics;
+    const wh_vacuum_config_t vacuum = {cell->vacuum_build,     cell->vacuum_vent,       cell->vacuum_idle,
+                                       cell->vacuum_sensor_on, cell->vacuum_sensor_off, cell->vacuum_release};
+    const wh_pads_t pads = {cell->pads_friction, cell->pads_force, cell->pads_mass, cell->pads_gravity};
+    physics->slice_s = (wh_real_t)cell->slice_us / 1e6;
+    physics->vacuum = vacuum;
+    physics->pads = pads;
+    physics->fault_count = (size_t)cell->fault_count;
+    for (size_t i = 0; i < physics->fault_count; ++i) {
+        physics->faults[i] = wh_link_take_fault(&cell->faults[i]);
+    }
+    return wh_physics_validate(physics, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
+}
+
+static bool make_layout_room(const waferhand_cell *cell, wh_layout_t *layout) {
+    layout->machine.gripper_count = (size_t)cell->gripper_count;
+    layout->station_count = (size_t)cell->station_count;
+    layout->wafer_count = (size_t)cell->wafer_count;
+    layout->path = strdup(cell->layout);
+    layout->stations = calloc(layout->station_count + 1, sizeof *layout->stations);
+    layout->places = calloc(layout->station_count + 1, sizeof *layout->places);
+    layout->wafers = calloc(layout->wafer_count + 1, sizeof *layout->wafers);
+    layout->start = calloc(layout->wafer_count + 1, sizeof *layout->start);
+    return layout->path && layout->stations && layout->places && layout->wafers && layout->start;
+}
+
+wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell) {
+    wh_layout_t *layout = calloc(1, sizeof *layout);
+    if (!layout || cell->gripper_count < 1 || !make_layout_room(cell, layout) || !take_checks(cell, layout) ||
+        !take_placing(cell, &layout->cell) || !take_lists(cell, layout) || !take_physics(cell, layout)) {
+        wh_link_layout_free(layout);
+        return NULL;
+    }
+    wh_layout_place(layout);
+    return layout;
+}
+
+void wh_link_layout_free(wh_layout_t *layout) {
+    if (!layout) {
+        return;
+    }
+    union {
+        const char *constant;
+        char *plain;
+    } path = {layout->path};
+    free(path.plain);
+    free(layout->stations);
+    free(layout->places);
+    free(layout->wafers);
+    free(layout->start);
+    free(layout);
 }

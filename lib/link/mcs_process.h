@@ -1,8 +1,9 @@
 /* Motion control as a process: a client for the slices, and what it tells all about its commands.
  *
- * Made to be the partners of a run (mcs/mcs.h): connect opens the client once the layout is known, watch tells the
- * commands on WAFERHAND_MCS. Requests from others are kept until somebody has time for them, but for STOP: while a command
- * runs it is answered at once, the command and the requests that wait end with WH_STATUS_STOPPED.
+ * Made to be the partners of a run (mcs/mcs.h): connect opens the client once the layout is known, watch
+ * tells the commands on WAFERHAND_MCS. Requests from others are kept until somebody has time for them, but
+ * for STOP: while a command runs it is answered at once, the command and the requests that wait end with
+ * WH_STATUS_STOPPED.
  */
 #ifndef WH_LINK_MCS_PROCESS_H
 #define WH_LINK_MCS_PROCESS_H
@@ -63,7 +64,8 @@ bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node, const wh_mc
 /* The partners to hand to a run or a session. */
 wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control);
 
-/* While nothing moves: heartbeat to the simulator, what has come from others. To be called at least every 100 ms. */
+/* While nothing moves: heartbeat to the simulator, what has come from others. To be called at least every 100
+ * ms. */
 void wh_mcs_process_idle(wh_mcs_process_t *control);
 
 /* Takes the next request out of the queue, if there is one: it is then the one being executed, until

@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#include "fault_message.h"
-
 /* -------------------------------------------------------------------------------------------------- parts */
 
 static void put_vec3(const wh_vec3_t *v, double out[3]) {
@@ -14,6 +12,55 @@ static void put_vec3(const wh_vec3_t *v, double out[3]) {
 
 static wh_vec3_t take_vec3(const double in[3]) {
     return wh_vec3(in[0], in[1], in[2]);
+}
+
+void wh_link_put_pose(const wh_pose_t *pose, double position[3], double rotation[9]) {
+    put_vec3(&pose->r, position);
+    memcpy(rotation, pose->R.m, sizeof pose->R.m);
+}
+
+wh_pose_t wh_link_take_pose(const double position[3], const double rotation[9]) {
+    wh_pose_t pose = {.r = take_vec3(position)};
+    memcpy(pose.R.m, rotation, sizeof pose.R.m);
+    return pose;
+}
+
+void wh_link_put_fault(const wh_fault_t *fault, waferhand_fault *out) {
+    out->kind = (int32_t)fault->kind;
+    out->target = fault->target;
+    out->other = fault->other;
+    out->value = fault->value;
+    wh_link_put_pose(&fault->offset, out->position, out->rotation);
+    out->from_seq = fault->from;
+    out->until_seq = fault->until;
+}
+
+wh_fault_t wh_link_take_fault(const waferhand_fault *in) {
+    wh_fault_t fault;
+    fault.kind = (wh_fault_kind_t)in->kind;
+    fault.target = in->target;
+    fault.other = in->other;
+    fault.value = in->value;
+    fault.offset = wh_link_take_pose(in->position, in->rotation);
+    fault.from = in->from_seq;
+    fault.until = in->until_seq;
+    return fault;
+}
+
+static void put_slot(const wh_fault_slot_t *slot, waferhand_fault_slot *out) {
+    out->phase = (int32_t)slot->phase;
+    wh_link_put_fault(&slot->fault, &out->it);
+    wh_link_put_pose(&slot->before, out->before_position, out->before_rotation);
+    wh_link_put_pose(&slot->placed, out->placed_position, out->placed_rotation);
+}
+
+static wh_fault_slot_t take_slot(const waferhand_fault_slot *in) {
+    wh_fault_slot_t slot;
+    slot.phase = (wh_fault_phase_t)in->phase;
+    slot.fault = wh_link_take_fault(&in->it);
+    slot.before = wh_link_take_pose(in->before_position, in->before_rotation);
+    slot.placed = wh_link_take_pose(in->placed_position, in->placed_rotation);
+    return slot;
 }
 
 static void put_measured(const wh_proximity_t *p, waferhand_measurement *out) {
@@ -53,7 +100,7 @@ static void take_encounter(const waferhand_encounter *in, const wh_tolerance_t *
     take_measured(&in->measured, tolerance, &out->measured);
 }
 
-/* ------------------------------------------------------------------------------------------------- command */
+/* ------------------------------------------------------------------------------------------------ command */
 
 void wh_link_command_to_message(const wh_command_t *command, const wh_link_identity_t *identity,
                                 bool lockstep, waferhand_command *message) {
@@ -102,7 +149,7 @@ wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_co
     return WH_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------- state */
+/* -------------------------------------------------------------------------------------------------- state */
 
 static void put_gripper(const wh_gripper_t *gripper, waferhand_gripper_state *out) {
     memset(out, 0, sizeof *out);
@@ -156,7 +203,7 @@ static void put_arrays(const wh_state_t *state, wh_link_state_t *room) {
         put_event(&state->events[e], &room->events[e]);
     }
     for (size_t i = 0; i < (size_t)room->message.fault_count; ++i) {
-        wh_link_put_slot(&state->condition->faults.slots[i], &room->faults[i]);
+        put_slot(&state->condition->faults.slots[i], &room->faults[i]);
     }
 }
 
@@ -221,7 +268,7 @@ static void take_event(const waferhand_event *in, int64_t seq, const wh_toleranc
     take_measured(&in->measured, tolerance, &out->measured);
 }
 
-/* Whether `other` is what this kind has there. */
+/* True if `other` is what this kind of event has there. */
 static bool other_fits(const waferhand_event *event, const waferhand_state *message) {
     if (event->kind == WH_EVENT_HANDED_OVER || event->kind == WH_EVENT_CONTESTED) {
         return wh_is_index(event->other, (size_t)message->gripper_count);
@@ -232,7 +279,8 @@ static bool other_fits(const waferhand_event *event, const waferhand_state *mess
     return event->other == WH_NONE;
 }
 
-/* Whether wafer and gripper are what this kind has. The collision check and the faults may name none. */
+/* True if wafer and gripper are what this kind of event has. The collision check and the faults may name
+ * none. */
 static bool names_fit(const waferhand_event *event, const waferhand_state *message) {
     static const uint32_t any = 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE |
                                 1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
@@ -250,7 +298,7 @@ static bool parts_fit(const waferhand_event *event) {
            event->parts[1] < WH_LINK_PARTS;
 }
 
-/* Whether a step could have yielded it: who reads it takes its indices for good. */
+/* True if a step could have yielded the event. Its readers trust its indices. */
 static bool event_fits(const waferhand_event *event, const waferhand_state *message) {
     return event->kind >= 0 && event->kind < WH_EVENT_KINDS && names_fit(event, message) &&
            other_fits(event, message) && parts_fit(event) && event->measured_slice >= 0 &&
@@ -284,7 +332,7 @@ static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *to
     wh_faults_clear(&arrays->condition.faults);
     arrays->condition.faults.count = (size_t)message->fault_count;
     for (int32_t i = 0; i < message->fault_count; ++i) {
-        arrays->condition.faults.slots[i] = wh_link_take_slot(&message->faults[i]);
+        arrays->condition.faults.slots[i] = take_slot(&message->faults[i]);
     }
     return sound;
 }
@@ -306,4 +354,56 @@ wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_
     state->sensors = (uint32_t)message->sensors;
     state->condition = &arrays->condition;
     return WH_OK;
+}
+
+/* ---------------------------------------------------------------------------------------------- proximity */
+
+static int32_t find_nearest(const wh_state_t *state, const wh_gripper_t *gripper) {
+    int32_t nearest = WH_NONE;
+    wh_real_t least = 0;
+    for (size_t w = 0; w < state->wafer_count; ++w) {
+        const wh_vec3_t dr =
+            wh_vec3_subtract(&state->wafers[w].base_from_wafer.r, &gripper->base_from_gripper.r);
+        const wh_real_t square = wh_vec3_dot(&dr, &dr);
+        if (nearest == WH_NONE || square < least) {
+            nearest = (int32_t)w;
+            least = square;
+        }
+    }
+    return nearest;
+}
+
+static void put_nearest(const wh_state_t *state, size_t g, const wh_tolerance_t *tolerance,
+                        waferhand_proximity *message) {
+    const wh_gripper_t *gripper = &state->grippers[g];
+    const int32_t nearest = find_nearest(state, gripper);
+    wh_proximity_t p;
+    message->wafer[g] = nearest;
+    message->valve[g] = (int8_t)gripper->valve;
+    if (nearest == WH_NONE || wh_proximity_measure(&state->wafers[nearest].base_from_wafer,
+                                                   &gripper->base_from_gripper, tolerance, &p) != WH_OK) {
+        return;
+    }
+    message->dr_proj_z[g] = p.dr_proj_z;
+    put_vec3(&p.dr_proj_xy, message->dr_proj_xy[g]);
+    message->dr_proj_xy_norm[g] = p.dr_proj_xy_norm;
+    message->n1_proj_n2[g] = p.n1_proj_n2;
+    message->ready[g] = p.ready ? 1 : 0;
+    message->holds[g] = gripper->wafer == nearest ? 1 : 0;
+}
+
+void wh_link_proximity_to_message(const wh_state_t *state, const wh_link_identity_t *identity,
+                                  const wh_tolerance_t *tolerance, waferhand_proximity *message) {
+    memset(message, 0, sizeof *message);
+    message->utime = state->utime;
+    message->seq = state->seq;
+    message->run = identity->run;
+    message->layout_hash = (int64_t)identity->layout_hash;
+    message->eps_projz = tolerance->projz;
+    message->eps_projxy = tolerance->projxy;
+    message->eps_planar = tolerance->planar;
+    message->gripper_count = (int32_t)state->gripper_count;
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        put_nearest(state, g, tolerance, message);
+    }
 }

@@ -77,36 +77,64 @@ static inline char *wh_link_borrowed(const char *text) {
     return cast.plain;
 }
 
-/* A command as a message, and back. The latter refuses counts out of range (WH_STATUS_OUT_OF_RANGE); poses, valves
- * and faults are for the step to judge. */
+/* Poses and faults: the parts that several messages share. Nothing is checked. */
+void wh_link_put_pose(const wh_pose_t *pose, double position[3], double rotation[9]);
+wh_pose_t wh_link_take_pose(const double position[3], const double rotation[9]);
+void wh_link_put_fault(const wh_fault_t *fault, waferhand_fault *out);
+wh_fault_t wh_link_take_fault(const waferhand_fault *in);
+
+/* A command as a message, and back. The latter refuses counts out of range (WH_STATUS_OUT_OF_RANGE); poses,
+ * valves and faults are for the step to judge. */
 void wh_link_command_to_message(const wh_command_t *command, const wh_link_identity_t *identity,
                                 bool lockstep, waferhand_command *message);
 wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_command_t *command);
 
-/* A state as a message. The counts are within the room, which the caller has seen to; the condition may be null where there
- * is no gripper. */
+/* A state as a message. The counts are within the room, which the caller has seen to; the condition may be
+ * null where there is no gripper. */
 void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t *identity, uint64_t hash,
                               int64_t missed, wh_link_state_t *message);
 
-/* Back: fills `arrays`, and `state` as a view of them. Refuses counts out of range and events that no step yields
- * (WH_STATUS_OUT_OF_RANGE); wafers and grippers are for wh_grasp_restore to judge, the condition for wh_physics_state_validate.
- * Margins and verdicts of measured values, which do not travel, are made anew from `tolerance`. */
+/* Back: fills `arrays`, and `state` as a view of them. Refuses counts out of range and events that no step
+ * yields (WH_STATUS_OUT_OF_RANGE); wafers and grippers are for wh_grasp_restore to judge, the condition for
+ * wh_physics_state_validate. Margins and verdicts of measured values, which do not travel, are made anew from
+ * `tolerance`. */
 wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_tolerance_t *tolerance,
                                        wh_link_arrays_t *arrays, wh_state_t *state);
 
-/* Decodes a datagram, after its size and fingerprint have been compared with what its counts ask for: whatever it
- * contains, nothing is read beyond it and nothing is allocated for a count that it does not carry. The command needs no
- * heap; states and texts are decoded into memory of their own: release them with waferhand_*_decode_cleanup. */
+/* The values of the paper's Fig. 9: each gripper of the state against the wafer whose origin is nearest to
+ * its own; held ones count too. Cost: linear in grippers times wafers. */
+void wh_link_proximity_to_message(const wh_state_t *state, const wh_link_identity_t *identity,
+                                  const wh_tolerance_t *tolerance, waferhand_proximity *message);
+
+/* Writes the check over the last eight of `size` bytes, the end of a command or a state: a datagram in which
+ * a bit has flipped is no message. Nothing happens to less than eight. Cost: about 2 ns a word.
+ *
+ * h = 0x6a09e667f3bcc908; for each eight bytes of the encoded message but the last eight, as a big-endian
+ * word w, the last of them filled up with zeros:  h = (h ^ w) * 0x9e3779b97f4a7c15;  h = h ^ (h >> 32).  A
+ * result of 0 is written as 1: 0 says that the sender makes no checks. */
+void wh_link_seal(uint8_t *bytes, size_t size);
+
+/* Decodes a datagram, after its size and fingerprint have been compared with what its counts ask for:
+ * whatever it contains, nothing is read beyond it and nothing is allocated for a count that it does not
+ * carry. The command needs no heap; states and texts are decoded into memory of their own: release them with
+ * waferhand_*_decode_cleanup. */
 bool wh_link_decode_command(const void *data, size_t size, waferhand_command *message);
 bool wh_link_decode_state(const void *data, size_t size, waferhand_state *message);
 bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message);
 bool wh_link_decode_request(const void *data, size_t size, waferhand_request *message);
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message);
 
-/* The cell of a layout, in memory that wh_link_cell_free releases. The texts are the layout's. Returns false when
- * memory is out. */
+/* The cell of a layout, in memory that wh_link_cell_free releases. The texts are the layout's. Returns false
+ * if out of memory. */
 bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_t *identity,
                               waferhand_cell *message);
 void wh_link_cell_free(waferhand_cell *message);
+
+/* The layout that a cell message describes: enough for a simulator, without the file. In memory that
+ * wh_link_layout_free releases; null for a message that no layout could have made: poses, tolerances, counts,
+ * names and slots are checked. The machine but its number of grippers, and the stations' parameters of GET
+ * and PUT, are not in the message and zero. */
+wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell);
+void wh_link_layout_free(wh_layout_t *layout);
 
 #endif

@@ -1,6 +1,7 @@
 #include "node.h"
 
 #include <poll.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,7 +45,7 @@ void wh_node_flush_record(wh_node_t *node) {
     }
 }
 
-/* The log is lcm-logger's; channel and data are only read. */
+/* Writes what lcm-logger would. LCM's type has plain pointers, though it only reads what they point to. */
 static void record(wh_node_t *node, const char *channel, const void *data, size_t size) {
     union {
         const void *constant;
@@ -125,4 +126,16 @@ void wh_node_close(wh_node_t *node) {
         lcm_destroy(node->lcm);
         node->lcm = NULL;
     }
+}
+
+void wh_node_say(void (*say)(void *user, const char *text), void *user, const char *format, ...) {
+    char text[200];
+    va_list arguments;
+    if (!say) {
+        return;
+    }
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    say(user, text);
 }

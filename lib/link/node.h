@@ -1,4 +1,5 @@
-/* A process on LCM: publishing, subscriptions that drop nothing, a wait with a short time limit, and the record.
+/* A process on LCM: publishing, subscriptions that drop nothing, a wait with a short time limit, and the
+ * record.
  *
  * Nothing here allocates while messages are published; receiving allocates in liblcm. One thread per node.
  */
@@ -36,15 +37,16 @@ struct wh_node {
     size_t subscriber_count;
 };
 
-/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). False when LCM cannot: no multicast
- * route, a bad URL. The node must not be moved afterwards. */
+/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). False when LCM cannot: no
+ * multicast route, a bad URL. The node must not be moved afterwards. */
 bool wh_node_open(wh_node_t *node, const char *url);
 
-/* From now on writes all that is published and received into an event log, as lcm-logger does. False, with errno,
- * when the file cannot be made. */
+/* From now on writes all that is published and received into an event log, as lcm-logger does. False, with
+ * errno, when the file cannot be made. */
 bool wh_node_record(wh_node_t *node, const char *path);
 
-/* Hands what was recorded over to the system: others can read all of it from then on. Nothing without a record. */
+/* Hands what was recorded over to the system: others can read all of it from then on. Nothing without a
+ * record. */
 void wh_node_flush_record(wh_node_t *node);
 
 /* Subscribes one channel with a queue without a limit. False when there is no room. */
@@ -53,8 +55,8 @@ bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *
 /* Sends one datagram, of which nothing is kept. False when the network refused it. */
 bool wh_node_publish(wh_node_t *node, const char *channel, const void *data, size_t size);
 
-/* Handles at most one message, waiting up to so many microseconds. Returns 1 when one was handled, 0 when none came,
- * -1 when LCM failed. Signals end the wait early. */
+/* Handles at most one message, waiting up to so many microseconds. Returns 1 when one was handled, 0 when
+ * none came, -1 when LCM failed. Signals end the wait early. */
 int wh_node_wait(wh_node_t *node, int64_t timeout_us);
 
 /* Handles what is there, without waiting, at most `most` messages; returns how many. */
@@ -65,6 +67,10 @@ int wh_node_descriptor(const wh_node_t *node);
 
 /* Completes the record and closes LCM. */
 void wh_node_close(wh_node_t *node);
+
+/* Says a line of at most 199 bytes, for people; to nobody if `say` is null. */
+void wh_node_say(void (*say)(void *user, const char *text), void *user, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 /* us of wall-clock time, and of a clock that never jumps. */
 int64_t wh_node_wall_us(void);

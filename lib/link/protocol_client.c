@@ -1,38 +1,265 @@
 #include "protocol_client.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/random.h>
 
+#include "../grasp/restore.h"
 #include "outputs.h"
-#include "protocol_client_internal.h"
 
 #define SETTLE_US 1000000
 #define TICK_US 1000000
+/* How long the first wait is before a command is sent again, and how short and how long it may become. */
+#define FIRST_RESEND_US 1200
+#define RESEND_LEAST_US INT64_C(300)
+#define RESEND_MOST_US 50000
+/* So often a command is sent again at the first pace. Then nobody seems to be there, and the pace slows
+ * down. */
+#define RESENDS_AT_FIRST_PACE 20
+/* The longest single wait: between waits the client looks for silence and for a stop. */
+#define WAIT_MOST_US 50000
 
-void wh_protocol_client_say(const wh_protocol_client_t *client, const char *format, ...) {
-    char text[200];
-    va_list arguments;
-    if (!client->options.say) {
-        return;
-    }
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    client->options.say(client->options.user, text);
-}
-
-bool wh_protocol_client_is_stopped(const wh_protocol_client_t *client) {
+static bool is_stopped(const wh_protocol_client_t *client) {
     return client->options.stop && *client->options.stop != 0;
 }
 
-bool wh_protocol_client_is_free_running(const wh_protocol_client_t *client) {
+/* True from the second slice of a free-running run on. Its first slice is in lockstep. */
+static bool is_free_running(const wh_protocol_client_t *client) {
     return client->options.rate > 0 && client->has_state;
 }
 
-/* The file is there before the command is sent: a simulator that reads it has the valves in time. */
+/* ------------------------------------------------------------------------------------------------ sending */
+
+/* A lost command is no error here: whoever waits for the answer sends it again. */
+static void send_command(wh_protocol_client_t *client) {
+    const int size =
+        waferhand_command_encode(client->encoded, 0, (int)sizeof client->encoded, &client->command);
+    if (size > 0) {
+        wh_link_seal(client->encoded, (size_t)size);
+        (void)wh_node_publish(client->node, WH_CHANNEL_COMMAND, client->encoded, (size_t)size);
+    }
+}
+
+static void send_again(wh_protocol_client_t *client) {
+    ++client->counters.repeated;
+    send_command(client);
+}
+
+/* Sends the last state, then the command, if a simulator that was started anew has asked for it. */
+static void restore_simulator(wh_protocol_client_t *client) {
+    const bool asked = client->asked_for_state;
+    client->asked_for_state = false;
+    if (!asked || !client->has_state) {
+        return;
+    }
+    ++client->counters.restored;
+    wh_node_say(client->options.say, client->options.user,
+                "the simulator was started anew: it gets the state of slice %" PRId64, client->state.seq);
+    (void)wh_node_publish(client->node, WH_CHANNEL_RESTORE, client->restore, client->restore_size);
+    send_again(client);
+}
+
+/* ---------------------------------------------------------------------------------------------- receiving */
+
+static void heard(wh_protocol_client_t *client) {
+    client->last_heard_us = wh_node_clock_us();
+    if (client->silent) {
+        client->silent = false;
+        wh_node_say(client->options.say, client->options.user, "the simulator answers again");
+    }
+}
+
+/* A grasp table with the layout's rules over a state's wafers and grippers. */
+static wh_grasp_t table_over(const wh_protocol_client_t *client, wh_link_arrays_t *arrays,
+                             const wh_state_t *state, int64_t missed) {
+    wh_grasp_t table;
+    memset(&table, 0, sizeof table);
+    table.config = client->options.layout->grasp;
+    table.slice = (uint64_t)(state->seq - missed);
+    table.storage.wafers = arrays->wafers;
+    table.storage.wafer_count = state->wafer_count;
+    table.storage.grippers = arrays->grippers;
+    table.storage.gripper_count = state->gripper_count;
+    return table;
+}
+
+/* Copies the state to client->arrays. False if its hash is not the one that it carries, or no grasp table
+ * could be in it. */
+static bool take_over(wh_protocol_client_t *client, const wh_state_t *state, const waferhand_state *message) {
+    const wh_grasp_t as_told = table_over(client, &client->spare, state, message->missed);
+    wh_grasp_t table = table_over(client, &client->arrays, state, message->missed);
+    return wh_physics_state_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
+           wh_physics_state_hash(state->condition, &as_told) == (uint64_t)message->hash &&
+           wh_grasp_restore(&table, as_told.slice, state->wafers, state->grippers) == WH_OK;
+}
+
+static bool is_sound(wh_protocol_client_t *client, const waferhand_state *message, wh_state_t *state) {
+    const wh_layout_t *layout = client->options.layout;
+    return wh_link_state_from_message(message, &layout->grasp.tolerance, &client->spare, state) == WH_OK &&
+           state->wafer_count == layout->wafer_count &&
+           state->gripper_count == layout->machine.gripper_count && message->missed >= 0 &&
+           message->missed < message->seq && take_over(client, state, message);
+}
+
+static void keep_events(wh_protocol_client_t *client, const wh_state_t *state) {
+    const size_t room = sizeof client->events / sizeof client->events[0] - client->event_count;
+    const size_t count = state->event_count < room ? state->event_count : room;
+    memcpy(client->events + client->event_count, state->events, count * sizeof *state->events);
+    client->event_count += count;
+}
+
+static void take(wh_protocol_client_t *client, const waferhand_state *message, const wh_state_t *state,
+                 const void *data, size_t size) {
+    if (!client->has_state || state->seq != client->state.seq) {
+        keep_events(client, state);
+    }
+    client->state = *state;
+    client->state.wafers = client->arrays.wafers;
+    client->state.grippers = client->arrays.grippers;
+    client->arrays.condition = *state->condition;
+    client->state.condition = &client->arrays.condition;
+    client->has_state = true;
+    client->missed = message->missed;
+    client->hash = (uint64_t)message->hash;
+    memcpy(client->restore, data, size);
+    client->restore_size = size;
+    ++client->counters.answers;
+    client->answered = client->answered || state->seq == client->command.seq;
+}
+
+static void take_refusal(wh_protocol_client_t *client, const waferhand_state *message) {
+    if (message->seq != client->command.seq) {
+        ++client->counters.unasked;
+    } else if (message->status == WH_STATUS_UNKNOWN_RUN) {
+        client->asked_for_state = true;
+    } else {
+        client->refusal = (wh_status_t)message->status;
+    }
+}
+
+static void take_message(wh_protocol_client_t *client, const waferhand_state *message, const void *data,
+                         size_t size) {
+    wh_state_t state;
+    const bool wanted =
+        message->seq == client->command.seq ||
+        (is_free_running(client) && message->seq > client->state.seq && message->seq < client->command.seq);
+    if (message->run != client->identity.run) {
+        ++client->counters.unasked;
+        return;
+    }
+    heard(client);
+    if (message->status != WH_OK) {
+        take_refusal(client, message);
+    } else if (!wanted) {
+        ++client->counters.unasked;
+    } else if (!is_sound(client, message, &state)) {
+        ++client->counters.malformed;
+    } else {
+        take(client, message, &state, data, size);
+    }
+}
+
+static void on_state(void *user, const void *data, size_t size) {
+    wh_protocol_client_t *client = user;
+    waferhand_state message;
+    if (!wh_link_decode_state(data, size, &message)) {
+        ++client->counters.malformed;
+        return;
+    }
+    take_message(client, &message, data, size);
+    (void)waferhand_state_decode_cleanup(&message);
+}
+
+/* ------------------------------------------------------------------------------------------------ waiting */
+
+/* Reports a silent simulator, once: nothing was heard for long, counted from `since_us` or from the last
+ * message. */
+static void notice_silence(wh_protocol_client_t *client, int64_t since_us) {
+    const int64_t last = client->last_heard_us > since_us ? client->last_heard_us : since_us;
+    if (!client->silent && wh_node_clock_us() - last > WH_CLIENT_SILENCE_US) {
+        client->silent = true;
+        ++client->counters.silences;
+        wh_node_say(client->options.say, client->options.user,
+                    "no answer from the simulator: holding at slice %" PRId64 " until it returns",
+                    client->command.seq);
+    }
+}
+
+static int64_t clamp(int64_t value, int64_t low, int64_t high) {
+    if (value < low) {
+        return low;
+    }
+    return value > high ? high : value;
+}
+
+/* When to send a command again whose answer does not come. */
+typedef struct {
+    int64_t pause, due; /* us */
+    uint64_t before;    /* sent again before this wait */
+} resend_t;
+
+static void resend_when_due(wh_protocol_client_t *client, resend_t *resend) {
+    if (client->answered || wh_node_clock_us() < resend->due) {
+        return;
+    }
+    send_again(client);
+    if (client->counters.repeated - resend->before > RESENDS_AT_FIRST_PACE) {
+        resend->pause = clamp(2 * resend->pause, RESEND_LEAST_US, RESEND_MOST_US);
+    }
+    resend->due = wh_node_clock_us() + resend->pause;
+}
+
+/* True if the run is stopped. Any signal ends a wait for a silent simulator: a program's own handler is
+ * enough. */
+static bool is_given_up(const wh_protocol_client_t *client) {
+    return is_stopped(client) || (client->silent && client->node->interrupted);
+}
+
+/* Waits for the answer to the last command, sending it again and again. */
+static wh_status_t await_answer(wh_protocol_client_t *client) {
+    const int64_t begin = wh_node_clock_us();
+    resend_t resend = {client->resend_us, begin + client->resend_us, client->counters.repeated};
+    while (!client->answered && client->refusal == WH_OK) {
+        if (is_given_up(client)) {
+            return WH_STATUS_STOPPED;
+        }
+        if (wh_node_wait(client->node, clamp(resend.due - wh_node_clock_us(), 0, WAIT_MOST_US)) < 0) {
+            return WH_STATUS_NO_NETWORK;
+        }
+        restore_simulator(client);
+        resend_when_due(client, &resend);
+        notice_silence(client, begin);
+    }
+    if (client->counters.repeated == resend.before) {
+        client->resend_us = clamp(4 * (wh_node_clock_us() - begin), RESEND_LEAST_US, RESEND_MOST_US);
+    }
+    return client->refusal;
+}
+
+/* Free-running: waits until the next slice is due, and longer if the simulator has fallen silent. */
+static wh_status_t await_due_time(wh_protocol_client_t *client) {
+    const double period_us = (double)client->options.layout->slice_us / client->options.rate;
+    if (client->start_us == 0) {
+        client->start_us = wh_node_clock_us() - (int64_t)((double)(client->command.seq - 1) * period_us);
+    }
+    const int64_t due = client->start_us + (int64_t)((double)client->command.seq * period_us);
+    client->counters.late += wh_node_clock_us() > due ? 1 : 0;
+    for (int64_t now = wh_node_clock_us(); now < due && !is_stopped(client); now = wh_node_clock_us()) {
+        if (wh_node_wait(client->node, clamp(due - now, 0, WAIT_MOST_US)) < 0) {
+            return WH_STATUS_NO_NETWORK;
+        }
+    }
+    (void)wh_node_drain(client->node, 64);
+    if (client->asked_for_state || wh_node_clock_us() - client->last_heard_us > WH_CLIENT_SILENCE_US) {
+        client->start_us = 0;
+        return await_answer(client);
+    }
+    return is_stopped(client) ? WH_STATUS_STOPPED : client->refusal;
+}
+
+/* ------------------------------------------------------------------------------------ the slice interface */
+
+/* Called before the command is sent, so that a simulator that reads the file has the valves in time. */
 static void write_outputs(wh_protocol_client_t *client) {
     const size_t count = (size_t)client->command.gripper_count;
     if (!client->options.outputs ||
@@ -43,12 +270,12 @@ static void write_outputs(wh_protocol_client_t *client) {
     if (problem == 0) {
         memcpy(client->written, client->command.valve, count * sizeof(int32_t));
     } else if (client->counters.unwritten++ == 0) {
-        wh_protocol_client_say(client, "%s: %s (expected a file that can be written)",
-                               client->options.outputs, strerror(problem));
+        wh_node_say(client->options.say, client->options.user, "%s: %s (expected a file that can be written)",
+                    client->options.outputs, strerror(problem));
     }
 }
 
-/* What came since the last exchange, while somebody waited for a late state, is still to be handed over. */
+/* Keeps events that came after the last exchange, with a late state: they are still to be handed over. */
 static void forget_delivered_events(wh_protocol_client_t *client) {
     const size_t left = client->event_count - client->events_delivered;
     memmove(client->events, client->events + client->events_delivered, left * sizeof *client->events);
@@ -56,7 +283,7 @@ static void forget_delivered_events(wh_protocol_client_t *client) {
     client->events_delivered = 0;
 }
 
-/* Before the first answer the caller's own view of the beginning stays. */
+/* Before the first answer the caller's state stays as it is: the beginning. */
 static void hand_over(wh_protocol_client_t *client, wh_state_t *state, wh_status_t status) {
     if (client->has_state) {
         *state = client->state;
@@ -67,13 +294,14 @@ static void hand_over(wh_protocol_client_t *client, wh_state_t *state, wh_status
     state->status = status;
 }
 
-/* A command that was given up may or may not have arrived: it is seen through before the next one. */
+/* A command that was given up may have arrived all the same. It must be answered before the next one is
+ * sent. */
 static wh_status_t see_through(wh_protocol_client_t *client) {
     if (!client->pending) {
         return WH_OK;
     }
-    wh_protocol_client_send_again(client);
-    const wh_status_t status = wh_protocol_client_await_answer(client);
+    send_again(client);
+    const wh_status_t status = await_answer(client);
     client->pending = !client->answered;
     return status;
 }
@@ -88,7 +316,7 @@ static void tick(wh_protocol_client_t *client) {
 
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     wh_protocol_client_t *client = (wh_protocol_client_t *)link;
-    const bool free_running = wh_protocol_client_is_free_running(client);
+    const bool free_running = is_free_running(client);
     client->node->interrupted = false;
     client->refusal = WH_OK;
     const wh_status_t before = see_through(client);
@@ -103,22 +331,21 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     forget_delivered_events(client);
     write_outputs(client);
     ++client->counters.sent;
-    wh_protocol_client_send(client);
+    send_command(client);
     tick(client);
-    const wh_status_t status =
-        free_running ? wh_protocol_client_await_due_time(client) : wh_protocol_client_await_answer(client);
+    const wh_status_t status = free_running ? await_due_time(client) : await_answer(client);
     client->pending = !free_running && !client->answered && client->refusal == WH_OK;
     hand_over(client, state, status);
     return status;
 }
 
-/* Free-running, the last states may be on their way still. */
+/* Waits a little: in a free-running run the last states may still be on their way. */
 static uint64_t last_hash(wh_link_t *link) {
     wh_protocol_client_t *client = (wh_protocol_client_t *)link;
     if (!wh_protocol_client_settle(client, SETTLE_US)) {
-        wh_protocol_client_say(client,
-                               "the state of the last slice did not come: the hash is of slice %" PRId64,
-                               client->state.seq);
+        wh_node_say(client->options.say, client->options.user,
+                    "the state of the last slice did not come: the hash is of slice %" PRId64,
+                    client->state.seq);
     }
     return client->hash;
 }
@@ -129,17 +356,16 @@ static int64_t missed_slices(wh_link_t *link) {
 
 void wh_protocol_client_heartbeat(wh_protocol_client_t *client) {
     if (client->counters.sent > 0) {
-        wh_protocol_client_send_again(client);
+        send_again(client);
     }
     (void)wh_node_drain(client->node, 64);
-    wh_protocol_client_restore(client);
-    wh_protocol_client_notice_silence(client, client->last_heard_us);
+    restore_simulator(client);
+    notice_silence(client, client->last_heard_us);
 }
 
 bool wh_protocol_client_settle(wh_protocol_client_t *client, int64_t timeout_us) {
     const int64_t end = wh_node_clock_us() + timeout_us;
-    while (client->counters.sent > 0 && client->state.seq != client->command.seq &&
-           !wh_protocol_client_is_stopped(client)) {
+    while (client->counters.sent > 0 && client->state.seq != client->command.seq && !is_stopped(client)) {
         if (wh_node_clock_us() > end || wh_node_wait(client->node, 1000) < 0) {
             return false;
         }
@@ -168,7 +394,7 @@ bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node,
     client->options = *options;
     client->identity.run = wh_protocol_client_draw_run();
     client->identity.layout_hash = wh_layout_hash(options->layout);
-    client->resend_us = WH_CLIENT_FIRST_RESEND_US;
+    client->resend_us = FIRST_RESEND_US;
     memset(client->written, 0xff, sizeof client->written);
-    return wh_node_subscribe(node, WH_CHANNEL_STATE, wh_protocol_client_on_state, client);
+    return wh_node_subscribe(node, WH_CHANNEL_STATE, on_state, client);
 }

@@ -1,10 +1,11 @@
 /* Motion control's side of the protocol: the slice interface (sim/slice.h) over LCM.
  *
- * In lockstep an exchange sends the command, waits for its state, and sends it again until that comes: first after a
- * few round trips, then less and less often. A simulator that was started anew gets the last state back. Free-running, it sends
- * one command each slice of wall-clock time and takes the states as they come; the first slice is always in lockstep.
- * Silence of the simulator is reported within a second, and its return. No state is taken whose hash is not
- * the one that its own content has, nor one that no grasp table could be in.
+ * In lockstep an exchange sends the command, waits for its state, and sends it again until that comes: first
+ * after a few round trips, then less and less often. A simulator that was started anew gets the last state
+ * back. Free-running, it sends one command each slice of wall-clock time and takes the states as they come;
+ * the first slice is always in lockstep. Silence of the simulator is reported within a second, and its
+ * return. No state is taken whose hash is not the one that its own content has, nor one that no grasp table
+ * could be in.
  */
 #ifndef WH_LINK_PROTOCOL_CLIENT_H
 #define WH_LINK_PROTOCOL_CLIENT_H
@@ -72,12 +73,12 @@ bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node,
 /* A random number for a run, other than 0. */
 int64_t wh_protocol_client_draw_run(void);
 
-/* Sends the last command again, so that the simulator knows that we are alive while nothing moves, and notices by the
- * answer whether it is. To be called now and then between commands; handles what has come. */
+/* Sends the last command again, so that the simulator knows that we are alive while nothing moves, and
+ * notices by the answer whether it is. To be called now and then between commands; handles what has come. */
 void wh_protocol_client_heartbeat(wh_protocol_client_t *client);
 
-/* Free-running: waits up to so long for the state of the last command, so that what is asked next is asked of it.
- * True in lockstep, or when it came. */
+/* Free-running: waits up to so long for the state of the last command, so that what is asked next is asked of
+ * it. True in lockstep, or when it came. */
 bool wh_protocol_client_settle(wh_protocol_client_t *client, int64_t timeout_us);
 
 #endif

@@ -1,10 +1,12 @@
-/* The simulator's side of the protocol, without a network: a command message goes in, an encoded state comes out.
+/* The simulator's side of the protocol, without a network: a command message goes in, an encoded state comes
+ * out.
  *
- * One run at a time. A command with the next seq is stepped; the same seq again is answered again and not stepped; an
- * older one is ignored; one further on is stepped only in a free-running run, and what lies between is counted as
- * missed. A new run begins with seq 1. A run that is not known, or not this far, is answered with
- * UNKNOWN_RUN: then the state comes back as a restore, and the run goes on from it. Used by `sim`, and by `replay`,
- * which so repeats exactly what the simulator did. Nothing is allocated after wh_protocol_server_open.
+ * One run at a time. A command with the next seq is stepped; the same seq again is answered again and not
+ * stepped; an older one is ignored; one further on is stepped only in a free-running run, and what lies
+ * between is counted as missed. A new run begins with seq 1. A run that is not known, or not this far, is
+ * answered with UNKNOWN_RUN: then the state comes back as a restore, and the run goes on from it. Used by
+ * `sim`, and by `replay`, which so repeats exactly what the simulator did. Nothing is allocated after
+ * wh_protocol_server_open.
  */
 #ifndef WH_LINK_PROTOCOL_SERVER_H
 #define WH_LINK_PROTOCOL_SERVER_H
@@ -54,8 +56,8 @@ typedef enum {
     WH_SERVER_RESTORED  /* the state was taken over: `encoded` repeats it */
 } wh_protocol_server_result_t;
 
-/* Ready for a first run. WH_STATUS_BAD_CAPACITY for a layout of more than WH_LINK_WAFERS wafers. `layout` must outlive
- * the server, which must not be moved afterwards. */
+/* Ready for a first run. WH_STATUS_BAD_CAPACITY for a layout of more than WH_LINK_WAFERS wafers. `layout`
+ * must outlive the server, which must not be moved afterwards. */
 wh_status_t wh_protocol_server_open(wh_protocol_server_t *server, const wh_layout_t *layout);
 
 /* Frees what a layout with a collision check needed; else there is nothing to free. */
@@ -66,8 +68,8 @@ wh_protocol_server_result_t wh_protocol_server_command(wh_protocol_server_t *ser
                                                        const waferhand_command *message,
                                                        const int32_t valves[]);
 
-/* Takes a state over if its run is not known or not this far, its layout is ours, it is consistent and its hash is
- * the one that it says. */
+/* Takes a state over if its run is not known or not this far, its layout is ours, it is consistent and its
+ * hash is the one that it says. */
 wh_protocol_server_result_t wh_protocol_server_restore(wh_protocol_server_t *server,
                                                        const waferhand_state *message);
 

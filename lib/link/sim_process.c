@@ -1,28 +1,9 @@
 #include "sim_process.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
-#include "proximity_message.h"
-
-static void say(const wh_sim_process_t *simulation, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static void say(const wh_sim_process_t *simulation, const char *format, ...) {
-    char text[200];
-    va_list arguments;
-    if (!simulation->say) {
-        return;
-    }
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    simulation->say(simulation->user, text);
-}
-
-/* ------------------------------------------------------------------------------------------------- sending */
+/* ------------------------------------------------------------------------------------------------ sending */
 
 static void publish(wh_sim_process_t *simulation, const char *channel, const void *data, int size) {
     if (!simulation->node) {
@@ -62,14 +43,15 @@ static void answer(wh_sim_process_t *simulation) {
     publish(simulation, WH_CHANNEL_STATE, simulation->server.encoded, (int)simulation->server.encoded_size);
 }
 
-/* ----------------------------------------------------------------------------------------------- receiving */
+/* ---------------------------------------------------------------------------------------------- receiving */
 
 static void drop(wh_sim_process_t *simulation, const char *channel, size_t size) {
     ++simulation->counters.garbage;
     if (!simulation->named_garbage) {
         simulation->named_garbage = true;
-        say(simulation, "%s: a datagram of %zu bytes is no such message: dropped, like all that follow",
-            channel, size);
+        wh_node_say(simulation->say, simulation->user,
+                    "%s: a datagram of %zu bytes is no such message: dropped, like all that follow", channel,
+                    size);
     }
 }
 
@@ -77,7 +59,8 @@ static void heard_motion_control(wh_sim_process_t *simulation) {
     simulation->last_command_us = wh_node_clock_us();
     if (simulation->silent) {
         simulation->silent = false;
-        say(simulation, "motion control is back at slice %" PRId64, simulation->server.seq);
+        wh_node_say(simulation->say, simulation->user, "motion control is back at slice %" PRId64,
+                    simulation->server.seq);
     }
 }
 
@@ -88,8 +71,9 @@ static void act_on(wh_sim_process_t *simulation, wh_protocol_server_result_t res
     answer(simulation);
     if (result == WH_SERVER_NEW_RUN || result == WH_SERVER_RESTORED) {
         simulation->running = true;
-        say(simulation, "run %016" PRIx64 " %s slice %" PRId64, (uint64_t)simulation->server.identity.run,
-            result == WH_SERVER_NEW_RUN ? "begins with" : "goes on from", simulation->server.seq);
+        wh_node_say(simulation->say, simulation->user, "run %016" PRIx64 " %s slice %" PRId64,
+                    (uint64_t)simulation->server.identity.run,
+                    result == WH_SERVER_NEW_RUN ? "begins with" : "goes on from", simulation->server.seq);
         tell_cell(simulation);
     }
     if (result != WH_SERVER_ANSWERED) {
@@ -105,8 +89,9 @@ static void handle_command(wh_sim_process_t *simulation, const waferhand_command
         heard_motion_control(simulation);
     }
     if (simulation->server.missed > missed && missed == 0) {
-        say(simulation, "slices are missing, the first before slice %" PRId64 ": they are counted",
-            simulation->server.seq);
+        wh_node_say(simulation->say, simulation->user,
+                    "slices are missing, the first before slice %" PRId64 ": they are counted",
+                    simulation->server.seq);
     }
     act_on(simulation, result);
 }
@@ -142,13 +127,15 @@ static void on_mcs(void *user, const void *data, size_t size) {
     if (message.run == simulation->server.identity.run && message.phase == WH_LINK_PHASE_OVER &&
         simulation->running) {
         simulation->running = false;
-        say(simulation, "run %016" PRIx64 " is over at slice %" PRId64 ", hash %016" PRIx64,
-            (uint64_t)message.run, simulation->server.seq, wh_protocol_server_hash(&simulation->server));
+        wh_node_say(simulation->say, simulation->user,
+                    "run %016" PRIx64 " is over at slice %" PRId64 ", hash %016" PRIx64,
+                    (uint64_t)message.run, simulation->server.seq,
+                    wh_protocol_server_hash(&simulation->server));
     }
     (void)waferhand_mcs_decode_cleanup(&message);
 }
 
-/* Only for the record: requests are motion control's to answer. */
+/* Subscribed only so that the record holds requests. Motion control answers them. */
 static void on_request(void *user, const void *data, size_t size) {
     wh_sim_process_t *simulation = user;
     waferhand_request message;
@@ -159,7 +146,7 @@ static void on_request(void *user, const void *data, size_t size) {
     (void)waferhand_request_decode_cleanup(&message);
 }
 
-/* -------------------------------------------------------------------------------------------------- opening */
+/* ------------------------------------------------------------------------------------------------ opening */
 
 wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, const wh_layout_t *layout,
                                 void (*say_line)(void *user, const char *text), void *user) {
@@ -206,8 +193,9 @@ void wh_sim_process_tick(wh_sim_process_t *simulation) {
         now - simulation->last_command_us > WH_SIMULATION_SILENCE_US) {
         simulation->silent = true;
         ++simulation->counters.silences;
-        say(simulation, "motion control has fallen silent: holding the state of slice %" PRId64,
-            simulation->server.seq);
+        wh_node_say(simulation->say, simulation->user,
+                    "motion control has fallen silent: holding the state of slice %" PRId64,
+                    simulation->server.seq);
     }
 }
 

@@ -1,5 +1,6 @@
 /* The simulator as a process: commands come in over LCM, states go out, whoever watches gets the cell and the
- * proximity values. The protocol is link/protocol_server.h; this is the part that waits, speaks and keeps time. */
+ * proximity values. The protocol is link/protocol_server.h; this is the part that waits, speaks and keeps
+ * time. */
 #ifndef WH_LINK_SIM_PROCESS_H
 #define WH_LINK_SIM_PROCESS_H
 
@@ -10,7 +11,8 @@
 #define WH_SIMULATION_SILENCE_US 500000
 /* How often the cell is told again, us. */
 #define WH_SIMULATION_CELL_US 1000000
-/* How often the proximity values go out at most, us of wall-clock time; slices with events always tell them. */
+/* How often the proximity values go out at most, us of wall-clock time; slices with events always tell
+ * them. */
 #define WH_SIMULATION_PROXIMITY_US 5000
 
 typedef struct {
@@ -34,9 +36,9 @@ typedef struct {
     uint8_t encoded[WH_LINK_DATAGRAM];
 } wh_sim_process_t;
 
-/* Subscribes to what the simulator hears and tells the cell; with a null node it hears nothing and is stepped by
- * wh_sim_process_step. WH_STATUS_BAD_CAPACITY for a layout that does not fit
- * messages, WH_STATUS_NO_NETWORK when LCM has no room. `layout`, `node` and `say` (one line for people; may be null)
+/* Subscribes to what the simulator hears and tells the cell; with a null node it hears nothing and is stepped
+ * by wh_sim_process_step. WH_STATUS_BAD_CAPACITY for a layout that does not fit messages,
+ * WH_STATUS_NO_NETWORK when LCM has no room. `layout`, `node` and `say` (one line for people; may be null)
  * must outlive it. Must not be moved afterwards. */
 wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, const wh_layout_t *layout,
                                 void (*say)(void *user, const char *text), void *user);
@@ -44,12 +46,13 @@ wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, c
 /* A node to publish to, for a simulation that was opened without one; tells it the cell. */
 void wh_sim_process_publish_to(wh_sim_process_t *simulation, wh_node_t *node);
 
-/* Steps a command as if it had come from the network, and publishes what comes of it. Returns the status that the
- * answer carries; `state` is a view of the simulator's memory. */
+/* Steps a command as if it had come from the network, and publishes what comes of it. Returns the status that
+ * the answer carries; `state` is a view of the simulator's memory. */
 wh_status_t wh_sim_process_step(wh_sim_process_t *simulation, const waferhand_command *message,
                                 wh_state_t *state);
 
-/* What is due by the clock: the cell, and the silence of motion control. To be called at least every 100 ms. */
+/* What is due by the clock: the cell, and the silence of motion control. To be called at least every 100
+ * ms. */
 void wh_sim_process_tick(wh_sim_process_t *simulation);
 
 void wh_sim_process_close(wh_sim_process_t *simulation);

@@ -5,8 +5,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "../layout/layout_load.h"
-#include "../link/cell_layout.h"
+#include "../layout/layout.h"
+#include "../link/messages.h"
 #include "../text/array.h"
 
 /* What a layout has by default. */
@@ -25,15 +25,10 @@ static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
                        path);
         return NULL;
     }
-    made->sandbox = wh_sandbox_new(&limits);
-    bool taken = made->sandbox != NULL;
-    for (size_t i = 0; taken && i < options->parameter_count; ++i) {
-        taken = wh_sandbox_set_parameter(made->sandbox, options->parameters[i], &result);
-    }
-    const wh_layout_t *layout = taken ? wh_layout_load(made->sandbox, path, &result) : NULL;
+    made->sandbox = wh_sandbox_new_with(&limits, options->parameters, options->parameter_count, &result);
+    const wh_layout_t *layout = made->sandbox ? wh_layout_load(made->sandbox, path, &result) : NULL;
     if (!layout) {
-        (void)snprintf(made->note, sizeof made->note, "%.200s is no layout: %.300s", path,
-                       made->sandbox ? result.message : "no memory");
+        (void)snprintf(made->note, sizeof made->note, "%.200s is no layout: %.300s", path, result.message);
     } else if (wh_layout_hash(layout) != made->hash) {
         (void)snprintf(made->note, sizeof made->note,
                        "%.200s is not the layout of the log, or has other parameters", path);

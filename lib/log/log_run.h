@@ -8,7 +8,8 @@
 #ifndef WH_LOG_LOG_RUN_H
 #define WH_LOG_LOG_RUN_H
 
-#include "../mcs/mcs.h"
+#include "../layout/collision.h"
+#include "../record/recorder.h"
 #include "../record/signals.h"
 #include "log_layout.h"
 #include "logfile.h"
@@ -35,12 +36,13 @@ typedef struct {
 
 /* Zero it to begin with, or leave it static; must not be moved. Read record, trace, notes and message. */
 typedef struct {
-    wh_link_t link; /* first: tells the hash of the last state, for wh_mcs_finish */
     wh_log_run_options_t options;
     wh_log_t log;
     wh_log_layout_t cell, next_cell; /* of the run; and told since, for the next one */
-    wh_mcs_t mcs;                    /* as the motion control stood that the log is of */
+    wh_recorder_t recorder;          /* of the run; without a record until it begins */
     wh_record_t record;
+    wh_state_t state; /* the last one */
+    wh_collision_t collision;
     wh_signals_t signals;
     void *collision_memory;
     wh_link_arrays_t arrays;
@@ -55,9 +57,8 @@ typedef struct {
     size_t run_count;
     uint64_t hash;
     int64_t missed;
-    size_t gaps; /* stretches of slices that are not in the log */
-    double axes[WH_AXES];
-    int32_t valves[WH_GRIPPERS];
+    size_t gaps;       /* stretches of slices that are not in the log */
+    wh_command_t told; /* in the last slice: its number, axes and valves */
     char text[4][WH_LOG_NOTE_BYTES];
     const char *notes[4];
     size_t note_count;

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "../link/cell_layout.h"
+#include "../link/messages.h"
 #include "../math/hash.h"
 
 /* ---------------------------------------------------------------------------------------------------- runs */

@@ -9,19 +9,16 @@
 #define WH_HASH_START UINT64_C(0x6a09e667f3bcc908)
 
 /* The shift carries high bits down again: a product alone would let two flipped signs cancel each other. */
-/*@ assigns \nothing; */
 static inline uint64_t wh_hash_word(uint64_t hash, uint64_t word) {
     hash = (hash ^ word) * UINT64_C(0x9e3779b97f4a7c15);
     return hash ^ (hash >> 32);
 }
 
-/*@ assigns \nothing; */
 static inline uint64_t wh_hash_int(uint64_t hash, int32_t value) {
     return wh_hash_word(hash, (uint64_t)(int64_t)value);
 }
 
 /* By its bits, so -0 and 0 differ. */
-/*@ assigns \nothing; */
 static inline uint64_t wh_hash_real(uint64_t hash, wh_real_t value) {
 #if defined(WH_FLOAT)
     uint32_t bits;
@@ -32,18 +29,14 @@ static inline uint64_t wh_hash_real(uint64_t hash, wh_real_t value) {
     return wh_hash_word(hash, bits);
 }
 
-/*@ requires \valid_read(v); assigns \nothing; */
 static inline uint64_t wh_hash_vec3(uint64_t hash, const wh_vec3_t *v) {
     hash = wh_hash_real(hash, v->x);
     hash = wh_hash_real(hash, v->y);
     return wh_hash_real(hash, v->z);
 }
 
-/*@ requires \valid_read(pose); assigns \nothing; */
 static inline uint64_t wh_hash_pose(uint64_t hash, const wh_pose_t *pose) {
-    /*@ loop assigns row, hash; loop variant 3 - row; */
     for (size_t row = 0; row < 3; ++row) {
-        /*@ loop assigns column, hash; loop variant 3 - column; */
         for (size_t column = 0; column < 3; ++column) {
             hash = wh_hash_real(hash, pose->R.m[row][column]);
         }

@@ -1,12 +1,9 @@
 #include "pose.h"
 
-/*@ requires \valid_read(pose); assigns \nothing; */
 static bool pose_is_finite(const wh_pose_t *pose) {
     /* A sum of differences that are each zero, or NaN as soon as one number is not finite. */
     wh_real_t zero = (pose->r.x - pose->r.x) + (pose->r.y - pose->r.y) + (pose->r.z - pose->r.z);
-    /*@ loop assigns row, zero; loop variant 3 - row; */
     for (size_t row = 0; row < 3; ++row) {
-        /*@ loop assigns column, zero; loop variant 3 - column; */
         for (size_t column = 0; column < 3; ++column) {
             zero += pose->R.m[row][column] - pose->R.m[row][column];
         }
@@ -14,7 +11,6 @@ static bool pose_is_finite(const wh_pose_t *pose) {
     return zero == 0;
 }
 
-/*@ assigns \nothing; */
 static bool near(wh_real_t value, wh_real_t wanted) {
     return wh_real_abs(value - wanted) <= WH_ROTATION_TOLERANCE;
 }
@@ -29,7 +25,6 @@ bool wh_mat3_is_orthonormal(const wh_mat3_t *R) {
 }
 
 /* False for numbers that are not finite. */
-/*@ requires \valid_read(R); assigns \nothing; */
 static bool is_rotation(const wh_mat3_t *R) {
     const wh_vec3_t e1 = wh_mat3_column(R, 0);
     const wh_vec3_t e2 = wh_mat3_column(R, 1);
@@ -38,7 +33,7 @@ static bool is_rotation(const wh_mat3_t *R) {
     return wh_mat3_is_orthonormal(R) && wh_vec3_dot(&e1_cross_e2, &e3) > 0;
 }
 
-/* A rotation's numbers need not be looked at one by one. */
+/* The numbers of a rotation are finite: they need no look one by one. */
 wh_status_t wh_pose_validate(const wh_pose_t *pose) {
     if (is_rotation(&pose->R)) {
         return wh_vec3_is_finite(&pose->r) ? WH_OK : WH_STATUS_NOT_FINITE;
@@ -61,15 +56,12 @@ void wh_pose_relative_to(const wh_pose_t *a_from_b, const wh_pose_t *a_from_c, w
 void wh_mat3_orthonormalise(wh_mat3_t *R) {
     wh_mat3_t correction;
     wh_mat3_multiply_back_to(R, R, &correction);
-    /*@ loop assigns row, correction; loop variant 3 - row; */
     for (size_t row = 0; row < 3; ++row) {
-        /*@ loop assigns column, correction; loop variant 3 - column; */
         for (size_t column = 0; column < 3; ++column) {
             const wh_real_t identity = row == column ? WH_REAL(3) : WH_REAL(0);
             correction.m[row][column] = (identity - correction.m[row][column]) / 2;
         }
     }
-    /*@ loop assigns row, *R; loop variant 3 - row; */
     for (size_t row = 0; row < 3; ++row) {
         const wh_vec3_t almost = wh_mat3_row(R, row);
         const wh_vec3_t turned = wh_mat3_transform_back(&correction, &almost);

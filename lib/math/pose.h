@@ -14,35 +14,26 @@ typedef struct {
     wh_vec3_t r;
 } wh_pose_t;
 
-/*@ assigns \nothing; */
 static inline wh_pose_t wh_pose_identity(void) {
     wh_pose_t pose = {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}};
     return pose;
 }
 
 /* a_from_b * b_from_c = a_from_c, written to memory that neither of them is in. Cost: 36 products. */
-/*@ requires \valid_read(a_from_b) && \valid_read(b_from_c) && \valid(a_from_c);
-    requires \separated(a_from_c, a_from_b) && \separated(a_from_c, b_from_c);
-    assigns *a_from_c; */
 void wh_pose_compose_to(const wh_pose_t *a_from_b, const wh_pose_t *b_from_c, wh_pose_t *a_from_c);
 
-/* inverse(a_from_b) * a_from_c = b_from_c, written to memory that neither of them is in. The difference of the
- * positions is taken first: a round trip through wh_pose_compose_to keeps positions to rounding even far from a's
- * origin. Cost: 36 products. */
-/*@ requires \valid_read(a_from_b) && \valid_read(a_from_c) && \valid(b_from_c);
-    requires \separated(b_from_c, a_from_b) && \separated(b_from_c, a_from_c);
-    assigns *b_from_c; */
+/* inverse(a_from_b) * a_from_c = b_from_c, written to memory that neither of them is in. The difference of
+ * the positions is taken first: a round trip through wh_pose_compose_to keeps positions to rounding even far
+ * from a's origin. Cost: 36 products. */
 void wh_pose_relative_to(const wh_pose_t *a_from_b, const wh_pose_t *a_from_c, wh_pose_t *b_from_c);
 
 /* The same as values, for 96 bytes (48 in float) more of stack. */
-/*@ requires \valid_read(a_from_b) && \valid_read(b_from_c); assigns \nothing; */
 static inline wh_pose_t wh_pose_compose(const wh_pose_t *a_from_b, const wh_pose_t *b_from_c) {
     wh_pose_t a_from_c;
     wh_pose_compose_to(a_from_b, b_from_c, &a_from_c);
     return a_from_c;
 }
 
-/*@ requires \valid_read(a_from_b) && \valid_read(a_from_c); assigns \nothing; */
 static inline wh_pose_t wh_pose_relative(const wh_pose_t *a_from_b, const wh_pose_t *a_from_c) {
     wh_pose_t b_from_c;
     wh_pose_relative_to(a_from_b, a_from_c, &b_from_c);
@@ -51,19 +42,14 @@ static inline wh_pose_t wh_pose_relative(const wh_pose_t *a_from_b, const wh_pos
 
 /* WH_STATUS_OK when all twelve numbers are finite, no entry of |R^T R - I| is above WH_ROTATION_TOLERANCE and
  * det R > 0; else WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION. Cost: about 30 products. */
-/*@ requires \valid_read(pose);
-    assigns \nothing;
-    ensures \result == WH_OK || \result == WH_STATUS_NOT_FINITE || \result == WH_STATUS_NOT_A_ROTATION; */
 wh_status_t wh_pose_validate(const wh_pose_t *pose);
 
-/* Whether no entry of |R^T R - I| is above WH_ROTATION_TOLERANCE: a rotation, or one of its mirror images. False where a
- * number is not finite. Cost: 18 products. */
-/*@ requires \valid_read(R); assigns \nothing; */
+/* True if no entry of |R^T R - I| is above WH_ROTATION_TOLERANCE: a rotation, or one of its mirror images.
+ * False if a number is not finite. Cost: 18 products. */
 bool wh_mat3_is_orthonormal(const wh_mat3_t *R);
 
-/* Brings an almost-rotation to the rotation nearest to it, in place, by one Newton step R (3 I - R^T R) / 2: an error of
- * e in R^T R becomes about e^2. R must pass wh_pose_validate. */
-/*@ requires \valid(R); assigns *R; */
+/* Brings an almost-rotation to the rotation nearest to it, in place, by one Newton step R (3 I - R^T R) / 2:
+ * an error of e in R^T R becomes about e^2. R must pass wh_pose_validate. */
 void wh_mat3_orthonormalise(wh_mat3_t *R);
 
 #endif

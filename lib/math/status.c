@@ -10,7 +10,6 @@ static const struct {
 };
 
 const char *wh_status_text(wh_status_t status) {
-    /*@ loop assigns i; */
     for (size_t i = 0; i < sizeof catalogue / sizeof catalogue[0]; ++i) {
         if (catalogue[i].number == status) {
             return catalogue[i].text;
@@ -20,7 +19,6 @@ const char *wh_status_text(wh_status_t status) {
 }
 
 const char *wh_status_name(wh_status_t status) {
-    /*@ loop assigns i; */
     for (size_t i = 0; i < sizeof catalogue / sizeof catalogue[0]; ++i) {
         if (catalogue[i].number == status) {
             return catalogue[i].name;

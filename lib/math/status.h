@@ -15,11 +15,9 @@ typedef enum {
 
 /* The catalogue's text for a status: a constant string in English without a full stop, never null; for a
  * number that is not in the catalogue "unknown status". Cost: linear in the catalogue. */
-/*@ assigns \result \from status; */
 const char *wh_status_text(wh_status_t status);
 
 /* The catalogue's name for a status, such as "NOT_FINITE"; "UNKNOWN" if it is not in it. Same cost. */
-/*@ assigns \result \from status; */
 const char *wh_status_name(wh_status_t status);
 
 #endif

@@ -10,6 +10,10 @@
 
 #include "config.h"
 
+static inline wh_real_t wh_real_max(wh_real_t a, wh_real_t b) {
+    return a > b ? a : b;
+}
+
 typedef struct {
     wh_real_t x, y, z;
 } wh_vec3_t;
@@ -19,7 +23,6 @@ typedef struct {
     wh_real_t m[3][3];
 } wh_mat3_t;
 
-/*@ assigns \nothing; */
 static inline wh_real_t wh_real_abs(wh_real_t a) {
 #if defined(WH_FLOAT)
     return fabsf(a);
@@ -29,7 +32,6 @@ static inline wh_real_t wh_real_abs(wh_real_t a) {
 }
 
 /* Correctly rounded, as IEEE 754 asks. */
-/*@ assigns \nothing; */
 static inline wh_real_t wh_real_sqrt(wh_real_t a) {
 #if defined(WH_FLOAT)
     return sqrtf(a);
@@ -38,9 +40,8 @@ static inline wh_real_t wh_real_sqrt(wh_real_t a) {
 #endif
 }
 
-/* Whether the square root, rounded as above, is less than a limit in [1e-6, 1e6]: only near the limit it takes the root,
- * which costs a processor with doubles more than the two products. */
-/*@ assigns \nothing; */
+/* True if the square root, rounded as above, is less than a limit in [1e-6, 1e6]. Takes the root near the
+ * limit only, since a root costs more than two products. */
 static inline bool wh_real_root_below(wh_real_t square, wh_real_t limit) {
 #if !defined(WH_FLOAT)
     if (square < limit * limit * WH_REAL(0.999)) {
@@ -51,71 +52,58 @@ static inline bool wh_real_root_below(wh_real_t square, wh_real_t limit) {
 }
 
 /* Neither NaN nor infinite. */
-/*@ assigns \nothing; */
 static inline bool wh_real_is_finite(wh_real_t a) {
     return a - a == 0;
 }
 
-/*@ assigns \nothing; */
 static inline wh_vec3_t wh_vec3(wh_real_t x, wh_real_t y, wh_real_t z) {
     wh_vec3_t v = {x, y, z};
     return v;
 }
 
-/*@ requires \valid_read(a) && \valid_read(b); assigns \nothing; */
 static inline wh_vec3_t wh_vec3_add(const wh_vec3_t *a, const wh_vec3_t *b) {
     return wh_vec3(a->x + b->x, a->y + b->y, a->z + b->z);
 }
 
-/*@ requires \valid_read(a) && \valid_read(b); assigns \nothing; */
 static inline wh_vec3_t wh_vec3_subtract(const wh_vec3_t *a, const wh_vec3_t *b) {
     return wh_vec3(a->x - b->x, a->y - b->y, a->z - b->z);
 }
 
-/*@ requires \valid_read(a); assigns \nothing; */
 static inline wh_vec3_t wh_vec3_scale(wh_real_t factor, const wh_vec3_t *a) {
     return wh_vec3(factor * a->x, factor * a->y, factor * a->z);
 }
 
-/*@ requires \valid_read(a) && \valid_read(b); assigns \nothing; */
 static inline wh_real_t wh_vec3_dot(const wh_vec3_t *a, const wh_vec3_t *b) {
     return a->x * b->x + a->y * b->y + a->z * b->z;
 }
 
-/*@ requires \valid_read(a) && \valid_read(b); assigns \nothing; */
 static inline wh_vec3_t wh_vec3_cross(const wh_vec3_t *a, const wh_vec3_t *b) {
     return wh_vec3(a->y * b->z - a->z * b->y, a->z * b->x - a->x * b->z, a->x * b->y - a->y * b->x);
 }
 
-/*@ requires \valid_read(a); assigns \nothing; */
 static inline wh_real_t wh_vec3_norm(const wh_vec3_t *a) {
     return wh_real_sqrt(wh_vec3_dot(a, a));
 }
 
-/* All three are. */
-/*@ requires \valid_read(a); assigns \nothing; */
+/* True if all three numbers are finite. */
 static inline bool wh_vec3_is_finite(const wh_vec3_t *a) {
     return (a->x - a->x) + (a->y - a->y) + (a->z - a->z) == 0;
 }
 
-/*@ assigns \nothing; */
 static inline wh_mat3_t wh_mat3_identity(void) {
     wh_mat3_t i = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     return i;
 }
 
-/*@ requires \valid_read(a) && row < 3; assigns \nothing; */
 static inline wh_vec3_t wh_mat3_row(const wh_mat3_t *a, size_t row) {
     return wh_vec3(a->m[row][0], a->m[row][1], a->m[row][2]);
 }
 
-/*@ requires \valid_read(a) && column < 3; assigns \nothing; */
 static inline wh_vec3_t wh_mat3_column(const wh_mat3_t *a, size_t column) {
     return wh_vec3(a->m[0][column], a->m[1][column], a->m[2][column]);
 }
 
 /* a * v */
-/*@ requires \valid_read(a) && \valid_read(v); assigns \nothing; */
 static inline wh_vec3_t wh_mat3_transform(const wh_mat3_t *a, const wh_vec3_t *v) {
     return wh_vec3(a->m[0][0] * v->x + a->m[0][1] * v->y + a->m[0][2] * v->z,
                    a->m[1][0] * v->x + a->m[1][1] * v->y + a->m[1][2] * v->z,
@@ -123,7 +111,6 @@ static inline wh_vec3_t wh_mat3_transform(const wh_mat3_t *a, const wh_vec3_t *v
 }
 
 /* transpose(a) * v */
-/*@ requires \valid_read(a) && \valid_read(v); assigns \nothing; */
 static inline wh_vec3_t wh_mat3_transform_back(const wh_mat3_t *a, const wh_vec3_t *v) {
     return wh_vec3(a->m[0][0] * v->x + a->m[1][0] * v->y + a->m[2][0] * v->z,
                    a->m[0][1] * v->x + a->m[1][1] * v->y + a->m[2][1] * v->z,
@@ -131,10 +118,7 @@ static inline wh_vec3_t wh_mat3_transform_back(const wh_mat3_t *a, const wh_vec3
 }
 
 /* a * b, into memory that neither of them is in. */
-/*@ requires \valid_read(a) && \valid_read(b) && \valid(product) && \separated(product, a) && \separated(product, b);
-    assigns *product; */
 static inline void wh_mat3_multiply_to(const wh_mat3_t *a, const wh_mat3_t *b, wh_mat3_t *product) {
-    /*@ loop assigns row, *product; loop variant 3 - row; */
     for (size_t row = 0; row < 3; ++row) {
         const wh_real_t x = a->m[row][0];
         const wh_real_t y = a->m[row][1];
@@ -146,10 +130,7 @@ static inline void wh_mat3_multiply_to(const wh_mat3_t *a, const wh_mat3_t *b, w
 }
 
 /* transpose(a) * b, into memory that neither of them is in. */
-/*@ requires \valid_read(a) && \valid_read(b) && \valid(product) && \separated(product, a) && \separated(product, b);
-    assigns *product; */
 static inline void wh_mat3_multiply_back_to(const wh_mat3_t *a, const wh_mat3_t *b, wh_mat3_t *product) {
-    /*@ loop assigns row, *product; loop variant 3 - row; */
     for (size_t row = 0; row < 3; ++row) {
         const wh_real_t x = a->m[0][row];
         const wh_real_t y = a->m[1][row];
@@ -161,7 +142,6 @@ static inline void wh_mat3_multiply_back_to(const wh_mat3_t *a, const wh_mat3_t 
 }
 
 /* a * b */
-/*@ requires \valid_read(a) && \valid_read(b); assigns \nothing; */
 static inline wh_mat3_t wh_mat3_multiply(const wh_mat3_t *a, const wh_mat3_t *b) {
     wh_mat3_t product;
     wh_mat3_multiply_to(a, b, &product);
@@ -169,7 +149,6 @@ static inline wh_mat3_t wh_mat3_multiply(const wh_mat3_t *a, const wh_mat3_t *b)
 }
 
 /* transpose(a) * b */
-/*@ requires \valid_read(a) && \valid_read(b); assigns \nothing; */
 static inline wh_mat3_t wh_mat3_multiply_back(const wh_mat3_t *a, const wh_mat3_t *b) {
     wh_mat3_t product;
     wh_mat3_multiply_back_to(a, b, &product);

@@ -21,18 +21,18 @@ void wh_ahead_init(wh_ahead_t *ahead, const wh_layout_t *layout, void *memory) {
 }
 
 /* The copy stands where motion control stands. */
-static bool begin(wh_ahead_t *ahead, const wh_mcs_t *mcs) {
+static bool begin(wh_ahead_t *ahead, const wh_state_t *state) {
     const wh_layout_t *layout = ahead->layout;
     const wh_grasp_storage_t storage = {.wafers = ahead->wafers,
                                         .wafer_count = layout->wafer_count,
                                         .grippers = ahead->grippers,
                                         .gripper_count = layout->machine.gripper_count};
     for (size_t w = 0; w < layout->wafer_count; ++w) {
-        ahead->wafers[w] = mcs->state.wafers[w];
+        ahead->wafers[w] = state->wafers[w];
     }
     if (wh_simulator_init(&ahead->simulator, &layout->grasp, &storage, &layout->cell) != WH_OK ||
-        wh_grasp_restore(&ahead->simulator.table, (uint64_t)mcs->state.seq, mcs->state.wafers,
-                         mcs->state.grippers) != WH_OK) {
+        wh_grasp_restore(&ahead->simulator.table, (uint64_t)state->seq, state->wafers, state->grippers) !=
+            WH_OK) {
         return false;
     }
     wh_collision_attach(&ahead->collision, layout, &ahead->simulator, ahead->world_memory);
@@ -51,17 +51,17 @@ static const wh_event_t *find_hit(const wh_state_t *state) {
 static void describe(const wh_ahead_t *ahead, const wh_event_t *hit, char *reason) {
     const char *one = wh_layout_part_name(ahead->layout, hit->parts[0]);
     const char *two = wh_layout_part_name(ahead->layout, hit->parts[1]);
-    snprintf(reason, WH_MCS_REASON_BYTES, "%s and %s at %.3f, %.3f, %.3f mm", one ? one : "a part",
+    snprintf(reason, WH_REHEARSAL_REASON_BYTES, "%s and %s at %.3f, %.3f, %.3f mm", one ? one : "a part",
              two ? two : "others", (double)hit->at.x, (double)hit->at.y, (double)hit->at.z);
 }
 
-bool wh_ahead_judge(void *user, const wh_mcs_t *mcs, const wh_segment_t *segment, char *reason) {
+bool wh_ahead_judge(void *user, const wh_track_t *begun, const wh_state_t *now, bool first, char *reason) {
     wh_ahead_t *ahead = user;
-    wh_track_t track = mcs->track;
+    wh_track_t track = *begun;
     wh_command_t command = {.fault_count = 0};
     wh_machine_cache_t cache = {.is_taken = false};
     wh_state_t state;
-    if (segment->kind == WH_SEGMENT_SENSOR || (mcs->judged == 0 && !begin(ahead, mcs))) {
+    if (track.segment.kind == WH_SEGMENT_SENSOR || (first && !begin(ahead, now))) {
         return false;
     }
     while (wh_track_next(&track, 0) == WH_TRACK_MOVING) {

@@ -6,7 +6,8 @@
 #ifndef WH_MCS_AHEAD_H
 #define WH_MCS_AHEAD_H
 
-#include "mcs.h"
+#include "../layout/collision.h"
+#include "rehearsal.h"
 
 typedef struct {
     const wh_layout_t *layout;
@@ -23,7 +24,7 @@ size_t wh_ahead_bytes(const wh_layout_t *layout);
 /* `memory`, aligned as malloc's, and the layout must outlive it. */
 void wh_ahead_init(wh_ahead_t *ahead, const wh_layout_t *layout, void *memory);
 
-/* A wh_mcs_ahead_t, its user a wh_ahead_t. */
-bool wh_ahead_judge(void *user, const wh_mcs_t *mcs, const wh_segment_t *segment, char *reason);
+/* A wh_look_ahead_t, its user a wh_ahead_t. */
+bool wh_ahead_judge(void *user, const wh_track_t *track, const wh_state_t *state, bool first, char *reason);
 
 #endif

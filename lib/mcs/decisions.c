@@ -17,7 +17,7 @@ static bool make_room(wh_decisions_t *decisions, const wh_command_t *command) {
     size_t poses = (size_t)decisions->slice_capacity;
     size_t axes = poses;
     const size_t wanted = poses > 0 ? 2 * poses : 4096;
-    if (wanted > WH_TAPE_BYTES / bytes) {
+    if (wanted > WH_DECISIONS_BYTES / bytes) {
         decisions->unfit = "the run has too many slices";
         return false;
     }
@@ -64,45 +64,21 @@ void wh_decisions_slice(wh_decisions_t *decisions, const wh_command_t *command) 
 
 /* ------------------------------------------------------------------------------------------------------ readings */
 
-static void add_entry(wh_decisions_t *decisions, const wh_decisions_entry_t *entry) {
-    decisions->entries = wh_array_grow(decisions->entries, decisions->entry_count, &decisions->entry_capacity,
-                                       sizeof *decisions->entries);
-    decisions->entries[decisions->entry_count] = *entry;
-    decisions->entries[decisions->entry_count].slice = decisions->slice_count;
-    ++decisions->entry_count;
-}
-
-void wh_decisions_begin(wh_decisions_t *decisions, const wh_segment_t *segment, uint32_t carried) {
+void wh_decisions_read(wh_decisions_t *decisions, wh_decisions_kind_t kind, int32_t index, int32_t answer) {
     if (decisions) {
-        const bool waits = segment->kind == WH_SEGMENT_SENSOR;
-        const wh_decisions_entry_t entry = {
-            .kind = WH_TAPE_BEGIN, .index = waits ? segment->gripper : WH_NONE, .mask = carried};
-        add_entry(decisions, &entry);
-    }
-}
-
-void wh_decisions_end(wh_decisions_t *decisions, bool done, int32_t lost) {
-    if (decisions) {
-        const wh_decisions_entry_t entry = {.kind = WH_TAPE_END, .index = lost, .mask = done ? 1 : 0};
-        add_entry(decisions, &entry);
-    }
-}
-
-void wh_decisions_ask(wh_decisions_t *decisions, wh_decisions_kind_t kind, int32_t index, int32_t answer) {
-    if (decisions) {
-        const wh_decisions_entry_t entry = {.kind = kind, .index = index, .answer = answer};
-        add_entry(decisions, &entry);
+        decisions->entries = wh_array_grow(decisions->entries, decisions->entry_count,
+                                           &decisions->entry_capacity, sizeof *decisions->entries);
+        decisions->entries[decisions->entry_count++] =
+            (wh_decisions_entry_t){kind, index, answer, decisions->slice_count};
     }
 }
 
 void wh_decisions_claim(wh_decisions_t *decisions, const wh_decisions_claim_t *claim, int32_t verdict) {
     if (decisions) {
-        const wh_decisions_entry_t entry = {
-            .kind = WH_TAPE_CLAIM, .index = (int32_t)decisions->claim_count, .answer = verdict};
         decisions->claims = wh_array_grow(decisions->claims, decisions->claim_count,
                                           &decisions->claim_capacity, sizeof *decisions->claims);
-        decisions->claims[decisions->claim_count++] = *claim;
-        add_entry(decisions, &entry);
+        decisions->claims[decisions->claim_count] = *claim;
+        wh_decisions_read(decisions, WH_DECISION_CLAIM, (int32_t)decisions->claim_count++, verdict);
     }
 }
 
@@ -110,6 +86,24 @@ void wh_decisions_measured(wh_decisions_t *decisions, const char *what) {
     if (decisions && !decisions->unfit) {
         decisions->unfit = what;
     }
+}
+
+void wh_vacuum_watch_begin(wh_vacuum_watch_t *watch, uint32_t watched) {
+    watch->watched = watched;
+    watch->was_off = 0;
+}
+
+void wh_vacuum_watch_slice(wh_vacuum_watch_t *watch, uint32_t sensors) {
+    watch->was_off |= ~sensors;
+}
+
+int32_t wh_vacuum_watch_lost(const wh_vacuum_watch_t *watch, const int32_t valves[], size_t gripper_count) {
+    for (size_t g = 0; g < gripper_count; ++g) {
+        if ((watch->watched & watch->was_off & 1U << g) != 0 && valves[g] == WH_VALVE_OPEN) {
+            return (int32_t)g;
+        }
+    }
+    return WH_NONE;
 }
 
 int32_t wh_decisions_judge(const wh_decisions_claim_t *claim, const wh_cell_t *cell,
@@ -134,4 +128,198 @@ void wh_decisions_free(wh_decisions_t *decisions) {
         free(decisions->valves[g]);
     }
     memset(decisions, 0, sizeof *decisions);
+}
+
+/* ------------------------------------------------------------------------------------------------------- playing */
+
+/* Slice `at` is where the trial is; `stepped` the last that the simulator was stepped through. The state is the same but
+ * for where grippers are and what they carry along. */
+typedef struct {
+    const wh_decisions_t *decisions;
+    const wh_trial_cell_t *trial_cell;
+    wh_simulator_t *simulator;
+    wh_decisions_watch_t *watch;
+    void *user;
+    bool may_skip, broken;
+    int64_t at, stepped;
+    wh_command_t command;
+    wh_state_t state;
+    size_t next[WH_GRIPPERS]; /* the change of its valve that is still to come */
+    /* Of the running segment. */
+    int32_t waits;
+    wh_vacuum_watch_t vacuum;
+} player_t;
+
+/* ------------------------------------------------------------------------------------------------------ slices */
+
+static int64_t next_change(const player_t *player, size_t g) {
+    const wh_decisions_t *decisions = player->decisions;
+    return player->next[g] < decisions->valve_count[g]
+               ? decisions->valves[g][player->next[g]].slice + player->trial_cell->lag[g]
+               : INT64_MAX;
+}
+
+static void load(player_t *player, int64_t slice) {
+    const wh_decisions_t *decisions = player->decisions;
+    wh_command_t *command = &player->command;
+    const wh_pose_t *poses = &decisions->poses[(size_t)(slice - 1) * decisions->gripper_count];
+    wh_pose_t moved[WH_GRIPPERS];
+    if (player->trial_cell->chucks_moved) {
+        const wh_real_t *axes = &decisions->axes[(size_t)(slice - 1) * decisions->axis_count];
+        wh_machine_grippers(&player->trial_cell->layout.machine, axes, moved);
+        poses = moved;
+    }
+    for (size_t g = 0; g < decisions->gripper_count; ++g) {
+        command->grippers[g].base_from_gripper = poses[g];
+        while (next_change(player, g) <= slice) {
+            command->grippers[g].valve = decisions->valves[g][player->next[g]++].valve;
+        }
+    }
+    command->seq = slice;
+    command->utime = slice * player->trial_cell->layout.slice_us;
+}
+
+/* Steps one slice; those since the last one that was stepped have changed nothing. */
+static void step(player_t *player, int64_t slice) {
+    load(player, slice);
+    player->simulator->table.slice = (uint64_t)slice - 1;
+    player->broken = wh_simulator_step(player->simulator, &player->command, &player->state) != WH_OK;
+    player->stepped = slice;
+    if (player->state.event_count > 0) {
+        player->watch(player->user, player->state.events, player->state.event_count);
+    }
+}
+
+/* The last slice up to `to` that is like this one: no valve changes, and no gripper is looking for a wafer. */
+static int64_t quiet_until(const player_t *player, int64_t to) {
+    if (!player->may_skip || player->at == 0) {
+        return player->at;
+    }
+    for (size_t g = 0; g < player->decisions->gripper_count; ++g) {
+        const wh_gripper_t *gripper = &player->state.grippers[g];
+        const int64_t change = next_change(player, g);
+        if (gripper->valve == WH_VALVE_OPEN && gripper->wafer == WH_NONE) {
+            return player->at;
+        }
+        to = change <= to ? change - 1 : to;
+    }
+    return to;
+}
+
+static void settle(player_t *player) {
+    if (player->stepped < player->at) {
+        step(player, player->at);
+    }
+}
+
+/* Whether motion control goes on waiting before this slice, as it did. */
+static bool goes_on_waiting(const player_t *player) {
+    return player->waits == WH_NONE || (player->state.sensors >> player->waits & 1U) == 0;
+}
+
+static void advance(player_t *player, int64_t to) {
+    while (player->at < to && !player->broken) {
+        player->broken = !goes_on_waiting(player);
+        const int64_t quiet = quiet_until(player, to);
+        if (quiet > player->at && player->waits == WH_NONE) {
+            player->at = quiet;
+        } else if (!player->broken) {
+            settle(player);
+            step(player, ++player->at);
+        }
+        wh_vacuum_watch_slice(&player->vacuum, player->state.sensors);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- readings */
+
+static int32_t find_lost(const player_t *player) {
+    const wh_decisions_t *decisions = player->decisions;
+    int32_t told[WH_GRIPPERS];
+    for (size_t g = 0; g < decisions->gripper_count; ++g) {
+        size_t i = decisions->valve_count[g];
+        while (i > 0 && decisions->valves[g][i - 1].slice > player->at) {
+            --i;
+        }
+        told[g] = i > 0 ? decisions->valves[g][i - 1].valve : WH_VALVE_CLOSED;
+    }
+    return wh_vacuum_watch_lost(&player->vacuum, told, decisions->gripper_count);
+}
+
+static bool begin(player_t *player, const wh_decisions_entry_t *entry) {
+    player->waits = entry->index;
+    wh_vacuum_watch_begin(&player->vacuum, (uint32_t)entry->answer & player->state.sensors);
+    return true;
+}
+
+static bool end(player_t *player, const wh_decisions_entry_t *entry) {
+    const bool done = goes_on_waiting(player) == (player->waits == WH_NONE);
+    player->waits = WH_NONE;
+    return done == (entry->answer != 0) && find_lost(player) == entry->index;
+}
+
+static bool holds_claim(player_t *player, const wh_decisions_entry_t *entry) {
+    settle(player);
+    return !player->broken &&
+           wh_decisions_judge(&player->decisions->claims[entry->index], &player->simulator->cell,
+                              player->state.wafers) == entry->answer;
+}
+
+/* Whether an entry is what this trial would have written. */
+static bool agrees(player_t *player, const wh_decisions_entry_t *entry) {
+    switch (entry->kind) {
+    case WH_DECISION_BEGIN:
+        return begin(player, entry);
+    case WH_DECISION_END:
+        return end(player, entry);
+    case WH_DECISION_SENSOR:
+        return (int32_t)(player->state.sensors >> entry->index & 1U) == entry->answer;
+    case WH_DECISION_HELD:
+        return player->state.grippers[entry->index].wafer == entry->answer;
+    case WH_DECISION_HOLDER:
+        return player->state.wafers[entry->index].holder == entry->answer;
+    case WH_DECISION_CLAIM:
+        return holds_claim(player, entry);
+    default:
+        return false;
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- playing */
+
+static bool may_skip(const wh_trial_cell_t *trial_cell, const wh_simulator_t *simulator) {
+    const wh_physics_t *physics = &trial_cell->layout.physics;
+    return physics->vacuum.build <= 0 && physics->vacuum.vent <= 0 && physics->pads.mass <= 0 &&
+           physics->fault_count == 0 && !simulator->observer.look;
+}
+
+static void start(player_t *player) {
+    const wh_decisions_t *decisions = player->decisions;
+    player->waits = WH_NONE;
+    player->may_skip = may_skip(player->trial_cell, player->simulator);
+    player->command.gripper_count = decisions->gripper_count;
+    player->command.axis_count = decisions->axis_count;
+    for (size_t g = 0; g < decisions->gripper_count; ++g) {
+        player->command.grippers[g].valve = WH_VALVE_CLOSED;
+    }
+    wh_simulator_view(player->simulator, &player->state);
+}
+
+bool wh_decisions_play(const wh_decisions_t *decisions, const wh_trial_cell_t *trial_cell,
+                       wh_simulator_t *simulator, wh_decisions_watch_t *watch, void *user) {
+    player_t player = {.decisions = decisions,
+                       .trial_cell = trial_cell,
+                       .simulator = simulator,
+                       .watch = watch,
+                       .user = user};
+    start(&player);
+    for (size_t i = 0; i < decisions->entry_count && !player.broken; ++i) {
+        advance(&player, decisions->entries[i].slice);
+        if (player.broken || !agrees(&player, &decisions->entries[i])) {
+            return false;
+        }
+    }
+    advance(&player, decisions->slice_count);
+    settle(&player);
+    return !player.broken;
 }

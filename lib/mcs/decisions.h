@@ -1,10 +1,10 @@
-/* A tape: what motion control commands in a run, slice by slice, and all that it reads back.
+/* The decisions of a run: what motion control commands, slice by slice, and all that it reads back.
  *
- * Motion control decides by what it reads: the vacuum sensors in a segment, which wafer a gripper holds, whether a wafer lies
- * where it is expected. A trial of a study in which every such reading is as it was on the tape is commanded slice by slice
- * what the tape has, so that the simulator alone can play it, without Lua: see wh_decisions_play. Where a reading differs, motion
- * control might have gone another way, and the script is to be run whole. A script that reads measured numbers (offset,
- * proximity, MAP, ...) or faults on purpose makes the tape unfit.
+ * Motion control decides by what it reads: the vacuum sensors in a segment, which wafer a gripper holds, if a wafer lies
+ * where it is expected. If every such reading in a trial of a study is as it was in this run, motion control would command the
+ * same in each slice. Then the simulator alone can play the trial, without Lua: see wh_decisions_play. If a reading differs, motion
+ * control might go another way, and the script is run whole. A script that reads measured numbers (offset, proximity, MAP, ...) or
+ * makes faults on purpose has decisions that are unfit for that.
  */
 #ifndef WH_MCS_DECISIONS_H
 #define WH_MCS_DECISIONS_H
@@ -12,23 +12,24 @@
 #include "../motion/track.h"
 #include "trial_cell.h"
 
-/* So much memory a tape may take for slices; a longer run makes it unfit. */
-#define WH_TAPE_BYTES ((size_t)512 << 20)
+/* So much memory the slices may take; a longer run is unfit. */
+#define WH_DECISIONS_BYTES ((size_t)512 << 20)
 
+/* What was read, of whom, and the answer. */
 typedef enum {
-    WH_TAPE_BEGIN, /* a segment: `index` is the gripper whose sensor it waits for, or WH_NONE; `mask` may lose wafers */
-    WH_TAPE_END, /* of it: `index` is the gripper that lost its wafer, or WH_NONE; `mask` 1: it ran to its end */
-    WH_TAPE_SENSOR, /* of gripper `index` was `answer` */
-    WH_TAPE_HELD,   /* by gripper `index` was wafer `answer` */
-    WH_TAPE_HOLDER, /* of wafer `index` was gripper `answer` */
-    WH_TAPE_CLAIM   /* number `index` was judged: `answer` */
+    WH_DECISION_BEGIN, /* a segment: `index` is the gripper whose sensor it waits for, or WH_NONE; bit g of `answer`: gripper g
+                         * may lose its wafer in it */
+    WH_DECISION_END, /* of it: `index` is the gripper that lost its wafer, or WH_NONE; `answer` 1: it ran to its end */
+    WH_DECISION_SENSOR, /* of gripper `index` */
+    WH_DECISION_HELD,   /* the wafer that gripper `index` holds */
+    WH_DECISION_HOLDER, /* the gripper that holds wafer `index` */
+    WH_DECISION_CLAIM   /* claim number `index`: what wh_decisions_judge says */
 } wh_decisions_kind_t;
 
-/* An entry: what was read after slice `slice`. */
+/* What was read after slice `slice`. */
 typedef struct {
     wh_decisions_kind_t kind;
     int32_t index, answer;
-    uint32_t mask;
     int64_t slice;
 } wh_decisions_entry_t;
 
@@ -44,9 +45,9 @@ typedef struct {
     int32_t valve;
 } wh_decisions_valve_t;
 
-/* To be zeroed before a run. Of one run; afterwards it is only read, by any number of threads. */
+/* All zero before a run. Afterwards only to be read, by any number of threads. */
 typedef struct {
-    const char *unfit; /* why it cannot be played, a constant text; null: it can */
+    const char *unfit; /* why they cannot be played, a constant text; null: they can */
     size_t gripper_count, axis_count;
     int64_t slice_count;
     int64_t slice_capacity;
@@ -60,11 +61,21 @@ typedef struct {
     size_t valve_count[WH_GRIPPERS], valve_capacity[WH_GRIPPERS];
 } wh_decisions_t;
 
-/* Recording; all of them do nothing with a null tape. Memory that runs out ends the program. */
+/* Which gripper lost its wafer during a segment, as its vacuum sensor tells. */
+typedef struct {
+    uint32_t watched; /* bit g: gripper g's sensor was on before, and its wafer could be lost */
+    uint32_t was_off; /* bit g: it was off in a slice since */
+} wh_vacuum_watch_t;
+
+void wh_vacuum_watch_begin(wh_vacuum_watch_t *watch, uint32_t watched);
+void wh_vacuum_watch_slice(wh_vacuum_watch_t *watch, uint32_t sensors);
+
+/* The first of the watched whose sensor went off though its valve is told to be open, or WH_NONE. */
+int32_t wh_vacuum_watch_lost(const wh_vacuum_watch_t *watch, const int32_t valves[], size_t gripper_count);
+
+/* Keeping; all of these do nothing if `decisions` is null. Abort if out of memory. */
 void wh_decisions_slice(wh_decisions_t *decisions, const wh_command_t *command);
-void wh_decisions_begin(wh_decisions_t *decisions, const wh_segment_t *segment, uint32_t carried);
-void wh_decisions_end(wh_decisions_t *decisions, bool done, int32_t lost);
-void wh_decisions_ask(wh_decisions_t *decisions, wh_decisions_kind_t kind, int32_t index, int32_t answer);
+void wh_decisions_read(wh_decisions_t *decisions, wh_decisions_kind_t kind, int32_t index, int32_t answer);
 void wh_decisions_claim(wh_decisions_t *decisions, const wh_decisions_claim_t *claim, int32_t verdict);
 
 /* The script has read something that a trial's errors change: `what` is a constant text. */
@@ -78,14 +89,15 @@ void wh_decisions_free(wh_decisions_t *decisions);
 
 /* ---- Playing ---- */
 
-/* What happened in a trial that a tape was played for. Given with each slice's events. */
+/* What happened in a trial that is played: the events of a slice. */
 typedef void wh_decisions_watch_t(void *user, const wh_event_t events[], size_t count);
 
-/* Plays the tape of a run of `reality->layout`'s layout against a simulator that was initialised with the reality and not
- * stepped. True when all that was read back is as on the tape: the simulator is then in the very state in which running the script
- * for that trial would leave it, and `watch` has seen each event. False where something was read differently, or the simulator
- * refused a slice: all is then void. Slices in which nothing can happen are skipped: with a plain vacuum, no pads, no faults
- * and nobody looking, those in which each gripper keeps its valve and either is closed or holds a wafer. */
+/* Plays the decisions of a run against the simulator of a trial in the same layout, which was initialised with `trial_cell` and
+ * not stepped. True if all that is read back is as it was in the run: the simulator is then in the very state in which
+ * running the script for that trial would leave it, and `watch` has seen each event. False if something was read
+ * differently, or if the simulator refused a slice: all is then void. Slices in which nothing can happen are skipped: with a plain
+ * vacuum, no pads, no faults and nobody looking, those in which each gripper keeps its valve and either is closed or holds a
+ * wafer. */
 bool wh_decisions_play(const wh_decisions_t *decisions, const wh_trial_cell_t *trial_cell,
                        wh_simulator_t *simulator, wh_decisions_watch_t *watch, void *user);
 

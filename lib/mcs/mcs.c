@@ -5,7 +5,11 @@
 
 #include "../script/embedded.h"
 #include "../script/wh_module.h"
-#include "mcs_internal.h"
+#include "native.h"
+
+/* What an entry of the record costs of the instruction budget. */
+#define STEPS_PER_ENTRY 256
+#define STEPS_PER_BYTE 4
 
 wh_mcs_t *wh_mcs_of(lua_State *L) {
     return lua_touserdata(L, lua_upvalueindex(1));
@@ -25,12 +29,16 @@ int32_t wh_mcs_index(lua_State *L, int argument, size_t count) {
     return (int32_t)index - 1;
 }
 
-double wh_mcs_now(const wh_mcs_t *mcs) {
-    return (double)(mcs->track.slice * mcs->track.slice_us) / 1e6;
+void wh_mcs_listen(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user) {
+    mcs->listeners[mcs->listener_count].hear = hear;
+    mcs->listeners[mcs->listener_count++].user = user;
 }
 
-/* ------------------------------------------------------------------------------------------ numbered errors
- */
+void wh_mcs_charge_entry(lua_State *L, size_t text_bytes) {
+    wh_sandbox_charge(L, STEPS_PER_ENTRY + STEPS_PER_BYTE * (uint64_t)text_bytes);
+}
+
+/* ---------------------------------------------------------------------------------------------- numbered errors */
 
 static int numbered_error_text(lua_State *L) {
     lua_getfield(L, 1, "message");
@@ -50,9 +58,11 @@ static void push_numbered_error_metatable(lua_State *L) {
 
 int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *detail) {
     /* Within a pattern L is the pattern's coroutine, on whose stack the script is not: the command knows. */
-    const bool runs = mcs->running != WH_NONE;
-    const int line = runs ? mcs->record->commands[mcs->running].line : wh_sandbox_line(L, mcs->script);
-    const char *command = runs ? mcs->record->commands[mcs->running].text : "";
+    const wh_recorder_t *recorder = &mcs->recorder;
+    const bool runs = recorder->running != WH_NONE;
+    const int line =
+        runs ? recorder->record->commands[recorder->running].line : wh_sandbox_line(L, mcs->script);
+    const char *command = runs ? recorder->record->commands[recorder->running].text : "";
     lua_createtable(L, 0, 4);
     lua_pushinteger(L, status);
     lua_setfield(L, -2, "number");
@@ -72,8 +82,7 @@ int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *de
     abort(); /* lua_error does not return, but its declaration does not say so */
 }
 
-/* ------------------------------------------------------------------------------------------------- opening
- */
+/* ------------------------------------------------------------------------------------------------------ opening */
 
 /* native.module(name): what an embedded file of lua/mcs returns. */
 static int load_module(lua_State *L) {
@@ -91,6 +100,13 @@ static int load_module(lua_State *L) {
     return luaL_error(L, "no embedded file %s", name);
 }
 
+static void hear_collisions(void *user, const wh_command_t *command, const wh_state_t *state) {
+    (void)command;
+    if (state->status == WH_OK) {
+        wh_collision_observe(user, state);
+    }
+}
+
 /* native.connect(): the cell stands; from here on slices go over the caller's link, if it has one. */
 static int connect(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
@@ -100,21 +116,23 @@ static int connect(lua_State *L) {
             return luaL_error(L, "%s: no link to the simulator", mcs->layout->path);
         }
     }
+    if (mcs->local.collision.memory && mcs->link != &mcs->local.simulator.link) {
+        wh_mcs_listen(mcs, hear_collisions, &mcs->local.collision);
+    }
     return 0;
 }
 
 static const luaL_Reg module_functions[] = {{"module", load_module}, {"connect", connect}, {NULL, NULL}};
 
-/* Registry key of what lua/mcs/init.lua returned: it opens the lines. */
-static char lines_key;
+/* Registry key of what lua/mcs/init.lua returned: it opens the prompt. */
+static char prompt_key;
 
 /* Runs protected: pushes the native table and hands it to lua/mcs/init.lua, which sets the globals. */
 static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
-    const luaL_Reg *const groups[] = {
-        module_functions,       wh_mcs_cell_functions,   wh_mcs_plan_functions,     wh_mcs_play_functions,
-        wh_mcs_query_functions, wh_mcs_record_functions, wh_mcs_line_functions,     wh_mcs_scan_functions,
-        wh_mcs_fault_functions, wh_mcs_figure_functions, wh_mcs_collision_functions};
+    const luaL_Reg *const groups[] = {module_functions,       wh_mcs_cell_functions, wh_mcs_command_functions,
+                                      wh_mcs_fault_functions, wh_mcs_plan_functions, wh_mcs_play_functions,
+                                      wh_mcs_query_functions, wh_mcs_scan_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -126,12 +144,12 @@ static int open_words(lua_State *L) {
         luaL_setfuncs(L, groups[i], 1);
     }
     lua_call(L, 1, 1);
-    lua_rawsetp(L, LUA_REGISTRYINDEX, &lines_key);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &prompt_key);
     return 0;
 }
 
-void wh_mcs_push_lines(lua_State *L) {
-    lua_rawgetp(L, LUA_REGISTRYINDEX, &lines_key);
+void wh_mcs_push_prompt(lua_State *L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &prompt_key);
     lua_call(L, 0, 2);
 }
 
@@ -141,66 +159,28 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
     memset(mcs, 0, sizeof *mcs);
     mcs->script = script;
     mcs->sandbox = sandbox;
-    mcs->record = record;
-    mcs->running = WH_NONE;
     mcs->stop_slice = INT64_MAX;
-    record->script = wh_record_text(script);
+    wh_recorder_open(&mcs->recorder, record, script);
     lua_pushcfunction(L, open_words);
     lua_pushlightuserdata(L, mcs);
     return wh_sandbox_call(L, 1, 0, result);
 }
 
-/* ------------------------------------------------------------------------------------------------ finishing
- */
-
-static void record_wafer(const wh_mcs_t *mcs, size_t w) {
-    const wh_wafer_t *wafer = &mcs->state.wafers[w];
-    wh_wafer_record_t *kept = &mcs->record->wafers[w];
-    kept->base_from_wafer = wafer->base_from_wafer;
-    kept->holder = wafer->holder;
-    if (!wh_cell_locate(&mcs->simulator.cell, &wafer->base_from_wafer, &kept->place)) {
-        kept->place.station = WH_NONE;
-    }
-}
-
-bool wh_mcs_is_complaint(const wh_event_t *event) {
-    static const uint32_t complaints =
-        1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED | 1U << WH_EVENT_BAD_INPUT |
-        1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED;
-    return (complaints >> (unsigned)event->kind & 1U) != 0;
-}
+/* ---------------------------------------------------------------------------------------------------- finishing */
 
 void wh_mcs_finish(wh_mcs_t *mcs) {
-    wh_record_t *record = mcs->record;
-    record->ok = record->failure == NULL;
-    for (size_t i = 0; i < record->expectation_count; ++i) {
-        record->ok = record->ok && record->expectations[i].ok;
+    wh_recorder_end_t end = {.wafers = mcs->state.wafers};
+    if (mcs->link) {
+        end.hash = mcs->link->hash(mcs->link);
+        end.missed = mcs->link->missed(mcs->link);
+        end.world = mcs->local.collision.world;
     }
-    for (size_t i = 0; i < record->event_count; ++i) {
-        record->ok = record->ok && !wh_mcs_is_complaint(&record->events[i].event);
-    }
-    record->layout = mcs->layout;
-    if (!mcs->layout) {
-        return;
-    }
-    record->slices = mcs->track.slice;
-    wh_activity_end(&record->activity, record->slices);
-    record->simulated_s = wh_mcs_now(mcs);
-    record->hash = mcs->link->hash(mcs->link);
-    record->missed = mcs->link->missed(mcs->link);
-    record->checked = mcs->collision.world != NULL;
-    if (record->checked) {
-        memcpy(record->clearances, wh_world_clearances(mcs->collision.world), sizeof record->clearances);
-        wh_record_keep_curves(record, wh_world_curves(mcs->collision.world));
-    }
-    record->wafers = calloc(mcs->layout->wafer_count + 1, sizeof *record->wafers);
-    for (size_t w = 0; record->wafers && w < mcs->layout->wafer_count; ++w) {
-        record_wafer(mcs, w);
-    }
+    wh_recorder_finish(&mcs->recorder, &end);
 }
 
 void wh_mcs_close(wh_mcs_t *mcs) {
     free(mcs->segments);
     mcs->segments = NULL;
     mcs->segment_count = 0;
+    wh_rehearsal_free(&mcs->rehearsal);
 }

@@ -36,16 +36,9 @@ static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_sandbox_r
 wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_options_t *options) {
     wh_sandbox_result_t result;
     memset(run, 0, sizeof *run);
-    run->sandbox = wh_sandbox_new(&options->limits);
-    if (!run->sandbox) {
-        return refuse(run, "no memory for Lua");
-    }
-    for (size_t i = 0; i < options->parameter_count; ++i) {
-        if (!wh_sandbox_set_parameter(run->sandbox, options->parameters[i], &result)) {
-            return refuse(run, result.message);
-        }
-    }
-    if (!wh_mcs_open(&run->mcs, run->sandbox, options->script, &run->record, &result)) {
+    run->sandbox =
+        wh_sandbox_new_with(&options->limits, options->parameters, options->parameter_count, &result);
+    if (!run->sandbox || !wh_mcs_open(&run->mcs, run->sandbox, options->script, &run->record, &result)) {
         return refuse(run, result.message);
     }
     run->mcs.keep_segments = options->keep_segments;

@@ -20,28 +20,17 @@ static bool refuse(wh_session_t *session, const char *message) {
     return false;
 }
 
-/* ------------------------------------------------------------------------------------------------- opening
- */
+/* ------------------------------------------------------------------------------------------------- opening */
 
-/* Runs protected: cell(layout), then the lines. */
+/* Runs protected: cell(layout), then the prompt. */
 static int open_cell(lua_State *L) {
     lua_getglobal(L, "cell");
     lua_pushstring(L, lua_touserdata(L, 1));
     lua_call(L, 1, 0);
-    wh_mcs_push_lines(L);
+    wh_mcs_push_prompt(L);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &complete_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &execute_key);
     return 0;
-}
-
-static bool set_parameters(wh_session_t *session, const wh_session_options_t *options) {
-    wh_sandbox_result_t result;
-    for (size_t i = 0; i < options->parameter_count; ++i) {
-        if (!wh_sandbox_set_parameter(session->sandbox, options->parameters[i], &result)) {
-            return refuse(session, result.message);
-        }
-    }
-    return true;
 }
 
 bool wh_session_open(wh_session_t *session, const wh_session_options_t *options) {
@@ -50,17 +39,15 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
     memset(session, 0, sizeof *session);
     session->report = options->report;
     session->report_user = options->report_user;
-    session->sandbox = wh_sandbox_new(&options->limits);
-    if (!session->sandbox) {
-        return refuse(session, "no memory for Lua");
-    }
     if ((size_t)snprintf(layout, sizeof layout, "%s", options->layout) >= sizeof layout) {
         return refuse(session, "the layout's path is too long");
     }
     /* A "script" without a folder: so layouts are looked for from the working directory. */
-    if (!set_parameters(session, options) ||
+    session->sandbox =
+        wh_sandbox_new_with(&options->limits, options->parameters, options->parameter_count, &result);
+    if (!session->sandbox ||
         !wh_mcs_open(&session->mcs, session->sandbox, "prompt", &session->record, &result)) {
-        return session->message[0] ? false : refuse(session, result.message);
+        return refuse(session, result.message);
     }
     session->mcs.partners = options->partners;
     lua_State *L = wh_sandbox_state(session->sandbox);
@@ -76,8 +63,7 @@ void wh_session_close(wh_session_t *session) {
     session->sandbox = NULL;
 }
 
-/* ------------------------------------------------------------------------------------------------- answers
- */
+/* ------------------------------------------------------------------------------------------------- answers */
 
 /* Bytes of the control character at `text`, 0 if it is none: U+0000 to U+001F, U+007F to U+009F. */
 static size_t control_bytes(const unsigned char *text) {
@@ -116,8 +102,7 @@ static void write_error(char *answer, size_t size, wh_status_t status, const cha
     write_answer(answer, size, text);
 }
 
-/* ----------------------------------------------------------------------------------------------- executing
- */
+/* ----------------------------------------------------------------------------------------------- executing */
 
 typedef struct {
     const char *line;
@@ -148,25 +133,9 @@ static wh_status_t status_of(wh_sandbox_reason_t reason) {
     return spent ? WH_STATUS_OUT_OF_BUDGET : WH_STATUS_BAD_ARGUMENT;
 }
 
-/* An exhausted limit ends a command past all Lua: its record is closed here. */
-static void close_command(wh_session_t *session, wh_status_t status, const char *message) {
-    wh_mcs_t *mcs = &session->mcs;
-    if (mcs->running == WH_NONE) {
-        return;
-    }
-    wh_command_record_t *command = &session->record.commands[mcs->running];
-    command->error = status;
-    command->message = wh_record_text(message);
-    command->end_s = (double)(mcs->track.slice * mcs->track.slice_us) / 1e6;
-    mcs->running = WH_NONE;
-    if (mcs->partners.watch) {
-        mcs->partners.watch(mcs->partners.user, mcs, command, true);
-    }
-}
-
 static void count_complaints(wh_session_t *session, size_t from) {
     for (size_t i = from; i < session->record.event_count; ++i) {
-        session->complaints += wh_mcs_is_complaint(&session->record.events[i].event) ? 1 : 0;
+        session->complaints += wh_record_is_complaint(&session->record.events[i].event) ? 1 : 0;
     }
 }
 
@@ -184,7 +153,8 @@ static void perform(wh_session_t *session, request_t *request) {
         request->status = status_of(result.status);
         write_error(request->answer, request->size, request->status,
                     request->status == WH_STATUS_STOPPED ? "" : result.message);
-        close_command(session, request->status, result.message);
+        /* An exhausted limit ends a command past all Lua: its record is closed here. */
+        wh_mcs_cut_short(&session->mcs, request->status, result.message);
     }
     count_complaints(session, events);
 }
@@ -213,8 +183,7 @@ void wh_session_stop(wh_session_t *session) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------- completing
- */
+/* ---------------------------------------------------------------------------------------------- completing */
 
 typedef struct {
     const char *before;

@@ -22,7 +22,7 @@ typedef struct {
 } wh_trial_cell_t;
 
 /* Fills in the reality of a trial. `places` and `start` are room for the layout's stations and wafers; they and `layout`, which
- * has `errors`, must outlive it. The collision world still is the layout's: see wh_layout_read_reality. Deterministic: the
+ * has `errors`, must outlive it. The collision world still is the layout's: see wh_layout_read_trial_world. Deterministic: the
  * same trial gives the same bits. Cost: linear in stations and wafers. */
 void wh_trial_cell_fill(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_trial_t *trial,
                         wh_station_t *places, wh_wafer_t *start);

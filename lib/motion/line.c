@@ -11,8 +11,8 @@
 #define UNSLOWED 1.0000000001
 #endif
 
-/* The horizontal line as base's axis sees it: its distance, and the least and the greatest distance from the
- * closest point that occur on it. */
+/* The horizontal line, seen from base's axis: its distance, and the least and the greatest distance on it
+ * from the closest point. */
 typedef struct {
     wh_real_t distance, nearest, farthest;
 } passage_t;
@@ -22,11 +22,11 @@ typedef struct {
     wh_real_t first, second, third;
 } bounds_t;
 
-/* q after so many mm outward, to the left and up from the start, as the arm saw them there. */
+/* The axes after a step: mm outward, to the left and up, as the arm sees them at the start. */
 static void axes_after(const wh_real_t from[WH_ROBOT_AXES], const wh_vec3_t *step,
                        wh_real_t q[WH_ROBOT_AXES]) {
     const wh_real_t outward = from[WH_AXIS_R] + step->x;
-    /* Straight outward or up: the arc tangent of a zero, whose sign it keeps. */
+    /* Straight outward or up the arc tangent is that of a zero, whose sign it keeps. */
     const bool straight = step->y == 0 && outward > 0;
     const wh_real_t turned = straight ? step->y : wh_atan2(step->y, outward);
     q[WH_AXIS_THETA] = from[WH_AXIS_THETA] + turned;
@@ -47,7 +47,7 @@ static wh_real_t radius(const passage_t *passage, wh_real_t c) {
     return wh_real_sqrt(passage->distance * passage->distance + c * c);
 }
 
-/* `share` is the horizontal part of the direction; without any the line is a point here. */
+/* `share` is the horizontal part of the direction. If it is 0, the line is a point from above. */
 static passage_t passage_of(const wh_line_t *line, wh_real_t share, wh_real_t length) {
     const wh_real_t R = line->from[WH_AXIS_R];
     passage_t passage = {0, R, R};
@@ -96,11 +96,7 @@ static bounds_t bounds_of_theta(const passage_t *passage) {
     return bounds;
 }
 
-static wh_real_t greater(wh_real_t a, wh_real_t b) {
-    return a > b ? a : b;
-}
-
-/* The factor in time by which an axis with these bounds must be slowed when the effector moves horizontally
+/* The factor in time by which an axis with these bounds must be slowed if the effector moves horizontally
  * with up to `peak`: dq/dt = q' v, d2q/dt2 = q'' v^2 + q' a, d3q/dt3 = q''' v^3 + 3 q'' v a + q' j. */
 static wh_real_t slowing(const bounds_t *q, const wh_limits_t *peak, const wh_limits_t *limits) {
     const wh_real_t v = peak->speed;
@@ -108,8 +104,8 @@ static wh_real_t slowing(const bounds_t *q, const wh_limits_t *peak, const wh_li
     const wh_real_t speed = q->first * v;
     const wh_real_t acceleration = q->second * v * v + q->first * a;
     const wh_real_t jerk = q->third * v * v * v + 3 * q->second * v * a + q->first * peak->jerk;
-    return greater(speed / limits->speed,
-                   greater(wh_real_sqrt(acceleration / limits->acceleration), wh_cbrt(jerk / limits->jerk)));
+    return wh_real_max(speed / limits->speed, wh_real_max(wh_real_sqrt(acceleration / limits->acceleration),
+                                                          wh_cbrt(jerk / limits->jerk)));
 }
 
 static wh_real_t slowing_of_line(const wh_line_t *line, const passage_t *passage, wh_real_t share,
@@ -119,12 +115,12 @@ static wh_real_t slowing_of_line(const wh_line_t *line, const passage_t *passage
                               share * wh_profile_peak_jerk(&line->path)};
     const bounds_t R = bounds_of_R(passage);
     const bounds_t theta = bounds_of_theta(passage);
-    const wh_real_t arm = greater(slowing(&R, &peak, &robot->limits[WH_AXIS_R]),
-                                  slowing(&theta, &peak, &robot->limits[WH_AXIS_THETA]));
-    return greater(arm, slowing(&theta, &peak, &robot->limits[WH_AXIS_YAW]));
+    const wh_real_t arm = wh_real_max(slowing(&R, &peak, &robot->limits[WH_AXIS_R]),
+                                      slowing(&theta, &peak, &robot->limits[WH_AXIS_THETA]));
+    return wh_real_max(arm, slowing(&theta, &peak, &robot->limits[WH_AXIS_YAW]));
 }
 
-/* The limit of a quantity along the line: R's for the horizontal share of it, Z's for the vertical, whichever
+/* The limit of a quantity along the line: R's for its horizontal share or Z's for its vertical one, whichever
  * binds. */
 static wh_real_t binding(wh_real_t R_limit, wh_real_t horizontal, wh_real_t Z_limit, wh_real_t vertical) {
     return R_limit * vertical <= Z_limit * horizontal ? R_limit / horizontal : Z_limit / vertical;

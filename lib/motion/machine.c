@@ -3,7 +3,8 @@
 #include "../math/exact_internal.h"
 #include "../math/trig.h"
 
-/* A tilt, however slight, shows in one of these; rounding leaves none of it in a turn about z alone. */
+/* A tilt, however slight, shows in one of these entries; a turn about z alone leaves none of it, even with
+ * rounding. */
 static bool is_level(const wh_mat3_t *R) {
     return !(wh_real_abs(R->m[0][2]) > 0 || wh_real_abs(R->m[1][2]) > 0 || wh_real_abs(R->m[2][0]) > 0 ||
              wh_real_abs(R->m[2][1]) > 0 || wh_real_abs(R->m[2][2] - 1) > 0);
@@ -68,9 +69,9 @@ wh_status_t wh_machine_check_travel(const wh_machine_t *machine, const wh_real_t
     return WH_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------- poses */
+/* -------------------------------------------------------------------------------------------------- poses */
 
-/* One on the robot. */
+/* Places a gripper on the robot. */
 static void place_on_robot(const wh_mount_t *mount, const wh_pose_t *base_from_effector, wh_pose_t *pose) {
     if (mount->is_shifted) {
         wh_pose_compose_to(base_from_effector, &mount->effector_from_gripper, pose);
@@ -98,12 +99,12 @@ void wh_machine_grippers(const wh_machine_t *machine, const wh_real_t axes[], wh
     }
 }
 
-/* 0 and -0 differ, and NaN is the same as itself. */
+/* Compares bits: 0 and -0 differ, and NaN equals itself. */
 static bool is_same(wh_real_t a, wh_real_t b) {
     return wh_bits(a) == wh_bits(b);
 }
 
-/* Bit a: axis a moved since the stance was taken. */
+/* Keeps the axes in the cache. Returns bit a for each axis a that has moved since the last call. */
 static uint32_t take_axes(const wh_machine_t *machine, const wh_real_t axes[], wh_machine_cache_t *cache) {
     uint32_t moved = 0;
     for (size_t axis = 0; axis < machine->axis_count; ++axis) {
@@ -117,7 +118,7 @@ static bool has_moved(uint32_t moved, size_t axis) {
     return (moved >> axis & 1U) != 0;
 }
 
-/* wh_robot_forward, with the sines that are known. */
+/* wh_robot_forward with the sines of the cache. */
 static void move_effector(const wh_real_t q[], uint32_t moved, wh_machine_cache_t *cache) {
     const wh_real_t heading = q[WH_AXIS_THETA] + q[WH_AXIS_YAW];
     wh_pose_t *effector = &cache->base_from_effector;

@@ -2,8 +2,8 @@
 
 #include "profile_internal.h"
 
-/* Each axis's own times, and how long the slowest takes. Of the profiles the rest is forgotten, which is cheaper than 1 kB
- * of stack for a second move. */
+/* Plans each axis alone: its times, and the duration of the slowest. It keeps no more of the profiles:
+ * planning them twice is cheaper than 1 kB of stack for a second move. */
 static wh_status_t plan_alone(size_t count, const wh_real_t from[], const wh_real_t to[],
                               const wh_limits_t limits[], wh_profile_times_t times[], wh_real_t *longest) {
     wh_real_t shortest = 0;
@@ -21,7 +21,7 @@ static wh_status_t plan_alone(size_t count, const wh_real_t from[], const wh_rea
         }
         times[axis] = wh_profile_times(&alone);
     }
-    /* The largest factor by which an axis is going to be stretched. */
+    /* longest / shortest is the largest factor by which an axis will be stretched. */
     return shortest > 0 && !wh_real_is_finite(*longest / shortest) ? WH_STATUS_BAD_LIMITS : WH_OK;
 }
 

@@ -1,10 +1,10 @@
 /* A point-to-point move: up to WH_AXES axes set out together and arrive together.
  *
- * The slowest axis takes its own shortest time (motion/profile.h); every other is slowed uniformly to it, so
- * no axis exceeds a limit. In the space of the axes the path is straight only where the profiles have one
- * shape.
+ * The slowest axis takes its own shortest time (motion/profile.h). Every other axis is slowed uniformly to
+ * that time, so no axis exceeds a limit. In the space of the axes the path is straight only if all profiles
+ * have one shape.
  *
- * A move is a plain struct without pointers: copy it freely; nothing keeps a reference to an argument. All
+ * A move is a plain struct without pointers: copy it freely. Nothing keeps a reference to an argument. All
  * functions are reentrant.
  */
 #ifndef WH_MOTION_MOVE_H
@@ -12,24 +12,25 @@
 
 #include "profile.h"
 
-/* The most axes that a move, a message or a track knows. */
+/* The most axes of a move, a message and a track. */
 #define WH_AXES 8
 
 /* A planned move. Written by wh_move_plan only; reading its fields is fine. */
 typedef struct {
     size_t count;
-    wh_real_t duration; /* s; 0 when no axis moves */
+    wh_real_t duration; /* s; 0 if no axis moves */
     wh_real_t from[WH_AXES], to[WH_AXES];
     wh_profile_t profile[WH_AXES]; /* relative to `from`, all of the move's duration */
 } wh_move_t;
 
-/* The shortest synchronised move from `from` to `to`, both arrays of `count` axis positions (mm or rad),
- * within `limits`, one for each axis (an axis that does not move needs sound limits as well). Axes keep to
- * the way from `from` to `to`: travel, and which way round to turn, is the caller's business
- * (motion/robot.h). Errors: WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE (count 0 or above WH_AXES),
+/* Plans the shortest synchronised move from `from` to `to`, both arrays of `count` axis positions (mm or
+ * rad), within `limits`, one for each axis. An axis that does not move needs sound limits as well. Each axis
+ * keeps between `from` and `to`; travel, and which way round to turn, is the caller's business
+ * (motion/robot.h). `from` may be move->to, to go on from where a move ended.
+ *
+ * Errors, *move then unchanged: WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE (count 0 or above WH_AXES),
  * WH_STATUS_NOT_FINITE (a position, or a distance too large to represent), WH_STATUS_BAD_LIMITS (see
- * wh_profile_plan, or axes' durations too far apart); *move is then unchanged. `from` may be move->to, to go
- * on from where a move ended. Cost: about 200 ns for four axes.
+ * wh_profile_plan, or durations of axes too far apart). Cost: about 200 ns for four axes.
  */
 wh_status_t wh_move_plan(wh_move_t *move, size_t count, const wh_real_t from[], const wh_real_t to[],
                          const wh_limits_t limits[]);
@@ -40,9 +41,9 @@ static inline wh_real_t wh_move_duration(const wh_move_t *move) {
 }
 
 /* Writes the `count` positions at `t` seconds after the start: exactly `from` for t <= 0 (and NaN), exactly
- * `to` from the duration on; in between each axis is within [from, to] to rounding, and an axis without
- * distance is at `from`. A move of duration 0 is at `to` from t = 0 on. No pointer may be null. Cost: about
- * 20 ns for four axes. */
+ * `to` from the duration on. In between each axis is within [from, to] to rounding; an axis without distance
+ * is at `from`. A move of duration 0 is at `to` from t = 0 on. No pointer may be null. Cost: about 20 ns for
+ * four axes. */
 void wh_move_at(const wh_move_t *move, wh_real_t t, wh_real_t position[]);
 
 #endif

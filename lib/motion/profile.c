@@ -14,7 +14,7 @@ wh_status_t wh_limits_validate(const wh_limits_t *limits) {
     return sound ? WH_OK : WH_STATUS_BAD_LIMITS;
 }
 
-/* Without cruise: with constant acceleration if there is room for it, else jerk only. */
+/* Without cruise: with constant acceleration if there is room for it, else with jerk only. */
 static wh_profile_times_t shortest_without_cruise(wh_real_t d, const wh_limits_t *limits) {
     wh_profile_times_t times;
     const wh_real_t full = limits->acceleration / limits->jerk;
@@ -48,14 +48,14 @@ static wh_profile_times_t shortest(wh_real_t d, const wh_limits_t *limits) {
     return times;
 }
 
-/* No phase has got lost to overflow or underflow, so that from_times can divide: the rise is at least two jerk times, the
- * duration two rises. */
+/* True if no phase was lost to overflow or underflow, so that from_times can divide: the rise is at least two
+ * jerk times, the duration two rises. */
 static bool times_are_sound(const wh_profile_times_t *times) {
     return is_positive(times->jerk) && wh_real_is_finite(times->duration);
 }
 
-/* Everything from the distance and the three times: jerk, acceleration and speed are made to fit them, so
- * that the phases add up to the distance. */
+/* Everything follows from the distance and the three times. Jerk, acceleration and speed are computed from
+ * them, so that the phases add up to the distance. */
 static wh_profile_t from_times(wh_real_t distance, const wh_profile_times_t *times) {
     wh_profile_t p;
     p.distance = distance;
@@ -107,7 +107,7 @@ wh_status_t wh_profile_plan(wh_profile_t *profile, wh_real_t distance, const wh_
     return WH_OK;
 }
 
-/* Times that last as long already are the same to the last bit: the factor is 1. */
+/* If the times already have that duration, the factor is 1 and they stay the same to the last bit. */
 static wh_profile_times_t slowed(const wh_profile_times_t *times, wh_real_t duration) {
     const wh_real_t slower = duration / times->duration;
     const wh_profile_times_t stretched = {times->jerk * slower, times->rise * slower, duration};

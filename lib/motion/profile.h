@@ -1,8 +1,8 @@
 /* How one axis gets from rest to rest in the shortest time: jerk-limited profiles in closed form.
  *
- * Seven phases: jerk, constant acceleration, jerk back, cruise, and the first three mirrored. Which of them
- * vanish depends on distance and limits; with v, a, j for the limits of speed, acceleration and jerk, and d =
- * |distance|:
+ * A profile has seven phases: jerk, constant acceleration, jerk back, cruise, and the first three mirrored.
+ * Distance and limits decide which of them vanish. With v, a, j for the limits of speed, acceleration and
+ * jerk, and d = |distance|:
  *
  *     jerk time  tj = a/j        if v/a >= a/j, else sqrt(v/j) and the acceleration limit is never reached;
  *     rise       T  = tj + v/a,  or 2 tj; cruise if d >= v T: duration T + d/v;
@@ -13,8 +13,8 @@
  * Planning for Automatic Machines and Robots, 2008, section 3.4, for zero speeds and accelerations at both
  * ends.
  *
- * Units: whatever the distance is in (mm or rad), and seconds. A profile is a plain struct without pointers:
- * copy it freely; nothing here keeps a reference to an argument. All functions are reentrant.
+ * Units: that of the distance (mm or rad), and seconds. A profile is a plain struct without pointers: copy it
+ * freely. Nothing keeps a reference to an argument. All functions are reentrant.
  */
 #ifndef WH_MOTION_PROFILE_H
 #define WH_MOTION_PROFILE_H
@@ -22,12 +22,12 @@
 #include "../math/status.h"
 #include "../math/vector.h"
 
-/* What an axis bears, as magnitudes: mm/s, mm/s^2, mm/s^3 or rad/s, rad/s^2, rad/s^3. */
+/* The limits of an axis, as magnitudes: mm/s, mm/s^2, mm/s^3 or rad/s, rad/s^2, rad/s^3. */
 typedef struct {
     wh_real_t speed, acceleration, jerk;
 } wh_limits_t;
 
-/* Where an axis is at an instant, relative to the start; all signed. */
+/* The state of an axis at an instant, relative to the start; all signed. */
 typedef struct {
     wh_real_t position, speed, acceleration, jerk;
 } wh_motion_t;
@@ -47,7 +47,7 @@ typedef struct {
     wh_real_t rise_position; /* at rise_end */
 } wh_profile_t;
 
-/* A distance this small counts as none: its duration is 0 and the end is reached at once. */
+/* A smaller distance counts as none: its duration is 0 and the end is reached at once. */
 #if defined(WH_FLOAT)
 #define WH_PROFILE_TINY 1e-25F
 #else
@@ -57,11 +57,11 @@ typedef struct {
 /* WH_STATUS_BAD_LIMITS unless all three are finite and > 0. */
 wh_status_t wh_limits_validate(const wh_limits_t *limits);
 
-/* The fastest profile over `distance` (signed, finite) within the limits. The duration is the analytic
- * optimum to 1e-14 of it (1e-5 in float); no limit is exceeded by more than 1e-14 (1e-5) of it. Errors:
- * WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE (distance), WH_STATUS_BAD_LIMITS (also when the limits are so
- * extreme that a time or the jerk cannot be represented); *profile is then unchanged.
- * Cost: about 20 ns, 40 when only the jerk limits. */
+/* Plans the fastest profile over `distance` (signed, finite) within the limits. The duration is the analytic
+ * optimum to 1e-14 of it (1e-5 in float); no limit is exceeded by more than 1e-14 (1e-5) of it. Errors,
+ * *profile then unchanged: WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE (distance), WH_STATUS_BAD_LIMITS
+ * (also if the limits are so extreme that a time or the jerk cannot be represented). Cost: about 20 ns, 40 if
+ * only the jerk limits. */
 wh_status_t wh_profile_plan(wh_profile_t *profile, wh_real_t distance, const wh_limits_t *limits);
 
 /* s, never negative. */
@@ -69,17 +69,17 @@ static inline wh_real_t wh_profile_duration(const wh_profile_t *profile) {
     return profile->duration;
 }
 
-/* Slows the whole profile uniformly to `duration` (s), which is then exactly its duration: with a factor k in
- * time, speeds fall by k, accelerations by k^2, jerks by k^3. Without distance it only waits. Errors:
- * WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, WH_STATUS_OUT_OF_RANGE when `duration` is shorter than the
- * profile's, or so long that the factor cannot be represented; *profile is then unchanged. Cost: 10 to 25 ns.
- */
+/* Slows the whole profile uniformly to `duration` (s), which is then exactly its duration. A factor k in time
+ * divides speeds by k, accelerations by k^2, jerks by k^3. Without distance the profile only waits. Errors,
+ * *profile then unchanged: WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, WH_STATUS_OUT_OF_RANGE if
+ * `duration` is shorter than the profile's, or so long that the factor cannot be represented. Cost: 10 to 25
+ * ns. */
 wh_status_t wh_profile_stretch(wh_profile_t *profile, wh_real_t duration);
 
-/* The state at `t` seconds after the start. For t <= 0 (and NaN) all zero, from the duration on exactly
- * `distance` at rest; a profile of duration 0 is at its end from t = 0 on. Where two phases meet, their
- * values agree to rounding (a few 1e-16 of the distance, the peak speed, ...). No pointer may be null. Cost:
- * about 10 ns. */
+/* The state at `t` seconds after the start. For t <= 0 (and NaN) all is zero; from the duration on the axis
+ * rests at exactly `distance`. A profile of duration 0 is at its end from t = 0 on. Where two phases meet,
+ * their values agree to rounding: a few 1e-16 of the distance, the peak speed and so on. No pointer may be
+ * null. Cost: about 10 ns. */
 void wh_profile_at(const wh_profile_t *profile, wh_real_t t, wh_motion_t *motion);
 
 /* The position alone, bit for bit. Cost: about 5 ns. */

@@ -1,4 +1,5 @@
-/* Within lib/motion: what a profile needs to be made again, slower. */
+/* Shared by profile.c and move.c: what it takes to plan a profile again, slower. move.c is apart so that a
+ * firmware that plans single axes does not link it. */
 #ifndef WH_MOTION_PROFILE_INTERNAL_H
 #define WH_MOTION_PROFILE_INTERNAL_H
 
@@ -14,8 +15,8 @@ static inline wh_profile_times_t wh_profile_times(const wh_profile_t *profile) {
     return times;
 }
 
-/* The profile over `distance` whose own times are these, stretched to `duration`: wh_profile_plan and then
- * wh_profile_stretch, bit for bit, where neither refuses. */
+/* The profile over `distance` with these times, stretched to `duration`: bit for bit wh_profile_plan and then
+ * wh_profile_stretch, if neither refuses. */
 void wh_profile_shape(wh_profile_t *profile, wh_real_t distance, const wh_profile_times_t *times,
                       wh_real_t duration);
 

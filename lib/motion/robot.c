@@ -3,7 +3,7 @@
 #include "../math/exact_internal.h"
 #include "../math/trig.h"
 
-/* 2 pi in two numbers. */
+/* 2 pi as the sum of two numbers. */
 #if defined(WH_FLOAT)
 static const wh_exact_t turn = {0x1.921fb6p+2F, -0x1.777a5cp-23F};
 #else
@@ -79,7 +79,7 @@ void wh_robot_forward(const wh_real_t q[WH_ROBOT_AXES], wh_pose_t *base_from_eff
     base_from_effector->R = wh_mat3_about_z(q[WH_AXIS_THETA] + q[WH_AXIS_YAW]);
 }
 
-/* How many turns to add to `angle` for (-pi, pi]. */
+/* How many turns to add to `angle` to bring it into (-pi, pi]. */
 static int32_t turns_to_half(wh_real_t angle) {
     const int32_t turns = -wh_nearest_whole(angle / turn.hi);
     const wh_real_t rest = angle + (wh_real_t)turns * turn.hi;
@@ -92,8 +92,8 @@ static wh_real_t add_turns(wh_exact_t angle, int32_t turns) {
     return sum.hi + (sum.lo + (angle.lo + n * turn.lo));
 }
 
-/* The shorter way round from `now` to the direction `there`, or the other way if only that is within travel.
- */
+/* The shorter way round from `now` to the direction `there`, or the other way if only that one is within
+ * travel. */
 static wh_real_t choose_theta(const wh_robot_t *robot, wh_real_t there, wh_real_t now) {
     const wh_exact_t direction = {there, 0};
     const int32_t turns = turns_to_half(there - now);
@@ -109,7 +109,7 @@ static wh_real_t yaw_for(wh_real_t heading, wh_real_t theta) {
     return add_turns(between, turns_to_half(between.hi));
 }
 
-/* A finite input for which the reductions hold? */
+/* Checks that the input is finite and within the range of the angle reductions. */
 static wh_status_t check_target(wh_real_t x, wh_real_t y, wh_real_t z, wh_real_t heading, wh_real_t now) {
     if (!wh_real_is_finite(x) || !wh_real_is_finite(y) || !wh_real_is_finite(z) ||
         !wh_real_is_finite(heading) || !wh_real_is_finite(now)) {

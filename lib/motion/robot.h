@@ -1,13 +1,13 @@
 /* The TRZY robot: a column that turns (theta), an arm that reaches out (R) and is lifted (Z), and a wrist
  * (yaw).
  *
- * It stands at base's origin and keeps its end-effector level: with axes q the end-effector's origin is at
- * (R cos theta, R sin theta, Z) in base, its x points along the heading theta + yaw (rad from base's x,
- * counter-clockwise seen from above), its z is base's z. R is positive: the arm never reaches through its own
+ * It stands at base's origin and keeps its end-effector level. With axes q the end-effector's origin is at (R
+ * cos theta, R sin theta, Z) in base; its x points along the heading theta + yaw (rad from base's x,
+ * counter-clockwise seen from above); its z is base's z. R is positive: the arm never reaches through its own
  * column.
  *
  * A robot is a plain struct that the caller fills (wh_robot_default, then changes), validates once, and hands
- * in by const pointer; nothing keeps a reference. All functions are reentrant.
+ * in by const pointer. Nothing keeps a reference. All functions are reentrant.
  */
 #ifndef WH_MOTION_ROBOT_H
 #define WH_MOTION_ROBOT_H
@@ -17,10 +17,11 @@
 
 #define WH_ROBOT_AXES 4
 
-/* The axes' places in every q: theta (rad), R (mm), Z (mm), yaw at the wrist relative to the arm (rad). */
+/* The indices of the axes in every q: theta (rad), R (mm), Z (mm), yaw at the wrist relative to the arm
+ * (rad). */
 enum { WH_AXIS_THETA, WH_AXIS_R, WH_AXIS_Z, WH_AXIS_YAW };
 
-/* Travel is inclusive, and an axis may stand this far beyond it: positions computed in another way differ by
+/* Travel is inclusive. An axis may stand this far beyond it: positions computed in another way differ by
  * rounding. */
 #if defined(WH_FLOAT)
 #define WH_SLACK_MM 1e-3F
@@ -53,13 +54,13 @@ typedef struct {
  * *robot must not be null. */
 void wh_robot_default(wh_robot_t *robot);
 
-/* WH_STATUS_OK if all limits are sound (wh_limits_validate), each travel is finite with min < max, R's does
- * not begin below 0, theta's and yaw's stay within WH_TRIG_MAX_RAD / 2, and home is within travel; else
+/* WH_OK if all limits are sound (wh_limits_validate), each travel is finite with min < max, R's does not
+ * begin below 0, theta's and yaw's stay within WH_TRIG_MAX_RAD / 2, and home is within travel; else
  * WH_STATUS_BAD_LIMITS, or WH_STATUS_NULL_ARGUMENT. The functions below expect a robot that passes. */
 wh_status_t wh_robot_validate(const wh_robot_t *robot);
 
-/* Whether the axes are within their travel: WH_STATUS_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, or
- * else WH_STATUS_OUT_OF_REACH for R and WH_STATUS_LIMIT_EXCEEDED for another axis. */
+/* Checks that the axes are within their travel: WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, or else
+ * WH_STATUS_OUT_OF_REACH for R and WH_STATUS_LIMIT_EXCEEDED for another axis. */
 wh_status_t wh_robot_check_travel(const wh_robot_t *robot, const wh_real_t q[WH_ROBOT_AXES]);
 
 /* base_from_effector at axes q, in travel or not. No pointer may be null. Numbers that are not finite, or

@@ -5,7 +5,7 @@
 #define MAX_SLICE_US 1000000
 #define MAX_SECONDS WH_REAL(1e6)
 
-/* Relative error of a time in seconds counted in slices: three roundings. */
+/* Relative error of a time in seconds that was counted in slices: three roundings. */
 #if defined(WH_FLOAT)
 #define ROUNDING (4 * FLT_EPSILON)
 #else
@@ -54,15 +54,15 @@ wh_segment_t wh_track_blank(const wh_track_t *track) {
     return segment;
 }
 
-/* The least number of whole slices that last at least `seconds`, which are at most MAX_SECONDS: 1e12 of them.
- * What is above a whole number by rounding alone is that number: 2.007 s are 2007 ms, not 2008. */
+/* The least number of whole slices that last at least `seconds`, which are at most MAX_SECONDS: 1e12 slices.
+ * A number that is above a whole one by rounding alone is that whole one: 2.007 s are 2007 ms, not 2008. */
 static int64_t slices_for(const wh_track_t *track, wh_real_t seconds) {
     const wh_real_t exact = seconds * WH_REAL(1e6) / (wh_real_t)track->slice_us;
     const int64_t whole = (int64_t)exact;
     return exact - (wh_real_t)whole > ROUNDING * exact ? whole + 1 : whole;
 }
 
-/* Since the segment began. Its last slice is its end, however the two were rounded. */
+/* Time since the segment began. Its last slice is at its end exactly, however the two were rounded. */
 static wh_real_t segment_time(const wh_track_t *track, wh_real_t duration) {
     if (track->segment_slice == track->segment_slices) {
         return duration;
@@ -169,7 +169,7 @@ static void switch_valves(wh_track_t *track) {
     }
 }
 
-/* Of a segment that only waits: nothing. */
+/* Sets axes or valves for the slice. A segment that only waits changes nothing. */
 static void apply(wh_track_t *track) {
     const wh_segment_kind_t kind = track->segment.kind;
     if (kind == WH_SEGMENT_AXES) {

@@ -1,10 +1,10 @@
 /* Tracks: segments played slice by slice, on a host or on a microcontroller.
  *
- * Whoever decides (a Lua pattern, a recorded list) hands over one segment at a time; the track plans it when
- * it begins and then yields axes and valves for each slice until it is over. A segment ends on the first slice
- * at or after its duration (to rounding), where its axes have exactly the target's bits, so the next one starts
- * from a clean state. One of no length (below WH_PROFILE_TINY on every axis) takes no slice and moves nothing.
- * Before each slice the caller reports which grippers' sensors are on.
+ * The caller (a Lua pattern, a recorded list) hands over one segment at a time. The track plans a segment
+ * when it begins, and then yields axes and valves for each slice until it is over. A segment ends on the
+ * first slice at or after its duration (to rounding). There its axes have exactly the target's bits, so the
+ * next segment starts from a clean state. A segment without length (below WH_PROFILE_TINY on every axis)
+ * takes no slice and moves nothing. Before each slice the caller reports which grippers' sensors are on.
  *
  *     wh_track_begin(&track, &segment);
  *     while ((state = wh_track_next(&track, sensors)) == WH_TRACK_MOVING) { use track.axes, track.valves }
@@ -32,7 +32,7 @@ typedef struct {
     wh_real_t speed;             /* LINE: at most this, mm/s; 0: the axes' own limits */
     wh_real_t acceleration;      /* LINE: at most this, mm/s^2; 0: the axes' own limits */
     wh_real_t seconds;           /* DWELL, SENSOR: 0 to 1e6 */
-    int32_t valves[WH_GRIPPERS]; /* VALVES: WH_VALVE_OPEN, WH_VALVE_CLOSED or WH_NONE: as it was */
+    int32_t valves[WH_GRIPPERS]; /* VALVES: WH_VALVE_OPEN, WH_VALVE_CLOSED; WH_NONE: unchanged */
     int32_t gripper;             /* SENSOR */
 } wh_segment_t;
 
@@ -42,7 +42,7 @@ typedef enum {
     WH_TRACK_TIMED_OUT /* SENSOR: it did not come on; no slice was used by this call */
 } wh_track_state_t;
 
-/* Read axes, valves and slice; the rest is the track's own. */
+/* Callers read axes, valves and slice; the rest is the track's own. */
 typedef struct {
     const wh_machine_t *machine; /* the caller's, which must outlive the track */
     int64_t slice_us;
@@ -50,7 +50,7 @@ typedef struct {
     wh_real_t axes[WH_AXES];
     int32_t valves[WH_GRIPPERS];
     wh_segment_t segment;
-    int64_t segment_slices; /* how many the running segment takes */
+    int64_t segment_slices; /* how many slices the running segment takes */
     int64_t segment_slice;  /* how many of them were yielded */
     union {
         wh_move_t move;
@@ -62,28 +62,29 @@ typedef struct {
  * null pointers, an invalid machine and a slice out of range; the track is then unchanged. */
 wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_t slice_us);
 
-/* A segment that changes nothing, to be filled in: DWELL of 0 s, all valves WH_NONE, target at the track's
- * axes. */
+/* A segment that changes nothing, for the caller to fill in: DWELL of 0 s, all valves WH_NONE, target at the
+ * track's axes. */
 wh_segment_t wh_track_blank(const wh_track_t *track);
 
 /* Plans a segment from where the track stands; one that is still running is given up there, at rest from one
  * slice to the next. Refused, the track unchanged:
  *   WH_STATUS_NULL_ARGUMENT
  *   WH_STATUS_NOT_FINITE      a target, travel, speed or time is NaN or infinite
- *   WH_STATUS_BAD_SEGMENT     kind, gripper, valve, speed, acceleration or seconds out of range; a motion of over
- *                             1e6 s
+ *   WH_STATUS_BAD_SEGMENT     kind, gripper, valve, speed, acceleration or seconds out of range; a motion of
+ *                             over 1e6 s
  *   WH_STATUS_LIMIT_EXCEEDED  an axis other than R outside its travel
  *   WH_STATUS_OUT_OF_REACH    R outside its travel, at the target or anywhere on a line
  *   WH_STATUS_BAD_LIMITS      limits too extreme to plan with: see wh_profile_plan
- * Cost: about 1 us for a move, 2 us for a line. */
+ * Cost: about 1 us for a move, 2 us for a line.
+ */
 wh_status_t wh_track_begin(wh_track_t *track, const wh_segment_t *segment);
 
-/* One slice of the running segment. Bit g of `sensors` says that gripper g's vacuum sensor is on; a sensor that
- * is on already takes no slice. After the end it says so again each time. `track` is not checked. Cost: all axes
- * of a profile, or a square root and an arc tangent on a line. */
+/* One slice of the running segment. Bit g of `sensors` says that gripper g's vacuum sensor is on. If the
+ * awaited sensor is on already, no slice is used. After the segment's end each call returns the end again.
+ * `track` is not checked. Cost: all axes of a profile, or a square root and an arc tangent on a line. */
 wh_track_state_t wh_track_next(wh_track_t *track, uint32_t sensors);
 
-/* Jumps to the running segment's end, as if all its slices had been played: for checking a pattern's reach
+/* Jumps to the running segment's end, as if all its slices had been played: a way to check a pattern's reach
  * without playing it. `slice` stays. */
 void wh_track_skip(wh_track_t *track);
 

@@ -147,7 +147,7 @@ static void put_reasons(const wh_printer_t *printer) {
     const size_t expected = record->expectation_count;
     size_t complaints = 0;
     for (size_t i = 0; i < record->event_count; ++i) {
-        complaints += wh_mcs_is_complaint(&record->events[i].event) ? 1 : 0;
+        complaints += wh_record_is_complaint(&record->events[i].event) ? 1 : 0;
     }
     bool more = put_reason(printer->out, true, unmet, "expectation not met", "expectations not met");
     more |= put_reason(printer->out, !more, record->failure ? count_errors(record) : 0,

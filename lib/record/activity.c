@@ -76,51 +76,52 @@ static void note(wh_activity_t *activity, size_t resource, int32_t what, int64_t
     }
 }
 
-static void note_gripper(wh_activity_t *activity, size_t g, const wh_task_t *task, const wh_track_t *track,
+/* `turns`: it is a chuck that turns. */
+static void note_gripper(wh_activity_t *activity, size_t g, bool turns, const wh_command_t *command,
                          int32_t held) {
     const size_t first = 1 + 3 * g;
-    const bool turns = (task->carried >> g & 1U) != 0 && track->machine->mounts[g].axis != WH_NONE;
     const wh_share_t share = held != WH_NONE ? WH_SHARE_LOADED : WH_SHARE_EMPTY;
-    note(activity, first, turns ? 1 + (int32_t)share : 0, track->slice);
-    note(activity, first + 1, held + 1, track->slice);
-    note(activity, first + 2, track->valves[g] == WH_VALVE_OPEN ? 1 : 0, track->slice);
+    note(activity, first, turns ? 1 + (int32_t)share : 0, command->seq);
+    note(activity, first + 1, held + 1, command->seq);
+    note(activity, first + 2, command->grippers[g].valve == WH_VALVE_OPEN ? 1 : 0, command->seq);
 }
 
-/* Whether the slice is like the one counted last. */
-static bool goes_on(const wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
+/* True if the slice is like the one counted last. */
+static bool goes_on(const wh_activity_t *activity, const wh_task_t *task, const wh_command_t *command,
                     const wh_state_t *state) {
     const wh_task_t *last = &activity->last.task;
     bool same = activity->last.is_known && task->share == last->share && task->moves == last->moves &&
                 task->robot == last->robot && task->carried == last->carried;
     for (size_t g = 0; same && g < state->gripper_count; ++g) {
         same = state->grippers[g].wafer == activity->last.held[g] &&
-               track->valves[g] == activity->last.valves[g];
+               command->grippers[g].valve == activity->last.valves[g];
     }
     return same;
 }
 
-static void note_all(wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
-                     const wh_state_t *state) {
+static void note_all(wh_activity_t *activity, const wh_machine_t *machine, const wh_task_t *task,
+                     const wh_command_t *command, const wh_state_t *state) {
     wh_share_t share = task->moves ? WH_SHARE_EMPTY : task->share;
     for (size_t g = 0; g < state->gripper_count; ++g) {
         const int32_t held = state->grippers[g].wafer;
-        note_gripper(activity, g, task, track, held);
-        if (held != WH_NONE && (task->carried >> g & 1U) != 0) {
+        const bool carried = (task->carried >> g & 1U) != 0;
+        note_gripper(activity, g, carried && machine->mounts[g].axis != WH_NONE, command, held);
+        if (held != WH_NONE && carried) {
             share = WH_SHARE_LOADED;
         }
         activity->last.held[g] = held;
-        activity->last.valves[g] = track->valves[g];
+        activity->last.valves[g] = command->grippers[g].valve;
     }
-    note(activity, 0, task->robot ? 1 + (int32_t)share : 0, track->slice);
+    note(activity, 0, task->robot ? 1 + (int32_t)share : 0, command->seq);
     activity->last.task = *task;
     activity->last.share = share;
     activity->last.is_known = true;
 }
 
-wh_share_t wh_activity_count(wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
-                             const wh_state_t *state) {
-    if (!goes_on(activity, task, track, state)) {
-        note_all(activity, task, track, state);
+wh_share_t wh_activity_count(wh_activity_t *activity, const wh_machine_t *machine, const wh_task_t *task,
+                             const wh_command_t *command, const wh_state_t *state) {
+    if (!goes_on(activity, task, command, state)) {
+        note_all(activity, machine, task, command, state);
     }
     ++activity->shares[activity->last.share];
     return activity->last.share;

@@ -65,10 +65,10 @@ typedef struct {
 /* The task of a segment that will begin where the track stands. `for_vacuum` tells a dwell for vacuum from others. */
 wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment, bool for_vacuum);
 
-/* Counts slice track->slice, which the track has yielded and `state` answers, and returns its share. Aborts when memory
- * is out. Cost: 4 ns for two grippers. */
-wh_share_t wh_activity_count(wh_activity_t *activity, const wh_task_t *task, const wh_track_t *track,
-                             const wh_state_t *state);
+/* Counts slice command->seq, which `state` answers, and returns its share. Of the command it reads `seq` and the valves.
+ * Aborts if out of memory. Cost: 4 ns for two grippers. */
+wh_share_t wh_activity_count(wh_activity_t *activity, const wh_machine_t *machine, const wh_task_t *task,
+                             const wh_command_t *command, const wh_state_t *state);
 
 /* Ends all that is going on with slice `slice`. */
 void wh_activity_end(wh_activity_t *activity, int64_t slice);

@@ -9,22 +9,23 @@
 /* So many equal samples are a rest. */
 #define REST 32
 
-/* To thin again, cubics are compared in so many places, where two may differ by this share of the tolerance: it is the
- * tolerance between them then. So many become one at most. */
+/* Thinning again compares two cubics in so many places. There they may differ by this share of the tolerance;
+ * between the places the difference then stays below the tolerance. At most so many cubics become one. */
 #define PLACES 16
 #define ROOM 0.95
 #define MERGED 64
 
 void wh_path_open(wh_path_t *curve, double tolerance, size_t limit) {
     memset(curve, 0, sizeof *curve);
-    curve->tolerance = tolerance;
-    curve->limit = limit;
+    curve->list.width = 2;
+    curve->list.tolerance = tolerance;
+    curve->list.limit = limit;
     curve->good = 1;
     curve->next = 2;
 }
 
 void wh_path_close(wh_path_t *curve) {
-    free(curve->points);
+    wh_points_close(&curve->list);
     free(curve->samples);
     memset(curve, 0, sizeof *curve);
 }
@@ -33,9 +34,10 @@ static bool is_same(double a, double b) {
     return !(a < b) && !(a > b);
 }
 
-/* --------------------------------------------------------------------------------------------------- cubics */
+/* ------------------------------------------------------------------------------------------------- cubics */
 
-/* From a point on: value = v + x (a + x (b + x c)), x from 0 to 1 at the next one. */
+/* A cubic between two points: value = v + x (a + x (b + x c)), with x from 0 at the first to 1 at the
+ * second. */
 typedef struct {
     double from, width;
     double v, a, b, c;
@@ -59,23 +61,25 @@ static double at_slice(const cubic_t *cubic, int64_t slice, double *slope) {
 }
 
 static double last_slope(const wh_path_t *curve) {
-    return curve->points[curve->count - 1].slope;
+    return wh_path_slope(curve, curve->list.count - 1);
 }
 
-/* Whether one cubic goes from the last point to sample `end`, with that slope there, and misses none between them. */
+/* True if one cubic from the last point to sample `end`, with that slope there, misses no sample between
+ * them. */
 static bool fits(const wh_path_t *curve, size_t end, double slope) {
     const wh_sample_t *samples = curve->samples;
     const cubic_t cubic = cubic_of(samples[0].slice, samples[0].value, last_slope(curve), samples[end].slice,
                                    samples[end].value, slope);
     for (size_t i = 1; i < end; ++i) {
-        if (!(fabs(at_slice(&cubic, samples[i].slice, NULL) - samples[i].value) <= curve->tolerance)) {
+        if (!(fabs(at_slice(&cubic, samples[i].slice, NULL) - samples[i].value) <= curve->list.tolerance)) {
             return false;
         }
     }
     return true;
 }
 
-/* Over the samples on both sides, but flat enough that a jump is not overshot; over one at an end of all. */
+/* The slope over the samples on both sides, limited so that the cubic does not overshoot a jump; at either
+ * end over one side. */
 static double slope_at(const wh_path_t *curve, size_t i) {
     const wh_sample_t *at = &curve->samples[i];
     const wh_sample_t *before = i > 0 ? at - 1 : at;
@@ -93,81 +97,75 @@ static double slope_at(const wh_path_t *curve, size_t i) {
     return fabs(slope) <= least ? slope : copysign(least, slope);
 }
 
-/* --------------------------------------------------------------------------------------------------- points */
+/* ----------------------------------------------------------------------------------------------- thinning */
 
-static void add_point(wh_path_t *curve, const wh_sample_t *sample, double slope, bool exact) {
-    curve->points = wh_array_grow(curve->points, curve->count, &curve->capacity, sizeof *curve->points);
-    const wh_path_point_t point = {sample->slice, sample->value, slope, exact, false};
-    curve->points[curve->count++] = point;
-    curve->exact_count += exact ? 1 : 0;
+/* From point to point. */
+static cubic_t cubic_between(const wh_path_t *curve, size_t from, size_t to) {
+    return cubic_of(curve->list.points[from].slice, wh_path_value(curve, from), wh_path_slope(curve, from),
+                    curve->list.points[to].slice, wh_path_value(curve, to), wh_path_slope(curve, to));
 }
 
-/* ------------------------------------------------------------------------------------------------- thinning */
-
-static cubic_t cubic_between(const wh_path_point_t *from, const wh_path_point_t *to) {
-    return cubic_of(from->slice, from->value, from->slope, to->slice, to->value, to->slope);
-}
-
-/* Whether a cubic is near to the one between two neighbouring points. */
-static bool follows(const cubic_t *cubic, const wh_path_point_t *from, double room) {
-    const cubic_t fine = cubic_between(from, from + 1);
-    const int64_t width = (from + 1)->slice - from->slice;
+/* True if a cubic is near to the one between point `i` and the next. */
+static bool follows(const wh_path_t *curve, const cubic_t *cubic, size_t i) {
+    const cubic_t fine = cubic_between(curve, i, i + 1);
+    const int64_t from = curve->list.points[i].slice;
+    const int64_t width = curve->list.points[i + 1].slice - from;
     const int64_t places = width < PLACES ? width : PLACES;
-    for (int64_t i = 0; i < places; ++i) {
-        const int64_t slice = from->slice + (int64_t)((double)width * (double)i / (double)places);
-        if (!(fabs(at_slice(cubic, slice, NULL) - at_slice(&fine, slice, NULL)) <= room)) {
+    for (int64_t k = 0; k < places; ++k) {
+        const int64_t slice = from + (int64_t)((double)width * (double)k / (double)places);
+        if (!(fabs(at_slice(cubic, slice, NULL) - at_slice(&fine, slice, NULL)) <=
+              ROOM * curve->list.tolerance)) {
             return false;
         }
     }
     return true;
 }
 
-static bool is_rest(const wh_path_point_t *from) {
-    const wh_path_point_t *to = from + 1;
-    return is_same(from->value, to->value) && is_same(from->slope, 0) && is_same(to->slope, 0);
+static bool is_rest(const wh_path_t *curve, size_t from) {
+    return is_same(wh_path_value(curve, from), wh_path_value(curve, from + 1)) &&
+           is_same(wh_path_slope(curve, from), 0) && is_same(wh_path_slope(curve, from + 1), 0);
 }
 
-/* Whether one cubic can stand for those from point `i` to point `end`. */
+/* True if one cubic can stand for those from point `i` to point `end`. */
 static bool covers(const wh_path_t *curve, size_t i, size_t end) {
-    const wh_path_point_t *points = curve->points;
-    const cubic_t cubic = cubic_between(&points[i], &points[end]);
+    const wh_point_t *points = curve->list.points;
+    const cubic_t cubic = cubic_between(curve, i, end);
     for (size_t k = i; k < end; ++k) {
-        const bool stays = k > i && (points[k].exact || points[k].ends || is_rest(&points[k - 1]));
-        if (stays || is_rest(&points[k]) || !follows(&cubic, &points[k], ROOM * curve->tolerance)) {
+        const bool stays = k > i && (points[k].exact || points[k].ends || is_rest(curve, k - 1));
+        if (stays || is_rest(curve, k) || !follows(curve, &cubic, k)) {
             return false;
         }
     }
     return true;
 }
 
-/* Points of which the others say enough go; off by the tolerance once more. */
-static void thin_again(wh_path_t *curve) {
+/* Drops points that a cubic between their neighbours can stand for. What is shown is then off by up to the
+ * tolerance once more. */
+static void thin_again(void *fit) {
+    wh_path_t *curve = fit;
+    wh_points_t *list = &curve->list;
     size_t kept = 0;
     size_t i = 0;
-    while (i + 1 < curve->count) {
+    while (i + 1 < list->count) {
         size_t end = i + 1;
-        while (end + 1 < curve->count && end - i < MERGED && !curve->points[i].ends &&
+        while (end + 1 < list->count && end - i < MERGED && !list->points[i].ends &&
                covers(curve, i, end + 1)) {
             ++end;
         }
-        curve->points[++kept] = curve->points[end];
+        wh_points_copy(list, ++kept, end);
         i = end;
     }
-    curve->count = kept + 1;
-    curve->tolerance *= 2;
+    list->count = kept + 1;
+    list->tolerance *= 2;
 }
 
-/* A signal that jumps without end cannot be thinned: it gets its room, or each sample would cost all of them. */
-static void keep_to_limit(wh_path_t *curve) {
-    for (int i = 0; i < 3 && curve->count - curve->exact_count > curve->limit; ++i) {
-        thin_again(curve);
-    }
-    if (curve->count - curve->exact_count > curve->limit) {
-        curve->limit *= 2;
-    }
+/* The sample becomes the last point. */
+static void add_point(wh_path_t *curve, const wh_sample_t *sample, double slope, bool exact) {
+    const double numbers[] = {sample->value, slope};
+    wh_points_insert(&curve->list, curve->list.count, sample->slice, numbers, exact);
 }
 
-/* Sample `i` becomes a point, and the first of those that are kept. */
+/* Sample `i` becomes a point. The samples before it are forgotten. */
 static void keep(wh_path_t *curve, size_t i, double slope, bool exact) {
     add_point(curve, &curve->samples[i], slope, exact);
     curve->sample_count -= i;
@@ -176,12 +174,13 @@ static void keep(wh_path_t *curve, size_t i, double slope, bool exact) {
     curve->is_at_rest = false;
     curve->good = 1;
     curve->next = 2;
-    keep_to_limit(curve);
+    wh_points_keep_to_limit(&curve->list, thin_again, curve);
 }
 
-/* --------------------------------------------------------------------------------------------------- search */
+/* ------------------------------------------------------------------------------------------------- search */
 
-/* The last sample between `good` and `bad` that was seen to be in reach. */
+/* The last sample that one cubic reaches, by bisection between one that it reaches and one that it does
+ * not. */
 static size_t bisect(const wh_path_t *curve, size_t good, size_t bad) {
     while (bad - good > 1) {
         const size_t middle = good + (bad - good) / 2;
@@ -194,14 +193,14 @@ static size_t bisect(const wh_path_t *curve, size_t good, size_t bad) {
     return good;
 }
 
-/* Points for the samples up to `end`, whose slopes are known. */
+/* Adds the points that the samples up to `end` ask for. Their slopes are known: a sample follows each. */
 static void advance(wh_path_t *curve, size_t end) {
     while (curve->next <= end) {
         if (!fits(curve, curve->next, slope_at(curve, curve->next))) {
             const size_t reached = bisect(curve, curve->good, curve->next);
             end -= reached;
             keep(curve, reached, slope_at(curve, reached), false);
-        } else if (2 * curve->next > WH_CURVE_SPAN) {
+        } else if (2 * curve->next > WH_PATH_SPAN) {
             end -= curve->next;
             keep(curve, curve->next, slope_at(curve, curve->next), false);
         } else {
@@ -211,7 +210,7 @@ static void advance(wh_path_t *curve, size_t end) {
     }
 }
 
-/* Sample `end` becomes a point, and before it as many as that takes. */
+/* Sample `end` becomes a point, after as many others as the tolerance asks for. */
 static void settle(wh_path_t *curve, size_t end, double slope, bool exact) {
     while (!fits(curve, end, slope)) {
         const size_t reached = bisect(curve, curve->good < end ? curve->good : 1, end);
@@ -221,9 +220,9 @@ static void settle(wh_path_t *curve, size_t end, double slope, bool exact) {
     keep(curve, end, slope, exact);
 }
 
-/* -------------------------------------------------------------------------------------------------- samples */
+/* ------------------------------------------------------------------------------------------------ samples */
 
-/* A point where the rest began, and of the rest the last sample alone. */
+/* The rest's first sample becomes a point; of its samples only the last is kept, so a rest takes no room. */
 static void come_to_rest(wh_path_t *curve) {
     const size_t last = curve->sample_count - 1;
     size_t first = curve->sample_count - curve->equal;
@@ -267,7 +266,7 @@ void wh_path_add(wh_path_t *curve, int64_t slice, double value) {
     }
     push(curve, slice, value);
     if (curve->is_fresh) {
-        curve->points[curve->count - 1].slope = slope_at(curve, 0);
+        wh_points_numbers(&curve->list, curve->list.count - 1)[1] = slope_at(curve, 0);
         curve->is_fresh = false;
     }
     const size_t known = curve->sample_count - 2;
@@ -282,18 +281,13 @@ void wh_path_add(wh_path_t *curve, int64_t slice, double value) {
     }
 }
 
-static void make_exact(wh_path_t *curve, size_t i) {
-    curve->exact_count += curve->points[i].exact ? 0 : 1;
-    curve->points[i].exact = true;
-}
-
 void wh_path_force(wh_path_t *curve) {
     if (curve->sample_count == 0) {
         return;
     }
     if (curve->sample_count == 1 || curve->is_at_rest) {
-        /* Of a rest both ends then say it. */
-        make_exact(curve, curve->count - 1);
+        /* A rest is exact if both its ends are. */
+        wh_points_make_exact(&curve->list, curve->list.count - 1);
     }
     curve->is_forced = curve->sample_count > 1;
 }
@@ -309,71 +303,50 @@ void wh_path_finish(wh_path_t *curve) {
 void wh_path_break(wh_path_t *curve) {
     if (curve->sample_count > 0) {
         wh_path_finish(curve);
-        make_exact(curve, curve->count - 1);
-        curve->points[curve->count - 1].ends = true;
+        wh_points_make_exact(&curve->list, curve->list.count - 1);
+        curve->list.points[curve->list.count - 1].ends = true;
         curve->sample_count = 0;
         curve->equal = 0;
         curve->is_fresh = false;
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- reading */
-
-/* The last point at or before the slice. */
-static size_t find(const wh_path_t *curve, int64_t slice) {
-    size_t low = 0;
-    size_t high = curve->count;
-    while (high - low > 1) {
-        const size_t middle = low + (high - low) / 2;
-        if (curve->points[middle].slice <= slice) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
-}
+/* ------------------------------------------------------------------------------------------------ reading */
 
 double wh_path_read(const wh_path_t *curve, int64_t slice, double *slope) {
-    const double none = (double)NAN;
-    if (curve->count == 0 || slice < curve->points[0].slice) {
-        return none;
+    const wh_points_t *list = &curve->list;
+    if (list->count == 0 || slice < list->points[0].slice) {
+        return (double)NAN;
     }
-    const size_t at = find(curve, slice);
-    const wh_path_point_t *from = &curve->points[at];
+    const size_t at = wh_points_find(list, slice);
+    const bool is_point = slice == list->points[at].slice;
     if (slope) {
-        *slope = slice == from->slice ? from->slope : 0;
+        *slope = is_point ? wh_path_slope(curve, at) : 0;
     }
-    if (slice == from->slice) {
-        return from->value;
+    if (is_point) {
+        return wh_path_value(curve, at);
     }
-    if (from->ends || at + 1 == curve->count) {
-        return from->ends ? none : from->value;
+    if (list->points[at].ends || at + 1 == list->count) {
+        return list->points[at].ends ? (double)NAN : wh_path_value(curve, at);
     }
-    const cubic_t cubic = cubic_between(from, from + 1);
+    const cubic_t cubic = cubic_between(curve, at, at + 1);
     return at_slice(&cubic, slice, slope);
 }
 
 void wh_path_insert(wh_path_t *curve, int64_t slice, double value) {
+    wh_points_t *list = &curve->list;
     const bool forced = curve->is_forced;
     wh_path_finish(curve);
     curve->is_forced = forced && curve->sample_count > 1;
-    if (curve->count == 0 || slice < curve->points[0].slice ||
-        slice > curve->points[curve->count - 1].slice) {
+    if (list->count == 0 || slice < list->points[0].slice || slice > list->points[list->count - 1].slice) {
         return;
     }
-    const size_t at = find(curve, slice);
-    if (curve->points[at].slice == slice || curve->points[at].ends) {
-        if (curve->points[at].slice == slice) {
-            make_exact(curve, at);
-        }
-        return;
+    const size_t at = wh_points_find(list, slice);
+    if (list->points[at].slice == slice) {
+        wh_points_make_exact(list, at);
+    } else if (!list->points[at].ends) {
+        double numbers[] = {value, 0};
+        (void)wh_path_read(curve, slice, &numbers[1]);
+        wh_points_insert(list, at + 1, slice, numbers, true);
     }
-    wh_path_point_t made = {slice, value, 0, true, false};
-    (void)wh_path_read(curve, slice, &made.slope);
-    curve->points = wh_array_grow(curve->points, curve->count, &curve->capacity, sizeof *curve->points);
-    memmove(&curve->points[at + 2], &curve->points[at + 1], (curve->count - at - 1) * sizeof made);
-    curve->points[at + 1] = made;
-    ++curve->count;
-    ++curve->exact_count;
 }

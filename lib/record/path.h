@@ -1,43 +1,29 @@
-/* Curves: of a signal that comes sample by sample, the points between which cubics stay within a tolerance.
+/* Thins a signal that comes sample by sample: keeps points between which cubics stay within a tolerance.
  *
- * A point has the signal's value and its slope, and between two points the cubic that has both of both counts. What moves with
- * limited jerk is made of such cubics: a move takes about eight points however far it goes, where lines would take
- * hundreds, and the slopes are its speeds. Every point is a sample. At every sample the curve is off by at most the tolerance, at
- * forced ones, at a break's sides and while the signal rests not at all.
+ * A point has the signal's value and its slope. Between two points lies the cubic with their values and
+ * slopes. Motion with limited jerk is made of such cubics: a move takes about eight points however far it
+ * goes, where lines would take hundreds, and the slopes are its speeds. Every point is a sample. At every
+ * sample the curve is off by at most the tolerance. At forced samples, at both sides of a break and while the
+ * signal rests it is exact.
  *
- * Samples come in the order of their slices. Those since the last point are kept, at most WH_CURVE_SPAN, until they are too
- * many for one cubic; a rest takes no room. When there are more points than `limit`, beside those that are exact, the
- * tolerance is doubled and they are thinned again: so memory is bounded, but for a signal that jumps without end. Host code:
- * aborts when memory is out.
+ * Samples come in the order of their slices. Those since the last point are kept, at most WH_PATH_SPAN,
+ * until they are too many for one cubic; a rest takes no room. Host code: aborts if out of memory.
  */
 #ifndef WH_RECORD_PATH_H
 #define WH_RECORD_PATH_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "points.h"
 
-#define WH_CURVE_SPAN 4096
-
-typedef struct {
-    int64_t slice;
-    double value;
-    double slope; /* a slice */
-    bool exact;   /* on purpose, not for the tolerance's sake */
-    bool ends;    /* until the next point there is no signal */
-} wh_path_point_t;
+#define WH_PATH_SPAN 4096
 
 typedef struct {
     int64_t slice;
     double value;
 } wh_sample_t;
 
-/* Read points, count, tolerance and of; the rest is its own. */
+/* Read list and of; the rest is its own. */
 typedef struct {
-    double tolerance;
-    size_t limit;
-    wh_path_point_t *points;
-    size_t count, capacity, exact_count;
+    wh_points_t list;     /* two numbers each: the value and its slope, a slice */
     int64_t of;           /* samples so far */
     wh_sample_t *samples; /* the last point, unless the signal broke off, and those after it */
     size_t sample_count, sample_capacity;
@@ -48,26 +34,34 @@ typedef struct {
     bool is_forced;    /* the last sample is wanted exactly */
 } wh_path_t;
 
+static inline double wh_path_value(const wh_path_t *curve, size_t point) {
+    return wh_points_numbers(&curve->list, point)[0];
+}
+
+static inline double wh_path_slope(const wh_path_t *curve, size_t point) {
+    return wh_points_numbers(&curve->list, point)[1];
+}
+
 void wh_path_open(wh_path_t *curve, double tolerance, size_t limit);
 
 /* One more sample, of a later slice than the last one. Cost: a few ns at rest, about 50 ns in motion. */
 void wh_path_add(wh_path_t *curve, int64_t slice, double value);
 
-/* The last sample is exact. */
+/* Makes the last sample exact. */
 void wh_path_force(wh_path_t *curve);
 
 /* The last sample becomes a point, so that the points cover all. More samples may follow. */
 void wh_path_finish(wh_path_t *curve);
 
-/* The same, and there is no signal from here to the next sample. */
+/* Finishes, and there is no signal from here to the next sample. */
 void wh_path_break(wh_path_t *curve);
 
-/* A sample that has been, and is wanted exactly after all. It becomes a point unless it is in a break; the samples beside it
- * may then be off by twice the tolerance. */
+/* Makes an earlier sample exact after all. It becomes a point unless it is in a break. Samples beside it may
+ * then be off by twice the tolerance. */
 void wh_path_insert(wh_path_t *curve, int64_t slice, double value);
 
-/* What the points say of a slice: the last one's value after it, NaN before the first one and in a break. `slope` (a
- * slice) may be null. Cost: log n. */
+/* What the points say of a slice: the last one's value after it, NaN before the first one and in a break.
+ * `slope` (a slice) may be null. Cost: log n. */
 double wh_path_read(const wh_path_t *curve, int64_t slice, double *slope);
 
 void wh_path_close(wh_path_t *curve);

@@ -60,6 +60,13 @@ void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_
     added->begin = begin;
 }
 
+bool wh_record_is_complaint(const wh_event_t *event) {
+    static const uint32_t complaints =
+        1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED | 1U << WH_EVENT_BAD_INPUT |
+        1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED;
+    return (complaints >> (unsigned)event->kind & 1U) != 0;
+}
+
 void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves) {
     if (!record->curves) {
         record->curves = wh_array_new(1, sizeof *curves);

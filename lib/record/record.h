@@ -100,6 +100,10 @@ void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves);
  * sessions without an end. */
 void wh_record_forget(wh_record_t *record);
 
+/* True if the cell complains by this event: a wafer was let go where it should not have been, something was hit or may have
+ * been, a wafer slipped, or an input was refused. */
+bool wh_record_is_complaint(const wh_event_t *event);
+
 /* A copy of the text, to be freed. */
 char *wh_record_text(const char *text);
 

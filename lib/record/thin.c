@@ -1,56 +1,53 @@
 #include "thin.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "../math/vector.h"
-#include "../text/array.h"
 #include "quaternion.h"
 
-/* Two slerps whose ends are apart by no more than d are apart between them by up to d / cos(angle / 4), 1.24 d for
- * WH_THIN_TURN: thinned again with this share of what the tolerance grew by, the sum stays below the tolerance. */
+/* If the ends of two slerps are at most d apart, the slerps are at most d / cos(angle / 4) apart: 1.24 d for
+ * WH_THIN_TURN. So thinning again may use up only this share of what the tolerance grows by. */
 #define TURN_SHARE 0.8
 
 /* A box's half diagonal is the square root of 3 times its half edge. */
 #define EDGE_OF_BALL 0.57735026918962573
 
 static size_t linear_width(const wh_thin_t *thin) {
-    return thin->turns ? thin->width - 4 : thin->width;
+    return thin->list.width - (thin->turns ? 4 : 0);
 }
 
-/* Numbers in `moved`: of a turn three. */
+/* How many numbers `moved` has: a turn counts as three. */
 static size_t slope_count(const wh_thin_t *thin) {
-    return thin->turns ? thin->width - 1 : thin->width;
+    return thin->list.width - (thin->turns ? 1 : 0);
 }
 
 static bool rests(const wh_thin_t *thin, const double a[], const double b[]) {
-    return memcmp(a, b, thin->width * sizeof *a) == 0;
+    return memcmp(a, b, thin->list.width * sizeof *a) == 0;
+}
+
+/* The last point's numbers. Samples are measured from them. */
+static const double *anchor(const wh_thin_t *thin) {
+    return wh_points_numbers(&thin->list, thin->list.count - 1);
 }
 
 void wh_thin_open(wh_thin_t *thin, size_t width, double tolerance, double turn, size_t limit) {
     memset(thin, 0, sizeof *thin);
     thin->turns = turn > 0;
-    thin->width = width + (thin->turns ? 4 : 0);
-    thin->tolerance = tolerance;
     thin->turn = turn;
-    thin->limit = limit;
+    thin->list.width = width + (thin->turns ? 4 : 0);
+    thin->list.tolerance = tolerance;
+    thin->list.limit = limit;
 }
 
 void wh_thin_close(wh_thin_t *thin) {
-    free(thin->points);
-    thin->points = NULL;
-    thin->count = thin->capacity = 0;
+    wh_points_close(&thin->list);
 }
 
-/* --------------------------------------------------------------------------------------------------- points */
+/* ------------------------------------------------------------------------------------------------- points */
 
 static void keep(wh_thin_t *thin, bool exact) {
-    thin->points = wh_array_grow(thin->points, thin->count, &thin->capacity, sizeof *thin->points);
-    thin->anchor = thin->last;
-    thin->anchor.exact = exact;
-    thin->points[thin->count++] = thin->anchor;
-    thin->exact_count += exact ? 1 : 0;
+    wh_points_insert(&thin->list, thin->list.count, thin->last.slice, thin->last.values, exact);
     thin->is_pending = false;
     thin->is_forced = false;
     for (size_t i = 0; i < WH_THIN_WIDTH; ++i) {
@@ -59,40 +56,32 @@ static void keep(wh_thin_t *thin, bool exact) {
     }
 }
 
-/* Thinned again; the tolerance is what the slopes below ask for, the caller's sum is in `thin`. */
-static void thin_again(wh_thin_t *thin) {
+/* The coarser fit adds its tolerance to what was off before: the sum is the new tolerance, twice the old
+ * one. */
+static void thin_again(void *fit) {
+    wh_thin_t *thin = fit;
     wh_thin_t coarse;
-    wh_thin_open(&coarse, linear_width(thin), thin->tolerance, TURN_SHARE * thin->turn, SIZE_MAX);
+    wh_thin_open(&coarse, linear_width(thin), thin->list.tolerance, TURN_SHARE * thin->turn, SIZE_MAX);
     coarse.turns = thin->turns;
-    for (size_t i = 0; i < thin->count; ++i) {
-        const wh_thin_point_t *point = &thin->points[i];
-        wh_thin_add(&coarse, point->slice, point->values);
-        if (point->exact) {
+    for (size_t i = 0; i < thin->list.count; ++i) {
+        wh_thin_add(&coarse, thin->list.points[i].slice, wh_points_numbers(&thin->list, i));
+        if (thin->list.points[i].exact) {
             wh_thin_force(&coarse);
         }
     }
     wh_thin_finish(&coarse);
-    free(thin->points);
-    thin->points = coarse.points;
-    thin->count = coarse.count;
-    thin->capacity = coarse.capacity;
-    thin->exact_count = coarse.exact_count;
-    thin->tolerance *= 2;
+    coarse.list.limit = thin->list.limit;
+    coarse.list.tolerance = 2 * thin->list.tolerance;
+    wh_points_close(&thin->list);
+    thin->list = coarse.list;
     thin->turn *= 2;
 }
 
-/* A signal that turns too far from sample to sample cannot be thinned: it gets its room, or each sample would cost all of
- * them. */
 static void keep_to_limit(wh_thin_t *thin) {
-    for (int i = 0; i < 3 && thin->count - thin->exact_count > thin->limit; ++i) {
-        thin_again(thin);
-    }
-    if (thin->count - thin->exact_count > thin->limit) {
-        thin->limit *= 2;
-    }
+    wh_points_keep_to_limit(&thin->list, thin_again, thin);
 }
 
-/* --------------------------------------------------------------------------------------------------- slopes */
+/* ------------------------------------------------------------------------------------------------- slopes */
 
 static double turned(const wh_thin_t *thin) {
     const double *turn = thin->moved + linear_width(thin);
@@ -101,7 +90,7 @@ static double turned(const wh_thin_t *thin) {
 
 /* How far the sample is from the last point. */
 static void move(wh_thin_t *thin, const double values[]) {
-    const double *from = thin->anchor.values;
+    const double *from = anchor(thin);
     const size_t linear = linear_width(thin);
     for (size_t i = 0; i < linear; ++i) {
         thin->moved[i] = values[i] - from[i];
@@ -126,7 +115,7 @@ static void narrow(wh_thin_t *thin, double slices) {
     const size_t linear = linear_width(thin);
     const size_t count = slope_count(thin);
     for (size_t i = 0; i < count; ++i) {
-        const double room = i < linear ? thin->tolerance : EDGE_OF_BALL * thin->turn;
+        const double room = i < linear ? thin->list.tolerance : EDGE_OF_BALL * thin->turn;
         const double low = (thin->moved[i] - room) / slices;
         const double high = (thin->moved[i] + room) / slices;
         thin->low[i] = low > thin->low[i] ? low : thin->low[i];
@@ -135,18 +124,19 @@ static void narrow(wh_thin_t *thin, double slices) {
 }
 
 static double slices_to(const wh_thin_t *thin, int64_t slice) {
-    return (double)(slice - thin->anchor.slice);
+    return (double)(slice - thin->list.points[thin->list.count - 1].slice);
 }
 
-/* --------------------------------------------------------------------------------------------------- samples */
+/* ------------------------------------------------------------------------------------------------ samples */
 
 static void take(wh_thin_t *thin, int64_t slice, const double values[]) {
     thin->last.slice = slice;
-    memcpy(thin->last.values, values, thin->width * sizeof *values);
+    memcpy(thin->last.values, values, thin->list.width * sizeof *values);
     thin->is_pending = true;
 }
 
-/* A forced sample from which the signal moves on must become a point before the next one comes. */
+/* If the last sample is forced and the signal moves on from it, it becomes a point before the next one
+ * comes. */
 static void settle(wh_thin_t *thin, const double values[]) {
     if (thin->is_pending && thin->is_forced && !rests(thin, thin->last.values, values)) {
         keep(thin, true);
@@ -156,10 +146,10 @@ static void settle(wh_thin_t *thin, const double values[]) {
 
 void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[]) {
     ++thin->of;
-    if (thin->count > 0) {
+    if (thin->list.count > 0) {
         settle(thin, values);
     }
-    if (thin->count == 0) {
+    if (thin->list.count == 0) {
         take(thin, slice, values);
         keep(thin, true);
         return;
@@ -174,21 +164,22 @@ void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[]) {
     take(thin, slice, values);
 }
 
-static void make_exact(wh_thin_t *thin, wh_thin_point_t *point) {
-    thin->exact_count += point->exact ? 0 : 1;
-    point->exact = true;
+void wh_thin_add_pose(wh_thin_t *thin, int64_t slice, const wh_pose_t *pose) {
+    double values[7] = {pose->r.x, pose->r.y, pose->r.z};
+    wh_quaternion_from_matrix(&pose->R, thin->of > 0 ? thin->last.values + 3 : NULL, values + 3);
+    wh_thin_add(thin, slice, values);
 }
 
 void wh_thin_force(wh_thin_t *thin) {
-    if (thin->count == 0) {
+    if (thin->list.count == 0) {
         return;
     }
-    wh_thin_point_t *point = &thin->points[thin->count - 1];
+    const size_t last = thin->list.count - 1;
     if (!thin->is_pending) {
-        make_exact(thin, point);
-    } else if (rests(thin, point->values, thin->last.values)) {
-        /* Both ends of the rest then say it. */
-        make_exact(thin, point);
+        wh_points_make_exact(&thin->list, last);
+    } else if (rests(thin, anchor(thin), thin->last.values)) {
+        /* A rest is exact if both its ends are. */
+        wh_points_make_exact(&thin->list, last);
         thin->is_forced = true;
     } else {
         keep(thin, true);
@@ -201,33 +192,29 @@ void wh_thin_finish(wh_thin_t *thin) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- reading */
-
-/* The last point at or before the slice. */
-static size_t find(const wh_thin_t *thin, int64_t slice) {
-    size_t low = 0;
-    size_t high = thin->count;
-    while (high - low > 1) {
-        const size_t middle = low + (high - low) / 2;
-        if (thin->points[middle].slice <= slice) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
-}
+/* ------------------------------------------------------------------------------------------------ reading */
 
 void wh_thin_read(const wh_thin_t *thin, int64_t slice, double values[]) {
-    const wh_thin_point_t *from = &thin->points[find(thin, slice)];
-    const bool last = from == &thin->points[thin->count - 1];
-    const wh_thin_point_t *to = last || slice <= from->slice ? from : from + 1;
-    const double share = to == from ? 0 : (double)(slice - from->slice) / (double)(to->slice - from->slice);
+    const wh_points_t *list = &thin->list;
+    const size_t at = wh_points_find(list, slice);
+    const int64_t begin = list->points[at].slice;
+    const size_t next = at + 1 == list->count || slice <= begin ? at : at + 1;
+    const double share =
+        next == at ? 0 : (double)(slice - begin) / (double)(list->points[next].slice - begin);
+    const double *from = wh_points_numbers(list, at);
+    const double *to = wh_points_numbers(list, next);
     const size_t linear = linear_width(thin);
     for (size_t i = 0; i < linear; ++i) {
-        values[i] = from->values[i] + share * (to->values[i] - from->values[i]);
+        values[i] = from[i] + share * (to[i] - from[i]);
     }
     if (thin->turns) {
-        wh_quaternion_slerp(from->values + linear, to->values + linear, share, values + linear);
+        wh_quaternion_slerp(from + linear, to + linear, share, values + linear);
     }
+}
+
+void wh_thin_read_pose(const wh_thin_t *thin, int64_t slice, wh_pose_t *pose) {
+    double values[7];
+    wh_thin_read(thin, slice, values);
+    pose->r = wh_vec3(values[0], values[1], values[2]);
+    wh_quaternion_to_matrix(values + 3, &pose->R);
 }

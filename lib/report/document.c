@@ -37,7 +37,7 @@ void wh_document_put_pose(wh_json_text_t *text, const wh_pose_t *pose) {
     wh_json_text_end(text, ']');
 }
 
-/* ---------------------------------------------------------------------------------------------------- head */
+/* --------------------------------------------------------------------------------------------------- head */
 
 static void put_parameters(wh_json_text_t *text, const wh_document_t *document) {
     json_t *object = json_object();
@@ -75,7 +75,7 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     put_exact(text, "duration_s", wh_document_seconds(signals, signals->last));
 }
 
-/* ---------------------------------------------------------------------------------------------------- names */
+/* -------------------------------------------------------------------------------------------------- names */
 
 void wh_document_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
@@ -87,7 +87,7 @@ void wh_document_name_axis(const wh_layout_t *layout, size_t axis, char *name, s
     }
 }
 
-/* Null where it is not known: of a chuck, and of a log without its layout. */
+/* Null if the value is not known: a chuck's, or any of a log without its layout. */
 static void put_known(wh_json_text_t *text, const char *key, bool known, double value) {
     wh_json_text_number(text, key, known ? value : HUGE_VAL, 0, true);
 }
@@ -134,7 +134,7 @@ static void put_names(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_end(text, '}');
 }
 
-/* ----------------------------------------------------------------------------------------------------- cell */
+/* --------------------------------------------------------------------------------------------------- cell */
 
 static void put_wafer(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_begin(text, "wafer", '{');
@@ -158,7 +158,7 @@ static void put_mount(wh_json_text_t *text, const wh_mount_t *mount) {
 }
 
 static void put_machine(wh_json_text_t *text, const wh_layout_t *layout) {
-    static const char *const names[WH_TRACE_LINKS] = {"lift", "upper arm", "forearm", "hand"};
+    static const char *const names[WH_SIGNALS_LINKS] = {"lift", "upper arm", "forearm", "hand"};
     const wh_arm_t *arm = &layout->shapes.arm;
     wh_json_text_begin(text, "machine", '{');
     wh_json_text_begin(text, "grippers", '[');
@@ -167,7 +167,7 @@ static void put_machine(wh_json_text_t *text, const wh_layout_t *layout) {
     }
     wh_json_text_end(text, ']');
     wh_json_text_begin(text, "links", '[');
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         wh_json_text_string(text, NULL, names[i]);
     }
     wh_json_text_end(text, ']');
@@ -204,6 +204,73 @@ static void put_slots(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_end(text, ']');
 }
 
+/* -------------------------------------------------------------------------------------------------- marks */
+
+static void append(char *text, size_t size, const char *before, const char *part) {
+    const size_t length = strlen(text);
+    if (part) {
+        (void)snprintf(text + length, size - length, "%s%s", before, part);
+    }
+}
+
+static const char *wafer_name(const wh_layout_t *layout, int32_t wafer) {
+    return wafer >= 0 && (size_t)wafer < layout->wafer_count ? layout->wafers[wafer].name : NULL;
+}
+
+static const char *gripper_name(const wh_layout_t *layout, int32_t gripper) {
+    return gripper >= 0 && (size_t)gripper < layout->machine.gripper_count ? layout->grippers[gripper].name
+                                                                           : NULL;
+}
+
+static bool is_contact(wh_event_kind_t kind) {
+    return kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED || kind == WH_EVENT_TOO_CLOSE;
+}
+
+/* Such as "near miss: Wafer 1, EE" or "hit: A ledge 3 left and EE finger right". */
+static void describe(const wh_layout_t *layout, const wh_event_t *event, char *text, size_t size) {
+    (void)snprintf(text, size, "%s", wh_event_name(event->kind));
+    for (char *c = text; *c; ++c) {
+        if (*c == '_') {
+            *c = ' ';
+        }
+    }
+    if (is_contact(event->kind)) {
+        append(text, size, ": ", wh_layout_part_name(layout, event->parts[0]));
+        append(text, size, " and ", wh_layout_part_name(layout, event->parts[1]));
+        return;
+    }
+    const char *wafer = wafer_name(layout, event->wafer);
+    append(text, size, ": ", wafer);
+    append(text, size, wafer ? ", " : ": ", gripper_name(layout, event->gripper));
+}
+
+static void put_mark(wh_json_text_t *text, const wh_layout_t *layout, const wh_mark_t *mark) {
+    char words[3 * WH_PART_NAME_SIZE];
+    describe(layout, &mark->event, words, sizeof words);
+    wh_json_text_begin(text, NULL, '{');
+    wh_json_text_number(text, "t", (double)mark->utime / 1e6, 6, false);
+    wh_json_text_string(text, "kind", wh_event_name(mark->event.kind));
+    wh_json_text_value(text, "text", wh_json_text(words));
+    if (mark->has_place) {
+        wh_json_text_begin(text, "at", '[');
+        wh_json_text_number(text, NULL, mark->at.x, 0, true);
+        wh_json_text_number(text, NULL, mark->at.y, 0, true);
+        wh_json_text_number(text, NULL, mark->at.z, 0, true);
+        wh_json_text_end(text, ']');
+    } else {
+        wh_json_text_value(text, "at", json_null());
+    }
+    wh_json_text_end(text, '}');
+}
+
+static void put_marks(wh_json_text_t *text, const wh_signals_t *signals) {
+    wh_json_text_begin(text, "marks", '[');
+    for (size_t i = 0; i < signals->mark_count; ++i) {
+        put_mark(text, signals->layout, &signals->marks[i]);
+    }
+    wh_json_text_end(text, ']');
+}
+
 int wh_document_write(const wh_document_t *document, FILE *out) {
     wh_json_text_t text = {.out = out};
     const wh_signals_t *signals = document->signals;
@@ -216,7 +283,7 @@ int wh_document_write(const wh_document_t *document, FILE *out) {
     put_slots(&text, signals->layout);
     wh_document_put_thinning(&text, signals);
     wh_document_put_tracks(&text, document);
-    wh_document_put_marks(&text, signals);
+    put_marks(&text, signals);
     wh_json_text_value(&text, "scene", wh_scene_make(signals, document->title, false));
     wh_json_text_end(&text, '}');
     fputc('\n', out);

@@ -16,6 +16,5 @@ void wh_document_put_pose(wh_json_text_t *text, const wh_pose_t *pose);
 /* The document's members of these names. */
 void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals);
 void wh_document_put_tracks(wh_json_text_t *text, const wh_document_t *document);
-void wh_document_put_marks(wh_json_text_t *text, const wh_signals_t *signals);
 
 #endif

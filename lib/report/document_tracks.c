@@ -1,4 +1,4 @@
-/* The document's tracks and marks. */
+/* The document's tracks: all that changes over time. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +6,8 @@
 #include "../text/array.h"
 #include "document_internal.h"
 
-/* Decimals that add a hundredth of what thinning leaves, or less: of values, and of slopes, which count for up to 4 s. */
+/* With so many decimals rounding adds at most a hundredth of what thinning leaves. A slope's error counts for
+ * up to 4 s. */
 enum { DECIMALS_S = 6, DECIMALS_OWN_MM = 4, DECIMALS_OWN = 6 };
 
 typedef struct {
@@ -22,7 +23,7 @@ static bool is_rad(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
 }
 
-/* ------------------------------------------------------------------------------------------------- thinning */
+/* ----------------------------------------------------------------------------------------------- thinning */
 
 typedef struct {
     double mm, rad, own_mm, own_rad, vacuum, measured[WH_MEASURES];
@@ -35,8 +36,8 @@ static double larger(double a, double b) {
 
 static void count(sums_t *sums, const wh_path_t *curve, double *tolerance) {
     sums->of += curve->of;
-    sums->kept += (int64_t)curve->count;
-    *tolerance = larger(curve->tolerance, *tolerance);
+    sums->kept += (int64_t)curve->list.count;
+    *tolerance = larger(curve->list.tolerance, *tolerance);
 }
 
 static sums_t sum_up(const wh_signals_t *signals) {
@@ -48,9 +49,11 @@ static sums_t sum_up(const wh_signals_t *signals) {
             count(&sums, &signals->proximity[g][m], &sums.measured[m]);
         }
         sums.of += own->of;
-        sums.kept += (int64_t)own->count;
-        sums.own_mm = own->count > 0 ? larger(own->tolerance, sums.own_mm) : sums.own_mm;
-        sums.own_rad = own->count > 0 ? larger(own->turn, sums.own_rad) : sums.own_rad;
+        sums.kept += (int64_t)own->list.count;
+        if (own->list.count > 0) {
+            sums.own_mm = larger(own->list.tolerance, sums.own_mm);
+            sums.own_rad = larger(own->turn, sums.own_rad);
+        }
     }
     for (size_t axis = 0; axis < signals->axis_count; ++axis) {
         count(&sums, &signals->axes[axis], is_rad(axis) ? &sums.rad : &sums.mm);
@@ -58,7 +61,8 @@ static sums_t sum_up(const wh_signals_t *signals) {
     return sums;
 }
 
-/* How far a gripper's origin is from where its axes' curves put it, at most: R and Z off, theta off at the robot's reach. */
+/* The greatest distance between a gripper's origin and where its axes' curves put it: R and Z off, and theta
+ * off at the robot's full reach. */
 static double gripper_mm(const wh_signals_t *signals, const sums_t *sums) {
     double reach = signals->layout->machine.robot.travel[WH_AXIS_R].max;
     for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
@@ -69,9 +73,9 @@ static double gripper_mm(const wh_signals_t *signals, const sums_t *sums) {
     return larger(sqrt(across * across + sums->mm * sums->mm), sums->own_mm);
 }
 
-/* What rounding adds, and the half that points which are inserted take. */
+/* The tolerance as it is told: with what rounding adds. */
 static void put_tolerance(wh_json_text_t *text, const char *key, double thinned) {
-    wh_json_text_number(text, key, thinned / WH_TRACE_SHARE, 9, false);
+    wh_json_text_number(text, key, thinned / WH_SIGNALS_SHARE, 9, false);
 }
 
 void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals) {
@@ -82,6 +86,7 @@ void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals)
     put_tolerance(text, "gripper_mm", gripper_mm(signals, &sums));
     put_tolerance(text, "gripper_rad", larger(2 * sums.rad, sums.own_rad));
     put_tolerance(text, "vacuum", sums.vacuum);
+    /* Twice: points that are inserted may take as much again. */
     put_tolerance(text, "projz", 2 * sums.measured[WH_MEASURE_PROJZ]);
     put_tolerance(text, "projxy", 2 * sums.measured[WH_MEASURE_PROJXY]);
     put_tolerance(text, "planar", 2 * sums.measured[WH_MEASURE_PLANAR]);
@@ -90,49 +95,61 @@ void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals)
     wh_json_text_end(text, '}');
 }
 
-/* --------------------------------------------------------------------------------------------------- curves */
+/* ------------------------------------------------------------------------------------------------- curves */
 
 static void put_second(wh_json_text_t *text, const wh_signals_t *signals, int64_t slice) {
     wh_json_text_number(text, NULL, wh_document_seconds(signals, slice), DECIMALS_S, false);
-}
-
-/* Where a curve breaks off, nulls stand a slice after its last point. */
-static void put_curve_times(wh_json_text_t *text, const wh_signals_t *signals, const wh_path_t *curve) {
-    wh_json_text_begin(text, "t", '[');
-    for (size_t i = 0; i < curve->count; ++i) {
-        put_second(text, signals, curve->points[i].slice);
-        if (curve->points[i].ends) {
-            put_second(text, signals, curve->points[i].slice + 1);
-        }
-    }
-    wh_json_text_end(text, ']');
 }
 
 static void put_null(wh_json_text_t *text) {
     wh_json_text_number(text, NULL, HUGE_VAL, 0, false);
 }
 
+/* Where a curve breaks off, a null stands one slice after its last point. */
+static void put_times(wh_json_text_t *text, const wh_signals_t *signals, const wh_points_t *list) {
+    wh_json_text_begin(text, "t", '[');
+    for (size_t i = 0; i < list->count; ++i) {
+        put_second(text, signals, list->points[i].slice);
+        if (list->points[i].ends) {
+            put_second(text, signals, list->points[i].slice + 1);
+        }
+    }
+    wh_json_text_end(text, ']');
+}
+
+/* Some of each point's numbers, `count` from `first` on, times `scale`. */
+typedef struct {
+    const char *key;
+    size_t first, count;
+    double scale;
+    int decimals;
+    bool exact; /* as the points are; else always rounded */
+} column_t;
+
+static void put_numbers(wh_json_text_t *text, const wh_points_t *list, const column_t *of) {
+    wh_json_text_begin(text, of->key, '[');
+    for (size_t i = 0; i < list->count; ++i) {
+        const double *numbers = wh_points_numbers(list, i) + of->first;
+        for (size_t k = 0; k < of->count; ++k) {
+            wh_json_text_number(text, NULL, numbers[k] * of->scale, of->decimals,
+                                of->exact && list->points[i].exact);
+        }
+        if (list->points[i].ends) {
+            put_null(text);
+        }
+    }
+    wh_json_text_end(text, ']');
+}
+
 static void put_curve(wh_json_text_t *text, const wh_signals_t *signals, const char *key,
                       const wh_path_t *curve, decimals_t decimals) {
     const double slices_a_second = 1e6 / (double)signals->layout->slice_us;
+    const column_t values = {"v", 0, 1, 1, decimals.value, true};
+    const column_t slopes = {"slope", 1, 1, slices_a_second, decimals.slope, false};
     wh_json_text_begin(text, key, '{');
-    put_curve_times(text, signals, curve);
-    wh_json_text_begin(text, "v", '[');
-    for (size_t i = 0; i < curve->count; ++i) {
-        wh_json_text_number(text, NULL, curve->points[i].value, decimals.value, curve->points[i].exact);
-        if (curve->points[i].ends) {
-            put_null(text);
-        }
-    }
-    wh_json_text_end(text, ']');
-    wh_json_text_begin(text, "slope", '[');
-    for (size_t i = 0; i < curve->count; ++i) {
-        wh_json_text_number(text, NULL, curve->points[i].slope * slices_a_second, decimals.slope, false);
-        if (curve->points[i].ends) {
-            put_null(text);
-        }
-    }
-    wh_json_text_end(text, ']');
+    put_times(text, signals, &curve->list);
+    put_numbers(text, &curve->list, &values);
+    put_numbers(text, &curve->list, &slopes);
     wh_json_text_end(text, '}');
 }
 
@@ -144,39 +161,24 @@ static void put_axes(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_end(text, ']');
 }
 
-/* ------------------------------------------------------------------------------------------------ own poses */
-
-/* Numbers `first` to `first + width - 1` of each point. */
-static void put_values(wh_json_text_t *text, const char *key, const wh_thin_t *thin, size_t first,
-                       size_t width, int decimals) {
-    wh_json_text_begin(text, key, '[');
-    for (size_t i = 0; i < thin->count; ++i) {
-        const wh_thin_point_t *point = &thin->points[i];
-        for (size_t k = first; k < first + width; ++k) {
-            wh_json_text_number(text, NULL, point->values[k], decimals, point->exact);
-        }
-    }
-    wh_json_text_end(text, ']');
-}
+/* ---------------------------------------------------------------------------------------------- own poses */
 
 static void put_own(wh_json_text_t *text, const wh_signals_t *signals) {
+    static const column_t places = {"r", 0, 3, 1, DECIMALS_OWN_MM, true};
+    static const column_t turns = {"q", 3, 4, 1, DECIMALS_OWN, true};
     wh_json_text_begin(text, "grippers", '[');
     for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
-        const wh_thin_t *own = &signals->own[g];
+        const wh_points_t *own = &signals->own[g].list;
         wh_json_text_begin(text, NULL, '{');
-        wh_json_text_begin(text, "t", '[');
-        for (size_t i = 0; i < own->count; ++i) {
-            put_second(text, signals, own->points[i].slice);
-        }
-        wh_json_text_end(text, ']');
-        put_values(text, "r", own, 0, 3, DECIMALS_OWN_MM);
-        put_values(text, "q", own, 3, 4, DECIMALS_OWN);
+        put_times(text, signals, own);
+        put_numbers(text, own, &places);
+        put_numbers(text, own, &turns);
         wh_json_text_end(text, '}');
     }
     wh_json_text_end(text, ']');
 }
 
-/* --------------------------------------------------------------------------------------------------- wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static void put_stay(wh_json_text_t *text, const wh_signals_t *signals, const wh_stay_t *stay) {
     wh_json_text_begin(text, NULL, '{');
@@ -190,9 +192,9 @@ static void put_stay(wh_json_text_t *text, const wh_signals_t *signals, const wh
     wh_json_text_end(text, '}');
 }
 
-/* Indices of the stays by wafer, each wafer's in order of time: the list holds them in order of time alone. */
+/* Indices of the stays, sorted by wafer, then by time. (The list of stays is sorted by time alone.) */
 static size_t *sort_stays(const wh_signals_t *signals, size_t *ends) {
-    size_t *sorted = wh_array_new(signals->stay_count + 1, sizeof *sorted);
+    size_t *sorted = wh_array_new(signals->stay_count, sizeof *sorted);
     for (size_t i = 0; i < signals->stay_count; ++i) {
         ++ends[signals->stays[i].wafer];
     }
@@ -223,7 +225,7 @@ static void put_wafers(wh_json_text_t *text, const wh_signals_t *signals) {
     free(begins);
 }
 
-/* -------------------------------------------------------------------------------------------------- signals */
+/* ------------------------------------------------------------------------------------------------ signals */
 
 /* WH_NONE is null. */
 static void put_steps(wh_json_text_t *text, const wh_signals_t *signals, const char *key,
@@ -271,7 +273,7 @@ static void put_proximity(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_end(text, ']');
 }
 
-/* ----------------------------------------------------------------------------------------------- clearances */
+/* --------------------------------------------------------------------------------------------- clearances */
 
 static void put_clearance(wh_json_text_t *text, const wh_document_t *document, size_t kind) {
     const wh_curves_t *curves = document->record->curves;

@@ -1,14 +1,171 @@
 /* Plots of lanes over time: signals, who holds what, commands and what the time goes into. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "../record/throughput.h"
+#include "../text/utf8.h"
 #include "document_internal.h"
-#include "gnuplot_curves.h"
-#include "gnuplot_lanes.h"
+#include "plots_internal.h"
 
-/* ------------------------------------------------------------------------------------------------- signals */
+/* -------------------------------------------------------------------------------------------------- lanes */
 
-/* Of 0 and 1; the last value goes on to the end. */
+/* Half of what a bar or a signal takes of its lane. */
+#define HALF 0.34
+
+/* A plot of lanes; open_lanes sets it up. */
+typedef struct {
+    wh_plot_t *plot;
+    size_t count, named, letters;
+    int above;  /* pixels above the lanes; more for a key */
+    FILE *out;  /* of tics */
+    char *tics; /* the lanes' names, for gnuplot */
+    size_t size;
+    size_t drawn; /* curves and blocks of bars in the plot command */
+    size_t bars;  /* of all lanes */
+    double duration;
+} lanes_t;
+
+/* How a block of bars is filled: a colour, and solid or a pattern in gnuplot's words. `text` is for the key,
+ * or null. Bars have a black edge. If there are so many that one would see little but edges, they have none
+ * and their colours blend, each by its share of a pixel's time; bars that must not be overlooked keep the
+ * edge. */
+typedef struct {
+    const char *text, *colour, *fill;
+    bool keeps_edge;
+} look_t;
+
+/* Pixels, but for MOST_LETTERS: so many letters of a name have room. */
+enum { ROW = 24, MOST_LETTERS = 28, LEAST_ABOVE = 6, LEAST_PITCH = 3 };
+
+#define EDGED "using 1:3:1:2:($3-%g):($3+%g) with boxxyerror lw 0.6 dt 1 fc"
+#define EDGE "border lc rgb '#000000'"
+
+/* `count` lanes, to be named from the top before they are begun. */
+static void open_lanes(lanes_t *lanes, wh_plot_t *plot, size_t count) {
+    memset(lanes, 0, sizeof *lanes);
+    lanes->plot = plot;
+    lanes->count = count;
+    lanes->above = LEAST_ABOVE;
+    lanes->out = open_memstream(&lanes->tics, &lanes->size);
+    if (!lanes->out) {
+        abort();
+    }
+}
+
+/* A lane's height in the plot; the first is the highest. */
+static double lane_height(const lanes_t *lanes, size_t lane) {
+    return (double)(lanes->count - 1 - lane);
+}
+
+static void name_lane(lanes_t *lanes, const char *name, const char *what) {
+    char text[WH_NAME_SIZE + 40];
+    (void)snprintf(text, sizeof text, "%s%s%s", name, what[0] != '\0' ? " " : "", what);
+    const size_t letters = wh_utf8_count(text);
+    lanes->letters = letters > lanes->letters ? letters : lanes->letters;
+    fputs(lanes->named > 0 ? ", " : "", lanes->out);
+    wh_plot_put_text(lanes->out, text);
+    fprintf(lanes->out, " %g", lane_height(lanes, lanes->named++));
+}
+
+/* The script begins. Next come blocks of data and texts of bars, then what draws them, then the end. */
+static void begin_lanes(lanes_t *lanes, const wh_plots_t *plots, const char *title) {
+    const size_t letters = lanes->letters < MOST_LETTERS ? lanes->letters : MOST_LETTERS;
+    const wh_plot_frame_t frame = {.panels = 1,
+                                   .panel_height = (int)lanes->count * ROW,
+                                   .left = 14 + (int)(letters * 66 / 10),
+                                   .above = lanes->above,
+                                   .keys_wrap = lanes->above > LEAST_ABOVE};
+    if (fclose(lanes->out) != 0) {
+        abort();
+    }
+    lanes->duration = wh_plots_end_s(plots) - wh_plots_begin_s(plots);
+    wh_plot_begin(lanes->plot, &frame, title, wh_plots_begin_s(plots), wh_plots_end_s(plots));
+    wh_plot_panel(lanes->plot, "");
+    fprintf(lanes->plot->script, "set yrange [-0.5:%zu.5]\nset ytics scale 0 (%s)\n", lanes->count - 1,
+            lanes->tics);
+    free(lanes->tics);
+    lanes->tics = NULL;
+}
+
+/* A row of a block of bars. */
+static void add_bar(lanes_t *lanes, size_t lane, double begin, double end) {
+    const double values[] = {end, lane_height(lanes, lane)};
+    wh_plot_row(lanes->plot, begin, values, 2);
+    ++lanes->bars;
+}
+
+/* A bar's text, where there is room for it. */
+static void add_label(lanes_t *lanes, size_t lane, double begin, double end, const char *text, bool on_dark) {
+    wh_plot_fitting_label(lanes->plot, begin, end, text);
+    fprintf(lanes->plot->script, ", %g center front%s\n", lane_height(lanes, lane),
+            on_dark ? " textcolor rgb '#ffffff'" : "");
+}
+
+/* Begins the next part of the plot command. */
+static void put_part(lanes_t *lanes) {
+    fputs(lanes->drawn++ == 0 ? "plot " : ", \\\n  ", lanes->plot->script);
+}
+
+/* Defines how bars are drawn: as boxes, or, if those of a lane are nearer to each other than LEAST_PITCH
+ * pixels on average, as strokes as wide as a lane. A box without an edge counts for a pixel only if it covers
+ * the pixel's middle; strokes are blended. */
+static void put_styles(const lanes_t *lanes) {
+    FILE *out = lanes->plot->script;
+    fprintf(out,
+            "dense = %d * %zu * abs(to_s - from_s) > (W - %d) * %.12g\n"
+            "bars = dense ? \"using 1:3:($2-$1):(0) with vectors nohead lw %g dt 1 lc\" : \"",
+            LEAST_PITCH, lanes->bars, lanes->plot->frame.left + 10, lanes->duration * (double)lanes->count,
+            2 * HALF * ROW);
+    fprintf(out, EDGED "\"\n", HALF, HALF);
+    fputs("solid = dense ? '' : \"fs solid " EDGE "\"\n"
+          "hatched = dense ? '' : \"fs pattern 4 " EDGE "\"\n"
+          "crossed = dense ? '' : \"fs pattern 2 " EDGE "\"\n",
+          out);
+}
+
+/* Draws a block of bars; nothing for SIZE_MAX. */
+static void draw_bars(lanes_t *lanes, size_t block, const look_t *look) {
+    if (block == SIZE_MAX) {
+        return;
+    }
+    if (lanes->drawn == 0) {
+        put_styles(lanes);
+    }
+    put_part(lanes);
+    fprintf(lanes->plot->script, "'%s.dat' index %zu ", lanes->plot->name, block);
+    if (look->keeps_edge) {
+        fprintf(lanes->plot->script, EDGED " rgb '%s' fs %s " EDGE " ", HALF, HALF, look->colour, look->fill);
+    } else {
+        fprintf(lanes->plot->script, "@bars rgb '%s' @%s ", look->colour, look->fill);
+    }
+    if (look->text) {
+        fprintf(lanes->plot->script, "title '%s'", look->text);
+    } else {
+        fputs("notitle", lanes->plot->script);
+    }
+}
+
+/* Draws a block that is a signal from 0 to 1, in gnuplot's style of this name; nothing for SIZE_MAX. */
+static void draw_signal(lanes_t *lanes, size_t block, size_t lane, const char *style) {
+    if (block == SIZE_MAX) {
+        return;
+    }
+    put_part(lanes);
+    fprintf(lanes->plot->script, "'%s.dat' index %zu using 1:(%g+%g*$2) with %s lt 1 notitle",
+            lanes->plot->name, block, lane_height(lanes, lane) - HALF, 2 * HALF, style);
+}
+
+/* A plot command without anything is an error for gnuplot: it draws the empty lanes with NaN. */
+static void end_lanes(lanes_t *lanes) {
+    if (lanes->drawn == 0) {
+        fputs("plot NaN notitle", lanes->plot->script);
+    }
+    fputc('\n', lanes->plot->script);
+}
+
+/* ------------------------------------------------------------------------------------------------ signals */
+
+/* Steps of 0 and 1. The last value goes on to the end. */
 static size_t put_steps(const wh_plots_t *plots, wh_plot_t *plot, const wh_steps_t *steps, bool inverted) {
     double value = 0;
     for (size_t i = 0; i < steps->count; ++i) {
@@ -21,113 +178,112 @@ static size_t put_steps(const wh_plots_t *plots, wh_plot_t *plot, const wh_steps
     return wh_plot_end_block(plot);
 }
 
-static void put_gripper_signals(const wh_plots_t *plots, wh_lanes_t *lanes, size_t g) {
+static void put_gripper_signals(const wh_plots_t *plots, lanes_t *lanes, size_t g) {
     const wh_signals_t *signals = plots->document->signals;
     const wh_plot_curves_t level = {{&signals->vacuum[g]}, 1, 1, false, NULL};
     const char *name = signals->layout->grippers[g].name;
     wh_plot_block(lanes->plot, name, "t (s), valve is open");
-    wh_lanes_draw_signal(lanes, put_steps(plots, lanes->plot, &signals->valves[g], true), 3 * g, "steps");
+    draw_signal(lanes, put_steps(plots, lanes->plot, &signals->valves[g], true), 3 * g, "steps");
     wh_plot_block(lanes->plot, name, "t (s), vacuum from 0 to 1");
-    wh_lanes_draw_signal(lanes, wh_plot_curves(lanes->plot, &level, wh_plots_slice_s(plots)), 3 * g + 1,
-                         "lines");
+    draw_signal(lanes, wh_plot_curves(lanes->plot, &level, wh_plots_slice_s(plots)), 3 * g + 1, "lines");
     wh_plot_block(lanes->plot, name, "t (s), vacuum sensor is on");
-    wh_lanes_draw_signal(lanes, put_steps(plots, lanes->plot, &signals->sensors[g], false), 3 * g + 2,
-                         "steps");
+    draw_signal(lanes, put_steps(plots, lanes->plot, &signals->sensors[g], false), 3 * g + 2, "steps");
 }
 
 void wh_plots_signals(wh_plots_t *plots) {
     const wh_layout_t *layout = plots->document->signals->layout;
     const size_t grippers = layout->machine.gripper_count;
-    wh_lanes_t lanes;
+    lanes_t lanes;
     wh_plot_t plot;
     if (!wh_plots_open(plots, &plot, "valves_and_vacuum", NULL)) {
         return;
     }
-    wh_lanes_open(&lanes, &plot, 3 * grippers);
+    open_lanes(&lanes, &plot, 3 * grippers);
     for (size_t g = 0; g < grippers; ++g) {
-        wh_lanes_name(&lanes, layout->grippers[g].name, "valve open");
-        wh_lanes_name(&lanes, layout->grippers[g].name, "vacuum");
-        wh_lanes_name(&lanes, layout->grippers[g].name, "sensor on");
+        name_lane(&lanes, layout->grippers[g].name, "valve open");
+        name_lane(&lanes, layout->grippers[g].name, "vacuum");
+        name_lane(&lanes, layout->grippers[g].name, "sensor on");
     }
-    wh_lanes_begin(&lanes, plots, "Valves, vacuum and its sensors: high is open, full, on");
+    begin_lanes(&lanes, plots, "Valves, vacuum and its sensors: high is open, full, on");
     for (size_t g = 0; g < grippers; ++g) {
         put_gripper_signals(plots, &lanes, g);
     }
-    wh_lanes_end(&lanes);
+    end_lanes(&lanes);
     wh_plots_close(plots, &plot);
 }
 
-/* ------------------------------------------------------------------------------------------------- holders */
+/* ------------------------------------------------------------------------------------------------ holders */
 
-static void put_holds(const wh_plots_t *plots, wh_lanes_t *lanes, size_t g) {
+static void put_holds(const wh_plots_t *plots, lanes_t *lanes, size_t g) {
     const wh_layout_t *layout = plots->document->signals->layout;
     size_t count = 0;
     wh_plot_hold_t *holds = wh_plots_holds(plots, (int32_t)g, &count);
     for (size_t i = 0; i < count; ++i) {
-        wh_lanes_bar(lanes, g, holds[i].begin_s, holds[i].end_s);
-        wh_lanes_label(lanes, g, holds[i].begin_s, holds[i].end_s, layout->wafers[holds[i].wafer].name,
-                       false);
+        add_bar(lanes, g, holds[i].begin_s, holds[i].end_s);
+        add_label(lanes, g, holds[i].begin_s, holds[i].end_s, layout->wafers[holds[i].wafer].name, false);
     }
     free(holds);
 }
 
 void wh_plots_holders(wh_plots_t *plots) {
-    static const wh_lanes_look_t look = {NULL, "#d8d8d8", "solid", false};
+    static const look_t look = {NULL, "#d8d8d8", "solid", false};
     const wh_layout_t *layout = plots->document->signals->layout;
     const size_t grippers = layout->machine.gripper_count;
-    wh_lanes_t lanes;
+    lanes_t lanes;
     wh_plot_t plot;
     if (!wh_plots_open(plots, &plot, "holders", NULL)) {
         return;
     }
-    wh_lanes_open(&lanes, &plot, grippers);
+    open_lanes(&lanes, &plot, grippers);
     for (size_t g = 0; g < grippers; ++g) {
-        wh_lanes_name(&lanes, layout->grippers[g].name, "holds");
+        name_lane(&lanes, layout->grippers[g].name, "holds");
     }
-    wh_lanes_begin(&lanes, plots, "Who holds which wafer");
+    begin_lanes(&lanes, plots, "Who holds which wafer");
     wh_plot_block(&plot, "holds", "from (s), to (s), lane");
     for (size_t g = 0; g < grippers; ++g) {
         put_holds(plots, &lanes, g);
     }
-    wh_lanes_draw_bars(&lanes, wh_plot_end_block(&plot), &look);
-    wh_lanes_end(&lanes);
+    draw_bars(&lanes, wh_plot_end_block(&plot), &look);
+    end_lanes(&lanes);
     wh_plots_close(plots, &plot);
 }
 
-/* ------------------------------------------------------------------------------------------------ commands */
+/* ----------------------------------------------------------------------------------------------- commands */
 
-/* Of commands: every other one, so that neighbours can be told apart, and those that failed. */
+/* Commands take turns with two looks, so that neighbours can be told apart; those that failed have a
+ * third. */
 enum { EVEN, ODD, FAILED, COMMANDS };
 
-static const wh_lanes_look_t command_looks[COMMANDS] = {{NULL, "#ffffff", "solid", false},
-                                                        {NULL, "#e4e4e4", "solid", false},
-                                                        {"failed", "#000000", "solid", true}};
+static const look_t command_looks[COMMANDS] = {{NULL, "#ffffff", "solid", false},
+                                               {NULL, "#e4e4e4", "solid", false},
+                                               {"failed", "#000000", "solid", true}};
 
 static int look_of(const wh_record_t *record, size_t command) {
     return record->commands[command].error != WH_OK ? FAILED : command % 2 == 0 ? EVEN : ODD;
 }
 
-static size_t put_commands(wh_lanes_t *lanes, const wh_record_t *record, int look) {
+static size_t put_commands(lanes_t *lanes, const wh_record_t *record, int look) {
     wh_plot_block(lanes->plot, look == FAILED ? "commands that failed" : "commands",
                   "from (s), to (s), lane");
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
         if (look_of(record, i) == look) {
-            wh_lanes_bar(lanes, 0, command->begin_s, command->end_s);
-            wh_lanes_label(lanes, 0, command->begin_s, command->end_s, command->text, look == FAILED);
+            add_bar(lanes, 0, command->begin_s, command->end_s);
+            add_label(lanes, 0, command->begin_s, command->end_s, command->text, look == FAILED);
         }
     }
     return wh_plot_end_block(lanes->plot);
 }
 
-static const wh_lanes_look_t share_looks[WH_SHARES] = {
+static const look_t share_looks[WH_SHARES] = {
     [WH_SHARE_LOADED] = {"loaded", "#606060", "solid", false},
     [WH_SHARE_EMPTY] = {"empty", "#c8c8c8", "solid", false},
     [WH_SHARE_VACUUM] = {"vacuum", "#000000", "hatched", false},
     [WH_SHARE_HANDOVER] = {"hand-over", "#000000", "crossed", false},
     [WH_SHARE_WAITING] = {"waiting", "#ffffff", "solid", false}};
 
-/* The robot has the lane below the commands', then come the chucks that turn. SIZE_MAX: none. */
+/* Each chuck's lane. They come after the lanes of commands and of the robot; SIZE_MAX: the chuck does not
+ * turn. */
 typedef struct {
     size_t of[WH_GRIPPERS];
     size_t count;
@@ -147,23 +303,22 @@ static chuck_lanes_t find_chucks(const wh_activity_t *activity, size_t grippers)
     return lanes;
 }
 
-static size_t put_shares(wh_lanes_t *lanes, const wh_record_t *record, const chuck_lanes_t *chucks,
-                         int share) {
+static size_t put_shares(lanes_t *lanes, const wh_record_t *record, const chuck_lanes_t *chucks, int share) {
     wh_plot_block(lanes->plot, share_looks[share].text, "from (s), to (s), lane");
     for (size_t i = 0; i < record->activity.interval_count; ++i) {
         const wh_busy_span_t *interval = &record->activity.intervals[i];
         const bool moves = interval->who == WH_BUSY_ROBOT || interval->who == WH_BUSY_CHUCK;
         if (moves && interval->what == 1 + share) {
             const size_t lane = interval->who == WH_BUSY_ROBOT ? 1 : chucks->of[interval->gripper];
-            wh_lanes_bar(lanes, lane, wh_throughput_seconds(record, interval->begin),
-                         wh_throughput_seconds(record, interval->end));
+            add_bar(lanes, lane, wh_throughput_seconds(record, interval->begin),
+                    wh_throughput_seconds(record, interval->end));
         }
     }
     return wh_plot_end_block(lanes->plot);
 }
 
 /* Blocks first, then what draws them: labels must not come within a plot command. */
-static void draw_commands(wh_lanes_t *lanes, const wh_record_t *record, const chuck_lanes_t *chucks) {
+static void draw_commands(lanes_t *lanes, const wh_record_t *record, const chuck_lanes_t *chucks) {
     size_t blocks[COMMANDS + WH_SHARES];
     for (int look = 0; look < COMMANDS; ++look) {
         blocks[look] = put_commands(lanes, record, look);
@@ -172,7 +327,7 @@ static void draw_commands(wh_lanes_t *lanes, const wh_record_t *record, const ch
         blocks[COMMANDS + share] = put_shares(lanes, record, chucks, share);
     }
     for (int i = 0; i < COMMANDS + WH_SHARES; ++i) {
-        wh_lanes_draw_bars(lanes, blocks[i], i < COMMANDS ? &command_looks[i] : &share_looks[i - COMMANDS]);
+        draw_bars(lanes, blocks[i], i < COMMANDS ? &command_looks[i] : &share_looks[i - COMMANDS]);
     }
 }
 
@@ -181,22 +336,22 @@ void wh_plots_commands(wh_plots_t *plots) {
     const wh_layout_t *layout = plots->document->signals->layout;
     const chuck_lanes_t chucks = find_chucks(&record->activity, layout->machine.gripper_count);
     const bool has_any = record->command_count > 0 || record->activity.interval_count > 0;
-    wh_lanes_t lanes;
+    lanes_t lanes;
     wh_plot_t plot;
     if (!has_any || !wh_plots_open(plots, &plot, "commands", NULL)) {
         return;
     }
-    wh_lanes_open(&lanes, &plot, 2 + chucks.count);
+    open_lanes(&lanes, &plot, 2 + chucks.count);
     lanes.above = 20;
-    wh_lanes_name(&lanes, "commands", "");
-    wh_lanes_name(&lanes, "robot", "");
+    name_lane(&lanes, "commands", "");
+    name_lane(&lanes, "robot", "");
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         if (chucks.of[g] != SIZE_MAX) {
-            wh_lanes_name(&lanes, layout->grippers[g].name, "chuck");
+            name_lane(&lanes, layout->grippers[g].name, "chuck");
         }
     }
-    wh_lanes_begin(&lanes, plots, "Commands, and what the robot's and the chucks' time goes into");
+    begin_lanes(&lanes, plots, "Commands, and what the robot's and the chucks' time goes into");
     draw_commands(&lanes, record, &chucks);
-    wh_lanes_end(&lanes);
+    end_lanes(&lanes);
     wh_plots_close(plots, &plot);
 }

@@ -5,12 +5,17 @@
 
 #include "../math/trig.h"
 #include "document_internal.h"
-#include "gnuplot_curves.h"
 #include "plots_internal.h"
 
-/* ----------------------------------------------------------------------------------------------- proximity */
+/* With more wafers than these they are numbered. */
+#define MOST_NAMED 40
 
-/* Over the times at which a gripper holds a wafer, with the wafer's name in the first panel. */
+/* Half of the least range that is drawn, mm. */
+#define LEAST_OFFSET 0.1
+
+/* ---------------------------------------------------------------------------------------------- proximity */
+
+/* Shades the times at which a gripper holds a wafer. The first panel also names the wafer. */
 static void shade_holds(const wh_plots_t *plots, wh_plot_t *plot, int32_t gripper) {
     const wh_layout_t *layout = plots->document->signals->layout;
     size_t count = 0;
@@ -29,7 +34,8 @@ static void shade_holds(const wh_plots_t *plots, wh_plot_t *plot, int32_t grippe
     free(holds);
 }
 
-/* A panel of lengths, which go from nothing to many times the limit: what is below the axis is drawn on it. */
+/* A panel of lengths, from nothing to many times the limit, hence a logarithmic axis. Values below its end
+ * are drawn on it. */
 static void put_length(const wh_plots_t *plots, wh_plot_t *plot, int32_t g, const char *name, int column,
                        double low, double limit, double high) {
     char label[60];
@@ -71,7 +77,7 @@ static void put_proximity(wh_plots_t *plots, int32_t g) {
     const char *name = layout->grippers[g].name;
     char title[WH_NAME_SIZE + 100];
     wh_plot_t plot;
-    if (curves[WH_MEASURE_PROJZ].count == 0 || !wh_plots_open(plots, &plot, "proximity", name)) {
+    if (curves[WH_MEASURE_PROJZ].list.count == 0 || !wh_plots_open(plots, &plot, "proximity", name)) {
         return;
     }
     (void)snprintf(title, sizeof title, "%s against the wafer that it holds (grey), or else would take",
@@ -80,7 +86,7 @@ static void put_proximity(wh_plots_t *plots, int32_t g) {
     wh_plot_block(&plot, name, "t (s), |dr_proj_z| (mm), |dr_proj_xy| (mm), n1_proj_n2, wafer (from 0)");
     (void)wh_plot_curves(&plot, &values, wh_plots_slice_s(plots));
     put_length(plots, &plot, g, "dr_proj_z", 2, limits->projz / 50, limits->projz,
-               limits->projz * 4 > WH_TRACE_REACH ? limits->projz * 4 : WH_TRACE_REACH);
+               limits->projz * 4 > WH_SIGNALS_REACH ? limits->projz * 4 : WH_SIGNALS_REACH);
     put_length(plots, &plot, g, "dr_proj_xy", 3, limits->projxy / 50000, limits->projxy,
                2 * layout->grasp.near_projxy);
     put_planar(plots, &plot, g, limits->planar);
@@ -93,7 +99,7 @@ void wh_plots_proximity(wh_plots_t *plots) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- axes */
+/* --------------------------------------------------------------------------------------------------- axes */
 
 typedef struct {
     const char *label;
@@ -107,10 +113,10 @@ static const axis_panel_t axis_panels[] = {{"position (mm)", false, false},
 #define AXIS_PANELS (sizeof axis_panels / sizeof axis_panels[0])
 
 static bool is_in(const wh_signals_t *signals, size_t axis, const axis_panel_t *panel) {
-    return signals->axes[axis].count > 0 && panel->turns == (axis != WH_AXIS_R && axis != WH_AXIS_Z);
+    return signals->axes[axis].list.count > 0 && panel->turns == (axis != WH_AXIS_R && axis != WH_AXIS_Z);
 }
 
-/* What a panel shows: how many curves, and between which values. */
+/* How many curves a panel shows, and between which values. */
 typedef struct {
     size_t curves;
     double low, high;
@@ -122,8 +128,8 @@ static axis_range_t look_at(const wh_signals_t *signals, const axis_panel_t *pan
         const wh_path_t *curve = &signals->axes[axis];
         if (is_in(signals, axis, panel)) {
             ++range.curves;
-            for (size_t i = 0; i < curve->count; ++i) {
-                const double value = panel->is_speed ? curve->points[i].slope : curve->points[i].value;
+            for (size_t i = 0; i < curve->list.count; ++i) {
+                const double value = panel->is_speed ? wh_path_slope(curve, i) : wh_path_value(curve, i);
                 range.low = value < range.low ? value : range.low;
                 range.high = value > range.high ? value : range.high;
             }
@@ -132,7 +138,8 @@ static axis_range_t look_at(const wh_signals_t *signals, const axis_panel_t *pan
     return range;
 }
 
-/* Of what stands still gnuplot has no range of its own; a key of many entries is set closer, to fit into one column. */
+/* gnuplot finds no range for axes that stand still. A key of many entries is set closer, to fit into one
+ * column. */
 static void put_axis_look(wh_plot_t *plot, const axis_range_t *range) {
     if (range->high - range->low < 1e-6) {
         fprintf(plot->script, "set yrange [%.9g:%.9g]\n", range->low - 1, range->high + 1);
@@ -182,9 +189,9 @@ void wh_plots_axes(wh_plots_t *plots) {
     wh_plots_close(plots, &plot);
 }
 
-/* ----------------------------------------------------------------------------------------------- clearances */
+/* --------------------------------------------------------------------------------------------- clearances */
 
-/* Gaps are known from WH_CLEARANCE_RANGE down. */
+/* True if a gap below WH_CLEARANCE_RANGE was measured: wider ones are not known. */
 static bool is_known(const wh_record_t *record, size_t kind) {
     const bool is_measured =
         record->checked && record->curves && record->clearances[kind].parts[0] != WH_NONE;
@@ -251,5 +258,84 @@ void wh_plots_clearances(wh_plots_t *plots) {
             put_clearance(plots, &plot, kind);
         }
     }
+    wh_plots_close(plots, &plot);
+}
+
+/* ------------------------------------------------------------------------------------------------ offsets */
+
+static bool lies(const wh_record_t *record, size_t wafer) {
+    return record->wafers[wafer].place.station != WH_NONE;
+}
+
+static size_t count_lying(const wh_record_t *record, const wh_layout_t *layout) {
+    size_t count = 0;
+    for (size_t i = 0; record->wafers && i < layout->wafer_count; ++i) {
+        count += lies(record, i) ? 1 : 0;
+    }
+    return count;
+}
+
+/* True if any wafer lies far enough from its slot's centre to be seen. */
+static bool put_data(const wh_plots_t *plots, wh_plot_t *plot) {
+    const wh_record_t *record = plots->document->record;
+    double number = 0;
+    bool is_seen = false;
+    wh_plot_block(plot, "wafers that lie in slots", "number, dX (mm), dY (mm) in the slot's axes");
+    for (size_t i = 0; i < plots->document->signals->layout->wafer_count; ++i) {
+        if (lies(record, i)) {
+            const wh_place_t *place = &record->wafers[i].place;
+            const double offsets[] = {(double)place->dx, (double)place->dy};
+            number += 1;
+            is_seen = is_seen || fabs(offsets[0]) > LEAST_OFFSET || fabs(offsets[1]) > LEAST_OFFSET;
+            wh_plot_row(plot, number, offsets, 2);
+        }
+    }
+    (void)wh_plot_end_block(plot);
+    return is_seen;
+}
+
+/* Writes "Wafer 1 in B 2" below each. */
+static void put_names(const wh_plots_t *plots, wh_plot_t *plot) {
+    const wh_layout_t *layout = plots->document->signals->layout;
+    const wh_record_t *record = plots->document->record;
+    size_t number = 0;
+    fputs("set xtics rotate by 45 right (", plot->script);
+    for (size_t i = 0; i < layout->wafer_count; ++i) {
+        if (lies(record, i)) {
+            const wh_place_t *place = &record->wafers[i].place;
+            char name[2 * WH_NAME_SIZE + 20];
+            (void)snprintf(name, sizeof name, "%s in %s %d", layout->wafers[i].name,
+                           layout->stations[place->station].name, (int)place->slot);
+            fputs(number > 0 ? ", " : "", plot->script);
+            wh_plot_put_text(plot->script, name);
+            fprintf(plot->script, " %zu", ++number);
+        }
+    }
+    fputs(")\n", plot->script);
+}
+
+void wh_plots_offsets(wh_plots_t *plots) {
+    const size_t count = count_lying(plots->document->record, plots->document->signals->layout);
+    wh_plot_frame_t frame = {.panels = 1, .panel_height = 190, .left = 66, .above = 22};
+    wh_plot_t plot;
+    if (count == 0 || !wh_plots_open(plots, &plot, "offsets", NULL)) {
+        return;
+    }
+    wh_plot_begin(&plot, &frame, "How far beside their slots' centres wafers lie at the end", 0, 0);
+    const bool is_seen = put_data(plots, &plot);
+    wh_plot_panel(&plot, "offset (mm)");
+    wh_plot_axis(&plot, count > MOST_NAMED ? "wafer" : "");
+    fprintf(plot.script, "set xrange [0.5:%zu.5]\n", count);
+    if (count <= MOST_NAMED) {
+        put_names(plots, &plot);
+        fputs("set bmargin at screen 90 / H\n", plot.script);
+    }
+    fprintf(plot.script,
+            "%s\n"
+            "plot 0 with lines lc rgb '#808080' lw 0.7 notitle, \\\n"
+            "  '%s.dat' index 0 using 1:2 with points lt 1 pt 5 ps 0.6 title 'dX', \\\n"
+            "  '%s.dat' index 0 using 1:3 with points lt 2 pt 6 ps 0.8 lw 1.3 title 'dY'\n",
+            is_seen ? "set offsets 0, 0, graph 0.08, graph 0.08" : "set yrange [-0.1:0.1]", plot.name,
+            plot.name);
     wh_plots_close(plots, &plot);
 }

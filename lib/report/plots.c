@@ -15,7 +15,8 @@
 
 extern char **environ;
 
-/* Where they are made: within the folder that they are for. */
+/* The folder in which plots are made, within the one that they are for: renaming works within a file system
+ * only. */
 #define FOLDER "/.plots.XXXXXX"
 #define PATH_BYTES 4096
 
@@ -26,7 +27,7 @@ static bool path_of(char path[PATH_BYTES], const char *folder, const char *name,
     return snprintf(path, PATH_BYTES, "%s/%s.%s", folder, name, ending) < PATH_BYTES;
 }
 
-/* ---------------------------------------------------------------------------------------------------- files */
+/* -------------------------------------------------------------------------------------------------- files */
 
 static bool is_taken(const wh_plots_t *plots, const char *name) {
     for (size_t i = 0; i < plots->count; ++i) {
@@ -37,7 +38,8 @@ static bool is_taken(const wh_plots_t *plots, const char *name) {
     return false;
 }
 
-/* What a shell, LaTeX and every system take for a name; of two that become one, the second is numbered. */
+/* Makes a name that a shell, LaTeX and every system accept. Of two that become the same, the second is
+ * numbered. */
 static void choose_name(const wh_plots_t *plots, char name[WH_PLOT_NAME_BYTES], const char *stem,
                         const char *of) {
     (void)snprintf(name, WH_PLOT_NAME_BYTES - 20, "%s%s%s", stem, of ? "_" : "", of ? of : "");
@@ -88,7 +90,7 @@ void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot) {
     close_file(plots, plot->data);
 }
 
-/* ------------------------------------------------------------------------------------------------------ run */
+/* ---------------------------------------------------------------------------------------------------- run */
 
 double wh_plots_slice_s(const wh_plots_t *plots) {
     return (double)plots->document->signals->layout->slice_us / 1e6;
@@ -114,7 +116,7 @@ static void add_hold(wh_plot_hold_t **list, size_t *count, size_t *capacity, con
     }
 }
 
-/* A gripper holds one wafer, so the stays, which come in order of time, end in that order too. */
+/* A gripper holds one wafer at a time, so its stays end in the order in which they begin. */
 wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t *count) {
     const wh_signals_t *signals = plots->document->signals;
     wh_plot_hold_t *list = NULL;
@@ -140,31 +142,21 @@ wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t 
     return list;
 }
 
-/* -------------------------------------------------------------------------------------------------- gnuplot */
+/* ------------------------------------------------------------------------------------------------ gnuplot */
 
-/* Everybody's, to be freed, but for the letters: gnuplot asks the locale for them, and the plots are UTF-8. Null when memory
- * is out. */
-static char **environment_of_plots(void) {
-    static char letters[] = "LC_ALL=C.UTF-8";
-    size_t count = 0;
-    for (char **entry = environ; entry && *entry; ++entry) {
-        ++count;
+/* The plots are UTF-8, and gnuplot asks the locale for that. Sets LC_ALL, or removes it for null. Returns
+ * what was there, to be freed; null if nothing was. */
+static char *set_letters(const char *letters) {
+    const char *before = getenv("LC_ALL");
+    char *kept = before ? wh_record_text(before) : NULL;
+    if (!letters || setenv("LC_ALL", letters, 1) != 0) {
+        (void)unsetenv("LC_ALL");
     }
-    char **own = calloc(count + 2, sizeof *own);
-    if (!own) {
-        return NULL;
-    }
-    char **next = own;
-    for (char **entry = environ; entry && *entry; ++entry) {
-        if (strncmp(*entry, "LC_ALL=", 7) != 0) {
-            *next++ = *entry;
-        }
-    }
-    *next = letters;
-    return own;
+    return kept;
 }
 
-/* Runs it in their folder, without anybody's settings; 0, an errno, or -1 when it says itself what is wrong. */
+/* Runs gnuplot in the plots' folder. Returns 0, an errno if it did not start, or -1 if it has said itself
+ * what is wrong. */
 static int start(const wh_plots_t *plots, char *const arguments[]) {
     posix_spawn_file_actions_t actions;
     pid_t process = 0;
@@ -173,12 +165,13 @@ static int start(const wh_plots_t *plots, char *const arguments[]) {
     if (error != 0) {
         return error;
     }
-    char **environment = environment_of_plots();
-    error = environment ? posix_spawn_file_actions_addchdir_np(&actions, plots->folder) : ENOMEM;
+    char *letters = set_letters("C.UTF-8");
+    error = posix_spawn_file_actions_addchdir_np(&actions, plots->folder);
     if (error == 0) {
-        error = posix_spawnp(&process, arguments[0], &actions, NULL, arguments, environment);
+        error = posix_spawnp(&process, arguments[0], &actions, NULL, arguments, environ);
     }
-    free(environment);
+    free(set_letters(letters));
+    free(letters);
     (void)posix_spawn_file_actions_destroy(&actions);
     if (error != 0) {
         return error;
@@ -217,7 +210,7 @@ static bool draw_all(const wh_plots_t *plots, char message[WH_PLOTS_MESSAGE_BYTE
     return drawn;
 }
 
-/* ------------------------------------------------------------------------------------------------- placing */
+/* ------------------------------------------------------------------------------------------------ placing */
 
 static bool place(const wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
     char from[PATH_BYTES];

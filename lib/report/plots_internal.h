@@ -2,7 +2,7 @@
 #ifndef WH_REPORT_PLOTS_INTERNAL_H
 #define WH_REPORT_PLOTS_INTERNAL_H
 
-#include "gnuplot_file.h"
+#include "gnuplot.h"
 #include "plots.h"
 
 typedef struct {
@@ -18,8 +18,8 @@ typedef struct {
     int error; /* errno of the first file that could not be written; then nothing more is */
 } wh_plots_t;
 
-/* A plot's files, named by `name` and, unless it is null, what of `of` may stand in a file's name. False when they cannot be
- * opened, then there is nothing to close. */
+/* A plot's files, named by `name` and, unless it is null, what of `of` may stand in a file's name. False when
+ * they cannot be opened, then there is nothing to close. */
 bool wh_plots_open(wh_plots_t *plots, wh_plot_t *plot, const char *name, const char *of);
 void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot);
 

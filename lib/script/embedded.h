@@ -1,11 +1,12 @@
-/* Files built into the program, made by lib/build/embed: the Lua files below lua/, and the page of a report. */
+/* Files built into the program, made by lib/build/embed: the Lua files below lua/, and the page of a
+ * report. */
 #ifndef WH_SCRIPT_EMBEDDED_H
 #define WH_SCRIPT_EMBEDDED_H
 
 #include <stddef.h>
 
 typedef struct {
-    const char *name;          /* the path below its folder, such as "mcs/patterns.lua" of lua/ */
+    const char *name;          /* the path below its folder, such as "mcs/patterns.lua" for a file of lua/ */
     const unsigned char *text; /* `size` bytes, and a zero after them */
     size_t size;
 } wh_embedded_t;
@@ -14,7 +15,7 @@ typedef struct {
 extern const wh_embedded_t wh_embedded[];
 extern const size_t wh_embedded_count;
 
-/* Those of lib/report/page. */
+/* The files of lib/report/page. */
 extern const wh_embedded_t wh_embedded_page[];
 extern const size_t wh_embedded_page_count;
 

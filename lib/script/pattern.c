@@ -1,4 +1,4 @@
-/* The matcher: one function a pattern item, one recursion (match) with a depth limit. */
+/* The matcher: one function for each kind of pattern item, and one recursion (`match`) with a depth limit. */
 #include "pattern.h"
 
 #include <ctype.h>
@@ -7,10 +7,52 @@
 #include "sandbox_internal.h"
 
 #define DEPTH_LIMIT 200
-/* Steps are charged by the lot. */
+/* Steps are charged in lots of this size. */
 #define CHARGE_LOT 1000
 
 typedef wh_pattern_t pattern_t;
+
+/* ------------------------------------------------------ classes and sets of characters, in the "C" locale */
+
+static bool in_class(int c, int letter) {
+    static const struct {
+        char letter;
+        int (*contains)(int c);
+    } classes[] = {{'a', isalpha}, {'c', iscntrl}, {'d', isdigit}, {'g', isgraph}, {'l', islower},
+                   {'p', ispunct}, {'s', isspace}, {'u', isupper}, {'w', isalnum}, {'x', isxdigit}};
+    for (size_t i = 0; i < sizeof classes / sizeof classes[0]; ++i) {
+        if (classes[i].letter == tolower(letter)) {
+            return (classes[i].contains(c) != 0) != (isupper(letter) != 0);
+        }
+    }
+    return letter == c;
+}
+
+static bool in_set(int c, const char *p, const char *last) {
+    bool inside = true;
+    if (p[1] == '^') {
+        inside = false;
+        ++p;
+    }
+    while (++p < last) {
+        if (*p == '%') {
+            ++p;
+            if (in_class(c, (unsigned char)*p)) {
+                return inside;
+            }
+        } else if (p[1] == '-' && p + 2 < last) {
+            if ((unsigned char)p[0] <= c && c <= (unsigned char)p[2]) {
+                return inside;
+            }
+            p += 2;
+        } else if ((unsigned char)*p == c) {
+            return inside;
+        }
+    }
+    return !inside;
+}
+
+/* --------------------------------------------------------------------------------- begin, and count steps */
 
 void wh_pattern_init(pattern_t *m, lua_State *L, const char *subject, size_t subject_length,
                      const char *pattern, size_t pattern_length) {
@@ -39,7 +81,7 @@ static void count_steps(pattern_t *m, size_t steps) {
     }
 }
 
-/* ---- Single characters and classes ---- */
+/* -------------------------------------------------------------------------- Single characters and classes */
 
 /* One past the single-character item that begins at p. */
 static const char *item_end(pattern_t *m, const char *p) {
@@ -68,7 +110,7 @@ static const char *item_end(pattern_t *m, const char *p) {
     return p + 1;
 }
 
-/* Does the item [p, end) match the character at s? */
+/* True if the item [p, end) matches the character at s. */
 static bool matches_one(pattern_t *m, const char *s, const char *p, const char *end) {
     count_steps(m, 1 + ((size_t)(end - p) >> 3));
     if (s >= m->subject_end) {
@@ -79,20 +121,20 @@ static bool matches_one(pattern_t *m, const char *s, const char *p, const char *
     case '.':
         return true;
     case '%':
-        return wh_pattern_in_class(c, (unsigned char)p[1]);
+        return in_class(c, (unsigned char)p[1]);
     case '[':
-        return wh_pattern_in_set(c, p, end - 1);
+        return in_set(c, p, end - 1);
     default:
         return (unsigned char)*p == c;
     }
 }
 
-/* ---- Items of more than one character ---- */
+/* ----------------------------------------------------------------------- Items of more than one character */
 
-/* What match does next: go on at another place, or be done. */
+/* What `match` does next: go on at another place, or be done. */
 typedef struct {
     bool go_on;
-    const char *s, *p; /* s: the result when done */
+    const char *s, *p; /* s: the result if done */
 } next_t;
 
 static next_t done(const char *s) {
@@ -105,7 +147,7 @@ static next_t go_on(const char *s, const char *p) {
 
 static const char *match(pattern_t *m, const char *s, const char *p);
 
-/* %bxy; p past the 'b'. The end of the balanced text, or null. */
+/* %bxy; p is past the 'b'. Returns the end of the balanced text, or null. */
 static const char *match_balance(pattern_t *m, const char *s, const char *p) {
     if (p + 1 >= m->pattern_end) {
         luaL_error(m->L, "malformed pattern (missing arguments to '%%b')");
@@ -128,7 +170,7 @@ static const char *match_balance(pattern_t *m, const char *s, const char *p) {
     return NULL;
 }
 
-/* %f[set]; p past the 'f'. */
+/* %f[set]; p is past the 'f'. */
 static next_t match_frontier(pattern_t *m, const char *s, const char *p) {
     if (p >= m->pattern_end || *p != '[') {
         luaL_error(m->L, "missing '[' after '%%f' in pattern");
@@ -137,8 +179,7 @@ static next_t match_frontier(pattern_t *m, const char *s, const char *p) {
     const int before = s == m->subject ? 0 : (unsigned char)s[-1];
     const int here = s < m->subject_end ? (unsigned char)*s : 0;
     count_steps(m, 1 + ((size_t)(end - p) >> 2));
-    return !wh_pattern_in_set(before, p, end - 1) && wh_pattern_in_set(here, p, end - 1) ? go_on(s, end)
-                                                                                         : done(NULL);
+    return !in_set(before, p, end - 1) && in_set(here, p, end - 1) ? go_on(s, end) : done(NULL);
 }
 
 /* %1 to %9. */
@@ -147,8 +188,8 @@ static next_t match_back_reference(pattern_t *m, const char *s, const char *p) {
     if (index < 0 || index >= m->captures || m->capture[index].length == WH_CAPTURE_OPEN) {
         luaL_error(m->L, "invalid capture index %%%d", index + 1);
     }
-    /* A position's special length is larger than any subject once it is unsigned, so that it never matches.
-     */
+    /* As an unsigned number, the special length of a position is larger than any subject: it never
+     * matches. */
     const size_t length = (size_t)m->capture[index].length;
     count_steps(m, 1 + (length <= (size_t)(m->subject_end - s) ? length >> 4 : 0));
     if ((size_t)(m->subject_end - s) < length || memcmp(m->capture[index].begin, s, length) != 0) {
@@ -186,7 +227,7 @@ static const char *end_capture(pattern_t *m, const char *s, const char *p) {
     return end;
 }
 
-/* ---- Repetition of the item [p, end) ---- */
+/* ------------------------------------------------------------------------ Repetition of the item [p, end) */
 
 static const char *match_longest(pattern_t *m, const char *s, const char *p, const char *end) {
     ptrdiff_t count = 0;
@@ -214,12 +255,12 @@ static const char *match_shortest(pattern_t *m, const char *s, const char *p, co
     }
 }
 
-/* The item's character does not match: only a suffix that allows none helps. */
+/* The item does not match the character: the match goes on only if the item's suffix allows no occurrence. */
 static next_t match_without(const char *s, const char *end, char suffix) {
     return suffix == '*' || suffix == '?' || suffix == '-' ? go_on(s, end + 1) : done(NULL);
 }
 
-/* The item's character, at s, matches once at least. */
+/* The item matches the character at s. */
 static next_t match_with(pattern_t *m, const char *s, const char *p, const char *end, char suffix) {
     const char *found = NULL;
     switch (suffix) {
@@ -243,7 +284,7 @@ static next_t match_item(pattern_t *m, const char *s, const char *p) {
     return matches_one(m, s, p, end) ? match_with(m, s, p, end, suffix) : match_without(s, end, suffix);
 }
 
-/* '%' begins a class, which is an item, or one of the special ones. */
+/* '%' begins a class, which is an item, or a special item: %b, %f, %1. */
 static next_t match_percent(pattern_t *m, const char *s, const char *p) {
     const char letter = p + 1 < m->pattern_end ? p[1] : '\0';
     if (letter == 'b') {
@@ -297,4 +338,34 @@ const char *wh_pattern_match(pattern_t *m, const char *at, const char *pattern) 
     m->captures = 0;
     m->depth = DEPTH_LIMIT;
     return match(m, at, pattern);
+}
+
+/* --------------------------------------------------------------------------------- captures as Lua values */
+
+void wh_pattern_push_capture(pattern_t *m, int index, const char *begin, const char *end) {
+    if (index >= m->captures) {
+        if (index != 0) {
+            luaL_error(m->L, "invalid capture index %%%d", index + 1);
+        }
+        lua_pushlstring(m->L, begin, (size_t)(end - begin));
+        return;
+    }
+    const ptrdiff_t length = m->capture[index].length;
+    if (length == WH_CAPTURE_OPEN) {
+        luaL_error(m->L, "unfinished capture");
+    }
+    if (length == WH_CAPTURE_POSITION) {
+        lua_pushinteger(m->L, m->capture[index].begin - m->subject + 1);
+    } else {
+        lua_pushlstring(m->L, m->capture[index].begin, (size_t)length);
+    }
+}
+
+int wh_pattern_push_captures(pattern_t *m, const char *begin, const char *end) {
+    const int count = m->captures == 0 && begin != NULL ? 1 : m->captures;
+    luaL_checkstack(m->L, count, "too many captures");
+    for (int i = 0; i < count; ++i) {
+        wh_pattern_push_capture(m, i, begin, end);
+    }
+    return count;
 }

@@ -1,10 +1,200 @@
 #include "reader.h"
 
+#include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include <lauxlib.h>
+
 #include "../math/config.h"
-#include "reader_internal.h"
+
+/* ----------------------------------------------------------------------------------------------- messages */
+
+/* Without a sign: that of a NaN differs between machines and says nothing. */
+static void describe_number(double value, char *text, size_t size) {
+    if (value != value) {
+        snprintf(text, size, "nan");
+    } else {
+        snprintf(text, size, "%.14g", value);
+    }
+}
+
+static bool is_short_list(lua_State *L) {
+    const lua_Integer count = (lua_Integer)lua_rawlen(L, -1);
+    bool numbers = count >= 1 && count <= 4;
+    for (lua_Integer i = 1; numbers && i <= count; ++i) {
+        numbers = lua_rawgeti(L, -1, i) == LUA_TNUMBER;
+        lua_pop(L, 1);
+    }
+    return numbers;
+}
+
+/* A short list of numbers is shown as it was written, { 0, 90, 0 }; of any other table only that it is
+ * one. */
+static void describe_table(lua_State *L, char *text, size_t size) {
+    if (!is_short_list(L)) {
+        snprintf(text, size, "a table");
+        return;
+    }
+    const char *before = "{ ";
+    text[0] = '\0';
+    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, -1); ++i) {
+        char number[40];
+        lua_rawgeti(L, -1, i);
+        describe_number(lua_tonumber(L, -1), number, sizeof number);
+        lua_pop(L, 1);
+        const size_t used = strlen(text);
+        snprintf(text + used, size - used, "%s%s", before, number);
+        before = ", ";
+    }
+    const size_t used = strlen(text);
+    snprintf(text + used, size - used, " }");
+}
+
+static void describe(lua_State *L, char *text, size_t size) {
+    switch (lua_type(L, -1)) {
+    case LUA_TNUMBER:
+        describe_number(lua_tonumber(L, -1), text, size);
+        break;
+    case LUA_TTABLE:
+        describe_table(L, text, size);
+        break;
+    case LUA_TSTRING:
+        snprintf(text, size, "\"%.60s\"", lua_tostring(L, -1));
+        break;
+    case LUA_TBOOLEAN:
+        snprintf(text, size, "%s", lua_toboolean(L, -1) ? "true" : "false");
+        break;
+    case LUA_TNIL:
+        snprintf(text, size, "nothing");
+        break;
+    default:
+        snprintf(text, size, "a %s", luaL_typename(L, -1));
+        break;
+    }
+}
+
+__attribute__((noreturn, format(printf, 3, 0))) static void fail(const wh_reader_t *reader, const char *field,
+                                                                 const char *expected, va_list arguments) {
+    char value[200];
+    char wanted[512];
+    describe(reader->L, value, sizeof value);
+    vsnprintf(wanted, sizeof wanted, expected, arguments);
+    const bool in_list = field && field[0] == '[';
+    const char *dot = reader->depth > 0 && field && !in_list ? "." : "";
+    lua_pushfstring(reader->L, "%s: %s%s%s: %s (expected %s)", reader->file, reader->path, dot,
+                    field ? field : "", value, wanted);
+    lua_error(reader->L);
+    abort(); /* lua_error does not return, but its declaration does not say so */
+}
+
+void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *expected, ...) {
+    va_list arguments;
+    va_start(arguments, expected);
+    fail(reader, field, expected, arguments);
+}
+
+void wh_reader_refuse(const wh_reader_t *reader, const char *field, const char *text, const char *expected,
+                      ...) {
+    va_list arguments;
+    va_start(arguments, expected);
+    lua_pushstring(reader->L, text);
+    fail(reader, field, expected, arguments);
+}
+
+/* --------------------------------------------------------------------------------------------------- keys */
+
+static bool is_known(const char *name, size_t length, const char *known) {
+    if (length == 0 || length != strlen(name) || strchr(name, ' ')) {
+        return false;
+    }
+    for (const char *at = strstr(known, name); at; at = strstr(at + 1, name)) {
+        const bool begins = at == known || at[-1] == ' ';
+        if (begins && (at[length] == ' ' || at[length] == '\0')) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Names the key below the top of the stack, in brackets unless it is a text. */
+static void name_key(lua_State *L, char *field, size_t size) {
+    lua_pushvalue(L, -2);
+    if (lua_type(L, -1) == LUA_TSTRING) {
+        snprintf(field, size, "%.60s", lua_tostring(L, -1));
+    } else {
+        char key[60];
+        describe(L, key, sizeof key);
+        snprintf(field, size, "[%s]", key);
+    }
+    lua_pop(L, 1);
+}
+
+void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known) {
+    lua_State *L = reader->L;
+    const char *first = NULL;
+    lua_pushnil(L);
+    while (lua_next(L, -2) != 0) {
+        if (lua_type(L, -2) != LUA_TSTRING) {
+            char field[80];
+            name_key(L, field, sizeof field);
+            wh_reader_fail(reader, field, "one of the fields %s", known);
+        }
+        size_t length = 0;
+        const char *name = lua_tolstring(L, -2, &length);
+        if (!is_known(name, length, known) && (!first || strcmp(name, first) < 0)) {
+            first = name;
+        }
+        lua_pop(L, 1);
+    }
+    if (first) {
+        char field[80];
+        snprintf(field, sizeof field, "%.60s", first);
+        (void)wh_reader_push(reader, first);
+        wh_reader_fail(reader, field, "one of the fields %s", known);
+    }
+}
+
+/* True if the key below the top is one of 1 to count. */
+static bool is_entry(lua_State *L, lua_Integer count) {
+    const bool whole = lua_isinteger(L, -2) != 0;
+    return whole && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= count;
+}
+
+/* Pushes a key that no list of as many entries has, and its value; false if there is none. Counts the
+ * entries. */
+static bool push_stray(lua_State *L, size_t *count) {
+    *count = 0;
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        ++*count;
+    }
+    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
+        if (!is_entry(L, (lua_Integer)*count)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+size_t wh_reader_list(const wh_reader_t *reader) {
+    size_t count = 0;
+    if (push_stray(reader->L, &count)) {
+        char field[80];
+        name_key(reader->L, field, sizeof field);
+        wh_reader_fail(reader, field, "a list: entries 1, 2, ... without names and gaps");
+    }
+    return count;
+}
+
+static bool is_list_of_three(lua_State *L) {
+    size_t count = 0;
+    if (push_stray(L, &count)) {
+        lua_pop(L, 2);
+        return false;
+    }
+    return count == 3;
+}
 
 void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file) {
     memset(reader, 0, sizeof *reader);
@@ -13,7 +203,7 @@ void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file) {
     luaL_checkstack(L, 16, "layout nested too deeply");
 }
 
-/* --------------------------------------------------------------------------------------------- nesting */
+/* ------------------------------------------------------------------------------------------------ nesting */
 
 void wh_reader_enter_top(wh_reader_t *reader, const char *name) {
     const size_t length = strlen(reader->path);
@@ -28,21 +218,19 @@ void wh_reader_enter_top(wh_reader_t *reader, const char *name) {
     reader->lengths[reader->depth++] = length;
 }
 
-bool wh_reader_enter(wh_reader_t *reader, const char *field) {
+int wh_reader_push(const wh_reader_t *reader, const char *field) {
     lua_pushstring(reader->L, field);
-    lua_rawget(reader->L, -2);
-    if (lua_isnil(reader->L, -1)) {
-        lua_pop(reader->L, 1);
-        return false;
-    }
-    wh_reader_enter_top(reader, field);
-    return true;
+    return lua_rawget(reader->L, -2);
 }
 
-bool wh_reader_enter_item(wh_reader_t *reader, lua_Integer index) {
-    char name[32];
-    snprintf(name, sizeof name, "[%lld]", (long long)index);
-    lua_rawgeti(reader->L, -1, index);
+bool wh_reader_has(const wh_reader_t *reader, const char *field) {
+    const bool there = wh_reader_push(reader, field) != LUA_TNIL;
+    lua_pop(reader->L, 1);
+    return there;
+}
+
+/* Enters the value on top of the stack, or pops it if it is nil. */
+static bool enter_top_unless_nil(wh_reader_t *reader, const char *name) {
     if (lua_isnil(reader->L, -1)) {
         lua_pop(reader->L, 1);
         return false;
@@ -51,19 +239,37 @@ bool wh_reader_enter_item(wh_reader_t *reader, lua_Integer index) {
     return true;
 }
 
+bool wh_reader_enter(wh_reader_t *reader, const char *field) {
+    (void)wh_reader_push(reader, field);
+    return enter_top_unless_nil(reader, field);
+}
+
+bool wh_reader_open(wh_reader_t *reader, const char *field, const char *known) {
+    const bool there = wh_reader_enter(reader, field);
+    if (there) {
+        wh_reader_refuse_unknown(reader, known);
+    }
+    return there;
+}
+
+bool wh_reader_enter_item(wh_reader_t *reader, lua_Integer index) {
+    char name[32];
+    snprintf(name, sizeof name, "[%lld]", (long long)index);
+    lua_rawgeti(reader->L, -1, index);
+    return enter_top_unless_nil(reader, name);
+}
+
 void wh_reader_leave(wh_reader_t *reader) {
     WH_ASSERT(reader->depth > 0);
     reader->path[reader->lengths[--reader->depth]] = '\0';
     lua_pop(reader->L, 1);
 }
 
-/* ---------------------------------------------------------------------------------------------- fields */
+/* ------------------------------------------------------------------------------------------------- fields */
 
-/* Pushes a field; false when it is absent, which is an error when it is required. */
+/* Pushes a field. False if it is absent; that is an error if it is required. */
 static bool push_field(const wh_reader_t *reader, const char *field, bool required, const char *expected) {
-    lua_pushstring(reader->L, field);
-    lua_rawget(reader->L, -2);
-    if (!lua_isnil(reader->L, -1)) {
+    if (wh_reader_push(reader, field) != LUA_TNIL) {
         return true;
     }
     if (required) {
@@ -131,7 +337,7 @@ wh_vec3_t wh_reader_vector(wh_reader_t *reader, const char *field, const wh_vec3
     if (!push_field(reader, field, !fallback, "a list of three numbers")) {
         return *fallback;
     }
-    if (!lua_istable(reader->L, -1) || !wh_reader_is_list_of_three(reader->L)) {
+    if (!lua_istable(reader->L, -1) || !is_list_of_three(reader->L)) {
         wh_reader_fail(reader, field, "a list of three numbers");
     }
     wh_vec3_t vector;

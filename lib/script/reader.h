@@ -1,8 +1,9 @@
-/* Reads a Lua table as a description: typed fields with defaults and ranges, and errors that name file, field
- * path, value and what was expected.
+/* Reads a Lua table as a description: typed fields with defaults and ranges, and errors that name file,
+ * field, value and what was expected.
  *
- * The table being read is on top of the Lua stack. Every function raises a Lua error on the first thing that
- * is wrong, so a reader holds nothing that would have to be freed. Fields are read raw: no metamethod runs.
+ * The table that is read is on top of the Lua stack. Every function raises a Lua error on the first fault
+ * that it finds, so a reader owns nothing that would have to be freed. Fields are read raw: no metamethod
+ * runs.
  */
 #ifndef WH_SCRIPT_READER_H
 #define WH_SCRIPT_READER_H
@@ -16,7 +17,7 @@
 typedef struct {
     lua_State *L;
     const char *file;
-    char path[256]; /* of the table being read, such as stations.A; cut when longer */
+    char path[256]; /* of the table that is read, such as stations.A; cut if longer */
     size_t lengths[WH_READER_DEPTH];
     size_t depth;
 } wh_reader_t;
@@ -24,48 +25,62 @@ typedef struct {
 /* Starts at the table on top of L's stack. `file` must outlive the reader. */
 void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file);
 
-/* "file: path.field: value (expected ...)", the value being on top of the stack. `field` may be null: the
- * table itself. */
+/* Raises "file: path.field: value (expected ...)" for the value on top of the stack. If `field` is null, the
+ * value is the table itself. */
 void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *expected, ...)
     __attribute__((noreturn, format(printf, 3, 4)));
 
-/* Refuses every field whose name is not in the space-separated list. Of several the first by name is
- * reported. */
+/* wh_reader_fail for a value that is a text, which need not be on the stack. */
+void wh_reader_refuse(const wh_reader_t *reader, const char *field, const char *text, const char *expected,
+                      ...) __attribute__((noreturn, format(printf, 4, 5)));
+
+/* Refuses every field whose name is not in the space-separated list `known`. If there are several, the first
+ * by name is reported. */
 void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known);
 
-/* The length of the list being read; refuses one that has names or gaps, which would be read past. */
+/* The length of the list that is read. A list with names or gaps is refused: a loop from 1 would miss
+ * entries. */
 size_t wh_reader_list(const wh_reader_t *reader);
 
-/* Whether a text is not empty and without control characters. */
+/* True if a text is not empty and has no control characters. */
 bool wh_reader_is_plain(const char *text, size_t length);
 
-/* Enters the table in a field or list entry, which becomes the table being read; leave with wh_reader_leave.
- * False, and nothing entered, when there is none. */
+/* Enters the table in a field or a list entry, which becomes the table that is read until wh_reader_leave.
+ * False if there is none; nothing is entered then. */
 bool wh_reader_enter(wh_reader_t *reader, const char *field);
 bool wh_reader_enter_item(wh_reader_t *reader, lua_Integer index);
 
-/* Enters the table on top of the stack under a name of its own. */
+/* wh_reader_enter and then, if there is such a table, wh_reader_refuse_unknown. */
+bool wh_reader_open(wh_reader_t *reader, const char *field, const char *known);
+
+/* Enters the table on top of the stack under a name that the caller gives. */
 void wh_reader_enter_top(wh_reader_t *reader, const char *name);
 void wh_reader_leave(wh_reader_t *reader);
 
-/* A finite number from min to max, ends included; `fallback` when the field is absent, or an error when that
- * is NaN. */
+/* Pushes a field of the table that is read, and returns its Lua type. */
+int wh_reader_push(const wh_reader_t *reader, const char *field);
+
+/* True if the table that is read has the field. */
+bool wh_reader_has(const wh_reader_t *reader, const char *field);
+
+/* A finite number from min to max, ends included. An absent field gives `fallback`, or an error if that is
+ * NaN. */
 wh_real_t wh_reader_number(wh_reader_t *reader, const char *field, wh_real_t fallback, wh_real_t min,
                            wh_real_t max);
 
-/* The same, a whole number; a fallback below min means that the field is required. */
+/* wh_reader_number for a whole number. A fallback below min means that the field is required. */
 int32_t wh_reader_whole(wh_reader_t *reader, const char *field, int32_t fallback, int32_t min, int32_t max);
 
 bool wh_reader_boolean(wh_reader_t *reader, const char *field, bool fallback);
 
-/* Three finite numbers of at most 1e6; required when fallback is null. */
+/* Three finite numbers from -1e6 to 1e6; required if fallback is null. */
 wh_vec3_t wh_reader_vector(wh_reader_t *reader, const char *field, const wh_vec3_t *fallback);
 
-/* Text of 1 to size - 1 bytes without control characters; required when fallback is null. */
+/* Text of 1 to size - 1 bytes without control characters; required if fallback is null. */
 void wh_reader_text(wh_reader_t *reader, const char *field, const char *fallback, char *text, size_t size);
 
-/* The place (from 0) of the field's text in a null-terminated list of choices; `fallback` when it is absent.
- */
+/* The index (from 0) of the field's text in a null-terminated list of choices; `fallback` if the field is
+ * absent. */
 int wh_reader_choice(wh_reader_t *reader, const char *field, int fallback, const char *const choices[]);
 
 #endif

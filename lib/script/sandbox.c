@@ -1,11 +1,194 @@
-/* Creating a sandbox and running things in it. */
+/* Creating a sandbox, running files, texts and functions in it, and the message when one fails. */
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include "../text/utf8.h"
 #include "sandbox_internal.h"
 
-/* Registry key of the last error's value. The slot always exists (false: none), so that setting it needs no
- * memory. */
+/* ----------------------------------------------------------------------------------------------- messages */
+
+/* The text that a person reads. Lua code (__tostring) may yet have to make it. */
+typedef struct {
+    char text[WH_SANDBOX_MESSAGE_BYTES];
+} described_t;
+
+static int note_line(lua_State *L) {
+    wh_sandbox_job_t *const job = wh_sandbox_of(L)->job;
+    if (job->path != NULL && !job->line_is_final) {
+        job->line = wh_sandbox_line(L, job->path);
+    }
+    return 1;
+}
+
+/* The text of a table without __tostring is its field `message`: numbered errors are such tables. */
+static const char *text_of(lua_State *L, size_t *length) {
+    const int type = lua_type(L, 1);
+    if (type == LUA_TSTRING || type == LUA_TNUMBER) {
+        return wh_library_tostring(L, 1, length);
+    }
+    if (luaL_getmetafield(L, 1, "__tostring") != LUA_TNIL) {
+        return wh_library_tostring(L, 1, length);
+    }
+    if (type == LUA_TTABLE) {
+        lua_pushliteral(L, "message");
+        if (lua_rawget(L, 1) == LUA_TSTRING) {
+            return lua_tolstring(L, -1, length);
+        }
+    }
+    lua_pushfstring(L, "(error object is a %s value)", luaL_typename(L, 1));
+    return lua_tolstring(L, -1, length);
+}
+
+/* Makes one line of it, without characters that control a terminal. */
+static int describe(lua_State *L) {
+    described_t *const described = lua_touserdata(L, 2);
+    size_t length = 0;
+    const char *const text = text_of(L, &length);
+    char whole[WH_SANDBOX_MESSAGE_BYTES + 1];
+    const size_t kept = length < sizeof whole ? length : sizeof whole - 1;
+    for (size_t i = 0; i < kept; ++i) {
+        whole[i] = iscntrl((unsigned char)text[i]) ? ' ' : text[i];
+    }
+    whole[kept] = '\0';
+    wh_utf8_clip(described->text, sizeof described->text, whole);
+    return 0;
+}
+
+static void make_text(lua_State *L, described_t *described) {
+    const wh_sandbox_t *const sandbox = wh_sandbox_of(L);
+    if (sandbox->fatal == WH_SANDBOX_OK) {
+        wh_utf8_clip(described->text, sizeof described->text, "(error object whose __tostring failed)");
+        lua_pushcfunction(L, describe);
+        lua_pushvalue(L, -2);
+        lua_pushlightuserdata(L, described);
+        if (lua_pcall(L, 2, 0, 0) != LUA_OK) {
+            (void)wh_sandbox_is_fatal(L, LUA_ERRRUN);
+            lua_pop(L, 1);
+        }
+    }
+    if (sandbox->fatal != WH_SANDBOX_OK) {
+        wh_sandbox_fatal_text(sandbox, described->text, sizeof described->text);
+    }
+}
+
+/* True if the text begins with Lua's own "short_source:line:". */
+static bool has_position(const char *text, const char *short_source) {
+    const size_t length = strlen(short_source);
+    return strncmp(text, short_source, length) == 0 && text[length] == ':' &&
+           isdigit((unsigned char)text[length + 1]);
+}
+
+static void report(lua_State *L, const wh_sandbox_job_t *job, char message[WH_SANDBOX_MESSAGE_BYTES]) {
+    described_t described;
+    char whole[WH_SANDBOX_MESSAGE_BYTES * 3];
+    make_text(L, &described);
+    lua_pop(L, 1);
+    if (job->path == NULL) {
+        snprintf(whole, sizeof whole, "%s", described.text);
+    } else if (has_position(described.text, job->short_source)) {
+        snprintf(whole, sizeof whole, "%.1023s%s", job->path, described.text + strlen(job->short_source));
+    } else if (job->line > 0) {
+        snprintf(whole, sizeof whole, "%.1023s:%d: %s", job->path, job->line, described.text);
+    } else {
+        snprintf(whole, sizeof whole, "%.1023s: %s", job->path, described.text);
+    }
+    wh_utf8_clip(message, WH_SANDBOX_MESSAGE_BYTES, whole);
+}
+
+/* -------------------------------------------------------------------------------------------------- files */
+
+static const char too_large[] = "cannot be read: it is larger than 16 MiB";
+
+static const char *kind_fault(const struct stat *status) {
+    if (S_ISDIR(status->st_mode)) {
+        return "cannot be read: it is a directory";
+    }
+    if (!S_ISREG(status->st_mode)) {
+        return "cannot be read: it is no regular file";
+    }
+    if (status->st_size > (off_t)WH_SANDBOX_FILE_BYTES) {
+        return too_large;
+    }
+    return NULL;
+}
+
+static const char *errno_fault(void) {
+    static __thread char text[120];
+    snprintf(text, sizeof text, "cannot be read: %s", strerror(errno));
+    return text;
+}
+
+static const char *read_open(FILE *file, char **text, size_t *size) {
+    struct stat status;
+    if (fstat(fileno(file), &status) != 0) {
+        return errno_fault();
+    }
+    const char *fault = kind_fault(&status);
+    if (fault != NULL) {
+        return fault;
+    }
+    const size_t capacity = WH_SANDBOX_FILE_BYTES + 1;
+    char *const whole = malloc(capacity);
+    if (whole == NULL) {
+        return "cannot be read: no memory";
+    }
+    /* Reads to the end: the file may grow meanwhile, and files below /proc have no size. */
+    *size = fread(whole, 1, capacity, file);
+    if (*size == capacity || ferror(file)) {
+        fault = ferror(file) ? errno_fault() : too_large;
+        free(whole);
+        return fault;
+    }
+    *text = realloc(whole, *size + 1);
+    if (*text == NULL) {
+        *text = whole;
+    }
+    return NULL;
+}
+
+static const char *read_file(const char *path, char **text, size_t *size) {
+    struct stat status;
+    /* Checks the file before opening it: opening a device may move it. */
+    if (stat(path, &status) != 0) {
+        return errno_fault();
+    }
+    const char *fault = kind_fault(&status);
+    if (fault != NULL) {
+        return fault;
+    }
+    const int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    FILE *const file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
+    if (file == NULL) {
+        return errno_fault();
+    }
+    fault = read_open(file, text, size);
+    (void)fclose(file);
+    return fault;
+}
+
+static const char *skip_first_line(const char *text, size_t *size) {
+    if (*size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) {
+        text += 3;
+        *size -= 3;
+    }
+    if (*size > 0 && text[0] == '#') {
+        const char *const line_break = memchr(text, '\n', *size);
+        const size_t skipped = line_break != NULL ? (size_t)(line_break - text) : *size;
+        text += skipped;
+        *size -= skipped;
+    }
+    return text;
+}
+
+/* ---------------------------------------------------------------------------------------------- a sandbox */
+
+/* Registry key of the last error's value. The slot always exists (false: no error), so that setting it needs
+ * no memory. */
 static const char error_key = 0;
 
 static int open_all(lua_State *L) {
@@ -72,7 +255,7 @@ void wh_sandbox_push_error(lua_State *L) {
     }
 }
 
-/* ---- One job ---- */
+/* ------------------------------------------------------------------------------------------------ One job */
 
 static void keep_error(lua_State *L) {
     if (lua_isnil(L, -1)) {
@@ -97,7 +280,8 @@ static void enter(lua_State *L, wh_sandbox_job_t *job) {
     sandbox->running = L;
 }
 
-/* Memory and stop are over when the outermost job is; a spent budget stays spent until it is renewed. */
+/* The outermost job's end clears an exhausted memory cap and a stop. A spent budget stays spent until it is
+ * renewed. */
 static void leave(wh_sandbox_t *sandbox, const wh_sandbox_job_t *job) {
     sandbox->job = job->outer;
     sandbox->running = job->outer_running;
@@ -115,20 +299,20 @@ static wh_sandbox_reason_t reason_of(const wh_sandbox_t *sandbox, const wh_sandb
     return job->loaded ? WH_SANDBOX_ERROR : WH_SANDBOX_SYNTAX;
 }
 
-/* The error's value is on top; takes it off. */
+/* Pops the error's value from the top of the stack. */
 static void fail(lua_State *L, wh_sandbox_job_t *job, int status, wh_sandbox_result_t *result) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     (void)wh_sandbox_is_fatal(L, status);
     keep_error(L);
-    wh_sandbox_report(L, job, result->message);
+    report(L, job, result->message);
     sandbox->reason = result->status = reason_of(sandbox, job);
 }
 
-/* base: where the results, or the error, begin. True when all went well. */
+/* base: the index at which the results, or the error, begin. True if all went well. */
 static bool conclude(lua_State *L, wh_sandbox_job_t *job, int base, int status, wh_sandbox_result_t *result) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     if (status == LUA_OK && (sandbox->fatal != WH_SANDBOX_OK || sandbox->power_pending)) {
-        /* A C function swallowed it. */
+        /* A C function has swallowed the error. */
         lua_settop(L, base - 1);
         lua_pushliteral(L, "an error was swallowed");
         status = LUA_ERRRUN;
@@ -160,7 +344,7 @@ static int load_and_run(lua_State *L) {
     return job->results;
 }
 
-/* How Lua abbreviates a path in its own messages (its luaO_chunkid): the last 56 bytes of a long one. */
+/* As Lua's luaO_chunkid: of a long path the last 56 bytes. */
 static void abbreviate(wh_sandbox_job_t *job) {
     const size_t length = strlen(job->path);
     if (length < LUA_IDSIZE) {
@@ -172,25 +356,31 @@ static void abbreviate(wh_sandbox_job_t *job) {
     }
 }
 
-static bool run_text(lua_State *L, wh_sandbox_job_t *job, wh_sandbox_result_t *result) {
-    wh_sandbox_result_t unused = {WH_SANDBOX_OK, ""};
-    wh_sandbox_result_t *const told = result != NULL ? result : &unused;
+/* lua_pcall as a job: function and arguments are on the stack. */
+static bool run_job(lua_State *L, wh_sandbox_job_t *job, int arguments, wh_sandbox_result_t *result) {
+    wh_sandbox_result_t unused;
+    const int base = lua_gettop(L) - arguments;
     enter(L, job);
+    lua_pushcfunction(L, note_line);
+    lua_insert(L, base);
+    const int status = lua_pcall(L, arguments, job->results, base);
+    lua_remove(L, base);
+    return conclude(L, job, base, status, result != NULL ? result : &unused);
+}
+
+static bool run_text(lua_State *L, wh_sandbox_job_t *job, wh_sandbox_result_t *result) {
     abbreviate(job);
-    job->text = wh_source_begin(job->text, &job->size);
+    job->text = skip_first_line(job->text, &job->size);
     if (!lua_checkstack(L, 4)) {
-        leave(wh_sandbox_of(L), job);
-        told->status = WH_SANDBOX_ERROR;
-        snprintf(told->message, sizeof told->message, "%.900s: stack overflow", job->path);
+        if (result != NULL) {
+            result->status = WH_SANDBOX_ERROR;
+            snprintf(result->message, sizeof result->message, "%.900s: stack overflow", job->path);
+        }
         return false;
     }
-    lua_pushcfunction(L, wh_sandbox_handler);
-    const int base = lua_gettop(L);
     lua_pushcfunction(L, load_and_run);
     lua_pushlightuserdata(L, job);
-    const int status = lua_pcall(L, 1, job->results, base);
-    lua_remove(L, base);
-    return conclude(L, job, base, status, told);
+    return run_job(L, job, 1, result);
 }
 
 bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, size_t size,
@@ -202,7 +392,7 @@ bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, 
 static bool run_file(lua_State *L, const char *path, int results, wh_sandbox_result_t *result) {
     char *text = NULL;
     size_t size = 0;
-    const char *const why = wh_source_read(path, &text, &size);
+    const char *const why = read_file(path, &text, &size);
     if (why != NULL) {
         wh_sandbox_of(L)->reason = WH_SANDBOX_UNREADABLE;
         if (result != NULL) {
@@ -226,13 +416,21 @@ bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *re
 }
 
 bool wh_sandbox_call(lua_State *L, int arguments, int results, wh_sandbox_result_t *result) {
-    wh_sandbox_result_t unused;
-    wh_sandbox_job_t job = {.loaded = true};
-    const int base = lua_gettop(L) - arguments;
-    enter(L, &job);
-    lua_pushcfunction(L, wh_sandbox_handler);
-    lua_insert(L, base);
-    const int status = lua_pcall(L, arguments, results, base);
-    lua_remove(L, base);
-    return conclude(L, &job, base, status, result != NULL ? result : &unused);
+    wh_sandbox_job_t job = {.loaded = true, .results = results};
+    return run_job(L, &job, arguments, result);
+}
+
+wh_sandbox_t *wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
+                                  size_t count, wh_sandbox_result_t *result) {
+    wh_sandbox_t *sandbox = wh_sandbox_new(limits);
+    if (!sandbox) {
+        *result = (wh_sandbox_result_t){WH_SANDBOX_MEMORY, "no memory for Lua"};
+    }
+    for (size_t i = 0; sandbox && i < count; ++i) {
+        if (!wh_sandbox_set_parameter(sandbox, assignments[i], result)) {
+            wh_sandbox_free(sandbox);
+            return NULL;
+        }
+    }
+    return sandbox;
 }

@@ -1,17 +1,18 @@
-/* The instruction budget: a count hook in every coroutine, charges from C, and the state of having run out.
+/* The instruction budget: a count hook in every coroutine, charges from C functions, and what happens once a
+ * limit is exhausted.
  *
- * An exhausted limit cannot be caught: the hook fires at each instruction from then on, and pcall, xpcall and
- * the coroutine functions (sandbox_protect.c) pass the error on.
+ * A script cannot catch an exhausted limit: from then on the hook fires at each instruction, and pcall,
+ * xpcall and the coroutine functions (sandbox_protect.c) pass the error on.
  */
 #include <inttypes.h>
 #include <string.h>
 
 #include "sandbox_internal.h"
 
-/* Levels of the call stack that are searched for a line: a runaway recursion has a hundred thousand. */
+/* Levels of the call stack that are searched for a line. A runaway recursion has a hundred thousand. */
 #define SEARCHED_LEVELS 1000
 
-/* Registry keys of the messages, made beforehand: raising must not need memory. */
+/* Registry keys of the messages. They are made beforehand, for raising must not need memory. */
 static const char message_keys[WH_SANDBOX_UNREADABLE + 1] = {0};
 
 wh_sandbox_t *wh_sandbox_of(lua_State *L) {
@@ -89,7 +90,7 @@ static int raise_power(lua_State *L, wh_sandbox_t *sandbox) {
     return lua_error(L);
 }
 
-/* Collects what can be collected once the memory stands above the brim; charges for the work. */
+/* Collects garbage if the memory stands above the brim, and charges for the work. */
 static void check_brim(lua_State *L, wh_sandbox_t *sandbox) {
     if (!sandbox->brimming) {
         return;
@@ -98,8 +99,18 @@ static void check_brim(lua_State *L, wh_sandbox_t *sandbox) {
     lua_gc(L, LUA_GCCOLLECT);
     sandbox->brimming = false;
     if (sandbox->memory > wh_sandbox_memory_brim(sandbox)) {
-        sandbox->refused = false; /* it is here, not at an earlier refusal that a collection healed */
+        /* the line to report is here, not that of an earlier refusal, which a collection healed */
+        sandbox->refused = false;
         wh_sandbox_exhaust(L, WH_SANDBOX_MEMORY);
+    }
+}
+
+static void check_stop_and_budget(lua_State *L, const wh_sandbox_t *sandbox) {
+    if (sandbox->stop) {
+        wh_sandbox_exhaust(L, WH_SANDBOX_STOPPED);
+    }
+    if (sandbox->spent > sandbox->budget) {
+        wh_sandbox_exhaust(L, WH_SANDBOX_BUDGET);
     }
 }
 
@@ -110,12 +121,7 @@ static void check_limits(lua_State *L, wh_sandbox_t *sandbox) {
     }
     wh_sandbox_spend(sandbox, (uint64_t)count);
     check_brim(L, sandbox);
-    if (sandbox->stop) {
-        wh_sandbox_exhaust(L, WH_SANDBOX_STOPPED);
-    }
-    if (sandbox->spent > sandbox->budget) {
-        wh_sandbox_exhaust(L, WH_SANDBOX_BUDGET);
-    }
+    check_stop_and_budget(L, sandbox);
 }
 
 static void on_count(lua_State *L, lua_Debug *event) {
@@ -152,12 +158,7 @@ void wh_sandbox_charge(lua_State *L, uint64_t steps) {
     }
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     wh_sandbox_spend(sandbox, steps);
-    if (sandbox->stop) {
-        wh_sandbox_exhaust(L, WH_SANDBOX_STOPPED);
-    }
-    if (sandbox->spent > sandbox->budget) {
-        wh_sandbox_exhaust(L, WH_SANDBOX_BUDGET);
-    }
+    check_stop_and_budget(L, sandbox);
     if (sandbox->fatal != WH_SANDBOX_OK) {
         wh_sandbox_raise(L);
     }

@@ -1,4 +1,4 @@
-/* What a script in a sandbox finds; a page to read, with nothing to call.
+/* What a script in a sandbox finds. A page to read: there is nothing to call.
  *
  * Present: assert, error, getmetatable, ipairs, load, next, pairs, pcall, print, rawequal, rawget, rawlen,
  * rawset, select, setmetatable, tonumber, tostring, type, xpcall, _G, _VERSION, params, and the tables
@@ -6,34 +6,34 @@
  * collectgarbage, warn, string.dump, math.exp, math.log, math.pow and their kin. --trust adds all of Lua's
  * libraries but changes nothing below that is marked (D).
  *
- * Where they differ from the Lua 5.4 manual:
- * - (D) pairs and next go through a table's keys in order: numbers by value, strings bytewise, false, true.
- * Other keys (tables, functions) raise an error. pairs takes a snapshot of the keys, O(n log n) time and 48 n
- * bytes: keys added on the way are not visited, removed ones are passed over. next looks at all keys: O(n)
- * each, so a loop over next is O(n^2); next(t) == nil is the test for emptiness. __pairs is honoured.
+ * Differences from the Lua 5.4 manual:
+ * - (D) pairs and next go through a table's keys in order: numbers by value, strings by bytes, false, true.
+ *   Other keys (tables, functions) raise an error. pairs takes a snapshot of the keys, in O(n log n) time and
+ *   48 n bytes: keys added during the loop are not visited, removed ones are skipped. next looks at all keys:
+ *   O(n) each, so a loop over next is O(n^2); next(t) == nil is the test for emptiness. __pairs is honoured.
  * - (D) tostring, print and string.format("%s") show a table as "table", a function as "function" and so on,
- * or by its
- *   __tostring or __name; never an address. %p is refused. A NaN is "nan" without a sign.
- * - (D) math.sin, cos, tan, asin, acos, atan are the library's own. Angles up to 1e5; asin and acos take [-1,
- * 1]; else an error. deg and rad are there.
+ *   or by its __tostring or __name; never an address. %p is refused. A NaN is "nan" without a sign.
+ * - (D) math.sin, cos, tan, asin, acos, atan are the library's own. Angles go up to 1e5; asin and acos take
+ *   [-1, 1]; anything else is an error. deg and rad are there.
  * - (D) math.random starts from the same seed in each sandbox; math.randomseed needs its argument.
- * - (D) x ^ y wants a whole-number y, exact by repeated squaring; else an error. math.sqrt is there.
- * - (D) table.sort is stable, and O(n log n) comparisons whatever the comparison function says.
+ * - (D) x ^ y needs a whole-number y, and is exact by repeated squaring; any other y is an error. math.sqrt
+ *   is there.
+ * - (D) table.sort is stable, and takes O(n log n) comparisons whatever the comparison function says.
  * - (D) pcall, xpcall and coroutines pass an exhausted limit on. An error that ends a coroutine closes its
  *   to-be-closed variables at once; coroutine.wrap passes error values on as they are.
  * - (D) xpcall calls its handler after the stack has been unwound: debug.traceback sees the caller.
- * - load takes a string of Lua text, neither a function nor a binary chunk.
- * - setmetatable refuses a metatable with __gc or __mode: what those do depends on the garbage collector.
+ * - load takes a string of Lua text, not a function or a binary chunk.
+ * - setmetatable refuses a metatable with __gc or __mode: their effect depends on the garbage collector.
  *   getmetatable of a string gives false, of a userdata its __metatable field or false.
  * - table.insert, remove, sort, concat and unpack refuse a table with __len, and take nothing but tables.
  * - Functions in C charge the instruction budget for what they do: patterns for each step of the matcher, the
- * table functions for each element, others for the bytes that they read or make.
+ *   table functions for each element, others for the bytes that they read or make.
  *
- * What is left that could differ between machines: the sign of a NaN in `..`, the native byte order of string.pack, and
- * a __mode that is put into a metatable after it was set.
+ * Three things could still differ between machines: the sign of a NaN in `..`, the native byte order of
+ * string.pack, and a __mode that is put into a metatable after it was set.
  *
- * What a budget cannot bound is the time of one instruction. The worst known: comparing two equal strings of
- * half the memory cap (10 ms), passing a million varargs on (1 ms), an __index chain of 2000 tables (20 us).
+ * A budget cannot bound the time of one instruction. The worst known: comparing two equal strings of half the
+ * memory cap (10 ms), passing a million varargs on (1 ms), an __index chain of 2000 tables (20 us).
  */
 #ifndef WH_SCRIPT_SANDBOX_LIBRARY_H
 #define WH_SCRIPT_SANDBOX_LIBRARY_H

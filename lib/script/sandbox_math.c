@@ -1,11 +1,11 @@
-/* math: trigonometry of the library's own, a random generator with a fixed start, and nothing of libm's that
+/* math: the library's own trigonometry, a random generator with a fixed seed, and nothing of libm that
  * differs between machines. */
 #include <math.h>
 
 #include "../math/trig.h"
 #include "sandbox_internal.h"
 
-/* As far as wh_sin keeps its promise, rad. */
+/* The largest angle for which wh_sin keeps its promise, rad. */
 #define ANGLE_LIMIT 1e5
 /* Any constant will do; it must never change. */
 #define RANDOM_SEED 20240229

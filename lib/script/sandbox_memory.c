@@ -3,8 +3,8 @@
 
 #include "sandbox_internal.h"
 
-/* Copying and clearing cost time that no instruction counts: one step per 64 bytes of a long string or large
- * block. */
+/* Copying and clearing take time that no instruction counts: one step for each 64 bytes of a long string or a
+ * large block. */
 #define STEP_SHIFT 6
 #define LONG_STRING_BYTES 512
 #define LARGE_BLOCK_BYTES ((size_t)64 << 10)
@@ -18,8 +18,8 @@ static void charge_block(wh_sandbox_t *sandbox, bool is_string, size_t size) {
     }
 }
 
-/* Lua answers a refusal by a full collection and a second try. At the brim each small table would cost a
- * collection of all the memory: that is charged for, too. */
+/* After a refusal Lua collects all garbage and tries again. Near the cap each small table could cost such a
+ * collection, so its work is charged as well. */
 static void *refuse(wh_sandbox_t *sandbox) {
     sandbox->refused = true;
     wh_sandbox_spend(sandbox, sandbox->memory >> STEP_SHIFT);

@@ -1,4 +1,4 @@
-/* pairs and next in sorted order: a hash table's own order changes from run to run. */
+/* pairs and next in sorted order: the order of a hash table itself changes from run to run. */
 #include <math.h>
 #include <string.h>
 
@@ -6,11 +6,11 @@
 
 typedef enum { RANK_NUMBER, RANK_STRING, RANK_BOOLEAN } rank_t;
 
-/* A key by value; text points into the Lua string, which lives as long as its table keeps it. */
+/* A copy of a key. `text` points into the Lua string, which lives as long as its table keeps it. */
 typedef struct {
     rank_t rank;
     bool is_integer;
-    lua_Integer integer; /* booleans, too: false, then true */
+    lua_Integer integer; /* also of a boolean: 0 or 1 */
     lua_Number number;
     const char *text;
     size_t length;
@@ -50,7 +50,7 @@ static void key_push(lua_State *L, const order_key_t *key) {
     }
 }
 
-/* Exact, also where an integer has no double. A table holds no float that equals an integer. */
+/* Exact, also for integers that no double can hold. A table has no float key that equals an integer. */
 static bool integer_less(lua_Integer a, lua_Number b) {
     if (b >= 0x1p63) {
         return true;
@@ -82,7 +82,7 @@ static bool key_less(const order_key_t *a, const order_key_t *b) {
     return order != 0 ? order < 0 : a->length < b->length;
 }
 
-/* ---- Heap sort: no worst case, no memory of its own. ---- */
+/* ----------------------------------- heap sort: no worst case, and no memory that the cap would not count */
 
 static void sift(order_key_t *keys, size_t root, size_t count) {
     const order_key_t moving = keys[root];
@@ -111,9 +111,9 @@ static void sort(order_key_t *keys, size_t count) {
     }
 }
 
-/* ---- pairs ---- */
+/* -------------------------------------------------------------------------------------------------- pairs */
 
-/* Looking for keys passes over empty slots too, of which a table that was once large has many. */
+/* A search for keys also passes over empty slots: a table that was once large has many of them. */
 static void charge_scan(lua_State *L) {
     wh_sandbox_charge(L, 1 + (wh_sandbox_of(L)->largest_block >> 10));
 }
@@ -149,7 +149,8 @@ static void push_sorted_keys(lua_State *L, int table) {
     lua_remove(L, -2);
 }
 
-/* Upvalues: the keys, how many have been visited. Called with the table and the last key; nil begins anew. */
+/* Upvalues: the keys, and how many have been visited. Arguments: the table and the last key; nil begins
+ * anew. */
 static int pairs_step(lua_State *L) {
     luaL_checktype(L, 1, LUA_TTABLE);
     lua_Integer visited = lua_isnoneornil(L, 2) ? 0 : lua_tointeger(L, lua_upvalueindex(2));
@@ -184,7 +185,7 @@ static int order_pairs(lua_State *L) {
     return 3;
 }
 
-/* ---- next ---- */
+/* --------------------------------------------------------------------------------------------------- next */
 
 static int order_next(lua_State *L) {
     order_key_t last, best, key;

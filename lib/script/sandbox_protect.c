@@ -1,8 +1,8 @@
-/* pcall, xpcall and coroutines, which pass an exhausted limit on instead of catching it, and keep track of
- * which coroutine runs. */
+/* pcall, xpcall and coroutines. They pass an exhausted limit on instead of catching it, and note which
+ * coroutine runs. */
 #include "sandbox_internal.h"
 
-/* ---- pcall, xpcall: as in Lua's base library, the extra value being the results to leave out. ---- */
+/* ------------------------------------------------------------------------------------------ pcall, xpcall */
 
 static int finish(lua_State *L, int status, lua_KContext left_out) {
     if (status == LUA_OK || status == LUA_YIELD) {
@@ -24,7 +24,7 @@ static int protect_pcall(lua_State *L) {
     return finish(L, status, 0);
 }
 
-/* The handler's result, or the error in the handler, is on top. */
+/* The handler's result, or its error, is on top of the stack. */
 static int finish_handler(lua_State *L, int status, lua_KContext context) {
     (void)context;
     if (status != LUA_OK && status != LUA_YIELD && wh_sandbox_is_fatal(L, status)) {
@@ -35,8 +35,8 @@ static int finish_handler(lua_State *L, int status, lua_KContext context) {
     return 2;
 }
 
-/* The handler, at index 2, is called after the stack has been unwound. Lua would call it where the error is;
- * when that is in the count hook, hooks are off and the handler could loop for ever. */
+/* Calls the handler, at index 2, after the stack has been unwound. Lua itself would call it where the error
+ * is. If that is in the count hook, hooks are off and the handler could loop for ever. */
 static int finish_xpcall(lua_State *L, int status, lua_KContext left_out) {
     if (status == LUA_OK || status == LUA_YIELD || wh_sandbox_is_fatal(L, status)) {
         return finish(L, status, left_out);
@@ -57,7 +57,7 @@ static int protect_xpcall(lua_State *L) {
     return finish_xpcall(L, status, 2);
 }
 
-/* ---- Coroutines ---- */
+/* --------------------------------------------------------------------------------------------- Coroutines */
 
 static int body_finish(lua_State *L, int status, lua_KContext context) {
     (void)context;
@@ -68,9 +68,9 @@ static int body_finish(lua_State *L, int status, lua_KContext context) {
     return lua_error(L);
 }
 
-/* The first function of each coroutine calls the script's one protected. An error that the count hook raised
- * would otherwise leave the coroutine with its hooks off, and closing its variables could then loop for ever;
- * lua_pcallk switches them on again and closes the variables itself. */
+/* The first function of each coroutine calls the script's function protected. Otherwise an error that the
+ * count hook raised would leave the coroutine with its hooks off, and closing its variables could loop for
+ * ever. lua_pcallk switches the hooks on again and closes the variables itself. */
 static int body(lua_State *L) {
     lua_pushvalue(L, lua_upvalueindex(1));
     lua_insert(L, 1);
@@ -78,7 +78,7 @@ static int body(lua_State *L) {
     return body_finish(L, status, 0);
 }
 
-/* Charged for: up to a granule of a coroutine's instructions goes uncounted. */
+/* Charges a granule: up to that many instructions of a coroutine are never counted. */
 static int coroutine_create(lua_State *L) {
     luaL_checktype(L, 1, LUA_TFUNCTION);
     wh_sandbox_charge(L, WH_SANDBOX_GRANULE);
@@ -107,7 +107,8 @@ int wh_sandbox_resume(lua_State *co, lua_State *from, int arguments, int *result
     return status;
 }
 
-/* Moves arguments over and results, or the error's value, back; gives their number, or -1. */
+/* Moves the arguments to the coroutine, resumes it, and moves the results or the error's value back. Returns
+ * the number of results, or -1. */
 static int resume(lua_State *L, lua_State *co, int arguments) {
     if (!lua_checkstack(co, arguments)) {
         lua_pushliteral(L, "too many arguments to resume");

@@ -1,10 +1,10 @@
-/* table: Lua's own functions behind a charge for each element that they touch, and a sort that does the same
- * in each run (Lua's draws pivots from the clock). */
+/* table: Lua's own functions, charged for each element that they touch, and a sort that does the same in each
+ * run. Lua's own sort draws pivots from the clock. */
 #include <limits.h>
 
 #include "sandbox_internal.h"
 
-/* A __len could promise anything, and something else when it is asked again. */
+/* Refuses __len: it could promise any length, and another one at the next call. */
 static lua_Integer check_length(lua_State *L) {
     luaL_checktype(L, 1, LUA_TTABLE);
     if (luaL_getmetafield(L, 1, "__len") != LUA_TNIL) {
@@ -19,28 +19,24 @@ static void charge_range(lua_State *L, lua_Integer first, lua_Integer last) {
     }
 }
 
-static int call_stock(lua_State *L) {
-    return lua_tocfunction(L, lua_upvalueindex(1))(L);
-}
-
 static int table_insert(lua_State *L) {
     const lua_Integer length = check_length(L);
     if (lua_gettop(L) == 3) {
         charge_range(L, luaL_checkinteger(L, 2), length);
     }
-    return call_stock(L);
+    return wh_library_call_stock(L);
 }
 
 static int table_remove(lua_State *L) {
     const lua_Integer length = check_length(L);
     charge_range(L, luaL_optinteger(L, 2, length), length);
-    return call_stock(L);
+    return wh_library_call_stock(L);
 }
 
 static int table_concat(lua_State *L) {
     const lua_Integer length = check_length(L);
     charge_range(L, luaL_optinteger(L, 3, 1), luaL_optinteger(L, 4, length));
-    return call_stock(L);
+    return wh_library_call_stock(L);
 }
 
 static int table_unpack(lua_State *L) {
@@ -50,19 +46,19 @@ static int table_unpack(lua_State *L) {
     if (first <= last && (uint64_t)last - (uint64_t)first < INT_MAX) {
         charge_range(L, first, last);
     }
-    return call_stock(L);
+    return wh_library_call_stock(L);
 }
 
 static int table_move(lua_State *L) {
     charge_range(L, luaL_checkinteger(L, 2), luaL_checkinteger(L, 3));
-    return call_stock(L);
+    return wh_library_call_stock(L);
 }
 
-/* ---- sort: stable, bottom-up merging of runs between two work lists ---- */
+/* ----------------------------------------- sort: stable, bottom-up merging of runs between two work lists */
 
 enum { ARG_TABLE = 1, ARG_LESS = 2, WORK_FROM = 3, WORK_TO = 4 };
 
-/* Is the value at index a before the one at b? */
+/* True if the value at index a comes before the one at b. */
 static bool is_before(lua_State *L, int a, int b) {
     if (lua_isnil(L, ARG_LESS)) {
         return lua_compare(L, a, b, LUA_OPLT);
@@ -76,7 +72,8 @@ static bool is_before(lua_State *L, int a, int b) {
     return before;
 }
 
-/* Merges [left, middle) and [middle, end) of one list into the other; of equals the left one goes first. */
+/* Merges [left, middle) and [middle, end) of one list into the other. Of equal values the left one goes
+ * first. */
 static void merge(lua_State *L, int from, int to, lua_Integer left, lua_Integer middle, lua_Integer end) {
     lua_Integer right = middle;
     for (lua_Integer out = left; out < end; ++out) {
@@ -139,11 +136,7 @@ void wh_library_open_table(lua_State *L) {
                                        {"concat", table_concat}, {"unpack", table_unpack},
                                        {"move", table_move},     {NULL, NULL}};
     lua_getglobal(L, LUA_TABLIBNAME);
-    for (const luaL_Reg *entry = wrapped; entry->name != NULL; ++entry) {
-        lua_getfield(L, -1, entry->name);
-        lua_pushcclosure(L, entry->func, 1);
-        lua_setfield(L, -2, entry->name);
-    }
+    wh_library_wrap(L, wrapped);
     lua_pushcfunction(L, table_sort);
     lua_setfield(L, -2, "sort");
     lua_pop(L, 1);

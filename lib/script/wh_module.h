@@ -1,19 +1,20 @@
-/* The Lua module `wh`: the proximity check and the grasp table for scripts and for plain lua5.4.
+/* The Lua module `wh`: the proximity check and the grasp table, for scripts and for plain lua5.4.
  *
- *     local wh = require "wh"               -- wh.so on package.cpath; the program brings it along
+ *     local wh = require "wh"               -- wh.so on package.cpath; the program brings its own
  *
- * A thin binding: every value and every verdict is the library's, see grasp/proximity.h and grasp/grasp.h for
+ * A thin binding: every value and every verdict is the library's. grasp/proximity.h and grasp/grasp.h say
  * what they mean. Lengths in mm. Indices count from 1; "none" is nil.
  *
  * Tables
- *     pose        { r = {x, y, z}, R = {{..}, {..}, {..}} }: base_from_body. R row by row, its columns are
- * the body's axes; without R the body is not turned. r must be there. tolerance   a preset's name, "paper" or
- * "strict", or { projz =, projxy =, planar = }, where what is left out is as in "paper"; nil is "paper".
- *     measurement dr, n1_proj_n2, dr_proj_z, dr_proj_xy, dr_proj_xy_norm: (1)-(5), dr and dr_proj_xy being
- * lists of three; ready; failed: { projz = true, projxy = true, planar = true }, only those that failed;
- * margin: { projz =, projxy =, planar = }, positive inside the limit. Tables that are handed in may have
- * metatables (__index, __len). They are read before anything happens and never kept or changed. Tables that
- * are handed out are new ones, the caller's to change.
+ *     pose        { r = {x, y, z}, R = {{..}, {..}, {..}} }: base_from_body. R is given row by row; its
+ *                 columns are the body's axes; without R the body is not turned. r is required.
+ *     tolerance   a preset's name, "paper" or "strict", or { projz =, projxy =, planar = }. A limit that is
+ *                 left out is as in "paper"; nil is "paper".
+ *     measurement dr, n1_proj_n2, dr_proj_z, dr_proj_xy, dr_proj_xy_norm: (1) to (5), dr and dr_proj_xy as
+ *                 lists of three; ready; failed: { projz = true, projxy = true, planar = true }, only those
+ *                 that failed; margin: { projz =, projxy =, planar = }, positive inside the limit.
+ * Tables that are handed in may have metatables (__index, __len). They are read before anything happens, and
+ * never kept or changed. Tables that are handed out are new, the caller's to change.
  *
  * Functions
  *     wh.proximity(wafer, gripper [, tolerance])   the measurement of one pose against another
@@ -31,12 +32,12 @@
  *
  * Methods of a cell
  *     cell:step(inputs)      one slice. `inputs` is a list with { pose =, valve = } for each gripper, valve 0
- *                            (open: vacuum on) or 1 (closed). Returns the list of events, empty when nothing
+ *                            (open: vacuum on) or 1 (closed). Returns the list of events, empty if nothing
  *                            happened. An event has
  *         kind               "picked", "released", "handed_over", "near_miss" or "contested"
  *         slice              the step that reports it, from 1
- *         measured_slice     the step in which its values were measured: an earlier one for a near miss, that
- *                            of the closest approach, and for a contest, that of its beginning
+ *         measured_slice     the step in which its values were measured. For a near miss that is an earlier
+ *                            one, of the closest approach; for a contest that of its beginning
  *         wafer, gripper     indices
  *         from               handed_over: the gripper that let go
  *         holder             contested: the gripper that held the wafer
@@ -45,19 +46,20 @@
  *     cell:held(gripper)     index of the wafer that a gripper holds, or nil
  *     cell:place(i, pose)    puts a free wafer somewhere else
  *     cell:hash()            16 hex digits over all that the next step depends on (wh_grasp_hash): equal
- * hashes mean equal runs from here on. Configuration and counters are left out. cell:counters()        {
- * slices =, refused =, picked =, released =, handed_over =, near_misses =, contested = }; refused counts the
- * calls of step and place that raised an error
+ *                            hashes mean equal runs from here on. Configuration and counters are left out.
+ *     cell:counters()        { slices =, refused =, picked =, released =, handed_over =, near_misses =,
+ *                            contested = }; refused counts the calls of step and place that raised an error
  *
- * Errors are strings raised with error(): where the caller stands, which argument, the path of the field
- * within it, its value and what was expected, and of a library status the text and, in brackets, the number:
+ * Errors are strings raised with error(). They say where the caller stands, which argument, the path of the
+ * field within it, its value and what was expected. For a library status they have the text and, in brackets,
+ * the number:
  *     t.lua:7: bad argument #1 to 'proximity' (wafer.R[2][3]: number expected, got nil)
  *     t.lua:8: bad argument #1 to 'cell' (tolerance.projyz: no such field (expected projz, projxy, planar))
  *     t.lua:9: bad argument #1 to 'step' (inputs[2].valve: 2 (expected 0, open, or 1, closed))
  *     t.lua:9: bad argument #1 to 'step' (inputs[1].pose: a matrix is no rotation (...) [3])
  * Unknown fields and surplus list entries are refused. Strings are not taken for numbers; an integer may come
- * as a float with a whole value. A call that raises leaves the cell as it was, but for its counter; the one
- * exception is memory that runs out while the events of a step that was done are handed out.
+ * as a float with a whole value. A call that raises an error leaves the cell as it was, but for its counter.
+ * The one exception: memory runs out while the events of a finished step are handed out.
  *
  * Memory: a cell is one userdata, Lua's to free; 4 kB and 104 bytes for each wafer. Costs: as in
  * grasp/grasp.h, and about a microsecond for each pose that goes in or out.
@@ -67,8 +69,8 @@
 
 #include <lua.h>
 
-/* Pushes the module's table: for `require`, or luaL_requiref(L, "wh", luaopen_wh, 0) in a host. Nothing is
- * static; any number of states may use it side by side. */
+/* Pushes the module's table: for `require`, or for luaL_requiref(L, "wh", luaopen_wh, 0) in a host. Nothing
+ * is static; any number of states may use it side by side. */
 int luaopen_wh(lua_State *L);
 
 #endif

@@ -1,14 +1,61 @@
+/* wh.cell: a grasp table as a userdata, and its methods. */
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
-#include "wh_module_internal.h"
+#include "wh_module_values.h"
+
+/* ------------------------------------------------------------------------------------------ configuration */
+
+static wh_check_t read_check(lua_State *L, const wh_field_t *of) {
+    const wh_field_t at = wh_lua_field(of, "check");
+    const int type = lua_getfield(L, 1, "check");
+    const char *name = type == LUA_TSTRING ? lua_tostring(L, -1) : "sampled";
+    const bool swept = strcmp(name, "swept") == 0;
+    if (type != LUA_TNIL && type != LUA_TSTRING) {
+        wh_lua_refuse(L, &at, "string expected, got %s", luaL_typename(L, -1));
+    }
+    if (!swept && strcmp(name, "sampled") != 0) {
+        wh_lua_refuse(L, &at, "\"%s\" (expected \"sampled\" or \"swept\")", name);
+    }
+    lua_pop(L, 1);
+    return swept ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED;
+}
+
+static bool read_seat(lua_State *L, const wh_field_t *of, bool otherwise) {
+    const wh_field_t at = wh_lua_field(of, "seat");
+    const int type = lua_getfield(L, 1, "seat");
+    const bool seat = type == LUA_TNIL ? otherwise : lua_toboolean(L, -1);
+    if (type != LUA_TNIL && type != LUA_TBOOLEAN) {
+        wh_lua_refuse(L, &at, "boolean expected, got %s", luaL_typename(L, -1));
+    }
+    lua_pop(L, 1);
+    return seat;
+}
+
+static wh_grasp_config_t read_config(lua_State *L, const wh_field_t *of) {
+    const wh_field_t tolerance = wh_lua_field(of, "tolerance");
+    wh_grasp_config_t config = wh_grasp_config_default();
+    lua_getfield(L, 1, "tolerance");
+    config.tolerance = wh_lua_take_tolerance(L, &tolerance);
+    config.check = read_check(L, of);
+    config.seat = read_seat(L, of, config.seat);
+    config.near_projz = wh_lua_get_number(L, 1, of, "near_projz", config.near_projz);
+    config.near_projxy = wh_lua_get_number(L, 1, of, "near_projxy", 2 * config.tolerance.projxy);
+    return config;
+}
+
+/* -------------------------------------------------------------------------------------------------- cells */
 
 #define CELL_TYPE "wh.cell"
+
+/* A cell has at most this many wafers. */
+#define CELL_WAFERS 1000000
 
 /* One userdata. It holds pointers into itself, and Lua never moves a userdata. */
 typedef struct {
     wh_grasp_t table;
-    uint64_t unread; /* calls of step and place whose arguments did not get as far as the table */
+    uint64_t unread; /* calls of step and place whose arguments were refused before they reached the table */
     wh_gripper_t grippers[WH_GRIPPERS];
     wh_wafer_t wafers[];
 } cell_t;
@@ -29,14 +76,14 @@ static size_t push_wafers(lua_State *L, const wh_field_t *at) {
         wh_lua_refuse(L, at, "table expected, got %s", luaL_typename(L, -1));
     }
     const lua_Integer count = luaL_len(L, -1);
-    if (count < 0 || count > WH_MODULE_WAFERS) {
-        wh_lua_refuse(L, at, "%I entries (expected 0 to %d)", (LUAI_UACINT)count, WH_MODULE_WAFERS);
+    if (count < 0 || count > CELL_WAFERS) {
+        wh_lua_refuse(L, at, "%I entries (expected 0 to %d)", (LUAI_UACINT)count, CELL_WAFERS);
     }
     wh_lua_check_list(L, lua_gettop(L), at, count);
     return (size_t)count;
 }
 
-/* The new userdata is on top of the stack, the list below it. */
+/* The new userdata is on top of the stack, the list of wafers below it. */
 static void read_wafers(lua_State *L, const wh_field_t *at, cell_t *cell, size_t count) {
     const int list = lua_gettop(L) - 1;
     for (size_t i = 0; i < count; ++i) {
@@ -46,7 +93,7 @@ static void read_wafers(lua_State *L, const wh_field_t *at, cell_t *cell, size_t
     }
 }
 
-/* Tolerance and wafers have been looked at, so what is left to refuse is the neighbourhood. */
+/* Tolerance and wafers have been checked: only the neighbourhood can still be refused. */
 static void init_cell(lua_State *L, const wh_field_t *at, cell_t *cell, const wh_grasp_config_t *config,
                       const wh_grasp_storage_t *storage) {
     cell->unread = 0;
@@ -64,7 +111,7 @@ int wh_lua_cell(lua_State *L) {
     const wh_field_t wafers = wh_lua_field(&argument, "wafers");
     lua_settop(L, 1);
     wh_lua_check_record(L, 1, &argument, names);
-    const wh_grasp_config_t config = wh_lua_read_config(L, &argument);
+    const wh_grasp_config_t config = read_config(L, &argument);
     wh_grasp_storage_t storage = {.gripper_count = read_gripper_count(L, &argument)};
     storage.wafer_count = push_wafers(L, &wafers);
     storage.bucket_count = wh_grasp_buckets(storage.wafer_count, storage.gripper_count);
@@ -192,8 +239,7 @@ static int cell_counters(lua_State *L) {
                     {"contested", of->contested}};
     lua_newtable(L);
     for (size_t i = 0; i < sizeof counters / sizeof counters[0]; ++i) {
-        lua_pushinteger(L, (lua_Integer)counters[i].value);
-        lua_setfield(L, -2, counters[i].name);
+        wh_lua_set_integer(L, counters[i].name, (int64_t)counters[i].value);
     }
     return 1;
 }

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* ------------------------------------------------------------------------------------------------ what is valid */
+/* ------------------------------------------------------------------------------------------ what is valid */
 
 const char *wh_fault_name(wh_fault_kind_t kind) {
     static const char *const names[WH_FAULT_KINDS] = {
@@ -38,7 +38,7 @@ static bool value_fits(const wh_fault_t *fault) {
     return fault->value == 0;
 }
 
-/* By so little no wafer leaves the numbers: at their end it is rounded away. */
+/* Small enough that adding it to any finite position stays finite. */
 static bool offset_fits(const wh_vec3_t *r) {
     return wh_real_abs(r->x) <= WH_FAULT_REACH && wh_real_abs(r->y) <= WH_FAULT_REACH &&
            wh_real_abs(r->z) <= WH_FAULT_REACH;
@@ -71,7 +71,7 @@ wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, 
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
-/* ------------------------------------------------------------------------------------------------- taking them */
+/* -------------------------------------------------------------------------------------------- taking them */
 
 void wh_faults_clear(wh_faults_t *faults) {
     memset(faults, 0, sizeof *faults);
@@ -85,7 +85,7 @@ static bool is_same_pose(const wh_pose_t *a, const wh_pose_t *b) {
     return same;
 }
 
-/* But for `until`. */
+/* Compares all but `until`. */
 static bool is_same(const wh_fault_t *a, const wh_fault_t *b) {
     return a->kind == b->kind && a->target == b->target && a->other == b->other && a->from == b->from &&
            a->value == b->value && is_same_pose(&a->offset, &b->offset);
@@ -137,9 +137,9 @@ void wh_faults_take(wh_faults_t *faults, const wh_fault_request_t requests[], si
     }
 }
 
-/* -------------------------------------------------------------------------------------------- beginning, ending */
+/* -------------------------------------------------------------------------------------- beginning, ending */
 
-/* True unless the wafer is held and so must be waited for. */
+/* False if the wafer is held: the fault must wait then. */
 static bool move_wafer(wh_fault_slot_t *slot, wh_grasp_t *table) {
     const wh_fault_t *fault = &slot->fault;
     const wh_wafer_t *wafer = &table->storage.wafers[fault->target];
@@ -156,7 +156,8 @@ static bool move_wafer(wh_fault_slot_t *slot, wh_grasp_t *table) {
     return true;
 }
 
-/* A fault that has moved the wafer on will put it back to before both. */
+/* If another fault has moved the wafer since, gives it the place from before both: it will put the wafer back
+ * there. */
 static void hand_down(const wh_fault_slot_t *slot, wh_faults_t *faults) {
     for (size_t i = 0; i < faults->count; ++i) {
         wh_fault_slot_t *later = &faults->slots[i];
@@ -176,7 +177,7 @@ static void put_back(const wh_fault_slot_t *slot, wh_faults_t *faults, wh_grasp_
     }
 }
 
-/* Whether it begins to act. */
+/* True if the fault begins to act. */
 static bool begin(wh_fault_slot_t *slot, wh_grasp_t *table) {
     if (wh_fault_is_of_wafer(slot->fault.kind) && !move_wafer(slot, table)) {
         return false;
@@ -185,7 +186,7 @@ static bool begin(wh_fault_slot_t *slot, wh_grasp_t *table) {
     return true;
 }
 
-/* Whether it acted until now. */
+/* True if the fault has acted until now. */
 static bool end(wh_fault_slot_t *slot, wh_faults_t *faults, wh_grasp_t *table) {
     const bool acted = slot->phase == WH_FAULT_ACTING;
     if (acted && wh_fault_is_of_wafer(slot->fault.kind)) {
@@ -209,24 +210,24 @@ wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int
     return changes;
 }
 
-/* ------------------------------------------------------------------------------------------------------- acting */
+/* ------------------------------------------------------------------------------------------------- acting */
 
-wh_vacuum_fault_t wh_faults_upset(const wh_faults_t *faults, size_t gripper) {
-    wh_vacuum_fault_t upset = wh_vacuum_sound();
+wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper) {
+    wh_vacuum_fault_t sum = wh_vacuum_sound();
     for (size_t i = 0; i < faults->count; ++i) {
         const wh_fault_t *fault = &faults->slots[i].fault;
         if (faults->slots[i].phase != WH_FAULT_ACTING || fault->target != (int32_t)gripper) {
             continue;
         }
         if (fault->kind == WH_FAULT_NO_VACUUM) {
-            upset.full = 0;
-        } else if (fault->kind == WH_FAULT_LEAK && fault->value < upset.full) {
-            upset.full = fault->value;
-        } else if (fault->kind == WH_FAULT_SLOW_VACUUM && fault->value > upset.build) {
-            upset.build = fault->value;
+            sum.full = 0;
+        } else if (fault->kind == WH_FAULT_LEAK && fault->value < sum.full) {
+            sum.full = fault->value;
+        } else if (fault->kind == WH_FAULT_SLOW_VACUUM && fault->value > sum.build) {
+            sum.build = fault->value;
         }
     }
-    return upset;
+    return sum;
 }
 
 static void stop_gripper(const wh_grasp_t *table, size_t g, wh_gripper_input_t inputs[]) {

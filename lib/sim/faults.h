@@ -1,24 +1,24 @@
 /* Faults on purpose: what goes wrong in a cell, when it begins and when it ends.
  *
- * A fault stands in one of WH_FAULTS slots from the slice in which a command brings it (or from the beginning, from the
- * layout) and acts in the slices with from <= seq < until. It acts on signals between command and grasp table, or moves
- * a wafer once, when it begins:
+ * A fault occupies one of WH_FAULTS slots from the slice in which a command brings it, or from the start if
+ * the layout has it. It acts in the slices with from <= seq < until, on the signals between command and grasp
+ * table; or it moves a wafer once, when it begins:
  *
  *   NO_VACUUM       the gripper's pump is dead: the level falls to 0 and stays there
- *   SLOW_VACUUM     the level builds up with a time constant of `value` s, if that is slower than it does anyway
+ *   SLOW_VACUUM     the level builds up with a time constant of `value` s, if that is slower than its own
  *   SENSOR_ON/_OFF  the sensor says on or off, whatever the level
  *   LEAK            the level goes no higher than `value`, 0 to 1
  *   VALVE_STUCK     the gripper's valve stays as it was when the fault began
  *   AXIS_STOPPED    the axes that carry the gripper stand: it stays where it was
  *   COMMAND_LOST    all grippers and valves stay as they were
- *   WAFER_*         the wafer goes to base_from_wafer * offset: missing (out of the cell), shifted, tilted, crossed;
- *                   doubled: to base_from_other * offset, onto the wafer `other`
+ *   WAFER_*         the wafer goes to base_from_wafer * offset: missing (out of the cell), shifted, tilted,
+ *                   crossed; doubled: to base_from_other * offset, onto the wafer `other`
  *
- * A wafer that is held when its fault should begin is left to its gripper: the fault begins in the first slice
- * after which nobody held it. When the fault ends, the wafer goes back to where it was, unless it is held or was moved
- * meanwhile; where another fault has moved it on, it goes back to where it was before both when that one ends. What a
- * command says must be valid also where a fault overrules it. In the first slice of a run nothing was before: there a
- * valve stuck is closed, and axes move.
+ * If a gripper holds the wafer when its fault should begin, the fault waits: it begins in the first slice
+ * after one in which nobody held the wafer. When the fault ends, the wafer goes back to where it was, unless
+ * it is held or has been moved. If another fault has moved it since, the wafer goes back to its place before
+ * both when that other fault ends. A command must be valid even if a fault overrules it. In the first slice
+ * of a run there is no earlier state: a stuck valve is closed, and axes move.
  *
  * No heap; a wh_faults_t is a plain struct.
  */
@@ -28,9 +28,9 @@
 #include "../grasp/vacuum.h"
 #include "../motion/machine.h"
 
-/* Faults that a run can have at a time. */
+/* The most faults of a run at one time. */
 #define WH_FAULTS 16
-/* How far along each axis a fault may take a wafer, mm. */
+/* How far a fault may move a wafer along each axis, mm. */
 #define WH_FAULT_REACH WH_REAL(1e6)
 /* A fault that lasts until it is cleared. */
 #define WH_FAULT_FOREVER INT64_MAX
@@ -62,66 +62,68 @@ typedef struct {
     int64_t from, until; /* slices, seq: 1 <= from; until WH_FAULT_FOREVER: until it is cleared */
 } wh_fault_t;
 
-/* Where a fault is in its life. */
+/* The phases of a fault's life. */
 typedef enum { WH_FAULT_FREE, WH_FAULT_WAITING, WH_FAULT_ACTING, WH_FAULT_OVER } wh_fault_phase_t;
 
 typedef struct {
     wh_fault_t fault; /* all zero while the slot is free */
     wh_fault_phase_t phase;
-    wh_pose_t before, placed; /* of WAFER_* once it acted: base_from_wafer before and after; else zero */
+    wh_pose_t before, placed; /* of WAFER_* once it has acted: base_from_wafer before and after; else zero */
 } wh_fault_slot_t;
 
 typedef struct {
     wh_fault_slot_t slots[WH_FAULTS];
-    size_t count; /* up to the last slot in use */
+    size_t count; /* the slots up to the last one in use */
 } wh_faults_t;
 
-/* What a command brings: a fault for a slot. */
+/* A fault that a command brings, and its slot. */
 typedef struct {
     int32_t index;
     wh_fault_t fault;
 } wh_fault_request_t;
 
-/* What began and ended in a slice: bit i for slot i. */
+/* The faults that began and ended in a slice: bit i for slot i. */
 typedef struct {
     uint32_t armed, cleared;
 } wh_fault_changes_t;
 
-/* The kind's name in lower case, as layouts and scripts spell it: no_vacuum, ... wafer_missing. Never null. */
+/* The kind's name as layouts and scripts spell it: no_vacuum to wafer_tilted. Never null. */
 const char *wh_fault_name(wh_fault_kind_t kind);
 
-/* Whether the kind is about a wafer. */
+/* True if the kind is about a wafer. */
 bool wh_fault_is_of_wafer(wh_fault_kind_t kind);
 
-/* WH_OK, or WH_STATUS_OUT_OF_RANGE, WH_STATUS_NOT_FINITE, WH_STATUS_NOT_A_ROTATION for a fault that no cell of so many
- * grippers and wafers can have. */
+/* WH_OK. WH_STATUS_OUT_OF_RANGE, WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION for a fault that a cell
+ * with these counts cannot have. */
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count);
 
-/* The same for whole slots, as a state that comes from elsewhere has them. */
+/* wh_fault_validate for whole slots, such as those of a received state. */
 wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, size_t wafer_count);
 
-/* No fault. */
+/* Frees all slots. */
 void wh_faults_clear(wh_faults_t *faults);
 
-/* Whether all requests can be taken: each a valid fault for a slot that is free or over, or the very fault in it with
- * another `until`; no two for one slot. Else WH_STATUS_OUT_OF_RANGE or what wh_fault_validate says. */
+/* Checks that all requests can be taken. Each must be a valid fault, for a slot that is free or over, or for
+ * the slot that has this very fault (which then gets another `until`). No two may name one slot. WH_OK,
+ * WH_STATUS_OUT_OF_RANGE, or what wh_fault_validate says. */
 wh_status_t wh_faults_check(const wh_faults_t *faults, const wh_fault_request_t requests[], size_t count,
                             size_t gripper_count, size_t wafer_count);
 
-/* Takes them, after wh_faults_check. */
+/* Takes requests that wh_faults_check has accepted. */
 void wh_faults_take(wh_faults_t *faults, const wh_fault_request_t requests[], size_t count);
 
 /* Begins and ends what is due in slice `seq`; moves wafers of the table. */
 wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int64_t seq);
 
-/* What acts on a gripper's vacuum. */
-wh_vacuum_fault_t wh_faults_upset(const wh_faults_t *faults, size_t gripper);
+/* What the acting faults do to a gripper's vacuum. */
+wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper);
 
-/* Lets stuck valves, stopped axes and lost commands overrule the inputs of a slice; `vacuum` has the valves before. */
+/* Makes stuck valves, stopped axes and lost commands overrule the inputs of a slice. `vacuum` has the valves
+ * before. */
 void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, const wh_vacuum_t vacuum[],
                         wh_gripper_input_t inputs[]);
 
-/* What the sensors say, given what sound ones would: bit g for gripper g. */
+/* What the sensors say, given what sensors without faults would say: bit g for gripper g. */
 uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors);
 
 #endif

@@ -26,19 +26,19 @@ wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_coun
     return status;
 }
 
-void wh_physics_state_start(wh_physics_state_t *condition, const wh_physics_t *physics) {
-    memset(condition, 0, sizeof *condition);
+void wh_physics_state_start(wh_physics_state_t *state, const wh_physics_t *physics) {
+    memset(state, 0, sizeof *state);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        condition->vacuum[g] = wh_vacuum_start();
-        condition->told[g] = WH_VALVE_CLOSED;
+        state->vacuum[g] = wh_vacuum_start();
+        state->told[g] = WH_VALVE_CLOSED;
     }
     for (size_t i = 0; i < physics->fault_count; ++i) {
         const wh_fault_request_t request = {(int32_t)i, physics->faults[i]};
-        wh_faults_take(&condition->faults, &request, 1);
+        wh_faults_take(&state->faults, &request, 1);
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- validity */
+/* ----------------------------------------------------------------------------------------------- validity */
 
 static bool is_valve(int32_t valve) {
     return valve == WH_VALVE_OPEN || valve == WH_VALVE_CLOSED;
@@ -48,10 +48,10 @@ static bool is_place(const wh_vec3_t *place) {
     return wh_real_is_finite(place->x) && wh_real_is_finite(place->y) && wh_real_is_finite(place->z);
 }
 
-static wh_status_t check_gripper(const wh_physics_state_t *condition, size_t g) {
-    const wh_vacuum_t *vacuum = &condition->vacuum[g];
-    const wh_carry_t *carry = &condition->carry[g];
-    if (!is_valve(vacuum->command) || !is_valve(condition->told[g])) {
+static wh_status_t check_gripper(const wh_physics_state_t *state, size_t g) {
+    const wh_vacuum_t *vacuum = &state->vacuum[g];
+    const wh_carry_t *carry = &state->carry[g];
+    if (!is_valve(vacuum->command) || !is_valve(state->told[g])) {
         return WH_STATUS_BAD_VALVE;
     }
     if (!is_place(&carry->before[0]) || !is_place(&carry->before[1])) {
@@ -61,26 +61,26 @@ static wh_status_t check_gripper(const wh_physics_state_t *condition, size_t g) 
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
-wh_status_t wh_physics_state_validate(const wh_physics_state_t *condition, size_t gripper_count,
+wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gripper_count,
                                       size_t wafer_count) {
     for (size_t g = 0; g < gripper_count; ++g) {
-        const wh_status_t status = check_gripper(condition, g);
+        const wh_status_t status = check_gripper(state, g);
         if (status != WH_OK) {
             return status;
         }
     }
-    return wh_faults_validate(&condition->faults, gripper_count, wafer_count);
+    return wh_faults_validate(&state->faults, gripper_count, wafer_count);
 }
 
-uint32_t wh_physics_state_sensors(const wh_physics_state_t *condition, size_t gripper_count) {
+uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t gripper_count) {
     uint32_t sensors = 0;
     for (size_t g = 0; g < gripper_count; ++g) {
-        sensors |= condition->vacuum[g].on ? 1U << g : 0U;
+        sensors |= state->vacuum[g].on ? 1U << g : 0U;
     }
-    return wh_faults_sensors(&condition->faults, sensors);
+    return wh_faults_sensors(&state->faults, sensors);
 }
 
-/* --------------------------------------------------------------------------------------------------------- hash */
+/* --------------------------------------------------------------------------------------------------- hash */
 
 static uint64_t hash_head(uint64_t hash, int32_t section, size_t index) {
     return wh_hash_int(wh_hash_int(hash, section), (int32_t)index);
@@ -118,21 +118,21 @@ static uint64_t hash_slot(uint64_t hash, const wh_fault_slot_t *slot) {
     return wh_hash_pose(hash, &slot->placed);
 }
 
-uint64_t wh_physics_state_hash(const wh_physics_state_t *condition, const wh_grasp_t *table) {
+uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table) {
     uint64_t hash = wh_grasp_hash(table);
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        if (!is_plain(&condition->vacuum[g], &table->storage.grippers[g])) {
-            hash = hash_vacuum(hash_head(hash, 1, g), &condition->vacuum[g]);
+        if (!is_plain(&state->vacuum[g], &table->storage.grippers[g])) {
+            hash = hash_vacuum(hash_head(hash, 1, g), &state->vacuum[g]);
         }
     }
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        if (condition->carry[g].known > 0) {
-            hash = hash_carry(hash_head(hash, 2, g), &condition->carry[g]);
+        if (state->carry[g].known > 0) {
+            hash = hash_carry(hash_head(hash, 2, g), &state->carry[g]);
         }
     }
-    for (size_t i = 0; i < condition->faults.count; ++i) {
-        if (condition->faults.slots[i].phase != WH_FAULT_FREE) {
-            hash = hash_slot(hash_head(hash, 3, i), &condition->faults.slots[i]);
+    for (size_t i = 0; i < state->faults.count; ++i) {
+        if (state->faults.slots[i].phase != WH_FAULT_FREE) {
+            hash = hash_slot(hash_head(hash, 3, i), &state->faults.slots[i]);
         }
     }
     return hash;

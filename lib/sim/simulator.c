@@ -59,9 +59,9 @@ wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------ events */
+/* ------------------------------------------------------------------------------------------------- events */
 
-/* Null when there is no room. */
+/* Null if there is no room. */
 static wh_event_t *add_event(wh_simulator_t *simulator, wh_event_kind_t kind, int32_t wafer,
                              int32_t gripper) {
     static const wh_event_t blank = {.other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
@@ -104,9 +104,10 @@ static void report_faults(wh_simulator_t *simulator, uint32_t slots, wh_event_ki
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- stepping */
+/* ----------------------------------------------------------------------------------------------- stepping */
 
-/* Faults may overrule an input, so each is looked at before; the grasp table then says what is wrong. */
+/* Faults may overrule an input, so all inputs are checked first. If one is bad, faults do nothing and the
+ * grasp table refuses the command. */
 static bool are_valid(const wh_command_t *command) {
     bool good = true;
     for (size_t g = 0; g < command->gripper_count; ++g) {
@@ -117,8 +118,8 @@ static bool are_valid(const wh_command_t *command) {
     return good;
 }
 
-/* Whether nothing comes between a command and the grippers, and after the step the vacuum is what wafers make of it: no
- * slot has a fault, or gets one, and no level takes its time or is any but 0 and 1, whatever it was before. */
+/* True if no fault is in a slot or in the command, and the vacuum is ideal: every level is 0 or 1 at once.
+ * Then the short path has the same result. */
 static bool is_direct(const wh_simulator_t *simulator, const wh_command_t *command) {
     const wh_vacuum_config_t *vacuum = &simulator->vacuum;
     return simulator->condition.faults.count + command->fault_count == 0 &&
@@ -140,12 +141,12 @@ static bool holds(const wh_simulator_t *simulator, size_t g) {
     return simulator->table.storage.grippers[g].wafer != WH_NONE;
 }
 
-/* What the valves do. Into `vacuum`, for the step may yet be refused. */
+/* Applies the valves to the vacuum. The result goes into `vacuum`, for the table may yet refuse the step. */
 static void switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
-        const wh_vacuum_fault_t upset = wh_faults_upset(&simulator->condition.faults, g);
+        const wh_vacuum_fault_t fault = wh_faults_of_vacuum(&simulator->condition.faults, g);
         vacuum[g] = simulator->condition.vacuum[g];
-        simulator->inputs[g].valve = wh_vacuum_before(&simulator->vacuum, &upset, simulator->inputs[g].valve,
+        simulator->inputs[g].valve = wh_vacuum_before(&simulator->vacuum, &fault, simulator->inputs[g].valve,
                                                       holds(simulator, g), simulator->slice_s, &vacuum[g]);
     }
 }
@@ -153,17 +154,17 @@ static void switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
 static void update_vacuum(wh_simulator_t *simulator, const wh_command_t *command,
                           const wh_vacuum_t vacuum[]) {
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
-        const wh_vacuum_fault_t upset = wh_faults_upset(&simulator->condition.faults, g);
+        const wh_vacuum_fault_t fault = wh_faults_of_vacuum(&simulator->condition.faults, g);
         wh_vacuum_t *now = &simulator->condition.vacuum[g];
         *now = vacuum[g];
         simulator->condition.told[g] = command->grippers[g].valve;
-        if (wh_vacuum_after(&simulator->vacuum, &upset, holds(simulator, g), simulator->slice_s, now)) {
+        if (wh_vacuum_after(&simulator->vacuum, &fault, holds(simulator, g), simulator->slice_s, now)) {
             add_measured(simulator, WH_EVENT_VACUUM_LOST, g, now->level, simulator->vacuum.off);
         }
     }
 }
 
-/* The same where is_direct. */
+/* Sets the vacuum if is_direct: it follows from the wafers alone. */
 static void take_vacuum(wh_simulator_t *simulator, const wh_command_t *command) {
     wh_physics_state_t *condition = &simulator->condition;
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
@@ -190,7 +191,7 @@ static void watch_holding(wh_simulator_t *simulator) {
     }
 }
 
-/* To the observer: the wafers that faults have moved, then the step. */
+/* Shows the observer the wafers that faults have moved, then the step. */
 static void show(wh_simulator_t *simulator, const wh_gripper_input_t inputs[], uint32_t changed,
                  wh_event_list_t *list) {
     const wh_observer_t *observer = &simulator->observer;

@@ -1,3 +1,4 @@
+/* Apart from simulator.c: a firmware that moves its axes without lib/motion does not link this. */
 #include "slice.h"
 
 #include <string.h>

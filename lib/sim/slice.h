@@ -1,37 +1,39 @@
-/* The interface at which the motion control software and the simulator meet: for each slice a command goes in
- * and a state comes out. */
+/* The interface between motion control and the simulator: for each slice a command goes in and a state comes
+ * out. */
 #ifndef WH_SIM_SLICE_H
 #define WH_SIM_SLICE_H
 
 #include "../motion/track.h"
 #include "physics.h"
 
-/* At most so many events in one slice: those of the grasp table, then what the cell, the vacuum, the faults and the
- * collision check have to say. What does not fit is not reported. */
+/* The most events in one slice: those of the grasp table, then those of the cell, the vacuum, the faults and
+ * the collision check. Events beyond that are not reported. */
 #define WH_SLICE_EVENTS 64
 
-/* So many faults a command can bring. */
+/* The most faults in one command. */
 #define WH_COMMAND_FAULTS 4
 
-/* What the machine does in slice `seq`. Entries beyond gripper_count, axis_count and fault_count are not looked at. */
+/* What the machine does in slice `seq`. Entries beyond gripper_count, axis_count and fault_count are
+ * ignored. */
 typedef struct {
-    int64_t utime; /* us of simulated time: seq times the slice's length */
+    int64_t utime; /* simulated time, us: seq times the slice's length */
     int64_t seq;   /* 1 for the first slice */
     size_t gripper_count, axis_count;
     wh_gripper_input_t grippers[WH_GRIPPERS];
     wh_real_t axes[WH_AXES]; /* rad or mm, as in motion/machine.h */
     size_t fault_count;
-    wh_fault_request_t faults[WH_COMMAND_FAULTS]; /* faults on purpose that begin or get another end */
+    wh_fault_request_t faults[WH_COMMAND_FAULTS]; /* faults that begin, or that get a new end */
 } wh_command_t;
 
-/* Makes it what the machine does in the slice that the track yielded last; faults are left alone. Of a command that is not
- * all zero, and its stance, nothing else may have been written to by others since. Cost: wh_machine_update. */
+/* Fills in poses, valves and axes of the track's current slice; leaves the faults alone. Pass the same
+ * command and cache each time, zeroed before the first: it computes only what changed. Cost:
+ * wh_machine_update. */
 void wh_command_from_track(wh_command_t *command, wh_machine_cache_t *cache, const wh_track_t *track);
 
-/* What has become of it: a view of the simulator's own memory, true until the next exchange. */
+/* What became of a command: a view of the simulator's own memory, valid until the next exchange. */
 typedef struct {
     int64_t utime, seq; /* the command's, refused or not */
-    wh_status_t status; /* not WH_OK: the command was refused, wafers and grippers are as they were */
+    wh_status_t status; /* not WH_OK: the command was refused; wafers and grippers are as before */
     const wh_wafer_t *wafers;
     size_t wafer_count;
     const wh_gripper_t *grippers;
@@ -42,14 +44,14 @@ typedef struct {
     const wh_physics_state_t *condition;
 } wh_state_t;
 
-/* One side's view of the other: by a call within the process, or by messages. */
+/* How one side reaches the other: by a call within the process, or by messages. */
 typedef struct wh_link wh_link_t;
 struct wh_link {
-    /* Steps one slice. Returns state->status, or what kept the answer from coming. */
+    /* Steps one slice. Returns state->status, or the reason why no answer came. */
     wh_status_t (*exchange)(wh_link_t *link, const wh_command_t *command, wh_state_t *state);
     /* wh_physics_state_hash of the state after the last exchange. */
     uint64_t (*hash)(wh_link_t *link);
-    /* Slices of the run that never reached the simulator: 0 but in a free-running run. */
+    /* Slices of the run that never reached the simulator: 0 except in a free-running run. */
     int64_t (*missed)(wh_link_t *link);
 };
 

@@ -39,7 +39,7 @@ static void watch(void *user, const wh_event_t events[], size_t count) {
     watcher_t *watcher = user;
     for (size_t i = 0; i < count; ++i) {
         ++watcher->outcome->events[events[i].kind];
-        watcher->complained = watcher->complained || wh_mcs_is_complaint(&events[i]);
+        watcher->complained = watcher->complained || wh_record_is_complaint(&events[i]);
     }
 }
 

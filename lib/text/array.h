@@ -9,15 +9,6 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-/* Memory for `count` items of `size` bytes, all zero; none is fine. */
-static inline void *wh_array_new(size_t count, size_t size) {
-    void *const made = calloc(count > 0 ? count : 1, size);
-    if (!made) {
-        abort();
-    }
-    return made;
-}
-
 /* Makes room for at least `needed` items of `size` bytes. `items` is null at the beginning, `capacity` is
  * then 0. Returns where the items are now; the caller frees them. */
 static inline void *wh_array_reserve(void *items, size_t needed, size_t *capacity, size_t size) {
@@ -36,6 +27,15 @@ static inline void *wh_array_reserve(void *items, size_t needed, size_t *capacit
 /* Makes room for one item more than the `count` that are there. */
 static inline void *wh_array_grow(void *items, size_t count, size_t *capacity, size_t size) {
     return wh_array_reserve(items, count + 1, capacity, size);
+}
+
+/* `count` items, all zero, that need not grow. Never null; the caller frees them. */
+static inline void *wh_array_new(size_t count, size_t size) {
+    void *const items = calloc(count + 1, size);
+    if (!items) {
+        abort();
+    }
+    return items;
 }
 
 #endif

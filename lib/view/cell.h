@@ -1,14 +1,14 @@
 /* A cell as Drake's viewer takes it: bodies in one message (LOAD), where they are in another (DRAW).
  *
- * Bodies have a folder before their name, which the viewer shows as a tree: "robot::forearm", "stations::A", "grippers::EE",
- * "held::EE", "wafers::Wafer 1", "obstacles". A name's '/', ':', '%' and what is no printable UTF-8 become %2F and the like,
- * for the viewer's own paths are made of the first two.
+ * Bodies have a folder before their name, which the viewer shows as a tree: "robot::forearm", "stations::A",
+ * "grippers::EE", "held::EE", "wafers::Wafer 1", "obstacles". A name's '/', ':', '%' and what is no printable
+ * UTF-8 become %2F and the like, for the viewer's own paths are made of the first two.
  *
- * A body's colour is part of LOAD, and a LOAD that differs from the last makes the viewer begin anew. So a wafer that is held gets its
- * gripper's colour by a cover, "held::EE", a quarter of a millimetre larger all around, which lies over it; one that covers
- * nothing waits WH_VIEW_AWAY below the floor.
+ * A body's colour is part of LOAD, and a LOAD that differs from the last makes the viewer begin anew. So a
+ * wafer that is held gets its gripper's colour by a cover, "held::EE", a quarter of a millimetre larger all
+ * around, which lies over it; one that covers nothing waits WH_VIEW_AWAY below the floor.
  *
- * Host code: aborts when memory is out. Nothing is allocated after wh_view_cell_open.
+ * Host code: aborts if out of memory. Nothing is allocated after wh_view_cell_open.
  */
 #ifndef WH_VIEW_CELL_H
 #define WH_VIEW_CELL_H
@@ -24,8 +24,8 @@
 /* What to leave out of a cell that is too large for a message. */
 typedef enum { WH_VIEW_ALL, WH_VIEW_NO_LEDGES, WH_VIEW_BOXES, WH_VIEW_DETAILS } wh_view_detail_t;
 
-/* `load` and `draw` are in the order of their bodies, the same in both: `links` is the index of the arm's first link, and so
- * on. Must not be moved once opened: `draw` points into it. */
+/* `load` and `draw` are in the order of their bodies, the same in both: `links` is the index of the arm's
+ * first link, and so on. Must not be moved once opened: `draw` points into it. */
 typedef struct {
     const wh_layout_t *layout; /* borrowed */
     wh_view_detail_t detail;
@@ -44,8 +44,9 @@ typedef struct {
     const wh_wafer_t *wafers;
 } wh_view_look_t;
 
-/* Both messages of a layout, which must outlive them; everything is where it is before a run. With WH_VIEW_NO_LEDGES no ledges are
- * shown, with WH_VIEW_BOXES nor are meshes, but the boxes about them. Cost: quadratic in the points of meshes. */
+/* Both messages of a layout, which must outlive them; everything is where it is before a run. With
+ * WH_VIEW_NO_LEDGES no ledges are shown, with WH_VIEW_BOXES nor are meshes, but the boxes about them. Cost:
+ * quadratic in the points of meshes. */
 void wh_view_cell_open(wh_view_cell_t *cell, const wh_layout_t *layout, wh_view_detail_t detail);
 
 /* Where everything is now, for `draw`. Cost: a square root for each body. */

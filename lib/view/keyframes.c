@@ -13,7 +13,7 @@ static void add_key(wh_keyframes_t *motion, double seconds, const wh_vec3_t *r, 
     motion->times = wh_array_grow(motion->times, i, &motion->time_capacity, sizeof *motion->times);
     motion->places = wh_array_grow(motion->places, i, &motion->place_capacity, sizeof *motion->places);
     motion->turns = wh_array_grow(motion->turns, i, &motion->turn_capacity, sizeof *motion->turns);
-    /* Times must rise; as floats they may not. */
+    /* Times must rise, and two slices may be the same time as a float. */
     if (i > 0 && !((float)seconds > motion->times[i - 1])) {
         return;
     }
@@ -27,31 +27,25 @@ static void add_key(wh_keyframes_t *motion, double seconds, const wh_vec3_t *r, 
     ++motion->count;
 }
 
-/* ---------------------------------------------------------------------------------------------------- paths */
+/* -------------------------------------------------------------------------------------------------- paths */
 
 typedef struct {
     const wh_signals_t *signals;
     wh_paths_t *paths;
 } tracing_t;
 
-static void add_place(wh_thin_t *thin, int64_t slice, const wh_pose_t *pose) {
-    double values[7] = {pose->r.x, pose->r.y, pose->r.z};
-    wh_quaternion_from_matrix(&pose->R, thin->of > 0 ? thin->last.values + 3 : NULL, values + 3);
-    wh_thin_add(thin, slice, values);
-}
-
 static void add_places(void *user, int64_t slice) {
     const tracing_t *tracing = user;
     const wh_signals_t *signals = tracing->signals;
-    wh_pose_t links[WH_TRACE_LINKS];
+    wh_pose_t links[WH_SIGNALS_LINKS];
     wh_pose_t gripper;
     for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
         wh_signals_gripper(signals, g, slice, &gripper);
-        add_place(&tracing->paths->grippers[g], slice, &gripper);
+        wh_thin_add_pose(&tracing->paths->grippers[g], slice, &gripper);
     }
     if (wh_signals_links(signals, slice, links)) {
-        for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
-            add_place(&tracing->paths->links[i], slice, &links[i]);
+        for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
+            wh_thin_add_pose(&tracing->paths->links[i], slice, &links[i]);
         }
     }
 }
@@ -62,14 +56,14 @@ wh_paths_t wh_paths_of_signals(const wh_signals_t *signals) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         wh_thin_open(&paths.grippers[g], 3, WH_PATHS_MM, WH_PATHS_RAD, WH_PATHS_POINTS);
     }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         wh_thin_open(&paths.links[i], 3, WH_PATHS_LINK_MM, WH_PATHS_LINK_RAD, WH_PATHS_LINK_POINTS);
     }
     wh_signals_walk(signals, add_places, &tracing);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         wh_thin_finish(&paths.grippers[g]);
     }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         wh_thin_finish(&paths.links[i]);
     }
     return paths;
@@ -79,12 +73,12 @@ void wh_paths_free(wh_paths_t *paths) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         wh_thin_close(&paths->grippers[g]);
     }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         wh_thin_close(&paths->links[i]);
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ keyframes */
+/* ---------------------------------------------------------------------------------------------- keyframes */
 
 static double seconds_of(const wh_signals_t *signals, double slice) {
     return slice * (double)signals->layout->slice_us / 1e6;
@@ -92,15 +86,15 @@ static double seconds_of(const wh_signals_t *signals, double slice) {
 
 wh_keyframes_t wh_keyframes_of_track(const wh_signals_t *signals, const wh_thin_t *thin) {
     wh_keyframes_t motion = {0};
-    for (size_t i = 0; i < thin->count; ++i) {
-        const double *values = thin->points[i].values;
+    for (size_t i = 0; i < thin->list.count; ++i) {
+        const double *values = wh_points_numbers(&thin->list, i);
         const wh_vec3_t r = {values[0], values[1], values[2]};
-        add_key(&motion, seconds_of(signals, (double)thin->points[i].slice), &r, values + 3);
+        add_key(&motion, seconds_of(signals, (double)thin->list.points[i].slice), &r, values + 3);
     }
     return motion;
 }
 
-/* --------------------------------------------------------------------------------------------------- wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static void add_pose(wh_keyframes_t *motion, const wh_signals_t *signals, double slice,
                      const wh_pose_t *pose) {
@@ -110,11 +104,13 @@ static void add_pose(wh_keyframes_t *motion, const wh_signals_t *signals, double
     add_key(motion, seconds_of(signals, slice), &pose->r, q);
 }
 
-/* Between two points of its gripper, `share` of the way. */
+/* Between point `i` of its gripper and the next, `share` of the way. */
 static void add_held(wh_keyframes_t *motion, const wh_signals_t *signals, const wh_stay_t *stay,
-                     const wh_thin_point_t *from, const wh_thin_point_t *to, double share) {
-    const double *a = from->values;
-    const double *b = to->values;
+                     const wh_thin_t *thin, size_t i, double share) {
+    const double *a = wh_points_numbers(&thin->list, i);
+    const double *b = wh_points_numbers(&thin->list, i + 1);
+    const int64_t from = thin->list.points[i].slice;
+    const int64_t to = thin->list.points[i + 1].slice;
     wh_pose_t gripper;
     double q[4];
     gripper.r =
@@ -122,17 +118,19 @@ static void add_held(wh_keyframes_t *motion, const wh_signals_t *signals, const 
     wh_quaternion_slerp(a + 3, b + 3, share, q);
     wh_quaternion_to_matrix(q, &gripper.R);
     const wh_pose_t pose = wh_pose_compose(&gripper, &stay->pose);
-    add_pose(motion, signals, (double)from->slice + share * (double)(to->slice - from->slice), &pose);
+    add_pose(motion, signals, (double)from + share * (double)(to - from), &pose);
 }
 
-/* So many keyframes keep a wafer that is beside the gripper's origin on its arc: a chord of angle a is off by r a^2 / 8. */
-static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, const double a[], const double b[]) {
+/* How many straight lines a wafer takes that goes round its gripper's origin: the chord of an angle a is off
+ * by r a^2 / 8. */
+static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, size_t i) {
     double turn[3];
-    wh_quaternion_turn(a + 3, b + 3, turn);
+    wh_quaternion_turn(wh_points_numbers(&thin->list, i) + 3, wh_points_numbers(&thin->list, i + 1) + 3,
+                       turn);
     const double square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
     const double off = wh_vec3_norm(&stay->pose.r) * square / 8;
     int parts = 1;
-    while ((double)(parts * parts) * thin->tolerance < off && parts < 256) {
+    while ((double)(parts * parts) * thin->list.tolerance < off && parts < 256) {
         ++parts;
     }
     return parts;
@@ -140,18 +138,18 @@ static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, const double a
 
 static void add_hold(wh_keyframes_t *motion, const wh_signals_t *signals, const wh_thin_t *thin,
                      const wh_stay_t *stay, int64_t end) {
-    for (size_t i = 0; i + 1 < thin->count && thin->points[i].slice < end; ++i) {
-        const wh_thin_point_t *from = &thin->points[i];
-        const wh_thin_point_t *to = from + 1;
-        if (to->slice <= stay->slice) {
+    const wh_points_t *list = &thin->list;
+    for (size_t i = 0; i + 1 < list->count && list->points[i].slice < end; ++i) {
+        const int64_t next = list->points[i + 1].slice;
+        if (next <= stay->slice) {
             continue;
         }
-        const int parts = parts_of(stay, thin, from->values, to->values);
-        for (int part = from->slice < stay->slice ? 1 : 0; part < parts; ++part) {
-            add_held(motion, signals, stay, from, to, (double)part / parts);
+        const int parts = parts_of(stay, thin, i);
+        for (int part = list->points[i].slice < stay->slice ? 1 : 0; part < parts; ++part) {
+            add_held(motion, signals, stay, thin, i, (double)part / parts);
         }
-        if (to->slice >= end || i + 2 == thin->count) {
-            add_held(motion, signals, stay, from, to, 1);
+        if (next >= end || i + 2 == list->count) {
+            add_held(motion, signals, stay, thin, i, 1);
         }
     }
 }
@@ -176,7 +174,7 @@ wh_keyframes_t wh_keyframes_of_wafer(const wh_signals_t *signals, const wh_paths
     return motion;
 }
 
-/* ---------------------------------------------------------------------------------------------------- nodes */
+/* -------------------------------------------------------------------------------------------------- nodes */
 
 static bool differ(const float a[], const float b[], size_t count) {
     bool same = true;

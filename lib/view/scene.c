@@ -2,26 +2,14 @@
 
 #include <stdio.h>
 
+#include "../layout/inks.h"
 #include "../math/config.h"
 #include "gltf.h"
 #include "keyframes.h"
 
-/* What a part is to the eye; as in the drawings of `waferhand layout --svg`. */
-enum { INK_WALL, INK_SHELL, INK_LEDGE, INK_WAFER, INK_ARM, INK_CHUCK, INK_BLADE, INKS };
-
-static const wh_gltf_material_t materials[INKS] = {
-    [INK_WALL] = {"obstacle", 0.19, 0.23, 0.27, 0.18, 0, 0.9},
-    [INK_SHELL] = {"shell", 0.33, 0.37, 0.42, 0.16, 0, 0.6},
-    [INK_LEDGE] = {"ledge", 0.11, 0.14, 0.17, 1, 0, 0.8},
-    [INK_WAFER] = {"wafer", 0.62, 0.21, 0.006, 1, 0.2, 0.35},
-    [INK_ARM] = {"arm", 0.028, 0.147, 0.45, 1, 0.1, 0.5},
-    [INK_CHUCK] = {"chuck", 0.2, 0.072, 0.43, 1, 0.1, 0.5},
-    [INK_BLADE] = {"blade", 0.003, 0.235, 0.195, 1, 0.1, 0.4},
-};
-
-/* A node's meshes while its parts are gathered. */
+/* A node's meshes, one for each ink, while its parts are gathered. */
 typedef struct {
-    wh_mesh_t inks[INKS];
+    wh_mesh_t inks[WH_INKS];
 } body_t;
 
 typedef struct {
@@ -32,22 +20,15 @@ typedef struct {
     bool animated;
 } scene_t;
 
-/* ---------------------------------------------------------------------------------------------------- parts */
-
-static size_t ink_of(const wh_part_t *part) {
-    static const size_t of_kind[] = {
-        [WH_PART_FIXED] = INK_WALL,  [WH_PART_LEDGE] = INK_LEDGE, [WH_PART_ARM] = INK_ARM,
-        [WH_PART_BLADE] = INK_BLADE, [WH_PART_CHUCK] = INK_CHUCK, [WH_PART_WAFER] = INK_WAFER};
-    return part->kind == WH_PART_FIXED && part->owner != WH_NONE ? INK_SHELL : of_kind[part->kind];
-}
+/* -------------------------------------------------------------------------------------------------- parts */
 
 static void add_part(body_t *body, const wh_part_t *part, const wh_pose_t *base_from_body) {
     const wh_pose_t pose = base_from_body ? wh_pose_relative(base_from_body, &part->convex.body_from_shape)
                                           : part->convex.body_from_shape;
-    wh_mesh_add_convex(&body->inks[ink_of(part)], &part->convex, &pose);
+    wh_mesh_add_convex(&body->inks[wh_ink_of(part)], &part->convex, &pose);
 }
 
-/* All parts of some kinds with this owner. */
+/* Adds all parts of some kinds with this owner. */
 static void add_parts(const scene_t *scene, body_t *body, uint32_t kinds, int32_t owner,
                       const wh_pose_t *base_from_body) {
     const wh_world_config_t *world = &scene->layout->world;
@@ -59,24 +40,24 @@ static void add_parts(const scene_t *scene, body_t *body, uint32_t kinds, int32_
     }
 }
 
-/* The mesh of what was gathered, which is freed; SIZE_MAX when there is nothing. */
+/* Adds the gathered mesh, frees it, and returns its index; SIZE_MAX if there is nothing. */
 static size_t finish_body(scene_t *scene, body_t *body, const char *name) {
-    wh_gltf_primitive_t primitives[INKS];
+    wh_gltf_primitive_t primitives[WH_INKS];
     size_t count = 0;
-    for (size_t ink = 0; ink < INKS; ++ink) {
+    for (size_t ink = 0; ink < WH_INKS; ++ink) {
         if (body->inks[ink].index_count > 0) {
             primitives[count].mesh = &body->inks[ink];
             primitives[count++].material = ink;
         }
     }
     const size_t mesh = count > 0 ? wh_gltf_add_mesh(&scene->gltf, name, primitives, count) : SIZE_MAX;
-    for (size_t ink = 0; ink < INKS; ++ink) {
+    for (size_t ink = 0; ink < WH_INKS; ++ink) {
         wh_mesh_free(&body->inks[ink]);
     }
     return mesh;
 }
 
-/* ---------------------------------------------------------------------------------------------------- nodes */
+/* -------------------------------------------------------------------------------------------------- nodes */
 
 static void add_fixed(scene_t *scene) {
     const wh_pose_t here = wh_pose_identity();
@@ -114,10 +95,10 @@ static void add_moving(scene_t *scene, const wh_pose_t *pose, const wh_thin_t *p
 }
 
 static void add_links(scene_t *scene) {
-    static const char *const names[WH_TRACE_LINKS] = {"lift", "upper arm", "forearm", "hand"};
-    wh_pose_t poses[WH_TRACE_LINKS];
+    static const char *const names[WH_SIGNALS_LINKS] = {"lift", "upper arm", "forearm", "hand"};
+    wh_pose_t poses[WH_SIGNALS_LINKS];
     const bool is_there = wh_signals_links(scene->signals, scene->signals->first, poses);
-    for (size_t i = 0; is_there && i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; is_there && i < WH_SIGNALS_LINKS; ++i) {
         body_t body = {0};
         add_parts(scene, &body, 1U << WH_PART_ARM, (int32_t)(WH_ARM_LIFT + i), NULL);
         add_moving(scene, &poses[i], &scene->paths.links[i], &body, names[i], "link", i);
@@ -138,7 +119,7 @@ static void add_grippers(scene_t *scene) {
 static void add_wafers(scene_t *scene) {
     const wh_layout_t *layout = scene->layout;
     body_t body = {0};
-    wh_mesh_add_wafer(&body.inks[INK_WAFER], layout->wafer_diameter / 2, layout->wafer_thickness,
+    wh_mesh_add_wafer(&body.inks[WH_INK_WAFER], layout->wafer_diameter / 2, layout->wafer_thickness,
                       layout->notch, layout->notch_depth);
     const size_t mesh = layout->wafer_count > 0 ? finish_body(scene, &body, "wafer") : SIZE_MAX;
     for (size_t w = 0; w < layout->wafer_count; ++w) {
@@ -149,7 +130,7 @@ static void add_wafers(scene_t *scene) {
             wh_keyframes_add(&motion, &scene->gltf, node);
         }
     }
-    wh_mesh_free(&body.inks[INK_WAFER]);
+    wh_mesh_free(&body.inks[WH_INK_WAFER]);
 }
 
 json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animated) {
@@ -158,8 +139,8 @@ json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animat
     if (animated) {
         scene.paths = wh_paths_of_signals(signals);
     }
-    for (size_t ink = 0; ink < INKS; ++ink) {
-        (void)wh_gltf_add_material(&scene.gltf, &materials[ink]);
+    for (size_t ink = 0; ink < WH_INKS; ++ink) {
+        (void)wh_gltf_add_material(&scene.gltf, &wh_ink_materials[ink]);
     }
     add_fixed(&scene);
     add_stations(&scene);

@@ -1,10 +1,11 @@
 /* A run's cell as a glTF 2.0 scene.
  *
- * Nodes hang on "cell", all of them in base, m: "base" (with the robot's column), "obstacles", "station NAME" in the station's
- * frame, "lift", "upper arm", "forearm" and "hand", then grippers and wafers by their names in their own frames. A node's extras
- * tell { kind: "base", "obstacles", "station", "link", "gripper" or "wafer", index: from 0 }. Shapes are those that
- * the collision check has (layout/shapes.h); wafers have their notch. The nodes stand as before the run; with `animated` an
- * animation "run" moves them, wafers too, to within what keyframes.h and the trace's tolerance say.
+ * Nodes hang on "cell", all of them in base, m: "base" (with the robot's column), "obstacles", "station NAME"
+ * in the station's frame, "lift", "upper arm", "forearm" and "hand", then grippers and wafers by their names
+ * in their own frames. A node's extras tell { kind: "base", "obstacles", "station", "link", "gripper" or
+ * "wafer", index: from 0 }. Shapes are those that the collision check has (layout/shapes.h); wafers have
+ * their notch. The nodes stand as before the run; with `animated` an animation "run" moves them, wafers too,
+ * to within the tolerances of keyframes.h and of the signals.
  */
 #ifndef WH_VIEW_SCENE_H
 #define WH_VIEW_SCENE_H
@@ -13,7 +14,7 @@
 
 #include "../record/signals.h"
 
-/* The scene, to be released by the caller. Aborts when memory is out. */
+/* The scene, to be released by the caller. Aborts if out of memory. */
 json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animated);
 
 #endif

@@ -3,10 +3,10 @@
 -- Kept, for a script may set globals of these names.
 local ipairs, math, pairs, table, tostring, type = ipairs, math, pairs, table, tostring, type
 
-return function(native, patterns, names)
-  local arm = native.module("mcs/arm.lua")(native, names)
-  local jobs = native.module("mcs/jobs.lua")(native, names, arm)
-  local commands = native.module("mcs/transfer.lua")(native, patterns, names, arm, jobs)
+return function(native, patterns, lookup)
+  local arm = native.module("mcs/arm.lua")(native, lookup)
+  local targets = native.module("mcs/targets.lua")(native, lookup)
+  local commands = native.module("mcs/transfer.lua")(native, patterns, lookup, arm, targets)
 
   ------------------------------------------------------------------------------------------ single moves
 
@@ -16,33 +16,33 @@ return function(native, patterns, names)
   end
 
   local function rotate(station_name, degrees)
-    local station = names.station(station_name)
+    local station = lookup.station(station_name)
     if not station.chuck then
-      native.fail("NOT_A_PREALIGNER", names.quote(station_name))
+      native.fail("NOT_A_PREALIGNER", lookup.quote(station_name))
     end
-    local axis = native.layout().grippers[station.chuck].axis
+    local axis = native.layout.grippers[station.chuck].axis
     local axes = native.axes()
-    axes[axis] = axes[axis] + math.rad(names.number("degrees", degrees))
+    axes[axis] = axes[axis] + math.rad(lookup.number("degrees", degrees))
     play { axes = axes }
   end
 
   function commands.rotate(station, degrees)
-    arm.run(names.command("ROTATE", station, degrees), rotate, station, degrees)
+    arm.run(lookup.command("ROTATE", station, degrees), rotate, station, degrees)
   end
 
   local function valve(gripper, level)
     if level ~= 0 and level ~= 1 then
-      native.fail("BAD_VALVE", "valve: " .. names.quote(level) .. " (expected 0, open, or 1, closed)")
+      native.fail("BAD_VALVE", "valve: " .. lookup.quote(level) .. " (expected 0, open, or 1, closed)")
     end
-    play { valves = { [names.gripper(gripper)] = math.tointeger(level) } }
+    play { valves = { [lookup.gripper(gripper)] = math.tointeger(level) } }
   end
 
   function commands.valve(gripper, level)
-    arm.run(names.command("VALVE", gripper, level), valve, gripper, level)
+    arm.run(lookup.command("VALVE", gripper, level), valve, gripper, level)
   end
 
   local function axis_of(name)
-    for axis, known in ipairs(names.axes) do
+    for axis, known in ipairs(lookup.axes) do
       if name == known then
         return axis
       end
@@ -50,39 +50,39 @@ return function(native, patterns, names)
     native.fail("BAD_ARGUMENT", tostring(name) .. ": no such axis (expected theta, r, z or yaw)")
   end
 
-  local function move(targets)
+  local function move(positions)
     local axes = native.axes()
-    for name, value in pairs(names.table("move", targets)) do
+    for name, value in pairs(lookup.table("move", positions)) do
       local axis = axis_of(name)
       local turns = name == "theta" or name == "yaw"
-      axes[axis] = turns and math.rad(names.number(name, value)) or names.number(name, value)
+      axes[axis] = turns and math.rad(lookup.number(name, value)) or lookup.number(name, value)
     end
     arm.check_homed()
     play { axes = axes }
   end
 
-  local function text_of(targets, order)
+  local function text_of(positions, order)
     local text = {}
     for _, name in ipairs(order) do
-      if type(targets) == "table" and targets[name] ~= nil then
-        text[#text + 1] = ("%s=%s"):format(name, names.number_text(targets[name]))
+      if type(positions) == "table" and positions[name] ~= nil then
+        text[#text + 1] = ("%s=%s"):format(name, lookup.number_text(positions[name]))
       end
     end
     return table.concat(text, " ")
   end
 
   -- move { theta = , r = , z = , yaw = }: degrees and mm; an axis that is not named stays.
-  function commands.move(targets)
-    arm.run(names.command("MOVE", text_of(targets, names.axes)), move, targets)
+  function commands.move(positions)
+    arm.run(lookup.command("MOVE", text_of(positions, lookup.axes)), move, positions)
   end
 
   local function line(by)
     local parts = { dx = 0, dy = 0, dz = 0, speed = 0 }
-    for name, value in pairs(names.table("line", by)) do
+    for name, value in pairs(lookup.table("line", by)) do
       if parts[name] == nil then
         native.fail("BAD_ARGUMENT", tostring(name) .. ": no such field (expected dx, dy, dz or speed)")
       end
-      parts[name] = names.number(name, value)
+      parts[name] = lookup.number(name, value)
     end
     arm.check_homed()
     play { line = { parts.dx, parts.dy, parts.dz }, speed = parts.speed }
@@ -90,30 +90,30 @@ return function(native, patterns, names)
 
   -- line { dx = , dy = , dz = , speed = }: the end-effector straight by so many mm in base, its heading kept.
   function commands.line(by)
-    arm.run(names.command("LINE", text_of(by, names.line_fields)), line, by)
+    arm.run(lookup.command("LINE", text_of(by, lookup.line_fields)), line, by)
   end
 
   local function wait(seconds)
-    if names.number("seconds", seconds) < 0 or seconds > 1e6 then
+    if lookup.number("seconds", seconds) < 0 or seconds > 1e6 then
       native.fail("BAD_ARGUMENT", ("seconds: %s (expected 0 to 1e6)"):format(tostring(seconds)))
     end
     play { dwell = seconds }
   end
 
   function commands.wait(seconds)
-    arm.run(names.command("WAIT", seconds), wait, seconds)
+    arm.run(lookup.command("WAIT", seconds), wait, seconds)
   end
 
   ------------------------------------------------------------------------------------- STOP and what follows
 
   -- Straight out of the station that the arm stands in, if it does.
   local function recover()
-    local job = arm.inside
-    if job then
-      job.stands = native.gripper_pose(job.gripper).r
-      job.loaded = native.sensor(job.gripper)
-      job.watched = false
-      arm.play(patterns.recover, job)
+    local target = arm.inside
+    if target then
+      target.stands = native.gripper_pose(target.gripper).r
+      target.loaded = native.sensor(target.gripper)
+      target.watched = false
+      arm.play(patterns.recover, target)
     end
     arm.set_free()
   end
@@ -125,7 +125,7 @@ return function(native, patterns, names)
   local function home()
     local axes = native.axes()
     recover()
-    for axis, position in ipairs(native.layout().home) do
+    for axis, position in ipairs(native.layout.home) do
       axes[axis] = position
     end
     arm.play(patterns.single, { segment = { axes = axes } })
@@ -138,7 +138,7 @@ return function(native, patterns, names)
 
   -- A STOP comes so many simulated seconds from now, whatever then runs: it ends there with STOPPED.
   function commands.stop_in(seconds)
-    if names.number("seconds", seconds) < 0 or seconds > 1e6 then
+    if lookup.number("seconds", seconds) < 0 or seconds > 1e6 then
       native.fail("BAD_ARGUMENT", ("seconds: %s (expected 0 to 1e6)"):format(tostring(seconds)))
     end
     native.stop_in(seconds)

@@ -1,6 +1,6 @@
 -- Completes the word before the cursor by what may stand there: a command, a name of its kind, an option.
 
-return function(vocabulary, words)
+return function(prompt_commands, tokens)
   -- More than this is no help to a reader.
   local MOST = 200
 
@@ -37,7 +37,7 @@ return function(vocabulary, words)
     local typed = word:gsub('^"', ""):gsub('\\(["\\])', "%1")
     for _, name in ipairs(known) do
       if #list < MOST and is_prefix(typed, name) then
-        list[#list + 1] = before .. (after == "=" and name or words.spell(name)) .. after
+        list[#list + 1] = before .. (after == "=" and name or tokens.spell(name)) .. after
       end
     end
     return list
@@ -45,7 +45,7 @@ return function(vocabulary, words)
 
   local function values(command, name, word)
     local kind = command.options and command.options[name:lower()]
-    local known = vocabulary.kinds[kind]
+    local known = prompt_commands.kinds[kind]
     return known and choose(known(), word, name .. "=", "") or {}
   end
 
@@ -58,9 +58,9 @@ return function(vocabulary, words)
   end
 
   local function candidates(list, word)
-    local command = list[1] and vocabulary.commands[list[1].raw:upper()]
+    local command = list[1] and prompt_commands.commands[list[1].raw:upper()]
     if not list[1] then
-      return choose(sorted_keys(vocabulary.commands), word, "", "")
+      return choose(sorted_keys(prompt_commands.commands), word, "", "")
     end
     if not command then
       return {}
@@ -75,7 +75,7 @@ return function(vocabulary, words)
     end
     local kind = command.takes[place] or command.repeated and command.takes[#command.takes]
     if kind then
-      local known = vocabulary.kinds[kind]
+      local known = prompt_commands.kinds[kind]
       return known and choose(known(), word, "", "") or {}
     end
     return choose(sorted_keys(command.options), word, "", "=")
@@ -84,7 +84,7 @@ return function(vocabulary, words)
   -- complete(text before the cursor): where the word begins, and a list of what it may become.
   return function(text)
     local start = start_of_word(text)
-    local ok, list = pcall(words.split, text:sub(1, start - 1))
+    local ok, list = pcall(tokens.split, text:sub(1, start - 1))
     return start, ok and candidates(list, text:sub(start)) or {}
   end
 end

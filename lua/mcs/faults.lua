@@ -3,7 +3,7 @@
 -- Kept, for a script may set globals of these names.
 local ipairs, math, pairs, table, tostring, type = ipairs, math, pairs, table, tostring, type
 
-return function(native, commands, run, names)
+return function(native, commands, run, lookup)
   local function text_of(value)
     if type(value) == "table" then
       local parts = {}
@@ -12,7 +12,7 @@ return function(native, commands, run, names)
       end
       return table.concat(parts, ",")
     end
-    return type(value) == "string" and value:find("[^%w_.-]") and names.quote(value) or tostring(value)
+    return type(value) == "string" and value:find("[^%w_.-]") and lookup.quote(value) or tostring(value)
   end
 
   local function describe(description)
@@ -28,7 +28,7 @@ return function(native, commands, run, names)
   -- Begins with the next slice, or `after` seconds later, and lasts `lasting` seconds or until it is cleared.
   -- Returns its number.
   function commands.fault(description)
-    return run(describe(description), function() return native.fault(names.table("fault", description)) end)
+    return run(describe(description), function() return native.fault(lookup.table("fault", description)) end)
   end
 
   -- It ends with the next slice.
@@ -36,7 +36,7 @@ return function(native, commands, run, names)
     local whole = type(number) == "number" and math.tointeger(number)
     run("CLEAR " .. tostring(whole or number), function()
       if not whole then
-        native.fail("BAD_ARGUMENT", "fault: " .. names.quote(number) .. " (expected its number)")
+        native.fail("BAD_ARGUMENT", "fault: " .. lookup.quote(number) .. " (expected its number)")
       end
       native.clear_fault(whole)
     end)

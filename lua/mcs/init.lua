@@ -2,30 +2,35 @@
 -- same words of typed lines: a session calls it once the cell is set up, a script's run never does.
 
 -- Kept, for a script may set globals of these names.
-local error, ipairs, pairs, tostring, type = error, ipairs, pairs, tostring, type
+local error, ipairs, pairs, setmetatable, tostring, type = error, ipairs, pairs, setmetatable, tostring, type
 
 return function(native)
-  local names = native.module("mcs/names.lua")(native, wh.errors)
-  local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), names)
-  local questions = native.module("mcs/questions.lua")(native, names)
+  -- native.layout: the cell's layout, a value that `cell` sets. Before that whoever reads it hears what is missing.
+  setmetatable(native, { __index = function(_, name)
+    return name == "layout" and native.fail("NO_LAYOUT", 'begin the script with cell "LAYOUT.lua"')
+  end })
+
+  local lookup = native.module("mcs/lookup.lua")(native, wh.errors)
+  local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), lookup)
+  local queries = native.module("mcs/queries.lua")(native, lookup)
   local rehearse, run = commands.rehearse, commands.run
   commands.rehearse, commands.run = nil, nil
-  native.module("mcs/faults.lua")(native, commands, run, names)
-  local figures = native.module("mcs/cycle.lua")(native, names)
+  native.module("mcs/faults.lua")(native, commands, run, lookup)
+  local cycles = native.module("mcs/cycles.lua")(native, lookup)
 
   -- cell "LAYOUT.lua", relative to the script: every slot's ends must be in reach.
   function cell(path)
     if type(path) ~= "string" then
       error(("cell: %s (expected a layout's path)"):format(tostring(path)), 0)
     end
-    local layout_path = native.cell(path)
-    for name, station in pairs(native.layout().stations) do
+    native.layout = native.cell(path)
+    for name, station in pairs(native.layout.stations) do
       for _, slot in ipairs(station.taught and { 1, station.slots } or {}) do
         native.reach(station.index, slot)
         local problem = rehearse(name, slot)
         if problem then
           local reason = type(problem) == "table" and problem.text or tostring(problem)
-          error(("%s: stations.%s: slot %d (expected one in reach: %s)"):format(layout_path, name, slot, reason), 0)
+          error(("%s: stations.%s: slot %d (expected one in reach: %s)"):format(native.layout.path, name, slot, reason), 0)
         end
       end
     end
@@ -41,16 +46,16 @@ return function(native)
     native.study(errors)
   end
 
-  for _, group in ipairs({ commands, questions, figures }) do
+  for _, group in ipairs({ commands, queries, cycles }) do
     for word, action in pairs(group) do
       _G[word] = action
     end
   end
 
   return function()
-    local words = native.module("mcs/words.lua")(native)
-    local vocabulary = native.module("mcs/vocabulary.lua")(native, commands, questions, names, words)
-    local execute = native.module("mcs/lines.lua")(native, vocabulary, words, names)
-    return execute, native.module("mcs/completion.lua")(vocabulary, words)
+    local tokens = native.module("mcs/tokens.lua")(native)
+    local prompt_commands = native.module("mcs/prompt_commands.lua")(native, commands, queries, lookup, tokens)
+    local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup)
+    return execute, native.module("mcs/completion.lua")(prompt_commands, tokens)
   end
 end

@@ -3,30 +3,30 @@
 -- Kept, for a script may set globals of these names.
 local ipairs, pcall = ipairs, pcall
 
-return function(native, patterns, names, arm, jobs)
+return function(native, patterns, lookup, arm, targets)
   local transfer = {}
 
-  local book = native.module("mcs/book.lua")(native)
+  local slot_map = native.module("mcs/slot_map.lua")(native)
 
   --------------------------------------------------------------------------------------------- GET and PUT
 
   -- A sensor that is on behind a closed valve says nothing of wafers.
-  local function check_empty(job)
-    if job.asks and native.sensor(job.gripper) then
-      native.fail(native.is_open(job.gripper) and "WAFER_ON_GRIPPER" or "VACUUM_BEFORE_PICK")
+  local function check_empty(target)
+    if target.asks and native.sensor(target.gripper) then
+      native.fail(native.is_open(target.gripper) and "WAFER_ON_GRIPPER" or "VACUUM_BEFORE_PICK")
     end
   end
 
-  local function check_loaded(job)
-    if job.asks and not native.sensor(job.gripper) then
+  local function check_loaded(target)
+    if target.asks and not native.sensor(target.gripper) then
       native.fail("NO_WAFER_ON_GRIPPER")
     end
   end
 
   -- What a GET's pattern found, as an error unless it is a wafer.
-  local function judge_get(job, found)
+  local function judge_get(target, found)
     if found == "missing" then
-      native.fail("WAFER_MISSING", native.explain(job.gripper))
+      native.fail("WAFER_MISSING", native.explain(target.gripper))
     elseif found == "late" then
       native.fail("VACUUM_TIMEOUT", "a wafer lay on the pads")
     elseif found == "early" then
@@ -34,42 +34,38 @@ return function(native, patterns, names, arm, jobs)
     end
   end
 
-  local function judge_put(job, became)
+  local function judge_put(target, became)
     if became == "lost" then
-      native.fail("WAFER_LOST", native.explain(job.chuck))
+      native.fail("WAFER_LOST", native.explain(target.chuck))
     elseif became == "loose" then
       native.fail("VACUUM_TIMEOUT", "the wafer lies on the chuck")
     end
   end
 
-  local function get(station, slot, options)
-    local job = jobs.at("get", station, slot, options)
-    arm.check_free()
-    check_empty(job)
-    book.check_get(job)
-    arm.rehearse(patterns.get, job, true)
-    book.forget(job)
-    judge_get(job, arm.drive(patterns.get, job))
-    book.note_taken(job)
-  end
+  local transfers = {
+    get = { pattern = patterns.get, check_gripper = check_empty, check_slot = slot_map.check_get, judge = judge_get,
+            note = slot_map.note_taken },
+    put = { pattern = patterns.put, check_gripper = check_loaded, check_slot = slot_map.check_put, judge = judge_put,
+            note = slot_map.note_put },
+  }
 
-  local function put(station, slot, options)
-    local job = jobs.at("put", station, slot, options)
+  local function carry(word, station, slot, options)
+    local kind, target = transfers[word], targets.at(word, station, slot, options)
     arm.check_free()
-    check_loaded(job)
-    book.check_put(job)
-    arm.rehearse(patterns.put, job, true)
-    book.forget(job)
-    judge_put(job, arm.drive(patterns.put, job))
-    book.note_put(job)
+    kind.check_gripper(target)
+    kind.check_slot(target)
+    local plan = arm.rehearse(kind.pattern, target, true)
+    slot_map.forget(target)
+    kind.judge(target, arm.drive(kind.pattern, target, plan))
+    kind.note(target)
   end
 
   function transfer.get(station, slot, options)
-    arm.run(names.command("GET", station, slot), get, station, slot, options)
+    arm.run(lookup.command("GET", station, slot), carry, "get", station, slot, options)
   end
 
   function transfer.put(station, slot, options)
-    arm.run(names.command("PUT", station, slot), put, station, slot, options)
+    arm.run(lookup.command("PUT", station, slot), carry, "put", station, slot, options)
   end
 
   ---------------------------------------------------------------------------------------------------- SWAP
@@ -78,7 +74,7 @@ return function(native, patterns, names, arm, jobs)
   local function choose_grippers()
     local empty, loaded, count
     count = 0
-    for index, gripper in ipairs(native.layout().grippers) do
+    for index, gripper in ipairs(native.layout.grippers) do
       if gripper.on_robot then
         count = count + 1
         if native.sensor(index) then
@@ -99,58 +95,58 @@ return function(native, patterns, names, arm, jobs)
   end
 
   local function swap(station, slot, options)
-    names.slot(names.station(station), slot)
+    lookup.slot(lookup.station(station), slot)
     local empty, loaded = choose_grippers()
-    local take = jobs.at("get", station, slot, options, empty)
-    local give = jobs.at("put", station, slot, options, loaded)
-    local job = { get = take, put = give, watched = take.watched }
+    local take = targets.at("get", station, slot, options, empty)
+    local give = targets.at("put", station, slot, options, loaded)
+    local target = { get = take, put = give, watched = take.watched }
     arm.check_free()
     check_empty(take)
-    book.check_get(take)
-    arm.rehearse(patterns.swap, job, true)
-    book.forget(take)
-    local became = arm.drive(patterns.swap, job)
+    slot_map.check_get(take)
+    local plan = arm.rehearse(patterns.swap, target, true)
+    slot_map.forget(take)
+    local became = arm.drive(patterns.swap, target, plan)
     judge_get(take, became)
     judge_put(give, became)
-    book.note_put(give)
+    slot_map.note_put(give)
   end
 
   -- Takes the wafer there with the empty gripper and puts down what another one holds.
   function transfer.swap(station, slot, options)
-    arm.run(names.command("SWAP", station, slot), swap, station, slot, options)
+    arm.run(lookup.command("SWAP", station, slot), swap, station, slot, options)
   end
 
   --------------------------------------------------------------------------------------------------- READY
 
   local function ready(station, slot, options)
-    local job = jobs.at("get", station, slot, options)
+    local target = targets.at("get", station, slot, options)
     arm.check_free()
-    job.loaded = native.sensor(job.gripper)
-    arm.play(patterns.ready, job)
+    target.loaded = native.sensor(target.gripper)
+    arm.play(patterns.ready, target)
   end
 
   -- Goes in front of the slot, to where a GET or, with a wafer, a PUT enters.
   function transfer.ready(station, slot, options)
-    arm.run(names.command("READY", station, slot), ready, station, slot, options)
+    arm.run(lookup.command("READY", station, slot), ready, station, slot, options)
   end
 
   ----------------------------------------------------------------------------------------------------- MAP
 
   local function map(name, options)
-    local job = jobs.at("get", name, 1, options)
-    local station = names.station(name)
+    local target = targets.at("get", name, 1, options)
+    local station = lookup.station(name)
     arm.check_free()
-    job.margin = station.pitch / 2
-    job.height = (station.slots - 1) * station.pitch
-    arm.play(patterns.map, job)
+    target.margin = station.pitch / 2
+    target.height = (station.slots - 1) * station.pitch
+    arm.play(patterns.map, target)
     local codes = native.scan(station.index)
-    book.map(name, codes)
+    slot_map.map(name, codes)
     return codes
   end
 
   -- Sweeps over the station's slots; returns a list of their codes: 0 empty, 1 single, 2 double, 4 crossed.
   function transfer.map(station, options)
-    return arm.run(names.command("MAP", station), map, station, options)
+    return arm.run(lookup.command("MAP", station), map, station, options)
   end
 
   ----------------------------------------------------------------------------------------------- rehearsal
@@ -158,8 +154,8 @@ return function(native, patterns, names, arm, jobs)
   -- Plans GET and PUT at a slot from where the arm stands, without playing them; returns what is out of reach.
   function transfer.rehearse(station, slot)
     local _, problem = pcall(function()
-      arm.rehearse(patterns.get, jobs.at("get", station, slot))
-      arm.rehearse(patterns.put, jobs.at("put", station, slot))
+      arm.rehearse(patterns.get, targets.at("get", station, slot))
+      arm.rehearse(patterns.put, targets.at("put", station, slot))
     end)
     return problem
   end

@@ -157,8 +157,17 @@ class Browser:
 
 
 @functools.lru_cache(maxsize=None)
-def common():
-    """The browser that tests share: starting one takes longer than most of them. Whoever changes it puts it back."""
-    made = Browser()
+def shared(webgl):
+    made = Browser(WEBGL if webgl else NO_WEBGL)
     atexit.register(made.close)
     return made
+
+
+def common():
+    """The browser that tests share: starting one takes longer than most of them. Whoever changes it puts it back."""
+    return shared(True)
+
+
+def plain():
+    """Another one without WebGL, for what does not ask how the cell is drawn: in software GL each page costs a second more."""
+    return shared(False)

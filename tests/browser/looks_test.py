@@ -50,9 +50,12 @@ def painted(behind):
 
 
 class Looks(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.page = browser.common()
+    # What shows the picture of the cell, or prints it.
+    drawn = ["test_light_and_dark", "test_narrow", "test_controls_do_not_overlap", "test_print", "test_printed_page",
+             "test_views"]
+
+    def setUp(self):
+        self.page = browser.shared(self._testMethodName in self.drawn)
 
     def tearDown(self):
         self.assertEqual(self.page.faults(), [])
@@ -134,16 +137,21 @@ class Looks(unittest.TestCase):
             return parts"""), [], "words in two")
 
     def test_controls_do_not_overlap(self):
+        self.open("02_prealigner", 3, size=(1440, 900))
         for width in (360, 700, 1024, 1440, 1920):
-            self.open("02_prealigner", 3, size=(width, 900))
-            overlaps = self.page.js("""const boxes = Array.from(document.querySelectorAll('#toolbar button, #key, #transport button,'
-                + '#transport select, #scrubber, .clock, #head button, h1, .verdict, .tile'), (each) =>
-                [each.textContent.slice(0, 20), each.getBoundingClientRect()]), found = [];
-                boxes.forEach(([a, x], i) => boxes.slice(i + 1).forEach(([b, y]) => { const high = innerHeight;
-                    if (x.left < y.right - 1 && y.left < x.right - 1 && x.top < y.bottom - 1 && y.top < x.bottom - 1
-                        && x.bottom < high - 80 && y.bottom < high - 80) { found.push([a, b]); } }));
-                return found""")
-            self.assertEqual(overlaps, [], width)
+            self.page.resize(width, 900)
+            self.page.settle()
+            self.check_overlaps(width)
+
+    def check_overlaps(self, width):
+        overlaps = self.page.js("""const boxes = Array.from(document.querySelectorAll('#toolbar button, #key, #transport button,'
+            + '#transport select, #scrubber, .clock, #head button, h1, .verdict, .tile'), (each) =>
+            [each.textContent.slice(0, 20), each.getBoundingClientRect()]), found = [];
+            boxes.forEach(([a, x], i) => boxes.slice(i + 1).forEach(([b, y]) => { const high = innerHeight;
+                if (x.left < y.right - 1 && y.left < x.right - 1 && x.top < y.bottom - 1 && y.top < x.bottom - 1
+                    && x.bottom < high - 80 && y.bottom < high - 80) { found.push([a, b]); } }));
+            return found""")
+        self.assertEqual(overlaps, [], width)
 
     def test_everything_has_a_name(self):
         self.open("01_transfer", 0)

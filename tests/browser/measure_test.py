@@ -1,9 +1,18 @@
-"""The measuring tool: its figures against a computation here, by lists, by keys and by clicks, with WebGL and without."""
+"""The measuring tool: its figures against a computation here, by lists, by keys and by clicks, with WebGL and without. They are those
+of a script's measure, distance and angle, to 1e-9."""
+import json
+import subprocess
 import unittest
 
 import browser
 import documents
 import expected
+
+PAIRS = [("base", "EE"), ("EE", "Wafer 1"), ("Wafer 2", "B/10"), ("B/10", "Wafer 2"), ("A", "Wafer 1"), ("A/25", "B/1"),
+         ("P", "PA"), ("PA", "EE"), ("P/1", "Wafer 2"), ("Wafer 1", "Wafer 2"), ("A", "B")]
+KEYS = ["distance", "dx", "dy", "dz", "angle", "turn"]
+COMMANDS = ['wait(0.1)', 'get("A", 1)', 'put("B", 2)', 'get("B", 1)', 'move { yaw = 40 }', 'put("P", 1)', 'rotate("P", 77.5)',
+            'get("P", 1)', 'line { dx = -5, dz = 3, speed = 20 }', 'put("B", 10)']
 
 
 def setUpModule():
@@ -12,18 +21,14 @@ def setUpModule():
 
 
 class Measure:
-    flags = None
-
     @classmethod
     def setUpClass(cls):
-        cls.page = browser.Browser(cls.flags) if cls.flags else browser.common()
+        cls.page = browser.shared(cls.webgl)
         cls.page.open(path)
 
     @classmethod
     def tearDownClass(cls):
         faults, outside = cls.page.faults(), cls.page.outside()
-        if cls.flags:
-            cls.page.close()
         assert faults == [] and outside == [], (faults, outside)
 
     def choose(self, first, second):
@@ -99,13 +104,14 @@ class Measure:
         self.assertEqual(self.page.js("return Waferhand.measure.selects.map((select) => select.value)"), self.clicked)
         self.page.seek(2.4)
         self.compare(*self.clicked, 2.4)
-        self.page.shoot("measure" if self.flags is None else "measure_without_webgl")
+        self.page.shoot("measure" if self.webgl else "measure_without_webgl")
         self.page.js("document.activeElement.blur()")
         self.page.key("m")
         self.assertFalse(self.page.js("return Waferhand.measure.armed"))
 
 
 class WithWebGL(Measure, unittest.TestCase):
+    webgl = True
     clicked = ["PA", "Wafer 1"]
 
     def spot(self, name):
@@ -117,7 +123,7 @@ class WithWebGL(Measure, unittest.TestCase):
 
 
 class WithoutWebGL(Measure, unittest.TestCase):
-    flags = browser.NO_WEBGL
+    webgl = False
     clicked = ["EE", "Wafer 1"]  # at one spot: the second click there takes the other
 
     def spot(self, name):
@@ -159,6 +165,40 @@ class WithoutWebGL(Measure, unittest.TestCase):
             for other in said[i + 1:]:
                 apart = one["right"] <= other["left"] or other["right"] <= one["left"]
                 self.assertTrue(apart or abs(one["base"] - other["base"]) >= 13, (one, other))
+
+
+def script():
+    """Tells after each command how all pairs lie."""
+    rows = ", ".join(f'{{ "{first}", "{second}" }}' for first, second in PAIRS)
+    tell = f"""
+for _, pair in ipairs {{ {rows} }} do
+  local m = measure(pair[1], pair[2])
+  assert(distance(pair[1], pair[2]) == m.distance and angle(pair[1], pair[2]) == m.angle)
+  print(("%.17g %.17g %.17g %.17g %.17g %.17g"):format(m.distance, m.dx, m.dy, m.dz, m.angle, m.turn))
+end
+"""
+    return f'cell "{documents.ROOT}/lua/layouts/paper.lua"\n' + tell.join(COMMANDS) + tell
+
+
+class Lua(unittest.TestCase):
+    def test_figures_are_the_page_s(self):
+        documents.FOLDER.mkdir(parents=True, exist_ok=True)
+        path, page, data = documents.FOLDER / "measure.lua", documents.FOLDER / "measure_lua.html", documents.FOLDER / "measure_lua.json"
+        path.write_text(script())
+        said = subprocess.run([documents.PROGRAM, "run", path, "--report", page, "--data", data], cwd=documents.ROOT, check=True,
+                              capture_output=True, text=True).stdout
+        lines = said.splitlines()[:len(COMMANDS) * len(PAIRS)]
+        ends = [command["end_s"] for command in json.loads(data.read_text())["run"]["commands"]]
+        self.assertEqual(len(ends), len(COMMANDS))
+        shown = browser.plain()
+        shown.open(page)
+        for i, line in enumerate(lines):
+            t, pair = ends[i // len(PAIRS)], PAIRS[i % len(PAIRS)]
+            shown.js("arguments[0].forEach((name, i) => { document.getElementById('measure-' + i).value = name; })", pair)
+            found = shown.js("return Waferhand.measure.at(arguments[0])", t)
+            for key, value in zip(KEYS, line.split()):
+                self.assertAlmostEqual(found[key], float(value), delta=1e-9, msg=(t, pair, key))
+        self.assertEqual(shown.faults(), [])
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ import expected
 
 def setUpModule():
     global page
-    page = browser.common()
+    page = browser.plain()
 
 
 def shown(value, decimals):

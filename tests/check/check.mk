@@ -1,12 +1,12 @@
 # Static checks; compiling with warnings as errors is done by the Makefile. The tools that look for bugs and for broken
 # rules do not fail: tests/check/deviations holds what they report against lib/DEVIATIONS.md.
 
-.PHONY: check check-format check-shell check-lua check-scripts check-manual check-rooms check-paths check-deviations
+.PHONY: check check-format check-shell check-lua check-scripts check-manual check-rooms check-paths check-proofs check-deviations
 C_FILES := $(shell find lib tests -name '*.[ch]')
 FORMATTED := $(C_FILES) $(shell find lib tests -name '*.cpp' -o -name '*.java')
 SHELL_SCRIPTS := $(shell awk 'FNR == 1 && /^.!.*sh$$/ { print FILENAME }' .ci/run lib/build/* lib/link/spy/start lib/view/fetch lib/view/start $(filter-out $(patsubst %/.,%,$(wildcard tests/*/*/.)),$(wildcard tests/run tests/*/*)))
 
-check: check-format check-shell check-lua check-scripts check-manual check-rooms check-paths check-deviations
+check: check-format check-shell check-lua check-scripts check-manual check-rooms check-paths check-proofs check-deviations
 
 check-format:
 	@clang-format --dry-run --Werror $(FORMATTED)
@@ -30,6 +30,10 @@ check-rooms:
 
 check-paths:
 	@tests/check/paths
+
+# Weaves and parses; `make verify` proves.
+check-proofs:
+	@tests/check/proofs
 
 # ---------------------------------------------------------------------------------- one log a source and tool
 SOURCES := $(LIBRARY_SOURCES) $(COLLISION_SOURCES) $(PROGRAM_SOURCES)
@@ -74,8 +78,11 @@ $(B)/log/library: $(LIBRARY_SOURCES) $(HEADERS) tests/check/check.mk
 # At most 10 ways through a function, each case of a switch counted, and 60 lines.
 $(B)/log/functions: $(C_FILES) tests/check/functions.awk
 	$(call look,PMCCABE,pmccabe $(C_FILES) 2>&1 | awk -F '\t' -f tests/check/functions.awk)
-$(B)/log/texts: $(C_FILES) tests/check/texts.awk
-	$(call look,TEXTS,awk -v embedded='^lib/($(subst $() ,|,$(LIBRARY_ROOMS)))/' -f tests/check/texts.awk $(C_FILES))
+# Rooms whose lines, banners and members are looked at.
+TIDY_ROOMS := batch motion cell sim collision script layout
+$(B)/log/texts: $(C_FILES) tests/check/texts.awk tests/check/check.mk
+	$(call look,TEXTS,LC_ALL=C awk -v embedded='^lib/($(subst $() ,|,$(LIBRARY_ROOMS)))/' \
+	    -v tidy='^lib/($(subst $() ,|,$(TIDY_ROOMS)))/' -f tests/check/texts.awk $(C_FILES))
 
 LOGS := $(SOURCE_LOGS) $(addprefix $(B)/log/,library program functions texts)
 check-deviations: $(LOGS) lib/DEVIATIONS.md

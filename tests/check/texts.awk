@@ -1,5 +1,5 @@
-# What no tool reports: extensions of the language in the embedded library, names that are reserved, and suppressions, which
-# belong into lib/DEVIATIONS.md.
+# What no tool reports: extensions of the language in the embedded library, names that are reserved, suppressions, which belong
+# into lib/DEVIATIONS.md, and what the formatter leaves: it neither shortens a comment nor mends one. Run with LC_ALL=C.
 
 function report(rule) {
     print FILENAME ":" FNR ":1: warning: " $0 " [" rule "]"
@@ -13,4 +13,24 @@ FILENAME ~ embedded && /__attribute__|__builtin|__extension__|__asm/ {
 }
 /NOLINT|cppcheck-suppress|pragma +(GCC|clang)/ {
     report("inline-suppression")
+}
+
+# In the files that match `tidy`. Bytes that continue a character of UTF-8 are not counted.
+FNR == 1 {
+    type_alone = 0
+}
+FILENAME ~ tidy {
+    line = $0
+    gsub(/[\200-\277]/, "", line)
+    if (length(line) > 110) {
+        report("line-length")
+    }
+    if (line ~ /^ *\/\* ----/ && line !~ /\*\/$/) {
+        report("broken-banner")
+    }
+    # A type on a line of its own, and its member on the next: a comment behind the member was too long.
+    if (type_alone && line ~ /^ +\**[a-z_0-9]+(\[.*\])*;/) {
+        report("torn-member")
+    }
+    type_alone = line ~ /^ +(const )?[a-z_0-9]+_t$/
 }

@@ -10,7 +10,7 @@
 #include "app/connection.h"
 #include "app/run_arguments.h"
 #include "fuzz.h"
-#include "layout/layout_load.h"
+#include "layout/layout.h"
 #include "study/study.h"
 
 #define WORDS 24

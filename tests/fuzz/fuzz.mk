@@ -14,8 +14,17 @@ $(B)/fuzz_parts.a: $(filter-out $(B)/obj/lib/app/main.o,$(PROGRAM_OBJECTS)) $(B)
 # Lua's memory from snapshots; LCM without a network; argp without exits, and nothing behind it.
 $(B)/tests/fuzz/script_fuzz $(B)/tests/fuzz/line_fuzz: $(B)/obj/tests/fuzz/snapshot.o
 $(B)/tests/fuzz/message_fuzz: $(B)/obj/tests/fuzz/fake_node.o $(B)/obj/tests/fuzz/message_frames.o
-$(B)/tests/fuzz/argv_fuzz: LINK += $(foreach name,argp_parse argp_error fopen wh_run_and_print wh_mcs_link_open wh_open_node wh_study_open \
-    wh_layout_load wh_sandbox_new wh_sandbox_free wh_sandbox_set_parameter,-Wl,--wrap=$(name))
+WRAPPED := $(shell grep -oE '__wrap_[a-z_]+' tests/fuzz/argv_fuzz.c | sed 's/__wrap_//' | sort -u)
+$(B)/tests/fuzz/argv_fuzz: LINK += $(WRAPPED:%=-Wl,--wrap=%)
+
+# What a target puts in the place of a part must be one: a name that has changed would leave the part itself in place.
+fuzzers: check-fuzz-parts
+.PHONY: check-fuzz-parts check-fuzz-names
+check-fuzz-parts: $(B)/fuzz_parts.a $(FUZZERS:%=$(B)/obj/%.o) $(FUZZ_SUPPORT)
+	@tests/fuzz/names parts $^
+check: check-fuzz-names
+check-fuzz-names:
+	@tests/fuzz/names words
 
 $(FUZZERS:%=$(B)/%): $(B)/tests/fuzz/%: $(B)/obj/tests/fuzz/%.o $(B)/fuzz_parts.a $(B)/libwaferhand_collision.a \
     $(B)/libwaferhand.a $(B)/libwaferhand_lcm.a

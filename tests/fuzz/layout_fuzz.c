@@ -5,7 +5,7 @@
 
 #include "fuzz.h"
 #include "layout/layout.h"
-#include "link/cell_layout.h"
+#include "link/messages.h"
 #include "motion/track.h"
 #include "script/sandbox.h"
 #include "sim/simulator.h"

@@ -22,6 +22,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
     REQUIRE(wh_session_open(&session, &options));
     session.sandbox->budget = BUDGET;
     wh_record_free(&session.record);
+    wh_rehearsal_free(&session.mcs.rehearsal);
     fuzz_snapshot_add(session.sandbox, sizeof *session.sandbox);
     fuzz_snapshot_add(&session, sizeof session);
     fuzz_snapshot_take();
@@ -51,7 +52,7 @@ static void check_completion(const char *line) {
 
 static void execute(const char *line) {
     static char answer[WH_SESSION_ANSWER_BYTES];
-    const uint64_t before = wh_grasp_hash(&session.mcs.simulator.table);
+    const uint64_t before = wh_grasp_hash(&session.mcs.local.simulator.table);
     /* A short answer now and then, for its end. */
     const size_t room = strlen(line) % 16 == 15 ? 40 : sizeof answer;
     const wh_status_t status = wh_session_execute(&session, line, answer, room);
@@ -60,10 +61,10 @@ static void execute(const char *line) {
     }
     REQUIRE(strlen(answer) < room);
     if (status == WH_STATUS_NO_SUCH_COMMAND || status == WH_STATUS_BAD_ARGUMENT) {
-        REQUIRE(wh_grasp_hash(&session.mcs.simulator.table) == before);
+        REQUIRE(wh_grasp_hash(&session.mcs.local.simulator.table) == before);
     }
     fuzz_check_cell(&session.mcs);
-    REQUIRE(session.mcs.running == WH_NONE && !session.mcs.rehearsing);
+    REQUIRE(session.mcs.recorder.running == WH_NONE && !session.mcs.rehearsal.is_on);
     check_completion(line);
 }
 

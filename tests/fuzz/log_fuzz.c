@@ -9,7 +9,7 @@
 
 #include "app/app.h"
 #include "fuzz.h"
-#include "link/checksum.h"
+#include "link/messages.h"
 #include "log/log_run.h"
 #include "log/replay.h"
 #include "print/record_print.h"

@@ -4,7 +4,7 @@
 
 #include "fuzz.h"
 #include "grasp/grasp.h"
-#include "link/checksum.h"
+#include "link/messages.h"
 
 /* What to put right, or-ed. */
 enum { FINGERPRINT = 1, IDENTITY = 2, SEQ = 4, HASH = 8, SEAL = 16, SLICE_LATER = 32 };

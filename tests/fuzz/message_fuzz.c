@@ -11,9 +11,9 @@
 #include "fake_node.h"
 #include "fuzz.h"
 #include "grasp/restore.h"
-#include "layout/layout_load.h"
-#include "link/cell_layout.h"
+#include "layout/layout.h"
 #include "link/mcs_process.h"
+#include "link/messages.h"
 #include "link/sim_process.h"
 #include "print/record_print.h"
 

@@ -11,16 +11,16 @@
 
 static void check_valves(const wh_outputs_look_t *look, const int32_t *valves, size_t count) {
     for (size_t i = 0; i < WH_GRIPPERS + 1; ++i) {
-        const bool set = look->condition == WH_OUTPUTS_GOOD && i < count;
+        const bool set = look->finding == WH_OUTPUTS_GOOD && i < count;
         REQUIRE(set ? valves[i] == WH_VALVE_OPEN || valves[i] == WH_VALVE_CLOSED : valves[i] == UNSET);
     }
 }
 
 static void check_look(const wh_outputs_look_t *look, size_t count, size_t size) {
-    REQUIRE((unsigned)look->condition < WH_OUTPUTS_CONDITIONS);
-    REQUIRE(look->condition != WH_OUTPUTS_GOOD || look->found == count);
-    REQUIRE(look->condition != WH_OUTPUTS_SHORT || (look->found > 0 && look->found < count));
-    REQUIRE(look->condition != WH_OUTPUTS_LONG || look->found > count || look->oversize);
+    REQUIRE((unsigned)look->finding < WH_OUTPUTS_FINDINGS);
+    REQUIRE(look->finding != WH_OUTPUTS_GOOD || look->found == count);
+    REQUIRE(look->finding != WH_OUTPUTS_SHORT || (look->found > 0 && look->found < count));
+    REQUIRE(look->finding != WH_OUTPUTS_LONG || look->found > count || look->oversize);
     REQUIRE(look->oversize == (size > WH_OUTPUTS_BYTES && count >= 1 && count <= WH_GRIPPERS));
     REQUIRE(memchr(look->text, '\0', sizeof look->text) != NULL);
 }
@@ -33,7 +33,7 @@ static void check_rewritten(const int32_t *valves, size_t count) {
         text[2 * i + 1] = '\n';
     }
     int32_t again[WH_GRIPPERS];
-    REQUIRE(wh_outputs_parse(text, 2 * count, count, again).condition == WH_OUTPUTS_GOOD);
+    REQUIRE(wh_outputs_parse(text, 2 * count, count, again).finding == WH_OUTPUTS_GOOD);
     REQUIRE(memcmp(again, valves, count * sizeof *valves) == 0);
 }
 
@@ -49,7 +49,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const wh_outputs_look_t look = wh_outputs_parse((const char *)data + 1, size - 1, count, valves);
     check_valves(&look, valves, count);
     check_look(&look, count, size - 1);
-    if (look.condition == WH_OUTPUTS_GOOD) {
+    if (look.finding == WH_OUTPUTS_GOOD) {
         check_rewritten(valves, count);
     }
     return 0;

@@ -42,6 +42,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
     sandbox->budget = BUDGET;
     wh_sandbox_renew(sandbox);
     wh_record_free(&record);
+    wh_rehearsal_free(&mcs.rehearsal);
     fuzz_snapshot_add(sandbox, sizeof *sandbox);
     fuzz_snapshot_add(&mcs, sizeof mcs);
     fuzz_snapshot_add(&record, sizeof record);

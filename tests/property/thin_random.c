@@ -101,7 +101,7 @@ static void assert_within(const wh_thin_t *thin, size_t i, size_t width) {
     const double factor = samples[i].forced ? 0 : 1;
     wh_thin_read(thin, (int64_t)i + 7, read);
     for (size_t k = 0; k < width; ++k) {
-        assert_near(read[k], samples[i].values[k], factor * thin->tolerance * (1 + 1e-9));
+        assert_near(read[k], samples[i].values[k], factor * thin->list.tolerance * (1 + 1e-9));
     }
     if (thin->turns) {
         assert_near(angle_between(read + width, samples[i].values + width), 0,
@@ -110,14 +110,15 @@ static void assert_within(const wh_thin_t *thin, size_t i, size_t width) {
 }
 
 static void assert_points(const wh_thin_t *thin) {
-    for (size_t i = 0; i < thin->count; ++i) {
-        const wh_thin_point_t *point = &thin->points[i];
+    for (size_t i = 0; i < thin->list.count; ++i) {
+        const wh_point_t *point = &thin->list.points[i];
         const sample_t *sample = &samples[point->slice - 7];
-        assert_true(i == 0 || point->slice > thin->points[i - 1].slice);
-        assert_memory_equal(point->values, sample->values, thin->width * sizeof(double));
+        assert_true(i == 0 || point->slice > thin->list.points[i - 1].slice);
+        assert_memory_equal(wh_points_numbers(&thin->list, i), sample->values,
+                            thin->list.width * sizeof(double));
     }
-    assert_int_equal(thin->points[0].slice, 7);
-    assert_int_equal(thin->points[thin->count - 1].slice, SAMPLES + 6);
+    assert_int_equal(thin->list.points[0].slice, 7);
+    assert_int_equal(thin->list.points[thin->list.count - 1].slice, SAMPLES + 6);
     assert_int_equal(thin->of, SAMPLES);
 }
 
@@ -130,7 +131,7 @@ static void check(size_t width, bool turns, size_t limit) {
     for (size_t i = 0; i < SAMPLES; ++i) {
         assert_within(&thin, i, width);
     }
-    assert_true(limit == SIZE_MAX || thin.count - thin.exact_count <= limit);
+    assert_true(limit == SIZE_MAX || thin.list.count - thin.list.exact_count <= limit);
     wh_thin_close(&thin);
 }
 
@@ -168,7 +169,7 @@ static void a_straight_line_has_two_points(void **state) {
         wh_thin_add(&thin, i, &value);
     }
     wh_thin_finish(&thin);
-    assert_int_equal(thin.count, 2);
+    assert_int_equal(thin.list.count, 2);
     double read;
     wh_thin_read(&thin, 400, &read);
     assert_near(read, 103, 1e-12);
@@ -192,8 +193,8 @@ static void a_rest_has_two_points(void **state) {
         }
     }
     wh_thin_finish(&thin);
-    assert_int_equal(thin.count, 3);
-    assert_int_equal(thin.points[1].slice, 10);
+    assert_int_equal(thin.list.count, 3);
+    assert_int_equal(thin.list.points[1].slice, 10);
     wh_thin_close(&thin);
 }
 

@@ -65,6 +65,7 @@ static void set_up_scene(void) {
     config =
         (wh_world_config_t){.parts = parts, .part_count = PARTS, .gripper_count = 1, .wafer_count = WAFERS};
     config.cell = &cell;
+    config.grasp = &table.config;
     config.arm.link = 300;
     config.wafer = (wh_convex_t){.kind = WH_CONVEX_CYLINDER, .half = {150, 0, 0.3875}};
     config.wafer.body_from_shape = wh_test_at(0, 0, 0.3875);
@@ -142,7 +143,8 @@ static bool play_slice(wh_world_t *world, const wh_pose_t *from, const wh_pose_t
         const wh_pose_t at = between(from, to, (double)i / (double)INSTANTS);
         look_at_instant(i == INSTANTS ? to : &at, i == INSTANTS, oracle);
     }
-    wh_world_step(world, &table, to, to, &list);
+    const wh_world_input_t seen = {table.slice, wafers, grippers, *to};
+    wh_world_step(world, &seen, &list);
     for (size_t i = 0; i < list.count; ++i) {
         assert_int_equal(events[i].kind, WH_EVENT_HIT);
     }
@@ -204,7 +206,9 @@ static void play_run(int run, int counts[2]) {
     wh_pose_t pose = turned(out * draw(-350, -200), out * draw(-300, 300),
                             10.0 * (run % 5) + (run % 3 == 2 ? 6.9 : draw(4, 8)), 0, draw(0, 360));
     assert_true(wh_world_bytes(&config) <= sizeof memory);
-    wh_world_t *world = wh_world_init(&config, &table, &pose, &pose, memory, sizeof memory);
+    grippers[0].base_from_gripper = pose;
+    const wh_world_input_t seen = {table.slice, wafers, grippers, pose};
+    wh_world_t *world = wh_world_init(&config, &seen, memory, sizeof memory);
     look_at_instant(&pose, false, &oracle);
     if (oracle.deepest < 1e-2) {
         return; /* it begins in contact, which is wh_world_check_rest's */

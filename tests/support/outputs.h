@@ -74,7 +74,7 @@ static inline void outputs_check_counters(const wh_outputs_t *reader) {
 
 static inline uint64_t outputs_looks(const wh_outputs_t *reader) {
     uint64_t looks = 0;
-    for (int i = 0; i < WH_OUTPUTS_CONDITIONS; ++i) {
+    for (int i = 0; i < WH_OUTPUTS_FINDINGS; ++i) {
         looks += reader->counters.looks[i];
     }
     return looks;
@@ -88,7 +88,7 @@ static inline unsigned outputs_update(outputs_fixture_t *f) {
     const bool switched = (result & WH_OUTPUTS_SWITCHED) != 0;
     f->reports += reported;
     assert_int_equal(f->reader.counters.reports, f->reports);
-    assert_int_equal(reported, f->reader.condition != before.condition);
+    assert_int_equal(reported, f->reader.finding != before.finding);
     assert_int_equal(switched, memcmp(f->reader.valves, before.valves, sizeof before.valves) != 0);
     assert_true(outputs_looks(&f->reader) - outputs_looks(&before) <= 1);
     assert_true(wh_outputs_due(&f->reader) > f->now_us);

@@ -4,7 +4,7 @@
 
 #include "support/support.h"
 
-#include "link/checksum.h"
+#include "link/messages.h"
 #include "link/protocol_server.h"
 
 enum { TEST_RUN = 4711 };

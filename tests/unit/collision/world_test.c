@@ -46,6 +46,7 @@ static void describe(void) {
     config =
         (wh_world_config_t){.parts = parts, .part_count = PARTS, .gripper_count = 2, .wafer_count = WAFERS};
     config.cell = &cell;
+    config.grasp = &table.config;
     config.arm.reach = 250;
     config.arm.link = 350;
     config.wafer.kind = WH_CONVEX_CYLINDER;
@@ -70,11 +71,19 @@ static int open_world(void **state) {
     return 0;
 }
 
+/* What the table's last step left. */
+static wh_world_input_t seen(void) {
+    const wh_world_input_t input = {table.slice, table.storage.wafers, table.storage.grippers, effector};
+    return input;
+}
+
 /* After the scene is as a test wants it. */
 static void begin(void) {
-    const wh_pose_t poses[] = {inputs[0].base_from_gripper, inputs[1].base_from_gripper};
+    grippers[0].base_from_gripper = inputs[0].base_from_gripper;
+    grippers[1].base_from_gripper = inputs[1].base_from_gripper;
     memory = malloc(wh_world_bytes(&config));
-    world = wh_world_init(&config, &table, &effector, poses, memory, wh_world_bytes(&config));
+    const wh_world_input_t input = seen();
+    world = wh_world_init(&config, &input, memory, wh_world_bytes(&config));
     assert_non_null(world);
 }
 
@@ -93,9 +102,9 @@ static size_t go(double x, double y, double z, int valve) {
     inputs[0].base_from_gripper = effector;
     inputs[0].valve = valve;
     assert_int_equal(wh_grasp_step(&table, inputs, &picks), WH_OK);
-    const wh_pose_t poses[] = {effector, inputs[1].base_from_gripper};
     list = (wh_event_list_t){events, EVENTS, 0};
-    wh_world_step(world, &table, &effector, poses, &list);
+    const wh_world_input_t input = seen();
+    wh_world_step(world, &input, &list);
     return list.count;
 }
 
@@ -195,7 +204,7 @@ static void a_wafer_that_was_put_elsewhere_is_there(void **state) {
     begin();
     const wh_pose_t there = wh_test_at(400, 0, 950);
     assert_int_equal(wh_grasp_place(&table, 1, &there), WH_OK);
-    wh_world_place(world, &table, 1);
+    wh_world_place(world, 1, &wafers[1].base_from_wafer);
     assert_int_equal(go(400, 0, 951, WH_VALVE_CLOSED), 1);
     assert_int_equal(events[0].wafer, 1);
 }
@@ -229,10 +238,10 @@ static void a_full_list_loses_events_but_no_figures(void **state) {
     (void)state;
     begin();
     effector = wh_test_at(520, 0, 900.5);
-    const wh_pose_t poses[] = {effector, inputs[1].base_from_gripper};
     inputs[0].base_from_gripper = effector;
     assert_int_equal(wh_grasp_step(&table, inputs, NULL), WH_OK);
-    wh_world_step(world, &table, &effector, poses, NULL);
+    const wh_world_input_t input = seen();
+    wh_world_step(world, &input, NULL);
     assert_int_equal(go(520, 0, 900.6, WH_VALVE_CLOSED), 0);
     assert_near(least(WH_CLEARANCE_BLADE_WAFER_ABOVE)->gap * least(WH_CLEARANCE_BLADE_WAFER_BELOW)->gap, 0,
                 0);
@@ -295,15 +304,16 @@ static void what_touches_before_a_run_is_found(void **state) {
     int32_t found[2];
     (void)state;
     begin();
-    assert_false(wh_world_check_rest(world, &table, found));
+    const wh_world_input_t input = seen();
+    assert_false(wh_world_check_rest(world, &input, found));
     free(memory);
     wafers[0].base_from_wafer.r.z = 900 + 9.5; /* lies in slot 2, and so do its ledges' rules */
     begin();
-    assert_false(wh_world_check_rest(world, &table, found));
+    assert_false(wh_world_check_rest(world, &input, found));
     free(memory);
     wafers[0].base_from_wafer.r.x = 900;
     begin();
-    assert_true(wh_world_check_rest(world, &table, found));
+    assert_true(wh_world_check_rest(world, &input, found));
     assert_true(is_pair(found, 0, PARTS));
 }
 
@@ -332,7 +342,8 @@ static void bad_descriptions_are_refused(void **state) {
     config.gripper_count = WH_WORLD_GRIPPERS + 1;
     assert_int_equal(wh_world_validate(&config, &part), WH_STATUS_BAD_CAPACITY);
     config.gripper_count = 2;
-    assert_null(wh_world_init(&config, &table, &effector, &effector, events, 8));
+    const wh_world_input_t input = seen();
+    assert_null(wh_world_init(&config, &input, events, 8));
 }
 
 int main(void) {

@@ -3,7 +3,7 @@
 #include "support/heap.h"
 #include "support/server.h"
 
-#include "link/proximity_message.h"
+#include "link/messages.h"
 #include "mcs/script_run.h"
 
 static wh_protocol_server_t servers[1];

@@ -12,7 +12,7 @@ static wh_outputs_look_t parse(const char *text, size_t count, int32_t *valves) 
 
 static void assert_good(const char *text, const char *valves) {
     int32_t values[WH_GRIPPERS];
-    assert_int_equal(parse(text, strlen(valves), values).condition, WH_OUTPUTS_GOOD);
+    assert_int_equal(parse(text, strlen(valves), values).finding, WH_OUTPUTS_GOOD);
     for (size_t i = 0; valves[i] != '\0'; ++i) {
         assert_int_equal(values[i], valves[i] - '0');
     }
@@ -28,10 +28,10 @@ static void good_files(void **state) {
     assert_good("0 1 1 0 1 0 0 1\n", "01101001");
 }
 
-static void assert_bad(const char *text, size_t count, wh_outputs_condition_t condition, size_t found) {
+static void assert_bad(const char *text, size_t count, wh_outputs_finding_t finding, size_t found) {
     int32_t values[WH_GRIPPERS] = {7, 7, 7, 7, 7, 7, 7, 7};
     const wh_outputs_look_t look = parse(text, count, values);
-    assert_int_equal(look.condition, condition);
+    assert_int_equal(look.finding, finding);
     assert_int_equal(look.found, found);
     for (size_t i = 0; i < WH_GRIPPERS; ++i) {
         assert_int_equal(values[i], 7);
@@ -64,8 +64,8 @@ static void bad_files(void **state) {
 static void a_zero_byte_is_no_end(void **state) {
     (void)state;
     int32_t values[2] = {7, 7};
-    assert_int_equal(wh_outputs_parse("0 1\0", 4, 2, values).condition, WH_OUTPUTS_GARBLED);
-    assert_int_equal(wh_outputs_parse("0\0001", 3, 2, values).condition, WH_OUTPUTS_GARBLED);
+    assert_int_equal(wh_outputs_parse("0 1\0", 4, 2, values).finding, WH_OUTPUTS_GARBLED);
+    assert_int_equal(wh_outputs_parse("0\0001", 3, 2, values).finding, WH_OUTPUTS_GARBLED);
     assert_int_equal(values[0], 7);
 }
 
@@ -75,11 +75,11 @@ static void the_beginning_of_a_good_file_says_the_same_or_is_short(void **state)
     static const char text[] = " 1\r\n0\t\n1 \n\n";
     for (size_t size = 0; size < sizeof text; ++size) {
         int32_t values[3];
-        const wh_outputs_condition_t condition = wh_outputs_parse(text, size, 3, values).condition;
-        if (condition == WH_OUTPUTS_GOOD) {
+        const wh_outputs_finding_t finding = wh_outputs_parse(text, size, 3, values).finding;
+        if (finding == WH_OUTPUTS_GOOD) {
             assert_true(values[0] == 1 && values[1] == 0 && values[2] == 1);
         } else {
-            assert_true(condition == WH_OUTPUTS_EMPTY || condition == WH_OUTPUTS_SHORT);
+            assert_true(finding == WH_OUTPUTS_EMPTY || finding == WH_OUTPUTS_SHORT);
         }
     }
 }
@@ -139,7 +139,7 @@ static void random_files_change_nothing_unless_they_are_good(void **state) {
     outputs_teardown(&f);
 }
 
-/* Everything at the path that can be, in any order: the condition in force is the one that a person sees. */
+/* Everything at the path that can be, in any order: the finding in force is the one that a person sees. */
 static void random_things_at_the_path(void **state) {
     (void)state;
     (void)wh_test_seed();
@@ -147,7 +147,7 @@ static void random_things_at_the_path(void **state) {
     outputs_begin(&f);
     for (int i = 0; i < 2000; ++i) {
         static const char *const texts[] = {"", "1", "1 1 1", "x", "0 1", "1 0"};
-        static const wh_outputs_condition_t conditions[] = {
+        static const wh_outputs_finding_t findings[] = {
             WH_OUTPUTS_EMPTY, WH_OUTPUTS_SHORT,   WH_OUTPUTS_LONG,    WH_OUTPUTS_GARBLED,   WH_OUTPUTS_GOOD,
             WH_OUTPUTS_GOOD,  WH_OUTPUTS_NO_FILE, WH_OUTPUTS_MISSING, WH_OUTPUTS_UNREADABLE};
         const uint32_t what = wh_test_below(9);
@@ -160,7 +160,7 @@ static void random_things_at_the_path(void **state) {
             assert_int_equal(symlink("outputs.txt", f.path), 0);
         }
         (void)outputs_pass(&f, WH_OUTPUTS_POLL_US + WH_OUTPUTS_SETTLE_US);
-        assert_int_equal(f.reader.condition, conditions[what]);
+        assert_int_equal(f.reader.finding, findings[what]);
     }
     outputs_teardown(&f);
 }

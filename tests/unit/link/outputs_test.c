@@ -1,4 +1,4 @@
-/* The reader of outputs.txt: every condition, every change of it, and how many reports that makes. */
+/* The reader of outputs.txt: every finding, every change of it, and how many reports that makes. */
 #include <poll.h>
 #include <sys/resource.h>
 
@@ -28,7 +28,7 @@ static void wrong_arguments_are_refused(void **state) {
     assert_int_equal(wh_outputs_open(&reader, path, good, 1), ENAMETOOLONG);
     assert_memory_equal(&reader, &before, sizeof reader);
     assert_int_equal(wh_outputs_open(&reader, "a", good, 1), 0); /* whatever its memory held */
-    assert_int_equal(reader.condition, WH_OUTPUTS_GOOD);
+    assert_int_equal(reader.finding, WH_OUTPUTS_GOOD);
     assert_int_equal(reader.counters.spells + reader.counters.looks[0] + reader.suspect, 0);
     wh_outputs_close(&reader);
     assert_int_equal(wh_outputs_fd(&reader), -1);
@@ -54,7 +54,7 @@ static void each_bad_content_is_reported_once(void **state) {
     (void)state;
     static const struct {
         const char *text, *found;
-        wh_outputs_condition_t condition;
+        wh_outputs_finding_t finding;
     } cases[] = {
         {"", "empty", WH_OUTPUTS_EMPTY},
         {" \n\t\r\n", "empty", WH_OUTPUTS_EMPTY},
@@ -77,7 +77,7 @@ static void each_bad_content_is_reported_once(void **state) {
         assert_int_equal(outputs_pass(&f, SETTLE - 1), 0);
         f.now_us += 1;
         assert_int_equal(outputs_update(&f), WH_OUTPUTS_REPORTED);
-        assert_int_equal(f.reader.condition, cases[i].condition);
+        assert_int_equal(f.reader.finding, cases[i].finding);
         snprintf(report, sizeof report, "%s: %s (expected 2 values, each 0 or 1); the valves stay 0 1",
                  f.path, cases[i].found);
         assert_string_equal(f.reader.report, report);
@@ -104,7 +104,7 @@ static void too_many_bytes_are_not_looked_into(void **state) {
     assert_int_equal(outputs_update(&f), WH_OUTPUTS_SWITCHED);
     outputs_put_bytes(f.path, text, WH_OUTPUTS_BYTES + 1);
     assert_int_equal(outputs_pass(&f, SETTLE), WH_OUTPUTS_REPORTED);
-    assert_int_equal(f.reader.condition, WH_OUTPUTS_LONG);
+    assert_int_equal(f.reader.finding, WH_OUTPUTS_LONG);
     assert_non_null(strstr(f.reader.report, ": more than 4096 bytes (expected"));
     outputs_teardown(&f);
 }
@@ -115,7 +115,7 @@ static void a_missing_file_is_reported_and_found_when_it_comes(void **state) {
     outputs_setup(&f);
     outputs_open(&f, f.path, "101");
     assert_int_equal(outputs_pass(&f, SETTLE), WH_OUTPUTS_REPORTED);
-    assert_int_equal(f.reader.condition, WH_OUTPUTS_MISSING);
+    assert_int_equal(f.reader.finding, WH_OUTPUTS_MISSING);
     assert_non_null(
         strstr(f.reader.report, ": missing (expected 3 values, each 0 or 1); the valves stay 1 0 1"));
     assert_int_equal(outputs_pass(&f, 10 * SECOND), 0);
@@ -135,11 +135,11 @@ static void what_is_no_file_is_reported(void **state) {
     assert_int_equal(unlink(f.path), 0);
     assert_int_equal(mkdir(f.path, 0777), 0);
     assert_int_equal(outputs_pass(&f, SECOND), WH_OUTPUTS_REPORTED);
-    assert_int_equal(f.reader.condition, WH_OUTPUTS_NO_FILE);
+    assert_int_equal(f.reader.finding, WH_OUTPUTS_NO_FILE);
     assert_non_null(strstr(f.reader.report, ": a directory (expected 2 values"));
     assert_int_equal(rmdir(f.path), 0);
     assert_int_equal(mkfifo(f.path, 0666), 0);
-    assert_int_equal(outputs_pass(&f, SECOND), 0); /* still the same condition */
+    assert_int_equal(outputs_pass(&f, SECOND), 0); /* still the same finding */
     assert_int_equal(unlink(f.path), 0);
     outputs_put(f.path, "0 0");
     assert_int_equal(outputs_update(&f), WH_OUTPUTS_REPORTED | WH_OUTPUTS_SWITCHED);
@@ -159,7 +159,7 @@ static void an_unreadable_file_is_reported_with_the_reason(void **state) {
     assert_int_equal(unlink(f.path), 0);
     assert_int_equal(symlink("outputs.txt", f.path), 0);
     assert_int_equal(outputs_pass(&f, SECOND), WH_OUTPUTS_REPORTED);
-    assert_int_equal(f.reader.condition, WH_OUTPUTS_UNREADABLE);
+    assert_int_equal(f.reader.finding, WH_OUTPUTS_UNREADABLE);
     assert_non_null(
         strstr(f.reader.report, ": cannot be read: Too many levels of symbolic links (expected 2"));
     assert_int_equal(unlink(f.path), 0);
@@ -258,7 +258,7 @@ static void many_looks_are_no_substitute_for_time(void **state) {
     outputs_teardown(&f);
 }
 
-static void from_one_bad_condition_to_another_is_one_report_each(void **state) {
+static void from_one_bad_finding_to_another_is_one_report_each(void **state) {
     (void)state;
     static const char *const texts[] = {"", "1", "1 1 1", "x"};
     outputs_fixture_t f;
@@ -331,7 +331,7 @@ static void a_folder_may_come_go_and_be_exchanged(void **state) {
     snprintf(path, sizeof path, "%s", outputs_path(&f, "in/outputs.txt"));
     outputs_open(&f, path, "11");
     assert_int_equal(outputs_pass(&f, SECOND), WH_OUTPUTS_REPORTED);
-    assert_int_equal(f.reader.condition, WH_OUTPUTS_MISSING);
+    assert_int_equal(f.reader.finding, WH_OUTPUTS_MISSING);
     assert_int_equal(mkdir(outputs_path(&f, "in"), 0777), 0);
     outputs_put(path, "0 1");
     assert_int_equal(outputs_pass(&f, WH_OUTPUTS_POLL_US), WH_OUTPUTS_SWITCHED | WH_OUTPUTS_REPORTED);
@@ -339,7 +339,7 @@ static void a_folder_may_come_go_and_be_exchanged(void **state) {
     assert_int_equal(outputs_update(&f), WH_OUTPUTS_SWITCHED);
     assert_int_equal(rename(outputs_path(&f, "in"), outputs_path(&f, "out")), 0);
     assert_int_equal(outputs_pass(&f, WH_OUTPUTS_POLL_US), WH_OUTPUTS_REPORTED);
-    assert_int_equal(f.reader.condition, WH_OUTPUTS_MISSING);
+    assert_int_equal(f.reader.finding, WH_OUTPUTS_MISSING);
     outputs_put(outputs_path(&f, "out/outputs.txt"), "0 0"); /* no longer ours */
     assert_int_equal(outputs_pass(&f, SECOND), 0);
     assert_int_equal(rename(outputs_path(&f, "out"), outputs_path(&f, "in")), 0);
@@ -459,11 +459,11 @@ static void a_bare_name_works(void **state) {
     outputs_teardown(&f);
 }
 
-static void conditions_have_names(void **state) {
+static void findings_have_names(void **state) {
     (void)state;
-    assert_string_equal(wh_outputs_condition_name(WH_OUTPUTS_GOOD), "good");
-    assert_string_equal(wh_outputs_condition_name(WH_OUTPUTS_GARBLED), "garbled");
-    assert_string_equal(wh_outputs_condition_name(WH_OUTPUTS_CONDITIONS), "unknown");
+    assert_string_equal(wh_outputs_finding_name(WH_OUTPUTS_GOOD), "good");
+    assert_string_equal(wh_outputs_finding_name(WH_OUTPUTS_GARBLED), "garbled");
+    assert_string_equal(wh_outputs_finding_name(WH_OUTPUTS_FINDINGS), "unknown");
 }
 
 int main(void) {
@@ -480,7 +480,7 @@ int main(void) {
         cmocka_unit_test(a_change_starts_the_settle_time_anew),
         cmocka_unit_test(a_file_that_never_rests_is_reported_after_64_bad_looks),
         cmocka_unit_test(many_looks_are_no_substitute_for_time),
-        cmocka_unit_test(from_one_bad_condition_to_another_is_one_report_each),
+        cmocka_unit_test(from_one_bad_finding_to_another_is_one_report_each),
         cmocka_unit_test(neighbours_make_no_looks),
         cmocka_unit_test(a_symbolic_link_is_followed),
         cmocka_unit_test(a_hard_link_elsewhere_is_noticed_within_a_second),
@@ -491,7 +491,7 @@ int main(void) {
         cmocka_unit_test(lost_events_lose_nothing),
         cmocka_unit_test(a_report_is_one_bounded_line_whatever_the_path),
         cmocka_unit_test(a_bare_name_works),
-        cmocka_unit_test(conditions_have_names),
+        cmocka_unit_test(findings_have_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,8 +2,8 @@
  * impossible first, and then the truth. */
 #include "support/support.h"
 
-#include "layout/layout_load.h"
-#include "link/checksum.h"
+#include "layout/layout.h"
+#include "link/messages.h"
 #include "link/protocol_client.h"
 #include "link/protocol_server.h"
 

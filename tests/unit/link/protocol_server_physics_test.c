@@ -2,7 +2,7 @@
  * the same bits, and none that no simulator could be in is taken over. */
 #include "support/server.h"
 
-#include "link/cell_layout.h"
+#include "link/messages.h"
 #include "mcs/script_run.h"
 
 #define SCRIPT "tests/end_to_end/data/delayed.lua"

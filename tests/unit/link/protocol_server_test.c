@@ -1,8 +1,8 @@
 /* The simulator's side of the protocol: what is stepped, repeated, ignored, turned away, taken over. */
 #include "support/support.h"
 
-#include "layout/layout_load.h"
-#include "link/checksum.h"
+#include "layout/layout.h"
+#include "link/messages.h"
 #include "link/protocol_server.h"
 
 static wh_sandbox_t *sandbox;

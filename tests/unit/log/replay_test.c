@@ -1,9 +1,8 @@
 /* Recordings in memory: what is the same, what differs and how that is named, what is not there. */
 #include "support/support.h"
 
-#include "layout/layout_load.h"
-#include "link/cell_layout.h"
-#include "link/checksum.h"
+#include "layout/layout.h"
+#include "link/messages.h"
 #include "log/replay.h"
 
 #define RUN 4711

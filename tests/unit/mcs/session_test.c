@@ -371,7 +371,7 @@ static void budget_is_for_each_command(void **state) {
     }
     assert_answer("WAIT 100", "ERROR 53 OUT_OF_BUDGET: ");
     assert_answer("WAIT 40", "OK seconds=40");
-    assert_int_equal(session.mcs.running, WH_NONE);
+    assert_int_equal(session.mcs.recorder.running, WH_NONE);
 }
 
 /* ------------------------------------------------------------------------------- answers, reports, opening

@@ -210,13 +210,16 @@ static struct {
     int64_t slice;
 } judge;
 
-static bool judge_segment(void *user, const wh_mcs_t *mcs, const wh_segment_t *segment, char *reason) {
+static bool judge_segment(void *user, const wh_track_t *track, const wh_state_t *state, bool first,
+                          char *reason) {
     assert_ptr_equal(user, &judge);
-    assert_true(mcs->rehearsing);
-    assert_int_equal(mcs->track.slice, judge.slice);
+    assert_true(session.mcs.rehearsal.is_on);
+    assert_int_equal(track->slice, judge.slice);
+    assert_int_equal(state->seq, judge.slice);
+    assert_int_equal(first, session.mcs.rehearsal.count == 0);
     ++judge.asked;
-    if (segment->kind == WH_SEGMENT_LINE && judge.refused_line > 0 && --judge.refused_line == 0) {
-        snprintf(reason, WH_MCS_REASON_BYTES, "the blade would meet the moon");
+    if (track->segment.kind == WH_SEGMENT_LINE && judge.refused_line > 0 && --judge.refused_line == 0) {
+        snprintf(reason, WH_REHEARSAL_REASON_BYTES, "the blade would meet the moon");
         return true;
     }
     return false;
@@ -224,8 +227,8 @@ static bool judge_segment(void *user, const wh_mcs_t *mcs, const wh_segment_t *s
 
 static void a_collision_ahead(void **state) {
     (void)state;
-    session.mcs.ahead = judge_segment;
-    session.mcs.ahead_user = &judge;
+    session.mcs.rehearsal.look_ahead = judge_segment;
+    session.mcs.rehearsal.look_ahead_user = &judge;
     memset(&judge, 0, sizeof judge);
     judge.refused_line = 3;
     assert_answer("GET A 1",

@@ -17,7 +17,7 @@ typedef struct {
 static oracle_t oracle;
 static wh_activity_t activity;
 static wh_machine_t machine;
-static wh_track_t track;
+static wh_command_t command;
 static wh_gripper_t grippers[GRIPPERS];
 static wh_state_t answer;
 static wh_task_t task;
@@ -28,16 +28,15 @@ static int set_up(void **state) {
     memset(&oracle, 0, sizeof oracle);
     memset(&activity, 0, sizeof activity);
     memset(&machine, 0, sizeof machine);
-    memset(&track, 0, sizeof track);
+    memset(&command, 0, sizeof command);
     memset(&task, 0, sizeof task);
     machine.axis_count = 6;
     machine.gripper_count = GRIPPERS;
     for (int32_t g = 0; g < GRIPPERS; ++g) {
         machine.mounts[g].axis = g == 0 ? WH_NONE : 3 + g;
         grippers[g].wafer = WH_NONE;
-        track.valves[g] = WH_VALVE_CLOSED;
+        command.grippers[g].valve = WH_VALVE_CLOSED;
     }
-    track.machine = &machine;
     answer.grippers = grippers;
     answer.gripper_count = GRIPPERS;
     return 0;
@@ -63,7 +62,7 @@ static int32_t busy(size_t r, wh_share_t share) {
         const wh_share_t own = grippers[g].wafer == WH_NONE ? WH_SHARE_EMPTY : WH_SHARE_LOADED;
         return turns ? 1 + (int32_t)own : 0;
     }
-    return r == 2 + 3 * g ? 1 + grippers[g].wafer : track.valves[g] == WH_VALVE_OPEN;
+    return r == 2 + 3 * g ? 1 + grippers[g].wafer : command.grippers[g].valve == WH_VALVE_OPEN;
 }
 
 static wh_share_t share_now(void) {
@@ -94,12 +93,12 @@ static void keep(size_t r, int32_t what, int64_t slice) {
 }
 
 static void count(void) {
-    ++track.slice;
+    ++command.seq;
     const wh_share_t share = share_now();
-    assert_int_equal(wh_activity_count(&activity, &task, &track, &answer), share);
+    assert_int_equal(wh_activity_count(&activity, &machine, &task, &command, &answer), share);
     ++oracle.shares[share];
     for (size_t r = 0; r < WH_RESOURCES; ++r) {
-        keep(r, busy(r, share), track.slice);
+        keep(r, busy(r, share), command.seq);
     }
 }
 
@@ -123,9 +122,9 @@ static void compare(void) {
 }
 
 static void end(void) {
-    wh_activity_end(&activity, track.slice);
+    wh_activity_end(&activity, command.seq);
     for (size_t r = 0; r < WH_RESOURCES; ++r) {
-        keep(r, 0, track.slice + 1);
+        keep(r, 0, command.seq + 1);
     }
 }
 
@@ -147,7 +146,7 @@ static void change_something(uint64_t what, size_t g) {
         grippers[g].wafer = (int32_t)wh_test_below(4) - 1;
         break;
     case 5:
-        track.valves[g] = WH_VALVE_CLOSED - track.valves[g];
+        command.grippers[g].valve = WH_VALVE_CLOSED - command.grippers[g].valve;
         break;
     default:
         break;
@@ -182,7 +181,7 @@ static void what_goes_on_after_an_end_begins_anew(void **state) {
     task.moves = task.robot = true;
     task.carried = 3;
     grippers[0].wafer = 2;
-    track.valves[0] = WH_VALVE_OPEN;
+    command.grippers[0].valve = WH_VALVE_OPEN;
     for (int i = 0; i < 3; ++i) {
         count();
         count();
@@ -197,7 +196,7 @@ static void the_first_slice_is_like_no_other(void **state) {
     (void)state;
     for (size_t g = 0; g < GRIPPERS; ++g) {
         grippers[g].wafer = 0;
-        track.valves[g] = WH_VALVE_OPEN;
+        command.grippers[g].valve = WH_VALVE_OPEN;
     }
     count();
     end();

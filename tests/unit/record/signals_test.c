@@ -23,13 +23,12 @@ static wh_signals_t signals;
 static slice_t *slices; /* by number, 0 not used */
 static size_t slice_count, slice_capacity;
 
-static void on_slice(void *user, const wh_mcs_t *mcs) {
+static void on_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
     (void)user;
-    const wh_state_t *state = &mcs->state;
-    if (!signals.layout) {
-        wh_signals_begin(&signals, mcs->layout, true);
+    if (state->status != WH_OK) {
+        return;
     }
-    wh_signals_slice(&signals, mcs->command.axes, mcs->command.axis_count, state);
+    wh_signals_slice(&signals, command->axes, command->axis_count, state);
     slice_count = (size_t)state->seq + 1;
     if (slice_count > slice_capacity) {
         slice_capacity = 2 * slice_count + 8192;
@@ -47,15 +46,18 @@ static void on_slice(void *user, const wh_mcs_t *mcs) {
         kept->wafers[w] = state->wafers[w].base_from_wafer;
         kept->holders[w] = state->wafers[w].holder;
     }
-    memcpy(kept->axes, mcs->command.axes, sizeof kept->axes);
+    memcpy(kept->axes, command->axes, sizeof kept->axes);
     kept->sensors = state->sensors;
     kept->is_exact = state->event_count > 0;
 }
 
-static void on_boundary(void *user, const wh_mcs_t *mcs) {
+static void on_boundary(void *user, const wh_layout_t *layout) {
     (void)user;
-    (void)mcs;
-    wh_signals_mark(&signals);
+    if (!signals.layout) {
+        wh_signals_begin(&signals, layout, true);
+    } else if (signals.last > 0) {
+        wh_signals_mark(&signals);
+    }
     if (slice_count > 0) {
         slices[slice_count - 1].is_exact = true;
     }
@@ -118,11 +120,11 @@ static const wh_stay_t *stay_at(int32_t wafer, int64_t slice) {
 static double room_mm(const slice_t *was) {
     return was->is_exact
                ? 1e-9
-               : 2 * WH_TRACE_MM + WH_TRACE_RAD * signals.layout->machine.robot.travel[WH_AXIS_R].max;
+               : 2 * WH_SIGNALS_MM + WH_SIGNALS_RAD * signals.layout->machine.robot.travel[WH_AXIS_R].max;
 }
 
 static double room_rad(const slice_t *was) {
-    return was->is_exact ? 0 : 2 * WH_TRACE_RAD;
+    return was->is_exact ? 0 : 2 * WH_SIGNALS_RAD;
 }
 
 static void check_gripper(size_t g, int64_t n) {
@@ -131,7 +133,7 @@ static void check_gripper(size_t g, int64_t n) {
     wh_signals_gripper(&signals, g, n, &shown);
     assert_pose(&shown, &was->grippers[g], room_mm(was), room_rad(was));
     assert_near(wh_path_read(&signals.vacuum[g], n, NULL), was->levels[g],
-                was->is_exact ? 0 : WH_TRACE_VACUUM);
+                was->is_exact ? 0 : WH_SIGNALS_VACUUM);
     assert_int_equal(step_at(&signals.valves[g], n), was->valves[g]);
     assert_int_equal(step_at(&signals.sensors[g], n), was->sensors >> g & 1U);
 }
@@ -139,10 +141,10 @@ static void check_gripper(size_t g, int64_t n) {
 /* The arm as it was placed for the collision check. */
 static void check_links(int64_t n) {
     const slice_t *was = &slices[n];
-    wh_pose_t links[WH_TRACE_LINKS], bodies[WH_ARM_BODIES];
+    wh_pose_t links[WH_SIGNALS_LINKS], bodies[WH_ARM_BODIES];
     assert_true(wh_signals_links(&signals, n, links));
     wh_arm_place(&signals.layout->shapes.arm, &was->grippers[0], bodies);
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         /* The elbow goes further than the wrist where the arm is folded or stretched. */
         assert_pose(&links[i], &bodies[WH_ARM_LIFT + i], 20 * room_mm(was), 40 * room_rad(was));
     }
@@ -172,7 +174,7 @@ static void check_axes(int64_t n) {
         const double limit = (double)wh_machine_limits(&signals.layout->machine, axis)->speed;
         double slope;
         const double value = wh_path_read(curve, n, &slope);
-        assert_near(value, slices[n].axes[axis], slices[n].is_exact ? 0 : curve->tolerance);
+        assert_near(value, slices[n].axes[axis], slices[n].is_exact ? 0 : curve->list.tolerance);
         if (n > 1) {
             assert_near(slope / seconds, (slices[n].axes[axis] - slices[n - 1].axes[axis]) / seconds,
                         0.02 * limit);
@@ -274,8 +276,8 @@ static void a_gripper_that_is_elsewhere(void **state) {
         wh_signals_slice(&other, n == 1500 ? NULL : slices[n].axes, layout->machine.axis_count, &at);
     }
     wh_signals_finish(&other);
-    assert_int_equal(other.own[0].points[0].slice, 901);
-    assert_int_equal(other.own[1].points[0].slice, 1500);
+    assert_int_equal(other.own[0].list.points[0].slice, 901);
+    assert_int_equal(other.own[1].list.points[0].slice, 1500);
     for (int64_t n = 1; n <= 2000; ++n) {
         wh_pose_t shown, was = slices[n].grippers[0];
         was.r.z += n > 900 ? 0.25 : 0;
@@ -395,14 +397,14 @@ static void a_document_is_made(void **state) {
         json_array_size(json_object_get(json_array_get(json_object_get(tracks, "grippers"), 0), "t")), 0);
     const json_t *axis = json_array_get(json_object_get(tracks, "axes"), WH_AXIS_R);
     const wh_path_t *curve = &signals.axes[WH_AXIS_R];
-    assert_int_equal(json_array_size(json_object_get(axis, "t")), curve->count);
-    assert_int_equal(json_array_size(json_object_get(axis, "v")), curve->count);
-    assert_int_equal(json_array_size(json_object_get(axis, "slope")), curve->count);
-    for (size_t i = 0; i < curve->count; ++i) {
-        const wh_path_point_t *point = &curve->points[i];
+    assert_int_equal(json_array_size(json_object_get(axis, "t")), curve->list.count);
+    assert_int_equal(json_array_size(json_object_get(axis, "v")), curve->list.count);
+    assert_int_equal(json_array_size(json_object_get(axis, "slope")), curve->list.count);
+    for (size_t i = 0; i < curve->list.count; ++i) {
+        const wh_point_t *point = &curve->list.points[i];
         assert_near(number_at(axis, "t", i), (double)point->slice / 1e3, 1e-9);
-        assert_near(number_at(axis, "v", i), point->value, point->exact ? 0 : 1e-4);
-        assert_near(number_at(axis, "slope", i), point->slope * 1e3, 1e-3);
+        assert_near(number_at(axis, "v", i), wh_path_value(curve, i), point->exact ? 0 : 1e-4);
+        assert_near(number_at(axis, "slope", i), wh_path_slope(curve, i) * 1e3, 1e-3);
     }
     const json_t *machine = json_object_get(read, "machine");
     const json_t *chuck = json_array_get(json_object_get(machine, "grippers"), 1);

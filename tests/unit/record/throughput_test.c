@@ -320,16 +320,17 @@ static void forgetting(void **state) {
     static const wh_put_record_t put = {0, 1, 1, 5};
     static wh_gripper_t gripper = {.wafer = 7};
     static wh_machine_t machine = {.axis_count = 4, .gripper_count = 1};
-    static wh_track_t track;
+    static wh_command_t command;
     const wh_state_t answer = {.grippers = &gripper, .gripper_count = 1};
     const wh_task_t moving = {WH_SHARE_WAITING, true, true, 1};
     const wh_task_t standing = {WH_SHARE_WAITING, false, true, 0};
     machine.mounts[0].axis = WH_NONE;
-    track.machine = &machine;
-    track.slice = 1;
-    assert_int_equal(wh_activity_count(&record.activity, &moving, &track, &answer), WH_SHARE_LOADED);
-    track.slice = 2;
-    assert_int_equal(wh_activity_count(&record.activity, &standing, &track, &answer), WH_SHARE_WAITING);
+    command.seq = 1;
+    assert_int_equal(wh_activity_count(&record.activity, &machine, &moving, &command, &answer),
+                     WH_SHARE_LOADED);
+    command.seq = 2;
+    assert_int_equal(wh_activity_count(&record.activity, &machine, &standing, &command, &answer),
+                     WH_SHARE_WAITING);
     wh_record_add_put(&record, &put);
     wh_record_add_cycle(&record, 1, "name", 0);
     assert_int_equal(record.activity.interval_count, 1);

@@ -1,0 +1,55 @@
+/* The colours of a cell's parts, in one table: of drawings (`layout --svg`), of glTF, of the report's page
+ * and of Drake's viewer. The page's style sheet, lib/report/page/page.css, has them again under names of its
+ * own; a test compares. */
+#ifndef WH_LAYOUT_INKS_H
+#define WH_LAYOUT_INKS_H
+
+#include "../collision/world.h"
+
+/* What a part is to the eye. */
+typedef enum {
+    WH_INK_WALL,
+    WH_INK_SHELL,
+    WH_INK_LEDGE,
+    WH_INK_WAFER,
+    WH_INK_ARM,
+    WH_INK_CHUCK,
+    WH_INK_BLADE,
+    WH_INKS
+} wh_part_ink_t;
+
+/* As a screen has it (sRGB), 0xrrggbb, on light and on dark paper. */
+typedef struct {
+    uint32_t light, dark;
+} wh_colour_t;
+
+/* Drawings and glTF tell parts apart by stronger colours than the page and the viewer. There grippers have
+ * those of wh_ink_series, so that they and what they hold stand out. */
+typedef struct {
+    const char *class, *name; /* in a drawing, and in its key */
+    wh_colour_t drawn;
+    const char *opacity; /* in a drawing */
+    wh_colour_t shown;   /* on the page; the light one in the viewer */
+} wh_ink_look_t;
+
+extern const wh_ink_look_t wh_ink_looks[WH_INKS];
+
+/* The same for glTF: `drawn.light` in linear light. All numbers are 0 to 1. */
+typedef struct {
+    const char *name;
+    double red, green, blue, opacity;
+    double metallic, roughness;
+} wh_ink_material_t;
+
+extern const wh_ink_material_t wh_ink_materials[WH_INKS];
+
+/* Of grippers on the page and in the viewer, over and over. */
+#define WH_INK_SERIES 6
+extern const wh_colour_t wh_ink_series[WH_INK_SERIES];
+
+/* Of edges and notches, and of what is behind the cell, on the page and in the viewer. */
+extern const wh_colour_t wh_ink_edge, wh_ink_stage;
+
+wh_part_ink_t wh_ink_of(const wh_part_t *part);
+
+#endif

@@ -1,0 +1,269 @@
+/* The cell: its layout is found, read and handed to Lua, and gets a simulator in this process. */
+#include <stddef.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "../script/wh_module_values.h"
+#include "ahead.h"
+#include "native.h"
+
+static bool is_same_file(const char *a, const char *b) {
+    struct stat one;
+    struct stat two;
+    return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_dev == two.st_dev && one.st_ino == two.st_ino;
+}
+
+/* "lua/examples/../layouts" reads better as "lua/layouts": if that is the same file, symbolic links considered. */
+static const char *push_short_path(lua_State *L, const char *path) {
+    const char *up = strstr(path, "/../");
+    const char *start = up;
+    while (start && start > path && start[-1] != '/') {
+        --start;
+    }
+    if (!up || strncmp(start, "..", 2) == 0) {
+        return lua_pushstring(L, path);
+    }
+    lua_pushlstring(L, path, (size_t)(start - path));
+    lua_pushstring(L, up + 4);
+    lua_concat(L, 2);
+    return is_same_file(path, lua_tostring(L, -1)) ? lua_tostring(L, -1) : lua_pushstring(L, path);
+}
+
+/* The layout's path relative to the script's own folder. */
+static const char *push_layout_path(lua_State *L, const wh_mcs_t *mcs, const char *name) {
+    const char *slash = strrchr(mcs->script, '/');
+    if (name[0] == '/' || !slash) {
+        return lua_pushstring(L, name);
+    }
+    lua_pushlstring(L, mcs->script, (size_t)(slash - mcs->script) + 1);
+    lua_pushstring(L, name);
+    lua_concat(L, 2);
+    return push_short_path(L, lua_tostring(L, -1));
+}
+
+static void *lua_memory(lua_State *L, size_t bytes) {
+    void *memory = lua_newuserdatauv(L, bytes > 0 ? bytes : 1, 0);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, memory);
+    return memory;
+}
+
+/* What a trial draws for the layout whose table is on top of the stack. */
+static const wh_layout_t *make_reality(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
+    if (!mcs->trial || !layout->errors) {
+        return layout;
+    }
+    wh_trial_cell_t *trial_cell = lua_memory(L, sizeof *trial_cell);
+    wh_trial_cell_fill(trial_cell, layout, mcs->trial,
+                       lua_memory(L, layout->station_count * sizeof *layout->places),
+                       lua_memory(L, layout->wafer_count * sizeof *layout->start));
+    if (layout->collision) {
+        wh_layout_read_trial_world(L, &trial_cell->layout);
+    }
+    mcs->local.trial = trial_cell;
+    return &trial_cell->layout;
+}
+
+/* Valves act late: in front of the simulator, with which the local cell begins. */
+static wh_status_t exchange_late(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
+    wh_local_cell_t *local = (wh_local_cell_t *)(void *)link;
+    wh_command_t late = *command;
+    wh_trial_cell_delay(local->trial, &late);
+    return wh_simulator_step(&local->simulator, &late, state);
+}
+
+static wh_status_t set_up_simulator(lua_State *L, wh_simulator_t *simulator, const wh_layout_t *real) {
+    const size_t bytes = real->wafer_count * sizeof(wh_wafer_t);
+    wh_grasp_storage_t storage = {.wafer_count = real->wafer_count,
+                                  .gripper_count = real->machine.gripper_count};
+    storage.wafers = lua_memory(L, bytes);
+    storage.grippers = lua_memory(L, storage.gripper_count * sizeof(wh_gripper_t));
+    storage.bucket_count = wh_grasp_buckets(storage.wafer_count, storage.gripper_count);
+    storage.buckets = lua_memory(L, storage.bucket_count * sizeof(uint32_t));
+    if (bytes > 0) {
+        memcpy(storage.wafers, real->start, bytes);
+    }
+    const wh_status_t status = wh_simulator_init(simulator, &real->grasp, &storage, &real->cell);
+    return status == WH_OK ? wh_simulator_set_physics(simulator, &real->physics) : status;
+}
+
+static void set_up_local(lua_State *L, wh_local_cell_t *local, const wh_layout_t *real) {
+    const wh_status_t status = set_up_simulator(L, &local->simulator, real);
+    if (status != WH_OK) {
+        luaL_error(L, "%s: %s", real->path, wh_status_text(status));
+    }
+    if (real->collision) {
+        wh_collision_attach(&local->collision, real, &local->simulator,
+                            lua_memory(L, wh_collision_bytes(real)));
+    }
+    if (local->trial) {
+        local->simulator.link.exchange = exchange_late;
+    }
+}
+
+static void set_up_look_ahead(lua_State *L, wh_rehearsal_t *rehearsal, const wh_layout_t *layout) {
+    if (layout->look_ahead && !rehearsal->look_ahead) {
+        wh_ahead_t *ahead = lua_memory(L, sizeof *ahead);
+        wh_ahead_init(ahead, layout, lua_memory(L, wh_ahead_bytes(layout)));
+        rehearsal->look_ahead = wh_ahead_judge;
+        rehearsal->look_ahead_user = ahead;
+    }
+}
+
+static void hear_decisions(void *user, const wh_command_t *command, const wh_state_t *state) {
+    (void)state;
+    wh_decisions_slice(user, command);
+}
+
+static void hear_record(void *user, const wh_command_t *command, const wh_state_t *state) {
+    wh_recorder_events(user, state);
+    wh_recorder_slice(user, command, state);
+}
+
+static void set_up_listeners(wh_mcs_t *mcs) {
+    mcs->recorder.layout = mcs->layout;
+    mcs->recorder.cell = &mcs->real->cell;
+    wh_mcs_listen(mcs, hear_record, &mcs->recorder);
+    if (mcs->decisions) {
+        wh_mcs_listen(mcs, hear_decisions, mcs->decisions);
+    }
+    if (mcs->listener.slice) {
+        wh_mcs_listen(mcs, mcs->listener.slice, mcs->listener.user);
+    }
+}
+
+static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
+    const wh_layout_t *real = make_reality(L, mcs, layout);
+    set_up_local(L, &mcs->local, real);
+    const wh_status_t status = wh_track_init(&mcs->track, &real->machine, layout->slice_us);
+    if (status != WH_OK) {
+        luaL_error(L, "%s: %s", layout->path, wh_status_text(status));
+    }
+    set_up_look_ahead(L, &mcs->rehearsal, layout);
+    mcs->link = &mcs->local.simulator.link;
+    wh_simulator_view(&mcs->local.simulator, &mcs->state);
+    mcs->layout = layout;
+    mcs->real = real;
+    set_up_listeners(mcs);
+    wh_mcs_start_faults(mcs);
+}
+
+/* ----------------------------------------------------------------------------------------------- the layout for Lua */
+
+static void set_boolean(lua_State *L, const char *name, bool value) {
+    lua_pushboolean(L, value);
+    lua_setfield(L, -2, name);
+}
+
+static void set_text(lua_State *L, const char *name, const char *value) {
+    lua_pushstring(L, value);
+    lua_setfield(L, -2, name);
+}
+
+static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) {
+    const wh_layout_station_t *station = &layout->stations[index];
+    const wh_station_t *place = &layout->places[index];
+    static const char *const modes[] = {"both", "get", "put", "none"};
+    lua_createtable(L, 0, 24);
+    wh_lua_set_number(L, "pitch", place->pitch);
+    wh_lua_set_number(L, "stroke", station->stroke);
+    wh_lua_set_number(L, "offset", station->offset);
+    wh_lua_set_number(L, "retract", station->retract);
+    wh_lua_set_number(L, "pickup_speed", station->pickup_speed);
+    wh_lua_set_number(L, "pickup_acceleration", station->pickup_acceleration);
+    wh_lua_set_number(L, "release", station->release);
+    wh_lua_set_number(L, "vacuum_delay", station->vacuum_delay);
+    wh_lua_set_number(L, "timeout", station->timeout);
+    wh_lua_set_number(L, "wait", station->wait);
+    wh_lua_set_number(L, "map_speed", station->map_speed);
+    wh_lua_set_number(L, "retries", station->retries);
+    set_text(L, "name", station->name);
+    wh_lua_set_index(L, "index", (int32_t)index);
+    lua_pushinteger(L, place->slots);
+    lua_setfield(L, -2, "slots");
+    wh_lua_set_index(L, "chuck", place->chuck);
+    wh_lua_set_index(L, "effector", station->effector);
+    set_boolean(L, "taught", station->taught);
+    set_boolean(L, "check_map", station->check_map);
+    set_text(L, "vacuum_check", modes[station->check]);
+    set_text(L, "handover", station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
+}
+
+static void push_gripper(lua_State *L, const wh_layout_t *layout, size_t g) {
+    lua_createtable(L, 0, 3);
+    set_text(L, "name", layout->grippers[g].name);
+    set_boolean(L, "on_robot", layout->grippers[g].station == WH_NONE);
+    wh_lua_set_index(L, "axis", layout->machine.mounts[g].axis);
+}
+
+/* { path, slice, sampled, homed, tolerance, home: the robot's axes, grippers in order, stations by name }: lengths in mm, angles
+ * in rad, times in s. */
+static void push_layout(lua_State *L, const wh_layout_t *layout) {
+    lua_createtable(L, 0, 8);
+    set_text(L, "path", layout->path);
+    wh_lua_set_number(L, "slice", (double)layout->slice_us / 1e6);
+    set_boolean(L, "sampled", layout->grasp.check == WH_CHECK_SAMPLED);
+    set_boolean(L, "homed", layout->homed);
+    wh_lua_push_tolerance(L, &layout->grasp.tolerance);
+    lua_setfield(L, -2, "tolerance");
+    lua_createtable(L, 0, (int)layout->station_count);
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        push_station(L, layout, s);
+        lua_setfield(L, -2, layout->stations[s].name);
+    }
+    lua_setfield(L, -2, "stations");
+    lua_createtable(L, (int)layout->machine.gripper_count, 0);
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        push_gripper(L, layout, g);
+        lua_rawseti(L, -2, (lua_Integer)g + 1);
+    }
+    lua_setfield(L, -2, "grippers");
+    lua_createtable(L, WH_ROBOT_AXES, 0);
+    for (int axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        lua_pushnumber(L, layout->machine.robot.home[axis]);
+        lua_rawseti(L, -2, axis + 1);
+    }
+    lua_setfield(L, -2, "home");
+}
+
+/* ---------------------------------------------------------------------------------------------------------- words */
+
+/* Registry key of the script's own study. */
+static const char study_key;
+
+/* native.study(description): takes the place of the layout's. */
+static int set_study(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_of(L);
+    luaL_checktype(L, 1, LUA_TTABLE);
+    if (mcs->layout) {
+        return luaL_error(L, "study: %s was set up already (expected study before cell)", mcs->layout->path);
+    }
+    lua_settop(L, 1);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &study_key);
+    return 0;
+}
+
+/* native.cell(path): reads the layout and sets up the run; returns the layout as a table. */
+static int set_up_cell(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_of(L);
+    const char *name = luaL_checkstring(L, 1);
+    wh_sandbox_result_t result;
+    if (mcs->layout) {
+        lua_pushfstring(L, "cell: %s was set up already (expected one cell a script)", mcs->layout->path);
+        return lua_error(L);
+    }
+    const char *path = push_layout_path(L, mcs, name);
+    if (!wh_sandbox_evaluate(L, path, &result)) {
+        lua_pushstring(L, result.message);
+        return lua_error(L);
+    }
+    wh_layout_t *layout = wh_layout_read(L, path);
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &study_key) == LUA_TTABLE) {
+        wh_layout_read_own_study(L, mcs->script, layout);
+    }
+    lua_pop(L, 1);
+    set_up(L, mcs, layout);
+    push_layout(L, layout);
+    return 1;
+}
+
+const luaL_Reg wh_mcs_cell_functions[] = {{"cell", set_up_cell}, {"study", set_study}, {NULL, NULL}};

@@ -1,0 +1,90 @@
+/* Faults on purpose: a script's go to the simulator with the next slice's command. */
+#include <string.h>
+
+#include "native.h"
+
+static int64_t next_slice(const wh_mcs_t *mcs) {
+    return mcs->track.slice + 1;
+}
+
+void wh_mcs_start_faults(wh_mcs_t *mcs) {
+    const wh_physics_t *physics = &mcs->layout->physics;
+    mcs->fault_count = physics->fault_count;
+    memcpy(mcs->faults, physics->faults, sizeof mcs->faults);
+}
+
+/* A slot that was never used, so that numbers are not used again as long as there are others; then the first whose
+ * fault is over in the simulator too. */
+static size_t find_slot(lua_State *L, wh_mcs_t *mcs) {
+    size_t slot = mcs->fault_count < WH_FAULTS ? mcs->fault_count : 0;
+    while (slot < mcs->fault_count && mcs->faults[slot].until > mcs->track.slice) {
+        ++slot;
+    }
+    if (slot == WH_FAULTS) {
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
+                     "16 faults are there already (expected one to be cleared)");
+    }
+    return slot;
+}
+
+/* Puts the fault of a slot on its way, in place of what is on its way to that slot. */
+static void send(lua_State *L, wh_mcs_t *mcs, size_t slot, const wh_fault_t *fault) {
+    wh_command_t *command = &mcs->command;
+    size_t place = 0;
+    while (place < command->fault_count && command->faults[place].index != (int32_t)slot) {
+        ++place;
+    }
+    if (place == WH_COMMAND_FAULTS) {
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
+                     "4 faults change with the next slice already (expected a wait before the next)");
+    }
+    command->faults[place].index = (int32_t)slot;
+    command->faults[place].fault = *fault;
+    command->fault_count += place == command->fault_count ? 1 : 0;
+    mcs->faults[slot] = *fault;
+}
+
+/* native.fault(description): the fault's number, from 1. */
+static int add_fault(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_reader_t reader;
+    luaL_checktype(L, 1, LUA_TTABLE);
+    lua_settop(L, 1);
+    wh_reader_start(&reader, L, "fault");
+    const wh_fault_t fault = wh_layout_read_fault(&reader, mcs->layout, next_slice(mcs));
+    const size_t slot = find_slot(L, mcs);
+    send(L, mcs, slot, &fault);
+    mcs->fault_count += slot == mcs->fault_count ? 1 : 0;
+    lua_pushinteger(L, (lua_Integer)slot + 1);
+    return 1;
+}
+
+/* native.clear_fault(number): it ends with the next slice. */
+static int clear_fault(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const lua_Integer number = luaL_checkinteger(L, 1);
+    if (number < 1 || number > (lua_Integer)mcs->fault_count ||
+        mcs->faults[number - 1].until <= mcs->track.slice) {
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
+                     "no such fault (expected the number of one that is not over)");
+    }
+    wh_fault_t fault = mcs->faults[number - 1];
+    if (fault.until > next_slice(mcs)) {
+        fault.until = next_slice(mcs);
+        send(L, mcs, (size_t)number - 1, &fault);
+    }
+    return 0;
+}
+
+/* native.fault_kinds(): their names. */
+static int list_kinds(lua_State *L) {
+    lua_createtable(L, WH_FAULT_KINDS, 0);
+    for (int kind = 0; kind < WH_FAULT_KINDS; ++kind) {
+        lua_pushstring(L, wh_fault_name((wh_fault_kind_t)kind));
+        lua_rawseti(L, -2, kind + 1);
+    }
+    return 1;
+}
+
+const luaL_Reg wh_mcs_fault_functions[] = {
+    {"fault", add_fault}, {"clear_fault", clear_fault}, {"fault_kinds", list_kinds}, {NULL, NULL}};

@@ -1,0 +1,50 @@
+/* Within motion control: the table of functions that lua/mcs calls `native`. */
+#ifndef WH_MCS_NATIVE_H
+#define WH_MCS_NATIVE_H
+
+#include <lauxlib.h>
+
+#include "mcs.h"
+
+/* The motion control behind a function of the native table. */
+wh_mcs_t *wh_mcs_of(lua_State *L);
+
+/* The same, with a layout; raises NO_LAYOUT if none was set up. */
+wh_mcs_t *wh_mcs_with_layout(lua_State *L);
+
+/* Raises a numbered error: a table { number, name, message, line } whose text is "script:line: COMMAND: text,
+ * detail". */
+int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *detail)
+    __attribute__((noreturn));
+
+/* Index (from 0) of a wafer, gripper or station given from 1 by lua/mcs. */
+int32_t wh_mcs_index(lua_State *L, int argument, size_t count);
+
+/* From now on this is called for each slice. */
+void wh_mcs_listen(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user);
+
+/* The record is outside of Lua's memory cap, so an entry with so much text is paid for from the budget: about as much as a
+ * script would spend on making as much text anew. Raises if the budget is spent. */
+void wh_mcs_charge_entry(lua_State *L, size_t text_bytes);
+
+/* The layout's faults, once it is read. */
+void wh_mcs_start_faults(wh_mcs_t *mcs);
+
+/* Plans the segment table at stack index 1 from where the track stands, which has then begun it. Raises if it cannot be. */
+void wh_mcs_plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned);
+
+/* What so many slices cost of the instruction budget: a slice takes as much time as some twenty instructions of Lua. */
+static inline uint64_t wh_mcs_steps(int64_t slices) {
+    return 20 * (uint64_t)slices;
+}
+
+/* Functions of the native table, by file. */
+extern const luaL_Reg wh_mcs_cell_functions[];
+extern const luaL_Reg wh_mcs_command_functions[];
+extern const luaL_Reg wh_mcs_fault_functions[];
+extern const luaL_Reg wh_mcs_plan_functions[];
+extern const luaL_Reg wh_mcs_play_functions[];
+extern const luaL_Reg wh_mcs_query_functions[];
+extern const luaL_Reg wh_mcs_scan_functions[];
+
+#endif

@@ -1,0 +1,116 @@
+/* Segments, played slice by slice. */
+#include <math.h>
+
+#include "../text/array.h"
+#include "../text/clock.h"
+#include "native.h"
+
+/* The budget is charged for slices in portions, so that a long wait can be ended within one. */
+#define SLICES_PER_CHARGE 1024
+
+/* One slice: the command goes in, the state comes out, and whoever listens hears of both. */
+static wh_status_t exchange(wh_mcs_t *mcs) {
+    wh_command_from_track(&mcs->command, &mcs->cache, &mcs->track);
+    const wh_status_t status = mcs->link->exchange(mcs->link, &mcs->command, &mcs->state);
+    for (size_t i = 0; i < mcs->listener_count; ++i) {
+        mcs->listeners[i].hear(mcs->listeners[i].user, &mcs->command, &mcs->state);
+    }
+    mcs->command.fault_count = 0;
+    return status;
+}
+
+static bool stop_has_come(const wh_mcs_t *mcs) {
+    return mcs->track.slice >= mcs->stop_slice;
+}
+
+/* Plays up to SLICES_PER_CHARGE slices of the segment; fewer if the sandbox is to stop, for over a link at a
+ * wall-clock rate a portion may take seconds. */
+static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
+    wh_track_state_t state = WH_TRACK_MOVING;
+    const double begin = wh_clock_seconds();
+    for (int i = 0; i < SLICES_PER_CHARGE && *status == WH_OK && state == WH_TRACK_MOVING; ++i) {
+        state = wh_track_next(&mcs->track, mcs->state.sensors);
+        if (state == WH_TRACK_MOVING) {
+            *status = exchange(mcs);
+            wh_vacuum_watch_slice(&mcs->watch, mcs->state.sensors);
+        }
+        if (wh_sandbox_stopping(mcs->sandbox) || stop_has_come(mcs)) {
+            break;
+        }
+    }
+    mcs->recorder.record->wall_s += wh_clock_seconds() - begin;
+    return state;
+}
+
+static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
+    wh_status_t status = WH_OK;
+    wh_track_state_t state = WH_TRACK_MOVING;
+    while (state == WH_TRACK_MOVING) {
+        const int64_t before = mcs->track.slice;
+        state = play_portion(mcs, &status);
+        /* First, for a link that gave up waiting because of a stop returns with some status too. */
+        wh_sandbox_charge(L, wh_mcs_steps(mcs->track.slice - before));
+        if (status != WH_OK) {
+            wh_mcs_raise(L, mcs, status, "the simulator refused a slice");
+        }
+        if (stop_has_come(mcs)) {
+            mcs->stop_slice = INT64_MAX;
+            wh_mcs_raise(L, mcs, WH_STATUS_STOPPED, "by stop_in");
+        }
+    }
+    return state;
+}
+
+static void keep_segment(wh_mcs_t *mcs) {
+    if (mcs->keep_segments) {
+        mcs->segments =
+            wh_array_grow(mcs->segments, mcs->segment_count, &mcs->segment_capacity, sizeof *mcs->segments);
+        mcs->segments[mcs->segment_count++] = mcs->track.segment;
+    }
+}
+
+/* A segment of the last rehearsal begins as it was planned there, in the slice that the track has come to. */
+static void begin_planned(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
+    *planned = mcs->rehearsal.segments[wh_mcs_index(L, 1, mcs->rehearsal.count)];
+    planned->track.slice = mcs->track.slice;
+    mcs->track = planned->track;
+}
+
+/* native.play(segment or the number of a planned one): true if it ran to its end, false if its sensor did not come on in
+ * time; then the gripper that lost its wafer meanwhile, or nil. */
+static int play(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_planned_t planned;
+    luaL_argcheck(L, !mcs->rehearsal.is_on, 1, "a rehearsal goes on");
+    if (lua_isinteger(L, 1)) {
+        begin_planned(L, mcs, &planned);
+    } else {
+        wh_mcs_plan_segment(L, mcs, &planned);
+    }
+    keep_segment(mcs);
+    mcs->recorder.task = planned.task;
+    wh_vacuum_watch_begin(&mcs->watch, planned.may_lose & mcs->state.sensors);
+    const wh_segment_t *segment = &mcs->track.segment;
+    wh_decisions_read(mcs->decisions, WH_DECISION_BEGIN,
+                      segment->kind == WH_SEGMENT_SENSOR ? segment->gripper : WH_NONE,
+                      (int32_t)planned.may_lose);
+    const bool done = play_through(L, mcs) == WH_TRACK_DONE;
+    const int32_t lost = wh_vacuum_watch_lost(&mcs->watch, mcs->track.valves, mcs->state.gripper_count);
+    wh_decisions_read(mcs->decisions, WH_DECISION_END, lost, done);
+    lua_pushboolean(L, done);
+    if (lost == WH_NONE) {
+        return 1;
+    }
+    lua_pushinteger(L, lost + 1);
+    return 2;
+}
+
+/* native.stop_in(seconds): a STOP comes at the first slice at or after so many simulated seconds from now. */
+static int stop_in(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const double slices = ceil(luaL_checknumber(L, 1) * 1e6 / (double)mcs->track.slice_us);
+    mcs->stop_slice = mcs->track.slice + (int64_t)slices;
+    return 0;
+}
+
+const luaL_Reg wh_mcs_play_functions[] = {{"play", play}, {"stop_in", stop_in}, {NULL, NULL}};

@@ -1,0 +1,291 @@
+/* What can be asked of the cell: where wafers are and who holds them, where frames are, what came near to what. What a trial's
+ * errors change is noted in the decisions: a script that reads it is run anew for each trial. */
+#include <stdio.h>
+#include <string.h>
+
+#include "../math/relation.h"
+#include "../math/trig.h"
+#include "../script/wh_module_values.h"
+#include "native.h"
+
+/* native.utime(): simulated microseconds so far. */
+static int read_utime(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    lua_pushinteger(L, mcs->track.slice * mcs->track.slice_us);
+    return 1;
+}
+
+/* native.held(gripper): the name of the wafer that it holds, or nil. */
+static int find_held(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    const int32_t wafer = mcs->state.grippers[gripper].wafer;
+    wh_decisions_read(mcs->decisions, WH_DECISION_HELD, gripper, wafer);
+    if (wafer == WH_NONE) {
+        return 0;
+    }
+    lua_pushstring(L, mcs->layout->wafers[wafer].name);
+    return 1;
+}
+
+/* native.wafer_names(): a list. */
+static int list_wafers(lua_State *L) {
+    const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
+    wh_sandbox_charge(L, layout->wafer_count);
+    lua_createtable(L, (int)layout->wafer_count, 0);
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        lua_pushstring(L, layout->wafers[w].name);
+        lua_rawseti(L, -2, (lua_Integer)w + 1);
+    }
+    return 1;
+}
+
+/* native.wafer(name): the wafer's index, or nil. */
+static int find_wafer(lua_State *L) {
+    const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
+    wh_lua_push_index(L, wh_layout_find_wafer(layout, luaL_checkstring(L, 1)));
+    return 1;
+}
+
+static const wh_wafer_t *wafer_argument(lua_State *L, const wh_mcs_t *mcs, int argument) {
+    return &mcs->state.wafers[wh_mcs_index(L, argument, mcs->state.wafer_count)];
+}
+
+/* native.sensor(gripper): whether its vacuum sensor is on. */
+static int read_sensor(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    const bool on = (mcs->state.sensors >> gripper & 1U) != 0;
+    wh_decisions_read(mcs->decisions, WH_DECISION_SENSOR, gripper, on);
+    lua_pushboolean(L, on);
+    return 1;
+}
+
+/* native.is_open(gripper): whether its valve is. */
+static int read_valve(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    lua_pushboolean(L, mcs->track.valves[gripper] == WH_VALVE_OPEN);
+    return 1;
+}
+
+/* native.holder(wafer): the gripper's index, or nil. */
+static int find_holder(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t wafer = wh_mcs_index(L, 1, mcs->state.wafer_count);
+    const int32_t holder = mcs->state.wafers[wafer].holder;
+    wh_decisions_read(mcs->decisions, WH_DECISION_HOLDER, wafer, holder);
+    wh_lua_push_index(L, holder);
+    return 1;
+}
+
+/* native.measure(wafer, station, slot): dx, dy, dz, tilt_deg in that slot's frame. */
+static int measure(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_wafer_t *wafer = wafer_argument(L, mcs, 1);
+    const wh_station_t *station = &mcs->real->places[wh_mcs_index(L, 2, mcs->layout->station_count)];
+    const int32_t slot = wh_mcs_index(L, 3, (size_t)station->slots) + 1;
+    wh_decisions_measured(mcs->decisions, "offset");
+    const wh_place_t place = wh_station_measure(station, slot, &wafer->base_from_wafer);
+    lua_pushnumber(L, place.dx);
+    lua_pushnumber(L, place.dy);
+    lua_pushnumber(L, place.dz);
+    lua_pushnumber(L, wh_deg_from_rad(place.tilt));
+    return 4;
+}
+
+/* native.locate(wafer): station's name and slot, or nil when it lies in none. */
+static int locate(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_place_t place;
+    wh_decisions_measured(mcs->decisions, "where a wafer lies");
+    if (!wh_cell_locate(&mcs->real->cell, &wafer_argument(L, mcs, 1)->base_from_wafer, &place)) {
+        return 0;
+    }
+    lua_pushstring(L, mcs->layout->stations[place.station].name);
+    lua_pushinteger(L, place.slot);
+    return 2;
+}
+
+/* native.lies(wafer, station, slot, dx, dy, tolerance): 0 when it does not lie in that slot, 1 when it does, 2 when with that
+ * offset, too; its offset there; and the name of the station and the slot that it lies in, or nothing. The first decides, the
+ * others are for telling. */
+static int judge_place(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_decisions_claim_t claim;
+    claim.wafer = wh_mcs_index(L, 1, mcs->state.wafer_count);
+    claim.station = wh_mcs_index(L, 2, mcs->layout->station_count);
+    claim.slot = wh_mcs_index(L, 3, (size_t)mcs->layout->places[claim.station].slots) + 1;
+    claim.dx = luaL_checknumber(L, 4);
+    claim.dy = luaL_checknumber(L, 5);
+    claim.tolerance = luaL_checknumber(L, 6);
+    const int32_t verdict = wh_decisions_judge(&claim, &mcs->real->cell, mcs->state.wafers);
+    wh_decisions_claim(mcs->decisions, &claim, verdict);
+    const wh_pose_t *base_from_wafer = &mcs->state.wafers[claim.wafer].base_from_wafer;
+    wh_place_t place =
+        wh_station_measure(&mcs->real->cell.stations[claim.station], claim.slot, base_from_wafer);
+    lua_pushinteger(L, verdict);
+    lua_pushnumber(L, place.dx);
+    lua_pushnumber(L, place.dy);
+    if (!wh_cell_locate(&mcs->real->cell, base_from_wafer, &place)) {
+        return 3;
+    }
+    lua_pushstring(L, mcs->layout->stations[place.station].name);
+    lua_pushinteger(L, place.slot);
+    return 5;
+}
+
+/* native.wafer_pose(wafer): { r, R }, as the module wh takes it. */
+static int read_wafer_pose(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_decisions_measured(mcs->decisions, "a wafer's pose");
+    wh_lua_push_pose(L, &wafer_argument(L, mcs, 1)->base_from_wafer);
+    return 1;
+}
+
+static wh_pose_t commanded_pose(const wh_mcs_t *mcs, int32_t gripper) {
+    wh_pose_t poses[WH_GRIPPERS];
+    if (mcs->layout->grippers[gripper].station != WH_NONE) {
+        wh_decisions_measured(mcs->decisions, "a chuck's pose");
+    }
+    wh_machine_grippers(&mcs->real->machine, mcs->track.axes, poses);
+    return poses[gripper];
+}
+
+/* native.gripper_pose(gripper): where motion control has it, also before the first slice. */
+static int read_gripper_pose(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_pose_t pose = commanded_pose(mcs, wh_mcs_index(L, 1, mcs->state.gripper_count));
+    wh_lua_push_pose(L, &pose);
+    return 1;
+}
+
+/* native.real_gripper_pose(gripper): where it is, which a fault may keep from where motion control has it. */
+static int read_real_gripper_pose(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    wh_pose_t pose = commanded_pose(mcs, gripper);
+    if (mcs->state.seq > 0) {
+        pose = mcs->state.grippers[gripper].base_from_gripper;
+    }
+    wh_lua_push_pose(L, &pose);
+    return 1;
+}
+
+/* native.slot_pose(station, slot): where that slot really is. */
+static int read_slot_pose(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_station_t *station = &mcs->real->places[wh_mcs_index(L, 1, mcs->layout->station_count)];
+    const wh_pose_t pose = wh_station_slot(station, wh_mcs_index(L, 2, (size_t)station->slots) + 1);
+    wh_decisions_measured(mcs->decisions, "where a slot is");
+    wh_lua_push_pose(L, &pose);
+    return 1;
+}
+
+/* native.relate(first, second): how the second of two poses lies as seen from the first: distance, dx, dy, dz, and the angle
+ * and the whole turn in degrees. */
+static int relate(lua_State *L) {
+    const wh_field_t arguments[] = {wh_lua_argument("first", 1), wh_lua_argument("second", 2)};
+    wh_pose_t poses[2];
+    for (int i = 0; i < 2; ++i) {
+        lua_pushvalue(L, i + 1);
+        wh_lua_take_valid_pose(L, &arguments[i], &poses[i]);
+    }
+    const wh_relation_t relation = wh_relate(&poses[0], &poses[1]);
+    lua_pushnumber(L, relation.distance);
+    lua_pushnumber(L, relation.r.x);
+    lua_pushnumber(L, relation.r.y);
+    lua_pushnumber(L, relation.r.z);
+    lua_pushnumber(L, wh_deg_from_rad(relation.angle));
+    lua_pushnumber(L, wh_deg_from_rad(relation.turn));
+    return 6;
+}
+
+/* ---------------------------------------------------------------------------------------------------- collisions */
+
+static void push_part(lua_State *L, const wh_mcs_t *mcs, int32_t part) {
+    const char *name = wh_layout_part_name(mcs->layout, part);
+    lua_pushstring(L, name ? name : "nothing");
+}
+
+static void set_parts(lua_State *L, const wh_mcs_t *mcs, const int32_t parts[2]) {
+    lua_createtable(L, 2, 0);
+    for (int i = 0; i < 2; ++i) {
+        push_part(L, mcs, parts[i]);
+        lua_rawseti(L, -2, i + 1);
+    }
+    lua_setfield(L, -2, "parts");
+}
+
+/* native.hits(): a list of { kind, parts, at, time } so far. */
+static int list_hits(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    lua_newtable(L);
+    wh_decisions_measured(mcs->decisions, "hits");
+    for (size_t i = 0; i < mcs->recorder.record->event_count; ++i) {
+        const wh_event_record_t *record = &mcs->recorder.record->events[i];
+        const wh_event_kind_t kind = record->event.kind;
+        if (kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED) {
+            lua_createtable(L, 0, 4);
+            lua_pushstring(L, wh_event_name(kind));
+            lua_setfield(L, -2, "kind");
+            set_parts(L, mcs, record->event.parts);
+            wh_lua_set_triple(L, "at", &record->event.at);
+            wh_lua_set_number(L, "time", (double)record->utime / 1e6);
+            lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
+        }
+    }
+    return 1;
+}
+
+static int find_kind(const char *name) {
+    int kind = 0;
+    while (kind < WH_CLEARANCES && strcmp(name, wh_clearance_name((wh_clearance_kind_t)kind)) != 0) {
+        ++kind;
+    }
+    return kind;
+}
+
+/* native.clearance(kind): { gap, limit, time, parts, at } so far, of which only `limit` is there until something was near; nil
+ * where nobody looks; false for a kind that there is not. */
+static int find_clearance(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int kind = find_kind(luaL_checkstring(L, 1));
+    wh_decisions_measured(mcs->decisions, "clearance");
+    if (kind == WH_CLEARANCES) {
+        lua_pushboolean(L, 0);
+        return 1;
+    }
+    if (!mcs->local.collision.world) {
+        return 0;
+    }
+    const wh_clearance_t *least = &wh_world_clearances(mcs->local.collision.world)[kind];
+    lua_createtable(L, 0, 5);
+    wh_lua_set_number(L, "limit", mcs->layout->world.limits[kind]);
+    if (least->parts[0] != WH_NONE) {
+        wh_lua_set_number(L, "gap", least->gap);
+        wh_lua_set_number(L, "time", (double)((int64_t)least->slice * mcs->layout->slice_us) / 1e6);
+        set_parts(L, mcs, least->parts);
+        wh_lua_set_triple(L, "at", &least->at);
+    }
+    return 1;
+}
+
+const luaL_Reg wh_mcs_query_functions[] = {{"utime", read_utime},
+                                           {"held", find_held},
+                                           {"wafer_names", list_wafers},
+                                           {"wafer", find_wafer},
+                                           {"sensor", read_sensor},
+                                           {"is_open", read_valve},
+                                           {"holder", find_holder},
+                                           {"measure", measure},
+                                           {"locate", locate},
+                                           {"lies", judge_place},
+                                           {"wafer_pose", read_wafer_pose},
+                                           {"gripper_pose", read_gripper_pose},
+                                           {"real_gripper_pose", read_real_gripper_pose},
+                                           {"slot_pose", read_slot_pose},
+                                           {"relate", relate},
+                                           {"hits", list_hits},
+                                           {"clearance", find_clearance},
+                                           {NULL, NULL}};

@@ -1,0 +1,55 @@
+/* A rehearsal: a command is planned to its end before anything moves.
+ *
+ * The track runs ahead and comes back; each segment is kept as it was planned, so that it is played as it is while motion
+ * control gets the answers that the rehearsal assumed. On the way a rehearsal can have someone look for collisions ahead, and
+ * can note how near the axes come to the ends of their travel.
+ */
+#ifndef WH_MCS_REHEARSAL_H
+#define WH_MCS_REHEARSAL_H
+
+#include "../motion/track.h"
+#include "../record/record.h"
+#include "../sim/slice.h"
+
+/* Judges a segment that `track` has just begun: its valves are as the segments before it leave them. `state` is the last
+ * one from the cell, and nothing of the command has been played since; `first`: no segment of this command was judged yet. True
+ * if it would collide; `reason`, of WH_REHEARSAL_REASON_BYTES, then says with what. */
+#define WH_REHEARSAL_REASON_BYTES 200
+typedef bool wh_look_ahead_t(void *user, const wh_track_t *track, const wh_state_t *state, bool first,
+                             char *reason);
+
+/* A segment that was planned, ready to be played: a track that has just begun it. */
+typedef struct {
+    wh_track_t track;
+    wh_task_t task;
+    uint32_t may_lose; /* bit g: gripper g could lose a wafer in it */
+} wh_planned_t;
+
+/* All zero to begin with. Set `look_ahead`, if anybody does, and where the reach is noted; the rest is only to be read. */
+typedef struct {
+    bool is_on;             /* segments are planned, not played */
+    bool is_judged;         /* and looked at for collisions */
+    wh_track_t kept;        /* the track from before */
+    wh_planned_t *segments; /* of the last rehearsal, in order */
+    size_t count, capacity;
+    wh_look_ahead_t *look_ahead;
+    void *look_ahead_user;
+    int32_t reach_station, reach_slot; /* where it goes in, slot from 1; slot 0: the reach is not noted */
+} wh_rehearsal_t;
+
+/* From now on segments are planned, from where the track stands; what was planned before is forgotten. */
+void wh_rehearsal_begin(wh_rehearsal_t *rehearsal, const wh_track_t *track, bool is_judged);
+
+/* Keeps a planned segment. Aborts if out of memory. */
+void wh_rehearsal_add(wh_rehearsal_t *rehearsal, const wh_planned_t *planned);
+
+/* Notes in the record how near the axes come to their ends in the segment that the track has skipped, if that is asked for. */
+void wh_rehearsal_note_reach(const wh_rehearsal_t *rehearsal, const wh_track_t *track, wh_record_t *record);
+
+/* If a rehearsal goes on, it is over: the track is where it was. */
+void wh_rehearsal_end(wh_rehearsal_t *rehearsal, wh_track_t *track);
+
+/* Frees the planned segments. */
+void wh_rehearsal_free(wh_rehearsal_t *rehearsal);
+
+#endif

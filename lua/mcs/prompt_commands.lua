@@ -1,0 +1,305 @@
+-- What can be typed: for each command the arguments that it takes, its options, what it does, and how it is answered.
+--
+-- takes     kinds of the arguments in order; the last one may be left out if `optional`, and repeated if `repeated`
+-- options   kinds of the options by name; with `needs_option` at least one must be there
+-- run       gets the arguments, a list, and the options, a table; returns the answer's values as text or nil
+
+return function(native, commands, queries, lookup, tokens)
+  local prompt_commands = {}
+
+  -- WHERE stops after so many bytes: an answer is one line.
+  local LONGEST_ANSWER = 60000
+
+  -------------------------------------------------------------------------------------------------- kinds
+
+  local function station_names()
+    local list = {}
+    for name in pairs(native.layout.stations) do
+      list[#list + 1] = name
+    end
+    return list
+  end
+
+  local function gripper_names()
+    local list = {}
+    for index, gripper in ipairs(native.layout.grippers) do
+      list[index] = gripper.name
+    end
+    return list
+  end
+
+  local function command_names()
+    local list = {}
+    for name in pairs(prompt_commands.commands) do
+      list[#list + 1] = name
+    end
+    return list
+  end
+
+  -- For each kind of argument the names that there are, or nothing: then it is a number.
+  prompt_commands.kinds = {
+    station = station_names, gripper = gripper_names, wafer = native.wafer_names, command = command_names,
+    fault = native.fault_kinds, frame = lookup.frames,
+    handover = function() return { "new_first", "same_slice" } end,
+    vacuum_check = function() return { "both", "get", "put", "none" } end,
+    switch = function() return { "true", "false" } end,
+  }
+
+  local station_options = { gripper = "gripper", force = "switch" }
+  local kind_of = { number = "number", boolean = "switch" }
+  for name, kind in pairs(lookup.parameters) do
+    station_options[name] = kind_of[kind] or name
+  end
+
+  local function fields(list)
+    local options = {}
+    for _, name in ipairs(list) do
+      options[name] = "number"
+    end
+    return options
+  end
+
+  ------------------------------------------------------------------------------------------------ answers
+
+  -- Runs a command and returns how long it took.
+  local function timed(action, ...)
+    local begin = native.utime()
+    action(...)
+    return { "seconds", (native.utime() - begin) / 1e6 }
+  end
+
+  local function held_wafers()
+    local held = {}
+    for index in ipairs(native.layout.grippers) do
+      held[index] = native.held(index)
+    end
+    return held
+  end
+
+  local function effector_for(arguments, options)
+    return lookup.effector(options.gripper, lookup.station(arguments[1]).effector)
+  end
+
+  local function get(arguments, options)
+    local time = timed(commands.get, arguments[1], arguments[2], options)
+    return tokens.pairs { { "wafer", native.held(effector_for(arguments, options)) }, time }
+  end
+
+  local function put(arguments, options)
+    local held = held_wafers()
+    local time = timed(commands.put, arguments[1], arguments[2], options)
+    return tokens.pairs { { "wafer", held[effector_for(arguments, options)] }, time }
+  end
+
+  -- What it took, and what it put.
+  local function swap(arguments, options)
+    local before = held_wafers()
+    local time = timed(commands.swap, arguments[1], arguments[2], options)
+    local after = held_wafers()
+    local taken, put_down
+    for index, gripper in ipairs(native.layout.grippers) do
+      taken = taken or gripper.on_robot and not before[index] and after[index]
+      put_down = put_down or gripper.on_robot and not after[index] and before[index]
+    end
+    return tokens.pairs { { "wafer", taken or nil }, { "put", put_down or nil }, time }
+  end
+
+  local function map(arguments, options)
+    local codes
+    local time = timed(function() codes = commands.map(arguments[1], options) end)
+    return ("codes=%s %s"):format(table.concat(codes), tokens.pairs { time })
+  end
+
+  local function offset_text(dx, dy, dz, tilt)
+    return tokens.pairs { { "dx", dx }, { "dy", dy }, { "dz", dz }, { "tilt_deg", tilt } }
+  end
+
+  local function offset(arguments)
+    return offset_text(queries.offset(arguments[1], arguments[2], arguments[3]))
+  end
+
+  local function proximity(arguments)
+    local p = queries.proximity(arguments[1], arguments[2])
+    local failed = {}
+    for condition in pairs(p.failed) do
+      failed[#failed + 1] = condition
+    end
+    return tokens.pairs {
+      { "ready", tostring(p.ready) }, { "n1_proj_n2", p.n1_proj_n2 }, { "dr_proj_z", p.dr_proj_z },
+      { "dr_proj_x", p.dr_proj_xy[1] }, { "dr_proj_y", p.dr_proj_xy[2] }, { "dr_proj_xy_norm", p.dr_proj_xy_norm },
+    } .. " failed=" .. (#failed > 0 and table.concat(failed, ",") or "none")
+  end
+
+  local function measure(arguments)
+    local found = queries.measure(arguments[1], arguments[2])
+    return tokens.pairs {
+      { "distance", found.distance }, { "dx", found.dx }, { "dy", found.dy }, { "dz", found.dz },
+      { "angle_deg", found.angle }, { "turn_deg", found.turn },
+    }
+  end
+
+  local function distance(arguments)
+    return tokens.pairs { { "distance", queries.distance(arguments[1], arguments[2]) } }
+  end
+
+  local function angle(arguments)
+    return tokens.pairs { { "angle_deg", queries.angle(arguments[1], arguments[2]) } }
+  end
+
+  local function describe_wafer(layout, name, index)
+    local station, slot = native.locate(index)
+    local holder = native.holder(index)
+    local text = tokens.pairs { { "wafer", name }, { "holder", holder and layout.grippers[holder].name }, { "station", station } }
+    if station then
+      text = ("%s slot=%d %s"):format(text, slot, offset_text(native.measure(index, layout.stations[station].index, slot)))
+    end
+    return text
+  end
+
+  local function where(arguments)
+    local list, bytes = {}, 0
+    local layout = native.layout
+    local asked = #arguments > 0 and arguments or native.wafer_names()
+    for place, name in ipairs(asked) do
+      if bytes > LONGEST_ANSWER then
+        list[#list + 1] = ("and %d more"):format(#asked - #list)
+        break
+      end
+      list[#list + 1] = describe_wafer(layout, name, asked == arguments and lookup.wafer(name) or place)
+      bytes = bytes + #list[#list]
+    end
+    return table.concat(list, "; ")
+  end
+
+  local function axes()
+    local at, list = native.axes(), {}
+    for axis, name in ipairs(lookup.axes) do
+      local turns = name == "theta" or name == "yaw"
+      list[axis] = { name, turns and math.deg(at[axis]) or at[axis] }
+    end
+    for _, gripper in ipairs(native.layout.grippers) do
+      if gripper.axis then
+        list[#list + 1] = { tokens.spell(gripper.name), math.deg(at[gripper.axis]) }
+      end
+    end
+    return tokens.pairs(list)
+  end
+
+  local function stations()
+    local list = {}
+    for name, station in pairs(native.layout.stations) do
+      local chuck = station.chuck and { "chuck", native.layout.grippers[station.chuck].name }
+      list[#list + 1] = tokens.pairs { { "station", name }, { "slots", station.slots }, chuck }
+    end
+    return table.concat(list, "; ")
+  end
+
+  -- How a command is typed: GET STATION SLOT [option=value ...]; with `all`, every option by name.
+  function prompt_commands.usage(name, all)
+    local command = prompt_commands.commands[name]
+    local text = { name }
+    for place, kind in ipairs(command.takes) do
+      local word = kind:upper() .. (command.repeated and place == #command.takes and " ..." or "")
+      text[#text + 1] = command.optional and place == #command.takes and "[" .. word .. "]" or word
+    end
+    for option, kind in pairs(all and command.options or {}) do
+      text[#text + 1] = ("[%s=%s]"):format(option, kind:upper())
+    end
+    if command.options and not all then
+      text[#text + 1] = command.needs_option and "option=value ..." or "[option=value ...]"
+    end
+    return table.concat(text, " ")
+  end
+
+  local function help(arguments)
+    local name = arguments[1] and arguments[1]:upper()
+    if not name then
+      return table.concat(command_names(), " ") .. "; HELP COMMAND tells how it is typed"
+    end
+    if not prompt_commands.commands[name] then
+      native.fail("NO_SUCH_COMMAND", lookup.quote(arguments[1]) .. " (HELP lists them)")
+    end
+    return ("%s: %s"):format(prompt_commands.usage(name, true), prompt_commands.commands[name].does)
+  end
+
+  -- What a turn is called in a line, and the fault's options.
+  local TURNS = { "rx", "ry", "rz" }
+  local fault_options = { gripper = "gripper", wafer = "wafer", onto = "wafer" }
+  for _, name in ipairs({ "value", "dx", "dy", "dz", "rx", "ry", "rz", "after", "lasting" }) do
+    fault_options[name] = "number"
+  end
+
+  local function fault(arguments, options)
+    local description = { kind = arguments[1] }
+    for place, name in ipairs(TURNS) do
+      if options[name] then
+        description.rpy = description.rpy or { 0, 0, 0 }
+        description.rpy[place] = options[name]
+        options[name] = nil
+      end
+    end
+    for name, value in pairs(options) do
+      description[name] = value
+    end
+    return tokens.pairs { { "fault", commands.fault(description) } }
+  end
+
+  ----------------------------------------------------------------------------------------------- commands
+
+  -- A command of the scripts that takes its arguments in order, answered with its time.
+  local function moving(action)
+    return function(arguments, options)
+      return tokens.pairs { timed(action, arguments[1], arguments[2], options) }
+    end
+  end
+
+  -- STOP comes past the queue where a command runs: here none does.
+  local function stop()
+  end
+
+  -- One that takes a table of named numbers.
+  local function moving_by_name(action)
+    return function(_, options)
+      return tokens.pairs { timed(action, options) }
+    end
+  end
+
+  prompt_commands.commands = {
+    GET = { takes = { "station", "slot" }, options = station_options, run = get, does = "takes the wafer there" },
+    PUT = { takes = { "station", "slot" }, options = station_options, run = put, does = "sets the wafer down there" },
+    SWAP = { takes = { "station", "slot" }, options = station_options, run = swap,
+             does = "takes the wafer there with the empty gripper and puts down the other's" },
+    READY = { takes = { "station", "slot" }, options = station_options, run = moving(commands.ready),
+              does = "goes in front of the slot, to where GET or PUT enters" },
+    MAP = { takes = { "station" }, options = station_options, run = map,
+            does = "sweeps over the slots: 0 empty, 1 single, 2 double, 4 crossed" },
+    HOME = { takes = {}, run = moving(commands.home), does = "out of the station if the arm stands in one, then home" },
+    RECOVER = { takes = {}, run = moving(commands.recover), does = "straight out of the station that the arm stands in" },
+    STOP = { takes = {}, run = stop, does = "ends the command that runs" },
+    ROTATE = { takes = { "station", "degrees" }, run = moving(commands.rotate), does = "turns a prealigner's chuck by so much" },
+    VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve), does = "0 opens it (vacuum on), 1 closes it" },
+    MOVE = { takes = {}, options = fields(lookup.axes), needs_option = true, run = moving_by_name(commands.move),
+             does = "moves the named axes to these positions, degrees and mm" },
+    LINE = { takes = {}, options = fields(lookup.line_fields), needs_option = true, run = moving_by_name(commands.line),
+             does = "moves the end-effector straight by so much, mm and mm/s" },
+    WAIT = { takes = { "seconds" }, run = moving(commands.wait), does = "stands still" },
+    FAULT = { takes = { "fault" }, options = fault_options, run = fault, does = "lets a fault begin, and tells its number" },
+    CLEAR = { takes = { "number" }, does = "ends the fault of this number",
+              run = function(arguments) commands.clear_fault(arguments[1]) end },
+    OFFSET = { takes = { "wafer", "station", "slot" }, run = offset, does = "where the wafer is in that slot's frame" },
+    HOLDER = { takes = { "wafer" }, does = "the gripper that holds the wafer",
+               run = function(arguments) return tokens.pairs { { "holder", queries.holder(arguments[1]) } } end },
+    PROXIMITY = { takes = { "wafer", "gripper" }, run = proximity, does = "the check of the wafer against the gripper" },
+    MEASURE = { takes = { "frame", "frame" }, run = measure,
+                does = "how the second frame lies in the first one's axes: a wafer, gripper, station, slot (A/1) or base" },
+    DISTANCE = { takes = { "frame", "frame" }, run = distance, does = "of two frames' origins" },
+    ANGLE = { takes = { "frame", "frame" }, run = angle, does = "between two frames' z axes" },
+    WHERE = { takes = { "wafer" }, optional = true, repeated = true, run = where, does = "where wafers are; without a name, all" },
+    AXES = { takes = {}, run = axes, does = "where the axes stand, degrees and mm" },
+    STATIONS = { takes = {}, run = stations, does = "the stations of the cell" },
+    HELP = { takes = { "command" }, optional = true, run = help, does = "the commands, or how one is typed" },
+    QUIT = { takes = {}, does = "leaves the prompt", run = function() native.fail("NO_SUCH_COMMAND", "QUIT is for the prompt alone") end },
+  }
+
+  return prompt_commands
+end

@@ -1,0 +1,91 @@
+-- The operator's words that ask and judge: offset, holder, proximity, measure, expect, expect_offset, ...
+
+-- Kept, for a script may set globals of these names.
+local select, tostring, wh = select, tostring, wh
+
+return function(native, lookup)
+  local queries = {}
+
+  -- dx, dy, dz (mm) and tilt (degrees) of a wafer in a slot's frame.
+  function queries.offset(wafer, station_name, slot)
+    local station = lookup.station(station_name)
+    return native.measure(lookup.wafer(wafer), station.index, lookup.slot(station, slot))
+  end
+
+  -- The name of the gripper that holds the wafer, or nil.
+  function queries.holder(wafer)
+    local gripper = native.holder(lookup.wafer(wafer))
+    return gripper and native.layout.grippers[gripper].name
+  end
+
+  -- The check of a wafer against a gripper as they stand now: see wh.proximity.
+  function queries.proximity(wafer, gripper)
+    local tolerance = native.layout.tolerance
+    return wh.proximity(native.wafer_pose(lookup.wafer(wafer)), native.real_gripper_pose(lookup.gripper(gripper)), tolerance)
+  end
+
+  -- How the second frame lies as seen from the first: the distance of the origins; dx, dy, dz in the first frame's axes, mm;
+  -- the angle between the z axes, and the whole turn, degrees. A frame is the name of a wafer, a gripper, a station (its
+  -- slot 1) or a slot, such as "B/10", or "base".
+  function queries.measure(first, second)
+    local distance, dx, dy, dz, angle, turn = native.relate(lookup.frame("measure", first), lookup.frame("measure", second))
+    return { distance = distance, dx = dx, dy = dy, dz = dz, angle = angle, turn = turn }
+  end
+
+  -- The distance of two frames' origins, mm.
+  function queries.distance(first, second)
+    return (native.relate(lookup.frame("distance", first), lookup.frame("distance", second)))
+  end
+
+  -- The angle between two frames' z axes, degrees.
+  function queries.angle(first, second)
+    return (select(5, native.relate(lookup.frame("angle", first), lookup.frame("angle", second))))
+  end
+
+  -- What hit what so far: a list of { kind = "hit" or "undecided", parts = both names, at = { x, y, z }, time = s }.
+  function queries.hits()
+    return native.hits()
+  end
+
+  -- The smallest gap of a kind so far, mm, its limit or nil, when (s), and both parts' names; nil for a gap that never was
+  -- within range, and in a cell that is not checked here.
+  function queries.clearance(kind)
+    local found = native.clearance(tostring(kind))
+    if found == false then
+      native.fail("BAD_ARGUMENT", ("%s (expected a kind of clearance)"):format(lookup.quote(kind)))
+    end
+    found = found or {}
+    return found.gap, found.limit ~= 0 and found.limit or nil, found.time, found.parts
+  end
+
+  -- States what should be so; the run fails if it is not, and goes on. Returns the condition.
+  function queries.expect(condition, text)
+    native.expect(condition, text == nil and "an expectation without words" or tostring(text))
+    return condition
+  end
+
+  local function where(station, slot)
+    return station and ("lies in %s slot %d"):format(station, slot) or "lies in no slot"
+  end
+
+  -- The wafer lies in that slot with this offset, mm; to 1e-9 mm unless a tolerance follows.
+  function queries.expect_offset(wafer, station_name, slot, dx, dy, tolerance)
+    tolerance = lookup.number("tolerance", tolerance == nil and 1e-9 or tolerance)
+    if tolerance <= 0 then
+      native.fail("BAD_ARGUMENT", ("tolerance: %s (expected above 0)"):format(tostring(tolerance)))
+    end
+    lookup.number("dx", dx)
+    lookup.number("dy", dy)
+    local index, station = lookup.wafer(wafer), lookup.station(station_name)
+    local verdict, x, y, found, at = native.lies(index, station.index, lookup.slot(station, slot), dx, dy, tolerance)
+    local text = ("%s in %s slot %d with dX %.10g, dY %.10g to %.3g mm"):format(wafer, station_name, slot, dx, dy, tolerance)
+    if verdict == 0 then
+      text = ("%s; it %s"):format(text, where(found, at))
+    elseif verdict == 1 then
+      text = ("%s; found dX %.12g, dY %.12g"):format(text, x, y)
+    end
+    return queries.expect(verdict == 2, text)
+  end
+
+  return queries
+end

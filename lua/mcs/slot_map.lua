@@ -1,0 +1,88 @@
+-- The slot map: what the controller knows of each slot, from the last MAP and from its own GETs and PUTs since. It
+-- never looks into the cell: what it has not seen is unknown, and unknown slots may be entered.
+
+-- Kept, for a script may set globals of these names.
+local ipairs = ipairs
+
+return function(native)
+  local slot_map = {}
+
+  local EMPTY, SINGLE, DOUBLE, CROSSED = 0, 1, 2, 4
+  local WORDS = { [EMPTY] = "empty", [SINGLE] = "single", [DOUBLE] = "doubled", [CROSSED] = "crossed" }
+
+  -- By station: codes by slot, and whether the station has been mapped.
+  local known = {}
+
+  local function of_station(station)
+    known[station] = known[station] or { mapped = false, codes = {} }
+    return known[station]
+  end
+
+  function slot_map.map(station, codes)
+    local copy = {}
+    for slot, code in ipairs(codes) do
+      copy[slot] = code
+    end
+    known[station] = { mapped = true, codes = copy }
+  end
+
+  -- What is in the slot is unknown from here on.
+  function slot_map.forget(target)
+    of_station(target.station).codes[target.slot] = nil
+  end
+
+  function slot_map.note_taken(target)
+    of_station(target.station).codes[target.slot] = EMPTY
+  end
+
+  function slot_map.note_put(target)
+    of_station(target.station).codes[target.slot] = SINGLE
+  end
+
+  -- A doubled or crossed slot, or one beside it: the blade would run into a wafer.
+  local function check_way(target, codes)
+    for slot = target.slot - 1, target.slot + 1 do
+      if codes[slot] == DOUBLE or codes[slot] == CROSSED then
+        native.fail("BAD_SLOT", ("%s slot %d is %s"):format(target.station, slot, WORDS[codes[slot]]))
+      end
+    end
+  end
+
+  local function check_mapped(target)
+    if target.check_map and not of_station(target.station).mapped then
+      native.fail("NOT_MAPPED", ("%s: MAP comes first, for check_map is true"):format(target.station))
+    end
+  end
+
+  -- Whether the blade may go in, and what is known of the slot; `force` asks nothing of the map.
+  local function check_entry(target, judge)
+    if not target.force then
+      check_mapped(target)
+      local entry = of_station(target.station)
+      check_way(target, entry.codes)
+      judge(target, entry)
+    end
+  end
+
+  local function is_there(target, entry)
+    if entry.mapped and entry.codes[target.slot] == EMPTY then
+      native.fail("WAFER_MISSING", ("%s slot %d is empty in the map"):format(target.station, target.slot))
+    end
+  end
+
+  local function is_room(target, entry)
+    if entry.codes[target.slot] == SINGLE or target.chuck and native.sensor(target.chuck) then
+      native.fail("WAFER_ALREADY_THERE", ("%s slot %d"):format(target.station, target.slot))
+    end
+  end
+
+  function slot_map.check_get(target)
+    check_entry(target, is_there)
+  end
+
+  function slot_map.check_put(target)
+    check_entry(target, is_room)
+  end
+
+  return slot_map
+end

@@ -1,2 +1,0 @@
-cell "cell.lua"
-get("A", 1, { vacuum_check = "sometimes" })

@@ -1,3 +1,0 @@
-cell "cell.lua"
-map("C")
-get("C", 4)

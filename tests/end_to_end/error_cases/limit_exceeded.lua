@@ -1,2 +1,0 @@
-cell "cell.lua"
-move { z = 2000 }

@@ -1,2 +1,0 @@
-cell "cell.lua"
-put("A", 5)

@@ -1,2 +1,0 @@
-cell "cell.lua"
-rotate("A", 90)

@@ -1,2 +1,0 @@
-cell "cell.lua"
-get("U", 1)

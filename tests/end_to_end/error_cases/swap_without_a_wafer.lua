@@ -1,2 +1,0 @@
-cell "cell.lua"
-swap("A", 1)

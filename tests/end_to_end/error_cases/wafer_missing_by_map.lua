@@ -1,3 +1,0 @@
-cell "cell.lua"
-map("B")
-get("B", 1)

@@ -1,3 +1,0 @@
-cell "cell.lua"
-get("A", 1)
-get("A", 2)

@@ -1,0 +1,148 @@
+/* The smallest gaps over time: what is in a bin, and that nothing else depends on it. */
+#include "support/support.h"
+
+#include "collision/world.h"
+
+/* A blade comes down to a wall 12 mm below its lower side, 0.01 mm a slice, and goes up again. */
+enum { PARTS = 2 };
+
+static wh_part_t parts[PARTS];
+static wh_world_config_t config;
+static wh_cell_t cell;
+static wh_grasp_t table;
+static wh_gripper_t gripper;
+static void *memory;
+static wh_world_t *world;
+
+static wh_convex_t box(double x, double y, double z) {
+    const wh_convex_t convex = {
+        .kind = WH_CONVEX_BOX, .half = {x / 2, y / 2, z / 2}, .body_from_shape = wh_pose_identity()};
+    return convex;
+}
+
+static wh_pose_t at_height(double z) {
+    wh_pose_t pose = wh_pose_identity();
+    pose.r.z = z;
+    return pose;
+}
+
+/* What the world sees with the blade there. */
+static wh_world_input_t blade_at(wh_pose_t pose) {
+    const wh_world_input_t input = {table.slice, NULL, &gripper, pose};
+    gripper.base_from_gripper = pose;
+    return input;
+}
+
+static int open_world(void **state) {
+    (void)state;
+    const wh_grasp_config_t grasp = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = {.grippers = &gripper, .gripper_count = 1};
+    parts[0] = (wh_part_t){.kind = WH_PART_FIXED, .owner = WH_NONE, .convex = box(100, 100, 10)};
+    parts[0].convex.body_from_shape.r.z = -5;
+    parts[1] = (wh_part_t){.kind = WH_PART_BLADE, .convex = box(20, 20, 2)};
+    parts[1].convex.body_from_shape.r.z = 1;
+    config = (wh_world_config_t){
+        .parts = parts, .part_count = PARTS, .gripper_count = 1, .cell = &cell, .grasp = &table.config};
+    config.wafer = box(1, 1, 1);
+    config.arm.link = 300;
+    assert_int_equal(wh_world_validate(&config, NULL), WH_OK);
+    assert_int_equal(wh_grasp_init(&table, &grasp, &storage), WH_OK);
+    memory = malloc(wh_world_bytes(&config));
+    const wh_world_input_t start = blade_at(at_height(12));
+    world = wh_world_init(&config, &start, memory, wh_world_bytes(&config));
+    return world ? 0 : -1;
+}
+
+static int close_world(void **state) {
+    (void)state;
+    free(memory);
+    return 0;
+}
+
+static double height_in(uint64_t slice) {
+    return slice <= 1000 ? 12 - 0.01 * (double)slice : 2 + 0.01 * (double)(slice - 1000);
+}
+
+static void step_to(uint64_t slice) {
+    while (table.slice < slice) {
+        ++table.slice;
+        const wh_world_input_t input = blade_at(at_height(height_in(table.slice)));
+        wh_world_step(world, &input, NULL);
+    }
+}
+
+static void bins_hold_the_gaps_at_their_ends(void **state) {
+    (void)state;
+    const wh_curves_t *curves = wh_world_curves(world);
+    assert_int_equal(curves->first, 0);
+    assert_int_equal(curves->count, 0);
+    step_to(9);
+    assert_int_equal(curves->count, 0);
+    step_to(905);
+    assert_int_equal(curves->slices, 10);
+    assert_int_equal(curves->count, 90);
+    for (size_t bin = 0; bin < 90; ++bin) {
+        assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][bin], height_in(10 * (bin + 1)), 1e-6);
+        assert_near(curves->gaps[WH_CLEARANCE_ARM_OTHER][bin], WH_CLEARANCE_RANGE, 0);
+    }
+}
+
+/* Slice 1003 is the run's smallest gap, and within a bin. */
+static void smallest_gap_is_in_its_bin(void **state) {
+    (void)state;
+    step_to(1002);
+    ++table.slice;
+    const wh_world_input_t dip = blade_at(at_height(0.5));
+    wh_world_step(world, &dip, NULL);
+    step_to(1020);
+    const wh_curves_t *curves = wh_world_curves(world);
+    assert_near(wh_world_clearances(world)[WH_CLEARANCE_BLADE_OTHER].gap, 0.5, 1e-3);
+    assert_int_equal(curves->count, 102);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][99], height_in(1000), 1e-3);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][100], 0.5, 1e-3);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][101], height_in(1020), 1e-3);
+}
+
+static void full_bins_become_half_as_many(void **state) {
+    (void)state;
+    const wh_curves_t *curves = wh_world_curves(world);
+    step_to(10 * WH_CURVE_BINS - 1);
+    assert_int_equal(curves->count, WH_CURVE_BINS - 1);
+    step_to(10 * WH_CURVE_BINS);
+    assert_int_equal(curves->count, WH_CURVE_BINS / 2);
+    assert_int_equal(curves->slices, 20);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][0], height_in(20), 1e-6);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][49], 2, 1e-3);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][50], height_in(1010), 1e-3);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][299], WH_CLEARANCE_RANGE, 0);
+    step_to(10 * WH_CURVE_BINS + 19);
+    assert_int_equal(curves->count, WH_CURVE_BINS / 2);
+    step_to(20 * WH_CURVE_BINS);
+    assert_int_equal(curves->count, WH_CURVE_BINS / 2);
+    assert_int_equal(curves->slices, 40);
+}
+
+static void lost_slices_leave_no_gap(void **state) {
+    (void)state;
+    const wh_curves_t *curves = wh_world_curves(world);
+    step_to(20);
+    table.slice = 54;
+    step_to(55);
+    assert_int_equal(curves->count, 5);
+    for (size_t bin = 2; bin < 5; ++bin) {
+        assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][bin], height_in(55), 1e-6);
+    }
+    step_to(60);
+    assert_int_equal(curves->count, 6);
+    assert_near(curves->gaps[WH_CLEARANCE_BLADE_OTHER][5], height_in(60), 1e-6);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(bins_hold_the_gaps_at_their_ends, open_world, close_world),
+        cmocka_unit_test_setup_teardown(smallest_gap_is_in_its_bin, open_world, close_world),
+        cmocka_unit_test_setup_teardown(lost_slices_leave_no_gap, open_world, close_world),
+        cmocka_unit_test_setup_teardown(full_bins_become_half_as_many, open_world, close_world),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
