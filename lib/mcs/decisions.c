@@ -67,7 +67,7 @@ void wh_decisions_slice(wh_decisions_t *decisions, const wh_command_t *command) 
 void wh_decisions_read(wh_decisions_t *decisions, wh_decisions_kind_t kind, int32_t index, int32_t answer) {
     if (decisions) {
         decisions->entries = wh_array_grow(decisions->entries, decisions->entry_count,
-                                            &decisions->entry_capacity, sizeof *decisions->entries);
+                                           &decisions->entry_capacity, sizeof *decisions->entries);
         decisions->entries[decisions->entry_count++] =
             (wh_decisions_entry_t){kind, index, answer, decisions->slice_count};
     }
@@ -76,7 +76,7 @@ void wh_decisions_read(wh_decisions_t *decisions, wh_decisions_kind_t kind, int3
 void wh_decisions_claim(wh_decisions_t *decisions, const wh_decisions_claim_t *claim, int32_t verdict) {
     if (decisions) {
         decisions->claims = wh_array_grow(decisions->claims, decisions->claim_count,
-                                           &decisions->claim_capacity, sizeof *decisions->claims);
+                                          &decisions->claim_capacity, sizeof *decisions->claims);
         decisions->claims[decisions->claim_count] = *claim;
         wh_decisions_read(decisions, WH_DECISION_CLAIM, (int32_t)decisions->claim_count++, verdict);
     }
