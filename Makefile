@@ -17,8 +17,8 @@ NEED = @CC='$(CC)' lib/build/need
 JOBS = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 BUILD = @+$(MAKE) --no-print-directory $(JOBS) -f lib/build/build.mk
 
-# Invariants (WH_ASSERT) are on as well; -O1, for these builds are the slow ones.
-SANITIZE = CFLAGS='-O1 -g -DWH_DEBUG' CXXFLAGS='-O1 -g -DWH_DEBUG' \
+# Invariants (WH_ASSERT, WH_ASSERT_CONSISTENT) are on as well; -O1, for these builds are the slow ones.
+SANITIZE = CFLAGS='-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE' CXXFLAGS='-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE' \
            EXTRA='$(EXTRA) -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all'
 
 include tests/tests.mk

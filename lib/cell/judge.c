@@ -38,7 +38,7 @@ static int32_t find_other(const wh_cell_t *cell, const wh_grasp_t *table, int32_
 }
 
 /* A copy of the list's events[release] as another kind, appended to the list; null if it is full. */
-static wh_event_t *append(size_t release, wh_event_list_t *list, wh_event_kind_t kind) {
+static wh_event_t *append_as(size_t release, wh_event_list_t *list, wh_event_kind_t kind) {
     if (list->count >= list->capacity) {
         return NULL;
     }
@@ -51,7 +51,7 @@ static wh_event_t *append(size_t release, wh_event_list_t *list, wh_event_kind_t
 static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
                               size_t release) {
     const int32_t wafer = list->events[release].wafer;
-    wh_event_t *said = append(release, list, WH_EVENT_RELEASED_UNSUPPORTED);
+    wh_event_t *said = append_as(release, list, WH_EVENT_RELEASED_UNSUPPORTED);
     if (said != NULL) {
         said->height = height_above_support(cell, &table->storage.wafers[wafer].base_from_wafer);
     }
@@ -60,7 +60,7 @@ static void judge_unsupported(const wh_cell_t *cell, const wh_grasp_t *table, wh
 static void judge_occupied(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list,
                            size_t release, const wh_place_t *place) {
     const int32_t other = find_other(cell, table, list->events[release].wafer, place);
-    wh_event_t *said = other == WH_NONE ? NULL : append(release, list, WH_EVENT_SLOT_OCCUPIED);
+    wh_event_t *said = other == WH_NONE ? NULL : append_as(release, list, WH_EVENT_SLOT_OCCUPIED);
     if (said != NULL) {
         said->other = other;
     }
@@ -69,7 +69,7 @@ static void judge_occupied(const wh_cell_t *cell, const wh_grasp_t *table, wh_ev
 /* Reports that `found` is above a limit, if there is one. */
 static void judge_limit(wh_event_list_t *list, size_t release, wh_event_kind_t kind, wh_real_t found,
                         wh_real_t limit) {
-    wh_event_t *said = limit > 0 && found > limit ? append(release, list, kind) : NULL;
+    wh_event_t *said = limit > 0 && found > limit ? append_as(release, list, kind) : NULL;
     if (said != NULL) {
         said->value = found;
         said->limit = limit;
@@ -132,7 +132,7 @@ static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *li
     pose.r = wh_vec3_subtract(&pose.r, &down);
     turn_towards(&pose.R, &up);
     const bool moved = wh_grasp_place(table, (size_t)wafer, &pose) == WH_OK;
-    wh_event_t *said = moved ? append(release, list, WH_EVENT_SETTLED) : NULL;
+    wh_event_t *said = moved ? append_as(release, list, WH_EVENT_SETTLED) : NULL;
     if (said != NULL) {
         said->value = place.dz;
     }

@@ -234,7 +234,7 @@ static void mesh_interval(const wh_convex_t *mesh, const wh_vec3_t *row, wh_real
     *high = *low;
     for (size_t i = 1; i < mesh->point_count; ++i) {
         const wh_real_t height = wh_vec3_dot(&mesh->points[i], row);
-        *low = wh_real_min(*low, height);
+        *low = height < *low ? height : *low;
         *high = wh_real_max(*high, height);
     }
 }

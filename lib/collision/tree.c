@@ -27,11 +27,14 @@ wh_box_t wh_box_grown(const wh_box_t *box, wh_real_t margin) {
     return grown;
 }
 
+static wh_real_t least(wh_real_t a, wh_real_t b) {
+    return a < b ? a : b;
+}
+
 static wh_box_t join(const wh_box_t *a, const wh_box_t *b) {
-    const wh_box_t both = {
-        {wh_real_min(a->low.x, b->low.x), wh_real_min(a->low.y, b->low.y), wh_real_min(a->low.z, b->low.z)},
-        {wh_real_max(a->high.x, b->high.x), wh_real_max(a->high.y, b->high.y),
-         wh_real_max(a->high.z, b->high.z)}};
+    const wh_box_t both = {{least(a->low.x, b->low.x), least(a->low.y, b->low.y), least(a->low.z, b->low.z)},
+                           {wh_real_max(a->high.x, b->high.x), wh_real_max(a->high.y, b->high.y),
+                            wh_real_max(a->high.z, b->high.z)}};
     return both;
 }
 

@@ -11,7 +11,7 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
     }
     wh_gap_measure(a->convex, &a->now, b->convex, &b->now, least[kind], guess, &gap);
     const wh_real_t found = gap.state == WH_GAP_CLEAR ? gap.gap : 0;
-    least[kind] = wh_real_min(found, least[kind]);
+    least[kind] = found < least[kind] ? found : least[kind];
 }
 
 static void measure_rest(const wh_look_t *look, const wh_mover_t *mover, wh_real_t least[]) {
@@ -45,7 +45,7 @@ static void halve(wh_curves_t *curves) {
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
         wh_real_t *gaps = curves->gaps[kind];
         for (size_t bin = 0; bin < WH_CURVE_BINS / 2; ++bin) {
-            gaps[bin] = wh_real_min(gaps[2 * bin], gaps[2 * bin + 1]);
+            gaps[bin] = gaps[2 * bin] < gaps[2 * bin + 1] ? gaps[2 * bin] : gaps[2 * bin + 1];
         }
     }
     curves->count = WH_CURVE_BINS / 2;

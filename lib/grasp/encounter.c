@@ -2,7 +2,6 @@
 
 #include "grasp_internal.h"
 #include "horizon_internal.h"
-#include "proximity_internal.h"
 
 static void report(const wh_watch_t *watch, wh_encounter_t *encounter, wh_event_kind_t kind) {
     if (watch->list) {
@@ -38,7 +37,7 @@ static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_clo
                                 reach);
 }
 
-/* The closest that the gripper came to the wafer in this slice; false when it did not come near. */
+/* How close the gripper came to the wafer in this slice; false if it did not come near. */
 static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_closeness_t *closest) {
     if (watch->sweep && wafer->released_by == WH_NONE) {
         return wh_closeness_swept(watch, &wafer->base_from_wafer, closest);
@@ -90,11 +89,11 @@ WH_OUT_OF_LINE static void follow_approach(const wh_watch_t *watch) {
     }
 }
 
-/* Nothing that rests came near in this slice. */
+/* True if no wafer at rest came near in this slice. */
 static bool is_within_horizon(const wh_grasp_t *table, size_t g) {
-    return wh_horizon_holds(table, g) &&
+    return wh_horizon_is_clear(table, g) &&
            (!wh_grasp_is_swept(table, g) ||
-            wh_horizon_covers(table, g, &table->storage.grippers[g].base_from_gripper.r));
+            wh_horizon_is_clear_at(table, g, &table->storage.grippers[g].base_from_gripper.r));
 }
 
 /* The nearest free wafer in the neighbourhood, then lowest index, if the gripper follows none yet. */
@@ -147,7 +146,7 @@ static bool contest_goes_on(const wh_watch_t *watch) {
                               &watch->table->config.tolerance);
 }
 
-/* Of the held wafers that are ready the one with the smallest |dr_proj_z|, then lowest index; WH_NONE: none. */
+/* The held wafer that is ready, with the smallest |dr_proj_z|, then lowest index; WH_NONE: none. */
 WH_OUT_OF_LINE static int32_t find_held(const wh_watch_t *watch) {
     const wh_grasp_storage_t *storage = &watch->table->storage;
     int32_t best = WH_NONE;
@@ -167,8 +166,9 @@ WH_OUT_OF_LINE static int32_t find_held(const wh_watch_t *watch) {
     return best;
 }
 
-/* The wafer that the gripper would take if nobody held it. A contest that goes on is kept even when another held wafer has
- * come nearer: it would be reported each time that the two change places, and before its own hand-over. */
+/* Follows the wafer that the gripper would take if nobody held it. A contest that goes on is kept even if
+ * another held wafer has come nearer: else it would be reported each time that the two change places, and
+ * before its own hand-over. */
 WH_OUT_OF_LINE static void follow_contest(const wh_watch_t *watch) {
     if (contest_goes_on(watch)) {
         return;
@@ -202,7 +202,7 @@ void wh_encounter_track(const wh_watch_t *watch) {
     follow_contest(watch);
 }
 
-/* Of an approach that goes on, or of one that may begin. */
+/* True if an approach goes on or may begin. */
 static bool is_sweep_needed(const wh_watch_t *watch) {
     return watch->gripper->approach.wafer != WH_NONE ||
            !is_within_horizon(watch->table, (size_t)watch->index);
@@ -216,7 +216,7 @@ static bool is_any_held(const wh_grasp_t *table) {
     return held;
 }
 
-/* It watches nothing, nothing that rests is near, and there is nothing to contest. */
+/* True if the gripper watches nothing, no wafer at rest is near, and there is nothing to contest. */
 static bool is_idle(const wh_grasp_t *table, size_t g) {
     const wh_gripper_t *gripper = &table->storage.grippers[g];
     return gripper->approach.wafer == WH_NONE && gripper->contest.wafer == WH_NONE &&

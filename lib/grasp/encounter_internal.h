@@ -1,4 +1,4 @@
-/* Within the core: near misses and contests, looked at after the picks of a step. */
+/* Within the room: near misses and contests, looked at after the picks of a step. */
 #ifndef WH_GRASP_ENCOUNTER_INTERNAL_H
 #define WH_GRASP_ENCOUNTER_INTERNAL_H
 
@@ -27,20 +27,21 @@ typedef struct {
 void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_input_t *input,
                          wh_event_list_t *list);
 
-/* Its part for a gripper that was and is open and empty, with or without watch->sweep. */
+/* The part of wh_encounter_update for a gripper that was and is open and empty, with or without
+ * watch->sweep. */
 void wh_encounter_track(const wh_watch_t *watch);
 
-/* The same with a sweep since the last slice, which it makes. */
+/* Makes the sweep since the last slice, then does what wh_encounter_track does. */
 void wh_encounter_track_swept(wh_watch_t *watch);
 
-/* Whether a wafer is in the neighbourhood for near misses; if so, fills in the two distances. */
+/* True if a wafer is in the neighbourhood for near misses; then fills in the two distances. */
 bool wh_closeness_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
                           const wh_pose_t *base_from_gripper, wh_closeness_t *reach);
 
-/* The closest that a gripper with a sweep came to the wafer in this slice; false when it did not come near. */
+/* How close a gripper with a sweep came to the wafer in this slice; false if it did not come near. */
 bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_closeness_t *closest);
 
-/* The values at an instant before the slice's end, judged by the limits that hold there. */
+/* Measures at an instant before the slice's end, judged by the limits that hold there. */
 void wh_measure_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_real_t t,
                       wh_proximity_t *measured);
 

@@ -16,8 +16,8 @@ typedef enum {
     WH_EVENT_HANDED_OVER,
     /* A free wafer came into the neighbourhood of an open, empty gripper and left it again, or the valve
      * closed, without a pick. `measured` is the closest approach, of slice `measured_slice`, judged between
-     * slices by 0.998 eps_projz as a swept pick is. Not reported when another gripper took that wafer, or this
-     * one another wafer, meanwhile. */
+     * slices by 0.998 eps_projz as a swept pick is. Not reported when another gripper took that wafer, or
+     * this one another wafer, meanwhile. */
     WH_EVENT_NEAR_MISS,
     /* An open, empty gripper was ready on a wafer that `other` held. Reported once, when it ends without a
      * hand-over (only then it is known that none follows): `measured` and `measured_slice` are of its
@@ -25,23 +25,26 @@ typedef enum {
     WH_EVENT_CONTESTED,
     /* The step was refused and nothing changed: `status` says why; `gripper` is the input that is wrong. */
     WH_EVENT_BAD_INPUT,
-    /* From the cell, beside the release and with its values: no support is under the wafer, which is `height` mm
-     * above what is below (negative: below base's z = 0 and above no slot). */
+    /* From the cell, beside the release and with its values: no support is under the wafer, which is `height`
+     * mm above what is below (negative: below base's z = 0 and above no slot). */
     WH_EVENT_RELEASED_UNSUPPORTED,
     /* From the cell, beside the release and with its values: wafer `other` lies in the same slot. */
     WH_EVENT_SLOT_OCCUPIED,
-    /* From the cell, beside the release and with its values: it lies in a slot or on a chuck, but `value` mm beside its
-     * centre, which is above `limit`. */
+    /* From the cell, beside the release and with its values: it lies in a slot or on a chuck, but `value` mm
+     * beside its centre, which is above `limit`. */
     WH_EVENT_PLACED_OFF_CENTRE,
     /* The same, but tilted against it by `value` rad, which is above `limit`. */
     WH_EVENT_PLACED_ASKEW,
-    /* From the cell: the wafer was let go above its support and came to lie on it, its centre `value` mm lower. */
+    /* From the cell: the wafer was let go above its support and came to lie on it, its centre `value` mm
+     * lower. */
     WH_EVENT_SETTLED,
-    /* From the collision check: parts[0] and parts[1] touch each other where they must not; `at` is the place. */
+    /* From the collision check: parts[0] and parts[1] touch each other where they must not; `at` is the
+     * place. */
     WH_EVENT_HIT,
     /* The same, where the check could not decide whether they do. */
     WH_EVENT_UNDECIDED,
-    /* From the collision check: the gap of a watched pair, `value` mm, fell below the `limit` that the layout sets. */
+    /* From the collision check: the gap of a watched pair, `value` mm, fell below the `limit` that the layout
+     * sets. */
     WH_EVENT_TOO_CLOSE,
     /* The gripper's motion asks for more than its pads carry, mm/s^2: `value` against `limit`. */
     WH_EVENT_SLIPPED,

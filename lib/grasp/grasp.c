@@ -105,6 +105,7 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
     free_wafers(storage->wafers, storage->wafer_count);
     clear_grippers(storage->grippers, storage->gripper_count);
     wh_index_build(table);
+    WH_ASSERT_CONSISTENT(table);
     return WH_OK;
 }
 
@@ -121,10 +122,6 @@ static wh_status_t may_place(const wh_grasp_t *table, size_t wafer, const wh_pos
     return wh_pose_validate(base_from_wafer);
 }
 
-static void count_refusal(wh_grasp_t *table) {
-    ++table->counters.refused;
-}
-
 static void forget(wh_encounter_t *approach, int32_t wafer) {
     if (approach->wafer == wafer) {
         approach->wafer = WH_NONE;
@@ -137,7 +134,7 @@ wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *bas
     }
     const wh_status_t status = may_place(table, wafer, base_from_wafer);
     if (status != WH_OK) {
-        count_refusal(table);
+        ++table->counters.refused;
         return status;
     }
     table->storage.wafers[wafer].base_from_wafer = *base_from_wafer;
@@ -145,6 +142,7 @@ wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *bas
         forget(&table->storage.grippers[g].approach, (int32_t)wafer);
     }
     wh_index_move(table, wafer);
+    WH_ASSERT_CONSISTENT(table);
     return WH_OK;
 }
 
@@ -174,6 +172,45 @@ wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafe
     }
     *wafer = table->storage.grippers[gripper].wafer;
     return WH_OK;
+}
+
+static bool is_paired_wafer(const wh_grasp_storage_t *storage, size_t w) {
+    const wh_wafer_t *wafer = &storage->wafers[w];
+    if (wafer->holder == WH_NONE) {
+        return true;
+    }
+    return wh_is_index(wafer->holder, storage->gripper_count) &&
+           storage->grippers[wafer->holder].wafer == (int32_t)w;
+}
+
+static bool is_paired_gripper(const wh_grasp_storage_t *storage, size_t g) {
+    const wh_gripper_t *gripper = &storage->grippers[g];
+    if (gripper->wafer == WH_NONE) {
+        return true;
+    }
+    return wh_is_index(gripper->wafer, storage->wafer_count) &&
+           storage->wafers[gripper->wafer].holder == (int32_t)g;
+}
+
+static bool names_wafer_or_none(const wh_encounter_t *encounter, size_t wafer_count) {
+    return encounter->wafer == WH_NONE || wh_is_index(encounter->wafer, wafer_count);
+}
+
+bool wh_grasp_is_consistent(const wh_grasp_t *table) {
+    const wh_grasp_storage_t *storage = &table->storage;
+    for (size_t w = 0; w < storage->wafer_count; ++w) {
+        if (!is_paired_wafer(storage, w) || storage->wafers[w].released_by != WH_NONE) {
+            return false;
+        }
+    }
+    for (size_t g = 0; g < storage->gripper_count; ++g) {
+        if (!is_paired_gripper(storage, g) ||
+            !names_wafer_or_none(&storage->grippers[g].approach, storage->wafer_count) ||
+            !names_wafer_or_none(&storage->grippers[g].contest, storage->wafer_count)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 static uint64_t hash_encounter(uint64_t hash, const wh_encounter_t *encounter) {

@@ -77,10 +77,10 @@ typedef struct {
 } wh_gripper_input_t;
 
 /* The caller's arrays. They must live as long as the table and belong to it alone. Up to INT32_MAX each.
- * `buckets`, as many as wh_grasp_buckets says, are for an index over the wafers and for how far each gripper may move
- * before any can matter to it. They change no result, only the cost of a step; null and 0 are always right. What stands
- * in them before wh_grasp_init does not matter and is the table's own afterwards: a copy of a table needs buckets of
- * its own, and wh_grasp_restore to fill them, or has null and 0. */
+ * `buckets`, as many as wh_grasp_buckets says, are for an index over the wafers and for how far each gripper
+ * may move before any can matter to it. They change no result, only the cost of a step; null and 0 are always
+ * right. What stands in them before wh_grasp_init does not matter and is the table's own afterwards: a copy
+ * of a table needs buckets of its own, and wh_grasp_restore to fill them, or has null and 0. */
 typedef struct {
     wh_wafer_t *wafers;
     size_t wafer_count;
@@ -103,8 +103,8 @@ typedef struct {
     wh_grasp_counters_t counters;
 } wh_grasp_t;
 
-/* How many buckets a table of these counts needs: 5 for each wafer, 4 for each gripper and 8. 0 above INT32_MAX / 16
- * wafers or grippers: such a table can have none. */
+/* How many buckets a table of these counts needs: 5 for each wafer, 4 for each gripper and 8. 0 above
+ * INT32_MAX / 16 wafers or grippers: such a table can have none. */
 size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count);
 
 /* The same as a constant, for an array. */
@@ -116,8 +116,8 @@ wh_grasp_config_t wh_grasp_config_default(void);
 
 /* Sets up a table: all wafers free where storage->wafers has them, all grippers empty and closed. Refuses
  * null pointers (an array may be null when its count is 0), counts above INT32_MAX, fewer buckets than
- * wh_grasp_buckets says but not 0, invalid wafer poses and configurations outside the ranges above; table and arrays are
- * then unchanged. Cost: linear in wafers and grippers. */
+ * wh_grasp_buckets says but not 0, invalid wafer poses and configurations outside the ranges above; table and
+ * arrays are then unchanged. Cost: linear in wafers and grippers. */
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
                           const wh_grasp_storage_t *storage);
 
@@ -126,16 +126,17 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
  * Refused, and the table left as it was: a null table or inputs (WH_STATUS_NULL_ARGUMENT), a list with room
  * for fewer than WH_EVENTS_PER_GRIPPER events for each gripper (WH_STATUS_BAD_CAPACITY), a pose that does not
  * pass wh_pose_validate, a valve that is neither 0 nor 1; the last two also yield the one event
- * WH_EVENT_BAD_INPUT, the others leave the list empty. Cost: linear in grippers. Each open, empty gripper adds a look at
- * each other gripper's wafer and two checks of every wafer, at about a dozen products each. With buckets it adds less than
- * a dozen products instead while it is within its horizon; beyond it two searches of the wafers around it, which do not
- * depend on how many there are elsewhere; and the checks of all wafers only where it goes very far in one slice or most
- * wafers are around it. A release adds a search through the wafers of one cell. */
+ * WH_EVENT_BAD_INPUT, the others leave the list empty. Cost: linear in grippers. Each open, empty gripper
+ * adds a look at each other gripper's wafer and two checks of every wafer, at about a dozen products each.
+ * With buckets it adds less than a dozen products instead while it is within its horizon; beyond it two
+ * searches of the wafers around it, which do not depend on how many there are elsewhere; and the checks of
+ * all wafers only where it goes very far in one slice or most wafers are around it. A release adds a search
+ * through the wafers of one cell. */
 wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list);
 
 /* Puts a free wafer somewhere else, as a test or an operator may. Refuses a held wafer (WH_STATUS_HELD), an
- * index out of range and an invalid pose. Its near misses so far are forgotten. Cost: linear in grippers, and with
- * buckets a search through the wafers of one cell. */
+ * index out of range and an invalid pose. Its near misses so far are forgotten. Cost: linear in grippers, and
+ * with buckets a search through the wafers of one cell. */
 wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer);
 
 /* Where a wafer is and who holds it; either result pointer may be null. WH_STATUS_OUT_OF_RANGE for a bad
@@ -145,6 +146,17 @@ wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *bas
 
 /* Which wafer a gripper holds (WH_NONE: none). WH_STATUS_OUT_OF_RANGE for a bad index. */
 wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafer);
+
+/* True if the table agrees with itself, as it does between any two calls (Frama-C proves it:
+ * tests/proof/README.md):
+ *   - a wafer's holder is WH_NONE, or a gripper that names this wafer: no wafer has two holders;
+ *   - a gripper's wafer is WH_NONE, or a wafer whose holder is this gripper: no gripper has two wafers;
+ *   - `approach` and `contest` of each gripper name a wafer of the table or WH_NONE;
+ *   - `released_by` of each wafer is WH_NONE.
+ * For tests, and for a firmware that fears that others write into its memory. The table is one that
+ * wh_grasp_init accepted. Cost: linear in wafers and grippers. With -DWH_DEBUG_TABLE each call that changes a
+ * table asserts it at its end. */
+bool wh_grasp_is_consistent(const wh_grasp_t *table);
 
 /* 64 bits over everything that the next step depends on, so equal hashes mean equal runs from here on: the
  * number of steps; for each wafer its pose (R row by row, r) and holder; for each gripper its pose, valve,

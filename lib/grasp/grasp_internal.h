@@ -1,36 +1,41 @@
-/* Within the core: what the parts of a step share. A step runs through grasp_step.c, grasp_take.c and encounter.c; what
- * may fall between two slices is found by swept_pick.c and swept_encounter.c, by way of sweep.c.
+/* Within the room: what the parts of a step share. A step runs through grasp_step.c, grasp_take.c and
+ * encounter.c; swept.c finds what falls between two slices, by way of sweep.c.
  *
- * What only swept checking needs stands in files of its own, so that its memory is never on the stack of a sampled
- * step.
+ * What only swept checking needs stands in a file of its own, so that its memory is never on the stack of a
+ * sampled step.
  */
 #ifndef WH_GRASP_GRASP_INTERNAL_H
 #define WH_GRASP_GRASP_INTERNAL_H
 
 #include "grasp.h"
 
-/* A blank event of the running step, appended to the list for the caller to fill in. There is room: the step
- * has looked. */
+/* Appends a blank event of the running step, for the caller to fill in. The step has made sure that there is
+ * room. */
 wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind);
 
 /* Puts the wafer where a gripper carries it. */
 void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
                     const wh_pose_t *gripper_from_wafer);
 
+/* wh_proximity_measure without its checks, for arguments that have passed them. */
+void wh_proximity_values(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
+                         const wh_tolerance_t *tolerance, wh_proximity_t *result);
+
 /* |dr_proj_z| */
 wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper);
 
-/* What an open gripper passes between the last slice and this one counts; its entry is still the last slice's. */
+/* True if wafers that gripper g passes between the last slice and this one count. Its entry is still the last
+ * slice's. */
 static inline bool wh_grasp_is_swept(const wh_grasp_t *table, size_t g) {
     return table->config.check == WH_CHECK_SWEPT && table->storage.grippers[g].valve == WH_VALVE_OPEN;
 }
 
-/* Of the ready wafers that nobody holds the one that gripper g would take at this pose: smallest |dr_proj_z|, then lowest
- * index; WH_NONE: none. Measures the gripper's horizon anew. */
+/* The wafer that gripper g would take at this pose: of the ready wafers that nobody holds the one with the
+ * smallest |dr_proj_z|, then the lowest index; WH_NONE: none. Measures the gripper's horizon anew. */
 int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper);
 
-/* Gives gripper g, at `then`, this wafer and reports it. Where the gripper moves on within the slice, or the wafer was
- * drawn onto its pads, the wafer still has to be carried there. */
+/* Gives gripper g, which is at `then`, this wafer and reports it. If the gripper moves on within the slice,
+ * or seats the wafer on its pads, the caller still has to carry the wafer there. */
 void wh_grasp_take(wh_grasp_t *table, size_t g, int32_t wafer, const wh_pose_t *then, wh_event_list_t *list);
 
 /* A pick between the last slice and this one; false when there was none. */

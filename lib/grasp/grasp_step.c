@@ -1,23 +1,20 @@
-/* A step, part by part, in one file for all its length, of which two thirds are contracts: as files of their own the parts cost a
- * slice 50 instructions more, and a sampled step 32 bytes of stack more than its limit. */
+/* One step of the grasp table: the four parts that grasp.h lists, in that order.
+ *
+ *   1. Validate.   Reads all inputs and refuses the whole step if one of them is invalid.
+ *   2. Release.    A gripper whose valve closes leaves its wafer where it carries it in this slice.
+ *   3. Carry.      A held wafer goes where its gripper goes. One loop does 2 and 3.
+ *   4. Pick.       Each open, empty gripper takes the best of the ready wafers.
+ *
+ * Then come the events that are known only after all picks, and each gripper's pose and valve are kept for
+ * the next slice. Most slices have no pick, no release and no event: for them move_all is all there is to do.
+ *
+ * One file, so that the compiler can inline: split into files, a slice costs 50 instructions more and a
+ * sampled step 32 bytes of stack more than its limit. */
 #include "encounter_internal.h"
 #include "grasp_internal.h"
 #include "horizon_internal.h"
-#include "proximity_internal.h"
 
-wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind) {
-    static const wh_event_t blank = {
-        .wafer = WH_NONE, .gripper = WH_NONE, .other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
-    WH_ASSERT(list->count < list->capacity);
-    wh_event_t *event = &list->events[list->count++];
-    *event = blank;
-    event->kind = kind;
-    event->slice = table->slice;
-    event->measured_slice = table->slice;
-    return event;
-}
-
-/* False where a number is not finite. */
+/* False if a number is not finite. */
 static bool is_same(const wh_mat3_t *a, const wh_mat3_t *b) {
     return a->m[0][0] == b->m[0][0] && a->m[0][1] == b->m[0][1] && a->m[0][2] == b->m[0][2] &&
            a->m[1][0] == b->m[1][0] && a->m[1][1] == b->m[1][1] && a->m[1][2] == b->m[1][2] &&
@@ -25,25 +22,16 @@ static bool is_same(const wh_mat3_t *a, const wh_mat3_t *b) {
 }
 
 /* A gripper that has not turned since the last slice needs no second look at its rotation. */
-static wh_status_t validate_pose(const wh_gripper_t *gripper, const wh_pose_t *base_from_gripper) {
-    if (is_same(&gripper->base_from_gripper.R, &base_from_gripper->R) &&
-        wh_vec3_is_finite(&base_from_gripper->r)) {
-        return WH_OK;
-    }
-    return wh_pose_validate(base_from_gripper);
-}
-
 static wh_status_t validate_input(const wh_gripper_t *gripper, const wh_gripper_input_t *input) {
-    const wh_status_t status = validate_pose(gripper, &input->base_from_gripper);
-    if (status != WH_OK) {
-        return status;
+    const wh_pose_t *pose = &input->base_from_gripper;
+    if (!is_same(&gripper->base_from_gripper.R, &pose->R) || !wh_vec3_is_finite(&pose->r)) {
+        const wh_status_t status = wh_pose_validate(pose);
+        if (status != WH_OK) {
+            return status;
+        }
     }
     const bool good = input->valve == WH_VALVE_OPEN || input->valve == WH_VALVE_CLOSED;
     return good ? WH_OK : WH_STATUS_BAD_VALVE;
-}
-
-static void count_refusal(wh_grasp_t *table) {
-    ++table->counters.refused;
 }
 
 static void report_refusal(const wh_grasp_t *table, wh_event_list_t *list, size_t gripper,
@@ -59,11 +47,28 @@ static void refuse(wh_grasp_t *table, wh_event_list_t *list, size_t gripper, wh_
     if (list) {
         report_refusal(table, list, gripper, status);
     }
-    count_refusal(table);
+    ++table->counters.refused;
 }
 
-static wh_status_t validate_inputs(wh_grasp_t *table, const wh_gripper_input_t *inputs,
-                                   wh_event_list_t *list) {
+static wh_status_t validate_call(const wh_grasp_t *table, const wh_gripper_input_t *inputs,
+                                 const wh_event_list_t *list) {
+    if (!inputs && table->storage.gripper_count > 0) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (list && !list->events && list->capacity > 0) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const bool room = !list || list->capacity / WH_EVENTS_PER_GRIPPER >= table->storage.gripper_count;
+    return room ? WH_OK : WH_STATUS_BAD_CAPACITY;
+}
+
+/* Part 1. A refused call changes nothing but counters and the list. */
+static wh_status_t validate(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
+    const wh_status_t refusal = validate_call(table, inputs, list);
+    if (refusal != WH_OK) {
+        ++table->counters.refused;
+        return refusal;
+    }
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         const wh_status_t status = validate_input(&table->storage.grippers[g], &inputs[g]);
         if (status != WH_OK) {
@@ -74,8 +79,9 @@ static wh_status_t validate_inputs(wh_grasp_t *table, const wh_gripper_input_t *
     return WH_OK;
 }
 
-/* A gripper's pose that just passes wh_pose_validate can turn the wafer's into one that does not, and that the table's
- * owner could not hand back to any call: such a one is mended. Mirrored it cannot be, since neither of the two is. */
+/* A gripper's pose that just passes wh_pose_validate can turn the wafer's pose into one that does not. The
+ * table's owner could then hand that pose to no call, so it is mended here. It is never mirrored, since
+ * neither factor is. */
 void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
                     const wh_pose_t *gripper_from_wafer) {
     wh_pose_compose_to(base_from_gripper, gripper_from_wafer, &wafer->base_from_wafer);
@@ -102,8 +108,8 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
 }
 
 static int32_t find_sampled(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper) {
-    if (wh_horizon_covers(table, g, &base_from_gripper->r)) {
-        wh_horizon_note(table, g);
+    if (wh_horizon_is_clear_at(table, g, &base_from_gripper->r)) {
+        wh_horizon_set_clear(table, g);
         return WH_NONE;
     }
     return wh_grasp_find_ready(table, g, base_from_gripper);
@@ -133,7 +139,7 @@ static void pick(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input, w
     }
 }
 
-/* A wafer that was let go and that nobody took. */
+/* Reports a wafer that was let go and that nobody took. */
 static void report_release(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                            wh_event_list_t *list) {
     const int32_t w = table->storage.grippers[g].wafer;
@@ -150,9 +156,10 @@ static void report_release(wh_grasp_t *table, size_t g, const wh_gripper_input_t
     }
 }
 
-/* A gripper that let go still names its wafer up to here. */
-static void remember_valve(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs) {
+/* Keeps the slice's pose and valve. A gripper that let go named its wafer up to here. */
+static void remember(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs) {
     wh_gripper_t *gripper = &table->storage.grippers[g];
+    gripper->base_from_gripper = inputs[g].base_from_gripper;
     if (inputs[g].valve == WH_VALVE_CLOSED && gripper->wafer != WH_NONE) {
         table->storage.wafers[gripper->wafer].released_by = WH_NONE;
         gripper->wafer = WH_NONE;
@@ -160,23 +167,7 @@ static void remember_valve(wh_grasp_t *table, size_t g, const wh_gripper_input_t
     gripper->valve = inputs[g].valve;
 }
 
-static void remember(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs) {
-    table->storage.grippers[g].base_from_gripper = inputs[g].base_from_gripper;
-    remember_valve(table, g, inputs);
-}
-
-static wh_status_t validate_call(const wh_grasp_t *table, const wh_gripper_input_t *inputs,
-                                 const wh_event_list_t *list) {
-    if (!inputs && table->storage.gripper_count > 0) {
-        return WH_STATUS_NULL_ARGUMENT;
-    }
-    if (list && !list->events && list->capacity > 0) {
-        return WH_STATUS_NULL_ARGUMENT;
-    }
-    const bool room = !list || list->capacity / WH_EVENTS_PER_GRIPPER >= table->storage.gripper_count;
-    return room ? WH_OK : WH_STATUS_BAD_CAPACITY;
-}
-
+/* The two small functions below, pick_next and watch, keep WP's goals small enough for its prover. */
 static void pick_next(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     pick(table, g, &inputs[g], list);
 }
@@ -193,13 +184,13 @@ static void report_releases(wh_grasp_t *table, const wh_gripper_input_t *inputs,
     }
 }
 
-static void watch_next(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
+static void watch(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     wh_encounter_update(table, g, &inputs[g], list);
 }
 
 static void watch_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        watch_next(table, g, inputs, list);
+        watch(table, g, inputs, list);
     }
 }
 
@@ -209,23 +200,17 @@ static void remember_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     }
 }
 
-/* What else there is to tell after the picks. */
-static void report_all(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
-    report_releases(table, inputs, list);
-    watch_all(table, inputs, list);
-}
-
-/* That looking for wafers would find none: none of those at rest matters to gripper g, on its way or at its end. */
+/* True if a search would find no wafer: none at rest matters to gripper g, on its way or at its end. */
 static bool is_far_from_all(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
     const wh_vec3_t *begin = &table->storage.grippers[g].base_from_gripper.r;
-    if (!wh_horizon_covers(table, g, place)) {
+    if (!wh_horizon_is_clear_at(table, g, place)) {
         return false;
     }
-    return !wh_grasp_is_swept(table, g) || wh_horizon_covers(table, g, begin);
+    return !wh_grasp_is_swept(table, g) || wh_horizon_is_clear_at(table, g, begin);
 }
 
-/* What gripper g does in this slice may be more than going on with what it holds, or without: it is watching a wafer, lets
- * go, or is open and not far from all that rest. */
+/* False if gripper g just moves on, with its wafer or without. It may act if it watches a wafer, lets go, or
+ * is open and not far from all wafers at rest. */
 static bool may_act(const wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
     const wh_gripper_t *gripper = &table->storage.grippers[g];
     const bool open = input->valve == WH_VALVE_OPEN;
@@ -238,8 +223,8 @@ static bool may_act(const wh_grasp_t *table, size_t g, const wh_gripper_input_t 
     return open && !is_far_from_all(table, g, &input->base_from_gripper.r);
 }
 
-/* Whether this slice has no pick, no release and nothing to tell: what most slices are. Where a gripper holds a wafer and
- * another one looks for some, they may contest it. */
+/* True if this slice has no pick, no release and no event. If one gripper holds a wafer and another one is
+ * open and empty, the second may contest it. */
 static bool is_uneventful(const wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     bool holding = false;
     bool looking = false;
@@ -264,53 +249,26 @@ static void move(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input) {
     gripper->valve = input->valve;
 }
 
-/* An uneventful slice: the grippers go where they go, and what they hold goes with them. */
+/* An uneventful slice: the grippers move, and what they hold moves with them. */
 static void move_all(wh_grasp_t *table, const wh_gripper_input_t *inputs) {
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         move(table, g, &inputs[g]);
     }
 }
 
-/* Parts 4 to 6, for slices in which they may find something. */
-static void pick_and_report(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
-    pick_all(table, inputs, list);
-    report_all(table, inputs, list);
-}
-
-/* Parts 2 to 7. */
-static void advance_with_events(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
-    ++table->slice;
-    carry_and_release(table, inputs);
-    pick_and_report(table, inputs, list);
-    remember_all(table, inputs);
-}
-
+/* Parts 2 to 4, and what follows from them. */
 static void advance(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
-    if (is_uneventful(table, inputs)) {
-        ++table->slice;
+    const bool uneventful = is_uneventful(table, inputs);
+    ++table->slice;
+    if (uneventful) {
         move_all(table, inputs);
-    } else {
-        advance_with_events(table, inputs, list);
+        return;
     }
-}
-
-/* Part 1. A refused call changes nothing but counters and the list. */
-static wh_status_t validate(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
-    const wh_status_t status = validate_call(table, inputs, list);
-    if (status != WH_OK) {
-        count_refusal(table);
-        return status;
-    }
-    return validate_inputs(table, inputs, list);
-}
-
-/* The step of a table that there is, with an empty list. */
-static wh_status_t step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
-    const wh_status_t status = validate(table, inputs, list);
-    if (status == WH_OK) {
-        advance(table, inputs, list);
-    }
-    return status;
+    carry_and_release(table, inputs);
+    pick_all(table, inputs, list);
+    report_releases(table, inputs, list);
+    watch_all(table, inputs, list);
+    remember_all(table, inputs);
 }
 
 wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
@@ -320,5 +278,10 @@ wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, w
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    return step(table, inputs, list);
+    const wh_status_t status = validate(table, inputs, list);
+    if (status == WH_OK) {
+        advance(table, inputs, list);
+    }
+    WH_ASSERT_CONSISTENT(table);
+    return status;
 }

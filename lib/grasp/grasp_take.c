@@ -1,6 +1,17 @@
 #include "grasp_internal.h"
 #include "horizon_internal.h"
-#include "proximity_internal.h"
+
+wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind) {
+    static const wh_event_t blank = {
+        .wafer = WH_NONE, .gripper = WH_NONE, .other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
+    WH_ASSERT(list->count < list->capacity);
+    wh_event_t *event = &list->events[list->count++];
+    *event = blank;
+    event->kind = kind;
+    event->slice = table->slice;
+    event->measured_slice = table->slice;
+    return event;
+}
 
 wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper) {
     const wh_vec3_t dr = wh_vec3_subtract(&wafer->base_from_wafer.r, &base_from_gripper->r);
@@ -34,12 +45,12 @@ int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_f
         const size_t w = wh_index_wafer(table, &near, i);
         const wh_wafer_t *wafer = &table->storage.wafers[w];
         if (wafer->holder == WH_NONE &&
-            !wh_horizon_passes(&horizon, &wafer->base_from_wafer, &base_from_gripper->r) &&
+            !wh_horizon_measure(&horizon, &wafer->base_from_wafer, &base_from_gripper->r) &&
             wh_proximity_ready(&wafer->base_from_wafer, base_from_gripper, &table->config.tolerance)) {
             keep_better(&best, w, wafer, base_from_gripper);
         }
     }
-    wh_horizon_keep(table, g, &base_from_gripper->r, &horizon);
+    wh_horizon_set(table, g, &base_from_gripper->r, &horizon);
     return best.wafer;
 }
 
@@ -85,8 +96,8 @@ static void pair(wh_grasp_t *table, size_t g, int32_t w) {
     table->storage.grippers[g].wafer = w;
 }
 
-/* The rotation is brought back to orthonormal, so that poses which are so only to WH_ROTATION_TOLERANCE do not add up over
- * many picks. */
+/* The rotation is brought back to orthonormal, so that poses which are so only to WH_ROTATION_TOLERANCE do
+ * not add up over many picks. */
 static void measure_grip(wh_pose_t *gripper_from_wafer, const wh_pose_t *then,
                          const wh_pose_t *base_from_wafer, bool seat) {
     wh_pose_relative_to(then, base_from_wafer, gripper_from_wafer);

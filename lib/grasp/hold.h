@@ -1,13 +1,14 @@
 /* Holding: the acceleration that a gripper's pads carry against the one that the motion asks for.
  *
- * Coulomb's law. In a gripper that moves with acceleration a under gravity g, with its normal n (e3, towards the wafer),
- * a wafer of mass m needs the force m (a - g) from its gripper. Along the pads this is friction:
+ * Coulomb's law. In a gripper that moves with acceleration a under gravity g, with its normal n (e3, towards
+ * the wafer), a wafer of mass m needs the force m (a - g) from its gripper. Along the pads this is friction:
  *
  *     |(a - g) - ((a - g).n) n|  <=  friction * (force * level / m + (a - g).n)
  *
- * where the bracket, times m, is the force between wafer and pads. When that would be negative, the wafer lifts off:
- * -(a - g).n > force * level / m. Both are told as an acceleration asked for and one that is carried, in mm/s^2; the wafer
- * slips if and only if the first is above the second. It is named only: the wafer goes on with its gripper.
+ * where the bracket, times m, is the force between wafer and pads. When that would be negative, the wafer
+ * lifts off: -(a - g).n > force * level / m. Both are told as an acceleration asked for and one that is
+ * carried, in mm/s^2; the wafer slips if and only if the first is above the second. It is named only: the
+ * wafer goes on with its gripper.
  */
 #ifndef WH_GRASP_HOLD_H
 #define WH_GRASP_HOLD_H
@@ -38,21 +39,22 @@ typedef struct {
 /* No wafer is watched. */
 wh_pads_t wh_pads_none(void);
 
-/* WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE or WH_STATUS_OUT_OF_RANGE. A mass of 0 with nothing else than 0
- * passes. */
+/* WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE or WH_STATUS_OUT_OF_RANGE. A mass of 0 with nothing
+ * else than 0 passes. */
 wh_status_t wh_pads_validate(const wh_pads_t *pads);
 
 /* The mass in kg of a disc of silicon (2.329 g/cm3) of this size in mm: 0.1276 for 300 mm and 0.775 mm. */
 wh_real_t wh_wafer_mass(wh_real_t diameter, wh_real_t thickness);
 
-/* The verdict on one moment: `acceleration` of the wafer in base, mm/s^2. Nothing is checked; the mass is above 0. Cost:
- * a square root and three divisions. */
+/* The verdict on one moment: `acceleration` of the wafer in base, mm/s^2. Nothing is checked; the mass is
+ * above 0. Cost: a square root and three divisions. */
 wh_hold_t wh_hold_judge(const wh_pads_t *pads, wh_real_t level, const wh_mat3_t *base_from_gripper,
                         const wh_vec3_t *acceleration);
 
-/* One slice of a gripper whose wafer's centre is now at `centre` (null: it holds none): the acceleration is the second
- * difference of three positions over slices of `dt` s, so the first two slices after a pick are not judged. `hold` gets
- * the verdict, all zero where there is none. True when a slip begins. Nothing is checked. */
+/* One slice of a gripper whose wafer's centre is now at `centre` (null: it holds none): the acceleration is
+ * the second difference of three positions over slices of `dt` s, so the first two slices after a pick are
+ * not judged. `hold` gets the verdict, all zero where there is none. True when a slip begins. Nothing is
+ * checked. */
 bool wh_carry_update(wh_carry_t *carry, const wh_pads_t *pads, wh_real_t level,
                      const wh_mat3_t *base_from_gripper, const wh_vec3_t *centre, wh_real_t dt,
                      wh_hold_t *hold);

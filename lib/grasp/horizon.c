@@ -1,6 +1,6 @@
 #include "horizon_internal.h"
 
-/* The longest that a word holds. */
+/* The longest distance that a word holds, in units. */
 #define LONGEST 536870912
 
 #if defined(WH_FLOAT)
@@ -9,8 +9,8 @@
 #define ROUNDING (16 * WH_REAL(DBL_EPSILON))
 #endif
 
-/* Taken off: a place rounded to units is less than 1.74 of them away, and what is left is far more than the rounding of a
- * neighbourhood's distances. */
+/* Units that are taken off: rounding a place to units moves it by less than 1.74 of them. The rest is far
+ * more than the rounding of a neighbourhood's distances. */
 #define TAKEN_OFF WH_REAL(2)
 
 /* No column of a rotation is longer, so no distance changes by more than this times the gripper's way. */
@@ -39,7 +39,7 @@ wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_
     return horizon;
 }
 
-/* The distance in units, rounded down, for four times which there is room in a word; 0 where none is left. */
+/* The distance in units, rounded down, so that four times it fits into a word; 0 if none is left. */
 static uint32_t reach_of(wh_real_t units) {
     const int32_t reach = wh_index_whole(units);
     if (reach < 0) {
@@ -48,7 +48,7 @@ static uint32_t reach_of(wh_real_t units) {
     return reach < LONGEST ? (uint32_t)reach : LONGEST;
 }
 
-/* A gripper that is has no horizon. */
+/* Too far from base for the grid: such a gripper gets no horizon. */
 static bool is_far(int32_t units) {
     return units == WH_INDEX_FAR || units == -WH_INDEX_FAR;
 }
@@ -74,7 +74,7 @@ void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const
         words[3] |= WH_HORIZON_OF_TOLERANCE;
     }
     if (words[3] >= 4 * ((uint32_t)TAKEN_OFF)) {
-        words[3] |= WH_HORIZON_HOLDS;
+        words[3] |= WH_HORIZON_CLEAR;
     }
 }
 

@@ -1,12 +1,13 @@
-/* Within the core: how far a gripper may move before any wafer that nobody holds can matter to it.
+/* Within the room: how far a gripper may move before any wafer that nobody holds can matter to it.
  *
- * For a wafer at rest |dr_proj_z| and |dr_proj_xy| change by no more than the gripper's origin moves. So a gripper that
- * stays within its horizon, the least over all free wafers of max(|dr_proj_z| - near_projz, |dr_proj_xy| - near_projxy),
- * need not look at any. While it follows a wafer's approach it looks for ready wafers only, and the tolerance takes the
- * neighbourhood's place. Rounding, and rotations that are orthonormal to WH_ROTATION_TOLERANCE only, are taken off.
+ * For a wafer at rest |dr_proj_z| and |dr_proj_xy| change by no more than the gripper's origin moves. So a
+ * gripper that stays within its horizon, the least over all free wafers of max(|dr_proj_z| - near_projz,
+ * |dr_proj_xy| - near_projxy), need not look at any. While it follows a wafer's approach it looks for ready
+ * wafers only, and the tolerance takes the neighbourhood's place. Rounding, and rotations that are
+ * orthonormal to WH_ROTATION_TOLERANCE only, are taken off.
  *
- * Four words for each gripper: a place in base in units of 1/64 mm, as three signed numbers, and four times the distance
- * from there in the same unit, plus WH_HORIZON_* bits. A distance of 0: none is known.
+ * Four words for each gripper: a place in base in units of 1/64 mm, as three signed numbers, and four times
+ * the distance from there in the same unit, plus WH_HORIZON_* bits. A distance of 0: none is known.
  */
 #ifndef WH_GRASP_HORIZON_INTERNAL_H
 #define WH_GRASP_HORIZON_INTERNAL_H
@@ -20,21 +21,22 @@ typedef struct {
     bool measured; /* false: there are no buckets to keep it in */
 } wh_horizon_t;
 
-/* It was measured against the tolerance; the gripper's pick in this step found that it is within it. */
-enum { WH_HORIZON_OF_TOLERANCE = 1, WH_HORIZON_HOLDS = 2 };
+/* Measured against the tolerance, not the neighbourhood; the pick in this step found no free wafer near. */
+enum { WH_HORIZON_OF_TOLERANCE = 1, WH_HORIZON_CLEAR = 2 };
 
 static inline uint32_t *wh_horizon_words(const wh_grasp_t *table, size_t g) {
     return &table->storage.buckets[WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g];
 }
 
-/* The way from a place that a word keeps, along one axis, in units. Two's complement, whatever a cast makes of it. */
+/* The way from a place that a word keeps, along one axis, in units. The word is two's complement; what a cast
+ * makes of large numbers depends on the compiler. */
 static inline wh_real_t wh_horizon_way(uint32_t word, wh_real_t place) {
     const int32_t from = word > INT32_MAX ? -1 - (int32_t)(UINT32_MAX - word) : (int32_t)word;
     return WH_INDEX_UNITS * place - (wh_real_t)from;
 }
 
-/* No wafer that nobody holds matters to gripper g at `place`. */
-static inline bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
+/* True if no wafer that nobody holds matters to gripper g at `place`. */
+static inline bool wh_horizon_is_clear_at(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
     if (table->storage.bucket_count == 0) {
         return false;
     }
@@ -49,25 +51,27 @@ static inline bool wh_horizon_covers(const wh_grasp_t *table, size_t g, const wh
     return x * x + y * y + z * z < reach * reach;
 }
 
-/* The same at the slice's end, after the gripper's pick has found it out. */
-static inline bool wh_horizon_holds(const wh_grasp_t *table, size_t g) {
-    return table->storage.bucket_count > 0 && (wh_horizon_words(table, g)[3] & WH_HORIZON_HOLDS) != 0;
+/* True if this step's pick already found no free wafer near. */
+static inline bool wh_horizon_is_clear(const wh_grasp_t *table, size_t g) {
+    return table->storage.bucket_count > 0 && (wh_horizon_words(table, g)[3] & WH_HORIZON_CLEAR) != 0;
 }
 
-/* That it covers the slice's end. */
-static inline void wh_horizon_note(wh_grasp_t *table, size_t g) {
-    wh_horizon_words(table, g)[3] |= WH_HORIZON_HOLDS;
+/* Remembers that no free wafer is near at the slice's end. */
+static inline void wh_horizon_set_clear(wh_grasp_t *table, size_t g) {
+    wh_horizon_words(table, g)[3] |= WH_HORIZON_CLEAR;
 }
 
-/* How far around `place` it pays to look: many times the way of this slice, or little when the gripper jumps. */
+/* How far around `place` a search should look: many times the way of this slice, or little if the gripper
+ * jumps. */
 wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place);
 
-/* Begins to measure what wh_index_near found with this margin. */
+/* Begins to measure a horizon over the wafers that wh_index_near found with this margin. */
 wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin);
 
-/* Takes a free wafer into account; true when it is not ready, as wh_proximity_ready says it. */
-static inline bool wh_horizon_passes(wh_horizon_t *horizon, const wh_pose_t *base_from_wafer,
-                                     const wh_vec3_t *place) {
+/* Takes a free wafer into account. True if the wafer is certainly not ready, as wh_proximity_ready would
+ * say. */
+static inline bool wh_horizon_measure(wh_horizon_t *horizon, const wh_pose_t *base_from_wafer,
+                                      const wh_vec3_t *place) {
     if (!horizon->measured) {
         return false;
     }
@@ -84,18 +88,18 @@ static inline bool wh_horizon_passes(wh_horizon_t *horizon, const wh_pose_t *bas
     return gap > 0;
 }
 
-/* What wh_horizon_keep does where the table has buckets. */
+/* What wh_horizon_set does if the table has buckets. */
 void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon);
 
-/* Keeps it, where there are buckets, for gripper g at `place`. */
-static inline void wh_horizon_keep(wh_grasp_t *table, size_t g, const wh_vec3_t *place,
-                                   const wh_horizon_t *horizon) {
+/* Stores the measured horizon for gripper g at `place`, if the table has buckets. */
+static inline void wh_horizon_set(wh_grasp_t *table, size_t g, const wh_vec3_t *place,
+                                  const wh_horizon_t *horizon) {
     if (table->storage.bucket_count > 0) {
         wh_horizon_store(table, g, place, horizon);
     }
 }
 
-/* No gripper has one, until it looks again. */
+/* Takes every gripper's horizon away, until it searches again. */
 void wh_horizon_reset(wh_grasp_t *table);
 
 #endif

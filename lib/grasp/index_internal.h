@@ -1,15 +1,17 @@
-/* Within the core: a grid over the wafers in the caller's buckets, so that a step looks only at those around a gripper.
+/* Within the room: a grid over the wafers in the caller's buckets, so that a step looks only at those around
+ * a gripper.
  *
  * All of it lives in wh_grasp_storage_t.buckets, in this order:
- *   3 words   how far along base's x, y and z any wafer's neighbourhood reaches from its origin, in units of 1/64 mm;
+ *   3 words   how far along base's x, y and z any wafer's neighbourhood reaches from its origin, in units of
+ *             1/64 mm;
  *   3 words   the edges of a cell along them, as powers of two of the unit;
  *   2 words   the gripper that searched last, and how many wafers it found, more than there are for all;
  *   4 words   for each gripper: its horizon (horizon_internal.h);
  *   2 words   for each wafer: the heads of the cells' lists, found by hashing the cell's place;
  *   2 words   for each wafer: the next in its list, and its cell's key;
  *   1 word    for each wafer: what the last search found.
- * A wafer keeps its cell while a gripper holds it. Whatever stands in a word, no search leaves the arrays or goes on for
- * ever.
+ * A wafer keeps its cell while a gripper holds it. Whatever stands in a word, no search leaves the arrays or
+ * goes on for ever.
  */
 #ifndef WH_GRASP_INDEX_INTERNAL_H
 #define WH_GRASP_INDEX_INTERNAL_H
@@ -28,7 +30,7 @@
 /* Beyond this, 33 km, all places are one. */
 #define WH_INDEX_FAR 2147483520
 
-/* Rounded towards zero, at most WH_INDEX_FAR from it; a NaN, which is not equal to itself, to that below zero. */
+/* Rounds towards zero, to at most WH_INDEX_FAR from it. A NaN becomes -WH_INDEX_FAR. */
 static inline int32_t wh_index_whole(wh_real_t units) {
     if (units == units && units > -(wh_real_t)WH_INDEX_FAR && units < (wh_real_t)WH_INDEX_FAR) {
         return (int32_t)units;
@@ -47,10 +49,10 @@ typedef struct {
     size_t count;
 } wh_found_t;
 
-/* Anew for all wafers, where the table has buckets. No gripper has a horizon then. */
+/* Builds the index anew for all wafers, if the table has buckets. No gripper has a horizon then. */
 void wh_index_build(wh_grasp_t *table);
 
-/* This wafer lies somewhere else from now on. No gripper has a horizon then. */
+/* Tells the index that this wafer lies somewhere else from now on. No gripper has a horizon then. */
 void wh_index_move(wh_grasp_t *table, size_t wafer);
 
 /* All wafers. */
@@ -59,24 +61,25 @@ static inline wh_found_t wh_index_all(const wh_grasp_t *table) {
     return near;
 }
 
-/* What wh_index_near does where the table has buckets. */
+/* What wh_index_near does if the table has buckets. */
 wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
                            wh_real_t margin);
 
 /* What the last search found, by whichever gripper. */
 wh_found_t wh_index_found(const wh_grasp_t *table);
 
-/* The wafers in whose neighbourhood gripper g comes between `from` and `to` or, along one of base's axes, may come by
- * moving less than `margin` from there; and others. All of them where the table has no buckets or as many cells would have
- * to be looked at. A step without buckets never has the search's memory on its stack. */
+/* The wafers in whose neighbourhood gripper g comes between `from` and `to` or, along one of base's axes, may
+ * come by moving less than `margin` from there; and others. All of them where the table has no buckets or as
+ * many cells would have to be looked at. A step without buckets never has the search's memory on its
+ * stack. */
 static inline wh_found_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
                                        const wh_vec3_t *to, wh_real_t margin) {
     return table->storage.bucket_count > 0 ? wh_index_search(table, g, from, to, margin)
                                            : wh_index_all(table);
 }
 
-/* The same without a margin, for a gripper that has searched there in this step: what it found then, unless another one
- * has searched since. */
+/* wh_index_near without a margin, for a gripper that has searched there in this step. Returns what that
+ * search found, unless another gripper has searched since. */
 static inline wh_found_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
                                         const wh_vec3_t *to) {
     if (table->storage.bucket_count > 0 && table->storage.buckets[WH_INDEX_FOUND] == g) {

@@ -1,6 +1,4 @@
-#include "proximity.h"
-
-#include "proximity_internal.h"
+#include "grasp_internal.h"
 
 wh_tolerance_t wh_tolerance_paper(void) {
     const wh_tolerance_t paper = {WH_REAL(0.5), 50, WH_REAL(0.99)};

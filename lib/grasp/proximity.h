@@ -46,8 +46,8 @@ wh_tolerance_t wh_tolerance_paper(void);
 /* "strict": 0.5 mm, 5 mm, 0.99998; the rim of a 300 mm wafer is out of plane by less than 1 mm. */
 wh_tolerance_t wh_tolerance_strict(void);
 
-/* How many presets there are, and which: `index` is 0 to WH_TOLERANCE_PRESETS - 1, anything else gives null and leaves
- * `tolerance` as it was. Returns the preset's name, a constant string. */
+/* How many presets there are, and which: `index` is 0 to WH_TOLERANCE_PRESETS - 1, anything else gives null
+ * and leaves `tolerance` as it was. Returns the preset's name, a constant string. */
 #define WH_TOLERANCE_PRESETS 2
 const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance);
 
@@ -60,10 +60,11 @@ wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance);
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                  const wh_tolerance_t *tolerance, wh_proximity_t *result);
 
-/* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit. No argument is checked:
- * poses and tolerance must be valid ones, except that a NaN anywhere gives false. Cost: 3 products where the wafer is
- * too high or too low, 15 within the limit (6), and a square root near the limit (7). It stands here so that compilers
- * put it into the caller's loop; for hundreds of wafers and more at once see batch/batch.h. */
+/* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit. No argument is
+ * checked: poses and tolerance must be valid ones, except that a NaN anywhere gives false. Cost: 3 products
+ * where the wafer is too high or too low, 15 within the limit (6), and a square root near the limit (7). It
+ * stands here so that compilers put it into the caller's loop; for hundreds of wafers and more at once see
+ * batch/batch.h. */
 static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                       const wh_tolerance_t *tolerance) {
     const wh_mat3_t *w = &base_from_wafer->R;
@@ -84,8 +85,8 @@ static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh
     return wh_real_root_below(square, tolerance->projxy) && wh_vec3_dot(&n1, &n2) > tolerance->planar;
 }
 
-/* Margins, failed conditions and verdict anew from the values (1)-(5) that `measured` holds, as when they have travelled
- * in a message. Arguments are not checked; a NaN fails its condition. */
+/* Margins, failed conditions and verdict anew from the values (1)-(5) that `measured` holds, as when they
+ * have travelled in a message. Arguments are not checked; a NaN fails its condition. */
 void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *measured);
 
 /* How far the farthest point of a wafer's rim (radius in mm) is from the gripper's contact plane: the number

@@ -6,7 +6,7 @@ static bool is_index_or_none(int32_t index, size_t count) {
     return index == WH_NONE || wh_is_index(index, count);
 }
 
-/* Every number finite: a sum of differences that are each zero, or NaN. */
+/* True if every number is finite. */
 static bool measured_is_finite(const wh_proximity_t *p) {
     const wh_real_t values[] = {p->dr.x,         p->dr.y,         p->dr.z,
                                 p->n1_proj_n2,   p->dr_proj_z,    p->dr_proj_xy.x,
@@ -43,7 +43,8 @@ static wh_status_t check_wafer(const wh_grasp_t *table, size_t w, const wh_wafer
     return wh_pose_validate(&wafers[w].base_from_wafer);
 }
 
-/* A wafer is taken within the tolerances. From much farther off it could be carried to where no number is. */
+/* A wafer is taken within the tolerances. One held from much farther off could be carried beyond all finite
+ * numbers. */
 static bool is_within_reach(const wh_tolerance_t *tolerance, const wh_vec3_t *r) {
     const wh_real_t reach = 2 * (tolerance->projz + tolerance->projxy);
     return wh_real_abs(r->x) <= reach && wh_real_abs(r->y) <= reach && wh_real_abs(r->z) <= reach;
@@ -143,10 +144,6 @@ static void copy_grippers(wh_gripper_t to[], const wh_gripper_t from[], size_t c
     }
 }
 
-static void count_refusal(wh_grasp_t *table) {
-    ++table->counters.refused;
-}
-
 static void take_over(wh_grasp_t *table, const wh_wafer_t wafers[], const wh_gripper_t grippers[]) {
     copy_wafers(table->storage.wafers, wafers, table->storage.wafer_count);
     copy_grippers(table->storage.grippers, grippers, table->storage.gripper_count);
@@ -159,11 +156,12 @@ wh_status_t wh_grasp_restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t
     }
     const wh_status_t status = check_all(table, slice, wafers, grippers);
     if (status != WH_OK) {
-        count_refusal(table);
+        ++table->counters.refused;
         return status;
     }
     table->slice = slice;
     take_over(table, wafers, grippers);
     wh_index_build(table);
+    WH_ASSERT_CONSISTENT(table);
     return WH_OK;
 }

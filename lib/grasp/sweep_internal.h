@@ -1,4 +1,4 @@
-/* Within the core: a gripper's motion between two slices, and when a resting wafer comes within its reach.
+/* Within the room: a gripper's motion between two slices, and when a resting wafer comes within its reach.
  *
  * With the wafer at rest (3) is linear and (5) squared is quadratic in t, and with the rotation interpolated
  * as the normalised quaternion (1-t) 1 + t q so is (2) times the quaternion's squared length: all three

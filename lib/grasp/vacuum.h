@@ -4,14 +4,14 @@
  *
  *     level + (target - level) * dt / (tau + dt)
  *
- * (a first-order lag, integrated implicitly: stable and without overshoot for every dt and tau >= 0, no exp; tau 0
- * reaches the target at once, and so does a level closer to it than 1e-4). The target is 0 with the valve closed; with
- * the valve open 1 while a wafer is on the pads, and `idle` while they draw in air. tau is `build` upwards and `vent`
- * downwards.
+ * (a first-order lag, integrated implicitly: stable and without overshoot for every dt and tau >= 0, no exp;
+ * tau 0 reaches the target at once, and so does a level closer to it than 1e-4). The target is 0 with the
+ * valve closed; with the valve open 1 while a wafer is on the pads, and `idle` while they draw in air. tau is
+ * `build` upwards and `vent` downwards.
  *
- * The valve's command and what it does are two things: an opened valve acts at once, for a wafer rests on an open
- * gripper whatever its level; a closed one lets a held wafer go when the level has fallen below `release`. The sensor
- * goes on when the level reaches `on` and off when it falls below `off`.
+ * The valve's command and what it does are two things: an opened valve acts at once, for a wafer rests on an
+ * open gripper whatever its level; a closed one lets a held wafer go when the level has fallen below
+ * `release`. The sensor goes on when the level reaches `on` and off when it falls below `off`.
  *
  * Per slice, around a step of the grasp table (grasp/grasp.h):
  *
@@ -53,7 +53,8 @@ wh_vacuum_config_t wh_vacuum_ideal(void);
 /* Lags of 50 ms and 20 ms, idle 0.1, sensor on at 0.7 and off at 0.6, release at 0.3. */
 wh_vacuum_config_t wh_vacuum_delayed(void);
 
-/* WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, or WH_STATUS_OUT_OF_RANGE for a value outside the ranges above. */
+/* WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, or WH_STATUS_OUT_OF_RANGE for a value outside the
+ * ranges above. */
 wh_status_t wh_vacuum_validate(const wh_vacuum_config_t *config);
 
 /* Nothing wrong: 1 and 0. */
@@ -62,14 +63,15 @@ wh_vacuum_fault_t wh_vacuum_sound(void);
 /* Before the first slice: no vacuum, closed, off. */
 wh_vacuum_t wh_vacuum_start(void);
 
-/* Takes a slice's command, lets the level fall if that is closed, and returns what the valve does, for the grasp step.
- * A command that is no valve's level is returned as it is, for that step to refuse, and changes nothing. No other
- * argument is checked; `dt` is the slice's length in s. Cost: a division. */
+/* Takes a slice's command, lets the level fall if that is closed, and returns what the valve does, for the
+ * grasp step. A command that is no valve's level is returned as it is, for that step to refuse, and changes
+ * nothing. No other argument is checked; `dt` is the slice's length in s. Cost: a division. */
 int32_t wh_vacuum_before(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, int32_t command,
                          bool holds, wh_real_t dt, wh_vacuum_t *vacuum);
 
-/* After the grasp step: the level under an open valve, and the sensor. `holds`: a wafer is on the pads now. True when
- * the sensor went off under a wafer that the command wants held. Nothing is checked. Cost: a division. */
+/* After the grasp step: the level under an open valve, and the sensor. `holds`: a wafer is on the pads now.
+ * True when the sensor went off under a wafer that the command wants held. Nothing is checked. Cost: a
+ * division. */
 bool wh_vacuum_after(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, bool holds,
                      wh_real_t dt, wh_vacuum_t *vacuum);
 

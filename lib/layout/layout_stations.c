@@ -216,21 +216,19 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t w) {
     read_position(reader, layout, wafer, &layout->start[w].base_from_wafer);
 }
 
-/* The items that are sorted. The wafers themselves stay in their order. */
-typedef struct {
-    const wh_layout_wafer_t *wafer;
-} entry_t;
+/* Pointers are sorted: the wafers themselves stay in their order. */
+typedef const wh_layout_wafer_t *entry_t;
 
 static int compare_wafer_names(const void *a, const void *b) {
-    const wh_layout_wafer_t *one = ((const entry_t *)a)->wafer;
-    const wh_layout_wafer_t *two = ((const entry_t *)b)->wafer;
+    const wh_layout_wafer_t *one = *(const entry_t *)a;
+    const wh_layout_wafer_t *two = *(const entry_t *)b;
     const int order = strcmp(one->name, two->name);
     return order != 0 ? order : (one < two ? -1 : 1);
 }
 
 static int compare_slots(const void *a, const void *b) {
-    const wh_layout_wafer_t *one = ((const entry_t *)a)->wafer;
-    const wh_layout_wafer_t *two = ((const entry_t *)b)->wafer;
+    const wh_layout_wafer_t *one = *(const entry_t *)a;
+    const wh_layout_wafer_t *two = *(const entry_t *)b;
     if (one->station != two->station) {
         return one->station < two->station ? -1 : 1;
     }
@@ -251,9 +249,9 @@ static void fail_at(wh_reader_t *reader, const wh_layout_t *layout, const wh_lay
 static void refuse_same_name(wh_reader_t *reader, const wh_layout_t *layout, entry_t *order) {
     qsort(order, layout->wafer_count, sizeof *order, compare_wafer_names);
     for (size_t i = 1; i < layout->wafer_count; ++i) {
-        if (strcmp(order[i - 1].wafer->name, order[i].wafer->name) == 0) {
-            lua_pushstring(reader->L, order[i].wafer->name);
-            fail_at(reader, layout, order[i].wafer, "name", "a name that no other wafer has");
+        if (strcmp(order[i - 1]->name, order[i]->name) == 0) {
+            lua_pushstring(reader->L, order[i]->name);
+            fail_at(reader, layout, order[i], "name", "a name that no other wafer has");
         }
     }
 }
@@ -261,8 +259,8 @@ static void refuse_same_name(wh_reader_t *reader, const wh_layout_t *layout, ent
 static void refuse_same_slot(wh_reader_t *reader, const wh_layout_t *layout, entry_t *order) {
     qsort(order, layout->wafer_count, sizeof *order, compare_slots);
     for (size_t i = 1; i < layout->wafer_count; ++i) {
-        const wh_layout_wafer_t *wafer = order[i].wafer;
-        const wh_layout_wafer_t *before = order[i - 1].wafer;
+        const wh_layout_wafer_t *wafer = order[i];
+        const wh_layout_wafer_t *before = order[i - 1];
         if (before->station == wafer->station && before->slot == wafer->slot) {
             char expected[200];
             snprintf(expected, sizeof expected, "a slot of %s of its own; \"%s\" lies in this one",
@@ -290,7 +288,7 @@ void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout) {
     }
     entry_t *order = wh_layout_memory(reader->L, count, sizeof *order);
     for (size_t w = 0; w < layout->wafer_count; ++w) {
-        order[w].wafer = &layout->wafers[w];
+        order[w] = &layout->wafers[w];
     }
     refuse_same_name(reader, layout, order);
     refuse_same_slot(reader, layout, order);

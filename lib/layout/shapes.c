@@ -124,8 +124,6 @@ size_t wh_shapes_count_station(wh_stand_t stand, int32_t slots) {
         return 2 * (size_t)slots + 6;
     case WH_STAND_CHUCK:
         return 1;
-    case WH_STAND_NOTHING:
-        break;
     }
     return 0;
 }
@@ -191,8 +189,6 @@ void wh_shapes_add_station(wh_part_list_t *list, const wh_shapes_t *shapes, cons
     case WH_STAND_CHUCK:
         add_fixed(list, station, index, cylinder(shapes->chuck.body, BODY_BOTTOM, -shapes->chuck.height - 1),
                   name, "body");
-        break;
-    case WH_STAND_NOTHING:
         break;
     }
 }

@@ -41,7 +41,7 @@ typedef struct {
 } wh_spindle_t;
 
 /* What carries the wafers of a station. */
-typedef enum { WH_STAND_LEDGES, WH_STAND_FOUP, WH_STAND_CHUCK, WH_STAND_NOTHING } wh_stand_t;
+typedef enum { WH_STAND_LEDGES, WH_STAND_FOUP, WH_STAND_CHUCK } wh_stand_t;
 
 typedef struct {
     wh_real_t wafer_radius, wafer_thickness;

@@ -8,6 +8,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "../text/array.h"
+
 /* The rounding of a file's numbers, relative to the largest: seven digits, or a single float. */
 static const wh_real_t file_digits = 1e-6;
 enum { HEAD = 80, COUNT = 4, FACET = 50, NORMAL = 12, WORD = 64 };
@@ -229,16 +231,11 @@ static int compare(const void *left, const void *right) {
     return order != 0 ? order : compare_numbers(a->z, b->z);
 }
 
-/* The different corners, sorted, in memory of their own; null if out of memory. */
+/* The different corners, sorted, in memory of their own. */
 static wh_vec3_t *different(const wh_vec3_t *corners, size_t corner_count, size_t *count) {
-    wh_vec3_t *points = malloc((corner_count + 1) * sizeof *points);
-    if (points == NULL) {
-        return NULL;
-    }
-    if (corner_count > 0) {
-        memcpy(points, corners, corner_count * sizeof *points);
-        qsort(points, corner_count, sizeof *points, compare);
-    }
+    wh_vec3_t *points = wh_array_new(corner_count, sizeof *points);
+    memcpy(points, corners, corner_count * sizeof *points);
+    qsort(points, corner_count, sizeof *points, compare);
     *count = 0;
     for (size_t i = 0; i < corner_count; ++i) {
         if (*count == 0 || compare(&points[*count - 1], &points[i]) != 0) {
@@ -253,7 +250,6 @@ typedef struct {
     wh_real_t size, coordinate;
 } extent_t;
 
-/* The longest edge of the box around them, and their largest coordinate. */
 static extent_t extent_of(const wh_vec3_t *points, size_t count) {
     const wh_convex_t mesh = {.kind = WH_CONVEX_MESH, .points = points, .point_count = count};
     const wh_pose_t here = wh_pose_identity();
@@ -333,24 +329,6 @@ static bool check(stl_t *stl, const wh_vec3_t *points, size_t count) {
 
 /* ----------------------------------------------------------------------------------------------- the file */
 
-static bool parse(stl_t *stl, wh_vec3_t **points, size_t *count) {
-    if (!read_facets(stl)) {
-        return false;
-    }
-    size_t found = 0;
-    wh_vec3_t *mine = different(stl->corners, 3 * stl->facets, &found);
-    if (mine == NULL) {
-        return refuse(stl, ": out of memory");
-    }
-    if (!check(stl, mine, found)) {
-        free(mine);
-        return false;
-    }
-    *points = mine;
-    *count = found;
-    return true;
-}
-
 bool wh_stl_parse(const char *path, const char *bytes, size_t length, wh_real_t mm_per_unit,
                   wh_vec3_t **points, size_t *count, char *message, size_t size) {
     stl_t stl = {.path = path,
@@ -367,11 +345,19 @@ bool wh_stl_parse(const char *path, const char *bytes, size_t length, wh_real_t 
     if (length > WH_STL_BYTES) {
         return refuse(&stl, ": more than %zu bytes", WH_STL_BYTES);
     }
-    stl.corners = malloc(3 * (size_t)WH_STL_FACETS * sizeof *stl.corners);
-    if (stl.corners == NULL) {
-        return refuse(&stl, ": out of memory");
+    bool good = false;
+    stl.corners = wh_array_new(3 * (size_t)WH_STL_FACETS, sizeof *stl.corners);
+    if (read_facets(&stl)) {
+        size_t found = 0;
+        wh_vec3_t *mine = different(stl.corners, 3 * stl.facets, &found);
+        good = check(&stl, mine, found);
+        if (good) {
+            *points = mine;
+            *count = found;
+        } else {
+            free(mine);
+        }
     }
-    const bool good = parse(&stl, points, count);
     free(stl.corners);
     return good;
 }
@@ -383,14 +369,11 @@ bool wh_stl_read(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, si
     if (file == NULL) {
         return refuse(&stl, ": %s", strerror(errno));
     }
-    char *bytes = malloc(WH_STL_BYTES + 1);
-    const size_t length = bytes == NULL ? 0 : fread(bytes, 1, WH_STL_BYTES + 1, file);
-    bool good = false;
-    if (bytes == NULL || ferror(file) != 0) {
-        (void)refuse(&stl, ": %s", strerror(errno));
-    } else {
-        good = wh_stl_parse(path, bytes, length, mm_per_unit, points, count, message, size);
-    }
+    char *bytes = wh_array_new(WH_STL_BYTES + 1, 1);
+    const size_t length = fread(bytes, 1, WH_STL_BYTES + 1, file);
+    const bool good = ferror(file) != 0
+                          ? refuse(&stl, ": %s", strerror(errno))
+                          : wh_stl_parse(path, bytes, length, mm_per_unit, points, count, message, size);
     free(bytes);
     (void)fclose(file);
     return good;

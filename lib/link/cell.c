@@ -96,7 +96,7 @@ void wh_link_cell_free(waferhand_cell *message) {
     memset(message, 0, sizeof *message);
 }
 
-/* ------------------------------------------------------------------------------------------ and back */
+/* ----------------------------------------------------------------------------------------------- and back */
 
 static bool take_name(const char *from, char to[WH_NAME_SIZE]) {
     const size_t length = strlen(from);
@@ -112,7 +112,7 @@ static bool take_pose(const double position[3], const double rotation[9], wh_pos
     return wh_pose_validate(pose) == WH_OK;
 }
 
-/* The range that a layout's file has for tolerances and neighbourhoods. */
+/* True if a layout's file may say this of a tolerance or a neighbourhood. */
 static bool is_limit(double mm) {
     return mm >= 1e-9 && mm <= 1e6;
 }
@@ -169,7 +169,8 @@ static bool take_lists(const waferhand_cell *cell, wh_layout_t *layout) {
     return sound;
 }
 
-/* Times are in s here, slices in us there: as lib/layout/layout_physics.c has it. */
+/* The layout has times in s, the message has slices in us; lib/layout/layout_physics.c converts them the same
+ * way. */
 static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_physics_t *physics = &layout->physics;
     const wh_vacuum_config_t vacuum = {cell->vacuum_build,     cell->vacuum_vent,       cell->vacuum_idle,

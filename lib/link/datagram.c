@@ -56,7 +56,7 @@ static bool is_intact(const void *data, size_t size) {
     return told == 0 || told == check_of(bytes, size - 8);
 }
 
-/* A place in a datagram; `good` falls when something would lie beyond its end. */
+/* A place in a datagram. `good` becomes false if something would lie beyond the end, and stays so. */
 typedef struct {
     const uint8_t *bytes;
     size_t size, at;
@@ -84,7 +84,7 @@ static size_t take_count(walk_t *walk, int32_t most) {
     return walk->good ? (size_t)count : 0;
 }
 
-/* A length that counts the terminator, then so many bytes. */
+/* Passes a text: its length with the terminator, then so many bytes. */
 static void skip_text(walk_t *walk) {
     const size_t length = take_count(walk, WH_LINK_DATAGRAM);
     const size_t end = walk->at + length;
@@ -103,8 +103,7 @@ static walk_t walk_over(const void *data, size_t size) {
     return walk;
 }
 
-/* -------------------------------------------------------------------------------------------------
- * messages */
+/* ----------------------------------------------------------------------------------------------- messages */
 
 bool wh_link_decode_command(const void *data, size_t size, waferhand_command *message) {
     return size <= WH_LINK_DATAGRAM && is_intact(data, size) &&

@@ -8,8 +8,7 @@
 /* How long the end of a free-running command waits for the state of its last slice. */
 #define COMMAND_SETTLE_US 100000
 
-/* -------------------------------------------------------------------------------------------------
- * telling */
+/* ------------------------------------------------------------------------------------------------ telling */
 
 static void tell(wh_mcs_process_t *control, int32_t phase, int line, wh_status_t error, const char *command,
                  const char *text) {
@@ -48,7 +47,7 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
     if (control->connected) {
         (void)wh_protocol_client_settle(&control->client, COMMAND_SETTLE_US);
     }
-    /* A request is answered with its result, by wh_mcs_process_answer. */
+    /* Not as the request's answer: that carries its result, and wh_mcs_process_answer sends it. */
     const int64_t request = control->request;
     control->request = 0;
     tell(control, command->error == WH_OK ? WH_LINK_PHASE_DONE : WH_LINK_PHASE_FAILED, command->line,
@@ -56,8 +55,7 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
     control->request = request;
 }
 
-/* -------------------------------------------------------------------------------------------------
- * requests */
+/* ----------------------------------------------------------------------------------------------- requests */
 
 static const wh_mcs_process_answer_t *find_answer(const wh_mcs_process_t *control, int64_t seq) {
     for (size_t i = 0; i < WH_CONTROL_ANSWERED; ++i) {
@@ -95,14 +93,14 @@ static void remember(wh_mcs_process_t *control, int64_t seq, wh_status_t error, 
     tell_answer(control, answer);
 }
 
-/* STOP, and nothing else but blanks, in any case. */
+/* True for STOP in any case, with blanks around it. */
 static bool is_stop(const char *line) {
     const size_t blanks = strspn(line, " ");
     return strncasecmp(line + blanks, "STOP", 4) == 0 &&
            line[blanks + 4 + strspn(line + blanks + 4, " ")] == '\0';
 }
 
-/* Ends the command that runs; those that wait behind it are not begun. */
+/* Ends the running command, and answers the waiting ones without beginning them. */
 static void stop_all(wh_mcs_process_t *control, const waferhand_request *message) {
     char line[WH_LINK_LINE];
     const int64_t executing = control->request;
@@ -181,8 +179,7 @@ void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const c
     remember(control, seq, error, line, text);
 }
 
-/* ------------------------------------------------------------------------------------------------- the
- * run */
+/* ------------------------------------------------------------------------------------------------ the run */
 
 static void tell_progress(void *user) {
     wh_mcs_process_t *control = user;
@@ -210,7 +207,7 @@ static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
     return control->connected ? &control->client.link : NULL;
 }
 
-/* Only for the record, which can then be replayed without the layout. */
+/* Subscribed only so that the record holds the cell: it can then be replayed without the layout's file. */
 static void on_cell(void *user, const void *data, size_t size) {
     (void)user;
     (void)data;

@@ -100,8 +100,7 @@ static void take_encounter(const waferhand_encounter *in, const wh_tolerance_t *
     take_measured(&in->measured, tolerance, &out->measured);
 }
 
-/* -------------------------------------------------------------------------------------------------
- * command */
+/* ------------------------------------------------------------------------------------------------ command */
 
 void wh_link_command_to_message(const wh_command_t *command, const wh_link_identity_t *identity,
                                 bool lockstep, waferhand_command *message) {
@@ -150,8 +149,7 @@ wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_co
     return WH_OK;
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * state */
+/* -------------------------------------------------------------------------------------------------- state */
 
 static void put_gripper(const wh_gripper_t *gripper, waferhand_gripper_state *out) {
     memset(out, 0, sizeof *out);
@@ -270,7 +268,7 @@ static void take_event(const waferhand_event *in, int64_t seq, const wh_toleranc
     take_measured(&in->measured, tolerance, &out->measured);
 }
 
-/* Whether `other` is what this kind has there. */
+/* True if `other` is what this kind of event has there. */
 static bool other_fits(const waferhand_event *event, const waferhand_state *message) {
     if (event->kind == WH_EVENT_HANDED_OVER || event->kind == WH_EVENT_CONTESTED) {
         return wh_is_index(event->other, (size_t)message->gripper_count);
@@ -281,7 +279,8 @@ static bool other_fits(const waferhand_event *event, const waferhand_state *mess
     return event->other == WH_NONE;
 }
 
-/* Whether wafer and gripper are what this kind has. The collision check and the faults may name none. */
+/* True if wafer and gripper are what this kind of event has. The collision check and the faults may name
+ * none. */
 static bool names_fit(const waferhand_event *event, const waferhand_state *message) {
     static const uint32_t any = 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE |
                                 1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
@@ -299,7 +298,7 @@ static bool parts_fit(const waferhand_event *event) {
            event->parts[1] < WH_LINK_PARTS;
 }
 
-/* Whether a step could have yielded it: who reads it takes its indices for good. */
+/* True if a step could have yielded the event. Its readers trust its indices. */
 static bool event_fits(const waferhand_event *event, const waferhand_state *message) {
     return event->kind >= 0 && event->kind < WH_EVENT_KINDS && names_fit(event, message) &&
            other_fits(event, message) && parts_fit(event) && event->measured_slice >= 0 &&
@@ -357,7 +356,7 @@ wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_
     return WH_OK;
 }
 
-/* ----------------------------------------------------------------------------------------- proximity */
+/* ---------------------------------------------------------------------------------------------- proximity */
 
 static int32_t find_nearest(const wh_state_t *state, const wh_gripper_t *gripper) {
     int32_t nearest = WH_NONE;

@@ -125,7 +125,7 @@ bool wh_link_decode_request(const void *data, size_t size, waferhand_request *me
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message);
 
 /* The cell of a layout, in memory that wh_link_cell_free releases. The texts are the layout's. Returns false
- * when memory is out. */
+ * if out of memory. */
 bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_t *identity,
                               waferhand_cell *message);
 void wh_link_cell_free(waferhand_cell *message);

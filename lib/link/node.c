@@ -45,7 +45,7 @@ void wh_node_flush_record(wh_node_t *node) {
     }
 }
 
-/* The log is lcm-logger's; channel and data are only read. */
+/* Writes what lcm-logger would. LCM's type has plain pointers, though it only reads what they point to. */
 static void record(wh_node_t *node, const char *channel, const void *data, size_t size) {
     union {
         const void *constant;

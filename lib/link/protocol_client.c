@@ -13,24 +13,24 @@
 #define FIRST_RESEND_US 1200
 #define RESEND_LEAST_US INT64_C(300)
 #define RESEND_MOST_US 50000
-/* So often a command is sent again at the first pace; then, for nobody seems to be there, less and less
- * often. */
+/* So often a command is sent again at the first pace. Then nobody seems to be there, and the pace slows
+ * down. */
 #define RESENDS_AT_FIRST_PACE 20
-/* How long a wait may be, so that silence and a stop are noticed in time. */
+/* The longest single wait: between waits the client looks for silence and for a stop. */
 #define WAIT_MOST_US 50000
 
 static bool is_stopped(const wh_protocol_client_t *client) {
     return client->options.stop && *client->options.stop != 0;
 }
 
-/* From the second slice on; the first is in lockstep. */
+/* True from the second slice of a free-running run on. Its first slice is in lockstep. */
 static bool is_free_running(const wh_protocol_client_t *client) {
     return client->options.rate > 0 && client->has_state;
 }
 
-/* ------------------------------------------------------------------------------------------- sending */
+/* ------------------------------------------------------------------------------------------------ sending */
 
-/* What is lost is sent again by those who wait for the answer. */
+/* A lost command is no error here: whoever waits for the answer sends it again. */
 static void send_command(wh_protocol_client_t *client) {
     const int size =
         waferhand_command_encode(client->encoded, 0, (int)sizeof client->encoded, &client->command);
@@ -59,7 +59,7 @@ static void restore_simulator(wh_protocol_client_t *client) {
     send_again(client);
 }
 
-/* ----------------------------------------------------------------------------------------- receiving */
+/* ---------------------------------------------------------------------------------------------- receiving */
 
 static void heard(wh_protocol_client_t *client) {
     client->last_heard_us = wh_node_clock_us();
@@ -69,7 +69,7 @@ static void heard(wh_protocol_client_t *client) {
     }
 }
 
-/* A table of the layout's rules, and of the state's counts and slice. */
+/* A grasp table with the layout's rules over a state's wafers and grippers. */
 static wh_grasp_t table_over(const wh_protocol_client_t *client, wh_link_arrays_t *arrays,
                              const wh_state_t *state, int64_t missed) {
     wh_grasp_t table;
@@ -83,8 +83,8 @@ static wh_grasp_t table_over(const wh_protocol_client_t *client, wh_link_arrays_
     return table;
 }
 
-/* Whether it is the state whose hash it carries, and one that a table could be in: then it is in
- * client->arrays. */
+/* Copies the state to client->arrays. False if its hash is not the one that it carries, or no grasp table
+ * could be in it. */
 static bool take_over(wh_protocol_client_t *client, const wh_state_t *state, const waferhand_state *message) {
     const wh_grasp_t as_told = table_over(client, &client->spare, state, message->missed);
     wh_grasp_t table = table_over(client, &client->arrays, state, message->missed);
@@ -170,9 +170,10 @@ static void on_state(void *user, const void *data, size_t size) {
     (void)waferhand_state_decode_cleanup(&message);
 }
 
-/* ------------------------------------------------------------------------------------------- waiting */
+/* ------------------------------------------------------------------------------------------------ waiting */
 
-/* Says so, once, if nothing has been heard for long, neither since then nor before. */
+/* Reports a silent simulator, once: nothing was heard for long, counted from `since_us` or from the last
+ * message. */
 static void notice_silence(wh_protocol_client_t *client, int64_t since_us) {
     const int64_t last = client->last_heard_us > since_us ? client->last_heard_us : since_us;
     if (!client->silent && wh_node_clock_us() - last > WH_CLIENT_SILENCE_US) {
@@ -191,7 +192,7 @@ static int64_t clamp(int64_t value, int64_t low, int64_t high) {
     return value > high ? high : value;
 }
 
-/* When a command whose answer does not come is sent again. */
+/* When to send a command again whose answer does not come. */
 typedef struct {
     int64_t pause, due; /* us */
     uint64_t before;    /* sent again before this wait */
@@ -208,7 +209,8 @@ static void resend_when_due(wh_protocol_client_t *client, resend_t *resend) {
     resend->due = wh_node_clock_us() + resend->pause;
 }
 
-/* Whoever has signals of his own stops a wait for a silent simulator by any of them. */
+/* True if the run is stopped. Any signal ends a wait for a silent simulator: a program's own handler is
+ * enough. */
 static bool is_given_up(const wh_protocol_client_t *client) {
     return is_stopped(client) || (client->silent && client->node->interrupted);
 }
@@ -234,7 +236,7 @@ static wh_status_t await_answer(wh_protocol_client_t *client) {
     return client->refusal;
 }
 
-/* Free-running: waits until the next slice is due; a simulator that has fallen silent is waited for. */
+/* Free-running: waits until the next slice is due, and longer if the simulator has fallen silent. */
 static wh_status_t await_due_time(wh_protocol_client_t *client) {
     const double period_us = (double)client->options.layout->slice_us / client->options.rate;
     if (client->start_us == 0) {
@@ -255,9 +257,9 @@ static wh_status_t await_due_time(wh_protocol_client_t *client) {
     return is_stopped(client) ? WH_STATUS_STOPPED : client->refusal;
 }
 
-/* ------------------------------------------------------------------------------- the slice interface */
+/* ------------------------------------------------------------------------------------ the slice interface */
 
-/* The file is there before the command is sent: a simulator that reads it has the valves in time. */
+/* Called before the command is sent, so that a simulator that reads the file has the valves in time. */
 static void write_outputs(wh_protocol_client_t *client) {
     const size_t count = (size_t)client->command.gripper_count;
     if (!client->options.outputs ||
@@ -273,7 +275,7 @@ static void write_outputs(wh_protocol_client_t *client) {
     }
 }
 
-/* What came since the last exchange, while somebody waited for a late state, is still to be handed over. */
+/* Keeps events that came after the last exchange, with a late state: they are still to be handed over. */
 static void forget_delivered_events(wh_protocol_client_t *client) {
     const size_t left = client->event_count - client->events_delivered;
     memmove(client->events, client->events + client->events_delivered, left * sizeof *client->events);
@@ -281,7 +283,7 @@ static void forget_delivered_events(wh_protocol_client_t *client) {
     client->events_delivered = 0;
 }
 
-/* Before the first answer the caller's own view of the beginning stays. */
+/* Before the first answer the caller's state stays as it is: the beginning. */
 static void hand_over(wh_protocol_client_t *client, wh_state_t *state, wh_status_t status) {
     if (client->has_state) {
         *state = client->state;
@@ -292,7 +294,8 @@ static void hand_over(wh_protocol_client_t *client, wh_state_t *state, wh_status
     state->status = status;
 }
 
-/* A command that was given up may or may not have arrived: it is seen through before the next one. */
+/* A command that was given up may have arrived all the same. It must be answered before the next one is
+ * sent. */
 static wh_status_t see_through(wh_protocol_client_t *client) {
     if (!client->pending) {
         return WH_OK;
@@ -336,7 +339,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     return status;
 }
 
-/* Free-running, the last states may be on their way still. */
+/* Waits a little: in a free-running run the last states may still be on their way. */
 static uint64_t last_hash(wh_link_t *link) {
     wh_protocol_client_t *client = (wh_protocol_client_t *)link;
     if (!wh_protocol_client_settle(client, SETTLE_US)) {

@@ -55,8 +55,7 @@ uint64_t wh_protocol_server_hash(const wh_protocol_server_t *server) {
     return wh_simulator_hash(&server->simulator);
 }
 
-/* --------------------------------------------------------------------------------------------------
- * answers */
+/* ------------------------------------------------------------------------------------------------ answers */
 
 static void encode(wh_protocol_server_t *server, const wh_state_t *state,
                    const wh_link_identity_t *identity) {
@@ -67,7 +66,7 @@ static void encode(wh_protocol_server_t *server, const wh_state_t *state,
     wh_link_seal(server->encoded, server->encoded_size);
 }
 
-/* A command that was not even looked at: its own numbers, the reason, and nothing else. */
+/* Answers a command that is not stepped: its own numbers and the reason, no wafers, no grippers. */
 static wh_protocol_server_result_t turn_away(wh_protocol_server_t *server, const waferhand_command *message,
                                              wh_status_t reason) {
     wh_state_t nothing;
@@ -85,8 +84,7 @@ static wh_protocol_server_result_t answer_again(wh_protocol_server_t *server) {
     return WH_SERVER_ANSWERED;
 }
 
-/* -------------------------------------------------------------------------------------------------
- * commands */
+/* ----------------------------------------------------------------------------------------------- commands */
 
 static bool is_past(const wh_protocol_server_t *server, int64_t run) {
     const size_t count =
@@ -184,8 +182,7 @@ wh_protocol_server_result_t wh_protocol_server_command(wh_protocol_server_t *ser
     return turn_away(server, message, WH_STATUS_UNKNOWN_RUN);
 }
 
-/* -------------------------------------------------------------------------------------------------
- * restoring */
+/* ---------------------------------------------------------------------------------------------- restoring */
 
 static bool is_wanted(const wh_protocol_server_t *server, const waferhand_state *message) {
     const bool further = message->run != server->identity.run || message->seq > server->seq;
@@ -195,7 +192,7 @@ static bool is_wanted(const wh_protocol_server_t *server, const waferhand_state 
            !is_past(server, message->run);
 }
 
-/* Whether the state is one that a table like ours could be in, and the one whose hash it carries. */
+/* True if a grasp table like ours could be in this state, and its hash is the one that it carries. */
 static bool is_sound(wh_protocol_server_t *server, const waferhand_state *message, wh_state_t *state) {
     const wh_layout_t *layout = server->layout;
     if (wh_link_state_from_message(message, &layout->grasp.tolerance, &server->spare, state) != WH_OK ||

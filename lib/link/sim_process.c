@@ -3,8 +3,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* -------------------------------------------------------------------------------------------------
- * sending */
+/* ------------------------------------------------------------------------------------------------ sending */
 
 static void publish(wh_sim_process_t *simulation, const char *channel, const void *data, int size) {
     if (!simulation->node) {
@@ -44,8 +43,7 @@ static void answer(wh_sim_process_t *simulation) {
     publish(simulation, WH_CHANNEL_STATE, simulation->server.encoded, (int)simulation->server.encoded_size);
 }
 
-/* -----------------------------------------------------------------------------------------------
- * receiving */
+/* ---------------------------------------------------------------------------------------------- receiving */
 
 static void drop(wh_sim_process_t *simulation, const char *channel, size_t size) {
     ++simulation->counters.garbage;
@@ -137,7 +135,7 @@ static void on_mcs(void *user, const void *data, size_t size) {
     (void)waferhand_mcs_decode_cleanup(&message);
 }
 
-/* Only for the record: requests are motion control's to answer. */
+/* Subscribed only so that the record holds requests. Motion control answers them. */
 static void on_request(void *user, const void *data, size_t size) {
     wh_sim_process_t *simulation = user;
     waferhand_request message;
@@ -148,8 +146,7 @@ static void on_request(void *user, const void *data, size_t size) {
     (void)waferhand_request_decode_cleanup(&message);
 }
 
-/* --------------------------------------------------------------------------------------------------
- * opening */
+/* ------------------------------------------------------------------------------------------------ opening */
 
 wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, const wh_layout_t *layout,
                                 void (*say_line)(void *user, const char *text), void *user) {

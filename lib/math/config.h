@@ -13,9 +13,9 @@
 /* The one place where the version stands; the program, the manual and the pkg-config file read it here. */
 #define WH_VERSION "0.1.0"
 
-/* The same inputs must give the same bits on every machine, which these builds cannot hold. Nor can one that fuses products
- * and sums, which no macro tells: build everything that includes these headers with -ffp-contract=off
- * -fno-tree-slp-vectorize, as `make library` and pkg-config's flags do. */
+/* The same inputs must give the same bits on every machine, which these builds cannot hold. Nor can one that
+ * fuses products and sums, which no macro tells: build everything that includes these headers with
+ * -ffp-contract=off -fno-tree-slp-vectorize, as `make library` and pkg-config's flags do. */
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) ||                 \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
 #error                                                                                                       \
@@ -59,8 +59,20 @@ static const char *const wh_abi_check __attribute__((used)) = &WH_ABI_SYMBOL;
 #endif
 #endif
 
-/* Keeps a function's memory off its callers' stack: what one part of a step needs, the next one need not carry. Costs a
- * call; changes no result. */
+/* That wh_grasp_is_consistent says true of a table, after each call that changes one. A macro of its own,
+ * since it costs a look at every wafer and gripper: switched on with -DWH_DEBUG_TABLE, or defined by the
+ * firmware. */
+#if !defined(WH_ASSERT_CONSISTENT)
+#if defined(WH_DEBUG_TABLE)
+#include <assert.h>
+#define WH_ASSERT_CONSISTENT(table) assert(wh_grasp_is_consistent(table))
+#else
+#define WH_ASSERT_CONSISTENT(table) ((void)0)
+#endif
+#endif
+
+/* Keeps a function's memory off its callers' stack, so that one part of a step does not carry what another
+ * needs. Costs a call; changes no result. */
 #if defined(__GNUC__)
 #define WH_OUT_OF_LINE __attribute__((noinline))
 #else
@@ -70,7 +82,7 @@ static const char *const wh_abi_check __attribute__((used)) = &WH_ABI_SYMBOL;
 /* "No wafer", "no gripper": the index that none has. */
 #define WH_NONE (-1)
 
-/* Whether `index` is one of 0 to count - 1. */
+/* True if `index` is one of 0 to count - 1. */
 static inline bool wh_is_index(int32_t index, size_t count) {
     return index >= 0 && (size_t)index < count;
 }

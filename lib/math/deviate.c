@@ -11,7 +11,8 @@
 #define LN2_LOW 1.9082149292705877e-10
 #define SQRT_HALF 0.70710678118654752440
 
-/* x = m 2^e with m from sqrt(1/2) to sqrt(2); ln m = 2 (s + s^3/3 + s^5/5 + ...) with s = (m - 1) / (m + 1), |s| < 0.1716. */
+/* x = m 2^e with m from sqrt(1/2) to sqrt(2); ln m = 2 (s + s^3/3 + s^5/5 + ...) with s = (m - 1) / (m + 1),
+ * |s| < 0.1716. */
 double wh_ln(double x) {
     uint64_t bits;
     /* Of an infinite number x - x is no number. */
@@ -42,7 +43,8 @@ static wh_philox_t draw(const wh_trial_t *trial, uint32_t field, uint32_t index)
     return wh_philox(counter, key);
 }
 
-/* (2 k + 1) / 2^53 is exact: 53 bits, put together from two halves, as a 32-bit machine converts no 64-bit integer. */
+/* (2 k + 1) / 2^53 is exact: 53 bits, put together from two halves, as a 32-bit machine converts no 64-bit
+ * integer. */
 static double fraction(uint32_t high, uint32_t low) {
     const uint64_t k = ((uint64_t)high << 32 | low) >> 12;
     const double top = (double)(uint32_t)((2 * k + 1) >> 32);

@@ -1,4 +1,4 @@
-/* Sums and products without rounding error, rounding to whole numbers, and bits: private to lib/motion.
+/* Sums and products without rounding error, rounding to whole numbers, and bits: within the room.
  *
  * A value is kept as hi + lo, hi being the rounded result and lo what rounding took away (Knuth's two-sum and
  * Dekker's product with Veltkamp's split, which need round-to-nearest and no fused multiply-add). Exact

@@ -1,8 +1,8 @@
 /* Philox4x32-10: a counter-based generator of random bits.
  *
- * Salmon, Moraes, Dror, Shaw: "Parallel random numbers: as easy as 1, 2, 3", SC11, section 3.3. Ten rounds of two 32-bit
- * products stir a 128-bit counter under a 64-bit key; equal counter and key give equal bits on every machine, and there is no
- * state: whoever numbers what is drawn needs no order in which to draw it.
+ * Salmon, Moraes, Dror, Shaw: "Parallel random numbers: as easy as 1, 2, 3", SC11, section 3.3. Ten rounds of
+ * two 32-bit products stir a 128-bit counter under a 64-bit key; equal counter and key give equal bits on
+ * every machine, and there is no state: whoever numbers what is drawn needs no order in which to draw it.
  */
 #ifndef WH_MATH_PHILOX_H
 #define WH_MATH_PHILOX_H

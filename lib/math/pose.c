@@ -33,7 +33,7 @@ static bool is_rotation(const wh_mat3_t *R) {
     return wh_mat3_is_orthonormal(R) && wh_vec3_dot(&e1_cross_e2, &e3) > 0;
 }
 
-/* A rotation's numbers need not be looked at one by one. */
+/* The numbers of a rotation are finite: they need no look one by one. */
 wh_status_t wh_pose_validate(const wh_pose_t *pose) {
     if (is_rotation(&pose->R)) {
         return wh_vec3_is_finite(&pose->r) ? WH_OK : WH_STATUS_NOT_FINITE;

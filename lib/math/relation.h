@@ -11,7 +11,8 @@ typedef struct {
     wh_real_t turn;     /* the whole rotation from the first to the second, rad, 0 to pi */
 } wh_relation_t;
 
-/* Both poses are base_from_frame and valid. Angles are exact to about 1e-15 throughout, small ones and those near pi too. */
+/* Both poses are base_from_frame and valid. Angles are exact to about 1e-15 throughout, small ones and those
+ * near pi too. */
 wh_relation_t wh_relate(const wh_pose_t *first, const wh_pose_t *second);
 
 #endif

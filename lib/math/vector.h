@@ -14,10 +14,6 @@ static inline wh_real_t wh_real_max(wh_real_t a, wh_real_t b) {
     return a > b ? a : b;
 }
 
-static inline wh_real_t wh_real_min(wh_real_t a, wh_real_t b) {
-    return a < b ? a : b;
-}
-
 typedef struct {
     wh_real_t x, y, z;
 } wh_vec3_t;
@@ -44,8 +40,8 @@ static inline wh_real_t wh_real_sqrt(wh_real_t a) {
 #endif
 }
 
-/* Whether the square root, rounded as above, is less than a limit in [1e-6, 1e6]: only near the limit it takes the root,
- * which costs a processor with doubles more than the two products. */
+/* True if the square root, rounded as above, is less than a limit in [1e-6, 1e6]. Takes the root near the
+ * limit only, since a root costs more than two products. */
 static inline bool wh_real_root_below(wh_real_t square, wh_real_t limit) {
 #if !defined(WH_FLOAT)
     if (square < limit * limit * WH_REAL(0.999)) {
@@ -89,7 +85,7 @@ static inline wh_real_t wh_vec3_norm(const wh_vec3_t *a) {
     return wh_real_sqrt(wh_vec3_dot(a, a));
 }
 
-/* All three are. */
+/* True if all three numbers are finite. */
 static inline bool wh_vec3_is_finite(const wh_vec3_t *a) {
     return (a->x - a->x) + (a->y - a->y) + (a->z - a->z) == 0;
 }

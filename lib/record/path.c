@@ -9,8 +9,8 @@
 /* So many equal samples are a rest. */
 #define REST 32
 
-/* To thin again, cubics are compared in so many places, where two may differ by this share of the tolerance:
- * it is the tolerance between them then. So many become one at most. */
+/* Thinning again compares two cubics in so many places. There they may differ by this share of the tolerance;
+ * between the places the difference then stays below the tolerance. At most so many cubics become one. */
 #define PLACES 16
 #define ROOM 0.95
 #define MERGED 64
@@ -34,10 +34,10 @@ static bool is_same(double a, double b) {
     return !(a < b) && !(a > b);
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * cubics */
+/* ------------------------------------------------------------------------------------------------- cubics */
 
-/* From a point on: value = v + x (a + x (b + x c)), x from 0 to 1 at the next one. */
+/* A cubic between two points: value = v + x (a + x (b + x c)), with x from 0 at the first to 1 at the
+ * second. */
 typedef struct {
     double from, width;
     double v, a, b, c;
@@ -64,7 +64,7 @@ static double last_slope(const wh_path_t *curve) {
     return wh_path_slope(curve, curve->list.count - 1);
 }
 
-/* Whether one cubic goes from the last point to sample `end`, with that slope there, and misses none between
+/* True if one cubic from the last point to sample `end`, with that slope there, misses no sample between
  * them. */
 static bool fits(const wh_path_t *curve, size_t end, double slope) {
     const wh_sample_t *samples = curve->samples;
@@ -78,7 +78,8 @@ static bool fits(const wh_path_t *curve, size_t end, double slope) {
     return true;
 }
 
-/* Over the samples on both sides, but flat enough that a jump is not overshot; over one at an end of all. */
+/* The slope over the samples on both sides, limited so that the cubic does not overshoot a jump; at either
+ * end over one side. */
 static double slope_at(const wh_path_t *curve, size_t i) {
     const wh_sample_t *at = &curve->samples[i];
     const wh_sample_t *before = i > 0 ? at - 1 : at;
@@ -96,8 +97,7 @@ static double slope_at(const wh_path_t *curve, size_t i) {
     return fabs(slope) <= least ? slope : copysign(least, slope);
 }
 
-/* -------------------------------------------------------------------------------------------------
- * thinning */
+/* ----------------------------------------------------------------------------------------------- thinning */
 
 /* From point to point. */
 static cubic_t cubic_between(const wh_path_t *curve, size_t from, size_t to) {
@@ -139,7 +139,8 @@ static bool covers(const wh_path_t *curve, size_t i, size_t end) {
     return true;
 }
 
-/* Points of which the others say enough go; off by the tolerance once more. */
+/* Drops points that a cubic between their neighbours can stand for. What is shown is then off by up to the
+ * tolerance once more. */
 static void thin_again(void *fit) {
     wh_path_t *curve = fit;
     wh_points_t *list = &curve->list;
@@ -158,13 +159,13 @@ static void thin_again(void *fit) {
     list->tolerance *= 2;
 }
 
-/* Samples become points at the end of the list. */
+/* The sample becomes the last point. */
 static void add_point(wh_path_t *curve, const wh_sample_t *sample, double slope, bool exact) {
     const double numbers[] = {sample->value, slope};
     wh_points_insert(&curve->list, curve->list.count, sample->slice, numbers, exact);
 }
 
-/* Sample `i` becomes a point, and the first of those that are kept. */
+/* Sample `i` becomes a point. The samples before it are forgotten. */
 static void keep(wh_path_t *curve, size_t i, double slope, bool exact) {
     add_point(curve, &curve->samples[i], slope, exact);
     curve->sample_count -= i;
@@ -176,10 +177,10 @@ static void keep(wh_path_t *curve, size_t i, double slope, bool exact) {
     wh_points_keep_to_limit(&curve->list, thin_again, curve);
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * search */
+/* ------------------------------------------------------------------------------------------------- search */
 
-/* The last sample between `good` and `bad` that was seen to be in reach. */
+/* The last sample that one cubic reaches, by bisection between one that it reaches and one that it does
+ * not. */
 static size_t bisect(const wh_path_t *curve, size_t good, size_t bad) {
     while (bad - good > 1) {
         const size_t middle = good + (bad - good) / 2;
@@ -192,14 +193,14 @@ static size_t bisect(const wh_path_t *curve, size_t good, size_t bad) {
     return good;
 }
 
-/* Points for the samples up to `end`, whose slopes are known. */
+/* Adds the points that the samples up to `end` ask for. Their slopes are known: a sample follows each. */
 static void advance(wh_path_t *curve, size_t end) {
     while (curve->next <= end) {
         if (!fits(curve, curve->next, slope_at(curve, curve->next))) {
             const size_t reached = bisect(curve, curve->good, curve->next);
             end -= reached;
             keep(curve, reached, slope_at(curve, reached), false);
-        } else if (2 * curve->next > WH_CURVE_SPAN) {
+        } else if (2 * curve->next > WH_PATH_SPAN) {
             end -= curve->next;
             keep(curve, curve->next, slope_at(curve, curve->next), false);
         } else {
@@ -209,7 +210,7 @@ static void advance(wh_path_t *curve, size_t end) {
     }
 }
 
-/* Sample `end` becomes a point, and before it as many as that takes. */
+/* Sample `end` becomes a point, after as many others as the tolerance asks for. */
 static void settle(wh_path_t *curve, size_t end, double slope, bool exact) {
     while (!fits(curve, end, slope)) {
         const size_t reached = bisect(curve, curve->good < end ? curve->good : 1, end);
@@ -219,10 +220,9 @@ static void settle(wh_path_t *curve, size_t end, double slope, bool exact) {
     keep(curve, end, slope, exact);
 }
 
-/* --------------------------------------------------------------------------------------------------
- * samples */
+/* ------------------------------------------------------------------------------------------------ samples */
 
-/* A point where the rest began, and of the rest the last sample alone. */
+/* The rest's first sample becomes a point; of its samples only the last is kept, so a rest takes no room. */
 static void come_to_rest(wh_path_t *curve) {
     const size_t last = curve->sample_count - 1;
     size_t first = curve->sample_count - curve->equal;
@@ -286,7 +286,7 @@ void wh_path_force(wh_path_t *curve) {
         return;
     }
     if (curve->sample_count == 1 || curve->is_at_rest) {
-        /* Of a rest both ends then say it. */
+        /* A rest is exact if both its ends are. */
         wh_points_make_exact(&curve->list, curve->list.count - 1);
     }
     curve->is_forced = curve->sample_count > 1;
@@ -311,8 +311,7 @@ void wh_path_break(wh_path_t *curve) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------
- * reading */
+/* ------------------------------------------------------------------------------------------------ reading */
 
 double wh_path_read(const wh_path_t *curve, int64_t slice, double *slope) {
     const wh_points_t *list = &curve->list;

@@ -1,12 +1,12 @@
-/* Curves: of a signal that comes sample by sample, the points between which cubics stay within a tolerance.
+/* Thins a signal that comes sample by sample: keeps points between which cubics stay within a tolerance.
  *
- * A point has the signal's value and its slope, and between two points the cubic that has both of both
- * counts. What moves with limited jerk is made of such cubics: a move takes about eight points however far it
+ * A point has the signal's value and its slope. Between two points lies the cubic with their values and
+ * slopes. Motion with limited jerk is made of such cubics: a move takes about eight points however far it
  * goes, where lines would take hundreds, and the slopes are its speeds. Every point is a sample. At every
- * sample the curve is off by at most the tolerance, at forced ones, at a break's sides and while the signal
- * rests not at all.
+ * sample the curve is off by at most the tolerance. At forced samples, at both sides of a break and while the
+ * signal rests it is exact.
  *
- * Samples come in the order of their slices. Those since the last point are kept, at most WH_CURVE_SPAN,
+ * Samples come in the order of their slices. Those since the last point are kept, at most WH_PATH_SPAN,
  * until they are too many for one cubic; a rest takes no room. Host code: aborts if out of memory.
  */
 #ifndef WH_RECORD_PATH_H
@@ -14,7 +14,7 @@
 
 #include "points.h"
 
-#define WH_CURVE_SPAN 4096
+#define WH_PATH_SPAN 4096
 
 typedef struct {
     int64_t slice;
@@ -47,17 +47,17 @@ void wh_path_open(wh_path_t *curve, double tolerance, size_t limit);
 /* One more sample, of a later slice than the last one. Cost: a few ns at rest, about 50 ns in motion. */
 void wh_path_add(wh_path_t *curve, int64_t slice, double value);
 
-/* The last sample is exact. */
+/* Makes the last sample exact. */
 void wh_path_force(wh_path_t *curve);
 
 /* The last sample becomes a point, so that the points cover all. More samples may follow. */
 void wh_path_finish(wh_path_t *curve);
 
-/* The same, and there is no signal from here to the next sample. */
+/* Finishes, and there is no signal from here to the next sample. */
 void wh_path_break(wh_path_t *curve);
 
-/* A sample that has been, and is wanted exactly after all. It becomes a point unless it is in a break; the
- * samples beside it may then be off by twice the tolerance. */
+/* Makes an earlier sample exact after all. It becomes a point unless it is in a break. Samples beside it may
+ * then be off by twice the tolerance. */
 void wh_path_insert(wh_path_t *curve, int64_t slice, double value);
 
 /* What the points say of a slice: the last one's value after it, NaN before the first one and in a break.

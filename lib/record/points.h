@@ -1,9 +1,8 @@
-/* The points that are left of a signal when it is thinned: under path.h, which lays cubics between them, and
- * thin.h, which lays straight lines. A point has `width` numbers at a slice; points are in the order of their
- * slices.
+/* The points that remain of a thinned signal. path.h lays cubics between them, thin.h straight lines. A point
+ * has `width` numbers at a slice; points are in the order of their slices.
  *
- * When there are more points than `limit`, beside those that are exact, the tolerance is doubled and they are
- * thinned again: so memory is bounded, but for a signal that jumps without end.
+ * If more than `limit` points are not exact, the tolerance is doubled and they are thinned again. So memory
+ * is bounded, except for a signal that jumps without end.
  *
  * Host code: aborts if out of memory.
  */
@@ -50,8 +49,9 @@ size_t wh_points_find(const wh_points_t *list, int64_t slice);
  * were passed: 0 to begin with, for slices that rise from call to call. */
 int64_t wh_points_next(const wh_points_t *list, size_t *at, int64_t slice, int64_t end);
 
-/* Has `thin` called, which is to double the tolerance of `fit` and to leave fewer points, while there are too
- * many. A signal that cannot be thinned gets more room, or each further sample would cost all of them. */
+/* Calls `thin`, which doubles the tolerance of `fit` and leaves fewer points, up to three times while there
+ * are too many. If that does not help the limit is doubled, or each further sample would cost a pass over all
+ * points. */
 void wh_points_keep_to_limit(wh_points_t *list, void (*thin)(void *fit), void *fit);
 
 void wh_points_close(wh_points_t *list);

@@ -2,7 +2,7 @@
 
 #include "../math/trig.h"
 
-/* Below this angle the sine is the angle, to rounding. */
+/* Below this angle, rad, the sine equals the angle, to rounding. */
 #define SMALL 1e-9
 
 static double dot(const double a[4], const double b[4]) {
@@ -15,7 +15,7 @@ static void scale(double factor, double q[4]) {
     }
 }
 
-/* Shepperd's: from the largest of the four, for the others are divided by it. */
+/* Shepperd's method: the largest of the four comes first, because the others are divided by it. */
 void wh_quaternion_from_matrix(const wh_mat3_t *R, const double near[4], double q[4]) {
     const wh_real_t(*m)[3] = R->m;
     const double squares[4] = {1 + m[0][0] - m[1][1] - m[2][2], 1 - m[0][0] + m[1][1] - m[2][2],

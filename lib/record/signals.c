@@ -6,40 +6,39 @@
 #include "../layout/collision.h"
 #include "../text/array.h"
 
-/* So many wafers are compared in each slice; more, only in slices with events. */
+/* Up to so many wafers are compared in each slice. More are compared only in slices with events. */
 #define WATCHED_WAFERS 64
 
-/* From one point to the next, poses are looked at in at most so many places. */
+/* wh_signals_walk looks at no more than so many places from one point to the next. */
 #define PLACES 32
 
-/* A gripper so near to where its axes put it is there: another machine's sines may differ in their last bits. */
+/* This near to where its axes put it a gripper is there: another machine's sines may differ in their last bits. */
 #define SAME_MM 1e-9
 #define SAME_ROTATION 1e-12
 
-/* --------------------------------------------------------------------------------------------------
- * opening */
+/* ------------------------------------------------------------------------------------------------ opening */
 
 static bool turns(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
 }
 
 static void open_curve(wh_path_t *curve, double tolerance) {
-    wh_path_open(curve, WH_TRACE_SHARE * tolerance, WH_TRACE_POINTS);
+    wh_path_open(curve, WH_SIGNALS_SHARE * tolerance, WH_SIGNALS_POINTS);
 }
 
 static void open_tracks(wh_signals_t *signals) {
-    static const double measured[WH_MEASURES] = {WH_TRACE_PROJZ, WH_TRACE_PROJXY, WH_TRACE_PLANAR};
+    static const double measured[WH_MEASURES] = {WH_SIGNALS_PROJZ, WH_SIGNALS_PROJXY, WH_SIGNALS_PLANAR};
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        open_curve(&signals->vacuum[g], WH_TRACE_VACUUM);
+        open_curve(&signals->vacuum[g], WH_SIGNALS_VACUUM);
         for (size_t m = 0; m < WH_MEASURES; ++m) {
-            /* Half, for points are inserted. */
+            /* Half of the tolerance: points that are inserted later may take the other half. */
             open_curve(&signals->proximity[g][m], measured[m] / 2);
         }
-        wh_thin_open(&signals->own[g], 3, WH_TRACE_SHARE * WH_TRACE_OWN_MM, WH_TRACE_SHARE * WH_TRACE_OWN_RAD,
-                     WH_TRACE_POINTS);
+        wh_thin_open(&signals->own[g], 3, WH_SIGNALS_SHARE * WH_SIGNALS_OWN_MM,
+                     WH_SIGNALS_SHARE * WH_SIGNALS_OWN_RAD, WH_SIGNALS_POINTS);
     }
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
-        open_curve(&signals->axes[axis], turns(axis) ? WH_TRACE_RAD : WH_TRACE_MM);
+        open_curve(&signals->axes[axis], turns(axis) ? WH_SIGNALS_RAD : WH_SIGNALS_MM);
     }
 }
 
@@ -52,7 +51,7 @@ static void add_stay(wh_signals_t *signals, int64_t slice, int32_t wafer, int32_
     signals->stays[signals->stay_count++] = stay;
 }
 
-/* As motion control finds it: at home, all valves closed. */
+/* The first sample is the state before the run, as motion control finds it: at home, all valves closed. */
 static void start_at_home(wh_signals_t *signals) {
     const wh_layout_t *layout = signals->layout;
     const wh_machine_t *machine = &layout->machine;
@@ -81,10 +80,7 @@ void wh_signals_begin(wh_signals_t *signals, const wh_layout_t *layout, bool at_
     signals->layout = layout;
     signals->first = signals->last = -1;
     open_tracks(signals);
-    signals->stay_of = calloc(layout->wafer_count + 1, sizeof *signals->stay_of);
-    if (!signals->stay_of) {
-        abort();
-    }
+    signals->stay_of = wh_array_new(layout->wafer_count, sizeof *signals->stay_of);
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         add_stay(signals, 0, (int32_t)w, WH_NONE, &layout->start[w].base_from_wafer);
     }
@@ -93,8 +89,7 @@ void wh_signals_begin(wh_signals_t *signals, const wh_layout_t *layout, bool at_
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * motion */
+/* ------------------------------------------------------------------------------------------------- motion */
 
 /* True if the two poses differ by at most so much, in place and in each number of the rotation. */
 static bool is_at(const wh_pose_t *a, const wh_pose_t *b, double mm, double rotation) {
@@ -106,7 +101,7 @@ static bool is_at(const wh_pose_t *a, const wh_pose_t *b, double mm, double rota
     return same;
 }
 
-/* What the axes do not say of the grippers. */
+/* Adds the poses of grippers that are not where the axes put them; from then on all of them. */
 static void add_grippers(wh_signals_t *signals, const double axes[], const wh_state_t *state) {
     wh_pose_t expected[WH_GRIPPERS];
     if (axes) {
@@ -127,8 +122,7 @@ static void add_axes(wh_signals_t *signals, const double axes[], size_t axis_cou
     signals->axis_count = axis_count > signals->axis_count ? axis_count : signals->axis_count;
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * steps */
+/* -------------------------------------------------------------------------------------------------- steps */
 
 void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value) {
     if (steps->count > 0 && steps->steps[steps->count - 1].value == value) {
@@ -147,8 +141,7 @@ static void add_signals(wh_signals_t *signals, const wh_state_t *state) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static void look_at_wafer(wh_signals_t *signals, const wh_state_t *state, int32_t w, int32_t holder,
                           const wh_pose_t *pose) {
@@ -176,10 +169,9 @@ static void add_wafers(wh_signals_t *signals, const wh_state_t *state) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * events */
+/* ------------------------------------------------------------------------------------------------- events */
 
-/* What went as it should is told by other means. */
+/* False for events of a normal run: tracks and tables show them. */
 static bool is_marked(wh_event_kind_t kind) {
     static const uint32_t plain = 1U << WH_EVENT_PICKED | 1U << WH_EVENT_RELEASED |
                                   1U << WH_EVENT_HANDED_OVER | 1U << WH_EVENT_SETTLED |
@@ -187,7 +179,7 @@ static bool is_marked(wh_event_kind_t kind) {
     return (plain >> (unsigned)kind & 1U) == 0;
 }
 
-/* Where it happened: contact, wafer or gripper. */
+/* Where the event happened: at the contact, else at the wafer, else at the gripper. False if nowhere. */
 static bool place_of(const wh_event_t *event, const wh_state_t *state, wh_vec3_t *at) {
     static const uint32_t contacts = 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE;
     if (contacts >> (unsigned)event->kind & 1U) {
@@ -220,8 +212,7 @@ static void add_marks(wh_signals_t *signals, const wh_state_t *state) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * slices */
+/* ------------------------------------------------------------------------------------------------- slices */
 
 typedef void each_curve_t(wh_path_t *curve);
 typedef void each_own_t(wh_thin_t *own);
@@ -306,7 +297,8 @@ void wh_signals_gripper(const wh_signals_t *signals, size_t gripper, int64_t sli
     *base_from_gripper = poses[gripper];
 }
 
-bool wh_signals_links(const wh_signals_t *signals, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]) {
+bool wh_signals_links(const wh_signals_t *signals, int64_t slice,
+                      wh_pose_t base_from_links[WH_SIGNALS_LINKS]) {
     wh_pose_t poses[WH_GRIPPERS];
     wh_pose_t base_from_effector;
     wh_pose_t bodies[WH_ARM_BODIES];
@@ -315,21 +307,20 @@ bool wh_signals_links(const wh_signals_t *signals, int64_t slice, wh_pose_t base
         return false;
     }
     wh_arm_place(&signals->layout->shapes.arm, &base_from_effector, bodies);
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         base_from_links[i] = bodies[WH_ARM_LIFT + i];
     }
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------
- * walk */
+/* --------------------------------------------------------------------------------------------------- walk */
 
-/* How far the points of each signal have been passed. */
+/* How many points of each signal the walk has passed. */
 typedef struct {
     size_t axes[WH_AXES], own[WH_GRIPPERS];
 } passed_t;
 
-/* The first slice after `slice` at which a signal has a point, or the trace's last. */
+/* The first slice after `slice` at which a signal has a point, or the last slice of all. */
 static int64_t next_point(const wh_signals_t *signals, passed_t *passed, int64_t slice) {
     int64_t next = signals->last;
     for (size_t axis = 0; axis < signals->axis_count; ++axis) {

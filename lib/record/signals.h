@@ -1,13 +1,13 @@
 /* What a run's page shows over time: collected slice by slice while the run goes, thinned as it comes.
  *
- * Axes, vacuum, and each gripper against the wafer that it holds or would take are curves (record/path.h);
- * valves, sensors and where wafers lie change in steps and are kept as they are. Where grippers and the arm's
- * links are follows from the axes; a gripper that is elsewhere, for its machine is not the layout's or a log
- * does not tell the axes, has poses of its own from then on (record/thin.h). All of it is exact at events and
- * wherever wh_signals_mark is called. Slices count as in the run: what is of slice n is true at its end,
- * slice 0 is before the first.
+ * Axes, vacuum, and each gripper against the wafer that it holds or would take are curves (record/path.h).
+ * Valves, sensors and places of wafers change in steps and are kept as they are. Poses of grippers and of the
+ * arm's links follow from the axes. A gripper that is elsewhere has poses of its own from then on
+ * (record/thin.h): its machine is not the layout's, or a log does not tell the axes. Everything is exact at
+ * events and wherever wh_signals_mark is called. Slices count as in the run: a value of slice n is true at
+ * its end; slice 0 is before the first.
  *
- * Host code: aborts when memory is out. Memory: what thinning leaves, steps, and 4 bytes a wafer.
+ * Host code: aborts if out of memory. Memory: what thinning leaves, steps, and 4 bytes a wafer.
  */
 #ifndef WH_RECORD_SIGNALS_H
 #define WH_RECORD_SIGNALS_H
@@ -17,25 +17,25 @@
 #include "path.h"
 #include "thin.h"
 
-/* How far what is shown may be off, to begin with: it grows where a signal has more points than it may. */
-#define WH_TRACE_MM 0.02 /* of axes */
-#define WH_TRACE_RAD 2e-5
-#define WH_TRACE_OWN_MM 0.05 /* of poses that do not follow from axes */
-#define WH_TRACE_OWN_RAD 5e-4
-#define WH_TRACE_VACUUM 1e-3
-#define WH_TRACE_PROJZ 0.005
-#define WH_TRACE_PROJXY 0.05
-#define WH_TRACE_PLANAR 1e-6
+/* Tolerances to begin with. A signal's tolerance grows if it has more points than it may. */
+#define WH_SIGNALS_MM 0.02 /* of axes */
+#define WH_SIGNALS_RAD 2e-5
+#define WH_SIGNALS_OWN_MM 0.05 /* of poses that do not follow from axes */
+#define WH_SIGNALS_OWN_RAD 5e-4
+#define WH_SIGNALS_VACUUM 1e-3
+#define WH_SIGNALS_PROJZ 0.005
+#define WH_SIGNALS_PROJXY 0.05
+#define WH_SIGNALS_PLANAR 1e-6
 
 /* How many points a signal may have beside those that are exact. */
-#define WH_TRACE_POINTS 60000
+#define WH_SIGNALS_POINTS 60000
 
-/* Of these thinning takes so much, and rounding to decimals the rest. */
-#define WH_TRACE_SHARE 0.98
+/* The share of a tolerance that thinning may use. The rest is for rounding to decimals. */
+#define WH_SIGNALS_SHARE 0.98
 
 /* A gripper is shown against a wafer while |dr_proj_z| is less than this, mm, and |dr_proj_xy| less than
  * twice the layout's near_projxy. */
-#define WH_TRACE_REACH 20.0
+#define WH_SIGNALS_REACH 20.0
 
 /* What a gripper is measured by against its nearest wafer. */
 typedef enum {
@@ -46,7 +46,7 @@ typedef enum {
 } wh_measure_t;
 
 /* The links of the arm that move: WH_ARM_LIFT to WH_ARM_HAND. */
-#define WH_TRACE_LINKS 4
+#define WH_SIGNALS_LINKS 4
 
 /* A value that holds from a slice on. */
 typedef struct {
@@ -75,7 +75,7 @@ typedef struct {
     wh_vec3_t at;
 } wh_mark_t;
 
-/* Wafers that a gripper may be near to, while it is near to where they were looked for. */
+/* The wafers near a gripper, valid while it is near `centre`. */
 typedef struct {
     int32_t *wafers;
     size_t count, capacity;
@@ -101,16 +101,16 @@ typedef struct {
     wh_neighbours_t vicinity[WH_GRIPPERS];
 } wh_signals_t;
 
-/* The layout is known: everything is as before the first slice. With `at_home` that is the first sample;
- * without, the next slice is (of a run of which the beginning is missing). */
+/* Begins with everything as the layout has it before the first slice. With `at_home` that is the first
+ * sample. Without, the next slice is: the run's beginning is missing. */
 void wh_signals_begin(wh_signals_t *signals, const wh_layout_t *layout, bool at_home);
 
-/* One accepted slice, later than the last one. `axes` has axis_count numbers; null where they are not known.
- * Cost: about 1 us with two grippers, a pass over all wafers where something happens or a gripper has gone
+/* Adds an accepted slice, later than the last one. `axes` has axis_count numbers; null if they are not known.
+ * Cost: about 1 us with two grippers, and a pass over all wafers if something happens or a gripper has gone
  * far. */
 void wh_signals_slice(wh_signals_t *signals, const double axes[], size_t axis_count, const wh_state_t *state);
 
-/* What the last slice left is wanted exactly. */
+/* Makes the last slice exact. */
 void wh_signals_mark(wh_signals_t *signals);
 
 /* No more slices. */
@@ -118,22 +118,22 @@ void wh_signals_finish(wh_signals_t *signals);
 
 void wh_signals_close(wh_signals_t *signals);
 
-/* Where a gripper is shown at a slice. Of a finished trace, one that has slices. Cost: log n. */
+/* Where a gripper is shown at a slice. The signals must be finished and have slices. Cost: log n. */
 void wh_signals_gripper(const wh_signals_t *signals, size_t gripper, int64_t slice,
                         wh_pose_t *base_from_gripper);
 
-/* Where the arm's links are shown; false where no gripper is on the robot. */
-bool wh_signals_links(const wh_signals_t *signals, int64_t slice, wh_pose_t base_from_links[WH_TRACE_LINKS]);
+/* Where the arm's links are shown at a slice; false if no gripper is on the robot. */
+bool wh_signals_links(const wh_signals_t *signals, int64_t slice,
+                      wh_pose_t base_from_links[WH_SIGNALS_LINKS]);
 
-/* Between which poses of grippers and links lie on straight lines, or nearly: the points of all that moves
- * them, and so many between two that none is passed over. Calls `visit` for each of these slices, in
- * order. */
+/* Calls `visit` for slices in order, so close that grippers and links move between them nearly on straight
+ * lines: at the points of all that moves them, and at places between. */
 void wh_signals_walk(const wh_signals_t *signals, void (*visit)(void *user, int64_t slice), void *user);
 
-/* Within: adds the value unless it is the last one. */
+/* For signals_proximity.c: adds a step unless the value is the last one. */
 void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value);
 
-/* Within: each gripper against the wafer that it holds or would take. */
+/* In signals_proximity.c: adds each gripper against the wafer that it holds or would take. */
 void wh_signals_proximity(wh_signals_t *signals, const wh_state_t *state);
 
 #endif

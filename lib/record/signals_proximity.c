@@ -4,7 +4,7 @@
 #include "../text/array.h"
 #include "signals.h"
 
-/* With more wafers than these, those near a gripper are looked for anew when it has gone so far, mm. */
+/* With more wafers than this, those near a gripper are on a list, made anew when it has gone so far, mm. */
 #define FEW_WAFERS 64
 #define ROOM 100.0
 
@@ -13,13 +13,12 @@ static double square_of(const wh_vec3_t *a, const wh_vec3_t *b) {
     return wh_vec3_dot(&way, &way);
 }
 
-/* A wafer within the reach of the plot has its centre so near to the gripper's. */
+/* Within the plot's range a wafer's centre is at most this far from the gripper's, mm. */
 static double reach_of(const wh_signals_t *signals) {
-    return WH_TRACE_REACH + 2 * signals->layout->grasp.near_projxy;
+    return WH_SIGNALS_REACH + 2 * signals->layout->grasp.near_projxy;
 }
 
-/* -------------------------------------------------------------------------------------------------
- * vicinity */
+/* ----------------------------------------------------------------------------------------------- vicinity */
 
 static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, const wh_state_t *state,
                         const wh_vec3_t *at) {
@@ -57,7 +56,7 @@ static void consider(search_t *search, int32_t wafer) {
     }
 }
 
-/* The wafer that it holds, else the one that it would take: with the smallest |dr_proj_z|. */
+/* The wafer that the gripper holds, else the one that it would take: with the smallest |dr_proj_z|. */
 static int32_t find_nearest(const wh_signals_t *signals, const wh_neighbours_t *vicinity,
                             const wh_state_t *state, size_t g) {
     search_t search = {.state = state,
@@ -70,7 +69,7 @@ static int32_t find_nearest(const wh_signals_t *signals, const wh_neighbours_t *
     for (size_t i = 0; i < vicinity->count; ++i) {
         consider(&search, vicinity->wafers[i]);
     }
-    /* Wafers that another gripper carries come near by themselves, and are not on the list. */
+    /* Wafers that other grippers carry may come near without being on the list. */
     for (size_t other = 0; other < state->gripper_count; ++other) {
         if (state->grippers[other].wafer != WH_NONE) {
             consider(&search, state->grippers[other].wafer);
@@ -79,8 +78,7 @@ static int32_t find_nearest(const wh_signals_t *signals, const wh_neighbours_t *
     return search.nearest;
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * values */
+/* ------------------------------------------------------------------------------------------------- values */
 
 static void take(const wh_proximity_t *p, double values[WH_MEASURES]) {
     values[WH_MEASURE_PROJZ] = wh_real_abs(p->dr_proj_z);
@@ -88,7 +86,7 @@ static void take(const wh_proximity_t *p, double values[WH_MEASURES]) {
     values[WH_MEASURE_PLANAR] = p->n1_proj_n2;
 }
 
-/* The nearest wafer and how near, or WH_NONE. */
+/* The nearest wafer, its values in `values`; WH_NONE if none is near. */
 static int32_t measure(wh_signals_t *signals, const wh_state_t *state, size_t g, double values[WH_MEASURES]) {
     const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
     wh_neighbours_t *vicinity = &signals->vicinity[g];
@@ -102,7 +100,7 @@ static int32_t measure(wh_signals_t *signals, const wh_state_t *state, size_t g,
         return WH_NONE;
     }
     take(&p, values);
-    const bool near = values[WH_MEASURE_PROJZ] < WH_TRACE_REACH &&
+    const bool near = values[WH_MEASURE_PROJZ] < WH_SIGNALS_REACH &&
                       values[WH_MEASURE_PROJXY] < 2 * signals->layout->grasp.near_projxy;
     return near ? nearest : WH_NONE;
 }

@@ -6,9 +6,8 @@
 #include "../math/vector.h"
 #include "quaternion.h"
 
-/* Two slerps whose ends are apart by no more than d are apart between them by up to d / cos(angle / 4), 1.24
- * d for WH_THIN_TURN: thinned again with this share of what the tolerance grew by, the sum stays below the
- * tolerance. */
+/* If the ends of two slerps are at most d apart, the slerps are at most d / cos(angle / 4) apart: 1.24 d for
+ * WH_THIN_TURN. So thinning again may use up only this share of what the tolerance grows by. */
 #define TURN_SHARE 0.8
 
 /* A box's half diagonal is the square root of 3 times its half edge. */
@@ -18,7 +17,7 @@ static size_t linear_width(const wh_thin_t *thin) {
     return thin->list.width - (thin->turns ? 4 : 0);
 }
 
-/* Numbers in `moved`: of a turn three. */
+/* How many numbers `moved` has: a turn counts as three. */
 static size_t slope_count(const wh_thin_t *thin) {
     return thin->list.width - (thin->turns ? 1 : 0);
 }
@@ -27,7 +26,7 @@ static bool rests(const wh_thin_t *thin, const double a[], const double b[]) {
     return memcmp(a, b, thin->list.width * sizeof *a) == 0;
 }
 
-/* The last point: what comes is measured from it. */
+/* The last point's numbers. Samples are measured from them. */
 static const double *anchor(const wh_thin_t *thin) {
     return wh_points_numbers(&thin->list, thin->list.count - 1);
 }
@@ -45,8 +44,7 @@ void wh_thin_close(wh_thin_t *thin) {
     wh_points_close(&thin->list);
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * points */
+/* ------------------------------------------------------------------------------------------------- points */
 
 static void keep(wh_thin_t *thin, bool exact) {
     wh_points_insert(&thin->list, thin->list.count, thin->last.slice, thin->last.values, exact);
@@ -58,7 +56,8 @@ static void keep(wh_thin_t *thin, bool exact) {
     }
 }
 
-/* What the coarser fit is asked for here the slopes keep; what is off by then is the sum. */
+/* The coarser fit adds its tolerance to what was off before: the sum is the new tolerance, twice the old
+ * one. */
 static void thin_again(void *fit) {
     wh_thin_t *thin = fit;
     wh_thin_t coarse;
@@ -82,8 +81,7 @@ static void keep_to_limit(wh_thin_t *thin) {
     wh_points_keep_to_limit(&thin->list, thin_again, thin);
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * slopes */
+/* ------------------------------------------------------------------------------------------------- slopes */
 
 static double turned(const wh_thin_t *thin) {
     const double *turn = thin->moved + linear_width(thin);
@@ -129,8 +127,7 @@ static double slices_to(const wh_thin_t *thin, int64_t slice) {
     return (double)(slice - thin->list.points[thin->list.count - 1].slice);
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * samples */
+/* ------------------------------------------------------------------------------------------------ samples */
 
 static void take(wh_thin_t *thin, int64_t slice, const double values[]) {
     thin->last.slice = slice;
@@ -138,7 +135,8 @@ static void take(wh_thin_t *thin, int64_t slice, const double values[]) {
     thin->is_pending = true;
 }
 
-/* A forced sample from which the signal moves on must become a point before the next one comes. */
+/* If the last sample is forced and the signal moves on from it, it becomes a point before the next one
+ * comes. */
 static void settle(wh_thin_t *thin, const double values[]) {
     if (thin->is_pending && thin->is_forced && !rests(thin, thin->last.values, values)) {
         keep(thin, true);
@@ -180,7 +178,7 @@ void wh_thin_force(wh_thin_t *thin) {
     if (!thin->is_pending) {
         wh_points_make_exact(&thin->list, last);
     } else if (rests(thin, anchor(thin), thin->last.values)) {
-        /* Both ends of the rest then say it. */
+        /* A rest is exact if both its ends are. */
         wh_points_make_exact(&thin->list, last);
         thin->is_forced = true;
     } else {
@@ -194,8 +192,7 @@ void wh_thin_finish(wh_thin_t *thin) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * reading */
+/* ------------------------------------------------------------------------------------------------ reading */
 
 void wh_thin_read(const wh_thin_t *thin, int64_t slice, double values[]) {
     const wh_points_t *list = &thin->list;

@@ -1,15 +1,14 @@
-/* Thinning of poses, and of any signal that lines are to show: of a signal that comes sample by sample, the
- * points between which straight lines stay within a tolerance.
+/* Thins a signal that comes sample by sample, such as poses: keeps points between which straight lines stay
+ * within a tolerance.
  *
- * A sample has up to WH_THIN_WIDTH numbers, read between points as linear in time; of a pose the last four
- * are a quaternion (x, y, z, w), read as the shorter slerp. Every point is a sample. Each number of a sample,
- * and of a rotation the angle that is missing, is off by at most the tolerance; forced samples are not off at
- * all.
+ * A sample has up to WH_THIN_WIDTH numbers, linear in time between points. A pose's last four are a
+ * quaternion (x, y, z, w), between points the shorter slerp. Every point is a sample. Each number of a sample
+ * is off by at most the tolerance, a rotation by at most an angle of `turn`; forced samples are exact.
  *
- * Samples come in the order of their slices, nothing is looked at twice: from the last point the slopes are
- * kept that miss no sample since, and the sample that has none among them comes after a new point. A signal
- * that turns by more than WH_THIN_TURN from sample to sample cannot be thinned. Host code: aborts if out of
- * memory.
+ * Samples come in the order of their slices and none is looked at twice. The fit keeps the range of slopes
+ * from the last point that miss no sample since; when a sample lies outside, the one before it becomes a
+ * point. A signal that turns by more than WH_THIN_TURN from sample to sample cannot be thinned. Host code:
+ * aborts if out of memory.
  */
 #ifndef WH_RECORD_THIN_H
 #define WH_RECORD_THIN_H
@@ -19,8 +18,7 @@
 
 #define WH_THIN_WIDTH 7
 
-/* A rotation between two points is at most this, rad, so that there is no doubt which way is the shorter
- * one. */
+/* The largest rotation between two points, rad: small enough that the shorter way is certain. */
 #define WH_THIN_TURN 2.5
 
 typedef struct {
@@ -47,18 +45,16 @@ void wh_thin_open(wh_thin_t *thin, size_t width, double tolerance, double turn, 
 /* One more sample, of a later slice than the last one. Cost: about 20 ns, 100 ns where a rotation changes. */
 void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[]);
 
-/* The same of a pose: three numbers and a quaternion, of the two the one that is nearer to the last
- * sample's. */
+/* Adds a pose: three numbers and a quaternion, of its two signs the one nearer to the last sample's. */
 void wh_thin_add_pose(wh_thin_t *thin, int64_t slice, const wh_pose_t *pose);
 
-/* The last sample is exact. */
+/* Makes the last sample exact. */
 void wh_thin_force(wh_thin_t *thin);
 
 /* The last sample becomes a point, so that the points cover all. More samples may follow. */
 void wh_thin_finish(wh_thin_t *thin);
 
-/* What the points say of a slice; the first point's values before it, the last one's after it. Cost: log
- * n. */
+/* The signal at a slice; before the first point and after the last one those points' values. Cost: log n. */
 void wh_thin_read(const wh_thin_t *thin, int64_t slice, double values[]);
 void wh_thin_read_pose(const wh_thin_t *thin, int64_t slice, wh_pose_t *pose);
 

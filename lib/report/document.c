@@ -37,8 +37,7 @@ void wh_document_put_pose(wh_json_text_t *text, const wh_pose_t *pose) {
     wh_json_text_end(text, ']');
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * head */
+/* --------------------------------------------------------------------------------------------------- head */
 
 static void put_parameters(wh_json_text_t *text, const wh_document_t *document) {
     json_t *object = json_object();
@@ -76,8 +75,7 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     put_exact(text, "duration_s", wh_document_seconds(signals, signals->last));
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * names */
+/* -------------------------------------------------------------------------------------------------- names */
 
 void wh_document_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
@@ -89,7 +87,7 @@ void wh_document_name_axis(const wh_layout_t *layout, size_t axis, char *name, s
     }
 }
 
-/* Null where it is not known: of a chuck, and of a log without its layout. */
+/* Null if the value is not known: a chuck's, or any of a log without its layout. */
 static void put_known(wh_json_text_t *text, const char *key, bool known, double value) {
     wh_json_text_number(text, key, known ? value : HUGE_VAL, 0, true);
 }
@@ -136,8 +134,7 @@ static void put_names(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_end(text, '}');
 }
 
-/* -----------------------------------------------------------------------------------------------------
- * cell */
+/* --------------------------------------------------------------------------------------------------- cell */
 
 static void put_wafer(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_begin(text, "wafer", '{');
@@ -161,7 +158,7 @@ static void put_mount(wh_json_text_t *text, const wh_mount_t *mount) {
 }
 
 static void put_machine(wh_json_text_t *text, const wh_layout_t *layout) {
-    static const char *const names[WH_TRACE_LINKS] = {"lift", "upper arm", "forearm", "hand"};
+    static const char *const names[WH_SIGNALS_LINKS] = {"lift", "upper arm", "forearm", "hand"};
     const wh_arm_t *arm = &layout->shapes.arm;
     wh_json_text_begin(text, "machine", '{');
     wh_json_text_begin(text, "grippers", '[');
@@ -170,7 +167,7 @@ static void put_machine(wh_json_text_t *text, const wh_layout_t *layout) {
     }
     wh_json_text_end(text, ']');
     wh_json_text_begin(text, "links", '[');
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         wh_json_text_string(text, NULL, names[i]);
     }
     wh_json_text_end(text, ']');
@@ -207,8 +204,7 @@ static void put_slots(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_end(text, ']');
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * marks */
+/* -------------------------------------------------------------------------------------------------- marks */
 
 static void append(char *text, size_t size, const char *before, const char *part) {
     const size_t length = strlen(text);

@@ -6,27 +6,34 @@
  *   source       "run" or "log"; notes: [text], what a log did not tell
  *   run          what `run --json` prints, whole (print/record_json.h); of a log what it holds
  *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s
- *   names        wafers, grippers, stations: [name]; axes: [{ name, unit "mm" or "rad", low, high, speed }] (nulls: not known)
+ *   names        wafers, grippers, stations: [name]; axes: [{ name, unit "mm" or "rad", low, high, speed }]
+ *                (nulls: not known)
  *   wafer        diameter, thickness, notch (about its z from its x)
  *   limits       projz, projxy, planar, near_projz, near_projxy
  *   slots        [{ station, slot, r, q }]: base_from_slot
- *   machine      grippers [{ axis, r, q }]: of a chuck the axis that turns it and base_from_station, on the robot null and
- *                effector_from_gripper; links: names of the arm's; arm { reach, link, right_handed } (collision/arm.h)
- *   thinning     how far what tracks say may be off: mm, rad (axes), gripper_mm, gripper_rad, vacuum, projz, projxy, planar;
- *                `of` samples, `kept` of them. At events and at the begin and end of each command nothing is off
- *   tracks       axes [curve]. A curve is { t, v, slope } (a second); between two points it is the cubic that has the value and
- *                the slope of both; v and slope null: from there on to the next point there is none, as before the first; after
- *                the last one nothing changes. The slope of an axis is its speed
- *                grippers [{ t, r, q }]: base_from_gripper from the first of these points on, r linear and q the shorter slerp; before it,
- *                and of those without points, base_from_gripper follows from the axes (motion/machine.h): on the robot, whose
- *                axes are theta, R, Z and yaw, of an end-effector at (R cos theta, R sin theta, Z), turned about z by theta +
- *                yaw; of a chuck, turned about the station's z by its axis. Links follow from the end-effector
- *                wafers [[{ t, holder (gripper or null), r, q }]]: from t on gripper_from_wafer or base_from_wafer
- *                valves (0: open), sensors (1: on), nearest (a wafer or null), for each gripper [{ t, v }]: from t on
+ *   machine      grippers [{ axis, r, q }]: of a chuck the axis that turns it and base_from_station, on the
+ *                robot null and effector_from_gripper; links: names of the arm's; arm { reach, link,
+ *                right_handed } (collision/arm.h)
+ *   thinning     how far what tracks say may be off: mm, rad (axes), gripper_mm, gripper_rad, vacuum, projz,
+ *                projxy, planar; `of` samples, `kept` of them. At events and at the begin and end of each
+ *                command nothing is off
+ *   tracks       axes [curve]. A curve is { t, v, slope } (a second); between two points it is the cubic that
+ *                has the value and the slope of both; v and slope null: from there on to the next point there
+ *                is none, as before the first; after the last one nothing changes. The slope of an axis is
+ *                its speed
+ *                grippers [{ t, r, q }]: base_from_gripper from the first of these points on, r linear and q
+ *                the shorter slerp; before it, and of those without points, base_from_gripper follows from
+ *                the axes (motion/machine.h): on the robot, whose axes are theta, R, Z and yaw, of an
+ *                end-effector at (R cos theta, R sin theta, Z), turned about z by theta + yaw; of a chuck,
+ *                turned about the station's z by its axis. Links follow from the end-effector
+ *                wafers [[{ t, holder (gripper or null), r, q }]]: from t on gripper_from_wafer or
+ *                base_from_wafer
+ *                valves (0: open), sensors (1: on), nearest (a wafer or null), for each gripper [{ t, v }]:
+ *                from t on
  *                vacuum [curve], 0 to 1
- *                proximity [{ dr_proj_z, dr_proj_xy, n1_proj_n2 }]: curves, the first two as absolute values: each gripper
- *                against `nearest`, the wafer that it holds, or else would take: with the smallest |dr_proj_z|, while
- *                they are within 20 mm and twice near_projxy
+ *                proximity [{ dr_proj_z, dr_proj_xy, n1_proj_n2 }]: curves, the first two as absolute values:
+ *                each gripper against `nearest`, the wafer that it holds, or else would take: with the
+ *                smallest |dr_proj_z|, while they are within 20 mm and twice near_projxy
  *                clearances [{ pair, limit (null: none), t, gap (null: wider than 20 mm) }]
  *   marks        [{ t, kind, text, at (null: nowhere) }]: events worth a mark in the cell
  *   scene        glTF 2.0 (view/scene.h), without animation
@@ -48,11 +55,11 @@ typedef struct {
     const char *const *notes;
     size_t note_count;
     json_t *run;                 /* borrowed */
-    const wh_record_t *record;   /* for its curves and limits; its layout is the trace's */
+    const wh_record_t *record;   /* for its curves and limits; its layout is the signals' */
     const wh_signals_t *signals; /* finished */
 } wh_document_t;
 
-/* 0, or -1 when `out` does not take it. Aborts when memory is out. */
+/* 0, or -1 when `out` does not take it. Aborts if out of memory. */
 int wh_document_write(const wh_document_t *document, FILE *out);
 
 #endif

@@ -3,9 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../text/array.h"
 #include "document_internal.h"
 
-/* Decimals that add a hundredth of what thinning leaves, or less: of values, and of slopes, which count for
+/* With so many decimals rounding adds at most a hundredth of what thinning leaves. A slope's error counts for
  * up to 4 s. */
 enum { DECIMALS_S = 6, DECIMALS_OWN_MM = 4, DECIMALS_OWN = 6 };
 
@@ -22,8 +23,7 @@ static bool is_rad(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
 }
 
-/* -------------------------------------------------------------------------------------------------
- * thinning */
+/* ----------------------------------------------------------------------------------------------- thinning */
 
 typedef struct {
     double mm, rad, own_mm, own_rad, vacuum, measured[WH_MEASURES];
@@ -61,8 +61,8 @@ static sums_t sum_up(const wh_signals_t *signals) {
     return sums;
 }
 
-/* How far a gripper's origin is from where its axes' curves put it, at most: R and Z off, theta off at the
- * robot's reach. */
+/* The greatest distance between a gripper's origin and where its axes' curves put it: R and Z off, and theta
+ * off at the robot's full reach. */
 static double gripper_mm(const wh_signals_t *signals, const sums_t *sums) {
     double reach = signals->layout->machine.robot.travel[WH_AXIS_R].max;
     for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
@@ -73,9 +73,9 @@ static double gripper_mm(const wh_signals_t *signals, const sums_t *sums) {
     return larger(sqrt(across * across + sums->mm * sums->mm), sums->own_mm);
 }
 
-/* What rounding adds, and the half that points which are inserted take. */
+/* The tolerance as it is told: with what rounding adds. */
 static void put_tolerance(wh_json_text_t *text, const char *key, double thinned) {
-    wh_json_text_number(text, key, thinned / WH_TRACE_SHARE, 9, false);
+    wh_json_text_number(text, key, thinned / WH_SIGNALS_SHARE, 9, false);
 }
 
 void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals) {
@@ -86,6 +86,7 @@ void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals)
     put_tolerance(text, "gripper_mm", gripper_mm(signals, &sums));
     put_tolerance(text, "gripper_rad", larger(2 * sums.rad, sums.own_rad));
     put_tolerance(text, "vacuum", sums.vacuum);
+    /* Twice: points that are inserted may take as much again. */
     put_tolerance(text, "projz", 2 * sums.measured[WH_MEASURE_PROJZ]);
     put_tolerance(text, "projxy", 2 * sums.measured[WH_MEASURE_PROJXY]);
     put_tolerance(text, "planar", 2 * sums.measured[WH_MEASURE_PLANAR]);
@@ -94,8 +95,7 @@ void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals)
     wh_json_text_end(text, '}');
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * curves */
+/* ------------------------------------------------------------------------------------------------- curves */
 
 static void put_second(wh_json_text_t *text, const wh_signals_t *signals, int64_t slice) {
     wh_json_text_number(text, NULL, wh_document_seconds(signals, slice), DECIMALS_S, false);
@@ -105,7 +105,7 @@ static void put_null(wh_json_text_t *text) {
     wh_json_text_number(text, NULL, HUGE_VAL, 0, false);
 }
 
-/* Where a curve breaks off, nulls stand a slice after its last point. */
+/* Where a curve breaks off, a null stands one slice after its last point. */
 static void put_times(wh_json_text_t *text, const wh_signals_t *signals, const wh_points_t *list) {
     wh_json_text_begin(text, "t", '[');
     for (size_t i = 0; i < list->count; ++i) {
@@ -161,8 +161,7 @@ static void put_axes(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_end(text, ']');
 }
 
-/* ------------------------------------------------------------------------------------------------ own
- * poses */
+/* ---------------------------------------------------------------------------------------------- own poses */
 
 static void put_own(wh_json_text_t *text, const wh_signals_t *signals) {
     static const column_t places = {"r", 0, 3, 1, DECIMALS_OWN_MM, true};
@@ -179,8 +178,7 @@ static void put_own(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_end(text, ']');
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static void put_stay(wh_json_text_t *text, const wh_signals_t *signals, const wh_stay_t *stay) {
     wh_json_text_begin(text, NULL, '{');
@@ -194,13 +192,9 @@ static void put_stay(wh_json_text_t *text, const wh_signals_t *signals, const wh
     wh_json_text_end(text, '}');
 }
 
-/* Indices of the stays by wafer, each wafer's in order of time: the list holds them in order of time
- * alone. */
+/* Indices of the stays, sorted by wafer, then by time. (The list of stays is sorted by time alone.) */
 static size_t *sort_stays(const wh_signals_t *signals, size_t *ends) {
-    size_t *sorted = calloc(signals->stay_count + 1, sizeof *sorted);
-    if (!sorted) {
-        abort();
-    }
+    size_t *sorted = wh_array_new(signals->stay_count, sizeof *sorted);
     for (size_t i = 0; i < signals->stay_count; ++i) {
         ++ends[signals->stays[i].wafer];
     }
@@ -215,10 +209,7 @@ static size_t *sort_stays(const wh_signals_t *signals, size_t *ends) {
 
 static void put_wafers(wh_json_text_t *text, const wh_signals_t *signals) {
     const size_t wafers = signals->layout->wafer_count;
-    size_t *begins = calloc(wafers + 1, sizeof *begins);
-    if (!begins) {
-        abort();
-    }
+    size_t *begins = wh_array_new(wafers + 1, sizeof *begins);
     size_t *sorted = sort_stays(signals, begins);
     begins[wafers] = signals->stay_count;
     wh_json_text_begin(text, "wafers", '[');
@@ -234,8 +225,7 @@ static void put_wafers(wh_json_text_t *text, const wh_signals_t *signals) {
     free(begins);
 }
 
-/* --------------------------------------------------------------------------------------------------
- * signals */
+/* ------------------------------------------------------------------------------------------------ signals */
 
 /* WH_NONE is null. */
 static void put_steps(wh_json_text_t *text, const wh_signals_t *signals, const char *key,
@@ -283,8 +273,7 @@ static void put_proximity(wh_json_text_t *text, const wh_signals_t *signals) {
     wh_json_text_end(text, ']');
 }
 
-/* -----------------------------------------------------------------------------------------------
- * clearances */
+/* --------------------------------------------------------------------------------------------- clearances */
 
 static void put_clearance(wh_json_text_t *text, const wh_document_t *document, size_t kind) {
     const wh_curves_t *curves = document->record->curves;

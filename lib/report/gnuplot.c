@@ -8,8 +8,8 @@
 #include "../text/array.h"
 #include "../text/utf8.h"
 
-/* Pixels: below the last panel, for the axis; right of panels without limits, and with them; of two more rows
- * of a key. */
+/* Pixels: below the last panel, for the axis; right of panels, without limits and with them; for two more
+ * rows of a key. */
 enum { BELOW = 38, RIGHT = 10, RIGHT_OF_LIMITS = 58, KEY_ROWS = 28, COLUMN_MM = 170 };
 
 /* -------------------------------------------------------------------------------------------------- texts */
@@ -25,7 +25,7 @@ static size_t put_character(FILE *out, const char *c) {
     return bytes;
 }
 
-/* Between single quotes gnuplot takes all for what it is, and two quotes for one. */
+/* Between single quotes gnuplot takes every character as it is, and two quotes for one. */
 void wh_plot_put_text(FILE *out, const char *text) {
     fputc('\'', out);
     for (const char *c = text; *c;) {
@@ -37,7 +37,7 @@ void wh_plot_put_text(FILE *out, const char *text) {
     fputc('\'', out);
 }
 
-/* In a comment, which ends with its line; a backslash there would take the next one in. */
+/* Writes a comment, which ends with its line. A backslash at its end would continue it on the next line. */
 static void put_comment(FILE *out, const char *text) {
     for (const char *c = text; *c;) {
         if (*c == '\\') {
@@ -50,8 +50,7 @@ static void put_comment(FILE *out, const char *text) {
     fputc('\n', out);
 }
 
-/* --------------------------------------------------------------------------------------------------
- * script */
+/* ------------------------------------------------------------------------------------------------- script */
 
 static void put_size(const wh_plot_t *plot) {
     const wh_plot_frame_t *frame = &plot->frame;
@@ -145,8 +144,7 @@ void wh_plot_limit_curve(wh_plot_t *plot, double limit) {
     fprintf(plot->script, ", \\\n  %.9g with lines ls 9 notitle", limit);
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * data */
+/* --------------------------------------------------------------------------------------------------- data */
 
 void wh_plot_block(wh_plot_t *plot, const char *of, const char *columns) {
     fputs("# ", plot->data);
@@ -179,8 +177,7 @@ size_t wh_plot_end_block(wh_plot_t *plot) {
     return plot->blocks++;
 }
 
-/* --------------------------------------------------------------------------------------------------
- * curves */
+/* ------------------------------------------------------------------------------------------------- curves */
 
 /* Slices, in no order. */
 typedef struct {
@@ -213,7 +210,7 @@ static size_t count_pieces(const wh_path_t *curve, double tolerance) {
     return count;
 }
 
-/* The slices at which a curve is read; after its end one at which there is none. */
+/* Adds the slices at which a curve is read. After its end comes one more, where it has no value. */
 static void add_curve(list_t *list, const wh_path_t *curve) {
     const wh_points_t *points = &curve->list;
     const size_t most = 2 * points->count > WH_PLOT_ROWS ? 2 * points->count : WH_PLOT_ROWS;
@@ -241,7 +238,7 @@ static int compare(const void *a, const void *b) {
     return (first > second) - (first < second);
 }
 
-/* The step that holds at a slice, from the one that held before on. */
+/* The value that holds at a slice. `at` counts the steps that were passed. */
 static int32_t follow(const wh_steps_t *steps, size_t *at, int64_t slice) {
     while (*at < steps->count && steps->steps[*at].slice <= slice) {
         ++*at;
@@ -249,7 +246,7 @@ static int32_t follow(const wh_steps_t *steps, size_t *at, int64_t slice) {
     return *at > 0 ? steps->steps[*at - 1].value : WH_NONE;
 }
 
-/* False where one of the curves has no value. */
+/* False if one of the curves has no value there. */
 static bool read_row(const wh_plot_curves_t *of, int64_t slice, double slice_s, double values[]) {
     for (size_t k = 0; k < of->count; ++k) {
         double slope = 0;

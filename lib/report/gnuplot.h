@@ -56,8 +56,8 @@ void wh_plot_limit_curve(wh_plot_t *plot, double limit);
  * follow. */
 void wh_plot_fitting_label(wh_plot_t *plot, double begin, double end, const char *text);
 
-/* Any text, in quotes, as gnuplot reads it back: it does nothing but stand there. Control characters become
- * blanks, what is no UTF-8 a question mark. */
+/* Writes any text in quotes, so that gnuplot takes it as it is. Control characters become blanks, bytes that
+ * are no UTF-8 question marks. */
 void wh_plot_put_text(FILE *out, const char *text);
 
 /* A block of data: what is in it, its columns; rows; a gap in the curve. Returns the index of the block that

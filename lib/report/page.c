@@ -15,7 +15,7 @@
 /* Longest name between two @. */
 #define NAME_BYTES 64
 
-/* What others wrote: where it is below WH_JAVASCRIPT, and Debian's package that has it. */
+/* JavaScript that others wrote: its path below WH_JAVASCRIPT, and the Debian package that has it. */
 static const struct {
     const char *name, *path, *package;
 } foreign[] = {
@@ -42,11 +42,10 @@ static const wh_embedded_t *find_ours(const char *name) {
     return NULL;
 }
 
-/* -------------------------------------------------------------------------------------------------
- * inlining */
+/* ----------------------------------------------------------------------------------------------- inlining */
 
-/* Where an HTML parser would take a script's or a style's text for markup, a backslash keeps it from that and
- * means nothing to JavaScript's strings and to CSS. */
+/* True if an HTML parser would take this within a script or a style for markup. A backslash after the '<'
+ * prevents that, and means nothing to JavaScript's strings and to CSS. */
 static bool is_markup(const char *text, size_t size) {
     static const char *const ends[] = {"/script", "/style", "!--"};
     for (size_t i = 0; i < sizeof ends / sizeof ends[0]; ++i) {
@@ -108,8 +107,7 @@ static bool write_foreign(const page_t *page, size_t i) {
     return read >= 0;
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * names */
+/* -------------------------------------------------------------------------------------------------- names */
 
 static bool write_named(const page_t *page, const char *name) {
     const wh_embedded_t *ours = find_ours(name);

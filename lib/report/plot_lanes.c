@@ -7,13 +7,12 @@
 #include "document_internal.h"
 #include "plots_internal.h"
 
-/* ---------------------------------------------------------------------------------------------------
- * lanes */
+/* -------------------------------------------------------------------------------------------------- lanes */
 
 /* Half of what a bar or a signal takes of its lane. */
 #define HALF 0.34
 
-/* Zeroed and given its plot by wh_lanes_open. */
+/* A plot of lanes; open_lanes sets it up. */
 typedef struct {
     wh_plot_t *plot;
     size_t count, named, letters;
@@ -26,15 +25,16 @@ typedef struct {
     double duration;
 } lanes_t;
 
-/* How a block of bars is filled: a colour, and solid or a pattern in gnuplot's words; `text` is for the key,
- * or null. Bars have a black edge, unless so many of them are shown that there would be little but edges:
- * then their colours blend, each by its share of a pixel's time. Bars that must not be overlooked keep it. */
+/* How a block of bars is filled: a colour, and solid or a pattern in gnuplot's words. `text` is for the key,
+ * or null. Bars have a black edge. If there are so many that one would see little but edges, they have none
+ * and their colours blend, each by its share of a pixel's time; bars that must not be overlooked keep the
+ * edge. */
 typedef struct {
     const char *text, *colour, *fill;
     bool keeps_edge;
 } look_t;
 
-/* Pixels; names have room for so many letters. */
+/* Pixels, but for MOST_LETTERS: so many letters of a name have room. */
 enum { ROW = 24, MOST_LETTERS = 28, LEAST_ABOVE = 6, LEAST_PITCH = 3 };
 
 #define EDGED "using 1:3:1:2:($3-%g):($3+%g) with boxxyerror lw 0.6 dt 1 fc"
@@ -101,14 +101,14 @@ static void add_label(lanes_t *lanes, size_t lane, double begin, double end, con
             on_dark ? " textcolor rgb '#ffffff'" : "");
 }
 
-/* A plot command's next part. */
+/* Begins the next part of the plot command. */
 static void put_part(lanes_t *lanes) {
     fputs(lanes->drawn++ == 0 ? "plot " : ", \\\n  ", lanes->plot->script);
 }
 
-/* What bars are drawn with: as boxes, or, those of a lane being nearer to each other than LEAST_PITCH on
- * average, as strokes as wide as a lane. Boxes without an edge are sampled where a pixel's middle is, strokes
- * are blended. */
+/* Defines how bars are drawn: as boxes, or, if those of a lane are nearer to each other than LEAST_PITCH
+ * pixels on average, as strokes as wide as a lane. A box without an edge counts for a pixel only if it covers
+ * the pixel's middle; strokes are blended. */
 static void put_styles(const lanes_t *lanes) {
     FILE *out = lanes->plot->script;
     fprintf(out,
@@ -155,7 +155,7 @@ static void draw_signal(lanes_t *lanes, size_t block, size_t lane, const char *s
             lanes->plot->name, block, lane_height(lanes, lane) - HALF, 2 * HALF, style);
 }
 
-/* A plot command without anything is an error: then lanes are drawn that are empty. */
+/* A plot command without anything is an error for gnuplot: it draws the empty lanes with NaN. */
 static void end_lanes(lanes_t *lanes) {
     if (lanes->drawn == 0) {
         fputs("plot NaN notitle", lanes->plot->script);
@@ -163,10 +163,9 @@ static void end_lanes(lanes_t *lanes) {
     fputc('\n', lanes->plot->script);
 }
 
-/* -------------------------------------------------------------------------------------------------
- * signals */
+/* ------------------------------------------------------------------------------------------------ signals */
 
-/* Of 0 and 1; the last value goes on to the end. */
+/* Steps of 0 and 1. The last value goes on to the end. */
 static size_t put_steps(const wh_plots_t *plots, wh_plot_t *plot, const wh_steps_t *steps, bool inverted) {
     double value = 0;
     for (size_t i = 0; i < steps->count; ++i) {
@@ -213,8 +212,7 @@ void wh_plots_signals(wh_plots_t *plots) {
     wh_plots_close(plots, &plot);
 }
 
-/* -------------------------------------------------------------------------------------------------
- * holders */
+/* ------------------------------------------------------------------------------------------------ holders */
 
 static void put_holds(const wh_plots_t *plots, lanes_t *lanes, size_t g) {
     const wh_layout_t *layout = plots->document->signals->layout;
@@ -250,10 +248,10 @@ void wh_plots_holders(wh_plots_t *plots) {
     wh_plots_close(plots, &plot);
 }
 
-/* ------------------------------------------------------------------------------------------------
- * commands */
+/* ----------------------------------------------------------------------------------------------- commands */
 
-/* Of commands: every other one, so that neighbours can be told apart, and those that failed. */
+/* Commands take turns with two looks, so that neighbours can be told apart; those that failed have a
+ * third. */
 enum { EVEN, ODD, FAILED, COMMANDS };
 
 static const look_t command_looks[COMMANDS] = {{NULL, "#ffffff", "solid", false},
@@ -284,7 +282,8 @@ static const look_t share_looks[WH_SHARES] = {
     [WH_SHARE_HANDOVER] = {"hand-over", "#000000", "crossed", false},
     [WH_SHARE_WAITING] = {"waiting", "#ffffff", "solid", false}};
 
-/* The robot has the lane below the commands', then come the chucks that turn. SIZE_MAX: none. */
+/* Each chuck's lane. They come after the lanes of commands and of the robot; SIZE_MAX: the chuck does not
+ * turn. */
 typedef struct {
     size_t of[WH_GRIPPERS];
     size_t count;

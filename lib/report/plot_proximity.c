@@ -13,10 +13,9 @@
 /* Half of the least range that is drawn, mm. */
 #define LEAST_OFFSET 0.1
 
-/* -----------------------------------------------------------------------------------------------
- * proximity */
+/* ---------------------------------------------------------------------------------------------- proximity */
 
-/* Over the times at which a gripper holds a wafer, with the wafer's name in the first panel. */
+/* Shades the times at which a gripper holds a wafer. The first panel also names the wafer. */
 static void shade_holds(const wh_plots_t *plots, wh_plot_t *plot, int32_t gripper) {
     const wh_layout_t *layout = plots->document->signals->layout;
     size_t count = 0;
@@ -35,8 +34,8 @@ static void shade_holds(const wh_plots_t *plots, wh_plot_t *plot, int32_t grippe
     free(holds);
 }
 
-/* A panel of lengths, which go from nothing to many times the limit: what is below the axis is drawn on
- * it. */
+/* A panel of lengths, from nothing to many times the limit, hence a logarithmic axis. Values below its end
+ * are drawn on it. */
 static void put_length(const wh_plots_t *plots, wh_plot_t *plot, int32_t g, const char *name, int column,
                        double low, double limit, double high) {
     char label[60];
@@ -87,7 +86,7 @@ static void put_proximity(wh_plots_t *plots, int32_t g) {
     wh_plot_block(&plot, name, "t (s), |dr_proj_z| (mm), |dr_proj_xy| (mm), n1_proj_n2, wafer (from 0)");
     (void)wh_plot_curves(&plot, &values, wh_plots_slice_s(plots));
     put_length(plots, &plot, g, "dr_proj_z", 2, limits->projz / 50, limits->projz,
-               limits->projz * 4 > WH_TRACE_REACH ? limits->projz * 4 : WH_TRACE_REACH);
+               limits->projz * 4 > WH_SIGNALS_REACH ? limits->projz * 4 : WH_SIGNALS_REACH);
     put_length(plots, &plot, g, "dr_proj_xy", 3, limits->projxy / 50000, limits->projxy,
                2 * layout->grasp.near_projxy);
     put_planar(plots, &plot, g, limits->planar);
@@ -100,8 +99,7 @@ void wh_plots_proximity(wh_plots_t *plots) {
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * axes */
+/* --------------------------------------------------------------------------------------------------- axes */
 
 typedef struct {
     const char *label;
@@ -118,7 +116,7 @@ static bool is_in(const wh_signals_t *signals, size_t axis, const axis_panel_t *
     return signals->axes[axis].list.count > 0 && panel->turns == (axis != WH_AXIS_R && axis != WH_AXIS_Z);
 }
 
-/* What a panel shows: how many curves, and between which values. */
+/* How many curves a panel shows, and between which values. */
 typedef struct {
     size_t curves;
     double low, high;
@@ -140,7 +138,7 @@ static axis_range_t look_at(const wh_signals_t *signals, const axis_panel_t *pan
     return range;
 }
 
-/* Of what stands still gnuplot has no range of its own; a key of many entries is set closer, to fit into one
+/* gnuplot finds no range for axes that stand still. A key of many entries is set closer, to fit into one
  * column. */
 static void put_axis_look(wh_plot_t *plot, const axis_range_t *range) {
     if (range->high - range->low < 1e-6) {
@@ -191,10 +189,9 @@ void wh_plots_axes(wh_plots_t *plots) {
     wh_plots_close(plots, &plot);
 }
 
-/* -----------------------------------------------------------------------------------------------
- * clearances */
+/* --------------------------------------------------------------------------------------------- clearances */
 
-/* Gaps are known from WH_CLEARANCE_RANGE down. */
+/* True if a gap below WH_CLEARANCE_RANGE was measured: wider ones are not known. */
 static bool is_known(const wh_record_t *record, size_t kind) {
     const bool is_measured =
         record->checked && record->curves && record->clearances[kind].parts[0] != WH_NONE;
@@ -264,8 +261,7 @@ void wh_plots_clearances(wh_plots_t *plots) {
     wh_plots_close(plots, &plot);
 }
 
-/* -------------------------------------------------------------------------------------------------
- * offsets */
+/* ------------------------------------------------------------------------------------------------ offsets */
 
 static bool lies(const wh_record_t *record, size_t wafer) {
     return record->wafers[wafer].place.station != WH_NONE;
@@ -279,7 +275,7 @@ static size_t count_lying(const wh_record_t *record, const wh_layout_t *layout) 
     return count;
 }
 
-/* Returns whether any lies far enough beside to be seen. */
+/* True if any wafer lies far enough from its slot's centre to be seen. */
 static bool put_data(const wh_plots_t *plots, wh_plot_t *plot) {
     const wh_record_t *record = plots->document->record;
     double number = 0;
@@ -298,7 +294,7 @@ static bool put_data(const wh_plots_t *plots, wh_plot_t *plot) {
     return is_seen;
 }
 
-/* "Wafer 1 in B 2" below each. */
+/* Writes "Wafer 1 in B 2" below each. */
 static void put_names(const wh_plots_t *plots, wh_plot_t *plot) {
     const wh_layout_t *layout = plots->document->signals->layout;
     const wh_record_t *record = plots->document->record;

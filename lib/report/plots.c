@@ -15,7 +15,8 @@
 
 extern char **environ;
 
-/* Where they are made: within the folder that they are for. */
+/* The folder in which plots are made, within the one that they are for: renaming works within a file system
+ * only. */
 #define FOLDER "/.plots.XXXXXX"
 #define PATH_BYTES 4096
 
@@ -26,8 +27,7 @@ static bool path_of(char path[PATH_BYTES], const char *folder, const char *name,
     return snprintf(path, PATH_BYTES, "%s/%s.%s", folder, name, ending) < PATH_BYTES;
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * files */
+/* -------------------------------------------------------------------------------------------------- files */
 
 static bool is_taken(const wh_plots_t *plots, const char *name) {
     for (size_t i = 0; i < plots->count; ++i) {
@@ -38,7 +38,8 @@ static bool is_taken(const wh_plots_t *plots, const char *name) {
     return false;
 }
 
-/* What a shell, LaTeX and every system take for a name; of two that become one, the second is numbered. */
+/* Makes a name that a shell, LaTeX and every system accept. Of two that become the same, the second is
+ * numbered. */
 static void choose_name(const wh_plots_t *plots, char name[WH_PLOT_NAME_BYTES], const char *stem,
                         const char *of) {
     (void)snprintf(name, WH_PLOT_NAME_BYTES - 20, "%s%s%s", stem, of ? "_" : "", of ? of : "");
@@ -89,8 +90,7 @@ void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot) {
     close_file(plots, plot->data);
 }
 
-/* ------------------------------------------------------------------------------------------------------
- * run */
+/* ---------------------------------------------------------------------------------------------------- run */
 
 double wh_plots_slice_s(const wh_plots_t *plots) {
     return (double)plots->document->signals->layout->slice_us / 1e6;
@@ -116,7 +116,7 @@ static void add_hold(wh_plot_hold_t **list, size_t *count, size_t *capacity, con
     }
 }
 
-/* A gripper holds one wafer, so the stays, which come in order of time, end in that order too. */
+/* A gripper holds one wafer at a time, so its stays end in the order in which they begin. */
 wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t *count) {
     const wh_signals_t *signals = plots->document->signals;
     wh_plot_hold_t *list = NULL;
@@ -142,11 +142,10 @@ wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t 
     return list;
 }
 
-/* --------------------------------------------------------------------------------------------------
- * gnuplot */
+/* ------------------------------------------------------------------------------------------------ gnuplot */
 
-/* For gnuplot the plots' letters are UTF-8, which it asks the locale for. Returns what was there, to be set again and
- * freed; or null. */
+/* The plots are UTF-8, and gnuplot asks the locale for that. Sets LC_ALL, or removes it for null. Returns
+ * what was there, to be freed; null if nothing was. */
 static char *set_letters(const char *letters) {
     const char *before = getenv("LC_ALL");
     char *kept = before ? wh_record_text(before) : NULL;
@@ -156,7 +155,8 @@ static char *set_letters(const char *letters) {
     return kept;
 }
 
-/* Runs it in the plots' folder, without anybody's settings; 0, an errno, or -1 if it says itself what is wrong. */
+/* Runs gnuplot in the plots' folder. Returns 0, an errno if it did not start, or -1 if it has said itself
+ * what is wrong. */
 static int start(const wh_plots_t *plots, char *const arguments[]) {
     posix_spawn_file_actions_t actions;
     pid_t process = 0;
@@ -210,8 +210,7 @@ static bool draw_all(const wh_plots_t *plots, char message[WH_PLOTS_MESSAGE_BYTE
     return drawn;
 }
 
-/* -------------------------------------------------------------------------------------------------
- * placing */
+/* ------------------------------------------------------------------------------------------------ placing */
 
 static bool place(const wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
     char from[PATH_BYTES];

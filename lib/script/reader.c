@@ -75,8 +75,8 @@ static void describe(lua_State *L, char *text, size_t size) {
     }
 }
 
-__attribute__((noreturn)) static void fail(const wh_reader_t *reader, const char *field, const char *expected,
-                                           va_list arguments) {
+__attribute__((noreturn, format(printf, 3, 0))) static void fail(const wh_reader_t *reader, const char *field,
+                                                                 const char *expected, va_list arguments) {
     char value[200];
     char wanted[512];
     describe(reader->L, value, sizeof value);

@@ -102,6 +102,8 @@ static void report(lua_State *L, const wh_sandbox_job_t *job, char message[WH_SA
 
 /* -------------------------------------------------------------------------------------------------- files */
 
+static const char too_large[] = "cannot be read: it is larger than 16 MiB";
+
 static const char *kind_fault(const struct stat *status) {
     if (S_ISDIR(status->st_mode)) {
         return "cannot be read: it is a directory";
@@ -110,7 +112,7 @@ static const char *kind_fault(const struct stat *status) {
         return "cannot be read: it is no regular file";
     }
     if (status->st_size > (off_t)WH_SANDBOX_FILE_BYTES) {
-        return "cannot be read: it is larger than 16 MiB";
+        return too_large;
     }
     return NULL;
 }
@@ -121,26 +123,9 @@ static const char *errno_fault(void) {
     return text;
 }
 
-/* A file may grow while it is read, and files below /proc have no size: reads to the end, or one byte too
- * many. */
-static const char *read_all(int file, char *text, size_t capacity, size_t *size) {
-    *size = 0;
-    while (*size < capacity) {
-        const ssize_t got = read(file, text + *size, capacity - *size);
-        if (got == 0) {
-            return NULL;
-        }
-        if (got < 0 && errno != EINTR) {
-            return errno_fault();
-        }
-        *size += got > 0 ? (size_t)got : 0;
-    }
-    return "cannot be read: it is larger than 16 MiB";
-}
-
-static const char *read_open(int file, char **text, size_t *size) {
+static const char *read_open(FILE *file, char **text, size_t *size) {
     struct stat status;
-    if (fstat(file, &status) != 0) {
+    if (fstat(fileno(file), &status) != 0) {
         return errno_fault();
     }
     const char *fault = kind_fault(&status);
@@ -152,8 +137,10 @@ static const char *read_open(int file, char **text, size_t *size) {
     if (whole == NULL) {
         return "cannot be read: no memory";
     }
-    fault = read_all(file, whole, capacity, size);
-    if (fault != NULL) {
+    /* Reads to the end: the file may grow meanwhile, and files below /proc have no size. */
+    *size = fread(whole, 1, capacity, file);
+    if (*size == capacity || ferror(file)) {
+        fault = ferror(file) ? errno_fault() : too_large;
         free(whole);
         return fault;
     }
@@ -174,12 +161,13 @@ static const char *read_file(const char *path, char **text, size_t *size) {
     if (fault != NULL) {
         return fault;
     }
-    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-    if (file < 0) {
+    const int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    FILE *const file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
+    if (file == NULL) {
         return errno_fault();
     }
     fault = read_open(file, text, size);
-    close(file);
+    (void)fclose(file);
     return fault;
 }
 
@@ -368,25 +356,31 @@ static void abbreviate(wh_sandbox_job_t *job) {
     }
 }
 
-static bool run_text(lua_State *L, wh_sandbox_job_t *job, wh_sandbox_result_t *result) {
-    wh_sandbox_result_t unused = {WH_SANDBOX_OK, ""};
-    wh_sandbox_result_t *const told = result != NULL ? result : &unused;
+/* lua_pcall as a job: function and arguments are on the stack. */
+static bool run_job(lua_State *L, wh_sandbox_job_t *job, int arguments, wh_sandbox_result_t *result) {
+    wh_sandbox_result_t unused;
+    const int base = lua_gettop(L) - arguments;
     enter(L, job);
+    lua_pushcfunction(L, note_line);
+    lua_insert(L, base);
+    const int status = lua_pcall(L, arguments, job->results, base);
+    lua_remove(L, base);
+    return conclude(L, job, base, status, result != NULL ? result : &unused);
+}
+
+static bool run_text(lua_State *L, wh_sandbox_job_t *job, wh_sandbox_result_t *result) {
     abbreviate(job);
     job->text = skip_first_line(job->text, &job->size);
     if (!lua_checkstack(L, 4)) {
-        leave(wh_sandbox_of(L), job);
-        told->status = WH_SANDBOX_ERROR;
-        snprintf(told->message, sizeof told->message, "%.900s: stack overflow", job->path);
+        if (result != NULL) {
+            result->status = WH_SANDBOX_ERROR;
+            snprintf(result->message, sizeof result->message, "%.900s: stack overflow", job->path);
+        }
         return false;
     }
-    lua_pushcfunction(L, note_line);
-    const int base = lua_gettop(L);
     lua_pushcfunction(L, load_and_run);
     lua_pushlightuserdata(L, job);
-    const int status = lua_pcall(L, 1, job->results, base);
-    lua_remove(L, base);
-    return conclude(L, job, base, status, told);
+    return run_job(L, job, 1, result);
 }
 
 bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, size_t size,
@@ -422,15 +416,8 @@ bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *re
 }
 
 bool wh_sandbox_call(lua_State *L, int arguments, int results, wh_sandbox_result_t *result) {
-    wh_sandbox_result_t unused;
-    wh_sandbox_job_t job = {.loaded = true};
-    const int base = lua_gettop(L) - arguments;
-    enter(L, &job);
-    lua_pushcfunction(L, note_line);
-    lua_insert(L, base);
-    const int status = lua_pcall(L, arguments, results, base);
-    lua_remove(L, base);
-    return conclude(L, &job, base, status, result != NULL ? result : &unused);
+    wh_sandbox_job_t job = {.loaded = true, .results = results};
+    return run_job(L, &job, arguments, result);
 }
 
 wh_sandbox_t *wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],

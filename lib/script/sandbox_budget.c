@@ -105,6 +105,15 @@ static void check_brim(lua_State *L, wh_sandbox_t *sandbox) {
     }
 }
 
+static void check_stop_and_budget(lua_State *L, const wh_sandbox_t *sandbox) {
+    if (sandbox->stop) {
+        wh_sandbox_exhaust(L, WH_SANDBOX_STOPPED);
+    }
+    if (sandbox->spent > sandbox->budget) {
+        wh_sandbox_exhaust(L, WH_SANDBOX_BUDGET);
+    }
+}
+
 static void check_limits(lua_State *L, wh_sandbox_t *sandbox) {
     const int count = lua_gethookcount(L);
     if (count != WH_SANDBOX_GRANULE) {
@@ -112,12 +121,7 @@ static void check_limits(lua_State *L, wh_sandbox_t *sandbox) {
     }
     wh_sandbox_spend(sandbox, (uint64_t)count);
     check_brim(L, sandbox);
-    if (sandbox->stop) {
-        wh_sandbox_exhaust(L, WH_SANDBOX_STOPPED);
-    }
-    if (sandbox->spent > sandbox->budget) {
-        wh_sandbox_exhaust(L, WH_SANDBOX_BUDGET);
-    }
+    check_stop_and_budget(L, sandbox);
 }
 
 static void on_count(lua_State *L, lua_Debug *event) {
@@ -154,12 +158,7 @@ void wh_sandbox_charge(lua_State *L, uint64_t steps) {
     }
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     wh_sandbox_spend(sandbox, steps);
-    if (sandbox->stop) {
-        wh_sandbox_exhaust(L, WH_SANDBOX_STOPPED);
-    }
-    if (sandbox->spent > sandbox->budget) {
-        wh_sandbox_exhaust(L, WH_SANDBOX_BUDGET);
-    }
+    check_stop_and_budget(L, sandbox);
     if (sandbox->fatal != WH_SANDBOX_OK) {
         wh_sandbox_raise(L);
     }

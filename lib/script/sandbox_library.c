@@ -18,22 +18,13 @@ static void push_type_name(lua_State *L, int index) {
 }
 
 static void push_text(lua_State *L, int index) {
-    switch (lua_type(L, index)) {
-    case LUA_TNUMBER:
-        if (lua_tonumber(L, index) != lua_tonumber(L, index)) {
-            lua_pushliteral(L, "nan");
-            return;
-        }
+    const int type = lua_type(L, index);
+    if (type == LUA_TNUMBER && lua_tonumber(L, index) != lua_tonumber(L, index)) {
+        lua_pushliteral(L, "nan");
+    } else if (type == LUA_TNUMBER || type == LUA_TNIL || type == LUA_TBOOLEAN || type == LUA_TSTRING) {
         luaL_tolstring(L, index, NULL);
-        return;
-    case LUA_TNIL:
-    case LUA_TBOOLEAN:
-    case LUA_TSTRING:
-        luaL_tolstring(L, index, NULL);
-        return;
-    default:
+    } else {
         push_type_name(L, index);
-        return;
     }
 }
 

@@ -133,26 +133,25 @@ static void check_table(lua_State *L, int index, const wh_field_t *at) {
     }
 }
 
-void wh_lua_check_record(lua_State *L, int index, const wh_field_t *at, const char *const *names) {
-    const keys_t keys = {names, 0};
+static void check_keys(lua_State *L, int index, const wh_field_t *at, const keys_t *keys) {
     check_table(L, index, at);
-    push_stranger(L, index, &keys);
+    push_stranger(L, index, keys);
     if (!lua_isnil(L, -1)) {
         const wh_field_t stranger = key_field(L, at);
-        wh_lua_refuse(L, &stranger, "no such field (expected %s)", push_names(L, names));
+        if (keys->names) {
+            wh_lua_refuse(L, &stranger, "no such field (expected %s)", push_names(L, keys->names));
+        }
+        wh_lua_refuse(L, &stranger, "no such entry (expected a list of %I)", (LUAI_UACINT)keys->count);
     }
     lua_pop(L, 1);
 }
 
+void wh_lua_check_record(lua_State *L, int index, const wh_field_t *at, const char *const *names) {
+    check_keys(L, index, at, &(keys_t){names, 0});
+}
+
 void wh_lua_check_list(lua_State *L, int index, const wh_field_t *at, lua_Integer count) {
-    const keys_t keys = {NULL, count};
-    check_table(L, index, at);
-    push_stranger(L, index, &keys);
-    if (!lua_isnil(L, -1)) {
-        const wh_field_t stranger = key_field(L, at);
-        wh_lua_refuse(L, &stranger, "no such entry (expected a list of %I)", (LUAI_UACINT)count);
-    }
-    lua_pop(L, 1);
+    check_keys(L, index, at, &(keys_t){NULL, count});
 }
 
 wh_real_t wh_lua_take_number(lua_State *L, const wh_field_t *at) {

@@ -11,14 +11,15 @@
 #include "../text/utf8.h"
 #include "geometry.h"
 
-/* How far a cover, and then a notch's mark, stand out of the wafer, mm. */
+/* How far a cover and a notch's mark stand out of the wafer, mm. */
 #define COVER 0.25
 #define MARK 0.5
 
-/* A notch of 1 mm would not be seen: the mark is so wide, and three times as long, of the wafer's radius. */
+/* A notch of 1 mm would not be seen. The mark is this share of the wafer's radius wide, and three times as
+ * long. */
 #define MARK_WIDTH 0.02
 
-/* Each byte of a name becomes three at most. */
+/* Room for a written name: each byte becomes three at most. */
 #define WRITTEN_SIZE (3 * WH_NAME_SIZE)
 
 /* How far a held wafer's colour goes from its gripper's to the page's behind it. */
@@ -37,7 +38,7 @@ static wh_view_colour_t colour_of_gripper(size_t gripper) {
     return colour_of(wh_ink_series[gripper % WH_INK_SERIES].light, 1);
 }
 
-/* A blade or chuck has its gripper's; obstacles and shells let one look through. */
+/* Blades and chucks have their gripper's colour. Obstacles and shells are transparent. */
 static wh_view_colour_t colour_of_part(const wh_part_t *part) {
     static const float opacities[WH_INKS] = {0.35F, 0.22F, 1, 1, 1, 1, 1};
     const wh_part_ink_t ink = wh_ink_of(part);
@@ -51,7 +52,7 @@ static float mixed(float from, float to) {
     return from + PALER * (to - from);
 }
 
-/* Of a wafer that is held: paler than its gripper. */
+/* The colour of a held wafer: paler than its gripper's. */
 static wh_view_colour_t colour_of_held(size_t gripper) {
     const wh_view_colour_t pure = colour_of_gripper(gripper);
     const wh_view_colour_t page = colour_of(wh_ink_stage.light, 1);
@@ -60,11 +61,10 @@ static wh_view_colour_t colour_of_held(size_t gripper) {
     return pale;
 }
 
-/* --------------------------------------------------------------------------------------------------
- * bodies */
+/* ------------------------------------------------------------------------------------------------- bodies */
 
-/* How many bytes may stay as they are at `text`: none that the viewer would take for part of a path, or could
- * not read. */
+/* The length of the character at `text` if it may stay as it is; 0 if the viewer would take it for part of a
+ * path, or could not read it. */
 static size_t plain_bytes(const char *text) {
     const unsigned char first = (unsigned char)*text;
     if (first < ' ' || first == 0x7f || first == '/' || first == ':' || first == '%') {
@@ -73,7 +73,7 @@ static size_t plain_bytes(const char *text) {
     return wh_utf8_bytes(text);
 }
 
-/* Two names never become the same. */
+/* Writes other characters as %2F and the like. '%' is one of them, so two names never become the same. */
 static void write_name(const char *name, char written[WRITTEN_SIZE]) {
     static const char digits[] = "0123456789ABCDEF";
     char *to = written;
@@ -105,7 +105,7 @@ static char *path_of(const char *folder, const char *name) {
     return path;
 }
 
-/* One more body, without shapes, at base; `name` may be null: the folder's. Returns its index. */
+/* Adds a body without shapes, at base, and returns its index. With a null `name` it has the folder's. */
 static size_t add_body(wh_view_cell_t *cell, const char *folder, const char *name) {
     const waferhand_viewer_link body = {.name = path_of(folder, name)};
     cell->load.link =
@@ -114,7 +114,7 @@ static size_t add_body(wh_view_cell_t *cell, const char *folder, const char *nam
     return (size_t)cell->load.num_links++;
 }
 
-/* One more shape of the body that was added last. */
+/* Adds a shape to the body that was added last. */
 static void add_shape(wh_view_cell_t *cell, const wh_convex_t *convex, const wh_pose_t *body_from_shape,
                       const wh_view_colour_t *colour) {
     waferhand_viewer_link *body = &cell->load.link[cell->load.num_links - 1];
@@ -125,8 +125,7 @@ static void add_shape(wh_view_cell_t *cell, const wh_convex_t *convex, const wh_
                           &body->geom[body->num_geom++]);
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * parts */
+/* -------------------------------------------------------------------------------------------------- parts */
 
 static void add_parts(wh_view_cell_t *cell, uint32_t kinds, int32_t owner, const wh_pose_t *base_from_body) {
     const wh_world_config_t *world = &cell->layout->world;
@@ -148,7 +147,7 @@ static void add_obstacles(wh_view_cell_t *cell) {
     add_parts(cell, 1U << WH_PART_FIXED, WH_NONE, NULL);
 }
 
-/* The indices of stations are behind those of the obstacles. */
+/* Body 0 is the obstacles; station s is body 1 + s. */
 static void add_stations(wh_view_cell_t *cell) {
     for (size_t s = 0; s < cell->layout->station_count; ++s) {
         (void)add_body(cell, "stations", cell->layout->stations[s].name);
@@ -174,8 +173,7 @@ static void add_grippers(wh_view_cell_t *cell) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static void add_disc(wh_view_cell_t *cell, double larger, const wh_view_colour_t *colour) {
     wh_convex_t disc = wh_shapes_wafer(&cell->layout->shapes);
@@ -224,8 +222,7 @@ static void add_wafers(wh_view_cell_t *cell) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------------
- * places */
+/* ------------------------------------------------------------------------------------------------- places */
 
 static void place(wh_view_cell_t *cell, size_t body, const wh_pose_t *base_from_body) {
     wh_view_put_pose(base_from_body, cell->draw.position[body], cell->draw.quaternion[body]);
@@ -250,7 +247,7 @@ static void open_draw(wh_view_cell_t *cell) {
     }
 }
 
-/* The arm is where a gripper on it says; without one it stays at home. */
+/* A gripper on the robot tells where the arm is; without one the arm stays at home. */
 static void place_robot(wh_view_cell_t *cell, const wh_pose_t base_from_grippers[]) {
     const wh_layout_t *layout = cell->layout;
     wh_pose_t bodies[WH_ARM_BODIES];
@@ -294,7 +291,7 @@ void wh_view_cell_move(wh_view_cell_t *cell, const wh_view_look_t *look) {
     cover_held(cell, look->wafers);
 }
 
-/* A layout's wafers have no holders yet. */
+/* No cover is placed: before a run nobody holds a wafer. */
 void wh_view_cell_rest(wh_view_cell_t *cell) {
     const wh_layout_t *layout = cell->layout;
     wh_real_t axes[WH_AXES] = {0};

@@ -10,7 +10,7 @@
 
 #define M_PER_MM 1e-3
 
-/* A hull's points and triangles before the two lists are written one behind the other. */
+/* A hull's points and triangles. The message has one list after the other. */
 typedef struct {
     float (*points)[3];
     size_t point_count;
@@ -51,10 +51,9 @@ static void put_round(waferhand_viewer_geometry *geometry, int8_t type, const wh
     put_lengths(geometry, type, lengths, type == WH_VIEW_SPHERE ? 1 : 2);
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * hulls */
+/* -------------------------------------------------------------------------------------------------- hulls */
 
-/* The index of a point, which is added if it is not there yet: a hull's faces share their corners. */
+/* The index of a point, which is added if it is new. A hull's faces share their corners. */
 static uint32_t index_of(triangles_t *triangles, const float at[3]) {
     for (size_t i = 0; i < triangles->point_count; ++i) {
         const float *point = triangles->points[i];
@@ -99,7 +98,7 @@ static void put_triangles(waferhand_viewer_geometry *geometry, const triangles_t
     }
 }
 
-/* A box is centred where its mesh is, which need not be at the shape's origin. */
+/* Draws the box around a mesh. The mesh need not lie around its shape's origin, so the pose moves. */
 static void put_bounds(waferhand_viewer_geometry *geometry, const wh_convex_t *convex, wh_pose_t *pose) {
     const wh_pose_t here = wh_pose_identity();
     wh_vec3_t low, high;
@@ -127,8 +126,7 @@ static void put_hull(waferhand_viewer_geometry *geometry, const wh_convex_t *con
     free(triangles.corners);
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * shapes */
+/* ------------------------------------------------------------------------------------------------- shapes */
 
 void wh_view_geometry_make(const wh_convex_t *convex, const wh_pose_t *body_from_shape,
                            const wh_view_colour_t *colour, bool as_box, waferhand_viewer_geometry *geometry) {

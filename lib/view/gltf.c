@@ -48,8 +48,7 @@ static json_t *list_of(const double values[], size_t count) {
     return list;
 }
 
-/* --------------------------------------------------------------------------------------------------
- * buffer */
+/* ------------------------------------------------------------------------------------------------- buffer */
 
 static size_t add_view(wh_gltf_t *gltf, const void *data, size_t size, int target) {
     const size_t padded = (size + 3) / 4 * 4;
@@ -70,7 +69,7 @@ static size_t add_accessor(wh_gltf_t *gltf, size_t view, int type, const char *s
                                              "componentType", type, "count", index_of(count), "type", shape));
 }
 
-/* The numbers' least and greatest, component by component. */
+/* glTF asks for the least and the greatest of each component. */
 static void set_bounds(wh_gltf_t *gltf, size_t accessor, const float *data, size_t width, size_t count) {
     double low[4];
     double high[4];
@@ -93,8 +92,7 @@ static size_t add_floats(wh_gltf_t *gltf, const float *data, size_t width, size_
     return add_accessor(gltf, view, TYPE_FLOAT, shapes[width], count);
 }
 
-/* ----------------------------------------------------------------------------------------- materials,
- * meshes */
+/* -------------------------------------------------------------------------------------- materials, meshes */
 
 size_t wh_gltf_add_material(wh_gltf_t *gltf, const wh_ink_material_t *material) {
     const double colour[4] = {material->red, material->green, material->blue, material->opacity};
@@ -110,12 +108,9 @@ static size_t add_indices(wh_gltf_t *gltf, const wh_mesh_t *mesh) {
     const size_t count = mesh->index_count;
     size_t view;
     if (mesh->vertex_count <= UINT16_MAX) {
-        uint16_t *narrow = malloc(count * sizeof *narrow + 1);
-        for (size_t i = 0; narrow && i < count; ++i) {
+        uint16_t *narrow = wh_array_new(count, sizeof *narrow);
+        for (size_t i = 0; i < count; ++i) {
             narrow[i] = (uint16_t)mesh->indices[i];
-        }
-        if (!narrow) {
-            abort();
         }
         view = add_view(gltf, narrow, count * sizeof *narrow, TARGET_INDICES);
         free(narrow);
@@ -125,13 +120,10 @@ static size_t add_indices(wh_gltf_t *gltf, const wh_mesh_t *mesh) {
     return add_accessor(gltf, view, TYPE_UINT, "SCALAR", count);
 }
 
-/* Of each vertex three numbers from `first` on: its place in m, or its normal. */
+/* Three numbers of each vertex, from `first` on: its place, in m, or its normal. */
 static size_t add_attribute(wh_gltf_t *gltf, const wh_mesh_t *mesh, size_t first) {
     const bool is_place = first == 0;
-    float *values = malloc((3 * mesh->vertex_count + 1) * sizeof *values);
-    if (!values) {
-        abort();
-    }
+    float *values = wh_array_new(3 * mesh->vertex_count, sizeof *values);
     for (size_t i = 0; i < 3 * mesh->vertex_count; ++i) {
         values[i] = mesh->vertices[i / 3][first + i % 3] * (is_place ? (float)METRES : 1);
     }
@@ -157,8 +149,7 @@ size_t wh_gltf_add_mesh(wh_gltf_t *gltf, const char *name, const wh_gltf_primiti
     return append(gltf->meshes, json_pack("{s:o, s:o}", "name", wh_json_text(name), "primitives", list));
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * nodes */
+/* -------------------------------------------------------------------------------------------------- nodes */
 
 size_t wh_gltf_add_node(wh_gltf_t *gltf, const char *name, size_t mesh, const wh_pose_t *base_from_node,
                         const char *kind, size_t index) {
@@ -196,10 +187,9 @@ void wh_gltf_add_motion(wh_gltf_t *gltf, size_t node, const float times[], const
     add_channel(gltf, node, "rotation", input, add_floats(gltf, &turns[0][0], 4, count, 0));
 }
 
-/* -------------------------------------------------------------------------------------------------
- * finishing */
+/* ---------------------------------------------------------------------------------------------- finishing */
 
-/* The buffer as a URI of its own. */
+/* The buffer as a data URI, so that the asset is one file. */
 static json_t *data_uri(const wh_gltf_t *gltf) {
     char *text = wh_packed_bytes("data:application/octet-stream;base64,", gltf->bytes, gltf->size);
     json_t *uri = json_string(text);

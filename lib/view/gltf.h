@@ -1,7 +1,7 @@
 /* A glTF 2.0 asset being built: accessors, meshes, materials, nodes and one animation over one buffer. Meshes
  * and poses come in mm and are written in m.
  *
- * Host code: aborts when memory is out.
+ * Host code: aborts if out of memory.
  */
 #ifndef WH_VIEW_GLTF_H
 #define WH_VIEW_GLTF_H
@@ -31,8 +31,8 @@ size_t wh_gltf_add_material(wh_gltf_t *gltf, const wh_ink_material_t *material);
 size_t wh_gltf_add_mesh(wh_gltf_t *gltf, const char *name, const wh_gltf_primitive_t primitives[],
                         size_t count);
 
-/* A node at a place in the cell, mm; `mesh` may be SIZE_MAX: none. `kind` and `index` (null: none) go to its
- * extras, for a name need not be unique. */
+/* Adds a node at a place in the cell, mm; `mesh` may be SIZE_MAX: none. `kind` and `index` (null: none) go to
+ * its extras, because a name need not be unique. */
 size_t wh_gltf_add_node(wh_gltf_t *gltf, const char *name, size_t mesh, const wh_pose_t *base_from_node,
                         const char *kind, size_t index);
 

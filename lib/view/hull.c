@@ -1,4 +1,6 @@
-/* The convex hull of points, face by face: for a look at a mesh. */
+/* The convex hull of points, grown point by point, for showing a mesh. Our own code, so that the triangles
+ * are the same on every machine: a library's choice among faces in one plane depends on how it was
+ * compiled. */
 #include <stdlib.h>
 
 #include "../math/trig.h"
@@ -10,7 +12,7 @@
     32 /* directions about z, and from pole to pole, in which points are sought when there are more */
 #define UP 16
 
-/* A point counts as outside a face from so much on, of the hull's size. */
+/* A point must be outside a face by this share of the hull's size to count as outside. */
 #define FLAT 1e-7
 
 typedef struct {
@@ -29,8 +31,7 @@ typedef struct {
     double flat;
 } hull_t;
 
-/* ---------------------------------------------------------------------------------------------------
- * points */
+/* ------------------------------------------------------------------------------------------------- points */
 
 static bool is_same(const wh_vec3_t *a, const wh_vec3_t *b) {
     const wh_vec3_t way = wh_vec3_subtract(a, b);
@@ -71,8 +72,7 @@ static void take_points(hull_t *hull, const wh_convex_t *convex) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * faces */
+/* -------------------------------------------------------------------------------------------------- faces */
 
 static void add_face(hull_t *hull, size_t a, size_t b, size_t c) {
     const wh_vec3_t ab = wh_vec3_subtract(&hull->points[b], &hull->points[a]);
@@ -100,7 +100,7 @@ static bool has_edge(const face_t *face, size_t from, size_t to) {
     return false;
 }
 
-/* Whether the face on the other side of an edge of a seen face is not seen. */
+/* True if the face on the other side of the edge is not seen. */
 static bool is_horizon(const hull_t *hull, size_t faces, size_t from, size_t to) {
     for (size_t i = 0; i < faces; ++i) {
         if (hull->faces[i].is_seen && has_edge(&hull->faces[i], to, from)) {
@@ -120,7 +120,7 @@ static void drop_seen(hull_t *hull) {
     hull->face_count = kept;
 }
 
-/* The faces that the point sees go, and new ones join it to their horizon. */
+/* Removes the faces that the point sees. New faces join the point to the edges around them. */
 static void add_point(hull_t *hull, size_t point) {
     const size_t faces = hull->face_count;
     for (size_t i = 0; i < faces; ++i) {
@@ -139,10 +139,9 @@ static void add_point(hull_t *hull, size_t point) {
     drop_seen(hull);
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * start */
+/* -------------------------------------------------------------------------------------------------- start */
 
-/* How far a point is from the point, the line or the plane of the first `known` of `start`. */
+/* The distance of point `i` from the point, the line or the plane through the first `known` of `start`. */
 static double distance(const hull_t *hull, const size_t start[4], size_t known, size_t i) {
     const wh_vec3_t *first = &hull->points[start[0]];
     const wh_vec3_t to = wh_vec3_subtract(&hull->points[i], first);
@@ -159,7 +158,7 @@ static double distance(const hull_t *hull, const size_t start[4], size_t known, 
     return wh_real_abs(wh_vec3_dot(&normal, &to)) / wh_vec3_norm(&normal);
 }
 
-/* Four points that are far from each other. */
+/* Begins with four points that are far from each other. False if all points lie in a plane. */
 static bool start(hull_t *hull) {
     size_t corners[4] = {0};
     hull->inside = hull->count > 0 ? hull->points[0] : wh_vec3(0, 0, 0);
@@ -185,10 +184,7 @@ static bool start(hull_t *hull) {
 }
 
 void wh_mesh_add_hull(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t *body_from_shape) {
-    hull_t *hull = calloc(1, sizeof *hull);
-    if (!hull) {
-        abort();
-    }
+    hull_t *hull = wh_array_new(1, sizeof *hull);
     take_points(hull, convex);
     const size_t points = start(hull) ? hull->count : 0;
     for (size_t i = 0; i < points; ++i) {

@@ -13,7 +13,7 @@ static void add_key(wh_keyframes_t *motion, double seconds, const wh_vec3_t *r, 
     motion->times = wh_array_grow(motion->times, i, &motion->time_capacity, sizeof *motion->times);
     motion->places = wh_array_grow(motion->places, i, &motion->place_capacity, sizeof *motion->places);
     motion->turns = wh_array_grow(motion->turns, i, &motion->turn_capacity, sizeof *motion->turns);
-    /* Times must rise; as floats they may not. */
+    /* Times must rise, and two slices may be the same time as a float. */
     if (i > 0 && !((float)seconds > motion->times[i - 1])) {
         return;
     }
@@ -27,8 +27,7 @@ static void add_key(wh_keyframes_t *motion, double seconds, const wh_vec3_t *r, 
     ++motion->count;
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * paths */
+/* -------------------------------------------------------------------------------------------------- paths */
 
 typedef struct {
     const wh_signals_t *signals;
@@ -38,14 +37,14 @@ typedef struct {
 static void add_places(void *user, int64_t slice) {
     const tracing_t *tracing = user;
     const wh_signals_t *signals = tracing->signals;
-    wh_pose_t links[WH_TRACE_LINKS];
+    wh_pose_t links[WH_SIGNALS_LINKS];
     wh_pose_t gripper;
     for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
         wh_signals_gripper(signals, g, slice, &gripper);
         wh_thin_add_pose(&tracing->paths->grippers[g], slice, &gripper);
     }
     if (wh_signals_links(signals, slice, links)) {
-        for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+        for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
             wh_thin_add_pose(&tracing->paths->links[i], slice, &links[i]);
         }
     }
@@ -57,14 +56,14 @@ wh_paths_t wh_paths_of_signals(const wh_signals_t *signals) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         wh_thin_open(&paths.grippers[g], 3, WH_PATHS_MM, WH_PATHS_RAD, WH_PATHS_POINTS);
     }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         wh_thin_open(&paths.links[i], 3, WH_PATHS_LINK_MM, WH_PATHS_LINK_RAD, WH_PATHS_LINK_POINTS);
     }
     wh_signals_walk(signals, add_places, &tracing);
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         wh_thin_finish(&paths.grippers[g]);
     }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         wh_thin_finish(&paths.links[i]);
     }
     return paths;
@@ -74,13 +73,12 @@ void wh_paths_free(wh_paths_t *paths) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         wh_thin_close(&paths->grippers[g]);
     }
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         wh_thin_close(&paths->links[i]);
     }
 }
 
-/* ------------------------------------------------------------------------------------------------
- * keyframes */
+/* ---------------------------------------------------------------------------------------------- keyframes */
 
 static double seconds_of(const wh_signals_t *signals, double slice) {
     return slice * (double)signals->layout->slice_us / 1e6;
@@ -96,8 +94,7 @@ wh_keyframes_t wh_keyframes_of_track(const wh_signals_t *signals, const wh_thin_
     return motion;
 }
 
-/* ---------------------------------------------------------------------------------------------------
- * wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 static void add_pose(wh_keyframes_t *motion, const wh_signals_t *signals, double slice,
                      const wh_pose_t *pose) {
@@ -124,8 +121,8 @@ static void add_held(wh_keyframes_t *motion, const wh_signals_t *signals, const 
     add_pose(motion, signals, (double)from + share * (double)(to - from), &pose);
 }
 
-/* So many keyframes keep a wafer that is beside the gripper's origin on its arc: a chord of angle a is off by
- * r a^2 / 8. */
+/* How many straight lines a wafer takes that goes round its gripper's origin: the chord of an angle a is off
+ * by r a^2 / 8. */
 static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, size_t i) {
     double turn[3];
     wh_quaternion_turn(wh_points_numbers(&thin->list, i) + 3, wh_points_numbers(&thin->list, i + 1) + 3,
@@ -177,8 +174,7 @@ wh_keyframes_t wh_keyframes_of_wafer(const wh_signals_t *signals, const wh_paths
     return motion;
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * nodes */
+/* -------------------------------------------------------------------------------------------------- nodes */
 
 static bool differ(const float a[], const float b[], size_t count) {
     bool same = true;

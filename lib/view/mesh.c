@@ -57,8 +57,7 @@ static uint32_t add_placed(wh_mesh_t *mesh, const wh_pose_t *pose, const wh_vec3
     return add_vertex(mesh, &at, &turned);
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * boxes */
+/* -------------------------------------------------------------------------------------------------- boxes */
 
 /* The face across axis `axis`, on the side `sign`. */
 static void add_face(wh_mesh_t *mesh, const wh_pose_t *pose, const double half[3], int axis, double sign) {
@@ -90,8 +89,7 @@ static void add_box(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t 
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * round */
+/* -------------------------------------------------------------------------------------------------- round */
 
 /* A closed ring of vertices about z. */
 static uint32_t add_ring(wh_mesh_t *mesh, const wh_pose_t *pose, double radius, double z, double out,
@@ -132,7 +130,7 @@ static void add_cylinder(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_po
     add_cap(mesh, pose, radius, z, 1);
 }
 
-/* Rings from pole to pole; the equator is there twice, with the straight part between. */
+/* Rings from pole to pole. The equator is there twice, with the straight part between. */
 static void add_capsule(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t *pose) {
     uint32_t before = 0;
     for (int i = -RINGS; i <= RINGS + 1; ++i) {
@@ -165,8 +163,7 @@ void wh_mesh_add_convex(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pos
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * wafers */
+/* ------------------------------------------------------------------------------------------------- wafers */
 
 #define RIM_CORNERS 96
 
@@ -174,7 +171,8 @@ typedef struct {
     double x, y;
 } rim_t;
 
-/* Counter-clockwise, from one side of the notch about the wafer to the other, then the notch's tip. */
+/* The rim's corners, counter-clockwise: from one side of the notch around the wafer to the other, then the
+ * notch's tip. */
 static size_t draw_rim(double radius, double notch, double depth, rim_t rim[RIM_CORNERS + 1]) {
     const double half =
         depth > 0 ? depth / radius : 0; /* of a notch of 90 degrees: as wide as deep on each side */

@@ -1,6 +1,6 @@
 /* Triangles of a cell's parts, for looking at: mm in the frame of the body that they are part of.
  *
- * Host code: aborts when memory is out.
+ * Host code: aborts if out of memory.
  */
 #ifndef WH_VIEW_MESH_H
 #define WH_VIEW_MESH_H
@@ -27,7 +27,8 @@ void wh_mesh_add_wafer(wh_mesh_t *mesh, double radius, double thickness, double 
 /* The convex hull of a mesh's points. */
 void wh_mesh_add_hull(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t *body_from_shape);
 
-/* Within: a triangle with a normal of its own, its corners counter-clockwise seen from outside. */
+/* For hull.c: a triangle with a normal of its own, its corners counter-clockwise seen from outside. Nothing
+ * if it has no area. */
 void wh_mesh_add_triangle(wh_mesh_t *mesh, const wh_vec3_t *a, const wh_vec3_t *b, const wh_vec3_t *c);
 
 void wh_mesh_free(wh_mesh_t *mesh);

@@ -7,7 +7,7 @@
 #include "gltf.h"
 #include "keyframes.h"
 
-/* A node's meshes while its parts are gathered. */
+/* A node's meshes, one for each ink, while its parts are gathered. */
 typedef struct {
     wh_mesh_t inks[WH_INKS];
 } body_t;
@@ -20,8 +20,7 @@ typedef struct {
     bool animated;
 } scene_t;
 
-/* ----------------------------------------------------------------------------------------------------
- * parts */
+/* -------------------------------------------------------------------------------------------------- parts */
 
 static void add_part(body_t *body, const wh_part_t *part, const wh_pose_t *base_from_body) {
     const wh_pose_t pose = base_from_body ? wh_pose_relative(base_from_body, &part->convex.body_from_shape)
@@ -29,7 +28,7 @@ static void add_part(body_t *body, const wh_part_t *part, const wh_pose_t *base_
     wh_mesh_add_convex(&body->inks[wh_ink_of(part)], &part->convex, &pose);
 }
 
-/* All parts of some kinds with this owner. */
+/* Adds all parts of some kinds with this owner. */
 static void add_parts(const scene_t *scene, body_t *body, uint32_t kinds, int32_t owner,
                       const wh_pose_t *base_from_body) {
     const wh_world_config_t *world = &scene->layout->world;
@@ -41,7 +40,7 @@ static void add_parts(const scene_t *scene, body_t *body, uint32_t kinds, int32_
     }
 }
 
-/* The mesh of what was gathered, which is freed; SIZE_MAX when there is nothing. */
+/* Adds the gathered mesh, frees it, and returns its index; SIZE_MAX if there is nothing. */
 static size_t finish_body(scene_t *scene, body_t *body, const char *name) {
     wh_gltf_primitive_t primitives[WH_INKS];
     size_t count = 0;
@@ -58,8 +57,7 @@ static size_t finish_body(scene_t *scene, body_t *body, const char *name) {
     return mesh;
 }
 
-/* ----------------------------------------------------------------------------------------------------
- * nodes */
+/* -------------------------------------------------------------------------------------------------- nodes */
 
 static void add_fixed(scene_t *scene) {
     const wh_pose_t here = wh_pose_identity();
@@ -97,10 +95,10 @@ static void add_moving(scene_t *scene, const wh_pose_t *pose, const wh_thin_t *p
 }
 
 static void add_links(scene_t *scene) {
-    static const char *const names[WH_TRACE_LINKS] = {"lift", "upper arm", "forearm", "hand"};
-    wh_pose_t poses[WH_TRACE_LINKS];
+    static const char *const names[WH_SIGNALS_LINKS] = {"lift", "upper arm", "forearm", "hand"};
+    wh_pose_t poses[WH_SIGNALS_LINKS];
     const bool is_there = wh_signals_links(scene->signals, scene->signals->first, poses);
-    for (size_t i = 0; is_there && i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; is_there && i < WH_SIGNALS_LINKS; ++i) {
         body_t body = {0};
         add_parts(scene, &body, 1U << WH_PART_ARM, (int32_t)(WH_ARM_LIFT + i), NULL);
         add_moving(scene, &poses[i], &scene->paths.links[i], &body, names[i], "link", i);

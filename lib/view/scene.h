@@ -5,7 +5,7 @@
  * in their own frames. A node's extras tell { kind: "base", "obstacles", "station", "link", "gripper" or
  * "wafer", index: from 0 }. Shapes are those that the collision check has (layout/shapes.h); wafers have
  * their notch. The nodes stand as before the run; with `animated` an animation "run" moves them, wafers too,
- * to within what keyframes.h and the trace's tolerance say.
+ * to within the tolerances of keyframes.h and of the signals.
  */
 #ifndef WH_VIEW_SCENE_H
 #define WH_VIEW_SCENE_H
@@ -14,7 +14,7 @@
 
 #include "../record/signals.h"
 
-/* The scene, to be released by the caller. Aborts when memory is out. */
+/* The scene, to be released by the caller. Aborts if out of memory. */
 json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animated);
 
 #endif

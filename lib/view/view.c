@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Both messages with as much of the cell as there is room for. */
+/* Makes both messages, with as much of the cell as they have room for. */
 static bool fit(wh_viewer_t *view, const wh_layout_t *layout) {
     for (int detail = WH_VIEW_ALL; detail < WH_VIEW_DETAILS; ++detail) {
         wh_view_cell_open(&view->cell, layout, (wh_view_detail_t)detail);
@@ -41,7 +41,7 @@ static void publish(wh_viewer_t *view, const char *channel, const uint8_t *data,
     }
 }
 
-/* Before its first slice a run's grippers are at no place yet. */
+/* Before the first slice grippers have no poses yet: all is shown at rest. */
 static void look_at(wh_viewer_t *view, const wh_protocol_server_t *server) {
     wh_pose_t base_from_grippers[WH_GRIPPERS];
     if (server->seq == 0) {

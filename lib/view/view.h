@@ -1,9 +1,9 @@
 /* `sim --view`: the cell that a simulator serves, published for Drake's viewer (meldis), live.
  *
- * The bodies go out when it begins and once a second, for viewers that come later and for those that missed
- * them; where they are goes out at most 60 times a second while slices are stepped, once more when they stop,
- * and once a second. All by the wall clock, and none of it is looked at by the simulation, which has the same
- * bits with a view and without.
+ * The bodies go out at the beginning and once a second, for viewers that come later or missed them. Their
+ * places go out at most 60 times a second while slices are stepped, once more at the end, and once a second.
+ * All this goes by the wall clock. The simulation does not look at any of it: with a view it has the same
+ * bits as without.
  */
 #ifndef WH_VIEW_VIEW_H
 #define WH_VIEW_VIEW_H
@@ -15,11 +15,11 @@
 #define WH_CHANNEL_VIEWER_LOAD "DRAKE_VIEWER_LOAD_ROBOT"
 #define WH_CHANNEL_VIEWER_DRAW "DRAKE_VIEWER_DRAW"
 
-/* How often at most the places go out, and how often at least both messages, us. */
+/* The shortest time between two messages of places, and the longest between two of each, us. */
 #define WH_VIEW_DRAW_US 16667
 #define WH_VIEW_LOAD_US 1000000
 
-/* What arrives whole, in fragments, where the system's buffers are as they come. */
+/* So much arrives whole, in fragments, with the system's default buffers. */
 #define WH_VIEW_BYTES 196461
 
 /* Must not be moved once opened. */
@@ -34,9 +34,9 @@ typedef struct {
     uint64_t loads, draws, unsent;
 } wh_viewer_t;
 
-/* WH_STATUS_BAD_CAPACITY, and nothing to close, for a cell that does not fit WH_VIEW_BYTES even without its
- * ledges and with boxes for its meshes; view->cell.detail tells what was left out. `node`, which may be null,
- * and `layout` must outlive the view. */
+/* Opens a view of a layout. WH_STATUS_BAD_CAPACITY, and nothing to close, if the cell does not fit
+ * WH_VIEW_BYTES even without ledges and with boxes for meshes; view->cell.detail tells what was left out.
+ * `node`, which may be null, and `layout` must outlive the view. */
 wh_status_t wh_viewer_open(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *layout);
 
 /* Publishes what is due: to be called after each step and at least every 100 ms. Allocates nothing. */

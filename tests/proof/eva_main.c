@@ -213,6 +213,7 @@ static void call_questions(const wh_grasp_t *table) {
     (void)wh_grasp_wafer(any_bool() ? table : NULL, size, any_bool() ? &pose : NULL,
                          any_bool() ? &index : NULL);
     (void)wh_grasp_held(any_bool() ? table : NULL, size, any_bool() ? &index : NULL);
+    (void)wh_grasp_is_consistent(table);
     (void)wh_grasp_hash(table);
 }
 

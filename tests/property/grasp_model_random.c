@@ -279,6 +279,7 @@ static const char *take_step(pair_t *p, const wh_gripper_input_t *input) {
     wrong = wrong ? wrong : compare_state(p);
     wrong = wrong ? wrong : compare_events(p);
     wrong = wrong ? wrong : check_invariants(p, &before);
+    wrong = wrong ? wrong : wh_grasp_is_consistent(&p->table) ? NULL : "wh_grasp_is_consistent";
     return wrong || status == WH_OK ? wrong : check_refusal(p, &before);
 }
 

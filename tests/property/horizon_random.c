@@ -324,7 +324,7 @@ static void count_looks(side_t *side, const wh_gripper_input_t input[]) {
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         if (input[g].valve == WH_VALVE_OPEN && table->storage.grippers[g].wafer == WH_NONE) {
             const wh_vec3_t *place = &input[g].base_from_gripper.r;
-            const bool covered = wh_horizon_covers(table, g, place);
+            const bool covered = wh_horizon_is_clear_at(table, g, place);
             const wh_found_t near = wh_index_near(table, g, place, place, 0);
             ++tally.looks;
             tally.covered += covered;

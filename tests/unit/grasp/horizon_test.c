@@ -49,7 +49,7 @@ static void store(fixture_t *fixture, const wh_vec3_t *place, double gap) {
 
 static bool covers(const fixture_t *fixture, double x, double y, double z) {
     const wh_vec3_t place = vector(x, y, z);
-    return wh_horizon_covers(&fixture->cell.table, G, &place);
+    return wh_horizon_is_clear_at(&fixture->cell.table, G, &place);
 }
 
 static void words_are_each_grippers_own(void **state) {
@@ -59,11 +59,11 @@ static void words_are_each_grippers_own(void **state) {
     for (size_t g = 0; g < CELL_GRIPPERS; ++g) {
         assert_ptr_equal(wh_horizon_words(&fixture.cell.table, g), fixture.buckets + 8 + 4 * g);
         assert_int_equal(wh_horizon_words(&fixture.cell.table, g)[3], 0);
-        assert_false(wh_horizon_holds(&fixture.cell.table, g));
+        assert_false(wh_horizon_is_clear(&fixture.cell.table, g));
     }
-    wh_horizon_note(&fixture.cell.table, G);
+    wh_horizon_set_clear(&fixture.cell.table, G);
     for (size_t g = 0; g < CELL_GRIPPERS; ++g) {
-        assert_true(wh_horizon_holds(&fixture.cell.table, g) == (g == G));
+        assert_true(wh_horizon_is_clear(&fixture.cell.table, g) == (g == G));
         wh_horizon_words(&fixture.cell.table, g)[3] = UINT32_MAX;
     }
     uint32_t *next = &fixture.buckets[8 + 4 * CELL_GRIPPERS];
@@ -85,11 +85,11 @@ static void without_buckets_there_are_none(void **state) {
     wh_horizon_t horizon = wh_horizon_begin(&cell.table, G, &near, 5);
     assert_false(horizon.measured);
     assert_true(horizon.gap == LONGEST);
-    assert_false(wh_horizon_passes(&horizon, &cell.wafer[0].base_from_wafer, &place));
+    assert_false(wh_horizon_measure(&horizon, &cell.wafer[0].base_from_wafer, &place));
     assert_true(horizon.gap == LONGEST);
-    wh_horizon_keep(&cell.table, G, &place, &horizon);
-    assert_false(wh_horizon_covers(&cell.table, G, &place));
-    assert_false(wh_horizon_holds(&cell.table, G));
+    wh_horizon_set(&cell.table, G, &place, &horizon);
+    assert_false(wh_horizon_is_clear_at(&cell.table, G, &place));
+    assert_false(wh_horizon_is_clear(&cell.table, G));
 }
 
 /* From the way of a slice, along several axes at once or against them, to the margin. */
@@ -175,7 +175,7 @@ static void gaps_are_measured_from_the_neighbourhood(void **state) {
         wafer.r = wh_mat3_transform(&wafer.R, &p);
         wafer.r = wh_vec3_add(&wafer.r, &place);
         wh_horizon_t horizon = {.limits = {4, 60}, .gap = WH_REAL(c[3]), .measured = true};
-        assert_int_equal(wh_horizon_passes(&horizon, &wafer, &place), c[5] != 0);
+        assert_int_equal(wh_horizon_measure(&horizon, &wafer, &place), c[5] != 0);
         assert_near(horizon.gap, c[4], 0);
     }
 }
@@ -220,7 +220,7 @@ static void distances_fit_their_word(void **state) {
     begin(&fixture, 4, 60);
     for (size_t i = 0; i < 6; ++i) {
         store(&fixture, &place, gaps[i]);
-        assert_int_equal(words(&fixture)[3], 4 * (uint32_t)LONGEST + WH_HORIZON_HOLDS);
+        assert_int_equal(words(&fixture)[3], 4 * (uint32_t)LONGEST + WH_HORIZON_CLEAR);
     }
     assert_true(covers(&fixture, 0, 8388000, 0));
     assert_false(covers(&fixture, 0, 8389000, 0));
@@ -242,12 +242,12 @@ static void short_ones_do_not_hold(void **state) {
     store(&fixture, &place, 3.5 / 64);
     assert_int_equal(words(&fixture)[3], 4 * 1);
     store(&fixture, &place, 4.5 / 64);
-    assert_int_equal(words(&fixture)[3], 4 * 2 + WH_HORIZON_HOLDS);
+    assert_int_equal(words(&fixture)[3], 4 * 2 + WH_HORIZON_CLEAR);
     fixture.cell.gripper[G].approach.wafer = 0;
     store(&fixture, &place, 3.5 / 64);
     assert_int_equal(words(&fixture)[3], 4 * 1 + WH_HORIZON_OF_TOLERANCE);
     store(&fixture, &place, 4.5 / 64);
-    assert_int_equal(words(&fixture)[3], 4 * 2 + WH_HORIZON_OF_TOLERANCE + WH_HORIZON_HOLDS);
+    assert_int_equal(words(&fixture)[3], 4 * 2 + WH_HORIZON_OF_TOLERANCE + WH_HORIZON_CLEAR);
     /* It is of use as long as that goes on. */
     assert_true(covers(&fixture, 0, 0, 0));
     fixture.cell.gripper[G].approach.wafer = WH_NONE;
@@ -276,7 +276,7 @@ static void far_away_there_is_none(void **state) {
         assert_int_equal(words(&fixture)[3], 0);
         const wh_vec3_t nearer = along(axis, sign * 33554000);
         store(&fixture, &nearer, 1000);
-        assert_true(wh_horizon_covers(&fixture.cell.table, G, &nearer));
+        assert_true(wh_horizon_is_clear_at(&fixture.cell.table, G, &nearer));
     }
 }
 
@@ -328,8 +328,8 @@ static wh_mat3_t stretched(void) {
 static void look(fixture_t *fixture, const wh_vec3_t *from) {
     const wh_found_t all = wh_index_all(&fixture->cell.table);
     wh_horizon_t horizon = wh_horizon_begin(&fixture->cell.table, G, &all, 0);
-    (void)wh_horizon_passes(&horizon, &fixture->cell.wafer[0].base_from_wafer, from);
-    wh_horizon_keep(&fixture->cell.table, G, from, &horizon);
+    (void)wh_horizon_measure(&horizon, &fixture->cell.wafer[0].base_from_wafer, from);
+    wh_horizon_set(&fixture->cell.table, G, from, &horizon);
 }
 
 /* The last place on the way from one to another that is within the horizon of the first. */
@@ -338,7 +338,7 @@ static wh_vec3_t last_covered(const fixture_t *fixture, const wh_vec3_t *from, c
     for (wh_real_t step = 1; step > WH_TEST_ROUNDING; step /= 2) {
         const wh_vec3_t part = wh_vec3_scale(step, way);
         const wh_vec3_t next = wh_vec3_add(&place, &part);
-        if (wh_horizon_covers(&fixture->cell.table, G, &next)) {
+        if (wh_horizon_is_clear_at(&fixture->cell.table, G, &next)) {
             place = next;
         }
     }
@@ -378,7 +378,7 @@ static void it_ends_before_a_wafer_matters(void **state) {
         look(&fixture, &from);
         const wh_vec3_t last = last_covered(&fixture, &from, &way);
         assert_false(matters(&wafer, &last));
-        assert_false(wh_horizon_covers(&fixture.cell.table, G, &wafer.r));
+        assert_false(wh_horizon_is_clear_at(&fixture.cell.table, G, &wafer.r));
     }
 }
 

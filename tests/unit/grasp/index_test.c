@@ -5,7 +5,7 @@
 
 static bool covers(const indexed_t *indexed, double x, double y, double z) {
     const wh_pose_t pose = wh_test_at(x, y, z);
-    return wh_horizon_covers(&indexed->cell.table, 0, &pose.r);
+    return wh_horizon_is_clear_at(&indexed->cell.table, 0, &pose.r);
 }
 
 static void buckets_are_counted(void **state) {

@@ -120,11 +120,11 @@ static const wh_stay_t *stay_at(int32_t wafer, int64_t slice) {
 static double room_mm(const slice_t *was) {
     return was->is_exact
                ? 1e-9
-               : 2 * WH_TRACE_MM + WH_TRACE_RAD * signals.layout->machine.robot.travel[WH_AXIS_R].max;
+               : 2 * WH_SIGNALS_MM + WH_SIGNALS_RAD * signals.layout->machine.robot.travel[WH_AXIS_R].max;
 }
 
 static double room_rad(const slice_t *was) {
-    return was->is_exact ? 0 : 2 * WH_TRACE_RAD;
+    return was->is_exact ? 0 : 2 * WH_SIGNALS_RAD;
 }
 
 static void check_gripper(size_t g, int64_t n) {
@@ -133,7 +133,7 @@ static void check_gripper(size_t g, int64_t n) {
     wh_signals_gripper(&signals, g, n, &shown);
     assert_pose(&shown, &was->grippers[g], room_mm(was), room_rad(was));
     assert_near(wh_path_read(&signals.vacuum[g], n, NULL), was->levels[g],
-                was->is_exact ? 0 : WH_TRACE_VACUUM);
+                was->is_exact ? 0 : WH_SIGNALS_VACUUM);
     assert_int_equal(step_at(&signals.valves[g], n), was->valves[g]);
     assert_int_equal(step_at(&signals.sensors[g], n), was->sensors >> g & 1U);
 }
@@ -141,10 +141,10 @@ static void check_gripper(size_t g, int64_t n) {
 /* The arm as it was placed for the collision check. */
 static void check_links(int64_t n) {
     const slice_t *was = &slices[n];
-    wh_pose_t links[WH_TRACE_LINKS], bodies[WH_ARM_BODIES];
+    wh_pose_t links[WH_SIGNALS_LINKS], bodies[WH_ARM_BODIES];
     assert_true(wh_signals_links(&signals, n, links));
     wh_arm_place(&signals.layout->shapes.arm, &was->grippers[0], bodies);
-    for (size_t i = 0; i < WH_TRACE_LINKS; ++i) {
+    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
         /* The elbow goes further than the wrist where the arm is folded or stretched. */
         assert_pose(&links[i], &bodies[WH_ARM_LIFT + i], 20 * room_mm(was), 40 * room_rad(was));
     }

@@ -1,6 +1,8 @@
+/* What only swept checking does within a step: picks and near misses between two slices. A file of its own,
+ * so that its memory is never on the stack of a sampled step. */
+#include "encounter_internal.h"
 #include "grasp_internal.h"
 #include "horizon_internal.h"
-#include "sweep_internal.h"
 
 /* The best wafer so far. */
 typedef struct {
@@ -37,7 +39,7 @@ static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *swe
             continue;
         }
         candidate_t here = {.wafer = (int32_t)w};
-        (void)wh_horizon_passes(&horizon, &wafer->base_from_wafer, place);
+        (void)wh_horizon_measure(&horizon, &wafer->base_from_wafer, place);
         if (wafer->released_by == WH_NONE &&
             wh_sweep_first_ready(sweep, &wafer->base_from_wafer, &table->config.tolerance, &here.t)) {
             wh_pose_t then;
@@ -46,7 +48,7 @@ static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *swe
             keep_better(&best, &here);
         }
     }
-    wh_horizon_keep(table, g, place, &horizon);
+    wh_horizon_set(table, g, place, &horizon);
     return best;
 }
 
@@ -69,7 +71,8 @@ static void take_at(wh_grasp_t *table, size_t g, int32_t w, const wh_sweep_t *sw
 bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
     const wh_pose_t *begin = &table->storage.grippers[g].base_from_gripper;
-    if (wh_horizon_covers(table, g, &begin->r) && wh_horizon_covers(table, g, &input->base_from_gripper.r)) {
+    if (wh_horizon_is_clear_at(table, g, &begin->r) &&
+        wh_horizon_is_clear_at(table, g, &input->base_from_gripper.r)) {
         return false;
     }
     wh_sweep_t sweep;
@@ -80,4 +83,43 @@ bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *
     }
     take_at(table, g, best.wafer, &sweep, best.t, list);
     return true;
+}
+
+void wh_encounter_track_swept(wh_watch_t *watch) {
+    wh_sweep_t sweep;
+    wh_sweep_between(&watch->gripper->base_from_gripper, watch->base_from_gripper, &sweep);
+    watch->sweep = &sweep;
+    wh_encounter_track(watch);
+    watch->sweep = NULL;
+}
+
+static bool is_near_at(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_closeness_t *reach) {
+    wh_pose_t then;
+    wh_sweep_pose_at(watch->sweep, reach->t, &then);
+    return wh_closeness_measure(&watch->table->config, base_from_wafer, &then, reach);
+}
+
+bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_closeness_t *closest) {
+    const wh_grasp_config_t *config = &watch->table->config;
+    wh_span_t part;
+    if (!wh_sweep_within(watch->sweep, base_from_wafer, config->near_projz, config->near_projxy, &part)) {
+        return false;
+    }
+    closest->t = wh_sweep_closest(watch->sweep, base_from_wafer, &part, config->tolerance.projz,
+                                  config->tolerance.projxy);
+    if (is_near_at(watch, base_from_wafer, closest)) {
+        return true;
+    }
+    /* The closest instant may be the one on the neighbourhood's edge; then the middle tells. */
+    wh_closeness_t middle = {.t = (part.first + part.last) / 2};
+    return is_near_at(watch, base_from_wafer, &middle);
+}
+
+void wh_measure_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_real_t t,
+                      wh_proximity_t *measured) {
+    wh_tolerance_t tolerance = watch->table->config.tolerance;
+    tolerance.projz *= WH_SWEEP_INSIDE;
+    wh_pose_t then;
+    wh_sweep_pose_at(watch->sweep, t, &then);
+    wh_proximity_values(base_from_wafer, &then, &tolerance, measured);
 }
