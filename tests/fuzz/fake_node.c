@@ -1,5 +1,7 @@
 #include "fake_node.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "fuzz.h"
@@ -101,4 +103,20 @@ int64_t wh_node_wall_us(void) {
 int64_t wh_node_clock_us(void) {
     /* Never 0, and no two the same, as with a real one. */
     return ++fuzz_clock_us;
+}
+
+void wh_node_flush_record(wh_node_t *node) {
+    (void)node;
+}
+
+void wh_node_say(void (*say)(void *user, const char *text), void *user, const char *format, ...) {
+    char text[200];
+    va_list arguments;
+    if (!say) {
+        return;
+    }
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    say(user, text);
 }
