@@ -195,15 +195,15 @@ static void put_arrays(const wh_state_t *state, wh_link_state_t *room) {
     }
     for (size_t g = 0; g < state->gripper_count; ++g) {
         put_gripper(&state->grippers[g], &room->grippers[g]);
-        if (state->condition) {
-            put_condition(state->condition, g, &room->grippers[g]);
+        if (state->physics) {
+            put_condition(state->physics, g, &room->grippers[g]);
         }
     }
     for (size_t e = 0; e < state->event_count; ++e) {
         put_event(&state->events[e], &room->events[e]);
     }
     for (size_t i = 0; i < (size_t)room->message.fault_count; ++i) {
-        put_slot(&state->condition->faults.slots[i], &room->faults[i]);
+        put_slot(&state->physics->faults.slots[i], &room->faults[i]);
     }
 }
 
@@ -218,7 +218,7 @@ void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t 
     message->wafer_count = (int32_t)state->wafer_count;
     message->gripper_count = (int32_t)state->gripper_count;
     message->event_count = (int32_t)state->event_count;
-    message->fault_count = state->condition ? (int32_t)state->condition->faults.count : 0;
+    message->fault_count = state->physics ? (int32_t)state->physics->faults.count : 0;
     message->hash = (int64_t)hash;
     message->missed = missed;
     message->sensors = (int32_t)state->sensors;
@@ -323,16 +323,16 @@ static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *to
     }
     for (int32_t g = 0; g < message->gripper_count; ++g) {
         take_gripper(&message->grippers[g], tolerance, &arrays->grippers[g]);
-        take_condition(&message->grippers[g], (size_t)g, &arrays->condition);
+        take_condition(&message->grippers[g], (size_t)g, &arrays->physics);
     }
     for (int32_t e = 0; e < message->event_count; ++e) {
         take_event(&message->events[e], message->seq, tolerance, &arrays->events[e]);
         sound = event_fits(&message->events[e], message) && sound;
     }
-    wh_faults_clear(&arrays->condition.faults);
-    arrays->condition.faults.count = (size_t)message->fault_count;
+    wh_faults_clear(&arrays->physics.faults);
+    arrays->physics.faults.count = (size_t)message->fault_count;
     for (int32_t i = 0; i < message->fault_count; ++i) {
-        arrays->condition.faults.slots[i] = take_slot(&message->faults[i]);
+        arrays->physics.faults.slots[i] = take_slot(&message->faults[i]);
     }
     return sound;
 }
@@ -352,7 +352,7 @@ wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_
     state->events = arrays->events;
     state->event_count = (size_t)message->event_count;
     state->sensors = (uint32_t)message->sensors;
-    state->condition = &arrays->condition;
+    state->physics = &arrays->physics;
     return WH_OK;
 }
 
@@ -377,8 +377,8 @@ bool wh_link_state_is_sound(const waferhand_state *message, const wh_layout_t *l
         return false;
     }
     const wh_grasp_t table = wh_link_table(message, layout, arrays);
-    return wh_physics_state_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
-           wh_physics_state_hash(state->condition, &table) == (uint64_t)message->hash;
+    return wh_physics_state_validate(state->physics, state->gripper_count, state->wafer_count) == WH_OK &&
+           wh_physics_state_hash(state->physics, &table) == (uint64_t)message->hash;
 }
 
 /* ---------------------------------------------------------------------------------------------- proximity */

@@ -56,7 +56,7 @@ typedef struct {
     wh_wafer_t wafers[WH_LINK_WAFERS];
     wh_gripper_t grippers[WH_GRIPPERS];
     wh_event_t events[WH_LINK_EVENTS];
-    wh_physics_state_t condition;
+    wh_physics_state_t physics;
 } wh_link_arrays_t;
 
 /* Room for a whole state as a message; `message` points into the arrays. */

@@ -93,8 +93,8 @@ static void take(wh_protocol_client_t *client, const waferhand_state *message, c
     client->state = *state;
     client->state.wafers = client->arrays.wafers;
     client->state.grippers = client->arrays.grippers;
-    client->arrays.condition = *state->condition;
-    client->state.condition = &client->arrays.condition;
+    client->arrays.physics = *state->physics;
+    client->state.physics = &client->arrays.physics;
     client->has_state = true;
     client->missed = message->missed;
     client->hash = (uint64_t)message->hash;

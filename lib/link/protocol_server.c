@@ -202,7 +202,7 @@ static bool take_over(wh_protocol_server_t *server, const waferhand_state *messa
     if (server->collision_memory) {
         wh_collision_attach(&server->collision, server->layout, &server->simulator, server->collision_memory);
     }
-    server->simulator.condition = *state->condition;
+    server->simulator.physics = *state->physics;
     memcpy(server->simulator.events, state->events, state->event_count * sizeof *state->events);
     server->simulator.event_count = state->event_count;
     server->state.utime = state->utime;

@@ -205,11 +205,11 @@ static wh_task_t task_of(const wh_log_run_t *run, const double axes[], const int
 
 static void count_slice(wh_log_run_t *run, int64_t seq, const double axes[]) {
     const wh_state_t *state = &run->state;
-    run->recorder.task = task_of(run, axes, state->condition->told, state);
+    run->recorder.task = task_of(run, axes, state->physics->told, state);
     run->told.seq = seq;
     memcpy(run->told.axes, axes, sizeof run->told.axes);
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        run->told.grippers[g].valve = state->condition->told[g];
+        run->told.grippers[g].valve = state->physics->told[g];
     }
     wh_recorder_slice(&run->recorder, &run->told, state);
 }
@@ -291,7 +291,7 @@ static bool is_sound(const wh_state_t *state, const wh_layout_t *layout) {
     return state->wafer_count == layout->wafer_count &&
            state->gripper_count == layout->machine.gripper_count && state->seq > 0 &&
            state->seq < INT64_MAX / layout->slice_us &&
-           wh_physics_state_validate(state->condition, state->gripper_count, state->wafer_count) == WH_OK &&
+           wh_physics_state_validate(state->physics, state->gripper_count, state->wafer_count) == WH_OK &&
            are_wafers_sound(state) && are_grippers_sound(state);
 }
 

@@ -98,8 +98,8 @@ static void name_difference(wh_replay_t *replay, const wh_state_t *recorded,
     for (size_t g = 0; g < storage->gripper_count; ++g) {
         if (gripper_differs(difference, replay->layout->grippers[g].name, &recorded->grippers[g],
                             &storage->grippers[g]) ||
-            condition_differs(difference, replay->layout->grippers[g].name, g, recorded->condition,
-                              &replay->server.simulator.condition)) {
+            condition_differs(difference, replay->layout->grippers[g].name, g, recorded->physics,
+                              &replay->server.simulator.physics)) {
             return;
         }
     }

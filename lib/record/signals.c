@@ -75,7 +75,7 @@ static void start_at_home(wh_signals_t *signals) {
                               .wafer_count = layout->wafer_count,
                               .grippers = grippers,
                               .gripper_count = machine->gripper_count,
-                              .condition = &condition};
+                              .physics = &condition};
     wh_signals_slice(signals, axes, machine->axis_count, &state);
 }
 
@@ -138,9 +138,9 @@ void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value) {
 
 static void add_signals(wh_signals_t *signals, const wh_state_t *state) {
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        wh_signals_step(&signals->valves[g], state->seq, state->condition->told[g]);
+        wh_signals_step(&signals->valves[g], state->seq, state->physics->told[g]);
         wh_signals_step(&signals->sensors[g], state->seq, (int32_t)(state->sensors >> g & 1U));
-        wh_path_add(&signals->vacuum[g], state->seq, state->condition->vacuum[g].level);
+        wh_path_add(&signals->vacuum[g], state->seq, state->physics->vacuum[g].level);
     }
 }
 

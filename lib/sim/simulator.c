@@ -19,7 +19,7 @@ static void take_physics(wh_simulator_t *simulator, const wh_physics_t *physics)
     simulator->slice_s = physics->slice_s;
     simulator->vacuum = physics->vacuum;
     simulator->pads = physics->pads;
-    wh_physics_state_start(&simulator->condition, physics);
+    wh_physics_state_start(&simulator->physics, physics);
 }
 
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
@@ -93,7 +93,7 @@ static void report_faults(wh_simulator_t *simulator, uint32_t slots, wh_event_ki
         if ((slots >> i & 1U) == 0) {
             continue;
         }
-        const wh_fault_t *fault = &simulator->condition.faults.slots[i].fault;
+        const wh_fault_t *fault = &simulator->physics.faults.slots[i].fault;
         const bool of_wafer = wh_fault_is_of_wafer(fault->kind);
         wh_event_t *event = add_event(simulator, kind, of_wafer ? fault->target : WH_NONE,
                                       of_wafer ? WH_NONE : fault->target);
@@ -122,17 +122,17 @@ static bool are_valid(const wh_command_t *command) {
  * Then the short path has the same result. */
 static bool is_direct(const wh_simulator_t *simulator, const wh_command_t *command) {
     const wh_vacuum_config_t *vacuum = &simulator->vacuum;
-    return simulator->condition.faults.count + command->fault_count == 0 &&
+    return simulator->physics.faults.count + command->fault_count == 0 &&
            vacuum->build + vacuum->vent + vacuum->idle == 0;
 }
 
 static wh_fault_changes_t apply_faults(wh_simulator_t *simulator, const wh_command_t *command) {
     wh_fault_changes_t changes = {0, 0};
-    wh_faults_t *faults = &simulator->condition.faults;
+    wh_faults_t *faults = &simulator->physics.faults;
     if (faults->count + command->fault_count > 0 && are_valid(command)) {
         wh_faults_take(faults, command->faults, command->fault_count);
         changes = wh_faults_advance(faults, &simulator->table, command->seq);
-        wh_faults_overrule(faults, &simulator->table, simulator->condition.vacuum, simulator->inputs);
+        wh_faults_overrule(faults, &simulator->table, simulator->physics.vacuum, simulator->inputs);
     }
     return changes;
 }
@@ -144,8 +144,8 @@ static bool holds(const wh_simulator_t *simulator, size_t g) {
 /* Applies the valves to the vacuum. The result goes into `vacuum`, for the table may yet refuse the step. */
 static void switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
-        const wh_vacuum_fault_t fault = wh_faults_of_vacuum(&simulator->condition.faults, g);
-        vacuum[g] = simulator->condition.vacuum[g];
+        const wh_vacuum_fault_t fault = wh_faults_of_vacuum(&simulator->physics.faults, g);
+        vacuum[g] = simulator->physics.vacuum[g];
         simulator->inputs[g].valve = wh_vacuum_before(&simulator->vacuum, &fault, simulator->inputs[g].valve,
                                                       holds(simulator, g), simulator->slice_s, &vacuum[g]);
     }
@@ -154,10 +154,10 @@ static void switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
 static void update_vacuum(wh_simulator_t *simulator, const wh_command_t *command,
                           const wh_vacuum_t vacuum[]) {
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
-        const wh_vacuum_fault_t fault = wh_faults_of_vacuum(&simulator->condition.faults, g);
-        wh_vacuum_t *now = &simulator->condition.vacuum[g];
+        const wh_vacuum_fault_t fault = wh_faults_of_vacuum(&simulator->physics.faults, g);
+        wh_vacuum_t *now = &simulator->physics.vacuum[g];
         *now = vacuum[g];
-        simulator->condition.told[g] = command->grippers[g].valve;
+        simulator->physics.told[g] = command->grippers[g].valve;
         if (wh_vacuum_after(&simulator->vacuum, &fault, holds(simulator, g), simulator->slice_s, now)) {
             add_measured(simulator, WH_EVENT_VACUUM_LOST, g, now->level, simulator->vacuum.off);
         }
@@ -166,7 +166,7 @@ static void update_vacuum(wh_simulator_t *simulator, const wh_command_t *command
 
 /* Sets the vacuum if is_direct: it follows from the wafers alone. */
 static void take_vacuum(wh_simulator_t *simulator, const wh_command_t *command) {
-    wh_physics_state_t *condition = &simulator->condition;
+    wh_physics_state_t *condition = &simulator->physics;
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
         const bool on = holds(simulator, g);
         condition->vacuum[g].level = on ? 1 : 0;
@@ -183,8 +183,8 @@ static void watch_holding(wh_simulator_t *simulator) {
         const wh_vec3_t *centre =
             gripper->wafer == WH_NONE ? NULL : &storage->wafers[gripper->wafer].base_from_wafer.r;
         wh_hold_t hold;
-        if (wh_carry_update(&simulator->condition.carry[g], &simulator->pads,
-                            simulator->condition.vacuum[g].level, &gripper->base_from_gripper.R, centre,
+        if (wh_carry_update(&simulator->physics.carry[g], &simulator->pads,
+                            simulator->physics.vacuum[g].level, &gripper->base_from_gripper.R, centre,
                             simulator->slice_s, &hold)) {
             add_measured(simulator, WH_EVENT_SLIPPED, g, hold.asked, hold.carried);
         }
@@ -195,7 +195,7 @@ static void watch_holding(wh_simulator_t *simulator) {
 static void show(wh_simulator_t *simulator, const wh_gripper_input_t inputs[], uint32_t changed,
                  wh_event_list_t *list) {
     const wh_observer_t *observer = &simulator->observer;
-    const wh_faults_t *faults = &simulator->condition.faults;
+    const wh_faults_t *faults = &simulator->physics.faults;
     for (size_t i = 0; observer->placed && i < faults->count; ++i) {
         const wh_fault_t *fault = &faults->slots[i].fault;
         if ((changed >> i & 1U) != 0 && wh_fault_is_of_wafer(fault->kind)) {
@@ -252,7 +252,7 @@ static wh_status_t check_faults(const wh_simulator_t *simulator, const wh_comman
     }
     return command->fault_count > WH_COMMAND_FAULTS
                ? WH_STATUS_OUT_OF_RANGE
-               : wh_faults_check(&simulator->condition.faults, command->faults, command->fault_count,
+               : wh_faults_check(&simulator->physics.faults, command->faults, command->fault_count,
                                  storage->gripper_count, storage->wafer_count);
 }
 
@@ -276,8 +276,8 @@ void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) {
     state->gripper_count = table->storage.gripper_count;
     state->events = simulator->events;
     state->event_count = simulator->event_count;
-    state->sensors = wh_physics_state_sensors(&simulator->condition, table->storage.gripper_count);
-    state->condition = &simulator->condition;
+    state->sensors = wh_physics_state_sensors(&simulator->physics, table->storage.gripper_count);
+    state->physics = &simulator->physics;
 }
 
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state) {
@@ -292,5 +292,5 @@ wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *com
 }
 
 uint64_t wh_simulator_hash(const wh_simulator_t *simulator) {
-    return wh_physics_state_hash(&simulator->condition, &simulator->table);
+    return wh_physics_state_hash(&simulator->physics, &simulator->table);
 }

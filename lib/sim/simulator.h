@@ -23,7 +23,7 @@ typedef struct {
     wh_real_t slice_s;
     wh_vacuum_config_t vacuum;
     wh_pads_t pads;
-    wh_physics_state_t condition;
+    wh_physics_state_t physics;
     wh_gripper_input_t inputs[WH_GRIPPERS]; /* of the running step, if faults and vacuum change them */
     wh_event_t events[WH_SLICE_EVENTS];
     size_t event_count;

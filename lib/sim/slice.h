@@ -41,7 +41,7 @@ typedef struct {
     const wh_event_t *events; /* of this slice, or of the refusal */
     size_t event_count;
     uint32_t sensors; /* bit g: gripper g's vacuum sensor is on */
-    const wh_physics_state_t *condition;
+    const wh_physics_state_t *physics;
 } wh_state_t;
 
 /* How one side reaches the other: by a call within the process, or by messages. */

@@ -49,7 +49,7 @@ uint64_t fuzz_hash_of(const waferhand_state *message) {
     table.storage.wafer_count = state.wafer_count;
     table.storage.grippers = arrays.grippers;
     table.storage.gripper_count = state.gripper_count;
-    return wh_physics_state_hash(&arrays.condition, &table);
+    return wh_physics_state_hash(&arrays.physics, &table);
 }
 
 /* Where the hash stands: fingerprint, four words, status and four counts before it. */

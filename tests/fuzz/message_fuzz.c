@@ -131,8 +131,8 @@ static void deliver_to_simulator(const fuzz_frame_t *frame) {
         REQUIRE(wh_protocol_server_hash(server) == hash && server->seq == seq);
     }
     const wh_grasp_storage_t *const storage = &server->simulator.table.storage;
-    check_sound(storage->wafers, storage->grippers, &server->simulator.condition,
-                server->simulator.table.slice, wh_protocol_server_hash(server));
+    check_sound(storage->wafers, storage->grippers, &server->simulator.physics, server->simulator.table.slice,
+                wh_protocol_server_hash(server));
     REQUIRE(server->seq == (int64_t)server->simulator.table.slice + server->missed);
 }
 
@@ -178,7 +178,7 @@ static bool next_message(wh_node_t *to) {
     fuzz_deliver(to, frame.channel, frame.bytes, frame.size);
     const wh_protocol_client_t *const client = &control.client;
     if (client->has_state) {
-        check_sound(client->state.wafers, client->state.grippers, client->state.condition,
+        check_sound(client->state.wafers, client->state.grippers, client->state.physics,
                     (uint64_t)(client->state.seq - client->missed), client->hash);
     }
     return true;

@@ -17,7 +17,7 @@ static inline void fuzz_check_cell(const wh_mcs_t *mcs) {
     copy.storage.grippers = grippers;
     REQUIRE(wh_grasp_restore(&copy, table->slice, table->storage.wafers, table->storage.grippers) == WH_OK);
     REQUIRE(wh_grasp_hash(&copy) == wh_grasp_hash(table));
-    REQUIRE(wh_physics_state_validate(&mcs->local.simulator.condition, table->storage.gripper_count,
+    REQUIRE(wh_physics_state_validate(&mcs->local.simulator.physics, table->storage.gripper_count,
                                       table->storage.wafer_count) == WH_OK);
     REQUIRE(wh_machine_check_travel(&mcs->layout->machine, mcs->track.axes) == WH_OK);
     REQUIRE(mcs->track.slice == (int64_t)table->slice);

@@ -84,7 +84,7 @@ static inline void expect_event(wh_event_kind_t kind, int32_t wafer, int32_t gri
     assert_int_equal(event->wafer, wafer);
     assert_int_equal(event->gripper, gripper);
     assert_int_equal(event->parts[0], part);
-    assert_int_equal(event->parts[1], simulator.condition.faults.slots[part].fault.kind);
+    assert_int_equal(event->parts[1], simulator.physics.faults.slots[part].fault.kind);
     assert_int_equal(event->other, WH_NONE);
     assert_int_equal(event->slice, simulator.table.slice);
 }

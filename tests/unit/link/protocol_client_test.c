@@ -43,7 +43,7 @@ static int64_t hash_of(const waferhand_state *message) {
     table.storage.wafer_count = (size_t)message->wafer_count;
     table.storage.grippers = arrays.grippers;
     table.storage.gripper_count = (size_t)message->gripper_count;
-    return (int64_t)wh_physics_state_hash(&arrays.condition, &table);
+    return (int64_t)wh_physics_state_hash(&arrays.physics, &table);
 }
 
 static void tell_changed_state(void) {

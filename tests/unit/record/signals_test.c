@@ -39,8 +39,8 @@ static void on_slice(void *user, const wh_command_t *command, const wh_state_t *
     memset(kept, 0, sizeof *kept);
     for (size_t g = 0; g < state->gripper_count; ++g) {
         kept->grippers[g] = state->grippers[g].base_from_gripper;
-        kept->valves[g] = state->condition->told[g];
-        kept->levels[g] = state->condition->vacuum[g].level;
+        kept->valves[g] = state->physics->told[g];
+        kept->levels[g] = state->physics->vacuum[g].level;
     }
     for (size_t w = 0; w < state->wafer_count && w < 4; ++w) {
         kept->wafers[w] = state->wafers[w].base_from_wafer;
@@ -270,7 +270,7 @@ static void a_gripper_that_is_elsewhere(void **state) {
         const wh_state_t at = {.seq = n,
                                .grippers = grippers,
                                .gripper_count = 2,
-                               .condition = &condition,
+                               .physics = &condition,
                                .wafers = layout->start,
                                .wafer_count = layout->wafer_count};
         wh_signals_slice(&other, n == 1500 ? NULL : slices[n].axes, layout->machine.axis_count, &at);

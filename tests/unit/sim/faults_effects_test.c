@@ -44,7 +44,7 @@ static void a_neighbours_faults_do_not_count(void **state) {
     bring(1, &f);
     pick();
     assert_int_equal(answer.sensors, 1);
-    assert_true(answer.condition->vacuum[0].level == 1);
+    assert_true(answer.physics->vacuum[0].level == 1);
     bring_kind(WH_FAULT_NO_VACUUM, 1);
     command.faults[0].index = 2;
     step(900, OPEN);
@@ -86,11 +86,11 @@ static void several_at_one_gripper(void **state) {
     f.value = WH_REAL(0.001);
     bring(3, &f);
     step(900, OPEN);
-    assert_true(fabs((double)answer.condition->vacuum[0].level - 0.06) < 1e-6);
+    assert_true(fabs((double)answer.physics->vacuum[0].level - 0.06) < 1e-6);
     for (int i = 0; i < 200; ++i) {
         step(900, OPEN);
     }
-    assert_true(answer.condition->vacuum[0].level == WH_REAL(0.6));
+    assert_true(answer.physics->vacuum[0].level == WH_REAL(0.6));
     assert_int_equal(answer.sensors, 1);
 }
 
@@ -99,7 +99,7 @@ static void sensor_off(void **state) {
     bring_kind(WH_FAULT_SENSOR_OFF, 0);
     pick();
     assert_int_equal(answer.sensors, 0);
-    assert_true(answer.condition->vacuum[0].on);
+    assert_true(answer.physics->vacuum[0].on);
     assert_null(find(WH_EVENT_VACUUM_LOST));
 }
 
@@ -108,8 +108,8 @@ static void a_valve_stuck(void **state) {
     bring_kind(WH_FAULT_VALVE_STUCK, 0);
     step(900, OPEN);
     assert_int_equal(answer.grippers[0].wafer, WH_NONE);
-    assert_int_equal(answer.condition->told[0], OPEN);
-    wh_fault_t f = simulator.condition.faults.slots[0].fault;
+    assert_int_equal(answer.physics->told[0], OPEN);
+    wh_fault_t f = simulator.physics.faults.slots[0].fault;
     f.until = command.seq + 1;
     bring(0, &f);
     step(900, OPEN);
@@ -118,7 +118,7 @@ static void a_valve_stuck(void **state) {
     step(905, CLOSED);
     assert_int_equal(answer.grippers[0].wafer, 0);
     assert_int_equal(answer.grippers[0].valve, OPEN);
-    assert_int_equal(answer.condition->told[0], CLOSED);
+    assert_int_equal(answer.physics->told[0], CLOSED);
 }
 
 static void axes_stopped(void **state) {
@@ -160,7 +160,7 @@ static void in_the_first_slice_nothing_was_before(void **state) {
 /* ------------------------------------------------------------------------------------------------------ wafers */
 
 static void clear_slot(int32_t index) {
-    wh_fault_t f = simulator.condition.faults.slots[index].fault;
+    wh_fault_t f = simulator.physics.faults.slots[index].fault;
     f.until = command.seq + 1;
     bring(index, &f);
 }
@@ -317,7 +317,7 @@ static void a_wafer_that_is_held_in_its_place_is_not_put_back(void **state) {
     f.offset = wh_test_at(7, 0, 0);
     bring(0, &f);
     pick();
-    const wh_pose_t placed = simulator.condition.faults.slots[0].placed;
+    const wh_pose_t placed = simulator.physics.faults.slots[0].placed;
     assert_memory_equal(&wafers[0].base_from_wafer, &placed, sizeof placed);
     f.until = command.seq + 1;
     bring(0, &f);

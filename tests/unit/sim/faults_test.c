@@ -110,7 +110,7 @@ static void no_offset_takes_a_wafer_out_of_the_numbers(void **state) {
     step(880, CLOSED);
     assert_non_null(find(WH_EVENT_FAULT_ARMED));
     assert_int_equal(wh_pose_validate(&wafers[0].base_from_wafer), WH_OK);
-    assert_int_equal(wh_physics_state_validate(&simulator.condition, GRIPPERS, WAFERS), WH_OK);
+    assert_int_equal(wh_physics_state_validate(&simulator.physics, GRIPPERS, WAFERS), WH_OK);
 }
 
 static void faults_take_slots(void **state) {
@@ -170,7 +170,7 @@ static void a_refused_input_brings_no_fault(void **state) {
     bring_kind(WH_FAULT_AXIS_STOPPED, 0);
     assert_int_equal(try_step((double)NAN, CLOSED), WH_STATUS_NOT_FINITE);
     assert_true(wh_simulator_hash(&simulator) == hash);
-    assert_int_equal(simulator.condition.faults.count, 0);
+    assert_int_equal(simulator.physics.faults.count, 0);
 }
 
 /* ------------------------------------------------------------------------------------------------------- times */
@@ -215,7 +215,7 @@ static void a_slot_that_is_used_again_is_new(void **state) {
     bring(0, &f);
     step(880, CLOSED);
     step(880, CLOSED);
-    const wh_fault_slot_t *slot = &simulator.condition.faults.slots[0];
+    const wh_fault_slot_t *slot = &simulator.physics.faults.slots[0];
     assert_int_equal(slot->phase, WH_FAULT_OVER);
     assert_true(slot->placed.r.x > 0);
     bring_kind(WH_FAULT_SENSOR_ON, 0);

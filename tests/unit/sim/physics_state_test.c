@@ -12,7 +12,7 @@ static void conditions_that_no_simulator_leaves(void **state) {
     wh_fault_t f = fault_of(WH_FAULT_WAFER_SHIFTED, 0);
     bring(0, &f);
     step(880, CLOSED);
-    const wh_physics_state_t good = simulator.condition;
+    const wh_physics_state_t good = simulator.physics;
     wh_physics_state_t bad[14];
     for (size_t i = 0; i < 14; ++i) {
         bad[i] = good;
@@ -71,7 +71,7 @@ static void the_hash_covers_each_word(void **state) {
     (void)state;
     bring_kind(WH_FAULT_WAFER_SHIFTED, 0);
     pick();
-    const wh_physics_state_t good = simulator.condition;
+    const wh_physics_state_t good = simulator.physics;
     static wh_physics_state_t changed[CHANGES];
     for (size_t i = 0; i < CHANGES; ++i) {
         changed[i] = good;
@@ -116,7 +116,7 @@ static void the_hash_is_this_number(void **state) {
     fault.value = WH_REAL(0.25);
     bring(1, &fault);
     pick();
-    wh_physics_state_t some = simulator.condition;
+    wh_physics_state_t some = simulator.physics;
     for (int g = 0; g < GRIPPERS; ++g) {
         some.vacuum[g].level = WH_REAL(0.5);
         some.vacuum[g].on = true;
@@ -134,12 +134,12 @@ static void without_any_it_is_the_tables_hash(void **state) {
     assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
     step(880, CLOSED);
     assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
-    simulator.condition.faults.count = 1; /* a free slot is none */
+    simulator.physics.faults.count = 1; /* a free slot is none */
     assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
     bring_kind(WH_FAULT_SENSOR_ON, 0);
     step(880, CLOSED);
     assert_true(wh_simulator_hash(&simulator) != wh_grasp_hash(&simulator.table));
-    wh_faults_clear(&simulator.condition.faults);
+    wh_faults_clear(&simulator.physics.faults);
     assert_true(wh_simulator_hash(&simulator) == wh_grasp_hash(&simulator.table));
 }
 

@@ -123,7 +123,7 @@ static void delayed_goes_its_own_way(void **state) {
     step(0, 1, OPEN);
     while ((step(0, 1, CLOSED), answer.grippers[0].wafer) == 0) {
         assert_int_equal(count(WH_EVENT_RELEASED), 0);
-        assert_int_equal(answer.condition->vacuum[0].command, CLOSED);
+        assert_int_equal(answer.physics->vacuum[0].command, CLOSED);
         assert_int_equal(answer.grippers[0].valve, OPEN);
         ++until_released;
     }
@@ -141,7 +141,7 @@ static void a_slow_pump_alone(void **state) {
     step(0, 0, OPEN);
     assert_int_equal(answer.grippers[0].wafer, 0);
     assert_int_equal(answer.sensors, 0);
-    assert_true(answer.condition->vacuum[0].level < WH_REAL(0.01));
+    assert_true(answer.physics->vacuum[0].level < WH_REAL(0.01));
 }
 
 /* Pads that carry so much in the wafer's plane: a run along x just below and just above. */
@@ -221,7 +221,7 @@ static void what_is_beyond_the_grippers_is_left_alone(void **state) {
     physics.vacuum = wh_vacuum_delayed();
     use();
     simulator.table.storage.gripper_count = command.gripper_count = GRIPPERS - 1;
-    wh_vacuum_t *vacuum = &simulator.condition.vacuum[GRIPPERS - 1];
+    wh_vacuum_t *vacuum = &simulator.physics.vacuum[GRIPPERS - 1];
     wh_gripper_input_t *input = &simulator.inputs[GRIPPERS - 1];
     grippers[GRIPPERS - 1].wafer = 0;
     vacuum->level = 1;
@@ -236,10 +236,10 @@ static void what_is_beyond_the_grippers_is_left_alone(void **state) {
 static void all_slots_at_once(void **state) {
     (void)state;
     use();
-    simulator.condition.faults.count = WH_FAULTS;
+    simulator.physics.faults.count = WH_FAULTS;
     step(0, -10, OPEN);
     for (size_t i = 0; i < WH_FAULTS; ++i) {
-        wh_fault_slot_t *slot = &simulator.condition.faults.slots[i];
+        wh_fault_slot_t *slot = &simulator.physics.faults.slots[i];
         memset(slot, 0, sizeof *slot);
         slot->fault.kind = WH_FAULT_SENSOR_ON;
         slot->fault.from = 1;

@@ -43,7 +43,7 @@ static void start_both(void) {
     with.faults[0] = never();
     with.fault_count = 1;
     start(&faulty, &with);
-    assert_int_equal(faulty.simulator.condition.faults.count, 1);
+    assert_int_equal(faulty.simulator.physics.faults.count, 1);
 }
 
 static int set_up(void **state) {
@@ -93,7 +93,7 @@ static void compare(void) {
         assert_int_equal(plain.state.events[i].wafer, faulty.state.events[i].wafer);
         assert_int_equal(plain.state.events[i].gripper, faulty.state.events[i].gripper);
     }
-    compare_conditions(&plain.simulator.condition, &faulty.simulator.condition);
+    compare_conditions(&plain.simulator.physics, &faulty.simulator.physics);
 }
 
 /* Returns in how many slices some gripper held a wafer. */
@@ -123,8 +123,8 @@ static void whatever_the_levels_were(void **state) {
         for (int g = 0; g < GRIPPERS; ++g) {
             const wh_vacuum_t odd = {(wh_real_t)wh_test_uniform(0, 1), (int32_t)wh_test_below(2),
                                      wh_test_below(2) == 0};
-            plain.simulator.condition.vacuum[g] = odd;
-            faulty.simulator.condition.vacuum[g] = odd;
+            plain.simulator.physics.vacuum[g] = odd;
+            faulty.simulator.physics.vacuum[g] = odd;
         }
         assert_true(step_both() > SLICES / 2);
     }
@@ -144,7 +144,7 @@ static void vacuum_that_takes_time_or_is_never_gone(void **state) {
             const wh_command_t command = any_command(seq);
             (void)wh_simulator_step(&plain.simulator, &command, &plain.state);
             for (int g = 0; g < GRIPPERS; ++g) {
-                const wh_real_t level = plain.simulator.condition.vacuum[g].level;
+                const wh_real_t level = plain.simulator.physics.vacuum[g].level;
                 between += level > 0 && level < 1 ? 1 : 0;
             }
         }
