@@ -1,5 +1,5 @@
-/* Waferhand: pick-and-place of wafers, step by step. The one header to include; it gathers the library's parts in
- * the direction in which data flows.
+/* Waferhand: pick-and-place of wafers, step by step. The one header to include; it gathers the library's
+ * parts in the direction in which data flows.
  *
  *     axes --motion--> gripper poses --grasp--> who holds which wafer --cell--> where it lies
  *

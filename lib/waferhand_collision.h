@@ -1,4 +1,5 @@
-/* Shapes and gaps over libccd, beside waferhand.h: `double` only. Link with -lwaferhand_collision -lwaferhand -lccd -lm. */
+/* Shapes and gaps over libccd, beside waferhand.h: `double` only. Link with -lwaferhand_collision -lwaferhand
+ * -lccd -lm. */
 #ifndef WAFERHAND_COLLISION_H
 #define WAFERHAND_COLLISION_H
 

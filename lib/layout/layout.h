@@ -148,8 +148,8 @@ int32_t wh_layout_find_wafer(const wh_layout_t *layout, const char *name);
 /* Counts the parts of stations, robot and grippers. Obstacles are not among them. */
 size_t wh_layout_count_parts(const wh_layout_t *layout);
 
-/* Fills the list with these parts and makes them the layout's world. The list needs room for all of them, and its arrays must
- * outlive the layout. */
+/* Fills the list with these parts and makes them the layout's world. The list needs room for all of them, and
+ * its arrays must outlive the layout. */
 void wh_layout_set_parts(wh_layout_t *layout, wh_part_list_t *list);
 
 #endif

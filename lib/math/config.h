@@ -19,11 +19,11 @@
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) ||                 \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
 #error                                                                                                       \
-    "waferhand: -ffast-math (or a part of it) reorders sums and drops NaN, so verdicts would differ between builds: remove it"
+    "waferhand: -ffast-math (or a part of it) reorders sums and drops NaN, so builds would differ: remove it"
 #endif
 #if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD != 0
 #error                                                                                                       \
-    "waferhand: needs FLT_EVAL_METHOD 0 (no x87 excess precision): on 32-bit x86 build with -msse2 -mfpmath=sse"
+    "waferhand: needs FLT_EVAL_METHOD 0 (no x87): on 32-bit x86 build with -msse2 -mfpmath=sse"
 #endif
 
 /* The library's real number: double, or float when built with -DWH_FLOAT. Library and program must agree. */

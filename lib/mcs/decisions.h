@@ -90,7 +90,7 @@ int32_t wh_decisions_judge(const wh_decisions_claim_t *claim, const wh_cell_t *c
 
 void wh_decisions_free(wh_decisions_t *decisions);
 
-/* ---- Playing ---- */
+/* ------------------------------------------------------------------------------------------------ Playing */
 
 /* What happened in a trial that is played: the events of a slice. */
 typedef void wh_decisions_watch_t(void *user, const wh_event_t events[], size_t count);

@@ -144,8 +144,8 @@ static int read_wafer_pose(lua_State *L) {
     return 1;
 }
 
-/* native.gripper_pose(gripper, real): where motion control has it, also before the first slice; or, if `real`, where
- * it is, for a fault may keep it from there. */
+/* native.gripper_pose(gripper, real): where motion control has it, also before the first slice; or, if
+ * `real`, where it is, for a fault may keep it from there. */
 static int read_gripper_pose(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);

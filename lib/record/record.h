@@ -110,8 +110,8 @@ char *wh_record_text(const char *text);
 /* Frees everything that the record holds and zeroes it. */
 void wh_record_free(wh_record_t *record);
 
-/* Names for the record's indices, the layout's own; null for WH_NONE, an index out of range and a record without a
- * layout. */
+/* Names for the record's indices, the layout's own; null for WH_NONE, an index out of range and a record
+ * without a layout. */
 const char *wh_record_wafer_name(const wh_record_t *record, int32_t wafer);
 const char *wh_record_gripper_name(const wh_record_t *record, int32_t gripper);
 const char *wh_record_station_name(const wh_record_t *record, int32_t station);

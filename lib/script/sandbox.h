@@ -145,8 +145,8 @@ size_t wh_sandbox_memory_high_water(const wh_sandbox_t *sandbox);
  * a message that names the fault, if it is refused; result may be null. */
 bool wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *assignment, wh_sandbox_result_t *result);
 
-/* wh_sandbox_new, then wh_sandbox_set_parameter for each of the assignments. Null, and the reason in `result`, if out of memory
- * or if a parameter is refused. */
+/* wh_sandbox_new, then wh_sandbox_set_parameter for each of the assignments. Null, and the reason in
+ * `result`, if out of memory or if a parameter is refused. */
 wh_sandbox_t *wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
                                   size_t count, wh_sandbox_result_t *result);
 

@@ -7,8 +7,8 @@
 #include "ranks.h"
 
 typedef struct {
-    size_t
-        threads; /* of this process; 0: one for each processor, shared with the other ranks on the machine */
+    /* Threads of this process. 0: one for each processor, shared with the other ranks on the machine. */
+    size_t threads;
     const char *state; /* the file that keeps what is done; null: a place of its own, emptied at the end */
 } wh_study_options_t;
 

@@ -65,8 +65,8 @@ typedef struct {
 typedef struct {
     uint64_t trial;
     bool met, whole;
-    const wh_record_t
-        *record; /* commands, expectations and failure are this run's; events and wafers are not looked at */
+    /* Of it commands, expectations and failure count; events and wafers are not read. */
+    const wh_record_t *record;
     uint32_t events[WH_EVENT_KINDS];
     wh_study_wafer_t wafers[WH_STUDY_WAFERS];
 } wh_outcome_t;

@@ -9,8 +9,8 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-/* Makes room for at least `needed` items of `size` bytes. `items` is null at the beginning, `capacity` is then 0. Returns
- * where the items are now; the caller frees them. */
+/* Makes room for at least `needed` items of `size` bytes. `items` is null at the beginning, `capacity` is
+ * then 0. Returns where the items are now; the caller frees them. */
 static inline void *wh_array_reserve(void *items, size_t needed, size_t *capacity, size_t size) {
     if (needed <= *capacity) {
         return items;

@@ -99,7 +99,7 @@ int wh_json_print(json_t *root, FILE *out) {
     return status != 0 || fflush(out) != 0 || ferror(out) ? -1 : 0;
 }
 
-/* ------------------------------------------------------------------------------------------ as it comes */
+/* -------------------------------------------------------------------------------------------- as it comes */
 
 /* What stands before an element: a comma, and the key of a member. */
 static void lead(wh_json_text_t *text, const char *key) {

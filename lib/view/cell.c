@@ -25,8 +25,7 @@
 /* How far a held wafer's colour goes from its gripper's to the page's behind it. */
 #define PALER 0.42F
 
-/* ------------------------------------------------------------------------------------------------- colours
- * Those of the report's page, in light, but less transparent: there are no edges here. */
+/* ---------- colours * Those of the report's page, in light, but less transparent: there are no edges here */
 
 static wh_view_colour_t colour_of(uint32_t hex, float opacity) {
     const wh_view_colour_t colour = {(float)(hex >> 16 & 0xffU) / 255, (float)(hex >> 8 & 0xffU) / 255,

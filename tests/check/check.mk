@@ -79,7 +79,7 @@ $(B)/log/library: $(LIBRARY_SOURCES) $(HEADERS) tests/check/check.mk
 $(B)/log/functions: $(C_FILES) tests/check/functions.awk
 	$(call look,PMCCABE,pmccabe $(C_FILES) 2>&1 | awk -F '\t' -f tests/check/functions.awk)
 # Rooms whose lines, banners and members are looked at.
-TIDY_ROOMS := batch motion cell sim collision script layout
+TIDY_ROOMS := $(LIBRARY_ROOMS) $(COLLISION_ROOM) $(HOST_ROOMS)
 $(B)/log/texts: $(C_FILES) tests/check/texts.awk tests/check/check.mk
 	$(call look,TEXTS,LC_ALL=C awk -v embedded='^lib/($(subst $() ,|,$(LIBRARY_ROOMS)))/' \
 	    -v tidy='^lib/($(subst $() ,|,$(TIDY_ROOMS)))/' -f tests/check/texts.awk $(C_FILES))

@@ -10,8 +10,7 @@
 #include "../../mcs/session.h"
 #include "../../text/output.h"
 
-/* ------------------------------------------------------------------------------------------------- reading
- */
+/* ------------------------------------------------------------------------------------------------ reading */
 
 /* The file's text, to be freed, or null. */
 static char *read_text(const char *path) {
@@ -56,8 +55,7 @@ static size_t gather(char *text, const char *lines[WH_HISTORY_LINES]) {
     return count;
 }
 
-/* ------------------------------------------------------------------------------------------------- writing
- */
+/* ------------------------------------------------------------------------------------------------ writing */
 
 /* Replaces the file by these lines, as a whole. */
 static void rewrite(const char *path, const char *const lines[], size_t first, size_t count) {
