@@ -1,15 +1,6 @@
-/* One step of the grasp table: the four parts that grasp.h lists, in that order.
- *
- *   1. Validate.   Reads all inputs and refuses the whole step if one of them is invalid.
- *   2. Release.    A gripper whose valve closes leaves its wafer where it carries it in this slice.
- *   3. Carry.      A held wafer goes where its gripper goes. One loop does 2 and 3.
- *   4. Pick.       Each open, empty gripper takes the best of the ready wafers.
- *
- * Then come the events that are known only after all picks, and each gripper's pose and valve are kept for
- * the next slice. Most slices have no pick, no release and no event: for them move_all is all there is to do.
- *
- * One file, so that the compiler can inline: split into files, a slice costs 50 instructions more and a
- * sampled step 32 bytes of stack more than its limit. */
+/* One step of the grasp table, in the four parts of grasp.h; one loop does 2 and 3. Most slices have no pick,
+ * no release and no event: for them move_all is all there is to do. One file, so that the compiler can inline:
+ * split, a slice costs 50 instructions more, and a sampled step 32 bytes of stack more than its limit. */
 #include "encounter_internal.h"
 #include "grasp_internal.h"
 #include "horizon_internal.h"
@@ -32,6 +23,18 @@ static wh_status_t validate_input(const wh_gripper_t *gripper, const wh_gripper_
     }
     const bool good = input->valve == WH_VALVE_OPEN || input->valve == WH_VALVE_CLOSED;
     return good ? WH_OK : WH_STATUS_BAD_VALVE;
+}
+
+wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind) {
+    static const wh_event_t blank = {
+        .wafer = WH_NONE, .gripper = WH_NONE, .other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
+    WH_ASSERT(list->count < list->capacity);
+    wh_event_t *event = &list->events[list->count++];
+    *event = blank;
+    event->kind = kind;
+    event->slice = table->slice;
+    event->measured_slice = table->slice;
+    return event;
 }
 
 static void report_refusal(const wh_grasp_t *table, wh_event_list_t *list, size_t gripper,

@@ -1,18 +1,6 @@
 #include "grasp_internal.h"
 #include "horizon_internal.h"
 
-wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind) {
-    static const wh_event_t blank = {
-        .wafer = WH_NONE, .gripper = WH_NONE, .other = WH_NONE, .parts = {WH_NONE, WH_NONE}};
-    WH_ASSERT(list->count < list->capacity);
-    wh_event_t *event = &list->events[list->count++];
-    *event = blank;
-    event->kind = kind;
-    event->slice = table->slice;
-    event->measured_slice = table->slice;
-    return event;
-}
-
 wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper) {
     const wh_vec3_t dr = wh_vec3_subtract(&wafer->base_from_wafer.r, &base_from_gripper->r);
     const wh_vec3_t n1 = wh_mat3_column(&wafer->base_from_wafer.R, 2);

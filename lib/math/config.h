@@ -22,8 +22,7 @@
     "waferhand: -ffast-math (or a part of it) reorders sums and drops NaN, so builds would differ: remove it"
 #endif
 #if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD != 0
-#error                                                                                                       \
-    "waferhand: needs FLT_EVAL_METHOD 0 (no x87): on 32-bit x86 build with -msse2 -mfpmath=sse"
+#error "waferhand: needs FLT_EVAL_METHOD 0 (no x87): on 32-bit x86 build with -msse2 -mfpmath=sse"
 #endif
 
 /* The library's real number: double, or float when built with -DWH_FLOAT. Library and program must agree. */
