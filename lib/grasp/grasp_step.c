@@ -1,5 +1,5 @@
 /* One step of the grasp table, in the four parts of grasp.h; one loop does 2 and 3. Most slices have no pick,
- * no release and no event: for them move_all is all there is to do. One file, so that the compiler can inline:
+ * no release and no event: for them move_all is all there is to do. One file, so that the compiler inlines:
  * split, a slice costs 50 instructions more, and a sampled step 32 bytes of stack more than its limit. */
 #include "encounter_internal.h"
 #include "grasp_internal.h"

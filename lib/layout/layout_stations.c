@@ -247,7 +247,7 @@ static void fail_at(wh_reader_t *reader, const wh_layout_t *layout, const wh_lay
 
 /* Sorting puts wafers with the same name side by side. */
 static void refuse_same_name(wh_reader_t *reader, const wh_layout_t *layout, entry_t *order) {
-    qsort(order, layout->wafer_count, sizeof *order, compare_wafer_names);
+    qsort(order, layout->wafer_count, sizeof(entry_t), compare_wafer_names);
     for (size_t i = 1; i < layout->wafer_count; ++i) {
         if (strcmp(order[i - 1]->name, order[i]->name) == 0) {
             lua_pushstring(reader->L, order[i]->name);
@@ -257,7 +257,7 @@ static void refuse_same_name(wh_reader_t *reader, const wh_layout_t *layout, ent
 }
 
 static void refuse_same_slot(wh_reader_t *reader, const wh_layout_t *layout, entry_t *order) {
-    qsort(order, layout->wafer_count, sizeof *order, compare_slots);
+    qsort(order, layout->wafer_count, sizeof(entry_t), compare_slots);
     for (size_t i = 1; i < layout->wafer_count; ++i) {
         const wh_layout_wafer_t *wafer = order[i];
         const wh_layout_wafer_t *before = order[i - 1];
@@ -286,7 +286,7 @@ void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout) {
         read_wafer(reader, layout, layout->wafer_count);
         wh_reader_leave(reader);
     }
-    entry_t *order = wh_layout_memory(reader->L, count, sizeof *order);
+    entry_t *order = wh_layout_memory(reader->L, count, sizeof(entry_t));
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         order[w] = &layout->wafers[w];
     }

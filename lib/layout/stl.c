@@ -40,9 +40,9 @@ __attribute__((format(printf, 2, 3))) static bool refuse(stl_t *stl, const char 
 
 /* Adds one corner. `where` is its place in the file, for the message. */
 static bool take_corner(stl_t *stl, const double xyz[3], size_t corner, const char *where) {
-    double scaled[3];
+    const double scaled[3] = {xyz[0] * stl->mm_per_unit, xyz[1] * stl->mm_per_unit,
+                              xyz[2] * stl->mm_per_unit};
     for (size_t i = 0; i < 3; ++i) {
-        scaled[i] = xyz[i] * stl->mm_per_unit;
         if (!(scaled[i] >= -WH_CONVEX_LARGEST && scaled[i] <= WH_CONVEX_LARGEST)) {
             return refuse(stl, "%s: a coordinate of %g times %g mm (expected -%g to %g mm)", where, xyz[i],
                           stl->mm_per_unit, WH_CONVEX_LARGEST, WH_CONVEX_LARGEST);

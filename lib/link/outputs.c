@@ -237,7 +237,9 @@ static void report(wh_outputs_t *outputs, const wh_outputs_look_t *look) {
     (void)snprintf(outputs->report, sizeof outputs->report, "%s%.*s: %s%s", cut > 0 ? "..." : "", SHOWN_PATH,
                    outputs->path + cut, text, valves);
     for (char *c = outputs->report; *c != '\0'; ++c) {
-        *c = (unsigned char)*c < ' ' || *c == 0x7f ? '?' : *c;
+        if ((unsigned char)*c < ' ' || *c == 0x7f) {
+            *c = '?';
+        }
     }
 }
 

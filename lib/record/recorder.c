@@ -1,5 +1,7 @@
 #include "recorder.h"
 
+#include "../text/array.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -124,8 +126,8 @@ static bool is_as_wanted(const wh_record_t *record) {
 
 static void keep_wafers(wh_recorder_t *recorder, const wh_wafer_t wafers[]) {
     const size_t count = recorder->layout->wafer_count;
-    wh_wafer_record_t *kept = calloc(count + 1, sizeof *kept);
-    for (size_t w = 0; kept && w < count; ++w) {
+    wh_wafer_record_t *kept = wh_array_new(count, sizeof *kept);
+    for (size_t w = 0; w < count; ++w) {
         kept[w].base_from_wafer = wafers[w].base_from_wafer;
         kept[w].holder = wafers[w].holder;
         if (!locate(recorder, &wafers[w], &kept[w].place)) {

@@ -213,7 +213,7 @@ void wh_thin_read(const wh_thin_t *thin, int64_t slice, double values[]) {
 }
 
 void wh_thin_read_pose(const wh_thin_t *thin, int64_t slice, wh_pose_t *pose) {
-    double values[7];
+    double values[7] = {0};
     wh_thin_read(thin, slice, values);
     pose->r = wh_vec3(values[0], values[1], values[2]);
     wh_quaternion_to_matrix(values + 3, &pose->R);

@@ -75,12 +75,12 @@ static void describe(lua_State *L, char *text, size_t size) {
     }
 }
 
-__attribute__((noreturn, format(printf, 3, 0))) static void fail(const wh_reader_t *reader, const char *field,
-                                                                 const char *expected, va_list arguments) {
+/* The longest text of what was expected. */
+#define WANTED_SIZE 512
+
+__attribute__((noreturn)) static void fail(const wh_reader_t *reader, const char *field, const char *wanted) {
     char value[200];
-    char wanted[512];
     describe(reader->L, value, sizeof value);
-    vsnprintf(wanted, sizeof wanted, expected, arguments);
     const bool in_list = field && field[0] == '[';
     const char *dot = reader->depth > 0 && field && !in_list ? "." : "";
     lua_pushfstring(reader->L, "%s: %s%s%s: %s (expected %s)", reader->file, reader->path, dot,
@@ -91,16 +91,22 @@ __attribute__((noreturn, format(printf, 3, 0))) static void fail(const wh_reader
 
 void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *expected, ...) {
     va_list arguments;
+    char wanted[WANTED_SIZE];
     va_start(arguments, expected);
-    fail(reader, field, expected, arguments);
+    vsnprintf(wanted, sizeof wanted, expected, arguments);
+    va_end(arguments);
+    fail(reader, field, wanted);
 }
 
 void wh_reader_refuse(const wh_reader_t *reader, const char *field, const char *text, const char *expected,
                       ...) {
     va_list arguments;
+    char wanted[WANTED_SIZE];
     va_start(arguments, expected);
+    vsnprintf(wanted, sizeof wanted, expected, arguments);
+    va_end(arguments);
     lua_pushstring(reader->L, text);
-    fail(reader, field, expected, arguments);
+    fail(reader, field, wanted);
 }
 
 /* --------------------------------------------------------------------------------------------------- keys */

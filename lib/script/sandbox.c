@@ -144,10 +144,7 @@ static const char *read_open(FILE *file, char **text, size_t *size) {
         free(whole);
         return fault;
     }
-    *text = realloc(whole, *size + 1);
-    if (*text == NULL) {
-        *text = whole;
-    }
+    *text = whole;
     return NULL;
 }
 

@@ -215,7 +215,7 @@ static bool rests(const keyframes_t *motion) {
 }
 
 /* Moves the node by the keyframes unless it rests, and frees them. */
-static void move_node(keyframes_t *motion, wh_gltf_t *gltf, size_t node) {
+static void move_node(const keyframes_t *motion, wh_gltf_t *gltf, size_t node) {
     if (!rests(motion)) {
         const float(*places)[3] = (const float(*)[3])motion->places;
         const float(*turns)[4] = (const float(*)[4])motion->turns;
@@ -224,7 +224,6 @@ static void move_node(keyframes_t *motion, wh_gltf_t *gltf, size_t node) {
     free(motion->times);
     free(motion->places);
     free(motion->turns);
-    memset(motion, 0, sizeof *motion);
 }
 
 /* -------------------------------------------------------------------------------------------------- nodes */
@@ -311,7 +310,7 @@ static void add_moving(scene_t *scene, const wh_pose_t *pose, const wh_thin_t *p
     const size_t mesh = finish_body(scene, body, name);
     const size_t node = wh_gltf_add_node(&scene->gltf, name, mesh, pose, kind, index);
     if (scene->animated) {
-        keyframes_t motion = keyframes_of_track(scene->signals, path);
+        const keyframes_t motion = keyframes_of_track(scene->signals, path);
         move_node(&motion, &scene->gltf, node);
     }
 }
@@ -347,7 +346,7 @@ static void add_wafers(scene_t *scene) {
         const size_t node = wh_gltf_add_node(&scene->gltf, layout->wafers[w].name, mesh,
                                              &layout->start[w].base_from_wafer, "wafer", w);
         if (scene->animated) {
-            keyframes_t motion = keyframes_of_wafer(scene->signals, &scene->paths, (int32_t)w);
+            const keyframes_t motion = keyframes_of_wafer(scene->signals, &scene->paths, (int32_t)w);
             move_node(&motion, &scene->gltf, node);
         }
     }
