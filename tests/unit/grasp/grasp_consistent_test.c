@@ -35,6 +35,8 @@ static void a_holder_names_its_wafer(void **state) {
     breaks(&cell, &cell.gripper[0].wafer, 1);
     breaks(&cell, &cell.gripper[0].wafer, CELL_WAFERS);
     breaks(&cell, &cell.gripper[0].wafer, -2);
+    breaks(&cell, &cell.gripper[1].wafer, CELL_WAFERS);
+    breaks(&cell, &cell.gripper[1].wafer, -2);
 }
 
 static void no_wafer_has_two_holders(void **state) {

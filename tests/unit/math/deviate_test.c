@@ -40,10 +40,10 @@ static void a_deviate_depends_on_its_name(void **state) {
 /* Moments of n values are off by their standard errors; six of them are never seen. */
 static void deviates_have_their_moments(void **state) {
     (void)state;
-    enum { N = 200000 };
+    const double N = 200000;
     double uniform[2] = {0, 0};
     double normal[4] = {0, 0, 0, 0};
-    for (uint64_t i = 0; i < N; ++i) {
+    for (uint64_t i = 0; (double)i < N; ++i) {
         const wh_trial_t trial = {1, i};
         const double u = wh_deviate_uniform(&trial, 0, 0);
         const double x = wh_deviate_normal(&trial, 0, 0);
@@ -55,7 +55,7 @@ static void deviates_have_their_moments(void **state) {
         normal[2] += x * x * x;
         normal[3] += x * x * x * x;
     }
-    const double root = sqrt((double)N);
+    const double root = sqrt(N);
     assert_true(fabs(uniform[0] / N - 0.5) < 6 * sqrt(1 / 12.0) / root);
     assert_true(fabs(uniform[1] / N - 1 / 3.0) < 6 * sqrt(4 / 45.0) / root);
     assert_true(fabs(normal[0] / N) < 6 / root);
