@@ -18,6 +18,7 @@ static void the_logarithm_is_libms_to_the_last_digits(void **state) {
         assert_true(fabs(wh_ln(u) - log(u)) <= 1e-15 * fabs(log(u)) + 1e-17);
     }
     assert_true(wh_ln(1) == 0);
+    assert_true(isnan(wh_ln(0x1p-1023)) && !isnan(wh_ln(0x1p-1022)));
     assert_true(isnan(wh_ln(0)) && isnan(wh_ln(-1)) && isnan(wh_ln((double)INFINITY)));
 }
 

@@ -33,7 +33,7 @@ class Builder:
         version = subprocess.run([compiler, "--version"], capture_output=True, check=True, text=True).stdout
         self.identity = version.split("\n")[0] + flags
         self.originals = os.path.join(folder, "originals")
-        self.files = sorted(path for room in rooms() for path in glob.glob(f"lib/{room}/*.[ch]"))
+        self.files = sorted(path for room in rooms() for path in glob.glob(f"lib/{room}/*.*"))
         self.sources = [path for path in self.files if path.endswith(".c")]
         os.makedirs(self.originals, exist_ok=True)
         for source in self.sources:

@@ -72,6 +72,8 @@ class Campaign:
     def distinct(self):
         """Those that compile and differ from the original and from each other, as many as the sample asks for."""
         seen = {self.compile(None, "".join(self.source.lines))}
+        if None in seen:
+            raise SystemExit(f"mutation: {self.source.path} does not compile as it is")
         for begin in range(0, len(self.mutants), 64):
             part = self.mutants[begin:begin + 64]
             for mutant, found in zip(part, self.pool.map(self.compile, part)):

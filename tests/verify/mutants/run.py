@@ -31,6 +31,9 @@ def sources(builder):
     headers = sorted({os.path.join(os.path.dirname(path), name) for path in builder.sources
                       for name in os.listdir(os.path.dirname(path)) if name.endswith(".h")})
     wanted = os.environ.get("FILES", "").split()
+    unknown = set(wanted) - set(builder.sources + headers)
+    if unknown:
+        sys.exit(f"mutation: no source of the library: {' '.join(sorted(unknown))}")
     return [path for path in builder.sources + headers if not wanted or path in wanted]
 
 
