@@ -81,6 +81,6 @@ typedef struct {
 } wh_event_list_t;
 
 /* The kind's name in lower case, such as "handed_over": a constant string, never null. */
-const char *wh_event_name(wh_event_kind_t kind);
+const char *wh_event_name(wh_event_kind_t kind) WH_SYMBOL(wh_event_name);
 
 #endif
