@@ -42,7 +42,7 @@
 
 /* The code of the sieve: portable C, or AVX2 for 8 wafers at a time, in builds of gcc or clang for x86-64 on
  * processors that have it. The verdicts are the same. */
-typedef enum { WH_BATCH_PORTABLE, WH_BATCH_AVX2 } wh_batch_code_t;
+typedef enum WH_FOUR_BYTES { WH_BATCH_PORTABLE, WH_BATCH_AVX2 } wh_batch_code_t;
 
 /* For the caller to read only. */
 typedef struct {

@@ -12,7 +12,7 @@
 #include "../math/pose.h"
 
 /* The bodies of the robot, each hanging on the one before it. */
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_ARM_BASE,    /* base itself: the column's foot */
     WH_ARM_LIFT,    /* at (0, 0, Z), not turned */
     WH_ARM_UPPER,   /* at (0, 0, Z), x along the upper arm to the elbow */

@@ -16,7 +16,7 @@
 #define WH_CONVEX_LARGEST 1e5
 #define WH_CONVEX_POINTS 65536
 
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_CONVEX_BOX,
     WH_CONVEX_CYLINDER,
     WH_CONVEX_CAPSULE,

@@ -52,7 +52,7 @@
  * WH_GAP_TOUCH. */
 #define WH_GAP_CORE 0.28e-3
 
-typedef enum { WH_GAP_CLEAR, WH_GAP_TOUCHING, WH_GAP_HIT, WH_GAP_UNDECIDED } wh_gap_state_t;
+typedef enum WH_FOUR_BYTES { WH_GAP_CLEAR, WH_GAP_TOUCHING, WH_GAP_HIT, WH_GAP_UNDECIDED } wh_gap_state_t;
 
 typedef struct {
     wh_gap_state_t state;

@@ -35,7 +35,7 @@
 #define WH_WORLD_MOVING 64 /* the most parts of robot and grippers together */
 
 /* The kind of a part, for the rules of what may touch what. */
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_PART_FIXED, /* walls, tables, shells; `owner` is the caller's */
     WH_PART_LEDGE, /* of station `owner`, slot `slot` */
     WH_PART_ARM,   /* of the robot's body `owner`, a wh_arm_body_t */
@@ -54,7 +54,7 @@ typedef struct {
 } wh_part_t;
 
 /* Kinds of pairs whose smallest gap is kept. */
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     /* a blade and a wafer above it that it does not hold and is not about to take */
     WH_CLEARANCE_BLADE_WAFER_ABOVE,
     WH_CLEARANCE_BLADE_WAFER_BELOW,

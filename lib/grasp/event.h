@@ -7,7 +7,7 @@
 /* A step of the grasp table yields at most this many events for each of its grippers. */
 #define WH_EVENTS_PER_GRIPPER 4
 
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     /* An open gripper took a free wafer. `measured` is what made it ready. */
     WH_EVENT_PICKED,
     /* The gripper's valve closed: its wafer stays where it is. `measured` is the wafer against it. */

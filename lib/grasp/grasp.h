@@ -28,7 +28,7 @@
 
 #include "event.h"
 
-typedef enum { WH_CHECK_SAMPLED, WH_CHECK_SWEPT } wh_check_t;
+typedef enum WH_FOUR_BYTES { WH_CHECK_SAMPLED, WH_CHECK_SWEPT } wh_check_t;
 
 /* A valve's two levels. */
 enum { WH_VALVE_OPEN = 0, WH_VALVE_CLOSED = 1 };

@@ -40,6 +40,20 @@ typedef double wh_real_t;
 /* A literal of the library's number type. */
 #define WH_REAL(literal) ((wh_real_t)(literal))
 
+/* Stands after `typedef enum`: four bytes, whatever -fshort-enums and its like say on one side and not on the
+ * other. Debuggers still show the names, and C++ takes the fields without a cast. A compiler that has no word
+ * for it is refused where its enumerations are shorter. */
+#if (defined(__cplusplus) && __cplusplus >= 201103L) ||                                                      \
+    (defined(__STDC_VERSION__) && __STDC_VERSION__ >= 202311L)
+#define WH_FOUR_BYTES : int32_t
+#elif defined(__GNUC__) || defined(__TINYC__)
+#define WH_FOUR_BYTES __attribute__((mode(SI)))
+#else
+#define WH_FOUR_BYTES
+typedef enum { WH_ENUM_SHORTEST } wh_enum_shortest_t;
+typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : -1]; /* IAR: --enum_is_int */
+#endif
+
 /* Goes up when a struct or a function changes so that headers and library of two versions do not fit. */
 #define WH_ABI 2
 /* What the library is built without, as its symbols end: nothing. */

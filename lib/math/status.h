@@ -5,7 +5,7 @@
 #include "config.h"
 
 /* WH_STATUS_NULL_ARGUMENT, ...: number, name and text of each stand in math/status.def. */
-typedef enum {
+typedef enum WH_FOUR_BYTES {
 #define WH_STATUS(number, name, text) WH_STATUS_##name = (number),
 #include "status.def"
 #undef WH_STATUS

@@ -17,7 +17,7 @@
 #include "line.h"
 #include "machine.h"
 
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_SEGMENT_AXES,   /* axes go to target[], synchronised, each at rest at both ends */
     WH_SEGMENT_LINE,   /* the end-effector goes by `travel` along a straight line at constant heading */
     WH_SEGMENT_VALVES, /* valves change; lasts one slice */
@@ -36,7 +36,7 @@ typedef struct {
     int32_t gripper;             /* SENSOR */
 } wh_segment_t;
 
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_TRACK_MOVING,   /* axes and valves are those of one more slice */
     WH_TRACK_DONE,     /* the segment is over; no slice was used by this call */
     WH_TRACK_TIMED_OUT /* SENSOR: it did not come on; no slice was used by this call */

@@ -35,7 +35,7 @@
 /* A fault that lasts until it is cleared. */
 #define WH_FAULT_FOREVER INT64_MAX
 
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_FAULT_NO_VACUUM,
     WH_FAULT_SLOW_VACUUM,
     WH_FAULT_SENSOR_ON,
@@ -63,7 +63,7 @@ typedef struct {
 } wh_fault_t;
 
 /* The phases of a fault's life. */
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_FAULT_FREE,
     WH_FAULT_WAITING,
     WH_FAULT_ACTING,
