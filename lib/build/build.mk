@@ -44,7 +44,7 @@ MODULE_SUPPORT := $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o)
 # ------------------------------------------------------------------------------------------------ flags
 # Any C compiler builds the library: what only gcc and clang know is for them, and what only newer ones know for those.
 GNU := $(findstring __GNUC__,$(shell $(CC) -dM -E -x c /dev/null 2>/dev/null))
-accepts = $(shell $(CC) $(1) -c -x c -o /dev/null /dev/null 2>/dev/null && echo $(1))
+accepts = $(shell $(CC) $(1) -E -x c /dev/null >/dev/null 2>&1 && echo $(1))
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wundef -Wcast-align -Wcast-qual -Wformat=2 -Wvla -Wswitch-enum \
             -Wwrite-strings -Wsign-conversion
 C_WARNINGS := -Wstrict-prototypes -Wmissing-prototypes

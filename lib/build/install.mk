@@ -45,5 +45,5 @@ $(FILLED:%=$(B)/%): $(B)/%: lib/build/%.in FORCE
 	    -e 's|@include@|$(if $(UPWARDS),$${CMAKE_CURRENT_LIST_DIR}/$(UPWARDS),$(PREFIX))/include|' $< >$@
 
 uninstall:
-	rm -f $(PLACES:%='$(DESTDIR)%') '$(DESTDIR)$(LIBDIR)'/libwaferhand.so* '$(DESTDIR)$(PREFIX)/include/waferhand'*.h
+	rm -f $(PLACES:%='$(DESTDIR)%') '$(DESTDIR)$(LIBDIR)'/libwaferhand.so* $(foreach entry,waferhand waferhand_collision,'$(DESTDIR)$(PREFIX)/include/$(entry).h')
 	rm -rf '$(DESTDIR)$(INCLUDES)' '$(DESTDIR)$(SHARE)' '$(DESTDIR)$(dir $(CMAKE))'

@@ -32,7 +32,7 @@
 #endif
 #elif !defined(__TINYC__) || defined(__i386__) /* tcc does not say, but keeps to it outside of x87 */
 #error                                                                                                       \
-    "waferhand: this compiler does not say if it rounds each operation to its type: if it does, add -DFLT_EVAL_METHOD=0"
+    "waferhand: unknown rounding: if this compiler rounds to the type of each operation, add -DFLT_EVAL_METHOD=0"
 #endif
 
 /* The library's real number: double, or float when built with -DWH_FLOAT. Library and program must agree. */
@@ -96,10 +96,11 @@ typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : 
 #include "symbols.h"
 #endif
 
-/* Each public header begins and ends with these: C's names in C++, and the same bits of the inline functions also
- * where -ffp-contract=off was forgotten. The file that includes them keeps its own rules. What forgetting costs:
- * gcc then calls these functions instead of inlining them, and clang compiles all of the file without contraction
- * where it knows no float_control. clang's explicit -ffp-contract=fast overrules every pragma: it must not be. */
+/* Each public header begins and ends with these: C's names in C++, and the same bits of the inline functions
+ * also where -ffp-contract=off was forgotten. The file that includes them keeps its own rules. What
+ * forgetting costs: gcc calls these functions instead of inlining them, and clang, where it knows no
+ * float_control, compiles all of the file without contraction. clang's own -ffp-contract=fast overrules every
+ * pragma: it must not be. */
 #if defined(__clang__) && (defined(__x86_64__) || defined(__i386__))
 #define WH_SAME_BITS_BEGIN _Pragma("float_control(push)") _Pragma("STDC FP_CONTRACT OFF")
 #define WH_SAME_BITS_END _Pragma("float_control(pop)")
