@@ -14,6 +14,7 @@
 #include "math/status.h"
 #include "math/vector.h"
 #include "math/pose.h"
+#include "math/rotation.h"
 #include "math/trig.h"
 #include "math/relation.h"
 #include "math/hash.h"
