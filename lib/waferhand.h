@@ -39,6 +39,7 @@
 
 #include "cell/station.h"
 
+#include "sim/event_text.h"
 #include "sim/faults.h"
 #include "sim/physics.h"
 #include "sim/slice.h"

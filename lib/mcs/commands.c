@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../sim/event_text.h"
 #include "native.h"
 
 static void tell(const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
@@ -106,30 +107,14 @@ static int fail(lua_State *L) {
 
 /* ------------------------------------------------------------------------------------------- missed picks */
 
-static void append(char *text, size_t size, const char *part) {
-    const size_t length = strlen(text);
-    snprintf(text + length, size - length, "%s%s", length > 0 ? " and " : "", part);
-}
-
+/* The gripper that missed it is the command's own: only why is said. */
 static void describe_miss(const wh_mcs_t *mcs, const wh_event_t *miss, char *text, size_t size) {
-    const wh_tolerance_t *limit = &mcs->layout->grasp.tolerance;
-    const wh_proximity_t *p = &miss->measured;
-    char reasons[240] = "";
-    char part[80];
-    if (p->failed & WH_FAILED_PROJZ) {
-        snprintf(part, sizeof part, "|dr_proj_z| %.4f is not below %g", wh_real_abs(p->dr_proj_z),
-                 limit->projz);
-        append(reasons, sizeof reasons, part);
+    const wh_event_names_t names = {.first = 1, .tolerance = &mcs->layout->grasp.tolerance};
+    char reason[WH_EVENT_TEXT_SIZE];
+    int length = snprintf(text, size, "closest to %s", mcs->layout->wafers[miss->wafer].name);
+    for (size_t i = 0; wh_event_reason(miss, &names, i, reason, sizeof reason) > 0; ++i) {
+        length += snprintf(text + length, size - (size_t)length, "%s%s", i == 0 ? ": " : " and ", reason);
     }
-    if (p->failed & WH_FAILED_PROJXY) {
-        snprintf(part, sizeof part, "|dr_proj_xy| %.4f is not below %g", p->dr_proj_xy_norm, limit->projxy);
-        append(reasons, sizeof reasons, part);
-    }
-    if (p->failed & WH_FAILED_PLANAR) {
-        snprintf(part, sizeof part, "n1_proj_n2 %.6f is not above %g", p->n1_proj_n2, limit->planar);
-        append(reasons, sizeof reasons, part);
-    }
-    snprintf(text, size, "closest to %s: %s", mcs->layout->wafers[miss->wafer].name, reasons);
 }
 
 /* native.explain(gripper): why the running command took nothing with it. */
@@ -137,7 +122,7 @@ static int explain(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_record_t *record = mcs->recorder.record;
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
-    char text[360] = "no wafer came near";
+    char text[WH_EVENT_TEXT_SIZE] = "no wafer came near";
     wh_decisions_measured(mcs->decisions, "why a wafer was missed");
     for (size_t i = record->event_count; i > 0; --i) {
         const wh_event_record_t *kept = &record->events[i - 1];

@@ -1,0 +1,207 @@
+#include "words_internal.h"
+
+#include <string.h>
+
+wh_words_t wh_words_begin(char *buffer, size_t size) {
+    const wh_words_t words = {buffer, size, 0};
+    if (size > 0) {
+        buffer[0] = '\0';
+    }
+    return words;
+}
+
+static void put_character(wh_words_t *words, char c) {
+    if (words->length + 1 < words->size) {
+        words->buffer[words->length] = c;
+        words->buffer[words->length + 1] = '\0';
+    }
+    ++words->length;
+}
+
+void wh_words_put(wh_words_t *words, const char *text) {
+    for (; *text != '\0'; ++text) {
+        put_character(words, *text);
+    }
+}
+
+/* The most digits of a 64-bit number. */
+#define DIGITS 20
+
+static void put_natural(wh_words_t *words, uint64_t value) {
+    char digits[DIGITS];
+    size_t count = 0;
+    do {
+        digits[count] = (char)('0' + (char)(value % 10));
+        value /= 10;
+        ++count;
+    } while (value > 0);
+    while (count > 0) {
+        --count;
+        put_character(words, digits[count]);
+    }
+}
+
+void wh_words_integer(wh_words_t *words, int64_t value) {
+    if (value < 0) {
+        put_character(words, '-');
+    }
+    put_natural(words, value < 0 ? 0 - (uint64_t)value : (uint64_t)value);
+}
+
+/* -------------------------------------------------------------------------------------------------- reals */
+
+/* A number below 1e15 in magnitude: a whole part, and a fraction in units of 2^-128, the highest 32 bits first. A
+ * number has at most 53 bits, so that only one below 2^-75 loses some, and 15 decimals show none of those. */
+#define PARTS 4
+typedef struct {
+    uint64_t whole;
+    uint32_t fraction[PARTS];
+} fixed_t;
+
+#define TOO_LARGE WH_REAL(1e15)
+#define MOST_DECIMALS 15
+
+/* Magnitude = mantissa * 2^exponent. */
+static uint64_t take_apart(wh_real_t magnitude, int *exponent) {
+#if defined(WH_FLOAT)
+    enum { BITS = 23, BIAS = 127 };
+    uint32_t bits;
+#else
+    enum { BITS = 52, BIAS = 1023 };
+    uint64_t bits;
+#endif
+    memcpy(&bits, &magnitude, sizeof bits);
+    const uint64_t low = (uint64_t)bits & ((UINT64_C(1) << BITS) - 1);
+    const int field = (int)((uint64_t)bits >> BITS);
+    *exponent = (field > 0 ? field : 1) - BIAS - BITS;
+    return field > 0 ? low | UINT64_C(1) << BITS : low;
+}
+
+/* Bit `at` counts from the lowest of the fraction; the whole part begins at bit 128. */
+static void set_bit(fixed_t *fixed, int at) {
+    if (at >= 32 * PARTS) {
+        fixed->whole |= UINT64_C(1) << (unsigned)(at - 32 * PARTS);
+    } else if (at >= 0) {
+        fixed->fraction[PARTS - 1 - at / 32] |= UINT32_C(1) << (unsigned)(at % 32);
+    }
+}
+
+static fixed_t to_fixed(wh_real_t magnitude) {
+    fixed_t fixed = {0, {0, 0, 0, 0}};
+    int exponent = 0;
+    const uint64_t mantissa = take_apart(magnitude, &exponent);
+    for (int bit = 0; bit < 53; ++bit) {
+        if ((mantissa >> (unsigned)bit & 1U) != 0) {
+            set_bit(&fixed, bit + exponent + 32 * PARTS);
+        }
+    }
+    return fixed;
+}
+
+/* Takes the next decimal digit off the fraction. */
+static uint32_t next_digit(fixed_t *fixed) {
+    uint64_t carry = 0;
+    for (size_t part = PARTS; part > 0; --part) {
+        carry += (uint64_t)fixed->fraction[part - 1] * 10;
+        fixed->fraction[part - 1] = (uint32_t)carry;
+        carry >>= 32;
+    }
+    return (uint32_t)carry;
+}
+
+/* True if what is left rounds the last digit up. */
+static bool rounds_up(const fixed_t *rest, bool is_odd) {
+    const uint32_t half = UINT32_C(1) << 31;
+    const bool beyond = (rest->fraction[0] & ~half) != 0 || (rest->fraction[1] | rest->fraction[2]) != 0 ||
+                        rest->fraction[3] != 0;
+    return rest->fraction[0] >= half && (beyond || is_odd);
+}
+
+/* The whole number that the decimals make; `fixed->whole` goes up if they round to a whole. */
+static uint64_t round_decimals(fixed_t *fixed, int decimals) {
+    uint64_t digits = 0;
+    uint64_t unit = 1;
+    for (int i = 0; i < decimals; ++i) {
+        digits = digits * 10 + next_digit(fixed);
+        unit *= 10;
+    }
+    const bool is_odd = (decimals > 0 ? digits : fixed->whole) % 2 != 0;
+    digits += rounds_up(fixed, is_odd) ? 1 : 0;
+    fixed->whole += digits / unit;
+    return digits % unit;
+}
+
+/* The point and the decimals, which `unit` is one more than the largest of. */
+static void put_decimals(wh_words_t *words, uint64_t digits, uint64_t unit) {
+    if (unit > 1) {
+        put_character(words, '.');
+    }
+    while (unit > 1) {
+        unit /= 10;
+        put_character(words, (char)('0' + (char)(digits / unit % 10)));
+    }
+}
+
+/* True if the number has no digits that can be shown: says so. */
+static bool put_special(wh_words_t *words, wh_real_t value) {
+    if (value != value) {
+        wh_words_put(words, "nan");
+    } else if (!(wh_real_abs(value) < TOO_LARGE)) {
+        wh_words_put(words, value < 0 ? "less than -1e15" : "more than 1e15");
+    } else {
+        return false;
+    }
+    return true;
+}
+
+static uint64_t power_of_ten(int exponent) {
+    uint64_t power = 1;
+    for (; exponent > 0; --exponent) {
+        power *= 10;
+    }
+    return power;
+}
+
+void wh_words_fixed(wh_words_t *words, wh_real_t value, int decimals) {
+    if (put_special(words, value)) {
+        return;
+    }
+    fixed_t fixed = to_fixed(wh_real_abs(value));
+    const uint64_t digits = round_decimals(&fixed, decimals);
+    if (value < 0) {
+        put_character(words, '-');
+    }
+    put_natural(words, fixed.whole);
+    put_decimals(words, digits, power_of_ten(decimals));
+}
+
+/* How many decimals it takes to show so many digits that count. */
+static int decimals_for(fixed_t fixed, int digits) {
+    int decimals = digits;
+    for (uint64_t whole = fixed.whole; whole > 0; whole /= 10) {
+        --decimals;
+    }
+    while (fixed.whole == 0 && decimals < MOST_DECIMALS && next_digit(&fixed) == 0) {
+        ++decimals;
+    }
+    return decimals < 0 ? 0 : decimals > MOST_DECIMALS ? MOST_DECIMALS : decimals;
+}
+
+void wh_words_short(wh_words_t *words, wh_real_t value, int digits) {
+    if (put_special(words, value)) {
+        return;
+    }
+    fixed_t fixed = to_fixed(wh_real_abs(value));
+    const int decimals = decimals_for(fixed, digits);
+    uint64_t unit = power_of_ten(decimals);
+    uint64_t shown = round_decimals(&fixed, decimals);
+    while (unit > 1 && shown % 10 == 0) {
+        shown /= 10;
+        unit /= 10;
+    }
+    if (value < 0) {
+        put_character(words, '-');
+    }
+    put_natural(words, fixed.whole);
+    put_decimals(words, shown, unit);
+}
