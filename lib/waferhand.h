@@ -44,6 +44,8 @@
 #include "sim/physics.h"
 #include "sim/slice.h"
 #include "sim/simulator.h"
+#include "sim/played.h"
+#include "sim/snapshot.h"
 /* clang-format on */
 
 #endif
