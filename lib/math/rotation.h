@@ -30,13 +30,14 @@
  *   WH_STATUS_NOT_FINITE
  *   WH_STATUS_NOT_A_ROTATION  further off than WH_ROTATION_MENDABLE, or it mirrors (det R < 0)
  * Cost: five products of matrices at most. */
-wh_status_t wh_rotation_mend(wh_mat3_t *R);
+wh_status_t wh_rotation_mend(wh_mat3_t *R) WH_SYMBOL(wh_rotation_mend);
 
 /* The rotation of the quaternion w + x i + y j + z k, which need not be of unit length: q and -q are the same
  * rotation. (1, 0, 0, 0) is no turn, (cos(a/2), 0, 0, sin(a/2)) a turn by a about z, counter-clockwise seen
  * from above. Mind the order: some write w last. Errors, *R then unchanged: WH_STATUS_NULL_ARGUMENT,
  * WH_STATUS_NOT_FINITE, WH_STATUS_NOT_A_ROTATION if w^2 + x^2 + y^2 + z^2 is further from 1 than
  * WH_ROTATION_MENDABLE. Cost: about 20 products and a division. */
-wh_status_t wh_rotation_from_quaternion(wh_mat3_t *R, wh_real_t w, wh_real_t x, wh_real_t y, wh_real_t z);
+wh_status_t wh_rotation_from_quaternion(wh_mat3_t *R, wh_real_t w, wh_real_t x, wh_real_t y, wh_real_t z)
+    WH_SYMBOL(wh_rotation_from_quaternion);
 
 #endif

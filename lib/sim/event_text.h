@@ -13,7 +13,7 @@
 #define WH_EVENT_TEXT_SIZE 640
 
 /* Of what a name is asked for. */
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_NAME_WAFER,
     WH_NAME_GRIPPER,
     WH_NAME_PART /* of the collision world */
@@ -33,11 +33,12 @@ typedef struct {
 /* Writes the whole text, without a full stop or a line end. Returns its length without the terminator; if that
  * is not below `size`, the text is cut off. `buffer` always ends with a terminator, unless `size` is 0.
  * `event` is not null; what its indices name need not exist. Cost: a few microseconds. */
-size_t wh_event_text(const wh_event_t *event, const wh_event_names_t *names, char *buffer, size_t size);
+size_t wh_event_text(const wh_event_t *event, const wh_event_names_t *names, char *buffer, size_t size)
+    WH_SYMBOL(wh_event_text);
 
 /* The reasons alone, one by one, from 0: of a near miss each condition that failed, of other events at most
  * one. Returns the length as wh_event_text does; 0, with an empty text, if there is no such reason. */
 size_t wh_event_reason(const wh_event_t *event, const wh_event_names_t *names, size_t index, char *buffer,
-                       size_t size);
+                       size_t size) WH_SYMBOL(wh_event_reason);
 
 #endif

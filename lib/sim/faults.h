@@ -108,7 +108,8 @@ bool wh_fault_is_of_wafer(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_wafer);
  *     physics.faults[0] = wh_fault_make(WH_FAULT_NO_VACUUM, 0, 0, 1, WH_FAULT_FOREVER);
  *     physics.fault_count = 1;
  */
-wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, int64_t from, int64_t until);
+wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, int64_t from, int64_t until)
+    WH_SYMBOL(wh_fault_make);
 
 /* WH_OK. WH_STATUS_OUT_OF_RANGE, WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION for a fault that a cell
  * with these counts cannot have. */

@@ -68,10 +68,11 @@ typedef struct {
  * `run` and the arrays must outlive the player. Returns player->status: what wh_track_init, wh_simulator_init
  * and wh_simulator_set_physics refuse; WH_STATUS_BAD_CAPACITY for other counts than the run's;
  * WH_STATUS_NULL_ARGUMENT. */
-wh_status_t wh_player_init(wh_player_t *player, const wh_played_t *run, const wh_grasp_storage_t *storage);
+wh_status_t wh_player_init(wh_player_t *player, const wh_played_t *run, const wh_grasp_storage_t *storage)
+    WH_SYMBOL(wh_player_init);
 
 /* Plays one slice. False if there was none: the run is over, or player->status says what was refused. An observer
  * may be set in player->simulator before the first. Cost: wh_track_next and wh_simulator_step. */
-bool wh_player_next(wh_player_t *player);
+bool wh_player_next(wh_player_t *player) WH_SYMBOL(wh_player_next);
 
 #endif

@@ -37,16 +37,17 @@
  * original; set it anew. Refused, everything unchanged: null pointers; other counts than the table's, or too
  * few buckets but not 0 (WH_STATUS_BAD_CAPACITY); wafers and grippers that wh_grasp_restore refuses, with its
  * status. Cost: linear in wafers and grippers. */
-wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storage_t *storage);
+wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storage_t *storage)
+    WH_SYMBOL(wh_simulator_relink);
 
 /* How many bytes wh_simulator_save writes now, at most WH_SNAPSHOT_SIZE. Faults that were brought add to it. */
-size_t wh_simulator_saved_size(const wh_simulator_t *simulator);
+size_t wh_simulator_saved_size(const wh_simulator_t *simulator) WH_SYMBOL(wh_simulator_saved_size);
 
 /* Writes a snapshot into bytes[0 .. capacity - 1], and its length into *size. Refused, nothing written:
  * WH_STATUS_NULL_ARGUMENT, or WH_STATUS_BAD_CAPACITY for less room than wh_simulator_saved_size. Cost: a few
  * nanoseconds a byte; 1 kB of stack. */
-wh_status_t wh_simulator_save(const wh_simulator_t *simulator, uint8_t bytes[], size_t capacity,
-                              size_t *size);
+wh_status_t wh_simulator_save(const wh_simulator_t *simulator, uint8_t bytes[], size_t capacity, size_t *size)
+    WH_SYMBOL(wh_simulator_save);
 
 /* Room to work in, the caller's: wh_simulator_load reads the state into it and looks whether it is sound,
  * before the simulator changes. What stands in it does not matter. The arrays have as many entries as the
@@ -69,6 +70,6 @@ typedef struct {
  * the sum at the end right can make any state that a simulator can be in. Cost: as wh_simulator_save, and
  * wh_grasp_restore; 1 kB of stack. */
 wh_status_t wh_simulator_load(wh_simulator_t *simulator, const uint8_t bytes[], size_t size,
-                              wh_snapshot_room_t *room);
+                              wh_snapshot_room_t *room) WH_SYMBOL(wh_simulator_load);
 
 #endif
