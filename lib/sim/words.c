@@ -24,21 +24,39 @@ void wh_words_put(wh_words_t *words, const char *text) {
     }
 }
 
-/* The most digits of a 64-bit number. */
+static uint64_t power_of_ten(int exponent) {
+    uint64_t power = 1;
+    for (; exponent > 0; --exponent) {
+        power *= 10;
+    }
+    return power;
+}
+
+/* The most digits of a 64-bit number, whose highest power of ten has one less. */
 #define DIGITS 20
 
-static void put_natural(wh_words_t *words, uint64_t value) {
-    char digits[DIGITS];
-    size_t count = 0;
-    do {
-        digits[count] = (char)('0' + (char)(value % 10));
-        value /= 10;
+static int count_digits(uint64_t value) {
+    int count = 1;
+    while (count < DIGITS && value >= power_of_ten(count)) {
         ++count;
-    } while (value > 0);
-    while (count > 0) {
-        --count;
-        put_character(words, digits[count]);
     }
+    return count;
+}
+
+/* So many of a number's last digits. By subtraction: small processors divide 64 bits by a function of the compiler's. */
+static void put_digits(wh_words_t *words, uint64_t value, int count) {
+    for (int i = count - 1; i >= 0; --i) {
+        const uint64_t unit = power_of_ten(i);
+        char digit = '0';
+        for (; value >= unit; value -= unit) {
+            ++digit;
+        }
+        put_character(words, digit);
+    }
+}
+
+static void put_natural(wh_words_t *words, uint64_t value) {
+    put_digits(words, value, count_digits(value));
 }
 
 void wh_words_integer(wh_words_t *words, int64_t value) {
@@ -117,29 +135,19 @@ static bool rounds_up(const fixed_t *rest, bool is_odd) {
     return rest->fraction[0] >= half && (beyond || is_odd);
 }
 
-/* The whole number that the decimals make; `fixed->whole` goes up if they round to a whole. */
+/* The first decimals, as one number; `fixed->whole` goes up if they round to a whole. */
 static uint64_t round_decimals(fixed_t *fixed, int decimals) {
     uint64_t digits = 0;
-    uint64_t unit = 1;
     for (int i = 0; i < decimals; ++i) {
         digits = digits * 10 + next_digit(fixed);
-        unit *= 10;
     }
-    const bool is_odd = (decimals > 0 ? digits : fixed->whole) % 2 != 0;
+    const bool is_odd = ((decimals > 0 ? digits : fixed->whole) & 1U) != 0;
     digits += rounds_up(fixed, is_odd) ? 1 : 0;
-    fixed->whole += digits / unit;
-    return digits % unit;
-}
-
-/* The point and the decimals, which `unit` is one more than the largest of. */
-static void put_decimals(wh_words_t *words, uint64_t digits, uint64_t unit) {
-    if (unit > 1) {
-        put_character(words, '.');
+    if (digits == power_of_ten(decimals)) {
+        ++fixed->whole;
+        digits = 0;
     }
-    while (unit > 1) {
-        unit /= 10;
-        put_character(words, (char)('0' + (char)(digits / unit % 10)));
-    }
+    return digits;
 }
 
 /* True if the number has no digits that can be shown: says so. */
@@ -154,54 +162,49 @@ static bool put_special(wh_words_t *words, wh_real_t value) {
     return true;
 }
 
-static uint64_t power_of_ten(int exponent) {
-    uint64_t power = 1;
-    for (; exponent > 0; --exponent) {
-        power *= 10;
-    }
-    return power;
-}
-
-void wh_words_fixed(wh_words_t *words, wh_real_t value, int decimals) {
-    if (put_special(words, value)) {
-        return;
-    }
-    fixed_t fixed = to_fixed(wh_real_abs(value));
+static void put_number(wh_words_t *words, wh_real_t value, fixed_t fixed, int decimals) {
     const uint64_t digits = round_decimals(&fixed, decimals);
     if (value < 0) {
         put_character(words, '-');
     }
     put_natural(words, fixed.whole);
-    put_decimals(words, digits, power_of_ten(decimals));
+    if (decimals > 0) {
+        put_character(words, '.');
+        put_digits(words, digits, decimals);
+    }
+}
+
+void wh_words_fixed(wh_words_t *words, wh_real_t value, int decimals) {
+    if (!put_special(words, value)) {
+        put_number(words, value, to_fixed(wh_real_abs(value)), decimals);
+    }
 }
 
 /* How many decimals it takes to show so many digits that count. */
 static int decimals_for(fixed_t fixed, int digits) {
-    int decimals = digits;
-    for (uint64_t whole = fixed.whole; whole > 0; whole /= 10) {
-        --decimals;
-    }
+    int decimals = fixed.whole > 0 ? digits - count_digits(fixed.whole) : digits;
     while (fixed.whole == 0 && decimals < MOST_DECIMALS && next_digit(&fixed) == 0) {
         ++decimals;
     }
     return decimals < 0 ? 0 : decimals > MOST_DECIMALS ? MOST_DECIMALS : decimals;
 }
 
+/* True if so many decimals say the same as one less. */
+static bool ends_in_zero(fixed_t fixed, int decimals) {
+    fixed_t shorter = fixed;
+    const uint64_t digits = round_decimals(&fixed, decimals);
+    const uint64_t fewer = round_decimals(&shorter, decimals - 1);
+    return fixed.whole == shorter.whole && digits == fewer * 10;
+}
+
 void wh_words_short(wh_words_t *words, wh_real_t value, int digits) {
     if (put_special(words, value)) {
         return;
     }
-    fixed_t fixed = to_fixed(wh_real_abs(value));
-    const int decimals = decimals_for(fixed, digits);
-    uint64_t unit = power_of_ten(decimals);
-    uint64_t shown = round_decimals(&fixed, decimals);
-    while (unit > 1 && shown % 10 == 0) {
-        shown /= 10;
-        unit /= 10;
+    const fixed_t fixed = to_fixed(wh_real_abs(value));
+    int decimals = decimals_for(fixed, digits);
+    while (decimals > 0 && ends_in_zero(fixed, decimals)) {
+        --decimals;
     }
-    if (value < 0) {
-        put_character(words, '-');
-    }
-    put_natural(words, fixed.whole);
-    put_decimals(words, shown, unit);
+    put_number(words, value, fixed, decimals);
 }
