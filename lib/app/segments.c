@@ -21,21 +21,27 @@ typedef struct {
     size_t line_count, line_capacity;
 } writer_t;
 
-/* The file's name up to its first dot as a C identifier: each run of other characters becomes an underscore. */
+static bool is_word(char c) {
+    return isascii((unsigned char)c) && isalnum((unsigned char)c);
+}
+
+/* The file's name up to its first dot, as a C identifier: other characters become underscores. */
 static void name_prefix(writer_t *writer, const char *path) {
     const char *slash = strrchr(path, '/');
     const char *from = slash ? slash + 1 : path;
-    size_t length = isalpha((unsigned char)from[0]) ? 0 : (size_t)sprintf(writer->prefix, "run_");
+    char *prefix = writer->prefix;
+    size_t length = isalpha((unsigned char)from[0]) ? 0 : (size_t)snprintf(prefix, PREFIX_SIZE, "run_");
     for (; *from != '\0' && *from != '.' && length + 1 < PREFIX_SIZE; ++from) {
-        const bool is_word = isascii((unsigned char)*from) && isalnum((unsigned char)*from);
-        if (is_word || (length > 0 && writer->prefix[length - 1] != '_')) {
-            writer->prefix[length++] = is_word ? *from : '_';
+        if (is_word(*from) || prefix[length - 1] != '_') {
+            prefix[length++] = is_word(*from) ? *from : '_';
         }
     }
-    length -= length > 0 && writer->prefix[length - 1] == '_' ? 1 : 0;
-    writer->prefix[length] = '\0';
+    while (prefix[length - 1] == '_') {
+        --length;
+    }
+    prefix[length] = '\0';
     for (size_t i = 0; i <= length; ++i) {
-        writer->upper[i] = (char)toupper((unsigned char)writer->prefix[i]);
+        writer->upper[i] = (char)toupper((unsigned char)prefix[i]);
     }
 }
 
@@ -63,9 +69,10 @@ static void free_lines(writer_t *writer) {
     free(writer->lines);
 }
 
-/* ------------------------------------------------------------------------------------------------- numbers */
+/* ------------------------------------------------------------------------------------------------ numbers */
 
-/* As short as reads back to the same bits; with a point or an exponent, for a whole number would be of another type. */
+/* As short as reads back to the same bits. With a point or an exponent: a whole number would be of another
+ * type. */
 static void write_real(FILE *out, wh_real_t value) {
     char text[40] = "";
     for (int digits = 15; digits <= 17 && (digits == 15 || strtod(text, NULL) != value); ++digits) {
@@ -152,7 +159,7 @@ static void write_in_comment(FILE *out, const char *text) {
     }
 }
 
-/* What asked for the segments that follow: the script's line, and the command as an operator would type it. */
+/* What asked for the segments that follow: the script's line, and the command as an operator types it. */
 static void write_command(const writer_t *writer, int32_t index) {
     const wh_record_t *record = writer->mcs->recorder.record;
     if (!wh_is_index(index, record->command_count)) {
@@ -276,7 +283,7 @@ static void write_wafers(const writer_t *writer) {
             layout->wafer_count, writer->upper, layout->machine.gripper_count);
 }
 
-/* ----------------------------------------------------------------------------------------------- the whole */
+/* ---------------------------------------------------------------------------------------------- the whole */
 
 static void write_config(FILE *out, const wh_grasp_config_t *config) {
     const wh_real_t tolerance[] = {config->tolerance.projz, config->tolerance.projxy,

@@ -19,7 +19,7 @@ typedef struct {
     const wh_event_names_t *names;
 } said_t;
 
-static void put(said_t *said, const char *text) {
+static void put_text(said_t *said, const char *text) {
     wh_words_put(&said->words, text);
 }
 
@@ -37,7 +37,7 @@ static void put_degrees(said_t *said, wh_real_t degrees, bool is_limit) {
     } else {
         put_fixed(said, degrees, 3);
     }
-    put(said, said->names->degree ? said->names->degree : " deg");
+    put_text(said, said->names->degree ? said->names->degree : " deg");
 }
 
 static void put_name(said_t *said, wh_name_kind_t kind, int32_t index) {
@@ -45,24 +45,24 @@ static void put_name(said_t *said, wh_name_kind_t kind, int32_t index) {
     const wh_event_names_t *names = said->names;
     const char *name = names->find ? names->find(names->user, kind, index) : NULL;
     if (name) {
-        put(said, name);
+        put_text(said, name);
     } else if (index == WH_NONE) {
-        put(said, kind == WH_NAME_PART ? "more than can be looked at" : "none");
+        put_text(said, kind == WH_NAME_PART ? "more than can be looked at" : "none");
     } else {
-        put(said, kinds[kind]);
+        put_text(said, kinds[kind]);
         wh_words_integer(&said->words, (int64_t)index + names->first);
     }
 }
 
 static void put_parts(said_t *said, const char *before, const char *after) {
-    put(said, before);
+    put_text(said, before);
     put_name(said, WH_NAME_PART, said->event->parts[0]);
-    put(said, " and ");
+    put_text(said, " and ");
     put_name(said, WH_NAME_PART, said->event->parts[1]);
-    put(said, after);
+    put_text(said, after);
 }
 
-/* ---------------------------------------------------------------------------------------------- near misses */
+/* -------------------------------------------------------------------------------------------- near misses */
 
 /* A condition of the check, and how it reads. */
 typedef struct {
@@ -104,12 +104,12 @@ static condition_t find_condition(const said_t *said, unsigned failed) {
 /* The fewest decimals, at least `least`, with which the difference is not zero. */
 static int decimals_for(wh_real_t difference, int least) {
     int decimals = least;
-    wh_real_t unit = 1;
+    wh_real_t unit = WH_REAL(1);
     for (int i = 0; i < least; ++i) {
-        unit /= 10;
+        unit /= WH_REAL(10);
     }
     while (difference > 0 && difference < unit && decimals < 15) {
-        unit /= 10;
+        unit /= WH_REAL(10);
         ++decimals;
     }
     return decimals;
@@ -118,21 +118,21 @@ static int decimals_for(wh_real_t difference, int least) {
 static void put_condition(said_t *said, unsigned failed) {
     const condition_t condition = find_condition(said, failed);
     const int decimals = decimals_for(-condition.margin, condition.decimals);
-    put(said, condition.name);
+    put_text(said, condition.name);
     put_fixed(said, condition.value, decimals);
-    put(said, " is not ");
-    put(said, condition.relation);
+    put_text(said, " is not ");
+    put_text(said, condition.relation);
     wh_words_short(&said->words, condition.limit, said->names->tolerance ? LIMIT_DIGITS : SHORT_DIGITS);
     if (condition.margin < 0) {
-        put(said, " (by ");
+        put_text(said, " (by ");
         put_fixed(said, -condition.margin, decimals);
-        put(said, condition.unit);
-        put(said, ")");
+        put_text(said, condition.unit);
+        put_text(said, ")");
     } else {
-        put(said, " (it is equal)");
+        put_text(said, " (it is equal)");
     }
     if (failed == WH_FAILED_PLANAR) {
-        put(said, ": tilted by ");
+        put_text(said, ": tilted by ");
         put_degrees(said, wh_deg_from_rad(wh_acos(condition.value)), false);
     }
 }
@@ -141,7 +141,7 @@ static void put_condition(said_t *said, unsigned failed) {
 static void say_failed(said_t *said, size_t index) {
     unsigned rest = said->event->measured.failed & (WH_FAILED_PROJZ | WH_FAILED_PROJXY | WH_FAILED_PLANAR);
     if (rest == 0 && index == 0) {
-        put(said, "ready, but not taken");
+        put_text(said, "ready, but not taken");
     }
     for (; index > 0; --index) {
         rest &= rest - 1;
@@ -151,27 +151,27 @@ static void say_failed(said_t *said, size_t index) {
     }
 }
 
-/* --------------------------------------------------------------------------------------------- other reasons */
+/* ------------------------------------------------------------------------------------------ other reasons */
 
 /* Vacuum, holding, faults on purpose. */
 static void say_of_physics(said_t *said) {
     const wh_event_t *event = said->event;
     switch ((int)event->kind) {
     case WH_EVENT_SLIPPED:
-        put(said, "the motion asks for ");
+        put_text(said, "the motion asks for ");
         put_fixed(said, event->value, 0);
-        put(said, " mm/s^2, the pads carry ");
+        put_text(said, " mm/s^2, the pads carry ");
         put_fixed(said, event->limit, 0);
         break;
     case WH_EVENT_VACUUM_LOST:
         put_fixed(said, 100 * event->value, 0);
-        put(said, " % of the full vacuum, the sensor wants ");
+        put_text(said, " % of the full vacuum, the sensor wants ");
         put_fixed(said, 100 * event->limit, 0);
         break;
     case WH_EVENT_FAULT_ARMED:
     case WH_EVENT_FAULT_CLEARED:
-        put(said, wh_fault_name((wh_fault_kind_t)event->parts[1]));
-        put(said, ", fault ");
+        put_text(said, wh_fault_name((wh_fault_kind_t)event->parts[1]));
+        put_text(said, ", fault ");
         wh_words_integer(&said->words, (int64_t)event->parts[0] + said->names->first);
         break;
     default:
@@ -182,11 +182,11 @@ static void say_of_physics(said_t *said) {
 static void say_place(said_t *said) {
     const wh_vec3_t *at = &said->event->at;
     put_fixed(said, at->x, 3);
-    put(said, ", ");
+    put_text(said, ", ");
     put_fixed(said, at->y, 3);
-    put(said, ", ");
+    put_text(said, ", ");
     put_fixed(said, at->z, 3);
-    put(said, " mm");
+    put_text(said, " mm");
 }
 
 static void say_of_contact(said_t *said) {
@@ -201,9 +201,9 @@ static void say_of_contact(said_t *said) {
     case WH_EVENT_TOO_CLOSE:
         put_parts(said, "", ": ");
         put_fixed(said, said->event->value, 3);
-        put(said, " mm apart (limit ");
+        put_text(said, " mm apart (limit ");
         put_short(said, said->event->limit);
-        put(said, " mm)");
+        put_text(said, " mm)");
         break;
     default:
         say_of_physics(said);
@@ -216,30 +216,30 @@ static void say_of_cell(said_t *said) {
     const wh_event_t *event = said->event;
     switch ((int)event->kind) {
     case WH_EVENT_RELEASED_UNSUPPORTED:
-        put(said, "in no slot, ");
+        put_text(said, "in no slot, ");
         put_fixed(said, event->height, 3);
-        put(said, " mm above what is below");
+        put_text(said, " mm above what is below");
         break;
     case WH_EVENT_SLOT_OCCUPIED:
         put_name(said, WH_NAME_WAFER, event->other);
-        put(said, " lies in that slot");
+        put_text(said, " lies in that slot");
         break;
     case WH_EVENT_PLACED_OFF_CENTRE:
         put_fixed(said, event->value, 3);
-        put(said, " mm beside the centre (limit ");
+        put_text(said, " mm beside the centre (limit ");
         put_short(said, event->limit);
-        put(said, " mm)");
+        put_text(said, " mm)");
         break;
     case WH_EVENT_PLACED_ASKEW:
-        put(said, "tilted by ");
+        put_text(said, "tilted by ");
         put_degrees(said, wh_deg_from_rad(event->value), false);
-        put(said, " (limit ");
+        put_text(said, " (limit ");
         put_degrees(said, wh_deg_from_rad(event->limit), true);
-        put(said, ")");
+        put_text(said, ")");
         break;
     case WH_EVENT_SETTLED:
         put_fixed(said, event->value, 3);
-        put(said, " mm lower");
+        put_text(said, " mm lower");
         break;
     default:
         say_of_contact(said);
@@ -249,32 +249,32 @@ static void say_of_cell(said_t *said) {
 
 static void say_measured(said_t *said) {
     const wh_proximity_t *p = &said->event->measured;
-    put(said, "|dr_proj_z| ");
+    put_text(said, "|dr_proj_z| ");
     put_fixed(said, wh_real_abs(p->dr_proj_z), 3);
-    put(said, " mm, |dr_proj_xy| ");
+    put_text(said, " mm, |dr_proj_xy| ");
     put_fixed(said, p->dr_proj_xy_norm, 3);
-    put(said, " mm, n1_proj_n2 ");
+    put_text(said, " mm, n1_proj_n2 ");
     put_fixed(said, p->n1_proj_n2, 6);
 }
 
 static void say_only_reason(said_t *said) {
     switch ((int)said->event->kind) {
     case WH_EVENT_HANDED_OVER:
-        put(said, "from ");
+        put_text(said, "from ");
         put_name(said, WH_NAME_GRIPPER, said->event->other);
-        put(said, ", ");
+        put_text(said, ", ");
         say_measured(said);
         break;
     case WH_EVENT_PICKED:
         say_measured(said);
         break;
     case WH_EVENT_CONTESTED:
-        put(said, "ready, but ");
+        put_text(said, "ready, but ");
         put_name(said, WH_NAME_GRIPPER, said->event->other);
-        put(said, " holds it");
+        put_text(said, " holds it");
         break;
     case WH_EVENT_BAD_INPUT:
-        put(said, wh_status_text(said->event->status));
+        put_text(said, wh_status_text(said->event->status));
         break;
     default:
         say_of_cell(said);
@@ -292,7 +292,10 @@ static void say_reason(said_t *said, size_t index) {
 
 static said_t begin(const wh_event_t *event, const wh_event_names_t *names, char *buffer, size_t size) {
     static const wh_event_names_t none = {NULL, NULL, 0, NULL, NULL};
-    const said_t said = {wh_words_begin(buffer, size), event, names ? names : &none};
+    said_t said;
+    said.words = wh_words_begin(buffer, size);
+    said.event = event;
+    said.names = names ? names : &none;
     return said;
 }
 
@@ -303,24 +306,24 @@ size_t wh_event_reason(const wh_event_t *event, const wh_event_names_t *names, s
     return said.words.length;
 }
 
-/* -------------------------------------------------------------------------------------------- the whole text */
+/* ----------------------------------------------------------------------------------------- the whole text */
 
 /* The event's name with spaces. */
 static void say_what(said_t *said) {
     for (const char *c = wh_event_name(said->event->kind); *c != '\0'; ++c) {
         const char one[2] = {(char)(*c == '_' ? ' ' : *c), '\0'};
-        put(said, one);
+        put_text(said, one);
     }
 }
 
 static void say_whom(said_t *said) {
     const wh_event_t *event = said->event;
     if (event->wafer != WH_NONE) {
-        put(said, ": ");
+        put_text(said, ": ");
         put_name(said, WH_NAME_WAFER, event->wafer);
     }
     if (event->gripper != WH_NONE) {
-        put(said, event->wafer != WH_NONE ? ", " : ": ");
+        put_text(said, event->wafer != WH_NONE ? ", " : ": ");
         put_name(said, WH_NAME_GRIPPER, event->gripper);
     }
 }
@@ -330,7 +333,7 @@ size_t wh_event_text(const wh_event_t *event, const wh_event_names_t *names, cha
     say_what(&said);
     say_whom(&said);
     for (size_t index = 0; wh_event_reason(event, names, index, NULL, 0) > 0; ++index) {
-        put(&said, index == 0 ? ": " : "; ");
+        put_text(&said, index == 0 ? ": " : "; ");
         say_reason(&said, index);
     }
     return said.words.length;

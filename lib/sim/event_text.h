@@ -30,8 +30,8 @@ typedef struct {
     const char *degree;              /* null: " deg" */
 } wh_event_names_t;
 
-/* Writes the whole text, without a full stop or a line end. Returns its length without the terminator; if that
- * is not below `size`, the text is cut off. `buffer` always ends with a terminator, unless `size` is 0.
+/* Writes the whole text, without a full stop or a line end. Returns its length without the terminator; if
+ * that is not below `size`, the text is cut off. `buffer` always ends with a terminator, unless `size` is 0.
  * `event` is not null; what its indices name need not exist. Cost: a few microseconds. */
 size_t wh_event_text(const wh_event_t *event, const wh_event_names_t *names, char *buffer, size_t size)
     WH_SYMBOL(wh_event_text);

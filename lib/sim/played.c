@@ -2,10 +2,9 @@
 
 #include <string.h>
 
-static wh_status_t check(const wh_player_t *player, const wh_played_t *run,
-                         const wh_grasp_storage_t *storage) {
-    if (!player || !run || !storage || !run->machine || (!run->wafers && run->wafer_count > 0) ||
-        (!storage->wafers && run->wafer_count > 0)) {
+static wh_status_t check_run(const wh_played_t *run, const wh_grasp_storage_t *storage) {
+    const bool lacks_wafers = run->wafer_count > 0 && (!run->wafers || !storage->wafers);
+    if (!run->machine || lacks_wafers) {
         return WH_STATUS_NULL_ARGUMENT;
     }
     const bool fits =
@@ -32,7 +31,7 @@ static wh_status_t set_up(wh_player_t *player, const wh_grasp_storage_t *storage
 }
 
 wh_status_t wh_player_init(wh_player_t *player, const wh_played_t *run, const wh_grasp_storage_t *storage) {
-    const wh_status_t status = check(player, run, storage);
+    const wh_status_t status = player && run && storage ? check_run(run, storage) : WH_STATUS_NULL_ARGUMENT;
     if (status != WH_OK) {
         return status;
     }

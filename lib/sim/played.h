@@ -1,8 +1,8 @@
 /* A run that was played, as `waferhand run SCRIPT --segments FILE` writes it in C, and its player.
  *
- * The file has all that the run needs: machine, vacuum, pads, faults, stations, wafers, and the segments of its
- * motion, under the lines of the script that asked for them. Of motion.h all names begin with motion_, so one
- * program can have several:
+ * The file has all that the run needs: machine, vacuum, pads, faults, stations, wafers, and the segments of
+ * its motion, under the lines of the script that asked for them. Of motion.h all names begin with motion_, so
+ * one program can have several:
  *
  *     static wh_wafer_t wafers[MOTION_WAFERS];
  *     static wh_gripper_t grippers[MOTION_GRIPPERS];
@@ -14,8 +14,7 @@
  *     }
  *     same = player.status == WH_OK && wh_simulator_hash(&player.simulator) == motion_run.hash;
  *
- * Numbers stand there with all their digits, for double; float plays the same run to a hash of its own.
- */
+ * Numbers stand there with all their digits, for double; float plays the same run to a hash of its own. */
 #ifndef WH_SIM_PLAYED_H
 #define WH_SIM_PLAYED_H
 
@@ -64,15 +63,15 @@ typedef struct {
     bool is_moving;        /* a segment is running */
 } wh_player_t;
 
-/* Sets up the run before its first slice: machine, simulator, and storage->wafers as the run begins with them.
- * `run` and the arrays must outlive the player. Returns player->status: what wh_track_init, wh_simulator_init
- * and wh_simulator_set_physics refuse; WH_STATUS_BAD_CAPACITY for other counts than the run's;
- * WH_STATUS_NULL_ARGUMENT. */
+/* Sets up the run before its first slice: machine, simulator, and storage->wafers as the run begins with
+ * them. `run` and the arrays must outlive the player. Returns player->status: what wh_track_init,
+ * wh_simulator_init and wh_simulator_set_physics refuse; WH_STATUS_BAD_CAPACITY for other counts than the
+ * run's; WH_STATUS_NULL_ARGUMENT. */
 wh_status_t wh_player_init(wh_player_t *player, const wh_played_t *run, const wh_grasp_storage_t *storage)
     WH_SYMBOL(wh_player_init);
 
-/* Plays one slice. False if there was none: the run is over, or player->status says what was refused. An observer
- * may be set in player->simulator before the first. Cost: wh_track_next and wh_simulator_step. */
+/* Plays one slice. False if there was none: the run is over, or player->status says what was refused. An
+ * observer may be set in player->simulator before the first. Cost: wh_track_next and wh_simulator_step. */
 bool wh_player_next(wh_player_t *player) WH_SYMBOL(wh_player_next);
 
 #endif

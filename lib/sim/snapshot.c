@@ -5,17 +5,22 @@
 #include "../grasp/restore.h"
 #include "../math/hash.h"
 
-/* ------------------------------------------------------------------------------------------------- in memory */
+/* ---------------------------------------------------------------------------------------------- in memory */
+
+static bool lacks_arrays(const wh_grasp_storage_t *storage) {
+    return (!storage->wafers && storage->wafer_count > 0) ||
+           (!storage->grippers && storage->gripper_count > 0) ||
+           (!storage->buckets && storage->bucket_count > 0);
+}
 
 static wh_status_t check_storage(const wh_grasp_storage_t *ours, const wh_grasp_storage_t *other) {
-    const size_t buckets = wh_grasp_buckets(other->wafer_count, other->gripper_count);
-    if ((!other->wafers && other->wafer_count > 0) || (!other->grippers && other->gripper_count > 0) ||
-        (!other->buckets && other->bucket_count > 0)) {
+    if (lacks_arrays(other)) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    const bool fits = other->wafer_count == ours->wafer_count &&
-                      other->gripper_count == ours->gripper_count &&
-                      (other->bucket_count == 0 || (buckets > 0 && other->bucket_count >= buckets));
+    const size_t buckets = wh_grasp_buckets(other->wafer_count, other->gripper_count);
+    const bool has_room = other->bucket_count == 0 || (buckets > 0 && other->bucket_count >= buckets);
+    const bool fits =
+        other->wafer_count == ours->wafer_count && other->gripper_count == ours->gripper_count && has_room;
     return fits ? WH_OK : WH_STATUS_BAD_CAPACITY;
 }
 
@@ -48,7 +53,7 @@ wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storag
     return status;
 }
 
-/* ----------------------------------------------------------------------------------------------- description */
+/* -------------------------------------------------------------------------------------------- description */
 
 static uint64_t hash_tolerance(uint64_t hash, const wh_tolerance_t *tolerance) {
     hash = wh_hash_real(hash, tolerance->projz);
@@ -100,7 +105,7 @@ static uint64_t describe(const wh_simulator_t *simulator) {
     return wh_hash_word(hash, (uint64_t)storage->gripper_count);
 }
 
-/* ----------------------------------------------------------------------------------- one way in and out */
+/* ------------------------------------------------------------------------------------- one way in and out */
 
 /* Bytes that values go to, or else come from: one function for both ways keeps them alike. */
 typedef struct {
@@ -174,7 +179,7 @@ static void pass_pose(stream_t *stream, wh_pose_t *pose) {
     pass_vector(stream, &pose->r);
 }
 
-/* ------------------------------------------------------------------------------------------------- the parts */
+/* ---------------------------------------------------------------------------------------------- the parts */
 
 static void pass_wafer(stream_t *stream, wh_wafer_t *wafer) {
     pass_pose(stream, &wafer->base_from_wafer);
@@ -254,7 +259,7 @@ static void pass_slot(stream_t *stream, wh_fault_slot_t *slot) {
     slot->phase = stream->is_bad ? WH_FAULT_FREE : (wh_fault_phase_t)phase;
 }
 
-/* ---------------------------------------------------------------------------------------------------- ends */
+/* --------------------------------------------------------------------------------------------------- ends */
 
 #define HEAD_SIZE 16 /* mark, version, number type, description */
 #define SUM_SIZE 8
@@ -293,8 +298,10 @@ static void save_head(stream_t *stream, const wh_simulator_t *simulator) {
     uint64_t version = WH_SNAPSHOT_VERSION;
     uint64_t number = sizeof(wh_real_t);
     uint64_t description = describe(simulator);
-    memcpy(stream->to, mark, sizeof mark);
-    stream->to += sizeof mark;
+    for (size_t i = 0; i < sizeof mark; ++i) {
+        uint64_t letter = mark[i];
+        pass_bytes(stream, &letter, 1);
+    }
     pass_bytes(stream, &version, 1);
     pass_bytes(stream, &number, 1);
     pass_bytes(stream, &description, 8);
@@ -302,45 +309,55 @@ static void save_head(stream_t *stream, const wh_simulator_t *simulator) {
 
 /* Without what the last wafer left behind: equal states have equal bytes. */
 static wh_gripper_t without_leftovers(const wh_gripper_t *from) {
-    wh_gripper_t gripper = *from;
+    wh_gripper_t gripper;
+    gripper = *from;
     if (gripper.wafer == WH_NONE) {
         gripper.gripper_from_wafer = wh_pose_identity();
     }
     if (gripper.approach.wafer == WH_NONE) {
         memset(&gripper.approach, 0, sizeof gripper.approach);
-        gripper.approach.wafer = gripper.approach.holder = WH_NONE;
+        gripper.approach.wafer = WH_NONE;
+        gripper.approach.holder = WH_NONE;
     }
     if (gripper.contest.wafer == WH_NONE) {
         memset(&gripper.contest, 0, sizeof gripper.contest);
-        gripper.contest.wafer = gripper.contest.holder = WH_NONE;
+        gripper.contest.wafer = WH_NONE;
+        gripper.contest.holder = WH_NONE;
     }
     return gripper;
 }
 
 static void save_table(stream_t *stream, const wh_grasp_t *table) {
     uint64_t slice = table->slice;
-    wh_grasp_counters_t counters = table->counters;
+    wh_grasp_counters_t counters;
+    counters = table->counters;
     pass_bytes(stream, &slice, 8);
     pass_counters(stream, &counters);
     for (size_t w = 0; w < table->storage.wafer_count; ++w) {
-        wh_wafer_t wafer = table->storage.wafers[w];
+        wh_wafer_t wafer;
+        wafer = table->storage.wafers[w];
         pass_wafer(stream, &wafer);
     }
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        wh_gripper_t gripper = without_leftovers(&table->storage.grippers[g]);
+        wh_gripper_t gripper;
+        gripper = without_leftovers(&table->storage.grippers[g]);
         pass_gripper(stream, &gripper);
     }
 }
 
 static void save_physics(stream_t *stream, const wh_physics_state_t *physics, size_t gripper_count) {
     for (size_t g = 0; g < gripper_count; ++g) {
-        share_t share = {physics->vacuum[g], physics->carry[g], physics->told[g]};
+        share_t share;
+        share.vacuum = physics->vacuum[g];
+        share.carry = physics->carry[g];
+        share.told = physics->told[g];
         pass_share(stream, &share);
     }
     uint64_t count = physics->faults.count;
     pass_bytes(stream, &count, 4);
     for (size_t i = 0; i < physics->faults.count; ++i) {
-        wh_fault_slot_t slot = physics->faults.slots[i];
+        wh_fault_slot_t slot;
+        slot = physics->faults.slots[i];
         pass_slot(stream, &slot);
     }
 }
@@ -389,10 +406,10 @@ static wh_status_t check_ends(const wh_simulator_t *simulator, const uint8_t byt
     if (bytes[6] != WH_SNAPSHOT_VERSION || bytes[7] != sizeof(wh_real_t)) {
         return WH_STATUS_OTHER_SNAPSHOT;
     }
-    if (read_bytes(bytes + size - SUM_SIZE, SUM_SIZE) != sum_of(bytes, size - SUM_SIZE)) {
+    if (read_bytes(&bytes[size - SUM_SIZE], SUM_SIZE) != sum_of(bytes, size - SUM_SIZE)) {
         return WH_STATUS_DAMAGED;
     }
-    if (read_bytes(bytes + 8, 8) != describe(simulator)) {
+    if (read_bytes(&bytes[8], 8) != describe(simulator)) {
         return WH_STATUS_OTHER_SNAPSHOT;
     }
     return size >= size_with(&simulator->table.storage, 0) ? WH_OK : WH_STATUS_DAMAGED;
@@ -440,18 +457,11 @@ static bool load_state(stream_t *stream, const wh_grasp_storage_t *storage, size
            wh_physics_state_validate(&room->physics, storage->gripper_count, storage->wafer_count) == WH_OK;
 }
 
-wh_status_t wh_simulator_load(wh_simulator_t *simulator, const uint8_t bytes[], size_t size,
-                              wh_snapshot_room_t *room) {
-    if (!simulator || !bytes || !room || (!room->wafers && simulator->table.storage.wafer_count > 0) ||
-        (!room->grippers && simulator->table.storage.gripper_count > 0)) {
-        return WH_STATUS_NULL_ARGUMENT;
-    }
+/* All of it, from bytes whose ends are good. */
+static wh_status_t load(wh_simulator_t *simulator, const uint8_t bytes[], size_t size,
+                        wh_snapshot_room_t *room) {
     wh_grasp_t *table = &simulator->table;
-    const wh_status_t status = check_ends(simulator, bytes, size);
-    if (status != WH_OK) {
-        return status;
-    }
-    stream_t stream = {NULL, bytes + HEAD_SIZE, false};
+    stream_t stream = {NULL, &bytes[HEAD_SIZE], false};
     uint64_t slice = 0;
     wh_grasp_counters_t counters;
     memset(&counters, 0, sizeof counters);
@@ -465,4 +475,17 @@ wh_status_t wh_simulator_load(wh_simulator_t *simulator, const uint8_t bytes[], 
     simulator->physics = room->physics;
     simulator->event_count = 0;
     return WH_OK;
+}
+
+wh_status_t wh_simulator_load(wh_simulator_t *simulator, const uint8_t bytes[], size_t size,
+                              wh_snapshot_room_t *room) {
+    if (!simulator || !bytes || !room) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const wh_grasp_storage_t *storage = &simulator->table.storage;
+    if ((!room->wafers && storage->wafer_count > 0) || (!room->grippers && storage->gripper_count > 0)) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const wh_status_t status = check_ends(simulator, bytes, size);
+    return status == WH_OK ? load(simulator, bytes, size, room) : status;
 }

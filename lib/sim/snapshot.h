@@ -32,15 +32,16 @@
     (84 + (12 * sizeof(wh_real_t) + 4) * (size_t)(wafer_count) +                                             \
      (55 * sizeof(wh_real_t) + 64) * (size_t)(gripper_count) + (37 * sizeof(wh_real_t) + 32) * WH_FAULTS)
 
-/* Makes a copied simulator use these arrays, which hold copies of the original's wafers and grippers, and fills
- * the buckets. If the arrays are others than before, `observer` is cleared, for its `user` belongs to the
- * original; set it anew. Refused, everything unchanged: null pointers; other counts than the table's, or too
- * few buckets but not 0 (WH_STATUS_BAD_CAPACITY); wafers and grippers that wh_grasp_restore refuses, with its
- * status. Cost: linear in wafers and grippers. */
+/* Makes a copied simulator use these arrays, which hold copies of the original's wafers and grippers, and
+ * fills the buckets. If the arrays are others than before, `observer` is cleared, for its `user` belongs to
+ * the original; set it anew. Refused, everything unchanged: null pointers; other counts than the table's, or
+ * too few buckets but not 0 (WH_STATUS_BAD_CAPACITY); wafers and grippers that wh_grasp_restore refuses, with
+ * its status. Cost: linear in wafers and grippers. */
 wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storage_t *storage)
     WH_SYMBOL(wh_simulator_relink);
 
-/* How many bytes wh_simulator_save writes now, at most WH_SNAPSHOT_SIZE. Faults that were brought add to it. */
+/* How many bytes wh_simulator_save writes now, at most WH_SNAPSHOT_SIZE. Faults that were brought add to it.
+ */
 size_t wh_simulator_saved_size(const wh_simulator_t *simulator) WH_SYMBOL(wh_simulator_saved_size);
 
 /* Writes a snapshot into bytes[0 .. capacity - 1], and its length into *size. Refused, nothing written:
@@ -58,9 +59,9 @@ typedef struct {
     wh_physics_state_t physics;
 } wh_snapshot_room_t;
 
-/* Sets an initialised simulator to the state that wh_simulator_save wrote, counters included. It must have the
- * same configuration, physics, stations and counts; the faults at the start of its run do not matter. The same
- * commands then yield the same bits as they would have there. Refused, the simulator unchanged:
+/* Sets an initialised simulator to the state that wh_simulator_save wrote, counters included. It must have
+ * the same configuration, physics, stations and counts; the faults at the start of its run do not matter. The
+ * same commands then yield the same bits as they would have there. Refused, the simulator unchanged:
  *   WH_STATUS_NULL_ARGUMENT
  *   WH_STATUS_OTHER_SNAPSHOT  of another version or number type, or of a simulator that differs in any of the
  *                             above

@@ -43,7 +43,8 @@ static int count_digits(uint64_t value) {
     return count;
 }
 
-/* So many of a number's last digits. By subtraction: small processors divide 64 bits by a function of the compiler's. */
+/* So many of a number's last digits. By subtraction: small processors divide 64 bits by a function of the
+ * compiler's. */
 static void put_digits(wh_words_t *words, uint64_t value, int count) {
     for (int i = count - 1; i >= 0; --i) {
         const uint64_t unit = power_of_ten(i);
@@ -63,14 +64,15 @@ void wh_words_integer(wh_words_t *words, int64_t value) {
     if (value < 0) {
         put_character(words, '-');
     }
-    put_natural(words, value < 0 ? 0 - (uint64_t)value : (uint64_t)value);
+    put_natural(words, value < 0 ? ~(uint64_t)value + 1 : (uint64_t)value);
 }
 
 /* -------------------------------------------------------------------------------------------------- reals */
 
-/* A number below 1e15 in magnitude: a whole part, and a fraction in units of 2^-128, the highest 32 bits first. A
- * number has at most 53 bits, so that only one below 2^-75 loses some, and 15 decimals show none of those. */
-#define PARTS 4
+/* A number below 1e15 in magnitude: a whole part, and a fraction in units of 2^-128, the highest 32 bits
+ * first. A number has at most 53 bits, so that only one below 2^-75 loses some, and 15 decimals show none of
+ * those. */
+#define PARTS 4U
 typedef struct {
     uint64_t whole;
     uint32_t fraction[PARTS];
@@ -79,13 +81,20 @@ typedef struct {
 #define TOO_LARGE WH_REAL(1e15)
 #define MOST_DECIMALS 15
 
+/* Of a number's bits: those of the mantissa, and what is added to the exponent. */
+#if defined(WH_FLOAT)
+#define BITS 23
+#define BIAS 127
+#else
+#define BITS 52
+#define BIAS 1023
+#endif
+
 /* Magnitude = mantissa * 2^exponent. */
 static uint64_t take_apart(wh_real_t magnitude, int *exponent) {
 #if defined(WH_FLOAT)
-    enum { BITS = 23, BIAS = 127 };
     uint32_t bits;
 #else
-    enum { BITS = 52, BIAS = 1023 };
     uint64_t bits;
 #endif
     memcpy(&bits, &magnitude, sizeof bits);
@@ -96,22 +105,23 @@ static uint64_t take_apart(wh_real_t magnitude, int *exponent) {
 }
 
 /* Bit `at` counts from the lowest of the fraction; the whole part begins at bit 128. */
-static void set_bit(fixed_t *fixed, int at) {
-    if (at >= 32 * PARTS) {
-        fixed->whole |= UINT64_C(1) << (unsigned)(at - 32 * PARTS);
-    } else if (at >= 0) {
-        fixed->fraction[PARTS - 1 - at / 32] |= UINT32_C(1) << (unsigned)(at % 32);
+static void set_bit(fixed_t *fixed, unsigned at) {
+    if (at >= 32U * PARTS) {
+        fixed->whole |= UINT64_C(1) << (at - 32U * PARTS);
+    } else {
+        fixed->fraction[PARTS - 1U - at / 32U] |= UINT32_C(1) << (at % 32U);
     }
 }
 
 static fixed_t to_fixed(wh_real_t magnitude) {
     fixed_t fixed = {0, {0, 0, 0, 0}};
     int exponent = 0;
-    const uint64_t mantissa = take_apart(magnitude, &exponent);
-    for (int bit = 0; bit < 53; ++bit) {
-        if ((mantissa >> (unsigned)bit & 1U) != 0) {
-            set_bit(&fixed, bit + exponent + 32 * PARTS);
+    uint64_t mantissa = take_apart(magnitude, &exponent);
+    for (int at = exponent + 128; mantissa != 0; ++at) {
+        if ((mantissa & 1U) != 0 && at >= 0) {
+            set_bit(&fixed, (unsigned)at);
         }
+        mantissa >>= 1;
     }
     return fixed;
 }

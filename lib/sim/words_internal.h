@@ -1,11 +1,12 @@
-/* Within sim: text written piece by piece into a caller's buffer, numbers by digits of our own. No stdio, so that a
- * firmware pays for nothing else. */
+/* Within sim: text written piece by piece into a caller's buffer, numbers by digits of our own. No stdio, so
+ * that a firmware pays for nothing else. */
 #ifndef WH_SIM_WORDS_INTERNAL_H
 #define WH_SIM_WORDS_INTERNAL_H
 
 #include "../math/vector.h"
 
-/* `length` counts what was put in, also beyond the room; with room for at least one byte the text always ends. */
+/* `length` counts what was put in, also beyond the room; with room for at least one byte the text always
+ * ends. */
 typedef struct {
     char *buffer;
     size_t size, length;
@@ -19,8 +20,8 @@ void wh_words_put(wh_words_t *words, const char *text) WH_SYMBOL(wh_words_put);
 /* A whole number. */
 void wh_words_integer(wh_words_t *words, int64_t value) WH_SYMBOL(wh_words_integer);
 
-/* `decimals` (0 to 15) digits after the point, rounded as printf's %.*f does: exactly, halves to even. From 1e15
- * on "more than 1e15", with a minus for "less than"; "nan" for what is no number. */
+/* `decimals` (0 to 15) digits after the point, rounded as printf's %.*f does: exactly, halves to even. From
+ * 1e15 on "more than 1e15", with a minus for "less than"; "nan" for what is no number. */
 void wh_words_fixed(wh_words_t *words, wh_real_t value, int decimals) WH_SYMBOL(wh_words_fixed);
 
 /* At most `digits` (1 to 15) digits that count, without zeros at the end: 0.5, 50, 0.00005. */
