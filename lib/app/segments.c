@@ -40,8 +40,11 @@ static void name_prefix(writer_t *writer, const char *path) {
         --length;
     }
     prefix[length] = '\0';
-    for (size_t i = 0; i <= length; ++i) {
-        writer->upper[i] = (char)toupper((unsigned char)prefix[i]);
+}
+
+static void name_constants(writer_t *writer) {
+    for (size_t i = 0; i == 0 || writer->prefix[i - 1] != '\0'; ++i) {
+        writer->upper[i] = (char)toupper((unsigned char)writer->prefix[i]);
     }
 }
 
@@ -370,6 +373,7 @@ int wh_segments_write(const wh_mcs_t *mcs, const char *path) {
     if (mcs->layout) {
         writer_t writer = {.out = output.file, .mcs = mcs};
         name_prefix(&writer, path);
+        name_constants(&writer);
         write_all(&writer);
     }
     return wh_output_commit(&output) ? 0 : -1;
