@@ -3,7 +3,7 @@
  * Columns first, then rows, then print. Numbers of a column share their decimals, so that they line up on the
  * point, and get as many as the column's rule asks for. Nothing is ever cut off: a table wider than the
  * terminal is printed in parts that each begin with the key columns, and rows that would be empty in a later
- * part are left out there. If there is no memory, the program ends.
+ * part are left out there. Ends the program if out of memory.
  */
 #ifndef WH_TEXT_GRID_H
 #define WH_TEXT_GRID_H

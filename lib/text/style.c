@@ -9,6 +9,8 @@
 #include <wchar.h>
 #include <wctype.h>
 
+#include "array.h"
+
 bool wh_style_wants_colour(bool terminal, const char *no_color, const char *term) {
     const bool refused = no_color && no_color[0] != '\0';
     const bool able = term && term[0] != '\0' && strcmp(term, "dumb") != 0;
@@ -75,10 +77,7 @@ static size_t printable_bytes(const char *text) {
 }
 
 char *wh_style_printable(const char *text) {
-    char *copy = malloc(4 * strlen(text) + 1);
-    if (!copy) {
-        abort();
-    }
+    char *copy = wh_memory_need(malloc(4 * strlen(text) + 1));
     char *to = copy;
     while (*text != '\0') {
         const size_t bytes = printable_bytes(text);

@@ -40,8 +40,8 @@ const char *wh_style_arrow(const wh_style_t *style);
 const char *wh_style_degree(const wh_style_t *style);
 
 /* A copy in which every byte that the locale cannot print, line ends and escapes included, stands as \xNN, so
- * that a name or a message can neither break a table nor steer a terminal. The caller frees it. If there is
- * no memory, the program ends. */
+ * that a name or a message can neither break a table nor steer a terminal. The caller frees it. Ends the
+ * program if out of memory. */
 char *wh_style_printable(const char *text);
 
 /* Prints a text so. */

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "array.h"
+
 /* The bytes of the character that a byte begins: 0 for those that begin none. */
 static size_t length_by(unsigned char lead) {
     if (lead < 0x80) {
@@ -65,10 +67,7 @@ void wh_utf8_clip(char *to, size_t size, const char *from) {
 }
 
 char *wh_utf8_repaired(const char *text) {
-    char *repaired = malloc(3 * strlen(text) + 1);
-    if (!repaired) {
-        abort();
-    }
+    char *repaired = wh_memory_need(malloc(3 * strlen(text) + 1));
     char *to = repaired;
     while (*text != '\0') {
         const size_t bytes = wh_utf8_bytes(text);
