@@ -49,7 +49,7 @@ static void fill_event(const wh_printer_t *printer, wh_grid_t *grid, const wh_ev
     }
     if (event->kind == WH_EVENT_HANDED_OVER) {
         wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s %s %s %s", wafer, wh_print_gripper(printer, event->other),
-                     wh_style_arrow(printer->style), gripper);
+                     wh_style_glyph(printer->style, WH_GLYPH_ARROW), gripper);
     } else {
         wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s by %s", wafer, gripper);
     }

@@ -52,7 +52,7 @@ static void print_handover(const wh_printer_t *printer, const wh_event_record_t 
     wh_print_put(printer, wh_print_wafer(printer, event->wafer));
     fputs(", ", printer->out);
     wh_print_put(printer, wh_print_gripper(printer, event->other));
-    fprintf(printer->out, " %s ", wh_style_arrow(printer->style));
+    fprintf(printer->out, " %s ", wh_style_glyph(printer->style, WH_GLYPH_ARROW));
     wh_print_put(printer, wh_print_gripper(printer, event->gripper));
     fprintf(printer->out, ", at %.*f s: isReadyToPick", wh_grid_decimals(&wh_print_seconds, at), at);
     wh_print_put(printer, wh_print_gripper(printer, event->gripper));

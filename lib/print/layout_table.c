@@ -312,12 +312,12 @@ static void print_findings(const listing_t *listing) {
     fputc('\n', listing->frame.out);
     if (listing->check->count == 0) {
         wh_style_print(listing->frame.style, listing->frame.out, WH_INK_GOOD, "%s",
-                       wh_style_tick(listing->frame.style));
+                       wh_style_glyph(listing->frame.style, WH_GLYPH_TICK));
         fputs(" nothing is wrong with it\n", listing->frame.out);
     }
     for (size_t i = 0; i < listing->check->count; ++i) {
         wh_style_print(listing->frame.style, listing->frame.out, WH_INK_BAD, "%s",
-                       wh_style_cross(listing->frame.style));
+                       wh_style_glyph(listing->frame.style, WH_GLYPH_CROSS));
         fputc(' ', listing->frame.out);
         wh_style_put(listing->frame.out, listing->check->findings[i].text);
         fputc('\n', listing->frame.out);
@@ -330,7 +330,8 @@ static void print_heading(const listing_t *listing) {
     wh_style_put(listing->frame.out, layout->path);
     fprintf(listing->frame.out, "\n%zu wafer%s of %g mm, %g mm thick, notch at %g%s\n", layout->wafer_count,
             layout->wafer_count == 1 ? "" : "s", layout->wafer_diameter, layout->wafer_thickness,
-            (double)wh_deg_from_rad((wh_real_t)layout->notch), wh_style_degree(listing->frame.style));
+            (double)wh_deg_from_rad((wh_real_t)layout->notch),
+            wh_style_glyph(listing->frame.style, WH_GLYPH_DEGREE));
     fprintf(listing->frame.out, "tolerance %s: %g mm, %g mm, %.10g; checked %s %g ms\n",
             layout->tolerance_name, (double)limits->projz, (double)limits->projxy, (double)limits->planar,
             layout->grasp.check == WH_CHECK_SWEPT ? "along the whole of each slice of"

@@ -91,7 +91,7 @@ static size_t add_wafers(const wh_printer_t *printer, wh_grid_t *grid, const his
 
 static void say_tilt(const wh_printer_t *printer, size_t wafer, const wh_event_t *pick, double tilt_deg) {
     const bool seated = printer->record->layout->grasp.seat;
-    const char *degree = wh_style_degree(printer->style);
+    const char *degree = wh_style_glyph(printer->style, WH_GLYPH_DEGREE);
     wh_print_put(printer, wh_print_wafer(printer, (int32_t)wafer));
     fprintf(printer->out, seated ? " was at %.3f%s to " : " keeps %.3f%s against ", tilt_deg, degree);
     wh_print_put(printer, wh_print_gripper(printer, pick->gripper));

@@ -50,20 +50,12 @@ void wh_style_print(const wh_style_t *style, FILE *out, wh_ink_t ink, const char
     fputs(on ? "\033[0m" : "", out);
 }
 
-const char *wh_style_tick(const wh_style_t *style) {
-    return style->utf8 ? "✓" : "ok";
-}
-
-const char *wh_style_cross(const wh_style_t *style) {
-    return style->utf8 ? "✗" : "x";
-}
-
-const char *wh_style_arrow(const wh_style_t *style) {
-    return style->utf8 ? "→" : "->";
-}
-
-const char *wh_style_degree(const wh_style_t *style) {
-    return style->utf8 ? "°" : " deg";
+const char *wh_style_glyph(const wh_style_t *style, wh_glyph_t glyph) {
+    static const char *const glyphs[][2] = {[WH_GLYPH_TICK] = {"ok", "✓"},
+                                            [WH_GLYPH_CROSS] = {"x", "✗"},
+                                            [WH_GLYPH_ARROW] = {"->", "→"},
+                                            [WH_GLYPH_DEGREE] = {" deg", "°"}};
+    return glyphs[glyph][style->utf8 ? 1 : 0];
 }
 
 /* How many bytes the printable character at `text` has; 0 if there is none. */
