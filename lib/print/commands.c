@@ -30,12 +30,10 @@ static void link_events(const wh_record_t *record, const chains_t *chains) {
 
 static wh_grid_t *new_grid(const wh_printer_t *printer) {
     wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_number_column(grid, "line", wh_grid_whole);
-    wh_grid_text_column(grid, "command");
-    wh_grid_number_column(grid, "begin s", wh_print_seconds);
-    wh_grid_number_column(grid, "end s", wh_print_seconds);
-    wh_grid_text_column(grid, "result");
-    wh_grid_text_column(grid, "taken");
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "command", NULL);
+    wh_grid_number_columns(grid, wh_print_seconds, "begin s", "end s", NULL);
+    wh_grid_text_columns(grid, "result", "taken", NULL);
     wh_print_measured_columns(printer, grid);
     return grid;
 }

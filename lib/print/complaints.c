@@ -9,12 +9,10 @@ enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_PRINT_MEASURED_CO
 
 static wh_grid_t *new_grid(const wh_printer_t *printer) {
     wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_number_column(grid, "at s", wh_print_seconds);
-    wh_grid_text_column(grid, "what");
-    wh_grid_text_column(grid, "wafer");
-    wh_grid_text_column(grid, "gripper");
+    wh_grid_number_columns(grid, wh_print_seconds, "at s", NULL);
+    wh_grid_text_columns(grid, "what", "wafer", "gripper", NULL);
     wh_print_measured_columns(printer, grid);
-    wh_grid_text_column(grid, "why");
+    wh_grid_text_columns(grid, "why", NULL);
     return grid;
 }
 

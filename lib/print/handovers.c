@@ -7,8 +7,7 @@
 enum { VALUE, MEASURED, LIMIT, MARGIN };
 
 static void add_value(wh_grid_t *grid, const char *name, double value) {
-    wh_grid_row(grid);
-    wh_grid_text(grid, VALUE, WH_INK_PLAIN, "%s", name);
+    wh_grid_named_row(grid, name);
     wh_grid_number(grid, MEASURED, WH_INK_PLAIN, value);
 }
 
@@ -23,10 +22,10 @@ static wh_grid_t *new_grid(const wh_printer_t *printer) {
     const wh_grid_digits_t digits = {6, 6, false, 0};
     const wh_grid_digits_t margin = {6, 6, true, 0};
     wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_text_column(grid, "");
-    wh_grid_number_column(grid, "measured", digits);
-    wh_grid_text_column(grid, "limit");
-    wh_grid_number_column(grid, "margin", margin);
+    wh_grid_text_columns(grid, "", NULL);
+    wh_grid_number_columns(grid, digits, "measured", NULL);
+    wh_grid_text_columns(grid, "limit", NULL);
+    wh_grid_number_columns(grid, margin, "margin", NULL);
     return grid;
 }
 

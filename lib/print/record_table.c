@@ -61,9 +61,9 @@ static void add_unmet(const wh_printer_t *printer, wh_grid_t *grid,
 
 static void print_unmet(const wh_printer_t *printer) {
     wh_grid_t *grid = wh_grid_new(printer->style, 0);
-    wh_grid_text_column(grid, "");
-    wh_grid_number_column(grid, "line", wh_grid_whole);
-    wh_grid_text_column(grid, "expected");
+    wh_grid_text_columns(grid, "", NULL);
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "expected", NULL);
     for (size_t i = 0; i < printer->record->expectation_count; ++i) {
         if (!printer->record->expectations[i].ok) {
             add_unmet(printer, grid, &printer->record->expectations[i]);

@@ -110,22 +110,30 @@ void wh_grid_free(wh_grid_t *grid) {
     free(grid);
 }
 
-static void add_column(wh_grid_t *grid, const char *heading, bool to_right, wh_grid_digits_t digits) {
-    if (grid->column_count < WH_GRID_COLUMNS) {
-        wh_grid_column_t *column = &grid->columns[grid->column_count++];
-        column->heading = wh_style_printable(heading);
-        column->to_right = to_right;
-        column->digits = digits;
-        column->decimals = digits.least;
+static void add_columns(wh_grid_t *grid, bool to_right, wh_grid_digits_t digits, va_list headings) {
+    for (const char *heading = va_arg(headings, char *); heading; heading = va_arg(headings, char *)) {
+        if (grid->column_count < WH_GRID_COLUMNS) {
+            wh_grid_column_t *column = &grid->columns[grid->column_count++];
+            column->heading = wh_style_printable(heading);
+            column->to_right = to_right;
+            column->digits = digits;
+            column->decimals = digits.least;
+        }
     }
 }
 
-void wh_grid_text_column(wh_grid_t *grid, const char *heading) {
-    add_column(grid, heading, false, wh_grid_whole);
+void wh_grid_text_columns(wh_grid_t *grid, ...) {
+    va_list headings;
+    va_start(headings, grid);
+    add_columns(grid, false, wh_grid_whole, headings);
+    va_end(headings);
 }
 
-void wh_grid_number_column(wh_grid_t *grid, const char *heading, wh_grid_digits_t digits) {
-    add_column(grid, heading, true, digits);
+void wh_grid_number_columns(wh_grid_t *grid, wh_grid_digits_t digits, ...) {
+    va_list headings;
+    va_start(headings, digits);
+    add_columns(grid, true, digits, headings);
+    va_end(headings);
 }
 
 void wh_grid_glue(wh_grid_t *grid) {
@@ -136,6 +144,11 @@ void wh_grid_row(wh_grid_t *grid) {
     const size_t bytes = grid->column_count * sizeof *grid->cells;
     grid->cells = wh_array_grow(grid->cells, grid->row_count, &grid->row_capacity, bytes);
     memset(&grid->cells[grid->row_count++ * grid->column_count], 0, bytes);
+}
+
+void wh_grid_named_row(wh_grid_t *grid, const char *name) {
+    wh_grid_row(grid);
+    wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", name);
 }
 
 size_t wh_grid_rows(const wh_grid_t *grid) {
@@ -172,6 +185,12 @@ void wh_grid_number(wh_grid_t *grid, size_t column, wh_ink_t ink, double value) 
     cell->ink = ink;
     if (decimals > grid->columns[column].decimals) {
         grid->columns[column].decimals = decimals;
+    }
+}
+
+void wh_grid_numbers(wh_grid_t *grid, size_t column, const double values[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        wh_grid_number(grid, column + i, WH_INK_PLAIN, values[i]);
     }
 }
 
