@@ -8,6 +8,7 @@
 #include "../record/record.h"
 #include "../report/page.h"
 #include "../report/plots.h"
+#include "../text/array.h"
 #include "../text/output.h"
 #include "../view/scene.h"
 
@@ -54,11 +55,7 @@ wh_mcs_listener_t wh_run_files_listener(wh_signals_t *signals) {
 
 /* A stream whose text the caller frees. */
 static FILE *open_text(char **text, size_t *size) {
-    FILE *out = open_memstream(text, size);
-    if (!out) {
-        abort();
-    }
-    return out;
+    return wh_memory_need(open_memstream(text, size));
 }
 
 /* Writes a word so that a shell reads it back unchanged. */

@@ -10,7 +10,7 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 
-#include "../text/replace.h"
+#include "../text/output.h"
 
 #define READS 16          /* of events in one update: a neighbour may never stop writing */
 #define RESTLESS_LOOKS 64 /* bad looks in a row after which a file that never rests is reported */
@@ -314,5 +314,5 @@ int wh_outputs_write(const char *path, const int32_t *valves, size_t count) {
         text[2 * i] = valves[i] == WH_VALVE_OPEN ? '0' : '1';
         text[2 * i + 1] = '\n';
     }
-    return refused != 0 ? refused : wh_replace(path, text, 2 * count);
+    return refused != 0 ? refused : wh_output_replace(path, text, 2 * count);
 }

@@ -114,8 +114,8 @@ wh_outputs_look_t wh_outputs_parse(const char *text, size_t size, size_t count, 
 /* A finding's name, such as "garbled": a constant string; "unknown" for a number that is none. */
 const char *wh_outputs_finding_name(wh_outputs_finding_t finding);
 
-/* Writes the file, a value a line, by wh_replace (text/replace.h): nobody sees half of it. Returns 0 or an
- * errno: EINVAL for wrong arguments as at open, else that of wh_replace. */
+/* Writes the file, a value a line, by wh_output_replace (text/output.h): nobody sees half of it. Returns 0 or
+ * an errno: EINVAL for wrong arguments as at open, else that of wh_output_replace. */
 int wh_outputs_write(const char *path, const int32_t *valves, size_t count);
 
 #endif

@@ -91,10 +91,7 @@ static void drop_run(wh_log_run_t *run) {
 static void watch_collisions(wh_log_run_t *run) {
     const wh_layout_t *layout = run->cell.layout;
     if (run->cell.is_whole && layout->collision) {
-        run->collision.memory = malloc(wh_collision_bytes(layout));
-        if (!run->collision.memory) {
-            abort();
-        }
+        run->collision.memory = wh_memory_need(malloc(wh_collision_bytes(layout)));
         run->collision.layout = layout;
         wh_robot_forward(layout->machine.robot.home, &run->collision.base_from_effector);
     }

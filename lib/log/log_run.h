@@ -70,7 +70,7 @@ bool wh_log_run_is_log(const char *path);
 
 /* Reads the whole log. False, and the reason in `message`, if the file cannot be read, is no log, or has no
  * such run. A log that is cut off or damaged is read up to there, and a note says so. To be closed in any
- * case. Aborts if out of memory. */
+ * case. Ends the program if out of memory. */
 bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options);
 
 void wh_log_run_close(wh_log_run_t *run);

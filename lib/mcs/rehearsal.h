@@ -42,7 +42,7 @@ typedef struct {
 /* From now on segments are planned, from where the track stands; what was planned before is forgotten. */
 void wh_rehearsal_begin(wh_rehearsal_t *rehearsal, const wh_track_t *track, bool is_judged);
 
-/* Keeps a planned segment. Aborts if out of memory. */
+/* Keeps a planned segment. Ends the program if out of memory. */
 void wh_rehearsal_add(wh_rehearsal_t *rehearsal, const wh_planned_t *planned);
 
 /* Notes in the record how near the axes come to their ends in the segment that the track has skipped, if that

@@ -22,11 +22,11 @@ static const char *clearance(size_t kind) {
 static wh_grid_t *new_grid(const wh_printer_t *printer) {
     wh_grid_t *grid = wh_grid_new(printer->style, 1);
     const wh_grid_digits_t gap = {3, 3, false, 0};
-    wh_grid_text_column(grid, "smallest gap");
-    wh_grid_number_column(grid, "mm", gap);
-    wh_grid_text_column(grid, "limit mm");
-    wh_grid_number_column(grid, "at s", wh_print_seconds);
-    wh_grid_text_column(grid, "between");
+    wh_grid_text_columns(grid, "smallest gap", NULL);
+    wh_grid_number_columns(grid, gap, "mm", NULL);
+    wh_grid_text_columns(grid, "limit mm", NULL);
+    wh_grid_number_columns(grid, wh_print_seconds, "at s", NULL);
+    wh_grid_text_columns(grid, "between", NULL);
     return grid;
 }
 
@@ -44,8 +44,7 @@ static void add_row(const wh_printer_t *printer, wh_grid_t *grid, size_t kind) {
     if (!found && !(limit > 0)) {
         return;
     }
-    wh_grid_row(grid);
-    wh_grid_text(grid, PAIR, WH_INK_PLAIN, "%s", clearance(kind));
+    wh_grid_named_row(grid, clearance(kind));
     if (limit > 0) {
         wh_grid_text(grid, LIMIT, kept ? WH_INK_GOOD : WH_INK_BAD, "%g %s", (double)limit,
                      kept ? "kept" : "not kept");

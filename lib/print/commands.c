@@ -30,12 +30,10 @@ static void link_events(const wh_record_t *record, const chains_t *chains) {
 
 static wh_grid_t *new_grid(const wh_printer_t *printer) {
     wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_number_column(grid, "line", wh_grid_whole);
-    wh_grid_text_column(grid, "command");
-    wh_grid_number_column(grid, "begin s", wh_print_seconds);
-    wh_grid_number_column(grid, "end s", wh_print_seconds);
-    wh_grid_text_column(grid, "result");
-    wh_grid_text_column(grid, "taken");
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "command", NULL);
+    wh_grid_number_columns(grid, wh_print_seconds, "begin s", "end s", NULL);
+    wh_grid_text_columns(grid, "result", "taken", NULL);
     wh_print_measured_columns(printer, grid);
     return grid;
 }
@@ -49,7 +47,7 @@ static void fill_event(const wh_printer_t *printer, wh_grid_t *grid, const wh_ev
     }
     if (event->kind == WH_EVENT_HANDED_OVER) {
         wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s %s %s %s", wafer, wh_print_gripper(printer, event->other),
-                     wh_style_arrow(printer->style), gripper);
+                     wh_style_glyph(printer->style, WH_GLYPH_ARROW), gripper);
     } else {
         wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s by %s", wafer, gripper);
     }

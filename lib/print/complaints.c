@@ -9,12 +9,10 @@ enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_PRINT_MEASURED_CO
 
 static wh_grid_t *new_grid(const wh_printer_t *printer) {
     wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_number_column(grid, "at s", wh_print_seconds);
-    wh_grid_text_column(grid, "what");
-    wh_grid_text_column(grid, "wafer");
-    wh_grid_text_column(grid, "gripper");
+    wh_grid_number_columns(grid, wh_print_seconds, "at s", NULL);
+    wh_grid_text_columns(grid, "what", "wafer", "gripper", NULL);
     wh_print_measured_columns(printer, grid);
-    wh_grid_text_column(grid, "why");
+    wh_grid_text_columns(grid, "why", NULL);
     return grid;
 }
 
@@ -71,7 +69,7 @@ static void say_condition(const wh_printer_t *printer, wh_grid_t *grid, const co
     describe_excess(excess, sizeof excess, condition, decimals);
     if (condition->bit == WH_FAILED_PLANAR) {
         snprintf(tilt, sizeof tilt, ": tilted by %.3f%s", wh_print_tilt_deg(condition->value),
-                 wh_style_degree(printer->style));
+                 wh_style_glyph(printer->style, WH_GLYPH_DEGREE));
     }
     wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s %.*f is not %s %s (%s)%s", condition->name, decimals,
                  condition->value, condition->relation, limit, excess, tilt);
@@ -148,8 +146,8 @@ static void say_of_cell(const wh_printer_t *printer, wh_grid_t *grid, const wh_e
         break;
     case WH_EVENT_PLACED_ASKEW:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "tilted by %.3f%s (limit %g%s)", wh_deg_from_rad(event->value),
-                     wh_style_degree(printer->style), wh_deg_from_rad(event->limit),
-                     wh_style_degree(printer->style));
+                     wh_style_glyph(printer->style, WH_GLYPH_DEGREE), wh_deg_from_rad(event->limit),
+                     wh_style_glyph(printer->style, WH_GLYPH_DEGREE));
         break;
     default:
         say_physics(grid, event);

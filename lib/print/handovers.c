@@ -7,8 +7,7 @@
 enum { VALUE, MEASURED, LIMIT, MARGIN };
 
 static void add_value(wh_grid_t *grid, const char *name, double value) {
-    wh_grid_row(grid);
-    wh_grid_text(grid, VALUE, WH_INK_PLAIN, "%s", name);
+    wh_grid_named_row(grid, name);
     wh_grid_number(grid, MEASURED, WH_INK_PLAIN, value);
 }
 
@@ -23,10 +22,10 @@ static wh_grid_t *new_grid(const wh_printer_t *printer) {
     const wh_grid_digits_t digits = {6, 6, false, 0};
     const wh_grid_digits_t margin = {6, 6, true, 0};
     wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_text_column(grid, "");
-    wh_grid_number_column(grid, "measured", digits);
-    wh_grid_text_column(grid, "limit");
-    wh_grid_number_column(grid, "margin", margin);
+    wh_grid_text_columns(grid, "", NULL);
+    wh_grid_number_columns(grid, digits, "measured", NULL);
+    wh_grid_text_columns(grid, "limit", NULL);
+    wh_grid_number_columns(grid, margin, "margin", NULL);
     return grid;
 }
 
@@ -52,7 +51,7 @@ static void print_handover(const wh_printer_t *printer, const wh_event_record_t 
     wh_print_put(printer, wh_print_wafer(printer, event->wafer));
     fputs(", ", printer->out);
     wh_print_put(printer, wh_print_gripper(printer, event->other));
-    fprintf(printer->out, " %s ", wh_style_arrow(printer->style));
+    fprintf(printer->out, " %s ", wh_style_glyph(printer->style, WH_GLYPH_ARROW));
     wh_print_put(printer, wh_print_gripper(printer, event->gripper));
     fprintf(printer->out, ", at %.*f s: isReadyToPick", wh_grid_decimals(&wh_print_seconds, at), at);
     wh_print_put(printer, wh_print_gripper(printer, event->gripper));

@@ -92,7 +92,7 @@ static void limited_column(const wh_printer_t *printer, wh_grid_t *grid, const c
     const wh_grid_digits_t digits = {decimals, decimals, printer->record->layout != NULL, limit};
     wh_print_limit(number, limit);
     snprintf(heading, sizeof heading, "%s %s %s", value, relation, number);
-    wh_grid_number_column(grid, printer->record->layout ? heading : value, digits);
+    wh_grid_number_columns(grid, digits, printer->record->layout ? heading : value, NULL);
 }
 
 void wh_print_measured_columns(const wh_printer_t *printer, wh_grid_t *grid) {
@@ -101,7 +101,7 @@ void wh_print_measured_columns(const wh_printer_t *printer, wh_grid_t *grid) {
     const wh_tolerance_t *limits = layout ? &layout->grasp.tolerance : &unknown;
     const wh_grid_digits_t rim = {4, 4, false, 0};
     limited_column(printer, grid, "|dr_proj_z|", "<", (double)limits->projz, 4);
-    wh_grid_number_column(grid, "rim gap", rim);
+    wh_grid_number_columns(grid, rim, "rim gap", NULL);
     wh_grid_glue(grid);
     limited_column(printer, grid, "|dr_proj_xy|", "<", (double)limits->projxy, 4);
     wh_grid_glue(grid);

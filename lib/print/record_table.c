@@ -18,7 +18,7 @@ static void print_tolerance(const wh_printer_t *printer) {
     fprintf(printer->out,
             "tolerance %s: |dr_proj_z| < %s mm, |dr_proj_xy| < %s mm, n1_proj_n2 > %s (%.2f%s)\n",
             layout->tolerance_name, projz, projxy, planar, wh_print_tilt_deg((double)limits->planar),
-            wh_style_degree(printer->style));
+            wh_style_glyph(printer->style, WH_GLYPH_DEGREE));
     fprintf(printer->out, "checked %s %g ms; wafers %s\n",
             layout->grasp.check == WH_CHECK_SWEPT ? "along the whole of each slice of"
                                                   : "once a slice, every",
@@ -52,7 +52,7 @@ static size_t count_unmet(const wh_record_t *record) {
 static void add_unmet(const wh_printer_t *printer, wh_grid_t *grid,
                       const wh_expectation_record_t *expectation) {
     wh_grid_row(grid);
-    wh_grid_text(grid, MARK, WH_INK_BAD, "%s", wh_style_cross(printer->style));
+    wh_grid_text(grid, MARK, WH_INK_BAD, "%s", wh_style_glyph(printer->style, WH_GLYPH_CROSS));
     if (expectation->line > 0) {
         wh_grid_number(grid, LINE, WH_INK_DIM, expectation->line);
     }
@@ -61,9 +61,9 @@ static void add_unmet(const wh_printer_t *printer, wh_grid_t *grid,
 
 static void print_unmet(const wh_printer_t *printer) {
     wh_grid_t *grid = wh_grid_new(printer->style, 0);
-    wh_grid_text_column(grid, "");
-    wh_grid_number_column(grid, "line", wh_grid_whole);
-    wh_grid_text_column(grid, "expected");
+    wh_grid_text_columns(grid, "", NULL);
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "expected", NULL);
     for (size_t i = 0; i < printer->record->expectation_count; ++i) {
         if (!printer->record->expectations[i].ok) {
             add_unmet(printer, grid, &printer->record->expectations[i]);
@@ -83,7 +83,8 @@ static void print_expectations(const wh_printer_t *printer) {
         print_unmet(printer);
     }
     if (unmet < count) {
-        wh_style_print(printer->style, printer->out, WH_INK_GOOD, "%s", wh_style_tick(printer->style));
+        wh_style_print(printer->style, printer->out, WH_INK_GOOD, "%s",
+                       wh_style_glyph(printer->style, WH_GLYPH_TICK));
         fprintf(printer->out, " %s%zu met\n", unmet == 0 && count > 1 ? "all " : "", count - unmet);
     }
 }

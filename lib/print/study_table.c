@@ -41,8 +41,8 @@ double wh_study_nominal(const wh_study_wafer_t *wafer, size_t q) {
 /* -------------------------------------------------------------------------------------------------- rates */
 
 static void rate_columns(wh_grid_t *grid) {
-    wh_grid_number_column(grid, "%", percent);
-    wh_grid_text_column(grid, "95 %");
+    wh_grid_number_columns(grid, percent, "%", NULL);
+    wh_grid_text_columns(grid, "95 %", NULL);
 }
 
 /* In percent, with its interval. */
@@ -60,11 +60,11 @@ static void put_trial(wh_grid_t *grid, size_t column, uint64_t trial) {
 
 static void print_expectations(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 2);
-    wh_grid_number_column(grid, "line", wh_grid_whole);
-    wh_grid_text_column(grid, "expected");
-    wh_grid_number_column(grid, "met", wh_grid_whole);
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "expected", NULL);
+    wh_grid_number_columns(grid, wh_grid_whole, "met", NULL);
     rate_columns(grid);
-    wh_grid_number_column(grid, "first missed", wh_grid_whole);
+    wh_grid_number_columns(grid, wh_grid_whole, "first missed", NULL);
     for (size_t i = 0; i < table->tally->expectations.count; ++i) {
         const wh_tally_row_t *row = &table->tally->expectations.rows[i];
         char expected[200];
@@ -81,12 +81,11 @@ static void print_expectations(const table_t *table) {
 
 static void print_errors(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 2);
-    wh_grid_number_column(grid, "line", wh_grid_whole);
-    wh_grid_text_column(grid, "command");
-    wh_grid_text_column(grid, "error");
-    wh_grid_number_column(grid, "trials", wh_grid_whole);
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "command", "error", NULL);
+    wh_grid_number_columns(grid, wh_grid_whole, "trials", NULL);
     rate_columns(grid);
-    wh_grid_number_column(grid, "first", wh_grid_whole);
+    wh_grid_number_columns(grid, wh_grid_whole, "first", NULL);
     for (size_t i = 0; i < table->tally->errors.count; ++i) {
         const wh_tally_row_t *row = &table->tally->errors.rows[i];
         wh_grid_row(grid);
@@ -102,10 +101,10 @@ static void print_errors(const table_t *table) {
 
 static void print_events(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 1);
-    wh_grid_text_column(grid, "event");
-    wh_grid_number_column(grid, "trials", wh_grid_whole);
+    wh_grid_text_columns(grid, "event", NULL);
+    wh_grid_number_columns(grid, wh_grid_whole, "trials", NULL);
     rate_columns(grid);
-    wh_grid_number_column(grid, "all in all", wh_grid_whole);
+    wh_grid_number_columns(grid, wh_grid_whole, "all in all", NULL);
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
         const wh_tally_event_t *event = &table->tally->events[kind];
         if (event->trials > 0) {
@@ -153,15 +152,10 @@ static void add_wafer(const table_t *table, wh_grid_t *grid, size_t index) {
 }
 
 static void print_wafers(const table_t *table) {
-    static const char *const headings[] = {"mean", "deviation", "min",    "0.1 %", "5 %",
-                                           "50 %", "95 %",      "99.9 %", "max"};
     wh_grid_t *grid = wh_grid_new(table->frame.style, 3);
-    wh_grid_text_column(grid, "wafer");
-    wh_grid_text_column(grid, "in");
-    wh_grid_text_column(grid, "what");
-    for (size_t i = 0; i < sizeof headings / sizeof headings[0]; ++i) {
-        wh_grid_number_column(grid, headings[i], fine);
-    }
+    wh_grid_text_columns(grid, "wafer", "in", "what", NULL);
+    wh_grid_number_columns(grid, fine, "mean", "deviation", "min", "0.1 %", "5 %", "50 %", "95 %", "99.9 %",
+                           "max", NULL);
     for (size_t w = 0; w < table->tally->wafer_count; ++w) {
         add_wafer(table, grid, w);
     }
@@ -183,9 +177,9 @@ static void print_wafers(const table_t *table) {
 
 static void print_worst(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 1);
-    wh_grid_number_column(grid, "trial", wh_grid_whole);
-    wh_grid_text_column(grid, "result");
-    wh_grid_number_column(grid, "off mm", fine);
+    wh_grid_number_columns(grid, wh_grid_whole, "trial", NULL);
+    wh_grid_text_columns(grid, "result", NULL);
+    wh_grid_number_columns(grid, fine, "off mm", NULL);
     const size_t count =
         table->study->worst < table->tally->worst_count ? table->study->worst : table->tally->worst_count;
     for (size_t i = 0; i < count; ++i) {

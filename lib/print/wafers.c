@@ -5,7 +5,7 @@
 #include "../text/array.h"
 #include "print_internal.h"
 
-enum { NAME, HELD_BY, LIES_IN, DX, DY, DZ, TILT };
+enum { NAME, HELD_BY, LIES_IN, DX };
 
 /* Above this many wafers only those are listed that something happened to. */
 #define LISTED_ALL 30
@@ -40,13 +40,9 @@ static void read_history(const wh_record_t *record, const history_t *history) {
 static wh_grid_t *new_grid(const wh_printer_t *printer) {
     const wh_grid_digits_t tilt = {3, 6, false, 0};
     wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_text_column(grid, "wafer");
-    wh_grid_text_column(grid, "held by");
-    wh_grid_text_column(grid, "lies in");
-    wh_grid_number_column(grid, "dX mm", wh_print_millimetres);
-    wh_grid_number_column(grid, "dY mm", wh_print_millimetres);
-    wh_grid_number_column(grid, "dz mm", wh_print_millimetres);
-    wh_grid_number_column(grid, "tilt deg", tilt);
+    wh_grid_text_columns(grid, "wafer", "held by", "lies in", NULL);
+    wh_grid_number_columns(grid, wh_print_millimetres, "dX mm", "dY mm", "dz mm", NULL);
+    wh_grid_number_columns(grid, tilt, "tilt deg", NULL);
     return grid;
 }
 
@@ -58,16 +54,13 @@ static void fill_place(const wh_printer_t *printer, wh_grid_t *grid, const wh_wa
         return;
     }
     wh_grid_text(grid, LIES_IN, WH_INK_PLAIN, "%s %d", station, (int)place->slot);
-    wh_grid_number(grid, DX, WH_INK_PLAIN, (double)place->dx);
-    wh_grid_number(grid, DY, WH_INK_PLAIN, (double)place->dy);
-    wh_grid_number(grid, DZ, WH_INK_PLAIN, (double)place->dz);
-    wh_grid_number(grid, TILT, WH_INK_PLAIN, (double)wh_deg_from_rad(place->tilt));
+    const double values[] = {place->dx, place->dy, place->dz, wh_deg_from_rad(place->tilt)};
+    wh_grid_numbers(grid, DX, values, 4);
 }
 
 static void add_wafer(const wh_printer_t *printer, wh_grid_t *grid, size_t i) {
     const wh_wafer_record_t *wafer = &printer->record->wafers[i];
-    wh_grid_row(grid);
-    wh_grid_text(grid, NAME, WH_INK_PLAIN, "%s", wh_print_wafer(printer, (int32_t)i));
+    wh_grid_named_row(grid, wh_print_wafer(printer, (int32_t)i));
     if (wafer->holder != WH_NONE) {
         wh_grid_text(grid, HELD_BY, WH_INK_PLAIN, "%s", wh_print_gripper(printer, wafer->holder));
     }
@@ -91,7 +84,7 @@ static size_t add_wafers(const wh_printer_t *printer, wh_grid_t *grid, const his
 
 static void say_tilt(const wh_printer_t *printer, size_t wafer, const wh_event_t *pick, double tilt_deg) {
     const bool seated = printer->record->layout->grasp.seat;
-    const char *degree = wh_style_degree(printer->style);
+    const char *degree = wh_style_glyph(printer->style, WH_GLYPH_DEGREE);
     wh_print_put(printer, wh_print_wafer(printer, (int32_t)wafer));
     fprintf(printer->out, seated ? " was at %.3f%s to " : " keeps %.3f%s against ", tilt_deg, degree);
     wh_print_put(printer, wh_print_gripper(printer, pick->gripper));

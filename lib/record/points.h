@@ -4,7 +4,7 @@
  * If more than `limit` points are not exact, the tolerance is doubled and they are thinned again. So memory
  * is bounded, except for a signal that jumps without end.
  *
- * Host code: aborts if out of memory.
+ * Host code: ends the program if out of memory.
  */
 #ifndef WH_RECORD_POINTS_H
 #define WH_RECORD_POINTS_H

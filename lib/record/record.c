@@ -6,11 +6,7 @@
 #include "../text/array.h"
 
 char *wh_record_text(const char *text) {
-    char *copy = strdup(text);
-    if (!copy) {
-        abort();
-    }
-    return copy;
+    return wh_text_copy(text);
 }
 
 wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s) {

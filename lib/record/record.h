@@ -85,7 +85,7 @@ typedef struct {
     wh_curves_t *curves; /* and how they went over time; null unless checked */
 } wh_record_t;
 
-/* Appending; texts are copied. A program that runs out of memory here aborts. */
+/* Appending; texts are copied. Ends the program if out of memory. */
 wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s);
 void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event);
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "../record/throughput.h"
+#include "../text/array.h"
 #include "../text/utf8.h"
 #include "document_internal.h"
 #include "plots_internal.h"
@@ -46,10 +47,7 @@ static void open_lanes(lanes_t *lanes, wh_plot_t *plot, size_t count) {
     lanes->plot = plot;
     lanes->count = count;
     lanes->above = LEAST_ABOVE;
-    lanes->out = open_memstream(&lanes->tics, &lanes->size);
-    if (!lanes->out) {
-        abort();
-    }
+    lanes->out = wh_memory_need(open_memstream(&lanes->tics, &lanes->size));
 }
 
 /* A lane's height in the plot; the first is the highest. */
@@ -76,7 +74,7 @@ static void begin_lanes(lanes_t *lanes, const wh_plots_t *plots, const char *tit
                                    .above = lanes->above,
                                    .keys_wrap = lanes->above > LEAST_ABOVE};
     if (fclose(lanes->out) != 0) {
-        abort();
+        wh_memory_out();
     }
     lanes->duration = wh_plots_end_s(plots) - wh_plots_begin_s(plots);
     wh_plot_begin(lanes->plot, &frame, title, wh_plots_begin_s(plots), wh_plots_end_s(plots));

@@ -4,19 +4,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "array.h"
 #include "utf8.h"
 
 /* ------------------------------------------------------------------------------------------------- values */
 
 void wh_json_put(json_t *object, const char *key, json_t *value) {
     if (json_object_set_new(object, key, value) != 0) {
-        abort();
+        wh_memory_out();
     }
 }
 
 void wh_json_append(json_t *list, json_t *value) {
     if (json_array_append_new(list, value) != 0) {
-        abort();
+        wh_memory_out();
     }
 }
 

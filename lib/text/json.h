@@ -1,7 +1,7 @@
 /* JSON over jansson: values that are made and printed as a whole, and long lists that are written as they
  * come.
  *
- * If there is no memory for a value, the program ends.
+ * Ends the program if out of memory.
  */
 #ifndef WH_TEXT_JSON_H
 #define WH_TEXT_JSON_H

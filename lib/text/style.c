@@ -9,6 +9,8 @@
 #include <wchar.h>
 #include <wctype.h>
 
+#include "array.h"
+
 bool wh_style_wants_colour(bool terminal, const char *no_color, const char *term) {
     const bool refused = no_color && no_color[0] != '\0';
     const bool able = term && term[0] != '\0' && strcmp(term, "dumb") != 0;
@@ -48,20 +50,12 @@ void wh_style_print(const wh_style_t *style, FILE *out, wh_ink_t ink, const char
     fputs(on ? "\033[0m" : "", out);
 }
 
-const char *wh_style_tick(const wh_style_t *style) {
-    return style->utf8 ? "✓" : "ok";
-}
-
-const char *wh_style_cross(const wh_style_t *style) {
-    return style->utf8 ? "✗" : "x";
-}
-
-const char *wh_style_arrow(const wh_style_t *style) {
-    return style->utf8 ? "→" : "->";
-}
-
-const char *wh_style_degree(const wh_style_t *style) {
-    return style->utf8 ? "°" : " deg";
+const char *wh_style_glyph(const wh_style_t *style, wh_glyph_t glyph) {
+    static const char *const glyphs[][2] = {[WH_GLYPH_TICK] = {"ok", "✓"},
+                                            [WH_GLYPH_CROSS] = {"x", "✗"},
+                                            [WH_GLYPH_ARROW] = {"->", "→"},
+                                            [WH_GLYPH_DEGREE] = {" deg", "°"}};
+    return glyphs[glyph][style->utf8 ? 1 : 0];
 }
 
 /* How many bytes the printable character at `text` has; 0 if there is none. */
@@ -75,10 +69,7 @@ static size_t printable_bytes(const char *text) {
 }
 
 char *wh_style_printable(const char *text) {
-    char *copy = malloc(4 * strlen(text) + 1);
-    if (!copy) {
-        abort();
-    }
+    char *copy = wh_memory_need(malloc(4 * strlen(text) + 1));
     char *to = copy;
     while (*text != '\0') {
         const size_t bytes = printable_bytes(text);

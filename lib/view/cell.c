@@ -99,7 +99,7 @@ static char *path_of(const char *folder, const char *name) {
     }
     char *path = NULL;
     if (asprintf(&path, "%s%s%s", folder, name ? "::" : "", written) < 0) {
-        abort();
+        wh_memory_out();
     }
     return path;
 }

@@ -28,7 +28,7 @@ void wh_gltf_open(wh_gltf_t *gltf) {
 
 static size_t append(json_t *list, json_t *value) {
     if (!value || json_array_append_new(list, value) != 0) {
-        abort();
+        wh_memory_out();
     }
     return json_array_size(list) - 1;
 }

@@ -1,7 +1,7 @@
 /* A glTF 2.0 asset being built: accessors, meshes, materials, nodes and one animation over one buffer. Meshes
  * and poses come in mm and are written in m.
  *
- * Host code: aborts if out of memory.
+ * Host code: ends the program if out of memory.
  */
 #ifndef WH_VIEW_GLTF_H
 #define WH_VIEW_GLTF_H
