@@ -119,8 +119,7 @@ typedef struct {
 
 static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *layout,
                         const arguments_t *arguments) {
-    static char name[] = "sim";
-    const wh_status_t status = wh_sim_process_open(&served->simulation, node, layout, wh_say_line, name);
+    const wh_status_t status = wh_sim_process_open(&served->simulation, node, layout, true);
     if (status != WH_OK) {
         fprintf(stderr, "%s: %s (expected at most %d wafers, and a cell that fits one datagram)\n",
                 layout->path, wh_status_text(status), WH_LINK_WAFERS);
@@ -167,9 +166,10 @@ static int run(arguments_t *arguments) {
     }
     wh_node_t node;
     wh_catch_signals();
-    if (!wh_open_node(&node, arguments->url, arguments->record)) {
+    if (!wh_node_open(&node, arguments->url, arguments->record)) {
         return WH_EXIT_USAGE;
     }
+    node.speaker = "sim";
     const int status = serve(&node, layout, arguments);
     wh_node_close(&node);
     return status;
