@@ -69,10 +69,10 @@ static void update_valves(wh_outputs_t *outputs, wh_sim_process_t *simulation) {
  * others can read it. */
 static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     struct pollfd ready[] = {{.fd = wh_node_descriptor(node), .events = POLLIN},
-                             {.fd = outputs->count > 0 ? wh_outputs_fd(outputs) : -1, .events = POLLIN}};
+                             {.fd = outputs->count > 0 ? outputs->fd : -1, .events = POLLIN}};
     int64_t wait_ms = 100;
     if (outputs->count > 0) {
-        const int64_t due_ms = (wh_outputs_due(outputs) - wh_node_clock_us()) / 1000 + 1;
+        const int64_t due_ms = (outputs->due_us - wh_node_clock_us()) / 1000 + 1;
         wait_ms = due_ms < wait_ms ? due_ms : wait_ms;
     }
     if (poll(ready, 2, wait_ms > 0 ? (int)wait_ms : 0) == 0) {

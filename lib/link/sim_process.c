@@ -13,7 +13,7 @@ static void publish(wh_sim_process_t *simulation, const char *channel, const voi
 }
 
 static void tell_cell(wh_sim_process_t *simulation) {
-    waferhand_cell *cell = &simulation->cell;
+    waferhand_cell *cell = &simulation->cell.message;
     cell->utime = simulation->server.state.utime;
     cell->seq = simulation->server.seq;
     cell->run = simulation->server.identity.run;
@@ -151,8 +151,7 @@ wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, c
     simulation->node = node;
     if (wh_protocol_server_open(&simulation->server, layout) != WH_OK ||
         !wh_link_cell_from_layout(layout, &simulation->server.identity, &simulation->cell) ||
-        waferhand_cell_encoded_size(&simulation->cell) > WH_LINK_DATAGRAM) {
-        wh_link_cell_free(&simulation->cell);
+        waferhand_cell_encoded_size(&simulation->cell.message) > WH_LINK_DATAGRAM) {
         return WH_STATUS_BAD_CAPACITY;
     }
     const bool heard = !listens || (wh_node_subscribe(node, WH_CHANNEL_COMMAND, on_command, simulation) &&
@@ -190,5 +189,4 @@ void wh_sim_process_tick(wh_sim_process_t *simulation) {
 
 void wh_sim_process_close(wh_sim_process_t *simulation) {
     wh_protocol_server_close(&simulation->server);
-    wh_link_cell_free(&simulation->cell);
 }

@@ -24,7 +24,7 @@ typedef struct {
 typedef struct {
     wh_node_t *node;
     wh_protocol_server_t server;
-    waferhand_cell cell;
+    wh_link_cell_t cell;
     const int32_t *valves; /* from outputs.txt; null: the commands' own */
     int64_t last_command_us, last_cell_us, last_proximity_us;
     bool running;       /* a run has begun and is not over */
