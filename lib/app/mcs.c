@@ -23,9 +23,9 @@ static const wh_option_t options[] = {
     {"record", 0, "FILE", "Write all messages into an LCM event log", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, link.record)},
     {"rate", 0, "FACTOR", "Run free at this factor of real time instead of in lockstep", WH_OPTION_REAL,
-     .variable = offsetof(arguments_t, link.rate), 1e-3, 1e3, "a number from 0.001 to 1000"},
+     .variable = offsetof(arguments_t, link.client.rate), 1e-3, 1e3, "a number from 0.001 to 1000"},
     {"outputs", 0, "FILE", "Write the valves to this file, too, one value per gripper", WH_OPTION_TEXT,
-     .variable = offsetof(arguments_t, link.outputs)},
+     .variable = offsetof(arguments_t, link.client.outputs)},
     {0}};
 
 static const wh_option_table_t tables[] = {{options, 0, NULL},
@@ -158,7 +158,7 @@ static int run_linked(arguments_t *arguments) {
 }
 
 int wh_app_mcs(int argc, char **argv) {
-    arguments_t arguments = {0};
+    arguments_t arguments = {.link = {.client = {.stop = &wh_stop_requested}}};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
     const int status = run_linked(&arguments);

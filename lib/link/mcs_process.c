@@ -138,7 +138,7 @@ static void on_request(void *user, const void *data, size_t size) {
         ++control->garbage;
         if (!control->named_garbage) {
             control->named_garbage = true;
-            wh_node_say(control->options.say, control->options.user,
+            wh_node_say(control->node,
                         WH_CHANNEL_REQUEST ": a datagram is no such message: dropped, like all that follow");
         }
         return;
@@ -188,20 +188,12 @@ static void tell_progress(void *user) {
 
 static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
     wh_mcs_process_t *control = user;
-    const wh_protocol_client_options_t options = {.layout = mcs->layout,
-                                                  .outputs = control->options.outputs,
-                                                  .rate = control->options.rate,
-                                                  .stop = control->options.stop,
-                                                  .say = control->options.say,
-                                                  .user = control->options.user,
-                                                  .tick = tell_progress,
-                                                  .tick_user = control};
     if (mcs->layout->wafer_count > WH_LINK_WAFERS) {
-        wh_node_say(control->options.say, control->options.user,
-                    "the layout has more wafers than a message carries (256)");
+        wh_node_say(control->node, "the layout has more wafers than a message carries (256)");
         return NULL;
     }
-    control->connected = wh_protocol_client_open(&control->client, control->node, &options);
+    control->connected =
+        wh_protocol_client_open(&control->client, control->node, mcs->layout, &control->options);
     return control->connected ? &control->client.link : NULL;
 }
 
@@ -213,10 +205,12 @@ static void on_cell(void *user, const void *data, size_t size) {
 }
 
 bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
-                         const wh_mcs_process_options_t *options) {
+                         const wh_protocol_client_options_t *options) {
     memset(control, 0, sizeof *control);
     control->node = node;
     control->options = *options;
+    control->options.tick = tell_progress;
+    control->options.user = control;
     return wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, control) &&
            wh_node_subscribe(node, WH_CHANNEL_CELL, on_cell, control);
 }
@@ -239,13 +233,6 @@ void wh_mcs_process_idle(wh_mcs_process_t *control) {
         (void)wh_node_drain(control->node, 64);
     }
     tell(control, control->request, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
-}
-
-void wh_mcs_process_set_slice(wh_mcs_process_t *control, const wh_link_identity_t *identity,
-                              const wh_command_t *command) {
-    control->identity = *identity;
-    control->utime = command->utime;
-    control->seq = command->seq;
 }
 
 void wh_mcs_process_finish(wh_mcs_process_t *control) {

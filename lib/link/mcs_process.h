@@ -28,22 +28,15 @@ typedef struct {
     char text[400];
 } wh_mcs_process_answer_t;
 
-typedef struct {
-    double rate;         /* 0: lockstep */
-    const char *outputs; /* write the valves to this file, too; may be null */
-    const volatile sig_atomic_t *stop;
-    void (*say)(void *user, const char *text);
-    void *user;
-} wh_mcs_process_options_t;
-
 /* Must not be moved once opened. */
 typedef struct {
     wh_node_t *node;
-    wh_mcs_process_options_t options;
+    wh_protocol_client_options_t options;
     wh_protocol_client_t client;
     bool connected;
-    wh_sandbox_t *sandbox;       /* of the run or session; null before its first command */
-    wh_link_identity_t identity; /* of the run; and where it is: */
+    wh_sandbox_t *sandbox; /* of the run or session; null before its first command */
+    wh_link_identity_t
+        identity; /* of the run; and where it is. Without a client, to be set for each slice: */
     int64_t utime, seq;
     char running[200]; /* the command that goes on; empty: none */
     int running_line;
@@ -58,8 +51,10 @@ typedef struct {
     uint8_t encoded[8192];
 } wh_mcs_process_t;
 
-/* Subscribes to requests. False when LCM has no room. */
-bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node, const wh_mcs_process_options_t *options);
+/* Subscribes to requests. The options are the client's; `tick` and `user` are set here. False when LCM has no
+ * room. */
+bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
+                         const wh_protocol_client_options_t *options);
 
 /* The partners to hand to a run or a session. */
 wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control);
@@ -74,10 +69,6 @@ bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LI
 
 /* Answers the request being executed: error is 0 or its number, text what an operator would read. */
 void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *line, const char *text);
-
-/* Without a client of its own: the run and the slice that what is told belongs to. */
-void wh_mcs_process_set_slice(wh_mcs_process_t *control, const wh_link_identity_t *identity,
-                              const wh_command_t *command);
 
 /* Tells that the run is over. */
 void wh_mcs_process_finish(wh_mcs_process_t *control);

@@ -1,5 +1,6 @@
 #include "node.h"
 
+#include <errno.h>
 #include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -21,17 +22,25 @@ int64_t wh_node_clock_us(void) {
     return now_us(CLOCK_MONOTONIC);
 }
 
-bool wh_node_open(wh_node_t *node, const char *url) {
+bool wh_node_open(wh_node_t *node, const char *url, const char *record) {
     const char *from_environment = getenv("LCM_DEFAULT_URL");
     const char *fallback = from_environment && from_environment[0] ? from_environment : WH_NODE_URL;
     memset(node, 0, sizeof *node);
     node->lcm = lcm_create(url ? url : fallback);
-    return node->lcm != NULL;
-}
-
-bool wh_node_record(wh_node_t *node, const char *path) {
-    node->log = lcm_eventlog_create(path, "w");
-    return node->log != NULL;
+    if (!node->lcm) {
+        fprintf(stderr,
+                "%s: LCM is not to be had at this URL (expected a multicast route, as by `ip route add "
+                "224.0.0.0/4 dev lo`, or another URL)\n",
+                url ? url : WH_NODE_URL);
+        return false;
+    }
+    node->log = record ? lcm_eventlog_create(record, "w") : NULL;
+    if (record && !node->log) {
+        fprintf(stderr, "%s: %s (expected a file that can be written)\n", record, strerror(errno));
+        wh_node_close(node);
+        return false;
+    }
+    return true;
 }
 
 static void fail_record(wh_node_t *node) {
@@ -46,7 +55,7 @@ void wh_node_flush_record(wh_node_t *node) {
 }
 
 /* Writes what lcm-logger would. LCM's type has plain pointers, though it only reads what they point to. */
-static void record(wh_node_t *node, const char *channel, const void *data, size_t size) {
+static void keep(wh_node_t *node, const char *channel, const void *data, size_t size) {
     union {
         const void *constant;
         void *plain;
@@ -72,7 +81,7 @@ static void receive(const lcm_recv_buf_t *message, const char *channel, void *us
     const wh_node_subscriber_t *subscriber = user;
     ++subscriber->node->received;
     /* Recorded before it is handled: the log has each message before what follows from it. */
-    record(subscriber->node, channel, message->data, message->data_size);
+    keep(subscriber->node, channel, message->data, message->data_size);
     subscriber->handler(subscriber->user, message->data, message->data_size);
 }
 
@@ -91,7 +100,7 @@ bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *
 
 bool wh_node_publish(wh_node_t *node, const char *channel, const void *data, size_t size) {
     ++node->published;
-    record(node, channel, data, size);
+    keep(node, channel, data, size);
     return lcm_publish(node->lcm, channel, data, (unsigned)size) == 0;
 }
 
@@ -131,14 +140,13 @@ void wh_node_close(wh_node_t *node) {
     }
 }
 
-void wh_node_say(void (*say)(void *user, const char *text), void *user, const char *format, ...) {
+void wh_node_say(const wh_node_t *node, const char *format, ...) {
     char text[200];
     va_list arguments;
-    if (!say) {
-        return;
+    if (node->speaker) {
+        va_start(arguments, format);
+        (void)vsnprintf(text, sizeof text, format, arguments);
+        va_end(arguments);
+        fprintf(stderr, "%s: %s\n", node->speaker, text);
     }
-    va_start(arguments, format);
-    (void)vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    say(user, text);
 }

@@ -28,6 +28,7 @@ typedef struct {
 } wh_node_subscriber_t;
 
 struct wh_node {
+    const char *speaker; /* who says what wh_node_say prints, such as "sim"; null, as at first: nobody */
     lcm_t *lcm;
     lcm_eventlog_t *log; /* null: not recording */
     bool interrupted;    /* a signal ended a wait since this was last cleared */
@@ -37,13 +38,11 @@ struct wh_node {
     size_t subscriber_count;
 };
 
-/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). False when LCM cannot: no
- * multicast route, a bad URL. The node must not be moved afterwards. */
-bool wh_node_open(wh_node_t *node, const char *url);
-
-/* From now on writes all that is published and received into an event log, as lcm-logger does. False, with
- * errno, when the file cannot be made. */
-bool wh_node_record(wh_node_t *node, const char *path);
+/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). If `record` is not null, all
+ * that is published and received goes into an event log with this path, as lcm-logger writes it. The node
+ * must not be moved afterwards. False, and standard error says why, when LCM cannot (no multicast route, a
+ * bad URL) or the file cannot be made: nothing is then open. */
+bool wh_node_open(wh_node_t *node, const char *url, const char *record);
 
 /* Hands what was recorded over to the system: others can read all of it from then on. Nothing without a
  * record. */
@@ -68,9 +67,8 @@ int wh_node_descriptor(const wh_node_t *node);
 /* Completes the record and closes LCM. */
 void wh_node_close(wh_node_t *node);
 
-/* Says a line of at most 199 bytes, for people; to nobody if `say` is null. */
-void wh_node_say(void (*say)(void *user, const char *text), void *user, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+/* Prints a line for people on standard error: the speaker, and at most 199 bytes. */
+void wh_node_say(const wh_node_t *node, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* us of wall-clock time, and of a clock that never jumps. */
 int64_t wh_node_wall_us(void);

@@ -56,14 +56,6 @@ void wh_outputs_close(wh_outputs_t *outputs) {
     outputs->fd = outputs->watch = -1;
 }
 
-int wh_outputs_fd(const wh_outputs_t *outputs) {
-    return outputs->fd;
-}
-
-int64_t wh_outputs_due(const wh_outputs_t *outputs) {
-    return outputs->due_us;
-}
-
 /* True for file systems on which this machine makes all changes, so that inotify sees them. */
 static bool sees_all(const char *folder) {
     struct statfs system;
@@ -241,12 +233,6 @@ static void report(wh_outputs_t *outputs, const wh_outputs_look_t *look) {
             *c = '?';
         }
     }
-}
-
-const char *wh_outputs_finding_name(wh_outputs_finding_t finding) {
-    static const char *const names[WH_OUTPUTS_FINDINGS] = {"good",  "missing", "unreadable", "no file",
-                                                           "empty", "short",   "long",       "garbled"};
-    return (unsigned)finding < WH_OUTPUTS_FINDINGS ? names[finding] : "unknown";
 }
 
 /* Counts one more bad look. True if the finding has lasted. */

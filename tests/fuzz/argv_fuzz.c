@@ -70,7 +70,7 @@ error_t __wrap_argp_parse(const struct argp *argp, int argc, char **argv, unsign
 int __wrap_wh_run_and_print(wh_run_arguments_t *arguments);
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
 bool __wrap_wh_study_open(wh_study_t *study);
-bool __wrap_wh_open_node(wh_node_t *node, const char *url, const char *record_path);
+bool __wrap_wh_node_open(wh_node_t *node, const char *url, const char *record);
 wh_sandbox_t *__wrap_wh_sandbox_new(const wh_sandbox_limits_t *limits);
 wh_sandbox_t *__real_wh_sandbox_new(const wh_sandbox_limits_t *limits);
 void __wrap_wh_sandbox_free(wh_sandbox_t *sandbox);
@@ -119,14 +119,15 @@ bool __wrap_wh_study_open(wh_study_t *study) {
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
     (void)link;
     reached = true;
-    REQUIRE(refused || options->rate == 0 || (options->rate >= 1e-3 && options->rate <= 1e3));
+    REQUIRE(refused || options->client.rate == 0 ||
+            (options->client.rate >= 1e-3 && options->client.rate <= 1e3));
     return false;
 }
 
-bool __wrap_wh_open_node(wh_node_t *node, const char *url, const char *record_path) {
+bool __wrap_wh_node_open(wh_node_t *node, const char *url, const char *record) {
     (void)node;
     (void)url;
-    (void)record_path;
+    (void)record;
     reached = true;
     return false;
 }

@@ -112,7 +112,7 @@ int main(int argc, char **argv) {
     unsigned long long sent[KINDS] = {0};
     wh_node_t ears;
     wh_node_t node;
-    if (argc != 4 || !wh_node_open(&ears, argv[1]) || !wh_node_open(&node, argv[1])) {
+    if (argc != 4 || !wh_node_open(&ears, argv[1], NULL) || !wh_node_open(&node, argv[1], NULL)) {
         fprintf(stderr, "usage: garbage URL COUNT SEED\n");
         return 2;
     }

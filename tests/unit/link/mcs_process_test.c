@@ -61,7 +61,7 @@ static void on_mcs(void *user, const void *data, size_t size) {
 }
 
 static wh_link_t *connect_all(void *user, wh_mcs_t *mcs) {
-    assert_int_equal(wh_sim_process_open(&simulation, &node, mcs->layout, NULL, NULL), WH_OK);
+    assert_int_equal(wh_sim_process_open(&simulation, &node, mcs->layout, true), WH_OK);
     assert_ptr_equal(wh_mcs_process_partners(user).connect(user, mcs), &control.client.link);
     asking.exchange = exchange;
     return &asking;
@@ -69,10 +69,10 @@ static wh_link_t *connect_all(void *user, wh_mcs_t *mcs) {
 
 static int open_all(void **state) {
     (void)state;
-    const wh_mcs_process_options_t options = {.rate = 0};
+    const wh_protocol_client_options_t options = {.rate = 0};
     memset(&plan, 0, sizeof plan);
     memset(&heard, 0, sizeof heard);
-    assert_true(wh_node_open(&node, "memq://"));
+    assert_true(wh_node_open(&node, "memq://", NULL));
     assert_true(wh_mcs_process_open(&control, &node, &options));
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_MCS, on_mcs, NULL));
     wh_session_options_t wanted = {.layout = "lua/layouts/paper.lua", .limits = {.print_to = stderr}};
