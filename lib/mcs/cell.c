@@ -140,7 +140,6 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
         luaL_error(L, "%s: %s", layout->path, wh_status_text(status));
     }
     set_up_look_ahead(L, &mcs->rehearsal, layout);
-    mcs->link = &mcs->local.simulator.link;
     wh_simulator_view(&mcs->local.simulator, &mcs->state);
     mcs->layout = layout;
     mcs->real = real;

@@ -110,11 +110,12 @@ static void hear_collisions(void *user, const wh_command_t *command, const wh_st
 /* native.connect(): the cell stands; from here on slices go over the caller's link, if it has one. */
 static int connect(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    mcs->link = &mcs->local.simulator.link;
     if (mcs->partners.connect) {
         mcs->link = mcs->partners.connect(mcs->partners.user, mcs);
-        if (!mcs->link) {
-            return luaL_error(L, "%s: no link to the simulator", mcs->layout->path);
-        }
+    }
+    if (!mcs->link) {
+        return luaL_error(L, "%s: no link to the simulator", mcs->layout->path);
     }
     if (mcs->local.collision.memory && mcs->link != &mcs->local.simulator.link) {
         wh_mcs_listen(mcs, hear_collisions, &mcs->local.collision);

@@ -82,6 +82,9 @@ static int play(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_planned_t planned;
     luaL_argcheck(L, !mcs->rehearsal.is_on, 1, "a rehearsal goes on");
+    if (!mcs->link) {
+        wh_mcs_raise(L, mcs, WH_STATUS_NO_LAYOUT, "cell was refused");
+    }
     if (lua_isinteger(L, 1)) {
         begin_planned(L, mcs, &planned);
     } else {

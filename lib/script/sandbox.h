@@ -42,7 +42,7 @@ typedef struct {
     FILE *print_to; /* where print writes; the caller's; default stdout */
 } wh_sandbox_limits_t;
 
-/* Why the last chunk ended. */
+/* Why a chunk ended. */
 typedef enum {
     WH_SANDBOX_OK,
     WH_SANDBOX_ERROR,      /* it threw an error */
@@ -62,7 +62,7 @@ typedef struct {
 
 typedef struct wh_sandbox wh_sandbox_t;
 
-/* A new sandbox, which the caller frees. Null if out of memory (the cap counts). limits may be null: all
+/* A new sandbox, which the caller frees. Null if the cap is too low for it. limits may be null: all
  * defaults. Cost: about 40 KiB, 0.1 ms. */
 wh_sandbox_t *wh_sandbox_new(const wh_sandbox_limits_t *limits);
 
@@ -88,8 +88,8 @@ bool wh_sandbox_run(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t
  * is exhausted inside, the calling script ends too. */
 bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *result);
 
-/* wh_sandbox_evaluate for a text in memory: the library's own Lua sources, or a line from the prompt.
- * Messages show `name` in place of a path. The text needs no final zero and is not kept. */
+/* wh_sandbox_evaluate for a text in memory, such as the library's own Lua sources; all of it is Lua. Messages
+ * show `name` in place of a path. The text needs no final zero and is not kept. */
 bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, size_t size,
                               wh_sandbox_result_t *result);
 
@@ -108,9 +108,6 @@ void wh_sandbox_push_error(lua_State *L);
 /* The innermost line of the chunk named `path` on L's call stack; 0 if it is not among the first 1000
  * levels. */
 int wh_sandbox_line(lua_State *L, const char *path);
-
-/* Why the last chunk ended. */
-wh_sandbox_reason_t wh_sandbox_reason(const wh_sandbox_t *sandbox);
 
 /* ------------------------------------------------------------------------------------------------- Limits */
 
@@ -134,8 +131,7 @@ bool wh_sandbox_stopping(const wh_sandbox_t *sandbox);
  * one for each 64 bytes of long strings and large blocks. */
 uint64_t wh_sandbox_spent(const wh_sandbox_t *sandbox);
 
-/* Bytes that Lua holds now, and the most that it held at any time. */
-size_t wh_sandbox_memory(const wh_sandbox_t *sandbox);
+/* The most bytes that Lua held at any time. */
 size_t wh_sandbox_memory_high_water(const wh_sandbox_t *sandbox);
 
 /* --------------------------------------------------------------------------------------------- Parameters */

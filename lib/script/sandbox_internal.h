@@ -16,7 +16,7 @@
 /* One entry into Lua: a file, a text or a call. Jobs nest: a script names a layout, which is run too. */
 typedef struct wh_sandbox_job {
     const char *path; /* null for a call */
-    const char *text;
+    const char *text; /* null for a file */
     size_t size;
     int results;
     bool loaded;                     /* past the syntax check */
@@ -44,8 +44,7 @@ struct wh_sandbox {
     bool refused;  /* the allocator has refused in this run */
     bool brimming; /* memory went above the brim since the hook looked last */
     volatile sig_atomic_t stop;
-    wh_sandbox_reason_t fatal;  /* BUDGET, MEMORY or STOPPED once exhausted, else OK */
-    wh_sandbox_reason_t reason; /* why the last job ended */
+    wh_sandbox_reason_t fatal; /* BUDGET, MEMORY or STOPPED once exhausted, else OK */
     /* A fractional exponent that pow was asked for; the hook has yet to report it. */
     bool power_pending;
     double power_exponent;

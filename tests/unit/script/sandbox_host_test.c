@@ -36,6 +36,7 @@ static void assert_run(const char *path, wh_sandbox_reason_t reason, const char 
 static void files_are_read_or_refused(void **state) {
     (void)state;
     assert_run(file_with("ok.lua", "\xEF\xBB\xBF# first\nassert(true)", 23), WH_SANDBOX_OK, "");
+    assert_run(file_with("program.lua", "#!/usr/bin/waferhand\nassert(1 == 1)", 35), WH_SANDBOX_OK, "");
     assert_run(file_with("throws.lua", "\nerror('x')", 11), WH_SANDBOX_ERROR, "throws.lua:2: x");
     assert_run(file_with("binary.lua", "\x1bLua\0\0", 6), WH_SANDBOX_SYNTAX, "binary chunk");
     assert_run(file_with("a_name_that_is_longer_than_lua_itself_would_ever_show_in_a_message_of_its_own.lua",
