@@ -1,7 +1,6 @@
 /* A study's result as JSON. */
 #include <math.h>
 
-#include "../study/wilson.h"
 #include "../text/json.h"
 #include "study_print.h"
 

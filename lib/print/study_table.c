@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "../math/trig.h"
-#include "../study/wilson.h"
 #include "print_internal.h"
 #include "study_print.h"
 

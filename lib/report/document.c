@@ -22,19 +22,28 @@ static void put_exact(wh_json_text_t *text, const char *key, double value) {
     wh_json_text_number(text, key, value, 0, true);
 }
 
+static void put_list(wh_json_text_t *text, const char *key, const double values[], size_t count) {
+    wh_json_text_begin(text, key, '[');
+    for (size_t i = 0; i < count; ++i) {
+        put_exact(text, NULL, values[i]);
+    }
+    wh_json_text_end(text, ']');
+}
+
+static void put_point(wh_json_text_t *text, const char *key, const wh_vec3_t *point) {
+    const double values[] = {point->x, point->y, point->z};
+    put_list(text, key, values, 3);
+}
+
 void wh_document_put_pose(wh_json_text_t *text, const wh_pose_t *pose) {
     double q[4];
     wh_quaternion_from_matrix(&pose->R, NULL, q);
-    wh_json_text_begin(text, "r", '[');
-    put_exact(text, NULL, pose->r.x);
-    put_exact(text, NULL, pose->r.y);
-    put_exact(text, NULL, pose->r.z);
-    wh_json_text_end(text, ']');
-    wh_json_text_begin(text, "q", '[');
-    for (size_t i = 0; i < 4; ++i) {
-        put_exact(text, NULL, q[i]);
-    }
-    wh_json_text_end(text, ']');
+    put_point(text, "r", &pose->r);
+    put_list(text, "q", q, 4);
+}
+
+void wh_document_put_index(wh_json_text_t *text, const char *key, int32_t index) {
+    put_exact(text, key, index == WH_NONE ? HUGE_VAL : index);
 }
 
 /* --------------------------------------------------------------------------------------------------- head */
@@ -69,7 +78,7 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     put_text(text, "source", document->source);
     put_notes(text, document);
     wh_json_text_value(text, "run", json_incref(document->run));
-    put_exact(text, "slice_s", (double)signals->layout->slice_us / 1e6);
+    put_exact(text, "slice_s", wh_document_seconds(signals, 1));
     wh_json_text_integer(text, "slices", signals->last > 0 ? signals->last : 0);
     put_exact(text, "begin_s", wh_document_seconds(signals, signals->first));
     put_exact(text, "duration_s", wh_document_seconds(signals, signals->last));
@@ -89,13 +98,12 @@ void wh_document_name_axis(const wh_layout_t *layout, size_t axis, char *name, s
 
 /* Null if the value is not known: a chuck's, or any of a log without its layout. */
 static void put_known(wh_json_text_t *text, const char *key, bool known, double value) {
-    wh_json_text_number(text, key, known ? value : HUGE_VAL, 0, true);
+    put_exact(text, key, known ? value : HUGE_VAL);
 }
 
 static void put_axis(wh_json_text_t *text, const wh_layout_t *layout, size_t axis) {
     const wh_machine_t *machine = &layout->machine;
-    const wh_travel_t none = {0, 0};
-    const wh_travel_t travel = axis < WH_ROBOT_AXES ? machine->robot.travel[axis] : none;
+    const wh_travel_t travel = axis < WH_ROBOT_AXES ? machine->robot.travel[axis] : (wh_travel_t){0, 0};
     const double speed = axis < machine->axis_count ? wh_machine_limits(machine, axis)->speed : 0;
     char name[WH_NAME_SIZE + 8];
     wh_document_name_axis(layout, axis, name, sizeof name);
@@ -147,14 +155,10 @@ static void put_wafer(wh_json_text_t *text, const wh_layout_t *layout) {
 /* On the robot the pose is the gripper's in the end-effector's frame, of a chuck the station's in base. */
 static void put_mount(wh_json_text_t *text, const wh_mount_t *mount) {
     const wh_pose_t identity = wh_pose_identity();
+    const wh_pose_t *on_robot = mount->is_shifted ? &mount->effector_from_gripper : &identity;
     wh_json_text_begin(text, NULL, '{');
-    if (mount->axis == WH_NONE) {
-        wh_json_text_value(text, "axis", json_null());
-        wh_document_put_pose(text, mount->is_shifted ? &mount->effector_from_gripper : &identity);
-    } else {
-        wh_json_text_integer(text, "axis", mount->axis);
-        wh_document_put_pose(text, &mount->base_from_station);
-    }
+    wh_document_put_index(text, "axis", mount->axis);
+    wh_document_put_pose(text, mount->axis == WH_NONE ? on_robot : &mount->base_from_station);
     wh_json_text_end(text, '}');
 }
 
@@ -250,13 +254,9 @@ static void put_mark(wh_json_text_t *text, const wh_layout_t *layout, const wh_m
     wh_json_text_begin(text, NULL, '{');
     wh_json_text_number(text, "t", (double)mark->utime / 1e6, 6, false);
     wh_json_text_string(text, "kind", wh_event_name(mark->event.kind));
-    wh_json_text_value(text, "text", wh_json_text(words));
+    put_text(text, "text", words);
     if (mark->has_place) {
-        wh_json_text_begin(text, "at", '[');
-        wh_json_text_number(text, NULL, mark->at.x, 0, true);
-        wh_json_text_number(text, NULL, mark->at.y, 0, true);
-        wh_json_text_number(text, NULL, mark->at.z, 0, true);
-        wh_json_text_end(text, ']');
+        put_point(text, "at", &mark->at);
     } else {
         wh_json_text_value(text, "at", json_null());
     }

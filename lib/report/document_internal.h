@@ -10,6 +10,9 @@ double wh_document_seconds(const wh_signals_t *signals, int64_t slice);
 /* The robot's axes have names; a chuck's is its gripper's. */
 void wh_document_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size);
 
+/* An index; null for WH_NONE. */
+void wh_document_put_index(wh_json_text_t *text, const char *key, int32_t index);
+
 /* The members r and q. */
 void wh_document_put_pose(wh_json_text_t *text, const wh_pose_t *pose);
 

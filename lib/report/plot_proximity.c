@@ -84,7 +84,7 @@ static void put_proximity(wh_plots_t *plots, int32_t g) {
                    name);
     wh_plot_begin(&plot, &frame, title, wh_plots_begin_s(plots), wh_plots_end_s(plots));
     wh_plot_block(&plot, name, "t (s), |dr_proj_z| (mm), |dr_proj_xy| (mm), n1_proj_n2, wafer (from 0)");
-    (void)wh_plot_curves(&plot, &values, wh_plots_slice_s(plots));
+    (void)wh_plot_curves(&plot, &values, wh_document_seconds(signals, 1));
     put_length(plots, &plot, g, "dr_proj_z", 2, limits->projz / 50, limits->projz,
                limits->projz * 4 > WH_SIGNALS_REACH ? limits->projz * 4 : WH_SIGNALS_REACH);
     put_length(plots, &plot, g, "dr_proj_xy", 3, limits->projxy / 50000, limits->projxy,
@@ -160,7 +160,7 @@ static void put_axis_panel(const wh_plots_t *plots, wh_plot_t *plot, const axis_
             char name[WH_NAME_SIZE + 8];
             wh_document_name_axis(signals->layout, axis, name, sizeof name);
             wh_plot_block(plot, name, panel->is_speed ? "t (s), speed" : "t (s), position");
-            const size_t block = wh_plot_curves(plot, &curve, wh_plots_slice_s(plots));
+            const size_t block = wh_plot_curves(plot, &curve, wh_document_seconds(signals, 1));
             ++line;
             fprintf(plot->script, "%s'%s.dat' index %zu using 1:2 with linespoints pn 9 lt %d title ",
                     line == 1 ? "plot " : ", \\\n  ", plot->name, block, line);

@@ -92,10 +92,6 @@ void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot) {
 
 /* ---------------------------------------------------------------------------------------------------- run */
 
-double wh_plots_slice_s(const wh_plots_t *plots) {
-    return (double)plots->document->signals->layout->slice_us / 1e6;
-}
-
 double wh_plots_begin_s(const wh_plots_t *plots) {
     const wh_signals_t *signals = plots->document->signals;
     return signals->first > 0 ? wh_document_seconds(signals, signals->first) : 0;
@@ -106,38 +102,34 @@ double wh_plots_end_s(const wh_plots_t *plots) {
     return signals->last > 0 ? wh_document_seconds(signals, signals->last) : 0;
 }
 
-static void add_hold(wh_plot_hold_t **list, size_t *count, size_t *capacity, const wh_plot_hold_t *hold) {
-    wh_plot_hold_t *last = *count > 0 ? &(*list)[*count - 1] : NULL;
-    if (last && last->wafer == hold->wafer && !(hold->begin_s > last->end_s)) {
-        last->end_s = hold->end_s;
-    } else {
-        *list = wh_array_grow(*list, *count, capacity, sizeof **list);
-        (*list)[(*count)++] = *hold;
-    }
-}
-
 /* A gripper holds one wafer at a time, so its stays end in the order in which they begin. */
 wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t *count) {
     const wh_signals_t *signals = plots->document->signals;
     wh_plot_hold_t *list = NULL;
-    wh_plot_hold_t open = {0, 0, WH_NONE};
+    wh_plot_hold_t *last = NULL;
     size_t capacity = 0;
+    bool holds = false;
     *count = 0;
     for (size_t i = 0; i < signals->stay_count; ++i) {
         const wh_stay_t *stay = &signals->stays[i];
         const double at = wh_document_seconds(signals, stay->slice);
-        if (open.wafer != WH_NONE && (stay->wafer == open.wafer || stay->holder == gripper)) {
-            open.end_s = at;
-            add_hold(&list, count, &capacity, &open);
-            open.wafer = WH_NONE;
+        if (holds && (stay->wafer == last->wafer || stay->holder == gripper)) {
+            last->end_s = at;
+            holds = false;
         }
-        if (stay->holder == gripper) {
-            open = (wh_plot_hold_t){at, at, stay->wafer};
+        if (stay->holder != gripper) {
+            continue;
         }
+        /* The same wafer again at once is the same hold. */
+        if (!last || last->wafer != stay->wafer || at > last->end_s) {
+            list = wh_array_grow(list, *count, &capacity, sizeof *list);
+            last = &list[(*count)++];
+            *last = (wh_plot_hold_t){at, at, stay->wafer};
+        }
+        holds = true;
     }
-    if (open.wafer != WH_NONE) {
-        open.end_s = wh_plots_end_s(plots);
-        add_hold(&list, count, &capacity, &open);
+    if (holds) {
+        last->end_s = wh_plots_end_s(plots);
     }
     return list;
 }

@@ -23,8 +23,7 @@ typedef struct {
 bool wh_plots_open(wh_plots_t *plots, wh_plot_t *plot, const char *name, const char *of);
 void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot);
 
-/* How long a slice is, s, and until when the run goes. */
-double wh_plots_slice_s(const wh_plots_t *plots);
+/* From when until when the run goes, s. */
 double wh_plots_begin_s(const wh_plots_t *plots);
 double wh_plots_end_s(const wh_plots_t *plots);
 

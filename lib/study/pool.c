@@ -32,14 +32,7 @@ void wh_progress_init(wh_progress_t *progress, const wh_study_t *study) {
 
 void wh_progress_free(wh_progress_t *progress) {
     free(progress->done);
-    progress->done = NULL;
     wh_tally_free(&progress->tally);
-}
-
-void wh_progress_clear(wh_progress_t *progress) {
-    memset(progress->done, 0, (size_t)progress->block_count / 8 + 1);
-    progress->done_count = 0;
-    wh_tally_clear(&progress->tally);
 }
 
 bool wh_progress_has(const wh_progress_t *progress, uint64_t block) {
@@ -71,17 +64,14 @@ static bool is_stopped(const wh_pool_t *pool) {
     return __atomic_load_n(&pool->stop, __ATOMIC_RELAXED);
 }
 
-uint64_t wh_pool_trials(const wh_pool_t *pool) {
-    return __atomic_load_n(&pool->trials, __ATOMIC_RELAXED);
-}
-
 /* --------------------------------------------------------------------------------------------- one thread */
 
 /* With the pool's lock held. */
 static void show(wh_pool_worker_t *worker) {
     if (worker->progress.done_count > 0) {
         wh_progress_merge(&worker->pool->progress, &worker->progress);
-        wh_progress_clear(&worker->progress);
+        wh_progress_free(&worker->progress);
+        wh_progress_init(&worker->progress, worker->pool->study);
     }
     worker->shown = wh_clock_seconds();
 }
@@ -112,7 +102,6 @@ static void play_block(wh_pool_worker_t *worker, uint64_t block) {
             return;
         }
     }
-    __atomic_fetch_add(&pool->trials, trials, __ATOMIC_RELAXED);
     wh_tally_merge(&worker->progress.tally, &worker->block);
     wh_tally_clear(&worker->block);
     wh_progress_note(&worker->progress, block);

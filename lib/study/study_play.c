@@ -66,12 +66,11 @@ static bool keep(keeper_t *keeper, wh_pool_t *pool) {
     const bool saved = text && wh_checkpoint_save(keeper->path, text);
     if (!saved && keeper->named) {
         fprintf(stderr, "%s: %s (expected a file that can be written)\n", keeper->path, strerror(errno));
-    }
-    free(text);
-    if (!saved && !keeper->named) {
+    } else if (!saved) {
         free(keeper->path);
         keeper->path = NULL;
     }
+    free(text);
     return saved || !keeper->named;
 }
 
@@ -184,14 +183,6 @@ static bool is_over(wh_pool_t *pool, const wh_ranks_t *ranks) {
     return wh_pool_is_idle(pool) && ranks->ended == ranks->size - 1;
 }
 
-static bool keep_now_and_then(keeper_t *keeper, wh_pool_t *pool) {
-    return wh_clock_seconds() - keeper->kept < KEEP_S || keep(keeper, pool);
-}
-
-static wh_study_end_t how_it_ended(wh_pool_t *pool, const wh_ranks_t *ranks) {
-    return is_interrupted() && !is_over(pool, ranks) ? WH_STUDY_INTERRUPTED : WH_STUDY_DONE;
-}
-
 static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
     bar_t bar;
     bool sound = true;
@@ -199,15 +190,17 @@ static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper)
     bar_open(&bar, stderr, pool->study->trials, trials_done(pool));
     while (sound && !wh_pool_failed(pool) && !is_interrupted() && !is_over(pool, ranks)) {
         wh_pool_wait(pool, 50);
-        sound = wh_ranks_serve(ranks, pool) && keep_now_and_then(keeper, pool);
+        sound =
+            wh_ranks_serve(ranks, pool) && (wh_clock_seconds() - keeper->kept < KEEP_S || keep(keeper, pool));
         bar_show(&bar, trials_done(pool));
     }
     bar_close(&bar);
     if (wh_pool_failed(pool)) {
         fprintf(stderr, "%s\n", pool->message);
-        return WH_STUDY_FAILED;
+        sound = false;
     }
-    return sound ? how_it_ended(pool, ranks) : WH_STUDY_FAILED;
+    const bool left_off = is_interrupted() && !is_over(pool, ranks);
+    return !sound ? WH_STUDY_FAILED : left_off ? WH_STUDY_INTERRUPTED : WH_STUDY_DONE;
 }
 
 static void tell_interruption(const keeper_t *keeper, wh_pool_t *pool) {

@@ -109,7 +109,7 @@ static void take_record(wh_worker_t *worker, const wh_record_t *record) {
     }
 }
 
-static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message, uint64_t *hash) {
+static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message) {
     const wh_trial_t name = {worker->study->seed, trial};
     worker->options.trial = &name;
     begin(worker, trial);
@@ -118,7 +118,7 @@ static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, ch
     if (usable) {
         take_record(worker, &worker->run.record);
         wh_tally_add(tally, worker->study, &worker->outcome);
-        *hash = worker->run.record.hash;
+        worker->hash = worker->run.record.hash;
     } else {
         memcpy(message, worker->run.message, WH_SANDBOX_MESSAGE_BYTES);
     }
@@ -127,18 +127,6 @@ static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, ch
 }
 
 bool wh_worker_play(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message) {
-    uint64_t hash = 0;
     return (!worker->study->whole && replay(worker, trial, tally)) ||
-           run_whole(worker, trial, tally, message, &hash);
-}
-
-bool wh_worker_compare(wh_worker_t *worker, uint64_t trial, bool decisions, wh_tally_t *tally,
-                       uint64_t *hash) {
-    char message[WH_SANDBOX_MESSAGE_BYTES];
-    if (!decisions) {
-        return run_whole(worker, trial, tally, message, hash);
-    }
-    const bool played = !worker->study->whole && replay(worker, trial, tally);
-    *hash = played ? wh_simulator_hash(&worker->simulator) : 0;
-    return played;
+           run_whole(worker, trial, tally, message);
 }
