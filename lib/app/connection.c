@@ -23,11 +23,7 @@ void wh_catch_signals(void) {
 
 bool wh_open_node(wh_node_t *node, const char *url, const char *record_path) {
     if (!wh_node_open(node, url)) {
-        fprintf(stderr,
-                "%s: LCM is not to be had at this URL (expected a multicast route, as by `ip route add "
-                "224.0.0.0/4 "
-                "dev lo`, or another URL)\n",
-                url ? url : WH_NODE_URL);
+        fprintf(stderr, "%s: %s\n", node->url, node->problem);
         return false;
     }
     if (record_path && !wh_node_record(node, record_path)) {

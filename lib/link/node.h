@@ -11,6 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "receiver.h"
+
 /* Nothing leaves the host unless another URL is asked for. */
 #define WH_NODE_URL "udpm://239.255.76.67:7667?ttl=0"
 
@@ -23,12 +25,16 @@ typedef void wh_node_handler_t(void *user, const void *data, size_t size);
 
 typedef struct {
     wh_node_t *node;
+    const char *channel; /* the caller's */
     wh_node_handler_t *handler;
     void *user;
 } wh_node_subscriber_t;
 
 struct wh_node {
-    lcm_t *lcm;
+    lcm_t *lcm;             /* sends; receives if the URL is not multicast */
+    wh_receiver_t receiver; /* receives multicast */
+    const char *url;
+    const char *problem; /* why it could not be opened */
     lcm_eventlog_t *log; /* null: not recording */
     bool interrupted;    /* a signal ended a wait since this was last cleared */
     bool log_failed;     /* writing stopped: the disk is full, say */
@@ -37,8 +43,8 @@ struct wh_node {
     size_t subscriber_count;
 };
 
-/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). False when LCM cannot: no
- * multicast route, a bad URL. The node must not be moved afterwards. */
+/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). False if that cannot be: then
+ * `url` and `problem` say which URL it was and what was expected. The node must not be moved afterwards. */
 bool wh_node_open(wh_node_t *node, const char *url);
 
 /* From now on writes all that is published and received into an event log, as lcm-logger does. False, with
@@ -49,7 +55,7 @@ bool wh_node_record(wh_node_t *node, const char *path);
  * record. */
 void wh_node_flush_record(wh_node_t *node);
 
-/* Subscribes one channel with a queue without a limit. False when there is no room. */
+/* Subscribes one channel, whose name must outlive the node. False if there is no room. */
 bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user);
 
 /* Sends one datagram, of which nothing is kept. False when the network refused it. */
