@@ -8,6 +8,11 @@
 #include <string.h>
 #include <time.h>
 
+#define NO_ROUTE                                                                                             \
+    "LCM is not to be had at this URL (expected a multicast route, as by `ip route add 224.0.0.0/4 dev "     \
+    "lo`, "                                                                                                  \
+    "or another URL)"
+
 static int64_t now_us(clockid_t clock) {
     struct timespec now;
     clock_gettime(clock, &now);
@@ -22,25 +27,41 @@ int64_t wh_node_clock_us(void) {
     return now_us(CLOCK_MONOTONIC);
 }
 
+/* What is wrong, or null. */
+static const char *open_multicast(wh_receiver_t *receiver, const char *url) {
+    wh_multicast_t multicast;
+    const char *expected = wh_multicast_parse(url, &multicast);
+    if (expected) {
+        return expected;
+    }
+    if (!wh_receiver_open(receiver, &multicast)) {
+        return errno == ENODEV ? NO_ROUTE : strerror(errno);
+    }
+    return NULL;
+}
+
 bool wh_node_open(wh_node_t *node, const char *url, const char *record) {
     const char *from_environment = getenv("LCM_DEFAULT_URL");
     const char *fallback = from_environment && from_environment[0] ? from_environment : WH_NODE_URL;
     memset(node, 0, sizeof *node);
-    node->lcm = lcm_create(url ? url : fallback);
-    if (!node->lcm) {
-        fprintf(stderr,
-                "%s: LCM is not to be had at this URL (expected a multicast route, as by `ip route add "
-                "224.0.0.0/4 dev lo`, or another URL)\n",
-                url ? url : WH_NODE_URL);
-        return false;
+    node->receiver.socket = -1;
+    url = url ? url : fallback;
+    const char *problem = wh_multicast_is(url) ? open_multicast(&node->receiver, url) : NULL;
+    if (!problem) {
+        node->lcm = lcm_create(url);
+        problem = node->lcm ? NULL : NO_ROUTE;
     }
-    node->log = record ? lcm_eventlog_create(record, "w") : NULL;
-    if (record && !node->log) {
-        fprintf(stderr, "%s: %s (expected a file that can be written)\n", record, strerror(errno));
+    if (!problem && record) {
+        node->log = lcm_eventlog_create(record, "w");
+        url = record;
+        problem = node->log ? NULL : strerror(errno);
+    }
+    if (problem) {
+        fprintf(stderr, "%s: %s%s\n", url, problem,
+                url == record ? " (expected a file that can be written)" : "");
         wh_node_close(node);
-        return false;
     }
-    return true;
+    return problem == NULL;
 }
 
 static void fail_record(wh_node_t *node) {
@@ -77,12 +98,16 @@ static void keep(wh_node_t *node, const char *channel, const void *data, size_t 
     }
 }
 
-static void receive(const lcm_recv_buf_t *message, const char *channel, void *user) {
-    const wh_node_subscriber_t *subscriber = user;
+/* Recorded before it is handled: the log has each message before what follows from it. */
+static void hand_over(const wh_node_subscriber_t *subscriber, const void *data, size_t size) {
     ++subscriber->node->received;
-    /* Recorded before it is handled: the log has each message before what follows from it. */
-    keep(subscriber->node, channel, message->data, message->data_size);
-    subscriber->handler(subscriber->user, message->data, message->data_size);
+    keep(subscriber->node, subscriber->channel, data, size);
+    subscriber->handler(subscriber->user, data, size);
+}
+
+static void receive(const lcm_recv_buf_t *message, const char *channel, void *user) {
+    (void)channel;
+    hand_over(user, message->data, message->data_size);
 }
 
 bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user) {
@@ -90,9 +115,10 @@ bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *
         return false;
     }
     wh_node_subscriber_t *subscriber = &node->subscribers[node->subscriber_count++];
-    subscriber->node = node;
-    subscriber->handler = handler;
-    subscriber->user = user;
+    *subscriber = (wh_node_subscriber_t){node, channel, handler, user};
+    if (node->receiver.socket >= 0) {
+        return true;
+    }
     lcm_subscription_t *subscription = lcm_subscribe(node->lcm, channel, receive, subscriber);
     /* No limit: a queue that drops would look like a network that loses. */
     return subscription && lcm_subscription_set_queue_capacity(subscription, 0) == 0;
@@ -104,8 +130,22 @@ bool wh_node_publish(wh_node_t *node, const char *channel, const void *data, siz
     return lcm_publish(node->lcm, channel, data, (unsigned)size) == 0;
 }
 
+/* Messages of channels without a subscriber are other programs'. */
+static int take(wh_node_t *node) {
+    wh_received_t message;
+    if (!wh_receiver_take(&node->receiver, &message)) {
+        return 0;
+    }
+    for (size_t i = 0; i < node->subscriber_count; ++i) {
+        if (strcmp(node->subscribers[i].channel, message.channel) == 0) {
+            hand_over(&node->subscribers[i], message.data, message.size);
+        }
+    }
+    return 1;
+}
+
 int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
-    struct pollfd ready = {.fd = lcm_get_fileno(node->lcm), .events = POLLIN};
+    struct pollfd ready = {.fd = wh_node_descriptor(node), .events = POLLIN};
     /* LCM's own wait counts in ms, which may be longer than a slice. */
     const int64_t us = timeout_us > 0 ? timeout_us : 0;
     const struct timespec timeout = {.tv_sec = us / 1000000, .tv_nsec = us % 1000000 * 1000};
@@ -113,6 +153,9 @@ int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
     if (count <= 0) {
         node->interrupted = node->interrupted || count < 0;
         return 0;
+    }
+    if (node->receiver.socket >= 0) {
+        return take(node);
     }
     return lcm_handle_timeout(node->lcm, 0) < 0 ? -1 : 1;
 }
@@ -126,7 +169,7 @@ int wh_node_drain(wh_node_t *node, int most) {
 }
 
 int wh_node_descriptor(const wh_node_t *node) {
-    return lcm_get_fileno(node->lcm);
+    return node->receiver.socket >= 0 ? node->receiver.socket : lcm_get_fileno(node->lcm);
 }
 
 void wh_node_close(wh_node_t *node) {
@@ -134,6 +177,7 @@ void wh_node_close(wh_node_t *node) {
         lcm_eventlog_destroy(node->log);
         node->log = NULL;
     }
+    wh_receiver_close(&node->receiver);
     if (node->lcm) {
         lcm_destroy(node->lcm);
         node->lcm = NULL;

@@ -11,6 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "receiver.h"
+
 /* Nothing leaves the host unless another URL is asked for. */
 #define WH_NODE_URL "udpm://239.255.76.67:7667?ttl=0"
 
@@ -23,16 +25,18 @@ typedef void wh_node_handler_t(void *user, const void *data, size_t size);
 
 typedef struct {
     wh_node_t *node;
+    const char *channel; /* the caller's */
     wh_node_handler_t *handler;
     void *user;
 } wh_node_subscriber_t;
 
 struct wh_node {
-    const char *speaker; /* who says what wh_node_say prints, such as "sim"; null, as at first: nobody */
-    lcm_t *lcm;
-    lcm_eventlog_t *log; /* null: not recording */
-    bool interrupted;    /* a signal ended a wait since this was last cleared */
-    bool log_failed;     /* writing stopped: the disk is full, say */
+    const char *speaker;    /* who says what wh_node_say prints, such as "sim"; null, as at first: nobody */
+    lcm_t *lcm;             /* sends; receives if the URL is not multicast */
+    wh_receiver_t receiver; /* receives multicast */
+    lcm_eventlog_t *log;    /* null: not recording */
+    bool interrupted;       /* a signal ended a wait since this was last cleared */
+    bool log_failed;        /* writing stopped: the disk is full, say */
     uint64_t published, received;
     wh_node_subscriber_t subscribers[WH_NODE_SUBSCRIPTIONS];
     size_t subscriber_count;
@@ -48,7 +52,7 @@ bool wh_node_open(wh_node_t *node, const char *url, const char *record);
  * record. */
 void wh_node_flush_record(wh_node_t *node);
 
-/* Subscribes one channel with a queue without a limit. False when there is no room. */
+/* Subscribes one channel, whose name must outlive the node. False if there is no room. */
 bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user);
 
 /* Sends one datagram, of which nothing is kept. False when the network refused it. */
