@@ -1,5 +1,4 @@
 /* Which wafer a gripper is shown against: never another one than the one that it holds or could take. */
-#include "support/random.h"
 #include "support/support.h"
 
 #include "grasp/grasp.h"
@@ -28,15 +27,11 @@ static int set_up(void **unused) {
     return 0;
 }
 
-static double between(double low, double high) {
-    static uint64_t seed = 1;
-    return low + (high - low) * (double)(wh_test_splitmix(&seed) >> 11) / 9007199254740992.0;
-}
-
 /* A stack of slots at a pitch of 10 mm whose wafers lie up to 40 mm off centre. */
 static void fill(void) {
     for (size_t w = 0; w < WAFERS; ++w) {
-        wafers[w].base_from_wafer.r = wh_vec3(between(-40, 40), between(-40, 40), 10.0 * (double)w);
+        wafers[w].base_from_wafer.r =
+            wh_vec3(wh_test_uniform(-40, 40), wh_test_uniform(-40, 40), 10.0 * (double)w);
     }
 }
 
@@ -78,7 +73,8 @@ static void the_smallest_of_the_largest_shares_wins(void **unused) {
     const wh_tolerance_t paper = wh_tolerance_paper();
     for (int trial = 0; trial < 2000; ++trial) {
         fill();
-        gripper.base_from_gripper.r = wh_vec3(between(-60, 60), between(-60, 60), between(-15, 130));
+        gripper.base_from_gripper.r =
+            wh_vec3(wh_test_uniform(-60, 60), wh_test_uniform(-60, 60), wh_test_uniform(-15, 130));
         const int32_t found = wh_counterpart(&state, 0, &paper, NULL, WAFERS);
         assert_in_range(found, 0, WAFERS - 1);
         for (size_t w = 0; w < WAFERS; ++w) {
