@@ -13,7 +13,8 @@
 
 /* Requests that wait; more are answered with "busy". */
 #define WH_CONTROL_REQUESTS 16
-/* Requests that were answered lately: asked again, they are answered again. */
+/* Requests that were answered lately: asked again with the same line, they are answered again. With another
+ * line the number is taken: WH_STATUS_NUMBER_TAKEN. */
 #define WH_CONTROL_ANSWERED 64
 
 typedef struct {
@@ -40,7 +41,7 @@ typedef struct {
     int64_t utime, seq;
     char running[200]; /* the command that goes on; empty: none */
     int running_line;
-    int64_t request; /* seq of the request being executed, or 0 */
+    wh_mcs_process_request_t executing; /* seq 0: none */
     int64_t last_beat_us;
     wh_mcs_process_request_t waiting[WH_CONTROL_REQUESTS];
     size_t first_waiting, waiting_count;
