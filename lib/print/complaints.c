@@ -61,18 +61,16 @@ static void describe_excess(char *text, size_t size, const condition_t *conditio
 }
 
 static void say_condition(const wh_printer_t *printer, wh_grid_t *grid, const condition_t *condition) {
-    char limit[WH_PRINT_NUMBER_SIZE];
     char excess[WH_GRID_NUMBER_SIZE];
     char tilt[64] = "";
     const int decimals = decimals_for(-condition->margin, condition->decimals);
-    wh_print_limit(limit, condition->limit);
     describe_excess(excess, sizeof excess, condition, decimals);
     if (condition->bit == WH_FAILED_PLANAR) {
         snprintf(tilt, sizeof tilt, ": tilted by %.3f%s", wh_print_tilt_deg(condition->value),
                  wh_style_glyph(printer->style, WH_GLYPH_DEGREE));
     }
-    wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s %.*f is not %s %s (%s)%s", condition->name, decimals,
-                 condition->value, condition->relation, limit, excess, tilt);
+    wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s %.*f is not %s %.10g (%s)%s", condition->name, decimals,
+                 condition->value, condition->relation, condition->limit, excess, tilt);
 }
 
 /* One row for each failed condition, the first of them the event's own. */

@@ -166,7 +166,7 @@ static void print_scale(gantt_t *gantt) {
     print_row(gantt, "s");
 }
 
-/* ----------------------------------------------------------------------------------------------- commands */
+/* ------------------------------------------------------------------------------------ commands and cycles */
 
 static int64_t slice_at(const wh_record_t *record, double seconds) {
     if (!(seconds > 0 && seconds < record->simulated_s)) {
@@ -175,38 +175,35 @@ static int64_t slice_at(const wh_record_t *record, double seconds) {
     return (int64_t)(seconds * 1e6 / (double)record->layout->slice_us + 0.5);
 }
 
+/* A bar where it begins, and its text behind the bar if there is room up to its end. */
+static void draw_span(gantt_t *gantt, int64_t begin, int64_t end, const char *text) {
+    const size_t first = column_of(gantt, begin);
+    const size_t last = end < gantt->slices ? column_of(gantt, end) : gantt->columns;
+    gantt->cells[first].mark = gantt->printer->style->utf8 ? "│" : "|";
+    write_over(gantt, first + 1, last, text);
+}
+
 static void print_commands(gantt_t *gantt) {
     const wh_record_t *record = gantt->printer->record;
-    const char *bar = gantt->printer->style->utf8 ? "│" : "|";
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
-        const size_t first = column_of(gantt, slice_at(record, command->begin_s));
-        const size_t last = command->end_s < record->simulated_s
-                                ? column_of(gantt, slice_at(record, command->end_s))
-                                : gantt->columns;
         if (command->end_s > command->begin_s) {
-            gantt->cells[first].mark = bar;
-            write_over(gantt, first + 1, last, command->text ? command->text : "");
+            draw_span(gantt, slice_at(record, command->begin_s), slice_at(record, command->end_s),
+                      command->text ? command->text : "");
         }
     }
     print_row(gantt, "command");
 }
 
-/* ------------------------------------------------------------------------------------------------- cycles */
-
 static void print_cycles(gantt_t *gantt) {
     const wh_record_t *record = gantt->printer->record;
-    const char *bar = gantt->printer->style->utf8 ? "│" : "|";
     for (size_t i = 0; i < record->cycle_count; ++i) {
+        const wh_cycle_record_t *cycle = &record->cycles[i];
         const int64_t end = wh_throughput_cycle_end(record, i);
-        const size_t first = column_of(gantt, record->cycles[i].begin);
-        const size_t last = end < gantt->slices ? column_of(gantt, end) : gantt->columns;
         char text[WH_PRINT_NUMBER_SIZE];
         snprintf(text, sizeof text, "%zu", i + 1);
-        if (end > record->cycles[i].begin) {
-            gantt->cells[first].mark = bar;
-            write_over(gantt, first + 1, last,
-                       record->cycles[i].name[0] != '\0' ? record->cycles[i].name : text);
+        if (end > cycle->begin) {
+            draw_span(gantt, cycle->begin, end, cycle->name[0] != '\0' ? cycle->name : text);
         }
     }
     if (record->cycle_count > 0) {

@@ -12,9 +12,7 @@ static void add_value(wh_grid_t *grid, const char *name, double value) {
 }
 
 static void add_limit(wh_grid_t *grid, const char *relation, double limit, double margin) {
-    char number[WH_PRINT_NUMBER_SIZE];
-    wh_print_limit(number, limit);
-    wh_grid_text(grid, LIMIT, WH_INK_PLAIN, "%s %s", relation, number);
+    wh_grid_text(grid, LIMIT, WH_INK_PLAIN, "%s %.10g", relation, limit);
     wh_grid_number(grid, MARGIN, margin > 0 ? WH_INK_GOOD : WH_INK_BAD, margin);
 }
 

@@ -197,10 +197,9 @@ static json_t *finding(const void *subject, size_t i) {
     wh_json_put_text(object, "text", from->text);
     wh_json_put_text(object, "station", of_station ? layout->stations[from->station].name : NULL);
     if (from->parts[0] != WH_NONE) {
-        json_t *parts = json_array();
-        wh_json_append(parts, wh_json_text(wh_layout_part_name(layout, from->parts[0])));
-        wh_json_append(parts, wh_json_text(wh_layout_part_name(layout, from->parts[1])));
-        wh_json_put(object, "parts", parts);
+        wh_json_put(object, "parts",
+                    json_pack("[o, o]", wh_json_text(wh_layout_part_name(layout, from->parts[0])),
+                              wh_json_text(wh_layout_part_name(layout, from->parts[1]))));
     }
     return object;
 }

@@ -5,6 +5,7 @@
 #include "../math/trig.h"
 #include "../record/throughput.h"
 #include "../sim/faults.h"
+#include "../text/array.h"
 #include "../text/json.h"
 
 /* The format's number: goes up when a key changes its meaning or leaves. */
@@ -87,14 +88,6 @@ static json_t *wafer(const void *subject, size_t i) {
 
 /* ------------------------------------------------------------------------------------------------- events */
 
-static json_t *margins(const wh_proximity_t *measured) {
-    json_t *object = json_object();
-    wh_json_put_real(object, "projz", measured->margin_projz);
-    wh_json_put_real(object, "projxy", measured->margin_projxy);
-    wh_json_put_real(object, "planar", measured->margin_planar);
-    return object;
-}
-
 static json_t *failed_conditions(unsigned failed) {
     static const char *const names[] = {"projz", "projxy", "planar"};
     static const unsigned bits[] = {WH_FAILED_PROJZ, WH_FAILED_PROJXY, WH_FAILED_PLANAR};
@@ -118,7 +111,10 @@ static void put_measured(const wh_record_t *record, json_t *object, const wh_eve
     wh_json_put(object, "dr_proj_xy", wh_json_vector(measured->dr_proj_xy));
     wh_json_put_real(object, "dr_proj_xy_norm", measured->dr_proj_xy_norm);
     wh_json_put_real(object, "n1_proj_n2", measured->n1_proj_n2);
-    wh_json_put(object, "margins", margins(measured));
+    wh_json_put(object, "margins",
+                json_pack("{s:o, s:o, s:o}", "projz", wh_json_real((double)measured->margin_projz), "projxy",
+                          wh_json_real((double)measured->margin_projxy), "planar",
+                          wh_json_real((double)measured->margin_planar)));
     wh_json_put(object, "failed", failed_conditions(measured->failed));
     wh_json_put(object, "measured_utime", measured_utime(record, event));
 }
@@ -140,13 +136,12 @@ static void put_unmeasured(json_t *object) {
     }
 }
 
+static json_t *part_name(const wh_record_t *record, int32_t part) {
+    return wh_json_text(record->layout ? wh_layout_part_name(record->layout, part) : NULL);
+}
+
 static json_t *part_names(const wh_record_t *record, const int32_t parts[2]) {
-    json_t *list = json_array();
-    const wh_layout_t *layout = record->layout;
-    for (size_t i = 0; i < 2; ++i) {
-        wh_json_append(list, wh_json_text(layout ? wh_layout_part_name(layout, parts[i]) : NULL));
-    }
-    return list;
+    return json_pack("[o, o]", part_name(record, parts[0]), part_name(record, parts[1]));
 }
 
 /* A tilt in degrees, as everywhere in the result. */
@@ -240,9 +235,14 @@ static json_t *clearance(const void *subject, size_t kind) {
     return object;
 }
 
-/* The smallest gap in each bin, by the time at which it ends; null where it was wider than what is kept. */
-static json_t *curve(const wh_record_t *record, size_t kind) {
+/* The smallest gap in each bin, by the time at which it ends; null where it was wider than what is kept. Only
+ * of a kind that was ever near. */
+static json_t *curve(const void *subject, size_t kind) {
+    const wh_record_t *record = subject;
     const wh_curves_t *curves = record->curves;
+    if (record->clearances[kind].parts[0] == WH_NONE) {
+        return NULL;
+    }
     const int64_t slice_us = record->layout->slice_us;
     json_t *object = json_object();
     json_t *times = json_array();
@@ -257,17 +257,6 @@ static json_t *curve(const wh_record_t *record, size_t kind) {
     wh_json_put(object, "times_s", times);
     wh_json_put(object, "gaps", gaps);
     return object;
-}
-
-/* Of the kinds that were ever near. */
-static json_t *curves(const wh_record_t *record) {
-    json_t *list = json_array();
-    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
-        if (record->clearances[kind].parts[0] != WH_NONE) {
-            wh_json_append(list, curve(record, kind));
-        }
-    }
-    return list;
 }
 
 /* --------------------------------------------------------------------------------------------- throughput */
@@ -351,12 +340,18 @@ static json_t *gantt(const wh_record_t *record) {
 
 /* -------------------------------------------------------------------------------------------------- reach */
 
-static json_t *reach(const wh_record_t *record, int32_t station, size_t axis) {
+/* By station and axis; null where the axis was not looked at. */
+static json_t *reach(const void *subject, size_t i) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    const wh_travel_margin_t *from = &record->reach[station].axes[axis];
+    const wh_record_t *record = subject;
+    const size_t axis = i % WH_ROBOT_AXES;
+    const wh_travel_margin_t *from = &record->reach[i / WH_ROBOT_AXES].axes[axis];
     const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
+    if (from->slot == 0) {
+        return NULL;
+    }
     json_t *object = json_object();
-    wh_json_put_text(object, "station", wh_record_station_name(record, station));
+    wh_json_put_text(object, "station", wh_record_station_name(record, (int32_t)(i / WH_ROBOT_AXES)));
     wh_json_put_integer(object, "slot", from->slot);
     wh_json_put_text(object, "axis", names[axis]);
     wh_json_put_real(object, "margin", (double)(turns ? wh_deg_from_rad(from->margin) : from->margin));
@@ -366,29 +361,13 @@ static json_t *reach(const wh_record_t *record, int32_t station, size_t axis) {
     return object;
 }
 
-static json_t *reaches(const wh_record_t *record) {
-    const size_t stations = record->reach && record->layout ? record->layout->station_count : 0;
-    json_t *list = json_array();
-    for (size_t station = 0; station < stations; ++station) {
-        for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-            if (record->reach[station].axes[axis].slot != 0) {
-                wh_json_append(list, reach(record, (int32_t)station, axis));
-            }
-        }
-    }
-    return list;
-}
-
 /* ---------------------------------------------------------------------------------------------------- all */
 
 static json_t *expectation(const void *subject, size_t i) {
     const wh_record_t *record = subject;
     const wh_expectation_record_t *from = &record->expectations[i];
-    json_t *object = json_object();
-    wh_json_put_integer(object, "line", from->line);
-    wh_json_put_text(object, "text", from->text);
-    wh_json_put(object, "ok", json_boolean(from->ok));
-    return object;
+    return wh_memory_need(
+        json_pack("{s:i, s:o, s:b}", "line", from->line, "text", wh_json_text(from->text), "ok", from->ok));
 }
 
 static void put_head(const wh_record_t *record, json_t *root) {
@@ -410,6 +389,7 @@ static void put_head(const wh_record_t *record, json_t *root) {
 
 static void put_lists(const wh_record_t *record, json_t *root) {
     const size_t wafers = record->layout ? record->layout->wafer_count : 0;
+    const size_t stations = record->layout && record->reach ? record->layout->station_count : 0;
     wh_json_put(root, "commands", wh_json_list(command, record, record->command_count));
     wh_json_put(root, "wafers", wh_json_list(wafer, record, wafers));
     wh_json_put(root, "events", wh_json_list(event, record, record->event_count));
@@ -417,12 +397,12 @@ static void put_lists(const wh_record_t *record, json_t *root) {
         wh_json_put(root, "clearances", wh_json_list(clearance, record, WH_CLEARANCES));
     }
     if (record->checked && record->curves) {
-        wh_json_put(root, "clearance_curves", curves(record));
+        wh_json_put(root, "clearance_curves", wh_json_list(curve, record, WH_CLEARANCES));
     }
     wh_json_put(root, "expectations", wh_json_list(expectation, record, record->expectation_count));
     wh_json_put(root, "cycles", cycles(record));
     wh_json_put(root, "gantt", gantt(record));
-    wh_json_put(root, "reach", reaches(record));
+    wh_json_put(root, "reach", wh_json_list(reach, record, stations * WH_ROBOT_AXES));
 }
 
 json_t *wh_record_to_json(const wh_record_t *record) {

@@ -9,16 +9,10 @@
 static void print_tolerance(const wh_printer_t *printer) {
     const wh_layout_t *layout = printer->record->layout;
     const wh_tolerance_t *limits = &layout->grasp.tolerance;
-    char projz[WH_PRINT_NUMBER_SIZE];
-    char projxy[WH_PRINT_NUMBER_SIZE];
-    char planar[WH_PRINT_NUMBER_SIZE];
-    wh_print_limit(projz, (double)limits->projz);
-    wh_print_limit(projxy, (double)limits->projxy);
-    wh_print_limit(planar, (double)limits->planar);
     fprintf(printer->out,
-            "tolerance %s: |dr_proj_z| < %s mm, |dr_proj_xy| < %s mm, n1_proj_n2 > %s (%.2f%s)\n",
-            layout->tolerance_name, projz, projxy, planar, wh_print_tilt_deg((double)limits->planar),
-            wh_style_glyph(printer->style, WH_GLYPH_DEGREE));
+            "tolerance %s: |dr_proj_z| < %.10g mm, |dr_proj_xy| < %.10g mm, n1_proj_n2 > %.10g (%.2f%s)\n",
+            layout->tolerance_name, (double)limits->projz, (double)limits->projxy, (double)limits->planar,
+            wh_print_tilt_deg((double)limits->planar), wh_style_glyph(printer->style, WH_GLYPH_DEGREE));
     fprintf(printer->out, "checked %s %g ms; wafers %s\n",
             layout->grasp.check == WH_CHECK_SWEPT ? "along the whole of each slice of"
                                                   : "once a slice, every",

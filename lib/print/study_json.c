@@ -51,25 +51,19 @@ static json_t *error(const void *subject, size_t i) {
     return object;
 }
 
-static json_t *event(const wh_study_result_t *result, size_t kind) {
+/* Null for a kind that never happened. */
+static json_t *event(const void *subject, size_t kind) {
+    const wh_study_result_t *result = subject;
     const wh_tally_event_t *counted = &result->tally->events[kind];
+    if (counted->trials == 0) {
+        return NULL;
+    }
     json_t *object = json_object();
     wh_json_put_text(object, "kind", wh_event_name((wh_event_kind_t)kind));
     put_count(object, "trials", counted->trials);
     put_rate(object, counted->trials, result->tally->trials);
     put_count(object, "total", counted->total);
     return object;
-}
-
-/* Only events that happened. */
-static json_t *events(const wh_study_result_t *result) {
-    json_t *list = json_array();
-    for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
-        if (result->tally->events[kind].trials > 0) {
-            wh_json_append(list, event(result, kind));
-        }
-    }
-    return list;
 }
 
 /* ------------------------------------------------------------------------------------------------- wafers */
@@ -115,9 +109,18 @@ static json_t *wafer(const void *subject, size_t i) {
 
 /* -------------------------------------------------------------------------------------------------- worst */
 
+/* What a trial drew. What it drew nothing for is null. */
+typedef struct {
+    const wh_layout_t *layout;
+    wh_trial_t trial;
+} draw_t;
+
 static json_t *displacement(const char *name, const wh_displacement_t *drawn, const char *const keys[6]) {
     const double values[] = {(double)drawn->moved.x, (double)drawn->moved.y, (double)drawn->moved.z,
                              (double)drawn->turn[0], (double)drawn->turn[1], (double)drawn->turn[2]};
+    if (!wh_displacement_is_any(drawn)) {
+        return NULL;
+    }
     json_t *object = json_object();
     wh_json_put_text(object, "name", name);
     for (size_t i = 0; i < 6; ++i) {
@@ -126,57 +129,47 @@ static json_t *displacement(const char *name, const wh_displacement_t *drawn, co
     return object;
 }
 
-static json_t *drawn_wafers(const wh_layout_t *layout, const wh_trial_t *trial) {
+static json_t *drawn_wafer(const void *subject, size_t w) {
     static const char *const keys[6] = {"dx", "dy", "dz", "tilt_x", "tilt_y", "turn"};
-    json_t *list = json_array();
-    for (size_t w = 0; w < layout->wafer_count; ++w) {
-        const wh_displacement_t drawn = wh_errors_draw_wafer(layout->errors, trial, w);
-        if (wh_displacement_is_any(&drawn)) {
-            wh_json_append(list, displacement(layout->wafers[w].name, &drawn, keys));
-        }
-    }
-    return list;
+    const draw_t *draw = subject;
+    const wh_displacement_t drawn = wh_errors_draw_wafer(draw->layout->errors, &draw->trial, w);
+    return displacement(draw->layout->wafers[w].name, &drawn, keys);
 }
 
-static json_t *drawn_stations(const wh_layout_t *layout, const wh_trial_t *trial) {
+static json_t *drawn_station(const void *subject, size_t s) {
     static const char *const keys[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
-    json_t *list = json_array();
-    for (size_t s = 0; s < layout->station_count; ++s) {
-        const wh_displacement_t drawn = wh_errors_draw_station(layout->errors, trial, s);
-        if (wh_displacement_is_any(&drawn)) {
-            wh_json_append(list, displacement(layout->stations[s].name, &drawn, keys));
-        }
-    }
-    return list;
+    const draw_t *draw = subject;
+    const wh_displacement_t drawn = wh_errors_draw_station(draw->layout->errors, &draw->trial, s);
+    return displacement(draw->layout->stations[s].name, &drawn, keys);
 }
 
-static json_t *drawn_valves(const wh_layout_t *layout, const wh_trial_t *trial) {
-    json_t *list = json_array();
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        if (layout->errors->valves[g].width > 0) {
-            json_t *object = json_object();
-            const double late = (double)wh_errors_draw_valve(layout->errors, trial, g);
-            wh_json_put_text(object, "gripper", layout->grippers[g].name);
-            wh_json_put_integer(object, "slices", (json_int_t)ceil(late * 1e6 / (double)layout->slice_us));
-            wh_json_append(list, object);
-        }
+static json_t *drawn_valve(const void *subject, size_t g) {
+    const draw_t *draw = subject;
+    const wh_layout_t *layout = draw->layout;
+    if (!(layout->errors->valves[g].width > 0)) {
+        return NULL;
     }
-    return list;
+    json_t *object = json_object();
+    const double late = (double)wh_errors_draw_valve(layout->errors, &draw->trial, g);
+    wh_json_put_text(object, "gripper", layout->grippers[g].name);
+    wh_json_put_integer(object, "slices", (json_int_t)ceil(late * 1e6 / (double)layout->slice_us));
+    return object;
 }
 
 static json_t *worst_trial(const void *subject, size_t i) {
     const wh_study_result_t *result = subject;
     const wh_tally_trial_t *worst = &result->tally->worst[i];
-    const wh_trial_t trial = {result->study->seed, worst->trial};
+    const wh_layout_t *layout = result->study->layout;
+    const draw_t draw = {layout, {result->study->seed, worst->trial}};
     json_t *object = json_object();
     json_t *drawn = json_object();
     put_count(object, "trial", worst->trial);
     wh_json_put(object, "ok", json_boolean(worst->met));
     wh_json_put_real(object, "off", worst->off);
-    wh_json_put(drawn, "wafers", drawn_wafers(result->study->layout, &trial));
-    wh_json_put(drawn, "stations", drawn_stations(result->study->layout, &trial));
-    wh_json_put(drawn, "valves", drawn_valves(result->study->layout, &trial));
-    wh_json_put_real(drawn, "vacuum_s", (double)wh_errors_draw_vacuum(result->study->layout->errors, &trial));
+    wh_json_put(drawn, "wafers", wh_json_list(drawn_wafer, &draw, layout->wafer_count));
+    wh_json_put(drawn, "stations", wh_json_list(drawn_station, &draw, layout->station_count));
+    wh_json_put(drawn, "valves", wh_json_list(drawn_valve, &draw, layout->machine.gripper_count));
+    wh_json_put_real(drawn, "vacuum_s", (double)wh_errors_draw_vacuum(layout->errors, &draw.trial));
     wh_json_put(object, "drawn", drawn);
     return object;
 }
@@ -222,7 +215,7 @@ int wh_study_print_json(const wh_study_result_t *result, FILE *out) {
     put_head(result, root);
     wh_json_put(root, "expectations", wh_json_list(expectation, result, result->tally->expectations.count));
     wh_json_put(root, "errors", wh_json_list(error, result, result->tally->errors.count));
-    wh_json_put(root, "events", events(result));
+    wh_json_put(root, "events", wh_json_list(event, result, WH_EVENT_KINDS));
     wh_json_put(root, "wafers", wh_json_list(wafer, result, result->tally->wafer_count));
     wh_json_put(root, "worst", wh_json_list(worst_trial, result, worst));
     const int status = wh_json_print(root, out);

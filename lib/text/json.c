@@ -63,7 +63,10 @@ void wh_json_put_integer(json_t *object, const char *key, json_int_t value) {
 json_t *wh_json_list(wh_json_element_t *element, const void *subject, size_t count) {
     json_t *list = json_array();
     for (size_t i = 0; i < count; ++i) {
-        wh_json_append(list, element(subject, i));
+        json_t *made = element(subject, i);
+        if (made) {
+            wh_json_append(list, made);
+        }
     }
     return list;
 }

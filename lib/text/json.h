@@ -33,7 +33,8 @@ void wh_json_put_real(json_t *object, const char *key, double value);
 void wh_json_put_text(json_t *object, const char *key, const char *text);
 void wh_json_put_integer(json_t *object, const char *key, json_int_t value);
 
-/* A list of what `element` makes of 0 to count - 1; `subject` is what it makes them from. */
+/* A list of what `element` makes of 0 to count - 1; `subject` is what it makes them from. What it makes null
+ * is left out. */
 typedef json_t *wh_json_element_t(const void *subject, size_t i);
 json_t *wh_json_list(wh_json_element_t *element, const void *subject, size_t count);
 
