@@ -73,12 +73,9 @@ typedef struct {
     const char *field, *what;
     const void *items; /* each begins with its name */
     size_t size, count;
+    wh_layout_find_t *find;
     void (*read)(wh_reader_t *reader, wh_layout_t *layout, size_t index);
 } section_t;
-
-static const char *name_at(const section_t *section, size_t index) {
-    return (const char *)section->items + index * section->size;
-}
 
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
     read_placement(reader, &layout->errors->wafers[index]);
@@ -95,56 +92,36 @@ static void read_gripper(wh_reader_t *reader, wh_layout_t *layout, size_t index)
     read_valve(reader, layout, valve);
 }
 
-static bool is_name(const section_t *section, const char *name) {
-    size_t i = 0;
-    while (i < section->count && strcmp(name_at(section, i), name) != 0) {
-        ++i;
-    }
-    return i < section->count;
-}
-
-/* Counts the keys of the table; refuses one that is not a text. */
-static size_t count_keys(const wh_reader_t *reader, const section_t *section) {
+/* Refuses the first key, by name, that names nothing of the layout; and a key that is no text. */
+static void refuse_strangers(const wh_reader_t *reader, const wh_layout_t *layout, const section_t *section) {
     lua_State *L = reader->L;
-    size_t count = 0;
+    const char *first = NULL;
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
         if (lua_type(L, -2) != LUA_TSTRING) {
             lua_pushvalue(L, -2);
             wh_reader_fail(reader, NULL, "tables by the name of a %s", section->what);
         }
-        ++count;
-    }
-    return count;
-}
-
-/* Refuses the first key, by name, that names nothing of the layout. */
-static void refuse_stranger(const wh_reader_t *reader, const section_t *section) {
-    lua_State *L = reader->L;
-    const char *first = "";
-    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
         const char *name = lua_tostring(L, -2);
-        if ((!first[0] || strcmp(name, first) < 0) && !is_name(section, name)) {
+        if ((!first || strcmp(name, first) < 0) && section->find(layout, name) == WH_NONE) {
             first = name;
         }
     }
-    wh_reader_refuse(reader, NULL, first, "the name of a %s of this layout", section->what);
+    if (first) {
+        wh_reader_refuse(reader, NULL, first, "the name of a %s of this layout", section->what);
+    }
 }
 
 static void read_section(wh_reader_t *reader, wh_layout_t *layout, const section_t *section) {
     if (!wh_reader_enter(reader, section->field)) {
         return;
     }
-    size_t found = 0;
     for (size_t i = 0; i < section->count; ++i) {
-        if (wh_reader_enter(reader, name_at(section, i))) {
+        if (wh_reader_enter(reader, (const char *)section->items + i * section->size)) {
             section->read(reader, layout, i);
             wh_reader_leave(reader);
-            ++found;
         }
     }
-    if (found != count_keys(reader, section)) {
-        refuse_stranger(reader, section);
-    }
+    refuse_strangers(reader, layout, section);
     wh_reader_leave(reader);
 }
 
@@ -183,12 +160,12 @@ static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t sh
 }
 
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
-    const section_t sections[] = {
-        {"wafers", "wafer", layout->wafers, sizeof *layout->wafers, layout->wafer_count, read_wafer},
-        {"stations", "station", layout->stations, sizeof *layout->stations, layout->station_count,
-         read_station},
-        {"grippers", "gripper", layout->grippers, sizeof layout->grippers[0], layout->machine.gripper_count,
-         read_gripper}};
+    const section_t sections[] = {{"wafers", "wafer", layout->wafers, sizeof *layout->wafers,
+                                   layout->wafer_count, wh_layout_find_wafer, read_wafer},
+                                  {"stations", "station", layout->stations, sizeof *layout->stations,
+                                   layout->station_count, wh_layout_find_station, read_station},
+                                  {"grippers", "gripper", layout->grippers, sizeof layout->grippers[0],
+                                   layout->machine.gripper_count, wh_layout_find_gripper, read_gripper}};
     if (!wh_reader_open(reader, "study", "shape placement teaching timing wafers stations grippers")) {
         return;
     }

@@ -103,6 +103,26 @@ int32_t wh_layout_find_wafer(const wh_layout_t *layout, const char *name) {
     return find(layout->wafers, layout->wafer_count, sizeof *layout->wafers, name);
 }
 
+int32_t wh_layout_read_name(wh_reader_t *reader, const wh_layout_t *layout, const char *field,
+                            const char *fallback, wh_layout_find_t *lookup, const char *expected) {
+    char name[WH_NAME_SIZE];
+    wh_reader_text(reader, field, fallback, name, sizeof name);
+    const int32_t found = lookup(layout, name);
+    if (found == WH_NONE) {
+        wh_reader_refuse(reader, field, name, "%s", expected);
+    }
+    return found;
+}
+
+int32_t wh_layout_read_gripper_name(wh_reader_t *reader, const wh_layout_t *layout, const char *field,
+                                    const char *expected) {
+    const wh_layout_gripper_t *first = layout->grippers;
+    while (first->station != WH_NONE) {
+        ++first;
+    }
+    return wh_layout_read_name(reader, layout, field, first->name, wh_layout_find_gripper, expected);
+}
+
 typedef struct {
     const char *path;
     const wh_layout_t *layout;

@@ -18,12 +18,9 @@ static wh_grid_t *new_grid(const wh_printer_t *printer) {
 
 /* The fewest decimals, at least `least`, with which the difference is not zero. */
 static int decimals_for(double difference, int least) {
-    int decimals = least;
+    int decimals = 0;
     double unit = 1;
-    for (int i = 0; i < least; ++i) {
-        unit /= 10;
-    }
-    while (difference > 0 && difference < unit && decimals < 15) {
+    while (decimals < least || (difference > 0 && difference < unit && decimals < 15)) {
         unit /= 10;
         ++decimals;
     }

@@ -139,38 +139,23 @@ static void write_exact(FILE *out, double value) {
     fputs(digits, out);
 }
 
-/* Writes no zeros at the end. Counting in units of the last decimal is faster than printf and gives the same
- * digits. */
+/* Writes no zeros at the end. Counting in units of the last decimal is faster than printf of a double and
+ * gives the same digits. */
 static void write_rounded(FILE *out, double value, int decimals) {
     static const double powers[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
-    char digits[32];
-    char *to = digits + sizeof digits - 1;
-    double units = floor(fabs(value) * powers[decimals] + 0.5);
-    if (!(units < 1e15)) {
+    const double exact = floor(fabs(value) * powers[decimals] + 0.5);
+    if (!(exact < 1e15)) {
         write_exact(out, value);
         return;
     }
-    long long left = (long long)units;
-    const bool negative = value < 0 && left > 0;
-    bool significant = false;
-    *to = '\0';
-    for (int i = 0; i < decimals; ++i, left /= 10) {
-        significant = significant || left % 10 != 0;
-        if (significant) {
-            *--to = (char)('0' + left % 10);
-        }
+    char digits[32];
+    long long units = (long long)exact;
+    const char *sign = value < 0 && units > 0 ? "-" : "";
+    for (; decimals > 0 && units % 10 == 0; --decimals) {
+        units /= 10;
     }
-    if (significant) {
-        *--to = '.';
-    }
-    do {
-        *--to = (char)('0' + left % 10);
-        left /= 10;
-    } while (left > 0);
-    if (negative) {
-        *--to = '-';
-    }
-    fputs(to, out);
+    const int whole = snprintf(digits, sizeof digits, "%0*lld", decimals + 1, units) - decimals;
+    fprintf(out, "%s%.*s%s%s", sign, whole, digits, decimals > 0 ? "." : "", digits + whole);
 }
 
 void wh_json_text_number(wh_json_text_t *text, const char *key, double value, int decimals, bool exact) {
