@@ -21,7 +21,6 @@ int32_t wh_layout_read_gripper_name(wh_reader_t *reader, const wh_layout_t *layo
                                     const char *expected);
 
 /* Each reads its fields from the layout's top table, at which the reader is. */
-void wh_layout_read_checks(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout);
