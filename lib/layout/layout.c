@@ -27,13 +27,6 @@ void *wh_layout_memory(lua_State *L, size_t count, size_t size) {
     return memory;
 }
 
-static char *copy_text(lua_State *L, const char *text) {
-    const size_t size = strlen(text) + 1;
-    char *copy = wh_layout_memory(L, size, 1);
-    memcpy(copy, text, size);
-    return copy;
-}
-
 /* ------------------------------------------------------------------------------------- how a run is judged */
 
 static double default_thickness(double diameter) {
@@ -150,7 +143,7 @@ static void read_checks(wh_reader_t *reader, wh_layout_t *layout) {
 wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_reader_t reader;
     wh_layout_t *layout = wh_layout_memory(L, 1, sizeof *layout);
-    layout->path = copy_text(L, path);
+    layout->path = strcpy(wh_layout_memory(L, strlen(path) + 1, 1), path);
     wh_reader_start(&reader, L, layout->path);
     if (!lua_istable(L, -1)) {
         wh_reader_fail(&reader, "what the file returns", "a table");

@@ -29,11 +29,6 @@ static void add_obstacles(wh_part_list_t *list, const obstacles_t *obstacles, bo
 
 /* ------------------------------------------------------------------------------------------------- shapes */
 
-static void read_box(wh_reader_t *reader, wh_convex_t *convex) {
-    const wh_vec3_t size = wh_reader_vector(reader, "box", NULL);
-    convex->half = wh_vec3_scale(WH_REAL(0.5), &size);
-}
-
 /* `cylinder` and `capsule` are { radius = , height = } about their middle. A capsule's height does not count
  * its caps. */
 static void read_round(wh_reader_t *reader, const char *field, wh_convex_t *convex) {
@@ -96,7 +91,8 @@ static void read_shape(wh_reader_t *reader, const wh_layout_t *layout, wh_convex
     }
     convex->kind = (wh_convex_kind_t)given;
     if (convex->kind == WH_CONVEX_BOX) {
-        read_box(reader, convex);
+        const wh_vec3_t size = wh_reader_vector(reader, "box", NULL);
+        convex->half = wh_vec3_scale(WH_REAL(0.5), &size);
     } else if (convex->kind == WH_CONVEX_MESH) {
         read_mesh(reader, layout, convex);
     } else {

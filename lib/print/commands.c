@@ -29,16 +29,6 @@ static void link_events(const wh_record_t *record, const chains_t *chains) {
     }
 }
 
-static wh_grid_t *new_grid(const wh_printer_t *printer) {
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
-    wh_grid_text_columns(grid, "command", NULL);
-    wh_grid_number_columns(grid, wh_print_seconds, "begin s", "end s", NULL);
-    wh_grid_text_columns(grid, "result", "taken", NULL);
-    wh_print_measured_columns(printer, grid);
-    return grid;
-}
-
 static void fill_event(const wh_printer_t *printer, wh_grid_t *grid, const wh_event_t *event) {
     const char *wafer = wh_print_wafer(printer, event->wafer);
     const char *gripper = wh_print_gripper(printer, event->gripper);
@@ -102,7 +92,12 @@ static void add_others(const wh_printer_t *printer, wh_grid_t *grid, const chain
 }
 
 static void print_table(const wh_printer_t *printer, const chains_t *chains) {
-    wh_grid_t *grid = new_grid(printer);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "command", NULL);
+    wh_grid_number_columns(grid, wh_print_seconds, "begin s", "end s", NULL);
+    wh_grid_text_columns(grid, "result", "taken", NULL);
+    wh_print_measured_columns(printer, grid);
     for (size_t i = 0; i < printer->record->command_count; ++i) {
         add_command(printer, grid, chains, i);
     }
@@ -171,7 +166,8 @@ static void add_limit(wh_grid_t *grid, const char *relation, double limit, doubl
     wh_grid_number(grid, MARGIN, margin > 0 ? WH_INK_GOOD : WH_INK_BAD, margin);
 }
 
-static wh_grid_t *new_values(const wh_printer_t *printer) {
+static void print_values(const wh_printer_t *printer, const wh_proximity_t *p) {
+    const wh_tolerance_t *limits = &printer->record->layout->grasp.tolerance;
     const wh_grid_digits_t digits = {6, 6, false, 0};
     const wh_grid_digits_t margin = {6, 6, true, 0};
     wh_grid_t *grid = wh_grid_new(printer->style, 1);
@@ -179,12 +175,6 @@ static wh_grid_t *new_values(const wh_printer_t *printer) {
     wh_grid_number_columns(grid, digits, "measured", NULL);
     wh_grid_text_columns(grid, "limit", NULL);
     wh_grid_number_columns(grid, margin, "margin", NULL);
-    return grid;
-}
-
-static void print_values(const wh_printer_t *printer, const wh_proximity_t *p) {
-    const wh_tolerance_t *limits = &printer->record->layout->grasp.tolerance;
-    wh_grid_t *grid = new_values(printer);
     add_value(grid, "  |dr_proj_z|", (double)wh_real_abs(p->dr_proj_z));
     add_limit(grid, "<", (double)limits->projz, (double)p->margin_projz);
     add_value(grid, "  |dr_proj_xy|", (double)p->dr_proj_xy_norm);

@@ -7,15 +7,6 @@
 
 enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_PRINT_MEASURED_COLUMNS };
 
-static wh_grid_t *new_grid(const wh_printer_t *printer) {
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_number_columns(grid, wh_print_seconds, "at s", NULL);
-    wh_grid_text_columns(grid, "what", "wafer", "gripper", NULL);
-    wh_print_measured_columns(printer, grid);
-    wh_grid_text_columns(grid, "why", NULL);
-    return grid;
-}
-
 /* The fewest decimals, at least `least`, with which the difference is not zero. */
 static int decimals_for(double difference, int least) {
     int decimals = 0;
@@ -210,7 +201,11 @@ void wh_print_complaints(const wh_printer_t *printer) {
     if (first == record->event_count) {
         return;
     }
-    wh_grid_t *grid = new_grid(printer);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
+    wh_grid_number_columns(grid, wh_print_seconds, "at s", NULL);
+    wh_grid_text_columns(grid, "what", "wafer", "gripper", NULL);
+    wh_print_measured_columns(printer, grid);
+    wh_grid_text_columns(grid, "why", NULL);
     for (size_t i = first; i < record->event_count; ++i) {
         if (wh_print_is_miss(record->events[i].event.kind)) {
             add_event(printer, grid, &record->events[i]);

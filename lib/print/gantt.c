@@ -67,13 +67,6 @@ static gantt_t open_gantt(const wh_printer_t *printer, size_t label_columns) {
     return gantt;
 }
 
-static void clear(gantt_t *gantt) {
-    for (size_t i = 0; i < gantt->columns; ++i) {
-        free(gantt->cells[i].text);
-    }
-    memset(gantt->cells, 0, gantt->columns * sizeof *gantt->cells);
-}
-
 /* The column in which a slice ends. */
 static size_t column_of(const gantt_t *gantt, int64_t slice) {
     const double share = (double)slice / (double)gantt->slices;
@@ -134,7 +127,10 @@ static void print_row(gantt_t *gantt, const char *label) {
         i += cell->text ? cell->wide : 1;
     }
     fputc('\n', out);
-    clear(gantt);
+    for (size_t i = 0; i < gantt->columns; ++i) {
+        free(gantt->cells[i].text);
+    }
+    memset(gantt->cells, 0, gantt->columns * sizeof *gantt->cells);
 }
 
 /* ------------------------------------------------------------------------------------------- time's scale */

@@ -43,25 +43,22 @@ static size_t count_unmet(const wh_record_t *record) {
     return unmet;
 }
 
-static void add_unmet(const wh_printer_t *printer, wh_grid_t *grid,
-                      const wh_expectation_record_t *expectation) {
-    wh_grid_row(grid);
-    wh_grid_text(grid, MARK, WH_INK_BAD, "%s", wh_style_glyph(printer->style, WH_GLYPH_CROSS));
-    if (expectation->line > 0) {
-        wh_grid_number(grid, LINE, WH_INK_DIM, expectation->line);
-    }
-    wh_grid_text(grid, TEXT, WH_INK_PLAIN, "%s", expectation->text ? expectation->text : "");
-}
-
 static void print_unmet(const wh_printer_t *printer) {
     wh_grid_t *grid = wh_grid_new(printer->style, 0);
     wh_grid_text_columns(grid, "", NULL);
     wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
     wh_grid_text_columns(grid, "expected", NULL);
     for (size_t i = 0; i < printer->record->expectation_count; ++i) {
-        if (!printer->record->expectations[i].ok) {
-            add_unmet(printer, grid, &printer->record->expectations[i]);
+        const wh_expectation_record_t *expectation = &printer->record->expectations[i];
+        if (expectation->ok) {
+            continue;
         }
+        wh_grid_row(grid);
+        wh_grid_text(grid, MARK, WH_INK_BAD, "%s", wh_style_glyph(printer->style, WH_GLYPH_CROSS));
+        if (expectation->line > 0) {
+            wh_grid_number(grid, LINE, WH_INK_DIM, expectation->line);
+        }
+        wh_grid_text(grid, TEXT, WH_INK_PLAIN, "%s", expectation->text ? expectation->text : "");
     }
     wh_grid_print(grid, printer->out);
 }

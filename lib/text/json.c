@@ -1,6 +1,7 @@
 #include "json.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,6 +59,20 @@ void wh_json_put_text(json_t *object, const char *key, const char *text) {
 
 void wh_json_put_integer(json_t *object, const char *key, json_int_t value) {
     wh_json_put(object, key, json_integer(value));
+}
+
+json_t *wh_json_add(json_t *object, const char *keys, ...) {
+    va_list values;
+    va_start(values, keys);
+    while (*keys != '\0') {
+        const size_t length = strcspn(keys, " ");
+        if (json_object_setn_new(object, keys, length, va_arg(values, json_t *)) != 0) {
+            wh_memory_out();
+        }
+        keys += length + strspn(keys + length, " ");
+    }
+    va_end(values);
+    return object;
 }
 
 json_t *wh_json_list(wh_json_element_t *element, const void *subject, size_t count) {
