@@ -43,16 +43,10 @@ static const char *share_mark(const wh_style_t *style, wh_share_t share) {
 }
 
 static const char *mark_of(const wh_style_t *style, const wh_busy_span_t *interval) {
-    switch (interval->who) {
-    case WH_BUSY_WAFER:
+    if (interval->who == WH_BUSY_WAFER) {
         return style->utf8 ? "━" : "=";
-    case WH_BUSY_VALVE:
-        return "o";
-    case WH_BUSY_ROBOT:
-    case WH_BUSY_CHUCK:
-        break;
     }
-    return share_mark(style, (wh_share_t)(interval->what - 1));
+    return interval->who == WH_BUSY_VALVE ? "o" : share_mark(style, (wh_share_t)(interval->what - 1));
 }
 
 /* --------------------------------------------------------------------------------------------------- rows */

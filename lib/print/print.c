@@ -58,6 +58,12 @@ void wh_print_count(char text[WH_PRINT_NUMBER_SIZE], int64_t count) {
     text[to] = '\0';
 }
 
+void wh_print_counted(FILE *out, int64_t count, const char *one, const char *many) {
+    char text[WH_PRINT_NUMBER_SIZE];
+    wh_print_count(text, count);
+    fprintf(out, "%s %s", text, count == 1 ? one : many);
+}
+
 double wh_print_tilt_deg(double n1_proj_n2) {
     const wh_real_t cosine = (wh_real_t)n1_proj_n2;
     const wh_real_t square = (1 - cosine) * (1 + cosine);

@@ -92,20 +92,18 @@ static json_t *failed_conditions(unsigned failed) {
     return list;
 }
 
-static json_t *measured_utime(const wh_record_t *record, const wh_event_t *event) {
-    const wh_layout_t *layout = record->layout;
-    return layout ? json_integer((json_int_t)event->measured_slice * layout->slice_us) : json_null();
-}
-
 static void put_measured(const wh_record_t *record, json_t *object, const wh_event_t *event) {
     const wh_proximity_t *measured = &event->measured;
-    (void)wh_json_add(object, "dr_proj_z dr_proj_xy dr_proj_xy_norm n1_proj_n2 margins failed measured_utime",
-                      wh_json_real(measured->dr_proj_z), wh_json_vector(measured->dr_proj_xy),
-                      wh_json_real(measured->dr_proj_xy_norm), wh_json_real(measured->n1_proj_n2),
-                      wh_json_add(json_object(), "projz projxy planar", wh_json_real(measured->margin_projz),
-                                  wh_json_real(measured->margin_projxy),
-                                  wh_json_real(measured->margin_planar), NULL),
-                      failed_conditions(measured->failed), measured_utime(record, event), NULL);
+    (void)wh_json_add(
+        object, "dr_proj_z dr_proj_xy dr_proj_xy_norm n1_proj_n2 margins failed measured_utime",
+        wh_json_real(measured->dr_proj_z), wh_json_vector(measured->dr_proj_xy),
+        wh_json_real(measured->dr_proj_xy_norm), wh_json_real(measured->n1_proj_n2),
+        wh_json_add(json_object(), "projz projxy planar", wh_json_real(measured->margin_projz),
+                    wh_json_real(measured->margin_projxy), wh_json_real(measured->margin_planar), NULL),
+        failed_conditions(measured->failed),
+        record->layout ? json_integer((json_int_t)event->measured_slice * record->layout->slice_us)
+                       : json_null(),
+        NULL);
 }
 
 static bool is_unmeasured(wh_event_kind_t kind) {
@@ -275,16 +273,10 @@ static json_t *cycles(const wh_record_t *record) {
 
 static json_t *interval_what(const wh_record_t *record, const wh_busy_span_t *interval) {
     static const char *const shares[WH_SHARES] = {"loaded", "empty", "vacuum", "handover", "waiting"};
-    switch (interval->who) {
-    case WH_BUSY_WAFER:
+    if (interval->who == WH_BUSY_WAFER) {
         return wh_json_text(wh_record_wafer_name(record, interval->what - 1));
-    case WH_BUSY_VALVE:
-        return json_string("open");
-    case WH_BUSY_ROBOT:
-    case WH_BUSY_CHUCK:
-        break;
     }
-    return json_string(shares[interval->what - 1]);
+    return json_string(interval->who == WH_BUSY_VALVE ? "open" : shares[interval->what - 1]);
 }
 
 static json_t *interval(const wh_record_t *record, const wh_busy_span_t *from) {

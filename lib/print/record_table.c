@@ -82,18 +82,12 @@ static void print_expectations(const wh_printer_t *printer) {
 
 /* ------------------------------------------------------------------------------------------------ summary */
 
-static void put_counted(FILE *out, int64_t count, const char *one, const char *many) {
-    char text[WH_PRINT_NUMBER_SIZE];
-    wh_print_count(text, count);
-    fprintf(out, "%s %s", text, count == 1 ? one : many);
-}
-
 static void print_times(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
     fputc('\n', printer->out);
-    put_counted(printer->out, (int64_t)record->command_count, "command", "commands");
+    wh_print_counted(printer->out, (int64_t)record->command_count, "command", "commands");
     fprintf(printer->out, ", %.3f s simulated in ", record->simulated_s);
-    put_counted(printer->out, record->slices, "slice", "slices");
+    wh_print_counted(printer->out, record->slices, "slice", "slices");
     if (record->missed > 0) {
         fprintf(printer->out, ", of which the simulator missed %lld", (long long)record->missed);
     }
@@ -114,14 +108,13 @@ static void print_times(const wh_printer_t *printer) {
     fprintf(printer->out, "hash %016llx\n", (unsigned long long)record->hash);
 }
 
-/* A reason for the verdict; true when there is one. */
-static bool put_reason(FILE *out, bool is_first, size_t count, const char *one, const char *many) {
-    if (count == 0) {
-        return false;
+/* A reason for the verdict, if there is one. */
+static void put_reason(FILE *out, const char **before, size_t count, const char *one, const char *many) {
+    if (count > 0) {
+        fputs(*before, out);
+        wh_print_counted(out, (int64_t)count, one, many);
+        *before = ", ";
     }
-    fputs(is_first ? ": " : ", ", out);
-    put_counted(out, (int64_t)count, one, many);
-    return true;
 }
 
 static size_t count_errors(const wh_record_t *record) {
@@ -141,11 +134,12 @@ static void put_reasons(const wh_printer_t *printer) {
     for (size_t i = 0; i < record->event_count; ++i) {
         complaints += wh_record_is_complaint(record->events[i].event.kind) ? 1 : 0;
     }
-    bool more = put_reason(printer->out, true, unmet, "expectation not met", "expectations not met");
-    more |= put_reason(printer->out, !more, record->failure ? count_errors(record) : 0,
-                       "command with an error", "commands with errors");
-    more |= put_reason(printer->out, !more, complaints, "complaint", "complaints");
-    if (more && unmet == 0 && expected > 0) {
+    const char *before = ": ";
+    put_reason(printer->out, &before, unmet, "expectation not met", "expectations not met");
+    put_reason(printer->out, &before, record->failure ? count_errors(record) : 0, "command with an error",
+               "commands with errors");
+    put_reason(printer->out, &before, complaints, "complaint", "complaints");
+    if (before[0] == ',' && unmet == 0 && expected > 0) {
         fprintf(printer->out, ", though %s met",
                 expected == 1 ? "the expectation is" : "all expectations are");
     }

@@ -110,10 +110,8 @@ static void print_wafers(const wh_printer_t *printer, const history_t *history) 
         wh_grid_free(grid);
     }
     if (left_out > 0) {
-        char count[WH_PRINT_NUMBER_SIZE];
-        wh_print_count(count, (int64_t)left_out);
-        fprintf(printer->out, "%s %s where nothing happened to them\n", count,
-                left_out == 1 ? "wafer lies" : "wafers lie");
+        wh_print_counted(printer->out, (int64_t)left_out, "wafer lies", "wafers lie");
+        fputs(" where nothing happened to them\n", printer->out);
     }
     say_tilts(printer, history);
 }
