@@ -7,23 +7,11 @@
 
 enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_PRINT_MEASURED_COLUMNS };
 
-static wh_grid_t *new_grid(const wh_printer_t *printer) {
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_number_columns(grid, wh_print_seconds, "at s", NULL);
-    wh_grid_text_columns(grid, "what", "wafer", "gripper", NULL);
-    wh_print_measured_columns(printer, grid);
-    wh_grid_text_columns(grid, "why", NULL);
-    return grid;
-}
-
 /* The fewest decimals, at least `least`, with which the difference is not zero. */
 static int decimals_for(double difference, int least) {
-    int decimals = least;
+    int decimals = 0;
     double unit = 1;
-    for (int i = 0; i < least; ++i) {
-        unit /= 10;
-    }
-    while (difference > 0 && difference < unit && decimals < 15) {
+    while (decimals < least || (difference > 0 && difference < unit && decimals < 15)) {
         unit /= 10;
         ++decimals;
     }
@@ -61,18 +49,16 @@ static void describe_excess(char *text, size_t size, const condition_t *conditio
 }
 
 static void say_condition(const wh_printer_t *printer, wh_grid_t *grid, const condition_t *condition) {
-    char limit[WH_PRINT_NUMBER_SIZE];
     char excess[WH_GRID_NUMBER_SIZE];
     char tilt[64] = "";
     const int decimals = decimals_for(-condition->margin, condition->decimals);
-    wh_print_limit(limit, condition->limit);
     describe_excess(excess, sizeof excess, condition, decimals);
     if (condition->bit == WH_FAILED_PLANAR) {
         snprintf(tilt, sizeof tilt, ": tilted by %.3f%s", wh_print_tilt_deg(condition->value),
                  wh_style_glyph(printer->style, WH_GLYPH_DEGREE));
     }
-    wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s %.*f is not %s %s (%s)%s", condition->name, decimals,
-                 condition->value, condition->relation, limit, excess, tilt);
+    wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s %.*f is not %s %.10g (%s)%s", condition->name, decimals,
+                 condition->value, condition->relation, condition->limit, excess, tilt);
 }
 
 /* One row for each failed condition, the first of them the event's own. */
@@ -215,7 +201,11 @@ void wh_print_complaints(const wh_printer_t *printer) {
     if (first == record->event_count) {
         return;
     }
-    wh_grid_t *grid = new_grid(printer);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
+    wh_grid_number_columns(grid, wh_print_seconds, "at s", NULL);
+    wh_grid_text_columns(grid, "what", "wafer", "gripper", NULL);
+    wh_print_measured_columns(printer, grid);
+    wh_grid_text_columns(grid, "why", NULL);
     for (size_t i = first; i < record->event_count; ++i) {
         if (wh_print_is_miss(record->events[i].event.kind)) {
             add_event(printer, grid, &record->events[i]);

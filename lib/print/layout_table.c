@@ -125,11 +125,10 @@ static void print_holding(const listing_t *listing) {
     const wh_pads_t *pads = &listing->layout->physics.pads;
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
     wh_grid_text_columns(grid, "of all grippers", "", NULL);
+    wh_grid_named_row(grid, "vacuum");
     if (vacuum->build <= 0 && vacuum->vent <= 0) {
-        wh_grid_named_row(grid, "vacuum");
         wh_grid_text(grid, 1, WH_INK_PLAIN, "ideal: an open valve holds at once");
     } else {
-        wh_grid_named_row(grid, "vacuum");
         wh_grid_text(grid, 1, WH_INK_PLAIN, "builds in %g ms, vents in %g ms, is at %g without a wafer",
                      (double)(vacuum->build * MS), (double)(vacuum->vent * MS), (double)vacuum->idle);
         wh_grid_named_row(grid, "thresholds");

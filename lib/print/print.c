@@ -45,10 +45,6 @@ const char *wh_print_gripper(const wh_printer_t *printer, int32_t gripper) {
     return name ? name : "-";
 }
 
-void wh_print_limit(char text[WH_PRINT_NUMBER_SIZE], double limit) {
-    snprintf(text, WH_PRINT_NUMBER_SIZE, "%.10g", limit);
-}
-
 void wh_print_count(char text[WH_PRINT_NUMBER_SIZE], int64_t count) {
     char digits[WH_PRINT_NUMBER_SIZE / 2 + 2];
     const int length = snprintf(digits, sizeof digits, "%" PRId64, count);
@@ -60,6 +56,12 @@ void wh_print_count(char text[WH_PRINT_NUMBER_SIZE], int64_t count) {
         text[to++] = digits[i];
     }
     text[to] = '\0';
+}
+
+void wh_print_counted(FILE *out, int64_t count, const char *one, const char *many) {
+    char text[WH_PRINT_NUMBER_SIZE];
+    wh_print_count(text, count);
+    fprintf(out, "%s %s", text, count == 1 ? one : many);
 }
 
 double wh_print_tilt_deg(double n1_proj_n2) {
@@ -88,10 +90,8 @@ double wh_print_rim_gap(const wh_printer_t *printer, const wh_event_t *event) {
 static void limited_column(const wh_printer_t *printer, wh_grid_t *grid, const char *value,
                            const char *relation, double limit, int decimals) {
     char heading[64 + WH_PRINT_NUMBER_SIZE];
-    char number[WH_PRINT_NUMBER_SIZE];
     const wh_grid_digits_t digits = {decimals, decimals, printer->record->layout != NULL, limit};
-    wh_print_limit(number, limit);
-    snprintf(heading, sizeof heading, "%s %s %s", value, relation, number);
+    snprintf(heading, sizeof heading, "%s %s %.10g", value, relation, limit);
     wh_grid_number_columns(grid, digits, printer->record->layout ? heading : value, NULL);
 }
 

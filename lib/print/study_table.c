@@ -162,12 +162,11 @@ static void print_wafers(const table_t *table) {
     for (size_t w = 0; w < table->tally->wafer_count; ++w) {
         const wh_tally_wafer_t *tally = &table->tally->wafers[w];
         if (tally->elsewhere > 0) {
-            char count[WH_PRINT_NUMBER_SIZE];
-            wh_print_count(count, (int64_t)tally->elsewhere);
             wh_print_put(&table->frame,
                          table->study->study->layout->wafers[table->study->study->wafers[w].wafer].name);
-            fprintf(table->frame.out, " ends elsewhere in %s %s, which are not in these figures\n", count,
-                    tally->elsewhere == 1 ? "trial" : "trials");
+            fputs(" ends elsewhere in ", table->frame.out);
+            wh_print_counted(table->frame.out, (int64_t)tally->elsewhere, "trial", "trials");
+            fputs(", which are not in these figures\n", table->frame.out);
         }
     }
 }
@@ -199,12 +198,12 @@ static void print_worst(const table_t *table) {
 
 static void print_head(const table_t *table) {
     const wh_study_t *study = table->study->study;
-    char trials[WH_PRINT_NUMBER_SIZE];
     wh_print_put(&table->frame, study->run.script);
     fputs(" on ", table->frame.out);
     wh_print_put(&table->frame, study->layout->path);
-    wh_print_count(trials, (int64_t)table->tally->trials);
-    fprintf(table->frame.out, "\n%s trials of seed %llu\n", trials, (unsigned long long)study->seed);
+    fputc('\n', table->frame.out);
+    wh_print_counted(table->frame.out, (int64_t)table->tally->trials, "trials", "trials");
+    fprintf(table->frame.out, " of seed %llu\n", (unsigned long long)study->seed);
     if (!study->nominal.record.ok) {
         wh_style_print(table->frame.style, table->frame.out, WH_INK_WARN,
                        "without any errors the script fails already");
@@ -214,15 +213,13 @@ static void print_head(const table_t *table) {
 
 static void print_how(const table_t *table) {
     const wh_study_t *study = table->study->study;
-    char count[WH_PRINT_NUMBER_SIZE];
-    wh_print_count(count, (int64_t)table->tally->whole);
     if (study->whole) {
         fprintf(table->frame.out,
                 "each trial ran the script whole, for in the run without errors this was read: %s\n",
                 study->whole);
     } else {
-        fprintf(table->frame.out,
-                "%s trials ran the script whole, the others are the run without errors, replayed\n", count);
+        wh_print_counted(table->frame.out, (int64_t)table->tally->whole, "trials", "trials");
+        fputs(" ran the script whole, the others are the run without errors, replayed\n", table->frame.out);
     }
 }
 

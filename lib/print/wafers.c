@@ -18,11 +18,6 @@ typedef struct {
     size_t *named, *picked;
 } history_t;
 
-static bool is_end_effector(const wh_layout_t *layout, int32_t gripper) {
-    return wh_is_index(gripper, layout->machine.gripper_count) &&
-           layout->grippers[gripper].station == WH_NONE;
-}
-
 static void read_history(const wh_record_t *record, const history_t *history) {
     for (size_t i = 0; i < record->event_count; ++i) {
         const wh_event_t *event = &record->events[i].event;
@@ -31,19 +26,11 @@ static void read_history(const wh_record_t *record, const history_t *history) {
         }
         const bool taken = event->kind == WH_EVENT_PICKED || event->kind == WH_EVENT_HANDED_OVER;
         history->named[event->wafer] = i + 1;
-        if (taken && is_end_effector(record->layout, event->gripper)) {
+        if (taken && wh_is_index(event->gripper, record->layout->machine.gripper_count) &&
+            record->layout->grippers[event->gripper].station == WH_NONE) {
             history->picked[event->wafer] = i + 1;
         }
     }
-}
-
-static wh_grid_t *new_grid(const wh_printer_t *printer) {
-    const wh_grid_digits_t tilt = {3, 6, false, 0};
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_text_columns(grid, "wafer", "held by", "lies in", NULL);
-    wh_grid_number_columns(grid, wh_print_millimetres, "dX mm", "dY mm", "dz mm", NULL);
-    wh_grid_number_columns(grid, tilt, "tilt deg", NULL);
-    return grid;
 }
 
 static void fill_place(const wh_printer_t *printer, wh_grid_t *grid, const wh_wafer_record_t *wafer) {
@@ -110,7 +97,11 @@ static void say_tilts(const wh_printer_t *printer, const history_t *history) {
 }
 
 static void print_wafers(const wh_printer_t *printer, const history_t *history) {
-    wh_grid_t *grid = new_grid(printer);
+    const wh_grid_digits_t tilt = {3, 6, false, 0};
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
+    wh_grid_text_columns(grid, "wafer", "held by", "lies in", NULL);
+    wh_grid_number_columns(grid, wh_print_millimetres, "dX mm", "dY mm", "dz mm", NULL);
+    wh_grid_number_columns(grid, tilt, "tilt deg", NULL);
     const size_t left_out = add_wafers(printer, grid, history);
     wh_print_title(printer, "Wafers");
     if (left_out < printer->record->layout->wafer_count) {
@@ -119,10 +110,8 @@ static void print_wafers(const wh_printer_t *printer, const history_t *history) 
         wh_grid_free(grid);
     }
     if (left_out > 0) {
-        char count[WH_PRINT_NUMBER_SIZE];
-        wh_print_count(count, (int64_t)left_out);
-        fprintf(printer->out, "%s %s where nothing happened to them\n", count,
-                left_out == 1 ? "wafer lies" : "wafers lie");
+        wh_print_counted(printer->out, (int64_t)left_out, "wafer lies", "wafers lie");
+        fputs(" where nothing happened to them\n", printer->out);
     }
     say_tilts(printer, history);
 }

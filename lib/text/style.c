@@ -17,18 +17,14 @@ bool wh_style_wants_colour(bool terminal, const char *no_color, const char *term
     return terminal && able && !refused;
 }
 
-static size_t terminal_width(int descriptor) {
-    struct winsize size;
-    return ioctl(descriptor, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
-}
-
 wh_style_t wh_style_of(FILE *out) {
     const int descriptor = fileno(out);
     const bool terminal = descriptor >= 0 && isatty(descriptor) == 1;
+    struct winsize size;
     wh_style_t style;
     style.colour = wh_style_wants_colour(terminal, getenv("NO_COLOR"), getenv("TERM"));
     style.utf8 = strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
-    style.width = terminal ? terminal_width(descriptor) : 0;
+    style.width = terminal && ioctl(descriptor, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
     return style;
 }
 
