@@ -285,6 +285,14 @@ static bool push_field(const wh_reader_t *reader, const char *field, bool requir
     return false;
 }
 
+/* Pops the field, or refuses it. */
+static void pop_field(const wh_reader_t *reader, const char *field, bool is_good, const char *expected) {
+    if (!is_good) {
+        wh_reader_fail(reader, field, "%s", expected);
+    }
+    lua_pop(reader->L, 1);
+}
+
 wh_real_t wh_reader_number(wh_reader_t *reader, const char *field, wh_real_t fallback, wh_real_t min,
                            wh_real_t max) {
     char expected[80];
@@ -293,10 +301,8 @@ wh_real_t wh_reader_number(wh_reader_t *reader, const char *field, wh_real_t fal
         return fallback;
     }
     const wh_real_t value = (wh_real_t)lua_tonumber(reader->L, -1);
-    if (lua_type(reader->L, -1) != LUA_TNUMBER || !(value >= min && value <= max)) {
-        wh_reader_fail(reader, field, "%s", expected);
-    }
-    lua_pop(reader->L, 1);
+    const bool is_number = lua_type(reader->L, -1) == LUA_TNUMBER;
+    pop_field(reader, field, is_number && value >= min && value <= max, expected);
     return value;
 }
 
@@ -308,10 +314,8 @@ int32_t wh_reader_whole(wh_reader_t *reader, const char *field, int32_t fallback
         return fallback;
     }
     const lua_Integer value = lua_tointegerx(reader->L, -1, &is_whole);
-    if (lua_type(reader->L, -1) != LUA_TNUMBER || !is_whole || value < min || value > max) {
-        wh_reader_fail(reader, field, "%s", expected);
-    }
-    lua_pop(reader->L, 1);
+    const bool is_number = lua_type(reader->L, -1) == LUA_TNUMBER;
+    pop_field(reader, field, is_number && is_whole && value >= min && value <= max, expected);
     return (int32_t)value;
 }
 
@@ -319,11 +323,8 @@ bool wh_reader_boolean(wh_reader_t *reader, const char *field, bool fallback) {
     if (!push_field(reader, field, false, "")) {
         return fallback;
     }
-    if (!lua_isboolean(reader->L, -1)) {
-        wh_reader_fail(reader, field, "true or false");
-    }
     const bool value = lua_toboolean(reader->L, -1) != 0;
-    lua_pop(reader->L, 1);
+    pop_field(reader, field, lua_isboolean(reader->L, -1), "true or false");
     return value;
 }
 
@@ -332,10 +333,8 @@ static wh_real_t component(wh_reader_t *reader, const char *field, lua_Integer i
     snprintf(name, sizeof name, "%s[%d]", field, (int)index);
     lua_rawgeti(reader->L, -1, index);
     const wh_real_t value = (wh_real_t)lua_tonumber(reader->L, -1);
-    if (lua_type(reader->L, -1) != LUA_TNUMBER || !(wh_real_abs(value) <= WH_REAL(1e6))) {
-        wh_reader_fail(reader, name, "a number from -1e6 to 1e6");
-    }
-    lua_pop(reader->L, 1);
+    const bool is_good = lua_type(reader->L, -1) == LUA_TNUMBER && wh_real_abs(value) <= WH_REAL(1e6);
+    pop_field(reader, name, is_good, "a number from -1e6 to 1e6");
     return value;
 }
 

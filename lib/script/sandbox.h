@@ -112,7 +112,7 @@ int wh_sandbox_line(lua_State *L, const char *path);
 /* ------------------------------------------------------------------------------------------------- Limits */
 
 /* Takes steps off the budget for work done in C, such as a simulated slice or a scanned byte. Raises an error
- * if the budget is spent, so call it only where an error may pass. No effect in a state that is not ours.
+ * if the budget is spent, so call it only where an error may pass.
  * Cost: a few ns. */
 void wh_sandbox_charge(lua_State *L, uint64_t steps);
 

@@ -21,10 +21,6 @@ wh_sandbox_t *wh_sandbox_of(lua_State *L) {
     return opaque;
 }
 
-static bool is_ours(lua_State *L) {
-    return lua_getallocf(L, NULL) == wh_sandbox_allocate;
-}
-
 void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size) {
     const size_t cap = sandbox->memory_cap;
     const bool in_mib = cap >> 20 << 20 == cap;
@@ -155,9 +151,6 @@ void wh_sandbox_spend(wh_sandbox_t *sandbox, uint64_t steps) {
 }
 
 void wh_sandbox_charge(lua_State *L, uint64_t steps) {
-    if (!is_ours(L)) {
-        return;
-    }
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     wh_sandbox_spend(sandbox, steps);
     check_stop_and_budget(L, sandbox);

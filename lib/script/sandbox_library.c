@@ -130,23 +130,9 @@ static int base_load(lua_State *L) {
 
 /* --------------------------------------------------------------------------------------------- parameters */
 
-/* The argument of the protected part. */
-typedef struct {
-    const char *name;
-    const char *value; /* null: no '=' */
-    size_t name_length;
-} assignment_t;
-
-static bool looks_like_name(const char *text, size_t length) {
-    if (length == 0 || isdigit((unsigned char)text[0])) {
-        return false;
-    }
-    for (size_t i = 0; i < length; ++i) {
-        if (!isalnum((unsigned char)text[i]) && text[i] != '_') {
-            return false;
-        }
-    }
-    return true;
+static bool looks_like_name(const char *text) {
+    static const char characters[] = "0123456789_ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+    return text[0] != '\0' && !isdigit((unsigned char)text[0]) && text[strspn(text, characters)] == '\0';
 }
 
 /* Asks the compiler, which knows the reserved words. */
@@ -175,13 +161,15 @@ static void push_value(lua_State *L, const char *text) {
     }
 }
 
+/* Runs protected, with where the text of the assignment stands. */
 static int assign(lua_State *L) {
-    const assignment_t *const assignment = lua_touserdata(L, 1);
-    const char *const name = lua_pushlstring(L, assignment->name, assignment->name_length);
-    if (assignment->value == NULL) {
+    const char *const text = *(const char **)lua_touserdata(L, 1);
+    const size_t length = strcspn(text, "=");
+    const char *const name = lua_pushlstring(L, text, length);
+    if (text[length] == '\0') {
         return luaL_error(L, "'%s' is no NAME=VALUE", name);
     }
-    if (!looks_like_name(name, assignment->name_length) || is_reserved(L, name)) {
+    if (!looks_like_name(name) || is_reserved(L, name)) {
         return luaL_error(L,
                           "'%s' is no name for a parameter: letters, digits and '_', not first a digit, no "
                           "reserved word of Lua",
@@ -191,20 +179,14 @@ static int assign(lua_State *L) {
         return luaL_error(L, "params is no table any more");
     }
     lua_pushvalue(L, 2);
-    push_value(L, assignment->value);
+    push_value(L, text + length + 1);
     lua_rawset(L, 3);
     return 0;
 }
 
 bool wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *text, wh_sandbox_result_t *result) {
-    const char *const equals = strchr(text, '=');
-    assignment_t assignment = {text, NULL, strlen(text)};
-    if (equals != NULL) {
-        assignment.value = equals + 1;
-        assignment.name_length = (size_t)(equals - text);
-    }
     lua_pushcfunction(sandbox->main, assign);
-    lua_pushlightuserdata(sandbox->main, &assignment);
+    lua_pushlightuserdata(sandbox->main, &text);
     return wh_sandbox_call(sandbox->main, 1, 0, result);
 }
 
