@@ -330,17 +330,17 @@ void wh_lua_set_index(lua_State *L, const char *name, int32_t index) {
     lua_setfield(L, -2, name);
 }
 
-static void push_triple(lua_State *L, const wh_vec3_t *v) {
-    const wh_real_t entries[3] = {v->x, v->y, v->z};
-    lua_createtable(L, 3, 0);
-    for (int i = 0; i < 3; ++i) {
-        lua_pushnumber(L, entries[i]);
-        lua_rawseti(L, -2, i + 1);
+void wh_lua_push_numbers(lua_State *L, const wh_real_t numbers[], size_t count) {
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; ++i) {
+        lua_pushnumber(L, numbers[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }
 
 void wh_lua_set_triple(lua_State *L, const char *name, const wh_vec3_t *v) {
-    push_triple(L, v);
+    const wh_real_t entries[3] = {v->x, v->y, v->z};
+    wh_lua_push_numbers(L, entries, 3);
     lua_setfield(L, -2, name);
 }
 
@@ -349,8 +349,7 @@ void wh_lua_push_pose(lua_State *L, const wh_pose_t *pose) {
     wh_lua_set_triple(L, "r", &pose->r);
     lua_createtable(L, 3, 0);
     for (size_t i = 0; i < 3; ++i) {
-        const wh_vec3_t row = wh_mat3_row(&pose->R, i);
-        push_triple(L, &row);
+        wh_lua_push_numbers(L, pose->R.m[i], 3);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     lua_setfield(L, -2, "R");
