@@ -20,36 +20,23 @@ static void describe_number(double value, char *text, size_t size) {
     }
 }
 
-static bool is_short_list(lua_State *L) {
-    const lua_Integer count = (lua_Integer)lua_rawlen(L, -1);
-    bool numbers = count >= 1 && count <= 4;
-    for (lua_Integer i = 1; numbers && i <= count; ++i) {
-        numbers = lua_rawgeti(L, -1, i) == LUA_TNUMBER;
-        lua_pop(L, 1);
-    }
-    return numbers;
-}
-
 /* A short list of numbers is shown as it was written, { 0, 90, 0 }; of any other table only that it is
  * one. */
 static void describe_table(lua_State *L, char *text, size_t size) {
-    if (!is_short_list(L)) {
-        snprintf(text, size, "a table");
-        return;
-    }
-    const char *before = "{ ";
+    const lua_Integer count = (lua_Integer)lua_rawlen(L, -1);
+    bool is_short_list = count >= 1 && count <= 4;
     text[0] = '\0';
-    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, -1); ++i) {
+    for (lua_Integer i = 1; is_short_list && i <= count; ++i) {
         char number[40];
-        lua_rawgeti(L, -1, i);
+        is_short_list = lua_rawgeti(L, -1, i) == LUA_TNUMBER;
         describe_number(lua_tonumber(L, -1), number, sizeof number);
         lua_pop(L, 1);
         const size_t used = strlen(text);
-        snprintf(text + used, size - used, "%s%s", before, number);
-        before = ", ";
+        snprintf(text + used, size - used, "%s%s%s", i > 1 ? ", " : "{ ", number, i == count ? " }" : "");
     }
-    const size_t used = strlen(text);
-    snprintf(text + used, size - used, " }");
+    if (!is_short_list) {
+        snprintf(text, size, "a table");
+    }
 }
 
 static void describe(lua_State *L, char *text, size_t size) {
@@ -211,7 +198,7 @@ void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file) {
 
 /* ------------------------------------------------------------------------------------------------ nesting */
 
-void wh_reader_enter_top(wh_reader_t *reader, const char *name) {
+static void enter_top(wh_reader_t *reader, const char *name) {
     const size_t length = strlen(reader->path);
     const char *dot = length > 0 && name[0] != '[' ? "." : "";
     if (!lua_istable(reader->L, -1)) {
@@ -241,7 +228,7 @@ static bool enter_top_unless_nil(wh_reader_t *reader, const char *name) {
         lua_pop(reader->L, 1);
         return false;
     }
-    wh_reader_enter_top(reader, name);
+    enter_top(reader, name);
     return true;
 }
 

@@ -88,7 +88,8 @@ static lua_State *check_coroutine(lua_State *L) {
     return co;
 }
 
-int wh_sandbox_resume(lua_State *co, lua_State *from, int arguments, int *results) {
+/* lua_resume with the sandbox's rules. If a limit is exhausted inside, raises that error in `from`. */
+static int resume_noted(lua_State *co, lua_State *from, int arguments, int *results) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(co);
     lua_State *const before = sandbox->running;
     sandbox->running = co;
@@ -109,7 +110,7 @@ static int resume(lua_State *L, lua_State *co, int arguments) {
     }
     lua_xmove(L, co, arguments);
     int results = 0;
-    const int status = wh_sandbox_resume(co, L, arguments, &results);
+    const int status = resume_noted(co, L, arguments, &results);
     if (status != LUA_OK && status != LUA_YIELD) {
         lua_xmove(co, L, 1);
         return -1;

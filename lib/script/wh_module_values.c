@@ -376,8 +376,9 @@ static void set_failed(lua_State *L, unsigned failed) {
     lua_setfield(L, -2, "failed");
 }
 
-static void set_proximity(lua_State *L, const wh_proximity_t *p) {
+void wh_lua_push_proximity(lua_State *L, const wh_proximity_t *p) {
     const wh_tolerance_t margin = {p->margin_projz, p->margin_projxy, p->margin_planar};
+    lua_createtable(L, 0, 14);
     wh_lua_set_triple(L, "dr", &p->dr);
     wh_lua_set_number(L, "n1_proj_n2", p->n1_proj_n2);
     wh_lua_set_number(L, "dr_proj_z", p->dr_proj_z);
@@ -389,13 +390,8 @@ static void set_proximity(lua_State *L, const wh_proximity_t *p) {
     lua_setfield(L, -2, "margin");
 }
 
-void wh_lua_push_proximity(lua_State *L, const wh_proximity_t *proximity) {
-    lua_createtable(L, 0, 8);
-    set_proximity(L, proximity);
-}
-
 void wh_lua_push_event(lua_State *L, const wh_event_t *event) {
-    lua_createtable(L, 0, 14);
+    wh_lua_push_proximity(L, &event->measured);
     wh_lua_set_text(L, "kind", wh_event_name(event->kind));
     wh_lua_set_integer(L, "slice", (int64_t)event->slice);
     wh_lua_set_integer(L, "measured_slice", (int64_t)event->measured_slice);
@@ -406,5 +402,4 @@ void wh_lua_push_event(lua_State *L, const wh_event_t *event) {
     } else if (event->kind == WH_EVENT_CONTESTED) {
         wh_lua_set_index(L, "holder", event->other);
     }
-    set_proximity(L, &event->measured);
 }

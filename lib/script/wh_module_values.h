@@ -83,7 +83,7 @@ void wh_lua_push_index(lua_State *L, int32_t index);
 /* Pushes a list. */
 void wh_lua_push_numbers(lua_State *L, const wh_real_t numbers[], size_t count);
 
-void wh_lua_push_proximity(lua_State *L, const wh_proximity_t *proximity);
+void wh_lua_push_proximity(lua_State *L, const wh_proximity_t *p);
 void wh_lua_push_event(lua_State *L, const wh_event_t *event);
 
 /* wh.cell. */
