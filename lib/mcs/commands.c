@@ -3,6 +3,20 @@
 #include "../script/wh_module_values.h"
 #include "native.h"
 
+/* What an entry of the record costs of the instruction budget. */
+#define STEPS_PER_ENTRY 256
+#define STEPS_PER_BYTE 4
+
+/* An argument that goes into the record. The record is outside of Lua's memory cap, so an entry is paid for
+ * from the budget: about as much as a script would spend on making as much text anew. Raises if the budget is
+ * spent. */
+static const char *pay_for_text(lua_State *L, int argument) {
+    size_t length = 0;
+    const char *text = luaL_checklstring(L, argument, &length);
+    wh_sandbox_charge(L, STEPS_PER_ENTRY + STEPS_PER_BYTE * (uint64_t)length);
+    return text;
+}
+
 static void tell(const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
     if (mcs->partners.watch) {
         mcs->partners.watch(mcs->partners.user, mcs, command, ended);
@@ -16,9 +30,7 @@ static void tell(const wh_mcs_t *mcs, const wh_command_record_t *command, bool e
  * can get here from within another command. */
 static int begin_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    size_t length = 0;
-    const char *text = luaL_checklstring(L, 1, &length);
-    wh_mcs_charge_entry(L, length);
+    const char *text = pay_for_text(L, 1);
     if (mcs->recorder.running != WH_NONE) {
         lua_pushfstring(L, "%s is a command within another", text);
         wh_mcs_raise(L, mcs, WH_STATUS_BUSY, lua_tostring(L, -1));
@@ -39,13 +51,12 @@ static const wh_command_record_t *end_command(wh_mcs_t *mcs, wh_status_t error, 
 /* native.finish(number, message): it ended, with an error number unless that is nil. */
 static int finish_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    size_t length = 0;
     const wh_status_t error = (wh_status_t)luaL_optinteger(L, 1, WH_OK);
-    const char *message = error == WH_OK ? "" : luaL_checklstring(L, 2, &length);
+    const char *message = error == WH_OK ? "" : luaL_checkstring(L, 2);
     const wh_command_record_t *command = end_command(mcs, error, message);
     luaL_argcheck(L, command, 1, "no command is running");
     if (error != WH_OK) {
-        wh_mcs_charge_entry(L, length); /* may raise: not before the command has ended */
+        (void)pay_for_text(L, 2); /* may raise: not before the command has ended */
     }
     tell(mcs, command, true);
     return 0;
@@ -63,9 +74,7 @@ void wh_mcs_cut_short(wh_mcs_t *mcs, wh_status_t error, const char *message) {
 static int add_expectation(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_of(L);
     const bool ok = lua_toboolean(L, 1) != 0;
-    size_t length = 0;
-    const char *text = luaL_checklstring(L, 2, &length);
-    wh_mcs_charge_entry(L, length);
+    const char *text = pay_for_text(L, 2);
     wh_record_add_expectation(mcs->recorder.record, wh_sandbox_line(L, mcs->script), text, ok);
     return 0;
 }
@@ -73,12 +82,11 @@ static int add_expectation(lua_State *L) {
 /* native.cycle(name): the next one begins. */
 static int begin_cycle(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    size_t length = 0;
-    const char *name = luaL_checklstring(L, 1, &length);
+    const char *name = luaL_checkstring(L, 1);
     if (mcs->recorder.running != WH_NONE) {
         wh_mcs_raise(L, mcs, WH_STATUS_BUSY, "a cycle within a command");
     }
-    wh_mcs_charge_entry(L, length);
+    (void)pay_for_text(L, 1);
     wh_record_add_cycle(mcs->recorder.record, wh_sandbox_line(L, mcs->script), name, mcs->track.slice);
     return 0;
 }

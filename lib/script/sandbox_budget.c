@@ -79,13 +79,6 @@ bool wh_sandbox_is_fatal(lua_State *L, int status) {
 
 static void on_count(lua_State *L, lua_Debug *event);
 
-static int raise_power(lua_State *L, wh_sandbox_t *sandbox) {
-    sandbox->power_pending = false;
-    lua_pushfstring(L, "%s:%d: '^' needs a whole-number exponent; got %f", sandbox->power_source,
-                    sandbox->power_line, sandbox->power_exponent);
-    return lua_error(L);
-}
-
 /* Collects garbage if the memory stands above the brim, and charges for the work. */
 static void check_brim(lua_State *L, wh_sandbox_t *sandbox) {
     if (!sandbox->brimming) {
@@ -133,7 +126,10 @@ static void on_count(lua_State *L, lua_Debug *event) {
         wh_sandbox_raise(L);
     }
     if (sandbox->power_pending) {
-        raise_power(L, sandbox);
+        sandbox->power_pending = false;
+        lua_pushfstring(L, "%s:%d: '^' needs a whole-number exponent; got %f", sandbox->power_source,
+                        sandbox->power_line, sandbox->power_exponent);
+        lua_error(L);
     }
 }
 
