@@ -70,7 +70,6 @@ typedef struct {
     uint32_t was_off; /* bit g: it was off in a slice since */
 } wh_vacuum_watch_t;
 
-void wh_vacuum_watch_begin(wh_vacuum_watch_t *watch, uint32_t watched);
 void wh_vacuum_watch_slice(wh_vacuum_watch_t *watch, uint32_t sensors);
 
 /* The first of the watched whose sensor went off though its valve is told to be open, or WH_NONE. */

@@ -92,7 +92,7 @@ static int play(lua_State *L) {
     }
     keep_segment(mcs);
     mcs->recorder.task = planned.task;
-    wh_vacuum_watch_begin(&mcs->watch, planned.may_lose & mcs->state.sensors);
+    mcs->watch = (wh_vacuum_watch_t){.watched = planned.may_lose & mcs->state.sensors};
     const wh_segment_t *segment = &mcs->track.segment;
     wh_decisions_read(mcs->decisions, WH_DECISION_BEGIN,
                       segment->kind == WH_SEGMENT_SENSOR ? segment->gripper : WH_NONE,

@@ -46,7 +46,7 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->mcs.trial = options->trial;
     run->mcs.decisions = options->decisions;
     run->mcs.listener = options->listener;
-    wh_sandbox_run(run->sandbox, options->script, &result);
+    wh_sandbox_evaluate(wh_sandbox_state(run->sandbox), options->script, &result);
     return conclude(run, &result);
 }
 

@@ -25,7 +25,7 @@ static bool refuse(wh_session_t *session, const char *message) {
 /* Runs protected: cell(layout), then the prompt. */
 static int open_cell(lua_State *L) {
     lua_getglobal(L, "cell");
-    lua_pushstring(L, lua_touserdata(L, 1));
+    lua_pushstring(L, *(const char **)lua_touserdata(L, 1));
     lua_call(L, 1, 0);
     wh_mcs_push_prompt(L);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &complete_key);
@@ -35,13 +35,10 @@ static int open_cell(lua_State *L) {
 
 bool wh_session_open(wh_session_t *session, const wh_session_options_t *options) {
     wh_sandbox_result_t result;
-    char layout[4096];
+    const char *layout = options->layout;
     memset(session, 0, sizeof *session);
     session->report = options->report;
     session->report_user = options->report_user;
-    if ((size_t)snprintf(layout, sizeof layout, "%s", options->layout) >= sizeof layout) {
-        return refuse(session, "the layout's path is too long");
-    }
     /* A "script" without a folder: so layouts are looked for from the working directory. */
     session->sandbox =
         wh_sandbox_new_with(&options->limits, options->parameters, options->parameter_count, &result);
@@ -52,7 +49,7 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
     session->mcs.partners = options->partners;
     lua_State *L = wh_sandbox_state(session->sandbox);
     lua_pushcfunction(L, open_cell);
-    lua_pushlightuserdata(L, layout);
+    lua_pushlightuserdata(L, &layout);
     return wh_sandbox_call(L, 1, 0, &result) || refuse(session, result.message);
 }
 

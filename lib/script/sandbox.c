@@ -159,9 +159,8 @@ void wh_sandbox_free(wh_sandbox_t *sandbox) {
         return;
     }
     lua_close(sandbox->main);
-    if (wh_pow_strict() == sandbox) {
-        wh_pow_set_strict(NULL);
-    }
+    wh_sandbox_t *const strict = wh_pow_set_strict(NULL);
+    wh_pow_set_strict(strict != sandbox ? strict : NULL);
     free(sandbox);
 }
 
@@ -306,8 +305,8 @@ bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, 
     return load_job(L, &job, result);
 }
 
-static bool run_file(lua_State *L, const char *path, int results, wh_sandbox_result_t *result) {
-    wh_sandbox_job_t job = {.path = path, .results = results};
+bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *result) {
+    wh_sandbox_job_t job = {.path = path, .results = 1};
     const char *const why = file_fault(path, &job.size);
     if (why != NULL) {
         char text[100];
@@ -315,14 +314,6 @@ static bool run_file(lua_State *L, const char *path, int results, wh_sandbox_res
         return refuse(result, WH_SANDBOX_UNREADABLE, path, text);
     }
     return load_job(L, &job, result);
-}
-
-bool wh_sandbox_run(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result) {
-    return run_file(sandbox->main, path, 0, result);
-}
-
-bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *result) {
-    return run_file(L, path, 1, result);
 }
 
 bool wh_sandbox_call(lua_State *L, int arguments, int results, wh_sandbox_result_t *result) {

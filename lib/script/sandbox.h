@@ -8,7 +8,7 @@
  * Rules for the host:
  * - Enter Lua by the functions below. At the outermost level never call lua_pcall or lua_resume yourself: the
  *   limits need to know which coroutine runs. Inside a C function that Lua called, lua_call and lua_pcall are
- *   fine; resume coroutines by wh_sandbox_resume.
+ *   fine; resume no coroutine.
  * - A C function that loops for long charges the budget (wh_sandbox_charge), and holds no resource while it
  *   does.
  * - Give your own metatables a __metatable field, so that scripts cannot change them.
@@ -78,14 +78,11 @@ wh_sandbox_t *wh_sandbox_of(lua_State *L);
 
 /* ------------------------------------------------------------------------------------------------ Running */
 
-/* Reads the file, runs it and drops what it returns. True if it ended well; result may be null. The file must
- * be a regular file of text of at most WH_SANDBOX_FILE_BYTES. A byte order mark is skipped, and a first line
- * that begins with '#'. */
-bool wh_sandbox_run(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result);
-
-/* Runs a file as wh_sandbox_run does, but leaves the first returned value (or nil) on L's stack. On failure
- * L's stack is as it was. L is the sandbox's state or, in a C function that Lua called, its state. If a limit
- * is exhausted inside, the calling script ends too. */
+/* Reads the file, runs it and leaves the first value that it returns (or nil) on L's stack. True if it ended
+ * well; else L's stack is as it was. The file must be a regular file of text of at most WH_SANDBOX_FILE_BYTES.
+ * A byte order mark is skipped, and a first line that begins with '#'. L is the sandbox's state or, in a C
+ * function that Lua called, its state. If a limit is exhausted inside, the calling script ends too. `result`
+ * may be null. */
 bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *result);
 
 /* wh_sandbox_evaluate for a text in memory, such as the library's own Lua sources; all of it is Lua. Messages
@@ -96,10 +93,6 @@ bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, 
 /* lua_pcall with the sandbox's rules. Function and arguments are on L's stack; leaves the results, or nothing
  * on failure. Messages begin with no path. */
 bool wh_sandbox_call(lua_State *L, int arguments, int results, wh_sandbox_result_t *result);
-
-/* lua_resume with the sandbox's rules; same arguments and result. If a limit is exhausted inside, raises that
- * error in `from`. */
-int wh_sandbox_resume(lua_State *co, lua_State *from, int arguments, int *results);
 
 /* Pushes the error value of the last chunk that failed, or nil if there was none. A numbered error is a
  * table. Needs one free stack slot. */
@@ -112,7 +105,7 @@ int wh_sandbox_line(lua_State *L, const char *path);
 /* ------------------------------------------------------------------------------------------------- Limits */
 
 /* Takes steps off the budget for work done in C, such as a simulated slice or a scanned byte. Raises an error
- * if the budget is spent, so call it only where an error may pass. No effect in a state that is not ours.
+ * if the budget is spent, so call it only where an error may pass.
  * Cost: a few ns. */
 void wh_sandbox_charge(lua_State *L, uint64_t steps);
 

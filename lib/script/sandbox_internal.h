@@ -78,15 +78,13 @@ void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size)
 /* -------------------------------------------------------------------------------------------------- pow.c */
 /* Sets the sandbox whose scripts run on this thread: `^` is strict in it. Returns the one before. */
 wh_sandbox_t *wh_pow_set_strict(wh_sandbox_t *sandbox);
-wh_sandbox_t *wh_pow_strict(void);
 
 /* --------------------------------------------------------------------- sandbox_library.c and the subjects */
 /* Builds the environment. Called once, protected. */
 int wh_sandbox_library_open(lua_State *L);
-/* Sets functions in the table on top. A null function removes the name. */
+/* Sets functions in the table on top: closures whose upvalue is what they replace. A null function removes the
+ * name. */
 void wh_library_set(lua_State *L, const luaL_Reg *functions);
-/* Replaces functions of the table on top by closures whose first upvalue is the replaced function. */
-void wh_library_wrap(lua_State *L, const luaL_Reg *wrappers);
 /* In such a closure: calls the replaced function with the same arguments. */
 int wh_library_call_stock(lua_State *L);
 /* Makes these functions of the table on top charge (bytes of string arguments >> shift) before they run. */

@@ -2,7 +2,7 @@
 -- looks.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, pcall = ipairs, pcall
+local ipairs, math, pcall, table = ipairs, math, pcall, table
 
 return function(native, patterns, lookup, arm, targets)
   local transfer = {}
@@ -24,10 +24,26 @@ return function(native, patterns, lookup, arm, targets)
     end
   end
 
+  -- Why the running command took nothing with it.
+  local function explain(gripper)
+    local wafer, closest = native.closest(gripper)
+    if not wafer then
+      return "no wafer came near"
+    end
+    local limit, reasons = native.layout.tolerance, {}
+    local function add(failed, text, value, least)
+      reasons[#reasons + 1] = failed and text:format(value, least) or nil
+    end
+    add(closest.failed.projz, "|dr_proj_z| %.4f is not below %g", math.abs(closest.dr_proj_z), limit.projz)
+    add(closest.failed.projxy, "|dr_proj_xy| %.4f is not below %g", closest.dr_proj_xy_norm, limit.projxy)
+    add(closest.failed.planar, "n1_proj_n2 %.6f is not above %g", closest.n1_proj_n2, limit.planar)
+    return ("closest to %s: %s"):format(wafer, table.concat(reasons, " and "))
+  end
+
   -- What a GET's pattern found, as an error unless it is a wafer.
   local function judge_get(target, found)
     if found == "missing" then
-      native.fail("WAFER_MISSING", native.explain(target.gripper))
+      native.fail("WAFER_MISSING", explain(target.gripper))
     elseif found == "late" then
       native.fail("VACUUM_TIMEOUT", "a wafer lay on the pads")
     elseif found == "early" then
@@ -37,7 +53,7 @@ return function(native, patterns, lookup, arm, targets)
 
   local function judge_put(target, became)
     if became == "lost" then
-      native.fail("WAFER_LOST", native.explain(target.chuck))
+      native.fail("WAFER_LOST", explain(target.chuck))
     elseif became == "loose" then
       native.fail("VACUUM_TIMEOUT", "the wafer lies on the chuck")
     end
