@@ -193,9 +193,7 @@ void wh_mesh_add_hull(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_
     for (size_t i = 0; i < hull->face_count; ++i) {
         wh_vec3_t at[3];
         for (size_t corner = 0; corner < 3; ++corner) {
-            const wh_vec3_t turned =
-                wh_mat3_transform(&body_from_shape->R, &hull->points[hull->faces[i].corners[corner]]);
-            at[corner] = wh_vec3_add(&turned, &body_from_shape->r);
+            at[corner] = wh_pose_point(body_from_shape, &hull->points[hull->faces[i].corners[corner]]);
         }
         wh_mesh_add_triangle(mesh, &at[0], &at[1], &at[2]);
     }
