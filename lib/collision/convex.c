@@ -1,4 +1,4 @@
-#include "convex_internal.h"
+#include "gap_internal.h"
 
 /* `half` with the sign of d; 0 for 0, which is the middle of a face or of an edge. */
 static wh_real_t towards(wh_real_t half, wh_real_t d) {
@@ -216,16 +216,6 @@ static wh_real_t reach_along(const wh_convex_t *shape, const wh_vec3_t *row) {
     return half->x * wh_real_sqrt(row->x * row->x + row->y * row->y) + z;
 }
 
-static void mesh_interval(const wh_convex_t *mesh, const wh_vec3_t *row, wh_real_t *low, wh_real_t *high) {
-    *low = wh_vec3_dot(&mesh->points[0], row);
-    *high = *low;
-    for (size_t i = 1; i < mesh->point_count; ++i) {
-        const wh_real_t height = wh_vec3_dot(&mesh->points[i], row);
-        *low = height < *low ? height : *low;
-        *high = wh_real_max(*high, height);
-    }
-}
-
 void wh_convex_bounds(const wh_convex_t *shape, const wh_pose_t *base_from_shape, wh_vec3_t *low,
                       wh_vec3_t *high) {
     wh_real_t from[3];
@@ -233,7 +223,11 @@ void wh_convex_bounds(const wh_convex_t *shape, const wh_pose_t *base_from_shape
     for (size_t i = 0; i < 3; ++i) {
         const wh_vec3_t row = wh_mat3_row(&base_from_shape->R, i);
         if (shape->kind == WH_CONVEX_MESH) {
-            mesh_interval(shape, &row, &from[i], &to[i]);
+            const wh_vec3_t back = wh_vec3_scale(-1, &row);
+            const wh_vec3_t first = mesh_support(shape, &back);
+            const wh_vec3_t last = mesh_support(shape, &row);
+            from[i] = wh_vec3_dot(&first, &row);
+            to[i] = wh_vec3_dot(&last, &row);
         } else {
             to[i] = reach_along(shape, &row);
             from[i] = -to[i];

@@ -103,15 +103,6 @@ typedef struct {
     double start, shown;   /* s */
 } bar_t;
 
-static void bar_open(bar_t *bar, FILE *out, uint64_t total, uint64_t begun) {
-    bar->out = isatty(fileno(out)) == 1 ? out : NULL;
-    bar->style = wh_style_of(out);
-    bar->total = total;
-    bar->begun = begun;
-    bar->start = wh_clock_seconds();
-    bar->shown = 0;
-}
-
 static void print_left(const bar_t *bar, uint64_t done, double elapsed) {
     if (done > bar->begun && elapsed > 1) {
         const double left = elapsed * (double)(bar->total - done) / (double)(done - bar->begun);
@@ -184,10 +175,13 @@ static bool is_over(wh_pool_t *pool, const wh_ranks_t *ranks) {
 }
 
 static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
-    bar_t bar;
+    bar_t bar = {.out = isatty(STDERR_FILENO) == 1 ? stderr : NULL,
+                 .style = wh_style_of(stderr),
+                 .total = pool->study->trials,
+                 .begun = trials_done(pool),
+                 .start = wh_clock_seconds()};
     bool sound = true;
     queue_rest(pool);
-    bar_open(&bar, stderr, pool->study->trials, trials_done(pool));
     while (sound && !wh_pool_failed(pool) && !is_interrupted() && !is_over(pool, ranks)) {
         wh_pool_wait(pool, 50);
         sound =

@@ -70,23 +70,17 @@ static size_t plain_bytes(const char *text) {
 }
 
 /* Writes other characters as %2F and the like. '%' is one of them, so two names never become the same. */
-static void write_name(const char *name, char written[WRITTEN_SIZE]) {
+static void write_name(const char *name, char *written) {
     static const char digits[] = "0123456789ABCDEF";
-    char *to = written;
     while (*name != '\0') {
         const size_t plain = plain_bytes(name);
-        if (plain > 0) {
-            memcpy(to, name, plain);
-            to += plain;
-            name += plain;
-        } else {
-            *to++ = '%';
-            *to++ = digits[(unsigned char)*name >> 4U];
-            *to++ = digits[(unsigned char)*name & 15U];
-            ++name;
-        }
+        const char coded[3] = {'%', digits[(unsigned char)*name >> 4U], digits[(unsigned char)*name & 15U]};
+        const size_t size = plain > 0 ? plain : sizeof coded;
+        memcpy(written, plain > 0 ? name : coded, size);
+        written += size;
+        name += plain > 0 ? plain : 1;
     }
-    *to = '\0';
+    *written = '\0';
 }
 
 static char *path_of(const char *folder, const char *name) {

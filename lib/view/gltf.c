@@ -163,10 +163,8 @@ size_t wh_gltf_add_node(wh_gltf_t *gltf, const char *name, size_t mesh, const wh
     if (mesh != SIZE_MAX) {
         (void)json_object_set_new(node, "mesh", index_of(mesh));
     }
-    if (kind) {
-        (void)json_object_set_new(node, "extras",
-                                  json_pack("{s:s, s:o}", "kind", kind, "index", index_of(index)));
-    }
+    (void)json_object_set_new(node, "extras",
+                              json_pack("{s:s, s:o}", "kind", kind, "index", index_of(index)));
     const size_t added = append(gltf->nodes, node);
     (void)append(gltf->children, index_of(added));
     return added;
@@ -207,14 +205,11 @@ static void set_list(json_t *root, const char *key, json_t *list) {
     json_decref(list);
 }
 
-static json_t *cell_node(json_t *children) {
+json_t *wh_gltf_finish(wh_gltf_t *gltf, const char *name, const char *generator) {
     /* From z up to y up: -90 degrees about x. */
     static const double turn[4] = {-0.70710678118654752, 0, 0, 0.70710678118654752};
-    return json_pack("{s:s, s:o, s:o}", "name", "cell", "rotation", list_of(turn, 4), "children", children);
-}
-
-json_t *wh_gltf_finish(wh_gltf_t *gltf, const char *name, const char *generator) {
-    const size_t cell = append(gltf->nodes, cell_node(gltf->children));
+    const size_t cell = append(gltf->nodes, json_pack("{s:s, s:o, s:o}", "name", "cell", "rotation",
+                                                      list_of(turn, 4), "children", gltf->children));
     json_t *root =
         json_pack("{s:{s:s, s:s}, s:i, s:[{s:o, s:[o]}]}", "asset", "version", "2.0", "generator", generator,
                   "scene", 0, "scenes", "name", wh_json_text(name), "nodes", index_of(cell));

@@ -34,7 +34,7 @@ size_t wh_gltf_add_material(wh_gltf_t *gltf, const wh_ink_material_t *material);
 size_t wh_gltf_add_mesh(wh_gltf_t *gltf, const char *name, const wh_gltf_primitive_t primitives[],
                         size_t count);
 
-/* Adds a node at a place in the cell, mm; `mesh` may be SIZE_MAX: none. `kind` and `index` (null: none) go to
+/* Adds a node at a place in the cell, mm; `mesh` may be SIZE_MAX: none. `kind` and `index` go to
  * its extras, because a name need not be unique. */
 size_t wh_gltf_add_node(wh_gltf_t *gltf, const char *name, size_t mesh, const wh_pose_t *base_from_node,
                         const char *kind, size_t index);
