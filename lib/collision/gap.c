@@ -60,11 +60,13 @@ static wh_vec3_t centre_in_base(const wh_convex_t *shape, const wh_pose_t *base_
     return wh_pose_point(base_from_shape, &centre);
 }
 
-/* Tries the normals of a shape's flat faces on the side of the other shape's centre. */
+/* Tries the normals of a shape's flat faces on the side of the other shape's centre. They are columns of the
+ * rotation: all three of a box, z of a cylinder. */
 static void try_faces(const wh_gap_pair_t *pair, const wh_convex_t *shape, const wh_pose_t *base_from_shape,
                       const wh_vec3_t *towards_b, wh_gap_bounds_t *bounds) {
-    const size_t end = wh_convex_faces_end(shape);
-    for (size_t column = wh_convex_first_face(shape); column < end; ++column) {
+    const bool is_box = shape->kind == WH_CONVEX_BOX;
+    const size_t end = is_box || shape->kind == WH_CONVEX_CYLINDER ? 3 : 0;
+    for (size_t column = is_box ? 0 : 2; column < end; ++column) {
         wh_vec3_t normal = wh_mat3_column(&base_from_shape->R, column);
         if (wh_vec3_dot(&normal, towards_b) < 0) {
             normal = wh_vec3_scale(-1, &normal);

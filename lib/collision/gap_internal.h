@@ -17,16 +17,6 @@ wh_vec3_t wh_convex_kernel_support(const wh_convex_t *shape, const wh_vec3_t *di
 /* In the shape's frame, and within the shape: the mean of the points of a mesh, the origin of the others. */
 wh_vec3_t wh_convex_centre(const wh_convex_t *shape);
 
-/* The directions of flat faces are columns of the rotation: from this one (a box 3 from x on, a cylinder 1,
- * which is z; the others none). */
-static inline size_t wh_convex_first_face(const wh_convex_t *shape) {
-    return shape->kind == WH_CONVEX_BOX ? 0 : 2;
-}
-
-static inline size_t wh_convex_faces_end(const wh_convex_t *shape) {
-    return shape->kind == WH_CONVEX_BOX || shape->kind == WH_CONVEX_CYLINDER ? 3 : 2;
-}
-
 /* The two shapes. b is measured as if moved by `shift`. */
 typedef struct {
     const wh_convex_t *a, *b;

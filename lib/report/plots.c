@@ -194,14 +194,6 @@ static bool draw(const wh_plots_t *plots, const char *name, char message[WH_PLOT
     return error == 0;
 }
 
-static bool draw_all(const wh_plots_t *plots, char message[WH_PLOTS_MESSAGE_BYTES]) {
-    bool drawn = true;
-    for (size_t i = 0; drawn && i < plots->count; ++i) {
-        drawn = draw(plots, plots->names[i], message);
-    }
-    return drawn;
-}
-
 /* ------------------------------------------------------------------------------------------------ placing */
 
 static bool place(const wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
@@ -244,7 +236,11 @@ static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_ME
         (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s", strerror(plots->error));
         return false;
     }
-    return draw_all(plots, message) && place(plots, folder, message);
+    bool drawn = true;
+    for (size_t i = 0; drawn && i < plots->count; ++i) {
+        drawn = draw(plots, plots->names[i], message);
+    }
+    return drawn && place(plots, folder, message);
 }
 
 static bool make_within(const wh_document_t *document, const char *folder,
