@@ -142,29 +142,22 @@ static void put_curve(wh_json_text_t *text, const wh_signals_t *signals, const c
     wh_json_text_end(text, '}');
 }
 
-static void put_axes(wh_json_text_t *text, const wh_signals_t *signals) {
-    wh_json_text_begin(text, "axes", '[');
-    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
-        put_curve(text, signals, NULL, &signals->axes[axis], is_rad(axis) ? decimals_rad : decimals_mm);
-    }
-    wh_json_text_end(text, ']');
+static void put_axis(wh_json_text_t *text, const wh_document_t *document, size_t axis) {
+    const wh_path_t *curve = &document->signals->axes[axis];
+    put_curve(text, document->signals, NULL, curve, is_rad(axis) ? decimals_rad : decimals_mm);
 }
 
 /* ---------------------------------------------------------------------------------------------- own poses */
 
-static void put_own(wh_json_text_t *text, const wh_signals_t *signals) {
+static void put_own(wh_json_text_t *text, const wh_document_t *document, size_t g) {
     static const column_t places = {"r", 0, 3, 1, DECIMALS_OWN_MM, true};
     static const column_t turns = {"q", 3, 4, 1, DECIMALS_OWN, true};
-    wh_json_text_begin(text, "grippers", '[');
-    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
-        const wh_points_t *own = &signals->own[g].list;
-        wh_json_text_begin(text, NULL, '{');
-        put_times(text, signals, own);
-        put_numbers(text, own, &places);
-        put_numbers(text, own, &turns);
-        wh_json_text_end(text, '}');
-    }
-    wh_json_text_end(text, ']');
+    const wh_points_t *own = &document->signals->own[g].list;
+    wh_json_text_begin(text, NULL, '{');
+    put_times(text, document->signals, own);
+    put_numbers(text, own, &places);
+    put_numbers(text, own, &turns);
+    wh_json_text_end(text, '}');
 }
 
 /* ------------------------------------------------------------------------------------------------- wafers */
@@ -178,16 +171,13 @@ static void put_stay(wh_json_text_t *text, const wh_signals_t *signals, const wh
 }
 
 /* The list of stays is sorted by time alone. Looking through it for each wafer costs less than writing it. */
-static void put_wafers(wh_json_text_t *text, const wh_signals_t *signals) {
-    wh_json_text_begin(text, "wafers", '[');
-    for (size_t w = 0; w < signals->layout->wafer_count; ++w) {
-        wh_json_text_begin(text, NULL, '[');
-        for (size_t i = 0; i < signals->stay_count; ++i) {
-            if (signals->stays[i].wafer == (int32_t)w) {
-                put_stay(text, signals, &signals->stays[i]);
-            }
+static void put_wafer(wh_json_text_t *text, const wh_document_t *document, size_t w) {
+    const wh_signals_t *signals = document->signals;
+    wh_json_text_begin(text, NULL, '[');
+    for (size_t i = 0; i < signals->stay_count; ++i) {
+        if (signals->stays[i].wafer == (int32_t)w) {
+            put_stay(text, signals, &signals->stays[i]);
         }
-        wh_json_text_end(text, ']');
     }
     wh_json_text_end(text, ']');
 }
@@ -215,30 +205,27 @@ static void put_steps(wh_json_text_t *text, const wh_signals_t *signals, const c
     wh_json_text_end(text, ']');
 }
 
-static void put_vacuum(wh_json_text_t *text, const wh_signals_t *signals) {
-    wh_json_text_begin(text, "vacuum", '[');
-    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
-        put_curve(text, signals, NULL, &signals->vacuum[g], decimals_level);
-    }
-    wh_json_text_end(text, ']');
+static void put_vacuum(wh_json_text_t *text, const wh_document_t *document, size_t g) {
+    put_curve(text, document->signals, NULL, &document->signals->vacuum[g], decimals_level);
 }
 
-static void put_proximity(wh_json_text_t *text, const wh_signals_t *signals) {
+static void put_proximity(wh_json_text_t *text, const wh_document_t *document, size_t g) {
     static const char *const names[WH_MEASURES] = {"dr_proj_z", "dr_proj_xy", "n1_proj_n2"};
-    wh_json_text_begin(text, "proximity", '[');
-    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
-        wh_json_text_begin(text, NULL, '{');
-        for (size_t m = 0; m < WH_MEASURES; ++m) {
-            put_curve(text, signals, names[m], &signals->proximity[g][m], decimals_measure[m]);
-        }
-        wh_json_text_end(text, '}');
+    const wh_path_t *curves = document->signals->proximity[g];
+    wh_json_text_begin(text, NULL, '{');
+    for (size_t m = 0; m < WH_MEASURES; ++m) {
+        put_curve(text, document->signals, names[m], &curves[m], decimals_measure[m]);
     }
-    wh_json_text_end(text, ']');
+    wh_json_text_end(text, '}');
 }
 
 /* --------------------------------------------------------------------------------------------- clearances */
 
+/* Nothing of a pair that never came near. */
 static void put_clearance(wh_json_text_t *text, const wh_document_t *document, size_t kind) {
+    if (document->record->clearances[kind].parts[0] == WH_NONE) {
+        return;
+    }
     const wh_curves_t *curves = document->record->curves;
     const wh_signals_t *signals = document->signals;
     const double limit = (double)signals->layout->world.limits[kind];
@@ -259,28 +246,19 @@ static void put_clearance(wh_json_text_t *text, const wh_document_t *document, s
     wh_json_text_end(text, '}');
 }
 
-static void put_clearances(wh_json_text_t *text, const wh_document_t *document) {
-    const wh_record_t *record = document->record;
-    wh_json_text_begin(text, "clearances", '[');
-    for (size_t kind = 0; record->checked && record->curves && kind < WH_CLEARANCES; ++kind) {
-        if (record->clearances[kind].parts[0] != WH_NONE) {
-            put_clearance(text, document, kind);
-        }
-    }
-    wh_json_text_end(text, ']');
-}
-
 void wh_document_put_tracks(wh_json_text_t *text, const wh_document_t *document) {
     const wh_signals_t *signals = document->signals;
+    const size_t grippers = signals->layout->machine.gripper_count;
+    const bool has_gaps = document->record->checked && document->record->curves;
     wh_json_text_begin(text, "tracks", '{');
-    put_axes(text, signals);
-    put_own(text, signals);
-    put_wafers(text, signals);
+    wh_document_put_each(text, document, "axes", signals->axis_count, put_axis);
+    wh_document_put_each(text, document, "grippers", grippers, put_own);
+    wh_document_put_each(text, document, "wafers", signals->layout->wafer_count, put_wafer);
     put_steps(text, signals, "valves", signals->valves);
     put_steps(text, signals, "sensors", signals->sensors);
     put_steps(text, signals, "nearest", signals->nearest);
-    put_vacuum(text, signals);
-    put_proximity(text, signals);
-    put_clearances(text, document);
+    wh_document_put_each(text, document, "vacuum", grippers, put_vacuum);
+    wh_document_put_each(text, document, "proximity", grippers, put_proximity);
+    wh_document_put_each(text, document, "clearances", has_gaps ? WH_CLEARANCES : 0, put_clearance);
     wh_json_text_end(text, '}');
 }

@@ -140,19 +140,15 @@ static axis_range_t look_at(const wh_signals_t *signals, const axis_panel_t *pan
 
 /* gnuplot finds no range for axes that stand still. A key of many entries is set closer, to fit into one
  * column. */
-static void put_axis_look(wh_plot_t *plot, const axis_range_t *range) {
-    if (range->high - range->low < 1e-6) {
-        fprintf(plot->script, "set yrange [%.9g:%.9g]\n", range->low - 1, range->high + 1);
-    }
-    fprintf(plot->script, "set key width %d\n", range->curves > 2 ? -2 : 0);
-}
-
 static void put_axis_panel(const wh_plots_t *plots, wh_plot_t *plot, const axis_panel_t *panel) {
     const wh_signals_t *signals = plots->document->signals;
     const axis_range_t range = look_at(signals, panel);
     int line = 0;
     wh_plot_panel(plot, panel->label);
-    put_axis_look(plot, &range);
+    if (range.high - range.low < 1e-6) {
+        fprintf(plot->script, "set yrange [%.9g:%.9g]\n", range.low - 1, range.high + 1);
+    }
+    fprintf(plot->script, "set key width %d\n", range.curves > 2 ? -2 : 0);
     for (size_t axis = 0; axis < signals->axis_count; ++axis) {
         if (is_in(signals, axis, panel)) {
             const wh_plot_curves_t curve = {

@@ -31,7 +31,7 @@ static bool path_of(char path[PATH_BYTES], const char *folder, const char *name,
 
 static bool is_taken(const wh_plots_t *plots, const char *name) {
     for (size_t i = 0; i < plots->count; ++i) {
-        if (strcmp(plots->names[i].name, name) == 0) {
+        if (strcmp(plots->names[i], name) == 0) {
             return true;
         }
     }
@@ -74,7 +74,7 @@ bool wh_plots_open(wh_plots_t *plots, wh_plot_t *plot, const char *name, const c
     memset(plot, 0, sizeof *plot);
     choose_name(plots, plot->name, name, of);
     plots->names = wh_array_grow(plots->names, plots->count, &plots->capacity, sizeof *plots->names);
-    memcpy(plots->names[plots->count++].name, plot->name, sizeof plot->name);
+    memcpy(plots->names[plots->count++], plot->name, sizeof plot->name);
     plot->data = open_file(plots, plot, "dat");
     plot->script = plot->data ? open_file(plots, plot, "gp") : NULL;
     if (!plot->script) {
@@ -194,21 +194,13 @@ static bool draw(const wh_plots_t *plots, const char *name, char message[WH_PLOT
     return error == 0;
 }
 
-static bool draw_all(const wh_plots_t *plots, char message[WH_PLOTS_MESSAGE_BYTES]) {
-    bool drawn = true;
-    for (size_t i = 0; drawn && i < plots->count; ++i) {
-        drawn = draw(plots, plots->names[i].name, message);
-    }
-    return drawn;
-}
-
 /* ------------------------------------------------------------------------------------------------ placing */
 
 static bool place(const wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
     char from[PATH_BYTES];
     char to[PATH_BYTES];
     for (size_t i = 0; i < plots->count * ENDINGS; ++i) {
-        const char *name = plots->names[i / ENDINGS].name;
+        const char *name = plots->names[i / ENDINGS];
         const char *ending = endings[i % ENDINGS];
         errno = ENAMETOOLONG;
         if (!path_of(from, plots->folder, name, ending) || !path_of(to, folder, name, ending) ||
@@ -223,7 +215,7 @@ static bool place(const wh_plots_t *plots, const char *folder, char message[WH_P
 static void clear(const wh_plots_t *plots) {
     char path[PATH_BYTES];
     for (size_t i = 0; i < plots->count * ENDINGS; ++i) {
-        if (path_of(path, plots->folder, plots->names[i / ENDINGS].name, endings[i % ENDINGS])) {
+        if (path_of(path, plots->folder, plots->names[i / ENDINGS], endings[i % ENDINGS])) {
             (void)unlink(path);
         }
     }
@@ -244,7 +236,11 @@ static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_ME
         (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s", strerror(plots->error));
         return false;
     }
-    return draw_all(plots, message) && place(plots, folder, message);
+    bool drawn = true;
+    for (size_t i = 0; drawn && i < plots->count; ++i) {
+        drawn = draw(plots, plots->names[i], message);
+    }
+    return drawn && place(plots, folder, message);
 }
 
 static bool make_within(const wh_document_t *document, const char *folder,

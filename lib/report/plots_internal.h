@@ -5,15 +5,11 @@
 #include "gnuplot.h"
 #include "plots.h"
 
-typedef struct {
-    char name[WH_PLOT_NAME_BYTES];
-} wh_plot_name_t;
-
 /* Plots being made in a folder of their own. */
 typedef struct {
     const wh_document_t *document;
     const char *folder; /* where they are made */
-    wh_plot_name_t *names;
+    char (*names)[WH_PLOT_NAME_BYTES];
     size_t count, capacity;
     int error; /* errno of the first file that could not be written; then nothing more is */
 } wh_plots_t;

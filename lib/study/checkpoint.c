@@ -32,12 +32,6 @@ static json_t *identity_of(const wh_study_t *study) {
                      "run_without_errors", hex(study->nominal.record.hash));
 }
 
-static void describe(const json_t *value, char *text, size_t size) {
-    char *dumped = value ? json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
-    snprintf(text, size, "%.200s", dumped ? dumped : "nothing");
-    free(dumped);
-}
-
 /* True if it is this study's; else the message tells the first difference. */
 static bool is_same(const json_t *found, const wh_study_t *study, char *message, size_t size) {
     json_t *expected = identity_of(study);
@@ -47,11 +41,12 @@ static bool is_same(const json_t *found, const wh_study_t *study, char *message,
     json_object_foreach(expected, key, value) {
         const json_t *other = json_object_get(found, key);
         if (same && (!other || !json_equal(other, value))) {
-            char one[256];
-            char two[256];
-            describe(other, one, sizeof one);
-            describe(value, two, sizeof two);
-            snprintf(message, size, "of another study: its %s is %s (expected %s)", key, one, two);
+            char *one = other ? json_dumps(other, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
+            char *two = json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT);
+            snprintf(message, size, "of another study: its %s is %.200s (expected %.200s)", key,
+                     one ? one : "nothing", two);
+            free(one);
+            free(two);
             same = false;
         }
     }

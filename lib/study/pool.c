@@ -25,7 +25,6 @@ struct wh_pool_worker {
 
 void wh_progress_init(wh_progress_t *progress, const wh_study_t *study) {
     progress->block_count = wh_study_blocks(study);
-    progress->done_count = 0;
     progress->done = wh_array_new((size_t)progress->block_count / 8 + 1, 1);
     wh_tally_init(&progress->tally, study->wafer_count);
 }
@@ -40,17 +39,13 @@ bool wh_progress_has(const wh_progress_t *progress, uint64_t block) {
 }
 
 void wh_progress_note(wh_progress_t *progress, uint64_t block) {
-    if (!wh_progress_has(progress, block)) {
-        progress->done[block / 8] = (unsigned char)(progress->done[block / 8] | 1U << block % 8);
-        ++progress->done_count;
-    }
+    progress->done[block / 8] = (unsigned char)(progress->done[block / 8] | 1U << block % 8);
 }
 
 void wh_progress_merge(wh_progress_t *progress, const wh_progress_t *other) {
     for (size_t i = 0; i <= (size_t)progress->block_count / 8; ++i) {
         progress->done[i] |= other->done[i];
     }
-    progress->done_count += other->done_count;
     wh_tally_merge(&progress->tally, &other->tally);
 }
 
@@ -68,7 +63,7 @@ static bool is_stopped(const wh_pool_t *pool) {
 
 /* With the pool's lock held. */
 static void show(wh_pool_worker_t *worker) {
-    if (worker->progress.done_count > 0) {
+    if (worker->progress.tally.trials > 0) {
         wh_progress_merge(&worker->pool->progress, &worker->progress);
         wh_progress_free(&worker->progress);
         wh_progress_init(&worker->progress, worker->pool->study);

@@ -10,7 +10,6 @@
 typedef struct {
     uint64_t block_count;
     unsigned char *done; /* bit b % 8 of byte b / 8 */
-    uint64_t done_count;
     wh_tally_t tally;
 } wh_progress_t;
 

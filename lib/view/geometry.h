@@ -14,7 +14,7 @@
 
 /* As a screen has it (sRGB), 0 to 1. */
 typedef struct {
-    float red, green, blue, opacity;
+    float rgba[4];
 } wh_view_colour_t;
 
 /* waferhand_viewer_geometry.type. */
