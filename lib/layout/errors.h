@@ -21,9 +21,9 @@ typedef struct {
     wh_shape_t shape;
 } wh_spread_t;
 
-/* Where a wafer lies in its slot's frame: dx, dy, dz beside and above, tilt about the slot's x and y (one draw
- * each), turn about z. Or where a station stands: moved along base's x, y, z, and turned by roll, pitch, yaw
- * about lines through slot 1 that are parallel to base's fixed x, y, z. In this order. */
+/* In this order, where a wafer lies in its slot's frame: dx, dy, dz beside and above, tilt about the slot's x
+ * and y (one draw each), turn about z. Or where a station stands: moved along base's x, y, z, and turned by
+ * roll, pitch, yaw about lines through slot 1 that are parallel to base's fixed x, y, z. */
 #define WH_SPREADS 6
 typedef struct {
     wh_spread_t of[WH_SPREADS];

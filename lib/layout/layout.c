@@ -27,7 +27,7 @@ void *wh_layout_memory(lua_State *L, size_t count, size_t size) {
     return memory;
 }
 
-/* ------------------------------------------------------------------------------------- how a run is judged */
+/* ------------------------------------------------------------------------------------ how a run is judged */
 
 static double default_thickness(double diameter) {
     static const struct {
@@ -136,7 +136,7 @@ static void read_checks(wh_reader_t *reader, wh_layout_t *layout) {
     read_placing(reader, &layout->cell);
 }
 
-/* ----------------------------------------------------------------------------------------------- all of it */
+/* ---------------------------------------------------------------------------------------------- all of it */
 
 /* The order matters: limits of later fields depend on earlier ones. Strokes are checked against the slice,
  * grippers name stations, wafers lie in them, and shapes follow the wafer's size. */
@@ -188,7 +188,7 @@ void wh_layout_read_own_study(lua_State *L, const char *path, wh_layout_t *layou
     lua_pop(L, 1);
 }
 
-/* --------------------------------------------------------------------------------------------------- names */
+/* -------------------------------------------------------------------------------------------------- names */
 
 /* The index of the item with that name; each of them begins with its name. WH_NONE if there is none. */
 static int32_t find(const void *items, size_t count, size_t size, const char *name) {
@@ -232,7 +232,7 @@ int32_t wh_layout_read_gripper_name(wh_reader_t *reader, const wh_layout_t *layo
     return wh_layout_read_name(reader, layout, field, first->name, wh_layout_find_gripper, expected);
 }
 
-/* -------------------------------------------------------------------------------------------------- a file */
+/* ------------------------------------------------------------------------------------------------- a file */
 
 typedef struct {
     const char *path;

@@ -121,7 +121,7 @@ void wh_print_commands(const wh_printer_t *printer) {
     free(chains.next);
 }
 
-/* -------------------------------------------------------------------------------------------------- errors */
+/* ------------------------------------------------------------------------------------------------- errors */
 
 static void put_error(const wh_printer_t *printer, const wh_command_record_t *command) {
     const char *message = command->message ? command->message : wh_status_text(command->error);
@@ -148,7 +148,7 @@ void wh_print_errors(const wh_printer_t *printer) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------- hand-overs */
+/* --------------------------------------------------------------------------------------------- hand-overs */
 
 /* As many are shown in full. */
 #define SHOWN 8

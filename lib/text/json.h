@@ -33,8 +33,8 @@ void wh_json_put_real(json_t *object, const char *key, double value);
 void wh_json_put_text(json_t *object, const char *key, const char *text);
 void wh_json_put_integer(json_t *object, const char *key, json_int_t value);
 
-/* Adds members: the names, with blanks between them, and as many values, which are taken over; null ends them.
- * Returns the object.
+/* Adds members: their names, with blanks between them, and as many values, which it takes over. Null ends the
+ * values. Returns the object.
  *
  *     return wh_json_add(json_object(), "line text", json_integer(line), wh_json_text(text), NULL);
  */
