@@ -252,9 +252,6 @@ static int load(lua_State *L) {
 }
 
 const wh_layout_t *wh_layout_load(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result) {
-    lua_State *L = wh_sandbox_state(sandbox);
     load_t job = {path, NULL};
-    lua_pushcfunction(L, load);
-    lua_pushlightuserdata(L, &job);
-    return wh_sandbox_call(L, 1, 0, result) ? job.layout : NULL;
+    return wh_sandbox_protect(wh_sandbox_state(sandbox), load, &job, result) ? job.layout : NULL;
 }

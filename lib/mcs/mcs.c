@@ -144,15 +144,12 @@ void wh_mcs_push_prompt(lua_State *L) {
 
 bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_record_t *record,
                  wh_sandbox_result_t *result) {
-    lua_State *L = wh_sandbox_state(sandbox);
     memset(mcs, 0, sizeof *mcs);
     mcs->script = script;
     mcs->sandbox = sandbox;
     mcs->stop_slice = INT64_MAX;
     wh_recorder_open(&mcs->recorder, record, script);
-    lua_pushcfunction(L, open_words);
-    lua_pushlightuserdata(L, mcs);
-    return wh_sandbox_call(L, 1, 0, result);
+    return wh_sandbox_protect(wh_sandbox_state(sandbox), open_words, mcs, result);
 }
 
 /* ---------------------------------------------------------------------------------------------- finishing */

@@ -321,6 +321,12 @@ bool wh_sandbox_call(lua_State *L, int arguments, int results, wh_sandbox_result
     return run_job(L, &job, arguments, result);
 }
 
+bool wh_sandbox_protect(lua_State *L, lua_CFunction function, void *argument, wh_sandbox_result_t *result) {
+    lua_pushcfunction(L, function);
+    lua_pushlightuserdata(L, argument);
+    return wh_sandbox_call(L, 1, 0, result);
+}
+
 wh_sandbox_t *wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
                                   size_t count, wh_sandbox_result_t *result) {
     wh_sandbox_t *sandbox = wh_sandbox_new(limits);

@@ -94,6 +94,10 @@ bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, 
  * on failure. Messages begin with no path. */
 bool wh_sandbox_call(lua_State *L, int arguments, int results, wh_sandbox_result_t *result);
 
+/* wh_sandbox_call of a C function: `argument`, which may be null, is its only argument, a light userdata. Leaves
+ * nothing. */
+bool wh_sandbox_protect(lua_State *L, lua_CFunction function, void *argument, wh_sandbox_result_t *result);
+
 /* Pushes the error value of the last chunk that failed, or nil if there was none. A numbered error is a
  * table. Needs one free stack slot. */
 void wh_sandbox_push_error(lua_State *L);

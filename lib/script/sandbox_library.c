@@ -185,9 +185,7 @@ static int assign(lua_State *L) {
 }
 
 bool wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *text, wh_sandbox_result_t *result) {
-    lua_pushcfunction(sandbox->main, assign);
-    lua_pushlightuserdata(sandbox->main, &text);
-    return wh_sandbox_call(sandbox->main, 1, 0, result);
+    return wh_sandbox_protect(sandbox->main, assign, &text, result);
 }
 
 /* ---------------------------------------------------------------------------------------------- all of it */

@@ -126,15 +126,11 @@ static const char *push_names(lua_State *L, const char *const *names) {
     return lua_tostring(L, -1);
 }
 
-static void check_table(lua_State *L, int index, const wh_field_t *at) {
+static void check_keys(lua_State *L, int index, const wh_field_t *at, const keys_t *keys) {
     if (!lua_istable(L, index)) {
         lua_pushvalue(L, index);
         refuse_type(L, at, "table");
     }
-}
-
-static void check_keys(lua_State *L, int index, const wh_field_t *at, const keys_t *keys) {
-    check_table(L, index, at);
     push_stranger(L, index, keys);
     if (!lua_isnil(L, -1)) {
         const wh_field_t stranger = key_field(L, at);
