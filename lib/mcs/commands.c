@@ -125,8 +125,8 @@ static int count_events(lua_State *L) {
     return 1;
 }
 
-/* native.complaints(mark): what the cell complained of since then: a list of { kind, wafer, height }, without a
- * wafer or a height that says nothing. */
+/* native.complaints(mark): what the cell complained of since then, a list of { kind, wafer, height }. A wafer
+ * or a height that says nothing is left out. */
 static int list_complaints(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_record_t *record = mcs->recorder.record;

@@ -79,10 +79,10 @@ wh_sandbox_t *wh_sandbox_of(lua_State *L);
 /* ------------------------------------------------------------------------------------------------ Running */
 
 /* Reads the file, runs it and leaves the first value that it returns (or nil) on L's stack. True if it ended
- * well; else L's stack is as it was. The file must be a regular file of text of at most WH_SANDBOX_FILE_BYTES.
- * A byte order mark is skipped, and a first line that begins with '#'. L is the sandbox's state or, in a C
- * function that Lua called, its state. If a limit is exhausted inside, the calling script ends too. `result`
- * may be null. */
+ * well; else L's stack is as it was. The file must be a regular file of text of at most
+ * WH_SANDBOX_FILE_BYTES. A byte order mark is skipped, and a first line that begins with '#'. L is the
+ * sandbox's state or, in a C function that Lua called, its state. If a limit is exhausted inside, the calling
+ * script ends too. `result` may be null. */
 bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *result);
 
 /* wh_sandbox_evaluate for a text in memory, such as the library's own Lua sources; all of it is Lua. Messages
@@ -94,8 +94,7 @@ bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, 
  * on failure. Messages begin with no path. */
 bool wh_sandbox_call(lua_State *L, int arguments, int results, wh_sandbox_result_t *result);
 
-/* wh_sandbox_call of a C function: `argument`, which may be null, is its only argument, a light userdata. Leaves
- * nothing. */
+/* wh_sandbox_call of a C function, whose only argument is the light userdata `argument`. Leaves nothing. */
 bool wh_sandbox_protect(lua_State *L, lua_CFunction function, void *argument, wh_sandbox_result_t *result);
 
 /* Pushes the error value of the last chunk that failed, or nil if there was none. A numbered error is a

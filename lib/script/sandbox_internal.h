@@ -82,8 +82,8 @@ wh_sandbox_t *wh_pow_set_strict(wh_sandbox_t *sandbox);
 /* --------------------------------------------------------------------- sandbox_library.c and the subjects */
 /* Builds the environment. Called once, protected. */
 int wh_sandbox_library_open(lua_State *L);
-/* Sets functions in the table on top: closures whose upvalue is what they replace. A null function removes the
- * name. */
+/* Sets functions in the table on top: closures whose upvalue is what they replace. A null function removes
+ * the name. */
 void wh_library_set(lua_State *L, const luaL_Reg *functions);
 /* In such a closure: calls the replaced function with the same arguments. */
 int wh_library_call_stock(lua_State *L);

@@ -25,7 +25,8 @@ static void key_read(lua_State *L, int index, order_key_t *key) {
     case LUA_TNUMBER:
         key->rank = RANK_NUMBER;
         key->is_integer = lua_isinteger(L, index);
-        key->number = key->is_integer ? (long double)lua_tointeger(L, index) : lua_tonumber(L, index);
+        key->number =
+            key->is_integer ? (long double)lua_tointeger(L, index) : (long double)lua_tonumber(L, index);
         return;
     case LUA_TSTRING:
         key->rank = RANK_STRING;
