@@ -60,6 +60,7 @@ static size_t index_of(float (*points)[3], size_t *count, const float at[3]) {
 static void put_triangles(waferhand_viewer_geometry *geometry, const wh_mesh_t *mesh) {
     float(*points)[3] = wh_array_new(mesh->vertex_count, sizeof *points);
     float *corners = wh_array_new(mesh->index_count, sizeof *corners);
+    const size_t triangles = mesh->index_count / 3;
     size_t count = 0;
     for (size_t i = 0; i < mesh->index_count; ++i) {
         corners[i] = (float)index_of(points, &count, mesh->vertices[mesh->indices[i]]);
@@ -68,7 +69,7 @@ static void put_triangles(waferhand_viewer_geometry *geometry, const wh_mesh_t *
     geometry->num_float_data = (int32_t)(2 + 3 * count + mesh->index_count);
     geometry->float_data = wh_array_new((size_t)geometry->num_float_data, sizeof *geometry->float_data);
     geometry->float_data[0] = (float)count;
-    geometry->float_data[1] = (float)(mesh->index_count / 3);
+    geometry->float_data[1] = (float)triangles;
     for (size_t i = 0; i < 3 * count; ++i) {
         geometry->float_data[2 + i] = (float)((double)points[i / 3][i % 3] * M_PER_MM);
     }
