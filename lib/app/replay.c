@@ -4,7 +4,6 @@
 #include <jansson.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "../log/replay.h"
 #include "../text/options.h"
@@ -135,21 +134,6 @@ static void print_json(const char *path, const wh_replay_t *replay, const ending
 
 /* ------------------------------------------------------------------------------------------------ reading */
 
-static FILE *open_log(const char *path) {
-    struct stat status;
-    FILE *file = fopen(path, "rb");
-    const bool opened = file && fstat(fileno(file), &status) == 0;
-    if (!opened || S_ISDIR(status.st_mode)) {
-        fprintf(stderr, "%s: %s (expected an LCM event record)\n", path,
-                opened ? strerror(EISDIR) : strerror(errno));
-        if (file) {
-            fclose(file);
-        }
-        return NULL;
-    }
-    return file;
-}
-
 static wh_log_t record;
 
 /* Finds the first message that describes the cell. It is sent once a second, so a recording may begin before
@@ -201,8 +185,9 @@ static int judge(const wh_replay_t *replay, const ending_t *ending) {
 
 static int replay_file(const arguments_t *arguments) {
     static wh_replay_t replay;
-    FILE *file = open_log(arguments->path);
+    FILE *file = wh_log_file(arguments->path);
     if (!file) {
+        fprintf(stderr, "%s: %s (expected an LCM event record)\n", arguments->path, strerror(errno));
         return WH_EXIT_USAGE;
     }
     wh_replay_open(&replay);

@@ -148,7 +148,7 @@ bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_
                               wh_link_cell_t *room);
 
 /* The layout that a cell message describes: enough for a simulator, without the file. In memory that
- * wh_link_layout_free releases (aborts if there is none); null for a message that no layout could have made: poses, tolerances, counts,
+ * wh_link_layout_free releases; null for a message that no layout could have made: poses, tolerances, counts,
  * names and slots are checked. The machine but its number of grippers, and the stations' parameters of GET
  * and PUT, are not in the message and zero. */
 wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell);

@@ -6,7 +6,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "../text/array.h"
 
@@ -14,17 +13,6 @@
 #define FARTHEST 1e9
 
 /* --------------------------------------------------------------------------------------------------- file */
-
-bool wh_log_run_is_log(const char *path) {
-    static const unsigned char sync[4] = {0xED, 0xA1, 0xDA, 0x01};
-    unsigned char begin[4] = {0};
-    FILE *file = fopen(path, "rb");
-    const bool is_log = file && fread(begin, 1, 4, file) == 4 && memcmp(begin, sync, 4) == 0;
-    if (file) {
-        (void)fclose(file);
-    }
-    return is_log;
-}
 
 __attribute__((format(printf, 2, 3))) static void note(wh_log_run_t *run, const char *format, ...) {
     char *text = run->text[run->note_count];
@@ -43,19 +31,6 @@ __attribute__((format(printf, 2, 3))) static bool refuse(wh_log_run_t *run, cons
     (void)vsnprintf(run->message + length, sizeof run->message - (size_t)length, format, values);
     va_end(values);
     return false;
-}
-
-static FILE *open_file(wh_log_run_t *run) {
-    struct stat status;
-    FILE *file = fopen(run->options.path, "rb");
-    if (!file) {
-        (void)refuse(run, "%s (expected an LCM event log, or a script)", strerror(errno));
-    } else if (fstat(fileno(file), &status) == 0 && S_ISDIR(status.st_mode)) {
-        (void)refuse(run, "%s (expected an LCM event log, or a script)", strerror(EISDIR));
-        (void)fclose(file);
-        return NULL;
-    }
-    return file;
 }
 
 static bool wants(const wh_log_run_t *run) {
@@ -91,10 +66,7 @@ static void drop_run(wh_log_run_t *run) {
 static void watch_collisions(wh_log_run_t *run) {
     const wh_layout_t *layout = run->cell.layout;
     if (run->cell.is_whole && layout->collision) {
-        run->collision.memory = malloc(wh_collision_bytes(layout));
-        if (!run->collision.memory) {
-            abort();
-        }
+        run->collision.memory = wh_array_new(wh_collision_bytes(layout), 1);
         run->collision.layout = layout;
         wh_robot_forward(layout->machine.robot.home, &run->collision.base_from_effector);
     }
@@ -468,9 +440,9 @@ static bool refuse_log(wh_log_run_t *run, wh_log_result_t result) {
 bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options) {
     memset(run, 0, sizeof *run);
     run->options = *options;
-    FILE *file = open_file(run);
+    FILE *file = wh_log_file(options->path);
     if (!file) {
-        return false;
+        return refuse(run, "%s (expected an LCM event log, or a script)", strerror(errno));
     }
     look_ahead(run, file);
     const wh_log_result_t result = read_events(run, file);

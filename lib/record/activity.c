@@ -134,10 +134,6 @@ void wh_activity_end(wh_activity_t *activity, int64_t slice) {
     activity->last.is_known = false;
 }
 
-void wh_activity_forget(wh_activity_t *activity) {
-    activity->interval_count = 0;
-}
-
 void wh_activity_free(wh_activity_t *activity) {
     free(activity->intervals);
     memset(activity, 0, sizeof *activity);

@@ -152,7 +152,8 @@ static void thin_again(void *fit) {
                covers(curve, i, end + 1)) {
             ++end;
         }
-        wh_points_copy(list, ++kept, end);
+        list->points[++kept] = list->points[end];
+        memmove(wh_points_numbers(list, kept), wh_points_numbers(list, end), 2 * sizeof *list->numbers);
         i = end;
     }
     list->count = kept + 1;

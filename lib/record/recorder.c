@@ -9,7 +9,7 @@ void wh_recorder_open(wh_recorder_t *recorder, wh_record_t *record, const char *
     memset(recorder, 0, sizeof *recorder);
     recorder->record = record;
     recorder->running = WH_NONE;
-    record->script = wh_record_text(script);
+    record->script = wh_text_copy(script);
 }
 
 double wh_recorder_now(const wh_recorder_t *recorder) {
@@ -92,7 +92,7 @@ const wh_command_record_t *wh_recorder_end(wh_recorder_t *recorder, double end_s
     if (error == WH_OK) {
         count_puts(recorder, wafers);
     } else {
-        command->message = wh_record_text(message);
+        command->message = wh_text_copy(message);
     }
     recorder->running = WH_NONE;
     return command;
@@ -152,7 +152,8 @@ void wh_recorder_finish(wh_recorder_t *recorder, const wh_recorder_end_t *end) {
     record->checked = end->world != NULL;
     if (record->checked) {
         memcpy(record->clearances, wh_world_clearances(end->world), sizeof record->clearances);
-        wh_record_keep_curves(record, wh_world_curves(end->world));
+        record->curves = wh_array_new(1, sizeof *record->curves);
+        *record->curves = *wh_world_curves(end->world);
     }
     keep_wafers(recorder, end->wafers);
 }
