@@ -154,16 +154,13 @@ static ending_t read_all(FILE *file, wh_replay_t *replay) {
     ending_t ending = {.first_garbage = 0};
     find_cell(file, replay);
     wh_log_open(&record, file);
-    do {
-        ending.result = wh_log_next(&record);
-        if (ending.result == WH_LOG_EVENT && record.size > 0) {
-            const uint64_t garbage = replay->garbage;
-            wh_replay_event(replay, record.channel, record.data, record.size);
-            if (garbage == 0 && replay->garbage > 0) {
-                ending.first_garbage = record.offset;
-            }
+    while ((ending.result = wh_log_next(&record)) == WH_LOG_EVENT) {
+        const bool sound = replay->garbage == 0;
+        wh_replay_event(replay, record.channel, record.data, record.size);
+        if (sound && replay->garbage > 0) {
+            ending.first_garbage = record.offset;
         }
-    } while (ending.result == WH_LOG_EVENT);
+    }
     wh_replay_finish(replay);
     ending.offset = record.offset;
     ending.events = record.count;
@@ -190,7 +187,6 @@ static int replay_file(const arguments_t *arguments) {
         fprintf(stderr, "%s: %s (expected an LCM event record)\n", arguments->path, strerror(errno));
         return WH_EXIT_USAGE;
     }
-    wh_replay_open(&replay);
     const ending_t ending = read_all(file, &replay);
     const int status = judge(&replay, &ending);
     fclose(file);

@@ -71,11 +71,6 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
 
 /* ------------------------------------------------------------------------------------------------ command */
 
-/* A stream whose text the caller frees. */
-static FILE *open_text(char **text, size_t *size) {
-    return wh_memory_need(open_memstream(text, size));
-}
-
 /* Writes a word so that a shell reads it back unchanged. */
 static void write_word(FILE *out, const char *word) {
     const char *plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=+,:@%";
@@ -98,7 +93,7 @@ char *wh_run_files_command(const char *command, const char *file, const char *co
                            size_t count) {
     char *text = NULL;
     size_t size = 0;
-    FILE *out = open_text(&text, &size);
+    FILE *out = wh_memory_need(open_memstream(&text, &size));
     fprintf(out, "waferhand %s ", command);
     write_word(out, file);
     for (size_t i = 0; i < count; ++i) {
@@ -113,42 +108,40 @@ char *wh_run_files_command(const char *command, const char *file, const char *co
 
 typedef struct {
     const wh_document_t *document;
-    const char *text; /* the document's */
+    char *text; /* the document's */
     size_t size;
+    char message[WH_PAGE_MESSAGE_BYTES]; /* why a page was not written; empty: errno says it */
 } content_t;
 
-/* Writes one of the files. On failure returns false, with a message, or with errno and an empty message. */
-typedef bool writer_t(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]);
+/* Writes one of the files. */
+typedef bool writer_t(content_t *content, FILE *out);
 
-static bool write_page(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]) {
-    return wh_page_write(out, content->document->title, content->text, content->size, message);
+static bool write_page(content_t *content, FILE *out) {
+    return wh_page_write(out, content->document->title, content->text, content->size, content->message);
 }
 
-static bool write_scene(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]) {
-    (void)message;
+static bool write_scene(content_t *content, FILE *out) {
     json_t *scene = wh_scene_make(content->document->signals, content->document->title, true);
     const bool written = json_dumpf(scene, out, JSON_COMPACT | JSON_REAL_PRECISION(9)) == 0;
     json_decref(scene);
     return written && fputc('\n', out) != EOF;
 }
 
-static bool write_document(const content_t *content, FILE *out, char message[WH_PAGE_MESSAGE_BYTES]) {
-    (void)message;
+static bool write_document(content_t *content, FILE *out) {
     return fwrite(content->text, 1, content->size, out) == content->size;
 }
 
-static bool write_file(const content_t *content, const char *path, writer_t *writer) {
-    char message[WH_PAGE_MESSAGE_BYTES] = "";
+static bool write_file(content_t *content, const char *path, writer_t *writer) {
     wh_output_t output = {0};
     if (!path) {
         return true;
     }
     const bool written =
-        wh_output_open(&output, path) && writer(content, output.file, message) && wh_output_commit(&output);
+        wh_output_open(&output, path) && writer(content, output.file) && wh_output_commit(&output);
     const int reason = errno;
     wh_output_drop(&output);
-    if (!written && message[0] != '\0') {
-        fprintf(stderr, "%s: not written: %s\n", path, message);
+    if (!written && content->message[0] != '\0') {
+        fprintf(stderr, "%s: not written: %s\n", path, content->message);
     } else if (!written) {
         fprintf(stderr, "%s: %s (expected a file that can be written)\n", path, strerror(reason));
     }
@@ -166,20 +159,17 @@ static bool write_plots(const wh_document_t *document, const char *folder) {
 
 bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *document) {
     wh_document_t whole = *document;
-    char *text = NULL;
     content_t content = {.document = &whole};
-    FILE *out = open_text(&text, &content.size);
+    FILE *out = wh_memory_need(open_memstream(&content.text, &content.size));
     whole.run = wh_record_to_json(document->record);
-    bool written = wh_document_write(&whole, out) == 0;
-    written = fclose(out) == 0 && written;
-    content.text = text;
-    if (!written) {
-        fprintf(stderr, "%s: no memory for the report\n", document->title);
+    const bool made = wh_document_write(&whole, out) == 0;
+    if (fclose(out) != 0 || !made) {
+        wh_memory_out();
     }
-    written = written && write_file(&content, files->document, write_document) &&
-              write_file(&content, files->scene, write_scene) &&
-              write_file(&content, files->page, write_page) && write_plots(&whole, files->plots);
-    free(text);
+    const bool written = write_file(&content, files->document, write_document) &&
+                         write_file(&content, files->scene, write_scene) &&
+                         write_file(&content, files->page, write_page) && write_plots(&whole, files->plots);
+    free(content.text);
     json_decref(whole.run);
     return written;
 }

@@ -47,7 +47,6 @@ typedef struct {
     wh_mcs_process_answer_t answered[WH_CONTROL_ANSWERED];
     size_t answered_count;
     uint64_t requests, garbage; /* datagrams on WAFERHAND_REQUEST: sound ones, others */
-    bool named_garbage;
     uint8_t encoded[8192];
 } wh_mcs_process_t;
 

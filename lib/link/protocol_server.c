@@ -67,11 +67,7 @@ static void encode(wh_protocol_server_t *server, const wh_state_t *state,
 /* Answers a command that is not stepped: its own numbers and the reason, no wafers, no grippers. */
 static wh_protocol_server_result_t turn_away(wh_protocol_server_t *server, const waferhand_command *message,
                                              wh_status_t reason) {
-    wh_state_t nothing;
-    memset(&nothing, 0, sizeof nothing);
-    nothing.utime = message->utime;
-    nothing.seq = message->seq;
-    nothing.status = reason;
+    const wh_state_t nothing = {.utime = message->utime, .seq = message->seq, .status = reason};
     const wh_link_identity_t identity = {message->run, server->identity.layout_hash};
     encode(server, &nothing, &identity);
     return WH_SERVER_ANSWERED;

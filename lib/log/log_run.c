@@ -135,14 +135,6 @@ static void take_mcs(wh_log_run_t *run, const waferhand_mcs *message) {
 
 /* ------------------------------------------------------------------------------------------------- slices */
 
-static bool robot_moves(const wh_log_run_t *run, const double axes[]) {
-    bool moves = false;
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        moves = moves || wh_real_abs(axes[axis] - run->told.axes[axis]) > 0;
-    }
-    return moves;
-}
-
 static bool is_told_to_wait(const wh_log_run_t *run) {
     const char *text = running_text(run);
     return !text || strncmp(text, "WAIT", 4) == 0;
@@ -162,17 +154,11 @@ static wh_share_t share_standing(const wh_log_run_t *run, const int32_t valves[]
 
 static wh_task_t task_of(const wh_log_run_t *run, const double axes[], const int32_t valves[],
                          const wh_state_t *state) {
-    const wh_machine_t *machine = &run->cell.layout->machine;
-    const bool robot = robot_moves(run, axes);
-    wh_task_t task = {share_standing(run, valves, state), robot, robot, 0};
-    for (size_t g = 0; g < machine->gripper_count; ++g) {
-        const int32_t axis = machine->mounts[g].axis;
-        const bool carried = axis == WH_NONE ? robot : wh_real_abs(axes[axis] - run->told.axes[axis]) > 0;
-        task.moves = task.moves || carried;
-        task.carried |= carried ? 1U << g : 0;
+    bool moving[WH_AXES];
+    for (size_t axis = 0; axis < WH_AXES; ++axis) {
+        moving[axis] = wh_real_abs(axes[axis] - run->told.axes[axis]) > 0;
     }
-    task.robot = robot || !task.moves;
-    return task;
+    return wh_activity_motion(&run->cell.layout->machine, moving, share_standing(run, valves, state));
 }
 
 static void count_slice(wh_log_run_t *run, int64_t seq, const double axes[]) {
@@ -400,12 +386,9 @@ static void look_ahead(wh_log_run_t *run, FILE *file) {
 static wh_log_result_t read_events(wh_log_run_t *run, FILE *file) {
     wh_log_result_t result;
     wh_log_open(&run->log, file);
-    do {
-        result = wh_log_next(&run->log);
-        if (result == WH_LOG_EVENT) {
-            take_event(run);
-        }
-    } while (result == WH_LOG_EVENT);
+    while ((result = wh_log_next(&run->log)) == WH_LOG_EVENT) {
+        take_event(run);
+    }
     return result;
 }
 

@@ -67,6 +67,9 @@ typedef struct {
  * others. */
 wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment, bool for_vacuum);
 
+/* The task while these axes move; `share` when none does. */
+wh_task_t wh_activity_motion(const wh_machine_t *machine, const bool moving[WH_AXES], wh_share_t share);
+
 /* Counts slice command->seq, which `state` answers, and returns its share. Of the command it reads `seq` and
  * the valves. Cost: 4 ns for two grippers. */
 wh_share_t wh_activity_count(wh_activity_t *activity, const wh_machine_t *machine, const wh_task_t *task,

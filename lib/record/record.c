@@ -9,32 +9,22 @@ wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const 
     record->commands = wh_array_grow(record->commands, record->command_count, &record->command_capacity,
                                      sizeof *record->commands);
     wh_command_record_t *command = &record->commands[record->command_count++];
-    command->line = line;
-    command->text = wh_text_copy(text);
-    command->error = WH_OK;
-    command->message = NULL;
-    command->begin_s = begin_s;
-    command->end_s = begin_s;
-    memset(command->shares, 0, sizeof command->shares);
+    *command =
+        (wh_command_record_t){.line = line, .text = wh_text_copy(text), .begin_s = begin_s, .end_s = begin_s};
     return command;
 }
 
 void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event) {
     record->events =
         wh_array_grow(record->events, record->event_count, &record->event_capacity, sizeof *record->events);
-    wh_event_record_t *added = &record->events[record->event_count++];
-    added->utime = utime;
-    added->command = command;
-    added->event = *event;
+    record->events[record->event_count++] = (wh_event_record_t){utime, command, *event};
 }
 
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok) {
     record->expectations = wh_array_grow(record->expectations, record->expectation_count,
                                          &record->expectation_capacity, sizeof *record->expectations);
-    wh_expectation_record_t *added = &record->expectations[record->expectation_count++];
-    added->line = line;
-    added->text = wh_text_copy(text);
-    added->ok = ok;
+    record->expectations[record->expectation_count++] =
+        (wh_expectation_record_t){line, wh_text_copy(text), ok};
 }
 
 void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put) {
@@ -46,10 +36,7 @@ void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put) {
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin) {
     record->cycles =
         wh_array_grow(record->cycles, record->cycle_count, &record->cycle_capacity, sizeof *record->cycles);
-    wh_cycle_record_t *added = &record->cycles[record->cycle_count++];
-    added->line = line;
-    added->name = wh_text_copy(name);
-    added->begin = begin;
+    record->cycles[record->cycle_count++] = (wh_cycle_record_t){line, wh_text_copy(name), begin};
 }
 
 bool wh_record_is_complaint(wh_event_kind_t kind) {

@@ -2,7 +2,6 @@
 
 #include "../text/array.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 void wh_recorder_open(wh_recorder_t *recorder, wh_record_t *record, const char *script) {
@@ -52,8 +51,8 @@ static void add_put(wh_recorder_t *recorder, int32_t w, const wh_wafer_t *wafer)
     wh_place_t place;
     if (locate(recorder, wafer, &place) &&
         (wafer->holder == WH_NONE || wafer->holder == recorder->layout->places[place.station].chuck)) {
-        const wh_put_record_t put = {w, place.station, place.slot, recorder->slice};
-        wh_record_add_put(recorder->record, &put);
+        wh_record_add_put(recorder->record,
+                          &(wh_put_record_t){w, place.station, place.slot, recorder->slice});
     }
 }
 
