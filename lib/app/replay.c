@@ -156,7 +156,9 @@ static ending_t read_all(FILE *file, wh_replay_t *replay) {
     wh_log_open(&record, file);
     while ((ending.result = wh_log_next(&record)) == WH_LOG_EVENT) {
         const bool sound = replay->garbage == 0;
-        wh_replay_event(replay, record.channel, record.data, record.size);
+        if (record.size > 0) {
+            wh_replay_event(replay, record.channel, record.data, record.size);
+        }
         if (sound && replay->garbage > 0) {
             ending.first_garbage = record.offset;
         }

@@ -285,7 +285,7 @@ void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data,
                     {WH_CHANNEL_STATE, on_state},
                     {WH_CHANNEL_MCS, on_mcs}};
     for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; ++i) {
-        if (size > 0 && size <= WH_LINK_DATAGRAM && strcmp(handlers[i].channel, channel) == 0) {
+        if (size <= WH_LINK_DATAGRAM && strcmp(handlers[i].channel, channel) == 0) {
             handlers[i].handle(replay, data, size);
         }
     }

@@ -53,7 +53,7 @@ typedef struct {
     wh_link_arrays_t recorded;
 } wh_replay_t;
 
-/* One event of the log; those of other channels and those without data are ignored. */
+/* One event of the log; those of other channels are ignored. */
 void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data, size_t size);
 
 /* Steps what still waits. Call it at the log's end. */
