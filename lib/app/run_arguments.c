@@ -174,7 +174,7 @@ bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *docume
     return written;
 }
 
-/* ---------------------------------------------------------------------------------------------------- a run */
+/* -------------------------------------------------------------------------------------------------- a run */
 
 static int print_result(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
     if (arguments->json) {

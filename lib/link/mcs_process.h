@@ -34,9 +34,8 @@ typedef struct {
     wh_protocol_client_options_t options;
     wh_protocol_client_t client;
     bool connected;
-    wh_sandbox_t *sandbox; /* of the run or session; null before its first command */
-    wh_link_identity_t
-        identity; /* of the run; and where it is. Without a client, to be set for each slice: */
+    wh_sandbox_t *sandbox;       /* of the run or session; null before its first command */
+    wh_link_identity_t identity; /* of the run; and where it is (without a client, to be set): */
     int64_t utime, seq;
     char running[200]; /* the command that goes on; empty: none */
     int running_line;

@@ -142,8 +142,8 @@ bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message);
 bool wh_link_decode_request(const void *data, size_t size, waferhand_request *message);
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message);
 
-/* The cell of a layout as a message. Returns false if it has more than WH_LINK_WAFERS wafers: the room is then
- * all zero. */
+/* The cell of a layout as a message. Returns false if it has more than WH_LINK_WAFERS wafers: the room is
+ * then all zero. */
 bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_t *identity,
                               wh_link_cell_t *room);
 
