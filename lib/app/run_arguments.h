@@ -1,5 +1,5 @@
 /* A script's run as subcommands offer it: `run SCRIPT` and `mcs SCRIPT` have the same options and print
- * alike. And the files that a run is written to: those of `report`, `run`, `mcs` and `study --trial` alike. */
+ * alike. And the files that a run is written to: those of `report`, `run`, `mcs` and `study --trial`. */
 #ifndef WH_APP_RUN_ARGUMENTS_H
 #define WH_APP_RUN_ARGUMENTS_H
 
