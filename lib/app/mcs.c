@@ -114,22 +114,17 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
     return status;
 }
 
-static int run_linked(arguments_t *arguments) {
-    static wh_mcs_link_t link;
-    if (!wh_mcs_link_open(&link, &arguments->link)) {
-        return WH_EXIT_USAGE;
-    }
-    arguments->run.run.partners = wh_mcs_process_partners(&link.control);
-    const int status = arguments->layout ? run_prompt(arguments, &link) : wh_run_and_print(&arguments->run);
-    wh_mcs_link_close(&link);
-    return status;
-}
-
 int wh_app_mcs(int argc, char **argv) {
+    static wh_mcs_link_t link;
     arguments_t arguments = {.link = {.client = {.stop = &wh_stop_requested}}};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
-    const int status = run_linked(&arguments);
+    int status = WH_EXIT_USAGE;
+    if (wh_mcs_link_open(&link, &arguments.link)) {
+        arguments.run.run.partners = wh_mcs_process_partners(&link.control);
+        status = arguments.layout ? run_prompt(&arguments, &link) : wh_run_and_print(&arguments.run);
+        wh_mcs_link_close(&link);
+    }
     wh_run_arguments_free(&arguments.run);
     return status;
 }

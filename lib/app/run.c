@@ -1,6 +1,4 @@
 /* waferhand run SCRIPT */
-#include <string.h>
-
 #include "../link/mcs_process.h"
 #include "../link/sim_process.h"
 #include "app.h"
@@ -46,6 +44,7 @@ typedef struct {
     wh_node_t node;
     wh_mcs_process_t control; /* tells the commands; its client is not used */
     wh_sim_process_t simulation;
+    wh_link_identity_t identity;
     bool connected;
 } broadcast_t;
 
@@ -54,8 +53,9 @@ typedef struct {
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     broadcast_t *broadcast = (broadcast_t *)link;
     waferhand_command message;
-    wh_link_command_to_message(command, &broadcast->control.identity, true, &message);
+    wh_link_command_to_message(command, &broadcast->identity, true, &message);
     wh_protocol_client_publish(&broadcast->node, &message);
+    broadcast->control.identity = broadcast->identity;
     broadcast->control.utime = command->utime;
     broadcast->control.seq = command->seq;
     return wh_sim_process_step(&broadcast->simulation, &message, state);
@@ -75,8 +75,8 @@ static wh_link_t *connect_simulation(void *user, wh_mcs_t *mcs) {
     if (wh_sim_process_open(&broadcast->simulation, &broadcast->node, mcs->layout, false) != WH_OK) {
         return NULL;
     }
-    broadcast->control.identity.run = wh_protocol_client_draw_run();
-    broadcast->control.identity.layout_hash = broadcast->simulation.server.identity.layout_hash;
+    broadcast->identity.run = wh_protocol_client_draw_run();
+    broadcast->identity.layout_hash = broadcast->simulation.server.identity.layout_hash;
     broadcast->connected = true;
     return &broadcast->link;
 }

@@ -2,7 +2,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../record/record.h"
 #include "../text/array.h"
 #include "messages.h"
 
@@ -179,7 +178,7 @@ static wh_layout_t *make_layout(const waferhand_cell *cell) {
     layout->machine.gripper_count = (size_t)cell->gripper_count;
     layout->station_count = (size_t)cell->station_count;
     layout->wafer_count = (size_t)cell->wafer_count;
-    layout->path = wh_record_text(cell->layout);
+    layout->path = wh_text_copy(cell->layout);
     layout->stations = wh_array_new(layout->station_count, sizeof *layout->stations);
     layout->places = wh_array_new(layout->station_count, sizeof *layout->places);
     layout->wafers = wh_array_new(layout->wafer_count, sizeof *layout->wafers);

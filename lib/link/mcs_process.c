@@ -15,23 +15,21 @@
 /* `request` is the one that this answers or goes on with; 0: none. */
 static void tell(wh_mcs_process_t *control, int64_t request, int32_t phase, int line, wh_status_t error,
                  const char *command, const char *text) {
-    waferhand_mcs message;
-    memset(&message, 0, sizeof message);
     if (control->connected) {
         control->utime = control->client.command.utime;
         control->seq = control->client.command.seq;
         control->identity = control->client.identity;
     }
-    message.utime = control->utime;
-    message.seq = control->seq;
-    message.run = control->identity.run;
-    message.layout_hash = (int64_t)control->identity.layout_hash;
-    message.phase = phase;
-    message.request = request;
-    message.line = line;
-    message.error = (int32_t)error;
-    message.command = wh_link_borrowed(command);
-    message.text = wh_link_borrowed(text);
+    const waferhand_mcs message = {.utime = control->utime,
+                                   .seq = control->seq,
+                                   .run = control->identity.run,
+                                   .layout_hash = (int64_t)control->identity.layout_hash,
+                                   .phase = phase,
+                                   .request = request,
+                                   .line = line,
+                                   .error = (int32_t)error,
+                                   .command = wh_link_borrowed(command),
+                                   .text = wh_link_borrowed(text)};
     const int size = waferhand_mcs_encode(control->encoded, 0, (int)sizeof control->encoded, &message);
     if (size > 0) {
         (void)wh_node_publish(control->node, WH_CHANNEL_MCS, control->encoded, (size_t)size);
@@ -116,10 +114,7 @@ static void stop_all(wh_mcs_process_t *control, const waferhand_request *message
 /* An answer that is not remembered: asked again, the request may be taken. */
 static void turn_away(wh_mcs_process_t *control, const waferhand_request *message, wh_status_t error,
                       const char *text) {
-    wh_mcs_process_answer_t answer = {.seq = message->seq, .error = (int32_t)error};
-    snprintf(answer.line, sizeof answer.line, "%s", message->command_line);
-    snprintf(answer.text, sizeof answer.text, "%s", text);
-    tell_answer(control, &answer);
+    tell(control, message->seq, WH_LINK_PHASE_FAILED, 0, error, message->command_line, text);
 }
 
 static void turn_away_number(wh_mcs_process_t *control, const waferhand_request *message, const char *taken) {
@@ -181,9 +176,7 @@ static void on_request(void *user, const void *data, size_t size) {
     wh_mcs_process_t *control = user;
     waferhand_request message;
     if (!wh_link_decode_request(data, size, &message)) {
-        ++control->garbage;
-        if (!control->named_garbage) {
-            control->named_garbage = true;
+        if (control->garbage++ == 0) {
             wh_node_say(control->node,
                         WH_CHANNEL_REQUEST ": a datagram is no such message: dropped, like all that follow");
         }
@@ -255,21 +248,18 @@ bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
 }
 
 wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
-    const wh_mcs_partners_t partners = {.connect = connect_client, .watch = watch, .user = control};
-    return partners;
+    return (wh_mcs_partners_t){.connect = connect_client, .watch = watch, .user = control};
 }
 
 void wh_mcs_process_idle(wh_mcs_process_t *control) {
     const int64_t now = wh_node_clock_us();
+    (void)wh_node_drain(control->node, 64);
     if (now - control->last_beat_us < HEARTBEAT_US) {
-        (void)wh_node_drain(control->node, 64);
         return;
     }
     control->last_beat_us = now;
     if (control->connected) {
         wh_protocol_client_heartbeat(&control->client);
-    } else {
-        (void)wh_node_drain(control->node, 64);
     }
     tell(control, control->executing.seq, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
 }

@@ -35,9 +35,8 @@ typedef struct {
     wh_protocol_client_options_t options;
     wh_protocol_client_t client;
     bool connected;
-    wh_sandbox_t *sandbox; /* of the run or session; null before its first command */
-    wh_link_identity_t
-        identity; /* of the run; and where it is. Without a client, to be set for each slice: */
+    wh_sandbox_t *sandbox;       /* of the run or session; null before its first command */
+    wh_link_identity_t identity; /* of the run; and where it is (without a client, to be set): */
     int64_t utime, seq;
     char running[200]; /* the command that goes on; empty: none */
     int running_line;
@@ -48,7 +47,6 @@ typedef struct {
     wh_mcs_process_answer_t answered[WH_CONTROL_ANSWERED];
     size_t answered_count;
     uint64_t requests, garbage; /* datagrams on WAFERHAND_REQUEST: sound ones, others */
-    bool named_garbage;
     uint8_t encoded[8192];
 } wh_mcs_process_t;
 

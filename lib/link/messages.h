@@ -142,13 +142,13 @@ bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message);
 bool wh_link_decode_request(const void *data, size_t size, waferhand_request *message);
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message);
 
-/* The cell of a layout as a message. Returns false if it has more than WH_LINK_WAFERS wafers: the room is then
- * all zero. */
+/* The cell of a layout as a message. Returns false if it has more than WH_LINK_WAFERS wafers: the room is
+ * then all zero. */
 bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_t *identity,
                               wh_link_cell_t *room);
 
 /* The layout that a cell message describes: enough for a simulator, without the file. In memory that
- * wh_link_layout_free releases (aborts if there is none); null for a message that no layout could have made: poses, tolerances, counts,
+ * wh_link_layout_free releases; null for a message that no layout could have made: poses, tolerances, counts,
  * names and slots are checked. The machine but its number of grippers, and the stations' parameters of GET
  * and PUT, are not in the message and zero. */
 wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell);

@@ -82,17 +82,15 @@ static void keep(wh_node_t *node, const char *channel, const void *data, size_t 
         void *plain;
     } bytes = {data};
     char name[LCM_MAX_CHANNEL_NAME_LENGTH + 1];
-    lcm_eventlog_event_t event;
     if (!node->log || node->log_failed) {
         return;
     }
     snprintf(name, sizeof name, "%s", channel);
-    event.eventnum = 0;
-    event.timestamp = wh_node_wall_us();
-    event.channellen = (int32_t)strlen(name);
-    event.datalen = (int32_t)size;
-    event.channel = name;
-    event.data = bytes.plain;
+    lcm_eventlog_event_t event = {.timestamp = wh_node_wall_us(),
+                                  .channellen = (int32_t)strlen(name),
+                                  .datalen = (int32_t)size,
+                                  .channel = name,
+                                  .data = bytes.plain};
     if (lcm_eventlog_write_event(node->log, &event) != 0) {
         fail_record(node);
     }

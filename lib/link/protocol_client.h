@@ -62,8 +62,8 @@ typedef struct {
     size_t restore_size;
 } wh_protocol_client_t;
 
-/* Subscribes to the states and begins a run with a random number other than 0. `layout` and `node`, which says
- * when the simulator is silent or back, must outlive it. False when LCM has no room. */
+/* Subscribes to the states and begins a run with a random number other than 0. `layout` and `node`, which
+ * says when the simulator is silent or back, must outlive it. False when LCM has no room. */
 bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node, const wh_layout_t *layout,
                              const wh_protocol_client_options_t *options);
 

@@ -43,9 +43,7 @@ static void answer(wh_sim_process_t *simulation) {
 /* ---------------------------------------------------------------------------------------------- receiving */
 
 static void drop(wh_sim_process_t *simulation, const char *channel, size_t size) {
-    ++simulation->counters.garbage;
-    if (!simulation->named_garbage) {
-        simulation->named_garbage = true;
+    if (simulation->counters.garbage++ == 0) {
         wh_node_say(simulation->node,
                     "%s: a datagram of %zu bytes is no such message: dropped, like all that follow", channel,
                     size);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../math/trig.h"
+#include "../text/array.h"
 #include "print_internal.h"
 
 void wh_print_title(const wh_printer_t *printer, const char *title) {
@@ -13,7 +14,7 @@ void wh_print_title(const wh_printer_t *printer, const char *title) {
 }
 
 void wh_print_put(const wh_printer_t *printer, const char *text) {
-    char *copy = wh_record_text(text ? text : "");
+    char *copy = wh_text_copy(text ? text : "");
     char *rest = copy;
     for (char *end = strpbrk(rest, "\n\t"); end; end = strpbrk(rest, "\n\t")) {
         const char *between = *end == '\n' ? "\n  " : "  ";

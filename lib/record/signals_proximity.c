@@ -1,6 +1,4 @@
 /* Each gripper against its nearest wafer, over time: the paper's Fig. 9. */
-#include <string.h>
-
 #include "../text/array.h"
 #include "counterpart.h"
 #include "signals.h"

@@ -140,7 +140,7 @@ wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t 
  * what was there, to be freed; null if nothing was. */
 static char *set_letters(const char *letters) {
     const char *before = getenv("LC_ALL");
-    char *kept = before ? wh_record_text(before) : NULL;
+    char *kept = before ? wh_text_copy(before) : NULL;
     if (!letters || setenv("LC_ALL", letters, 1) != 0) {
         (void)unsetenv("LC_ALL");
     }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../math/hash.h"
+#include "../text/array.h"
 #include "../text/json.h"
 #include "../text/output.h"
 
@@ -340,5 +341,5 @@ char *wh_checkpoint_default_path(const wh_study_t *study) {
     json_decref(identity);
     snprintf(name, sizeof name, "study-%016llx", (unsigned long long)hash);
     wh_output_state_path(name, path, sizeof path);
-    return path[0] != '\0' && wh_output_make_folders(path) ? wh_record_text(path) : NULL;
+    return path[0] != '\0' && wh_output_make_folders(path) ? wh_text_copy(path) : NULL;
 }

@@ -76,7 +76,7 @@ static bool keep(keeper_t *keeper, wh_pool_t *pool) {
 
 static bool open_keeper(keeper_t *keeper, const wh_study_options_t *options, wh_pool_t *pool) {
     keeper->named = options->state != NULL;
-    keeper->path = keeper->named ? wh_record_text(options->state) : wh_checkpoint_default_path(pool->study);
+    keeper->path = keeper->named ? wh_text_copy(options->state) : wh_checkpoint_default_path(pool->study);
     keeper->kept = wh_clock_seconds();
     if (!keeper->path) {
         return true;

@@ -57,7 +57,7 @@ wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const c
     }
     if (!row->text || named < row->named) {
         free(row->text);
-        row->text = wh_record_text(text);
+        row->text = wh_text_copy(text);
         row->named = named;
     }
     return row;

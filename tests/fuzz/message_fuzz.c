@@ -208,7 +208,7 @@ static void check_report(void) {
     static const wh_style_t style = {.utf8 = true, .width = 80};
     if (record.event_count > 0) {
         record.layout = layout;
-        record.script = wh_record_text("fuzz");
+        record.script = wh_text_copy("fuzz");
         record.wafers = calloc(layout->wafer_count + 1, sizeof *record.wafers);
         for (size_t w = 0; record.wafers && w < layout->wafer_count; ++w) {
             record.wafers[w].base_from_wafer = wh_pose_identity();

@@ -195,11 +195,8 @@ static void replace_word(EditLine *edit, const char *word, const wh_candidates_t
 static unsigned char complete(EditLine *edit, int key) {
     wh_candidates_t candidates;
     const LineInfo *line = el_line(edit);
-    char *before = strndup(line->buffer, (size_t)(line->cursor - line->buffer));
+    char *before = wh_memory_need(strndup(line->buffer, (size_t)(line->cursor - line->buffer)));
     unsigned char result = CC_ERROR;
-    if (!before) {
-        return CC_ERROR;
-    }
     (void)key;
     wh_session_complete(editor_of(edit)->input->session, before, &candidates);
     if (candidates.count > 0) {

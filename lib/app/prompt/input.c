@@ -33,10 +33,8 @@ static void on_signal(int number) {
 }
 
 void wh_interrupt_hold(bool terminal) {
-    struct sigaction action;
+    const struct sigaction action = {.sa_handler = on_signal};
     memset(&signals, 0, sizeof signals);
-    memset(&action, 0, sizeof action);
-    action.sa_handler = on_signal;
     signals.count = terminal ? HELD : HELD_WITHOUT_TERMINAL;
     sigprocmask(SIG_BLOCK, NULL, &signals.mask_before);
     signals.mask_held = signals.mask_running = signals.mask_before;

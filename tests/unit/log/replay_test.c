@@ -28,7 +28,7 @@ static int set_up(void **state) {
     if (!layout || wh_protocol_server_open(&server, layout) != WH_OK) {
         return -1;
     }
-    wh_replay_open(&replay);
+    memset(&replay, 0, sizeof replay);
     tell_cell();
     return 0;
 }
