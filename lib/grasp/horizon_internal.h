@@ -63,10 +63,12 @@ static inline void wh_horizon_set_clear(wh_grasp_t *table, size_t g) {
 
 /* How far around `place` a search should look: many times the way of this slice, or little if the gripper
  * jumps. */
-wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place);
+wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place)
+    WH_SYMBOL(wh_horizon_margin);
 
 /* Begins to measure a horizon over the wafers that wh_index_near found with this margin. */
-wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin);
+wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin)
+    WH_SYMBOL(wh_horizon_begin);
 
 /* Takes a free wafer into account. True if the wafer is certainly not ready, as wh_proximity_ready would
  * say. */
@@ -89,7 +91,8 @@ static inline bool wh_horizon_measure(wh_horizon_t *horizon, const wh_pose_t *ba
 }
 
 /* What wh_horizon_set does if the table has buckets. */
-void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon);
+void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon)
+    WH_SYMBOL(wh_horizon_store);
 
 /* Stores the measured horizon for gripper g at `place`, if the table has buckets. */
 static inline void wh_horizon_set(wh_grasp_t *table, size_t g, const wh_vec3_t *place,
@@ -100,6 +103,6 @@ static inline void wh_horizon_set(wh_grasp_t *table, size_t g, const wh_vec3_t *
 }
 
 /* Takes every gripper's horizon away, until it searches again. */
-void wh_horizon_reset(wh_grasp_t *table);
+void wh_horizon_reset(wh_grasp_t *table) WH_SYMBOL(wh_horizon_reset);
 
 #endif

@@ -50,10 +50,10 @@ typedef struct {
 } wh_found_t;
 
 /* Builds the index anew for all wafers, if the table has buckets. No gripper has a horizon then. */
-void wh_index_build(wh_grasp_t *table);
+void wh_index_build(wh_grasp_t *table) WH_SYMBOL(wh_index_build);
 
 /* Tells the index that this wafer lies somewhere else from now on. No gripper has a horizon then. */
-void wh_index_move(wh_grasp_t *table, size_t wafer);
+void wh_index_move(wh_grasp_t *table, size_t wafer) WH_SYMBOL(wh_index_move);
 
 /* All wafers. */
 static inline wh_found_t wh_index_all(const wh_grasp_t *table) {
@@ -63,10 +63,10 @@ static inline wh_found_t wh_index_all(const wh_grasp_t *table) {
 
 /* What wh_index_near does if the table has buckets. */
 wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
-                           wh_real_t margin);
+                           wh_real_t margin) WH_SYMBOL(wh_index_search);
 
 /* What the last search found, by whichever gripper. */
-wh_found_t wh_index_found(const wh_grasp_t *table);
+wh_found_t wh_index_found(const wh_grasp_t *table) WH_SYMBOL(wh_index_found);
 
 /* The wafers in whose neighbourhood gripper g comes between `from` and `to` or, along one of base's axes, may
  * come by moving less than `margin` from there; and others. All of them where the table has no buckets or as
