@@ -99,29 +99,9 @@ static wh_fault_kind_t read_kind(wh_reader_t *reader) {
     return (wh_fault_kind_t)kind;
 }
 
-/* The first gripper on the robot, unless the fault names one. */
-static int32_t read_gripper(wh_reader_t *reader, const wh_layout_t *layout) {
-    char name[WH_NAME_SIZE];
-    size_t first = 0;
-    while (layout->grippers[first].station != WH_NONE) {
-        ++first;
-    }
-    wh_reader_text(reader, "gripper", layout->grippers[first].name, name, sizeof name);
-    const int32_t gripper = wh_layout_find_gripper(layout, name);
-    if (gripper == WH_NONE) {
-        wh_reader_refuse(reader, "gripper", name, "the name of a gripper of this layout");
-    }
-    return gripper;
-}
-
 static int32_t read_wafer(wh_reader_t *reader, const wh_layout_t *layout, const char *field) {
-    char name[WH_NAME_SIZE];
-    wh_reader_text(reader, field, NULL, name, sizeof name);
-    const int32_t wafer = wh_layout_find_wafer(layout, name);
-    if (wafer == WH_NONE) {
-        wh_reader_refuse(reader, field, name, "the name of a wafer of this layout");
-    }
-    return wafer;
+    return wh_layout_read_name(reader, layout, field, NULL, wh_layout_find_wafer,
+                               "the name of a wafer of this layout");
 }
 
 static int32_t read_onto(wh_reader_t *reader, const wh_layout_t *layout, int32_t wafer) {
@@ -166,7 +146,8 @@ static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault
     if (wh_fault_is_of_wafer(fault->kind)) {
         fault->target = read_wafer(reader, layout, "wafer");
     } else if (fault->kind != WH_FAULT_COMMAND_LOST) {
-        fault->target = read_gripper(reader, layout);
+        fault->target =
+            wh_layout_read_gripper_name(reader, layout, "gripper", "the name of a gripper of this layout");
     }
     if (fault->kind == WH_FAULT_WAFER_DOUBLED) {
         fault->other = read_onto(reader, layout, fault->target);

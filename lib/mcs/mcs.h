@@ -69,7 +69,7 @@ struct wh_mcs {
     /* The cell, from when the script names it. */
     const wh_layout_t *layout; /* null until then */
     const wh_layout_t *real;   /* the same, or with a trial's errors: what simulator and reports go by */
-    wh_link_t *link;           /* the local cell's, or whoever stands in for it */
+    wh_link_t *link;           /* the local cell's, or whoever stands in; null until connected */
 
     /* What is commanded and answered. */
     wh_track_t track;

@@ -97,6 +97,9 @@ static int play(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_planned_t planned;
     luaL_argcheck(L, !mcs->rehearsal.is_on, 1, "a rehearsal goes on");
+    if (!mcs->link) {
+        wh_mcs_raise(L, mcs, WH_STATUS_NO_LAYOUT, "cell was refused");
+    }
     if (lua_isinteger(L, 1)) {
         begin_planned(L, mcs, &planned);
     } else {
@@ -104,7 +107,7 @@ static int play(lua_State *L) {
     }
     keep_segment(mcs);
     mcs->recorder.task = planned.task;
-    wh_vacuum_watch_begin(&mcs->watch, planned.may_lose & mcs->state.sensors);
+    mcs->watch = (wh_vacuum_watch_t){.watched = planned.may_lose & mcs->state.sensors};
     const wh_segment_t *segment = &mcs->track.segment;
     wh_decisions_read(mcs->decisions, WH_DECISION_BEGIN,
                       segment->kind == WH_SEGMENT_SENSOR ? segment->gripper : WH_NONE,

@@ -4,17 +4,6 @@
 
 enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_PRINT_MEASURED_COLUMNS };
 
-static wh_grid_t *new_grid(const wh_printer_t *printer) {
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_number_column(grid, "at s", wh_print_seconds);
-    wh_grid_text_column(grid, "what");
-    wh_grid_text_column(grid, "wafer");
-    wh_grid_text_column(grid, "gripper");
-    wh_print_measured_columns(printer, grid);
-    wh_grid_text_column(grid, "why");
-    return grid;
-}
-
 static const char *part_name(const wh_layout_t *layout, int32_t part) {
     const char *name = layout ? wh_layout_part_name(layout, part) : NULL;
     return name ? name : "more than can be looked at";
@@ -32,7 +21,7 @@ static const char *find_name(const void *user, wh_name_kind_t kind, int32_t inde
 static void say_why(const wh_printer_t *printer, wh_grid_t *grid, double at, const wh_event_t *event) {
     const wh_layout_t *layout = printer->record->layout;
     const wh_event_names_t names = {find_name, printer, 1, layout ? &layout->grasp.tolerance : NULL,
-                                    wh_style_degree(printer->style)};
+                                    wh_style_glyph(printer->style, WH_GLYPH_DEGREE)};
     char why[WH_EVENT_TEXT_SIZE];
     const bool is_unknown = event->kind == WH_EVENT_NEAR_MISS && !layout;
     for (size_t i = 0; !is_unknown && wh_event_reason(event, &names, i, why, sizeof why) > 0; ++i) {
@@ -77,7 +66,11 @@ void wh_print_complaints(const wh_printer_t *printer) {
     if (first == record->event_count) {
         return;
     }
-    wh_grid_t *grid = new_grid(printer);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
+    wh_grid_number_columns(grid, wh_print_seconds, "at s", NULL);
+    wh_grid_text_columns(grid, "what", "wafer", "gripper", NULL);
+    wh_print_measured_columns(printer, grid);
+    wh_grid_text_columns(grid, "why", NULL);
     for (size_t i = first; i < record->event_count; ++i) {
         if (wh_print_is_miss(record->events[i].event.kind)) {
             add_event(printer, grid, &record->events[i]);
