@@ -101,7 +101,14 @@ typedef struct {
     wh_grasp_storage_t storage;
     uint64_t slice; /* steps done */
     wh_grasp_counters_t counters;
+    uint32_t mark; /* WH_GRASP_MARK once wh_grasp_init has set the table up */
 } wh_grasp_t;
+
+/* Each call that returns a status refuses a table without this mark (WH_STATUS_NOT_INITIALISED) and reads and
+ * changes nothing else of it. So a zeroed table is refused, and one in memory that held anything else, but
+ * for one bit pattern in 2^32. The mark does not show that a table was overwritten later beside it, that the
+ * arrays are gone, or that a table was copied without its arrays: see wh_grasp_is_consistent. */
+#define WH_GRASP_MARK UINT32_C(0x77a6e57d)
 
 /* How many buckets a table of these counts needs: 5 for each wafer, 4 for each gripper and 8. 0 above
  * INT32_MAX / 16 wafers or grippers: such a table can have none. */

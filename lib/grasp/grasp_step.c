@@ -281,6 +281,9 @@ wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, w
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
     const wh_status_t status = validate(table, inputs, list);
     if (status == WH_OK) {
         advance(table, inputs, list);
