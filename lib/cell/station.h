@@ -12,9 +12,10 @@
 
 typedef struct {
     wh_pose_t base_from_station;
-    int32_t slots;   /* 1 to 1000 */
-    wh_real_t pitch; /* mm, > 0; a single slot too has one: it reaches half of it up and down */
-    int32_t chuck;   /* the gripper that holds what lies here; WH_NONE: plain slots */
+    int32_t slots; /* 1 to 1000 */
+    wh_real_t
+        pitch;     /* mm, above 0, up to 1e6; a single slot too has one: it reaches half of it up and down */
+    int32_t chuck; /* the gripper that holds what lies here; WH_NONE: plain slots */
 } wh_station_t;
 
 /* The caller's stations. Of equally near slots the one of the earlier station counts. */
@@ -22,8 +23,8 @@ typedef struct {
     const wh_station_t *stations;
     size_t count;
     wh_tolerance_t tolerance; /* a wafer within projxy and planar lies in a slot */
-    wh_real_t off_centre;     /* a wafer set down farther from a slot's centre is reported, mm; 0: none is */
-    wh_real_t askew;          /* a wafer set down with more tilt is reported, rad; 0: none is */
+    wh_real_t off_centre;     /* a wafer set down farther from a slot's centre is reported, mm, up to 1e6 */
+    wh_real_t askew;          /* a wafer set down with more tilt is reported, rad, up to 10; 0: none is */
     bool settle;              /* a released wafer comes to lie on its support: see wh_cell_settle */
 } wh_cell_t;
 
@@ -34,6 +35,14 @@ typedef struct {
     wh_real_t dx, dy, dz; /* mm */
     wh_real_t tilt;       /* rad, between the wafer's normal and the slot's z */
 } wh_place_t;
+
+/* WH_OK, or why the functions below cannot use this cell beside a table of so many grippers: a null cell, or
+ * null stations where count is not 0 (WH_STATUS_NULL_ARGUMENT); more than INT32_MAX stations
+ * (WH_STATUS_BAD_CAPACITY); a tolerance that wh_tolerance_validate refuses, unless there is no station
+ * (WH_STATUS_BAD_TOLERANCE); another number outside the ranges above, NaN too (WH_STATUS_OUT_OF_RANGE); a
+ * station's pose that wh_pose_validate refuses, with its status. wh_simulator_init asks this. Cost:
+ * wh_pose_validate for each station. */
+wh_status_t wh_cell_validate(const wh_cell_t *cell, size_t gripper_count);
 
 /* base_from_slot. `slot` is not checked; the rotation is the station's. */
 wh_pose_t wh_station_slot(const wh_station_t *station, int32_t slot);

@@ -93,11 +93,12 @@ const char *wh_fault_name(wh_fault_kind_t kind);
 /* True if the kind is about a wafer. */
 bool wh_fault_is_of_wafer(wh_fault_kind_t kind);
 
-/* WH_OK. WH_STATUS_OUT_OF_RANGE, WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION for a fault that a cell
- * with these counts cannot have. */
+/* WH_OK. WH_STATUS_NULL_ARGUMENT; WH_STATUS_OUT_OF_RANGE, WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION for
+ * a fault that a cell with these counts cannot have. */
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count);
 
-/* wh_fault_validate for whole slots, such as those of a received state. */
+/* The same for whole slots, such as those of a received state: WH_OK, WH_STATUS_NULL_ARGUMENT or
+ * WH_STATUS_OUT_OF_RANGE. */
 wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, size_t wafer_count);
 
 /* Frees all slots. */
@@ -105,7 +106,7 @@ void wh_faults_clear(wh_faults_t *faults);
 
 /* Checks that all requests can be taken. Each must be a valid fault, for a slot that is free or over, or for
  * the slot that has this very fault (which then gets another `until`). No two may name one slot. WH_OK,
- * WH_STATUS_OUT_OF_RANGE, or what wh_fault_validate says. */
+ * WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE, or what wh_fault_validate says. */
 wh_status_t wh_faults_check(const wh_faults_t *faults, const wh_fault_request_t requests[], size_t count,
                             size_t gripper_count, size_t wafer_count);
 

@@ -5,6 +5,9 @@
 #include "../grasp/hold.h"
 #include "faults.h"
 
+/* The length of a slice unless told otherwise, s. */
+#define WH_SLICE_S WH_REAL(0.001)
+
 /* What does not change during a run. */
 typedef struct {
     wh_real_t slice_s; /* length of a slice, s, above 0, up to 1 */
@@ -22,21 +25,24 @@ typedef struct {
     wh_faults_t faults;
 } wh_physics_state_t;
 
-/* Slices of 1 ms, ideal vacuum, no pads, no faults. */
+/* Slices of WH_SLICE_S, ideal vacuum, no pads, no faults. */
 wh_physics_t wh_physics_default(void);
 
-/* WH_OK, or what is wrong with it for a cell with these counts. */
+/* WH_OK, or what is wrong with it for a cell with these counts: WH_STATUS_NULL_ARGUMENT;
+ * WH_STATUS_BAD_CAPACITY for more than WH_GRIPPERS grippers; WH_STATUS_OUT_OF_RANGE for `slice_s` or
+ * `fault_count`; or what wh_vacuum_validate, wh_pads_validate or wh_fault_validate says. */
 wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count);
 
-/* The state before the first slice: the `faults` of the physics wait in the first slots. */
+/* The state before the first slice: the `faults` of the physics, which wh_physics_validate has accepted, wait
+ * in the first slots. Null: no faults. */
 void wh_physics_state_start(wh_physics_state_t *state, const wh_physics_t *physics);
 
-/* Checks that a simulator can have such a state: WH_OK, WH_STATUS_NOT_FINITE, WH_STATUS_BAD_VALVE or
- * WH_STATUS_OUT_OF_RANGE. */
+/* Checks that a simulator can have such a state: WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_BAD_CAPACITY for
+ * more than WH_GRIPPERS grippers, WH_STATUS_NOT_FINITE, WH_STATUS_BAD_VALVE or WH_STATUS_OUT_OF_RANGE. */
 wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gripper_count,
                                       size_t wafer_count);
 
-/* What the vacuum sensors say: bit g for gripper g. */
+/* What the vacuum sensors say: bit g for gripper g; 0 for grippers from WH_GRIPPERS on. */
 uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t gripper_count);
 
 /* 64 bits over all that the next step depends on. It is wh_grasp_hash(table), continued by wh_hash_word

@@ -28,18 +28,24 @@ typedef struct {
     wh_event_t events[WH_SLICE_EVENTS];
     size_t event_count;
     wh_observer_t observer; /* set by the caller after wh_simulator_init */
+    uint32_t mark;          /* WH_SIMULATOR_MARK once wh_simulator_init has set it up */
 } wh_simulator_t;
 
+/* A simulator without this mark is refused (WH_STATUS_NOT_INITIALISED), as a table is: see WH_GRASP_MARK for
+ * what that shows and what it does not. */
+#define WH_SIMULATOR_MARK UINT32_C(0x51a07e5d)
+
 /* Sets up a run: all wafers are free, at their places in storage->wafers. `cell->stations` and the arrays of
- * `storage` must outlive the simulator. Refuses what wh_grasp_init refuses, null stations unless there are
- * none, and more than WH_GRIPPERS grippers (WH_STATUS_BAD_CAPACITY); simulator and arrays are then unchanged.
- * Stations are not checked: see wh_station_t for what they must be. Do not move the simulator afterwards:
+ * `storage` must outlive the simulator. Refuses what wh_grasp_init refuses, what
+ * wh_cell_validate refuses, and more than WH_GRIPPERS grippers (WH_STATUS_BAD_CAPACITY); simulator and arrays
+ * are then unchanged. Cost: that of these two, and the simulator's size in bytes written. Do not move the simulator afterwards:
  * `link` and states point into it. */
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
                               const wh_grasp_storage_t *storage, const wh_cell_t *cell);
 
 /* Replaces wh_physics_default, with which wh_simulator_init begins. Refuses what wh_physics_validate refuses,
- * and a run that has begun (WH_STATUS_OUT_OF_RANGE); the simulator is then unchanged. */
+ * a run that has begun (WH_STATUS_OUT_OF_RANGE), null pointers and a simulator that is not initialised; the
+ * simulator is then unchanged. Cost: wh_physics_validate. */
 wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics_t *physics);
 
 /* One slice: faults and vacuum turn the command into the grippers' inputs, the table steps, the cell judges
@@ -47,15 +53,17 @@ wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics
  *
  * A refused command leaves everything as it was, but table.counters.refused counts it. Refused is what
  * wh_grasp_step refuses and, without an event, a gripper_count other than the table's and what
- * wh_faults_check refuses. With a null pointer (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. `seq`
+ * wh_faults_check refuses. With a null pointer (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. Of a
+ * simulator that is not initialised nothing is read or written, and `state` shows no wafer and no gripper. `seq`
  * and `utime` are handed back; faults go by `seq`. Cost: wh_grasp_step and wh_cell_judge.
  */
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state);
 
-/* Fills in all of a state but utime, seq and status, without a step. Cost: linear in grippers. */
+/* Fills in all of a state but utime, seq and status, without a step. It shows no wafer and no gripper of a
+ * simulator that is not initialised. No argument may be null. Cost: linear in grippers. */
 void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state);
 
-/* wh_physics_state_hash of the simulator's state. */
+/* wh_physics_state_hash of the simulator's state; 0 if it is not initialised. */
 uint64_t wh_simulator_hash(const wh_simulator_t *simulator);
 
 #endif
