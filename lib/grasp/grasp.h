@@ -9,6 +9,9 @@
  *   4. pick: each open, empty gripper, in the order of their indices, takes of the ready wafers that nobody
  *      holds the one with the smallest |dr_proj_z|, of equal ones the lowest index. gripper_from_wafer is
  *      stored as it is: nothing jumps.
+ * Rotations are mended where they would wander off: that of gripper_from_wafer is brought to the nearest
+ * orthonormal one at the pick, that of a carried wafer when it no longer passes wh_pose_validate. Each moves
+ * an entry by a few times WH_ROTATION_TOLERANCE at most, and by rounding alone where the inputs are exact.
  * So a wafer passes from one gripper to the next within the step in which the first closes, and is never free
  * in between.
  *
@@ -55,8 +58,8 @@ typedef struct {
     /* Draw a wafer onto the pads at the pick, as vacuum does: z of gripper_from_wafer becomes 0 and the wafer
      * turns by the smallest rotation that takes n1 to n2. */
     bool seat;
-    /* The neighbourhood for near misses, mm: |dr_proj_z| < near_projz and |dr_proj_xy| < near_projxy; in
-     * (0, 1e6]. */
+    /* The neighbourhood for near misses (see WH_EVENT_NEAR_MISS), mm: |dr_proj_z| < near_projz and
+     * |dr_proj_xy| < near_projxy; in (0, 1e6]. */
     wh_real_t near_projz, near_projxy;
 } wh_grasp_config_t;
 
@@ -143,11 +146,12 @@ wh_grasp_config_t wh_grasp_config_default(void);
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
                           const wh_grasp_storage_t *storage);
 
-/* One slice, as described at the top. `inputs` has one entry for each gripper. `list` receives the events, in
- * the order picks and hand-overs, releases, near misses and contests, each by gripper; null: not wanted.
- * Refused, and the table left as it was: a null table or inputs (WH_STATUS_NULL_ARGUMENT), a list with room
- * for fewer than WH_EVENTS_PER_GRIPPER events for each gripper (WH_STATUS_BAD_CAPACITY), a pose that does not
- * pass wh_pose_validate, a valve that is neither 0 nor 1; the last two also yield the one event
+/* One slice, as described at the top. `inputs` has one entry for each gripper. `list` receives the events,
+ * in the order picks and hand-overs, releases, near misses and contests, each by gripper; null: not wanted.
+ * Refused, and the table left as it was: a null table, null inputs unless there is no gripper, a list with
+ * a capacity and null events (WH_STATUS_NULL_ARGUMENT), a list with room for fewer than
+ * WH_EVENTS_PER_GRIPPER events for each gripper (WH_STATUS_BAD_CAPACITY), a pose that does not pass
+ * wh_pose_validate, a valve that is neither 0 nor 1; the last two also yield the one event
  * WH_EVENT_BAD_INPUT, the others leave the list empty. Cost: linear in grippers. Each open, empty gripper
  * adds a look at each other gripper's wafer and two checks of every wafer, at about a dozen products each.
  * With buckets it adds less than a dozen products instead while it is within its horizon; beyond it two
@@ -157,8 +161,8 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
 wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list);
 
 /* Puts a free wafer somewhere else, as a test or an operator may. Refuses a held wafer (WH_STATUS_HELD), an
- * index out of range and an invalid pose. Its near misses so far are forgotten. Cost: linear in grippers, and
- * with buckets a search through the wafers of one cell. */
+ * index out of range, null pointers and an invalid pose. Its near misses so far are forgotten. Cost: linear
+ * in grippers, and with buckets a search through the wafers of one cell. */
 wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer);
 
 /* Where a wafer is and who holds it; either result pointer may be null. WH_STATUS_OUT_OF_RANGE for a bad
@@ -175,17 +179,17 @@ wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafe
  *   - a gripper's wafer is WH_NONE, or a wafer whose holder is this gripper: no gripper has two wafers;
  *   - `approach` and `contest` of each gripper name a wafer of the table or WH_NONE;
  *   - `released_by` of each wafer is WH_NONE.
- * For tests, and for a firmware that fears that others write into its memory. The table is one that
- * wh_grasp_init accepted. Cost: linear in wafers and grippers. With -DWH_DEBUG_TABLE each call that changes a
+ * False if the table is not initialised. For tests, and for a firmware that fears that others write into its
+ * memory. Cost: linear in wafers and grippers. With -DWH_DEBUG_TABLE each call that changes a
  * table asserts it at its end. */
 bool wh_grasp_is_consistent(const wh_grasp_t *table);
 
 /* 64 bits over everything that the next step depends on, so equal hashes mean equal runs from here on: the
  * number of steps; for each wafer its pose (R row by row, r) and holder; for each gripper its pose, valve,
- * wafer, gripper_from_wafer while it holds one, then approach and contest: wafer, and while there is one also
- * holder, slice and dr, n1_proj_n2, dr_proj_z, dr_proj_xy, dr_proj_xy_norm. Configuration, counters and
- * buckets are left out. Each number enters as a 64-bit word w, reals by the bits of their type, integers in
- * two's complement:
+ * wafer, gripper_from_wafer while it holds one, then approach and contest: wafer, and while there is one
+ * also holder, slice and dr, n1_proj_n2, dr_proj_z, dr_proj_xy, dr_proj_xy_norm. Configuration, counters
+ * and buckets are left out. Nothing is checked. Each number enters as a 64-bit word w, reals by the bits of
+ * their type, integers in two's complement:
  *
  *     h = 0x6a09e667f3bcc908
  *     for each w:  h = (h ^ w) * 0x9e3779b97f4a7c15;  h = h ^ (h >> 32)

@@ -108,8 +108,8 @@ const char *wh_fault_name(wh_fault_kind_t kind);
 /* True if the kind is about a wafer. */
 bool wh_fault_is_of_wafer(wh_fault_kind_t kind);
 
-/* WH_OK. WH_STATUS_NULL_ARGUMENT; WH_STATUS_OUT_OF_RANGE, WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION for
- * a fault that a cell with these counts cannot have. Cost: wh_pose_validate. */
+/* WH_OK. WH_STATUS_NULL_ARGUMENT; WH_STATUS_OUT_OF_RANGE, WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION
+ * for a fault that a cell with these counts cannot have. Cost: wh_pose_validate. */
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count);
 
 /* The same for whole slots, such as those of a received state: WH_OK, WH_STATUS_NULL_ARGUMENT or

@@ -47,11 +47,11 @@ typedef struct {
  * what that shows and what it does not. */
 #define WH_SIMULATOR_MARK UINT32_C(0x51a07e5d)
 
-/* Sets up a run: all wafers are free, at their places in storage->wafers. `cell->stations` and the arrays of
- * `storage` must outlive the simulator. Refuses what wh_grasp_init refuses, what
- * wh_cell_validate refuses, and more than WH_GRIPPERS grippers (WH_STATUS_BAD_CAPACITY); simulator and arrays
- * are then unchanged. Cost: that of these two, and the simulator's size in bytes written. Do not move the simulator afterwards:
- * `link` and states point into it. */
+/* Sets up a run: all wafers are free, at their places in storage->wafers. `cell->stations` and the arrays
+ * of `storage` must outlive the simulator. Refuses what wh_grasp_init refuses, what wh_cell_validate
+ * refuses, and more than WH_GRIPPERS grippers (WH_STATUS_BAD_CAPACITY); simulator and arrays are then
+ * unchanged. Cost: that of these two, and the simulator's size in bytes written. Do not move the simulator
+ * afterwards: `link` and states point into it. */
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
                               const wh_grasp_storage_t *storage, const wh_cell_t *cell);
 
@@ -65,9 +65,9 @@ wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics
  *
  * A refused command leaves everything as it was, but table.counters.refused counts it. Refused is what
  * wh_grasp_step refuses and, without an event, a gripper_count other than the table's and what
- * wh_faults_check refuses. With a null pointer (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. Of a
- * simulator that is not initialised nothing is read or written, and `state` shows no wafer and no gripper. `seq`
- * and `utime` are handed back; faults go by `seq`. Cost: wh_grasp_step and wh_cell_judge.
+ * wh_faults_check refuses. With a null pointer (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. Of
+ * a simulator that is not initialised nothing is read or written, and `state` shows no wafer and no
+ * gripper. `seq` and `utime` are handed back; faults go by `seq`. Cost: wh_grasp_step and wh_cell_judge.
  */
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state);
 
