@@ -53,16 +53,10 @@ void wh_proximity_values(const wh_pose_t *base_from_wafer, const wh_pose_t *base
     wh_proximity_judge(tolerance, p);
 }
 
-#if defined(WH_FLOAT)
-#define LARGEST FLT_MAX
-#else
-#define LARGEST DBL_MAX
-#endif
-
 /* Then each value is finite, too; the half is for rotations that just pass. */
 static bool is_square_finite(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper) {
     const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &base_from_gripper->r);
-    return wh_vec3_dot(&dr, &dr) <= LARGEST / 2;
+    return wh_vec3_dot(&dr, &dr) <= WH_REAL_LARGEST / 2;
 }
 
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
