@@ -207,6 +207,8 @@ $(PROGRAM_TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%): LIBS = $(PROGRAM_LIBS)
 COLLISION_USERS := $(foreach user,$(PROGRAM_TESTS) $(COLLISION_TESTS) $(TOOLS) $(BENCHES),$(B)/$(user))
 $(COLLISION_USERS): $(B)/libwaferhand_collision.a
 $(COLLISION_USERS): COLLISION = $(COLLISION_LIBS)
+# The firmware under test stands beside its tests.
+$(filter $(B)/tests/firmware/%,$(TESTS:%=$(B)/%)): $(B)/obj/tests/firmware/controller.o
 $(CXX_TESTS:%=$(B)/%): LINK = $(Q)$(CXX) $(CXXFLAGS) $(EXTRA) $(LDFLAGS)
 $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libwaferhand.a
 	@mkdir -p $(@D)

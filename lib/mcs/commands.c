@@ -1,6 +1,7 @@
 /* Commands and what is kept of them: their beginning and end, errors, expectations, cycles, complaints, and
  * why a pick was missed. */
 #include "../script/wh_module_values.h"
+#include "../sim/event_text.h"
 #include "native.h"
 
 /* What an entry of the record costs of the instruction budget. */
@@ -98,8 +99,21 @@ static int fail(lua_State *L) {
 
 /* ------------------------------------------------------------------------------ missed picks, complaints */
 
+/* Pushes why it was missed: all conditions that failed. */
+static void push_reasons(lua_State *L, const wh_mcs_t *mcs, const wh_event_t *miss) {
+    const wh_event_names_t names = {.first = 1, .tolerance = &mcs->layout->grasp.tolerance};
+    char reason[WH_EVENT_TEXT_SIZE];
+    luaL_Buffer text;
+    luaL_buffinit(L, &text);
+    for (size_t i = 0; wh_event_reason(miss, &names, i, reason, sizeof reason) > 0; ++i) {
+        luaL_addstring(&text, i > 0 ? " and " : "");
+        luaL_addstring(&text, reason);
+    }
+    luaL_pushresult(&text);
+}
+
 /* native.closest(gripper): the name of the wafer that came closest to it in the running command, which took
- * nothing with it, and the measurement; nothing if no wafer came near. */
+ * nothing with it, and why it was not taken; nothing if no wafer came near. */
 static int find_closest(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_record_t *record = mcs->recorder.record;
@@ -112,7 +126,7 @@ static int find_closest(lua_State *L) {
         }
         if (kept->event.kind == WH_EVENT_NEAR_MISS && kept->event.gripper == gripper) {
             lua_pushstring(L, mcs->layout->wafers[kept->event.wafer].name);
-            wh_lua_push_proximity(L, &kept->event.measured);
+            push_reasons(L, mcs, &kept->event);
             return 2;
         }
     }

@@ -166,7 +166,9 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
 
 void wh_mcs_close(wh_mcs_t *mcs) {
     free(mcs->segments);
+    free(mcs->kept_faults);
     mcs->segments = NULL;
+    mcs->kept_faults = NULL;
     mcs->segment_count = 0;
     wh_rehearsal_free(&mcs->rehearsal);
 }

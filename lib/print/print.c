@@ -66,9 +66,7 @@ void wh_print_counted(FILE *out, int64_t count, const char *one, const char *man
 }
 
 double wh_print_tilt_deg(double n1_proj_n2) {
-    const wh_real_t cosine = (wh_real_t)n1_proj_n2;
-    const wh_real_t square = (1 - cosine) * (1 + cosine);
-    return (double)wh_deg_from_rad(wh_atan2(wh_real_sqrt(square > 0 ? square : 0), cosine));
+    return (double)wh_deg_from_rad(wh_acos((wh_real_t)n1_proj_n2));
 }
 
 /* The gripper's normal in base: the end-effector is level, and a chuck turns about its station's z. */

@@ -2,7 +2,7 @@
 -- looks.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, math, pcall, table = ipairs, math, pcall, table
+local ipairs, pcall = ipairs, pcall
 
 return function(native, patterns, lookup, arm, targets)
   local transfer = {}
@@ -26,18 +26,8 @@ return function(native, patterns, lookup, arm, targets)
 
   -- Why the running command took nothing with it.
   local function explain(gripper)
-    local wafer, closest = native.closest(gripper)
-    if not wafer then
-      return "no wafer came near"
-    end
-    local limit, reasons = native.layout.tolerance, {}
-    local function add(failed, text, value, least)
-      reasons[#reasons + 1] = failed and text:format(value, least) or nil
-    end
-    add(closest.failed.projz, "|dr_proj_z| %.4f is not below %g", math.abs(closest.dr_proj_z), limit.projz)
-    add(closest.failed.projxy, "|dr_proj_xy| %.4f is not below %g", closest.dr_proj_xy_norm, limit.projxy)
-    add(closest.failed.planar, "n1_proj_n2 %.6f is not above %g", closest.n1_proj_n2, limit.planar)
-    return ("closest to %s: %s"):format(wafer, table.concat(reasons, " and "))
+    local wafer, reasons = native.closest(gripper)
+    return wafer and ("closest to %s: %s"):format(wafer, reasons) or "no wafer came near"
   end
 
   -- What a GET's pattern found, as an error unless it is a wafer.
