@@ -87,6 +87,7 @@ static void begin(wh_grasp_t *table, const wh_grasp_config_t *config, const wh_g
     table->slice = 0;
     table->counters = none;
     table->storage = *storage;
+    table->mark = WH_GRASP_MARK;
 }
 
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
@@ -132,6 +133,9 @@ wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *bas
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
     const wh_status_t status = may_place(table, wafer, base_from_wafer);
     if (status != WH_OK) {
         ++table->counters.refused;
@@ -151,6 +155,9 @@ wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *bas
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
     if (wafer >= table->storage.wafer_count) {
         return WH_STATUS_OUT_OF_RANGE;
     }
@@ -166,6 +173,9 @@ wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *bas
 wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafer) {
     if (!table || !wafer) {
         return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
     }
     if (gripper >= table->storage.gripper_count) {
         return WH_STATUS_OUT_OF_RANGE;
@@ -198,6 +208,9 @@ static bool names_wafer_or_none(const wh_encounter_t *encounter, size_t wafer_co
 
 bool wh_grasp_is_consistent(const wh_grasp_t *table) {
     const wh_grasp_storage_t *storage = &table->storage;
+    if (table->mark != WH_GRASP_MARK) {
+        return false;
+    }
     for (size_t w = 0; w < storage->wafer_count; ++w) {
         if (!is_paired_wafer(storage, w) || storage->wafers[w].released_by != WH_NONE) {
             return false;

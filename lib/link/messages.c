@@ -356,6 +356,7 @@ wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_
 wh_grasp_t wh_link_table(const waferhand_state *message, const wh_layout_t *layout,
                          wh_link_arrays_t *arrays) {
     return (wh_grasp_t){.config = layout->grasp,
+                        .mark = WH_GRASP_MARK,
                         .slice = (uint64_t)(message->seq - message->missed),
                         .storage = {.wafers = arrays->wafers,
                                     .wafer_count = layout->wafer_count,

@@ -7,13 +7,19 @@
 wh_physics_t wh_physics_default(void) {
     wh_physics_t physics;
     memset(&physics, 0, sizeof physics);
-    physics.slice_s = WH_REAL(0.001);
+    physics.slice_s = WH_SLICE_S;
     physics.vacuum = wh_vacuum_ideal();
     physics.pads = wh_pads_none();
     return physics;
 }
 
 wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count) {
+    if (!physics) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (gripper_count > WH_GRIPPERS) {
+        return WH_STATUS_BAD_CAPACITY;
+    }
     const bool sliced = physics->slice_s > 0 && physics->slice_s <= 1;
     const bool fits = sliced && physics->fault_count <= WH_FAULTS;
     wh_status_t status = fits ? wh_vacuum_validate(&physics->vacuum) : WH_STATUS_OUT_OF_RANGE;
@@ -32,7 +38,7 @@ void wh_physics_state_start(wh_physics_state_t *state, const wh_physics_t *physi
         state->vacuum[g] = wh_vacuum_start();
         state->told[g] = WH_VALVE_CLOSED;
     }
-    for (size_t i = 0; i < physics->fault_count; ++i) {
+    for (size_t i = 0; physics && i < physics->fault_count; ++i) {
         const wh_fault_request_t request = {(int32_t)i, physics->faults[i]};
         wh_faults_take(&state->faults, &request, 1);
     }
@@ -63,6 +69,12 @@ static wh_status_t check_gripper(const wh_physics_state_t *state, size_t g) {
 
 wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gripper_count,
                                       size_t wafer_count) {
+    if (!state) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (gripper_count > WH_GRIPPERS) {
+        return WH_STATUS_BAD_CAPACITY;
+    }
     for (size_t g = 0; g < gripper_count; ++g) {
         const wh_status_t status = check_gripper(state, g);
         if (status != WH_OK) {
@@ -74,7 +86,7 @@ wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gr
 
 uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t gripper_count) {
     uint32_t sensors = 0;
-    for (size_t g = 0; g < gripper_count; ++g) {
+    for (size_t g = 0; g < gripper_count && g < WH_GRIPPERS; ++g) {
         sensors |= state->vacuum[g].on ? 1U << g : 0U;
     }
     return wh_faults_sensors(&state->faults, sensors);
@@ -119,13 +131,15 @@ static uint64_t hash_slot(uint64_t hash, const wh_fault_slot_t *slot) {
 }
 
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table) {
+    const size_t gripper_count =
+        table->storage.gripper_count < WH_GRIPPERS ? table->storage.gripper_count : WH_GRIPPERS;
     uint64_t hash = wh_grasp_hash(table);
-    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+    for (size_t g = 0; g < gripper_count; ++g) {
         if (!is_plain(&state->vacuum[g], &table->storage.grippers[g])) {
             hash = hash_vacuum(hash_head(hash, 1, g), &state->vacuum[g]);
         }
     }
-    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+    for (size_t g = 0; g < gripper_count; ++g) {
         if (state->carry[g].known > 0) {
             hash = hash_carry(hash_head(hash, 2, g), &state->carry[g]);
         }
