@@ -39,7 +39,7 @@ static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_clo
 
 /* How close the gripper came to the wafer in this slice; false if it did not come near. */
 static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_closeness_t *closest) {
-    if (watch->sweep && wafer->released_by == WH_NONE) {
+    if (wh_watch_sweep(watch) && wafer->released_by == WH_NONE) {
         return wh_closeness_swept(watch, &wafer->base_from_wafer, closest);
     }
     return is_near_now(watch, wafer, closest);
@@ -63,7 +63,7 @@ static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, 
     encounter->wafer = w;
     encounter->holder = wafer->holder;
     encounter->slice = watch->table->slice;
-    if (t < 1) {
+    if (WH_SWEEP_BUILT && t < 1) {
         wh_measure_swept(watch, &wafer->base_from_wafer, t, &encounter->measured);
     } else {
         wh_proximity_values(&wafer->base_from_wafer, watch->base_from_gripper,
@@ -98,9 +98,10 @@ static bool is_within_horizon(const wh_grasp_t *table, size_t g) {
 
 /* The nearest free wafer in the neighbourhood, then lowest index, if the gripper follows none yet. */
 WH_OUT_OF_LINE static void begin_approach(const wh_watch_t *watch) {
+    const wh_sweep_t *sweep = wh_watch_sweep(watch);
     const wh_vec3_t *end = &watch->base_from_gripper->r;
     const wh_found_t near =
-        wh_index_again(watch->table, (size_t)watch->index, watch->sweep ? &watch->sweep->begin->r : end, end);
+        wh_index_again(watch->table, (size_t)watch->index, sweep ? &sweep->begin->r : end, end);
     int32_t nearest = WH_NONE;
     wh_real_t least = 0;
     wh_real_t when = 0;

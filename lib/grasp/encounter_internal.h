@@ -10,7 +10,7 @@ typedef struct {
     wh_grasp_t *table;
     wh_gripper_t *gripper;
     const wh_pose_t *base_from_gripper; /* at the slice's end */
-    const wh_sweep_t *sweep;            /* since the last slice; null where checking is sampled */
+    const wh_sweep_t *sweep;            /* for wh_watch_sweep */
     wh_event_list_t *list;
     int32_t index;
 } wh_watch_t;
@@ -31,12 +31,19 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
  * watch->sweep. */
 void wh_encounter_track(const wh_watch_t *watch);
 
-/* Makes the sweep since the last slice, then does what wh_encounter_track does. */
-void wh_encounter_track_swept(wh_watch_t *watch);
-
 /* True if a wafer is in the neighbourhood for near misses; then fills in the two distances. */
 bool wh_closeness_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
                           const wh_pose_t *base_from_gripper, wh_closeness_t *reach);
+
+#if !defined(WH_WITHOUT_SWEEP)
+
+/* The gripper's motion since the last slice; null where checking is sampled. */
+static inline const wh_sweep_t *wh_watch_sweep(const wh_watch_t *watch) {
+    return watch->sweep;
+}
+
+/* Makes the sweep since the last slice, then does what wh_encounter_track does. */
+void wh_encounter_track_swept(wh_watch_t *watch);
 
 /* How close a gripper with a sweep came to the wafer in this slice; false if it did not come near. */
 bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_closeness_t *closest);
@@ -44,5 +51,34 @@ bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafe
 /* Measures at an instant before the slice's end, judged by the limits that hold there. */
 void wh_measure_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_real_t t,
                       wh_proximity_t *measured);
+
+#else
+
+static inline const wh_sweep_t *wh_watch_sweep(const wh_watch_t *watch) {
+    (void)watch;
+    return NULL;
+}
+
+static inline void wh_encounter_track_swept(wh_watch_t *watch) {
+    wh_encounter_track(watch);
+}
+
+static inline bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer,
+                                      wh_closeness_t *closest) {
+    (void)watch;
+    (void)base_from_wafer;
+    (void)closest;
+    return false;
+}
+
+static inline void wh_measure_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_real_t t,
+                                    wh_proximity_t *measured) {
+    (void)watch;
+    (void)base_from_wafer;
+    (void)t;
+    (void)measured;
+}
+
+#endif
 
 #endif

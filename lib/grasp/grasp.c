@@ -1,6 +1,7 @@
 #include "grasp.h"
 
 #include "../math/hash.h"
+#include "grasp_internal.h"
 #include "index_internal.h"
 
 wh_grasp_config_t wh_grasp_config_default(void) {
@@ -19,7 +20,18 @@ static wh_status_t validate_config(const wh_grasp_config_t *config) {
     if (config->check != WH_CHECK_SAMPLED && config->check != WH_CHECK_SWEPT) {
         return WH_STATUS_OUT_OF_RANGE;
     }
+    if (!WH_SWEEP_BUILT && config->check == WH_CHECK_SWEPT) {
+        return WH_STATUS_NOT_BUILT;
+    }
     return near_good ? wh_tolerance_validate(&config->tolerance) : WH_STATUS_BAD_TOLERANCE;
+}
+
+size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) {
+    const size_t most = (size_t)INT32_MAX / 16;
+    if (!WH_INDEX_BUILT || wafer_count > most || gripper_count > most) {
+        return 0;
+    }
+    return WH_GRASP_BUCKETS(wafer_count, gripper_count);
 }
 
 static wh_status_t validate_array(bool given, size_t count) {
@@ -30,11 +42,14 @@ static wh_status_t validate_array(bool given, size_t count) {
 }
 
 static wh_status_t validate_buckets(const wh_grasp_storage_t *storage) {
-    const size_t needed = wh_grasp_buckets(storage->wafer_count, storage->gripper_count);
     const wh_status_t status = validate_array(storage->buckets != NULL, storage->bucket_count);
     if (status != WH_OK || storage->bucket_count == 0) {
         return status;
     }
+    if (!WH_INDEX_BUILT) {
+        return WH_STATUS_NOT_BUILT;
+    }
+    const size_t needed = wh_grasp_buckets(storage->wafer_count, storage->gripper_count);
     return needed > 0 && needed <= storage->bucket_count ? WH_OK : WH_STATUS_BAD_CAPACITY;
 }
 

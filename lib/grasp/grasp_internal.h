@@ -24,21 +24,48 @@ void wh_proximity_values(const wh_pose_t *base_from_wafer, const wh_pose_t *base
 /* |dr_proj_z| */
 wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper);
 
-/* True if wafers that gripper g passes between the last slice and this one count. Its entry is still the last
- * slice's. */
-static inline bool wh_grasp_is_swept(const wh_grasp_t *table, size_t g) {
-    return table->config.check == WH_CHECK_SWEPT && table->storage.grippers[g].valve == WH_VALVE_OPEN;
-}
-
 /* The wafer that gripper g would take at this pose: of the ready wafers that nobody holds the one with the
- * smallest |dr_proj_z|, then the lowest index; WH_NONE: none. Measures the gripper's horizon anew. */
+ * smallest |dr_proj_z|, then the lowest index; WH_NONE: none. Within the gripper's horizon there is none;
+ * beyond it the horizon is measured anew. Notes if no free wafer is near. */
 int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper);
 
 /* Gives gripper g, which is at `then`, this wafer and reports it. If the gripper moves on within the slice,
  * or seats the wafer on its pads, the caller still has to carry the wafer there. */
 void wh_grasp_take(wh_grasp_t *table, size_t g, int32_t wafer, const wh_pose_t *then, wh_event_list_t *list);
 
+#if !defined(WH_WITHOUT_SWEEP)
+
+#define WH_SWEEP_BUILT true
+
+/* True if wafers that gripper g passes between the last slice and this one count. Its entry is still the last
+ * slice's. */
+static inline bool wh_grasp_is_swept(const wh_grasp_t *table, size_t g) {
+    return table->config.check == WH_CHECK_SWEPT && table->storage.grippers[g].valve == WH_VALVE_OPEN;
+}
+
 /* A pick between the last slice and this one; false when there was none. */
 bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input, wh_event_list_t *list);
+
+#else
+
+/* No table is swept; swept.c and sweep.c are empty. */
+#define WH_SWEEP_BUILT false
+
+static inline bool wh_grasp_is_swept(const wh_grasp_t *table, size_t g) {
+    (void)table;
+    (void)g;
+    return false;
+}
+
+static inline bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
+                                       wh_event_list_t *list) {
+    (void)table;
+    (void)g;
+    (void)input;
+    (void)list;
+    return false;
+}
+
+#endif
 
 #endif

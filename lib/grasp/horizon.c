@@ -1,5 +1,7 @@
 #include "horizon_internal.h"
 
+#if !defined(WH_WITHOUT_INDEX)
+
 /* The longest distance that a word holds, in units. */
 #define LONGEST 536870912
 
@@ -30,12 +32,7 @@ wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *
 }
 
 wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin) {
-    wh_horizon_t horizon = {.limits = wh_index_limits(table), .measured = table->storage.bucket_count > 0};
-    if (table->storage.grippers[g].approach.wafer != WH_NONE) {
-        horizon.limits.projz = table->config.tolerance.projz;
-        horizon.limits.projxy = table->config.tolerance.projxy;
-    }
-    horizon.gap = near->listed ? margin : (wh_real_t)LONGEST;
+    const wh_horizon_t horizon = {wh_horizon_limits(table, g), near->listed ? margin : (wh_real_t)LONGEST};
     return horizon;
 }
 
@@ -73,9 +70,6 @@ void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const
     if (table->storage.grippers[g].approach.wafer != WH_NONE) {
         words[3] |= WH_HORIZON_OF_TOLERANCE;
     }
-    if (words[3] >= 4 * ((uint32_t)TAKEN_OFF)) {
-        words[3] |= WH_HORIZON_CLEAR;
-    }
 }
 
 void wh_horizon_reset(wh_grasp_t *table) {
@@ -83,3 +77,5 @@ void wh_horizon_reset(wh_grasp_t *table) {
         wh_horizon_words(table, g)[3] = 0;
     }
 }
+
+#endif

@@ -1,17 +1,11 @@
 #include "horizon_internal.h"
 
+#if !defined(WH_WITHOUT_INDEX)
+
 #define NO_WAFER UINT32_MAX
 
 /* A cell's shortest edge as a power of two of the unit: 16 mm. */
 #define SMALLEST 10U
-
-size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) {
-    const size_t most = (size_t)INT32_MAX / 16;
-    if (wafer_count > most || gripper_count > most) {
-        return 0;
-    }
-    return WH_GRASP_BUCKETS(wafer_count, gripper_count);
-}
 
 static uint32_t *heads_of(const wh_grasp_t *table) {
     return &table->storage.buckets[WH_INDEX_HORIZONS + WH_HORIZON_WORDS * table->storage.gripper_count];
@@ -107,7 +101,7 @@ static void take_out(wh_grasp_t *table, size_t w) {
 
 void wh_index_build(wh_grasp_t *table) {
     const wh_grasp_storage_t *storage = &table->storage;
-    if (storage->bucket_count == 0) {
+    if (!wh_index_is_used(table)) {
         return;
     }
     const wh_near_limits_t limits = wh_index_limits(table);
@@ -128,7 +122,7 @@ void wh_index_build(wh_grasp_t *table) {
 }
 
 void wh_index_move(wh_grasp_t *table, size_t wafer) {
-    if (table->storage.bucket_count == 0) {
+    if (!wh_index_is_used(table)) {
         return;
     }
     const wh_near_limits_t limits = wh_index_limits(table);
@@ -230,3 +224,5 @@ wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, c
     table->storage.buckets[WH_INDEX_FOUND + 1] = small ? (uint32_t)list_box(table, &box) : UINT32_MAX;
     return wh_index_found(table);
 }
+
+#endif

@@ -1,13 +1,20 @@
 #include "grasp_internal.h"
 
+/* Member by member: a compiler that saves bytes would copy a constant. */
+static wh_tolerance_t tolerance_of(wh_real_t projz, wh_real_t projxy, wh_real_t planar) {
+    wh_tolerance_t tolerance;
+    tolerance.projz = projz;
+    tolerance.projxy = projxy;
+    tolerance.planar = planar;
+    return tolerance;
+}
+
 wh_tolerance_t wh_tolerance_paper(void) {
-    const wh_tolerance_t paper = {WH_REAL(0.5), 50, WH_REAL(0.99)};
-    return paper;
+    return tolerance_of(WH_REAL(0.5), 50, WH_REAL(0.99));
 }
 
 wh_tolerance_t wh_tolerance_strict(void) {
-    const wh_tolerance_t strict = {WH_REAL(0.5), 5, WH_REAL(0.99998)};
-    return strict;
+    return tolerance_of(WH_REAL(0.5), 5, WH_REAL(0.99998));
 }
 
 const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance) {

@@ -4,6 +4,8 @@
 #include "grasp_internal.h"
 #include "horizon_internal.h"
 
+#if !defined(WH_WITHOUT_SWEEP)
+
 /* The best wafer so far. */
 typedef struct {
     int32_t wafer; /* WH_NONE: none */
@@ -28,7 +30,8 @@ static void keep_better(candidate_t *best, const candidate_t *other) {
 
 static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *sweep) {
     const wh_vec3_t *place = &sweep->end->r;
-    const wh_real_t margin = wh_horizon_margin(table, g, place);
+    const bool indexed = wh_index_is_used(table);
+    const wh_real_t margin = indexed ? wh_horizon_margin(table, g, place) : 0;
     const wh_found_t near = wh_index_near(table, g, &sweep->begin->r, place, margin);
     wh_horizon_t horizon = wh_horizon_begin(table, g, &near, margin);
     candidate_t best = {.wafer = WH_NONE};
@@ -39,7 +42,9 @@ static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *swe
             continue;
         }
         candidate_t here = {.wafer = (int32_t)w};
-        (void)wh_horizon_measure(&horizon, &wafer->base_from_wafer, place);
+        if (indexed) {
+            (void)wh_horizon_measure(&horizon, &wafer->base_from_wafer, place);
+        }
         if (wafer->released_by == WH_NONE &&
             wh_sweep_first_ready(sweep, &wafer->base_from_wafer, &table->config.tolerance, &here.t)) {
             wh_pose_t then;
@@ -48,7 +53,9 @@ static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *swe
             keep_better(&best, &here);
         }
     }
-    wh_horizon_set(table, g, place, &horizon);
+    if (indexed) {
+        wh_horizon_store(table, g, place, &horizon);
+    }
     return best;
 }
 
@@ -123,3 +130,5 @@ void wh_measure_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer,
     wh_sweep_pose_at(watch->sweep, t, &then);
     wh_proximity_values(base_from_wafer, &then, &tolerance, measured);
 }
+
+#endif

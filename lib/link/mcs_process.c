@@ -102,7 +102,7 @@ static void stop_all(wh_mcs_process_t *control, const waferhand_request *message
     wh_sandbox_stop(control->sandbox);
     control->node->interrupted = true; /* also a wait for a simulator that is silent */
     while (wh_mcs_process_next_request(control, line)) {
-        remember(control, control->request, WH_STATUS_STOPPED, line, wh_status_text(WH_STATUS_STOPPED));
+        remember(control, control->request, WH_STATUS_STOPPED, line, wh_record_error_text(WH_STATUS_STOPPED));
     }
     control->request = executing;
     remember(control, message->seq, WH_OK, message->command_line, "OK");
@@ -113,7 +113,7 @@ static void enqueue(wh_mcs_process_t *control, const waferhand_request *message)
         /* Not remembered: asked again, the request may find room. */
         wh_mcs_process_answer_t busy = {.seq = message->seq, .error = WH_STATUS_BUSY};
         snprintf(busy.line, sizeof busy.line, "%s", message->command_line);
-        snprintf(busy.text, sizeof busy.text, "%s", wh_status_text(WH_STATUS_BUSY));
+        snprintf(busy.text, sizeof busy.text, "%s", wh_record_error_text(WH_STATUS_BUSY));
         tell_answer(control, &busy);
         return;
     }

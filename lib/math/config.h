@@ -13,6 +13,26 @@
 /* The one place where the version stands; the program, the manual and the pkg-config file read it here. */
 #define WH_VERSION "0.1.0"
 
+/* What a firmware does without is not linked at all. Define one of these or both, for the library and for all
+ * that includes its headers alike: on the command line, or in a header of your own that WH_CONFIG_FILE names,
+ * as in -DWH_CONFIG_FILE='"our_waferhand.h"'. By default nothing is left out. What remains has the same bits
+ * and the same hash. A library that was built without something ends its symbols by it, so that it does not
+ * link with headers that have it.
+ *   WH_WITHOUT_SWEEP   no swept checking: wh_grasp_init refuses WH_CHECK_SWEPT (WH_STATUS_NOT_BUILT)
+ *   WH_WITHOUT_INDEX   no index over the wafers: wh_grasp_init refuses buckets, wh_grasp_buckets says 0 */
+#if defined(WH_CONFIG_FILE)
+#include WH_CONFIG_FILE
+#endif
+#if defined(WH_WITHOUT_SWEEP) && defined(WH_WITHOUT_INDEX)
+#define WH_SYMBOL_FEATURES _without_sweep_index
+#elif defined(WH_WITHOUT_SWEEP)
+#define WH_SYMBOL_FEATURES _without_sweep
+#elif defined(WH_WITHOUT_INDEX)
+#define WH_SYMBOL_FEATURES _without_index
+#else
+#define WH_SYMBOL_FEATURES /* nothing: complete */
+#endif
+
 /* The same inputs must give the same bits on every machine, which these builds cannot hold. Nor can one that
  * fuses products and sums, which no macro tells: build everything that includes these headers with
  * -ffp-contract=off -fno-tree-slp-vectorize, as `make library` and pkg-config's flags do. */
@@ -35,6 +55,16 @@ typedef float wh_real_t;
 typedef double wh_real_t;
 #define WH_ABI_SYMBOL wh_abi_1_double
 #define WH_ROTATION_TOLERANCE 1e-6
+#endif
+
+/* True where numbers are computed by software: there a comparison that saves a product pays. Changes no
+ * result. */
+#if defined(__ARM_ARCH) && (!defined(__ARM_FP) || (!defined(WH_FLOAT) && (__ARM_FP & 8) == 0))
+#define WH_REAL_IS_SLOW true
+#elif defined(__riscv) && (!defined(__riscv_flen) || (!defined(WH_FLOAT) && __riscv_flen < 64))
+#define WH_REAL_IS_SLOW true
+#else
+#define WH_REAL_IS_SLOW false
 #endif
 
 /* A literal of the library's number type. */

@@ -164,7 +164,7 @@ static void say_why(const wh_printer_t *printer, wh_grid_t *grid, double at, con
                      wh_print_gripper(printer, event->other));
         break;
     case WH_EVENT_BAD_INPUT:
-        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s", wh_status_text(event->status));
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s", wh_record_error_text(event->status));
         break;
     case WH_EVENT_RELEASED_UNSUPPORTED:
         wh_grid_text(grid, WHY, WH_INK_PLAIN, "in no slot, %.3f mm above what is below",

@@ -195,7 +195,7 @@ static void put_particulars(const wh_record_t *record, json_t *object, const wh_
         break;
     case WH_EVENT_BAD_INPUT:
         wh_json_put_integer(object, "status", (json_int_t)event->status);
-        wh_json_put_text(object, "message", wh_status_text(event->status));
+        wh_json_put_text(object, "message", wh_record_error_text(event->status));
         break;
     default:
         put_found(record, object, event);
