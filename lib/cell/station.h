@@ -36,15 +36,17 @@ typedef struct {
 } wh_place_t;
 
 /* base_from_slot. `slot` is not checked; the rotation is the station's. */
-wh_pose_t wh_station_slot(const wh_station_t *station, int32_t slot);
+wh_pose_t wh_station_slot(const wh_station_t *station, int32_t slot) WH_SYMBOL(wh_station_slot);
 
 /* Measures a wafer in a slot's frame, near or far. Sets `station` to WH_NONE. Arguments are not checked. */
-wh_place_t wh_station_measure(const wh_station_t *station, int32_t slot, const wh_pose_t *base_from_wafer);
+wh_place_t wh_station_measure(const wh_station_t *station, int32_t slot, const wh_pose_t *base_from_wafer)
+    WH_SYMBOL(wh_station_measure);
 
 /* The nearest slot with |dz| < pitch/2, |(dx, dy)| < tolerance.projxy and cos(tilt) > tolerance.planar; of
  * equally near ones the first. False if the wafer lies in none; `place` is then unchanged. Cost: linear in
  * the stations. */
-bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_place_t *place);
+bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_place_t *place)
+    WH_SYMBOL(wh_cell_locate);
 
 /* Looks at the releases among a step's events, and appends what the cell says of them while the list has
  * room:
@@ -57,13 +59,15 @@ bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_
  * Arguments are not checked. Cost: linear in the list without a release; each release adds wafers times
  * stations, or all slots.
  */
-size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list);
+size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list)
+    WH_SYMBOL(wh_cell_judge);
 
 /* Call it after wh_cell_judge; it does nothing without cell->settle. Each released wafer above the plane of
  * its slot comes to lie on it: its centre moves down along the slot's z to the plane, and the wafer turns by
  * the smallest rotation that takes its normal to z. A wafer in no slot, or below the plane, stays. Appends
  * WH_EVENT_SETTLED, with the release's values and `value` the way down, while the list has room. Cost: linear
  * in the list; each such wafer adds the stations and wh_grasp_place. */
-void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list);
+void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list)
+    WH_SYMBOL(wh_cell_settle);
 
 #endif

@@ -12,10 +12,11 @@ static inline wh_real_t wh_convex_round(const wh_convex_t *shape) {
 }
 
 /* wh_convex_support of the kernel, in the shape's frame. */
-wh_vec3_t wh_convex_kernel_support(const wh_convex_t *shape, const wh_vec3_t *direction);
+wh_vec3_t wh_convex_kernel_support(const wh_convex_t *shape, const wh_vec3_t *direction)
+    WH_SYMBOL(wh_convex_kernel_support);
 
 /* In the shape's frame, and within the shape: the mean of the points of a mesh, the origin of the others. */
-wh_vec3_t wh_convex_centre(const wh_convex_t *shape);
+wh_vec3_t wh_convex_centre(const wh_convex_t *shape) WH_SYMBOL(wh_convex_centre);
 
 /* The directions of flat faces are columns of the rotation: from this one (a box 3 from x on, a cylinder 1,
  * which is z; the others none). */

@@ -26,10 +26,11 @@ typedef struct {
 
 /* Narrows `bounds`, starting at their axis, until they are WH_GAP_TIGHT, or lower is above `enough`, or no
  * step helps any more. bounds->axis must be a unit vector; bounds->upper may be infinite. */
-void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds);
+void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds)
+    WH_SYMBOL(wh_nearest_bounds);
 
 /* wh_gap_measure within a budget, for tests. */
 void wh_gap_measure_within(const wh_gap_pair_t *pair, wh_real_t enough, wh_vec3_t guess,
-                           const wh_gap_budget_t *budget, wh_gap_t *gap);
+                           const wh_gap_budget_t *budget, wh_gap_t *gap) WH_SYMBOL(wh_gap_measure_within);
 
 #endif

@@ -28,7 +28,7 @@
 
 #include "event.h"
 
-typedef enum { WH_CHECK_SAMPLED, WH_CHECK_SWEPT } wh_check_t;
+typedef enum WH_FOUR_BYTES { WH_CHECK_SAMPLED, WH_CHECK_SWEPT } wh_check_t;
 
 /* A valve's two levels. */
 enum { WH_VALVE_OPEN = 0, WH_VALVE_CLOSED = 1 };
@@ -105,21 +105,21 @@ typedef struct {
 
 /* How many buckets a table of these counts needs: 5 for each wafer, 4 for each gripper and 8. 0 above
  * INT32_MAX / 16 wafers or grippers: such a table can have none. */
-size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count);
+size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) WH_SYMBOL(wh_grasp_buckets);
 
 /* The same as a constant, for an array. */
 #define WH_GRASP_BUCKETS(wafer_count, gripper_count)                                                         \
     (8 + 4 * (size_t)(gripper_count) + 5 * (size_t)(wafer_count))
 
 /* The paper's tolerance, sampled, no seating; neighbourhood 4.5 mm and 2 eps_projxy. */
-wh_grasp_config_t wh_grasp_config_default(void);
+wh_grasp_config_t wh_grasp_config_default(void) WH_SYMBOL(wh_grasp_config_default);
 
 /* Sets up a table: all wafers free where storage->wafers has them, all grippers empty and closed. Refuses
  * null pointers (an array may be null when its count is 0), counts above INT32_MAX, fewer buckets than
  * wh_grasp_buckets says but not 0, invalid wafer poses and configurations outside the ranges above; table and
  * arrays are then unchanged. Cost: linear in wafers and grippers. */
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
-                          const wh_grasp_storage_t *storage);
+                          const wh_grasp_storage_t *storage) WH_SYMBOL(wh_grasp_init);
 
 /* One slice, as described at the top. `inputs` has one entry for each gripper. `list` receives the events, in
  * the order picks and hand-overs, releases, near misses and contests, each by gripper; null: not wanted.
@@ -132,20 +132,22 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
  * searches of the wafers around it, which do not depend on how many there are elsewhere; and the checks of
  * all wafers only where it goes very far in one slice or most wafers are around it. A release adds a search
  * through the wafers of one cell. */
-wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list);
+wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list)
+    WH_SYMBOL(wh_grasp_step);
 
 /* Puts a free wafer somewhere else, as a test or an operator may. Refuses a held wafer (WH_STATUS_HELD), an
  * index out of range and an invalid pose. Its near misses so far are forgotten. Cost: linear in grippers, and
  * with buckets a search through the wafers of one cell. */
-wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer);
+wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer)
+    WH_SYMBOL(wh_grasp_place);
 
 /* Where a wafer is and who holds it; either result pointer may be null. WH_STATUS_OUT_OF_RANGE for a bad
  * index. */
-wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *base_from_wafer,
-                           int32_t *holder);
+wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *base_from_wafer, int32_t *holder)
+    WH_SYMBOL(wh_grasp_wafer);
 
 /* Which wafer a gripper holds (WH_NONE: none). WH_STATUS_OUT_OF_RANGE for a bad index. */
-wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafer);
+wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafer) WH_SYMBOL(wh_grasp_held);
 
 /* True if the table agrees with itself, as it does between any two calls (Frama-C proves it:
  * tests/proof/README.md):
@@ -156,7 +158,7 @@ wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafe
  * For tests, and for a firmware that fears that others write into its memory. The table is one that
  * wh_grasp_init accepted. Cost: linear in wafers and grippers. With -DWH_DEBUG_TABLE each call that changes a
  * table asserts it at its end. */
-bool wh_grasp_is_consistent(const wh_grasp_t *table);
+bool wh_grasp_is_consistent(const wh_grasp_t *table) WH_SYMBOL(wh_grasp_is_consistent);
 
 /* 64 bits over everything that the next step depends on, so equal hashes mean equal runs from here on: the
  * number of steps; for each wafer its pose (R row by row, r) and holder; for each gripper its pose, valve,
@@ -169,6 +171,6 @@ bool wh_grasp_is_consistent(const wh_grasp_t *table);
  *     for each w:  h = (h ^ w) * 0x9e3779b97f4a7c15;  h = h ^ (h >> 32)
  *
  * Cost: about 2 ns a word, 13 words for each wafer and up to 50 for each gripper. */
-uint64_t wh_grasp_hash(const wh_grasp_t *table);
+uint64_t wh_grasp_hash(const wh_grasp_t *table) WH_SYMBOL(wh_grasp_hash);
 
 #endif

@@ -11,27 +11,32 @@
 
 /* Appends a blank event of the running step, for the caller to fill in. The step has made sure that there is
  * room. */
-wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind);
+wh_event_t *wh_event_append(const wh_grasp_t *table, wh_event_list_t *list, wh_event_kind_t kind)
+    WH_SYMBOL(wh_event_append);
 
 /* Puts the wafer where a gripper carries it. */
 void wh_grasp_carry(wh_wafer_t *wafer, const wh_pose_t *base_from_gripper,
-                    const wh_pose_t *gripper_from_wafer);
+                    const wh_pose_t *gripper_from_wafer) WH_SYMBOL(wh_grasp_carry);
 
 /* wh_proximity_measure without its checks, for arguments that have passed them. */
 void wh_proximity_values(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
-                         const wh_tolerance_t *tolerance, wh_proximity_t *result);
+                         const wh_tolerance_t *tolerance, wh_proximity_t *result)
+    WH_SYMBOL(wh_proximity_values);
 
 /* |dr_proj_z| */
-wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper);
+wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper)
+    WH_SYMBOL(wh_grasp_distance);
 
 /* The wafer that gripper g would take at this pose: of the ready wafers that nobody holds the one with the
  * smallest |dr_proj_z|, then the lowest index; WH_NONE: none. Within the gripper's horizon there is none;
  * beyond it the horizon is measured anew. Notes if no free wafer is near. */
-int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper);
+int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper)
+    WH_SYMBOL(wh_grasp_find_ready);
 
 /* Gives gripper g, which is at `then`, this wafer and reports it. If the gripper moves on within the slice,
  * or seats the wafer on its pads, the caller still has to carry the wafer there. */
-void wh_grasp_take(wh_grasp_t *table, size_t g, int32_t wafer, const wh_pose_t *then, wh_event_list_t *list);
+void wh_grasp_take(wh_grasp_t *table, size_t g, int32_t wafer, const wh_pose_t *then, wh_event_list_t *list)
+    WH_SYMBOL(wh_grasp_take);
 
 #if !defined(WH_WITHOUT_SWEEP)
 
@@ -44,7 +49,8 @@ static inline bool wh_grasp_is_swept(const wh_grasp_t *table, size_t g) {
 }
 
 /* A pick between the last slice and this one; false when there was none. */
-bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input, wh_event_list_t *list);
+bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input, wh_event_list_t *list)
+    WH_SYMBOL(wh_grasp_pick_swept);
 
 #else
 

@@ -93,16 +93,19 @@ static inline bool wh_horizon_measure(wh_horizon_t *horizon, const wh_pose_t *ba
 
 /* How far around `place` a search should look: many times the way of this slice, or little if the gripper
  * jumps. */
-wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place);
+wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place)
+    WH_SYMBOL(wh_horizon_margin);
 
 /* Begins to measure a horizon over the wafers that wh_index_near found with this margin. */
-wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin);
+wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin)
+    WH_SYMBOL(wh_horizon_begin);
 
 /* Stores the measured horizon for gripper g at `place`. These four are for tables with buckets. */
-void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon);
+void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon)
+    WH_SYMBOL(wh_horizon_store);
 
 /* Takes every gripper's horizon away, until it searches again. */
-void wh_horizon_reset(wh_grasp_t *table);
+void wh_horizon_reset(wh_grasp_t *table) WH_SYMBOL(wh_horizon_reset);
 
 #else
 

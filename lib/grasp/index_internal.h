@@ -65,17 +65,17 @@ static inline bool wh_index_is_used(const wh_grasp_t *table) {
 }
 
 /* Builds the index anew for all wafers, if the table has buckets. No gripper has a horizon then. */
-void wh_index_build(wh_grasp_t *table);
+void wh_index_build(wh_grasp_t *table) WH_SYMBOL(wh_index_build);
 
 /* Tells the index that this wafer lies somewhere else from now on. No gripper has a horizon then. */
-void wh_index_move(wh_grasp_t *table, size_t wafer);
+void wh_index_move(wh_grasp_t *table, size_t wafer) WH_SYMBOL(wh_index_move);
 
 /* What wh_index_near does if the table has buckets. */
 wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
-                           wh_real_t margin);
+                           wh_real_t margin) WH_SYMBOL(wh_index_search);
 
 /* What the last search found, by whichever gripper. */
-wh_found_t wh_index_found(const wh_grasp_t *table);
+wh_found_t wh_index_found(const wh_grasp_t *table) WH_SYMBOL(wh_index_found);
 
 #else
 

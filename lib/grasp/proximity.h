@@ -41,24 +41,25 @@ typedef struct {
 
 /* The paper's reference parameters, "paper": 0.5 mm, 50 mm, 0.99. The last is 8.1 degrees, which leaves the
  * rim of a 300 mm wafer 21 mm out of plane: see wh_proximity_rim_gap. */
-wh_tolerance_t wh_tolerance_paper(void);
+wh_tolerance_t wh_tolerance_paper(void) WH_SYMBOL(wh_tolerance_paper);
 
 /* "strict": 0.5 mm, 5 mm, 0.99998; the rim of a 300 mm wafer is out of plane by less than 1 mm. */
-wh_tolerance_t wh_tolerance_strict(void);
+wh_tolerance_t wh_tolerance_strict(void) WH_SYMBOL(wh_tolerance_strict);
 
 /* How many presets there are, and which: `index` is 0 to WH_TOLERANCE_PRESETS - 1, anything else gives null
  * and leaves `tolerance` as it was. Returns the preset's name, a constant string. */
 #define WH_TOLERANCE_PRESETS 2
-const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance);
+const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance) WH_SYMBOL(wh_tolerance_preset);
 
 /* WH_STATUS_BAD_TOLERANCE when a limit is NaN or out of the range given at wh_tolerance_t. */
-wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance);
+wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance) WH_SYMBOL(wh_tolerance_validate);
 
 /* Measures, for a person: all values, margins and reasons. Refuses null pointers, poses that do not pass
  * wh_pose_validate and bad tolerances; `result` is then unchanged. Cost: about 100 products and a square
  * root. */
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
-                                 const wh_tolerance_t *tolerance, wh_proximity_t *result);
+                                 const wh_tolerance_t *tolerance, wh_proximity_t *result)
+    WH_SYMBOL(wh_proximity_measure);
 
 /* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit. No argument is
  * checked: poses and tolerance must be valid ones, except that a NaN anywhere gives false. Cost: 3 products
@@ -88,12 +89,13 @@ static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh
 
 /* Margins, failed conditions and verdict anew from the values (1)-(5) that `measured` holds, as when they
  * have travelled in a message. Arguments are not checked; a NaN fails its condition. */
-void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *measured);
+void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *measured)
+    WH_SYMBOL(wh_proximity_judge);
 
 /* How far the farthest point of a wafer's rim (radius in mm) is from the gripper's contact plane: the number
  * that the centre's distance (3) hides when the wafer is tilted. Arguments are not checked. Cost: one square
  * root. */
 wh_real_t wh_proximity_rim_gap(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
-                               wh_real_t radius);
+                               wh_real_t radius) WH_SYMBOL(wh_proximity_rim_gap);
 
 #endif

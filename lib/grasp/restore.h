@@ -13,6 +13,6 @@
  * or further off than twice projz + projxy, an approached wafer with a holder or a contested one without,
  * slices beyond `slice` (WH_STATUS_OUT_OF_RANGE). Cost: linear in wafers and grippers. */
 wh_status_t wh_grasp_restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t wafers[],
-                             const wh_gripper_t grippers[]);
+                             const wh_gripper_t grippers[]) WH_SYMBOL(wh_grasp_restore);
 
 #endif

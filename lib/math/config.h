@@ -48,13 +48,13 @@
 /* The library's real number: double, or float when built with -DWH_FLOAT. Library and program must agree. */
 #if defined(WH_FLOAT)
 typedef float wh_real_t;
-#define WH_ABI_SYMBOL wh_abi_1_float
 /* How far the largest entry of |R^T R - I| may be from zero. */
 #define WH_ROTATION_TOLERANCE 1e-5F
+#define WH_SYMBOL_NUMBER f
 #else
 typedef double wh_real_t;
-#define WH_ABI_SYMBOL wh_abi_1_double
 #define WH_ROTATION_TOLERANCE 1e-6
+#define WH_SYMBOL_NUMBER d
 #endif
 
 /* True where numbers are computed by software: there a comparison that saves a product pays. Changes no
@@ -70,11 +70,45 @@ typedef double wh_real_t;
 /* A literal of the library's number type. */
 #define WH_REAL(literal) ((wh_real_t)(literal))
 
-/* Referring to this symbol from each of the program's files makes the linker refuse a program whose headers
- * are of another ABI or of the other number type than the library. */
-extern const char WH_ABI_SYMBOL;
-#if !defined(WH_BUILDING_LIBRARY) && defined(__GNUC__)
-static const char *const wh_abi_check __attribute__((used)) = &WH_ABI_SYMBOL;
+/* Stands after `typedef enum`: four bytes, whatever -fshort-enums and its like say on one side and not on the
+ * other. Debuggers still show the names, and C++ takes the fields without a cast. A compiler that has no word
+ * for it is refused where its enumerations are shorter. */
+#if (defined(__cplusplus) && __cplusplus >= 201103L) ||                                                      \
+    (defined(__STDC_VERSION__) && __STDC_VERSION__ >= 202311L)
+#define WH_FOUR_BYTES : int32_t
+#elif defined(__GNUC__) || defined(__TINYC__)
+#define WH_FOUR_BYTES __attribute__((mode(SI)))
+#else
+#define WH_FOUR_BYTES
+typedef enum { WH_ENUM_SHORTEST } wh_enum_shortest_t;
+typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : -1]; /* IAR: --enum_is_int */
+#endif
+
+/* Goes up when a struct or a function changes so that headers and library of two versions do not fit. */
+#define WH_ABI 2
+
+/* Stands after each prototype. To the linker wh_pose_validate is wh_pose_validate_2d: number type, ABI and
+ * features end the name. So headers and a library that do not fit do not link, whatever is linked and how:
+ * "undefined reference to wh_pose_validate_2d" from a float library means that WH_FLOAT is missing where the
+ * headers are included. Debuggers show the name of the source. A compiler that cannot rename a symbol, or
+ * -DWH_SYMBOL_MACROS, gets the same names by macros: math/symbols.h. */
+#define WH_SYMBOL_TEXT(tokens) WH_SYMBOL_TEXT_(tokens)
+#define WH_SYMBOL_TEXT_(tokens) #tokens
+#if (defined(__GNUC__) || defined(__TINYC__)) && !defined(WH_SYMBOL_MACROS)
+#if defined(__USER_LABEL_PREFIX__)
+#define WH_SYMBOL_START WH_SYMBOL_TEXT(__USER_LABEL_PREFIX__)
+#else
+#define WH_SYMBOL_START ""
+#endif
+#define WH_SYMBOL(name)                                                                                      \
+    __asm__(WH_SYMBOL_START #name "_" WH_SYMBOL_TEXT(WH_ABI) WH_SYMBOL_TEXT(WH_SYMBOL_NUMBER)                \
+                WH_SYMBOL_TEXT(WH_SYMBOL_FEATURES))
+#else
+#define WH_SYMBOL(name)
+#define WH_SYMBOL_RENAMED(name) WH_SYMBOL_JOIN(name, WH_ABI, WH_SYMBOL_NUMBER, WH_SYMBOL_FEATURES)
+#define WH_SYMBOL_JOIN(name, abi, number, features) WH_SYMBOL_JOIN_(name, abi, number, features)
+#define WH_SYMBOL_JOIN_(name, abi, number, features) name##_##abi##number##features
+#include "symbols.h"
 #endif
 
 /* Invariants the library relies on. A firmware may define its own before including any header, or switch them

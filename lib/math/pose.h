@@ -20,12 +20,14 @@ static inline wh_pose_t wh_pose_identity(void) {
 }
 
 /* a_from_b * b_from_c = a_from_c, written to memory that neither of them is in. Cost: 36 products. */
-void wh_pose_compose_to(const wh_pose_t *a_from_b, const wh_pose_t *b_from_c, wh_pose_t *a_from_c);
+void wh_pose_compose_to(const wh_pose_t *a_from_b, const wh_pose_t *b_from_c, wh_pose_t *a_from_c)
+    WH_SYMBOL(wh_pose_compose_to);
 
 /* inverse(a_from_b) * a_from_c = b_from_c, written to memory that neither of them is in. The difference of
  * the positions is taken first: a round trip through wh_pose_compose_to keeps positions to rounding even far
  * from a's origin. Cost: 36 products. */
-void wh_pose_relative_to(const wh_pose_t *a_from_b, const wh_pose_t *a_from_c, wh_pose_t *b_from_c);
+void wh_pose_relative_to(const wh_pose_t *a_from_b, const wh_pose_t *a_from_c, wh_pose_t *b_from_c)
+    WH_SYMBOL(wh_pose_relative_to);
 
 /* The same as values, for 96 bytes (48 in float) more of stack. */
 static inline wh_pose_t wh_pose_compose(const wh_pose_t *a_from_b, const wh_pose_t *b_from_c) {
@@ -42,14 +44,14 @@ static inline wh_pose_t wh_pose_relative(const wh_pose_t *a_from_b, const wh_pos
 
 /* WH_STATUS_OK when all twelve numbers are finite, no entry of |R^T R - I| is above WH_ROTATION_TOLERANCE and
  * det R > 0; else WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION. Cost: about 30 products. */
-wh_status_t wh_pose_validate(const wh_pose_t *pose);
+wh_status_t wh_pose_validate(const wh_pose_t *pose) WH_SYMBOL(wh_pose_validate);
 
 /* True if no entry of |R^T R - I| is above WH_ROTATION_TOLERANCE: a rotation, or one of its mirror images.
  * False if a number is not finite. Cost: 18 products. */
-bool wh_mat3_is_orthonormal(const wh_mat3_t *R);
+bool wh_mat3_is_orthonormal(const wh_mat3_t *R) WH_SYMBOL(wh_mat3_is_orthonormal);
 
 /* Brings an almost-rotation to the rotation nearest to it, in place, by one Newton step R (3 I - R^T R) / 2:
  * an error of e in R^T R becomes about e^2. R must pass wh_pose_validate. */
-void wh_mat3_orthonormalise(wh_mat3_t *R);
+void wh_mat3_orthonormalise(wh_mat3_t *R) WH_SYMBOL(wh_mat3_orthonormalise);
 
 #endif

@@ -13,6 +13,6 @@ typedef struct {
 
 /* Both poses are base_from_frame and valid. Angles are exact to about 1e-15 throughout, small ones and those
  * near pi too. */
-wh_relation_t wh_relate(const wh_pose_t *first, const wh_pose_t *second);
+wh_relation_t wh_relate(const wh_pose_t *first, const wh_pose_t *second) WH_SYMBOL(wh_relate);
 
 #endif

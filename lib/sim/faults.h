@@ -35,7 +35,7 @@
 /* A fault that lasts until it is cleared. */
 #define WH_FAULT_FOREVER INT64_MAX
 
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_FAULT_NO_VACUUM,
     WH_FAULT_SLOW_VACUUM,
     WH_FAULT_SENSOR_ON,
@@ -63,7 +63,12 @@ typedef struct {
 } wh_fault_t;
 
 /* The phases of a fault's life. */
-typedef enum { WH_FAULT_FREE, WH_FAULT_WAITING, WH_FAULT_ACTING, WH_FAULT_OVER } wh_fault_phase_t;
+typedef enum WH_FOUR_BYTES {
+    WH_FAULT_FREE,
+    WH_FAULT_WAITING,
+    WH_FAULT_ACTING,
+    WH_FAULT_OVER
+} wh_fault_phase_t;
 
 typedef struct {
     wh_fault_t fault; /* all zero while the slot is free */
@@ -88,42 +93,47 @@ typedef struct {
 } wh_fault_changes_t;
 
 /* The kind's name as layouts and scripts spell it: no_vacuum to wafer_tilted. Never null. */
-const char *wh_fault_name(wh_fault_kind_t kind);
+const char *wh_fault_name(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_name);
 
 /* True if the kind is about a wafer. */
-bool wh_fault_is_of_wafer(wh_fault_kind_t kind);
+bool wh_fault_is_of_wafer(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_wafer);
 
 /* WH_OK. WH_STATUS_OUT_OF_RANGE, WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION for a fault that a cell
  * with these counts cannot have. */
-wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count);
+wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count)
+    WH_SYMBOL(wh_fault_validate);
 
 /* wh_fault_validate for whole slots, such as those of a received state. */
-wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, size_t wafer_count);
+wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, size_t wafer_count)
+    WH_SYMBOL(wh_faults_validate);
 
 /* Frees all slots. */
-void wh_faults_clear(wh_faults_t *faults);
+void wh_faults_clear(wh_faults_t *faults) WH_SYMBOL(wh_faults_clear);
 
 /* Checks that all requests can be taken. Each must be a valid fault, for a slot that is free or over, or for
  * the slot that has this very fault (which then gets another `until`). No two may name one slot. WH_OK,
  * WH_STATUS_OUT_OF_RANGE, or what wh_fault_validate says. */
 wh_status_t wh_faults_check(const wh_faults_t *faults, const wh_fault_request_t requests[], size_t count,
-                            size_t gripper_count, size_t wafer_count);
+                            size_t gripper_count, size_t wafer_count) WH_SYMBOL(wh_faults_check);
 
 /* Takes requests that wh_faults_check has accepted. */
-void wh_faults_take(wh_faults_t *faults, const wh_fault_request_t requests[], size_t count);
+void wh_faults_take(wh_faults_t *faults, const wh_fault_request_t requests[], size_t count)
+    WH_SYMBOL(wh_faults_take);
 
 /* Begins and ends what is due in slice `seq`; moves wafers of the table. */
-wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int64_t seq);
+wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int64_t seq)
+    WH_SYMBOL(wh_faults_advance);
 
 /* What the acting faults do to a gripper's vacuum. */
-wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper);
+wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper)
+    WH_SYMBOL(wh_faults_of_vacuum);
 
 /* Makes stuck valves, stopped axes and lost commands overrule the inputs of a slice. `vacuum` has the valves
  * before. */
 void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, const wh_vacuum_t vacuum[],
-                        wh_gripper_input_t inputs[]);
+                        wh_gripper_input_t inputs[]) WH_SYMBOL(wh_faults_overrule);
 
 /* What the sensors say, given what sensors without faults would say: bit g for gripper g. */
-uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors);
+uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors) WH_SYMBOL(wh_faults_sensors);
 
 #endif

@@ -23,21 +23,24 @@ typedef struct {
 } wh_physics_state_t;
 
 /* Slices of 1 ms, ideal vacuum, no pads, no faults. */
-wh_physics_t wh_physics_default(void);
+wh_physics_t wh_physics_default(void) WH_SYMBOL(wh_physics_default);
 
 /* WH_OK, or what is wrong with it for a cell with these counts. */
-wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count);
+wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count)
+    WH_SYMBOL(wh_physics_validate);
 
 /* The state before the first slice: the `faults` of the physics wait in the first slots. */
-void wh_physics_state_start(wh_physics_state_t *state, const wh_physics_t *physics);
+void wh_physics_state_start(wh_physics_state_t *state, const wh_physics_t *physics)
+    WH_SYMBOL(wh_physics_state_start);
 
 /* Checks that a simulator can have such a state: WH_OK, WH_STATUS_NOT_FINITE, WH_STATUS_BAD_VALVE or
  * WH_STATUS_OUT_OF_RANGE. */
 wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gripper_count,
-                                      size_t wafer_count);
+                                      size_t wafer_count) WH_SYMBOL(wh_physics_state_validate);
 
 /* What the vacuum sensors say: bit g for gripper g. */
-uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t gripper_count);
+uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t gripper_count)
+    WH_SYMBOL(wh_physics_state_sensors);
 
 /* 64 bits over all that the next step depends on. It is wh_grasp_hash(table), continued by wh_hash_word
  * (math/hash.h) with these words:
@@ -49,6 +52,7 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  *     placed.
  * So a run with ideal vacuum, without pads and faults, has the table's hash.
  */
-uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table);
+uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table)
+    WH_SYMBOL(wh_physics_state_hash);
 
 #endif

@@ -36,11 +36,13 @@ typedef struct {
  * Stations are not checked: see wh_station_t for what they must be. Do not move the simulator afterwards:
  * `link` and states point into it. */
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
-                              const wh_grasp_storage_t *storage, const wh_cell_t *cell);
+                              const wh_grasp_storage_t *storage, const wh_cell_t *cell)
+    WH_SYMBOL(wh_simulator_init);
 
 /* Replaces wh_physics_default, with which wh_simulator_init begins. Refuses what wh_physics_validate refuses,
  * and a run that has begun (WH_STATUS_OUT_OF_RANGE); the simulator is then unchanged. */
-wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics_t *physics);
+wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics_t *physics)
+    WH_SYMBOL(wh_simulator_set_physics);
 
 /* One slice: faults and vacuum turn the command into the grippers' inputs, the table steps, the cell judges
  * the releases, vacuum and holding follow, and `state` is filled in. Returns state->status.
@@ -50,12 +52,13 @@ wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics
  * wh_faults_check refuses. With a null pointer (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. `seq`
  * and `utime` are handed back; faults go by `seq`. Cost: wh_grasp_step and wh_cell_judge.
  */
-wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state);
+wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state)
+    WH_SYMBOL(wh_simulator_step);
 
 /* Fills in all of a state but utime, seq and status, without a step. Cost: linear in grippers. */
-void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state);
+void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) WH_SYMBOL(wh_simulator_view);
 
 /* wh_physics_state_hash of the simulator's state. */
-uint64_t wh_simulator_hash(const wh_simulator_t *simulator);
+uint64_t wh_simulator_hash(const wh_simulator_t *simulator) WH_SYMBOL(wh_simulator_hash);
 
 #endif

@@ -28,7 +28,8 @@ typedef struct {
 /* Fills in poses, valves and axes of the track's current slice; leaves the faults alone. Pass the same
  * command and cache each time, zeroed before the first: it computes only what changed. Cost:
  * wh_machine_update. */
-void wh_command_from_track(wh_command_t *command, wh_machine_cache_t *cache, const wh_track_t *track);
+void wh_command_from_track(wh_command_t *command, wh_machine_cache_t *cache, const wh_track_t *track)
+    WH_SYMBOL(wh_command_from_track);
 
 /* What became of a command: a view of the simulator's own memory, valid until the next exchange. */
 typedef struct {
