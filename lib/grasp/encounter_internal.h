@@ -36,11 +36,9 @@ bool wh_closeness_measure(const wh_grasp_config_t *config, const wh_pose_t *base
                           const wh_pose_t *base_from_gripper, wh_closeness_t *reach)
     WH_SYMBOL(wh_closeness_measure);
 
-#if !defined(WH_WITHOUT_SWEEP)
-
 /* The gripper's motion since the last slice; null where checking is sampled. */
 static inline const wh_sweep_t *wh_watch_sweep(const wh_watch_t *watch) {
-    return watch->sweep;
+    return WH_SWEEP_BUILT ? watch->sweep : NULL;
 }
 
 /* Makes the sweep since the last slice, then does what wh_encounter_track does. */
@@ -53,34 +51,5 @@ bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafe
 /* Measures at an instant before the slice's end, judged by the limits that hold there. */
 void wh_measure_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_real_t t,
                       wh_proximity_t *measured) WH_SYMBOL(wh_measure_swept);
-
-#else
-
-static inline const wh_sweep_t *wh_watch_sweep(const wh_watch_t *watch) {
-    (void)watch;
-    return NULL;
-}
-
-static inline void wh_encounter_track_swept(wh_watch_t *watch) {
-    wh_encounter_track(watch);
-}
-
-static inline bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer,
-                                      wh_closeness_t *closest) {
-    (void)watch;
-    (void)base_from_wafer;
-    (void)closest;
-    return false;
-}
-
-static inline void wh_measure_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_real_t t,
-                                    wh_proximity_t *measured) {
-    (void)watch;
-    (void)base_from_wafer;
-    (void)t;
-    (void)measured;
-}
-
-#endif
 
 #endif

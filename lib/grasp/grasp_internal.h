@@ -2,7 +2,8 @@
  * encounter.c; swept.c finds what falls between two slices, by way of sweep.c.
  *
  * What only swept checking needs stands in a file of its own, so that its memory is never on the stack of a
- * sampled step.
+ * sampled step. Where the library is built without it wh_grasp_is_swept is constant, and the file is not
+ * linked.
  */
 #ifndef WH_GRASP_GRASP_INTERNAL_H
 #define WH_GRASP_GRASP_INTERNAL_H
@@ -38,40 +39,15 @@ int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_f
 void wh_grasp_take(wh_grasp_t *table, size_t g, int32_t wafer, const wh_pose_t *then, wh_event_list_t *list)
     WH_SYMBOL(wh_grasp_take);
 
-#if !defined(WH_WITHOUT_SWEEP)
-
-#define WH_SWEEP_BUILT true
-
 /* True if wafers that gripper g passes between the last slice and this one count. Its entry is still the last
  * slice's. */
 static inline bool wh_grasp_is_swept(const wh_grasp_t *table, size_t g) {
-    return table->config.check == WH_CHECK_SWEPT && table->storage.grippers[g].valve == WH_VALVE_OPEN;
+    return WH_SWEEP_BUILT && table->config.check == WH_CHECK_SWEPT &&
+           table->storage.grippers[g].valve == WH_VALVE_OPEN;
 }
 
 /* A pick between the last slice and this one; false when there was none. */
 bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input, wh_event_list_t *list)
     WH_SYMBOL(wh_grasp_pick_swept);
-
-#else
-
-/* No table is swept; swept.c and sweep.c are empty. */
-#define WH_SWEEP_BUILT false
-
-static inline bool wh_grasp_is_swept(const wh_grasp_t *table, size_t g) {
-    (void)table;
-    (void)g;
-    return false;
-}
-
-static inline bool wh_grasp_pick_swept(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
-                                       wh_event_list_t *list) {
-    (void)table;
-    (void)g;
-    (void)input;
-    (void)list;
-    return false;
-}
-
-#endif
 
 #endif

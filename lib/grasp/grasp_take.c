@@ -13,9 +13,8 @@ typedef struct {
     wh_real_t distance;
 } nearest_t;
 
-static void keep_better(nearest_t *best, size_t w, const wh_wafer_t *wafer,
-                        const wh_pose_t *base_from_gripper) {
-    const nearest_t here = {(int32_t)w, wh_grasp_distance(wafer, base_from_gripper)};
+static void keep_better(nearest_t *best, size_t w, wh_real_t distance) {
+    const nearest_t here = {(int32_t)w, distance};
     if (best->wafer == WH_NONE || here.distance < best->distance ||
         (here.distance == best->distance && here.wafer < best->wafer)) {
         *best = here;
@@ -35,7 +34,7 @@ WH_OUT_OF_LINE static int32_t find_around(wh_grasp_t *table, size_t g, const wh_
         const wh_wafer_t *wafer = &table->storage.wafers[w];
         if (wafer->holder == WH_NONE && !wh_horizon_measure(&horizon, &wafer->base_from_wafer, place) &&
             wh_proximity_ready(&wafer->base_from_wafer, base_from_gripper, &table->config.tolerance)) {
-            keep_better(&best, w, wafer, base_from_gripper);
+            keep_better(&best, w, wh_grasp_distance(wafer, base_from_gripper));
         }
     }
     wh_horizon_store(table, g, place, &horizon);
@@ -63,12 +62,15 @@ WH_OUT_OF_LINE static int32_t find_among_all(wh_grasp_t *table, size_t g,
     bool clear = true;
     for (size_t w = 0; w < table->storage.wafer_count; ++w) {
         const wh_wafer_t *wafer = &table->storage.wafers[w];
-        if (wafer->holder != WH_NONE || (WH_REAL_IS_SLOW && is_aside(wafer, base_from_gripper, side)) ||
-            wh_grasp_distance(wafer, base_from_gripper) >= limits.projz) {
+        if (wafer->holder != WH_NONE || (WH_REAL_IS_SLOW && is_aside(wafer, base_from_gripper, side))) {
+            continue;
+        }
+        const wh_real_t distance = wh_grasp_distance(wafer, base_from_gripper);
+        if (distance >= limits.projz) {
             continue;
         }
         if (wh_proximity_ready(&wafer->base_from_wafer, base_from_gripper, &table->config.tolerance)) {
-            keep_better(&best, w, wafer, base_from_gripper);
+            keep_better(&best, w, distance);
         } else {
             clear = clear && is_aside(wafer, base_from_gripper, side);
         }

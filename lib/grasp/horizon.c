@@ -1,7 +1,5 @@
 #include "horizon_internal.h"
 
-#if !defined(WH_WITHOUT_INDEX)
-
 /* The longest distance that a word holds, in units. */
 #define LONGEST 536870912
 
@@ -77,5 +75,3 @@ void wh_horizon_reset(wh_grasp_t *table) {
         wh_horizon_words(table, g)[3] = 0;
     }
 }
-
-#endif

@@ -89,8 +89,6 @@ static inline bool wh_horizon_measure(wh_horizon_t *horizon, const wh_pose_t *ba
     return gap > 0;
 }
 
-#if !defined(WH_WITHOUT_INDEX)
-
 /* How far around `place` a search should look: many times the way of this slice, or little if the gripper
  * jumps. */
 wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place)
@@ -106,31 +104,5 @@ void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const
 
 /* Takes every gripper's horizon away, until it searches again. */
 void wh_horizon_reset(wh_grasp_t *table) WH_SYMBOL(wh_horizon_reset);
-
-#else
-
-static inline wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
-    (void)table;
-    (void)g;
-    (void)place;
-    return 0;
-}
-
-static inline wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near,
-                                            wh_real_t margin) {
-    (void)near;
-    const wh_horizon_t horizon = {wh_horizon_limits(table, g), margin};
-    return horizon;
-}
-
-static inline void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place,
-                                    const wh_horizon_t *horizon) {
-    (void)table;
-    (void)g;
-    (void)place;
-    (void)horizon;
-}
-
-#endif
 
 #endif

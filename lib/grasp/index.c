@@ -1,7 +1,5 @@
 #include "horizon_internal.h"
 
-#if !defined(WH_WITHOUT_INDEX)
-
 #define NO_WAFER UINT32_MAX
 
 /* A cell's shortest edge as a power of two of the unit: 16 mm. */
@@ -99,11 +97,8 @@ static void take_out(wh_grasp_t *table, size_t w) {
     }
 }
 
-void wh_index_build(wh_grasp_t *table) {
+void wh_index_fill(wh_grasp_t *table) {
     const wh_grasp_storage_t *storage = &table->storage;
-    if (!wh_index_is_used(table)) {
-        return;
-    }
     const wh_near_limits_t limits = wh_index_limits(table);
     storage->buckets[0] = 0;
     storage->buckets[1] = 0;
@@ -121,10 +116,7 @@ void wh_index_build(wh_grasp_t *table) {
     wh_horizon_reset(table);
 }
 
-void wh_index_move(wh_grasp_t *table, size_t wafer) {
-    if (!wh_index_is_used(table)) {
-        return;
-    }
+void wh_index_reinsert(wh_grasp_t *table, size_t wafer) {
     const wh_near_limits_t limits = wh_index_limits(table);
     take_out(table, wafer);
     insert(table, wafer);
@@ -224,5 +216,3 @@ wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, c
     table->storage.buckets[WH_INDEX_FOUND + 1] = small ? (uint32_t)list_box(table, &box) : UINT32_MAX;
     return wh_index_found(table);
 }
-
-#endif

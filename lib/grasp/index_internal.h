@@ -55,20 +55,29 @@ static inline wh_found_t wh_index_all(const wh_grasp_t *table) {
     return near;
 }
 
-#if !defined(WH_WITHOUT_INDEX)
-
-#define WH_INDEX_BUILT true
-
-/* True if the table has buckets. */
+/* True if the table has buckets. Where the library is built without an index that is constant, and nothing
+ * below is linked. */
 static inline bool wh_index_is_used(const wh_grasp_t *table) {
-    return table->storage.bucket_count > 0;
+    return WH_INDEX_BUILT && table->storage.bucket_count > 0;
 }
 
+/* What wh_index_build and wh_index_move do if the table has buckets. */
+void wh_index_fill(wh_grasp_t *table) WH_SYMBOL(wh_index_fill);
+void wh_index_reinsert(wh_grasp_t *table, size_t wafer) WH_SYMBOL(wh_index_reinsert);
+
 /* Builds the index anew for all wafers, if the table has buckets. No gripper has a horizon then. */
-void wh_index_build(wh_grasp_t *table) WH_SYMBOL(wh_index_build);
+static inline void wh_index_build(wh_grasp_t *table) {
+    if (wh_index_is_used(table)) {
+        wh_index_fill(table);
+    }
+}
 
 /* Tells the index that this wafer lies somewhere else from now on. No gripper has a horizon then. */
-void wh_index_move(wh_grasp_t *table, size_t wafer) WH_SYMBOL(wh_index_move);
+static inline void wh_index_move(wh_grasp_t *table, size_t wafer) {
+    if (wh_index_is_used(table)) {
+        wh_index_reinsert(table, wafer);
+    }
+}
 
 /* What wh_index_near does if the table has buckets. */
 wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
@@ -76,40 +85,6 @@ wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, c
 
 /* What the last search found, by whichever gripper. */
 wh_found_t wh_index_found(const wh_grasp_t *table) WH_SYMBOL(wh_index_found);
-
-#else
-
-/* No table has buckets; index.c and horizon.c are empty. */
-#define WH_INDEX_BUILT false
-
-static inline bool wh_index_is_used(const wh_grasp_t *table) {
-    (void)table;
-    return false;
-}
-
-static inline void wh_index_build(wh_grasp_t *table) {
-    (void)table;
-}
-
-static inline void wh_index_move(wh_grasp_t *table, size_t wafer) {
-    (void)table;
-    (void)wafer;
-}
-
-static inline wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
-                                         const wh_vec3_t *to, wh_real_t margin) {
-    (void)g;
-    (void)from;
-    (void)to;
-    (void)margin;
-    return wh_index_all(table);
-}
-
-static inline wh_found_t wh_index_found(const wh_grasp_t *table) {
-    return wh_index_all(table);
-}
-
-#endif
 
 /* The wafers in whose neighbourhood gripper g comes between `from` and `to` or, along one of base's axes, may
  * come by moving less than `margin` from there; and others. All of them where the table has no buckets or as

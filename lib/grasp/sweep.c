@@ -1,7 +1,5 @@
 #include "sweep_internal.h"
 
-#if !defined(WH_WITHOUT_SWEEP)
-
 /* Shepperd's way: divide by the largest of the four, so that no digit is lost. */
 static void quaternion_from_rotation(const wh_mat3_t *R, wh_real_t *w, wh_vec3_t *v) {
     const wh_real_t signals = R->m[0][0] + R->m[1][1] + R->m[2][2];
@@ -172,5 +170,3 @@ wh_real_t wh_sweep_closest(const wh_sweep_t *sweep, const wh_pose_t *base_from_w
     }
     return t < part->last ? t : part->last;
 }
-
-#endif

@@ -4,8 +4,6 @@
 #include "grasp_internal.h"
 #include "horizon_internal.h"
 
-#if !defined(WH_WITHOUT_SWEEP)
-
 /* The best wafer so far. */
 typedef struct {
     int32_t wafer; /* WH_NONE: none */
@@ -33,7 +31,10 @@ static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *swe
     const bool indexed = wh_index_is_used(table);
     const wh_real_t margin = indexed ? wh_horizon_margin(table, g, place) : 0;
     const wh_found_t near = wh_index_near(table, g, &sweep->begin->r, place, margin);
-    wh_horizon_t horizon = wh_horizon_begin(table, g, &near, margin);
+    wh_horizon_t horizon = {{0, 0}, 0};
+    if (indexed) {
+        horizon = wh_horizon_begin(table, g, &near, margin);
+    }
     candidate_t best = {.wafer = WH_NONE};
     for (size_t i = 0; i < near.count; ++i) {
         const size_t w = wh_index_wafer(table, &near, i);
@@ -130,5 +131,3 @@ void wh_measure_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer,
     wh_sweep_pose_at(watch->sweep, t, &then);
     wh_proximity_values(base_from_wafer, &then, &tolerance, measured);
 }
-
-#endif

@@ -23,14 +23,15 @@
 #if defined(WH_CONFIG_FILE)
 #include WH_CONFIG_FILE
 #endif
-#if defined(WH_WITHOUT_SWEEP) && defined(WH_WITHOUT_INDEX)
-#define WH_SYMBOL_FEATURES _without_sweep_index
-#elif defined(WH_WITHOUT_SWEEP)
-#define WH_SYMBOL_FEATURES _without_sweep
-#elif defined(WH_WITHOUT_INDEX)
-#define WH_SYMBOL_FEATURES _without_index
+#if defined(WH_WITHOUT_SWEEP)
+#define WH_SWEEP_BUILT false
 #else
-#define WH_SYMBOL_FEATURES /* nothing: complete */
+#define WH_SWEEP_BUILT true
+#endif
+#if defined(WH_WITHOUT_INDEX)
+#define WH_INDEX_BUILT false
+#else
+#define WH_INDEX_BUILT true
 #endif
 
 /* The same inputs must give the same bits on every machine, which these builds cannot hold. Nor can one that
@@ -86,6 +87,17 @@ typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : 
 
 /* Goes up when a struct or a function changes so that headers and library of two versions do not fit. */
 #define WH_ABI 2
+
+/* What the library is built without, as its symbols end. */
+#if defined(WH_WITHOUT_SWEEP) && defined(WH_WITHOUT_INDEX)
+#define WH_SYMBOL_FEATURES _without_sweep_index
+#elif defined(WH_WITHOUT_SWEEP)
+#define WH_SYMBOL_FEATURES _without_sweep
+#elif defined(WH_WITHOUT_INDEX)
+#define WH_SYMBOL_FEATURES _without_index
+#else
+#define WH_SYMBOL_FEATURES /* nothing: complete */
+#endif
 
 /* Stands after each prototype. To the linker wh_pose_validate is wh_pose_validate_2d: number type, ABI and
  * features end the name. So headers and a library that do not fit do not link, whatever is linked and how:
