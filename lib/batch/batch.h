@@ -25,6 +25,8 @@
 
 #include "../grasp/proximity.h"
 
+WH_HEADER_BEGIN
+
 /* How many numbers a batch of so many wafers takes, and in how many lines of 64: 24.5 bytes a wafer, rounded
  * up to whole blocks of 32 wafers and of 32 spheres. Layout: for each 32 spheres 32 x of the centre, 32 y, 32
  * z, 32 radii; after all of these, for each block 32 x of the origin, 32 y, 32 z; after all of these, for
@@ -95,5 +97,7 @@ size_t wh_batch_list(const wh_batch_t *batch, const wh_pose_t *base_from_gripper
  * how many grippers have one. */
 size_t wh_batch_best(const wh_batch_t *batch, const wh_pose_t *base_from_grippers, size_t gripper_count,
                      const wh_tolerance_t *tolerance, int32_t *best) WH_SYMBOL(wh_batch_best);
+
+WH_HEADER_END
 
 #endif

@@ -10,6 +10,8 @@
 
 #include "../grasp/grasp.h"
 
+WH_HEADER_BEGIN
+
 typedef struct {
     wh_pose_t base_from_station;
     int32_t slots;   /* 1 to 1000 */
@@ -69,5 +71,7 @@ size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_li
  * in the list; each such wafer adds the stations and wh_grasp_place. */
 void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list)
     WH_SYMBOL(wh_cell_settle);
+
+WH_HEADER_END
 
 #endif

@@ -11,6 +11,8 @@
 
 #include "../math/pose.h"
 
+WH_HEADER_BEGIN
+
 /* The bodies of the robot, each hanging on the one before it. */
 typedef enum WH_FOUR_BYTES {
     WH_ARM_BASE,    /* base itself: the column's foot */
@@ -35,5 +37,7 @@ bool wh_arm_reaches(const wh_arm_t *arm, const wh_pose_t *base_from_effector) WH
  * checked. Cost: three square roots. */
 void wh_arm_place(const wh_arm_t *arm, const wh_pose_t *base_from_effector, wh_pose_t bodies[])
     WH_SYMBOL(wh_arm_place);
+
+WH_HEADER_END
 
 #endif

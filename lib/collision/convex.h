@@ -11,6 +11,8 @@
 
 #include "../math/pose.h"
 
+WH_HEADER_BEGIN
+
 /* The thinnest and the largest shape, and the most points of a mesh. */
 #define WH_CONVEX_THINNEST 0.01
 #define WH_CONVEX_LARGEST 1e5
@@ -57,5 +59,7 @@ wh_real_t wh_convex_radius(const wh_convex_t *shape) WH_SYMBOL(wh_convex_radius)
  * the points of a mesh. */
 void wh_convex_bounds(const wh_convex_t *shape, const wh_pose_t *base_from_shape, wh_vec3_t *low,
                       wh_vec3_t *high) WH_SYMBOL(wh_convex_bounds);
+
+WH_HEADER_END
 
 #endif

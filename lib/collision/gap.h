@@ -37,6 +37,8 @@
 
 #include "convex.h"
 
+WH_HEADER_BEGIN
+
 #if defined(WH_FLOAT)
 #error "waferhand: lib/collision is there in double only"
 #endif
@@ -81,5 +83,7 @@ wh_real_t wh_gap_along(const wh_convex_t *a, const wh_pose_t *base_from_a, const
 void wh_gap_measure(const wh_convex_t *a, const wh_pose_t *base_from_a, const wh_convex_t *b,
                     const wh_pose_t *base_from_b, wh_real_t enough, wh_vec3_t guess, wh_gap_t *gap)
     WH_SYMBOL(wh_gap_measure);
+
+WH_HEADER_END
 
 #endif

@@ -11,6 +11,8 @@
 
 #include "../math/vector.h"
 
+WH_HEADER_BEGIN
+
 /* From `low` to `high`, mm in base. A box with low above high is empty: it overlaps nothing. */
 typedef struct {
     wh_vec3_t low, high;
@@ -54,5 +56,7 @@ wh_box_t wh_tree_box(const wh_tree_t *tree, int32_t item) WH_SYMBOL(wh_tree_box)
  * ordered. */
 size_t wh_tree_find(const wh_tree_t *tree, const wh_box_t *box, int32_t found[], size_t capacity)
     WH_SYMBOL(wh_tree_find);
+
+WH_HEADER_END
 
 #endif

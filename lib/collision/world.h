@@ -30,6 +30,8 @@
 #include "convex.h"
 #include "tree.h"
 
+WH_HEADER_BEGIN
+
 /* The most grippers of a world. */
 #define WH_WORLD_GRIPPERS 8
 #define WH_WORLD_MOVING 64 /* the most parts of robot and grippers together */
@@ -166,5 +168,7 @@ const wh_world_counters_t *wh_world_counters(const wh_world_t *world) WH_SYMBOL(
  * overlap and must not to `parts`; false if there are none. Cost: n log n. */
 bool wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int32_t parts[2])
     WH_SYMBOL(wh_world_check_rest);
+
+WH_HEADER_END
 
 #endif

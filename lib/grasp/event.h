@@ -4,6 +4,8 @@
 
 #include "proximity.h"
 
+WH_HEADER_BEGIN
+
 /* A step of the grasp table yields at most this many events for each of its grippers. */
 #define WH_EVENTS_PER_GRIPPER 4
 
@@ -82,5 +84,7 @@ typedef struct {
 
 /* The kind's name in lower case, such as "handed_over": a constant string, never null. */
 const char *wh_event_name(wh_event_kind_t kind) WH_SYMBOL(wh_event_name);
+
+WH_HEADER_END
 
 #endif

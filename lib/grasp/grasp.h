@@ -28,6 +28,8 @@
 
 #include "event.h"
 
+WH_HEADER_BEGIN
+
 typedef enum WH_FOUR_BYTES { WH_CHECK_SAMPLED, WH_CHECK_SWEPT } wh_check_t;
 
 /* A valve's two levels. */
@@ -172,5 +174,7 @@ bool wh_grasp_is_consistent(const wh_grasp_t *table) WH_SYMBOL(wh_grasp_is_consi
  *
  * Cost: about 2 ns a word, 13 words for each wafer and up to 50 for each gripper. */
 uint64_t wh_grasp_hash(const wh_grasp_t *table) WH_SYMBOL(wh_grasp_hash);
+
+WH_HEADER_END
 
 #endif

@@ -15,6 +15,8 @@
 
 #include "vacuum.h"
 
+WH_HEADER_BEGIN
+
 /* What the pads and the wafer are. Immutable during a run; a mass of 0: holding is not looked at. */
 typedef struct {
     wh_real_t friction; /* coefficient, 0 to 100 */
@@ -58,5 +60,7 @@ wh_hold_t wh_hold_judge(const wh_pads_t *pads, wh_real_t level, const wh_mat3_t 
 bool wh_carry_update(wh_carry_t *carry, const wh_pads_t *pads, wh_real_t level,
                      const wh_mat3_t *base_from_gripper, const wh_vec3_t *centre, wh_real_t dt,
                      wh_hold_t *hold) WH_SYMBOL(wh_carry_update);
+
+WH_HEADER_END
 
 #endif

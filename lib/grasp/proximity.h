@@ -18,6 +18,8 @@
 
 #include "../math/pose.h"
 
+WH_HEADER_BEGIN
+
 /* The three limits: eps_projz in (0, 1e6] mm, eps_projxy in [1e-6, 1e6] mm, eps_planar in [0, 1). */
 typedef struct {
     wh_real_t projz, projxy, planar;
@@ -97,5 +99,7 @@ void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *measure
  * root. */
 wh_real_t wh_proximity_rim_gap(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                wh_real_t radius) WH_SYMBOL(wh_proximity_rim_gap);
+
+WH_HEADER_END
 
 #endif

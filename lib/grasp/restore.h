@@ -4,6 +4,8 @@
 
 #include "grasp.h"
 
+WH_HEADER_BEGIN
+
 /* Sets an initialised table to the state that another table of the same counts was in after `slice` steps:
  * `wafers` and `grippers` are copies of that table's arrays, made between two steps. The same steps then
  * yield the same bits as they would have there; counters keep counting. `released_by` of the wafers is not
@@ -14,5 +16,7 @@
  * slices beyond `slice` (WH_STATUS_OUT_OF_RANGE). Cost: linear in wafers and grippers. */
 wh_status_t wh_grasp_restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t wafers[],
                              const wh_gripper_t grippers[]) WH_SYMBOL(wh_grasp_restore);
+
+WH_HEADER_END
 
 #endif

@@ -26,6 +26,8 @@
 
 #include "grasp.h"
 
+WH_HEADER_BEGIN
+
 /* Immutable during a run. */
 typedef struct {
     wh_real_t build, vent; /* time constants upwards and downwards, s, 0 to 3600 */
@@ -74,5 +76,7 @@ int32_t wh_vacuum_before(const wh_vacuum_config_t *config, const wh_vacuum_fault
  * division. */
 bool wh_vacuum_after(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, bool holds,
                      wh_real_t dt, wh_vacuum_t *vacuum) WH_SYMBOL(wh_vacuum_after);
+
+WH_HEADER_END
 
 #endif

@@ -10,8 +10,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The one place where the version stands; the program, the manual and the pkg-config file read it here. */
-#define WH_VERSION "0.1.0"
+/* The one place where the version stands; program, manual, pkg-config and CMake have it from here. */
+#define WH_VERSION_MAJOR 0
+#define WH_VERSION_MINOR 1
+#define WH_VERSION_PATCH 0
+#define WH_VERSION WH_TEXT(WH_VERSION_MAJOR) "." WH_TEXT(WH_VERSION_MINOR) "." WH_TEXT(WH_VERSION_PATCH)
+#define WH_TEXT(tokens) WH_TEXT_(tokens)
+#define WH_TEXT_(tokens) #tokens
 
 /* What a firmware does without is not linked at all. Define one of these or both, for the library and for all
  * that includes its headers alike: on the command line, or in a header of your own that WH_CONFIG_FILE names,
@@ -42,8 +47,13 @@
 #error                                                                                                       \
     "waferhand: -ffast-math (or a part of it) reorders sums and drops NaN, so builds would differ: remove it"
 #endif
-#if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD != 0
+#if defined(FLT_EVAL_METHOD)
+#if FLT_EVAL_METHOD != 0
 #error "waferhand: needs FLT_EVAL_METHOD 0 (no x87): on 32-bit x86 build with -msse2 -mfpmath=sse"
+#endif
+#elif !defined(__TINYC__) || defined(__i386__) /* tcc does not say, but keeps to it outside of x87 */
+#error                                                                                                       \
+    "waferhand: unknown rounding: if this compiler rounds to the type of each operation, add -DFLT_EVAL_METHOD=0"
 #endif
 
 /* The library's real number: double, or float when built with -DWH_FLOAT. Library and program must agree. */
@@ -51,11 +61,11 @@
 typedef float wh_real_t;
 /* How far the largest entry of |R^T R - I| may be from zero. */
 #define WH_ROTATION_TOLERANCE 1e-5F
-#define WH_SYMBOL_NUMBER f
+#define WH_SYMBOL_NUMBER "f"
 #else
 typedef double wh_real_t;
 #define WH_ROTATION_TOLERANCE 1e-6
-#define WH_SYMBOL_NUMBER d
+#define WH_SYMBOL_NUMBER "d"
 #endif
 
 /* True where numbers are computed by software: there a comparison that saves a product pays. Changes no
@@ -104,24 +114,69 @@ typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : 
  * "undefined reference to wh_pose_validate_2d" from a float library means that WH_FLOAT is missing where the
  * headers are included. Debuggers show the name of the source. A compiler that cannot rename a symbol, or
  * -DWH_SYMBOL_MACROS, gets the same names by macros: math/symbols.h. */
-#define WH_SYMBOL_TEXT(tokens) WH_SYMBOL_TEXT_(tokens)
-#define WH_SYMBOL_TEXT_(tokens) #tokens
 #if (defined(__GNUC__) || defined(__TINYC__)) && !defined(WH_SYMBOL_MACROS)
 #if defined(__USER_LABEL_PREFIX__)
-#define WH_SYMBOL_START WH_SYMBOL_TEXT(__USER_LABEL_PREFIX__)
+#define WH_SYMBOL_START WH_TEXT(__USER_LABEL_PREFIX__)
 #else
 #define WH_SYMBOL_START ""
 #endif
 #define WH_SYMBOL(name)                                                                                      \
-    __asm__(WH_SYMBOL_START #name "_" WH_SYMBOL_TEXT(WH_ABI) WH_SYMBOL_TEXT(WH_SYMBOL_NUMBER)                \
-                WH_SYMBOL_TEXT(WH_SYMBOL_FEATURES))
+    __asm__(WH_SYMBOL_START #name "_" WH_TEXT(WH_ABI) WH_SYMBOL_NUMBER WH_TEXT(WH_SYMBOL_FEATURES))
 #else
 #define WH_SYMBOL(name)
-#define WH_SYMBOL_RENAMED(name) WH_SYMBOL_JOIN(name, WH_ABI, WH_SYMBOL_NUMBER, WH_SYMBOL_FEATURES)
-#define WH_SYMBOL_JOIN(name, abi, number, features) WH_SYMBOL_JOIN_(name, abi, number, features)
-#define WH_SYMBOL_JOIN_(name, abi, number, features) name##_##abi##number##features
+#define WH_SYMBOL_RENAMED(name) WH_SYMBOL_JOIN(name, WH_ABI, WH_SYMBOL_FEATURES)
+#define WH_SYMBOL_JOIN(name, abi, features) WH_SYMBOL_JOIN_(name, abi, features)
+#if defined(WH_FLOAT)
+#define WH_SYMBOL_JOIN_(name, abi, features) name##_##abi##f##features
+#else
+#define WH_SYMBOL_JOIN_(name, abi, features) name##_##abi##d##features
+#endif
 #include "symbols.h"
 #endif
+
+/* Each public header begins and ends with these: C's names in C++, and the same bits of the inline functions
+ * also where -ffp-contract=off was forgotten. The file that includes them keeps its own rules. What
+ * forgetting costs: gcc calls these functions instead of inlining them, and clang, where it knows no
+ * float_control, compiles all of the file without contraction. clang's own -ffp-contract=fast overrules every
+ * pragma: it must not be. */
+#if defined(__clang__) && (defined(__x86_64__) || defined(__i386__))
+#define WH_SAME_BITS_BEGIN _Pragma("float_control(push)") _Pragma("STDC FP_CONTRACT OFF")
+#define WH_SAME_BITS_END _Pragma("float_control(pop)")
+#elif defined(__clang__)
+#define WH_SAME_BITS_BEGIN _Pragma("STDC FP_CONTRACT OFF")
+#define WH_SAME_BITS_END
+#elif defined(__GNUC__)
+#define WH_SAME_BITS_BEGIN                                                                                   \
+    _Pragma("GCC push_options") _Pragma("GCC optimize (\"fp-contract=off,no-tree-slp-vectorize\")")
+#define WH_SAME_BITS_END _Pragma("GCC pop_options")
+#else
+#define WH_SAME_BITS_BEGIN
+#define WH_SAME_BITS_END
+#endif
+/* What the shared library shows is what public headers declare. */
+#if defined(WH_BUILDING_LIBRARY) && defined(__GNUC__)
+#define WH_PUBLIC_BEGIN _Pragma("GCC visibility push(default)")
+#define WH_PUBLIC_END _Pragma("GCC visibility pop")
+#else
+#define WH_PUBLIC_BEGIN
+#define WH_PUBLIC_END
+#endif
+#if defined(__cplusplus)
+#define WH_HEADER_BEGIN WH_SAME_BITS_BEGIN WH_PUBLIC_BEGIN extern "C" {
+#define WH_HEADER_END                                                                                        \
+    }                                                                                                        \
+    WH_PUBLIC_END WH_SAME_BITS_END
+#else
+#define WH_HEADER_BEGIN WH_SAME_BITS_BEGIN WH_PUBLIC_BEGIN
+#define WH_HEADER_END WH_PUBLIC_END WH_SAME_BITS_END
+#endif
+
+WH_HEADER_BEGIN
+
+/* The version of the library that was linked, WH_VERSION when it was built: a constant string. */
+const char *wh_version(void) WH_SYMBOL(wh_version);
+
+WH_HEADER_END
 
 /* Invariants the library relies on. A firmware may define its own before including any header, or switch them
  * on with -DWH_DEBUG; without either they cost nothing. */

@@ -8,6 +8,8 @@
 
 #include "config.h"
 
+WH_HEADER_BEGIN
+
 typedef struct {
     uint64_t seed, trial;
 } wh_trial_t;
@@ -24,5 +26,7 @@ double wh_deviate_uniform(const wh_trial_t *trial, uint32_t field, uint32_t inde
  * exact: no tail is cut but that u >= 2^-53 bounds it by 8.58. Cost: about 70 ns. */
 double wh_deviate_normal(const wh_trial_t *trial, uint32_t field, uint32_t index)
     WH_SYMBOL(wh_deviate_normal);
+
+WH_HEADER_END
 
 #endif

@@ -9,6 +9,8 @@
 #include "status.h"
 #include "vector.h"
 
+WH_HEADER_BEGIN
+
 typedef struct {
     wh_mat3_t R;
     wh_vec3_t r;
@@ -53,5 +55,7 @@ bool wh_mat3_is_orthonormal(const wh_mat3_t *R) WH_SYMBOL(wh_mat3_is_orthonormal
 /* Brings an almost-rotation to the rotation nearest to it, in place, by one Newton step R (3 I - R^T R) / 2:
  * an error of e in R^T R becomes about e^2. R must pass wh_pose_validate. */
 void wh_mat3_orthonormalise(wh_mat3_t *R) WH_SYMBOL(wh_mat3_orthonormalise);
+
+WH_HEADER_END
 
 #endif

@@ -4,6 +4,8 @@
 
 #include "config.h"
 
+WH_HEADER_BEGIN
+
 /* WH_STATUS_NULL_ARGUMENT, ...: number, name and text of each stand in math/status.def. */
 typedef enum WH_FOUR_BYTES {
 #define WH_STATUS(number, name, text) WH_STATUS_##name = (number),
@@ -20,5 +22,7 @@ const char *wh_status_text(wh_status_t status) WH_SYMBOL(wh_status_text);
 
 /* The catalogue's name for any status, such as "NOT_FINITE"; "UNKNOWN" if it is not in it. Same cost. */
 const char *wh_status_name(wh_status_t status) WH_SYMBOL(wh_status_name);
+
+WH_HEADER_END
 
 #endif

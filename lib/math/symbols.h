@@ -164,6 +164,7 @@
 #define wh_vacuum_sound WH_SYMBOL_RENAMED(wh_vacuum_sound)
 #define wh_vacuum_start WH_SYMBOL_RENAMED(wh_vacuum_start)
 #define wh_vacuum_validate WH_SYMBOL_RENAMED(wh_vacuum_validate)
+#define wh_version WH_SYMBOL_RENAMED(wh_version)
 #define wh_wafer_mass WH_SYMBOL_RENAMED(wh_wafer_mass)
 #define wh_world_belong_together WH_SYMBOL_RENAMED(wh_world_belong_together)
 #define wh_world_bytes WH_SYMBOL_RENAMED(wh_world_bytes)

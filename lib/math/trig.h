@@ -13,6 +13,8 @@
 
 #include "vector.h"
 
+WH_HEADER_BEGIN
+
 /* pi, rounded once to the number type. */
 #define WH_PI WH_REAL(3.14159265358979323846264338327950288)
 
@@ -62,5 +64,7 @@ static inline wh_mat3_t wh_mat3_turn_z(wh_real_t sine, wh_real_t cosine) {
  * give exact entries. Entries NaN where wh_sin_cos_deg is. */
 wh_mat3_t wh_mat3_from_rpy_deg(wh_real_t roll, wh_real_t pitch, wh_real_t yaw)
     WH_SYMBOL(wh_mat3_from_rpy_deg);
+
+WH_HEADER_END
 
 #endif

@@ -17,6 +17,8 @@
 
 #include "robot.h"
 
+WH_HEADER_BEGIN
+
 /* A planned line. Written by wh_line_plan only; reading its fields is fine. */
 typedef struct {
     wh_profile_t path;                                /* over the line's length, mm */
@@ -62,5 +64,7 @@ static inline wh_real_t wh_line_duration(const wh_line_t *line) {
  * heading is kept to rounding. theta and yaw run on continuously from from_q. No pointer may be null.
  * Cost: about 40 ns. */
 void wh_line_at(const wh_line_t *line, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]) WH_SYMBOL(wh_line_at);
+
+WH_HEADER_END
 
 #endif

@@ -12,6 +12,8 @@
 #include "move.h"
 #include "robot.h"
 
+WH_HEADER_BEGIN
+
 /* The most grippers of a machine, and of a command message. */
 #define WH_GRIPPERS 8
 
@@ -80,5 +82,7 @@ void wh_machine_update(const wh_machine_t *machine, const wh_real_t axes[], wh_m
 wh_status_t wh_machine_inverse(const wh_machine_t *machine, size_t gripper, const wh_vec3_t *at,
                                wh_real_t heading, const wh_real_t near_q[WH_ROBOT_AXES],
                                wh_real_t q[WH_ROBOT_AXES]) WH_SYMBOL(wh_machine_inverse);
+
+WH_HEADER_END
 
 #endif

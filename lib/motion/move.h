@@ -12,6 +12,8 @@
 
 #include "profile.h"
 
+WH_HEADER_BEGIN
+
 /* The most axes of a move, a message and a track. */
 #define WH_AXES 8
 
@@ -45,5 +47,7 @@ static inline wh_real_t wh_move_duration(const wh_move_t *move) {
  * is at `from`. A move of duration 0 is at `to` from t = 0 on. No pointer may be null. Cost: about 20 ns for
  * four axes. */
 void wh_move_at(const wh_move_t *move, wh_real_t t, wh_real_t position[]) WH_SYMBOL(wh_move_at);
+
+WH_HEADER_END
 
 #endif

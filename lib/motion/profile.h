@@ -22,6 +22,8 @@
 #include "../math/status.h"
 #include "../math/vector.h"
 
+WH_HEADER_BEGIN
+
 /* The limits of an axis, as magnitudes: mm/s, mm/s^2, mm/s^3 or rad/s, rad/s^2, rad/s^3. */
 typedef struct {
     wh_real_t speed, acceleration, jerk;
@@ -98,5 +100,7 @@ static inline wh_real_t wh_profile_peak_acceleration(const wh_profile_t *profile
 static inline wh_real_t wh_profile_peak_jerk(const wh_profile_t *profile) {
     return profile->jerk < 0 ? -profile->jerk : profile->jerk;
 }
+
+WH_HEADER_END
 
 #endif

@@ -15,6 +15,8 @@
 #include "../math/pose.h"
 #include "profile.h"
 
+WH_HEADER_BEGIN
+
 #define WH_ROBOT_AXES 4
 
 /* The indices of the axes in every q: theta (rad), R (mm), Z (mm), yaw at the wrist relative to the arm
@@ -88,5 +90,7 @@ void wh_robot_forward(const wh_real_t q[WH_ROBOT_AXES], wh_pose_t *base_from_eff
 wh_status_t wh_robot_inverse(const wh_robot_t *robot, wh_real_t x, wh_real_t y, wh_real_t z,
                              wh_real_t heading, const wh_real_t near_q[WH_ROBOT_AXES],
                              wh_real_t q[WH_ROBOT_AXES]) WH_SYMBOL(wh_robot_inverse);
+
+WH_HEADER_END
 
 #endif

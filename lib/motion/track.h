@@ -17,6 +17,8 @@
 #include "line.h"
 #include "machine.h"
 
+WH_HEADER_BEGIN
+
 typedef enum WH_FOUR_BYTES {
     WH_SEGMENT_AXES,   /* axes go to target[], synchronised, each at rest at both ends */
     WH_SEGMENT_LINE,   /* the end-effector goes by `travel` along a straight line at constant heading */
@@ -88,5 +90,7 @@ wh_track_state_t wh_track_next(wh_track_t *track, uint32_t sensors) WH_SYMBOL(wh
 /* Jumps to the running segment's end, as if all its slices had been played: a way to check a pattern's reach
  * without playing it. `slice` stays. */
 void wh_track_skip(wh_track_t *track) WH_SYMBOL(wh_track_skip);
+
+WH_HEADER_END
 
 #endif

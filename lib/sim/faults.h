@@ -28,6 +28,8 @@
 #include "../grasp/vacuum.h"
 #include "../motion/machine.h"
 
+WH_HEADER_BEGIN
+
 /* The most faults of a run at one time. */
 #define WH_FAULTS 16
 /* How far a fault may move a wafer along each axis, mm. */
@@ -135,5 +137,7 @@ void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, cons
 
 /* What the sensors say, given what sensors without faults would say: bit g for gripper g. */
 uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors) WH_SYMBOL(wh_faults_sensors);
+
+WH_HEADER_END
 
 #endif

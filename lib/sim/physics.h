@@ -5,6 +5,8 @@
 #include "../grasp/hold.h"
 #include "faults.h"
 
+WH_HEADER_BEGIN
+
 /* What does not change during a run. */
 typedef struct {
     wh_real_t slice_s; /* length of a slice, s, above 0, up to 1 */
@@ -54,5 +56,7 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  */
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table)
     WH_SYMBOL(wh_physics_state_hash);
+
+WH_HEADER_END
 
 #endif

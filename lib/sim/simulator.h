@@ -6,6 +6,8 @@
 #include "../cell/station.h"
 #include "slice.h"
 
+WH_HEADER_BEGIN
+
 /* Looks at each accepted step after table and cell, and may append events. `inputs` are the step's own, after
  * faults and vacuum. It must not change anything that a step depends on. Null functions are not called. */
 typedef struct {
@@ -60,5 +62,7 @@ void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) WH_SY
 
 /* wh_physics_state_hash of the simulator's state. */
 uint64_t wh_simulator_hash(const wh_simulator_t *simulator) WH_SYMBOL(wh_simulator_hash);
+
+WH_HEADER_END
 
 #endif

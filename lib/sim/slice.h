@@ -6,6 +6,8 @@
 #include "../motion/track.h"
 #include "physics.h"
 
+WH_HEADER_BEGIN
+
 /* The most events in one slice: those of the grasp table, then those of the cell, the vacuum, the faults and
  * the collision check. Events beyond that are not reported. */
 #define WH_SLICE_EVENTS 64
@@ -55,5 +57,7 @@ struct wh_link {
     /* Slices of the run that never reached the simulator: 0 except in a free-running run. */
     int64_t (*missed)(wh_link_t *link);
 };
+
+WH_HEADER_END
 
 #endif

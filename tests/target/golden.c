@@ -175,9 +175,10 @@ static void moves(const wh_robot_t *robot) {
     }
 }
 
+/* In halves: newlib-nano prints no integer of 64 bits. */
 static int report(const char *what, bool good) {
-    printf("%s %s %016llx\n", sizeof(wh_real_t) == sizeof(double) ? "double" : "float", what,
-           (unsigned long long)hash);
+    printf("%s %s %08lx%08lx\n", sizeof(wh_real_t) == sizeof(double) ? "double" : "float", what,
+           (unsigned long)(hash >> 32), (unsigned long)(hash & 0xffffffffU));
     if (!good) {
         printf("%s: refused, or not enough of each event\n", what);
     }

@@ -68,11 +68,20 @@ static void other_numbers_are_unknown(void **state) {
     }
 }
 
+static void the_library_tells_the_version_of_its_headers(void **state) {
+    (void)state;
+    char numbers[32];
+    (void)snprintf(numbers, sizeof numbers, "%d.%d.%d", WH_VERSION_MAJOR, WH_VERSION_MINOR, WH_VERSION_PATCH);
+    assert_string_equal(wh_version(), WH_VERSION);
+    assert_string_equal(wh_version(), numbers);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_number_has_its_name_and_the_librarys_own_have_texts),
         cmocka_unit_test(texts_are_sentences_without_a_stop),
         cmocka_unit_test(other_numbers_are_unknown),
+        cmocka_unit_test(the_library_tells_the_version_of_its_headers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
