@@ -138,14 +138,17 @@ typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : 
  * also where -ffp-contract=off was forgotten. The file that includes them keeps its own rules. What
  * forgetting costs: gcc calls these functions instead of inlining them, and clang, where it knows no
  * float_control, compiles all of the file without contraction. clang's own -ffp-contract=fast overrules every
- * pragma: it must not be. */
+ * pragma: it must not be. For Cortex-M gcc inlines none of them at -Os, whatever the flags: the library itself
+ * goes without, its flags being right, and so does strict C (-std=c99), in which gcc never fuses unasked. */
 #if defined(__clang__) && (defined(__x86_64__) || defined(__i386__))
 #define WH_SAME_BITS_BEGIN _Pragma("float_control(push)") _Pragma("STDC FP_CONTRACT OFF")
 #define WH_SAME_BITS_END _Pragma("float_control(pop)")
 #elif defined(__clang__)
 #define WH_SAME_BITS_BEGIN _Pragma("STDC FP_CONTRACT OFF")
 #define WH_SAME_BITS_END
-#elif defined(__GNUC__)
+#elif defined(__GNUC__) && !defined(WH_BUILDING_LIBRARY) &&                                                  \
+    !(defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'M' && defined(__STRICT_ANSI__) &&                \
+      !defined(__cplusplus))
 #define WH_SAME_BITS_BEGIN                                                                                   \
     _Pragma("GCC push_options") _Pragma("GCC optimize (\"fp-contract=off,no-tree-slp-vectorize\")")
 #define WH_SAME_BITS_END _Pragma("GCC pop_options")
