@@ -143,8 +143,8 @@ static bool contest_goes_on(const wh_watch_t *watch) {
     }
     const wh_wafer_t *wafer = &watch->table->storage.wafers[contest->wafer];
     return wafer->holder == contest->holder &&
-           wh_proximity_ready(&wafer->base_from_wafer, watch->base_from_gripper,
-                              &watch->table->config.tolerance);
+           wh_proximity_is_ready(&wafer->base_from_wafer, watch->base_from_gripper,
+                                 &watch->table->config.tolerance);
 }
 
 /* The held wafer that is ready, with the smallest |dr_proj_z|, then lowest index; WH_NONE: none. */
@@ -155,8 +155,8 @@ WH_OUT_OF_LINE static int32_t find_held(const wh_watch_t *watch) {
     for (size_t g = 0; g < storage->gripper_count; ++g) {
         const size_t w = (size_t)storage->grippers[g].wafer;
         if (w < storage->wafer_count && storage->wafers[w].holder == (int32_t)g &&
-            wh_proximity_ready(&storage->wafers[w].base_from_wafer, watch->base_from_gripper,
-                               &watch->table->config.tolerance)) {
+            wh_proximity_is_ready(&storage->wafers[w].base_from_wafer, watch->base_from_gripper,
+                                  &watch->table->config.tolerance)) {
             const wh_real_t distance = wh_grasp_distance(&storage->wafers[w], watch->base_from_gripper);
             if (best == WH_NONE || distance < least || (distance == least && (int32_t)w < best)) {
                 best = (int32_t)w;

@@ -20,9 +20,6 @@ static wh_status_t validate_config(const wh_grasp_config_t *config) {
     if (config->check != WH_CHECK_SAMPLED && config->check != WH_CHECK_SWEPT) {
         return WH_STATUS_OUT_OF_RANGE;
     }
-    if (!WH_SWEEP_BUILT && config->check == WH_CHECK_SWEPT) {
-        return WH_STATUS_NOT_BUILT;
-    }
     return near_good ? wh_tolerance_validate(&config->tolerance) : WH_STATUS_BAD_TOLERANCE;
 }
 
@@ -45,9 +42,6 @@ static wh_status_t validate_buckets(const wh_grasp_storage_t *storage) {
     const wh_status_t status = validate_array(storage->buckets != NULL, storage->bucket_count);
     if (status != WH_OK || storage->bucket_count == 0) {
         return status;
-    }
-    if (!WH_INDEX_BUILT) {
-        return WH_STATUS_NOT_BUILT;
     }
     const size_t needed = wh_grasp_buckets(storage->wafer_count, storage->gripper_count);
     return needed > 0 && needed <= storage->bucket_count ? WH_OK : WH_STATUS_BAD_CAPACITY;
@@ -102,6 +96,7 @@ static void begin(wh_grasp_t *table, const wh_grasp_config_t *config, const wh_g
     table->slice = 0;
     table->counters = none;
     table->storage = *storage;
+    table->mark = WH_GRASP_MARK;
 }
 
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
@@ -110,6 +105,9 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
         return WH_STATUS_NULL_ARGUMENT;
     }
     wh_status_t status = validate_config(config);
+    if (status == WH_OK && !wh_grasp_is_built(config, storage->bucket_count)) {
+        status = WH_STATUS_NOT_BUILT;
+    }
     if (status == WH_OK) {
         status = validate_storage(storage);
     }
@@ -147,6 +145,9 @@ wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *bas
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
     const wh_status_t status = may_place(table, wafer, base_from_wafer);
     if (status != WH_OK) {
         ++table->counters.refused;
@@ -166,6 +167,9 @@ wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *bas
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
     if (wafer >= table->storage.wafer_count) {
         return WH_STATUS_OUT_OF_RANGE;
     }
@@ -181,6 +185,9 @@ wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *bas
 wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafer) {
     if (!table || !wafer) {
         return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
     }
     if (gripper >= table->storage.gripper_count) {
         return WH_STATUS_OUT_OF_RANGE;
@@ -213,6 +220,9 @@ static bool names_wafer_or_none(const wh_encounter_t *encounter, size_t wafer_co
 
 bool wh_grasp_is_consistent(const wh_grasp_t *table) {
     const wh_grasp_storage_t *storage = &table->storage;
+    if (table->mark != WH_GRASP_MARK) {
+        return false;
+    }
     for (size_t w = 0; w < storage->wafer_count; ++w) {
         if (!is_paired_wafer(storage, w) || storage->wafers[w].released_by != WH_NONE) {
             return false;

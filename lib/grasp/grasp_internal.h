@@ -24,6 +24,26 @@ void wh_proximity_values(const wh_pose_t *base_from_wafer, const wh_pose_t *base
                          const wh_tolerance_t *tolerance, wh_proximity_t *result)
     WH_SYMBOL(wh_proximity_values);
 
+/* False if a table of this configuration and so many buckets needs what the library was built without. */
+static inline bool wh_grasp_is_built(const wh_grasp_config_t *config, size_t bucket_count) {
+    return (WH_SWEEP_BUILT || config->check != WH_CHECK_SWEPT) && (WH_INDEX_BUILT || bucket_count == 0);
+}
+
+/* wh_proximity_ready as one function of the room: each inlined copy takes 250 bytes. */
+bool wh_proximity_is_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
+                           const wh_tolerance_t *tolerance) WH_SYMBOL(wh_proximity_is_ready);
+
+/* The same, inlined into the loops over all wafers unless the compiler saves bytes. */
+static inline bool wh_proximity_is_ready_fast(const wh_pose_t *base_from_wafer,
+                                              const wh_pose_t *base_from_gripper,
+                                              const wh_tolerance_t *tolerance) {
+#if defined(__OPTIMIZE_SIZE__)
+    return wh_proximity_is_ready(base_from_wafer, base_from_gripper, tolerance);
+#else
+    return wh_proximity_ready(base_from_wafer, base_from_gripper, tolerance);
+#endif
+}
+
 /* |dr_proj_z| */
 wh_real_t wh_grasp_distance(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper)
     WH_SYMBOL(wh_grasp_distance);

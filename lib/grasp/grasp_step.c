@@ -67,6 +67,9 @@ static wh_status_t validate_call(const wh_grasp_t *table, const wh_gripper_input
 
 /* Part 1. A refused call changes nothing but counters and the list. */
 static wh_status_t validate(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list) {
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
     const wh_status_t refusal = validate_call(table, inputs, list);
     if (refusal != WH_OK) {
         ++table->counters.refused;
@@ -278,7 +281,7 @@ wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, w
     const wh_status_t status = validate(table, inputs, list);
     if (status == WH_OK) {
         advance(table, inputs, list);
+        WH_ASSERT_CONSISTENT(table);
     }
-    WH_ASSERT_CONSISTENT(table);
     return status;
 }

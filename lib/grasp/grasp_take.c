@@ -33,7 +33,8 @@ WH_OUT_OF_LINE static int32_t find_around(wh_grasp_t *table, size_t g, const wh_
         const size_t w = wh_index_wafer(table, &near, i);
         const wh_wafer_t *wafer = &table->storage.wafers[w];
         if (wafer->holder == WH_NONE && !wh_horizon_measure(&horizon, &wafer->base_from_wafer, place) &&
-            wh_proximity_ready(&wafer->base_from_wafer, base_from_gripper, &table->config.tolerance)) {
+            wh_proximity_is_ready_fast(&wafer->base_from_wafer, base_from_gripper,
+                                       &table->config.tolerance)) {
             keep_better(&best, w, wh_grasp_distance(wafer, base_from_gripper));
         }
     }
@@ -69,7 +70,8 @@ WH_OUT_OF_LINE static int32_t find_among_all(wh_grasp_t *table, size_t g,
         if (distance >= limits.projz) {
             continue;
         }
-        if (wh_proximity_ready(&wafer->base_from_wafer, base_from_gripper, &table->config.tolerance)) {
+        if (wh_proximity_is_ready_fast(&wafer->base_from_wafer, base_from_gripper,
+                                       &table->config.tolerance)) {
             keep_better(&best, w, distance);
         } else {
             clear = clear && is_aside(wafer, base_from_gripper, side);

@@ -37,6 +37,11 @@ wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance) {
     return good ? WH_OK : WH_STATUS_BAD_TOLERANCE;
 }
 
+bool wh_proximity_is_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
+                           const wh_tolerance_t *tolerance) {
+    return wh_proximity_ready(base_from_wafer, base_from_gripper, tolerance);
+}
+
 void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *p) {
     p->margin_projz = tolerance->projz - wh_real_abs(p->dr_proj_z);
     p->margin_projxy = tolerance->projxy - p->dr_proj_xy_norm;
@@ -60,6 +65,12 @@ void wh_proximity_values(const wh_pose_t *base_from_wafer, const wh_pose_t *base
     wh_proximity_judge(tolerance, p);
 }
 
+/* Then each value is finite, too; the half is for rotations that just pass. */
+static bool is_square_finite(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper) {
+    const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, &base_from_gripper->r);
+    return wh_vec3_dot(&dr, &dr) <= WH_REAL_LARGEST / 2;
+}
+
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                  const wh_tolerance_t *tolerance, wh_proximity_t *result) {
     if (!base_from_wafer || !base_from_gripper || !tolerance || !result) {
@@ -71,6 +82,9 @@ wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose
     }
     if (status == WH_OK) {
         status = wh_tolerance_validate(tolerance);
+    }
+    if (status == WH_OK && !is_square_finite(base_from_wafer, base_from_gripper)) {
+        status = WH_STATUS_NOT_FINITE;
     }
     if (status == WH_OK) {
         wh_proximity_values(base_from_wafer, base_from_gripper, tolerance, result);

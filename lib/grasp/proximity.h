@@ -57,8 +57,9 @@ const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance) WH_SYMB
 wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance) WH_SYMBOL(wh_tolerance_validate);
 
 /* Measures, for a person: all values, margins and reasons. Refuses null pointers, poses that do not pass
- * wh_pose_validate and bad tolerances; `result` is then unchanged. Cost: about 100 products and a square
- * root. */
+ * wh_pose_validate, bad tolerances, and poses so far apart that the square of their distance is no number
+ * (WH_STATUS_NOT_FINITE: about 1e154 mm, 1e19 in float); `result` is then unchanged. Cost: about 100
+ * products and a square root. */
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                  const wh_tolerance_t *tolerance, wh_proximity_t *result)
     WH_SYMBOL(wh_proximity_measure);

@@ -361,6 +361,7 @@ wh_grasp_t wh_link_table(const waferhand_state *message, const wh_layout_t *layo
     wh_grasp_t table;
     memset(&table, 0, sizeof table);
     table.config = layout->grasp;
+    table.mark = WH_GRASP_MARK;
     table.slice = (uint64_t)(message->seq - message->missed);
     table.storage.wafers = arrays->wafers;
     table.storage.wafer_count = layout->wafer_count;

@@ -45,6 +45,9 @@ static bool offset_fits(const wh_vec3_t *r) {
 }
 
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count) {
+    if (!fault) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
     if ((unsigned)fault->kind >= WH_FAULT_KINDS || !names_fit(fault, gripper_count, wafer_count) ||
         !value_fits(fault) || fault->from < 1 || fault->until < 0) {
         return WH_STATUS_OUT_OF_RANGE;
@@ -64,6 +67,9 @@ static bool slot_fits(const wh_fault_slot_t *slot, size_t gripper_count, size_t 
 }
 
 wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, size_t wafer_count) {
+    if (!faults) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
     bool good = faults->count <= WH_FAULTS;
     for (size_t i = 0; good && i < faults->count; ++i) {
         good = slot_fits(&faults->slots[i], gripper_count, wafer_count);
@@ -103,6 +109,9 @@ static bool may_take(const wh_faults_t *faults, const wh_fault_request_t *reques
 wh_status_t wh_faults_check(const wh_faults_t *faults, const wh_fault_request_t requests[], size_t count,
                             size_t gripper_count, size_t wafer_count) {
     uint32_t named = 0;
+    if (!faults || (!requests && count > 0)) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
     for (size_t i = 0; i < count; ++i) {
         const wh_fault_request_t *request = &requests[i];
         if (!may_take(faults, request) || (named >> (unsigned)request->index & 1U) != 0) {
@@ -260,6 +269,11 @@ void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, cons
     }
 }
 
+/* No bit for a gripper that no command has. */
+static uint32_t sensor_of(int32_t gripper) {
+    return wh_is_index(gripper, WH_GRIPPERS) ? UINT32_C(1) << (unsigned)gripper : 0;
+}
+
 uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors) {
     for (size_t i = 0; i < faults->count; ++i) {
         const wh_fault_t *fault = &faults->slots[i].fault;
@@ -267,9 +281,9 @@ uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors) {
             continue;
         }
         if (fault->kind == WH_FAULT_SENSOR_ON) {
-            sensors |= 1U << (unsigned)fault->target;
+            sensors |= sensor_of(fault->target);
         } else if (fault->kind == WH_FAULT_SENSOR_OFF) {
-            sensors &= ~(1U << (unsigned)fault->target);
+            sensors &= ~sensor_of(fault->target);
         }
     }
     return sensors;

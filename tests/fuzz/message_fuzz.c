@@ -58,6 +58,7 @@ static void check_sound(const wh_wafer_t *wafers, const wh_gripper_t *grippers,
     wh_grasp_t table;
     memset(&table, 0, sizeof table);
     table.config = layout->grasp;
+    table.mark = WH_GRASP_MARK;
     table.storage.wafers = arrays.wafers;
     table.storage.wafer_count = layout->wafer_count;
     table.storage.grippers = arrays.grippers;
