@@ -55,6 +55,7 @@ NUMBER_WARNINGS := -Wconversion -Wdouble-promotion
 # fuses a*b + c*d beside e*f - g*h whatever it was told; errno keeps sqrt from being one instruction. The prefix map keeps
 # the folder's name out of what is built.
 SAME_BITS := -ffp-contract=off -fno-tree-slp-vectorize
+$(if $(filter-out sweep index,$(WITHOUT)),$(error WITHOUT=: of "sweep" and "index", not "$(WITHOUT)"))
 # What the users of the library have to define as well.
 DEFINES := $(strip $(if $(FLOAT),-DWH_FLOAT) $(addprefix -DWH_WITHOUT_,$(shell echo '$(WITHOUT)' | tr a-z A-Z)))
 BASE := $(SAME_BITS) -fno-math-errno $(call accepts,-ffile-prefix-map=$(CURDIR)=.) $(WARNINGS) \

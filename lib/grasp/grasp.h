@@ -131,7 +131,7 @@ typedef struct {
 #define WH_GRASP_MARK UINT32_C(0x77a6e57d)
 
 /* How many buckets a table of these counts needs: 5 for each wafer, 4 for each gripper and 8. 0 above
- * INT32_MAX / 16 wafers or grippers: such a table can have none. */
+ * INT32_MAX / 16 wafers or grippers, and in a library without an index: such a table can have none. */
 size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) WH_SYMBOL(wh_grasp_buckets);
 
 /* The same as a constant, for an array. */
@@ -143,8 +143,9 @@ wh_grasp_config_t wh_grasp_config_default(void) WH_SYMBOL(wh_grasp_config_defaul
 
 /* Sets up a table: all wafers free where storage->wafers has them, all grippers empty and closed. Refuses
  * null pointers (an array may be null when its count is 0), counts above INT32_MAX, fewer buckets than
- * wh_grasp_buckets says but not 0, invalid wafer poses and configurations outside the ranges above; table and
- * arrays are then unchanged. Cost: linear in wafers and grippers. */
+ * wh_grasp_buckets says but not 0, invalid wafer poses, configurations outside the ranges above, and swept
+ * checking or buckets if the library was built without them (WH_STATUS_NOT_BUILT); table and arrays are then
+ * unchanged. Cost: linear in wafers and grippers. */
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
                           const wh_grasp_storage_t *storage) WH_SYMBOL(wh_grasp_init);
 
@@ -155,7 +156,7 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
  * WH_EVENTS_PER_GRIPPER events for each gripper (WH_STATUS_BAD_CAPACITY), a pose that does not pass
  * wh_pose_validate, a valve that is neither 0 nor 1; the last two also yield the one event
  * WH_EVENT_BAD_INPUT, the others leave the list empty. Cost: linear in grippers. Each open, empty gripper
- * adds a look at each other gripper's wafer and two checks of every wafer, at about a dozen products each.
+ * adds a look at each other gripper's wafer and a check of every wafer, two where one is near, at 3 products each for a wafer too high or too low.
  * With buckets it adds less than a dozen products instead while it is within its horizon; beyond it two
  * searches of the wafers around it, which do not depend on how many there are elsewhere; and the checks of
  * all wafers only where it goes very far in one slice or most wafers are around it. A release adds a search

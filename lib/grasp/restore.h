@@ -15,7 +15,8 @@ WH_HEADER_BEGIN
  * hold what it is said to hold or holds it with a closed valve or further off than twice projz + projxy, a
  * held wafer that is not where its gripper carries it (by more than what 16 WH_ROTATION_TOLERANCE make of
  * its rotation and of its coordinates), an approached wafer with a holder or a contested one without,
- * slices beyond `slice`, a `slice` above INT64_MAX (WH_STATUS_OUT_OF_RANGE). Cost: linear in wafers and
+ * slices beyond `slice`, a `slice` above INT64_MAX (WH_STATUS_OUT_OF_RANGE); a table that wh_grasp_init of
+ * this build would refuse (WH_STATUS_NOT_BUILT). Cost: linear in wafers and
  * grippers; a held wafer adds 36 products. */
 wh_status_t wh_grasp_restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t wafers[],
                              const wh_gripper_t grippers[]) WH_SYMBOL(wh_grasp_restore);

@@ -105,7 +105,7 @@ static void stop_all(wh_mcs_process_t *control, const waferhand_request *message
     wh_sandbox_stop(control->sandbox);
     control->node->interrupted = true; /* also a wait for a simulator that is silent */
     while (wh_mcs_process_next_request(control, line)) {
-        remember(control, control->executing.seq, WH_STATUS_STOPPED, line, wh_status_text(WH_STATUS_STOPPED));
+        remember(control, control->executing.seq, WH_STATUS_STOPPED, line, wh_record_error_text(WH_STATUS_STOPPED));
     }
     control->executing = executing;
     remember(control, message->seq, WH_OK, message->command_line, "OK");
@@ -120,13 +120,13 @@ static void turn_away(wh_mcs_process_t *control, const waferhand_request *messag
 static void turn_away_number(wh_mcs_process_t *control, const waferhand_request *message, const char *taken) {
     char text[400];
     snprintf(text, sizeof text, "%s: %" PRId64 " was \"%.200s\" (expected a number of its own for each line)",
-             wh_status_text(WH_STATUS_NUMBER_TAKEN), message->seq, taken);
+             wh_record_error_text(WH_STATUS_NUMBER_TAKEN), message->seq, taken);
     turn_away(control, message, WH_STATUS_NUMBER_TAKEN, text);
 }
 
 static void enqueue(wh_mcs_process_t *control, const waferhand_request *message) {
     if (control->waiting_count == WH_CONTROL_REQUESTS) {
-        turn_away(control, message, WH_STATUS_BUSY, wh_status_text(WH_STATUS_BUSY));
+        turn_away(control, message, WH_STATUS_BUSY, wh_record_error_text(WH_STATUS_BUSY));
         return;
     }
     wh_mcs_process_request_t *request =

@@ -19,6 +19,8 @@
 
 #include "pose.h"
 
+WH_HEADER_BEGIN
+
 /* The largest entry of |R^T R - I|, or of | |q|^2 - 1 |, that is mended. */
 #define WH_ROTATION_MENDABLE WH_REAL(5e-2)
 
@@ -39,5 +41,7 @@ wh_status_t wh_rotation_mend(wh_mat3_t *R) WH_SYMBOL(wh_rotation_mend);
  * WH_ROTATION_MENDABLE. Cost: about 20 products and a division. */
 wh_status_t wh_rotation_from_quaternion(wh_mat3_t *R, wh_real_t w, wh_real_t x, wh_real_t y, wh_real_t z)
     WH_SYMBOL(wh_rotation_from_quaternion);
+
+WH_HEADER_END
 
 #endif

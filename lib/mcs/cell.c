@@ -89,7 +89,7 @@ static wh_status_t set_up_simulator(lua_State *L, wh_simulator_t *simulator, con
 static void set_up_local(lua_State *L, wh_local_cell_t *local, const wh_layout_t *real) {
     const wh_status_t status = set_up_simulator(L, &local->simulator, real);
     if (status != WH_OK) {
-        luaL_error(L, "%s: %s", real->path, wh_status_text(status));
+        luaL_error(L, "%s: %s", real->path, wh_record_error_text(status));
     }
     if (real->collision) {
         wh_collision_attach(&local->collision, real, &local->simulator,
@@ -133,7 +133,7 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     set_up_local(L, &mcs->local, real);
     const wh_status_t status = wh_track_init(&mcs->track, &real->machine, layout->slice_us);
     if (status != WH_OK) {
-        luaL_error(L, "%s: %s", layout->path, wh_status_text(status));
+        luaL_error(L, "%s: %s", layout->path, wh_record_error_text(status));
     }
     set_up_look_ahead(L, &mcs->rehearsal, layout);
     wh_simulator_view(&mcs->local.simulator, &mcs->state);

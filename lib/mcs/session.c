@@ -93,7 +93,7 @@ static void write_answer(char *answer, size_t size, const char *text) {
 static void write_error(char *answer, size_t size, wh_status_t status, const char *detail) {
     char text[WH_SANDBOX_MESSAGE_BYTES + 200];
     snprintf(text, sizeof text, "ERROR %d %s: %s%s%s", (int)status, wh_status_name(status),
-             wh_status_text(status), detail[0] ? "; " : "", detail);
+             wh_record_error_text(status), detail[0] ? "; " : "", detail);
     write_answer(answer, size, text);
 }
 

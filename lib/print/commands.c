@@ -124,7 +124,7 @@ void wh_print_commands(const wh_printer_t *printer) {
 /* ------------------------------------------------------------------------------------------------- errors */
 
 static void put_error(const wh_printer_t *printer, const wh_command_record_t *command) {
-    const char *message = command->message ? command->message : wh_status_text(command->error);
+    const char *message = command->message ? command->message : wh_record_error_text(command->error);
     if (command->line > 0) {
         fprintf(printer->out, "line %d: ", command->line);
     }

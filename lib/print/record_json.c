@@ -168,7 +168,7 @@ static void put_particulars(const wh_record_t *record, json_t *object, const wh_
         break;
     case WH_EVENT_BAD_INPUT:
         (void)wh_json_add(object, "status message", json_integer((json_int_t)event->status),
-                          wh_json_text(wh_status_text(event->status)), NULL);
+                          wh_json_text(wh_record_error_text(event->status)), NULL);
         break;
     default:
         put_found(record, object, event);

@@ -5,6 +5,23 @@
 
 #include "../text/array.h"
 
+const char *wh_record_error_text(wh_status_t status) {
+    static const struct {
+        wh_status_t number;
+        const char *text;
+    } catalogue[] = {
+#define WH_STATUS(number, name, text) {WH_STATUS_##name, text},
+#include "../math/status.def"
+#undef WH_STATUS
+    };
+    for (size_t i = 0; i < sizeof catalogue / sizeof catalogue[0]; ++i) {
+        if (catalogue[i].number == status) {
+            return catalogue[i].text;
+        }
+    }
+    return "unknown status";
+}
+
 wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s) {
     record->commands = wh_array_grow(record->commands, record->command_count, &record->command_capacity,
                                      sizeof *record->commands);

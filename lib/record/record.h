@@ -101,6 +101,10 @@ void wh_record_forget(wh_record_t *record);
  * hit or may have been, a wafer slipped, or an input was refused. */
 bool wh_record_is_complaint(wh_event_kind_t kind);
 
+/* The catalogue's text for any status: what motion control and the link answer stands in it too, which
+ * wh_status_text leaves out. Never null. */
+const char *wh_record_error_text(wh_status_t status);
+
 /* Frees everything that the record holds and zeroes it. */
 void wh_record_free(wh_record_t *record);
 

@@ -9,6 +9,8 @@
 
 #include "../grasp/event.h"
 
+WH_HEADER_BEGIN
+
 /* Room for every text of wh_event_text if no name has more than 63 bytes. */
 #define WH_EVENT_TEXT_SIZE 640
 
@@ -40,5 +42,7 @@ size_t wh_event_text(const wh_event_t *event, const wh_event_names_t *names, cha
  * one. Returns the length as wh_event_text does; 0, with an empty text, if there is no such reason. */
 size_t wh_event_reason(const wh_event_t *event, const wh_event_names_t *names, size_t index, char *buffer,
                        size_t size) WH_SYMBOL(wh_event_reason);
+
+WH_HEADER_END
 
 #endif

@@ -171,4 +171,6 @@ void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, cons
  * WH_GRIPPERS. */
 uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors) WH_SYMBOL(wh_faults_sensors);
 
+WH_HEADER_END
+
 #endif

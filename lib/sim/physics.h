@@ -18,6 +18,8 @@
 #include "../grasp/hold.h"
 #include "faults.h"
 
+WH_HEADER_BEGIN
+
 /* The length of a slice unless told otherwise, s. */
 #define WH_SLICE_S WH_REAL(0.001)
 

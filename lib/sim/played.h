@@ -20,6 +20,8 @@
 
 #include "simulator.h"
 
+WH_HEADER_BEGIN
+
 /* A segment as it was played: to its end, or (not 0) cut off by a STOP after so many slices. */
 typedef struct {
     wh_segment_t segment;
@@ -73,5 +75,7 @@ wh_status_t wh_player_init(wh_player_t *player, const wh_played_t *run, const wh
 /* Plays one slice. False if there was none: the run is over, or player->status says what was refused. An
  * observer may be set in player->simulator before the first. Cost: wh_track_next and wh_simulator_step. */
 bool wh_player_next(wh_player_t *player) WH_SYMBOL(wh_player_next);
+
+WH_HEADER_END
 
 #endif

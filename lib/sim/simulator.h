@@ -83,4 +83,6 @@ void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) WH_SY
 /* wh_physics_state_hash of the simulator's state; 0 if it is not initialised. */
 uint64_t wh_simulator_hash(const wh_simulator_t *simulator) WH_SYMBOL(wh_simulator_hash);
 
+WH_HEADER_END
+
 #endif

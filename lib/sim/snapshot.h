@@ -23,6 +23,8 @@
 
 #include "simulator.h"
 
+WH_HEADER_BEGIN
+
 /* Goes up when the bytes change. */
 #define WH_SNAPSHOT_VERSION 1
 
@@ -72,5 +74,7 @@ typedef struct {
  * wh_grasp_restore; 1 kB of stack. */
 wh_status_t wh_simulator_load(wh_simulator_t *simulator, const uint8_t bytes[], size_t size,
                               wh_snapshot_room_t *room) WH_SYMBOL(wh_simulator_load);
+
+WH_HEADER_END
 
 #endif

@@ -253,7 +253,7 @@ static void a_seated_wafer_lies_on_the_pads(void **state) {
     (void)state;
     wh_grasp_config_t config = wh_grasp_config_default();
     config.seat = true;
-    config.check = WH_CHECK_SWEPT;
+    config.check = SWEPT_IF_BUILT;
     for (int run = 0; run < 2000; ++run) {
         cell_t cell;
         cell_begin(&cell, &config);
