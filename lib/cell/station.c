@@ -2,6 +2,41 @@
 
 #include "../math/trig.h"
 
+#define MOST_SLOTS 1000
+
+/* False for NaN. */
+static bool is_limit(wh_real_t value, wh_real_t most) {
+    return value >= 0 && value <= most;
+}
+
+static wh_status_t validate_station(const wh_station_t *station, size_t gripper_count) {
+    const bool slotted = station->slots >= 1 && station->slots <= MOST_SLOTS && station->pitch > 0 &&
+                         station->pitch <= WH_REAL(1e6);
+    const bool good = station->chuck == WH_NONE || wh_is_index(station->chuck, gripper_count);
+    return slotted && good ? wh_pose_validate(&station->base_from_station) : WH_STATUS_OUT_OF_RANGE;
+}
+
+static wh_status_t validate_cell(const wh_cell_t *cell) {
+    if (cell->count > INT32_MAX) {
+        return WH_STATUS_BAD_CAPACITY;
+    }
+    if (!is_limit(cell->off_centre, WH_REAL(1e6)) || !is_limit(cell->askew, 10)) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    return cell->count == 0 ? WH_OK : wh_tolerance_validate(&cell->tolerance);
+}
+
+wh_status_t wh_cell_validate(const wh_cell_t *cell, size_t gripper_count) {
+    if (!cell || (!cell->stations && cell->count > 0)) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    wh_status_t status = validate_cell(cell);
+    for (size_t s = 0; status == WH_OK && s < cell->count; ++s) {
+        status = validate_station(&cell->stations[s], gripper_count);
+    }
+    return status;
+}
+
 wh_pose_t wh_station_slot(const wh_station_t *station, int32_t slot) {
     const wh_vec3_t e3 = wh_mat3_column(&station->base_from_station.R, 2);
     const wh_vec3_t up = wh_vec3_scale((wh_real_t)(slot - 1) * station->pitch, &e3);
@@ -29,10 +64,10 @@ wh_place_t wh_station_measure(const wh_station_t *station, int32_t slot, const w
  * does not fit an integer. */
 static int32_t nearest_slot(const wh_station_t *station, wh_real_t height) {
     const wh_real_t position = height / station->pitch + WH_REAL(0.5);
-    if (!(position >= 0)) {
-        return 1;
+    if (position == position && position >= 0 && position < (wh_real_t)station->slots) {
+        return (int32_t)position + 1;
     }
-    return position >= (wh_real_t)station->slots ? station->slots : (int32_t)position + 1;
+    return position > 0 ? station->slots : 1;
 }
 
 static int32_t nearest_slot_of(const wh_station_t *station, const wh_pose_t *base_from_wafer) {

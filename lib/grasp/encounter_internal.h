@@ -10,7 +10,7 @@ typedef struct {
     wh_grasp_t *table;
     wh_gripper_t *gripper;
     const wh_pose_t *base_from_gripper; /* at the slice's end */
-    const wh_sweep_t *sweep;            /* since the last slice; null where checking is sampled */
+    const wh_sweep_t *sweep;            /* for wh_watch_sweep */
     wh_event_list_t *list;
     int32_t index;
 } wh_watch_t;
@@ -31,13 +31,18 @@ void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_inp
  * watch->sweep. */
 void wh_encounter_track(const wh_watch_t *watch) WH_SYMBOL(wh_encounter_track);
 
-/* Makes the sweep since the last slice, then does what wh_encounter_track does. */
-void wh_encounter_track_swept(wh_watch_t *watch) WH_SYMBOL(wh_encounter_track_swept);
-
 /* True if a wafer is in the neighbourhood for near misses; then fills in the two distances. */
 bool wh_closeness_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
                           const wh_pose_t *base_from_gripper, wh_closeness_t *reach)
     WH_SYMBOL(wh_closeness_measure);
+
+/* The gripper's motion since the last slice; null where checking is sampled. */
+static inline const wh_sweep_t *wh_watch_sweep(const wh_watch_t *watch) {
+    return WH_SWEEP_BUILT ? watch->sweep : NULL;
+}
+
+/* Makes the sweep since the last slice, then does what wh_encounter_track does. */
+void wh_encounter_track_swept(wh_watch_t *watch) WH_SYMBOL(wh_encounter_track_swept);
 
 /* How close a gripper with a sweep came to the wafer in this slice; false if it did not come near. */
 bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_closeness_t *closest)

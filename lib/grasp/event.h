@@ -17,13 +17,18 @@ typedef enum WH_FOUR_BYTES {
     /* In one step `other` let go of the wafer and `gripper` took it: instead of a release and a pick. */
     WH_EVENT_HANDED_OVER,
     /* A free wafer came into the neighbourhood of an open, empty gripper and left it again, or the valve
-     * closed, without a pick. `measured` is the closest approach, of slice `measured_slice`, judged between
-     * slices by 0.998 eps_projz as a swept pick is. Not reported when another gripper took that wafer, or
-     * this one another wafer, meanwhile. */
+     * closed, without a pick. The gripper follows one wafer at a time: the free one in its neighbourhood with
+     * the smallest |dr_proj_z|, then the lowest index, in the first slice that has one. It follows no other
+     * until this one is out of the neighbourhood, taken, or placed elsewhere by hand. `measured` is the
+     * closest approach, of slice `measured_slice`: where (dr_proj_z / eps_projz)^2 +
+     * (|dr_proj_xy| / eps_projxy)^2 was smallest; tilt does not count. With swept checking it may lie between
+     * two slices, and is then judged by 0.998 eps_projz, as a swept pick is. Not reported when another
+     * gripper took that wafer, or this one another wafer, meanwhile. */
     WH_EVENT_NEAR_MISS,
-    /* An open, empty gripper was ready on a wafer that `other` held. Reported once, when it ends without a
-     * hand-over (only then it is known that none follows): `measured` and `measured_slice` are of its
-     * beginning. */
+    /* An open, empty gripper was ready on a wafer that `other` held: of several, the one with the smallest
+     * |dr_proj_z|, then the lowest index. Reported once, when it ends: `measured` and `measured_slice` are of
+     * its beginning. Not reported if the wafer then passes to another holder, be it this gripper or a third
+     * one: the hand-over says enough. */
     WH_EVENT_CONTESTED,
     /* The step was refused and nothing changed: `status` says why; `gripper` is the input that is wrong. */
     WH_EVENT_BAD_INPUT,

@@ -1,6 +1,7 @@
 #include "grasp.h"
 
 #include "../math/hash.h"
+#include "grasp_internal.h"
 #include "index_internal.h"
 
 wh_grasp_config_t wh_grasp_config_default(void) {
@@ -22,6 +23,14 @@ static wh_status_t validate_config(const wh_grasp_config_t *config) {
     return near_good ? wh_tolerance_validate(&config->tolerance) : WH_STATUS_BAD_TOLERANCE;
 }
 
+size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) {
+    const size_t most = (size_t)INT32_MAX / 16;
+    if (!WH_INDEX_BUILT || wafer_count > most || gripper_count > most) {
+        return 0;
+    }
+    return WH_GRASP_BUCKETS(wafer_count, gripper_count);
+}
+
 static wh_status_t validate_array(bool given, size_t count) {
     if (!given && count > 0) {
         return WH_STATUS_NULL_ARGUMENT;
@@ -30,11 +39,11 @@ static wh_status_t validate_array(bool given, size_t count) {
 }
 
 static wh_status_t validate_buckets(const wh_grasp_storage_t *storage) {
-    const size_t needed = wh_grasp_buckets(storage->wafer_count, storage->gripper_count);
     const wh_status_t status = validate_array(storage->buckets != NULL, storage->bucket_count);
     if (status != WH_OK || storage->bucket_count == 0) {
         return status;
     }
+    const size_t needed = wh_grasp_buckets(storage->wafer_count, storage->gripper_count);
     return needed > 0 && needed <= storage->bucket_count ? WH_OK : WH_STATUS_BAD_CAPACITY;
 }
 
@@ -87,6 +96,7 @@ static void begin(wh_grasp_t *table, const wh_grasp_config_t *config, const wh_g
     table->slice = 0;
     table->counters = none;
     table->storage = *storage;
+    table->mark = WH_GRASP_MARK;
 }
 
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
@@ -95,6 +105,9 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
         return WH_STATUS_NULL_ARGUMENT;
     }
     wh_status_t status = validate_config(config);
+    if (status == WH_OK && !wh_grasp_is_built(config, storage->bucket_count)) {
+        status = WH_STATUS_NOT_BUILT;
+    }
     if (status == WH_OK) {
         status = validate_storage(storage);
     }
@@ -132,6 +145,9 @@ wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *bas
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
     const wh_status_t status = may_place(table, wafer, base_from_wafer);
     if (status != WH_OK) {
         ++table->counters.refused;
@@ -151,6 +167,9 @@ wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *bas
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
     if (wafer >= table->storage.wafer_count) {
         return WH_STATUS_OUT_OF_RANGE;
     }
@@ -166,6 +185,9 @@ wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *bas
 wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafer) {
     if (!table || !wafer) {
         return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
     }
     if (gripper >= table->storage.gripper_count) {
         return WH_STATUS_OUT_OF_RANGE;
@@ -198,6 +220,9 @@ static bool names_wafer_or_none(const wh_encounter_t *encounter, size_t wafer_co
 
 bool wh_grasp_is_consistent(const wh_grasp_t *table) {
     const wh_grasp_storage_t *storage = &table->storage;
+    if (table->mark != WH_GRASP_MARK) {
+        return false;
+    }
     for (size_t w = 0; w < storage->wafer_count; ++w) {
         if (!is_paired_wafer(storage, w) || storage->wafers[w].released_by != WH_NONE) {
             return false;

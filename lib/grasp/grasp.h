@@ -9,6 +9,9 @@
  *   4. pick: each open, empty gripper, in the order of their indices, takes of the ready wafers that nobody
  *      holds the one with the smallest |dr_proj_z|, of equal ones the lowest index. gripper_from_wafer is
  *      stored as it is: nothing jumps.
+ * Rotations are mended where they would wander off: that of gripper_from_wafer is brought to the nearest
+ * orthonormal one at the pick, that of a carried wafer when it no longer passes wh_pose_validate. Each moves
+ * an entry by a few times WH_ROTATION_TOLERANCE at most, and by rounding alone where the inputs are exact.
  * So a wafer passes from one gripper to the next within the step in which the first closes, and is never free
  * in between.
  *
@@ -22,6 +25,21 @@
  * Memory is the caller's; nothing is allocated, nothing is static, a table may be copied or moved by its
  * owner together with its arrays. Calls on one table must not overlap; different tables are independent.
  * Every call that fails leaves the table as it was, but for `counters.refused`.
+ *
+ * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
+ * (tests/verify/footprint; "sampled" is a step without swept checking and without buckets):
+ *                                             M7 -O2    -Os  M4F -O2    -Os
+ *     stack of wh_grasp_init                   308    200     212    112
+ *     stack of wh_grasp_step                   616    776     380    452
+ *     stack of wh_grasp_step:sampled_indexed    340    384     324    352
+ *     stack of wh_grasp_step:sampled           248    384     232    264
+ *     stack of wh_grasp_place                   92    200      76    112
+ *     stack of wh_grasp_hash                    44     76      44     72
+ *     size of wh_grasp_t                       136            120
+ *     size of wh_wafer_t                       104             56
+ *     size of wh_gripper_t                     440            248
+ *     size of wh_gripper_input_t               104             52
+ *     size of wh_event_t                       200            128
  */
 #ifndef WH_GRASP_GRASP_H
 #define WH_GRASP_GRASP_H
@@ -42,8 +60,8 @@ typedef struct {
     /* Draw a wafer onto the pads at the pick, as vacuum does: z of gripper_from_wafer becomes 0 and the wafer
      * turns by the smallest rotation that takes n1 to n2. */
     bool seat;
-    /* The neighbourhood for near misses, mm: |dr_proj_z| < near_projz and |dr_proj_xy| < near_projxy; in
-     * (0, 1e6]. */
+    /* The neighbourhood for near misses (see WH_EVENT_NEAR_MISS), mm: |dr_proj_z| < near_projz and
+     * |dr_proj_xy| < near_projxy; in (0, 1e6]. */
     wh_real_t near_projz, near_projxy;
 } wh_grasp_config_t;
 
@@ -103,10 +121,17 @@ typedef struct {
     wh_grasp_storage_t storage;
     uint64_t slice; /* steps done */
     wh_grasp_counters_t counters;
+    uint32_t mark; /* WH_GRASP_MARK once wh_grasp_init has set the table up */
 } wh_grasp_t;
 
+/* Each call that returns a status refuses a table without this mark (WH_STATUS_NOT_INITIALISED) and reads and
+ * changes nothing else of it. So a zeroed table is refused, and one in memory that held anything else, but
+ * for one bit pattern in 2^32. The mark does not show that a table was overwritten later beside it, that the
+ * arrays are gone, or that a table was copied without its arrays: see wh_grasp_is_consistent. */
+#define WH_GRASP_MARK UINT32_C(0x77a6e57d)
+
 /* How many buckets a table of these counts needs: 5 for each wafer, 4 for each gripper and 8. 0 above
- * INT32_MAX / 16 wafers or grippers: such a table can have none. */
+ * INT32_MAX / 16 wafers or grippers, and in a library without an index: such a table can have none. */
 size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) WH_SYMBOL(wh_grasp_buckets);
 
 /* The same as a constant, for an array. */
@@ -118,18 +143,20 @@ wh_grasp_config_t wh_grasp_config_default(void) WH_SYMBOL(wh_grasp_config_defaul
 
 /* Sets up a table: all wafers free where storage->wafers has them, all grippers empty and closed. Refuses
  * null pointers (an array may be null when its count is 0), counts above INT32_MAX, fewer buckets than
- * wh_grasp_buckets says but not 0, invalid wafer poses and configurations outside the ranges above; table and
- * arrays are then unchanged. Cost: linear in wafers and grippers. */
+ * wh_grasp_buckets says but not 0, invalid wafer poses, configurations outside the ranges above, and swept
+ * checking or buckets if the library was built without them (WH_STATUS_NOT_BUILT); table and arrays are then
+ * unchanged. Cost: linear in wafers and grippers. */
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
                           const wh_grasp_storage_t *storage) WH_SYMBOL(wh_grasp_init);
 
-/* One slice, as described at the top. `inputs` has one entry for each gripper. `list` receives the events, in
- * the order picks and hand-overs, releases, near misses and contests, each by gripper; null: not wanted.
- * Refused, and the table left as it was: a null table or inputs (WH_STATUS_NULL_ARGUMENT), a list with room
- * for fewer than WH_EVENTS_PER_GRIPPER events for each gripper (WH_STATUS_BAD_CAPACITY), a pose that does not
- * pass wh_pose_validate, a valve that is neither 0 nor 1; the last two also yield the one event
+/* One slice, as described at the top. `inputs` has one entry for each gripper. `list` receives the events,
+ * in the order picks and hand-overs, releases, near misses and contests, each by gripper; null: not wanted.
+ * Refused, and the table left as it was: a null table, null inputs unless there is no gripper, a list with
+ * a capacity and null events (WH_STATUS_NULL_ARGUMENT), a list with room for fewer than
+ * WH_EVENTS_PER_GRIPPER events for each gripper (WH_STATUS_BAD_CAPACITY), a pose that does not pass
+ * wh_pose_validate, a valve that is neither 0 nor 1; the last two also yield the one event
  * WH_EVENT_BAD_INPUT, the others leave the list empty. Cost: linear in grippers. Each open, empty gripper
- * adds a look at each other gripper's wafer and two checks of every wafer, at about a dozen products each.
+ * adds a look at each other gripper's wafer and a check of every wafer, two where one is near, at 3 products each for a wafer too high or too low.
  * With buckets it adds less than a dozen products instead while it is within its horizon; beyond it two
  * searches of the wafers around it, which do not depend on how many there are elsewhere; and the checks of
  * all wafers only where it goes very far in one slice or most wafers are around it. A release adds a search
@@ -138,8 +165,8 @@ wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, w
     WH_SYMBOL(wh_grasp_step);
 
 /* Puts a free wafer somewhere else, as a test or an operator may. Refuses a held wafer (WH_STATUS_HELD), an
- * index out of range and an invalid pose. Its near misses so far are forgotten. Cost: linear in grippers, and
- * with buckets a search through the wafers of one cell. */
+ * index out of range, null pointers and an invalid pose. Its near misses so far are forgotten. Cost: linear
+ * in grippers, and with buckets a search through the wafers of one cell. */
 wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer)
     WH_SYMBOL(wh_grasp_place);
 
@@ -157,17 +184,17 @@ wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafe
  *   - a gripper's wafer is WH_NONE, or a wafer whose holder is this gripper: no gripper has two wafers;
  *   - `approach` and `contest` of each gripper name a wafer of the table or WH_NONE;
  *   - `released_by` of each wafer is WH_NONE.
- * For tests, and for a firmware that fears that others write into its memory. The table is one that
- * wh_grasp_init accepted. Cost: linear in wafers and grippers. With -DWH_DEBUG_TABLE each call that changes a
+ * False if the table is not initialised. For tests, and for a firmware that fears that others write into its
+ * memory. Cost: linear in wafers and grippers. With -DWH_DEBUG_TABLE each call that changes a
  * table asserts it at its end. */
 bool wh_grasp_is_consistent(const wh_grasp_t *table) WH_SYMBOL(wh_grasp_is_consistent);
 
 /* 64 bits over everything that the next step depends on, so equal hashes mean equal runs from here on: the
  * number of steps; for each wafer its pose (R row by row, r) and holder; for each gripper its pose, valve,
- * wafer, gripper_from_wafer while it holds one, then approach and contest: wafer, and while there is one also
- * holder, slice and dr, n1_proj_n2, dr_proj_z, dr_proj_xy, dr_proj_xy_norm. Configuration, counters and
- * buckets are left out. Each number enters as a 64-bit word w, reals by the bits of their type, integers in
- * two's complement:
+ * wafer, gripper_from_wafer while it holds one, then approach and contest: wafer, and while there is one
+ * also holder, slice and dr, n1_proj_n2, dr_proj_z, dr_proj_xy, dr_proj_xy_norm. Configuration, counters
+ * and buckets are left out. Nothing is checked. Each number enters as a 64-bit word w, reals by the bits of
+ * their type, integers in two's complement:
  *
  *     h = 0x6a09e667f3bcc908
  *     for each w:  h = (h ^ w) * 0x9e3779b97f4a7c15;  h = h ^ (h >> 32)

@@ -58,6 +58,10 @@ wh_hold_t wh_hold_judge(const wh_pads_t *pads, wh_real_t level, const wh_mat3_t 
         hold.asked = wh_vec3_norm(&across);
         hold.carried = pads->friction * (drawn + along);
     }
+    if (!wh_real_is_finite(hold.asked + hold.carried)) {
+        hold.asked = WH_REAL_LARGEST;
+        hold.carried = 0;
+    }
     hold.slips = hold.asked > hold.carried;
     return hold;
 }

@@ -7,8 +7,9 @@
  *
  * where the bracket, times m, is the force between wafer and pads. When that would be negative, the wafer
  * lifts off: -(a - g).n > force * level / m. Both are told as an acceleration asked for and one that is
- * carried, in mm/s^2; the wafer slips if and only if the first is above the second. It is named only: the
- * wafer goes on with its gripper.
+ * carried, in mm/s^2; the wafer slips if and only if the first is above the second. An acceleration beyond
+ * all numbers slips, too: the largest number against 0. A slip is named only: the wafer goes on with its
+ * gripper.
  */
 #ifndef WH_GRASP_HOLD_H
 #define WH_GRASP_HOLD_H

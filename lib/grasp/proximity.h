@@ -57,8 +57,9 @@ const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance) WH_SYMB
 wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance) WH_SYMBOL(wh_tolerance_validate);
 
 /* Measures, for a person: all values, margins and reasons. Refuses null pointers, poses that do not pass
- * wh_pose_validate and bad tolerances; `result` is then unchanged. Cost: about 100 products and a square
- * root. */
+ * wh_pose_validate, bad tolerances, and poses so far apart that the square of their distance is no number
+ * (WH_STATUS_NOT_FINITE: about 1e154 mm, 1e19 in float); `result` is then unchanged. Cost: about 100
+ * products and a square root. */
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
                                  const wh_tolerance_t *tolerance, wh_proximity_t *result)
     WH_SYMBOL(wh_proximity_measure);
@@ -77,15 +78,16 @@ static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh
     if (!(wh_real_abs(wh_vec3_dot(&dr, &n1)) < tolerance->projz)) {
         return false;
     }
-    wh_real_t square = 0;
-    for (size_t i = 0; i < 2; ++i) {
-        const wh_real_t along = w->m[0][i] * dr.x + w->m[1][i] * dr.y + w->m[2][i] * dr.z;
-        /* (1)-(8) never look at the gripper's first two axes: a NaN there comes in as what must be zero. */
-        const wh_real_t unused = g->m[0][i] + g->m[1][i] + g->m[2][i];
-        square += along * along + (unused - unused);
-    }
+    const wh_real_t x = w->m[0][0] * dr.x + w->m[1][0] * dr.y + w->m[2][0] * dr.z;
+    const wh_real_t y = w->m[0][1] * dr.x + w->m[1][1] * dr.y + w->m[2][1] * dr.z;
     const wh_vec3_t n2 = wh_mat3_column(g, 2);
-    return wh_real_root_below(square, tolerance->projxy) && wh_vec3_dot(&n1, &n2) > tolerance->planar;
+    if (!wh_real_root_below(x * x + y * y, tolerance->projxy) ||
+        !(wh_vec3_dot(&n1, &n2) > tolerance->planar)) {
+        return false;
+    }
+    /* (1)-(8) never look at the lengths of the gripper's first two axes: a NaN there shows in their product. */
+    const wh_real_t across = g->m[0][0] * g->m[0][1] + g->m[1][0] * g->m[1][1] + g->m[2][0] * g->m[2][1];
+    return across - across == 0;
 }
 
 /* Margins, failed conditions and verdict anew from the values (1)-(5) that `measured` holds, as when they

@@ -1,5 +1,6 @@
 #include "restore.h"
 
+#include "grasp_internal.h"
 #include "index_internal.h"
 
 static bool is_index_or_none(int32_t index, size_t count) {
@@ -33,6 +34,29 @@ static wh_status_t check_encounter(const wh_grasp_t *table, const wh_encounter_t
     return measured_is_finite(&encounter->measured) ? WH_OK : WH_STATUS_NOT_FINITE;
 }
 
+/* True if the numbers are as near to each other as rounding and rotations that just pass wh_pose_validate let
+ * them be; `size` is the largest number that went in. False if a number is not finite. */
+static bool is_same(wh_real_t a, wh_real_t b, wh_real_t size) {
+    return wh_real_abs(a - b) <= 16 * WH_ROTATION_TOLERANCE * size;
+}
+
+static bool is_same_place(const wh_vec3_t *a, const wh_vec3_t *b, wh_real_t reach) {
+    return is_same(a->x, b->x, reach + wh_real_abs(b->x)) && is_same(a->y, b->y, reach + wh_real_abs(b->y)) &&
+           is_same(a->z, b->z, reach + wh_real_abs(b->z));
+}
+
+/* True if a held wafer is where its gripper carries it. */
+static bool is_carried(const wh_tolerance_t *tolerance, const wh_wafer_t *wafer,
+                       const wh_gripper_t *gripper) {
+    wh_pose_t carried;
+    wh_pose_compose_to(&gripper->base_from_gripper, &gripper->gripper_from_wafer, &carried);
+    bool same = is_same_place(&wafer->base_from_wafer.r, &carried.r, tolerance->projz + tolerance->projxy);
+    for (size_t i = 0; i < 9; ++i) {
+        same = same && is_same(wafer->base_from_wafer.R.m[i / 3][i % 3], carried.R.m[i / 3][i % 3], 1);
+    }
+    return same;
+}
+
 static wh_status_t check_wafer(const wh_grasp_t *table, size_t w, const wh_wafer_t wafers[],
                                const wh_gripper_t grippers[]) {
     const int32_t holder = wafers[w].holder;
@@ -40,7 +64,10 @@ static wh_status_t check_wafer(const wh_grasp_t *table, size_t w, const wh_wafer
         (holder != WH_NONE && grippers[holder].wafer != (int32_t)w)) {
         return WH_STATUS_OUT_OF_RANGE;
     }
-    return wh_pose_validate(&wafers[w].base_from_wafer);
+    const wh_status_t status = wh_pose_validate(&wafers[w].base_from_wafer);
+    const bool placed = status != WH_OK || holder == WH_NONE ||
+                        is_carried(&table->config.tolerance, &wafers[w], &grippers[holder]);
+    return placed ? status : WH_STATUS_OUT_OF_RANGE;
 }
 
 /* A wafer is taken within the tolerances. One held from much farther off could be carried beyond all finite
@@ -110,6 +137,12 @@ static wh_status_t check_all(const wh_grasp_t *table, uint64_t slice, const wh_w
     if ((!wafers && table->storage.wafer_count > 0) || (!grippers && table->storage.gripper_count > 0)) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    if (!wh_grasp_is_built(&table->config, table->storage.bucket_count)) {
+        return WH_STATUS_NOT_BUILT;
+    }
+    if (slice > INT64_MAX) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
     const wh_status_t status = check_grippers(table, slice, wafers, grippers);
     return status == WH_OK ? check_wafers(table, wafers, grippers) : status;
 }
@@ -153,6 +186,9 @@ wh_status_t wh_grasp_restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t
                              const wh_gripper_t grippers[]) {
     if (!table) {
         return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (table->mark != WH_GRASP_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
     }
     const wh_status_t status = check_all(table, slice, wafers, grippers);
     if (status != WH_OK) {

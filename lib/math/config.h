@@ -18,6 +18,27 @@
 #define WH_TEXT(tokens) WH_TEXT_(tokens)
 #define WH_TEXT_(tokens) #tokens
 
+/* What a firmware does without is not linked at all. Define one of these or both, for the library and for all
+ * that includes its headers alike: on the command line, or in a header of your own that WH_CONFIG_FILE names,
+ * as in -DWH_CONFIG_FILE='"our_waferhand.h"'. By default nothing is left out. What remains has the same bits
+ * and the same hash. A library that was built without something ends its symbols by it, so that it does not
+ * link with headers that have it.
+ *   WH_WITHOUT_SWEEP   no swept checking: wh_grasp_init refuses WH_CHECK_SWEPT (WH_STATUS_NOT_BUILT)
+ *   WH_WITHOUT_INDEX   no index over the wafers: wh_grasp_init refuses buckets, wh_grasp_buckets says 0 */
+#if defined(WH_CONFIG_FILE)
+#include WH_CONFIG_FILE
+#endif
+#if defined(WH_WITHOUT_SWEEP)
+#define WH_SWEEP_BUILT false
+#else
+#define WH_SWEEP_BUILT true
+#endif
+#if defined(WH_WITHOUT_INDEX)
+#define WH_INDEX_BUILT false
+#else
+#define WH_INDEX_BUILT true
+#endif
+
 /* The same inputs must give the same bits on every machine, which these builds cannot hold. Nor can one that
  * fuses products and sums, which no macro tells: build everything that includes these headers with
  * -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION, as pkg-config, CMake and meson do. */
@@ -47,6 +68,16 @@ typedef double wh_real_t;
 #define WH_SYMBOL_NUMBER "d"
 #endif
 
+/* True where numbers are computed by software: there a comparison that saves a product pays. Changes no
+ * result. */
+#if defined(__ARM_ARCH) && (!defined(__ARM_FP) || (!defined(WH_FLOAT) && (__ARM_FP & 8) == 0))
+#define WH_REAL_IS_SLOW true
+#elif defined(__riscv) && (!defined(__riscv_flen) || (!defined(WH_FLOAT) && __riscv_flen < 64))
+#define WH_REAL_IS_SLOW true
+#else
+#define WH_REAL_IS_SLOW false
+#endif
+
 /* A literal of the library's number type. */
 #define WH_REAL(literal) ((wh_real_t)(literal))
 
@@ -66,8 +97,15 @@ typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : 
 
 /* Goes up when a struct or a function changes so that headers and library of two versions do not fit. */
 #define WH_ABI 2
+
 /* What the library is built without, as its symbols end. */
-#if !defined(WH_SYMBOL_FEATURES)
+#if defined(WH_WITHOUT_SWEEP) && defined(WH_WITHOUT_INDEX)
+#define WH_SYMBOL_FEATURES _without_sweep_index
+#elif defined(WH_WITHOUT_SWEEP)
+#define WH_SYMBOL_FEATURES _without_sweep
+#elif defined(WH_WITHOUT_INDEX)
+#define WH_SYMBOL_FEATURES _without_index
+#else
 #define WH_SYMBOL_FEATURES /* nothing: complete */
 #endif
 

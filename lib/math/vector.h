@@ -53,6 +53,13 @@ static inline bool wh_real_root_below(wh_real_t square, wh_real_t limit) {
     return wh_real_sqrt(square) < limit;
 }
 
+/* The largest finite number. */
+#if defined(WH_FLOAT)
+#define WH_REAL_LARGEST FLT_MAX
+#else
+#define WH_REAL_LARGEST DBL_MAX
+#endif
+
 /* Neither NaN nor infinite. */
 static inline bool wh_real_is_finite(wh_real_t a) {
     return a - a == 0;

@@ -16,6 +16,23 @@ bool wh_fault_is_of_wafer(wh_fault_kind_t kind) {
     return kind >= WH_FAULT_WAFER_MISSING;
 }
 
+/* Below everything in a cell, mm. */
+#define FAR_BELOW WH_REAL(-1e5)
+
+wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, int64_t from, int64_t until) {
+    wh_fault_t fault;
+    memset(&fault, 0, sizeof fault);
+    fault.kind = kind;
+    fault.target = kind == WH_FAULT_COMMAND_LOST ? WH_NONE : target;
+    fault.other = WH_NONE;
+    fault.value = kind == WH_FAULT_SLOW_VACUUM || kind == WH_FAULT_LEAK ? value : 0;
+    fault.offset = wh_pose_identity();
+    fault.offset.r.z = kind == WH_FAULT_WAFER_MISSING ? FAR_BELOW : 0;
+    fault.from = from;
+    fault.until = until;
+    return fault;
+}
+
 static bool names_fit(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count) {
     if (fault->kind == WH_FAULT_COMMAND_LOST) {
         return fault->target == WH_NONE && fault->other == WH_NONE;
@@ -45,6 +62,9 @@ static bool offset_fits(const wh_vec3_t *r) {
 }
 
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count) {
+    if (!fault) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
     if ((unsigned)fault->kind >= WH_FAULT_KINDS || !names_fit(fault, gripper_count, wafer_count) ||
         !value_fits(fault) || fault->from < 1 || fault->until < 0) {
         return WH_STATUS_OUT_OF_RANGE;
@@ -64,7 +84,13 @@ static bool slot_fits(const wh_fault_slot_t *slot, size_t gripper_count, size_t 
 }
 
 wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, size_t wafer_count) {
-    bool good = faults->count <= WH_FAULTS;
+    if (!faults) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (faults->count > WH_FAULTS) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    bool good = true;
     for (size_t i = 0; good && i < faults->count; ++i) {
         good = slot_fits(&faults->slots[i], gripper_count, wafer_count);
     }
@@ -103,6 +129,9 @@ static bool may_take(const wh_faults_t *faults, const wh_fault_request_t *reques
 wh_status_t wh_faults_check(const wh_faults_t *faults, const wh_fault_request_t requests[], size_t count,
                             size_t gripper_count, size_t wafer_count) {
     uint32_t named = 0;
+    if (!faults || (!requests && count > 0)) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
     for (size_t i = 0; i < count; ++i) {
         const wh_fault_request_t *request = &requests[i];
         if (!may_take(faults, request) || (named >> (unsigned)request->index & 1U) != 0) {
@@ -260,6 +289,11 @@ void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, cons
     }
 }
 
+/* No bit for a gripper that no command has. */
+static uint32_t sensor_of(int32_t gripper) {
+    return wh_is_index(gripper, WH_GRIPPERS) ? UINT32_C(1) << (unsigned)gripper : 0;
+}
+
 uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors) {
     for (size_t i = 0; i < faults->count; ++i) {
         const wh_fault_t *fault = &faults->slots[i].fault;
@@ -267,9 +301,9 @@ uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors) {
             continue;
         }
         if (fault->kind == WH_FAULT_SENSOR_ON) {
-            sensors |= 1U << (unsigned)fault->target;
+            sensors |= sensor_of(fault->target);
         } else if (fault->kind == WH_FAULT_SENSOR_OFF) {
-            sensors &= ~(1U << (unsigned)fault->target);
+            sensors &= ~sensor_of(fault->target);
         }
     }
     return sensors;

@@ -7,13 +7,19 @@
 wh_physics_t wh_physics_default(void) {
     wh_physics_t physics;
     memset(&physics, 0, sizeof physics);
-    physics.slice_s = WH_REAL(0.001);
+    physics.slice_s = WH_SLICE_S;
     physics.vacuum = wh_vacuum_ideal();
     physics.pads = wh_pads_none();
     return physics;
 }
 
 wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count) {
+    if (!physics) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (gripper_count > WH_GRIPPERS) {
+        return WH_STATUS_BAD_CAPACITY;
+    }
     const bool sliced = physics->slice_s > 0 && physics->slice_s <= 1;
     const bool fits = sliced && physics->fault_count <= WH_FAULTS;
     wh_status_t status = fits ? wh_vacuum_validate(&physics->vacuum) : WH_STATUS_OUT_OF_RANGE;
@@ -32,7 +38,7 @@ void wh_physics_state_start(wh_physics_state_t *state, const wh_physics_t *physi
         state->vacuum[g] = wh_vacuum_start();
         state->told[g] = WH_VALVE_CLOSED;
     }
-    for (size_t i = 0; i < physics->fault_count; ++i) {
+    for (size_t i = 0; physics && i < physics->fault_count; ++i) {
         const wh_fault_request_t request = {(int32_t)i, physics->faults[i]};
         wh_faults_take(&state->faults, &request, 1);
     }
@@ -63,6 +69,12 @@ static wh_status_t check_gripper(const wh_physics_state_t *state, size_t g) {
 
 wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gripper_count,
                                       size_t wafer_count) {
+    if (!state) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (gripper_count > WH_GRIPPERS) {
+        return WH_STATUS_BAD_CAPACITY;
+    }
     for (size_t g = 0; g < gripper_count; ++g) {
         const wh_status_t status = check_gripper(state, g);
         if (status != WH_OK) {
@@ -74,7 +86,7 @@ wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gr
 
 uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t gripper_count) {
     uint32_t sensors = 0;
-    for (size_t g = 0; g < gripper_count; ++g) {
+    for (size_t g = 0; g < gripper_count && g < WH_GRIPPERS; ++g) {
         sensors |= state->vacuum[g].on ? 1U << g : 0U;
     }
     return wh_faults_sensors(&state->faults, sensors);
@@ -82,8 +94,11 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
 
 /* --------------------------------------------------------------------------------------------------- hash */
 
-static uint64_t hash_head(uint64_t hash, int32_t section, size_t index) {
-    return wh_hash_int(wh_hash_int(hash, section), (int32_t)index);
+static uint64_t hash_ints(uint64_t hash, const int32_t values[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        hash = wh_hash_int(hash, values[i]);
+    }
+    return hash;
 }
 
 static bool is_plain(const wh_vacuum_t *vacuum, const wh_gripper_t *gripper) {
@@ -91,25 +106,27 @@ static bool is_plain(const wh_vacuum_t *vacuum, const wh_gripper_t *gripper) {
     return vacuum->command == gripper->valve && vacuum->on == holds && vacuum->level == (holds ? 1 : 0);
 }
 
-static uint64_t hash_vacuum(uint64_t hash, const wh_vacuum_t *vacuum) {
+static uint64_t hash_vacuum(uint64_t hash, size_t g, const wh_vacuum_t *vacuum) {
+    const int32_t head[] = {1, (int32_t)g};
+    const int32_t rest[] = {vacuum->command, vacuum->on ? 1 : 0};
+    hash = hash_ints(hash, head, 2);
     hash = wh_hash_real(hash, vacuum->level);
-    hash = wh_hash_int(hash, vacuum->command);
-    return wh_hash_int(hash, vacuum->on ? 1 : 0);
+    return hash_ints(hash, rest, 2);
 }
 
-static uint64_t hash_carry(uint64_t hash, const wh_carry_t *carry) {
-    hash = wh_hash_int(hash, carry->known);
+static uint64_t hash_carry(uint64_t hash, size_t g, const wh_carry_t *carry) {
+    const int32_t head[] = {2, (int32_t)g, carry->known};
+    hash = hash_ints(hash, head, 3);
     hash = wh_hash_vec3(hash, &carry->before[0]);
     hash = wh_hash_vec3(hash, &carry->before[1]);
     return wh_hash_int(hash, carry->slips ? 1 : 0);
 }
 
-static uint64_t hash_slot(uint64_t hash, const wh_fault_slot_t *slot) {
+static uint64_t hash_slot(uint64_t hash, size_t i, const wh_fault_slot_t *slot) {
     const wh_fault_t *fault = &slot->fault;
-    hash = wh_hash_int(hash, (int32_t)slot->phase);
-    hash = wh_hash_int(hash, (int32_t)fault->kind);
-    hash = wh_hash_int(hash, fault->target);
-    hash = wh_hash_int(hash, fault->other);
+    const int32_t head[] = {
+        3, (int32_t)i, (int32_t)slot->phase, (int32_t)fault->kind, fault->target, fault->other};
+    hash = hash_ints(hash, head, 6);
     hash = wh_hash_real(hash, fault->value);
     hash = wh_hash_pose(hash, &fault->offset);
     hash = wh_hash_word(hash, (uint64_t)fault->from);
@@ -119,20 +136,22 @@ static uint64_t hash_slot(uint64_t hash, const wh_fault_slot_t *slot) {
 }
 
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table) {
+    const size_t gripper_count =
+        table->storage.gripper_count < WH_GRIPPERS ? table->storage.gripper_count : WH_GRIPPERS;
     uint64_t hash = wh_grasp_hash(table);
-    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+    for (size_t g = 0; g < gripper_count; ++g) {
         if (!is_plain(&state->vacuum[g], &table->storage.grippers[g])) {
-            hash = hash_vacuum(hash_head(hash, 1, g), &state->vacuum[g]);
+            hash = hash_vacuum(hash, g, &state->vacuum[g]);
         }
     }
-    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+    for (size_t g = 0; g < gripper_count; ++g) {
         if (state->carry[g].known > 0) {
-            hash = hash_carry(hash_head(hash, 2, g), &state->carry[g]);
+            hash = hash_carry(hash, g, &state->carry[g]);
         }
     }
     for (size_t i = 0; i < state->faults.count; ++i) {
         if (state->faults.slots[i].phase != WH_FAULT_FREE) {
-            hash = hash_slot(hash_head(hash, 3, i), &state->faults.slots[i]);
+            hash = hash_slot(hash, i, &state->faults.slots[i]);
         }
     }
     return hash;

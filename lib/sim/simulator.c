@@ -22,24 +22,34 @@ static void take_physics(wh_simulator_t *simulator, const wh_physics_t *physics)
     wh_physics_state_start(&simulator->physics, physics);
 }
 
+static void begin(wh_simulator_t *simulator, const wh_cell_t *cell) {
+    simulator->link.exchange = exchange_by_call;
+    simulator->link.hash = hash_by_call;
+    simulator->link.missed = missed_by_call;
+    simulator->cell = *cell;
+    simulator->slice_s = WH_SLICE_S;
+    simulator->vacuum = wh_vacuum_ideal();
+    simulator->pads = wh_pads_none();
+    wh_physics_state_start(&simulator->physics, NULL);
+    simulator->event_count = 0;
+    simulator->observer = (wh_observer_t){NULL, NULL, NULL};
+    simulator->mark = WH_SIMULATOR_MARK;
+}
+
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
                               const wh_grasp_storage_t *storage, const wh_cell_t *cell) {
-    if (!simulator || !storage || !cell || (!cell->stations && cell->count > 0)) {
+    if (!simulator || !storage) {
         return WH_STATUS_NULL_ARGUMENT;
     }
     if (storage->gripper_count > WH_GRIPPERS) {
         return WH_STATUS_BAD_CAPACITY;
     }
-    const wh_status_t status = wh_grasp_init(&simulator->table, config, storage);
+    wh_status_t status = wh_cell_validate(cell, storage->gripper_count);
     if (status == WH_OK) {
-        const wh_physics_t physics = wh_physics_default();
-        simulator->link.exchange = exchange_by_call;
-        simulator->link.hash = hash_by_call;
-        simulator->link.missed = missed_by_call;
-        simulator->cell = *cell;
-        simulator->event_count = 0;
-        simulator->observer = (wh_observer_t){NULL, NULL, NULL};
-        take_physics(simulator, &physics);
+        status = wh_grasp_init(&simulator->table, config, storage);
+    }
+    if (status == WH_OK) {
+        begin(simulator, cell);
     }
     return status;
 }
@@ -47,6 +57,9 @@ wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t
 wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics_t *physics) {
     if (!simulator || !physics) {
         return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
     }
     const wh_grasp_storage_t *storage = &simulator->table.storage;
     if (simulator->table.slice > 0) {
@@ -245,8 +258,11 @@ static wh_status_t step_with_faults(wh_simulator_t *simulator, const wh_command_
     return status;
 }
 
-static wh_status_t check_faults(const wh_simulator_t *simulator, const wh_command_t *command) {
+static wh_status_t check_command(const wh_simulator_t *simulator, const wh_command_t *command) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
+    if (command->gripper_count != storage->gripper_count) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
     if (command->fault_count == 0) {
         return WH_OK;
     }
@@ -257,8 +273,7 @@ static wh_status_t check_faults(const wh_simulator_t *simulator, const wh_comman
 }
 
 static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *command) {
-    const bool fits = command->gripper_count == simulator->table.storage.gripper_count;
-    const wh_status_t status = fits ? check_faults(simulator, command) : WH_STATUS_OUT_OF_RANGE;
+    const wh_status_t status = check_command(simulator, command);
     if (status != WH_OK) {
         ++simulator->table.counters.refused;
         simulator->event_count = 0;
@@ -268,7 +283,22 @@ static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *com
                                          : step_with_faults(simulator, command);
 }
 
+static void view_nothing(wh_state_t *state) {
+    state->wafers = NULL;
+    state->wafer_count = 0;
+    state->grippers = NULL;
+    state->gripper_count = 0;
+    state->events = NULL;
+    state->event_count = 0;
+    state->sensors = 0;
+    state->physics = NULL;
+}
+
 void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) {
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        view_nothing(state);
+        return;
+    }
     const wh_grasp_t *table = &simulator->table;
     state->wafers = table->storage.wafers;
     state->wafer_count = table->storage.wafer_count;
@@ -284,7 +314,8 @@ wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *com
     if (!simulator || !command || !state) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    state->status = step_table(simulator, command);
+    state->status =
+        simulator->mark == WH_SIMULATOR_MARK ? step_table(simulator, command) : WH_STATUS_NOT_INITIALISED;
     state->utime = command->utime;
     state->seq = command->seq;
     wh_simulator_view(simulator, state);
@@ -292,5 +323,7 @@ wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *com
 }
 
 uint64_t wh_simulator_hash(const wh_simulator_t *simulator) {
-    return wh_physics_state_hash(&simulator->physics, &simulator->table);
+    return simulator->mark == WH_SIMULATOR_MARK
+               ? wh_physics_state_hash(&simulator->physics, &simulator->table)
+               : 0;
 }

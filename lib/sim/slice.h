@@ -1,5 +1,13 @@
 /* The interface between motion control and the simulator: for each slice a command goes in and a state comes
- * out. */
+ * out.
+ *
+ * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
+ * (tests/verify/footprint):
+ *                                             M7 -O2    -Os  M4F -O2    -Os
+ *     stack of wh_command_from_track           360    352     216    216
+ *     size of wh_command_t                    1504            832
+ *     size of wh_state_t                        56             56
+ */
 #ifndef WH_SIM_SLICE_H
 #define WH_SIM_SLICE_H
 

@@ -130,6 +130,85 @@ static void there_is_no_slot_below_the_first(void **state) {
     }
 }
 
+enum { GRIPPERS = 2 };
+
+/* Gives `number` each bad value in turn, and expects the refusal. */
+static void refuse_numbers(wh_real_t *number, const double bad[], size_t count, wh_status_t status) {
+    const wh_real_t good = *number;
+    for (size_t i = 0; i < count; ++i) {
+        *number = WH_REAL(bad[i]);
+        assert_int_equal(wh_cell_validate(&cell, GRIPPERS), status);
+    }
+    *number = good;
+    assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_OK);
+}
+
+static void a_cell_has_its_ranges(void **state) {
+    (void)state;
+    static const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, -1, 1.1e6, -1e-30, 0};
+    refuse_numbers(&stations[1].pitch, bad, 7, WH_STATUS_OUT_OF_RANGE);
+    refuse_numbers(&cell.off_centre, bad, 6, WH_STATUS_OUT_OF_RANGE);
+    refuse_numbers(&cell.askew, bad, 6, WH_STATUS_OUT_OF_RANGE);
+    refuse_numbers(&cell.tolerance.projz, bad, 7, WH_STATUS_BAD_TOLERANCE);
+    refuse_numbers(&cell.tolerance.projxy, bad, 7, WH_STATUS_BAD_TOLERANCE);
+    refuse_numbers(&cell.tolerance.planar, bad, 6, WH_STATUS_BAD_TOLERANCE);
+    refuse_numbers(&stations[2].base_from_station.r.z, bad, 3, WH_STATUS_NOT_FINITE);
+    refuse_numbers(&stations[2].base_from_station.R.m[1][1], bad + 3, 2, WH_STATUS_NOT_A_ROTATION);
+    cell.off_centre = WH_REAL(1e6);
+    cell.askew = 10;
+    stations[0].pitch = WH_REAL(1e6);
+    stations[1].pitch = WH_REAL(1e-30);
+    assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_OK);
+}
+
+static void a_station_has_slots_and_perhaps_a_chuck(void **state) {
+    (void)state;
+    static const int32_t slots[] = {0, -1, INT32_MIN, 1001, INT32_MAX};
+    static const int32_t chucks[] = {-2, INT32_MIN, GRIPPERS, INT32_MAX};
+    for (size_t i = 0; i < 5; ++i) {
+        stations[0].slots = slots[i];
+        assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_STATUS_OUT_OF_RANGE);
+    }
+    stations[0].slots = 1000;
+    assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_OK);
+    for (size_t i = 0; i < 4; ++i) {
+        stations[2].chuck = chucks[i];
+        assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_STATUS_OUT_OF_RANGE);
+    }
+    stations[2].chuck = 0;
+    assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_OK);
+    assert_int_equal(wh_cell_validate(&cell, 0), WH_STATUS_OUT_OF_RANGE);
+}
+
+static void a_cell_needs_the_stations_that_it_counts(void **state) {
+    (void)state;
+    assert_int_equal(wh_cell_validate(NULL, GRIPPERS), WH_STATUS_NULL_ARGUMENT);
+    cell.count = (size_t)INT32_MAX + 1;
+    assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_STATUS_BAD_CAPACITY);
+    cell.count = 1;
+    cell.stations = NULL;
+    assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_STATUS_NULL_ARGUMENT);
+    cell.count = 0;
+    assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_OK);
+    memset(&cell.tolerance, 0, sizeof cell.tolerance); /* by which nothing is judged then */
+    assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_OK);
+}
+
+/* The largest numbers that a cell may have neither trap nor are taken for near. */
+static void huge_cells_are_cells(void **state) {
+    (void)state;
+    const double far = (double)WH_TEST_LARGEST;
+    stations[0].base_from_station.r = wh_vec3(WH_REAL(far), WH_REAL(-far), WH_REAL(far));
+    stations[0].slots = 1000;
+    stations[0].pitch = WH_REAL(1e6);
+    stations[1].pitch = WH_REAL(1e-30);
+    assert_int_equal(wh_cell_validate(&cell, GRIPPERS), WH_OK);
+    const wh_pose_t opposite = wh_test_at(-far, far, -far);
+    expect_nowhere(&opposite);
+    const wh_pose_t there = stations[0].base_from_station;
+    expect_in(&there, 0, 1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(each_slot_is_found, set_up),
@@ -140,6 +219,10 @@ int main(void) {
         cmocka_unit_test_setup(the_limit_of_tilt_is_strict, set_up),
         cmocka_unit_test_setup(far_away_is_nowhere, set_up),
         cmocka_unit_test_setup(there_is_no_slot_below_the_first, set_up),
+        cmocka_unit_test_setup(a_cell_has_its_ranges, set_up),
+        cmocka_unit_test_setup(a_station_has_slots_and_perhaps_a_chuck, set_up),
+        cmocka_unit_test_setup(a_cell_needs_the_stations_that_it_counts, set_up),
+        cmocka_unit_test_setup(huge_cells_are_cells, set_up),
         cmocka_unit_test_setup(the_nearer_of_two_stations_and_of_equal_ones_the_first, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,8 @@
 /* Never a surprise: what is wrong is refused, and the state is what it was, byte for byte. */
 #include "support/grasp.h"
 
+#include "grasp/restore.h"
+
 /* A cell in the middle of things: a wafer held, an approach and a contest under way. */
 static void begin_busy(cell_t *cell) {
     cell_begin_default(cell);
@@ -242,6 +244,55 @@ static void questions_are_checked(void **state) {
     assert_int_equal(wh_grasp_wafer(&cell.table, 0, NULL, NULL), WH_OK);
 }
 
+/* No byte of the table changes, and no array that it seems to have is looked at. */
+static void expect_not_initialised(wh_grasp_t *table) {
+    const wh_gripper_input_t input = {wh_pose_identity(), OPEN};
+    const wh_pose_t pose = wh_test_at(7, 7, 7);
+    wh_pose_t where = pose;
+    int32_t index = 77;
+    wh_event_list_t list = {NULL, 0, 9};
+    wh_wafer_t wafer = {pose, WH_NONE, WH_NONE};
+    wh_gripper_t gripper;
+    wh_grasp_t before;
+    memset(&gripper, 0, sizeof gripper);
+    memcpy(&before, table, sizeof before);
+    assert_int_equal(wh_grasp_step(table, &input, &list), WH_STATUS_NOT_INITIALISED);
+    assert_int_equal(list.count, 0);
+    assert_int_equal(wh_grasp_step(table, NULL, NULL), WH_STATUS_NOT_INITIALISED);
+    assert_int_equal(wh_grasp_place(table, 0, &pose), WH_STATUS_NOT_INITIALISED);
+    assert_int_equal(wh_grasp_restore(table, 1, &wafer, &gripper), WH_STATUS_NOT_INITIALISED);
+    assert_int_equal(wh_grasp_wafer(table, 0, &where, &index), WH_STATUS_NOT_INITIALISED);
+    assert_int_equal(wh_grasp_held(table, 0, &index), WH_STATUS_NOT_INITIALISED);
+    assert_false(wh_grasp_is_consistent(table));
+    assert_int_equal(index, 77);
+    assert_true(where.r.x == 7);
+    assert_memory_equal(table, &before, sizeof before);
+}
+
+static void a_table_that_was_never_initialised_is_refused(void **state) {
+    (void)state;
+    static const int bytes[] = {0, 0xff, 0x5a, 0x77, 1};
+    wh_grasp_t table;
+    for (size_t i = 0; i < sizeof bytes / sizeof bytes[0]; ++i) {
+        memset(&table, bytes[i], sizeof table);
+        expect_not_initialised(&table);
+    }
+    for (int i = 0; i < 1000; ++i) {
+        uint8_t noise[sizeof table];
+        for (size_t k = 0; k < sizeof noise; ++k) {
+            noise[k] = (uint8_t)wh_test_random();
+        }
+        memcpy(&table, noise, sizeof table);
+        expect_not_initialised(&table);
+    }
+    wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t nothing = {NULL, 0, NULL, 0, NULL, 0};
+    config.near_projz = -1;
+    memset(&table, 0, sizeof table);
+    assert_int_equal(wh_grasp_init(&table, &config, &nothing), WH_STATUS_BAD_TOLERANCE);
+    expect_not_initialised(&table);
+}
+
 static void empty_tables_work(void **state) {
     (void)state;
     wh_grasp_t table;
@@ -273,7 +324,7 @@ static void huge_numbers_are_far_away(void **state) {
     const double huge = DBL_MAX;
 #endif
     wh_grasp_config_t config = wh_grasp_config_default();
-    config.check = WH_CHECK_SWEPT;
+    config.check = SWEPT_IF_BUILT;
     cell_t cell;
     cell_begin(&cell, &config);
     cell_place(&cell, 0, huge, huge, huge);
@@ -301,6 +352,7 @@ int main(void) {
         cmocka_unit_test(a_list_changes_nothing),
         cmocka_unit_test(place_refuses),
         cmocka_unit_test(questions_are_checked),
+        cmocka_unit_test(a_table_that_was_never_initialised_is_refused),
         cmocka_unit_test(empty_tables_work),
         cmocka_unit_test(huge_numbers_are_far_away),
     };

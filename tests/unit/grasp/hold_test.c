@@ -231,6 +231,27 @@ static void without_a_wafer_nothing_is_known(void **state) {
     assert_true(hold.asked == 0 && hold.carried == 0 && !hold.slips);
 }
 
+/* A gripper that goes from one end of the numbers to the other, or as far as leaves none. */
+static void a_motion_beyond_all_numbers_slips(void **state) {
+    (void)state;
+    const wh_pads_t rubber = {WH_REAL(0.3), 10, WH_REAL(0.13), WH_REAL(9.81)};
+    const wh_mat3_t level = wh_mat3_identity();
+    const wh_real_t far = WH_REAL_LARGEST;
+    const wh_vec3_t accelerations[] = {{far, 0, 0},
+                                       {far, far, far},
+                                       {-far, far, -far},
+                                       {(wh_real_t)INFINITY, 0, 0},
+                                       {0, 0, (wh_real_t)INFINITY},
+                                       {0, (wh_real_t)INFINITY, -(wh_real_t)INFINITY},
+                                       {(wh_real_t)NAN, 0, 0},
+                                       {0, 0, (wh_real_t)NAN}};
+    for (size_t i = 0; i < sizeof accelerations / sizeof accelerations[0]; ++i) {
+        const wh_hold_t hold = wh_hold_judge(&rubber, 1, &level, &accelerations[i]);
+        assert_true(hold.slips);
+        assert_true(hold.asked == WH_REAL_LARGEST && wh_real_is_finite(hold.carried));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(the_mass_of_silicon, set_up),
@@ -247,6 +268,7 @@ int main(void) {
         cmocka_unit_test_setup(acceleration_along_each_axis, set_up),
         cmocka_unit_test_setup(each_excursion_is_told_once, set_up),
         cmocka_unit_test_setup(without_a_wafer_nothing_is_known, set_up),
+        cmocka_unit_test(a_motion_beyond_all_numbers_slips),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -197,6 +197,48 @@ static void measure_refuses_what_it_cannot_judge(void **state) {
     assert_memory_equal(&result, &before, sizeof result);
 }
 
+/* Poses are finite, but a value or its square is no number any more. */
+static void values_beyond_all_numbers_are_refused(void **state) {
+    (void)state;
+    const wh_tolerance_t paper = wh_tolerance_paper();
+    const double large = (double)WH_TEST_LARGEST;
+    const double places[] = {1.7 / 1.8 * large, -1.7 / 1.8 * large, large, sqrt(large)};
+    wh_proximity_t result;
+    memset(&result, 0x5a, sizeof result);
+    const wh_proximity_t before = result;
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; ++i) {
+        const double p = places[i];
+        const wh_pose_t wafers[] = {wh_test_at(p, 0, 0), wh_test_at(0, -p, 0), wh_test_at(p, p, -p)};
+        for (size_t k = 0; k < 3; ++k) {
+            const wh_pose_t gripper = wh_test_pose(wh_test_random_turn(3), -p, -p, p);
+            assert_int_equal(wh_proximity_measure(&wafers[k], &gripper, &paper, &result),
+                             WH_STATUS_NOT_FINITE);
+            assert_memory_equal(&result, &before, sizeof result);
+        }
+    }
+}
+
+/* As far away as two bodies can be told apart, and where both are as far as numbers go. */
+static void far_values_are_numbers(void **state) {
+    (void)state;
+    const wh_tolerance_t paper = wh_tolerance_paper();
+    const double far = 0.5 * sqrt((double)WH_TEST_LARGEST);
+    for (int i = 0; i < 1000; ++i) {
+        const wh_pose_t wafer = wh_test_random_pose(far / 4);
+        const wh_pose_t gripper = wh_test_random_pose(far / 4);
+        wh_proximity_t p;
+        assert_int_equal(wh_proximity_measure(&wafer, &gripper, &paper, &p), WH_OK);
+        assert_true(wh_vec3_is_finite(&p.dr) && wh_vec3_is_finite(&p.dr_proj_xy));
+        assert_true(wh_real_is_finite(p.dr_proj_z) && wh_real_is_finite(p.dr_proj_xy_norm));
+        assert_true(wh_real_is_finite(p.margin_projz) && wh_real_is_finite(p.margin_projxy));
+        assert_int_equal(p.ready, wh_proximity_ready(&wafer, &gripper, &paper));
+    }
+    const wh_pose_t edge = wh_test_at((double)WH_TEST_LARGEST, -(double)WH_TEST_LARGEST, 0);
+    wh_proximity_t p;
+    assert_int_equal(wh_proximity_measure(&edge, &edge, &paper, &p), WH_OK);
+    assert_true(p.ready);
+}
+
 static wh_status_t validated(double projz, double projxy, double planar) {
     const wh_tolerance_t t = {WH_REAL(projz), WH_REAL(projxy), WH_REAL(planar)};
     return wh_tolerance_validate(&t);
@@ -290,6 +332,8 @@ int main(void) {
         cmocka_unit_test(nan_is_never_ready),
         cmocka_unit_test(quarter_turns_are_all_the_same),
         cmocka_unit_test(measure_refuses_what_it_cannot_judge),
+        cmocka_unit_test(values_beyond_all_numbers_are_refused),
+        cmocka_unit_test(far_values_are_numbers),
         cmocka_unit_test(tolerances_have_ranges),
         cmocka_unit_test(presets_are_the_papers_and_a_stricter_one),
         cmocka_unit_test(presets_have_names),

@@ -220,6 +220,79 @@ static void each_measured_value_is_looked_at(void **state) {
     assert_int_equal(restore(&saved), WH_OK);
 }
 
+/* Puts wafer 0 where gripper 0 carries it. */
+static void carry_saved(void) {
+    saved.wafer[0].base_from_wafer =
+        wh_pose_compose(&saved.gripper[0].base_from_gripper, &saved.gripper[0].gripper_from_wafer);
+}
+
+/* Each number of its pose, off by more than rounding and by less. */
+static void a_held_wafer_is_where_its_gripper_carries_it(void **state) {
+    (void)state;
+    saved.gripper[0].base_from_gripper = wh_test_random_pose(1000);
+    carry_saved();
+    assert_int_equal(restore(&saved), WH_OK);
+    wh_pose_t *const pose = &saved.wafer[0].base_from_wafer;
+    const wh_pose_t good = *pose;
+    wh_real_t *const part[] = {&pose->r.x, &pose->r.y, &pose->r.z};
+    for (size_t i = 0; i < 3; ++i) {
+        static const double off[] = {1000, 1, 0.3, -0.3, -1e6};
+        for (size_t k = 0; k < 5; ++k) {
+            *part[i] += WH_REAL(off[k]);
+            expect_refused(&saved, WH_STATUS_OUT_OF_RANGE);
+            *pose = good;
+        }
+        *part[i] += WH_ROTATION_TOLERANCE;
+        assert_int_equal(restore(&saved), WH_OK);
+        *pose = good;
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        const wh_mat3_t turn = wh_test_rotation(i == 0, i == 1, i == 2, 0.01);
+        pose->R = wh_mat3_multiply(&turn, &good.R);
+        expect_refused(&saved, WH_STATUS_OUT_OF_RANGE);
+    }
+}
+
+/* Grippers and wafers turned anyhow, by rotations that only just are some: what a table is in may be restored. */
+static void every_carried_wafer_is_restored(void **state) {
+    (void)state;
+    for (int i = 0; i < 3000; ++i) {
+        wh_pose_t then = wh_test_random_pose(2000);
+        wh_pose_t wafer = then;
+        for (int k = 0; k < 9; ++k) {
+            const double off = 0.3 * (double)WH_ROTATION_TOLERANCE;
+            then.R.m[k / 3][k % 3] += WH_REAL(wh_test_uniform(-off, off));
+            wafer.R.m[k / 3][k % 3] += WH_REAL(wh_test_uniform(-off, off));
+        }
+        wafer.r.x += WH_REAL(wh_test_uniform(-0.2, 0.2));
+        cell_begin_default(&origin);
+        origin.table.config.seat = i % 2 == 0;
+        if (wh_grasp_place(&origin.table, 0, &wafer) != WH_OK || wh_pose_validate(&then) != WH_OK) {
+            continue;
+        }
+        origin.input[0] = (wh_gripper_input_t){then, OPEN};
+        cell_step(&origin);
+        cell_expect_held(&origin, 0, 0);
+        assert_int_equal(wh_grasp_restore(&copy.table, 1, origin.wafer, origin.gripper), WH_OK);
+        origin.input[0].base_from_gripper = wh_test_random_pose(2000);
+        cell_step(&origin);
+        assert_int_equal(wh_grasp_restore(&copy.table, 2, origin.wafer, origin.gripper), WH_OK);
+    }
+}
+
+/* Steps are counted on from there, and seq of a slice is an int64_t. */
+static void slices_have_an_end(void **state) {
+    (void)state;
+    saved.slice = UINT64_MAX;
+    expect_refused(&saved, WH_STATUS_OUT_OF_RANGE);
+    saved.slice = (uint64_t)INT64_MAX + 1;
+    expect_refused(&saved, WH_STATUS_OUT_OF_RANGE);
+    saved.slice = INT64_MAX;
+    assert_int_equal(restore(&saved), WH_OK);
+    cell_step(&copy);
+    assert_true(copy.table.slice == (uint64_t)INT64_MAX + 1);
+}
+
 /* Farther from its gripper than a check lets any be taken, a wafer could be carried to where no number is. */
 static void a_held_wafer_is_within_reach(void **state) {
     (void)state;
@@ -232,10 +305,12 @@ static void a_held_wafer_is_within_reach(void **state) {
         *part[i % 3] = sign * reach * WH_REAL(1.001);
         expect_refused(&saved, WH_STATUS_OUT_OF_RANGE);
         *part[i % 3] = sign * reach;
+        carry_saved();
         assert_int_equal(restore(&saved), WH_OK);
         *r = good;
     }
     *r = wh_vec3(reach, -reach, reach);
+    carry_saved();
     assert_int_equal(restore(&saved), WH_OK);
     copy.input[0].base_from_gripper.r = wh_vec3(WH_TEST_LARGEST, -WH_TEST_LARGEST, WH_TEST_LARGEST);
     cell_step(&copy);
@@ -254,6 +329,9 @@ int main(void) {
         cmocka_unit_test_setup(an_encounter_lies_in_the_past, set_up),
         cmocka_unit_test_setup(valves_and_poses_are_looked_at, set_up),
         cmocka_unit_test_setup(each_measured_value_is_looked_at, set_up),
+        cmocka_unit_test_setup(a_held_wafer_is_where_its_gripper_carries_it, set_up),
+        cmocka_unit_test_setup(every_carried_wafer_is_restored, set_up),
+        cmocka_unit_test_setup(slices_have_an_end, set_up),
         cmocka_unit_test_setup(a_held_wafer_is_within_reach, set_up),
     };
     (void)wh_test_seed();

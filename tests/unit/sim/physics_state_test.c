@@ -65,6 +65,72 @@ static void grippers_and_wafers_are_counted_apart(void **state) {
     assert_int_equal(wh_physics_state_validate(&condition, 1, 2), WH_STATUS_OUT_OF_RANGE);
 }
 
+/* A state has room for WH_GRIPPERS. Run under the address sanitizer, this reads nothing beyond. */
+static void more_grippers_than_there_is_room_for(void **state) {
+    (void)state;
+    static const size_t counts[] = {WH_GRIPPERS + 1, 9, 33, 1000000, SIZE_MAX};
+    wh_physics_t physics = wh_physics_default();
+    const size_t size = sizeof(wh_physics_state_t);
+    wh_physics_state_t *const alone = malloc(size);
+    assert_non_null(alone);
+    wh_physics_state_start(alone, &physics);
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        alone->vacuum[g].on = true;
+    }
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; ++i) {
+        assert_int_equal(wh_physics_state_validate(alone, counts[i], WAFERS), WH_STATUS_BAD_CAPACITY);
+        assert_int_equal(wh_physics_validate(&physics, counts[i], WAFERS), WH_STATUS_BAD_CAPACITY);
+        assert_int_equal(wh_physics_state_sensors(alone, counts[i]), (1U << WH_GRIPPERS) - 1);
+    }
+    assert_int_equal(wh_physics_state_validate(alone, WH_GRIPPERS, WAFERS), WH_OK);
+    assert_int_equal(wh_physics_validate(&physics, WH_GRIPPERS, WAFERS), WH_OK);
+    free(alone);
+}
+
+/* A table of its own may have more grippers than a simulator: the hash covers what a state can have of them. */
+static void a_large_table_has_a_hash(void **state) {
+    (void)state;
+    static wh_gripper_t many[WH_GRIPPERS + 3];
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = {wafers, WAFERS, many, WH_GRIPPERS + 3, NULL, 0};
+    wh_grasp_t table;
+    assert_int_equal(wh_grasp_init(&table, &config, &storage), WH_OK);
+    const wh_physics_t physics = wh_physics_default();
+    wh_physics_state_t *const alone = malloc(sizeof *alone);
+    assert_non_null(alone);
+    wh_physics_state_start(alone, &physics);
+    assert_true(wh_physics_state_hash(alone, &table) == wh_grasp_hash(&table));
+    free(alone);
+}
+
+static void no_sensor_is_beyond_the_last_gripper(void **state) {
+    (void)state;
+    static const int32_t targets[] = {WH_GRIPPERS, 31, 32, 99, INT32_MAX};
+    wh_faults_t faults;
+    for (size_t i = 0; i < 5; ++i) {
+        for (int off = 0; off < 2; ++off) {
+            wh_faults_clear(&faults);
+            faults.count = 1;
+            faults.slots[0].phase = WH_FAULT_ACTING;
+            faults.slots[0].fault = fault_of(off ? WH_FAULT_SENSOR_OFF : WH_FAULT_SENSOR_ON, targets[i]);
+            assert_int_equal(wh_faults_sensors(&faults, 5), 5);
+        }
+    }
+}
+
+static void null_is_refused(void **state) {
+    (void)state;
+    wh_faults_t faults;
+    wh_faults_clear(&faults);
+    assert_int_equal(wh_physics_validate(NULL, 1, 1), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_physics_state_validate(NULL, 1, 1), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_fault_validate(NULL, 1, 1), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_faults_validate(NULL, 1, 1), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_faults_check(NULL, NULL, 0, 1, 1), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_faults_check(&faults, NULL, 1, 1, 1), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_faults_check(&faults, NULL, 0, 1, 1), WH_OK);
+}
+
 enum { CHANGES = 19 };
 
 static void the_hash_covers_each_word(void **state) {
@@ -147,6 +213,10 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(conditions_that_no_simulator_leaves, set_up),
         cmocka_unit_test_setup(grippers_and_wafers_are_counted_apart, set_up),
+        cmocka_unit_test_setup(more_grippers_than_there_is_room_for, set_up),
+        cmocka_unit_test_setup(a_large_table_has_a_hash, set_up),
+        cmocka_unit_test_setup(no_sensor_is_beyond_the_last_gripper, set_up),
+        cmocka_unit_test_setup(null_is_refused, set_up),
         cmocka_unit_test_setup(the_hash_covers_each_word, set_up),
         cmocka_unit_test_setup(the_hash_is_this_number, set_up),
         cmocka_unit_test_setup(without_any_it_is_the_tables_hash, set_up),

@@ -74,6 +74,56 @@ static void init_refuses_what_it_cannot_use(void **state) {
     assert_memory_equal(&simulator, &before, sizeof simulator);
 }
 
+static void init_refuses_a_cell_that_is_none(void **state) {
+    (void)state;
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = storage_here();
+    const wh_simulator_t before = simulator;
+    wh_cell_t cell = cell_here();
+    cell.tolerance.projxy = WH_REAL(NAN);
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_STATUS_BAD_TOLERANCE);
+    cell = cell_here();
+    station.pitch = 0;
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_STATUS_OUT_OF_RANGE);
+    station.pitch = 10;
+    station.slots = -3;
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_STATUS_OUT_OF_RANGE);
+    station.slots = 1;
+    station.chuck = GRIPPERS;
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_STATUS_OUT_OF_RANGE);
+    assert_memory_equal(&simulator, &before, sizeof simulator);
+}
+
+/* Zeroed, or with anything else in its memory: nothing of it is read but the mark, and nothing is written. */
+static void a_simulator_that_was_never_initialised_is_refused(void **state) {
+    (void)state;
+    static const int bytes[] = {0, 0xff, 0x5a};
+    const wh_physics_t physics = wh_physics_default();
+    const wh_simulator_t good = simulator;
+    for (size_t i = 0; i < sizeof bytes / sizeof bytes[0]; ++i) {
+        memset(&simulator, bytes[i], sizeof simulator);
+        const wh_simulator_t before = simulator;
+        memset(&answer, 0x5a, sizeof answer);
+        command.seq = 7;
+        command.utime = 7000;
+        assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_STATUS_NOT_INITIALISED);
+        assert_int_equal(answer.status, WH_STATUS_NOT_INITIALISED);
+        assert_int_equal(answer.seq, 7);
+        assert_int_equal(answer.utime, 7000);
+        assert_true(answer.wafer_count + answer.gripper_count + answer.event_count + answer.sensors == 0);
+        assert_null(answer.wafers);
+        assert_null(answer.grippers);
+        assert_null(answer.events);
+        assert_null(answer.physics);
+        assert_int_equal(wh_simulator_set_physics(&simulator, &physics), WH_STATUS_NOT_INITIALISED);
+        assert_true(wh_simulator_hash(&simulator) == 0);
+        assert_memory_equal(&simulator, &before, sizeof simulator);
+    }
+    memcpy(&simulator, &good, sizeof simulator);
+    simulator.table.mark = 0; /* another's hand in it */
+    assert_int_equal(wh_simulator_step(&simulator, &command, &answer), WH_STATUS_NOT_INITIALISED);
+}
+
 /* As many grippers as a command carries, all of which let go at once, each in the air. */
 static void all_grippers_at_once(void **state) {
     (void)state;
@@ -234,6 +284,8 @@ static void the_link_is_the_simulator(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(init_refuses_what_it_cannot_use, set_up),
+        cmocka_unit_test_setup(init_refuses_a_cell_that_is_none, set_up),
+        cmocka_unit_test_setup(a_simulator_that_was_never_initialised_is_refused, set_up),
         cmocka_unit_test_setup(all_grippers_at_once, set_up),
         cmocka_unit_test_setup(a_cell_without_stations_is_allowed, set_up),
         cmocka_unit_test_setup(the_view_before_the_first_slice, set_up),
