@@ -37,6 +37,9 @@ wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storag
     if (!simulator || !storage) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
     wh_grasp_t *table = &simulator->table;
     const wh_grasp_storage_t before = table->storage;
     wh_status_t status = check_storage(&before, storage);
@@ -367,6 +370,9 @@ wh_status_t wh_simulator_save(const wh_simulator_t *simulator, uint8_t bytes[], 
     if (!simulator || !bytes || !size) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
     const size_t needed = wh_simulator_saved_size(simulator);
     if (capacity < needed) {
         return WH_STATUS_BAD_CAPACITY;
@@ -481,6 +487,9 @@ wh_status_t wh_simulator_load(wh_simulator_t *simulator, const uint8_t bytes[], 
                               wh_snapshot_room_t *room) {
     if (!simulator || !bytes || !room) {
         return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
     }
     const wh_grasp_storage_t *storage = &simulator->table.storage;
     if ((!room->wafers && storage->wafer_count > 0) || (!room->grippers && storage->gripper_count > 0)) {
