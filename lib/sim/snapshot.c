@@ -310,24 +310,23 @@ static void save_head(stream_t *stream, const wh_simulator_t *simulator) {
     pass_bytes(stream, &description, 8);
 }
 
-/* Without what the last wafer left behind: equal states have equal bytes. */
-static wh_gripper_t without_leftovers(const wh_gripper_t *from) {
-    wh_gripper_t gripper;
-    gripper = *from;
-    if (gripper.wafer == WH_NONE) {
-        gripper.gripper_from_wafer = wh_pose_identity();
+static void clear_encounter(wh_encounter_t *encounter) {
+    memset(encounter, 0, sizeof *encounter);
+    encounter->wafer = WH_NONE;
+    encounter->holder = WH_NONE;
+}
+
+/* What the last wafer left behind says nothing: equal states have equal bytes. */
+static void drop_leftovers(wh_gripper_t *gripper) {
+    if (gripper->wafer == WH_NONE) {
+        gripper->gripper_from_wafer = wh_pose_identity();
     }
-    if (gripper.approach.wafer == WH_NONE) {
-        memset(&gripper.approach, 0, sizeof gripper.approach);
-        gripper.approach.wafer = WH_NONE;
-        gripper.approach.holder = WH_NONE;
+    if (gripper->approach.wafer == WH_NONE) {
+        clear_encounter(&gripper->approach);
     }
-    if (gripper.contest.wafer == WH_NONE) {
-        memset(&gripper.contest, 0, sizeof gripper.contest);
-        gripper.contest.wafer = WH_NONE;
-        gripper.contest.holder = WH_NONE;
+    if (gripper->contest.wafer == WH_NONE) {
+        clear_encounter(&gripper->contest);
     }
-    return gripper;
 }
 
 static void save_table(stream_t *stream, const wh_grasp_t *table) {
@@ -343,7 +342,8 @@ static void save_table(stream_t *stream, const wh_grasp_t *table) {
     }
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         wh_gripper_t gripper;
-        gripper = without_leftovers(&table->storage.grippers[g]);
+        gripper = table->storage.grippers[g];
+        drop_leftovers(&gripper);
         pass_gripper(stream, &gripper);
     }
 }
@@ -422,8 +422,11 @@ static wh_status_t check_ends(const wh_simulator_t *simulator, const uint8_t byt
 }
 
 static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t gripper_count) {
-    const wh_physics_t none = wh_physics_default();
-    wh_physics_state_start(physics, &none);
+    memset(physics, 0, sizeof *physics);
+    for (size_t g = gripper_count; g < WH_GRIPPERS; ++g) {
+        physics->vacuum[g] = wh_vacuum_start();
+        physics->told[g] = WH_VALVE_CLOSED;
+    }
     for (size_t g = 0; g < gripper_count; ++g) {
         share_t share;
         memset(&share, 0, sizeof share);
