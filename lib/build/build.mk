@@ -54,7 +54,7 @@ NUMBER_WARNINGS := -Wconversion -Wdouble-promotion
 # Contraction to fused multiply-adds would change bits from machine to machine, and gcc 12's vectoriser of straight code
 # fuses a*b + c*d beside e*f - g*h whatever it was told; errno keeps sqrt from being one instruction. The prefix map keeps
 # the folder's name out of what is built.
-SAME_BITS := -ffp-contract=off -fno-tree-slp-vectorize
+SAME_BITS := -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION
 $(if $(filter-out sweep index,$(WITHOUT)),$(error WITHOUT=: of "sweep" and "index", not "$(WITHOUT)"))
 # What the users of the library have to define as well.
 DEFINES := $(strip $(if $(FLOAT),-DWH_FLOAT) $(addprefix -DWH_WITHOUT_,$(shell echo '$(WITHOUT)' | tr a-z A-Z)))

@@ -29,13 +29,13 @@
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint; "sampled" is a step without swept checking and without buckets):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_grasp_init                   300    200     212    112
- *     stack of wh_grasp_step                   656    832     388    480
- *     stack of wh_grasp_step:sampled_indexed    372    376     332    352
- *     stack of wh_grasp_step:sampled           256    336     240    264
+ *     stack of wh_grasp_init                   308    200     212    112
+ *     stack of wh_grasp_step                   616    776     380    452
+ *     stack of wh_grasp_step:sampled_indexed    340    384     324    352
+ *     stack of wh_grasp_step:sampled           248    384     232    264
  *     stack of wh_grasp_place                   92    200      76    112
  *     stack of wh_grasp_hash                    44     76      44     72
- *     size of wh_grasp_t                       136            112
+ *     size of wh_grasp_t                       136            120
  *     size of wh_wafer_t                       104             56
  *     size of wh_gripper_t                     440            248
  *     size of wh_gripper_input_t               104             52

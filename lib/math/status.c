@@ -1,6 +1,6 @@
 #include "status.h"
 
-/* The library's own alone: who asks for a text links no other. */
+/* The library's own alone: a firmware links no text that no function of the library returns. */
 static const struct {
     wh_status_t number;
     const char *text;
@@ -12,15 +12,6 @@ static const struct {
 #undef WH_STATUS_OF_LIBRARY
 };
 
-static const struct {
-    wh_status_t number;
-    const char *name;
-} names[] = {
-#define WH_STATUS(number, name, text) {WH_STATUS_##name, #name},
-#include "status.def"
-#undef WH_STATUS
-};
-
 const char *wh_status_text(wh_status_t status) {
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; ++i) {
         if (texts[i].number == status) {
@@ -28,13 +19,4 @@ const char *wh_status_text(wh_status_t status) {
         }
     }
     return "unknown status";
-}
-
-const char *wh_status_name(wh_status_t status) {
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
-        if (names[i].number == status) {
-            return names[i].name;
-        }
-    }
-    return "UNKNOWN";
 }

@@ -87,7 +87,10 @@ wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, 
     if (!faults) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    bool good = faults->count <= WH_FAULTS;
+    if (faults->count > WH_FAULTS) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    bool good = true;
     for (size_t i = 0; good && i < faults->count; ++i) {
         good = slot_fits(&faults->slots[i], gripper_count, wafer_count);
     }

@@ -29,7 +29,7 @@
  *     stack of wh_faults_validate               88    208      48    120
  *     stack of wh_faults_check                 104    224      56    136
  *     stack of wh_faults_take                   40     40      40     40
- *     stack of wh_faults_advance               192    272     148    176
+ *     stack of wh_faults_advance               192    272     140    176
  *     stack of wh_faults_overrule               72     72      56     60
  *     stack of wh_faults_of_vacuum              96     96      56     56
  *     stack of wh_faults_sensors                 0      8       0      8

@@ -8,7 +8,7 @@
  *     stack of wh_physics_state_start          232    232     176    184
  *     stack of wh_physics_state_validate       100    224      60    144
  *     stack of wh_physics_state_sensors         12     20       8     24
- *     stack of wh_physics_state_hash           100    124      92    112
+ *     stack of wh_physics_state_hash           124    148     116    136
  *     size of wh_physics_t                    2272           1336
  *     size of wh_physics_state_t              5992           3336
  */

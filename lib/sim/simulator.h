@@ -4,13 +4,13 @@
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint; "sampled" is a step without swept checking; what an observer takes comes on top):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_simulator_init               372    304     260    232
+ *     stack of wh_simulator_init               380    304     260    232
  *     stack of wh_simulator_set_physics        256    256     200    208
- *     stack of wh_simulator_step               960   1120     644    720
+ *     stack of wh_simulator_step               936   1064     636    692
  *     stack of wh_simulator_step:sampled       936    904     600    616
  *     stack of wh_simulator_view                28     36      24     40
- *     stack of wh_simulator_hash               100    124      92    112
- *     size of wh_simulator_t                 19944          12176
+ *     stack of wh_simulator_hash               124    148     116    136
+ *     size of wh_simulator_t                 19944          12184
  */
 #ifndef WH_SIM_SIMULATOR_H
 #define WH_SIM_SIMULATOR_H
