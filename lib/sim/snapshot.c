@@ -37,6 +37,9 @@ wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storag
     if (!simulator || !storage) {
         return WH_STATUS_NULL_ARGUMENT;
     }
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
+    }
     wh_grasp_t *table = &simulator->table;
     const wh_grasp_storage_t before = table->storage;
     wh_status_t status = check_storage(&before, storage);
@@ -307,24 +310,23 @@ static void save_head(stream_t *stream, const wh_simulator_t *simulator) {
     pass_bytes(stream, &description, 8);
 }
 
-/* Without what the last wafer left behind: equal states have equal bytes. */
-static wh_gripper_t without_leftovers(const wh_gripper_t *from) {
-    wh_gripper_t gripper;
-    gripper = *from;
-    if (gripper.wafer == WH_NONE) {
-        gripper.gripper_from_wafer = wh_pose_identity();
+static void clear_encounter(wh_encounter_t *encounter) {
+    memset(encounter, 0, sizeof *encounter);
+    encounter->wafer = WH_NONE;
+    encounter->holder = WH_NONE;
+}
+
+/* What the last wafer left behind says nothing: equal states have equal bytes. */
+static void drop_leftovers(wh_gripper_t *gripper) {
+    if (gripper->wafer == WH_NONE) {
+        gripper->gripper_from_wafer = wh_pose_identity();
     }
-    if (gripper.approach.wafer == WH_NONE) {
-        memset(&gripper.approach, 0, sizeof gripper.approach);
-        gripper.approach.wafer = WH_NONE;
-        gripper.approach.holder = WH_NONE;
+    if (gripper->approach.wafer == WH_NONE) {
+        clear_encounter(&gripper->approach);
     }
-    if (gripper.contest.wafer == WH_NONE) {
-        memset(&gripper.contest, 0, sizeof gripper.contest);
-        gripper.contest.wafer = WH_NONE;
-        gripper.contest.holder = WH_NONE;
+    if (gripper->contest.wafer == WH_NONE) {
+        clear_encounter(&gripper->contest);
     }
-    return gripper;
 }
 
 static void save_table(stream_t *stream, const wh_grasp_t *table) {
@@ -340,7 +342,8 @@ static void save_table(stream_t *stream, const wh_grasp_t *table) {
     }
     for (size_t g = 0; g < table->storage.gripper_count; ++g) {
         wh_gripper_t gripper;
-        gripper = without_leftovers(&table->storage.grippers[g]);
+        gripper = table->storage.grippers[g];
+        drop_leftovers(&gripper);
         pass_gripper(stream, &gripper);
     }
 }
@@ -366,6 +369,9 @@ wh_status_t wh_simulator_save(const wh_simulator_t *simulator, uint8_t bytes[], 
                               size_t *size) {
     if (!simulator || !bytes || !size) {
         return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
     }
     const size_t needed = wh_simulator_saved_size(simulator);
     if (capacity < needed) {
@@ -416,8 +422,11 @@ static wh_status_t check_ends(const wh_simulator_t *simulator, const uint8_t byt
 }
 
 static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t gripper_count) {
-    const wh_physics_t none = wh_physics_default();
-    wh_physics_state_start(physics, &none);
+    memset(physics, 0, sizeof *physics);
+    for (size_t g = gripper_count; g < WH_GRIPPERS; ++g) {
+        physics->vacuum[g] = wh_vacuum_start();
+        physics->told[g] = WH_VALVE_CLOSED;
+    }
     for (size_t g = 0; g < gripper_count; ++g) {
         share_t share;
         memset(&share, 0, sizeof share);
@@ -481,6 +490,9 @@ wh_status_t wh_simulator_load(wh_simulator_t *simulator, const uint8_t bytes[], 
                               wh_snapshot_room_t *room) {
     if (!simulator || !bytes || !room) {
         return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (simulator->mark != WH_SIMULATOR_MARK) {
+        return WH_STATUS_NOT_INITIALISED;
     }
     const wh_grasp_storage_t *storage = &simulator->table.storage;
     if ((!room->wafers && storage->wafer_count > 0) || (!room->grippers && storage->gripper_count > 0)) {

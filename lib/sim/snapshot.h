@@ -36,9 +36,10 @@ WH_HEADER_BEGIN
 
 /* Makes a copied simulator use these arrays, which hold copies of the original's wafers and grippers, and
  * fills the buckets. If the arrays are others than before, `observer` is cleared, for its `user` belongs to
- * the original; set it anew. Refused, everything unchanged: null pointers; other counts than the table's, or
- * too few buckets but not 0 (WH_STATUS_BAD_CAPACITY); wafers and grippers that wh_grasp_restore refuses, with
- * its status. Cost: linear in wafers and grippers. */
+ * the original; set it anew. Refused, everything unchanged: null pointers; a simulator that was never
+ * initialised (WH_STATUS_NOT_INITIALISED); other counts than the table's, or too few buckets but not 0
+ * (WH_STATUS_BAD_CAPACITY); wafers and grippers that wh_grasp_restore refuses, with its status. Cost: linear
+ * in wafers and grippers. */
 wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storage_t *storage)
     WH_SYMBOL(wh_simulator_relink);
 
@@ -47,8 +48,8 @@ wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storag
 size_t wh_simulator_saved_size(const wh_simulator_t *simulator) WH_SYMBOL(wh_simulator_saved_size);
 
 /* Writes a snapshot into bytes[0 .. capacity - 1], and its length into *size. Refused, nothing written:
- * WH_STATUS_NULL_ARGUMENT, or WH_STATUS_BAD_CAPACITY for less room than wh_simulator_saved_size. Cost: a few
- * nanoseconds a byte; 1 kB of stack. */
+ * WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_INITIALISED, or WH_STATUS_BAD_CAPACITY for less room than
+ * wh_simulator_saved_size. Cost: a few nanoseconds a byte; 1 kB of stack. */
 wh_status_t wh_simulator_save(const wh_simulator_t *simulator, uint8_t bytes[], size_t capacity, size_t *size)
     WH_SYMBOL(wh_simulator_save);
 
@@ -64,7 +65,7 @@ typedef struct {
 /* Sets an initialised simulator to the state that wh_simulator_save wrote, counters included. It must have
  * the same configuration, physics, stations and counts; the faults at the start of its run do not matter. The
  * same commands then yield the same bits as they would have there. Refused, the simulator unchanged:
- *   WH_STATUS_NULL_ARGUMENT
+ *   WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_INITIALISED
  *   WH_STATUS_OTHER_SNAPSHOT  of another version or number type, or of a simulator that differs in any of the
  *                             above
  *   WH_STATUS_DAMAGED         fewer or more bytes than were written, or one that has changed; or a state that

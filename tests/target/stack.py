@@ -9,8 +9,8 @@ pointers, and on functions that are neither in the files nor in LEAVES.
 import re
 import sys
 
-# What a compiler calls on its own account, and what newlib's versions take.
-LEAVES = {"memcpy": 16, "memset": 16}
+# What a compiler calls on its own account, and what newlib's and libgcc's versions take: 64-bit integers from and to reals.
+LEAVES = {"memcpy": 16, "memset": 16, "__aeabi_l2d": 32, "__aeabi_d2lz": 32, "__aeabi_l2f": 32, "__aeabi_f2lz": 32}
 
 # WH_SYMBOL's end of a name, which the functions are not asked by
 SYMBOL = re.compile(r'"((?:[^":]*:)?)\*(wh_\w+?)_\d[df](?:_\w*)?(?=[".])')

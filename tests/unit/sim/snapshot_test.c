@@ -285,6 +285,19 @@ static void what_is_missing_is_refused(void **state) {
     assert_int_equal(wh_simulator_load(&run.simulator, bytes, size, &none), WH_STATUS_NULL_ARGUMENT);
 }
 
+static void what_was_never_initialised_is_refused(void **state) {
+    (void)state;
+    static run_t zero;
+    size_t size = 0;
+    memset(&zero, 0, sizeof zero);
+    const wh_grasp_storage_t storage = storage_of(&zero, false);
+    assert_int_equal(wh_simulator_relink(&zero.simulator, &storage), WH_STATUS_NOT_INITIALISED);
+    assert_int_equal(wh_simulator_save(&zero.simulator, bytes, sizeof bytes, &size),
+                     WH_STATUS_NOT_INITIALISED);
+    assert_int_equal(wh_simulator_load(&zero.simulator, bytes, sizeof bytes, &room),
+                     WH_STATUS_NOT_INITIALISED);
+}
+
 static void look(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
                  wh_event_list_t *list) {
     (void)inputs;
@@ -383,6 +396,7 @@ int main(void) {
         cmocka_unit_test(another_version_or_number_type_is_named),
         cmocka_unit_test(a_snapshot_of_another_cell_is_refused),
         cmocka_unit_test(what_is_missing_is_refused),
+        cmocka_unit_test(what_was_never_initialised_is_refused),
         cmocka_unit_test(relinking_looks_at_what_it_is_given),
         cmocka_unit_test(sealed_bytes_give_a_sound_state_or_none),
         cmocka_unit_test(bytes_are_the_same_everywhere),
