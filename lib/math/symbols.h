@@ -116,6 +116,7 @@
 #define wh_profile_position WH_SYMBOL_RENAMED(wh_profile_position)
 #define wh_profile_shape WH_SYMBOL_RENAMED(wh_profile_shape)
 #define wh_profile_stretch WH_SYMBOL_RENAMED(wh_profile_stretch)
+#define wh_proximity_is_ready WH_SYMBOL_RENAMED(wh_proximity_is_ready)
 #define wh_proximity_judge WH_SYMBOL_RENAMED(wh_proximity_judge)
 #define wh_proximity_measure WH_SYMBOL_RENAMED(wh_proximity_measure)
 #define wh_proximity_rim_gap WH_SYMBOL_RENAMED(wh_proximity_rim_gap)
