@@ -54,7 +54,7 @@ NUMBER_WARNINGS := -Wconversion -Wdouble-promotion
 # Contraction to fused multiply-adds would change bits from machine to machine, and gcc 12's vectoriser of straight code
 # fuses a*b + c*d beside e*f - g*h whatever it was told; errno keeps sqrt from being one instruction. The prefix map keeps
 # the folder's name out of what is built.
-SAME_BITS := -ffp-contract=off -fno-tree-slp-vectorize
+SAME_BITS := -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION
 $(if $(filter-out sweep index,$(WITHOUT)),$(error WITHOUT=: of "sweep" and "index", not "$(WITHOUT)"))
 # What the users of the library have to define as well.
 DEFINES := $(strip $(if $(FLOAT),-DWH_FLOAT) $(addprefix -DWH_WITHOUT_,$(shell echo '$(WITHOUT)' | tr a-z A-Z)))
@@ -208,6 +208,8 @@ $(PROGRAM_TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%): LIBS = $(PROGRAM_LIBS)
 COLLISION_USERS := $(foreach user,$(PROGRAM_TESTS) $(COLLISION_TESTS) $(TOOLS) $(BENCHES),$(B)/$(user))
 $(COLLISION_USERS): $(B)/libwaferhand_collision.a
 $(COLLISION_USERS): COLLISION = $(COLLISION_LIBS)
+# The firmware under test stands beside its tests.
+$(filter $(B)/tests/firmware/%,$(TESTS:%=$(B)/%)): $(B)/obj/tests/firmware/controller.o
 $(CXX_TESTS:%=$(B)/%): LINK = $(Q)$(CXX) $(CXXFLAGS) $(EXTRA) $(LDFLAGS)
 $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libwaferhand.a
 	@mkdir -p $(@D)

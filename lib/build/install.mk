@@ -21,7 +21,7 @@ EXAMPLES := $(filter lua/layouts/% lua/examples/%,$(LUA_SOURCES))
 place = install -D -m $(if $(filter %/bin/waferhand,$(2)),755,644) $(1) '$(DESTDIR)$(2)' &&
 places = $(foreach to,$(1),$(call place,$(B)/$(notdir $(to)),$(to)))
 headers = $(foreach file,$(1),$(call place,$(file),$(INCLUDES)/$(file:lib/%=%)))
-entry = $(call place,include/$(1).h,$(PREFIX)/include/$(1).h)
+entry = $(call place,lib/include/$(1).h,$(PREFIX)/include/$(1).h)
 
 install: install-library install-collision
 	@$(call places,$(PROGRAM_PLACES)) $(foreach file,$(EXAMPLES),$(call place,$(file),$(SHARE)/$(file:lua/%=%))) \

@@ -64,10 +64,10 @@ wh_place_t wh_station_measure(const wh_station_t *station, int32_t slot, const w
  * does not fit an integer. */
 static int32_t nearest_slot(const wh_station_t *station, wh_real_t height) {
     const wh_real_t position = height / station->pitch + WH_REAL(0.5);
-    if (!(position >= 0)) {
-        return 1;
+    if (position == position && position >= 0 && position < (wh_real_t)station->slots) {
+        return (int32_t)position + 1;
     }
-    return position >= (wh_real_t)station->slots ? station->slots : (int32_t)position + 1;
+    return position > 0 ? station->slots : 1;
 }
 
 static int32_t nearest_slot_of(const wh_station_t *station, const wh_pose_t *base_from_wafer) {

@@ -27,10 +27,9 @@ WH_HEADER_BEGIN
 
 typedef struct {
     wh_pose_t base_from_station;
-    int32_t slots; /* 1 to 1000 */
-    wh_real_t
-        pitch;     /* mm, above 0, up to 1e6; a single slot too has one: it reaches half of it up and down */
-    int32_t chuck; /* the gripper that holds what lies here; WH_NONE: plain slots */
+    int32_t slots;   /* 1 to 1000 */
+    wh_real_t pitch; /* mm, above 0, up to 1e6; a single slot too has one: half of it up and down */
+    int32_t chuck;   /* the gripper that holds what lies here; WH_NONE: plain slots */
 } wh_station_t;
 
 /* The caller's stations. Of equally near slots the one of the earlier station counts. */

@@ -1,9 +1,22 @@
-/* Shared by gap.c and nearest.c. Not installed. */
+/* Shared by convex.c, gap.c and nearest.c. Not installed. */
 #ifndef WH_COLLISION_GAP_INTERNAL_H
 #define WH_COLLISION_GAP_INTERNAL_H
 
-#include "convex_internal.h"
 #include "gap.h"
+
+/* A shape is a kernel and all points within `round` mm of it. A capsule's kernel is a line; every other shape
+ * is its own kernel. The nearest points of two kernels are found in a few steps; curved surfaces would need
+ * many. */
+static inline wh_real_t wh_convex_round(const wh_convex_t *shape) {
+    return shape->kind == WH_CONVEX_CAPSULE ? shape->half.x : 0;
+}
+
+/* wh_convex_support of the kernel, in the shape's frame. */
+wh_vec3_t wh_convex_kernel_support(const wh_convex_t *shape, const wh_vec3_t *direction)
+    WH_SYMBOL(wh_convex_kernel_support);
+
+/* In the shape's frame, and within the shape: the mean of the points of a mesh, the origin of the others. */
+wh_vec3_t wh_convex_centre(const wh_convex_t *shape) WH_SYMBOL(wh_convex_centre);
 
 /* The two shapes. b is measured as if moved by `shift`. */
 typedef struct {

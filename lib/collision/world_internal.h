@@ -110,6 +110,9 @@ wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *move
     WH_SYMBOL(wh_world_side_of_mover);
 wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item) WH_SYMBOL(wh_world_side_of_item);
 
+/* The box around it where it is now. */
+wh_box_t wh_world_box(const wh_side_t *side) WH_SYMBOL(wh_world_box);
+
 /* Takes over where everything is now. Wafers that were taken or let go change between mover and tree. */
 void wh_world_move(const wh_look_t *look) WH_SYMBOL(wh_world_move);
 

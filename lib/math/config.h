@@ -41,7 +41,7 @@
 
 /* The same inputs must give the same bits on every machine, which these builds cannot hold. Nor can one that
  * fuses products and sums, which no macro tells: build everything that includes these headers with
- * -ffp-contract=off -fno-tree-slp-vectorize, as `make library` and pkg-config's flags do. */
+ * -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION, as pkg-config, CMake and meson do. */
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) ||                 \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
 #error                                                                                                       \
@@ -53,7 +53,7 @@
 #endif
 #elif !defined(__TINYC__) || defined(__i386__) /* tcc does not say, but keeps to it outside of x87 */
 #error                                                                                                       \
-    "waferhand: unknown rounding: if this compiler rounds to the type of each operation, add -DFLT_EVAL_METHOD=0"
+    "waferhand: unknown rounding: if this compiler rounds each operation to its type, add -DFLT_EVAL_METHOD=0"
 #endif
 
 /* The library's real number: double, or float when built with -DWH_FLOAT. Library and program must agree. */
@@ -136,19 +136,20 @@ typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : 
 
 /* Each public header begins and ends with these: C's names in C++, and the same bits of the inline functions
  * also where -ffp-contract=off was forgotten. The file that includes them keeps its own rules. What
- * forgetting costs: gcc calls these functions instead of inlining them, and clang, where it knows no
- * float_control, compiles all of the file without contraction. clang's own -ffp-contract=fast overrules every
- * pragma: it must not be. For Cortex-M gcc inlines none of them at -Os, whatever the flags: the library itself
- * goes without, its flags being right, and so does strict C (-std=c99), in which gcc never fuses unasked. */
-#if defined(__clang__) && (defined(__x86_64__) || defined(__i386__))
+ * forgetting costs on a machine that fuses: gcc calls these functions instead of inlining them, and clang,
+ * where it knows no float_control, compiles all of the file without contraction. clang's own
+ * -ffp-contract=fast overrules every pragma: it must not be. -DWH_NO_CONTRACTION says that the flags are
+ * there: gcc for Arm cannot tell, and would call even then. */
+#if defined(WH_NO_CONTRACTION)
+#define WH_SAME_BITS_BEGIN
+#define WH_SAME_BITS_END
+#elif defined(__clang__) && (defined(__x86_64__) || defined(__i386__))
 #define WH_SAME_BITS_BEGIN _Pragma("float_control(push)") _Pragma("STDC FP_CONTRACT OFF")
 #define WH_SAME_BITS_END _Pragma("float_control(pop)")
 #elif defined(__clang__)
 #define WH_SAME_BITS_BEGIN _Pragma("STDC FP_CONTRACT OFF")
 #define WH_SAME_BITS_END
-#elif defined(__GNUC__) && !defined(WH_BUILDING_LIBRARY) &&                                                  \
-    !(defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'M' && defined(__STRICT_ANSI__) &&                \
-      !defined(__cplusplus))
+#elif defined(__GNUC__) && (defined(__FP_FAST_FMA) || defined(__FP_FAST_FMAF))
 #define WH_SAME_BITS_BEGIN                                                                                   \
     _Pragma("GCC push_options") _Pragma("GCC optimize (\"fp-contract=off,no-tree-slp-vectorize\")")
 #define WH_SAME_BITS_END _Pragma("GCC pop_options")

@@ -44,6 +44,12 @@ static inline wh_pose_t wh_pose_relative(const wh_pose_t *a_from_b, const wh_pos
     return b_from_c;
 }
 
+/* A point of b as seen from a. */
+static inline wh_vec3_t wh_pose_point(const wh_pose_t *a_from_b, const wh_vec3_t *point) {
+    const wh_vec3_t turned = wh_mat3_transform(&a_from_b->R, point);
+    return wh_vec3_add(&turned, &a_from_b->r);
+}
+
 /* WH_STATUS_OK when all twelve numbers are finite, no entry of |R^T R - I| is above WH_ROTATION_TOLERANCE and
  * det R > 0; else WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION. Cost: about 30 products. */
 wh_status_t wh_pose_validate(const wh_pose_t *pose) WH_SYMBOL(wh_pose_validate);

@@ -115,6 +115,18 @@ const char *wh_fault_name(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_name);
 /* True if the kind is about a wafer. */
 bool wh_fault_is_of_wafer(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_wafer);
 
+/* A fault that acts in the slices from <= seq < until, ready to be taken or to be changed further. `target`
+ * is a gripper or a wafer, of COMMAND_LOST nothing (WH_NONE is put in its place). `value` counts for
+ * SLOW_VACUUM and LEAK alone; for other kinds 0 is put in its place. `other` is WH_NONE, the offset the
+ * identity; that of WAFER_MISSING leads 100 m down, out of every cell. The caller sets what else the kind
+ * needs: `other` and `offset` of WAFER_DOUBLED, `offset` of WAFER_CROSSED, _SHIFTED, _TILTED. Nothing is
+ * checked: see wh_fault_validate. The pump of gripper 0 is dead from the first slice on:
+ *
+ *     physics.faults[0] = wh_fault_make(WH_FAULT_NO_VACUUM, 0, 0, 1, WH_FAULT_FOREVER);
+ *     physics.fault_count = 1; */
+wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, int64_t from, int64_t until)
+    WH_SYMBOL(wh_fault_make);
+
 /* WH_OK. WH_STATUS_NULL_ARGUMENT; WH_STATUS_OUT_OF_RANGE, WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION
  * for a fault that a cell with these counts cannot have. Cost: wh_pose_validate. */
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count)

@@ -258,8 +258,11 @@ static wh_status_t step_with_faults(wh_simulator_t *simulator, const wh_command_
     return status;
 }
 
-static wh_status_t check_faults(const wh_simulator_t *simulator, const wh_command_t *command) {
+static wh_status_t check_command(const wh_simulator_t *simulator, const wh_command_t *command) {
     const wh_grasp_storage_t *storage = &simulator->table.storage;
+    if (command->gripper_count != storage->gripper_count) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
     if (command->fault_count == 0) {
         return WH_OK;
     }
@@ -270,8 +273,7 @@ static wh_status_t check_faults(const wh_simulator_t *simulator, const wh_comman
 }
 
 static wh_status_t step_table(wh_simulator_t *simulator, const wh_command_t *command) {
-    const bool fits = command->gripper_count == simulator->table.storage.gripper_count;
-    const wh_status_t status = fits ? check_faults(simulator, command) : WH_STATUS_OUT_OF_RANGE;
+    const wh_status_t status = check_command(simulator, command);
     if (status != WH_OK) {
         ++simulator->table.counters.refused;
         simulator->event_count = 0;

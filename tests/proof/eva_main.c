@@ -272,6 +272,20 @@ static void call_empty(void) {
     }
 }
 
+/* A table of zeroes, with a mark or without. */
+static void call_blank(void) {
+    wh_grasp_t table = {.slice = 0};
+    const wh_pose_t pose = any_pose();
+    int32_t index;
+    table.mark = bits;
+    (void)wh_grasp_step(&table, NULL, NULL);
+    (void)wh_grasp_place(&table, size, &pose);
+    (void)wh_grasp_restore(&table, word, NULL, NULL);
+    (void)wh_grasp_wafer(&table, size, NULL, &index);
+    (void)wh_grasp_held(&table, size, &index);
+    (void)wh_grasp_is_consistent(&table);
+}
+
 int main(void) {
     wh_grasp_t table;
     wh_wafer_t wafers[WAFERS];
@@ -287,6 +301,7 @@ int main(void) {
     call_holding();
     call_refused_init(wafers, grippers);
     call_empty();
+    call_blank();
 
     const wh_grasp_config_t config = any_config();
     const wh_grasp_storage_t storage = {wafers,   WAFERS,  grippers,

@@ -145,7 +145,7 @@ static void refuse_numbers(wh_real_t *number, const double bad[], size_t count, 
 
 static void a_cell_has_its_ranges(void **state) {
     (void)state;
-    static const double bad[] = {NAN, INFINITY, -INFINITY, -1, 1.1e6, -1e-30, 0};
+    static const double bad[] = {(double)NAN, (double)INFINITY, -(double)INFINITY, -1, 1.1e6, -1e-30, 0};
     refuse_numbers(&stations[1].pitch, bad, 7, WH_STATUS_OUT_OF_RANGE);
     refuse_numbers(&cell.off_centre, bad, 6, WH_STATUS_OUT_OF_RANGE);
     refuse_numbers(&cell.askew, bad, 6, WH_STATUS_OUT_OF_RANGE);
