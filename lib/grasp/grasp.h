@@ -30,9 +30,9 @@
  * (tests/verify/footprint; "sampled" is a step without swept checking and without buckets):
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_grasp_init                   300    200     212    112
- *     stack of wh_grasp_step                   656    832     388    480
- *     stack of wh_grasp_step:sampled_indexed    372    376     332    352
- *     stack of wh_grasp_step:sampled           256    336     240    264
+ *     stack of wh_grasp_step                   648    832     388    480
+ *     stack of wh_grasp_step:sampled_indexed    364    376     332    352
+ *     stack of wh_grasp_step:sampled           248    336     240    264
  *     stack of wh_grasp_place                   92    200      76    112
  *     stack of wh_grasp_hash                    44     76      44     72
  *     size of wh_grasp_t                       136            112

@@ -6,7 +6,7 @@
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_simulator_init               372    304     260    232
  *     stack of wh_simulator_set_physics        256    256     200    208
- *     stack of wh_simulator_step               960   1120     644    720
+ *     stack of wh_simulator_step               952   1120     644    720
  *     stack of wh_simulator_step:sampled       936    904     600    616
  *     stack of wh_simulator_view                28     36      24     40
  *     stack of wh_simulator_hash               100    124      92    112
