@@ -4,6 +4,7 @@
 # Settings, as in `make CC=clang WERROR=1`:
 #   CC CXX CFLAGS CXXFLAGS LDFLAGS  as usual; EXTRA is appended to every compiler call
 #   FLOAT=1    the library's number is float instead of double
+#   SHARED=1   libwaferhand.so is installed, too; COLLISION=1 for install-library: so is collision, over libccd
 #   WERROR=1   warnings are errors (so they are where CI is set)
 #   V=1        shows the commands
 #   B=build    the folder to build in, as in `make library B=build/m7 CC=arm-none-eabi-gcc CFLAGS=...`
@@ -27,7 +28,7 @@ include tests/tests.mk
 CORE_PARTS := symbols footprint instructions bits on_target eva fuzz
 PART := $(CORE_PARTS) wp coverage mutation
 
-.PHONY: all library run spy view test quick bench check verify-core verify install uninstall clean help
+.PHONY: all library shared install-library run spy view test quick bench check verify-core verify install uninstall clean help
 
 all: ## the library, the program, the Lua module and the manual page, in build/
 	$(NEED) run
@@ -83,8 +84,16 @@ verify: ## all of it, hours; goes on where it was stopped. PART="wp mutation" fo
 	-$(NEED) run test verify
 	@RESUME=1 FUZZ_SECONDS=$(or $(FUZZ_SECONDS),600) FUZZ_SEED=$(or $(FUZZ_SEED),0) tests/verify/run $(PART)
 
-install: all ## into PREFIX, below DESTDIR
+shared: ## build/libwaferhand.so alone
+	$(BUILD) shared
+
+install: ## all of it into PREFIX, below DESTDIR
+	$(if $(FLOAT),$(error the program is of doubles: make install-library FLOAT=1))
+	@$(MAKE) --no-print-directory all
 	$(BUILD) install
+
+install-library: ## the library alone: needs nothing but a C compiler. SHARED=1 COLLISION=1 add theirs
+	$(BUILD) install-library $(if $(COLLISION),install-collision)
 
 uninstall: ## takes away what install put there
 	$(BUILD) uninstall

@@ -14,6 +14,7 @@
 #include "math/status.h"
 #include "math/vector.h"
 #include "math/pose.h"
+#include "math/rotation.h"
 #include "math/trig.h"
 #include "math/relation.h"
 #include "math/hash.h"
@@ -38,10 +39,13 @@
 
 #include "cell/station.h"
 
+#include "sim/event_text.h"
 #include "sim/faults.h"
 #include "sim/physics.h"
 #include "sim/slice.h"
 #include "sim/simulator.h"
+#include "sim/played.h"
+#include "sim/snapshot.h"
 /* clang-format on */
 
 #endif

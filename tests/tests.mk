@@ -11,7 +11,7 @@ CXX_TESTS := $(basename $(filter %.cpp,$(TEST_SOURCES)))
 PROGRAM_TESTS := $(basename $(shell grep -lE '^.include ("($(subst $() ,|,$(strip $(HOST_ROOMS))))/|<waferhand_)' $(TEST_SOURCES) /dev/null))
 TESTS := $(basename $(TEST_SOURCES))
 # Those of collision are linked with it, and there is no float build of it.
-COLLISION_TESTS := $(basename $(shell grep -lE '^.include "collision/' $(TEST_SOURCES) /dev/null))
+COLLISION_TESTS := $(basename $(shell grep -lE '^.include "(collision/|waferhand_collision)' $(TEST_SOURCES) /dev/null))
 
 # Programs that end-to-end tests use: built with the tests, not run by themselves. Two are built by the tests themselves.
 TOOLS := $(filter-out %/play_segments %/pty_dialogue,$(basename $(wildcard tests/end_to_end/tools/*.c)))

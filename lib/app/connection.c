@@ -1,9 +1,7 @@
 #include "connection.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 
 volatile sig_atomic_t wh_stop_requested = 0;
 
@@ -13,49 +11,20 @@ static void request_stop(int signal_number) {
 }
 
 void wh_catch_signals(void) {
-    struct sigaction action;
-    memset(&action, 0, sizeof action);
-    action.sa_handler = request_stop;
-    sigemptyset(&action.sa_mask);
+    const struct sigaction action = {.sa_handler = request_stop};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
-}
-
-bool wh_open_node(wh_node_t *node, const char *url, const char *record_path) {
-    if (!wh_node_open(node, url)) {
-        fprintf(stderr,
-                "%s: LCM is not to be had at this URL (expected a multicast route, as by `ip route add "
-                "224.0.0.0/4 "
-                "dev lo`, or another URL)\n",
-                url ? url : WH_NODE_URL);
-        return false;
-    }
-    if (record_path && !wh_node_record(node, record_path)) {
-        fprintf(stderr, "%s: %s (expected a file that can be written)\n", record_path, strerror(errno));
-        wh_node_close(node);
-        return false;
-    }
-    return true;
-}
-
-void wh_say_line(void *user, const char *text) {
-    fprintf(stderr, "%s: %s\n", (const char *)user, text);
 }
 
 /* --------------------------------------------------------------------------------------- motion control's */
 
 bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
-    static char name[] = "mcs";
-    const wh_mcs_process_options_t control = {.rate = options->rate,
-                                              .outputs = options->outputs,
-                                              .stop = &wh_stop_requested,
-                                              .say = wh_say_line,
-                                              .user = name};
     wh_catch_signals();
-    if (!wh_open_node(&link->node, options->url, options->record)) {
+    if (!wh_node_open(&link->node, options->url, options->record)) {
         return false;
     }
-    if (!wh_mcs_process_open(&link->control, &link->node, &control)) {
+    link->node.speaker = "mcs";
+    if (!wh_mcs_process_open(&link->control, &link->node, &options->client)) {
         fprintf(stderr, "mcs: LCM takes no subscription\n");
         wh_node_close(&link->node);
         return false;

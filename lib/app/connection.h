@@ -1,5 +1,4 @@
-/* How `run`, `sim` and `mcs` open LCM and a log of its messages, and how `sim` and `mcs` are ended by
- * signals. */
+/* How `sim` and `mcs` are ended by signals, and how `mcs` is linked to LCM. */
 #ifndef WH_APP_CONNECTION_H
 #define WH_APP_CONNECTION_H
 
@@ -14,17 +13,11 @@ extern volatile sig_atomic_t wh_stop_requested;
  * process. */
 void wh_catch_signals(void);
 
-/* Opens the node, and the record if a path is given. Says on standard error why it fails. */
-bool wh_open_node(wh_node_t *node, const char *url, const char *record_path);
-
-/* Prints "NAME: text" on standard error; `user` is the name. */
-void wh_say_line(void *user, const char *text);
-
 /* --------------------------------------------------------------------------------------- motion control's */
 
 typedef struct {
-    const char *url, *record, *outputs; /* null: the default, no record, no outputs.txt */
-    double rate;                        /* 0: lockstep */
+    const char *url, *record; /* null: the default, no record */
+    wh_protocol_client_options_t client;
 } wh_mcs_link_options_t;
 
 /* Must not be moved once opened. */

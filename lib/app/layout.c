@@ -17,16 +17,10 @@ const wh_option_t wh_layout_options[] = {{"set", 0, "NAME=VALUE", "Hand the layo
 
 const wh_layout_t *wh_layout_arguments_load(wh_layout_arguments_t *arguments) {
     wh_sandbox_result_t result;
-    arguments->sandbox = wh_sandbox_new(NULL);
-    if (!arguments->sandbox) {
-        perror("waferhand");
-        return NULL;
-    }
-    bool taken = true;
-    for (size_t i = 0; taken && i < arguments->parameters.count; ++i) {
-        taken = wh_sandbox_set_parameter(arguments->sandbox, arguments->parameters.items[i], &result);
-    }
-    const wh_layout_t *layout = taken ? wh_layout_load(arguments->sandbox, arguments->path, &result) : NULL;
+    wh_sandbox_t *sandbox =
+        wh_sandbox_new_with(NULL, arguments->parameters.items, arguments->parameters.count, &result);
+    const wh_layout_t *layout = sandbox ? wh_layout_load(sandbox, arguments->path, &result) : NULL;
+    arguments->sandbox = sandbox;
     if (!layout) {
         fprintf(stderr, "%s\n", result.message);
     }

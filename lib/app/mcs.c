@@ -1,7 +1,5 @@
 /* waferhand mcs [SCRIPT] [--layout FILE] */
 #include <stdio.h>
-#include <sys/timerfd.h>
-#include <unistd.h>
 
 #include "app.h"
 #include "connection.h"
@@ -23,9 +21,9 @@ static const wh_option_t options[] = {
     {"record", 0, "FILE", "Write all messages into an LCM event log", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, link.record)},
     {"rate", 0, "FACTOR", "Run free at this factor of real time instead of in lockstep", WH_OPTION_REAL,
-     .variable = offsetof(arguments_t, link.rate), 1e-3, 1e3, "a number from 0.001 to 1000"},
+     .variable = offsetof(arguments_t, link.client.rate), 1e-3, 1e3, "a number from 0.001 to 1000"},
     {"outputs", 0, "FILE", "Write the valves to this file, too, one value per gripper", WH_OPTION_TEXT,
-     .variable = offsetof(arguments_t, link.outputs)},
+     .variable = offsetof(arguments_t, link.client.outputs)},
     {0}};
 
 static const wh_option_table_t tables[] = {{options, 0, NULL},
@@ -72,56 +70,26 @@ static const wh_command_line_t command_line = {
 typedef struct {
     wh_mcs_link_t *link;
     wh_session_t *session;
-    int timer;
 } attendance_t;
 
-static void execute_requests(attendance_t *attendance) {
+static void attend(void *user) {
     static char answer[WH_SESSION_ANSWER_BYTES];
+    attendance_t *attendance = user;
     char line[WH_LINK_LINE];
+    wh_mcs_process_idle(&attendance->link->control);
     while (wh_mcs_process_next_request(&attendance->link->control, line)) {
         const wh_status_t status = wh_session_execute(attendance->session, line, answer, sizeof answer);
         wh_mcs_process_answer(&attendance->link->control, status, line, answer);
     }
 }
 
-static void on_messages(void *user) {
-    attendance_t *attendance = user;
-    (void)wh_node_drain(&attendance->link->node, 64);
-    execute_requests(attendance);
-}
-
-static void on_timer(void *user) {
-    attendance_t *attendance = user;
-    uint64_t expirations;
-    if (read(attendance->timer, &expirations, sizeof expirations) > 0) {
-        wh_mcs_process_idle(&attendance->link->control);
-        execute_requests(attendance);
-    }
-}
-
-static int start_timer(void) {
-    static const struct itimerspec tenth = {{0, 100000000}, {0, 100000000}};
-    const int timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
-    if (timer >= 0) {
-        (void)timerfd_settime(timer, 0, &tenth, NULL);
-    }
-    return timer;
-}
-
 static int take_commands(wh_session_t *session, wh_mcs_link_t *link) {
-    attendance_t attendance = {link, session, start_timer()};
-    const wh_prompt_watch_t messages = {wh_node_descriptor(&link->node), on_messages, &attendance};
-    const wh_prompt_watch_t timer = {attendance.timer, on_timer, &attendance};
-    wh_prompt_t *prompt = wh_prompt_open(session);
-    if (!prompt || attendance.timer < 0) {
-        perror("waferhand");
-        return WH_EXIT_USAGE;
-    }
-    (void)wh_prompt_watch(prompt, &messages);
-    (void)wh_prompt_watch(prompt, &timer);
+    attendance_t attendance = {link, session};
+    const wh_prompt_watch_t watch = {wh_node_descriptor(&link->node), attend, &attendance};
+    wh_prompt_t *prompt = wh_prompt_open(session, &watch);
+    link->control.last_beat_us = wh_node_clock_us(); /* what is piped in goes before the first beat */
     const int status = wh_prompt_run(prompt);
     wh_prompt_close(prompt);
-    close(attendance.timer);
     return status;
 }
 
@@ -146,22 +114,17 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
     return status;
 }
 
-static int run_linked(arguments_t *arguments) {
-    static wh_mcs_link_t link;
-    if (!wh_mcs_link_open(&link, &arguments->link)) {
-        return WH_EXIT_USAGE;
-    }
-    arguments->run.run.partners = wh_mcs_process_partners(&link.control);
-    const int status = arguments->layout ? run_prompt(arguments, &link) : wh_run_and_print(&arguments->run);
-    wh_mcs_link_close(&link);
-    return status;
-}
-
 int wh_app_mcs(int argc, char **argv) {
-    arguments_t arguments = {0};
+    static wh_mcs_link_t link;
+    arguments_t arguments = {.link = {.client = {.stop = &wh_stop_requested}}};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
-    const int status = run_linked(&arguments);
+    int status = WH_EXIT_USAGE;
+    if (wh_mcs_link_open(&link, &arguments.link)) {
+        arguments.run.run.partners = wh_mcs_process_partners(&link.control);
+        status = arguments.layout ? run_prompt(&arguments, &link) : wh_run_and_print(&arguments.run);
+        wh_mcs_link_close(&link);
+    }
     wh_run_arguments_free(&arguments.run);
     return status;
 }

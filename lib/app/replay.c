@@ -4,7 +4,6 @@
 #include <jansson.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "../log/replay.h"
 #include "../text/options.h"
@@ -135,21 +134,6 @@ static void print_json(const char *path, const wh_replay_t *replay, const ending
 
 /* ------------------------------------------------------------------------------------------------ reading */
 
-static FILE *open_log(const char *path) {
-    struct stat status;
-    FILE *file = fopen(path, "rb");
-    const bool opened = file && fstat(fileno(file), &status) == 0;
-    if (!opened || S_ISDIR(status.st_mode)) {
-        fprintf(stderr, "%s: %s (expected an LCM event record)\n", path,
-                opened ? strerror(EISDIR) : strerror(errno));
-        if (file) {
-            fclose(file);
-        }
-        return NULL;
-    }
-    return file;
-}
-
 static wh_log_t record;
 
 /* Finds the first message that describes the cell. It is sent once a second, so a recording may begin before
@@ -170,16 +154,15 @@ static ending_t read_all(FILE *file, wh_replay_t *replay) {
     ending_t ending = {.first_garbage = 0};
     find_cell(file, replay);
     wh_log_open(&record, file);
-    do {
-        ending.result = wh_log_next(&record);
-        if (ending.result == WH_LOG_EVENT && record.size > 0) {
-            const uint64_t garbage = replay->garbage;
+    while ((ending.result = wh_log_next(&record)) == WH_LOG_EVENT) {
+        const bool sound = replay->garbage == 0;
+        if (record.size > 0) {
             wh_replay_event(replay, record.channel, record.data, record.size);
-            if (garbage == 0 && replay->garbage > 0) {
-                ending.first_garbage = record.offset;
-            }
         }
-    } while (ending.result == WH_LOG_EVENT);
+        if (sound && replay->garbage > 0) {
+            ending.first_garbage = record.offset;
+        }
+    }
     wh_replay_finish(replay);
     ending.offset = record.offset;
     ending.events = record.count;
@@ -201,11 +184,11 @@ static int judge(const wh_replay_t *replay, const ending_t *ending) {
 
 static int replay_file(const arguments_t *arguments) {
     static wh_replay_t replay;
-    FILE *file = open_log(arguments->path);
+    FILE *file = wh_log_file(arguments->path);
     if (!file) {
+        fprintf(stderr, "%s: %s (expected an LCM event record)\n", arguments->path, strerror(errno));
         return WH_EXIT_USAGE;
     }
-    wh_replay_open(&replay);
     const ending_t ending = read_all(file, &replay);
     const int status = judge(&replay, &ending);
     fclose(file);

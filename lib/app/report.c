@@ -78,19 +78,8 @@ static int report_log(const arguments_t *arguments) {
     return written ? WH_EXIT_MET : WH_EXIT_USAGE;
 }
 
-/* A script is text. */
-static bool is_text(const char *path) {
-    char begin[512];
-    FILE *file = fopen(path, "rb");
-    const size_t size = file ? fread(begin, 1, sizeof begin, file) : 0;
-    if (file) {
-        (void)fclose(file);
-    }
-    return !memchr(begin, '\0', size);
-}
-
-static int report_script(arguments_t *arguments) {
-    if (!is_text(arguments->run.run.script)) {
+static int report_script(arguments_t *arguments, bool is_text) {
+    if (!is_text) {
         fprintf(stderr, "%s: no LCM event log and no script (expected one of them)\n",
                 arguments->run.run.script);
         return WH_EXIT_USAGE;
@@ -104,12 +93,24 @@ static int report_script(arguments_t *arguments) {
     return status == WH_EXIT_USAGE ? WH_EXIT_USAGE : WH_EXIT_MET;
 }
 
+/* Reads how the run begins: a log begins with LCM's sync word, and a script is text. */
+static int report(arguments_t *arguments) {
+    static const unsigned char sync[4] = {0xED, 0xA1, 0xDA, 0x01};
+    char begin[512];
+    FILE *file = fopen(arguments->run.run.script, "rb");
+    const size_t size = file ? fread(begin, 1, sizeof begin, file) : 0;
+    if (file) {
+        (void)fclose(file);
+    }
+    const bool is_log = size >= sizeof sync && memcmp(begin, sync, sizeof sync) == 0;
+    return is_log ? report_log(arguments) : report_script(arguments, !memchr(begin, '\0', size));
+}
+
 int wh_app_report(int argc, char **argv) {
     arguments_t arguments = {.run = {.quiet = true}};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
-    const bool is_log = wh_log_run_is_log(arguments.run.run.script);
-    const int status = is_log ? report_log(&arguments) : report_script(&arguments);
+    const int status = report(&arguments);
     wh_run_arguments_free(&arguments.run);
     return status;
 }

@@ -1,4 +1,4 @@
-/* A script's run, for `run` and `mcs`. */
+/* A script's run, for `run` and `mcs`, and the files that it is written to. */
 #include "run_arguments.h"
 
 #include <errno.h>
@@ -7,7 +7,12 @@
 #include <unistd.h>
 
 #include "../print/record_print.h"
+#include "../report/page.h"
+#include "../report/plots.h"
+#include "../text/array.h"
+#include "../text/output.h"
 #include "../text/style.h"
+#include "../view/scene.h"
 #include "app.h"
 #include "segments.h"
 
@@ -18,8 +23,8 @@ const wh_option_t wh_run_options[] = {
      .variable = offsetof(wh_run_arguments_t, gantt)},
     {"margins", 0, NULL, "Also print how near the axes come to the ends of their travel at each station",
      WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, margins)},
-    {"segments", 0, "FILE", "Write the motion that was played as C source for a firmware test",
-     WH_OPTION_TEXT, .variable = offsetof(wh_run_arguments_t, segments_path)},
+    {"segments", 0, "FILE", "Write the run as C source that a firmware test plays", WH_OPTION_TEXT,
+     .variable = offsetof(wh_run_arguments_t, segments_path)},
     {"set", 0, "NAME=VALUE", "Hand the script a parameter: params.NAME", WH_OPTION_LIST,
      .variable = offsetof(wh_run_arguments_t, parameters)},
     {"trust", 0, NULL, "Let the script use all of Lua, files and native modules too", WH_OPTION_FLAG,
@@ -29,6 +34,147 @@ const wh_option_t wh_run_options[] = {
     {"memory", 0, "MIB", "Let the script use so many MiB of memory (default 256)", WH_OPTION_REAL,
      .variable = offsetof(wh_run_arguments_t, memory_mib), 1, 1e6, "a number from 1 to 1e+06"},
     {0}};
+
+const wh_option_t wh_run_files_options[] = {
+    {"report", 'o', "FILE", "Write a page to look at and to mail: the cell in motion, plots and tables",
+     WH_OPTION_TEXT, .variable = offsetof(wh_run_files_t, page)},
+    {"gltf", 0, "FILE", "Write the cell in motion as glTF 2.0, for Blender and other viewers", WH_OPTION_TEXT,
+     .variable = offsetof(wh_run_files_t, scene)},
+    {"data", 0, "FILE", "Write the page's data alone, as JSON", WH_OPTION_TEXT,
+     .variable = offsetof(wh_run_files_t, document)},
+    {"svg", 0, "DIR",
+     "Write the plots into this folder, for print: each as SVG, with the data and the gnuplot script that it "
+     "is made of",
+     WH_OPTION_TEXT, .variable = offsetof(wh_run_files_t, plots)},
+    {0}};
+
+bool wh_run_files_wanted(const wh_run_files_t *files) {
+    return files->page || files->scene || files->document || files->plots;
+}
+
+/* ---------------------------------------------------------------------------------------------- listening */
+
+static void on_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
+    if (state->status == WH_OK) {
+        wh_signals_slice(user, command->axes, command->axis_count, state);
+    }
+}
+
+static void on_boundary(void *user, const wh_layout_t *layout) {
+    wh_signals_t *signals = user;
+    if (!signals->layout) {
+        wh_signals_begin(signals, layout, true);
+    } else if (signals->last > 0) {
+        wh_signals_mark(signals);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ command */
+
+/* Writes a word so that a shell reads it back unchanged. */
+static void write_word(FILE *out, const char *word) {
+    const char *plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=+,:@%";
+    if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
+        fputs(word, out);
+        return;
+    }
+    fputc('\'', out);
+    for (const char *c = word; *c; ++c) {
+        if (*c == '\'') {
+            fputs("'\\''", out);
+        } else {
+            fputc((unsigned char)*c, out);
+        }
+    }
+    fputc('\'', out);
+}
+
+char *wh_run_files_command(const char *command, const char *file, const char *const parameters[],
+                           size_t count) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = wh_memory_need(open_memstream(&text, &size));
+    fprintf(out, "waferhand %s ", command);
+    write_word(out, file);
+    for (size_t i = 0; i < count; ++i) {
+        fputs(" --set ", out);
+        write_word(out, parameters[i]);
+    }
+    (void)fclose(out);
+    return text;
+}
+
+/* ------------------------------------------------------------------------------------------------ writing */
+
+typedef struct {
+    const wh_document_t *document;
+    char *text; /* the document's */
+    size_t size;
+    char message[WH_PAGE_MESSAGE_BYTES]; /* why a page was not written; empty: errno says it */
+} content_t;
+
+/* Writes one of the files. */
+typedef bool writer_t(content_t *content, FILE *out);
+
+static bool write_page(content_t *content, FILE *out) {
+    return wh_page_write(out, content->document->title, content->text, content->size, content->message);
+}
+
+static bool write_scene(content_t *content, FILE *out) {
+    json_t *scene = wh_scene_make(content->document->signals, content->document->title, true);
+    const bool written = json_dumpf(scene, out, JSON_COMPACT | JSON_REAL_PRECISION(9)) == 0;
+    json_decref(scene);
+    return written && fputc('\n', out) != EOF;
+}
+
+static bool write_document(content_t *content, FILE *out) {
+    return fwrite(content->text, 1, content->size, out) == content->size;
+}
+
+static bool write_file(content_t *content, const char *path, writer_t *writer) {
+    wh_output_t output = {0};
+    if (!path) {
+        return true;
+    }
+    const bool written =
+        wh_output_open(&output, path) && writer(content, output.file) && wh_output_commit(&output);
+    const int reason = errno;
+    wh_output_drop(&output);
+    if (!written && content->message[0] != '\0') {
+        fprintf(stderr, "%s: not written: %s\n", path, content->message);
+    } else if (!written) {
+        fprintf(stderr, "%s: %s (expected a file that can be written)\n", path, strerror(reason));
+    }
+    return written;
+}
+
+static bool write_plots(const wh_document_t *document, const char *folder) {
+    char message[WH_PLOTS_MESSAGE_BYTES] = "";
+    if (folder && !wh_plots_write(document, folder, message)) {
+        fprintf(stderr, "%s: not written: %s\n", folder, message);
+        return false;
+    }
+    return true;
+}
+
+bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *document) {
+    wh_document_t whole = *document;
+    content_t content = {.document = &whole};
+    FILE *out = wh_memory_need(open_memstream(&content.text, &content.size));
+    whole.run = wh_record_to_json(document->record);
+    const bool made = wh_document_write(&whole, out) == 0;
+    if (fclose(out) != 0 || !made) {
+        wh_memory_out();
+    }
+    const bool written = write_file(&content, files->document, write_document) &&
+                         write_file(&content, files->scene, write_scene) &&
+                         write_file(&content, files->page, write_page) && write_plots(&whole, files->plots);
+    free(content.text);
+    json_decref(whole.run);
+    return written;
+}
+
+/* -------------------------------------------------------------------------------------------------- a run */
 
 static int print_result(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
     if (arguments->json) {
@@ -116,7 +262,7 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
     wh_script_run_t run;
     wh_signals_t signals = {0};
     if (wh_run_files_wanted(&arguments->files)) {
-        arguments->run.listener = wh_run_files_listener(&signals);
+        arguments->run.listener = (wh_mcs_listener_t){on_slice, on_boundary, &signals};
     }
     arguments->run.keep_segments = arguments->segments_path != NULL;
     arguments->run.limits.print_to = arguments->json ? stderr : stdout;

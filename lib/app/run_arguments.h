@@ -1,10 +1,23 @@
 /* A script's run as subcommands offer it: `run SCRIPT` and `mcs SCRIPT` have the same options and print
- * alike. */
+ * alike. And the files that a run is written to: those of `report`, `run`, `mcs` and `study --trial`. */
 #ifndef WH_APP_RUN_ARGUMENTS_H
 #define WH_APP_RUN_ARGUMENTS_H
 
 #include "../mcs/script_run.h"
-#include "run_files.h"
+#include "../report/document.h"
+#include "../text/options.h"
+
+/* Zero it to begin with: null paths are not wanted. */
+typedef struct {
+    const char *page, *scene, *document;
+    const char *plots; /* a folder */
+} wh_run_files_t;
+
+/* --report, --gltf, --data and --svg, into a wh_run_files_t. */
+extern const wh_option_t wh_run_files_options[];
+
+/* True if any is wanted. */
+bool wh_run_files_wanted(const wh_run_files_t *files);
 
 /* Zero it to begin with. */
 typedef struct {
@@ -27,5 +40,14 @@ void wh_run_arguments_free(wh_run_arguments_t *arguments);
 
 /* Runs the script and prints what came of it. Returns the exit status. */
 int wh_run_and_print(wh_run_arguments_t *arguments);
+
+/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and
+ * a log. */
+char *wh_run_files_command(const char *command, const char *file, const char *const parameters[],
+                           size_t count);
+
+/* Writes those that are wanted, from a document that lacks only `run`, which is made of the record. Each file
+ * is there whole or as it was. False, with a line on standard error, if one cannot be written. */
+bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *document);
 
 #endif

@@ -1,145 +1,368 @@
 #include "segments.h"
 
+#include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
+#include "../text/array.h"
 #include "../text/output.h"
 
+/* Room for a prefix: a file's name. */
+#define PREFIX_SIZE 256
+
+/* What is being written. */
+typedef struct {
+    FILE *out;
+    const wh_mcs_t *mcs;
+    char prefix[PREFIX_SIZE], upper[PREFIX_SIZE];
+    char **lines; /* of the script; none if it cannot be read again */
+    size_t line_count, line_capacity;
+} writer_t;
+
+static bool is_word(char c) {
+    return isascii((unsigned char)c) && isalnum((unsigned char)c);
+}
+
+/* The file's name up to its first dot, as a C identifier: other characters become underscores. */
+static void name_prefix(writer_t *writer, const char *path) {
+    const char *slash = strrchr(path, '/');
+    const char *from = slash ? slash + 1 : path;
+    char *prefix = writer->prefix;
+    size_t length = isalpha((unsigned char)from[0]) ? 0 : (size_t)snprintf(prefix, PREFIX_SIZE, "run_");
+    for (; *from != '\0' && *from != '.' && length + 1 < PREFIX_SIZE; ++from) {
+        if (is_word(*from) || prefix[length - 1] != '_') {
+            prefix[length++] = is_word(*from) ? *from : '_';
+        }
+    }
+    while (prefix[length - 1] == '_') {
+        --length;
+    }
+    prefix[length] = '\0';
+}
+
+static void name_constants(writer_t *writer) {
+    for (size_t i = 0; i == 0 || writer->prefix[i - 1] != '\0'; ++i) {
+        writer->upper[i] = (char)toupper((unsigned char)writer->prefix[i]);
+    }
+}
+
+static void read_lines(writer_t *writer) {
+    FILE *in = fopen(writer->mcs->script, "r");
+    char *line = NULL;
+    size_t size = 0;
+    while (in && getline(&line, &size, in) >= 0) {
+        writer->lines =
+            wh_array_grow(writer->lines, writer->line_count, &writer->line_capacity, sizeof *writer->lines);
+        writer->lines[writer->line_count++] = line;
+        line = NULL;
+        size = 0;
+    }
+    free(line);
+    if (in) {
+        (void)fclose(in);
+    }
+}
+
+static void free_lines(writer_t *writer) {
+    for (size_t i = 0; i < writer->line_count; ++i) {
+        free(writer->lines[i]);
+    }
+    free(writer->lines);
+}
+
+/* ------------------------------------------------------------------------------------------------ numbers */
+
+/* As short as reads back to the same bits. With a point or an exponent: a whole number would be of another
+ * type. */
+static void write_real(FILE *out, wh_real_t value) {
+    char text[40] = "";
+    for (int digits = 15; digits <= 17 && (digits == 15 || strtod(text, NULL) != value); ++digits) {
+        (void)snprintf(text, sizeof text, "%.*g", digits, value);
+    }
+    fprintf(out, "%s%s", text, strpbrk(text, ".en") ? "" : ".0");
+}
+
 static void write_numbers(FILE *out, const wh_real_t values[], size_t count) {
-    fputs("{", out);
     for (size_t i = 0; i < count; ++i) {
-        fprintf(out, "%s%a", i > 0 ? ", " : "", values[i]);
+        fputs(i > 0 ? ", " : "{", out);
+        write_real(out, values[i]);
     }
     fputs("}", out);
 }
 
-static void write_pose(FILE *out, const wh_pose_t *pose) {
-    fputs("{{{", out);
-    for (size_t row = 0; row < 3; ++row) {
-        fputs(row > 0 ? ", " : "", out);
-        write_numbers(out, pose->R.m[row], 3);
-    }
-    fprintf(out, "}}, {%a, %a, %a}}", pose->r.x, pose->r.y, pose->r.z);
+static void write_vector(FILE *out, const wh_vec3_t *v) {
+    const wh_real_t values[] = {v->x, v->y, v->z};
+    write_numbers(out, values, 3);
 }
 
-static void write_limits(FILE *out, const wh_limits_t *limits) {
-    fprintf(out, "{%a, %a, %a}", limits->speed, limits->acceleration, limits->jerk);
+static void write_pose(FILE *out, const wh_pose_t *pose) {
+    for (size_t row = 0; row < 3; ++row) {
+        fputs(row > 0 ? ", " : "{{{", out);
+        write_numbers(out, pose->R.m[row], 3);
+    }
+    fputs("}}, ", out);
+    write_vector(out, &pose->r);
+    fputs("}", out);
 }
 
 /* ------------------------------------------------------------------------------------------------ machine */
 
-static void write_robot(FILE *out, const wh_robot_t *robot) {
-    fputs("    .robot = {.travel = {", out);
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        fprintf(out, "%s{%a, %a}", axis > 0 ? ", " : "", robot->travel[axis].min, robot->travel[axis].max);
-    }
-    fputs("},\n              .limits = {", out);
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        fputs(axis > 0 ? ", " : "", out);
-        write_limits(out, &robot->limits[axis]);
-    }
-    fputs("},\n              .home = ", out);
-    write_numbers(out, robot->home, WH_ROBOT_AXES);
-    fputs("},\n", out);
+static void write_limits(FILE *out, const wh_limits_t *limits) {
+    const wh_real_t values[] = {limits->speed, limits->acceleration, limits->jerk};
+    write_numbers(out, values, 3);
 }
 
-static void write_machine(FILE *out, const wh_machine_t *machine) {
-    fputs("static const wh_machine_t played_machine = {\n", out);
+static void write_robot(FILE *out, const wh_robot_t *robot) {
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        const wh_real_t ends[] = {robot->travel[axis].min, robot->travel[axis].max};
+        fputs(axis > 0 ? ", " : "    {{", out);
+        write_numbers(out, ends, 2);
+    }
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        fputs(axis > 0 ? ", " : "},\n     {", out);
+        write_limits(out, &robot->limits[axis]);
+    }
+    fputs("},\n     ", out);
+    write_numbers(out, robot->home, WH_ROBOT_AXES);
+    fputs("},\n    ", out);
+}
+
+static void write_machine(const writer_t *writer) {
+    const wh_machine_t *machine = &writer->mcs->real->machine;
+    FILE *out = writer->out;
+    fprintf(out, "static const wh_machine_t %s_machine = {\n", writer->prefix);
     write_robot(out, &machine->robot);
-    fputs("    .chuck_limits = ", out);
     write_limits(out, &machine->chuck_limits);
-    fprintf(out, ",\n    .axis_count = %zu,\n    .gripper_count = %zu,\n    .mounts = {\n",
-            machine->axis_count, machine->gripper_count);
+    fprintf(out, ",\n    %zu,\n    %zu,\n    {", machine->axis_count, machine->gripper_count);
     for (size_t g = 0; g < machine->gripper_count; ++g) {
-        fprintf(out, "        {%" PRId32 ", ", machine->mounts[g].axis);
+        fprintf(out, "%s{%" PRId32 ", ", g > 0 ? ",\n     " : "", machine->mounts[g].axis);
         write_pose(out, &machine->mounts[g].base_from_station);
         fputs(machine->mounts[g].is_shifted ? ", true, " : ", false, ", out);
         write_pose(out, &machine->mounts[g].effector_from_gripper);
-        fputs("},\n", out);
+        fputs("}", out);
     }
-    fputs("    }};\n\n", out);
+    fputs("}};\n\n", out);
 }
 
 /* ----------------------------------------------------------------------------------------------- segments */
 
-static void write_valves(FILE *out, const int32_t valves[]) {
-    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        fprintf(out, "%s%" PRId32, g > 0 ? ", " : ".valves = {", valves[g]);
+/* A line of the script without the blanks around it, and so that it ends no comment. */
+static void write_in_comment(FILE *out, const char *text) {
+    size_t length = strlen(text);
+    while (length > 0 && isspace((unsigned char)text[length - 1])) {
+        --length;
     }
+    const size_t blanks = strspn(text, " \t");
+    for (size_t i = blanks; i < length; ++i) {
+        const bool ends = i > blanks && strchr("*/", text[i]) && strchr("*/", text[i - 1]);
+        fputs(ends ? " " : "", out);
+        fputc(iscntrl((unsigned char)text[i]) || text[i] == '\\' ? ' ' : text[i], out);
+    }
+}
+
+/* What asked for the segments that follow: the script's line, and the command as an operator types it. */
+static void write_command(const writer_t *writer, int32_t index) {
+    const wh_record_t *record = writer->mcs->recorder.record;
+    if (!wh_is_index(index, record->command_count)) {
+        return;
+    }
+    const wh_command_record_t *command = &record->commands[index];
+    fprintf(writer->out, "    /* line %d: ", command->line);
+    if (command->line > 0 && (size_t)command->line <= writer->line_count) {
+        write_in_comment(writer->out, writer->lines[command->line - 1]);
+        fputs(" : ", writer->out);
+    }
+    write_in_comment(writer->out, command->text ? command->text : "");
+    fputs(" */\n", writer->out);
+}
+
+static void write_segment(FILE *out, const wh_kept_segment_t *kept) {
+    static const char *const kinds[] = {
+        [WH_SEGMENT_AXES] = "AXES",   [WH_SEGMENT_LINE] = "LINE",     [WH_SEGMENT_VALVES] = "VALVES",
+        [WH_SEGMENT_DWELL] = "DWELL", [WH_SEGMENT_SENSOR] = "SENSOR",
+    };
+    const wh_segment_t *segment = &kept->segment;
+    const wh_real_t values[] = {segment->speed, segment->acceleration, segment->seconds};
+    fprintf(out, "    {{WH_SEGMENT_%s, ", kinds[segment->kind]);
+    write_numbers(out, segment->target, WH_AXES);
+    fputs(", ", out);
+    write_vector(out, &segment->travel);
+    for (size_t i = 0; i < 3; ++i) {
+        fputs(", ", out);
+        write_real(out, values[i]);
+    }
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        fprintf(out, "%s%" PRId32, g > 0 ? ", " : ", {", segment->valves[g]);
+    }
+    fprintf(out, "}, %" PRId32 "}, %" PRId64 "}", segment->gripper, kept->ended ? 0 : kept->slices);
+}
+
+/* C99 has no empty arrays: one item that is not counted stands for none. */
+static void write_segments(const writer_t *writer) {
+    static const wh_kept_segment_t none = {.segment.kind = WH_SEGMENT_DWELL};
+    const wh_mcs_t *mcs = writer->mcs;
+    FILE *out = writer->out;
+    fprintf(out, "static const wh_played_segment_t %s_segments[] = {\n", writer->prefix);
+    for (size_t i = 0; i < mcs->segment_count; ++i) {
+        if (i == 0 || mcs->segments[i].command != mcs->segments[i - 1].command) {
+            write_command(writer, mcs->segments[i].command);
+        }
+        write_segment(out, &mcs->segments[i]);
+        fputs(i + 1 < mcs->segment_count ? ",\n" : "", out);
+    }
+    if (mcs->segment_count == 0) {
+        write_segment(out, &none);
+    }
+    fputs("};\n\n", out);
+}
+
+/* ------------------------------------------------------------------------------------------------- faults */
+
+static void write_time(FILE *out, int64_t slice) {
+    if (slice == WH_FAULT_FOREVER) {
+        fputs(", WH_FAULT_FOREVER", out);
+    } else {
+        fprintf(out, ", %" PRId64, slice);
+    }
+}
+
+static void write_fault(FILE *out, const wh_fault_t *fault) {
+    fputs("{WH_FAULT_", out);
+    for (const char *c = wh_fault_name(fault->kind); *c != '\0'; ++c) {
+        fputc(toupper((unsigned char)*c), out);
+    }
+    fprintf(out, ", %" PRId32 ", %" PRId32 ", ", fault->target, fault->other);
+    write_real(out, fault->value);
+    fputs(", ", out);
+    write_pose(out, &fault->offset);
+    write_time(out, fault->from);
+    write_time(out, fault->until);
     fputs("}", out);
 }
 
-static void write_segment(FILE *out, const wh_segment_t *segment) {
-    switch (segment->kind) {
-    case WH_SEGMENT_AXES:
-        fputs("    {.kind = WH_SEGMENT_AXES, .target = ", out);
-        write_numbers(out, segment->target, WH_AXES);
-        break;
-    case WH_SEGMENT_LINE:
-        fprintf(out, "    {.kind = WH_SEGMENT_LINE, .travel = {%a, %a, %a}, .speed = %a, .acceleration = %a",
-                segment->travel.x, segment->travel.y, segment->travel.z, segment->speed,
-                segment->acceleration);
-        break;
-    case WH_SEGMENT_VALVES:
-        fputs("    {.kind = WH_SEGMENT_VALVES, ", out);
-        write_valves(out, segment->valves);
-        break;
-    case WH_SEGMENT_DWELL:
-        fprintf(out, "    {.kind = WH_SEGMENT_DWELL, .seconds = %a", segment->seconds);
-        break;
-    case WH_SEGMENT_SENSOR:
-        fprintf(out, "    {.kind = WH_SEGMENT_SENSOR, .gripper = %" PRId32 ", .seconds = %a",
-                segment->gripper, segment->seconds);
-        break;
+static void write_faults(const writer_t *writer) {
+    static const wh_played_fault_t none = {0};
+    const wh_mcs_t *mcs = writer->mcs;
+    const size_t shown = mcs->kept_fault_count > 0 ? mcs->kept_fault_count : 1;
+    fprintf(writer->out, "static const wh_played_fault_t %s_faults[] = {\n", writer->prefix);
+    for (size_t i = 0; i < shown; ++i) {
+        const wh_played_fault_t *fault = mcs->kept_fault_count > 0 ? &mcs->kept_faults[i] : &none;
+        fprintf(writer->out, "    {%" PRId64 ", {%" PRId32 ", ", fault->seq, fault->request.index);
+        write_fault(writer->out, &fault->request.fault);
+        fputs(i + 1 < shown ? "}},\n" : "}}", writer->out);
     }
+    fputs("};\n\n", writer->out);
+}
+
+/* --------------------------------------------------------------------------------------------------- cell */
+
+static void write_stations(const writer_t *writer) {
+    static const wh_station_t none = {.slots = 1, .pitch = 1, .chuck = WH_NONE};
+    const wh_cell_t *cell = &writer->mcs->real->cell;
+    fprintf(writer->out, "static const wh_station_t %s_stations[] = {\n", writer->prefix);
+    for (size_t s = 0; s < cell->count || s == 0; ++s) {
+        const wh_station_t *station = cell->count > 0 ? &cell->stations[s] : &none;
+        fputs("    {", writer->out);
+        write_pose(writer->out, &station->base_from_station);
+        fprintf(writer->out, ", %" PRId32 ", ", station->slots);
+        write_real(writer->out, station->pitch);
+        fprintf(writer->out, ", %" PRId32 "}%s", station->chuck, s + 1 < cell->count ? ",\n" : "");
+    }
+    fputs("};\n\n", writer->out);
+}
+
+static void write_wafers(const writer_t *writer) {
+    const wh_pose_t none = wh_pose_identity();
+    const wh_layout_t *layout = writer->mcs->real;
+    fprintf(writer->out, "static const wh_pose_t %s_wafers[] = {\n", writer->prefix);
+    for (size_t w = 0; w < layout->wafer_count || w == 0; ++w) {
+        fputs("    ", writer->out);
+        write_pose(writer->out, layout->wafer_count > 0 ? &layout->start[w].base_from_wafer : &none);
+        fputs(w + 1 < layout->wafer_count ? ",\n" : "", writer->out);
+    }
+    fprintf(writer->out, "};\n\nenum { %s_WAFERS = %zu, %s_GRIPPERS = %zu };\n\n", writer->upper,
+            layout->wafer_count, writer->upper, layout->machine.gripper_count);
+}
+
+/* ---------------------------------------------------------------------------------------------- the whole */
+
+static void write_config(FILE *out, const wh_grasp_config_t *config) {
+    const wh_real_t tolerance[] = {config->tolerance.projz, config->tolerance.projxy,
+                                   config->tolerance.planar};
+    fputs("    {", out);
+    write_numbers(out, tolerance, 3);
+    fprintf(out, ", %s, %s, ", config->check == WH_CHECK_SWEPT ? "WH_CHECK_SWEPT" : "WH_CHECK_SAMPLED",
+            config->seat ? "true" : "false");
+    write_real(out, config->near_projz);
+    fputs(", ", out);
+    write_real(out, config->near_projxy);
     fputs("},\n", out);
 }
 
-static void write_segments(FILE *out, const wh_mcs_t *mcs) {
-    fputs("static const wh_segment_t played_segments[] = {\n", out);
-    for (size_t i = 0; i < mcs->segment_count; ++i) {
-        write_segment(out, &mcs->segments[i]);
+static void write_physics(FILE *out, const wh_physics_t *physics) {
+    static const wh_fault_t none = {0};
+    const wh_vacuum_config_t *v = &physics->vacuum;
+    const wh_real_t vacuum[] = {v->build, v->vent, v->idle, v->on, v->off, v->release};
+    const wh_real_t pads[] = {physics->pads.friction, physics->pads.force, physics->pads.mass,
+                              physics->pads.gravity};
+    fputs("    {", out);
+    write_real(out, physics->slice_s);
+    fputs(", ", out);
+    write_numbers(out, vacuum, sizeof vacuum / sizeof vacuum[0]);
+    fputs(", ", out);
+    write_numbers(out, pads, sizeof pads / sizeof pads[0]);
+    for (size_t i = 0; i < physics->fault_count || i == 0; ++i) {
+        fputs(i > 0 ? ",\n      " : ",\n     {", out);
+        write_fault(out, physics->fault_count > 0 ? &physics->faults[i] : &none);
     }
-    /* C99 has no empty arrays, so one segment that does nothing follows the counted ones. */
-    fprintf(out, "    {.kind = WH_SEGMENT_DWELL}};\nstatic const size_t played_segment_count = %zu;\n\n",
-            mcs->segment_count);
+    fprintf(out, "}, %zu},\n", physics->fault_count);
 }
 
-/* ------------------------------------------------------------------------------------------------- wafers */
-
-static void write_config(FILE *out, const wh_grasp_config_t *config) {
-    fprintf(out,
-            "static const wh_grasp_config_t played_config = {\n    .tolerance = {%a, %a, %a},\n"
-            "    .check = %s,\n    .seat = %s,\n    .near_projz = %a,\n    .near_projxy = %a};\n\n",
-            config->tolerance.projz, config->tolerance.projxy, config->tolerance.planar,
-            config->check == WH_CHECK_SWEPT ? "WH_CHECK_SWEPT" : "WH_CHECK_SAMPLED",
-            config->seat ? "true" : "false", config->near_projz, config->near_projxy);
+static void write_cell(const writer_t *writer) {
+    const wh_cell_t *cell = &writer->mcs->real->cell;
+    const wh_real_t tolerance[] = {cell->tolerance.projz, cell->tolerance.projxy, cell->tolerance.planar};
+    fprintf(writer->out, "    {%s_stations, %zu, ", writer->prefix, cell->count);
+    write_numbers(writer->out, tolerance, 3);
+    fputs(", ", writer->out);
+    write_real(writer->out, cell->off_centre);
+    fputs(", ", writer->out);
+    write_real(writer->out, cell->askew);
+    fprintf(writer->out, ", %s},\n", cell->settle ? "true" : "false");
 }
 
-static void write_wafers(FILE *out, const wh_layout_t *layout) {
-    fputs("static const wh_pose_t played_wafers[] = {\n", out);
-    for (size_t w = 0; w < layout->wafer_count; ++w) {
-        fputs("    ", out);
-        write_pose(out, &layout->start[w].base_from_wafer);
-        fputs(",\n", out);
-    }
-    fprintf(out,
-            "    {{{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}}, {0, 0, 0}}};\nstatic const size_t played_wafer_count "
-            "= %zu;\n\n",
-            layout->wafer_count);
+static void write_run(const writer_t *writer) {
+    const wh_mcs_t *mcs = writer->mcs;
+    const char *prefix = writer->prefix;
+    fprintf(writer->out,
+            "static const wh_played_t %s_run = {\n"
+            "    &%s_machine, %s_segments, %zu, %s_faults, %zu, %s_wafers, %s_WAFERS, %" PRId64 ",\n",
+            prefix, prefix, prefix, mcs->segment_count, prefix, mcs->kept_fault_count, prefix, writer->upper,
+            mcs->layout->slice_us);
+    write_config(writer->out, &mcs->real->grasp);
+    write_physics(writer->out, &mcs->real->physics);
+    write_cell(writer);
+    fprintf(writer->out, "    %" PRId64 ", UINT64_C(0x%016" PRIx64 ")};\n\n#endif\n",
+            mcs->recorder.record->slices, mcs->recorder.record->hash);
 }
 
-static void write_all(FILE *out, const wh_mcs_t *mcs) {
-    fprintf(out, "/* The motion of a run, as waferhand " WH_VERSION " played it: see wh_track_begin.\n"
-                 " * Arrays have one entry more than their counts say. */\n#include <waferhand.h>\n\n");
-    write_machine(out, &mcs->layout->machine);
-    fprintf(out, "static const int64_t played_slice_us = %" PRId64 ";\n\n", mcs->layout->slice_us);
-    write_segments(out, mcs);
-    write_config(out, &mcs->layout->grasp);
-    write_wafers(out, mcs->layout);
-    fprintf(out, "static const int64_t played_slices = %" PRId64 ";\n", mcs->recorder.record->slices);
-    fprintf(out, "static const uint64_t played_hash = UINT64_C(0x%016" PRIx64 ");\n",
-            mcs->recorder.record->hash);
+static void write_all(writer_t *writer) {
+    fputs("/* ", writer->out);
+    write_in_comment(writer->out, writer->mcs->script);
+    fprintf(writer->out,
+            " as waferhand " WH_VERSION " played it: see waferhand/sim/played.h.\n"
+            " * Each line of the script stands above its segments, and the command that it gave. */\n"
+            "#ifndef %s_RUN_H\n#define %s_RUN_H\n\n#include <waferhand.h>\n\n",
+            writer->upper, writer->upper);
+    read_lines(writer);
+    write_machine(writer);
+    write_segments(writer);
+    write_faults(writer);
+    write_stations(writer);
+    write_wafers(writer);
+    write_run(writer);
+    free_lines(writer);
 }
 
 int wh_segments_write(const wh_mcs_t *mcs, const char *path) {
@@ -148,7 +371,10 @@ int wh_segments_write(const wh_mcs_t *mcs, const char *path) {
         return -1;
     }
     if (mcs->layout) {
-        write_all(output.file, mcs);
+        writer_t writer = {.out = output.file, .mcs = mcs};
+        name_prefix(&writer, path);
+        name_constants(&writer);
+        write_all(&writer);
     }
     return wh_output_commit(&output) ? 0 : -1;
 }

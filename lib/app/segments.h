@@ -1,9 +1,8 @@
-/* `run --segments FILE`: the motion that was played, as C source that a firmware test compiles and plays
- * again.
+/* `run --segments FILE`: the run that was played, as C source that a firmware test compiles and plays again.
  *
- * The file defines, all static const and named played_*: machine, slice_us, segments[], segment_count, config
- * (of the grasp table), wafers[] (base_from_wafer at the start), wafer_count, slices and hash (wh_grasp_hash
- * at the end). Numbers are hexadecimal, so that no digit is lost. tests/end_to_end/segments plays one.
+ * The file is C99 and C++11. Its names begin with the file's own name up to the first dot: motion.h has
+ * motion_run (a wh_played_t, see sim/played.h) and the constants MOTION_WAFERS and MOTION_GRIPPERS. Numbers
+ * are decimal, with as many digits as it takes to lose none, so that every compiler reads them.
  */
 #ifndef WH_APP_SEGMENTS_H
 #define WH_APP_SEGMENTS_H

@@ -69,10 +69,10 @@ static void update_valves(wh_outputs_t *outputs, wh_sim_process_t *simulation) {
  * others can read it. */
 static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     struct pollfd ready[] = {{.fd = wh_node_descriptor(node), .events = POLLIN},
-                             {.fd = outputs->count > 0 ? wh_outputs_fd(outputs) : -1, .events = POLLIN}};
+                             {.fd = outputs->count > 0 ? outputs->fd : -1, .events = POLLIN}};
     int64_t wait_ms = 100;
     if (outputs->count > 0) {
-        const int64_t due_ms = (wh_outputs_due(outputs) - wh_node_clock_us()) / 1000 + 1;
+        const int64_t due_ms = (outputs->due_us - wh_node_clock_us()) / 1000 + 1;
         wait_ms = due_ms < wait_ms ? due_ms : wait_ms;
     }
     if (poll(ready, 2, wait_ms > 0 ? (int)wait_ms : 0) == 0) {
@@ -119,8 +119,7 @@ typedef struct {
 
 static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *layout,
                         const arguments_t *arguments) {
-    static char name[] = "sim";
-    const wh_status_t status = wh_sim_process_open(&served->simulation, node, layout, wh_say_line, name);
+    const wh_status_t status = wh_sim_process_open(&served->simulation, node, layout, true);
     if (status != WH_OK) {
         fprintf(stderr, "%s: %s (expected at most %d wafers, and a cell that fits one datagram)\n",
                 layout->path, wh_status_text(status), WH_LINK_WAFERS);
@@ -167,9 +166,10 @@ static int run(arguments_t *arguments) {
     }
     wh_node_t node;
     wh_catch_signals();
-    if (!wh_open_node(&node, arguments->url, arguments->record)) {
+    if (!wh_node_open(&node, arguments->url, arguments->record)) {
         return WH_EXIT_USAGE;
     }
+    node.speaker = "sim";
     const int status = serve(&node, layout, arguments);
     wh_node_close(&node);
     return status;

@@ -25,6 +25,8 @@
 
 #include "../grasp/proximity.h"
 
+WH_HEADER_BEGIN
+
 /* How many numbers a batch of so many wafers takes, and in how many lines of 64: 24.5 bytes a wafer, rounded
  * up to whole blocks of 32 wafers and of 32 spheres. Layout: for each 32 spheres 32 x of the centre, 32 y, 32
  * z, 32 radii; after all of these, for each block 32 x of the origin, 32 y, 32 z; after all of these, for
@@ -42,7 +44,7 @@
 
 /* The code of the sieve: portable C, or AVX2 for 8 wafers at a time, in builds of gcc or clang for x86-64 on
  * processors that have it. The verdicts are the same. */
-typedef enum { WH_BATCH_PORTABLE, WH_BATCH_AVX2 } wh_batch_code_t;
+typedef enum WH_FOUR_BYTES { WH_BATCH_PORTABLE, WH_BATCH_AVX2 } wh_batch_code_t;
 
 /* For the caller to read only. */
 typedef struct {
@@ -59,15 +61,16 @@ typedef struct {
  * nothing has changed then. Poses are not checked: a wafer with a NaN anywhere is never ready. Cost: linear
  * in wafers. */
 wh_status_t wh_batch_init(wh_batch_t *batch, wh_pose_t *base_from_wafers, size_t wafer_count, float *numbers,
-                          size_t number_count);
+                          size_t number_count) WH_SYMBOL(wh_batch_init);
 
 /* Chooses a code, for a test or a comparison. WH_STATUS_OUT_OF_RANGE if this build or processor does not have
  * it; nothing has changed then. */
-wh_status_t wh_batch_use(wh_batch_t *batch, wh_batch_code_t code);
+wh_status_t wh_batch_use(wh_batch_t *batch, wh_batch_code_t code) WH_SYMBOL(wh_batch_use);
 
 /* Moves one wafer. The pose is not checked. WH_STATUS_OUT_OF_RANGE if there is no such wafer; nothing has
  * changed then. Cost: that of wh_batch_init for 32 wafers. */
-wh_status_t wh_batch_place(wh_batch_t *batch, size_t wafer, const wh_pose_t *base_from_wafer);
+wh_status_t wh_batch_place(wh_batch_t *batch, size_t wafer, const wh_pose_t *base_from_wafer)
+    WH_SYMBOL(wh_batch_place);
 
 /* The questions. No argument is checked: the batch must be one that wh_batch_init accepted, and the tolerance
  * valid.
@@ -81,17 +84,20 @@ wh_status_t wh_batch_place(wh_batch_t *batch, size_t wafer, const wh_pose_t *bas
 /* Each gripper's ready wafers: `bits` receives WH_BATCH_WORDS(wafer_count) words for each gripper, one after
  * the other. Returns how many bits are set. */
 size_t wh_batch_ready(const wh_batch_t *batch, const wh_pose_t *base_from_grippers, size_t gripper_count,
-                      const wh_tolerance_t *tolerance, uint32_t *bits);
+                      const wh_tolerance_t *tolerance, uint32_t *bits) WH_SYMBOL(wh_batch_ready);
 
 /* One gripper's ready wafers by index, ascending. Returns how many there are; `wafers` receives the first
  * `capacity`. */
 size_t wh_batch_list(const wh_batch_t *batch, const wh_pose_t *base_from_gripper,
-                     const wh_tolerance_t *tolerance, int32_t *wafers, size_t capacity);
+                     const wh_tolerance_t *tolerance, int32_t *wafers, size_t capacity)
+    WH_SYMBOL(wh_batch_list);
 
 /* The wafer that each gripper would take if nobody held one, by the grasp table's rule: of the ready wafers
  * the one with the smallest |dr_proj_z|, of equal ones the lowest index; WH_NONE if none is ready. Returns
  * how many grippers have one. */
 size_t wh_batch_best(const wh_batch_t *batch, const wh_pose_t *base_from_grippers, size_t gripper_count,
-                     const wh_tolerance_t *tolerance, int32_t *best);
+                     const wh_tolerance_t *tolerance, int32_t *best) WH_SYMBOL(wh_batch_best);
+
+WH_HEADER_END
 
 #endif

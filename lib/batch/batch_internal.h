@@ -54,11 +54,13 @@ static inline size_t wh_batch_lowest(uint32_t bits) {
 
 /* Writes a word for each block, with a bit for each wafer that passes. Returns a bit for each word that may
  * have one set. */
-uint32_t wh_batch_sieve_portable(const wh_batch_sieve_t *sieve, const wh_batch_tile_t *tile, uint32_t *words);
+uint32_t wh_batch_sieve_portable(const wh_batch_sieve_t *sieve, const wh_batch_tile_t *tile, uint32_t *words)
+    WH_SYMBOL(wh_batch_sieve_portable);
 
 #if defined(__GNUC__) && defined(__x86_64__)
 #define WH_BATCH_HAS_AVX2 1
-uint32_t wh_batch_sieve_avx2(const wh_batch_sieve_t *sieve, const wh_batch_tile_t *tile, uint32_t *words);
+uint32_t wh_batch_sieve_avx2(const wh_batch_sieve_t *sieve, const wh_batch_tile_t *tile, uint32_t *words)
+    WH_SYMBOL(wh_batch_sieve_avx2);
 #else
 #define WH_BATCH_HAS_AVX2 0
 #endif

@@ -9,8 +9,16 @@ LIBDIR ?= $(PREFIX)/lib
 JAVASCRIPT ?= /usr/share/javascript
 WERROR ?= $(if $(CI),1)
 Q := $(if $(V),,@)
+# A cross compiler's own, where none is given: arm-none-eabi-gcc-ar beside arm-none-eabi-gcc.
+ifeq ($(origin AR),default)
+AR := $(patsubst %gcc,%gcc-ar,$(firstword $(filter %-gcc,$(CC))))
+AR := $(or $(AR),ar)
+endif
 
-VERSION := $(shell sed -n 's/^.define WH_VERSION "\(.*\)"/\1/p' lib/math/config.h)
+# Of lib/math/config.h
+defined = $(shell sed -n 's/^.define $(1) //p' lib/math/config.h)
+VERSION := $(call defined,WH_VERSION_MAJOR).$(call defined,WH_VERSION_MINOR).$(call defined,WH_VERSION_PATCH)
+ABI := $(call defined,WH_ABI)$(if $(FLOAT),f)
 
 # ---------------------------------------------------------------------------------------------- sources
 include tests/tests.mk
@@ -34,6 +42,9 @@ MODULE_OBJECTS := $(MODULE_SOURCES:%.c=$(B)/pic/%.o)
 MODULE_SUPPORT := $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o)
 
 # ------------------------------------------------------------------------------------------------ flags
+# Any C compiler builds the library: what only gcc and clang know is for them, and what only newer ones know for those.
+GNU := $(findstring __GNUC__,$(shell $(CC) -dM -E -x c /dev/null 2>/dev/null))
+accepts = $(shell $(CC) $(1) -E -x c /dev/null >/dev/null 2>&1 && echo $(1))
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wundef -Wcast-align -Wcast-qual -Wformat=2 -Wvla -Wswitch-enum \
             -Wwrite-strings -Wsign-conversion
 C_WARNINGS := -Wstrict-prototypes -Wmissing-prototypes
@@ -43,10 +54,13 @@ NUMBER_WARNINGS := -Wconversion -Wdouble-promotion
 # Contraction to fused multiply-adds would change bits from machine to machine, and gcc 12's vectoriser of straight code
 # fuses a*b + c*d beside e*f - g*h whatever it was told; errno keeps sqrt from being one instruction. The prefix map keeps
 # the folder's name out of what is built.
-SAME_BITS := -ffp-contract=off -fno-tree-slp-vectorize
-BASE := $(SAME_BITS) -fno-math-errno -ffile-prefix-map=$(CURDIR)=. $(WARNINGS) \
-        $(if $(WERROR),-Werror) $(if $(FLOAT),-DWH_FLOAT)
-LIBRARY_FLAGS := -std=c99 $(BASE) $(C_WARNINGS) $(NUMBER_WARNINGS) -DWH_BUILDING_LIBRARY
+SAME_BITS := -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION
+$(if $(filter-out sweep index,$(WITHOUT)),$(error WITHOUT=: of "sweep" and "index", not "$(WITHOUT)"))
+# What the users of the library have to define as well.
+DEFINES := $(strip $(if $(FLOAT),-DWH_FLOAT) $(addprefix -DWH_WITHOUT_,$(shell echo '$(WITHOUT)' | tr a-z A-Z)))
+BASE := $(SAME_BITS) -fno-math-errno $(call accepts,-ffile-prefix-map=$(CURDIR)=.) $(WARNINGS) \
+        $(if $(WERROR),-Werror) $(DEFINES)
+LIBRARY_FLAGS := $(if $(GNU),-std=c99 $(BASE) $(C_WARNINGS) $(NUMBER_WARNINGS),$(DEFINES)) -DWH_BUILDING_LIBRARY
 COLLISION_FLAGS = $(LIBRARY_FLAGS) $(call package_flags,ccd)
 HOST_FLAGS := -std=c99 -D_GNU_SOURCE $(BASE) $(C_WARNINGS)
 
@@ -89,6 +103,7 @@ $(B)/flags $(B)/sources $(B)/messages: FORCE
 
 all: library collision $(B)/waferhand $(B)/wh.so $(B)/waferhand.1 ranks
 library: $(B)/libwaferhand.a
+shared: $(B)/libwaferhand.so.$(ABI)
 collision: $(B)/libwaferhand_collision.a
 program: $(B)/waferhand
 ranks: $(RANKS)
@@ -103,7 +118,7 @@ library-test-names:
 $(LIBRARY_OBJECTS): FLAGS = $(LIBRARY_FLAGS)
 $(COLLISION_OBJECTS): FLAGS = $(COLLISION_FLAGS)
 $(PROGRAM_OBJECTS): FLAGS = $(PROGRAM_FLAGS)
-$(LIBRARY_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(LIBRARY_FLAGS) -fPIC
+$(LIBRARY_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(LIBRARY_FLAGS) -fPIC -fvisibility=hidden
 $(MODULE_OBJECTS): FLAGS = $(PROGRAM_FLAGS) -fPIC
 $(B)/obj/lib/report/page.o: FLAGS += -DWH_JAVASCRIPT='"$(JAVASCRIPT)"'
 # Its pow must not be taken for the one that the compiler knows.
@@ -114,8 +129,9 @@ $(CXX_TESTS:%=$(B)/obj/%.o): FLAGS = $(CXX_TEST_FLAGS)
 define compile
 @mkdir -p $(@D)
 @echo "  $(1)  $<"
-$(Q)$(2) $(FLAGS) $(3) $(EXTRA) -MMD -MP -c -o $@ $<
+$(Q)$(2) $(FLAGS) $(3) $(EXTRA) $(if $(GNU),-MMD -MP) -c -o $@ $<
 endef
+$(if $(GNU),,$(LIBRARY_OBJECTS): $(HEADERS))
 $(B)/obj/%.o: %.c $(B)/flags
 	$(call compile,CC ,$(CC),$(CFLAGS))
 $(B)/pic/%.o: %.c $(B)/flags
@@ -152,7 +168,7 @@ $(filter $(foreach room,link log view study report print app,$(B)/obj/lib/$(room
 # Made anew and with q: r would replace the first of two members that have the same base name.
 define archive
 @echo "  AR   $@"
-$(Q)rm -f $@ && $(AR) qcsD $@ $(filter %.o,$^)
+$(Q)rm -f $@ && { $(AR) qcsD $@ $(filter %.o,$^) 2>/dev/null || $(AR) qcs $@ $(filter %.o,$^); }
 endef
 $(B)/libwaferhand.a: $(LIBRARY_OBJECTS) $(B)/sources
 	$(archive)
@@ -160,6 +176,11 @@ $(B)/libwaferhand_collision.a: $(COLLISION_OBJECTS) $(B)/sources
 	$(archive)
 $(B)/libwaferhand_lcm.a: $(MESSAGE_OBJECTS) $(B)/messages
 	$(archive)
+# Shows what public headers declare, and nothing else. Its name for the loader has the ABI, and the number type if that is float.
+$(B)/libwaferhand.so.$(ABI): $(MODULE_SUPPORT) $(B)/sources
+	@echo "  LD   $@"
+	$(LINK) -shared -Wl,-soname,libwaferhand.so.$(ABI),-z,defs,--as-needed -o $@ $(MODULE_SUPPORT) -lm
+	@ln -sf $(@F) $(@D)/libwaferhand.so
 $(B)/pic/support.a: $(MODULE_SUPPORT) $(B)/sources
 	$(archive)
 
@@ -187,6 +208,8 @@ $(PROGRAM_TESTS:%=$(B)/%) $(TOOLS:%=$(B)/%): LIBS = $(PROGRAM_LIBS)
 COLLISION_USERS := $(foreach user,$(PROGRAM_TESTS) $(COLLISION_TESTS) $(TOOLS) $(BENCHES),$(B)/$(user))
 $(COLLISION_USERS): $(B)/libwaferhand_collision.a
 $(COLLISION_USERS): COLLISION = $(COLLISION_LIBS)
+# The firmware under test stands beside its tests.
+$(filter $(B)/tests/firmware/%,$(TESTS:%=$(B)/%)): $(B)/obj/tests/firmware/controller.o
 $(CXX_TESTS:%=$(B)/%): LINK = $(Q)$(CXX) $(CXXFLAGS) $(EXTRA) $(LDFLAGS)
 $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libwaferhand.a
 	@mkdir -p $(@D)

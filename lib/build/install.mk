@@ -1,29 +1,49 @@
 # Where things go on a system.
 
-PLACES := $(PREFIX)/bin/waferhand $(LIBDIR)/libwaferhand.a $(LIBDIR)/libwaferhand_collision.a \
-          $(LIBDIR)/lua/5.4/wh.so $(LIBDIR)/pkgconfig/waferhand.pc $(LIBDIR)/pkgconfig/waferhand_collision.pc \
-          $(PREFIX)/share/man/man1/waferhand.1 $(if $(RANKS),$(LIBDIR)/waferhand/waferhand_mpi.so)
 INCLUDES := $(PREFIX)/include/waferhand
 # One line each, beside the tree: <waferhand.h> and <waferhand_collision.h>.
-ENTRIES := $(wildcard lib/build/*.h)
-PUBLIC := $(filter-out %_internal.h,$(wildcard lib/*.h $(foreach room,$(LIBRARY_ROOMS) $(COLLISION_ROOM),lib/$(room)/*.h lib/$(room)/*.def)))
+public = $(filter-out %_internal.h,$(foreach room,$(1),$(wildcard lib/$(room)/*.h lib/$(room)/*.def)))
+
+# The library is one part, collision the second; the program and the rest are what `make install` adds.
+SHARED_LIBRARY := $(if $(SHARED),$(LIBDIR)/libwaferhand.so.$(ABI))
+CMAKE := $(LIBDIR)/cmake/waferhand/waferhand-config
+LIBRARY_PLACES := $(LIBDIR)/libwaferhand.a $(SHARED_LIBRARY) $(LIBDIR)/pkgconfig/waferhand.pc $(CMAKE).cmake $(CMAKE)-version.cmake
+LIBRARY_HEADERS := lib/waferhand.h $(call public,$(LIBRARY_ROOMS))
+COLLISION_PLACES := $(LIBDIR)/libwaferhand_collision.a $(LIBDIR)/pkgconfig/waferhand_collision.pc
+COLLISION_HEADERS := lib/waferhand_collision.h $(call public,$(COLLISION_ROOM))
+PROGRAM_PLACES := $(PREFIX)/bin/waferhand $(LIBDIR)/lua/5.4/wh.so $(PREFIX)/share/man/man1/waferhand.1 \
+                  $(if $(RANKS),$(LIBDIR)/waferhand/waferhand_mpi.so)
+PLACES := $(LIBRARY_PLACES) $(COLLISION_PLACES) $(PROGRAM_PLACES)
 SHARE := $(PREFIX)/share/waferhand
-SHARED := $(filter lua/layouts/% lua/examples/%,$(LUA_SOURCES))
+EXAMPLES := $(filter lua/layouts/% lua/examples/%,$(LUA_SOURCES))
 
 # $(call place,FILE,PLACE): a step of a chain of commands that stops at the first failure
 place = install -D -m $(if $(filter %/bin/waferhand,$(2)),755,644) $(1) '$(DESTDIR)$(2)' &&
+places = $(foreach to,$(1),$(call place,$(B)/$(notdir $(to)),$(to)))
+headers = $(foreach file,$(1),$(call place,$(file),$(INCLUDES)/$(file:lib/%=%)))
+entry = $(call place,lib/include/$(1).h,$(PREFIX)/include/$(1).h)
 
-install: $(B)/waferhand.pc $(B)/waferhand_collision.pc
-	@$(foreach to,$(PLACES),$(call place,$(B)/$(notdir $(to)),$(to))) \
-	    $(foreach file,$(PUBLIC),$(call place,$(file),$(INCLUDES)/$(file:lib/%=%))) \
-	    $(foreach file,$(ENTRIES),$(call place,$(file),$(PREFIX)/include/$(notdir $(file)))) \
-	    $(foreach file,$(SHARED),$(call place,$(file),$(SHARE)/$(file:lua/%=%))) \
+install: install-library install-collision
+	@$(call places,$(PROGRAM_PLACES)) $(foreach file,$(EXAMPLES),$(call place,$(file),$(SHARE)/$(file:lua/%=%))) \
 	    echo 'installed into $(DESTDIR)$(PREFIX)'
 
-$(B)/waferhand.pc $(B)/waferhand_collision.pc: $(B)/%.pc: lib/build/%.pc.in FORCE
-	@sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(LIBDIR)|' -e 's|@version@|$(VERSION)|' \
-	    -e 's|@defines@|$(if $(FLOAT),-DWH_FLOAT)|' $< >$@
+install-library: $(foreach to,$(LIBRARY_PLACES),$(B)/$(notdir $(to)))
+	@$(call places,$(LIBRARY_PLACES)) $(call headers,$(LIBRARY_HEADERS)) $(call entry,waferhand) \
+	    $(if $(SHARED),ln -sf $(notdir $(SHARED_LIBRARY)) '$(DESTDIR)$(LIBDIR)/libwaferhand.so' &&) \
+	    echo 'library installed into $(DESTDIR)$(PREFIX)'
+
+install-collision: $(foreach to,$(COLLISION_PLACES),$(B)/$(notdir $(to)))
+	@$(call places,$(COLLISION_PLACES)) $(call headers,$(COLLISION_HEADERS)) $(call entry,waferhand_collision) true
+
+# From LIBDIR/cmake/waferhand to the headers, so that the tree can be moved as a whole.
+UPWARDS := $(if $(filter $(PREFIX)/%,$(LIBDIR)),../../$(subst $() ,/,$(patsubst %,..,$(subst /, ,$(LIBDIR:$(PREFIX)/%=%)))))
+FILLED := waferhand.pc waferhand_collision.pc waferhand-config.cmake waferhand-config-version.cmake
+$(FILLED:%=$(B)/%): $(B)/%: lib/build/%.in FORCE
+	@mkdir -p $(@D)
+	@sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(LIBDIR)|' -e 's|@version@|$(VERSION)|' -e 's|@abi@|$(ABI)|' \
+	    -e 's|@flags@|$(SAME_BITS)|' -e 's|@defines@|$(DEFINES)|' \
+	    -e 's|@include@|$(if $(UPWARDS),$${CMAKE_CURRENT_LIST_DIR}/$(UPWARDS),$(PREFIX))/include|' $< >$@
 
 uninstall:
-	rm -f $(PLACES:%='$(DESTDIR)%') $(ENTRIES:lib/build/%='$(DESTDIR)$(PREFIX)/include/%')
-	rm -rf '$(DESTDIR)$(INCLUDES)' '$(DESTDIR)$(SHARE)'
+	rm -f $(PLACES:%='$(DESTDIR)%') '$(DESTDIR)$(LIBDIR)'/libwaferhand.so* $(foreach entry,waferhand waferhand_collision,'$(DESTDIR)$(PREFIX)/include/$(entry).h')
+	rm -rf '$(DESTDIR)$(INCLUDES)' '$(DESTDIR)$(SHARE)' '$(DESTDIR)$(dir $(CMAKE))'

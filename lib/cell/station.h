@@ -23,6 +23,8 @@
 
 #include "../grasp/grasp.h"
 
+WH_HEADER_BEGIN
+
 typedef struct {
     wh_pose_t base_from_station;
     int32_t slots;   /* 1 to 1000 */
@@ -54,20 +56,22 @@ typedef struct {
  * (WH_STATUS_BAD_TOLERANCE); another number outside the ranges above, NaN too (WH_STATUS_OUT_OF_RANGE); a
  * station's pose that wh_pose_validate refuses, with its status. wh_simulator_init asks this. Cost:
  * wh_pose_validate for each station. */
-wh_status_t wh_cell_validate(const wh_cell_t *cell, size_t gripper_count);
+wh_status_t wh_cell_validate(const wh_cell_t *cell, size_t gripper_count) WH_SYMBOL(wh_cell_validate);
 
 /* base_from_slot. `slot` is not checked; the rotation is the station's. Cost: 3 products. */
-wh_pose_t wh_station_slot(const wh_station_t *station, int32_t slot);
+wh_pose_t wh_station_slot(const wh_station_t *station, int32_t slot) WH_SYMBOL(wh_station_slot);
 
 /* Measures a wafer in a slot's frame, near or far. Sets `station` to WH_NONE. Arguments are not checked.
  * Cost: 39 products, a square root and wh_atan2. */
-wh_place_t wh_station_measure(const wh_station_t *station, int32_t slot, const wh_pose_t *base_from_wafer);
+wh_place_t wh_station_measure(const wh_station_t *station, int32_t slot, const wh_pose_t *base_from_wafer)
+    WH_SYMBOL(wh_station_measure);
 
 /* The nearest slot with |dz| < pitch/2, |(dx, dy)| < tolerance.projxy and cos(tilt) > tolerance.planar; of
  * equally near ones the first. False if the wafer lies in none; `place` is then unchanged. Arguments are not
  * checked: the cell is one that wh_cell_validate accepts, as for the two functions below. Cost:
  * wh_station_measure and about 15 products for each station. */
-bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_place_t *place);
+bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_place_t *place)
+    WH_SYMBOL(wh_cell_locate);
 
 /* Looks at the releases among a step's events, and appends what the cell says of them while the list has
  * room:
@@ -80,13 +84,17 @@ bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_
  * Arguments are not checked. Cost: linear in the list without a release; each release adds wafers times
  * stations, or all slots.
  */
-size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list);
+size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list)
+    WH_SYMBOL(wh_cell_judge);
 
 /* Call it after wh_cell_judge; it does nothing without cell->settle. Each released wafer above the plane of
  * its slot comes to lie on it: its centre moves down along the slot's z to the plane, and the wafer turns by
  * the smallest rotation that takes its normal to z. A wafer in no slot, or below the plane, stays. Appends
  * WH_EVENT_SETTLED, with the release's values and `value` the way down, while the list has room. Cost: linear
  * in the list; each such wafer adds the stations and wh_grasp_place. */
-void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list);
+void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list)
+    WH_SYMBOL(wh_cell_settle);
+
+WH_HEADER_END
 
 #endif

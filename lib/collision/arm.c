@@ -34,8 +34,7 @@ static wh_vec3_t elbow_of(const wh_arm_t *arm, const wh_pose_t *base_from_should
     const wh_real_t rest = arm->link * arm->link - half * half;
     const wh_real_t aside = rest > 0 ? wh_real_sqrt(rest) : 0;
     const wh_vec3_t elbow = {half < arm->link ? half : arm->link, arm->right_handed ? -aside : aside, 0};
-    const wh_vec3_t turned = wh_mat3_transform(&base_from_shoulder->R, &elbow);
-    return wh_vec3_add(&base_from_shoulder->r, &turned);
+    return wh_pose_point(base_from_shoulder, &elbow);
 }
 
 void wh_arm_place(const wh_arm_t *arm, const wh_pose_t *base_from_effector, wh_pose_t bodies[]) {

@@ -11,8 +11,10 @@
 
 #include "../math/pose.h"
 
+WH_HEADER_BEGIN
+
 /* The bodies of the robot, each hanging on the one before it. */
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_ARM_BASE,    /* base itself: the column's foot */
     WH_ARM_LIFT,    /* at (0, 0, Z), not turned */
     WH_ARM_UPPER,   /* at (0, 0, Z), x along the upper arm to the elbow */
@@ -28,11 +30,14 @@ typedef struct {
 } wh_arm_t;
 
 /* True if both links together reach the wrist of this end-effector's pose. */
-bool wh_arm_reaches(const wh_arm_t *arm, const wh_pose_t *base_from_effector);
+bool wh_arm_reaches(const wh_arm_t *arm, const wh_pose_t *base_from_effector) WH_SYMBOL(wh_arm_reaches);
 
 /* Writes bodies[WH_ARM_BODIES]: base_from_body. If the links are too short, they point at the wrist. If the
  * wrist is above the column's axis (to 1e-9 mm), the arm folds along the end-effector's x. Arguments are not
  * checked. Cost: three square roots. */
-void wh_arm_place(const wh_arm_t *arm, const wh_pose_t *base_from_effector, wh_pose_t bodies[]);
+void wh_arm_place(const wh_arm_t *arm, const wh_pose_t *base_from_effector, wh_pose_t bodies[])
+    WH_SYMBOL(wh_arm_place);
+
+WH_HEADER_END
 
 #endif

@@ -1,4 +1,4 @@
-#include "convex_internal.h"
+#include "gap_internal.h"
 
 /* `half` with the sign of d; 0 for 0, which is the middle of a face or of an edge. */
 static wh_real_t towards(wh_real_t half, wh_real_t d) {
@@ -9,10 +9,6 @@ static wh_real_t towards(wh_real_t half, wh_real_t d) {
 }
 
 /* ----------------------------------------------------------------------------------------------- validate */
-
-static bool is_finite(const wh_vec3_t *v) {
-    return wh_real_is_finite(v->x) && wh_real_is_finite(v->y) && wh_real_is_finite(v->z);
-}
 
 static bool is_within(const wh_vec3_t *v, wh_real_t limit) {
     return wh_real_abs(v->x) <= limit && wh_real_abs(v->y) <= limit && wh_real_abs(v->z) <= limit;
@@ -25,7 +21,7 @@ static bool is_half(wh_real_t half) {
 static wh_status_t validate_sizes(const wh_convex_t *shape) {
     const wh_vec3_t used = {shape->half.x, shape->kind == WH_CONVEX_BOX ? shape->half.y : shape->half.x,
                             shape->half.z};
-    if (!is_finite(&used)) {
+    if (!wh_vec3_is_finite(&used)) {
         return WH_STATUS_NOT_FINITE;
     }
     const bool ball = shape->kind == WH_CONVEX_CAPSULE && used.z == 0;
@@ -33,29 +29,22 @@ static wh_status_t validate_sizes(const wh_convex_t *shape) {
     return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
-/* How far a point sticks out of what the points before it span: a point, a line or a plane. */
-static wh_vec3_t out_of_point(const wh_vec3_t *from, const wh_vec3_t *along) {
-    (void)along;
-    return *from;
+/* What the points before span, and how far a point sticks out of it. `along`: the line, or the plane's
+ * normal. */
+typedef enum { SPAN_POINT, SPAN_LINE, SPAN_PLANE } span_t;
+
+static wh_real_t stick_out(const wh_vec3_t *from, span_t span, const wh_vec3_t *along) {
+    const wh_vec3_t aside = span == SPAN_LINE ? wh_vec3_cross(along, from) : *from;
+    return span == SPAN_PLANE ? wh_real_abs(wh_vec3_dot(along, from)) : wh_vec3_norm(&aside);
 }
 
-static wh_vec3_t out_of_line(const wh_vec3_t *from, const wh_vec3_t *along) {
-    return wh_vec3_cross(along, from);
-}
-
-static wh_vec3_t out_of_plane(const wh_vec3_t *from, const wh_vec3_t *along) {
-    return wh_vec3_scale(wh_vec3_dot(along, from), along);
-}
-
-/* The point that sticks out farthest, measured by `out`, as seen from the first point. */
-static wh_vec3_t farthest_out(const wh_convex_t *mesh, wh_vec3_t (*out)(const wh_vec3_t *, const wh_vec3_t *),
-                              const wh_vec3_t *along, wh_real_t *most) {
+/* The point that sticks out farthest, as seen from the first point. */
+static wh_vec3_t farthest_out(const wh_convex_t *mesh, span_t span, const wh_vec3_t *along, wh_real_t *most) {
     wh_vec3_t best = {0, 0, 0};
     *most = 0;
     for (size_t i = 1; i < mesh->point_count; ++i) {
         const wh_vec3_t from = wh_vec3_subtract(&mesh->points[i], &mesh->points[0]);
-        const wh_vec3_t measure = out(&from, along);
-        const wh_real_t length = wh_vec3_norm(&measure);
+        const wh_real_t length = stick_out(&from, span, along);
         if (length > *most) {
             *most = length;
             best = from;
@@ -65,20 +54,19 @@ static wh_vec3_t farthest_out(const wh_convex_t *mesh, wh_vec3_t (*out)(const wh
 }
 
 static bool has_volume(const wh_convex_t *mesh) {
-    static const wh_vec3_t none = {0, 0, 0};
     wh_real_t most = 0;
-    wh_vec3_t line = farthest_out(mesh, out_of_point, &none, &most);
+    wh_vec3_t line = farthest_out(mesh, SPAN_POINT, NULL, &most);
     if (!(most >= WH_CONVEX_THINNEST)) {
         return false;
     }
     line = wh_vec3_scale(1 / most, &line);
-    const wh_vec3_t side = farthest_out(mesh, out_of_line, &line, &most);
+    const wh_vec3_t side = farthest_out(mesh, SPAN_LINE, &line, &most);
     if (!(most >= WH_CONVEX_THINNEST)) {
         return false;
     }
     wh_vec3_t normal = wh_vec3_cross(&line, &side);
     normal = wh_vec3_scale(1 / wh_vec3_norm(&normal), &normal);
-    (void)farthest_out(mesh, out_of_plane, &normal, &most);
+    (void)farthest_out(mesh, SPAN_PLANE, &normal, &most);
     return most >= WH_CONVEX_THINNEST;
 }
 
@@ -91,7 +79,7 @@ static wh_status_t validate_mesh(const wh_convex_t *mesh) {
     }
     wh_status_t status = WH_OK;
     for (size_t i = 0; i < mesh->point_count; ++i) {
-        if (!is_finite(&mesh->points[i])) {
+        if (!wh_vec3_is_finite(&mesh->points[i])) {
             return WH_STATUS_NOT_FINITE;
         }
         status = is_within(&mesh->points[i], WH_CONVEX_LARGEST) ? status : WH_STATUS_OUT_OF_RANGE;
@@ -162,8 +150,7 @@ wh_vec3_t wh_convex_kernel_support(const wh_convex_t *shape, const wh_vec3_t *di
 wh_vec3_t wh_convex_support(const wh_convex_t *shape, const wh_pose_t *base_from_shape, wh_vec3_t direction) {
     const wh_vec3_t d = wh_mat3_transform_back(&base_from_shape->R, &direction);
     wh_vec3_t point = wh_convex_kernel_support(shape, &d);
-    point = wh_mat3_transform(&base_from_shape->R, &point);
-    point = wh_vec3_add(&point, &base_from_shape->r);
+    point = wh_pose_point(base_from_shape, &point);
     const wh_real_t round = wh_convex_round(shape);
     const wh_real_t length = round > 0 ? wh_vec3_norm(&direction) : 0;
     if (length > 0) {
@@ -229,16 +216,6 @@ static wh_real_t reach_along(const wh_convex_t *shape, const wh_vec3_t *row) {
     return half->x * wh_real_sqrt(row->x * row->x + row->y * row->y) + z;
 }
 
-static void mesh_interval(const wh_convex_t *mesh, const wh_vec3_t *row, wh_real_t *low, wh_real_t *high) {
-    *low = wh_vec3_dot(&mesh->points[0], row);
-    *high = *low;
-    for (size_t i = 1; i < mesh->point_count; ++i) {
-        const wh_real_t height = wh_vec3_dot(&mesh->points[i], row);
-        *low = height < *low ? height : *low;
-        *high = wh_real_max(*high, height);
-    }
-}
-
 void wh_convex_bounds(const wh_convex_t *shape, const wh_pose_t *base_from_shape, wh_vec3_t *low,
                       wh_vec3_t *high) {
     wh_real_t from[3];
@@ -246,7 +223,11 @@ void wh_convex_bounds(const wh_convex_t *shape, const wh_pose_t *base_from_shape
     for (size_t i = 0; i < 3; ++i) {
         const wh_vec3_t row = wh_mat3_row(&base_from_shape->R, i);
         if (shape->kind == WH_CONVEX_MESH) {
-            mesh_interval(shape, &row, &from[i], &to[i]);
+            const wh_vec3_t back = wh_vec3_scale(-1, &row);
+            const wh_vec3_t first = mesh_support(shape, &back);
+            const wh_vec3_t last = mesh_support(shape, &row);
+            from[i] = wh_vec3_dot(&first, &row);
+            to[i] = wh_vec3_dot(&last, &row);
         } else {
             to[i] = reach_along(shape, &row);
             from[i] = -to[i];

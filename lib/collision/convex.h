@@ -11,12 +11,19 @@
 
 #include "../math/pose.h"
 
+WH_HEADER_BEGIN
+
 /* The thinnest and the largest shape, and the most points of a mesh. */
 #define WH_CONVEX_THINNEST 0.01
 #define WH_CONVEX_LARGEST 1e5
 #define WH_CONVEX_POINTS 65536
 
-typedef enum { WH_CONVEX_BOX, WH_CONVEX_CYLINDER, WH_CONVEX_CAPSULE, WH_CONVEX_MESH } wh_convex_kind_t;
+typedef enum WH_FOUR_BYTES {
+    WH_CONVEX_BOX,
+    WH_CONVEX_CYLINDER,
+    WH_CONVEX_CAPSULE,
+    WH_CONVEX_MESH
+} wh_convex_kind_t;
 
 /* A plain struct: copy it freely. Fields that a kind does not name are ignored. */
 typedef struct {
@@ -36,20 +43,23 @@ typedef struct {
  * WH_STATUS_NOT_A_ROTATION (body_from_shape); WH_STATUS_OUT_OF_RANGE: no such kind, a half length or radius
  * below WH_CONVEX_THINNEST / 2, a coordinate or length above WH_CONVEX_LARGEST, a mesh of fewer than 4 or
  * more than WH_CONVEX_POINTS points, or flatter than WH_CONVEX_THINNEST. Cost: linear in the points. */
-wh_status_t wh_convex_validate(const wh_convex_t *shape);
+wh_status_t wh_convex_validate(const wh_convex_t *shape) WH_SYMBOL(wh_convex_validate);
 
 /* A point of the shape (base) that lies farthest in a direction (base, of any length). If many do: the middle
  * of a box's or a cylinder's face or edge, the first of a mesh's points; for the zero direction some point of
  * the shape. Cost: 10 ns, for a mesh linear in its points. */
-wh_vec3_t wh_convex_support(const wh_convex_t *shape, const wh_pose_t *base_from_shape, wh_vec3_t direction);
+wh_vec3_t wh_convex_support(const wh_convex_t *shape, const wh_pose_t *base_from_shape, wh_vec3_t direction)
+    WH_SYMBOL(wh_convex_support);
 
 /* The radius of the smallest ball about the BODY's origin that holds the shape. Cost: a square root; linear
  * in the points of a mesh. */
-wh_real_t wh_convex_radius(const wh_convex_t *shape);
+wh_real_t wh_convex_radius(const wh_convex_t *shape) WH_SYMBOL(wh_convex_radius);
 
 /* The smallest box along base's axes that holds the shape, to rounding. Cost: three square roots; linear in
  * the points of a mesh. */
 void wh_convex_bounds(const wh_convex_t *shape, const wh_pose_t *base_from_shape, wh_vec3_t *low,
-                      wh_vec3_t *high);
+                      wh_vec3_t *high) WH_SYMBOL(wh_convex_bounds);
+
+WH_HEADER_END
 
 #endif

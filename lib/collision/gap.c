@@ -57,15 +57,16 @@ static bool to_unit(wh_vec3_t *v) {
 
 static wh_vec3_t centre_in_base(const wh_convex_t *shape, const wh_pose_t *base_from_shape) {
     const wh_vec3_t centre = wh_convex_centre(shape);
-    const wh_vec3_t turned = wh_mat3_transform(&base_from_shape->R, &centre);
-    return wh_vec3_add(&turned, &base_from_shape->r);
+    return wh_pose_point(base_from_shape, &centre);
 }
 
-/* Tries the normals of a shape's flat faces on the side of the other shape's centre. */
+/* Tries the normals of a shape's flat faces on the side of the other shape's centre. They are columns of the
+ * rotation: all three of a box, z of a cylinder. */
 static void try_faces(const wh_gap_pair_t *pair, const wh_convex_t *shape, const wh_pose_t *base_from_shape,
                       const wh_vec3_t *towards_b, wh_gap_bounds_t *bounds) {
-    const size_t end = wh_convex_faces_end(shape);
-    for (size_t column = wh_convex_first_face(shape); column < end; ++column) {
+    const bool is_box = shape->kind == WH_CONVEX_BOX;
+    const size_t end = is_box || shape->kind == WH_CONVEX_CYLINDER ? 3 : 0;
+    for (size_t column = is_box ? 0 : 2; column < end; ++column) {
         wh_vec3_t normal = wh_mat3_column(&base_from_shape->R, column);
         if (wh_vec3_dot(&normal, towards_b) < 0) {
             normal = wh_vec3_scale(-1, &normal);
@@ -248,11 +249,9 @@ static bool is_pose(const wh_pose_t *pose) {
 void wh_gap_measure_within(const wh_gap_pair_t *pair, wh_real_t enough, wh_vec3_t guess,
                            const wh_gap_budget_t *budget, wh_gap_t *gap) {
     const wh_real_t above = enough > WH_GAP_TOUCH ? enough : WH_GAP_TOUCH;
-    wh_gap_bounds_t bounds = {-far_away, far_away, {0, 0, 0}, {0, 0, 0}};
+    const wh_gap_bounds_t nothing = {-far_away, far_away, {0, 0, 0}, {0, 0, 0}};
+    wh_gap_bounds_t bounds = nothing;
     gap->state = WH_GAP_UNDECIDED;
-    gap->gap = 0;
-    gap->axis = bounds.axis;
-    gap->at = bounds.at;
     if (to_unit(&guess)) {
         try_axis(pair, &guess, &bounds);
     }
@@ -261,7 +260,7 @@ void wh_gap_measure_within(const wh_gap_pair_t *pair, wh_real_t enough, wh_vec3_
     } else if (is_pose(pair->base_from_a) && is_pose(pair->base_from_b)) {
         gap->state = measure(pair, above, budget, &bounds);
     } else {
-        return;
+        bounds = nothing;
     }
     gap->gap = gap->state == WH_GAP_CLEAR ? bounds.lower : 0;
     gap->axis = bounds.axis;

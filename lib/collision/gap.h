@@ -37,6 +37,8 @@
 
 #include "convex.h"
 
+WH_HEADER_BEGIN
+
 #if defined(WH_FLOAT)
 #error "waferhand: lib/collision is there in double only"
 #endif
@@ -52,7 +54,7 @@
  * WH_GAP_TOUCH. */
 #define WH_GAP_CORE 0.28e-3
 
-typedef enum { WH_GAP_CLEAR, WH_GAP_TOUCHING, WH_GAP_HIT, WH_GAP_UNDECIDED } wh_gap_state_t;
+typedef enum WH_FOUR_BYTES { WH_GAP_CLEAR, WH_GAP_TOUCHING, WH_GAP_HIT, WH_GAP_UNDECIDED } wh_gap_state_t;
 
 typedef struct {
     wh_gap_state_t state;
@@ -71,7 +73,7 @@ typedef struct {
 /* Signed separation of a and b along a unit axis (base, from a to b): min over b minus max over a of axis.x.
  * Above 0 it proves them apart by that much. Cost: 20 ns, for a mesh linear in its points. */
 wh_real_t wh_gap_along(const wh_convex_t *a, const wh_pose_t *base_from_a, const wh_convex_t *b,
-                       const wh_pose_t *base_from_b, wh_vec3_t axis);
+                       const wh_pose_t *base_from_b, wh_vec3_t axis) WH_SYMBOL(wh_gap_along);
 
 /* `guess`: an axis to try first, of any length (zero: none), such as the last slice's. `enough` (mm, >= 0):
  * the exact size of a gap above this does not matter. The shapes swapped give the same gap to WH_GAP_TIGHT.
@@ -79,6 +81,9 @@ wh_real_t wh_gap_along(const wh_convex_t *a, const wh_pose_t *base_from_a, const
  * to 6 us; overlaps about 10 us, those less than 2 WH_GAP_TOUCH deep up to 0.2 ms. For a mesh linear in its
  * points. */
 void wh_gap_measure(const wh_convex_t *a, const wh_pose_t *base_from_a, const wh_convex_t *b,
-                    const wh_pose_t *base_from_b, wh_real_t enough, wh_vec3_t guess, wh_gap_t *gap);
+                    const wh_pose_t *base_from_b, wh_real_t enough, wh_vec3_t guess, wh_gap_t *gap)
+    WH_SYMBOL(wh_gap_measure);
+
+WH_HEADER_END
 
 #endif

@@ -1,9 +1,22 @@
-/* Shared by gap.c and nearest.c. Not installed. */
+/* Shared by convex.c, gap.c and nearest.c. Not installed. */
 #ifndef WH_COLLISION_GAP_INTERNAL_H
 #define WH_COLLISION_GAP_INTERNAL_H
 
-#include "convex_internal.h"
 #include "gap.h"
+
+/* A shape is a kernel and all points within `round` mm of it. A capsule's kernel is a line; every other shape
+ * is its own kernel. The nearest points of two kernels are found in a few steps; curved surfaces would need
+ * many. */
+static inline wh_real_t wh_convex_round(const wh_convex_t *shape) {
+    return shape->kind == WH_CONVEX_CAPSULE ? shape->half.x : 0;
+}
+
+/* wh_convex_support of the kernel, in the shape's frame. */
+wh_vec3_t wh_convex_kernel_support(const wh_convex_t *shape, const wh_vec3_t *direction)
+    WH_SYMBOL(wh_convex_kernel_support);
+
+/* In the shape's frame, and within the shape: the mean of the points of a mesh, the origin of the others. */
+wh_vec3_t wh_convex_centre(const wh_convex_t *shape) WH_SYMBOL(wh_convex_centre);
 
 /* The two shapes. b is measured as if moved by `shift`. */
 typedef struct {
@@ -26,10 +39,11 @@ typedef struct {
 
 /* Narrows `bounds`, starting at their axis, until they are WH_GAP_TIGHT, or lower is above `enough`, or no
  * step helps any more. bounds->axis must be a unit vector; bounds->upper may be infinite. */
-void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds);
+void wh_nearest_bounds(const wh_gap_pair_t *pair, wh_real_t enough, int steps, wh_gap_bounds_t *bounds)
+    WH_SYMBOL(wh_nearest_bounds);
 
 /* wh_gap_measure within a budget, for tests. */
 void wh_gap_measure_within(const wh_gap_pair_t *pair, wh_real_t enough, wh_vec3_t guess,
-                           const wh_gap_budget_t *budget, wh_gap_t *gap);
+                           const wh_gap_budget_t *budget, wh_gap_t *gap) WH_SYMBOL(wh_gap_measure_within);
 
 #endif

@@ -16,8 +16,7 @@ typedef struct {
 static wh_vec3_t kernel_point(const wh_convex_t *shape, const wh_pose_t *pose, const wh_vec3_t *direction) {
     const wh_vec3_t d = wh_mat3_transform_back(&pose->R, direction);
     const wh_vec3_t point = wh_convex_kernel_support(shape, &d);
-    const wh_vec3_t turned = wh_mat3_transform(&pose->R, &point);
-    return wh_vec3_add(&turned, &pose->r);
+    return wh_pose_point(pose, &point);
 }
 
 /* The point of a farthest along the axis, and the one of b farthest against it. */

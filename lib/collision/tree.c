@@ -8,10 +8,6 @@ wh_box_t wh_box_empty(void) {
     return empty;
 }
 
-static bool is_empty(const wh_box_t *box) {
-    return box->low.x > box->high.x;
-}
-
 bool wh_box_overlap(const wh_box_t *a, const wh_box_t *b) {
     return a->low.x <= b->high.x && b->low.x <= a->high.x && a->low.y <= b->high.y && b->low.y <= a->high.y &&
            a->low.z <= b->high.z && b->low.z <= a->high.z;
@@ -19,7 +15,7 @@ bool wh_box_overlap(const wh_box_t *a, const wh_box_t *b) {
 
 wh_box_t wh_box_grown(const wh_box_t *box, wh_real_t margin) {
     wh_box_t grown = *box;
-    if (!is_empty(box)) {
+    if (!(box->low.x > box->high.x)) {
         const wh_vec3_t by = {margin, margin, margin};
         grown.low = wh_vec3_subtract(&box->low, &by);
         grown.high = wh_vec3_add(&box->high, &by);

@@ -11,6 +11,8 @@
 
 #include "../math/vector.h"
 
+WH_HEADER_BEGIN
+
 /* From `low` to `high`, mm in base. A box with low above high is empty: it overlaps nothing. */
 typedef struct {
     wh_vec3_t low, high;
@@ -27,31 +29,34 @@ typedef struct {
 } wh_tree_t;
 
 /* The box of nothing. */
-wh_box_t wh_box_empty(void);
+wh_box_t wh_box_empty(void) WH_SYMBOL(wh_box_empty);
 
 /* True if two boxes have a point in common, surfaces included. */
-bool wh_box_overlap(const wh_box_t *a, const wh_box_t *b);
+bool wh_box_overlap(const wh_box_t *a, const wh_box_t *b) WH_SYMBOL(wh_box_overlap);
 
 /* The box enlarged by `margin` (mm) to all sides; an empty one stays empty. */
-wh_box_t wh_box_grown(const wh_box_t *box, wh_real_t margin);
+wh_box_t wh_box_grown(const wh_box_t *box, wh_real_t margin) WH_SYMBOL(wh_box_grown);
 
 /* How many nodes a tree of so many items has. */
-size_t wh_tree_nodes(size_t count);
+size_t wh_tree_nodes(size_t count) WH_SYMBOL(wh_tree_nodes);
 
 /* Builds the tree over boxes[0 .. count - 1]. The caller has filled in tree->nodes, order, leaf_of, codes and
  * count. Items with an empty box are in the tree, but no search finds them. The same boxes give the same
  * tree. Cost: n log n. */
-void wh_tree_build(wh_tree_t *tree, const wh_box_t boxes[]);
+void wh_tree_build(wh_tree_t *tree, const wh_box_t boxes[]) WH_SYMBOL(wh_tree_build);
 
 /* Gives an item another box. Cost: log n. */
-void wh_tree_set(wh_tree_t *tree, int32_t item, const wh_box_t *box);
+void wh_tree_set(wh_tree_t *tree, int32_t item, const wh_box_t *box) WH_SYMBOL(wh_tree_set);
 
 /* The item's box as it was set last. */
-wh_box_t wh_tree_box(const wh_tree_t *tree, int32_t item);
+wh_box_t wh_tree_box(const wh_tree_t *tree, int32_t item) WH_SYMBOL(wh_tree_box);
 
 /* Finds the items whose boxes overlap this one, in the leaves' order. Writes at most `capacity` of them to
  * `found`; returns how many there are. Cost: log n and linear in those found, as long as the tree is well
  * ordered. */
-size_t wh_tree_find(const wh_tree_t *tree, const wh_box_t *box, int32_t found[], size_t capacity);
+size_t wh_tree_find(const wh_tree_t *tree, const wh_box_t *box, int32_t found[], size_t capacity)
+    WH_SYMBOL(wh_tree_find);
+
+WH_HEADER_END
 
 #endif

@@ -86,80 +86,63 @@ wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part) {
 
 /* ------------------------------------------------------------------------------------------------- memory */
 
-/* Where the arrays begin in the block of memory. Their sizes are rounded up, so that the next one is
- * aligned. */
+/* A block of memory that is shared out. Sizes are rounded up, so that the next one is aligned. */
 typedef struct {
-    size_t items, hanging, movers, pairs;
-    size_t nodes_at, boxes_at, codes_at, order_at, leaf_at, wafers_at, movers_at, pairs_at, near_at, end;
-} plan_t;
+    unsigned char *memory; /* null: its size is asked for */
+    size_t used;
+} block_t;
 
-static size_t take(size_t *at, size_t count, size_t size) {
-    const size_t begin = *at;
-    *at += (count * size + 15) / 16 * 16;
+static void *take(block_t *block, size_t count, size_t size) {
+    void *const begin = block->memory ? block->memory + block->used : NULL;
+    block->used += (count * size + 15) / 16 * 16;
     return begin;
 }
 
-static plan_t plan_memory(const wh_world_config_t *config) {
-    plan_t plan;
-    size_t at = 0;
-    plan.hanging = count_hanging(config);
-    plan.items = config->part_count - plan.hanging + config->wafer_count;
-    plan.movers = plan.hanging + config->gripper_count;
-    plan.pairs = plan.movers * (plan.movers > 0 ? plan.movers - 1 : 0) / 2;
-    (void)take(&at, 1, sizeof(wh_world_t));
-    plan.nodes_at = take(&at, wh_tree_nodes(plan.items), sizeof(wh_box_t));
-    plan.boxes_at = take(&at, plan.items, sizeof(wh_box_t));
-    plan.codes_at = take(&at, plan.items, sizeof(uint64_t));
-    plan.order_at = take(&at, plan.items, sizeof(int32_t));
-    plan.leaf_at = take(&at, plan.items, sizeof(int32_t));
-    plan.wafers_at = take(&at, config->wafer_count, sizeof(wh_pose_t));
-    plan.movers_at = take(&at, plan.movers, sizeof(wh_mover_t));
-    plan.pairs_at = take(&at, plan.pairs, sizeof(wh_mover_pair_t));
-    plan.near_at = take(&at, plan.movers * WH_NEAR_CAPACITY, sizeof(wh_pair_t));
-    plan.end = at;
-    return plan;
+/* Shares out what a world needs, the world itself first. It is blank but for its arrays. */
+static void lay_out(const wh_world_config_t *config, block_t *block) {
+    const size_t hanging = count_hanging(config);
+    const size_t items = config->part_count - hanging + config->wafer_count;
+    const size_t movers = hanging + config->gripper_count;
+    wh_world_t *world = take(block, 1, sizeof *world);
+    wh_tree_t tree = {.count = items};
+    tree.nodes = take(block, wh_tree_nodes(items), sizeof *tree.nodes);
+    tree.codes = take(block, items, sizeof *tree.codes);
+    tree.order = take(block, items, sizeof *tree.order);
+    tree.leaf_of = take(block, items, sizeof *tree.leaf_of);
+    wh_box_t *boxes = take(block, items, sizeof *boxes);
+    wh_pose_t *wafers = take(block, config->wafer_count, sizeof *wafers);
+    wh_mover_t *all = take(block, movers, sizeof *all);
+    wh_mover_pair_t *pairs = take(block, movers * (movers - 1) / 2, sizeof *pairs);
+    wh_pair_t *near = take(block, movers * WH_NEAR_CAPACITY, sizeof *near);
+    if (world) {
+        memset(world, 0, sizeof *world);
+        world->config = config;
+        world->fixed_count = config->part_count - hanging;
+        world->mover_count = movers;
+        world->tree = tree;
+        world->boxes = boxes;
+        world->wafers = wafers;
+        world->movers = all;
+        world->pairs = pairs;
+        world->near = near;
+    }
 }
 
 size_t wh_world_bytes(const wh_world_config_t *config) {
-    return plan_memory(config).end;
-}
-
-static void *part_of(void *memory, size_t at) {
-    return (unsigned char *)memory + at;
-}
-
-static wh_world_t *lay_out(const wh_world_config_t *config, const plan_t *plan, void *memory) {
-    wh_world_t *world = memory;
-    memset(world, 0, sizeof *world);
-    world->config = config;
-    world->fixed_count = config->part_count - plan->hanging;
-    world->tree.nodes = part_of(memory, plan->nodes_at);
-    world->tree.codes = part_of(memory, plan->codes_at);
-    world->tree.order = part_of(memory, plan->order_at);
-    world->tree.leaf_of = part_of(memory, plan->leaf_at);
-    world->tree.count = plan->items;
-    world->boxes = part_of(memory, plan->boxes_at);
-    world->wafers = part_of(memory, plan->wafers_at);
-    world->movers = part_of(memory, plan->movers_at);
-    world->mover_count = plan->movers;
-    world->pairs = part_of(memory, plan->pairs_at);
-    world->near = part_of(memory, plan->near_at);
-    return world;
+    block_t block = {NULL, 0};
+    lay_out(config, &block);
+    return block.used;
 }
 
 /* ------------------------------------------------------------------------------------------------- set-up */
 
 static void set_up_boxes(wh_world_t *world, const wh_wafer_t wafers[]) {
-    const wh_world_config_t *config = world->config;
-    for (size_t i = 0; i < world->fixed_count; ++i) {
-        const wh_convex_t *convex = &config->parts[i].convex;
-        wh_convex_bounds(convex, &convex->body_from_shape, &world->boxes[i].low, &world->boxes[i].high);
-    }
-    for (size_t w = 0; w < config->wafer_count; ++w) {
+    for (size_t w = 0; w < world->config->wafer_count; ++w) {
         world->wafers[w] = wafers[w].base_from_wafer;
-        const wh_pose_t base_from_shape = wh_pose_compose(&world->wafers[w], &config->wafer.body_from_shape);
-        wh_box_t *box = &world->boxes[world->fixed_count + w];
-        wh_convex_bounds(&config->wafer, &base_from_shape, &box->low, &box->high);
+    }
+    for (size_t i = 0; i < world->tree.count; ++i) {
+        const wh_side_t side = wh_world_side_of_item(world, (int32_t)i);
+        world->boxes[i] = wh_world_box(&side);
     }
     wh_tree_build(&world->tree, world->boxes);
 }
@@ -212,11 +195,12 @@ static void set_up_pairs(wh_world_t *world) {
 
 wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_t *input, void *memory,
                           size_t bytes) {
-    const plan_t plan = plan_memory(config);
-    if (!memory || bytes < plan.end) {
+    wh_world_t *world = memory;
+    block_t block = {memory, 0};
+    if (!memory || bytes < wh_world_bytes(config)) {
         return NULL;
     }
-    wh_world_t *world = lay_out(config, &plan, memory);
+    lay_out(config, &block);
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
         world->clearances[kind].gap = WH_CLEARANCE_RANGE;
         world->clearances[kind].parts[0] = world->clearances[kind].parts[1] = WH_NONE;

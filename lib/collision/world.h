@@ -30,12 +30,14 @@
 #include "convex.h"
 #include "tree.h"
 
+WH_HEADER_BEGIN
+
 /* The most grippers of a world. */
 #define WH_WORLD_GRIPPERS 8
 #define WH_WORLD_MOVING 64 /* the most parts of robot and grippers together */
 
 /* The kind of a part, for the rules of what may touch what. */
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_PART_FIXED, /* walls, tables, shells; `owner` is the caller's */
     WH_PART_LEDGE, /* of station `owner`, slot `slot` */
     WH_PART_ARM,   /* of the robot's body `owner`, a wh_arm_body_t */
@@ -54,7 +56,7 @@ typedef struct {
 } wh_part_t;
 
 /* Kinds of pairs whose smallest gap is kept. */
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     /* a blade and a wafer above it that it does not hold and is not about to take */
     WH_CLEARANCE_BLADE_WAFER_ABOVE,
     WH_CLEARANCE_BLADE_WAFER_BELOW,
@@ -104,34 +106,36 @@ typedef struct {
 typedef struct wh_world wh_world_t;
 
 /* The kind's name, such as "blade_wafer_above": a constant, never null. */
-const char *wh_clearance_name(wh_clearance_kind_t kind);
+const char *wh_clearance_name(wh_clearance_kind_t kind) WH_SYMBOL(wh_clearance_name);
 
 /* WH_OK, or what is wrong with the description: WH_STATUS_NULL_ARGUMENT; WH_STATUS_BAD_CAPACITY for too
  * many grippers or parts that hang on something; WH_STATUS_OUT_OF_RANGE for an owner, a slot or parts
  * out of order; else what wh_convex_validate says. `part` (may be null) is then the index of the part,
  * or WH_NONE. */
-wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part);
+wh_status_t wh_world_validate(const wh_world_config_t *config, int32_t *part) WH_SYMBOL(wh_world_validate);
 
 /* Bytes that wh_world_init needs. */
-size_t wh_world_bytes(const wh_world_config_t *config);
+size_t wh_world_bytes(const wh_world_config_t *config) WH_SYMBOL(wh_world_bytes);
 
 /* Sets a world up in `memory`, aligned as malloc's, from where everything is when a run begins. `config`,
  * which has passed wh_world_validate, and `memory` must outlive it; `input` need not. Returns null if `bytes`
  * are too few. Cost: n log n in fixed parts and wafers. */
 wh_world_t *wh_world_init(const wh_world_config_t *config, const wh_world_input_t *input, void *memory,
-                          size_t bytes);
+                          size_t bytes) WH_SYMBOL(wh_world_init);
 
 /* One slice: judges all that moved since the last call. Appends to `list`, which may be null, while there is
  * room: at most one WH_EVENT_HIT or WH_EVENT_UNDECIDED in a run, the first, after which contact is no longer
  * judged, and one WH_EVENT_TOO_CLOSE for each kind of clearance. Cost: a few nanoseconds for each pair that
  * is near, some tens of microseconds for one that has to be measured; independent of what rests elsewhere. */
-void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list);
+void wh_world_step(wh_world_t *world, const wh_world_input_t *input, wh_event_list_t *list)
+    WH_SYMBOL(wh_world_step);
 
 /* Tells the world that a wafer that nobody holds was put there between two steps. */
-void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from_wafer);
+void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from_wafer)
+    WH_SYMBOL(wh_world_place);
 
 /* The smallest gaps so far, by kind: WH_CLEARANCES of them. */
-const wh_clearance_t *wh_world_clearances(const wh_world_t *world);
+const wh_clearance_t *wh_world_clearances(const wh_world_t *world) WH_SYMBOL(wh_world_clearances);
 
 /* The smallest gaps over time. A run is divided into bins of equal numbers of slices. When all bins are full,
  * two become one, and bins hold twice as many slices. Gaps are measured at the ends of bins. The run's
@@ -147,7 +151,7 @@ typedef struct {
     wh_real_t gaps[WH_CLEARANCES][WH_CURVE_BINS];
 } wh_curves_t;
 
-const wh_curves_t *wh_world_curves(const wh_world_t *world);
+const wh_curves_t *wh_world_curves(const wh_world_t *world) WH_SYMBOL(wh_world_curves);
 
 /* How the pairs of all slices were decided, for those who ask where the time goes. */
 typedef struct {
@@ -158,10 +162,13 @@ typedef struct {
     uint64_t relisted; /* lists made again */
 } wh_world_counters_t;
 
-const wh_world_counters_t *wh_world_counters(const wh_world_t *world);
+const wh_world_counters_t *wh_world_counters(const wh_world_t *world) WH_SYMBOL(wh_world_counters);
 
 /* Checks everything that rests, as `waferhand layout` does before a run. Writes the first two parts that
  * overlap and must not to `parts`; false if there are none. Cost: n log n. */
-bool wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int32_t parts[2]);
+bool wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int32_t parts[2])
+    WH_SYMBOL(wh_world_check_rest);
+
+WH_HEADER_END
 
 #endif

@@ -16,13 +16,12 @@ static void measure(const wh_look_t *look, const wh_side_t *a, const wh_side_t *
 
 static void measure_rest(const wh_look_t *look, const wh_mover_t *mover, wh_real_t least[]) {
     int32_t found[WH_NEAR_CAPACITY];
-    wh_box_t box;
     if (mover->part == WH_NONE) {
         return;
     }
     const wh_side_t a = wh_world_side_of_mover(look->world, mover);
-    wh_convex_bounds(a.convex, &a.now, &box.low, &box.high);
-    box = wh_box_grown(&box, WH_CLEARANCE_RANGE);
+    const wh_box_t around = wh_world_box(&a);
+    const wh_box_t box = wh_box_grown(&around, WH_CLEARANCE_RANGE);
     const size_t count = wh_tree_find(&look->world->tree, &box, found, WH_NEAR_CAPACITY);
     for (size_t i = 0; i < count && i < WH_NEAR_CAPACITY; ++i) {
         const wh_side_t b = wh_world_side_of_item(look->world, found[i]);

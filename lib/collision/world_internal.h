@@ -98,42 +98,49 @@ typedef struct {
 
 /* From the tree's items to part numbers and back. Parts are numbered: fixed parts, those that hang,
  * wafers. */
-int32_t wh_world_part_of_item(const wh_world_t *world, int32_t item);
-int32_t wh_world_item_of_wafer(const wh_world_t *world, int32_t wafer);
-const wh_convex_t *wh_world_convex(const wh_world_t *world, int32_t part);
+int32_t wh_world_part_of_item(const wh_world_t *world, int32_t item) WH_SYMBOL(wh_world_part_of_item);
+int32_t wh_world_item_of_wafer(const wh_world_t *world, int32_t wafer) WH_SYMBOL(wh_world_item_of_wafer);
+const wh_convex_t *wh_world_convex(const wh_world_t *world, int32_t part) WH_SYMBOL(wh_world_convex);
 
 /* The body index of a gripper, and of the wafer that it holds. */
-int32_t wh_world_gripper_body(size_t gripper);
-int32_t wh_world_held_body(size_t gripper);
+int32_t wh_world_gripper_body(size_t gripper) WH_SYMBOL(wh_world_gripper_body);
+int32_t wh_world_held_body(size_t gripper) WH_SYMBOL(wh_world_held_body);
 
-wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *mover);
-wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item);
+wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *mover)
+    WH_SYMBOL(wh_world_side_of_mover);
+wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item) WH_SYMBOL(wh_world_side_of_item);
+
+/* The box around it where it is now. */
+wh_box_t wh_world_box(const wh_side_t *side) WH_SYMBOL(wh_world_box);
 
 /* Takes over where everything is now. Wafers that were taken or let go change between mover and tree. */
-void wh_world_move(const wh_look_t *look);
+void wh_world_move(const wh_look_t *look) WH_SYMBOL(wh_world_move);
 
 /* Called after the pairs were judged: what was let go rests from now on. */
-void wh_world_settle(const wh_look_t *look);
+void wh_world_settle(const wh_look_t *look) WH_SYMBOL(wh_world_settle);
 
 /* Makes the mover's list again if it has moved as far as the list reaches. */
-void wh_world_list_near(wh_world_t *world, wh_mover_t *mover);
+void wh_world_list_near(wh_world_t *world, wh_mover_t *mover) WH_SYMBOL(wh_world_list_near);
 
 /* Reports contact as undecided: more is near to this mover than its list can hold. */
-void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a);
+void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a) WH_SYMBOL(wh_world_report_crowd);
 
 /* Judges one pair for this slice. */
-void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_pair_t *near);
+void wh_world_judge(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b, wh_pair_t *near)
+    WH_SYMBOL(wh_world_judge);
 
 /* Keeps the smallest gaps at the end of a bin. Changes nothing else. */
-void wh_world_draw_curves(const wh_look_t *look);
+void wh_world_draw_curves(const wh_look_t *look) WH_SYMBOL(wh_world_draw_curves);
 
 /* True for parts that never move against each other, or are neighbours by design. */
-bool wh_world_belong_together(const wh_part_t *a, const wh_part_t *b);
+bool wh_world_belong_together(const wh_part_t *a, const wh_part_t *b) WH_SYMBOL(wh_world_belong_together);
 
 /* True if the two may touch now. */
-bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b);
+bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b)
+    WH_SYMBOL(wh_world_may_touch);
 
 /* The clearance that the pair counts for; WH_CLEARANCES: none. */
-wh_clearance_kind_t wh_world_clearance_of(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b);
+wh_clearance_kind_t wh_world_clearance_of(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b)
+    WH_SYMBOL(wh_world_clearance_of);
 
 #endif

@@ -121,14 +121,13 @@ static void forget_item(wh_world_t *world, int32_t item) {
 
 /* Puts a wafer into the tree where it lies now. */
 static void lay_down(wh_world_t *world, int32_t wafer) {
-    wh_box_t box;
-    const wh_pose_t base_from_shape =
-        wh_pose_compose(&world->wafers[wafer], &world->config->wafer.body_from_shape);
-    wh_convex_bounds(&world->config->wafer, &base_from_shape, &box.low, &box.high);
-    world->boxes[wh_world_item_of_wafer(world, wafer)] = box;
-    wh_tree_set(&world->tree, wh_world_item_of_wafer(world, wafer), &box);
-    forget_item(world, wh_world_item_of_wafer(world, wafer));
+    const int32_t item = wh_world_item_of_wafer(world, wafer);
+    const wh_side_t side = wh_world_side_of_item(world, item);
+    const wh_box_t box = wh_world_box(&side);
+    wh_tree_set(&world->tree, item, &box);
+    forget_item(world, item);
     relist_all(world);
+    ++world->set_down;
 }
 
 static bool is_carried(const wh_world_t *world, int32_t wafer) {
@@ -156,7 +155,6 @@ void wh_world_settle(const wh_look_t *look) {
             end_carrying(world, g);
             if (!is_carried(world, wafer)) {
                 lay_down(world, wafer);
-                ++world->set_down;
             }
         }
     }
@@ -169,7 +167,6 @@ void wh_world_place(wh_world_t *world, int32_t wafer, const wh_pose_t *base_from
     if (!is_carried(world, wafer)) {
         world->wafers[wafer] = *base_from_wafer;
         lay_down(world, wafer);
-        ++world->set_down;
     }
 }
 

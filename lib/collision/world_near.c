@@ -1,17 +1,21 @@
 /* What rests near a moving part: a list that is good until the part has moved as far as it reaches. */
 #include "world_internal.h"
 
-wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *mover) {
-    const size_t part = (size_t)mover->part;
-    const wh_world_config_t *config = world->config;
-    wh_side_t side = {.part = mover->part, .kind = WH_PART_WAFER, .convex = &config->wafer};
-    if (part < config->part_count) {
+static wh_side_t side_of_part(const wh_world_config_t *config, int32_t part) {
+    wh_side_t side = {.part = part, .kind = WH_PART_WAFER, .convex = &config->wafer};
+    if ((size_t)part < config->part_count) {
         side.kind = config->parts[part].kind;
         side.owner = config->parts[part].owner;
+        side.slot = config->parts[part].slot;
         side.convex = &config->parts[part].convex;
     } else {
-        side.owner = (int32_t)(part - config->part_count);
+        side.owner = part - (int32_t)config->part_count;
     }
+    return side;
+}
+
+wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *mover) {
+    wh_side_t side = side_of_part(world->config, mover->part);
     side.body = &world->bodies[mover->body];
     side.before = mover->before;
     side.now = mover->now;
@@ -21,21 +25,17 @@ wh_side_t wh_world_side_of_mover(const wh_world_t *world, const wh_mover_t *move
 }
 
 wh_side_t wh_world_side_of_item(const wh_world_t *world, int32_t item) {
-    const wh_world_config_t *config = world->config;
-    wh_side_t side = {.part = wh_world_part_of_item(world, item), .kind = WH_PART_WAFER};
-    if ((size_t)item < world->fixed_count) {
-        side.kind = config->parts[item].kind;
-        side.owner = config->parts[item].owner;
-        side.slot = config->parts[item].slot;
-        side.convex = &config->parts[item].convex;
-        side.now = side.convex->body_from_shape;
-    } else {
-        side.owner = item - (int32_t)world->fixed_count;
-        side.convex = &config->wafer;
-        side.now = wh_pose_compose(&world->wafers[side.owner], &config->wafer.body_from_shape);
-    }
+    wh_side_t side = side_of_part(world->config, wh_world_part_of_item(world, item));
+    const wh_pose_t *pose = &side.convex->body_from_shape;
+    side.now = side.kind == WH_PART_WAFER ? wh_pose_compose(&world->wafers[side.owner], pose) : *pose;
     side.before = side.now;
     return side;
+}
+
+wh_box_t wh_world_box(const wh_side_t *side) {
+    wh_box_t box;
+    wh_convex_bounds(side->convex, &side->now, &box.low, &box.high);
+    return box;
 }
 
 /* How far two boxes are apart along base's axes; `axis` is the one with the largest gap. */

@@ -97,8 +97,8 @@ static wh_gap_state_t judge_between(wh_world_t *world, const wh_side_t *a, const
 
 /* ---------------------------------------------------------------------------------------- what came of it */
 
-static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_side_t *a,
-                          const wh_side_t *b) {
+static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_side_t *a, const wh_side_t *b,
+                          const wh_gap_t *gap) {
     static const wh_event_t blank = {.wafer = WH_NONE, .gripper = WH_NONE, .other = WH_NONE};
     if (!look->list || look->list->count >= look->list->capacity) {
         return NULL;
@@ -107,6 +107,7 @@ static wh_event_t *append(const wh_look_t *look, wh_event_kind_t kind, const wh_
     *event = blank;
     event->kind = kind;
     event->slice = event->measured_slice = look->input->slice;
+    event->at = gap->at;
     event->parts[0] = a->part;
     event->parts[1] = b->part;
     for (int i = 0; i < 2; ++i) {
@@ -124,10 +125,7 @@ static void report_contact(const wh_look_t *look, const wh_side_t *a, const wh_s
                            wh_gap_state_t state) {
     const wh_event_kind_t kind = state == WH_GAP_HIT ? WH_EVENT_HIT : WH_EVENT_UNDECIDED;
     look->world->struck = true;
-    wh_event_t *event = append(look, kind, a, b);
-    if (event) {
-        event->at = gap->at;
-    }
+    (void)append(look, kind, a, b, gap);
 }
 
 void wh_world_report_crowd(const wh_look_t *look, const wh_side_t *a) {
@@ -153,12 +151,11 @@ static void keep_clearance(const wh_look_t *look, wh_clearance_kind_t kind, cons
     least->parts[1] = b->part;
     least->at = gap->at;
     if (found < limit && !world->too_close[kind]) {
-        wh_event_t *event = append(look, WH_EVENT_TOO_CLOSE, a, b);
+        wh_event_t *event = append(look, WH_EVENT_TOO_CLOSE, a, b, gap);
         world->too_close[kind] = true;
         if (event) {
             event->value = found;
             event->limit = limit;
-            event->at = gap->at;
         }
     }
 }

@@ -71,8 +71,7 @@ static bool cut(const wh_side_t *a, const wh_side_t *b) {
  * made of several. */
 static bool cuts_rest(const wh_look_t *look, const wh_side_t *a, int32_t self, int32_t *part) {
     int32_t found[MOST_NEAR];
-    wh_box_t box;
-    wh_convex_bounds(a->convex, &a->now, &box.low, &box.high);
+    const wh_box_t box = wh_world_box(a);
     const size_t count = wh_tree_find(&look->world->tree, &box, found, MOST_NEAR);
     for (size_t i = 0; i < count && i < MOST_NEAR; ++i) {
         const wh_side_t b = wh_world_side_of_item(look->world, found[i]);

@@ -39,7 +39,7 @@ static bool is_near_now(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_clo
 
 /* How close the gripper came to the wafer in this slice; false if it did not come near. */
 static bool came_near(const wh_watch_t *watch, const wh_wafer_t *wafer, wh_closeness_t *closest) {
-    if (watch->sweep && wafer->released_by == WH_NONE) {
+    if (wh_watch_sweep(watch) && wafer->released_by == WH_NONE) {
         return wh_closeness_swept(watch, &wafer->base_from_wafer, closest);
     }
     return is_near_now(watch, wafer, closest);
@@ -63,7 +63,7 @@ static void begin_encounter(const wh_watch_t *watch, wh_encounter_t *encounter, 
     encounter->wafer = w;
     encounter->holder = wafer->holder;
     encounter->slice = watch->table->slice;
-    if (t < 1) {
+    if (WH_SWEEP_BUILT && t < 1) {
         wh_measure_swept(watch, &wafer->base_from_wafer, t, &encounter->measured);
     } else {
         wh_proximity_values(&wafer->base_from_wafer, watch->base_from_gripper,
@@ -98,9 +98,10 @@ static bool is_within_horizon(const wh_grasp_t *table, size_t g) {
 
 /* The nearest free wafer in the neighbourhood, then lowest index, if the gripper follows none yet. */
 WH_OUT_OF_LINE static void begin_approach(const wh_watch_t *watch) {
+    const wh_sweep_t *sweep = wh_watch_sweep(watch);
     const wh_vec3_t *end = &watch->base_from_gripper->r;
     const wh_found_t near =
-        wh_index_again(watch->table, (size_t)watch->index, watch->sweep ? &watch->sweep->begin->r : end, end);
+        wh_index_again(watch->table, (size_t)watch->index, sweep ? &sweep->begin->r : end, end);
     int32_t nearest = WH_NONE;
     wh_real_t least = 0;
     wh_real_t when = 0;
@@ -142,8 +143,8 @@ static bool contest_goes_on(const wh_watch_t *watch) {
     }
     const wh_wafer_t *wafer = &watch->table->storage.wafers[contest->wafer];
     return wafer->holder == contest->holder &&
-           wh_proximity_ready(&wafer->base_from_wafer, watch->base_from_gripper,
-                              &watch->table->config.tolerance);
+           wh_proximity_is_ready(&wafer->base_from_wafer, watch->base_from_gripper,
+                                 &watch->table->config.tolerance);
 }
 
 /* The held wafer that is ready, with the smallest |dr_proj_z|, then lowest index; WH_NONE: none. */
@@ -154,8 +155,8 @@ WH_OUT_OF_LINE static int32_t find_held(const wh_watch_t *watch) {
     for (size_t g = 0; g < storage->gripper_count; ++g) {
         const size_t w = (size_t)storage->grippers[g].wafer;
         if (w < storage->wafer_count && storage->wafers[w].holder == (int32_t)g &&
-            wh_proximity_ready(&storage->wafers[w].base_from_wafer, watch->base_from_gripper,
-                               &watch->table->config.tolerance)) {
+            wh_proximity_is_ready(&storage->wafers[w].base_from_wafer, watch->base_from_gripper,
+                                  &watch->table->config.tolerance)) {
             const wh_real_t distance = wh_grasp_distance(&storage->wafers[w], watch->base_from_gripper);
             if (best == WH_NONE || distance < least || (distance == least && (int32_t)w < best)) {
                 best = (int32_t)w;

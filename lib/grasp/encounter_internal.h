@@ -10,7 +10,7 @@ typedef struct {
     wh_grasp_t *table;
     wh_gripper_t *gripper;
     const wh_pose_t *base_from_gripper; /* at the slice's end */
-    const wh_sweep_t *sweep;            /* since the last slice; null where checking is sampled */
+    const wh_sweep_t *sweep;            /* for wh_watch_sweep */
     wh_event_list_t *list;
     int32_t index;
 } wh_watch_t;
@@ -25,24 +25,31 @@ typedef struct {
 /* Updates one gripper's approach and contest and reports those that ended. `input` is this slice's, the
  * gripper still has the previous slice's pose and valve. */
 void wh_encounter_update(wh_grasp_t *table, size_t gripper, const wh_gripper_input_t *input,
-                         wh_event_list_t *list);
+                         wh_event_list_t *list) WH_SYMBOL(wh_encounter_update);
 
 /* The part of wh_encounter_update for a gripper that was and is open and empty, with or without
  * watch->sweep. */
-void wh_encounter_track(const wh_watch_t *watch);
-
-/* Makes the sweep since the last slice, then does what wh_encounter_track does. */
-void wh_encounter_track_swept(wh_watch_t *watch);
+void wh_encounter_track(const wh_watch_t *watch) WH_SYMBOL(wh_encounter_track);
 
 /* True if a wafer is in the neighbourhood for near misses; then fills in the two distances. */
 bool wh_closeness_measure(const wh_grasp_config_t *config, const wh_pose_t *base_from_wafer,
-                          const wh_pose_t *base_from_gripper, wh_closeness_t *reach);
+                          const wh_pose_t *base_from_gripper, wh_closeness_t *reach)
+    WH_SYMBOL(wh_closeness_measure);
+
+/* The gripper's motion since the last slice; null where checking is sampled. */
+static inline const wh_sweep_t *wh_watch_sweep(const wh_watch_t *watch) {
+    return WH_SWEEP_BUILT ? watch->sweep : NULL;
+}
+
+/* Makes the sweep since the last slice, then does what wh_encounter_track does. */
+void wh_encounter_track_swept(wh_watch_t *watch) WH_SYMBOL(wh_encounter_track_swept);
 
 /* How close a gripper with a sweep came to the wafer in this slice; false if it did not come near. */
-bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_closeness_t *closest);
+bool wh_closeness_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_closeness_t *closest)
+    WH_SYMBOL(wh_closeness_swept);
 
 /* Measures at an instant before the slice's end, judged by the limits that hold there. */
 void wh_measure_swept(const wh_watch_t *watch, const wh_pose_t *base_from_wafer, wh_real_t t,
-                      wh_proximity_t *measured);
+                      wh_proximity_t *measured) WH_SYMBOL(wh_measure_swept);
 
 #endif

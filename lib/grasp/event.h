@@ -4,10 +4,12 @@
 
 #include "proximity.h"
 
+WH_HEADER_BEGIN
+
 /* A step of the grasp table yields at most this many events for each of its grippers. */
 #define WH_EVENTS_PER_GRIPPER 4
 
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     /* An open gripper took a free wafer. `measured` is what made it ready. */
     WH_EVENT_PICKED,
     /* The gripper's valve closed: its wafer stays where it is. `measured` is the wafer against it. */
@@ -86,6 +88,8 @@ typedef struct {
 } wh_event_list_t;
 
 /* The kind's name in lower case, such as "handed_over": a constant string, never null. */
-const char *wh_event_name(wh_event_kind_t kind);
+const char *wh_event_name(wh_event_kind_t kind) WH_SYMBOL(wh_event_name);
+
+WH_HEADER_END
 
 #endif

@@ -1,6 +1,7 @@
 #include "grasp.h"
 
 #include "../math/hash.h"
+#include "grasp_internal.h"
 #include "index_internal.h"
 
 wh_grasp_config_t wh_grasp_config_default(void) {
@@ -22,6 +23,14 @@ static wh_status_t validate_config(const wh_grasp_config_t *config) {
     return near_good ? wh_tolerance_validate(&config->tolerance) : WH_STATUS_BAD_TOLERANCE;
 }
 
+size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) {
+    const size_t most = (size_t)INT32_MAX / 16;
+    if (!WH_INDEX_BUILT || wafer_count > most || gripper_count > most) {
+        return 0;
+    }
+    return WH_GRASP_BUCKETS(wafer_count, gripper_count);
+}
+
 static wh_status_t validate_array(bool given, size_t count) {
     if (!given && count > 0) {
         return WH_STATUS_NULL_ARGUMENT;
@@ -30,11 +39,11 @@ static wh_status_t validate_array(bool given, size_t count) {
 }
 
 static wh_status_t validate_buckets(const wh_grasp_storage_t *storage) {
-    const size_t needed = wh_grasp_buckets(storage->wafer_count, storage->gripper_count);
     const wh_status_t status = validate_array(storage->buckets != NULL, storage->bucket_count);
     if (status != WH_OK || storage->bucket_count == 0) {
         return status;
     }
+    const size_t needed = wh_grasp_buckets(storage->wafer_count, storage->gripper_count);
     return needed > 0 && needed <= storage->bucket_count ? WH_OK : WH_STATUS_BAD_CAPACITY;
 }
 
@@ -96,6 +105,9 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
         return WH_STATUS_NULL_ARGUMENT;
     }
     wh_status_t status = validate_config(config);
+    if (status == WH_OK && !wh_grasp_is_built(config, storage->bucket_count)) {
+        status = WH_STATUS_NOT_BUILT;
+    }
     if (status == WH_OK) {
         status = validate_storage(storage);
     }

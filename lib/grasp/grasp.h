@@ -29,13 +29,13 @@
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint; "sampled" is a step without swept checking and without buckets):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_grasp_init                   300    200     212    112
- *     stack of wh_grasp_step                   648    832     388    480
- *     stack of wh_grasp_step:sampled_indexed    364    376     332    352
- *     stack of wh_grasp_step:sampled           248    336     240    264
+ *     stack of wh_grasp_init                   308    200     212    112
+ *     stack of wh_grasp_step                   616    776     380    452
+ *     stack of wh_grasp_step:sampled_indexed    340    384     324    352
+ *     stack of wh_grasp_step:sampled           248    384     232    264
  *     stack of wh_grasp_place                   92    200      76    112
  *     stack of wh_grasp_hash                    44     76      44     72
- *     size of wh_grasp_t                       136            112
+ *     size of wh_grasp_t                       136            120
  *     size of wh_wafer_t                       104             56
  *     size of wh_gripper_t                     440            248
  *     size of wh_gripper_input_t               104             52
@@ -46,7 +46,9 @@
 
 #include "event.h"
 
-typedef enum { WH_CHECK_SAMPLED, WH_CHECK_SWEPT } wh_check_t;
+WH_HEADER_BEGIN
+
+typedef enum WH_FOUR_BYTES { WH_CHECK_SAMPLED, WH_CHECK_SWEPT } wh_check_t;
 
 /* A valve's two levels. */
 enum { WH_VALVE_OPEN = 0, WH_VALVE_CLOSED = 1 };
@@ -129,22 +131,23 @@ typedef struct {
 #define WH_GRASP_MARK UINT32_C(0x77a6e57d)
 
 /* How many buckets a table of these counts needs: 5 for each wafer, 4 for each gripper and 8. 0 above
- * INT32_MAX / 16 wafers or grippers: such a table can have none. */
-size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count);
+ * INT32_MAX / 16 wafers or grippers, and in a library without an index: such a table can have none. */
+size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) WH_SYMBOL(wh_grasp_buckets);
 
 /* The same as a constant, for an array. */
 #define WH_GRASP_BUCKETS(wafer_count, gripper_count)                                                         \
     (8 + 4 * (size_t)(gripper_count) + 5 * (size_t)(wafer_count))
 
 /* The paper's tolerance, sampled, no seating; neighbourhood 4.5 mm and 2 eps_projxy. */
-wh_grasp_config_t wh_grasp_config_default(void);
+wh_grasp_config_t wh_grasp_config_default(void) WH_SYMBOL(wh_grasp_config_default);
 
 /* Sets up a table: all wafers free where storage->wafers has them, all grippers empty and closed. Refuses
  * null pointers (an array may be null when its count is 0), counts above INT32_MAX, fewer buckets than
- * wh_grasp_buckets says but not 0, invalid wafer poses and configurations outside the ranges above; table and
- * arrays are then unchanged. Cost: linear in wafers and grippers. */
+ * wh_grasp_buckets says but not 0, invalid wafer poses, configurations outside the ranges above, and swept
+ * checking or buckets if the library was built without them (WH_STATUS_NOT_BUILT); table and arrays are then
+ * unchanged. Cost: linear in wafers and grippers. */
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
-                          const wh_grasp_storage_t *storage);
+                          const wh_grasp_storage_t *storage) WH_SYMBOL(wh_grasp_init);
 
 /* One slice, as described at the top. `inputs` has one entry for each gripper. `list` receives the events,
  * in the order picks and hand-overs, releases, near misses and contests, each by gripper; null: not wanted.
@@ -153,25 +156,27 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
  * WH_EVENTS_PER_GRIPPER events for each gripper (WH_STATUS_BAD_CAPACITY), a pose that does not pass
  * wh_pose_validate, a valve that is neither 0 nor 1; the last two also yield the one event
  * WH_EVENT_BAD_INPUT, the others leave the list empty. Cost: linear in grippers. Each open, empty gripper
- * adds a look at each other gripper's wafer and two checks of every wafer, at about a dozen products each.
+ * adds a look at each other gripper's wafer and a check of every wafer, two where one is near, at 3 products each for a wafer too high or too low.
  * With buckets it adds less than a dozen products instead while it is within its horizon; beyond it two
  * searches of the wafers around it, which do not depend on how many there are elsewhere; and the checks of
  * all wafers only where it goes very far in one slice or most wafers are around it. A release adds a search
  * through the wafers of one cell. */
-wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list);
+wh_status_t wh_grasp_step(wh_grasp_t *table, const wh_gripper_input_t *inputs, wh_event_list_t *list)
+    WH_SYMBOL(wh_grasp_step);
 
 /* Puts a free wafer somewhere else, as a test or an operator may. Refuses a held wafer (WH_STATUS_HELD), an
  * index out of range, null pointers and an invalid pose. Its near misses so far are forgotten. Cost: linear
  * in grippers, and with buckets a search through the wafers of one cell. */
-wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer);
+wh_status_t wh_grasp_place(wh_grasp_t *table, size_t wafer, const wh_pose_t *base_from_wafer)
+    WH_SYMBOL(wh_grasp_place);
 
 /* Where a wafer is and who holds it; either result pointer may be null. WH_STATUS_OUT_OF_RANGE for a bad
  * index. */
-wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *base_from_wafer,
-                           int32_t *holder);
+wh_status_t wh_grasp_wafer(const wh_grasp_t *table, size_t wafer, wh_pose_t *base_from_wafer, int32_t *holder)
+    WH_SYMBOL(wh_grasp_wafer);
 
 /* Which wafer a gripper holds (WH_NONE: none). WH_STATUS_OUT_OF_RANGE for a bad index. */
-wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafer);
+wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafer) WH_SYMBOL(wh_grasp_held);
 
 /* True if the table agrees with itself, as it does between any two calls (Frama-C proves it:
  * tests/proof/README.md):
@@ -182,7 +187,7 @@ wh_status_t wh_grasp_held(const wh_grasp_t *table, size_t gripper, int32_t *wafe
  * False if the table is not initialised. For tests, and for a firmware that fears that others write into its
  * memory. Cost: linear in wafers and grippers. With -DWH_DEBUG_TABLE each call that changes a
  * table asserts it at its end. */
-bool wh_grasp_is_consistent(const wh_grasp_t *table);
+bool wh_grasp_is_consistent(const wh_grasp_t *table) WH_SYMBOL(wh_grasp_is_consistent);
 
 /* 64 bits over everything that the next step depends on, so equal hashes mean equal runs from here on: the
  * number of steps; for each wafer its pose (R row by row, r) and holder; for each gripper its pose, valve,
@@ -195,6 +200,8 @@ bool wh_grasp_is_consistent(const wh_grasp_t *table);
  *     for each w:  h = (h ^ w) * 0x9e3779b97f4a7c15;  h = h ^ (h >> 32)
  *
  * Cost: about 2 ns a word, 13 words for each wafer and up to 50 for each gripper. */
-uint64_t wh_grasp_hash(const wh_grasp_t *table);
+uint64_t wh_grasp_hash(const wh_grasp_t *table) WH_SYMBOL(wh_grasp_hash);
+
+WH_HEADER_END
 
 #endif

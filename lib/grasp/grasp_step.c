@@ -113,17 +113,9 @@ static void carry_and_release(wh_grasp_t *table, const wh_gripper_input_t *input
     }
 }
 
-static int32_t find_sampled(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper) {
-    if (wh_horizon_is_clear_at(table, g, &base_from_gripper->r)) {
-        wh_horizon_set_clear(table, g);
-        return WH_NONE;
-    }
-    return wh_grasp_find_ready(table, g, base_from_gripper);
-}
-
 static void pick_sampled(wh_grasp_t *table, size_t g, const wh_gripper_input_t *input,
                          wh_event_list_t *list) {
-    const int32_t w = find_sampled(table, g, &input->base_from_gripper);
+    const int32_t w = wh_grasp_find_ready(table, g, &input->base_from_gripper);
     if (w == WH_NONE) {
         return;
     }
@@ -162,7 +154,8 @@ static void report_release(wh_grasp_t *table, size_t g, const wh_gripper_input_t
     }
 }
 
-/* Keeps the slice's pose and valve. A gripper that let go named its wafer up to here. */
+/* Keeps the slice's pose and valve. A gripper that let go named its wafer up to here; what the pick noted is
+ * over. */
 static void remember(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inputs) {
     wh_gripper_t *gripper = &table->storage.grippers[g];
     gripper->base_from_gripper = inputs[g].base_from_gripper;
@@ -171,6 +164,7 @@ static void remember(wh_grasp_t *table, size_t g, const wh_gripper_input_t *inpu
         gripper->wafer = WH_NONE;
     }
     gripper->valve = inputs[g].valve;
+    gripper->approach.holder = WH_NONE;
 }
 
 /* The two small functions below, pick_next and watch, keep WP's goals small enough for its prover. */

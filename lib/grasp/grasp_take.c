@@ -13,18 +13,18 @@ typedef struct {
     wh_real_t distance;
 } nearest_t;
 
-static void keep_better(nearest_t *best, size_t w, const wh_wafer_t *wafer,
-                        const wh_pose_t *base_from_gripper) {
-    const nearest_t here = {(int32_t)w, wh_grasp_distance(wafer, base_from_gripper)};
+static void keep_better(nearest_t *best, size_t w, wh_real_t distance) {
+    const nearest_t here = {(int32_t)w, distance};
     if (best->wafer == WH_NONE || here.distance < best->distance ||
         (here.distance == best->distance && here.wafer < best->wafer)) {
         *best = here;
     }
 }
 
-int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper) {
-    const wh_real_t margin = wh_horizon_margin(table, g, &base_from_gripper->r);
+/* Looks at the wafers around, and measures the gripper's horizon on the way. */
+WH_OUT_OF_LINE static int32_t find_around(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper) {
     const wh_vec3_t *place = &base_from_gripper->r;
+    const wh_real_t margin = wh_horizon_margin(table, g, place);
     const wh_found_t near = wh_grasp_is_swept(table, g) ? wh_index_again(table, g, place, place)
                                                         : wh_index_near(table, g, place, place, margin);
     wh_horizon_t horizon = wh_horizon_begin(table, g, &near, margin);
@@ -32,14 +32,62 @@ int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_f
     for (size_t i = 0; i < near.count; ++i) {
         const size_t w = wh_index_wafer(table, &near, i);
         const wh_wafer_t *wafer = &table->storage.wafers[w];
-        if (wafer->holder == WH_NONE &&
-            !wh_horizon_measure(&horizon, &wafer->base_from_wafer, &base_from_gripper->r) &&
-            wh_proximity_ready(&wafer->base_from_wafer, base_from_gripper, &table->config.tolerance)) {
-            keep_better(&best, w, wafer, base_from_gripper);
+        if (wafer->holder == WH_NONE && !wh_horizon_measure(&horizon, &wafer->base_from_wafer, place) &&
+            wh_proximity_is_ready_fast(&wafer->base_from_wafer, base_from_gripper,
+                                       &table->config.tolerance)) {
+            keep_better(&best, w, wh_grasp_distance(wafer, base_from_gripper));
         }
     }
-    wh_horizon_set(table, g, &base_from_gripper->r, &horizon);
+    wh_horizon_store(table, g, place, &horizon);
+    wh_horizon_note(table, g, horizon.gap > 0);
     return best.wafer;
+}
+
+/* A wafer within both limits is no farther away along any axis of base, even if its rotation is orthonormal
+ * to WH_ROTATION_TOLERANCE only. */
+static wh_real_t side_of(const wh_near_limits_t *limits) {
+    return (1 + 8 * WH_ROTATION_TOLERANCE) * (limits->projz + limits->projxy);
+}
+
+static bool is_aside(const wh_wafer_t *wafer, const wh_pose_t *base_from_gripper, wh_real_t side) {
+    const wh_vec3_t dr = wh_vec3_subtract(&wafer->base_from_wafer.r, &base_from_gripper->r);
+    return wh_real_abs(dr.x) > side || wh_real_abs(dr.y) > side;
+}
+
+/* Looks at all wafers. If none is near, no second search of this step needs to look at them again. */
+WH_OUT_OF_LINE static int32_t find_among_all(wh_grasp_t *table, size_t g,
+                                             const wh_pose_t *base_from_gripper) {
+    const wh_near_limits_t limits = wh_horizon_limits(table, g);
+    const wh_real_t side = side_of(&limits);
+    nearest_t best = {.wafer = WH_NONE};
+    bool clear = true;
+    for (size_t w = 0; w < table->storage.wafer_count; ++w) {
+        const wh_wafer_t *wafer = &table->storage.wafers[w];
+        if (wafer->holder != WH_NONE || (WH_REAL_IS_SLOW && is_aside(wafer, base_from_gripper, side))) {
+            continue;
+        }
+        const wh_real_t distance = wh_grasp_distance(wafer, base_from_gripper);
+        if (distance >= limits.projz) {
+            continue;
+        }
+        if (wh_proximity_is_ready_fast(&wafer->base_from_wafer, base_from_gripper,
+                                       &table->config.tolerance)) {
+            keep_better(&best, w, distance);
+        } else {
+            clear = clear && is_aside(wafer, base_from_gripper, side);
+        }
+    }
+    wh_horizon_note(table, g, clear);
+    return best.wafer;
+}
+
+int32_t wh_grasp_find_ready(wh_grasp_t *table, size_t g, const wh_pose_t *base_from_gripper) {
+    if (wh_horizon_is_clear_at(table, g, &base_from_gripper->r)) {
+        wh_horizon_note(table, g, true);
+        return WH_NONE;
+    }
+    return wh_index_is_used(table) ? find_around(table, g, base_from_gripper)
+                                   : find_among_all(table, g, base_from_gripper);
 }
 
 /* The smallest turn of the wafer, in the gripper's frame, that takes n1 to n2 = e3. c > 0 at every pick. */

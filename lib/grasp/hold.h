@@ -16,6 +16,8 @@
 
 #include "vacuum.h"
 
+WH_HEADER_BEGIN
+
 /* What the pads and the wafer are. Immutable during a run; a mass of 0: holding is not looked at. */
 typedef struct {
     wh_real_t friction; /* coefficient, 0 to 100 */
@@ -38,19 +40,19 @@ typedef struct {
 } wh_carry_t;
 
 /* No wafer is watched. */
-wh_pads_t wh_pads_none(void);
+wh_pads_t wh_pads_none(void) WH_SYMBOL(wh_pads_none);
 
 /* WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE or WH_STATUS_OUT_OF_RANGE. A mass of 0 with nothing
  * else than 0 passes. */
-wh_status_t wh_pads_validate(const wh_pads_t *pads);
+wh_status_t wh_pads_validate(const wh_pads_t *pads) WH_SYMBOL(wh_pads_validate);
 
 /* The mass in kg of a disc of silicon (2.329 g/cm3) of this size in mm: 0.1276 for 300 mm and 0.775 mm. */
-wh_real_t wh_wafer_mass(wh_real_t diameter, wh_real_t thickness);
+wh_real_t wh_wafer_mass(wh_real_t diameter, wh_real_t thickness) WH_SYMBOL(wh_wafer_mass);
 
 /* The verdict on one moment: `acceleration` of the wafer in base, mm/s^2. Nothing is checked; the mass is
  * above 0. Cost: a square root and three divisions. */
 wh_hold_t wh_hold_judge(const wh_pads_t *pads, wh_real_t level, const wh_mat3_t *base_from_gripper,
-                        const wh_vec3_t *acceleration);
+                        const wh_vec3_t *acceleration) WH_SYMBOL(wh_hold_judge);
 
 /* One slice of a gripper whose wafer's centre is now at `centre` (null: it holds none): the acceleration is
  * the second difference of three positions over slices of `dt` s, so the first two slices after a pick are
@@ -58,6 +60,8 @@ wh_hold_t wh_hold_judge(const wh_pads_t *pads, wh_real_t level, const wh_mat3_t 
  * checked. */
 bool wh_carry_update(wh_carry_t *carry, const wh_pads_t *pads, wh_real_t level,
                      const wh_mat3_t *base_from_gripper, const wh_vec3_t *centre, wh_real_t dt,
-                     wh_hold_t *hold);
+                     wh_hold_t *hold) WH_SYMBOL(wh_carry_update);
+
+WH_HEADER_END
 
 #endif

@@ -30,12 +30,7 @@ wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *
 }
 
 wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin) {
-    wh_horizon_t horizon = {.limits = wh_index_limits(table), .measured = table->storage.bucket_count > 0};
-    if (table->storage.grippers[g].approach.wafer != WH_NONE) {
-        horizon.limits.projz = table->config.tolerance.projz;
-        horizon.limits.projxy = table->config.tolerance.projxy;
-    }
-    horizon.gap = near->listed ? margin : (wh_real_t)LONGEST;
+    const wh_horizon_t horizon = {wh_horizon_limits(table, g), near->listed ? margin : (wh_real_t)LONGEST};
     return horizon;
 }
 
@@ -72,9 +67,6 @@ void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const
     words[3] = 4 * reach_of(WH_INDEX_UNITS * sure - TAKEN_OFF);
     if (table->storage.grippers[g].approach.wafer != WH_NONE) {
         words[3] |= WH_HORIZON_OF_TOLERANCE;
-    }
-    if (words[3] >= 4 * ((uint32_t)TAKEN_OFF)) {
-        words[3] |= WH_HORIZON_CLEAR;
     }
 }
 

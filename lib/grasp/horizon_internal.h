@@ -18,11 +18,10 @@
 typedef struct {
     wh_near_limits_t limits;
     wh_real_t gap; /* the least so far, mm */
-    bool measured; /* false: there are no buckets to keep it in */
 } wh_horizon_t;
 
-/* Measured against the tolerance, not the neighbourhood; the pick in this step found no free wafer near. */
-enum { WH_HORIZON_OF_TOLERANCE = 1, WH_HORIZON_CLEAR = 2 };
+/* Measured against the tolerance, not the neighbourhood. */
+enum { WH_HORIZON_OF_TOLERANCE = 1 };
 
 static inline uint32_t *wh_horizon_words(const wh_grasp_t *table, size_t g) {
     return &table->storage.buckets[WH_INDEX_HORIZONS + WH_HORIZON_WORDS * g];
@@ -37,7 +36,7 @@ static inline wh_real_t wh_horizon_way(uint32_t word, wh_real_t place) {
 
 /* True if no wafer that nobody holds matters to gripper g at `place`. */
 static inline bool wh_horizon_is_clear_at(const wh_grasp_t *table, size_t g, const wh_vec3_t *place) {
-    if (table->storage.bucket_count == 0) {
+    if (!wh_index_is_used(table)) {
         return false;
     }
     const uint32_t *words = wh_horizon_words(table, g);
@@ -51,35 +50,37 @@ static inline bool wh_horizon_is_clear_at(const wh_grasp_t *table, size_t g, con
     return x * x + y * y + z * z < reach * reach;
 }
 
-/* True if this step's pick already found no free wafer near. */
+/* In a step: the pick found no free wafer near. It stands in the place of the approach's holder, which a
+ * gripper that watches no wafer has no use for, until the step's end. */
+#define WH_HORIZON_CLEAR (WH_NONE - 1)
+
+/* True if this step's pick already found no free wafer near a gripper that watches none. */
 static inline bool wh_horizon_is_clear(const wh_grasp_t *table, size_t g) {
-    return table->storage.bucket_count > 0 && (wh_horizon_words(table, g)[3] & WH_HORIZON_CLEAR) != 0;
+    return table->storage.grippers[g].approach.holder == WH_HORIZON_CLEAR;
 }
 
-/* Remembers that no free wafer is near at the slice's end. */
-static inline void wh_horizon_set_clear(wh_grasp_t *table, size_t g) {
-    wh_horizon_words(table, g)[3] |= WH_HORIZON_CLEAR;
+/* Notes what the pick found. */
+static inline void wh_horizon_note(wh_grasp_t *table, size_t g, bool clear) {
+    wh_encounter_t *approach = &table->storage.grippers[g].approach;
+    approach->holder = clear && approach->wafer == WH_NONE ? WH_HORIZON_CLEAR : WH_NONE;
 }
 
-/* How far around `place` a search should look: many times the way of this slice, or little if the gripper
- * jumps. */
-wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place);
-
-/* Begins to measure a horizon over the wafers that wh_index_near found with this margin. */
-wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin);
+/* What matters to gripper g: the neighbourhood, or the tolerance while it follows a wafer's approach. */
+static inline wh_near_limits_t wh_horizon_limits(const wh_grasp_t *table, size_t g) {
+    const wh_tolerance_t *tolerance = &table->config.tolerance;
+    const wh_near_limits_t limits = {tolerance->projz, tolerance->projxy};
+    return table->storage.grippers[g].approach.wafer == WH_NONE ? wh_index_limits(table) : limits;
+}
 
 /* Takes a free wafer into account. True if the wafer is certainly not ready, as wh_proximity_ready would
  * say. */
 static inline bool wh_horizon_measure(wh_horizon_t *horizon, const wh_pose_t *base_from_wafer,
                                       const wh_vec3_t *place) {
-    if (!horizon->measured) {
-        return false;
-    }
     const wh_vec3_t dr = wh_vec3_subtract(&base_from_wafer->r, place);
     const wh_vec3_t p = wh_mat3_transform_back(&base_from_wafer->R, &dr);
     const wh_real_t z = wh_real_abs(p.z) - horizon->limits.projz;
     if (z >= horizon->gap) {
-        return z > 0;
+        return true;
     }
     const wh_real_t xy = wh_real_sqrt(p.x * p.x + p.y * p.y) - horizon->limits.projxy;
     const wh_real_t gap = z > xy ? z : xy;
@@ -88,18 +89,20 @@ static inline bool wh_horizon_measure(wh_horizon_t *horizon, const wh_pose_t *ba
     return gap > 0;
 }
 
-/* What wh_horizon_set does if the table has buckets. */
-void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon);
+/* How far around `place` a search should look: many times the way of this slice, or little if the gripper
+ * jumps. */
+wh_real_t wh_horizon_margin(const wh_grasp_t *table, size_t g, const wh_vec3_t *place)
+    WH_SYMBOL(wh_horizon_margin);
 
-/* Stores the measured horizon for gripper g at `place`, if the table has buckets. */
-static inline void wh_horizon_set(wh_grasp_t *table, size_t g, const wh_vec3_t *place,
-                                  const wh_horizon_t *horizon) {
-    if (table->storage.bucket_count > 0) {
-        wh_horizon_store(table, g, place, horizon);
-    }
-}
+/* Begins to measure a horizon over the wafers that wh_index_near found with this margin. */
+wh_horizon_t wh_horizon_begin(const wh_grasp_t *table, size_t g, const wh_found_t *near, wh_real_t margin)
+    WH_SYMBOL(wh_horizon_begin);
+
+/* Stores the measured horizon for gripper g at `place`. These four are for tables with buckets. */
+void wh_horizon_store(wh_grasp_t *table, size_t g, const wh_vec3_t *place, const wh_horizon_t *horizon)
+    WH_SYMBOL(wh_horizon_store);
 
 /* Takes every gripper's horizon away, until it searches again. */
-void wh_horizon_reset(wh_grasp_t *table);
+void wh_horizon_reset(wh_grasp_t *table) WH_SYMBOL(wh_horizon_reset);
 
 #endif

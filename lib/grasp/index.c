@@ -5,14 +5,6 @@
 /* A cell's shortest edge as a power of two of the unit: 16 mm. */
 #define SMALLEST 10U
 
-size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) {
-    const size_t most = (size_t)INT32_MAX / 16;
-    if (wafer_count > most || gripper_count > most) {
-        return 0;
-    }
-    return WH_GRASP_BUCKETS(wafer_count, gripper_count);
-}
-
 static uint32_t *heads_of(const wh_grasp_t *table) {
     return &table->storage.buckets[WH_INDEX_HORIZONS + WH_HORIZON_WORDS * table->storage.gripper_count];
 }
@@ -105,11 +97,8 @@ static void take_out(wh_grasp_t *table, size_t w) {
     }
 }
 
-void wh_index_build(wh_grasp_t *table) {
+void wh_index_fill(wh_grasp_t *table) {
     const wh_grasp_storage_t *storage = &table->storage;
-    if (storage->bucket_count == 0) {
-        return;
-    }
     const wh_near_limits_t limits = wh_index_limits(table);
     storage->buckets[0] = 0;
     storage->buckets[1] = 0;
@@ -127,10 +116,7 @@ void wh_index_build(wh_grasp_t *table) {
     wh_horizon_reset(table);
 }
 
-void wh_index_move(wh_grasp_t *table, size_t wafer) {
-    if (table->storage.bucket_count == 0) {
-        return;
-    }
+void wh_index_reinsert(wh_grasp_t *table, size_t wafer) {
     const wh_near_limits_t limits = wh_index_limits(table);
     take_out(table, wafer);
     insert(table, wafer);

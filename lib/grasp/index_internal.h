@@ -49,24 +49,42 @@ typedef struct {
     size_t count;
 } wh_found_t;
 
-/* Builds the index anew for all wafers, if the table has buckets. No gripper has a horizon then. */
-void wh_index_build(wh_grasp_t *table);
-
-/* Tells the index that this wafer lies somewhere else from now on. No gripper has a horizon then. */
-void wh_index_move(wh_grasp_t *table, size_t wafer);
-
 /* All wafers. */
 static inline wh_found_t wh_index_all(const wh_grasp_t *table) {
     const wh_found_t near = {NULL, table->storage.wafer_count};
     return near;
 }
 
+/* True if the table has buckets. Where the library is built without an index that is constant, and nothing
+ * below is linked. */
+static inline bool wh_index_is_used(const wh_grasp_t *table) {
+    return WH_INDEX_BUILT && table->storage.bucket_count > 0;
+}
+
+/* What wh_index_build and wh_index_move do if the table has buckets. */
+void wh_index_fill(wh_grasp_t *table) WH_SYMBOL(wh_index_fill);
+void wh_index_reinsert(wh_grasp_t *table, size_t wafer) WH_SYMBOL(wh_index_reinsert);
+
+/* Builds the index anew for all wafers, if the table has buckets. No gripper has a horizon then. */
+static inline void wh_index_build(wh_grasp_t *table) {
+    if (wh_index_is_used(table)) {
+        wh_index_fill(table);
+    }
+}
+
+/* Tells the index that this wafer lies somewhere else from now on. No gripper has a horizon then. */
+static inline void wh_index_move(wh_grasp_t *table, size_t wafer) {
+    if (wh_index_is_used(table)) {
+        wh_index_reinsert(table, wafer);
+    }
+}
+
 /* What wh_index_near does if the table has buckets. */
 wh_found_t wh_index_search(wh_grasp_t *table, size_t g, const wh_vec3_t *from, const wh_vec3_t *to,
-                           wh_real_t margin);
+                           wh_real_t margin) WH_SYMBOL(wh_index_search);
 
 /* What the last search found, by whichever gripper. */
-wh_found_t wh_index_found(const wh_grasp_t *table);
+wh_found_t wh_index_found(const wh_grasp_t *table) WH_SYMBOL(wh_index_found);
 
 /* The wafers in whose neighbourhood gripper g comes between `from` and `to` or, along one of base's axes, may
  * come by moving less than `margin` from there; and others. All of them where the table has no buckets or as
@@ -74,15 +92,14 @@ wh_found_t wh_index_found(const wh_grasp_t *table);
  * stack. */
 static inline wh_found_t wh_index_near(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
                                        const wh_vec3_t *to, wh_real_t margin) {
-    return table->storage.bucket_count > 0 ? wh_index_search(table, g, from, to, margin)
-                                           : wh_index_all(table);
+    return wh_index_is_used(table) ? wh_index_search(table, g, from, to, margin) : wh_index_all(table);
 }
 
 /* wh_index_near without a margin, for a gripper that has searched there in this step. Returns what that
  * search found, unless another gripper has searched since. */
 static inline wh_found_t wh_index_again(wh_grasp_t *table, size_t g, const wh_vec3_t *from,
                                         const wh_vec3_t *to) {
-    if (table->storage.bucket_count > 0 && table->storage.buckets[WH_INDEX_FOUND] == g) {
+    if (wh_index_is_used(table) && table->storage.buckets[WH_INDEX_FOUND] == g) {
         return wh_index_found(table);
     }
     return wh_index_near(table, g, from, to, 0);

@@ -1,13 +1,20 @@
 #include "grasp_internal.h"
 
+/* Member by member: a compiler that saves bytes would copy a constant. */
+static wh_tolerance_t tolerance_of(wh_real_t projz, wh_real_t projxy, wh_real_t planar) {
+    wh_tolerance_t tolerance;
+    tolerance.projz = projz;
+    tolerance.projxy = projxy;
+    tolerance.planar = planar;
+    return tolerance;
+}
+
 wh_tolerance_t wh_tolerance_paper(void) {
-    const wh_tolerance_t paper = {WH_REAL(0.5), 50, WH_REAL(0.99)};
-    return paper;
+    return tolerance_of(WH_REAL(0.5), 50, WH_REAL(0.99));
 }
 
 wh_tolerance_t wh_tolerance_strict(void) {
-    const wh_tolerance_t strict = {WH_REAL(0.5), 5, WH_REAL(0.99998)};
-    return strict;
+    return tolerance_of(WH_REAL(0.5), 5, WH_REAL(0.99998));
 }
 
 const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance) {
@@ -28,6 +35,11 @@ wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance) {
                       tolerance->projxy >= WH_REAL(1e-6) && tolerance->projxy <= WH_REAL(1e6) &&
                       tolerance->planar >= 0 && tolerance->planar < 1;
     return good ? WH_OK : WH_STATUS_BAD_TOLERANCE;
+}
+
+bool wh_proximity_is_ready(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
+                           const wh_tolerance_t *tolerance) {
+    return wh_proximity_ready(base_from_wafer, base_from_gripper, tolerance);
 }
 
 void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *p) {

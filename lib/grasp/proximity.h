@@ -18,6 +18,8 @@
 
 #include "../math/pose.h"
 
+WH_HEADER_BEGIN
+
 /* The three limits: eps_projz in (0, 1e6] mm, eps_projxy in [1e-6, 1e6] mm, eps_planar in [0, 1). */
 typedef struct {
     wh_real_t projz, projxy, planar;
@@ -41,25 +43,26 @@ typedef struct {
 
 /* The paper's reference parameters, "paper": 0.5 mm, 50 mm, 0.99. The last is 8.1 degrees, which leaves the
  * rim of a 300 mm wafer 21 mm out of plane: see wh_proximity_rim_gap. */
-wh_tolerance_t wh_tolerance_paper(void);
+wh_tolerance_t wh_tolerance_paper(void) WH_SYMBOL(wh_tolerance_paper);
 
 /* "strict": 0.5 mm, 5 mm, 0.99998; the rim of a 300 mm wafer is out of plane by less than 1 mm. */
-wh_tolerance_t wh_tolerance_strict(void);
+wh_tolerance_t wh_tolerance_strict(void) WH_SYMBOL(wh_tolerance_strict);
 
 /* How many presets there are, and which: `index` is 0 to WH_TOLERANCE_PRESETS - 1, anything else gives null
  * and leaves `tolerance` as it was. Returns the preset's name, a constant string. */
 #define WH_TOLERANCE_PRESETS 2
-const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance);
+const char *wh_tolerance_preset(size_t index, wh_tolerance_t *tolerance) WH_SYMBOL(wh_tolerance_preset);
 
 /* WH_STATUS_BAD_TOLERANCE when a limit is NaN or out of the range given at wh_tolerance_t. */
-wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance);
+wh_status_t wh_tolerance_validate(const wh_tolerance_t *tolerance) WH_SYMBOL(wh_tolerance_validate);
 
 /* Measures, for a person: all values, margins and reasons. Refuses null pointers, poses that do not pass
  * wh_pose_validate, bad tolerances, and poses so far apart that the square of their distance is no number
  * (WH_STATUS_NOT_FINITE: about 1e154 mm, 1e19 in float); `result` is then unchanged. Cost: about 100
  * products and a square root. */
 wh_status_t wh_proximity_measure(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
-                                 const wh_tolerance_t *tolerance, wh_proximity_t *result);
+                                 const wh_tolerance_t *tolerance, wh_proximity_t *result)
+    WH_SYMBOL(wh_proximity_measure);
 
 /* The verdict alone, for the inner loop: the same one as wh_proximity_measure's, bit for bit. No argument is
  * checked: poses and tolerance must be valid ones, except that a NaN anywhere gives false. Cost: 3 products
@@ -75,25 +78,29 @@ static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh
     if (!(wh_real_abs(wh_vec3_dot(&dr, &n1)) < tolerance->projz)) {
         return false;
     }
-    wh_real_t square = 0;
-    for (size_t i = 0; i < 2; ++i) {
-        const wh_real_t along = w->m[0][i] * dr.x + w->m[1][i] * dr.y + w->m[2][i] * dr.z;
-        /* (1)-(8) never look at the gripper's first two axes: a NaN there comes in as what must be zero. */
-        const wh_real_t unused = g->m[0][i] + g->m[1][i] + g->m[2][i];
-        square += along * along + (unused - unused);
-    }
+    const wh_real_t x = w->m[0][0] * dr.x + w->m[1][0] * dr.y + w->m[2][0] * dr.z;
+    const wh_real_t y = w->m[0][1] * dr.x + w->m[1][1] * dr.y + w->m[2][1] * dr.z;
     const wh_vec3_t n2 = wh_mat3_column(g, 2);
-    return wh_real_root_below(square, tolerance->projxy) && wh_vec3_dot(&n1, &n2) > tolerance->planar;
+    if (!wh_real_root_below(x * x + y * y, tolerance->projxy) ||
+        !(wh_vec3_dot(&n1, &n2) > tolerance->planar)) {
+        return false;
+    }
+    /* (1)-(8) never look at the lengths of the gripper's first two axes: a NaN there shows in their product. */
+    const wh_real_t across = g->m[0][0] * g->m[0][1] + g->m[1][0] * g->m[1][1] + g->m[2][0] * g->m[2][1];
+    return across - across == 0;
 }
 
 /* Margins, failed conditions and verdict anew from the values (1)-(5) that `measured` holds, as when they
  * have travelled in a message. Arguments are not checked; a NaN fails its condition. */
-void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *measured);
+void wh_proximity_judge(const wh_tolerance_t *tolerance, wh_proximity_t *measured)
+    WH_SYMBOL(wh_proximity_judge);
 
 /* How far the farthest point of a wafer's rim (radius in mm) is from the gripper's contact plane: the number
  * that the centre's distance (3) hides when the wafer is tilted. Arguments are not checked. Cost: one square
  * root. */
 wh_real_t wh_proximity_rim_gap(const wh_pose_t *base_from_wafer, const wh_pose_t *base_from_gripper,
-                               wh_real_t radius);
+                               wh_real_t radius) WH_SYMBOL(wh_proximity_rim_gap);
+
+WH_HEADER_END
 
 #endif

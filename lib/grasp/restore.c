@@ -1,5 +1,6 @@
 #include "restore.h"
 
+#include "grasp_internal.h"
 #include "index_internal.h"
 
 static bool is_index_or_none(int32_t index, size_t count) {
@@ -135,6 +136,9 @@ static wh_status_t check_all(const wh_grasp_t *table, uint64_t slice, const wh_w
                              const wh_gripper_t grippers[]) {
     if ((!wafers && table->storage.wafer_count > 0) || (!grippers && table->storage.gripper_count > 0)) {
         return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (!wh_grasp_is_built(&table->config, table->storage.bucket_count)) {
+        return WH_STATUS_NOT_BUILT;
     }
     if (slice > INT64_MAX) {
         return WH_STATUS_OUT_OF_RANGE;

@@ -4,6 +4,8 @@
 
 #include "grasp.h"
 
+WH_HEADER_BEGIN
+
 /* Sets an initialised table to the state that another table of the same counts was in after `slice` steps:
  * `wafers` and `grippers` are copies of that table's arrays, made between two steps. The same steps then
  * yield the same bits as they would have there; counters keep counting. `released_by` of the wafers is not
@@ -13,9 +15,12 @@
  * hold what it is said to hold or holds it with a closed valve or further off than twice projz + projxy, a
  * held wafer that is not where its gripper carries it (by more than what 16 WH_ROTATION_TOLERANCE make of
  * its rotation and of its coordinates), an approached wafer with a holder or a contested one without,
- * slices beyond `slice`, a `slice` above INT64_MAX (WH_STATUS_OUT_OF_RANGE). Cost: linear in wafers and
+ * slices beyond `slice`, a `slice` above INT64_MAX (WH_STATUS_OUT_OF_RANGE); a table that wh_grasp_init of
+ * this build would refuse (WH_STATUS_NOT_BUILT). Cost: linear in wafers and
  * grippers; a held wafer adds 36 products. */
 wh_status_t wh_grasp_restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t wafers[],
-                             const wh_gripper_t grippers[]);
+                             const wh_gripper_t grippers[]) WH_SYMBOL(wh_grasp_restore);
+
+WH_HEADER_END
 
 #endif

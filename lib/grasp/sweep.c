@@ -1,5 +1,7 @@
 #include "sweep_internal.h"
 
+#include "grasp_internal.h"
+
 /* Shepperd's way: divide by the largest of the four, so that no digit is lost. */
 static void quaternion_from_rotation(const wh_mat3_t *R, wh_real_t *w, wh_vec3_t *v) {
     const wh_real_t signals = R->m[0][0] + R->m[1][1] + R->m[2][2];
@@ -147,7 +149,7 @@ bool wh_sweep_first_ready(const wh_sweep_t *sweep, const wh_pose_t *base_from_wa
         const wh_real_t instant = part.first + later[i] * (part.last - part.first);
         wh_pose_t base_from_gripper;
         wh_sweep_pose_at(sweep, instant, &base_from_gripper);
-        if (wh_proximity_ready(base_from_wafer, &base_from_gripper, tolerance)) {
+        if (wh_proximity_is_ready(base_from_wafer, &base_from_gripper, tolerance)) {
             *t = instant;
             return true;
         }

@@ -28,9 +28,13 @@ static void keep_better(candidate_t *best, const candidate_t *other) {
 
 static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *sweep) {
     const wh_vec3_t *place = &sweep->end->r;
-    const wh_real_t margin = wh_horizon_margin(table, g, place);
+    const bool indexed = wh_index_is_used(table);
+    const wh_real_t margin = indexed ? wh_horizon_margin(table, g, place) : 0;
     const wh_found_t near = wh_index_near(table, g, &sweep->begin->r, place, margin);
-    wh_horizon_t horizon = wh_horizon_begin(table, g, &near, margin);
+    wh_horizon_t horizon = {{0, 0}, 0};
+    if (indexed) {
+        horizon = wh_horizon_begin(table, g, &near, margin);
+    }
     candidate_t best = {.wafer = WH_NONE};
     for (size_t i = 0; i < near.count; ++i) {
         const size_t w = wh_index_wafer(table, &near, i);
@@ -39,7 +43,9 @@ static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *swe
             continue;
         }
         candidate_t here = {.wafer = (int32_t)w};
-        (void)wh_horizon_measure(&horizon, &wafer->base_from_wafer, place);
+        if (indexed) {
+            (void)wh_horizon_measure(&horizon, &wafer->base_from_wafer, place);
+        }
         if (wafer->released_by == WH_NONE &&
             wh_sweep_first_ready(sweep, &wafer->base_from_wafer, &table->config.tolerance, &here.t)) {
             wh_pose_t then;
@@ -48,7 +54,9 @@ static candidate_t find_ready(wh_grasp_t *table, size_t g, const wh_sweep_t *swe
             keep_better(&best, &here);
         }
     }
-    wh_horizon_set(table, g, place, &horizon);
+    if (indexed) {
+        wh_horizon_store(table, g, place, &horizon);
+    }
     return best;
 }
 

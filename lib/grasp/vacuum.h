@@ -26,6 +26,8 @@
 
 #include "grasp.h"
 
+WH_HEADER_BEGIN
+
 /* Immutable during a run. */
 typedef struct {
     wh_real_t build, vent; /* time constants upwards and downwards, s, 0 to 3600 */
@@ -48,31 +50,33 @@ typedef struct {
 } wh_vacuum_t;
 
 /* No lag, nothing in between: the paper's gripper. */
-wh_vacuum_config_t wh_vacuum_ideal(void);
+wh_vacuum_config_t wh_vacuum_ideal(void) WH_SYMBOL(wh_vacuum_ideal);
 
 /* Lags of 50 ms and 20 ms, idle 0.1, sensor on at 0.7 and off at 0.6, release at 0.3. */
-wh_vacuum_config_t wh_vacuum_delayed(void);
+wh_vacuum_config_t wh_vacuum_delayed(void) WH_SYMBOL(wh_vacuum_delayed);
 
 /* WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, or WH_STATUS_OUT_OF_RANGE for a value outside the
  * ranges above. */
-wh_status_t wh_vacuum_validate(const wh_vacuum_config_t *config);
+wh_status_t wh_vacuum_validate(const wh_vacuum_config_t *config) WH_SYMBOL(wh_vacuum_validate);
 
 /* Nothing wrong: 1 and 0. */
-wh_vacuum_fault_t wh_vacuum_sound(void);
+wh_vacuum_fault_t wh_vacuum_sound(void) WH_SYMBOL(wh_vacuum_sound);
 
 /* Before the first slice: no vacuum, closed, off. */
-wh_vacuum_t wh_vacuum_start(void);
+wh_vacuum_t wh_vacuum_start(void) WH_SYMBOL(wh_vacuum_start);
 
 /* Takes a slice's command, lets the level fall if that is closed, and returns what the valve does, for the
  * grasp step. A command that is no valve's level is returned as it is, for that step to refuse, and changes
  * nothing. No other argument is checked; `dt` is the slice's length in s. Cost: a division. */
 int32_t wh_vacuum_before(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, int32_t command,
-                         bool holds, wh_real_t dt, wh_vacuum_t *vacuum);
+                         bool holds, wh_real_t dt, wh_vacuum_t *vacuum) WH_SYMBOL(wh_vacuum_before);
 
 /* After the grasp step: the level under an open valve, and the sensor. `holds`: a wafer is on the pads now.
  * True when the sensor went off under a wafer that the command wants held. Nothing is checked. Cost: a
  * division. */
 bool wh_vacuum_after(const wh_vacuum_config_t *config, const wh_vacuum_fault_t *upset, bool holds,
-                     wh_real_t dt, wh_vacuum_t *vacuum);
+                     wh_real_t dt, wh_vacuum_t *vacuum) WH_SYMBOL(wh_vacuum_after);
+
+WH_HEADER_END
 
 #endif

@@ -7,8 +7,8 @@
 #include "feasibility.h"
 
 /* Writes an SVG image of the cell with the robot at home. Parts that a finding names are marked. Colours
- * follow the viewer's preference for light or dark. 0, or -1 if out of memory or if `out` fails (then errno
- * says why). */
+ * follow the viewer's preference for light or dark. Ends the program if out of memory. 0, or -1 if `out`
+ * fails (then errno says why). */
 int wh_layout_print_svg(const wh_feasibility_t *check, FILE *out);
 
 #endif

@@ -8,8 +8,6 @@
 /* --------------------------------------------------------------------------------------------------- read */
 
 static const char *const shapes[] = {"normal", "uniform", NULL};
-static const char *const placement_fields[WH_PLACEMENT_FIELDS] = {"dx", "dy", "dz", "tilt", "turn"};
-static const char *const teaching_fields[WH_TEACHING_FIELDS] = {"x", "y", "z", "roll", "pitch", "yaw"};
 
 /* The largest widths: mm, degrees, s. */
 #define MOST_MM 100
@@ -20,25 +18,25 @@ static wh_shape_t read_shape(wh_reader_t *reader, wh_shape_t fallback) {
     return (wh_shape_t)wh_reader_choice(reader, "shape", (int)fallback, shapes);
 }
 
-/* Reads a width for each field of the table, with its own default and the table's shape. The first `lengths`
- * fields are in mm. */
-static void read_fields(wh_reader_t *reader, const char *const names[], size_t count, size_t lengths,
-                        wh_spread_t of[]) {
-    for (size_t i = 0; i < count; ++i) {
-        const wh_shape_t shape = read_shape(reader, of[i].shape);
-        of[i].width = wh_reader_number(reader, names[i], of[i].width, 0, i < lengths ? MOST_MM : MOST_DEG);
-        of[i].shape = shape;
+/* Reads a width for each name, with its own default and the table's shape. The first three are in mm. */
+static void read_spreads(wh_reader_t *reader, const char *const names[], wh_spreads_t *spreads) {
+    for (size_t i = 0; names[i]; ++i) {
+        wh_spread_t *spread = &spreads->of[i];
+        spread->shape = read_shape(reader, spread->shape);
+        spread->width = wh_reader_number(reader, names[i], spread->width, 0, i < 3 ? MOST_MM : MOST_DEG);
     }
 }
 
-static void read_placement(wh_reader_t *reader, wh_placement_t *placement) {
+static void read_placement(wh_reader_t *reader, wh_spreads_t *placement) {
+    static const char *const names[] = {"dx", "dy", "dz", "tilt", "turn", NULL};
     wh_reader_refuse_unknown(reader, "dx dy dz tilt turn shape");
-    read_fields(reader, placement_fields, WH_PLACEMENT_FIELDS, 3, placement->of);
+    read_spreads(reader, names, placement);
 }
 
-static void read_teaching(wh_reader_t *reader, wh_teaching_t *teaching) {
+static void read_teaching(wh_reader_t *reader, wh_spreads_t *teaching) {
+    static const char *const names[] = {"x", "y", "z", "roll", "pitch", "yaw", NULL};
     wh_reader_refuse_unknown(reader, "x y z roll pitch yaw shape");
-    read_fields(reader, teaching_fields, WH_TEACHING_FIELDS, 3, teaching->of);
+    read_spreads(reader, names, teaching);
 }
 
 /* ------------------------------------------------------------------------------------------------- timing */
@@ -75,12 +73,9 @@ typedef struct {
     const char *field, *what;
     const void *items; /* each begins with its name */
     size_t size, count;
+    wh_layout_find_t *find;
     void (*read)(wh_reader_t *reader, wh_layout_t *layout, size_t index);
 } section_t;
-
-static const char *name_at(const section_t *section, size_t index) {
-    return (const char *)section->items + index * section->size;
-}
 
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
     read_placement(reader, &layout->errors->wafers[index]);
@@ -97,56 +92,36 @@ static void read_gripper(wh_reader_t *reader, wh_layout_t *layout, size_t index)
     read_valve(reader, layout, valve);
 }
 
-static bool is_name(const section_t *section, const char *name) {
-    size_t i = 0;
-    while (i < section->count && strcmp(name_at(section, i), name) != 0) {
-        ++i;
-    }
-    return i < section->count;
-}
-
-/* Counts the keys of the table; refuses one that is not a text. */
-static size_t count_keys(const wh_reader_t *reader, const section_t *section) {
+/* Refuses the first key, by name, that names nothing of the layout; and a key that is no text. */
+static void refuse_strangers(const wh_reader_t *reader, const wh_layout_t *layout, const section_t *section) {
     lua_State *L = reader->L;
-    size_t count = 0;
+    const char *first = NULL;
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
         if (lua_type(L, -2) != LUA_TSTRING) {
             lua_pushvalue(L, -2);
             wh_reader_fail(reader, NULL, "tables by the name of a %s", section->what);
         }
-        ++count;
-    }
-    return count;
-}
-
-/* Refuses the first key, by name, that names nothing of the layout. */
-static void refuse_stranger(const wh_reader_t *reader, const section_t *section) {
-    lua_State *L = reader->L;
-    const char *first = "";
-    for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
         const char *name = lua_tostring(L, -2);
-        if ((!first[0] || strcmp(name, first) < 0) && !is_name(section, name)) {
+        if ((!first || strcmp(name, first) < 0) && section->find(layout, name) == WH_NONE) {
             first = name;
         }
     }
-    wh_reader_refuse(reader, NULL, first, "the name of a %s of this layout", section->what);
+    if (first) {
+        wh_reader_refuse(reader, NULL, first, "the name of a %s of this layout", section->what);
+    }
 }
 
 static void read_section(wh_reader_t *reader, wh_layout_t *layout, const section_t *section) {
     if (!wh_reader_enter(reader, section->field)) {
         return;
     }
-    size_t found = 0;
     for (size_t i = 0; i < section->count; ++i) {
-        if (wh_reader_enter(reader, name_at(section, i))) {
+        if (wh_reader_enter(reader, (const char *)section->items + i * section->size)) {
             section->read(reader, layout, i);
             wh_reader_leave(reader);
-            ++found;
         }
     }
-    if (found != count_keys(reader, section)) {
-        refuse_stranger(reader, section);
-    }
+    refuse_strangers(reader, layout, section);
     wh_reader_leave(reader);
 }
 
@@ -159,10 +134,9 @@ static void set_shapes(wh_spread_t of[], size_t count, wh_shape_t shape) {
 }
 
 static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t shape) {
-    wh_placement_t placement = {{{0, shape}}};
-    wh_teaching_t teaching = {{{0, shape}}};
-    set_shapes(placement.of, WH_PLACEMENT_FIELDS, shape);
-    set_shapes(teaching.of, WH_TEACHING_FIELDS, shape);
+    wh_spreads_t placement = {{{0, shape}}};
+    set_shapes(placement.of, WH_SPREADS, shape);
+    wh_spreads_t teaching = placement;
     set_shapes(layout->errors->valves, WH_GRIPPERS, shape);
     layout->errors->vacuum.shape = shape;
     if (wh_reader_enter(reader, "placement")) {
@@ -186,12 +160,12 @@ static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t sh
 }
 
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
-    const section_t sections[] = {
-        {"wafers", "wafer", layout->wafers, sizeof *layout->wafers, layout->wafer_count, read_wafer},
-        {"stations", "station", layout->stations, sizeof *layout->stations, layout->station_count,
-         read_station},
-        {"grippers", "gripper", layout->grippers, sizeof layout->grippers[0], layout->machine.gripper_count,
-         read_gripper}};
+    const section_t sections[] = {{"wafers", "wafer", layout->wafers, sizeof *layout->wafers,
+                                   layout->wafer_count, wh_layout_find_wafer, read_wafer},
+                                  {"stations", "station", layout->stations, sizeof *layout->stations,
+                                   layout->station_count, wh_layout_find_station, read_station},
+                                  {"grippers", "gripper", layout->grippers, sizeof layout->grippers[0],
+                                   layout->machine.gripper_count, wh_layout_find_gripper, read_gripper}};
     if (!wh_reader_open(reader, "study", "shape placement teaching timing wafers stations grippers")) {
         return;
     }
@@ -208,16 +182,8 @@ void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
 
 /* -------------------------------------------------------------------------------------------------- drawn */
 
-/* What a number is drawn for: the first word of its counter. Never renumber them: the same seeds would give
- * other trials. */
-enum {
-    FIELD_PLACEMENT = 0x100,
-    FIELD_TILT_Y = 0x1FF,
-    FIELD_TEACHING = 0x200,
-    FIELD_VALVE = 0x300,
-    FIELD_VACUUM = 0x400
-};
-
+/* `field` says what the number is drawn for: the first word of its counter. Never renumber them: the same
+ * seeds would give other trials. */
 static wh_real_t draw(const wh_spread_t *spread, const wh_trial_t *trial, uint32_t field, size_t index) {
     if (!(spread->width > 0)) {
         return 0;
@@ -228,37 +194,39 @@ static wh_real_t draw(const wh_spread_t *spread, const wh_trial_t *trial, uint32
     return spread->width * (wh_real_t)wh_deviate_normal(trial, field, (uint32_t)index);
 }
 
+/* What is drawn for a part of a displacement: which of the spreads, and for which field. */
+typedef struct {
+    size_t spread;
+    uint32_t field;
+} component_t;
+
+static wh_displacement_t draw_components(const wh_spreads_t *spreads, const component_t components[6],
+                                         const wh_trial_t *trial, size_t index) {
+    wh_real_t drawn[6];
+    for (size_t i = 0; i < 6; ++i) {
+        drawn[i] = draw(&spreads->of[components[i].spread], trial, components[i].field, index);
+    }
+    return (wh_displacement_t){{drawn[0], drawn[1], drawn[2]}, {drawn[3], drawn[4], drawn[5]}};
+}
+
 wh_displacement_t wh_errors_draw_wafer(const wh_errors_t *errors, const wh_trial_t *trial, size_t wafer) {
-    const wh_spread_t *of = errors->wafers[wafer].of;
-    wh_displacement_t drawn;
-    drawn.moved.x = draw(&of[WH_PLACEMENT_DX], trial, FIELD_PLACEMENT + WH_PLACEMENT_DX, wafer);
-    drawn.moved.y = draw(&of[WH_PLACEMENT_DY], trial, FIELD_PLACEMENT + WH_PLACEMENT_DY, wafer);
-    drawn.moved.z = draw(&of[WH_PLACEMENT_DZ], trial, FIELD_PLACEMENT + WH_PLACEMENT_DZ, wafer);
-    drawn.turn[0] = draw(&of[WH_PLACEMENT_TILT], trial, FIELD_PLACEMENT + WH_PLACEMENT_TILT, wafer);
-    drawn.turn[1] = draw(&of[WH_PLACEMENT_TILT], trial, FIELD_TILT_Y, wafer);
-    drawn.turn[2] = draw(&of[WH_PLACEMENT_TURN], trial, FIELD_PLACEMENT + WH_PLACEMENT_TURN, wafer);
-    return drawn;
+    static const component_t components[] = {{0, 0x100}, {1, 0x101}, {2, 0x102},
+                                             {3, 0x103}, {3, 0x1FF}, {4, 0x104}};
+    return draw_components(&errors->wafers[wafer], components, trial, wafer);
 }
 
 wh_displacement_t wh_errors_draw_station(const wh_errors_t *errors, const wh_trial_t *trial, size_t station) {
-    const wh_spread_t *of = errors->stations[station].of;
-    wh_displacement_t drawn;
-    drawn.moved.x = draw(&of[WH_TEACHING_X], trial, FIELD_TEACHING + WH_TEACHING_X, station);
-    drawn.moved.y = draw(&of[WH_TEACHING_Y], trial, FIELD_TEACHING + WH_TEACHING_Y, station);
-    drawn.moved.z = draw(&of[WH_TEACHING_Z], trial, FIELD_TEACHING + WH_TEACHING_Z, station);
-    for (uint32_t i = 0; i < 3; ++i) {
-        drawn.turn[i] =
-            draw(&of[WH_TEACHING_ROLL + i], trial, FIELD_TEACHING + WH_TEACHING_ROLL + i, station);
-    }
-    return drawn;
+    static const component_t components[] = {{0, 0x200}, {1, 0x201}, {2, 0x202},
+                                             {3, 0x203}, {4, 0x204}, {5, 0x205}};
+    return draw_components(&errors->stations[station], components, trial, station);
 }
 
 wh_real_t wh_errors_draw_valve(const wh_errors_t *errors, const wh_trial_t *trial, size_t gripper) {
-    return wh_real_abs(draw(&errors->valves[gripper], trial, FIELD_VALVE, gripper));
+    return wh_real_abs(draw(&errors->valves[gripper], trial, 0x300, gripper));
 }
 
 wh_real_t wh_errors_draw_vacuum(const wh_errors_t *errors, const wh_trial_t *trial) {
-    return wh_real_abs(draw(&errors->vacuum, trial, FIELD_VACUUM, 0));
+    return wh_real_abs(draw(&errors->vacuum, trial, 0x400, 0));
 }
 
 bool wh_displacement_is_any(const wh_displacement_t *displacement) {

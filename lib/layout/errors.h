@@ -21,42 +21,18 @@ typedef struct {
     wh_shape_t shape;
 } wh_spread_t;
 
-/* Where a wafer lies in its slot's frame: beside and above, tilted about the slot's x and y (one draw each),
- * and turned about z. */
-typedef enum {
-    WH_PLACEMENT_DX,
-    WH_PLACEMENT_DY,
-    WH_PLACEMENT_DZ,
-    WH_PLACEMENT_TILT,
-    WH_PLACEMENT_TURN
-} wh_placement_field_t;
-#define WH_PLACEMENT_FIELDS 5
-
-/* Where a station stands: moved along base's axes, and turned about lines through slot 1 that are parallel to
- * base's fixed x, y, z. */
-typedef enum {
-    WH_TEACHING_X,
-    WH_TEACHING_Y,
-    WH_TEACHING_Z,
-    WH_TEACHING_ROLL,
-    WH_TEACHING_PITCH,
-    WH_TEACHING_YAW
-} wh_teaching_field_t;
-#define WH_TEACHING_FIELDS 6
-
+/* In this order, where a wafer lies in its slot's frame: dx, dy, dz beside and above, tilt about the slot's x
+ * and y (one draw each), turn about z. Or where a station stands: moved along base's x, y, z, and turned by
+ * roll, pitch, yaw about lines through slot 1 that are parallel to base's fixed x, y, z. */
+#define WH_SPREADS 6
 typedef struct {
-    wh_spread_t of[WH_PLACEMENT_FIELDS];
-} wh_placement_t;
-
-typedef struct {
-    wh_spread_t of[WH_TEACHING_FIELDS];
-} wh_teaching_t;
+    wh_spread_t of[WH_SPREADS];
+} wh_spreads_t;
 
 /* One entry for each wafer, station and gripper of a layout. A delay is the magnitude of the draw: never
  * early. */
 typedef struct {
-    wh_placement_t *wafers;
-    wh_teaching_t *stations;
+    wh_spreads_t *wafers, *stations;
     wh_spread_t valves[WH_GRIPPERS]; /* how late each gripper's valve acts */
     wh_spread_t vacuum;              /* added to the time constant with which vacuum builds up */
 } wh_errors_t;

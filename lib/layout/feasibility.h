@@ -43,7 +43,7 @@ typedef struct {
     size_t count, capacity;
 } wh_feasibility_t;
 
-/* Checks all of it. The caller frees the result. The program ends if out of memory. Cost: n log n in parts
+/* Checks all of it. The caller frees the result. Ends the program if out of memory. Cost: n log n in parts
  * and wafers, and wafers times stations. */
 void wh_feasibility(wh_feasibility_t *check, const wh_layout_t *layout);
 void wh_feasibility_free(wh_feasibility_t *check);

@@ -10,19 +10,22 @@ static uint64_t hash_text(uint64_t hash, const char *text) {
     return wh_hash_word(hash, 0);
 }
 
+static uint64_t hash_reals(uint64_t hash, const wh_real_t reals[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        hash = wh_hash_real(hash, reals[i]);
+    }
+    return hash;
+}
+
 static uint64_t hash_limits(uint64_t hash, const wh_limits_t *limits) {
-    hash = wh_hash_real(hash, limits->speed);
-    hash = wh_hash_real(hash, limits->acceleration);
-    return wh_hash_real(hash, limits->jerk);
+    return hash_reals(hash, (const wh_real_t[]){limits->speed, limits->acceleration, limits->jerk}, 3);
 }
 
 static uint64_t hash_checks(uint64_t hash, const wh_layout_t *layout) {
     const wh_grasp_config_t *grasp = &layout->grasp;
     const wh_real_t reals[] = {grasp->tolerance.projz, grasp->tolerance.projxy, grasp->tolerance.planar,
                                grasp->near_projz, grasp->near_projxy};
-    for (size_t i = 0; i < sizeof reals / sizeof reals[0]; ++i) {
-        hash = wh_hash_real(hash, reals[i]);
-    }
+    hash = hash_reals(hash, reals, sizeof reals / sizeof reals[0]);
     hash = wh_hash_int(hash, (int32_t)grasp->check);
     hash = wh_hash_int(hash, grasp->seat ? 1 : 0);
     return wh_hash_word(hash, (uint64_t)layout->slice_us);
@@ -31,9 +34,8 @@ static uint64_t hash_checks(uint64_t hash, const wh_layout_t *layout) {
 static uint64_t hash_machine(uint64_t hash, const wh_layout_t *layout) {
     const wh_machine_t *machine = &layout->machine;
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        hash = wh_hash_real(hash, machine->robot.travel[axis].min);
-        hash = wh_hash_real(hash, machine->robot.travel[axis].max);
-        hash = wh_hash_real(hash, machine->robot.home[axis]);
+        const wh_travel_t *travel = &machine->robot.travel[axis];
+        hash = hash_reals(hash, (const wh_real_t[]){travel->min, travel->max, machine->robot.home[axis]}, 3);
         hash = hash_limits(hash, &machine->robot.limits[axis]);
     }
     hash = hash_limits(hash, &machine->chuck_limits);
@@ -91,10 +93,8 @@ static uint64_t hash_vacuum(uint64_t hash, const wh_vacuum_config_t *vacuum) {
 static uint64_t hash_pads(uint64_t hash, const wh_pads_t *pads) {
     if (pads->mass > 0) {
         hash = hash_text(hash, "pads");
-        hash = wh_hash_real(hash, pads->friction);
-        hash = wh_hash_real(hash, pads->force);
-        hash = wh_hash_real(hash, pads->mass);
-        hash = wh_hash_real(hash, pads->gravity);
+        const wh_real_t reals[] = {pads->friction, pads->force, pads->mass, pads->gravity};
+        hash = hash_reals(hash, reals, 4);
     }
     return hash;
 }

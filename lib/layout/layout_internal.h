@@ -8,8 +8,19 @@
 /* Zeroed memory for `count` items that lives as long as the Lua state. */
 void *wh_layout_memory(lua_State *L, size_t count, size_t size);
 
+/* As wh_layout_find_wafer: the index of a name, or WH_NONE. */
+typedef int32_t wh_layout_find_t(const wh_layout_t *layout, const char *name);
+
+/* Reads a field that names something of the layout, and returns what `lookup` says of the name; `expected` is
+ * what an error says. Required if fallback is null. */
+int32_t wh_layout_read_name(wh_reader_t *reader, const wh_layout_t *layout, const char *field,
+                            const char *fallback, wh_layout_find_t *lookup, const char *expected);
+
+/* The same for a gripper: the first one on the robot, unless the field names one. */
+int32_t wh_layout_read_gripper_name(wh_reader_t *reader, const wh_layout_t *layout, const char *field,
+                                    const char *expected);
+
 /* Each reads its fields from the layout's top table, at which the reader is. */
-void wh_layout_read_checks(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout);

@@ -6,10 +6,6 @@
 #include "layout_internal.h"
 
 /* Degrees in a layout, radians in the library; lengths are mm in both. */
-static wh_real_t from_layout(bool turns, wh_real_t value) {
-    return turns ? wh_rad_from_deg(value) : value;
-}
-
 static wh_real_t to_layout(bool turns, wh_real_t value) {
     return turns ? wh_deg_from_rad(value) : value;
 }
@@ -20,7 +16,7 @@ static wh_real_t read_quantity(wh_reader_t *reader, const char *field, bool turn
                                wh_real_t min, wh_real_t max) {
     const wh_real_t shown = to_layout(turns, fallback);
     const wh_real_t value = wh_reader_number(reader, field, shown, min, max);
-    return value == shown ? fallback : from_layout(turns, value);
+    return value == shown ? fallback : turns ? wh_rad_from_deg(value) : value;
 }
 
 static void read_axis_limits(wh_reader_t *reader, bool turns, wh_limits_t *limits) {

@@ -66,8 +66,6 @@ void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout) {
 
 /* ------------------------------------------------------------------------------------------------- faults */
 
-/* Below everything in a cell, mm. */
-#define FAR_BELOW WH_REAL(-1e5)
 /* The longest time of a fault, s. */
 #define LONGEST 1e6
 
@@ -101,29 +99,9 @@ static wh_fault_kind_t read_kind(wh_reader_t *reader) {
     return (wh_fault_kind_t)kind;
 }
 
-/* The first gripper on the robot, unless the fault names one. */
-static int32_t read_gripper(wh_reader_t *reader, const wh_layout_t *layout) {
-    char name[WH_NAME_SIZE];
-    size_t first = 0;
-    while (layout->grippers[first].station != WH_NONE) {
-        ++first;
-    }
-    wh_reader_text(reader, "gripper", layout->grippers[first].name, name, sizeof name);
-    const int32_t gripper = wh_layout_find_gripper(layout, name);
-    if (gripper == WH_NONE) {
-        wh_reader_refuse(reader, "gripper", name, "the name of a gripper of this layout");
-    }
-    return gripper;
-}
-
 static int32_t read_wafer(wh_reader_t *reader, const wh_layout_t *layout, const char *field) {
-    char name[WH_NAME_SIZE];
-    wh_reader_text(reader, field, NULL, name, sizeof name);
-    const int32_t wafer = wh_layout_find_wafer(layout, name);
-    if (wafer == WH_NONE) {
-        wh_reader_refuse(reader, field, name, "the name of a wafer of this layout");
-    }
-    return wafer;
+    return wh_layout_read_name(reader, layout, field, NULL, wh_layout_find_wafer,
+                               "the name of a wafer of this layout");
 }
 
 static int32_t read_onto(wh_reader_t *reader, const wh_layout_t *layout, int32_t wafer) {
@@ -148,10 +126,8 @@ static wh_pose_t crossed(wh_reader_t *reader, const wh_layout_t *layout, int32_t
 }
 
 static wh_pose_t read_offset(wh_reader_t *reader, const wh_layout_t *layout, const wh_fault_t *fault) {
-    wh_pose_t pose = wh_pose_identity();
-    if (fault->kind == WH_FAULT_WAFER_MISSING) {
-        pose.r.z = FAR_BELOW;
-    } else if (fault->kind == WH_FAULT_WAFER_DOUBLED) {
+    wh_pose_t pose = fault->offset;
+    if (fault->kind == WH_FAULT_WAFER_DOUBLED) {
         pose.r.z = layout->wafer_thickness;
     } else if (fault->kind == WH_FAULT_WAFER_CROSSED) {
         pose = crossed(reader, layout, fault->target);
@@ -167,12 +143,11 @@ static wh_pose_t read_offset(wh_reader_t *reader, const wh_layout_t *layout, con
 }
 
 static void read_target(wh_reader_t *reader, const wh_layout_t *layout, wh_fault_t *fault) {
-    fault->target = WH_NONE;
-    fault->other = WH_NONE;
     if (wh_fault_is_of_wafer(fault->kind)) {
         fault->target = read_wafer(reader, layout, "wafer");
     } else if (fault->kind != WH_FAULT_COMMAND_LOST) {
-        fault->target = read_gripper(reader, layout);
+        fault->target =
+            wh_layout_read_gripper_name(reader, layout, "gripper", "the name of a gripper of this layout");
     }
     if (fault->kind == WH_FAULT_WAFER_DOUBLED) {
         fault->other = read_onto(reader, layout, fault->target);
@@ -199,9 +174,7 @@ static void read_times(wh_reader_t *reader, const wh_layout_t *layout, int64_t f
 }
 
 wh_fault_t wh_layout_read_fault(wh_reader_t *reader, const wh_layout_t *layout, int64_t first) {
-    wh_fault_t fault;
-    memset(&fault, 0, sizeof fault);
-    fault.kind = read_kind(reader);
+    wh_fault_t fault = wh_fault_make(read_kind(reader), WH_NONE, 0, first, WH_FAULT_FOREVER);
     wh_reader_refuse_unknown(reader, fields[fault.kind]);
     read_target(reader, layout, &fault);
     fault.value = read_value(reader, fault.kind);

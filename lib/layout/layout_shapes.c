@@ -29,21 +29,14 @@ static void add_obstacles(wh_part_list_t *list, const obstacles_t *obstacles, bo
 
 /* ------------------------------------------------------------------------------------------------- shapes */
 
-static void read_box(wh_reader_t *reader, wh_convex_t *convex) {
-    const wh_vec3_t size = wh_reader_vector(reader, "box", NULL);
-    convex->kind = WH_CONVEX_BOX;
-    convex->half = wh_vec3_scale(WH_REAL(0.5), &size);
-}
-
 /* `cylinder` and `capsule` are { radius = , height = } about their middle. A capsule's height does not count
  * its caps. */
-static void read_round(wh_reader_t *reader, const char *field, wh_convex_kind_t kind, wh_convex_t *convex) {
+static void read_round(wh_reader_t *reader, const char *field, wh_convex_t *convex) {
     wh_reader_enter(reader, field);
     wh_reader_refuse_unknown(reader, "radius height");
-    convex->kind = kind;
     convex->half.x = wh_reader_number(reader, "radius", WH_REAL(NAN), WH_CONVEX_THINNEST, 1e4);
     convex->half.z = wh_reader_number(reader, "height", WH_REAL(NAN),
-                                      kind == WH_CONVEX_CAPSULE ? 0 : WH_CONVEX_THINNEST, 1e4) /
+                                      convex->kind == WH_CONVEX_CAPSULE ? 0 : WH_CONVEX_THINNEST, 1e4) /
                      2;
     wh_reader_leave(reader);
 }
@@ -75,12 +68,14 @@ static void read_mesh(wh_reader_t *reader, const wh_layout_t *layout, wh_convex_
     wh_vec3_t *kept = wh_layout_memory(reader->L, convex->point_count, sizeof *kept);
     memcpy(kept, points, convex->point_count * sizeof *kept);
     free(points);
-    convex->kind = WH_CONVEX_MESH;
     convex->points = kept;
 }
 
 static void read_shape(wh_reader_t *reader, const wh_layout_t *layout, wh_convex_t *convex) {
-    static const char *const kinds[] = {"box", "cylinder", "capsule", "mesh"};
+    static const char *const kinds[] = {[WH_CONVEX_BOX] = "box",
+                                        [WH_CONVEX_CYLINDER] = "cylinder",
+                                        [WH_CONVEX_CAPSULE] = "capsule",
+                                        [WH_CONVEX_MESH] = "mesh"};
     int given = -1;
     for (int i = 0; i < 4; ++i) {
         if (wh_reader_has(reader, kinds[i])) {
@@ -90,22 +85,18 @@ static void read_shape(wh_reader_t *reader, const wh_layout_t *layout, wh_convex
             given = i;
         }
     }
-    switch (given) {
-    case 0:
-        read_box(reader, convex);
-        break;
-    case 1:
-        read_round(reader, "cylinder", WH_CONVEX_CYLINDER, convex);
-        break;
-    case 2:
-        read_round(reader, "capsule", WH_CONVEX_CAPSULE, convex);
-        break;
-    case 3:
-        read_mesh(reader, layout, convex);
-        break;
-    default:
+    if (given < 0) {
         lua_pushnil(reader->L);
         wh_reader_fail(reader, "box", "a shape: box = { x, y, z }, cylinder, capsule or mesh");
+    }
+    convex->kind = (wh_convex_kind_t)given;
+    if (convex->kind == WH_CONVEX_BOX) {
+        const wh_vec3_t size = wh_reader_vector(reader, "box", NULL);
+        convex->half = wh_vec3_scale(WH_REAL(0.5), &size);
+    } else if (convex->kind == WH_CONVEX_MESH) {
+        read_mesh(reader, layout, convex);
+    } else {
+        read_round(reader, kinds[given], convex);
     }
 }
 
@@ -257,10 +248,9 @@ static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
         length += (size_t)snprintf(known + length, sizeof known - length, "%s%s", kind > 0 ? " " : "",
                                    wh_clearance_name((wh_clearance_kind_t)kind));
     }
-    if (!wh_reader_enter(reader, "clearance")) {
+    if (!wh_reader_open(reader, "clearance", known)) {
         return;
     }
-    wh_reader_refuse_unknown(reader, known);
     for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
         const char *name = wh_clearance_name((wh_clearance_kind_t)kind);
         layout->world.limits[kind] = wh_reader_number(reader, name, 0, 0, WH_CLEARANCE_RANGE);

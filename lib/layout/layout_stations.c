@@ -15,19 +15,9 @@
     "release "                                                                                               \
     "vacuum_delay vacuum_check timeout retries wait map_speed check_map handover"
 
-static double default_pitch(double wafer_diameter) {
-    if (wafer_diameter <= 150) {
-        return 4.76;
-    }
-    return wafer_diameter <= 200 ? 6.35 : 10;
-}
-
-/* With this stroke the blade enters about midway between two wafers at that pitch. */
-static double default_stroke(double wafer_diameter) {
-    if (wafer_diameter <= 150) {
-        return 3;
-    }
-    return wafer_diameter <= 200 ? 4 : 6;
+/* A default for wafers up to 150 mm, up to 200 mm, and larger ones. */
+static double by_size(const wh_layout_t *layout, double small, double middle, double large) {
+    return layout->wafer_diameter <= 150 ? small : layout->wafer_diameter <= 200 ? middle : large;
 }
 
 static void read_place(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_station_t *station,
@@ -38,7 +28,7 @@ static void read_place(wh_reader_t *reader, const wh_layout_t *layout, const wh_
     place->base_from_station.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
     place->slots = wh_reader_whole(reader, "slots", station->foup ? 25 : 1, 1,
                                    station->prealigner ? 1 : WH_LAYOUT_SLOTS);
-    place->pitch = wh_reader_number(reader, "pitch", default_pitch(layout->wafer_diameter), 0.1, 1000);
+    place->pitch = wh_reader_number(reader, "pitch", by_size(layout, 4.76, 6.35, 10), 0.1, 1000);
     place->chuck = WH_NONE;
     if (place->base_from_station.R.m[2][2] < WH_REAL(0.7)) {
         (void)wh_reader_push(reader, "rpy");
@@ -77,7 +67,8 @@ static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, const wh_
                        wh_layout_station_t *station) {
     static const char *const handovers[] = {"new_first", "same_slice", NULL};
     const double release = layout->grasp.seat ? 0 : -layout->grasp.tolerance.projz / 2;
-    station->stroke = wh_reader_number(reader, "stroke", default_stroke(layout->wafer_diameter), 0.01, 1000);
+    /* With this stroke the blade enters about midway between two wafers at the default pitch. */
+    station->stroke = wh_reader_number(reader, "stroke", by_size(layout, 3, 4, 6), 0.01, 1000);
     station->offset = wh_reader_number(reader, "offset", station->stroke / 2, 0, station->stroke);
     station->retract = wh_reader_number(reader, "retract", 300, 1, 10000);
     station->pickup_speed = wh_reader_number(reader, "pickup_speed", 20, 0.001, 10000);
@@ -156,23 +147,13 @@ void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout) {
     wh_reader_leave(reader);
 }
 
-static int32_t first_on_robot(const wh_layout_t *layout) {
-    int32_t gripper = 0;
-    while (layout->grippers[gripper].station != WH_NONE) {
-        ++gripper;
-    }
-    return gripper;
-}
-
 static void read_effector(wh_reader_t *reader, const wh_layout_t *layout, wh_layout_station_t *station) {
-    char name[WH_NAME_SIZE];
-    station->effector = first_on_robot(layout);
-    wh_reader_text(reader, "effector", layout->grippers[station->effector].name, name, sizeof name);
-    const int32_t gripper = wh_layout_find_gripper(layout, name);
-    if (gripper == WH_NONE || layout->grippers[gripper].station != WH_NONE) {
-        wh_reader_refuse(reader, "effector", name, "the name of a gripper on = \"robot\"");
+    static const char expected[] = "the name of a gripper on = \"robot\"";
+    station->effector = wh_layout_read_gripper_name(reader, layout, "effector", expected);
+    const wh_layout_gripper_t *gripper = &layout->grippers[station->effector];
+    if (gripper->station != WH_NONE) {
+        wh_reader_refuse(reader, "effector", gripper->name, "%s", expected);
     }
-    station->effector = gripper;
 }
 
 void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout) {
@@ -201,17 +182,13 @@ static void read_position(wh_reader_t *reader, const wh_layout_t *layout, const 
 }
 
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t w) {
-    char station[WH_NAME_SIZE];
     char fallback[WH_NAME_SIZE];
     wh_layout_wafer_t *wafer = &layout->wafers[w];
     wh_reader_refuse_unknown(reader, "name station slot dx dy dz rpy");
     snprintf(fallback, sizeof fallback, "Wafer %zu", w + 1);
     wh_reader_text(reader, "name", fallback, wafer->name, sizeof wafer->name);
-    wh_reader_text(reader, "station", NULL, station, sizeof station);
-    wafer->station = wh_layout_find_station(layout, station);
-    if (wafer->station == WH_NONE) {
-        wh_reader_refuse(reader, "station", station, "the name of a station of this layout");
-    }
+    wafer->station = wh_layout_read_name(reader, layout, "station", NULL, wh_layout_find_station,
+                                         "the name of a station of this layout");
     wafer->slot = wh_reader_whole(reader, "slot", 0, 1, layout->places[wafer->station].slots);
     read_position(reader, layout, wafer, &layout->start[w].base_from_wafer);
 }
@@ -219,23 +196,22 @@ static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t w) {
 /* Pointers are sorted: the wafers themselves stay in their order. */
 typedef const wh_layout_wafer_t *entry_t;
 
+/* Among equals the earlier one comes first. */
+static int in_order(const wh_layout_wafer_t *one, const wh_layout_wafer_t *two, int order) {
+    return order != 0 ? order : (one > two) - (one < two);
+}
+
 static int compare_wafer_names(const void *a, const void *b) {
     const wh_layout_wafer_t *one = *(const entry_t *)a;
     const wh_layout_wafer_t *two = *(const entry_t *)b;
-    const int order = strcmp(one->name, two->name);
-    return order != 0 ? order : (one < two ? -1 : 1);
+    return in_order(one, two, strcmp(one->name, two->name));
 }
 
 static int compare_slots(const void *a, const void *b) {
     const wh_layout_wafer_t *one = *(const entry_t *)a;
     const wh_layout_wafer_t *two = *(const entry_t *)b;
-    if (one->station != two->station) {
-        return one->station < two->station ? -1 : 1;
-    }
-    if (one->slot != two->slot) {
-        return one->slot < two->slot ? -1 : 1;
-    }
-    return one < two ? -1 : 1;
+    const int stations = (one->station > two->station) - (one->station < two->station);
+    return in_order(one, two, stations != 0 ? stations : (one->slot > two->slot) - (one->slot < two->slot));
 }
 
 static void fail_at(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_wafer_t *wafer,

@@ -123,16 +123,12 @@ static void keep_hull(wh_outline_t *outline) {
     memmove(spots, hull, outline->count * sizeof *spots);
 }
 
-static void make_room(wh_outline_t *outline, const wh_convex_t *convex) {
+void wh_outline_draw(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
+                     const wh_pose_t *base_from_shape) {
     const size_t points = convex->kind == WH_CONVEX_MESH ? convex->point_count : 2 * (size_t)CIRCLE_CORNERS;
     const size_t needed = 3 * points + 2; /* the spots, and a hull that visits each of them twice at most */
     outline->spots = wh_array_reserve(outline->spots, needed, &outline->capacity, sizeof *outline->spots);
     outline->count = 0;
-}
-
-void wh_outline_draw(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
-                     const wh_pose_t *base_from_shape) {
-    make_room(outline, convex);
     add_points(outline, view, convex, base_from_shape);
     keep_hull(outline);
 }

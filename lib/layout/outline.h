@@ -21,8 +21,8 @@ typedef struct {
 /* The place of a point in the picture. */
 wh_spot_t wh_outline_spot(wh_projection_t view, wh_vec3_t r);
 
-/* The convex hull of the part as seen. Circles have 48 corners. False if out of memory. Cost: n log n in the
- * points of a mesh. */
+/* The convex hull of the part as seen. Circles have 48 corners. Ends the program if out of memory. Cost:
+ * n log n in the points of a mesh. */
 void wh_outline_draw(wh_outline_t *outline, wh_projection_t view, const wh_convex_t *convex,
                      const wh_pose_t *base_from_shape);
 

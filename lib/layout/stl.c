@@ -250,20 +250,19 @@ typedef struct {
     wh_real_t size, coordinate;
 } extent_t;
 
+static wh_real_t largest(wh_real_t a, wh_real_t b, wh_real_t c) {
+    return wh_real_max(a, wh_real_max(b, c));
+}
+
 static extent_t extent_of(const wh_vec3_t *points, size_t count) {
     const wh_convex_t mesh = {.kind = WH_CONVEX_MESH, .points = points, .point_count = count};
     const wh_pose_t here = wh_pose_identity();
     wh_vec3_t low;
     wh_vec3_t high;
     wh_convex_bounds(&mesh, &here, &low, &high);
-    const wh_real_t from[3] = {low.x, low.y, low.z};
-    const wh_real_t to[3] = {high.x, high.y, high.z};
-    extent_t extent = {0, 0};
-    for (size_t i = 0; i < 3; ++i) {
-        extent.size = wh_real_max(extent.size, to[i] - from[i]);
-        extent.coordinate = wh_real_max(extent.coordinate, wh_real_max(-from[i], to[i]));
-    }
-    return extent;
+    const wh_vec3_t edge = wh_vec3_subtract(&high, &low);
+    return (extent_t){largest(edge.x, edge.y, edge.z),
+                      wh_real_max(largest(-low.x, -low.y, -low.z), largest(high.x, high.y, high.z))};
 }
 
 /* The unit normal of a facet. Returns the facet's height on its longest edge; 0 if it has no normal. */
@@ -277,7 +276,7 @@ static wh_real_t normal_of(const wh_vec3_t *corners, wh_vec3_t *normal) {
         return 0;
     }
     *normal = wh_vec3_scale(1 / area, normal);
-    return area / wh_real_max(wh_vec3_norm(&ab), wh_real_max(wh_vec3_norm(&ac), wh_vec3_norm(&bc)));
+    return area / largest(wh_vec3_norm(&ab), wh_vec3_norm(&ac), wh_vec3_norm(&bc));
 }
 
 /* Refuses a body that has corners on both sides of a facet's plane. The thinner the facet, the more the
@@ -345,9 +344,9 @@ bool wh_stl_parse(const char *path, const char *bytes, size_t length, wh_real_t 
     if (length > WH_STL_BYTES) {
         return refuse(&stl, ": more than %zu bytes", WH_STL_BYTES);
     }
-    bool good = false;
     stl.corners = wh_array_new(3 * (size_t)WH_STL_FACETS, sizeof *stl.corners);
-    if (read_facets(&stl)) {
+    bool good = read_facets(&stl);
+    if (good) {
         size_t found = 0;
         wh_vec3_t *mine = different(stl.corners, 3 * stl.facets, &found);
         good = check(&stl, mine, found);

@@ -2,8 +2,8 @@
  *
  * STL has no unit, so the caller gives it. The facets serve one purpose: to see that the body is convex.
  * Their normals, the order of their corners and gaps between them are ignored. The format: M. Burns,
- * Automated Fabrication, 1993, section 6.5. Host code: it allocates,
- * and the program ends if out of memory.
+ * Automated Fabrication, 1993, section 6.5. Ends the program if out of
+ * memory.
  */
 #ifndef WH_LAYOUT_STL_H
 #define WH_LAYOUT_STL_H

@@ -2,18 +2,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../text/array.h"
 #include "messages.h"
-
-static bool make_room(const wh_layout_t *layout, waferhand_cell *message) {
-    message->gripper_names = calloc(WH_GRIPPERS, sizeof *message->gripper_names);
-    message->valve_names = calloc(WH_GRIPPERS, sizeof *message->valve_names);
-    message->stations = calloc(layout->station_count + 1, sizeof *message->stations);
-    message->wafer_names = calloc(layout->wafer_count + 1, sizeof *message->wafer_names);
-    message->wafers = calloc(layout->wafer_count + 1, sizeof *message->wafers);
-    message->faults = calloc(WH_FAULTS, sizeof *message->faults);
-    return message->gripper_names && message->valve_names && message->stations && message->wafer_names &&
-           message->wafers && message->faults;
-}
 
 static void put_station(const wh_layout_t *layout, size_t s, waferhand_station *out) {
     const wh_station_t *place = &layout->places[s];
@@ -24,7 +14,14 @@ static void put_station(const wh_layout_t *layout, size_t s, waferhand_station *
     out->chuck = place->chuck;
 }
 
-static void put_lists(const wh_layout_t *layout, waferhand_cell *message) {
+static void put_lists(const wh_layout_t *layout, wh_link_cell_t *room) {
+    waferhand_cell *message = &room->message;
+    message->gripper_names = room->gripper_names;
+    message->valve_names = room->valve_names;
+    message->stations = room->stations;
+    message->wafer_names = room->wafer_names;
+    message->wafers = room->wafers;
+    message->faults = room->faults;
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         message->gripper_names[g] = wh_link_borrowed(layout->grippers[g].name);
         message->valve_names[g] = wh_link_borrowed(layout->grippers[g].valve);
@@ -58,10 +55,10 @@ static void put_physics(const wh_physics_t *physics, waferhand_cell *message) {
 }
 
 bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_t *identity,
-                              waferhand_cell *message) {
-    memset(message, 0, sizeof *message);
-    if (layout->wafer_count > WH_LINK_WAFERS || !make_room(layout, message)) {
-        wh_link_cell_free(message);
+                              wh_link_cell_t *room) {
+    waferhand_cell *message = &room->message;
+    memset(room, 0, sizeof *room);
+    if (layout->wafer_count > WH_LINK_WAFERS) {
         return false;
     }
     message->run = identity->run;
@@ -82,18 +79,8 @@ bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_
     message->station_count = (int32_t)layout->station_count;
     message->wafer_count = (int32_t)layout->wafer_count;
     put_physics(&layout->physics, message);
-    put_lists(layout, message);
+    put_lists(layout, room);
     return true;
-}
-
-void wh_link_cell_free(waferhand_cell *message) {
-    free(message->gripper_names);
-    free(message->valve_names);
-    free(message->stations);
-    free(message->wafer_names);
-    free(message->wafers);
-    free(message->faults);
-    memset(message, 0, sizeof *message);
 }
 
 /* ----------------------------------------------------------------------------------------------- and back */
@@ -186,22 +173,23 @@ static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
     return wh_physics_validate(physics, layout->machine.gripper_count, layout->wafer_count) == WH_OK;
 }
 
-static bool make_layout_room(const waferhand_cell *cell, wh_layout_t *layout) {
+static wh_layout_t *make_layout(const waferhand_cell *cell) {
+    wh_layout_t *layout = wh_array_new(1, sizeof *layout);
     layout->machine.gripper_count = (size_t)cell->gripper_count;
     layout->station_count = (size_t)cell->station_count;
     layout->wafer_count = (size_t)cell->wafer_count;
-    layout->path = strdup(cell->layout);
-    layout->stations = calloc(layout->station_count + 1, sizeof *layout->stations);
-    layout->places = calloc(layout->station_count + 1, sizeof *layout->places);
-    layout->wafers = calloc(layout->wafer_count + 1, sizeof *layout->wafers);
-    layout->start = calloc(layout->wafer_count + 1, sizeof *layout->start);
-    return layout->path && layout->stations && layout->places && layout->wafers && layout->start;
+    layout->path = wh_text_copy(cell->layout);
+    layout->stations = wh_array_new(layout->station_count, sizeof *layout->stations);
+    layout->places = wh_array_new(layout->station_count, sizeof *layout->places);
+    layout->wafers = wh_array_new(layout->wafer_count, sizeof *layout->wafers);
+    layout->start = wh_array_new(layout->wafer_count, sizeof *layout->start);
+    return layout;
 }
 
 wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell) {
-    wh_layout_t *layout = calloc(1, sizeof *layout);
-    if (!layout || cell->gripper_count < 1 || !make_layout_room(cell, layout) || !take_checks(cell, layout) ||
-        !take_placing(cell, &layout->cell) || !take_lists(cell, layout) || !take_physics(cell, layout)) {
+    wh_layout_t *layout = make_layout(cell);
+    if (cell->gripper_count < 1 || !take_checks(cell, layout) || !take_placing(cell, &layout->cell) ||
+        !take_lists(cell, layout) || !take_physics(cell, layout)) {
         wh_link_layout_free(layout);
         return NULL;
     }
@@ -213,11 +201,7 @@ void wh_link_layout_free(wh_layout_t *layout) {
     if (!layout) {
         return;
     }
-    union {
-        const char *constant;
-        char *plain;
-    } path = {layout->path};
-    free(path.plain);
+    free(wh_link_borrowed(layout->path));
     free(layout->stations);
     free(layout->places);
     free(layout->wafers);

@@ -99,8 +99,7 @@ static bool ends(const walk_t *walk) {
 }
 
 static walk_t walk_over(const void *data, size_t size) {
-    const walk_t walk = {data, size, 0, true};
-    return walk;
+    return (walk_t){data, size, 0, true};
 }
 
 /* ----------------------------------------------------------------------------------------------- messages */

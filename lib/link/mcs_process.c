@@ -1,10 +1,12 @@
 #include "mcs_process.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
 #define HEARTBEAT_US 200000
+#define TOO_LONG "the line is too long (expected at most 1000 bytes)"
 /* How long the end of a free-running command waits for the state of its last slice. */
 #define COMMAND_SETTLE_US 100000
 
@@ -13,23 +15,21 @@
 /* `request` is the one that this answers or goes on with; 0: none. */
 static void tell(wh_mcs_process_t *control, int64_t request, int32_t phase, int line, wh_status_t error,
                  const char *command, const char *text) {
-    waferhand_mcs message;
-    memset(&message, 0, sizeof message);
     if (control->connected) {
         control->utime = control->client.command.utime;
         control->seq = control->client.command.seq;
         control->identity = control->client.identity;
     }
-    message.utime = control->utime;
-    message.seq = control->seq;
-    message.run = control->identity.run;
-    message.layout_hash = (int64_t)control->identity.layout_hash;
-    message.phase = phase;
-    message.request = request;
-    message.line = line;
-    message.error = (int32_t)error;
-    message.command = wh_link_borrowed(command);
-    message.text = wh_link_borrowed(text);
+    const waferhand_mcs message = {.utime = control->utime,
+                                   .seq = control->seq,
+                                   .run = control->identity.run,
+                                   .layout_hash = (int64_t)control->identity.layout_hash,
+                                   .phase = phase,
+                                   .request = request,
+                                   .line = line,
+                                   .error = (int32_t)error,
+                                   .command = wh_link_borrowed(command),
+                                   .text = wh_link_borrowed(text)};
     const int size = waferhand_mcs_encode(control->encoded, 0, (int)sizeof control->encoded, &message);
     if (size > 0) {
         (void)wh_node_publish(control->node, WH_CHANNEL_MCS, control->encoded, (size_t)size);
@@ -42,7 +42,7 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
     snprintf(control->running, sizeof control->running, "%s", ended ? "" : command->text);
     control->running_line = command->line;
     if (!ended) {
-        tell(control, control->request, WH_LINK_PHASE_BEGINS, command->line, WH_OK, command->text, "");
+        tell(control, control->executing.seq, WH_LINK_PHASE_BEGINS, command->line, WH_OK, command->text, "");
         return;
     }
     if (control->connected) {
@@ -64,13 +64,16 @@ static const wh_mcs_process_answer_t *find_answer(const wh_mcs_process_t *contro
     return NULL;
 }
 
-static bool is_waiting(const wh_mcs_process_t *control, int64_t seq) {
+/* The line of the request that waits or is executed under this number, else null. */
+static const char *find_pending(const wh_mcs_process_t *control, int64_t seq) {
     for (size_t i = 0; i < control->waiting_count; ++i) {
-        if (control->waiting[(control->first_waiting + i) % WH_CONTROL_REQUESTS].seq == seq) {
-            return true;
+        const wh_mcs_process_request_t *request =
+            &control->waiting[(control->first_waiting + i) % WH_CONTROL_REQUESTS];
+        if (request->seq == seq) {
+            return request->line;
         }
     }
-    return control->request == seq;
+    return control->executing.seq == seq ? control->executing.line : NULL;
 }
 
 static void tell_answer(wh_mcs_process_t *control, const wh_mcs_process_answer_t *answer) {
@@ -98,23 +101,32 @@ static bool is_stop(const char *line) {
 /* Ends the running command, and answers the waiting ones without beginning them. */
 static void stop_all(wh_mcs_process_t *control, const waferhand_request *message) {
     char line[WH_LINK_LINE];
-    const int64_t executing = control->request;
+    const wh_mcs_process_request_t executing = control->executing;
     wh_sandbox_stop(control->sandbox);
     control->node->interrupted = true; /* also a wait for a simulator that is silent */
     while (wh_mcs_process_next_request(control, line)) {
-        remember(control, control->request, WH_STATUS_STOPPED, line, wh_status_text(WH_STATUS_STOPPED));
+        remember(control, control->executing.seq, WH_STATUS_STOPPED, line, wh_record_error_text(WH_STATUS_STOPPED));
     }
-    control->request = executing;
+    control->executing = executing;
     remember(control, message->seq, WH_OK, message->command_line, "OK");
+}
+
+/* An answer that is not remembered: asked again, the request may be taken. */
+static void turn_away(wh_mcs_process_t *control, const waferhand_request *message, wh_status_t error,
+                      const char *text) {
+    tell(control, message->seq, WH_LINK_PHASE_FAILED, 0, error, message->command_line, text);
+}
+
+static void turn_away_number(wh_mcs_process_t *control, const waferhand_request *message, const char *taken) {
+    char text[400];
+    snprintf(text, sizeof text, "%s: %" PRId64 " was \"%.200s\" (expected a number of its own for each line)",
+             wh_record_error_text(WH_STATUS_NUMBER_TAKEN), message->seq, taken);
+    turn_away(control, message, WH_STATUS_NUMBER_TAKEN, text);
 }
 
 static void enqueue(wh_mcs_process_t *control, const waferhand_request *message) {
     if (control->waiting_count == WH_CONTROL_REQUESTS) {
-        /* Not remembered: asked again, the request may find room. */
-        wh_mcs_process_answer_t busy = {.seq = message->seq, .error = WH_STATUS_BUSY};
-        snprintf(busy.line, sizeof busy.line, "%s", message->command_line);
-        snprintf(busy.text, sizeof busy.text, "%s", wh_status_text(WH_STATUS_BUSY));
-        tell_answer(control, &busy);
+        turn_away(control, message, WH_STATUS_BUSY, wh_record_error_text(WH_STATUS_BUSY));
         return;
     }
     wh_mcs_process_request_t *request =
@@ -123,37 +135,57 @@ static void enqueue(wh_mcs_process_t *control, const waferhand_request *message)
     snprintf(request->line, sizeof request->line, "%s", message->command_line);
 }
 
-static bool is_for_us(const wh_mcs_process_t *control, const waferhand_request *message) {
+/* Null if the request is meant for this run and layout and fits; else why it is not taken. */
+static const char *misdirected(const wh_mcs_process_t *control, const waferhand_request *message,
+                               wh_status_t *error) {
     const wh_link_identity_t *identity = &control->client.identity;
-    const bool run = message->run == 0 || (control->connected && message->run == identity->run);
-    const bool layout = message->layout_hash == 0 ||
-                        (control->connected && (uint64_t)message->layout_hash == identity->layout_hash);
-    return message->seq != 0 && run && layout && strlen(message->command_line) < WH_LINK_LINE;
+    if (message->run != 0 && !(control->connected && message->run == identity->run)) {
+        *error = WH_STATUS_UNKNOWN_RUN;
+        return "the request is for another run (expected this one, or 0 for any)";
+    }
+    if (message->layout_hash != 0 &&
+        !(control->connected && (uint64_t)message->layout_hash == identity->layout_hash)) {
+        *error = WH_STATUS_OTHER_LAYOUT;
+        return "the request is for another layout (expected this one, or 0 for any)";
+    }
+    *error = WH_STATUS_BAD_ARGUMENT;
+    return strlen(message->command_line) < WH_LINK_LINE ? NULL : TOO_LONG;
+}
+
+/* A request that comes again is answered again, not executed again: the answer may have been lost. */
+static void take_request(wh_mcs_process_t *control, const waferhand_request *message) {
+    wh_status_t error;
+    const char *reason = misdirected(control, message, &error);
+    const wh_mcs_process_answer_t *answer = find_answer(control, message->seq);
+    const char *pending = find_pending(control, message->seq);
+    const char *line = answer ? answer->line : pending;
+    if (reason) {
+        turn_away(control, message, error, reason);
+    } else if (line && strcmp(line, message->command_line) != 0) {
+        turn_away_number(control, message, line);
+    } else if (answer) {
+        tell_answer(control, answer);
+    } else if (!pending && control->running[0] != '\0' && is_stop(message->command_line)) {
+        stop_all(control, message);
+    } else if (!pending) {
+        enqueue(control, message);
+    }
 }
 
 static void on_request(void *user, const void *data, size_t size) {
     wh_mcs_process_t *control = user;
     waferhand_request message;
     if (!wh_link_decode_request(data, size, &message)) {
-        ++control->garbage;
-        if (!control->named_garbage) {
-            control->named_garbage = true;
-            wh_node_say(control->options.say, control->options.user,
+        if (control->garbage++ == 0) {
+            wh_node_say(control->node,
                         WH_CHANNEL_REQUEST ": a datagram is no such message: dropped, like all that follow");
         }
         return;
     }
     ++control->requests;
-    if (is_for_us(control, &message) && !is_waiting(control, message.seq)) {
-        /* A request that comes again is answered again, not executed again: the answer may have been lost. */
-        const wh_mcs_process_answer_t *answer = find_answer(control, message.seq);
-        if (answer) {
-            tell_answer(control, answer);
-        } else if (control->running[0] != '\0' && is_stop(message.command_line)) {
-            stop_all(control, &message);
-        } else {
-            enqueue(control, &message);
-        }
+    /* Nobody could tell the answer to 0 from what is told without a request. */
+    if (message.seq != 0) {
+        take_request(control, &message);
     }
     (void)waferhand_request_decode_cleanup(&message);
 }
@@ -165,14 +197,14 @@ bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LI
     const wh_mcs_process_request_t *request = &control->waiting[control->first_waiting];
     control->first_waiting = (control->first_waiting + 1) % WH_CONTROL_REQUESTS;
     --control->waiting_count;
-    control->request = request->seq;
+    control->executing = *request;
     snprintf(line, WH_LINK_LINE, "%s", request->line);
     return true;
 }
 
 void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *line, const char *text) {
-    const int64_t seq = control->request;
-    control->request = 0;
+    const int64_t seq = control->executing.seq;
+    control->executing.seq = 0;
     remember(control, seq, error, line, text);
 }
 
@@ -181,27 +213,19 @@ void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const c
 static void tell_progress(void *user) {
     wh_mcs_process_t *control = user;
     if (control->running[0] != '\0') {
-        tell(control, control->request, WH_LINK_PHASE_GOES_ON, control->running_line, WH_OK, control->running,
-             "");
+        tell(control, control->executing.seq, WH_LINK_PHASE_GOES_ON, control->running_line, WH_OK,
+             control->running, "");
     }
 }
 
 static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
     wh_mcs_process_t *control = user;
-    const wh_protocol_client_options_t options = {.layout = mcs->layout,
-                                                  .outputs = control->options.outputs,
-                                                  .rate = control->options.rate,
-                                                  .stop = control->options.stop,
-                                                  .say = control->options.say,
-                                                  .user = control->options.user,
-                                                  .tick = tell_progress,
-                                                  .tick_user = control};
     if (mcs->layout->wafer_count > WH_LINK_WAFERS) {
-        wh_node_say(control->options.say, control->options.user,
-                    "the layout has more wafers than a message carries (256)");
+        wh_node_say(control->node, "the layout has more wafers than a message carries (256)");
         return NULL;
     }
-    control->connected = wh_protocol_client_open(&control->client, control->node, &options);
+    control->connected =
+        wh_protocol_client_open(&control->client, control->node, mcs->layout, &control->options);
     return control->connected ? &control->client.link : NULL;
 }
 
@@ -213,41 +237,33 @@ static void on_cell(void *user, const void *data, size_t size) {
 }
 
 bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
-                         const wh_mcs_process_options_t *options) {
+                         const wh_protocol_client_options_t *options) {
     memset(control, 0, sizeof *control);
     control->node = node;
     control->options = *options;
+    control->options.tick = tell_progress;
+    control->options.user = control;
     return wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, control) &&
            wh_node_subscribe(node, WH_CHANNEL_CELL, on_cell, control);
 }
 
 wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
-    const wh_mcs_partners_t partners = {.connect = connect_client, .watch = watch, .user = control};
-    return partners;
+    return (wh_mcs_partners_t){.connect = connect_client, .watch = watch, .user = control};
 }
 
 void wh_mcs_process_idle(wh_mcs_process_t *control) {
     const int64_t now = wh_node_clock_us();
+    (void)wh_node_drain(control->node, 64);
     if (now - control->last_beat_us < HEARTBEAT_US) {
-        (void)wh_node_drain(control->node, 64);
         return;
     }
     control->last_beat_us = now;
     if (control->connected) {
         wh_protocol_client_heartbeat(&control->client);
-    } else {
-        (void)wh_node_drain(control->node, 64);
     }
-    tell(control, control->request, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
-}
-
-void wh_mcs_process_set_slice(wh_mcs_process_t *control, const wh_link_identity_t *identity,
-                              const wh_command_t *command) {
-    control->identity = *identity;
-    control->utime = command->utime;
-    control->seq = command->seq;
+    tell(control, control->executing.seq, WH_LINK_PHASE_IDLE, 0, WH_OK, "", "");
 }
 
 void wh_mcs_process_finish(wh_mcs_process_t *control) {
-    tell(control, control->request, WH_LINK_PHASE_OVER, 0, WH_OK, "", "");
+    tell(control, control->executing.seq, WH_LINK_PHASE_OVER, 0, WH_OK, "", "");
 }

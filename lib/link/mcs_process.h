@@ -13,7 +13,8 @@
 
 /* Requests that wait; more are answered with "busy". */
 #define WH_CONTROL_REQUESTS 16
-/* Requests that were answered lately: asked again, they are answered again. */
+/* Requests that were answered lately: asked again with the same line, they are answered again. With another
+ * line the number is taken: WH_STATUS_NUMBER_TAKEN. */
 #define WH_CONTROL_ANSWERED 64
 
 typedef struct {
@@ -28,38 +29,31 @@ typedef struct {
     char text[400];
 } wh_mcs_process_answer_t;
 
-typedef struct {
-    double rate;         /* 0: lockstep */
-    const char *outputs; /* write the valves to this file, too; may be null */
-    const volatile sig_atomic_t *stop;
-    void (*say)(void *user, const char *text);
-    void *user;
-} wh_mcs_process_options_t;
-
 /* Must not be moved once opened. */
 typedef struct {
     wh_node_t *node;
-    wh_mcs_process_options_t options;
+    wh_protocol_client_options_t options;
     wh_protocol_client_t client;
     bool connected;
     wh_sandbox_t *sandbox;       /* of the run or session; null before its first command */
-    wh_link_identity_t identity; /* of the run; and where it is: */
+    wh_link_identity_t identity; /* of the run; and where it is (without a client, to be set): */
     int64_t utime, seq;
     char running[200]; /* the command that goes on; empty: none */
     int running_line;
-    int64_t request; /* seq of the request being executed, or 0 */
+    wh_mcs_process_request_t executing; /* seq 0: none */
     int64_t last_beat_us;
     wh_mcs_process_request_t waiting[WH_CONTROL_REQUESTS];
     size_t first_waiting, waiting_count;
     wh_mcs_process_answer_t answered[WH_CONTROL_ANSWERED];
     size_t answered_count;
     uint64_t requests, garbage; /* datagrams on WAFERHAND_REQUEST: sound ones, others */
-    bool named_garbage;
     uint8_t encoded[8192];
 } wh_mcs_process_t;
 
-/* Subscribes to requests. False when LCM has no room. */
-bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node, const wh_mcs_process_options_t *options);
+/* Subscribes to requests. The options are the client's; `tick` and `user` are set here. False when LCM has no
+ * room. */
+bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
+                         const wh_protocol_client_options_t *options);
 
 /* The partners to hand to a run or a session. */
 wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control);
@@ -74,10 +68,6 @@ bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LI
 
 /* Answers the request being executed: error is 0 or its number, text what an operator would read. */
 void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *line, const char *text);
-
-/* Without a client of its own: the run and the slice that what is told belongs to. */
-void wh_mcs_process_set_slice(wh_mcs_process_t *control, const wh_link_identity_t *identity,
-                              const wh_command_t *command);
 
 /* Tells that the run is over. */
 void wh_mcs_process_finish(wh_mcs_process_t *control);

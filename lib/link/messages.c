@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "../record/counterpart.h"
+
 /* -------------------------------------------------------------------------------------------------- parts */
 
 static void put_vec3(const wh_vec3_t *v, double out[3]) {
@@ -36,15 +38,13 @@ void wh_link_put_fault(const wh_fault_t *fault, waferhand_fault *out) {
 }
 
 wh_fault_t wh_link_take_fault(const waferhand_fault *in) {
-    wh_fault_t fault;
-    fault.kind = (wh_fault_kind_t)in->kind;
-    fault.target = in->target;
-    fault.other = in->other;
-    fault.value = in->value;
-    fault.offset = wh_link_take_pose(in->position, in->rotation);
-    fault.from = in->from_seq;
-    fault.until = in->until_seq;
-    return fault;
+    return (wh_fault_t){.kind = (wh_fault_kind_t)in->kind,
+                        .target = in->target,
+                        .other = in->other,
+                        .value = in->value,
+                        .offset = wh_link_take_pose(in->position, in->rotation),
+                        .from = in->from_seq,
+                        .until = in->until_seq};
 }
 
 static void put_slot(const wh_fault_slot_t *slot, waferhand_fault_slot *out) {
@@ -55,12 +55,10 @@ static void put_slot(const wh_fault_slot_t *slot, waferhand_fault_slot *out) {
 }
 
 static wh_fault_slot_t take_slot(const waferhand_fault_slot *in) {
-    wh_fault_slot_t slot;
-    slot.phase = (wh_fault_phase_t)in->phase;
-    slot.fault = wh_link_take_fault(&in->it);
-    slot.before = wh_link_take_pose(in->before_position, in->before_rotation);
-    slot.placed = wh_link_take_pose(in->placed_position, in->placed_rotation);
-    return slot;
+    return (wh_fault_slot_t){.phase = (wh_fault_phase_t)in->phase,
+                             .fault = wh_link_take_fault(&in->it),
+                             .before = wh_link_take_pose(in->before_position, in->before_rotation),
+                             .placed = wh_link_take_pose(in->placed_position, in->placed_rotation)};
 }
 
 static void put_measured(const wh_proximity_t *p, waferhand_measurement *out) {
@@ -82,8 +80,7 @@ static void take_measured(const waferhand_measurement *in, const wh_tolerance_t 
 }
 
 static void put_encounter(const wh_encounter_t *encounter, waferhand_encounter *out) {
-    static const waferhand_encounter none = {.wafer = WH_NONE, .holder = WH_NONE};
-    *out = none;
+    *out = (waferhand_encounter){.wafer = WH_NONE, .holder = WH_NONE};
     if (encounter->wafer != WH_NONE) {
         out->wafer = encounter->wafer;
         out->holder = encounter->holder;
@@ -358,16 +355,13 @@ wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_
 
 wh_grasp_t wh_link_table(const waferhand_state *message, const wh_layout_t *layout,
                          wh_link_arrays_t *arrays) {
-    wh_grasp_t table;
-    memset(&table, 0, sizeof table);
-    table.config = layout->grasp;
-    table.mark = WH_GRASP_MARK;
-    table.slice = (uint64_t)(message->seq - message->missed);
-    table.storage.wafers = arrays->wafers;
-    table.storage.wafer_count = layout->wafer_count;
-    table.storage.grippers = arrays->grippers;
-    table.storage.gripper_count = layout->machine.gripper_count;
-    return table;
+    return (wh_grasp_t){.config = layout->grasp,
+                        .mark = WH_GRASP_MARK,
+                        .slice = (uint64_t)(message->seq - message->missed),
+                        .storage = {.wafers = arrays->wafers,
+                                    .wafer_count = layout->wafer_count,
+                                    .grippers = arrays->grippers,
+                                    .gripper_count = layout->machine.gripper_count}};
 }
 
 bool wh_link_state_is_sound(const waferhand_state *message, const wh_layout_t *layout,
@@ -384,30 +378,15 @@ bool wh_link_state_is_sound(const waferhand_state *message, const wh_layout_t *l
 
 /* ---------------------------------------------------------------------------------------------- proximity */
 
-static int32_t find_nearest(const wh_state_t *state, const wh_gripper_t *gripper) {
-    int32_t nearest = WH_NONE;
-    wh_real_t least = 0;
-    for (size_t w = 0; w < state->wafer_count; ++w) {
-        const wh_vec3_t dr =
-            wh_vec3_subtract(&state->wafers[w].base_from_wafer.r, &gripper->base_from_gripper.r);
-        const wh_real_t square = wh_vec3_dot(&dr, &dr);
-        if (nearest == WH_NONE || square < least) {
-            nearest = (int32_t)w;
-            least = square;
-        }
-    }
-    return nearest;
-}
-
-static void put_nearest(const wh_state_t *state, size_t g, const wh_tolerance_t *tolerance,
-                        waferhand_proximity *message) {
+static void put_counterpart(const wh_state_t *state, size_t g, const wh_tolerance_t *tolerance,
+                            waferhand_proximity *message) {
     const wh_gripper_t *gripper = &state->grippers[g];
-    const int32_t nearest = find_nearest(state, gripper);
+    const int32_t wafer = wh_counterpart(state, g, tolerance, NULL, state->wafer_count);
     wh_proximity_t p;
-    message->wafer[g] = nearest;
+    message->wafer[g] = wafer;
     message->valve[g] = (int8_t)gripper->valve;
-    if (nearest == WH_NONE || wh_proximity_measure(&state->wafers[nearest].base_from_wafer,
-                                                   &gripper->base_from_gripper, tolerance, &p) != WH_OK) {
+    if (wafer == WH_NONE || wh_proximity_measure(&state->wafers[wafer].base_from_wafer,
+                                                 &gripper->base_from_gripper, tolerance, &p) != WH_OK) {
         return;
     }
     message->dr_proj_z[g] = p.dr_proj_z;
@@ -415,7 +394,7 @@ static void put_nearest(const wh_state_t *state, size_t g, const wh_tolerance_t 
     message->dr_proj_xy_norm[g] = p.dr_proj_xy_norm;
     message->n1_proj_n2[g] = p.n1_proj_n2;
     message->ready[g] = p.ready ? 1 : 0;
-    message->holds[g] = gripper->wafer == nearest ? 1 : 0;
+    message->holds[g] = gripper->wafer == wafer ? 1 : 0;
 }
 
 void wh_link_proximity_to_message(const wh_state_t *state, const wh_link_identity_t *identity,
@@ -430,6 +409,6 @@ void wh_link_proximity_to_message(const wh_state_t *state, const wh_link_identit
     message->eps_planar = tolerance->planar;
     message->gripper_count = (int32_t)state->gripper_count;
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        put_nearest(state, g, tolerance, message);
+        put_counterpart(state, g, tolerance, message);
     }
 }

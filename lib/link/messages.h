@@ -68,6 +68,16 @@ typedef struct {
     waferhand_fault_slot faults[WH_FAULTS];
 } wh_link_state_t;
 
+/* Room for a whole cell as a message; `message` points into the arrays, and to the layout's texts. */
+typedef struct {
+    waferhand_cell message;
+    char *gripper_names[WH_GRIPPERS], *valve_names[WH_GRIPPERS];
+    waferhand_station stations[WH_LAYOUT_STATIONS];
+    char *wafer_names[WH_LINK_WAFERS];
+    waferhand_wafer_state wafers[WH_LINK_WAFERS];
+    waferhand_fault faults[WH_FAULTS];
+} wh_link_cell_t;
+
 /* LCM's structs hold plain char pointers, though encoding only reads what they point to. */
 static inline char *wh_link_borrowed(const char *text) {
     union {
@@ -132,11 +142,10 @@ bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message);
 bool wh_link_decode_request(const void *data, size_t size, waferhand_request *message);
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message);
 
-/* The cell of a layout, in memory that wh_link_cell_free releases. The texts are the layout's. Returns false
- * if out of memory. */
+/* The cell of a layout as a message. Returns false if it has more than WH_LINK_WAFERS wafers: the room is
+ * then all zero. */
 bool wh_link_cell_from_layout(const wh_layout_t *layout, const wh_link_identity_t *identity,
-                              waferhand_cell *message);
-void wh_link_cell_free(waferhand_cell *message);
+                              wh_link_cell_t *room);
 
 /* The layout that a cell message describes: enough for a simulator, without the file. In memory that
  * wh_link_layout_free releases; null for a message that no layout could have made: poses, tolerances, counts,

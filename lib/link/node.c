@@ -1,11 +1,17 @@
 #include "node.h"
 
+#include <errno.h>
 #include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+
+#define NO_ROUTE                                                                                             \
+    "LCM is not to be had at this URL (expected a multicast route, as by `ip route add 224.0.0.0/4 dev "     \
+    "lo`, "                                                                                                  \
+    "or another URL)"
 
 static int64_t now_us(clockid_t clock) {
     struct timespec now;
@@ -21,17 +27,41 @@ int64_t wh_node_clock_us(void) {
     return now_us(CLOCK_MONOTONIC);
 }
 
-bool wh_node_open(wh_node_t *node, const char *url) {
+/* What is wrong, or null. */
+static const char *open_multicast(wh_receiver_t *receiver, const char *url) {
+    wh_multicast_t multicast;
+    const char *expected = wh_multicast_parse(url, &multicast);
+    if (expected) {
+        return expected;
+    }
+    if (!wh_receiver_open(receiver, &multicast)) {
+        return errno == ENODEV ? NO_ROUTE : strerror(errno);
+    }
+    return NULL;
+}
+
+bool wh_node_open(wh_node_t *node, const char *url, const char *record) {
     const char *from_environment = getenv("LCM_DEFAULT_URL");
     const char *fallback = from_environment && from_environment[0] ? from_environment : WH_NODE_URL;
     memset(node, 0, sizeof *node);
-    node->lcm = lcm_create(url ? url : fallback);
-    return node->lcm != NULL;
-}
-
-bool wh_node_record(wh_node_t *node, const char *path) {
-    node->log = lcm_eventlog_create(path, "w");
-    return node->log != NULL;
+    node->receiver.socket = -1;
+    url = url ? url : fallback;
+    const char *problem = wh_multicast_is(url) ? open_multicast(&node->receiver, url) : NULL;
+    if (!problem) {
+        node->lcm = lcm_create(url);
+        problem = node->lcm ? NULL : NO_ROUTE;
+    }
+    if (!problem && record) {
+        node->log = lcm_eventlog_create(record, "w");
+        url = record;
+        problem = node->log ? NULL : strerror(errno);
+    }
+    if (problem) {
+        fprintf(stderr, "%s: %s%s\n", url, problem,
+                url == record ? " (expected a file that can be written)" : "");
+        wh_node_close(node);
+    }
+    return problem == NULL;
 }
 
 static void fail_record(wh_node_t *node) {
@@ -46,34 +76,36 @@ void wh_node_flush_record(wh_node_t *node) {
 }
 
 /* Writes what lcm-logger would. LCM's type has plain pointers, though it only reads what they point to. */
-static void record(wh_node_t *node, const char *channel, const void *data, size_t size) {
+static void keep(wh_node_t *node, const char *channel, const void *data, size_t size) {
     union {
         const void *constant;
         void *plain;
     } bytes = {data};
     char name[LCM_MAX_CHANNEL_NAME_LENGTH + 1];
-    lcm_eventlog_event_t event;
     if (!node->log || node->log_failed) {
         return;
     }
     snprintf(name, sizeof name, "%s", channel);
-    event.eventnum = 0;
-    event.timestamp = wh_node_wall_us();
-    event.channellen = (int32_t)strlen(name);
-    event.datalen = (int32_t)size;
-    event.channel = name;
-    event.data = bytes.plain;
+    lcm_eventlog_event_t event = {.timestamp = wh_node_wall_us(),
+                                  .channellen = (int32_t)strlen(name),
+                                  .datalen = (int32_t)size,
+                                  .channel = name,
+                                  .data = bytes.plain};
     if (lcm_eventlog_write_event(node->log, &event) != 0) {
         fail_record(node);
     }
 }
 
-static void receive(const lcm_recv_buf_t *message, const char *channel, void *user) {
-    const wh_node_subscriber_t *subscriber = user;
+/* Recorded before it is handled: the log has each message before what follows from it. */
+static void hand_over(const wh_node_subscriber_t *subscriber, const void *data, size_t size) {
     ++subscriber->node->received;
-    /* Recorded before it is handled: the log has each message before what follows from it. */
-    record(subscriber->node, channel, message->data, message->data_size);
-    subscriber->handler(subscriber->user, message->data, message->data_size);
+    keep(subscriber->node, subscriber->channel, data, size);
+    subscriber->handler(subscriber->user, data, size);
+}
+
+static void receive(const lcm_recv_buf_t *message, const char *channel, void *user) {
+    (void)channel;
+    hand_over(user, message->data, message->data_size);
 }
 
 bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user) {
@@ -81,9 +113,10 @@ bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *
         return false;
     }
     wh_node_subscriber_t *subscriber = &node->subscribers[node->subscriber_count++];
-    subscriber->node = node;
-    subscriber->handler = handler;
-    subscriber->user = user;
+    *subscriber = (wh_node_subscriber_t){node, channel, handler, user};
+    if (node->receiver.socket >= 0) {
+        return true;
+    }
     lcm_subscription_t *subscription = lcm_subscribe(node->lcm, channel, receive, subscriber);
     /* No limit: a queue that drops would look like a network that loses. */
     return subscription && lcm_subscription_set_queue_capacity(subscription, 0) == 0;
@@ -91,12 +124,26 @@ bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *
 
 bool wh_node_publish(wh_node_t *node, const char *channel, const void *data, size_t size) {
     ++node->published;
-    record(node, channel, data, size);
+    keep(node, channel, data, size);
     return lcm_publish(node->lcm, channel, data, (unsigned)size) == 0;
 }
 
+/* Messages of channels without a subscriber are other programs'. */
+static int take(wh_node_t *node) {
+    wh_received_t message;
+    if (!wh_receiver_take(&node->receiver, &message)) {
+        return 0;
+    }
+    for (size_t i = 0; i < node->subscriber_count; ++i) {
+        if (strcmp(node->subscribers[i].channel, message.channel) == 0) {
+            hand_over(&node->subscribers[i], message.data, message.size);
+        }
+    }
+    return 1;
+}
+
 int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
-    struct pollfd ready = {.fd = lcm_get_fileno(node->lcm), .events = POLLIN};
+    struct pollfd ready = {.fd = wh_node_descriptor(node), .events = POLLIN};
     /* LCM's own wait counts in ms, which may be longer than a slice. */
     const int64_t us = timeout_us > 0 ? timeout_us : 0;
     const struct timespec timeout = {.tv_sec = us / 1000000, .tv_nsec = us % 1000000 * 1000};
@@ -104,6 +151,9 @@ int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
     if (count <= 0) {
         node->interrupted = node->interrupted || count < 0;
         return 0;
+    }
+    if (node->receiver.socket >= 0) {
+        return take(node);
     }
     return lcm_handle_timeout(node->lcm, 0) < 0 ? -1 : 1;
 }
@@ -117,7 +167,7 @@ int wh_node_drain(wh_node_t *node, int most) {
 }
 
 int wh_node_descriptor(const wh_node_t *node) {
-    return lcm_get_fileno(node->lcm);
+    return node->receiver.socket >= 0 ? node->receiver.socket : lcm_get_fileno(node->lcm);
 }
 
 void wh_node_close(wh_node_t *node) {
@@ -125,20 +175,20 @@ void wh_node_close(wh_node_t *node) {
         lcm_eventlog_destroy(node->log);
         node->log = NULL;
     }
+    wh_receiver_close(&node->receiver);
     if (node->lcm) {
         lcm_destroy(node->lcm);
         node->lcm = NULL;
     }
 }
 
-void wh_node_say(void (*say)(void *user, const char *text), void *user, const char *format, ...) {
+void wh_node_say(const wh_node_t *node, const char *format, ...) {
     char text[200];
     va_list arguments;
-    if (!say) {
-        return;
+    if (node->speaker) {
+        va_start(arguments, format);
+        (void)vsnprintf(text, sizeof text, format, arguments);
+        va_end(arguments);
+        fprintf(stderr, "%s: %s\n", node->speaker, text);
     }
-    va_start(arguments, format);
-    (void)vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    say(user, text);
 }

@@ -11,6 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "receiver.h"
+
 /* Nothing leaves the host unless another URL is asked for. */
 #define WH_NODE_URL "udpm://239.255.76.67:7667?ttl=0"
 
@@ -23,33 +25,34 @@ typedef void wh_node_handler_t(void *user, const void *data, size_t size);
 
 typedef struct {
     wh_node_t *node;
+    const char *channel; /* the caller's */
     wh_node_handler_t *handler;
     void *user;
 } wh_node_subscriber_t;
 
 struct wh_node {
-    lcm_t *lcm;
-    lcm_eventlog_t *log; /* null: not recording */
-    bool interrupted;    /* a signal ended a wait since this was last cleared */
-    bool log_failed;     /* writing stopped: the disk is full, say */
+    const char *speaker;    /* who says what wh_node_say prints, such as "sim"; null, as at first: nobody */
+    lcm_t *lcm;             /* sends; receives if the URL is not multicast */
+    wh_receiver_t receiver; /* receives multicast */
+    lcm_eventlog_t *log;    /* null: not recording */
+    bool interrupted;       /* a signal ended a wait since this was last cleared */
+    bool log_failed;        /* writing stopped: the disk is full, say */
     uint64_t published, received;
     wh_node_subscriber_t subscribers[WH_NODE_SUBSCRIPTIONS];
     size_t subscriber_count;
 };
 
-/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). False when LCM cannot: no
- * multicast route, a bad URL. The node must not be moved afterwards. */
-bool wh_node_open(wh_node_t *node, const char *url);
-
-/* From now on writes all that is published and received into an event log, as lcm-logger does. False, with
- * errno, when the file cannot be made. */
-bool wh_node_record(wh_node_t *node, const char *path);
+/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). If `record` is not null, all
+ * that is published and received goes into an event log with this path, as lcm-logger writes it. The node
+ * must not be moved afterwards. False, and standard error says why, when LCM cannot (no multicast route, a
+ * bad URL) or the file cannot be made: nothing is then open. */
+bool wh_node_open(wh_node_t *node, const char *url, const char *record);
 
 /* Hands what was recorded over to the system: others can read all of it from then on. Nothing without a
  * record. */
 void wh_node_flush_record(wh_node_t *node);
 
-/* Subscribes one channel with a queue without a limit. False when there is no room. */
+/* Subscribes one channel, whose name must outlive the node. False if there is no room. */
 bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user);
 
 /* Sends one datagram, of which nothing is kept. False when the network refused it. */
@@ -68,9 +71,8 @@ int wh_node_descriptor(const wh_node_t *node);
 /* Completes the record and closes LCM. */
 void wh_node_close(wh_node_t *node);
 
-/* Says a line of at most 199 bytes, for people; to nobody if `say` is null. */
-void wh_node_say(void (*say)(void *user, const char *text), void *user, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+/* Prints a line for people on standard error: the speaker, and at most 199 bytes. */
+void wh_node_say(const wh_node_t *node, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* us of wall-clock time, and of a clock that never jumps. */
 int64_t wh_node_wall_us(void);

@@ -10,7 +10,7 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 
-#include "../text/replace.h"
+#include "../text/output.h"
 
 #define READS 16          /* of events in one update: a neighbour may never stop writing */
 #define RESTLESS_LOOKS 64 /* bad looks in a row after which a file that never rests is reported */
@@ -54,14 +54,6 @@ int wh_outputs_open(wh_outputs_t *outputs, const char *path, const int32_t *valv
 void wh_outputs_close(wh_outputs_t *outputs) {
     (void)close(outputs->fd);
     outputs->fd = outputs->watch = -1;
-}
-
-int wh_outputs_fd(const wh_outputs_t *outputs) {
-    return outputs->fd;
-}
-
-int64_t wh_outputs_due(const wh_outputs_t *outputs) {
-    return outputs->due_us;
 }
 
 /* True for file systems on which this machine makes all changes, so that inotify sees them. */
@@ -243,12 +235,6 @@ static void report(wh_outputs_t *outputs, const wh_outputs_look_t *look) {
     }
 }
 
-const char *wh_outputs_finding_name(wh_outputs_finding_t finding) {
-    static const char *const names[WH_OUTPUTS_FINDINGS] = {"good",  "missing", "unreadable", "no file",
-                                                           "empty", "short",   "long",       "garbled"};
-    return (unsigned)finding < WH_OUTPUTS_FINDINGS ? names[finding] : "unknown";
-}
-
 /* Counts one more bad look. True if the finding has lasted. */
 static bool has_settled(wh_outputs_t *outputs, bool moved, int64_t now_us) {
     if (!outputs->suspect) {
@@ -314,5 +300,5 @@ int wh_outputs_write(const char *path, const int32_t *valves, size_t count) {
         text[2 * i] = valves[i] == WH_VALVE_OPEN ? '0' : '1';
         text[2 * i + 1] = '\n';
     }
-    return refused != 0 ? refused : wh_replace(path, text, 2 * count);
+    return refused != 0 ? refused : wh_output_replace(path, text, 2 * count);
 }

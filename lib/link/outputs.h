@@ -71,15 +71,16 @@ typedef struct {
     wh_outputs_finding_t finding;   /* the one in force: the last that was reported, good at first */
     char report[WH_OUTPUTS_REPORT]; /* the last report, one line without its line feed; empty at first */
     wh_outputs_counters_t counters;
+    int fd; /* for poll: readable when the file may have changed; -1, which poll ignores, without inotify */
+    int64_t due_us; /* when to update even if the descriptor is silent, on the clock of `now_us` */
 
     int64_t settle_us, poll_us, check_us;
 
     char path[WH_OUTPUTS_PATH];
     size_t name;               /* where in path the file's name begins */
-    int fd, watch;             /* inotify's descriptor, and its number for the folder; or -1 */
+    int watch;                 /* inotify's number for the folder; or -1 */
     bool quiet, linked;        /* inotify may miss changes: in this folder; behind a symbolic link */
     bool moved;                /* an event named the file since the last look */
-    int64_t due_us;            /* when to look without an event */
     struct stat last;          /* the file at the last look; zero if there was none */
     bool suspect;              /* a spell is on: */
     unsigned suspect_looks;    /* bad looks in it */
@@ -97,11 +98,6 @@ int wh_outputs_open(wh_outputs_t *outputs, const char *path, const int32_t *valv
 /* Closes the descriptor. May be called twice; not on one that was never opened. */
 void wh_outputs_close(wh_outputs_t *outputs);
 
-/* For poll: readable when the file may have changed. -1, which poll ignores, without inotify. Does not
- * change. And when to call wh_outputs_update even if the descriptor is silent, on the clock of `now_us`. */
-int wh_outputs_fd(const wh_outputs_t *outputs);
-int64_t wh_outputs_due(const wh_outputs_t *outputs);
-
 /* Looks at the file if the descriptor is readable or the time has come; else returns 0 at once. `now_us` is
  * from a clock that never goes back, from 0 to 2^62. Never allocates or waits for a writer. Cost: 10 us for a
  * look, under 1 us without one. If the file system hangs, so does this call. */
@@ -111,11 +107,8 @@ unsigned wh_outputs_update(wh_outputs_t *outputs, int64_t now_us);
  * WH_OUTPUTS_GOOD; a count that is not 1 to WH_GRIPPERS gives WH_OUTPUTS_GARBLED. Cost: linear in size. */
 wh_outputs_look_t wh_outputs_parse(const char *text, size_t size, size_t count, int32_t *valves);
 
-/* A finding's name, such as "garbled": a constant string; "unknown" for a number that is none. */
-const char *wh_outputs_finding_name(wh_outputs_finding_t finding);
-
-/* Writes the file, a value a line, by wh_replace (text/replace.h): nobody sees half of it. Returns 0 or an
- * errno: EINVAL for wrong arguments as at open, else that of wh_replace. */
+/* Writes the file, a value a line, by wh_output_replace (text/output.h): nobody sees half of it. Returns 0 or
+ * an errno: EINVAL for wrong arguments as at open, else that of wh_output_replace. */
 int wh_outputs_write(const char *path, const int32_t *valves, size_t count);
 
 #endif

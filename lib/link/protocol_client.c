@@ -52,8 +52,8 @@ static void restore_simulator(wh_protocol_client_t *client) {
         return;
     }
     ++client->counters.restored;
-    wh_node_say(client->options.say, client->options.user,
-                "the simulator was started anew: it gets the state of slice %" PRId64, client->state.seq);
+    wh_node_say(client->node, "the simulator was started anew: it gets the state of slice %" PRId64,
+                client->state.seq);
     (void)wh_node_publish(client->node, WH_CHANNEL_RESTORE, client->restore, client->restore_size);
     send_again(client);
 }
@@ -64,13 +64,13 @@ static void heard(wh_protocol_client_t *client) {
     client->last_heard_us = wh_node_clock_us();
     if (client->silent) {
         client->silent = false;
-        wh_node_say(client->options.say, client->options.user, "the simulator answers again");
+        wh_node_say(client->node, "the simulator answers again");
     }
 }
 
 /* Copies the state to client->arrays. False if it is not sound, or no grasp table could be in it. */
 static bool take_over(wh_protocol_client_t *client, const waferhand_state *message, wh_state_t *state) {
-    const wh_layout_t *layout = client->options.layout;
+    const wh_layout_t *layout = client->layout;
     if (!wh_link_state_is_sound(message, layout, &client->spare, state)) {
         return false;
     }
@@ -156,7 +156,7 @@ static void notice_silence(wh_protocol_client_t *client, int64_t since_us) {
     if (!client->silent && wh_node_clock_us() - last > WH_CLIENT_SILENCE_US) {
         client->silent = true;
         ++client->counters.silences;
-        wh_node_say(client->options.say, client->options.user,
+        wh_node_say(client->node,
                     "no answer from the simulator: holding at slice %" PRId64 " until it returns",
                     client->command.seq);
     }
@@ -215,7 +215,7 @@ static wh_status_t await_answer(wh_protocol_client_t *client) {
 
 /* Free-running: waits until the next slice is due, and longer if the simulator has fallen silent. */
 static wh_status_t await_due_time(wh_protocol_client_t *client) {
-    const double period_us = (double)client->options.layout->slice_us / client->options.rate;
+    const double period_us = (double)client->layout->slice_us / client->options.rate;
     if (client->start_us == 0) {
         client->start_us = wh_node_clock_us() - (int64_t)((double)(client->command.seq - 1) * period_us);
     }
@@ -247,8 +247,8 @@ static void write_outputs(wh_protocol_client_t *client) {
     if (problem == 0) {
         memcpy(client->written, client->command.valve, count * sizeof(int32_t));
     } else if (client->counters.unwritten++ == 0) {
-        wh_node_say(client->options.say, client->options.user, "%s: %s (expected a file that can be written)",
-                    client->options.outputs, strerror(problem));
+        wh_node_say(client->node, "%s: %s (expected a file that can be written)", client->options.outputs,
+                    strerror(problem));
     }
 }
 
@@ -287,7 +287,7 @@ static void tick(wh_protocol_client_t *client) {
     const int64_t now = wh_node_clock_us();
     if (client->options.tick && now - client->last_tick_us >= TICK_US) {
         client->last_tick_us = now;
-        client->options.tick(client->options.tick_user);
+        client->options.tick(client->options.user);
     }
 }
 
@@ -320,8 +320,7 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
 static uint64_t last_hash(wh_link_t *link) {
     wh_protocol_client_t *client = (wh_protocol_client_t *)link;
     if (!wh_protocol_client_settle(client, SETTLE_US)) {
-        wh_node_say(client->options.say, client->options.user,
-                    "the state of the last slice did not come: the hash is of slice %" PRId64,
+        wh_node_say(client->node, "the state of the last slice did not come: the hash is of slice %" PRId64,
                     client->state.seq);
     }
     return client->hash;
@@ -361,16 +360,17 @@ int64_t wh_protocol_client_draw_run(void) {
     return (int64_t)bits;
 }
 
-bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node,
+bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node, const wh_layout_t *layout,
                              const wh_protocol_client_options_t *options) {
     memset(client, 0, sizeof *client);
     client->link.exchange = exchange;
     client->link.hash = last_hash;
     client->link.missed = missed_slices;
     client->node = node;
+    client->layout = layout;
     client->options = *options;
     client->identity.run = wh_protocol_client_draw_run();
-    client->identity.layout_hash = wh_layout_hash(options->layout);
+    client->identity.layout_hash = wh_layout_hash(layout);
     client->resend_us = FIRST_RESEND_US;
     memset(client->written, 0xff, sizeof client->written);
     return wh_node_subscribe(node, WH_CHANNEL_STATE, on_state, client);

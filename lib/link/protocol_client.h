@@ -28,21 +28,18 @@ typedef struct {
 } wh_protocol_client_counters_t;
 
 typedef struct {
-    const wh_layout_t *layout;
     const char *outputs;               /* write the valves to this file, too, before a slice; may be null */
     double rate;                       /* wall-clock rate of a free-running run; 0: lockstep */
     const volatile sig_atomic_t *stop; /* not zero: give up; may be null */
-    void (*say)(void *user,
-                const char *text); /* one line for people: silence, return, restart; may be null */
+    void (*tick)(void *user);          /* called once a second of a long motion; may be null */
     void *user;
-    void (*tick)(void *tick_user); /* called once a second of a long motion; may be null */
-    void *tick_user;
 } wh_protocol_client_options_t;
 
 /* Written by client*.c. Must not be moved once opened. */
 typedef struct {
     wh_link_t link; /* first: &client->link is what the MCS talks to */
     wh_node_t *node;
+    const wh_layout_t *layout;
     wh_protocol_client_options_t options;
     wh_link_identity_t identity;
     waferhand_command command;    /* the last one sent */
@@ -65,8 +62,9 @@ typedef struct {
     size_t restore_size;
 } wh_protocol_client_t;
 
-/* Subscribes to the states and begins a run with a random number other than 0. False when LCM has no room. */
-bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node,
+/* Subscribes to the states and begins a run with a random number other than 0. `layout` and `node`, which
+ * says when the simulator is silent or back, must outlive it. False when LCM has no room. */
+bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node, const wh_layout_t *layout,
                              const wh_protocol_client_options_t *options);
 
 /* Sends a command. One that is lost is no error: whoever waits for the answer sends it again. */

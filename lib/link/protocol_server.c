@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../grasp/restore.h"
+#include "../text/array.h"
 
 static void start_run(wh_protocol_server_t *server, int64_t run) {
     const wh_layout_t *layout = server->layout;
@@ -18,8 +19,8 @@ static void start_run(wh_protocol_server_t *server, int64_t run) {
     }
     (void)wh_simulator_init(&server->simulator, &layout->grasp, &storage, &layout->cell);
     (void)wh_simulator_set_physics(&server->simulator, &layout->physics);
-    if (server->collision_memory) {
-        wh_collision_attach(&server->collision, layout, &server->simulator, server->collision_memory);
+    if (server->collision.memory) {
+        wh_collision_attach(&server->collision, layout, &server->simulator, server->collision.memory);
     }
     memset(&server->state, 0, sizeof server->state);
     wh_simulator_view(&server->simulator, &server->state);
@@ -37,18 +38,15 @@ wh_status_t wh_protocol_server_open(wh_protocol_server_t *server, const wh_layou
     server->layout = layout;
     server->identity.layout_hash = wh_layout_hash(layout);
     if (layout->collision) {
-        server->collision_memory = malloc(wh_collision_bytes(layout));
-        if (!server->collision_memory) {
-            return WH_STATUS_BAD_CAPACITY;
-        }
+        server->collision.memory = wh_array_new(wh_collision_bytes(layout), 1);
     }
     start_run(server, 0);
     return WH_OK;
 }
 
 void wh_protocol_server_close(wh_protocol_server_t *server) {
-    free(server->collision_memory);
-    server->collision_memory = NULL;
+    free(server->collision.memory);
+    server->collision.memory = NULL;
 }
 
 uint64_t wh_protocol_server_hash(const wh_protocol_server_t *server) {
@@ -69,11 +67,7 @@ static void encode(wh_protocol_server_t *server, const wh_state_t *state,
 /* Answers a command that is not stepped: its own numbers and the reason, no wafers, no grippers. */
 static wh_protocol_server_result_t turn_away(wh_protocol_server_t *server, const waferhand_command *message,
                                              wh_status_t reason) {
-    wh_state_t nothing;
-    memset(&nothing, 0, sizeof nothing);
-    nothing.utime = message->utime;
-    nothing.seq = message->seq;
-    nothing.status = reason;
+    const wh_state_t nothing = {.utime = message->utime, .seq = message->seq, .status = reason};
     const wh_link_identity_t identity = {message->run, server->identity.layout_hash};
     encode(server, &nothing, &identity);
     return WH_SERVER_ANSWERED;
@@ -199,8 +193,8 @@ static bool take_over(wh_protocol_server_t *server, const waferhand_state *messa
                          state->grippers) != WH_OK) {
         return false;
     }
-    if (server->collision_memory) {
-        wh_collision_attach(&server->collision, server->layout, &server->simulator, server->collision_memory);
+    if (server->collision.memory) {
+        wh_collision_attach(&server->collision, server->layout, &server->simulator, server->collision.memory);
     }
     server->simulator.physics = *state->physics;
     memcpy(server->simulator.events, state->events, state->event_count * sizeof *state->events);

@@ -30,12 +30,11 @@ typedef struct {
     const wh_layout_t *layout;   /* borrowed */
     wh_link_identity_t identity; /* identity.run is 0 before the first run */
     wh_simulator_t simulator;
-    wh_collision_t collision;
-    void *collision_memory; /* null: the layout asks for no check */
-    wh_state_t state;       /* after the last step */
-    int64_t seq;            /* of the last step; 0: none yet */
-    int64_t missed;         /* slices that never came, in a free-running run */
-    bool lockstep;          /* the last command's */
+    wh_collision_t collision; /* without memory: the layout asks for no check */
+    wh_state_t state;         /* after the last step */
+    int64_t seq;              /* of the last step; 0: none yet */
+    int64_t missed;           /* slices that never came, in a free-running run */
+    bool lockstep;            /* the last command's */
     int64_t past_runs[WH_SERVER_PAST_RUNS];
     size_t past_count;
     wh_protocol_server_counters_t counters;

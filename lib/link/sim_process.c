@@ -6,9 +6,6 @@
 /* ------------------------------------------------------------------------------------------------ sending */
 
 static void publish(wh_sim_process_t *simulation, const char *channel, const void *data, int size) {
-    if (!simulation->node) {
-        return;
-    }
     if (size <= 0 || size > WH_LINK_DATAGRAM ||
         !wh_node_publish(simulation->node, channel, data, (size_t)size)) {
         ++simulation->counters.unsent;
@@ -16,7 +13,7 @@ static void publish(wh_sim_process_t *simulation, const char *channel, const voi
 }
 
 static void tell_cell(wh_sim_process_t *simulation) {
-    waferhand_cell *cell = &simulation->cell;
+    waferhand_cell *cell = &simulation->cell.message;
     cell->utime = simulation->server.state.utime;
     cell->seq = simulation->server.seq;
     cell->run = simulation->server.identity.run;
@@ -46,10 +43,8 @@ static void answer(wh_sim_process_t *simulation) {
 /* ---------------------------------------------------------------------------------------------- receiving */
 
 static void drop(wh_sim_process_t *simulation, const char *channel, size_t size) {
-    ++simulation->counters.garbage;
-    if (!simulation->named_garbage) {
-        simulation->named_garbage = true;
-        wh_node_say(simulation->say, simulation->user,
+    if (simulation->counters.garbage++ == 0) {
+        wh_node_say(simulation->node,
                     "%s: a datagram of %zu bytes is no such message: dropped, like all that follow", channel,
                     size);
     }
@@ -59,8 +54,7 @@ static void heard_motion_control(wh_sim_process_t *simulation) {
     simulation->last_command_us = wh_node_clock_us();
     if (simulation->silent) {
         simulation->silent = false;
-        wh_node_say(simulation->say, simulation->user, "motion control is back at slice %" PRId64,
-                    simulation->server.seq);
+        wh_node_say(simulation->node, "motion control is back at slice %" PRId64, simulation->server.seq);
     }
 }
 
@@ -72,7 +66,7 @@ static void act_on(wh_sim_process_t *simulation, wh_protocol_server_result_t res
     answer(simulation);
     if (result == WH_SERVER_NEW_RUN || result == WH_SERVER_RESTORED) {
         simulation->running = true;
-        wh_node_say(simulation->say, simulation->user, "run %016" PRIx64 " %s slice %" PRId64,
+        wh_node_say(simulation->node, "run %016" PRIx64 " %s slice %" PRId64,
                     (uint64_t)simulation->server.identity.run,
                     result == WH_SERVER_NEW_RUN ? "begins with" : "goes on from", simulation->server.seq);
         tell_cell(simulation);
@@ -91,7 +85,7 @@ static void handle_command(wh_sim_process_t *simulation, const waferhand_command
         heard_motion_control(simulation);
     }
     if (simulation->server.missed > missed && missed == 0) {
-        wh_node_say(simulation->say, simulation->user,
+        wh_node_say(simulation->node,
                     "slices are missing, the first before slice %" PRId64 ": they are counted",
                     simulation->server.seq);
     }
@@ -129,8 +123,7 @@ static void on_mcs(void *user, const void *data, size_t size) {
     if (message.run == simulation->server.identity.run && message.phase == WH_LINK_PHASE_OVER &&
         simulation->running) {
         simulation->running = false;
-        wh_node_say(simulation->say, simulation->user,
-                    "run %016" PRIx64 " is over at slice %" PRId64 ", hash %016" PRIx64,
+        wh_node_say(simulation->node, "run %016" PRIx64 " is over at slice %" PRId64 ", hash %016" PRIx64,
                     (uint64_t)message.run, simulation->server.seq,
                     wh_protocol_server_hash(&simulation->server));
     }
@@ -151,31 +144,23 @@ static void on_request(void *user, const void *data, size_t size) {
 /* ------------------------------------------------------------------------------------------------ opening */
 
 wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, const wh_layout_t *layout,
-                                void (*say_line)(void *user, const char *text), void *user) {
+                                bool listens) {
     memset(simulation, 0, sizeof *simulation);
     simulation->node = node;
-    simulation->say = say_line;
-    simulation->user = user;
     if (wh_protocol_server_open(&simulation->server, layout) != WH_OK ||
         !wh_link_cell_from_layout(layout, &simulation->server.identity, &simulation->cell) ||
-        waferhand_cell_encoded_size(&simulation->cell) > WH_LINK_DATAGRAM) {
-        wh_link_cell_free(&simulation->cell);
+        waferhand_cell_encoded_size(&simulation->cell.message) > WH_LINK_DATAGRAM) {
         return WH_STATUS_BAD_CAPACITY;
     }
-    const bool heard = !node || (wh_node_subscribe(node, WH_CHANNEL_COMMAND, on_command, simulation) &&
-                                 wh_node_subscribe(node, WH_CHANNEL_RESTORE, on_restore, simulation) &&
-                                 wh_node_subscribe(node, WH_CHANNEL_MCS, on_mcs, simulation) &&
-                                 wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, simulation));
+    const bool heard = !listens || (wh_node_subscribe(node, WH_CHANNEL_COMMAND, on_command, simulation) &&
+                                    wh_node_subscribe(node, WH_CHANNEL_RESTORE, on_restore, simulation) &&
+                                    wh_node_subscribe(node, WH_CHANNEL_MCS, on_mcs, simulation) &&
+                                    wh_node_subscribe(node, WH_CHANNEL_REQUEST, on_request, simulation));
     if (!heard) {
         return WH_STATUS_NO_NETWORK;
     }
     tell_cell(simulation);
     return WH_OK;
-}
-
-void wh_sim_process_publish_to(wh_sim_process_t *simulation, wh_node_t *node) {
-    simulation->node = node;
-    tell_cell(simulation);
 }
 
 wh_status_t wh_sim_process_step(wh_sim_process_t *simulation, const waferhand_command *message,
@@ -195,13 +180,11 @@ void wh_sim_process_tick(wh_sim_process_t *simulation) {
         now - simulation->last_command_us > WH_SIMULATION_SILENCE_US) {
         simulation->silent = true;
         ++simulation->counters.silences;
-        wh_node_say(simulation->say, simulation->user,
-                    "motion control has fallen silent: holding the state of slice %" PRId64,
+        wh_node_say(simulation->node, "motion control has fallen silent: holding the state of slice %" PRId64,
                     simulation->server.seq);
     }
 }
 
 void wh_sim_process_close(wh_sim_process_t *simulation) {
     wh_protocol_server_close(&simulation->server);
-    wh_link_cell_free(&simulation->cell);
 }

@@ -24,27 +24,21 @@ typedef struct {
 typedef struct {
     wh_node_t *node;
     wh_protocol_server_t server;
-    waferhand_cell cell;
+    wh_link_cell_t cell;
     const int32_t *valves; /* from outputs.txt; null: the commands' own */
-    void (*say)(void *user, const char *text);
-    void *user;
     int64_t last_command_us, last_cell_us, last_proximity_us;
-    bool running;       /* a run has begun and is not over */
-    bool silent;        /* and motion control has fallen silent */
-    bool named_garbage; /* said once */
+    bool running; /* a run has begun and is not over */
+    bool silent;  /* and motion control has fallen silent */
     wh_sim_process_counters_t counters;
     uint8_t encoded[WH_LINK_DATAGRAM];
 } wh_sim_process_t;
 
-/* Subscribes to what the simulator hears and tells the cell; with a null node it hears nothing and is stepped
- * by wh_sim_process_step. WH_STATUS_BAD_CAPACITY for a layout that does not fit messages,
- * WH_STATUS_NO_NETWORK when LCM has no room. `layout`, `node` and `say` (one line for people; may be null)
- * must outlive it. Must not be moved afterwards. */
+/* Subscribes to what the simulator hears and tells the cell. If it does not listen it is stepped by
+ * wh_sim_process_step. WH_STATUS_BAD_CAPACITY for a layout that does not fit messages,
+ * WH_STATUS_NO_NETWORK when LCM has no room. `layout` and `node` must outlive it. Must not be moved
+ * afterwards. */
 wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, const wh_layout_t *layout,
-                                void (*say)(void *user, const char *text), void *user);
-
-/* A node to publish to, for a simulation that was opened without one; tells it the cell. */
-void wh_sim_process_publish_to(wh_sim_process_t *simulation, wh_node_t *node);
+                                bool listens);
 
 /* Steps a command as if it had come from the network, and publishes what comes of it. Returns the status that
  * the answer carries; `state` is a view of the simulator's memory. */

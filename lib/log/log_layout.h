@@ -29,8 +29,7 @@ typedef struct {
     size_t parameter_count;
 } wh_log_layout_options_t;
 
-/* Makes it of a message. False if no layout could have made that message; nothing is then changed. Aborts if
- * out of memory. */
+/* Makes it of a message. False if no layout could have made that message; nothing is then changed. */
 bool wh_log_layout_make(wh_log_layout_t *made, const waferhand_cell *cell,
                         const wh_log_layout_options_t *options);
 

@@ -6,7 +6,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "../text/array.h"
 
@@ -14,17 +13,6 @@
 #define FARTHEST 1e9
 
 /* --------------------------------------------------------------------------------------------------- file */
-
-bool wh_log_run_is_log(const char *path) {
-    static const unsigned char sync[4] = {0xED, 0xA1, 0xDA, 0x01};
-    unsigned char begin[4] = {0};
-    FILE *file = fopen(path, "rb");
-    const bool is_log = file && fread(begin, 1, 4, file) == 4 && memcmp(begin, sync, 4) == 0;
-    if (file) {
-        (void)fclose(file);
-    }
-    return is_log;
-}
 
 __attribute__((format(printf, 2, 3))) static void note(wh_log_run_t *run, const char *format, ...) {
     char *text = run->text[run->note_count];
@@ -43,19 +31,6 @@ __attribute__((format(printf, 2, 3))) static bool refuse(wh_log_run_t *run, cons
     (void)vsnprintf(run->message + length, sizeof run->message - (size_t)length, format, values);
     va_end(values);
     return false;
-}
-
-static FILE *open_file(wh_log_run_t *run) {
-    struct stat status;
-    FILE *file = fopen(run->options.path, "rb");
-    if (!file) {
-        (void)refuse(run, "%s (expected an LCM event log, or a script)", strerror(errno));
-    } else if (fstat(fileno(file), &status) == 0 && S_ISDIR(status.st_mode)) {
-        (void)refuse(run, "%s (expected an LCM event log, or a script)", strerror(EISDIR));
-        (void)fclose(file);
-        return NULL;
-    }
-    return file;
 }
 
 static bool wants(const wh_log_run_t *run) {
@@ -91,10 +66,7 @@ static void drop_run(wh_log_run_t *run) {
 static void watch_collisions(wh_log_run_t *run) {
     const wh_layout_t *layout = run->cell.layout;
     if (run->cell.is_whole && layout->collision) {
-        run->collision.memory = malloc(wh_collision_bytes(layout));
-        if (!run->collision.memory) {
-            abort();
-        }
+        run->collision.memory = wh_array_new(wh_collision_bytes(layout), 1);
         run->collision.layout = layout;
         wh_robot_forward(layout->machine.robot.home, &run->collision.base_from_effector);
     }
@@ -163,14 +135,6 @@ static void take_mcs(wh_log_run_t *run, const waferhand_mcs *message) {
 
 /* ------------------------------------------------------------------------------------------------- slices */
 
-static bool robot_moves(const wh_log_run_t *run, const double axes[]) {
-    bool moves = false;
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        moves = moves || wh_real_abs(axes[axis] - run->told.axes[axis]) > 0;
-    }
-    return moves;
-}
-
 static bool is_told_to_wait(const wh_log_run_t *run) {
     const char *text = running_text(run);
     return !text || strncmp(text, "WAIT", 4) == 0;
@@ -190,17 +154,11 @@ static wh_share_t share_standing(const wh_log_run_t *run, const int32_t valves[]
 
 static wh_task_t task_of(const wh_log_run_t *run, const double axes[], const int32_t valves[],
                          const wh_state_t *state) {
-    const wh_machine_t *machine = &run->cell.layout->machine;
-    const bool robot = robot_moves(run, axes);
-    wh_task_t task = {share_standing(run, valves, state), robot, robot, 0};
-    for (size_t g = 0; g < machine->gripper_count; ++g) {
-        const int32_t axis = machine->mounts[g].axis;
-        const bool carried = axis == WH_NONE ? robot : wh_real_abs(axes[axis] - run->told.axes[axis]) > 0;
-        task.moves = task.moves || carried;
-        task.carried |= carried ? 1U << g : 0;
+    bool moving[WH_AXES];
+    for (size_t axis = 0; axis < WH_AXES; ++axis) {
+        moving[axis] = wh_real_abs(axes[axis] - run->told.axes[axis]) > 0;
     }
-    task.robot = robot || !task.moves;
-    return task;
+    return wh_activity_motion(&run->cell.layout->machine, moving, share_standing(run, valves, state));
 }
 
 static void count_slice(wh_log_run_t *run, int64_t seq, const double axes[]) {
@@ -428,12 +386,9 @@ static void look_ahead(wh_log_run_t *run, FILE *file) {
 static wh_log_result_t read_events(wh_log_run_t *run, FILE *file) {
     wh_log_result_t result;
     wh_log_open(&run->log, file);
-    do {
-        result = wh_log_next(&run->log);
-        if (result == WH_LOG_EVENT) {
-            take_event(run);
-        }
-    } while (result == WH_LOG_EVENT);
+    while ((result = wh_log_next(&run->log)) == WH_LOG_EVENT) {
+        take_event(run);
+    }
     return result;
 }
 
@@ -468,9 +423,9 @@ static bool refuse_log(wh_log_run_t *run, wh_log_result_t result) {
 bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options) {
     memset(run, 0, sizeof *run);
     run->options = *options;
-    FILE *file = open_file(run);
+    FILE *file = wh_log_file(options->path);
     if (!file) {
-        return false;
+        return refuse(run, "%s (expected an LCM event log, or a script)", strerror(errno));
     }
     look_ahead(run, file);
     const wh_log_result_t result = read_events(run, file);

@@ -44,7 +44,6 @@ typedef struct {
     wh_state_t state; /* the last one */
     wh_collision_t collision;
     wh_signals_t signals;
-    void *collision_memory;
     wh_link_arrays_t arrays;
     wh_log_boundary_t *boundaries; /* sorted: messages of them may come late */
     size_t boundary_count, boundary_capacity;
@@ -65,12 +64,9 @@ typedef struct {
     char message[800]; /* why there is nothing to show */
 } wh_log_run_t;
 
-/* True if the file begins as an event log does. */
-bool wh_log_run_is_log(const char *path);
-
 /* Reads the whole log. False, and the reason in `message`, if the file cannot be read, is no log, or has no
  * such run. A log that is cut off or damaged is read up to there, and a note says so. To be closed in any
- * case. Aborts if out of memory. */
+ * case. */
 bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options);
 
 void wh_log_run_close(wh_log_run_t *run);

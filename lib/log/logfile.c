@@ -1,11 +1,24 @@
 #include "logfile.h"
 
+#include <errno.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #define HEADER 28
 #define SYNC UINT32_C(0xeda1da01)
 /* No event of any program is longer. */
 #define LONGEST INT32_C(0x10000000)
+
+FILE *wh_log_file(const char *path) {
+    struct stat status;
+    FILE *file = fopen(path, "rb");
+    if (file && fstat(fileno(file), &status) == 0 && S_ISDIR(status.st_mode)) {
+        (void)fclose(file);
+        errno = EISDIR;
+        return NULL;
+    }
+    return file;
+}
 
 void wh_log_open(wh_log_t *log, FILE *file) {
     memset(log, 0, sizeof *log);

@@ -33,6 +33,9 @@ typedef struct {
     uint8_t data[WH_LOG_EVENT_BYTES];
 } wh_log_t;
 
+/* Opens a file for reading. Null, and errno says why, if it cannot be read; a folder is no file. */
+FILE *wh_log_file(const char *path);
+
 /* Starts at the file's current place. */
 void wh_log_open(wh_log_t *log, FILE *file);
 

@@ -50,11 +50,10 @@ static bool differs(wh_replay_difference_t *difference, const char *of, const ch
 
 static bool pose_differs(wh_replay_difference_t *difference, const char *of, const wh_pose_t *recorded,
                          const wh_pose_t *replayed) {
-    static const char *const entries[] = {"rotation 1,1", "rotation 1,2", "rotation 1,3",
-                                          "rotation 2,1", "rotation 2,2", "rotation 2,3",
-                                          "rotation 3,1", "rotation 3,2", "rotation 3,3"};
+    char entry[60];
     for (size_t i = 0; i < 9; ++i) {
-        if (differs(difference, of, entries[i], recorded->R.m[i / 3][i % 3], replayed->R.m[i / 3][i % 3])) {
+        snprintf(entry, sizeof entry, "rotation %zu,%zu", i / 3 + 1, i % 3 + 1);
+        if (differs(difference, of, entry, recorded->R.m[i / 3][i % 3], replayed->R.m[i / 3][i % 3])) {
             return true;
         }
     }
@@ -277,10 +276,6 @@ static void on_mcs(wh_replay_t *replay, const void *data, size_t size) {
 
 /* ---------------------------------------------------------------------------------------------- the whole */
 
-void wh_replay_open(wh_replay_t *replay) {
-    memset(replay, 0, sizeof *replay);
-}
-
 void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data, size_t size) {
     static const struct {
         const char *channel;
@@ -289,8 +284,8 @@ void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data,
                     {WH_CHANNEL_COMMAND, on_command},
                     {WH_CHANNEL_STATE, on_state},
                     {WH_CHANNEL_MCS, on_mcs}};
-    for (size_t i = 0; i < sizeof handlers / sizeof handlers[0] && size <= WH_LINK_DATAGRAM; ++i) {
-        if (strcmp(handlers[i].channel, channel) == 0) {
+    for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; ++i) {
+        if (size <= WH_LINK_DATAGRAM && strcmp(handlers[i].channel, channel) == 0) {
             handlers[i].handle(replay, data, size);
         }
     }

@@ -35,7 +35,7 @@ typedef struct {
     wh_replay_difference_t difference;
 } wh_replay_run_t;
 
-/* Must not be moved once opened. */
+/* Zero it to begin with. Must not be moved afterwards. */
 typedef struct {
     wh_layout_t *layout; /* null: no cell came yet */
     wh_protocol_server_t server;
@@ -52,8 +52,6 @@ typedef struct {
     int64_t state_run, state_seq;
     wh_link_arrays_t recorded;
 } wh_replay_t;
-
-void wh_replay_open(wh_replay_t *replay);
 
 /* One event of the log; those of other channels are ignored. */
 void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data, size_t size);

@@ -109,3 +109,8 @@ wh_real_t wh_atan2(wh_real_t y, wh_real_t x) {
     const wh_real_t result = angle.hi + angle.lo;
     return is_negative(y) ? -result : result;
 }
+
+wh_real_t wh_acos(wh_real_t cosine) {
+    const wh_real_t square = (1 - cosine) * (1 + cosine);
+    return wh_atan2(wh_real_sqrt(square > 0 ? square : 0), cosine);
+}

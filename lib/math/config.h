@@ -10,42 +10,177 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The one place where the version stands; the program, the manual and the pkg-config file read it here. */
-#define WH_VERSION "0.1.0"
+/* The one place where the version stands; program, manual, pkg-config and CMake have it from here. */
+#define WH_VERSION_MAJOR 0
+#define WH_VERSION_MINOR 1
+#define WH_VERSION_PATCH 0
+#define WH_VERSION WH_TEXT(WH_VERSION_MAJOR) "." WH_TEXT(WH_VERSION_MINOR) "." WH_TEXT(WH_VERSION_PATCH)
+#define WH_TEXT(tokens) WH_TEXT_(tokens)
+#define WH_TEXT_(tokens) #tokens
+
+/* What a firmware does without is not linked at all. Define one of these or both, for the library and for all
+ * that includes its headers alike: on the command line, or in a header of your own that WH_CONFIG_FILE names,
+ * as in -DWH_CONFIG_FILE='"our_waferhand.h"'. By default nothing is left out. What remains has the same bits
+ * and the same hash. A library that was built without something ends its symbols by it, so that it does not
+ * link with headers that have it.
+ *   WH_WITHOUT_SWEEP   no swept checking: wh_grasp_init refuses WH_CHECK_SWEPT (WH_STATUS_NOT_BUILT)
+ *   WH_WITHOUT_INDEX   no index over the wafers: wh_grasp_init refuses buckets, wh_grasp_buckets says 0 */
+#if defined(WH_CONFIG_FILE)
+#include WH_CONFIG_FILE
+#endif
+#if defined(WH_WITHOUT_SWEEP)
+#define WH_SWEEP_BUILT false
+#else
+#define WH_SWEEP_BUILT true
+#endif
+#if defined(WH_WITHOUT_INDEX)
+#define WH_INDEX_BUILT false
+#else
+#define WH_INDEX_BUILT true
+#endif
 
 /* The same inputs must give the same bits on every machine, which these builds cannot hold. Nor can one that
  * fuses products and sums, which no macro tells: build everything that includes these headers with
- * -ffp-contract=off -fno-tree-slp-vectorize, as `make library` and pkg-config's flags do. */
+ * -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION, as pkg-config, CMake and meson do. */
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) ||                 \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
 #error                                                                                                       \
     "waferhand: -ffast-math (or a part of it) reorders sums and drops NaN, so builds would differ: remove it"
 #endif
-#if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD != 0
+#if defined(FLT_EVAL_METHOD)
+#if FLT_EVAL_METHOD != 0
 #error "waferhand: needs FLT_EVAL_METHOD 0 (no x87): on 32-bit x86 build with -msse2 -mfpmath=sse"
+#endif
+#elif !defined(__TINYC__) || defined(__i386__) /* tcc does not say, but keeps to it outside of x87 */
+#error                                                                                                       \
+    "waferhand: unknown rounding: if this compiler rounds each operation to its type, add -DFLT_EVAL_METHOD=0"
 #endif
 
 /* The library's real number: double, or float when built with -DWH_FLOAT. Library and program must agree. */
 #if defined(WH_FLOAT)
 typedef float wh_real_t;
-#define WH_ABI_SYMBOL wh_abi_1_float
 /* How far the largest entry of |R^T R - I| may be from zero. */
 #define WH_ROTATION_TOLERANCE 1e-5F
+#define WH_SYMBOL_NUMBER "f"
 #else
 typedef double wh_real_t;
-#define WH_ABI_SYMBOL wh_abi_1_double
 #define WH_ROTATION_TOLERANCE 1e-6
+#define WH_SYMBOL_NUMBER "d"
+#endif
+
+/* True where numbers are computed by software: there a comparison that saves a product pays. Changes no
+ * result. */
+#if defined(__ARM_ARCH) && (!defined(__ARM_FP) || (!defined(WH_FLOAT) && (__ARM_FP & 8) == 0))
+#define WH_REAL_IS_SLOW true
+#elif defined(__riscv) && (!defined(__riscv_flen) || (!defined(WH_FLOAT) && __riscv_flen < 64))
+#define WH_REAL_IS_SLOW true
+#else
+#define WH_REAL_IS_SLOW false
 #endif
 
 /* A literal of the library's number type. */
 #define WH_REAL(literal) ((wh_real_t)(literal))
 
-/* Referring to this symbol from each of the program's files makes the linker refuse a program whose headers
- * are of another ABI or of the other number type than the library. */
-extern const char WH_ABI_SYMBOL;
-#if !defined(WH_BUILDING_LIBRARY) && defined(__GNUC__)
-static const char *const wh_abi_check __attribute__((used)) = &WH_ABI_SYMBOL;
+/* Stands after `typedef enum`: four bytes, whatever -fshort-enums and its like say on one side and not on the
+ * other. Debuggers still show the names, and C++ takes the fields without a cast. A compiler that has no word
+ * for it is refused where its enumerations are shorter. */
+#if (defined(__cplusplus) && __cplusplus >= 201103L) ||                                                      \
+    (defined(__STDC_VERSION__) && __STDC_VERSION__ >= 202311L)
+#define WH_FOUR_BYTES : int32_t
+#elif defined(__GNUC__) || defined(__TINYC__)
+#define WH_FOUR_BYTES __attribute__((mode(SI)))
+#else
+#define WH_FOUR_BYTES
+typedef enum { WH_ENUM_SHORTEST } wh_enum_shortest_t;
+typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : -1]; /* IAR: --enum_is_int */
 #endif
+
+/* Goes up when a struct or a function changes so that headers and library of two versions do not fit. */
+#define WH_ABI 2
+
+/* What the library is built without, as its symbols end. */
+#if defined(WH_WITHOUT_SWEEP) && defined(WH_WITHOUT_INDEX)
+#define WH_SYMBOL_FEATURES _without_sweep_index
+#elif defined(WH_WITHOUT_SWEEP)
+#define WH_SYMBOL_FEATURES _without_sweep
+#elif defined(WH_WITHOUT_INDEX)
+#define WH_SYMBOL_FEATURES _without_index
+#else
+#define WH_SYMBOL_FEATURES /* nothing: complete */
+#endif
+
+/* Stands after each prototype. To the linker wh_pose_validate is wh_pose_validate_2d: number type, ABI and
+ * features end the name. So headers and a library that do not fit do not link, whatever is linked and how:
+ * "undefined reference to wh_pose_validate_2d" from a float library means that WH_FLOAT is missing where the
+ * headers are included. Debuggers show the name of the source. A compiler that cannot rename a symbol, or
+ * -DWH_SYMBOL_MACROS, gets the same names by macros: math/symbols.h. */
+#if (defined(__GNUC__) || defined(__TINYC__)) && !defined(WH_SYMBOL_MACROS)
+#if defined(__USER_LABEL_PREFIX__)
+#define WH_SYMBOL_START WH_TEXT(__USER_LABEL_PREFIX__)
+#else
+#define WH_SYMBOL_START ""
+#endif
+#define WH_SYMBOL(name)                                                                                      \
+    __asm__(WH_SYMBOL_START #name "_" WH_TEXT(WH_ABI) WH_SYMBOL_NUMBER WH_TEXT(WH_SYMBOL_FEATURES))
+#else
+#define WH_SYMBOL(name)
+#define WH_SYMBOL_RENAMED(name) WH_SYMBOL_JOIN(name, WH_ABI, WH_SYMBOL_FEATURES)
+#define WH_SYMBOL_JOIN(name, abi, features) WH_SYMBOL_JOIN_(name, abi, features)
+#if defined(WH_FLOAT)
+#define WH_SYMBOL_JOIN_(name, abi, features) name##_##abi##f##features
+#else
+#define WH_SYMBOL_JOIN_(name, abi, features) name##_##abi##d##features
+#endif
+#include "symbols.h"
+#endif
+
+/* Each public header begins and ends with these: C's names in C++, and the same bits of the inline functions
+ * also where -ffp-contract=off was forgotten. The file that includes them keeps its own rules. What
+ * forgetting costs on a machine that fuses: gcc calls these functions instead of inlining them, and clang,
+ * where it knows no float_control, compiles all of the file without contraction. clang's own
+ * -ffp-contract=fast overrules every pragma: it must not be. -DWH_NO_CONTRACTION says that the flags are
+ * there: gcc for Arm cannot tell, and would call even then. */
+#if defined(WH_NO_CONTRACTION)
+#define WH_SAME_BITS_BEGIN
+#define WH_SAME_BITS_END
+#elif defined(__clang__) && (defined(__x86_64__) || defined(__i386__))
+#define WH_SAME_BITS_BEGIN _Pragma("float_control(push)") _Pragma("STDC FP_CONTRACT OFF")
+#define WH_SAME_BITS_END _Pragma("float_control(pop)")
+#elif defined(__clang__)
+#define WH_SAME_BITS_BEGIN _Pragma("STDC FP_CONTRACT OFF")
+#define WH_SAME_BITS_END
+#elif defined(__GNUC__) && (defined(__FP_FAST_FMA) || defined(__FP_FAST_FMAF))
+#define WH_SAME_BITS_BEGIN                                                                                   \
+    _Pragma("GCC push_options") _Pragma("GCC optimize (\"fp-contract=off,no-tree-slp-vectorize\")")
+#define WH_SAME_BITS_END _Pragma("GCC pop_options")
+#else
+#define WH_SAME_BITS_BEGIN
+#define WH_SAME_BITS_END
+#endif
+/* What the shared library shows is what public headers declare. */
+#if defined(WH_BUILDING_LIBRARY) && defined(__GNUC__)
+#define WH_PUBLIC_BEGIN _Pragma("GCC visibility push(default)")
+#define WH_PUBLIC_END _Pragma("GCC visibility pop")
+#else
+#define WH_PUBLIC_BEGIN
+#define WH_PUBLIC_END
+#endif
+#if defined(__cplusplus)
+#define WH_HEADER_BEGIN WH_SAME_BITS_BEGIN WH_PUBLIC_BEGIN extern "C" {
+#define WH_HEADER_END                                                                                        \
+    }                                                                                                        \
+    WH_PUBLIC_END WH_SAME_BITS_END
+#else
+#define WH_HEADER_BEGIN WH_SAME_BITS_BEGIN WH_PUBLIC_BEGIN
+#define WH_HEADER_END WH_PUBLIC_END WH_SAME_BITS_END
+#endif
+
+WH_HEADER_BEGIN
+
+/* The version of the library that was linked, WH_VERSION when it was built: a constant string. */
+const char *wh_version(void) WH_SYMBOL(wh_version);
+
+WH_HEADER_END
 
 /* Invariants the library relies on. A firmware may define its own before including any header, or switch them
  * on with -DWH_DEBUG; without either they cost nothing. */

@@ -6,6 +6,8 @@
 
 #include "pose.h"
 
+WH_HEADER_BEGIN
+
 #define WH_HASH_START UINT64_C(0x6a09e667f3bcc908)
 
 /* The shift carries high bits down again: a product alone would let two flipped signs cancel each other. */
@@ -43,5 +45,7 @@ static inline uint64_t wh_hash_pose(uint64_t hash, const wh_pose_t *pose) {
     }
     return wh_hash_vec3(hash, &pose->r);
 }
+
+WH_HEADER_END
 
 #endif

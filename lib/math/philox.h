@@ -7,13 +7,17 @@
 #ifndef WH_MATH_PHILOX_H
 #define WH_MATH_PHILOX_H
 
-#include <stdint.h>
+#include "config.h"
+
+WH_HEADER_BEGIN
 
 typedef struct {
     uint32_t words[4];
 } wh_philox_t;
 
 /* The 128 bits of a counter under a key. No state, no failure. Cost: about 15 ns. */
-wh_philox_t wh_philox(const uint32_t counter[4], const uint32_t key[2]);
+wh_philox_t wh_philox(const uint32_t counter[4], const uint32_t key[2]) WH_SYMBOL(wh_philox);
+
+WH_HEADER_END
 
 #endif

@@ -4,6 +4,8 @@
 
 #include "pose.h"
 
+WH_HEADER_BEGIN
+
 typedef struct {
     wh_real_t distance; /* of the origins, mm */
     wh_vec3_t r;        /* from the first origin to the second, in the first frame's axes, mm */
@@ -13,6 +15,8 @@ typedef struct {
 
 /* Both poses are base_from_frame and valid. Angles are exact to about 1e-15 throughout, small ones and those
  * near pi too. */
-wh_relation_t wh_relate(const wh_pose_t *first, const wh_pose_t *second);
+wh_relation_t wh_relate(const wh_pose_t *first, const wh_pose_t *second) WH_SYMBOL(wh_relate);
+
+WH_HEADER_END
 
 #endif

@@ -4,8 +4,10 @@
 
 #include "config.h"
 
+WH_HEADER_BEGIN
+
 /* WH_STATUS_NULL_ARGUMENT, ...: number, name and text of each stand in math/status.def. */
-typedef enum {
+typedef enum WH_FOUR_BYTES {
 #define WH_STATUS(number, name, text) WH_STATUS_##name = (number),
 #include "status.def"
 #undef WH_STATUS
@@ -13,11 +15,14 @@ typedef enum {
 
 #define WH_OK WH_STATUS_OK
 
-/* The catalogue's text for a status: a constant string in English without a full stop, never null; for a
- * number that is not in the catalogue "unknown status". Cost: linear in the catalogue. */
-const char *wh_status_text(wh_status_t status);
+/* The catalogue's text for a status that a function of the library returns: a constant string in English
+ * without a full stop, never null. For any other number "unknown status": a firmware links none of the texts
+ * of what a whole controller answers, 40 and more. Cost: linear in the catalogue. */
+const char *wh_status_text(wh_status_t status) WH_SYMBOL(wh_status_text);
 
-/* The catalogue's name for a status, such as "NOT_FINITE"; "UNKNOWN" if it is not in it. Same cost. */
-const char *wh_status_name(wh_status_t status);
+/* The catalogue's name for any status, such as "NOT_FINITE"; "UNKNOWN" if it is not in it. Same cost. */
+const char *wh_status_name(wh_status_t status) WH_SYMBOL(wh_status_name);
+
+WH_HEADER_END
 
 #endif

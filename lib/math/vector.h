@@ -10,6 +10,8 @@
 
 #include "config.h"
 
+WH_HEADER_BEGIN
+
 static inline wh_real_t wh_real_max(wh_real_t a, wh_real_t b) {
     return a > b ? a : b;
 }
@@ -161,5 +163,7 @@ static inline wh_mat3_t wh_mat3_multiply_back(const wh_mat3_t *a, const wh_mat3_
     wh_mat3_multiply_back_to(a, b, &product);
     return product;
 }
+
+WH_HEADER_END
 
 #endif

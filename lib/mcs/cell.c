@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 
 #include "../script/wh_module_values.h"
-#include "ahead.h"
 #include "native.h"
 
 static bool is_same_file(const char *a, const char *b) {
@@ -90,7 +89,7 @@ static wh_status_t set_up_simulator(lua_State *L, wh_simulator_t *simulator, con
 static void set_up_local(lua_State *L, wh_local_cell_t *local, const wh_layout_t *real) {
     const wh_status_t status = set_up_simulator(L, &local->simulator, real);
     if (status != WH_OK) {
-        luaL_error(L, "%s: %s", real->path, wh_status_text(status));
+        luaL_error(L, "%s: %s", real->path, wh_record_error_text(status));
     }
     if (real->collision) {
         wh_collision_attach(&local->collision, real, &local->simulator,
@@ -103,10 +102,7 @@ static void set_up_local(lua_State *L, wh_local_cell_t *local, const wh_layout_t
 
 static void set_up_look_ahead(lua_State *L, wh_rehearsal_t *rehearsal, const wh_layout_t *layout) {
     if (layout->look_ahead && !rehearsal->look_ahead) {
-        wh_ahead_t *ahead = lua_memory(L, sizeof *ahead);
-        wh_ahead_init(ahead, layout, lua_memory(L, wh_ahead_bytes(layout)));
-        rehearsal->look_ahead = wh_ahead_judge;
-        rehearsal->look_ahead_user = ahead;
+        wh_rehearsal_look_ahead(rehearsal, layout, lua_memory(L, wh_rehearsal_ahead_bytes(layout)));
     }
 }
 
@@ -137,10 +133,9 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     set_up_local(L, &mcs->local, real);
     const wh_status_t status = wh_track_init(&mcs->track, &real->machine, layout->slice_us);
     if (status != WH_OK) {
-        luaL_error(L, "%s: %s", layout->path, wh_status_text(status));
+        luaL_error(L, "%s: %s", layout->path, wh_record_error_text(status));
     }
     set_up_look_ahead(L, &mcs->rehearsal, layout);
-    mcs->link = &mcs->local.simulator.link;
     wh_simulator_view(&mcs->local.simulator, &mcs->state);
     mcs->layout = layout;
     mcs->real = real;
@@ -149,16 +144,6 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
 }
 
 /* ------------------------------------------------------------------------------------- the layout for Lua */
-
-static void set_boolean(lua_State *L, const char *name, bool value) {
-    lua_pushboolean(L, value);
-    lua_setfield(L, -2, name);
-}
-
-static void set_text(lua_State *L, const char *name, const char *value) {
-    lua_pushstring(L, value);
-    lua_setfield(L, -2, name);
-}
 
 static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) {
     const wh_layout_station_t *station = &layout->stations[index];
@@ -177,22 +162,21 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_number(L, "wait", station->wait);
     wh_lua_set_number(L, "map_speed", station->map_speed);
     wh_lua_set_number(L, "retries", station->retries);
-    set_text(L, "name", station->name);
+    wh_lua_set_text(L, "name", station->name);
     wh_lua_set_index(L, "index", (int32_t)index);
-    lua_pushinteger(L, place->slots);
-    lua_setfield(L, -2, "slots");
+    wh_lua_set_integer(L, "slots", place->slots);
     wh_lua_set_index(L, "chuck", place->chuck);
     wh_lua_set_index(L, "effector", station->effector);
-    set_boolean(L, "taught", station->taught);
-    set_boolean(L, "check_map", station->check_map);
-    set_text(L, "vacuum_check", modes[station->check]);
-    set_text(L, "handover", station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
+    wh_lua_set_boolean(L, "taught", station->taught);
+    wh_lua_set_boolean(L, "check_map", station->check_map);
+    wh_lua_set_text(L, "vacuum_check", modes[station->check]);
+    wh_lua_set_text(L, "handover", station->handover == WH_HANDOVER_NEW_FIRST ? "new_first" : "same_slice");
 }
 
 static void push_gripper(lua_State *L, const wh_layout_t *layout, size_t g) {
     lua_createtable(L, 0, 3);
-    set_text(L, "name", layout->grippers[g].name);
-    set_boolean(L, "on_robot", layout->grippers[g].station == WH_NONE);
+    wh_lua_set_text(L, "name", layout->grippers[g].name);
+    wh_lua_set_boolean(L, "on_robot", layout->grippers[g].station == WH_NONE);
     wh_lua_set_index(L, "axis", layout->machine.mounts[g].axis);
 }
 
@@ -200,10 +184,10 @@ static void push_gripper(lua_State *L, const wh_layout_t *layout, size_t g) {
  * lengths in mm, angles in rad, times in s. */
 static void push_layout(lua_State *L, const wh_layout_t *layout) {
     lua_createtable(L, 0, 8);
-    set_text(L, "path", layout->path);
+    wh_lua_set_text(L, "path", layout->path);
     wh_lua_set_number(L, "slice", (double)layout->slice_us / 1e6);
-    set_boolean(L, "sampled", layout->grasp.check == WH_CHECK_SAMPLED);
-    set_boolean(L, "homed", layout->homed);
+    wh_lua_set_boolean(L, "sampled", layout->grasp.check == WH_CHECK_SAMPLED);
+    wh_lua_set_boolean(L, "homed", layout->homed);
     wh_lua_push_tolerance(L, &layout->grasp.tolerance);
     lua_setfield(L, -2, "tolerance");
     lua_createtable(L, 0, (int)layout->station_count);
@@ -218,11 +202,7 @@ static void push_layout(lua_State *L, const wh_layout_t *layout) {
         lua_rawseti(L, -2, (lua_Integer)g + 1);
     }
     lua_setfield(L, -2, "grippers");
-    lua_createtable(L, WH_ROBOT_AXES, 0);
-    for (int axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        lua_pushnumber(L, layout->machine.robot.home[axis]);
-        lua_rawseti(L, -2, axis + 1);
-    }
+    wh_lua_push_numbers(L, layout->machine.robot.home, WH_ROBOT_AXES);
     lua_setfield(L, -2, "home");
 }
 

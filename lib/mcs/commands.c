@@ -1,9 +1,22 @@
 /* Commands and what is kept of them: their beginning and end, errors, expectations, cycles, complaints, and
  * why a pick was missed. */
-#include <stdio.h>
-#include <string.h>
-
+#include "../script/wh_module_values.h"
+#include "../sim/event_text.h"
 #include "native.h"
+
+/* What an entry of the record costs of the instruction budget. */
+#define STEPS_PER_ENTRY 256
+#define STEPS_PER_BYTE 4
+
+/* An argument that goes into the record. The record is outside of Lua's memory cap, so an entry is paid for
+ * from the budget: about as much as a script would spend on making as much text anew. Raises if the budget is
+ * spent. */
+static const char *pay_for_text(lua_State *L, int argument) {
+    size_t length = 0;
+    const char *text = luaL_checklstring(L, argument, &length);
+    wh_sandbox_charge(L, STEPS_PER_ENTRY + STEPS_PER_BYTE * (uint64_t)length);
+    return text;
+}
 
 static void tell(const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
     if (mcs->partners.watch) {
@@ -18,9 +31,7 @@ static void tell(const wh_mcs_t *mcs, const wh_command_record_t *command, bool e
  * can get here from within another command. */
 static int begin_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    size_t length = 0;
-    const char *text = luaL_checklstring(L, 1, &length);
-    wh_mcs_charge_entry(L, length);
+    const char *text = pay_for_text(L, 1);
     if (mcs->recorder.running != WH_NONE) {
         lua_pushfstring(L, "%s is a command within another", text);
         wh_mcs_raise(L, mcs, WH_STATUS_BUSY, lua_tostring(L, -1));
@@ -41,13 +52,12 @@ static const wh_command_record_t *end_command(wh_mcs_t *mcs, wh_status_t error, 
 /* native.finish(number, message): it ended, with an error number unless that is nil. */
 static int finish_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    size_t length = 0;
     const wh_status_t error = (wh_status_t)luaL_optinteger(L, 1, WH_OK);
-    const char *message = error == WH_OK ? "" : luaL_checklstring(L, 2, &length);
+    const char *message = error == WH_OK ? "" : luaL_checkstring(L, 2);
     const wh_command_record_t *command = end_command(mcs, error, message);
     luaL_argcheck(L, command, 1, "no command is running");
     if (error != WH_OK) {
-        wh_mcs_charge_entry(L, length); /* may raise: not before the command has ended */
+        (void)pay_for_text(L, 2); /* may raise: not before the command has ended */
     }
     tell(mcs, command, true);
     return 0;
@@ -65,9 +75,7 @@ void wh_mcs_cut_short(wh_mcs_t *mcs, wh_status_t error, const char *message) {
 static int add_expectation(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_of(L);
     const bool ok = lua_toboolean(L, 1) != 0;
-    size_t length = 0;
-    const char *text = luaL_checklstring(L, 2, &length);
-    wh_mcs_charge_entry(L, length);
+    const char *text = pay_for_text(L, 2);
     wh_record_add_expectation(mcs->recorder.record, wh_sandbox_line(L, mcs->script), text, ok);
     return 0;
 }
@@ -75,69 +83,41 @@ static int add_expectation(lua_State *L) {
 /* native.cycle(name): the next one begins. */
 static int begin_cycle(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    size_t length = 0;
-    const char *name = luaL_checklstring(L, 1, &length);
+    const char *name = luaL_checkstring(L, 1);
     if (mcs->recorder.running != WH_NONE) {
         wh_mcs_raise(L, mcs, WH_STATUS_BUSY, "a cycle within a command");
     }
-    wh_mcs_charge_entry(L, length);
+    (void)pay_for_text(L, 1);
     wh_record_add_cycle(mcs->recorder.record, wh_sandbox_line(L, mcs->script), name, mcs->track.slice);
     return 0;
 }
 
-static wh_status_t status_named(const char *name) {
-    static const wh_status_t all[] = {
-#define WH_STATUS(number, name, text) WH_STATUS_##name,
-#include "../math/status.def"
-#undef WH_STATUS
-    };
-    for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i) {
-        if (strcmp(wh_status_name(all[i]), name) == 0) {
-            return all[i];
-        }
-    }
-    return WH_STATUS_BAD_ARGUMENT;
-}
-
-/* native.fail(NAME, detail): raises the numbered error of the catalogue. */
+/* native.fail(number, detail): raises the numbered error. */
 static int fail(lua_State *L) {
-    wh_mcs_raise(L, wh_mcs_of(L), status_named(luaL_checkstring(L, 1)), luaL_optstring(L, 2, NULL));
+    wh_mcs_raise(L, wh_mcs_of(L), (wh_status_t)luaL_checkinteger(L, 1), luaL_optstring(L, 2, NULL));
 }
 
-/* ------------------------------------------------------------------------------------------- missed picks */
+/* ------------------------------------------------------------------------------ missed picks, complaints */
 
-static void append(char *text, size_t size, const char *part) {
-    const size_t length = strlen(text);
-    snprintf(text + length, size - length, "%s%s", length > 0 ? " and " : "", part);
+/* Pushes why it was missed: all conditions that failed. */
+static void push_reasons(lua_State *L, const wh_mcs_t *mcs, const wh_event_t *miss) {
+    const wh_event_names_t names = {.first = 1, .tolerance = &mcs->layout->grasp.tolerance};
+    char reason[WH_EVENT_TEXT_SIZE];
+    luaL_Buffer text;
+    luaL_buffinit(L, &text);
+    for (size_t i = 0; wh_event_reason(miss, &names, i, reason, sizeof reason) > 0; ++i) {
+        luaL_addstring(&text, i > 0 ? " and " : "");
+        luaL_addstring(&text, reason);
+    }
+    luaL_pushresult(&text);
 }
 
-static void describe_miss(const wh_mcs_t *mcs, const wh_event_t *miss, char *text, size_t size) {
-    const wh_tolerance_t *limit = &mcs->layout->grasp.tolerance;
-    const wh_proximity_t *p = &miss->measured;
-    char reasons[240] = "";
-    char part[80];
-    if (p->failed & WH_FAILED_PROJZ) {
-        snprintf(part, sizeof part, "|dr_proj_z| %.4f is not below %g", wh_real_abs(p->dr_proj_z),
-                 limit->projz);
-        append(reasons, sizeof reasons, part);
-    }
-    if (p->failed & WH_FAILED_PROJXY) {
-        snprintf(part, sizeof part, "|dr_proj_xy| %.4f is not below %g", p->dr_proj_xy_norm, limit->projxy);
-        append(reasons, sizeof reasons, part);
-    }
-    if (p->failed & WH_FAILED_PLANAR) {
-        snprintf(part, sizeof part, "n1_proj_n2 %.6f is not above %g", p->n1_proj_n2, limit->planar);
-        append(reasons, sizeof reasons, part);
-    }
-    snprintf(text, size, "closest to %s: %s", mcs->layout->wafers[miss->wafer].name, reasons);
-}
-
-/* native.explain(gripper): why the running command took nothing with it. */
-static int explain(lua_State *L) {
+/* native.closest(gripper): the name of the wafer that came closest to it in the running command, which took
+ * nothing with it, and why it was not taken; nothing if no wafer came near. */
+static int find_closest(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_record_t *record = mcs->recorder.record;
     const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
-    char text[360] = "no wafer came near";
     wh_decisions_measured(mcs->decisions, "why a wafer was missed");
     for (size_t i = record->event_count; i > 0; --i) {
         const wh_event_record_t *kept = &record->events[i - 1];
@@ -145,15 +125,13 @@ static int explain(lua_State *L) {
             break;
         }
         if (kept->event.kind == WH_EVENT_NEAR_MISS && kept->event.gripper == gripper) {
-            describe_miss(mcs, &kept->event, text, sizeof text);
-            break;
+            lua_pushstring(L, mcs->layout->wafers[kept->event.wafer].name);
+            push_reasons(L, mcs, &kept->event);
+            return 2;
         }
     }
-    lua_pushstring(L, text);
-    return 1;
+    return 0;
 }
-
-/* --------------------------------------------------------------------------------------------- complaints */
 
 /* native.mark(): how many events the record has. */
 static int count_events(lua_State *L) {
@@ -161,39 +139,29 @@ static int count_events(lua_State *L) {
     return 1;
 }
 
-static void push_complaint(lua_State *L, const wh_layout_t *layout, const wh_event_t *event) {
-    lua_pushstring(L, wh_event_name(event->kind));
-    if (event->wafer != WH_NONE) {
-        lua_pushfstring(L, " \"%s\"", layout->wafers[event->wafer].name);
-        lua_concat(L, 2);
-    }
-    if (event->kind == WH_EVENT_RELEASED_UNSUPPORTED) {
-        char height[60];
-        snprintf(height, sizeof height, ", %.3f mm high", event->height);
-        lua_pushstring(L, height);
-        lua_concat(L, 2);
-    }
-}
-
-/* native.complaints(mark): what the cell complained of since then, as text, or nil. */
-static int describe_complaints(lua_State *L) {
+/* native.complaints(mark): what the cell complained of since then, a list of { kind, wafer, height }. A wafer
+ * or a height that says nothing is left out. */
+static int list_complaints(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_record_t *record = mcs->recorder.record;
-    luaL_Buffer text;
-    bool any = false;
     const size_t mark = (size_t)luaL_checkinteger(L, 1);
-    luaL_buffinit(L, &text);
+    lua_newtable(L);
     for (size_t i = mark; i < record->event_count; ++i) {
         const wh_event_t *event = &record->events[i].event;
-        if (wh_record_is_complaint(event->kind)) {
-            luaL_addstring(&text, any ? "; " : "");
-            push_complaint(L, mcs->layout, event);
-            luaL_addvalue(&text);
-            any = true;
+        if (!wh_record_is_complaint(event->kind)) {
+            continue;
         }
+        lua_createtable(L, 0, 3);
+        wh_lua_set_text(L, "kind", wh_event_name(event->kind));
+        if (event->wafer != WH_NONE) {
+            wh_lua_set_text(L, "wafer", mcs->layout->wafers[event->wafer].name);
+        }
+        if (event->kind == WH_EVENT_RELEASED_UNSUPPORTED) {
+            wh_lua_set_number(L, "height", event->height);
+        }
+        lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
     }
-    luaL_pushresult(&text);
-    return any ? 1 : 0;
+    return 1;
 }
 
 const luaL_Reg wh_mcs_command_functions[] = {{"begin", begin_command},
@@ -201,7 +169,7 @@ const luaL_Reg wh_mcs_command_functions[] = {{"begin", begin_command},
                                              {"expect", add_expectation},
                                              {"cycle", begin_cycle},
                                              {"fail", fail},
-                                             {"explain", explain},
+                                             {"closest", find_closest},
                                              {"mark", count_events},
-                                             {"complaints", describe_complaints},
+                                             {"complaints", list_complaints},
                                              {NULL, NULL}};

@@ -88,11 +88,6 @@ void wh_decisions_measured(wh_decisions_t *decisions, const char *what) {
     }
 }
 
-void wh_vacuum_watch_begin(wh_vacuum_watch_t *watch, uint32_t watched) {
-    watch->watched = watched;
-    watch->was_off = 0;
-}
-
 void wh_vacuum_watch_slice(wh_vacuum_watch_t *watch, uint32_t sensors) {
     watch->was_off |= ~sensors;
 }
@@ -249,7 +244,7 @@ static int32_t find_lost(const player_t *player) {
 
 static bool begin(player_t *player, const wh_decisions_entry_t *entry) {
     player->waits = entry->index;
-    wh_vacuum_watch_begin(&player->vacuum, (uint32_t)entry->answer & player->state.sensors);
+    player->vacuum = (wh_vacuum_watch_t){.watched = (uint32_t)entry->answer & player->state.sensors};
     return true;
 }
 

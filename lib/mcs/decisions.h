@@ -70,13 +70,12 @@ typedef struct {
     uint32_t was_off; /* bit g: it was off in a slice since */
 } wh_vacuum_watch_t;
 
-void wh_vacuum_watch_begin(wh_vacuum_watch_t *watch, uint32_t watched);
 void wh_vacuum_watch_slice(wh_vacuum_watch_t *watch, uint32_t sensors);
 
 /* The first of the watched whose sensor went off though its valve is told to be open, or WH_NONE. */
 int32_t wh_vacuum_watch_lost(const wh_vacuum_watch_t *watch, const int32_t valves[], size_t gripper_count);
 
-/* Keeping; all of these do nothing if `decisions` is null. Abort if out of memory. */
+/* Keeping; all of these do nothing if `decisions` is null. They end the program if out of memory. */
 void wh_decisions_slice(wh_decisions_t *decisions, const wh_command_t *command);
 void wh_decisions_read(wh_decisions_t *decisions, wh_decisions_kind_t kind, int32_t index, int32_t answer);
 void wh_decisions_claim(wh_decisions_t *decisions, const wh_decisions_claim_t *claim, int32_t verdict);

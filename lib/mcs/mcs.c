@@ -5,11 +5,8 @@
 
 #include "../script/embedded.h"
 #include "../script/wh_module.h"
+#include "../script/wh_module_values.h"
 #include "native.h"
-
-/* What an entry of the record costs of the instruction budget. */
-#define STEPS_PER_ENTRY 256
-#define STEPS_PER_BYTE 4
 
 wh_mcs_t *wh_mcs_of(lua_State *L) {
     return lua_touserdata(L, lua_upvalueindex(1));
@@ -34,10 +31,6 @@ void wh_mcs_listen(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user) {
     mcs->listeners[mcs->listener_count++].user = user;
 }
 
-void wh_mcs_charge_entry(lua_State *L, size_t text_bytes) {
-    wh_sandbox_charge(L, STEPS_PER_ENTRY + STEPS_PER_BYTE * (uint64_t)text_bytes);
-}
-
 /* ---------------------------------------------------------------------------------------- numbered errors */
 
 static int numbered_error_text(lua_State *L) {
@@ -49,10 +42,8 @@ static void push_numbered_error_metatable(lua_State *L) {
     if (luaL_newmetatable(L, "wh.numbered_error")) {
         lua_pushcfunction(L, numbered_error_text);
         lua_setfield(L, -2, "__tostring");
-        lua_pushliteral(L, "numbered error");
-        lua_setfield(L, -2, "__name");
-        lua_pushboolean(L, 0);
-        lua_setfield(L, -2, "__metatable");
+        wh_lua_set_text(L, "__name", "numbered error");
+        wh_lua_set_boolean(L, "__metatable", false);
     }
 }
 
@@ -64,13 +55,10 @@ int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *de
         runs ? recorder->record->commands[recorder->running].line : wh_sandbox_line(L, mcs->script);
     const char *command = runs ? recorder->record->commands[recorder->running].text : "";
     lua_createtable(L, 0, 4);
-    lua_pushinteger(L, status);
-    lua_setfield(L, -2, "number");
-    lua_pushstring(L, wh_status_name(status));
-    lua_setfield(L, -2, "name");
-    lua_pushinteger(L, line);
-    lua_setfield(L, -2, "line");
-    lua_pushfstring(L, "error %d %s: %s%s%s", (int)status, wh_status_name(status), wh_status_text(status),
+    wh_lua_set_integer(L, "number", status);
+    wh_lua_set_text(L, "name", wh_status_name(status));
+    wh_lua_set_integer(L, "line", line);
+    lua_pushfstring(L, "error %d %s: %s%s%s", (int)status, wh_status_name(status), wh_record_error_text(status),
                     detail ? "; " : "", detail ? detail : "");
     lua_pushfstring(L, "%s:%d: %s%s%s", mcs->script, line, command, command[0] ? ": " : "",
                     lua_tostring(L, -1));
@@ -110,11 +98,12 @@ static void hear_collisions(void *user, const wh_command_t *command, const wh_st
 /* native.connect(): the cell stands; from here on slices go over the caller's link, if it has one. */
 static int connect(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    mcs->link = &mcs->local.simulator.link;
     if (mcs->partners.connect) {
         mcs->link = mcs->partners.connect(mcs->partners.user, mcs);
-        if (!mcs->link) {
-            return luaL_error(L, "%s: no link to the simulator", mcs->layout->path);
-        }
+    }
+    if (!mcs->link) {
+        return luaL_error(L, "%s: no link to the simulator", mcs->layout->path);
     }
     if (mcs->local.collision.memory && mcs->link != &mcs->local.simulator.link) {
         wh_mcs_listen(mcs, hear_collisions, &mcs->local.collision);
@@ -155,15 +144,12 @@ void wh_mcs_push_prompt(lua_State *L) {
 
 bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_record_t *record,
                  wh_sandbox_result_t *result) {
-    lua_State *L = wh_sandbox_state(sandbox);
     memset(mcs, 0, sizeof *mcs);
     mcs->script = script;
     mcs->sandbox = sandbox;
     mcs->stop_slice = INT64_MAX;
     wh_recorder_open(&mcs->recorder, record, script);
-    lua_pushcfunction(L, open_words);
-    lua_pushlightuserdata(L, mcs);
-    return wh_sandbox_call(L, 1, 0, result);
+    return wh_sandbox_protect(wh_sandbox_state(sandbox), open_words, mcs, result);
 }
 
 /* ---------------------------------------------------------------------------------------------- finishing */
@@ -180,7 +166,9 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
 
 void wh_mcs_close(wh_mcs_t *mcs) {
     free(mcs->segments);
+    free(mcs->kept_faults);
     mcs->segments = NULL;
+    mcs->kept_faults = NULL;
     mcs->segment_count = 0;
     wh_rehearsal_free(&mcs->rehearsal);
 }

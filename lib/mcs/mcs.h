@@ -11,7 +11,7 @@
 #include "../layout/collision.h"
 #include "../record/recorder.h"
 #include "../script/sandbox.h"
-#include "../sim/simulator.h"
+#include "../sim/played.h"
 #include "decisions.h"
 #include "rehearsal.h"
 #include "trial_cell.h"
@@ -45,6 +45,14 @@ typedef struct {
  * listener. */
 #define WH_MCS_LISTENERS 4
 
+/* A segment that was played, and the command of the record that asked for it (or WH_NONE). */
+typedef struct {
+    wh_segment_t segment;
+    int64_t slices; /* that it took */
+    bool ended;     /* not cut off */
+    int32_t command;
+} wh_kept_segment_t;
+
 /* The cell in this process: its simulator, and the collision check of it. */
 typedef struct {
     wh_simulator_t simulator; /* first: its link is the cell's */
@@ -61,7 +69,7 @@ struct wh_mcs {
     /* The cell, from when the script names it. */
     const wh_layout_t *layout; /* null until then */
     const wh_layout_t *real;   /* the same, or with a trial's errors: what simulator and reports go by */
-    wh_link_t *link;           /* the local cell's, or whoever stands in for it */
+    wh_link_t *link;           /* the local cell's, or whoever stands in; null until connected */
 
     /* What is commanded and answered. */
     wh_track_t track;
@@ -86,8 +94,10 @@ struct wh_mcs {
     size_t listener_count;
     wh_decisions_t *decisions; /* keeps what is commanded and read back; null: nobody does */
     bool keep_segments;        /* collect what is played, for --segments */
-    wh_segment_t *segments;
+    wh_kept_segment_t *segments;
     size_t segment_count, segment_capacity;
+    wh_played_fault_t *kept_faults;
+    size_t kept_fault_count, kept_fault_capacity;
 
     wh_local_cell_t local;
     const wh_trial_t *trial; /* of a study, whose errors the cell then has; null: as its layout says */

@@ -23,10 +23,6 @@ int32_t wh_mcs_index(lua_State *L, int argument, size_t count);
 /* From now on this is called for each slice. */
 void wh_mcs_listen(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user);
 
-/* The record is outside of Lua's memory cap, so an entry with so much text is paid for from the budget: about
- * as much as a script would spend on making as much text anew. Raises if the budget is spent. */
-void wh_mcs_charge_entry(lua_State *L, size_t text_bytes);
-
 /* The layout's faults, once it is read. */
 void wh_mcs_start_faults(wh_mcs_t *mcs);
 

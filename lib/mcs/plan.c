@@ -6,18 +6,10 @@
 #include "../script/wh_module_values.h"
 #include "native.h"
 
-static void push_axes(lua_State *L, const wh_mcs_t *mcs, const wh_real_t axes[]) {
-    lua_createtable(L, (int)mcs->layout->machine.axis_count, 0);
-    for (size_t axis = 0; axis < mcs->layout->machine.axis_count; ++axis) {
-        lua_pushnumber(L, axes[axis]);
-        lua_rawseti(L, -2, (lua_Integer)axis + 1);
-    }
-}
-
 /* native.axes(): where all axes stand, rad and mm. */
 static int read_axes(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    push_axes(L, mcs, mcs->track.axes);
+    wh_lua_push_numbers(L, mcs->track.axes, mcs->layout->machine.axis_count);
     return 1;
 }
 
@@ -36,7 +28,7 @@ static int find_axes(lua_State *L) {
         snprintf(detail, sizeof detail, "x %.3f, y %.3f, z %.3f mm", at.x, at.y, at.z);
         wh_mcs_raise(L, mcs, status, detail);
     }
-    push_axes(L, mcs, axes);
+    wh_lua_push_numbers(L, axes, mcs->layout->machine.axis_count);
     return 1;
 }
 

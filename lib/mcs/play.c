@@ -8,9 +8,23 @@
 /* The budget is charged for slices in portions, so that a long wait can be ended within one. */
 #define SLICES_PER_CHARGE 1024
 
+/* Of a slice that goes out: its faults, and that the running segment takes one more. */
+static void keep_slice(wh_mcs_t *mcs) {
+    const wh_command_t *command = &mcs->command;
+    for (size_t i = 0; i < command->fault_count; ++i) {
+        mcs->kept_faults = wh_array_grow(mcs->kept_faults, mcs->kept_fault_count, &mcs->kept_fault_capacity,
+                                         sizeof *mcs->kept_faults);
+        mcs->kept_faults[mcs->kept_fault_count++] = (wh_played_fault_t){command->seq, command->faults[i]};
+    }
+    ++mcs->segments[mcs->segment_count - 1].slices;
+}
+
 /* One slice: the command goes in, the state comes out, and whoever listens hears of both. */
 static wh_status_t exchange(wh_mcs_t *mcs) {
     wh_command_from_track(&mcs->command, &mcs->cache, &mcs->track);
+    if (mcs->keep_segments) {
+        keep_slice(mcs);
+    }
     const wh_status_t status = mcs->link->exchange(mcs->link, &mcs->command, &mcs->state);
     for (size_t i = 0; i < mcs->listener_count; ++i) {
         mcs->listeners[i].hear(mcs->listeners[i].user, &mcs->command, &mcs->state);
@@ -65,7 +79,8 @@ static void keep_segment(wh_mcs_t *mcs) {
     if (mcs->keep_segments) {
         mcs->segments =
             wh_array_grow(mcs->segments, mcs->segment_count, &mcs->segment_capacity, sizeof *mcs->segments);
-        mcs->segments[mcs->segment_count++] = mcs->track.segment;
+        mcs->segments[mcs->segment_count++] =
+            (wh_kept_segment_t){mcs->track.segment, 0, false, mcs->recorder.running};
     }
 }
 
@@ -82,6 +97,9 @@ static int play(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     wh_planned_t planned;
     luaL_argcheck(L, !mcs->rehearsal.is_on, 1, "a rehearsal goes on");
+    if (!mcs->link) {
+        wh_mcs_raise(L, mcs, WH_STATUS_NO_LAYOUT, "cell was refused");
+    }
     if (lua_isinteger(L, 1)) {
         begin_planned(L, mcs, &planned);
     } else {
@@ -89,12 +107,15 @@ static int play(lua_State *L) {
     }
     keep_segment(mcs);
     mcs->recorder.task = planned.task;
-    wh_vacuum_watch_begin(&mcs->watch, planned.may_lose & mcs->state.sensors);
+    mcs->watch = (wh_vacuum_watch_t){.watched = planned.may_lose & mcs->state.sensors};
     const wh_segment_t *segment = &mcs->track.segment;
     wh_decisions_read(mcs->decisions, WH_DECISION_BEGIN,
                       segment->kind == WH_SEGMENT_SENSOR ? segment->gripper : WH_NONE,
                       (int32_t)planned.may_lose);
     const bool done = play_through(L, mcs) == WH_TRACK_DONE;
+    if (mcs->keep_segments) {
+        mcs->segments[mcs->segment_count - 1].ended = true;
+    }
     const int32_t lost = wh_vacuum_watch_lost(&mcs->watch, mcs->track.valves, mcs->state.gripper_count);
     wh_decisions_read(mcs->decisions, WH_DECISION_END, lost, done);
     lua_pushboolean(L, done);

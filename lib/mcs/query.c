@@ -95,17 +95,22 @@ static int measure(lua_State *L) {
     return 4;
 }
 
-/* native.locate(wafer): the station's name and the slot, or nil if it lies in none. */
-static int locate(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+/* Pushes the station's name and the slot that a wafer lies in, or nothing; returns how many values. */
+static int push_place(lua_State *L, const wh_mcs_t *mcs, const wh_pose_t *base_from_wafer) {
     wh_place_t place;
-    wh_decisions_measured(mcs->decisions, "where a wafer lies");
-    if (!wh_cell_locate(&mcs->real->cell, &wafer_argument(L, mcs, 1)->base_from_wafer, &place)) {
+    if (!wh_cell_locate(&mcs->real->cell, base_from_wafer, &place)) {
         return 0;
     }
     lua_pushstring(L, mcs->layout->stations[place.station].name);
     lua_pushinteger(L, place.slot);
     return 2;
+}
+
+/* native.locate(wafer): the station's name and the slot, or nil if it lies in none. */
+static int locate(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    wh_decisions_measured(mcs->decisions, "where a wafer lies");
+    return push_place(L, mcs, &wafer_argument(L, mcs, 1)->base_from_wafer);
 }
 
 /* native.lies(wafer, station, slot, dx, dy, tolerance): a verdict, 0 if the wafer does not lie in that slot,
@@ -123,17 +128,12 @@ static int judge_place(lua_State *L) {
     const int32_t verdict = wh_decisions_judge(&claim, &mcs->real->cell, mcs->state.wafers);
     wh_decisions_claim(mcs->decisions, &claim, verdict);
     const wh_pose_t *base_from_wafer = &mcs->state.wafers[claim.wafer].base_from_wafer;
-    wh_place_t place =
+    const wh_place_t place =
         wh_station_measure(&mcs->real->cell.stations[claim.station], claim.slot, base_from_wafer);
     lua_pushinteger(L, verdict);
     lua_pushnumber(L, place.dx);
     lua_pushnumber(L, place.dy);
-    if (!wh_cell_locate(&mcs->real->cell, base_from_wafer, &place)) {
-        return 3;
-    }
-    lua_pushstring(L, mcs->layout->stations[place.station].name);
-    lua_pushinteger(L, place.slot);
-    return 5;
+    return 3 + push_place(L, mcs, base_from_wafer);
 }
 
 /* native.wafer_pose(wafer): { r, R }, as the module wh takes it. */
@@ -190,15 +190,11 @@ static int relate(lua_State *L) {
 
 /* --------------------------------------------------------------------------------------------- collisions */
 
-static void push_part(lua_State *L, const wh_mcs_t *mcs, int32_t part) {
-    const char *name = wh_layout_part_name(mcs->layout, part);
-    lua_pushstring(L, name ? name : "nothing");
-}
-
 static void set_parts(lua_State *L, const wh_mcs_t *mcs, const int32_t parts[2]) {
     lua_createtable(L, 2, 0);
     for (int i = 0; i < 2; ++i) {
-        push_part(L, mcs, parts[i]);
+        const char *name = wh_layout_part_name(mcs->layout, parts[i]);
+        lua_pushstring(L, name ? name : "nothing");
         lua_rawseti(L, -2, i + 1);
     }
     lua_setfield(L, -2, "parts");
@@ -214,8 +210,7 @@ static int list_hits(lua_State *L) {
         const wh_event_kind_t kind = record->event.kind;
         if (kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED) {
             lua_createtable(L, 0, 4);
-            lua_pushstring(L, wh_event_name(kind));
-            lua_setfield(L, -2, "kind");
+            wh_lua_set_text(L, "kind", wh_event_name(kind));
             set_parts(L, mcs, record->event.parts);
             wh_lua_set_triple(L, "at", &record->event.at);
             wh_lua_set_number(L, "time", (double)record->utime / 1e6);

@@ -7,6 +7,7 @@
 #ifndef WH_MCS_REHEARSAL_H
 #define WH_MCS_REHEARSAL_H
 
+#include "../layout/layout.h"
 #include "../motion/track.h"
 #include "../record/record.h"
 #include "../sim/slice.h"
@@ -42,12 +43,19 @@ typedef struct {
 /* From now on segments are planned, from where the track stands; what was planned before is forgotten. */
 void wh_rehearsal_begin(wh_rehearsal_t *rehearsal, const wh_track_t *track, bool is_judged);
 
-/* Keeps a planned segment. Aborts if out of memory. */
+/* Keeps a planned segment. Ends the program if out of memory. */
 void wh_rehearsal_add(wh_rehearsal_t *rehearsal, const wh_planned_t *planned);
 
 /* Notes in the record how near the axes come to their ends in the segment that the track has skipped, if that
  * is asked for. */
 void wh_rehearsal_note_reach(const wh_rehearsal_t *rehearsal, const wh_track_t *track, wh_record_t *record);
+
+/* Has collisions looked for ahead, on a copy of the cell. The copy begins where motion control last saw
+ * wafers and grippers. It takes and lets go by the paper's rule, with vacuum that is there at once, and knows
+ * nothing of faults to come. `memory`, as many bytes and aligned as malloc's, and the layout must outlive
+ * it. */
+size_t wh_rehearsal_ahead_bytes(const wh_layout_t *layout);
+void wh_rehearsal_look_ahead(wh_rehearsal_t *rehearsal, const wh_layout_t *layout, void *memory);
 
 /* If a rehearsal goes on, it is over: the track is where it was. */
 void wh_rehearsal_end(wh_rehearsal_t *rehearsal, wh_track_t *track);

@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../text/array.h"
+
 static wh_script_run_outcome_t refuse(wh_script_run_t *run, const char *message) {
     snprintf(run->message, sizeof run->message, "%s", message);
     return WH_RUN_BAD_INPUT;
@@ -27,7 +29,7 @@ static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_sandbox_r
         if (result->status != WH_SANDBOX_ERROR || !ended_by_numbered_error(wh_sandbox_state(run->sandbox))) {
             return refuse(run, result->message);
         }
-        run->record.failure = wh_record_text(result->message);
+        run->record.failure = wh_text_copy(result->message);
     }
     wh_mcs_finish(&run->mcs);
     return run->record.ok ? WH_RUN_MET : WH_RUN_FAILED;
@@ -46,7 +48,7 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->mcs.trial = options->trial;
     run->mcs.decisions = options->decisions;
     run->mcs.listener = options->listener;
-    wh_sandbox_run(run->sandbox, options->script, &result);
+    wh_sandbox_evaluate(wh_sandbox_state(run->sandbox), options->script, &result);
     return conclude(run, &result);
 }
 

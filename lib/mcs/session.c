@@ -25,7 +25,7 @@ static bool refuse(wh_session_t *session, const char *message) {
 /* Runs protected: cell(layout), then the prompt. */
 static int open_cell(lua_State *L) {
     lua_getglobal(L, "cell");
-    lua_pushstring(L, lua_touserdata(L, 1));
+    lua_pushstring(L, *(const char **)lua_touserdata(L, 1));
     lua_call(L, 1, 0);
     wh_mcs_push_prompt(L);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &complete_key);
@@ -35,13 +35,10 @@ static int open_cell(lua_State *L) {
 
 bool wh_session_open(wh_session_t *session, const wh_session_options_t *options) {
     wh_sandbox_result_t result;
-    char layout[4096];
+    const char *layout = options->layout;
     memset(session, 0, sizeof *session);
     session->report = options->report;
     session->report_user = options->report_user;
-    if ((size_t)snprintf(layout, sizeof layout, "%s", options->layout) >= sizeof layout) {
-        return refuse(session, "the layout's path is too long");
-    }
     /* A "script" without a folder: so layouts are looked for from the working directory. */
     session->sandbox =
         wh_sandbox_new_with(&options->limits, options->parameters, options->parameter_count, &result);
@@ -50,10 +47,8 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
         return refuse(session, result.message);
     }
     session->mcs.partners = options->partners;
-    lua_State *L = wh_sandbox_state(session->sandbox);
-    lua_pushcfunction(L, open_cell);
-    lua_pushlightuserdata(L, layout);
-    return wh_sandbox_call(L, 1, 0, &result) || refuse(session, result.message);
+    return wh_sandbox_protect(wh_sandbox_state(session->sandbox), open_cell, &layout, &result) ||
+           refuse(session, result.message);
 }
 
 void wh_session_close(wh_session_t *session) {
@@ -98,7 +93,7 @@ static void write_answer(char *answer, size_t size, const char *text) {
 static void write_error(char *answer, size_t size, wh_status_t status, const char *detail) {
     char text[WH_SANDBOX_MESSAGE_BYTES + 200];
     snprintf(text, sizeof text, "ERROR %d %s: %s%s%s", (int)status, wh_status_name(status),
-             wh_status_text(status), detail[0] ? "; " : "", detail);
+             wh_record_error_text(status), detail[0] ? "; " : "", detail);
     write_answer(answer, size, text);
 }
 
@@ -141,15 +136,12 @@ static void count_complaints(wh_session_t *session, size_t from) {
 
 static void perform(wh_session_t *session, request_t *request) {
     wh_sandbox_result_t result;
-    lua_State *L = wh_sandbox_state(session->sandbox);
     if (session->record.command_count >= REMEMBERED_COMMANDS) {
         wh_record_forget(&session->record);
     }
     const size_t events = session->record.event_count;
     wh_sandbox_renew(session->sandbox);
-    lua_pushcfunction(L, execute_line);
-    lua_pushlightuserdata(L, request);
-    if (!wh_sandbox_call(L, 1, 0, &result)) {
+    if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), execute_line, request, &result)) {
         request->status = status_of(result.status);
         write_error(request->answer, request->size, request->status,
                     request->status == WH_STATUS_STOPPED ? "" : result.message);
@@ -216,16 +208,13 @@ static int complete_line(lua_State *L) {
 
 void wh_session_complete(wh_session_t *session, const char *before, wh_candidates_t *candidates) {
     completion_t completion = {before, candidates};
-    lua_State *L = wh_sandbox_state(session->sandbox);
     candidates->start = strlen(before);
     candidates->count = 0;
     if (session->executing || candidates->start > WH_SESSION_LINE_BYTES) {
         return;
     }
     wh_sandbox_renew(session->sandbox);
-    lua_pushcfunction(L, complete_line);
-    lua_pushlightuserdata(L, &completion);
-    if (!wh_sandbox_call(L, 1, 0, NULL)) {
+    if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), complete_line, &completion, NULL)) {
         candidates->count = 0;
     }
 }

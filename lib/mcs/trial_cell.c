@@ -40,17 +40,6 @@ static void place_stations(wh_trial_cell_t *trial_cell, const wh_layout_t *layou
     }
 }
 
-static bool is_moved(const wh_station_t *one, const wh_station_t *other) {
-    const wh_pose_t *a = &one->base_from_station;
-    const wh_pose_t *b = &other->base_from_station;
-    wh_real_t apart =
-        wh_real_abs(a->r.x - b->r.x) + wh_real_abs(a->r.y - b->r.y) + wh_real_abs(a->r.z - b->r.z);
-    for (size_t i = 0; i < 9; ++i) {
-        apart += wh_real_abs(a->R.m[i / 3][i % 3] - b->R.m[i / 3][i % 3]);
-    }
-    return apart > 0;
-}
-
 /* Each wafer lies in its slot as the layout says; then what was drawn moves it along the slot's axes and
  * turns it about its own centre. */
 static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_station_t places[],
@@ -60,7 +49,8 @@ static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout,
         const wh_displacement_t drawn = wh_errors_draw_wafer(layout->errors, &trial_cell->trial, w);
         start[w] = layout->start[w];
         if (!wh_displacement_is_any(&drawn) &&
-            !is_moved(&places[lies->station], &layout->places[lies->station])) {
+            memcmp(&places[lies->station].base_from_station, &layout->places[lies->station].base_from_station,
+                   sizeof(wh_pose_t)) == 0) {
             continue;
         }
         const wh_pose_t taught = wh_station_slot(&layout->places[lies->station], lies->slot);

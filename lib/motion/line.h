@@ -17,6 +17,8 @@
 
 #include "robot.h"
 
+WH_HEADER_BEGIN
+
 /* A planned line. Written by wh_line_plan only; reading its fields is fine. */
 typedef struct {
     wh_profile_t path;                                /* over the line's length, mm */
@@ -37,7 +39,8 @@ typedef struct {
  * duration cannot be represented). Cost: about 280 ns.
  */
 wh_status_t wh_line_plan(wh_line_t *line, const wh_robot_t *robot, const wh_real_t from_q[WH_ROBOT_AXES],
-                         wh_real_t dx, wh_real_t dy, wh_real_t dz, wh_real_t speed_cap);
+                         wh_real_t dx, wh_real_t dy, wh_real_t dz, wh_real_t speed_cap)
+    WH_SYMBOL(wh_line_plan);
 
 /* Limits of a line beyond those of the axes; 0 is none. */
 typedef struct {
@@ -49,7 +52,7 @@ typedef struct {
  * no profile exists. wh_line_plan is this without a cap of acceleration, bit for bit. */
 wh_status_t wh_line_plan_capped(wh_line_t *line, const wh_robot_t *robot,
                                 const wh_real_t from_q[WH_ROBOT_AXES], const wh_vec3_t *travel,
-                                const wh_line_caps_t *caps);
+                                const wh_line_caps_t *caps) WH_SYMBOL(wh_line_plan_capped);
 
 /* s, never negative. */
 static inline wh_real_t wh_line_duration(const wh_line_t *line) {
@@ -60,6 +63,8 @@ static inline wh_real_t wh_line_duration(const wh_line_t *line) {
  * from the duration on. In between the end-effector is on the line to 1e-12 mm (1e-3 in float), and its
  * heading is kept to rounding. theta and yaw run on continuously from from_q. No pointer may be null.
  * Cost: about 40 ns. */
-void wh_line_at(const wh_line_t *line, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]);
+void wh_line_at(const wh_line_t *line, wh_real_t t, wh_real_t q[WH_ROBOT_AXES]) WH_SYMBOL(wh_line_at);
+
+WH_HEADER_END
 
 #endif

@@ -12,6 +12,8 @@
 #include "move.h"
 #include "robot.h"
 
+WH_HEADER_BEGIN
+
 /* The most grippers of a machine, and of a command message. */
 #define WH_GRIPPERS 8
 
@@ -50,26 +52,28 @@ typedef struct {
 /* WH_OK, or WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE (a count or a mount's axis), WH_STATUS_NOT_LEVEL
  * (a shifted gripper whose z is not the end-effector's, to the last bit), or what wh_robot_validate and
  * wh_pose_validate say. Cost: linear in the grippers. */
-wh_status_t wh_machine_validate(const wh_machine_t *machine);
+wh_status_t wh_machine_validate(const wh_machine_t *machine) WH_SYMBOL(wh_machine_validate);
 
 /* The limits of one axis; `axis` is not checked. */
-const wh_limits_t *wh_machine_limits(const wh_machine_t *machine, size_t axis);
+const wh_limits_t *wh_machine_limits(const wh_machine_t *machine, size_t axis) WH_SYMBOL(wh_machine_limits);
 
 /* Checks that axes[0 .. axis_count - 1] are within their travel: what wh_robot_check_travel says of the first
  * four, then WH_STATUS_NOT_FINITE or WH_STATUS_LIMIT_EXCEEDED for a chuck. */
-wh_status_t wh_machine_check_travel(const wh_machine_t *machine, const wh_real_t axes[]);
+wh_status_t wh_machine_check_travel(const wh_machine_t *machine, const wh_real_t axes[])
+    WH_SYMBOL(wh_machine_check_travel);
 
 /* Where each gripper is: writes poses[0 .. gripper_count - 1] from axes[0 .. axis_count - 1]. No argument is
  * checked. Cost: a sine and cosine for the robot and for each chuck, a product of poses for each shifted
  * gripper. */
-void wh_machine_grippers(const wh_machine_t *machine, const wh_real_t axes[], wh_pose_t poses[]);
+void wh_machine_grippers(const wh_machine_t *machine, const wh_real_t axes[], wh_pose_t poses[])
+    WH_SYMBOL(wh_machine_grippers);
 
 /* wh_machine_grippers, bit for bit, for one slice after another. Writes base_from_gripper of the grippers
  * that have moved since the last call with this cache; the others must still have what that call left.
  * `machine` must be the same in all calls. Cost: that of what has moved; a comparison of all axes if nothing
  * has. */
 void wh_machine_update(const wh_machine_t *machine, const wh_real_t axes[], wh_machine_cache_t *cache,
-                       wh_gripper_input_t grippers[]);
+                       wh_gripper_input_t grippers[]) WH_SYMBOL(wh_machine_update);
 
 /* The axes that bring gripper `gripper`, which is on the robot, to the point `at` (base, mm) with its x along
  * `heading`: wh_robot_inverse of the end-effector's place for that, with its errors and what it leaves
@@ -77,6 +81,8 @@ void wh_machine_update(const wh_machine_t *machine, const wh_real_t axes[], wh_m
  * `machine` and `gripper` are not checked. */
 wh_status_t wh_machine_inverse(const wh_machine_t *machine, size_t gripper, const wh_vec3_t *at,
                                wh_real_t heading, const wh_real_t near_q[WH_ROBOT_AXES],
-                               wh_real_t q[WH_ROBOT_AXES]);
+                               wh_real_t q[WH_ROBOT_AXES]) WH_SYMBOL(wh_machine_inverse);
+
+WH_HEADER_END
 
 #endif

@@ -12,6 +12,8 @@
 
 #include "profile.h"
 
+WH_HEADER_BEGIN
+
 /* The most axes of a move, a message and a track. */
 #define WH_AXES 8
 
@@ -33,7 +35,7 @@ typedef struct {
  * wh_profile_plan, or durations of axes too far apart). Cost: about 200 ns for four axes.
  */
 wh_status_t wh_move_plan(wh_move_t *move, size_t count, const wh_real_t from[], const wh_real_t to[],
-                         const wh_limits_t limits[]);
+                         const wh_limits_t limits[]) WH_SYMBOL(wh_move_plan);
 
 /* s, never negative. */
 static inline wh_real_t wh_move_duration(const wh_move_t *move) {
@@ -44,6 +46,8 @@ static inline wh_real_t wh_move_duration(const wh_move_t *move) {
  * `to` from the duration on. In between each axis is within [from, to] to rounding; an axis without distance
  * is at `from`. A move of duration 0 is at `to` from t = 0 on. No pointer may be null. Cost: about 20 ns for
  * four axes. */
-void wh_move_at(const wh_move_t *move, wh_real_t t, wh_real_t position[]);
+void wh_move_at(const wh_move_t *move, wh_real_t t, wh_real_t position[]) WH_SYMBOL(wh_move_at);
+
+WH_HEADER_END
 
 #endif

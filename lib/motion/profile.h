@@ -22,6 +22,8 @@
 #include "../math/status.h"
 #include "../math/vector.h"
 
+WH_HEADER_BEGIN
+
 /* The limits of an axis, as magnitudes: mm/s, mm/s^2, mm/s^3 or rad/s, rad/s^2, rad/s^3. */
 typedef struct {
     wh_real_t speed, acceleration, jerk;
@@ -55,14 +57,15 @@ typedef struct {
 #endif
 
 /* WH_STATUS_BAD_LIMITS unless all three are finite and > 0. */
-wh_status_t wh_limits_validate(const wh_limits_t *limits);
+wh_status_t wh_limits_validate(const wh_limits_t *limits) WH_SYMBOL(wh_limits_validate);
 
 /* Plans the fastest profile over `distance` (signed, finite) within the limits. The duration is the analytic
  * optimum to 1e-14 of it (1e-5 in float); no limit is exceeded by more than 1e-14 (1e-5) of it. Errors,
  * *profile then unchanged: WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE (distance), WH_STATUS_BAD_LIMITS
  * (also if the limits are so extreme that a time or the jerk cannot be represented). Cost: about 20 ns, 40 if
  * only the jerk limits. */
-wh_status_t wh_profile_plan(wh_profile_t *profile, wh_real_t distance, const wh_limits_t *limits);
+wh_status_t wh_profile_plan(wh_profile_t *profile, wh_real_t distance, const wh_limits_t *limits)
+    WH_SYMBOL(wh_profile_plan);
 
 /* s, never negative. */
 static inline wh_real_t wh_profile_duration(const wh_profile_t *profile) {
@@ -74,16 +77,16 @@ static inline wh_real_t wh_profile_duration(const wh_profile_t *profile) {
  * *profile then unchanged: WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, WH_STATUS_OUT_OF_RANGE if
  * `duration` is shorter than the profile's, or so long that the factor cannot be represented. Cost: 10 to 25
  * ns. */
-wh_status_t wh_profile_stretch(wh_profile_t *profile, wh_real_t duration);
+wh_status_t wh_profile_stretch(wh_profile_t *profile, wh_real_t duration) WH_SYMBOL(wh_profile_stretch);
 
 /* The state at `t` seconds after the start. For t <= 0 (and NaN) all is zero; from the duration on the axis
  * rests at exactly `distance`. A profile of duration 0 is at its end from t = 0 on. Where two phases meet,
  * their values agree to rounding: a few 1e-16 of the distance, the peak speed and so on. No pointer may be
  * null. Cost: about 10 ns. */
-void wh_profile_at(const wh_profile_t *profile, wh_real_t t, wh_motion_t *motion);
+void wh_profile_at(const wh_profile_t *profile, wh_real_t t, wh_motion_t *motion) WH_SYMBOL(wh_profile_at);
 
 /* The position alone, bit for bit. Cost: about 5 ns. */
-wh_real_t wh_profile_position(const wh_profile_t *profile, wh_real_t t);
+wh_real_t wh_profile_position(const wh_profile_t *profile, wh_real_t t) WH_SYMBOL(wh_profile_position);
 
 /* The largest magnitudes over the whole profile, analytically. */
 static inline wh_real_t wh_profile_peak_speed(const wh_profile_t *profile) {
@@ -97,5 +100,7 @@ static inline wh_real_t wh_profile_peak_acceleration(const wh_profile_t *profile
 static inline wh_real_t wh_profile_peak_jerk(const wh_profile_t *profile) {
     return profile->jerk < 0 ? -profile->jerk : profile->jerk;
 }
+
+WH_HEADER_END
 
 #endif

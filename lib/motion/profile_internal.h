@@ -18,6 +18,6 @@ static inline wh_profile_times_t wh_profile_times(const wh_profile_t *profile) {
 /* The profile over `distance` with these times, stretched to `duration`: bit for bit wh_profile_plan and then
  * wh_profile_stretch, if neither refuses. */
 void wh_profile_shape(wh_profile_t *profile, wh_real_t distance, const wh_profile_times_t *times,
-                      wh_real_t duration);
+                      wh_real_t duration) WH_SYMBOL(wh_profile_shape);
 
 #endif

@@ -15,6 +15,8 @@
 #include "../math/pose.h"
 #include "profile.h"
 
+WH_HEADER_BEGIN
+
 #define WH_ROBOT_AXES 4
 
 /* The indices of the axes in every q: theta (rad), R (mm), Z (mm), yaw at the wrist relative to the arm
@@ -52,20 +54,22 @@ typedef struct {
  *     yaw     -270..270 deg     0      360 deg/s    1500 deg/s^2    15000 deg/s^3
  *
  * *robot must not be null. */
-void wh_robot_default(wh_robot_t *robot);
+void wh_robot_default(wh_robot_t *robot) WH_SYMBOL(wh_robot_default);
 
 /* WH_OK if all limits are sound (wh_limits_validate), each travel is finite with min < max, R's does not
  * begin below 0, theta's and yaw's stay within WH_TRIG_MAX_RAD / 2, and home is within travel; else
  * WH_STATUS_BAD_LIMITS, or WH_STATUS_NULL_ARGUMENT. The functions below expect a robot that passes. */
-wh_status_t wh_robot_validate(const wh_robot_t *robot);
+wh_status_t wh_robot_validate(const wh_robot_t *robot) WH_SYMBOL(wh_robot_validate);
 
 /* Checks that the axes are within their travel: WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, or else
  * WH_STATUS_OUT_OF_REACH for R and WH_STATUS_LIMIT_EXCEEDED for another axis. */
-wh_status_t wh_robot_check_travel(const wh_robot_t *robot, const wh_real_t q[WH_ROBOT_AXES]);
+wh_status_t wh_robot_check_travel(const wh_robot_t *robot, const wh_real_t q[WH_ROBOT_AXES])
+    WH_SYMBOL(wh_robot_check_travel);
 
 /* base_from_effector at axes q, in travel or not. No pointer may be null. Numbers that are not finite, or
  * angles beyond WH_TRIG_MAX_RAD, give NaN entries. Cost: about 60 ns. */
-void wh_robot_forward(const wh_real_t q[WH_ROBOT_AXES], wh_pose_t *base_from_effector);
+void wh_robot_forward(const wh_real_t q[WH_ROBOT_AXES], wh_pose_t *base_from_effector)
+    WH_SYMBOL(wh_robot_forward);
 
 /* The axes that bring the end-effector to (x, y, z) mm in base with the given heading (rad, any number of
  * turns up to WH_TRIG_MAX_RAD), coming from axes near_q, of which only theta counts (also up to
@@ -85,6 +89,8 @@ void wh_robot_forward(const wh_real_t q[WH_ROBOT_AXES], wh_pose_t *base_from_eff
  * q may be near_q. Cost: about 60 ns. */
 wh_status_t wh_robot_inverse(const wh_robot_t *robot, wh_real_t x, wh_real_t y, wh_real_t z,
                              wh_real_t heading, const wh_real_t near_q[WH_ROBOT_AXES],
-                             wh_real_t q[WH_ROBOT_AXES]);
+                             wh_real_t q[WH_ROBOT_AXES]) WH_SYMBOL(wh_robot_inverse);
+
+WH_HEADER_END
 
 #endif

@@ -17,7 +17,9 @@
 #include "line.h"
 #include "machine.h"
 
-typedef enum {
+WH_HEADER_BEGIN
+
+typedef enum WH_FOUR_BYTES {
     WH_SEGMENT_AXES,   /* axes go to target[], synchronised, each at rest at both ends */
     WH_SEGMENT_LINE,   /* the end-effector goes by `travel` along a straight line at constant heading */
     WH_SEGMENT_VALVES, /* valves change; lasts one slice */
@@ -36,7 +38,7 @@ typedef struct {
     int32_t gripper;             /* SENSOR */
 } wh_segment_t;
 
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_TRACK_MOVING,   /* axes and valves are those of one more slice */
     WH_TRACK_DONE,     /* the segment is over; no slice was used by this call */
     WH_TRACK_TIMED_OUT /* SENSOR: it did not come on; no slice was used by this call */
@@ -60,11 +62,12 @@ typedef struct {
 
 /* Starts at rest at home (wh_robot_t.home, chucks at 0), all valves closed. `slice_us` is 1 to 1e6. Refuses
  * null pointers, an invalid machine and a slice out of range; the track is then unchanged. */
-wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_t slice_us);
+wh_status_t wh_track_init(wh_track_t *track, const wh_machine_t *machine, int64_t slice_us)
+    WH_SYMBOL(wh_track_init);
 
 /* A segment that changes nothing, for the caller to fill in: DWELL of 0 s, all valves WH_NONE, target at the
  * track's axes. */
-wh_segment_t wh_track_blank(const wh_track_t *track);
+wh_segment_t wh_track_blank(const wh_track_t *track) WH_SYMBOL(wh_track_blank);
 
 /* Plans a segment from where the track stands; one that is still running is given up there, at rest from one
  * slice to the next. Refused, the track unchanged:
@@ -77,15 +80,17 @@ wh_segment_t wh_track_blank(const wh_track_t *track);
  *   WH_STATUS_BAD_LIMITS      limits too extreme to plan with: see wh_profile_plan
  * Cost: about 1 us for a move, 2 us for a line.
  */
-wh_status_t wh_track_begin(wh_track_t *track, const wh_segment_t *segment);
+wh_status_t wh_track_begin(wh_track_t *track, const wh_segment_t *segment) WH_SYMBOL(wh_track_begin);
 
 /* One slice of the running segment. Bit g of `sensors` says that gripper g's vacuum sensor is on. If the
  * awaited sensor is on already, no slice is used. After the segment's end each call returns the end again.
  * `track` is not checked. Cost: all axes of a profile, or a square root and an arc tangent on a line. */
-wh_track_state_t wh_track_next(wh_track_t *track, uint32_t sensors);
+wh_track_state_t wh_track_next(wh_track_t *track, uint32_t sensors) WH_SYMBOL(wh_track_next);
 
 /* Jumps to the running segment's end, as if all its slices had been played: a way to check a pattern's reach
  * without playing it. `slice` stays. */
-void wh_track_skip(wh_track_t *track);
+void wh_track_skip(wh_track_t *track) WH_SYMBOL(wh_track_skip);
+
+WH_HEADER_END
 
 #endif

@@ -19,17 +19,6 @@ static const char *clearance(size_t kind) {
     return texts[kind];
 }
 
-static wh_grid_t *new_grid(const wh_printer_t *printer) {
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    const wh_grid_digits_t gap = {3, 3, false, 0};
-    wh_grid_text_column(grid, "smallest gap");
-    wh_grid_number_column(grid, "mm", gap);
-    wh_grid_text_column(grid, "limit mm");
-    wh_grid_number_column(grid, "at s", wh_print_seconds);
-    wh_grid_text_column(grid, "between");
-    return grid;
-}
-
 static const char *part_name(const wh_printer_t *printer, int32_t part) {
     const char *name = wh_layout_part_name(printer->record->layout, part);
     return name ? name : "";
@@ -44,8 +33,7 @@ static void add_row(const wh_printer_t *printer, wh_grid_t *grid, size_t kind) {
     if (!found && !(limit > 0)) {
         return;
     }
-    wh_grid_row(grid);
-    wh_grid_text(grid, PAIR, WH_INK_PLAIN, "%s", clearance(kind));
+    wh_grid_named_row(grid, clearance(kind));
     if (limit > 0) {
         wh_grid_text(grid, LIMIT, kept ? WH_INK_GOOD : WH_INK_BAD, "%g %s", (double)limit,
                      kept ? "kept" : "not kept");
@@ -64,7 +52,13 @@ void wh_print_clearances(const wh_printer_t *printer) {
     if (!printer->record->checked) {
         return;
     }
-    wh_grid_t *grid = new_grid(printer);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
+    const wh_grid_digits_t gap = {3, 3, false, 0};
+    wh_grid_text_columns(grid, "smallest gap", NULL);
+    wh_grid_number_columns(grid, gap, "mm", NULL);
+    wh_grid_text_columns(grid, "limit mm", NULL);
+    wh_grid_number_columns(grid, wh_print_seconds, "at s", NULL);
+    wh_grid_text_columns(grid, "between", NULL);
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
         add_row(printer, grid, kind);
     }

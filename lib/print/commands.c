@@ -1,4 +1,5 @@
-/* The commands: when each ran, how it ended, and what was taken under which values. */
+/* The commands: when each ran, how it ended, what was taken under which values; what those that failed said;
+ * and the hand-overs: what the chuck measured when it took the wafer, in the paper's words. */
 #include <stdlib.h>
 
 #include "../text/array.h"
@@ -28,18 +29,6 @@ static void link_events(const wh_record_t *record, const chains_t *chains) {
     }
 }
 
-static wh_grid_t *new_grid(const wh_printer_t *printer) {
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_number_column(grid, "line", wh_grid_whole);
-    wh_grid_text_column(grid, "command");
-    wh_grid_number_column(grid, "begin s", wh_print_seconds);
-    wh_grid_number_column(grid, "end s", wh_print_seconds);
-    wh_grid_text_column(grid, "result");
-    wh_grid_text_column(grid, "taken");
-    wh_print_measured_columns(printer, grid);
-    return grid;
-}
-
 static void fill_event(const wh_printer_t *printer, wh_grid_t *grid, const wh_event_t *event) {
     const char *wafer = wh_print_wafer(printer, event->wafer);
     const char *gripper = wh_print_gripper(printer, event->gripper);
@@ -49,7 +38,7 @@ static void fill_event(const wh_printer_t *printer, wh_grid_t *grid, const wh_ev
     }
     if (event->kind == WH_EVENT_HANDED_OVER) {
         wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s %s %s %s", wafer, wh_print_gripper(printer, event->other),
-                     wh_style_arrow(printer->style), gripper);
+                     wh_style_glyph(printer->style, WH_GLYPH_ARROW), gripper);
     } else {
         wh_grid_text(grid, TAKEN, WH_INK_PLAIN, "%s by %s", wafer, gripper);
     }
@@ -103,7 +92,12 @@ static void add_others(const wh_printer_t *printer, wh_grid_t *grid, const chain
 }
 
 static void print_table(const wh_printer_t *printer, const chains_t *chains) {
-    wh_grid_t *grid = new_grid(printer);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "command", NULL);
+    wh_grid_number_columns(grid, wh_print_seconds, "begin s", "end s", NULL);
+    wh_grid_text_columns(grid, "result", "taken", NULL);
+    wh_print_measured_columns(printer, grid);
     for (size_t i = 0; i < printer->record->command_count; ++i) {
         add_command(printer, grid, chains, i);
     }
@@ -127,8 +121,10 @@ void wh_print_commands(const wh_printer_t *printer) {
     free(chains.next);
 }
 
+/* ------------------------------------------------------------------------------------------------- errors */
+
 static void put_error(const wh_printer_t *printer, const wh_command_record_t *command) {
-    const char *message = command->message ? command->message : wh_status_text(command->error);
+    const char *message = command->message ? command->message : wh_record_error_text(command->error);
     if (command->line > 0) {
         fprintf(printer->out, "line %d: ", command->line);
     }
@@ -149,5 +145,80 @@ void wh_print_errors(const wh_printer_t *printer) {
             }
             put_error(printer, command);
         }
+    }
+}
+
+/* --------------------------------------------------------------------------------------------- hand-overs */
+
+/* As many are shown in full. */
+#define SHOWN 8
+
+/* Columns of its table. */
+enum { VALUE, VALUE_MEASURED, LIMIT, MARGIN };
+
+static void add_value(wh_grid_t *grid, const char *name, double value) {
+    wh_grid_named_row(grid, name);
+    wh_grid_number(grid, VALUE_MEASURED, WH_INK_PLAIN, value);
+}
+
+static void add_limit(wh_grid_t *grid, const char *relation, double limit, double margin) {
+    wh_grid_text(grid, LIMIT, WH_INK_PLAIN, "%s %.10g", relation, limit);
+    wh_grid_number(grid, MARGIN, margin > 0 ? WH_INK_GOOD : WH_INK_BAD, margin);
+}
+
+static void print_values(const wh_printer_t *printer, const wh_proximity_t *p) {
+    const wh_tolerance_t *limits = &printer->record->layout->grasp.tolerance;
+    const wh_grid_digits_t digits = {6, 6, false, 0};
+    const wh_grid_digits_t margin = {6, 6, true, 0};
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
+    wh_grid_text_columns(grid, "", NULL);
+    wh_grid_number_columns(grid, digits, "measured", NULL);
+    wh_grid_text_columns(grid, "limit", NULL);
+    wh_grid_number_columns(grid, margin, "margin", NULL);
+    add_value(grid, "  |dr_proj_z|", (double)wh_real_abs(p->dr_proj_z));
+    add_limit(grid, "<", (double)limits->projz, (double)p->margin_projz);
+    add_value(grid, "  |dr_proj_xy|", (double)p->dr_proj_xy_norm);
+    add_limit(grid, "<", (double)limits->projxy, (double)p->margin_projxy);
+    add_value(grid, "  n1_proj_n2", (double)p->n1_proj_n2);
+    add_limit(grid, ">", (double)limits->planar, (double)p->margin_planar);
+    add_value(grid, "  dr_proj_xy  x", (double)p->dr_proj_xy.x);
+    add_value(grid, "              y", (double)p->dr_proj_xy.y);
+    add_value(grid, "              z", (double)p->dr_proj_xy.z);
+    wh_grid_print(grid, printer->out);
+}
+
+static void print_handover(const wh_printer_t *printer, const wh_event_record_t *record) {
+    const wh_event_t *event = &record->event;
+    const bool ready = event->measured.ready;
+    const double at = (double)record->utime / 1e6;
+    wh_print_put(printer, wh_print_wafer(printer, event->wafer));
+    fputs(", ", printer->out);
+    wh_print_put(printer, wh_print_gripper(printer, event->other));
+    fprintf(printer->out, " %s ", wh_style_glyph(printer->style, WH_GLYPH_ARROW));
+    wh_print_put(printer, wh_print_gripper(printer, event->gripper));
+    fprintf(printer->out, ", at %.*f s: isReadyToPick", wh_grid_decimals(&wh_print_seconds, at), at);
+    wh_print_put(printer, wh_print_gripper(printer, event->gripper));
+    fputs(": ", printer->out);
+    wh_style_print(printer->style, printer->out, ready ? WH_INK_GOOD : WH_INK_BAD, "%s",
+                   ready ? "true" : "false");
+    fputc('\n', printer->out);
+    print_values(printer, &event->measured);
+}
+
+void wh_print_handovers(const wh_printer_t *printer) {
+    const wh_record_t *record = printer->record;
+    size_t count = 0;
+    for (size_t i = 0; i < record->event_count && record->layout; ++i) {
+        if (record->events[i].event.kind != WH_EVENT_HANDED_OVER) {
+            continue;
+        }
+        if (++count <= SHOWN) {
+            wh_print_title(printer, "Hand-over");
+            print_handover(printer, &record->events[i]);
+        }
+    }
+    if (count > SHOWN) {
+        fprintf(printer->out, "\n%zu more hand-overs; their values stand in the table above.\n",
+                count - SHOWN);
     }
 }

@@ -43,16 +43,10 @@ static const char *share_mark(const wh_style_t *style, wh_share_t share) {
 }
 
 static const char *mark_of(const wh_style_t *style, const wh_busy_span_t *interval) {
-    switch (interval->who) {
-    case WH_BUSY_WAFER:
+    if (interval->who == WH_BUSY_WAFER) {
         return style->utf8 ? "━" : "=";
-    case WH_BUSY_VALVE:
-        return "o";
-    case WH_BUSY_ROBOT:
-    case WH_BUSY_CHUCK:
-        break;
     }
-    return share_mark(style, (wh_share_t)(interval->what - 1));
+    return interval->who == WH_BUSY_VALVE ? "o" : share_mark(style, (wh_share_t)(interval->what - 1));
 }
 
 /* --------------------------------------------------------------------------------------------------- rows */
@@ -65,13 +59,6 @@ static gantt_t open_gantt(const wh_printer_t *printer, size_t label_columns) {
     const gantt_t gantt = {printer, label_columns, columns, printer->record->slices,
                            wh_array_new(columns, sizeof *gantt.cells)};
     return gantt;
-}
-
-static void clear(gantt_t *gantt) {
-    for (size_t i = 0; i < gantt->columns; ++i) {
-        free(gantt->cells[i].text);
-    }
-    memset(gantt->cells, 0, gantt->columns * sizeof *gantt->cells);
 }
 
 /* The column in which a slice ends. */
@@ -134,7 +121,10 @@ static void print_row(gantt_t *gantt, const char *label) {
         i += cell->text ? cell->wide : 1;
     }
     fputc('\n', out);
-    clear(gantt);
+    for (size_t i = 0; i < gantt->columns; ++i) {
+        free(gantt->cells[i].text);
+    }
+    memset(gantt->cells, 0, gantt->columns * sizeof *gantt->cells);
 }
 
 /* ------------------------------------------------------------------------------------------- time's scale */
@@ -166,7 +156,7 @@ static void print_scale(gantt_t *gantt) {
     print_row(gantt, "s");
 }
 
-/* ----------------------------------------------------------------------------------------------- commands */
+/* ------------------------------------------------------------------------------------ commands and cycles */
 
 static int64_t slice_at(const wh_record_t *record, double seconds) {
     if (!(seconds > 0 && seconds < record->simulated_s)) {
@@ -175,38 +165,35 @@ static int64_t slice_at(const wh_record_t *record, double seconds) {
     return (int64_t)(seconds * 1e6 / (double)record->layout->slice_us + 0.5);
 }
 
+/* A bar where it begins, and its text behind the bar if there is room up to its end. */
+static void draw_span(gantt_t *gantt, int64_t begin, int64_t end, const char *text) {
+    const size_t first = column_of(gantt, begin);
+    const size_t last = end < gantt->slices ? column_of(gantt, end) : gantt->columns;
+    gantt->cells[first].mark = gantt->printer->style->utf8 ? "│" : "|";
+    write_over(gantt, first + 1, last, text);
+}
+
 static void print_commands(gantt_t *gantt) {
     const wh_record_t *record = gantt->printer->record;
-    const char *bar = gantt->printer->style->utf8 ? "│" : "|";
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
-        const size_t first = column_of(gantt, slice_at(record, command->begin_s));
-        const size_t last = command->end_s < record->simulated_s
-                                ? column_of(gantt, slice_at(record, command->end_s))
-                                : gantt->columns;
         if (command->end_s > command->begin_s) {
-            gantt->cells[first].mark = bar;
-            write_over(gantt, first + 1, last, command->text ? command->text : "");
+            draw_span(gantt, slice_at(record, command->begin_s), slice_at(record, command->end_s),
+                      command->text ? command->text : "");
         }
     }
     print_row(gantt, "command");
 }
 
-/* ------------------------------------------------------------------------------------------------- cycles */
-
 static void print_cycles(gantt_t *gantt) {
     const wh_record_t *record = gantt->printer->record;
-    const char *bar = gantt->printer->style->utf8 ? "│" : "|";
     for (size_t i = 0; i < record->cycle_count; ++i) {
+        const wh_cycle_record_t *cycle = &record->cycles[i];
         const int64_t end = wh_throughput_cycle_end(record, i);
-        const size_t first = column_of(gantt, record->cycles[i].begin);
-        const size_t last = end < gantt->slices ? column_of(gantt, end) : gantt->columns;
         char text[WH_PRINT_NUMBER_SIZE];
         snprintf(text, sizeof text, "%zu", i + 1);
-        if (end > record->cycles[i].begin) {
-            gantt->cells[first].mark = bar;
-            write_over(gantt, first + 1, last,
-                       record->cycles[i].name[0] != '\0' ? record->cycles[i].name : text);
+        if (end > cycle->begin) {
+            draw_span(gantt, cycle->begin, end, cycle->name[0] != '\0' ? cycle->name : text);
         }
     }
     if (record->cycle_count > 0) {

@@ -5,8 +5,7 @@
 #define FORMAT 1
 
 static void put_pose(json_t *object, const wh_pose_t *pose) {
-    wh_json_put(object, "at", wh_json_vector(pose->r));
-    wh_json_put(object, "rotation", wh_json_matrix(&pose->R));
+    (void)wh_json_add(object, "at rotation", wh_json_vector(pose->r), wh_json_matrix(&pose->R), NULL);
 }
 
 /* -------------------------------------------------------------------------------------------- the machine */
@@ -16,24 +15,20 @@ static json_t *axis(const void *subject, size_t i) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
     const wh_robot_t *robot = &layout->machine.robot;
     const wh_real_t unit = i == WH_AXIS_THETA || i == WH_AXIS_YAW ? wh_deg_from_rad(1) : 1;
-    json_t *object = json_object();
-    wh_json_put_text(object, "name", names[i]);
-    wh_json_put_real(object, "min", robot->travel[i].min * unit);
-    wh_json_put_real(object, "max", robot->travel[i].max * unit);
-    wh_json_put_real(object, "home", robot->home[i] * unit);
-    wh_json_put_real(object, "speed", robot->limits[i].speed * unit);
-    wh_json_put_real(object, "acceleration", robot->limits[i].acceleration * unit);
-    wh_json_put_real(object, "jerk", robot->limits[i].jerk * unit);
-    return object;
+    return wh_json_add(json_object(), "name min max home speed acceleration jerk", wh_json_text(names[i]),
+                       wh_json_real(robot->travel[i].min * unit), wh_json_real(robot->travel[i].max * unit),
+                       wh_json_real(robot->home[i] * unit), wh_json_real(robot->limits[i].speed * unit),
+                       wh_json_real(robot->limits[i].acceleration * unit),
+                       wh_json_real(robot->limits[i].jerk * unit), NULL);
 }
 
 static json_t *gripper(const void *subject, size_t i) {
     const wh_layout_t *layout = subject;
     const wh_layout_gripper_t *from = &layout->grippers[i];
-    json_t *object = json_object();
-    wh_json_put_text(object, "name", from->name);
-    wh_json_put_text(object, "on", from->station == WH_NONE ? "robot" : layout->stations[from->station].name);
-    wh_json_put_text(object, "valve", from->valve);
+    json_t *object =
+        wh_json_add(json_object(), "name on valve", wh_json_text(from->name),
+                    wh_json_text(from->station == WH_NONE ? "robot" : layout->stations[from->station].name),
+                    wh_json_text(from->valve), NULL);
     if (layout->machine.mounts[i].is_shifted) {
         put_pose(object, &layout->machine.mounts[i].effector_from_gripper);
     }
@@ -42,8 +37,8 @@ static json_t *gripper(const void *subject, size_t i) {
 
 /* ----------------------------------------------------------------------------------------------- stations */
 
-static void put_gap(json_t *object, const char *key, bool has, wh_real_t gap) {
-    wh_json_put(object, key, has ? json_real((double)gap) : json_null());
+static json_t *gap_of(bool has, wh_real_t gap) {
+    return has ? wh_json_real(gap) : json_null();
 }
 
 static json_t *station(const void *subject, size_t i) {
@@ -52,62 +47,39 @@ static json_t *station(const void *subject, size_t i) {
     const wh_layout_station_t *from = &layout->stations[i];
     const wh_entry_t *entry = &check->entries[i];
     const char *kind = from->foup ? "foup" : "slots";
-    json_t *object = json_object();
-    json_t *room = json_object();
-    wh_json_put_text(object, "name", from->name);
-    wh_json_put_text(object, "kind", from->prealigner ? "prealigner" : kind);
-    put_pose(object, &layout->places[i].base_from_station);
-    wh_json_put_integer(object, "slots", layout->places[i].slots);
-    wh_json_put_real(object, "pitch", layout->places[i].pitch);
-    wh_json_put_real(object, "stroke", from->stroke);
-    wh_json_put_real(object, "offset", from->offset);
-    wh_json_put_real(object, "retract", from->retract);
-    wh_json_put_real(object, "pickup_speed", from->pickup_speed);
-    wh_json_put(object, "taught", json_boolean(from->taught));
-    wh_json_put_text(object, "effector", layout->grippers[from->effector].name);
-    wh_json_put_integer(object, "wafers", (json_int_t)entry->wafers);
-    put_gap(room, "above", entry->has_above, entry->above);
-    put_gap(room, "below", entry->has_below, entry->below);
-    put_gap(room, "beside", entry->has_beside, entry->beside);
-    wh_json_put(object, "room", room);
-    return object;
+    const wh_station_t *place = &layout->places[i];
+    json_t *room =
+        wh_json_add(json_object(), "above below beside", gap_of(entry->has_above, entry->above),
+                    gap_of(entry->has_below, entry->below), gap_of(entry->has_beside, entry->beside), NULL);
+    return wh_json_add(
+        json_object(),
+        "name kind at rotation slots pitch stroke offset retract pickup_speed taught effector wafers room",
+        wh_json_text(from->name), wh_json_text(from->prealigner ? "prealigner" : kind),
+        wh_json_vector(place->base_from_station.r), wh_json_matrix(&place->base_from_station.R),
+        json_integer(place->slots), wh_json_real(place->pitch), wh_json_real(from->stroke),
+        wh_json_real(from->offset), wh_json_real(from->retract), wh_json_real(from->pickup_speed),
+        json_boolean(from->taught), wh_json_text(layout->grippers[from->effector].name),
+        json_integer((json_int_t)entry->wafers), room, NULL);
 }
 
 /* ------------------------------------------------------------------------------------------------- shapes */
 
 static json_t *shapes(const wh_shapes_t *from) {
-    const struct {
-        const char *shape, *size;
-        wh_real_t value;
-    } sizes[] = {
-        {"blade", "thickness", from->blade.thickness},
-        {"blade", "half_width", from->blade.half_width},
-        {"blade", "finger", from->blade.finger},
-        {"blade", "length", from->blade.length},
-        {"blade", "palm", from->blade.palm},
-        {"ledge", "inner", from->ledge.inner},
-        {"ledge", "outer", from->ledge.outer},
-        {"ledge", "thickness", from->ledge.thickness},
-        {"ledge", "length", from->ledge.length},
-        {"arm", "reach", from->arm.reach},
-        {"arm", "link", from->arm.link},
-        {"foup", "room", from->shell.room},
-        {"foup", "wall", from->shell.wall},
-        {"foup", "floor", from->shell.floor},
-        {"foup", "roof", from->shell.roof},
-        {"chuck", "radius", from->chuck.radius},
-        {"chuck", "height", from->chuck.height},
-        {"chuck", "body", from->chuck.body},
-    };
-    json_t *object = json_object();
-    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; ++i) {
-        if (!json_object_get(object, sizes[i].shape)) {
-            wh_json_put(object, sizes[i].shape, json_object());
-        }
-        wh_json_put_real(json_object_get(object, sizes[i].shape), sizes[i].size, sizes[i].value);
-    }
-    wh_json_put(json_object_get(object, "arm"), "right_handed", json_boolean(from->arm.right_handed));
-    return object;
+    json_t *blade = wh_json_add(json_object(), "thickness half_width finger length palm",
+                                wh_json_real(from->blade.thickness), wh_json_real(from->blade.half_width),
+                                wh_json_real(from->blade.finger), wh_json_real(from->blade.length),
+                                wh_json_real(from->blade.palm), NULL);
+    json_t *ledge = wh_json_add(json_object(), "inner outer thickness length",
+                                wh_json_real(from->ledge.inner), wh_json_real(from->ledge.outer),
+                                wh_json_real(from->ledge.thickness), wh_json_real(from->ledge.length), NULL);
+    json_t *arm = wh_json_add(json_object(), "reach link right_handed", wh_json_real(from->arm.reach),
+                              wh_json_real(from->arm.link), json_boolean(from->arm.right_handed), NULL);
+    json_t *foup = wh_json_add(json_object(), "room wall floor roof", wh_json_real(from->shell.room),
+                               wh_json_real(from->shell.wall), wh_json_real(from->shell.floor),
+                               wh_json_real(from->shell.roof), NULL);
+    json_t *chuck = wh_json_add(json_object(), "radius height body", wh_json_real(from->chuck.radius),
+                                wh_json_real(from->chuck.height), wh_json_real(from->chuck.body), NULL);
+    return wh_json_add(json_object(), "blade ledge arm foup chuck", blade, ledge, arm, foup, chuck, NULL);
 }
 
 static json_t *part(const void *subject, size_t i) {
@@ -117,12 +89,10 @@ static json_t *part(const void *subject, size_t i) {
     const wh_layout_t *layout = check->layout;
     const wh_part_t *from = &layout->world.parts[i];
     const wh_pose_t pose = wh_feasibility_place(check, (int32_t)i);
-    json_t *object = json_object();
-    wh_json_put_text(object, "name", layout->part_names[i]);
-    wh_json_put_text(object, "kind", kinds[from->kind]);
-    wh_json_put_text(object, "shape", shapes_of[from->convex.kind]);
-    wh_json_put(object, "half",
-                from->convex.kind == WH_CONVEX_MESH ? json_null() : wh_json_vector(from->convex.half));
+    json_t *object = wh_json_add(
+        json_object(), "name kind shape half", wh_json_text(layout->part_names[i]),
+        wh_json_text(kinds[from->kind]), wh_json_text(shapes_of[from->convex.kind]),
+        from->convex.kind == WH_CONVEX_MESH ? json_null() : wh_json_vector(from->convex.half), NULL);
     put_pose(object, &pose);
     return object;
 }
@@ -140,34 +110,21 @@ static json_t *clearances(const wh_layout_t *layout) {
 static json_t *wafer(const void *subject, size_t i) {
     const wh_layout_t *layout = subject;
     const wh_layout_wafer_t *from = &layout->wafers[i];
-    json_t *object = json_object();
-    wh_json_put_text(object, "name", from->name);
-    wh_json_put_text(object, "station", layout->stations[from->station].name);
-    wh_json_put_integer(object, "slot", from->slot);
-    return object;
+    return wh_json_add(json_object(), "name station slot", wh_json_text(from->name),
+                       wh_json_text(layout->stations[from->station].name), json_integer(from->slot), NULL);
 }
 
-static void put_physics(const wh_layout_t *layout, json_t *root) {
-    const wh_vacuum_config_t *from = &layout->physics.vacuum;
-    const wh_pads_t *pads = &layout->physics.pads;
-    json_t *vacuum = json_object();
-    wh_json_put_real(vacuum, "build", from->build);
-    wh_json_put_real(vacuum, "vent", from->vent);
-    wh_json_put_real(vacuum, "idle", from->idle);
-    wh_json_put_real(vacuum, "sensor_on", from->on);
-    wh_json_put_real(vacuum, "sensor_off", from->off);
-    wh_json_put_real(vacuum, "release", from->release);
-    wh_json_put(root, "vacuum", vacuum);
-    if (pads->mass > 0) {
-        json_t *object = json_object();
-        wh_json_put_real(object, "friction", pads->friction);
-        wh_json_put_real(object, "force", pads->force);
-        wh_json_put_real(object, "mass", pads->mass);
-        wh_json_put_real(object, "gravity", pads->gravity);
-        wh_json_put(root, "pads", object);
-    } else {
-        wh_json_put(root, "pads", json_null());
-    }
+static json_t *vacuum(const wh_vacuum_config_t *from) {
+    return wh_json_add(json_object(), "build vent idle sensor_on sensor_off release",
+                       wh_json_real(from->build), wh_json_real(from->vent), wh_json_real(from->idle),
+                       wh_json_real(from->on), wh_json_real(from->off), wh_json_real(from->release), NULL);
+}
+
+static json_t *pads(const wh_pads_t *from) {
+    return from->mass > 0 ? wh_json_add(json_object(), "friction force mass gravity",
+                                        wh_json_real(from->friction), wh_json_real(from->force),
+                                        wh_json_real(from->mass), wh_json_real(from->gravity), NULL)
+                          : json_null();
 }
 
 static json_t *fault(const void *subject, size_t i) {
@@ -177,14 +134,13 @@ static json_t *fault(const void *subject, size_t i) {
     const bool endless = from->until == WH_FAULT_FOREVER;
     const bool targeted = from->target != WH_NONE;
     const bool of_wafer = wh_fault_is_of_wafer(from->kind);
-    json_t *object = json_object();
-    wh_json_put_text(object, "kind", wh_fault_name(from->kind));
-    wh_json_put_text(object, "gripper", targeted && !of_wafer ? layout->grippers[from->target].name : NULL);
-    wh_json_put_text(object, "wafer", targeted && of_wafer ? layout->wafers[from->target].name : NULL);
-    wh_json_put_real(object, "from_s", (double)(from->from - 1) * slice_s);
-    wh_json_put(object, "until_s", endless ? json_null() : json_real((double)(from->until - 1) * slice_s));
-    wh_json_put_real(object, "value", from->value);
-    return object;
+    return wh_json_add(json_object(), "kind gripper wafer from_s until_s value",
+                       wh_json_text(wh_fault_name(from->kind)),
+                       wh_json_text(targeted && !of_wafer ? layout->grippers[from->target].name : NULL),
+                       wh_json_text(targeted && of_wafer ? layout->wafers[from->target].name : NULL),
+                       wh_json_real((double)(from->from - 1) * slice_s),
+                       endless ? json_null() : json_real((double)(from->until - 1) * slice_s),
+                       wh_json_real(from->value), NULL);
 }
 
 static json_t *finding(const void *subject, size_t i) {
@@ -192,35 +148,31 @@ static json_t *finding(const void *subject, size_t i) {
     const wh_layout_t *layout = check->layout;
     const wh_finding_t *from = &check->findings[i];
     const bool of_station = from->station != WH_NONE;
-    json_t *object = json_object();
-    wh_json_put_text(object, "kind", wh_finding_name(from->kind));
-    wh_json_put_text(object, "text", from->text);
-    wh_json_put_text(object, "station", of_station ? layout->stations[from->station].name : NULL);
+    json_t *object =
+        wh_json_add(json_object(), "kind text station", wh_json_text(wh_finding_name(from->kind)),
+                    wh_json_text(from->text),
+                    wh_json_text(of_station ? layout->stations[from->station].name : NULL), NULL);
     if (from->parts[0] != WH_NONE) {
-        json_t *parts = json_array();
-        wh_json_append(parts, wh_json_text(wh_layout_part_name(layout, from->parts[0])));
-        wh_json_append(parts, wh_json_text(wh_layout_part_name(layout, from->parts[1])));
-        wh_json_put(object, "parts", parts);
+        wh_json_put(object, "parts",
+                    json_pack("[o, o]", wh_json_text(wh_layout_part_name(layout, from->parts[0])),
+                              wh_json_text(wh_layout_part_name(layout, from->parts[1]))));
     }
     return object;
 }
 
 static void put_checks(const wh_layout_t *layout, json_t *root) {
-    json_t *tolerance = json_object();
-    wh_json_put_real(root, "wafer_diameter", layout->wafer_diameter);
-    wh_json_put_real(root, "wafer_thickness", layout->wafer_thickness);
-    wh_json_put_real(root, "notch_deg", (double)wh_deg_from_rad((wh_real_t)layout->notch));
-    wh_json_put_real(root, "notch_depth", layout->notch_depth);
-    wh_json_put_text(tolerance, "name", layout->tolerance_name);
-    wh_json_put_real(tolerance, "projz", layout->grasp.tolerance.projz);
-    wh_json_put_real(tolerance, "projxy", layout->grasp.tolerance.projxy);
-    wh_json_put_real(tolerance, "planar", layout->grasp.tolerance.planar);
-    wh_json_put(root, "tolerance", tolerance);
-    wh_json_put_text(root, "check", layout->grasp.check == WH_CHECK_SWEPT ? "swept" : "sampled");
-    wh_json_put_real(root, "slice_s", (double)layout->slice_us / 1e6);
-    wh_json_put(root, "seat", json_boolean(layout->grasp.seat));
-    wh_json_put(root, "settle", json_boolean(layout->cell.settle));
-    wh_json_put(root, "collision", json_boolean(layout->collision));
+    const wh_tolerance_t *from = &layout->grasp.tolerance;
+    json_t *tolerance =
+        wh_json_add(json_object(), "name projz projxy planar", wh_json_text(layout->tolerance_name),
+                    wh_json_real(from->projz), wh_json_real(from->projxy), wh_json_real(from->planar), NULL);
+    (void)wh_json_add(root, "wafer_diameter wafer_thickness notch_deg notch_depth",
+                      wh_json_real(layout->wafer_diameter), wh_json_real(layout->wafer_thickness),
+                      wh_json_real((double)wh_deg_from_rad((wh_real_t)layout->notch)),
+                      wh_json_real(layout->notch_depth), NULL);
+    (void)wh_json_add(root, "tolerance check slice_s seat settle collision", tolerance,
+                      wh_json_text(layout->grasp.check == WH_CHECK_SWEPT ? "swept" : "sampled"),
+                      wh_json_real((double)layout->slice_us / 1e6), json_boolean(layout->grasp.seat),
+                      json_boolean(layout->cell.settle), json_boolean(layout->collision), NULL);
 }
 
 int wh_layout_print_json(const wh_feasibility_t *check, FILE *out) {
@@ -234,7 +186,8 @@ int wh_layout_print_json(const wh_feasibility_t *check, FILE *out) {
     wh_json_put(root, "grippers", wh_json_list(gripper, layout, layout->machine.gripper_count));
     wh_json_put(root, "stations", wh_json_list(station, check, layout->station_count));
     wh_json_put(root, "wafers", wh_json_list(wafer, layout, layout->wafer_count));
-    put_physics(layout, root);
+    wh_json_put(root, "vacuum", vacuum(&layout->physics.vacuum));
+    wh_json_put(root, "pads", pads(&layout->physics.pads));
     wh_json_put(root, "faults", wh_json_list(fault, layout, layout->physics.fault_count));
     wh_json_put(root, "shapes", shapes(&layout->shapes));
     wh_json_put(root, "parts", wh_json_list(part, check, layout->world.part_count));

@@ -20,25 +20,20 @@ static const wh_grid_digits_t fine = {3, 3, false, 0};
 
 static void print_axes(const listing_t *listing) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
-    static const char *const headings[] = {"from", "to", "home", "speed", "acceleration", "jerk"};
     const wh_robot_t *robot = &listing->layout->machine.robot;
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_column(grid, "axis");
-    for (size_t i = 0; i < 6; ++i) {
-        wh_grid_number_column(grid, headings[i], whole);
-    }
-    wh_grid_text_column(grid, "in");
+    wh_grid_text_columns(grid, "axis", NULL);
+    wh_grid_number_columns(grid, whole, "from", "to", "home", "speed", "acceleration", "jerk", NULL);
+    wh_grid_text_columns(grid, "in", NULL);
     for (size_t i = 0; i < WH_ROBOT_AXES; ++i) {
         const bool turns = i == WH_AXIS_THETA || i == WH_AXIS_YAW;
+        const double unit = turns ? (double)wh_deg_from_rad(1) : 1;
         const wh_limits_t *limits = &robot->limits[i];
-        const wh_real_t values[] = {robot->travel[i].min, robot->travel[i].max, robot->home[i],
-                                    limits->speed,        limits->acceleration, limits->jerk};
-        wh_grid_row(grid);
-        wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", names[i]);
-        for (size_t column = 0; column < 6; ++column) {
-            wh_grid_number(grid, column + 1, WH_INK_PLAIN,
-                           (double)(turns ? wh_deg_from_rad(values[column]) : values[column]));
-        }
+        const double values[] = {unit * robot->travel[i].min, unit * robot->travel[i].max,
+                                 unit * robot->home[i],       unit * limits->speed,
+                                 unit * limits->acceleration, unit * limits->jerk};
+        wh_grid_named_row(grid, names[i]);
+        wh_grid_numbers(grid, 1, values, 6);
         wh_grid_text(grid, 7, WH_INK_DIM, turns ? "deg, s" : "mm, s");
     }
     wh_print_titled(&listing->frame, "Robot", grid);
@@ -47,15 +42,11 @@ static void print_axes(const listing_t *listing) {
 static void print_grippers(const listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_column(grid, "gripper");
-    wh_grid_text_column(grid, "on");
-    wh_grid_text_column(grid, "valve");
-    wh_grid_text_column(grid, "at mm");
-    wh_grid_number_column(grid, "turned deg", whole);
+    wh_grid_text_columns(grid, "gripper", "on", "valve", "at mm", NULL);
+    wh_grid_number_columns(grid, whole, "turned deg", NULL);
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         const wh_layout_gripper_t *gripper = &layout->grippers[g];
-        wh_grid_row(grid);
-        wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", gripper->name);
+        wh_grid_named_row(grid, gripper->name);
         wh_grid_text(grid, 1, WH_INK_PLAIN, "%s",
                      gripper->station == WH_NONE ? "robot" : layout->stations[gripper->station].name);
         wh_grid_text(grid, 2, WH_INK_PLAIN, "%s", gripper->valve);
@@ -72,40 +63,35 @@ static void print_grippers(const listing_t *listing) {
 
 /* ----------------------------------------------------------------------------------------------- stations */
 
-enum { NAME, KIND, X, Y, Z, HEADING, TILT, SLOTS, PITCH, STROKE, OFFSET, RETRACT, WAFERS };
-
 static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
     const wh_layout_station_t *station = &listing->layout->stations[s];
     const wh_station_t *place = &listing->layout->places[s];
+    const wh_vec3_t *r = &place->base_from_station.r;
     const wh_mat3_t *R = &place->base_from_station.R;
     const wh_real_t sine = wh_real_sqrt(R->m[0][2] * R->m[0][2] + R->m[1][2] * R->m[1][2]);
     const char *kind = station->foup ? "foup" : "slots";
-    wh_grid_row(grid);
-    wh_grid_text(grid, NAME, WH_INK_PLAIN, "%s", station->name);
-    wh_grid_text(grid, KIND, WH_INK_PLAIN, "%s%s", station->prealigner ? "prealigner" : kind,
+    wh_grid_named_row(grid, station->name);
+    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s%s", station->prealigner ? "prealigner" : kind,
                  station->taught ? "" : ", not taught");
-    wh_grid_number(grid, X, WH_INK_PLAIN, (double)place->base_from_station.r.x);
-    wh_grid_number(grid, Y, WH_INK_PLAIN, (double)place->base_from_station.r.y);
-    wh_grid_number(grid, Z, WH_INK_PLAIN, (double)place->base_from_station.r.z);
-    wh_grid_number(grid, HEADING, WH_INK_PLAIN, (double)wh_deg_from_rad(wh_atan2(R->m[1][0], R->m[0][0])));
-    wh_grid_number(grid, TILT, WH_INK_PLAIN, (double)wh_deg_from_rad(wh_atan2(sine, R->m[2][2])));
-    wh_grid_number(grid, SLOTS, WH_INK_PLAIN, place->slots);
-    wh_grid_number(grid, PITCH, WH_INK_PLAIN, (double)place->pitch);
-    wh_grid_number(grid, STROKE, WH_INK_PLAIN, (double)station->stroke);
-    wh_grid_number(grid, OFFSET, WH_INK_PLAIN, (double)station->offset);
-    wh_grid_number(grid, RETRACT, WH_INK_PLAIN, (double)station->retract);
-    wh_grid_number(grid, WAFERS, WH_INK_PLAIN, (double)listing->check->entries[s].wafers);
+    const double values[] = {r->x,
+                             r->y,
+                             r->z,
+                             wh_deg_from_rad(wh_atan2(R->m[1][0], R->m[0][0])),
+                             wh_deg_from_rad(wh_atan2(sine, R->m[2][2])),
+                             place->slots,
+                             place->pitch,
+                             station->stroke,
+                             station->offset,
+                             station->retract,
+                             (double)listing->check->entries[s].wafers};
+    wh_grid_numbers(grid, 2, values, sizeof values / sizeof values[0]);
 }
 
 static void print_stations(const listing_t *listing) {
-    static const char *const headings[] = {"x",     "y",      "z",      "heading deg", "tilt deg", "slots",
-                                           "pitch", "stroke", "offset", "retract",     "wafers"};
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_column(grid, "station");
-    wh_grid_text_column(grid, "kind");
-    for (size_t i = 0; i < sizeof headings / sizeof headings[0]; ++i) {
-        wh_grid_number_column(grid, headings[i], whole);
-    }
+    wh_grid_text_columns(grid, "station", "kind", NULL);
+    wh_grid_number_columns(grid, whole, "x", "y", "z", "heading deg", "tilt deg", "slots", "pitch", "stroke",
+                           "offset", "retract", "wafers", NULL);
     for (size_t s = 0; s < listing->layout->station_count; ++s) {
         add_station(listing, grid, s);
     }
@@ -120,14 +106,11 @@ static void add_gap(wh_grid_t *grid, size_t column, bool has, wh_real_t gap) {
 
 static void print_room(const listing_t *listing) {
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_column(grid, "blade entered at");
-    wh_grid_number_column(grid, "to the wafer above", fine);
-    wh_grid_number_column(grid, "to the one below", fine);
-    wh_grid_number_column(grid, "to ledges or chuck", fine);
+    wh_grid_text_columns(grid, "blade entered at", NULL);
+    wh_grid_number_columns(grid, fine, "to the wafer above", "to the one below", "to ledges or chuck", NULL);
     for (size_t s = 0; listing->check->has_parts && s < listing->layout->station_count; ++s) {
         const wh_entry_t *entry = &listing->check->entries[s];
-        wh_grid_row(grid);
-        wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", listing->layout->stations[s].name);
+        wh_grid_named_row(grid, listing->layout->stations[s].name);
         add_gap(grid, 1, entry->has_above, entry->above);
         add_gap(grid, 2, entry->has_below, entry->below);
         add_gap(grid, 3, entry->has_beside, entry->beside);
@@ -137,30 +120,23 @@ static void print_room(const listing_t *listing) {
 
 /* ------------------------------------------------------------------------------------------------ physics */
 
-static void begin(wh_grid_t *grid, const char *what) {
-    wh_grid_row(grid);
-    wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", what);
-}
-
 static void print_holding(const listing_t *listing) {
     const wh_vacuum_config_t *vacuum = &listing->layout->physics.vacuum;
     const wh_pads_t *pads = &listing->layout->physics.pads;
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_column(grid, "of all grippers");
-    wh_grid_text_column(grid, "");
+    wh_grid_text_columns(grid, "of all grippers", "", NULL);
+    wh_grid_named_row(grid, "vacuum");
     if (vacuum->build <= 0 && vacuum->vent <= 0) {
-        begin(grid, "vacuum");
         wh_grid_text(grid, 1, WH_INK_PLAIN, "ideal: an open valve holds at once");
     } else {
-        begin(grid, "vacuum");
         wh_grid_text(grid, 1, WH_INK_PLAIN, "builds in %g ms, vents in %g ms, is at %g without a wafer",
                      (double)(vacuum->build * MS), (double)(vacuum->vent * MS), (double)vacuum->idle);
-        begin(grid, "thresholds");
+        wh_grid_named_row(grid, "thresholds");
         wh_grid_text(grid, 1, WH_INK_PLAIN, "sensor on at %g, off below %g; lets go below %g",
                      (double)vacuum->on, (double)vacuum->off, (double)vacuum->release);
     }
     if (pads->mass > 0) {
-        begin(grid, "pads");
+        wh_grid_named_row(grid, "pads");
         wh_grid_text(grid, 1, WH_INK_PLAIN, "friction %g, %g N of vacuum, a wafer of %.4g kg",
                      (double)pads->friction, (double)pads->force, (double)pads->mass);
     }
@@ -179,7 +155,7 @@ static const char *target_of(const wh_layout_t *layout, const wh_fault_t *fault)
 
 static void add_fault(const listing_t *listing, wh_grid_t *grid, const wh_fault_t *fault) {
     const double slice_s = (double)listing->layout->slice_us / 1e6;
-    begin(grid, wh_fault_name(fault->kind));
+    wh_grid_named_row(grid, wh_fault_name(fault->kind));
     wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", target_of(listing->layout, fault));
     wh_grid_text(grid, 2, WH_INK_PLAIN, "%.10g", (double)(fault->from - 1) * slice_s);
     if (fault->until == WH_FAULT_FOREVER) {
@@ -196,11 +172,7 @@ static void add_fault(const listing_t *listing, wh_grid_t *grid, const wh_fault_
 static void print_faults(const listing_t *listing) {
     const wh_physics_t *physics = &listing->layout->physics;
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_column(grid, "fault");
-    wh_grid_text_column(grid, "of");
-    wh_grid_text_column(grid, "from s");
-    wh_grid_text_column(grid, "until s");
-    wh_grid_text_column(grid, "value");
+    wh_grid_text_columns(grid, "fault", "of", "from s", "until s", "value", NULL);
     for (size_t i = 0; i < physics->fault_count; ++i) {
         add_fault(listing, grid, &physics->faults[i]);
     }
@@ -212,29 +184,23 @@ static void print_faults(const listing_t *listing) {
 static void print_shapes(const listing_t *listing) {
     const wh_shapes_t *s = &listing->layout->shapes;
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_column(grid, "shape");
-    wh_grid_text_column(grid, "size");
-    wh_grid_row(grid);
-    wh_grid_text(grid, 0, WH_INK_PLAIN, "blade");
+    wh_grid_text_columns(grid, "shape", "size", NULL);
+    wh_grid_named_row(grid, "blade");
     wh_grid_text(grid, 1, WH_INK_PLAIN, "%g thick, %g wide, fingers of %g, %g before its origin, %g behind",
                  (double)s->blade.thickness, 2 * (double)s->blade.half_width, (double)s->blade.finger,
                  (double)s->blade.length, (double)s->blade.palm);
-    wh_grid_row(grid);
-    wh_grid_text(grid, 0, WH_INK_PLAIN, "ledges");
+    wh_grid_named_row(grid, "ledges");
     wh_grid_text(grid, 1, WH_INK_PLAIN, "%g thick, %g long, from %g to %g beside the middle",
                  (double)s->ledge.thickness, (double)s->ledge.length, (double)s->ledge.inner,
                  (double)s->ledge.outer);
-    wh_grid_row(grid);
-    wh_grid_text(grid, 0, WH_INK_PLAIN, "arm");
+    wh_grid_named_row(grid, "arm");
     wh_grid_text(grid, 1, WH_INK_PLAIN, "two links of %g, wrist %g behind the end-effector, elbow %s",
                  (double)s->arm.link, (double)s->arm.reach, s->arm.right_handed ? "right" : "left");
-    wh_grid_row(grid);
-    wh_grid_text(grid, 0, WH_INK_PLAIN, "FOUP");
+    wh_grid_named_row(grid, "FOUP");
     wh_grid_text(grid, 1, WH_INK_PLAIN,
                  "walls of %g, %g from the wafer; floor %g below, roof %g above the slots",
                  (double)s->shell.wall, (double)s->shell.room, (double)s->shell.floor, (double)s->shell.roof);
-    wh_grid_row(grid);
-    wh_grid_text(grid, 0, WH_INK_PLAIN, "chuck");
+    wh_grid_named_row(grid, "chuck");
     wh_grid_text(grid, 1, WH_INK_PLAIN, "radius %g, %g high; a body of radius %g below it",
                  (double)s->chuck.radius, (double)s->chuck.height, (double)s->chuck.body);
     wh_print_titled(&listing->frame, "Shapes, mm", grid);
@@ -270,23 +236,17 @@ static const char *carrier_of(const wh_layout_t *layout, const wh_part_t *part) 
 static void print_obstacles(const listing_t *listing) {
     const wh_world_config_t *world = &listing->layout->world;
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_column(grid, "obstacle");
-    wh_grid_text_column(grid, "on");
-    wh_grid_text_column(grid, "shape");
-    wh_grid_number_column(grid, "x", whole);
-    wh_grid_number_column(grid, "y", whole);
-    wh_grid_number_column(grid, "z", whole);
+    wh_grid_text_columns(grid, "obstacle", "on", "shape", NULL);
+    wh_grid_number_columns(grid, whole, "x", "y", "z", NULL);
     for (size_t i = 0; i < world->part_count; ++i) {
         const wh_part_t *part = &world->parts[i];
         const bool hung = i + listing->layout->hung_count >= world->part_count;
         if (hung || (part->kind == WH_PART_FIXED && part->owner == WH_NONE)) {
-            wh_grid_row(grid);
-            wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", listing->layout->part_names[i]);
+            wh_grid_named_row(grid, listing->layout->part_names[i]);
             wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", carrier_of(listing->layout, part));
             describe_size(grid, 2, &part->convex);
-            wh_grid_number(grid, 3, WH_INK_PLAIN, (double)part->convex.body_from_shape.r.x);
-            wh_grid_number(grid, 4, WH_INK_PLAIN, (double)part->convex.body_from_shape.r.y);
-            wh_grid_number(grid, 5, WH_INK_PLAIN, (double)part->convex.body_from_shape.r.z);
+            const wh_vec3_t *at = &part->convex.body_from_shape.r;
+            wh_grid_numbers(grid, 3, (const double[]){at->x, at->y, at->z}, 3);
         }
     }
     wh_print_titled(&listing->frame, "Obstacles, mm", grid);
@@ -294,12 +254,11 @@ static void print_obstacles(const listing_t *listing) {
 
 static void print_limits(const listing_t *listing) {
     wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_column(grid, "clearance");
-    wh_grid_number_column(grid, "at least mm", whole);
+    wh_grid_text_columns(grid, "clearance", NULL);
+    wh_grid_number_columns(grid, whole, "at least mm", NULL);
     for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
         if (listing->layout->world.limits[kind] > 0) {
-            wh_grid_row(grid);
-            wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", wh_clearance_name((wh_clearance_kind_t)kind));
+            wh_grid_named_row(grid, wh_clearance_name((wh_clearance_kind_t)kind));
             wh_grid_number(grid, 1, WH_INK_PLAIN, (double)listing->layout->world.limits[kind]);
         }
     }
@@ -312,12 +271,12 @@ static void print_findings(const listing_t *listing) {
     fputc('\n', listing->frame.out);
     if (listing->check->count == 0) {
         wh_style_print(listing->frame.style, listing->frame.out, WH_INK_GOOD, "%s",
-                       wh_style_tick(listing->frame.style));
+                       wh_style_glyph(listing->frame.style, WH_GLYPH_TICK));
         fputs(" nothing is wrong with it\n", listing->frame.out);
     }
     for (size_t i = 0; i < listing->check->count; ++i) {
         wh_style_print(listing->frame.style, listing->frame.out, WH_INK_BAD, "%s",
-                       wh_style_cross(listing->frame.style));
+                       wh_style_glyph(listing->frame.style, WH_GLYPH_CROSS));
         fputc(' ', listing->frame.out);
         wh_style_put(listing->frame.out, listing->check->findings[i].text);
         fputc('\n', listing->frame.out);
@@ -330,7 +289,8 @@ static void print_heading(const listing_t *listing) {
     wh_style_put(listing->frame.out, layout->path);
     fprintf(listing->frame.out, "\n%zu wafer%s of %g mm, %g mm thick, notch at %g%s\n", layout->wafer_count,
             layout->wafer_count == 1 ? "" : "s", layout->wafer_diameter, layout->wafer_thickness,
-            (double)wh_deg_from_rad((wh_real_t)layout->notch), wh_style_degree(listing->frame.style));
+            (double)wh_deg_from_rad((wh_real_t)layout->notch),
+            wh_style_glyph(listing->frame.style, WH_GLYPH_DEGREE));
     fprintf(listing->frame.out, "tolerance %s: %g mm, %g mm, %.10g; checked %s %g ms\n",
             layout->tolerance_name, (double)limits->projz, (double)limits->projxy, (double)limits->planar,
             layout->grasp.check == WH_CHECK_SWEPT ? "along the whole of each slice of"

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../math/trig.h"
+#include "../text/array.h"
 #include "print_internal.h"
 
 void wh_print_title(const wh_printer_t *printer, const char *title) {
@@ -13,7 +14,7 @@ void wh_print_title(const wh_printer_t *printer, const char *title) {
 }
 
 void wh_print_put(const wh_printer_t *printer, const char *text) {
-    char *copy = wh_record_text(text ? text : "");
+    char *copy = wh_text_copy(text ? text : "");
     char *rest = copy;
     for (char *end = strpbrk(rest, "\n\t"); end; end = strpbrk(rest, "\n\t")) {
         const char *between = *end == '\n' ? "\n  " : "  ";
@@ -45,10 +46,6 @@ const char *wh_print_gripper(const wh_printer_t *printer, int32_t gripper) {
     return name ? name : "-";
 }
 
-void wh_print_limit(char text[WH_PRINT_NUMBER_SIZE], double limit) {
-    snprintf(text, WH_PRINT_NUMBER_SIZE, "%.10g", limit);
-}
-
 void wh_print_count(char text[WH_PRINT_NUMBER_SIZE], int64_t count) {
     char digits[WH_PRINT_NUMBER_SIZE / 2 + 2];
     const int length = snprintf(digits, sizeof digits, "%" PRId64, count);
@@ -62,10 +59,14 @@ void wh_print_count(char text[WH_PRINT_NUMBER_SIZE], int64_t count) {
     text[to] = '\0';
 }
 
+void wh_print_counted(FILE *out, int64_t count, const char *one, const char *many) {
+    char text[WH_PRINT_NUMBER_SIZE];
+    wh_print_count(text, count);
+    fprintf(out, "%s %s", text, count == 1 ? one : many);
+}
+
 double wh_print_tilt_deg(double n1_proj_n2) {
-    const wh_real_t cosine = (wh_real_t)n1_proj_n2;
-    const wh_real_t square = (1 - cosine) * (1 + cosine);
-    return (double)wh_deg_from_rad(wh_atan2(wh_real_sqrt(square > 0 ? square : 0), cosine));
+    return (double)wh_deg_from_rad(wh_acos((wh_real_t)n1_proj_n2));
 }
 
 /* The gripper's normal in base: the end-effector is level, and a chuck turns about its station's z. */
@@ -88,11 +89,9 @@ double wh_print_rim_gap(const wh_printer_t *printer, const wh_event_t *event) {
 static void limited_column(const wh_printer_t *printer, wh_grid_t *grid, const char *value,
                            const char *relation, double limit, int decimals) {
     char heading[64 + WH_PRINT_NUMBER_SIZE];
-    char number[WH_PRINT_NUMBER_SIZE];
     const wh_grid_digits_t digits = {decimals, decimals, printer->record->layout != NULL, limit};
-    wh_print_limit(number, limit);
-    snprintf(heading, sizeof heading, "%s %s %s", value, relation, number);
-    wh_grid_number_column(grid, printer->record->layout ? heading : value, digits);
+    snprintf(heading, sizeof heading, "%s %s %.10g", value, relation, limit);
+    wh_grid_number_columns(grid, digits, printer->record->layout ? heading : value, NULL);
 }
 
 void wh_print_measured_columns(const wh_printer_t *printer, wh_grid_t *grid) {
@@ -101,7 +100,7 @@ void wh_print_measured_columns(const wh_printer_t *printer, wh_grid_t *grid) {
     const wh_tolerance_t *limits = layout ? &layout->grasp.tolerance : &unknown;
     const wh_grid_digits_t rim = {4, 4, false, 0};
     limited_column(printer, grid, "|dr_proj_z|", "<", (double)limits->projz, 4);
-    wh_grid_number_column(grid, "rim gap", rim);
+    wh_grid_number_columns(grid, rim, "rim gap", NULL);
     wh_grid_glue(grid);
     limited_column(printer, grid, "|dr_proj_xy|", "<", (double)limits->projxy, 4);
     wh_grid_glue(grid);

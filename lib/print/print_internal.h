@@ -57,10 +57,10 @@ double wh_print_tilt_deg(double n1_proj_n2);
 /* How far the wafer's rim is from the gripper's contact plane, mm; the centre's distance hides it. */
 double wh_print_rim_gap(const wh_printer_t *printer, const wh_event_t *event);
 
-/* A limit or a whole number as one would write it: 0.5, 50, 0.99; and a count as 31,482. */
+/* A count as one would write it: 31,482; and with what is counted, one of it or many. */
 #define WH_PRINT_NUMBER_SIZE 40
-void wh_print_limit(char text[WH_PRINT_NUMBER_SIZE], double limit);
 void wh_print_count(char text[WH_PRINT_NUMBER_SIZE], int64_t count);
+void wh_print_counted(FILE *out, int64_t count, const char *one, const char *many);
 
 /* True if an event belongs among the misses; true if it is a complaint of the cell. */
 bool wh_print_is_miss(wh_event_kind_t kind);

@@ -9,16 +9,10 @@
 static void print_tolerance(const wh_printer_t *printer) {
     const wh_layout_t *layout = printer->record->layout;
     const wh_tolerance_t *limits = &layout->grasp.tolerance;
-    char projz[WH_PRINT_NUMBER_SIZE];
-    char projxy[WH_PRINT_NUMBER_SIZE];
-    char planar[WH_PRINT_NUMBER_SIZE];
-    wh_print_limit(projz, (double)limits->projz);
-    wh_print_limit(projxy, (double)limits->projxy);
-    wh_print_limit(planar, (double)limits->planar);
     fprintf(printer->out,
-            "tolerance %s: |dr_proj_z| < %s mm, |dr_proj_xy| < %s mm, n1_proj_n2 > %s (%.2f%s)\n",
-            layout->tolerance_name, projz, projxy, planar, wh_print_tilt_deg((double)limits->planar),
-            wh_style_degree(printer->style));
+            "tolerance %s: |dr_proj_z| < %.10g mm, |dr_proj_xy| < %.10g mm, n1_proj_n2 > %.10g (%.2f%s)\n",
+            layout->tolerance_name, (double)limits->projz, (double)limits->projxy, (double)limits->planar,
+            wh_print_tilt_deg((double)limits->planar), wh_style_glyph(printer->style, WH_GLYPH_DEGREE));
     fprintf(printer->out, "checked %s %g ms; wafers %s\n",
             layout->grasp.check == WH_CHECK_SWEPT ? "along the whole of each slice of"
                                                   : "once a slice, every",
@@ -49,25 +43,22 @@ static size_t count_unmet(const wh_record_t *record) {
     return unmet;
 }
 
-static void add_unmet(const wh_printer_t *printer, wh_grid_t *grid,
-                      const wh_expectation_record_t *expectation) {
-    wh_grid_row(grid);
-    wh_grid_text(grid, MARK, WH_INK_BAD, "%s", wh_style_cross(printer->style));
-    if (expectation->line > 0) {
-        wh_grid_number(grid, LINE, WH_INK_DIM, expectation->line);
-    }
-    wh_grid_text(grid, TEXT, WH_INK_PLAIN, "%s", expectation->text ? expectation->text : "");
-}
-
 static void print_unmet(const wh_printer_t *printer) {
     wh_grid_t *grid = wh_grid_new(printer->style, 0);
-    wh_grid_text_column(grid, "");
-    wh_grid_number_column(grid, "line", wh_grid_whole);
-    wh_grid_text_column(grid, "expected");
+    wh_grid_text_columns(grid, "", NULL);
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "expected", NULL);
     for (size_t i = 0; i < printer->record->expectation_count; ++i) {
-        if (!printer->record->expectations[i].ok) {
-            add_unmet(printer, grid, &printer->record->expectations[i]);
+        const wh_expectation_record_t *expectation = &printer->record->expectations[i];
+        if (expectation->ok) {
+            continue;
         }
+        wh_grid_row(grid);
+        wh_grid_text(grid, MARK, WH_INK_BAD, "%s", wh_style_glyph(printer->style, WH_GLYPH_CROSS));
+        if (expectation->line > 0) {
+            wh_grid_number(grid, LINE, WH_INK_DIM, expectation->line);
+        }
+        wh_grid_text(grid, TEXT, WH_INK_PLAIN, "%s", expectation->text ? expectation->text : "");
     }
     wh_grid_print(grid, printer->out);
 }
@@ -83,25 +74,20 @@ static void print_expectations(const wh_printer_t *printer) {
         print_unmet(printer);
     }
     if (unmet < count) {
-        wh_style_print(printer->style, printer->out, WH_INK_GOOD, "%s", wh_style_tick(printer->style));
+        wh_style_print(printer->style, printer->out, WH_INK_GOOD, "%s",
+                       wh_style_glyph(printer->style, WH_GLYPH_TICK));
         fprintf(printer->out, " %s%zu met\n", unmet == 0 && count > 1 ? "all " : "", count - unmet);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------ summary */
 
-static void put_counted(FILE *out, int64_t count, const char *one, const char *many) {
-    char text[WH_PRINT_NUMBER_SIZE];
-    wh_print_count(text, count);
-    fprintf(out, "%s %s", text, count == 1 ? one : many);
-}
-
 static void print_times(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
     fputc('\n', printer->out);
-    put_counted(printer->out, (int64_t)record->command_count, "command", "commands");
+    wh_print_counted(printer->out, (int64_t)record->command_count, "command", "commands");
     fprintf(printer->out, ", %.3f s simulated in ", record->simulated_s);
-    put_counted(printer->out, record->slices, "slice", "slices");
+    wh_print_counted(printer->out, record->slices, "slice", "slices");
     if (record->missed > 0) {
         fprintf(printer->out, ", of which the simulator missed %lld", (long long)record->missed);
     }
@@ -122,14 +108,13 @@ static void print_times(const wh_printer_t *printer) {
     fprintf(printer->out, "hash %016llx\n", (unsigned long long)record->hash);
 }
 
-/* A reason for the verdict; true when there is one. */
-static bool put_reason(FILE *out, bool is_first, size_t count, const char *one, const char *many) {
-    if (count == 0) {
-        return false;
+/* A reason for the verdict, if there is one. */
+static void put_reason(FILE *out, const char **before, size_t count, const char *one, const char *many) {
+    if (count > 0) {
+        fputs(*before, out);
+        wh_print_counted(out, (int64_t)count, one, many);
+        *before = ", ";
     }
-    fputs(is_first ? ": " : ", ", out);
-    put_counted(out, (int64_t)count, one, many);
-    return true;
 }
 
 static size_t count_errors(const wh_record_t *record) {
@@ -149,11 +134,12 @@ static void put_reasons(const wh_printer_t *printer) {
     for (size_t i = 0; i < record->event_count; ++i) {
         complaints += wh_record_is_complaint(record->events[i].event.kind) ? 1 : 0;
     }
-    bool more = put_reason(printer->out, true, unmet, "expectation not met", "expectations not met");
-    more |= put_reason(printer->out, !more, record->failure ? count_errors(record) : 0,
-                       "command with an error", "commands with errors");
-    more |= put_reason(printer->out, !more, complaints, "complaint", "complaints");
-    if (more && unmet == 0 && expected > 0) {
+    const char *before = ": ";
+    put_reason(printer->out, &before, unmet, "expectation not met", "expectations not met");
+    put_reason(printer->out, &before, record->failure ? count_errors(record) : 0, "command with an error",
+               "commands with errors");
+    put_reason(printer->out, &before, complaints, "complaint", "complaints");
+    if (before[0] == ',' && unmet == 0 && expected > 0) {
         fprintf(printer->out, ", though %s met",
                 expected == 1 ? "the expectation is" : "all expectations are");
     }

@@ -1,7 +1,6 @@
 /* A study's result as JSON. */
 #include <math.h>
 
-#include "../study/wilson.h"
 #include "../text/json.h"
 #include "study_print.h"
 
@@ -11,9 +10,8 @@ static void put_count(json_t *object, const char *key, uint64_t value) {
 
 static void put_rate(json_t *object, uint64_t hits, uint64_t trials) {
     const wh_confidence_t rate = wh_wilson_interval(hits, trials);
-    wh_json_put_real(object, "rate", rate.rate);
-    wh_json_put_real(object, "low", rate.low);
-    wh_json_put_real(object, "high", rate.high);
+    (void)wh_json_add(object, "rate low high", wh_json_real(rate.rate), wh_json_real(rate.low),
+                      wh_json_real(rate.high), NULL);
 }
 
 static void put_trial(json_t *object, const char *key, uint64_t trial) {
@@ -25,13 +23,11 @@ static void put_trial(json_t *object, const char *key, uint64_t trial) {
 static json_t *expectation(const void *subject, size_t i) {
     const wh_study_result_t *result = subject;
     const wh_tally_row_t *row = &result->tally->expectations.rows[i];
-    json_t *object = json_object();
     char expected[4096];
     wh_study_expected(row->text, expected, sizeof expected);
-    wh_json_put_integer(object, "line", row->line);
-    wh_json_put_text(object, "text", expected);
-    put_count(object, "seen", row->seen);
-    put_count(object, "met", row->seen - row->bad);
+    json_t *object = wh_json_add(json_object(), "line text seen met", json_integer(row->line),
+                                 wh_json_text(expected), json_integer((json_int_t)row->seen),
+                                 json_integer((json_int_t)(row->seen - row->bad)), NULL);
     put_rate(object, row->seen - row->bad, row->seen);
     put_trial(object, "first_missed", row->first);
     return object;
@@ -40,36 +36,28 @@ static json_t *expectation(const void *subject, size_t i) {
 static json_t *error(const void *subject, size_t i) {
     const wh_study_result_t *result = subject;
     const wh_tally_row_t *row = &result->tally->errors.rows[i];
-    json_t *object = json_object();
-    wh_json_put_integer(object, "line", row->line);
-    wh_json_put_text(object, "text", row->text);
-    wh_json_put_integer(object, "error", row->place);
-    wh_json_put_text(object, "name", wh_status_name((wh_status_t)row->place));
-    put_count(object, "trials", row->bad);
+    json_t *object = wh_json_add(json_object(), "line text error name trials", json_integer(row->line),
+                                 wh_json_text(row->text), json_integer(row->place),
+                                 wh_json_text(wh_status_name((wh_status_t)row->place)),
+                                 json_integer((json_int_t)row->bad), NULL);
     put_rate(object, row->bad, result->tally->trials);
     put_trial(object, "first", row->first);
     return object;
 }
 
-static json_t *event(const wh_study_result_t *result, size_t kind) {
+/* Null for a kind that never happened. */
+static json_t *event(const void *subject, size_t kind) {
+    const wh_study_result_t *result = subject;
     const wh_tally_event_t *counted = &result->tally->events[kind];
-    json_t *object = json_object();
-    wh_json_put_text(object, "kind", wh_event_name((wh_event_kind_t)kind));
-    put_count(object, "trials", counted->trials);
+    if (counted->trials == 0) {
+        return NULL;
+    }
+    json_t *object =
+        wh_json_add(json_object(), "kind trials", wh_json_text(wh_event_name((wh_event_kind_t)kind)),
+                    json_integer((json_int_t)counted->trials), NULL);
     put_rate(object, counted->trials, result->tally->trials);
     put_count(object, "total", counted->total);
     return object;
-}
-
-/* Only events that happened. */
-static json_t *events(const wh_study_result_t *result) {
-    json_t *list = json_array();
-    for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
-        if (result->tally->events[kind].trials > 0) {
-            wh_json_append(list, event(result, kind));
-        }
-    }
-    return list;
 }
 
 /* ------------------------------------------------------------------------------------------------- wafers */
@@ -80,10 +68,9 @@ static json_t *figures(const wh_sum_t *sum, double nominal) {
         uint32_t permille;
     } quantiles[] = {{"p0_1", 1},  {"p1", 10},   {"p5", 50},    {"p50", 500},
                      {"p95", 950}, {"p99", 990}, {"p99_9", 999}};
-    json_t *object = json_object();
-    wh_json_put_real(object, "mean", nominal + wh_sum_mean(sum));
-    wh_json_put_real(object, "deviation", wh_sum_deviation(sum));
-    wh_json_put_real(object, "min", nominal + wh_sum_least(sum));
+    json_t *object =
+        wh_json_add(json_object(), "mean deviation min", wh_json_real(nominal + wh_sum_mean(sum)),
+                    wh_json_real(wh_sum_deviation(sum)), wh_json_real(nominal + wh_sum_least(sum)), NULL);
     for (size_t i = 0; i < sizeof quantiles / sizeof quantiles[0]; ++i) {
         wh_json_put_real(object, quantiles[i].key, nominal + wh_sum_quantile(sum, quantiles[i].permille));
     }
@@ -97,15 +84,13 @@ static json_t *wafer(const void *subject, size_t i) {
     const wh_study_wafer_t *end = &result->study->wafers[i];
     const wh_tally_wafer_t *tally = &result->tally->wafers[i];
     const bool lies = end->place.station != WH_NONE;
-    json_t *object = json_object();
-    wh_json_put_text(object, "name", result->study->layout->wafers[end->wafer].name);
-    wh_json_put_text(object, "station",
-                     lies ? result->study->layout->stations[end->place.station].name : NULL);
-    wh_json_put(object, "slot", lies ? json_integer(end->place.slot) : json_null());
-    wh_json_put_text(object, "holder",
-                     end->holder == WH_NONE ? NULL : result->study->layout->grippers[end->holder].name);
-    put_count(object, "elsewhere", tally->elsewhere);
-    put_count(object, "count", tally->of[0].count);
+    json_t *object = wh_json_add(
+        json_object(), "name station slot holder elsewhere count",
+        wh_json_text(result->study->layout->wafers[end->wafer].name),
+        wh_json_text(lies ? result->study->layout->stations[end->place.station].name : NULL),
+        lies ? json_integer(end->place.slot) : json_null(),
+        wh_json_text(end->holder == WH_NONE ? NULL : result->study->layout->grippers[end->holder].name),
+        json_integer((json_int_t)tally->elsewhere), json_integer((json_int_t)tally->of[0].count), NULL);
     for (size_t q = 0; q < WH_TALLY_QUANTITIES; ++q) {
         wh_json_put(object, keys[q],
                     tally->of[q].count > 0 ? figures(&tally->of[q], wh_study_nominal(end, q)) : json_null());
@@ -115,99 +100,86 @@ static json_t *wafer(const void *subject, size_t i) {
 
 /* -------------------------------------------------------------------------------------------------- worst */
 
-static json_t *displacement(const char *name, const wh_displacement_t *drawn, const char *const keys[6]) {
-    const double values[] = {(double)drawn->moved.x, (double)drawn->moved.y, (double)drawn->moved.z,
-                             (double)drawn->turn[0], (double)drawn->turn[1], (double)drawn->turn[2]};
+/* What a trial drew. What it drew nothing for is null. */
+typedef struct {
+    const wh_layout_t *layout;
+    wh_trial_t trial;
+} draw_t;
+
+static json_t *displacement(const char *keys, const char *name, const wh_displacement_t *drawn) {
+    const wh_vec3_t *moved = &drawn->moved;
+    const wh_real_t *turn = drawn->turn;
+    if (!wh_displacement_is_any(drawn)) {
+        return NULL;
+    }
+    return wh_json_add(json_object(), keys, wh_json_text(name), wh_json_real(moved->x),
+                       wh_json_real(moved->y), wh_json_real(moved->z), wh_json_real(turn[0]),
+                       wh_json_real(turn[1]), wh_json_real(turn[2]), NULL);
+}
+
+static json_t *drawn_wafer(const void *subject, size_t w) {
+    const draw_t *draw = subject;
+    const wh_displacement_t drawn = wh_errors_draw_wafer(draw->layout->errors, &draw->trial, w);
+    return displacement("name dx dy dz tilt_x tilt_y turn", draw->layout->wafers[w].name, &drawn);
+}
+
+static json_t *drawn_station(const void *subject, size_t s) {
+    const draw_t *draw = subject;
+    const wh_displacement_t drawn = wh_errors_draw_station(draw->layout->errors, &draw->trial, s);
+    return displacement("name x y z roll pitch yaw", draw->layout->stations[s].name, &drawn);
+}
+
+static json_t *drawn_valve(const void *subject, size_t g) {
+    const draw_t *draw = subject;
+    const wh_layout_t *layout = draw->layout;
+    if (!(layout->errors->valves[g].width > 0)) {
+        return NULL;
+    }
     json_t *object = json_object();
-    wh_json_put_text(object, "name", name);
-    for (size_t i = 0; i < 6; ++i) {
-        wh_json_put_real(object, keys[i], values[i]);
-    }
+    const double late = (double)wh_errors_draw_valve(layout->errors, &draw->trial, g);
+    (void)wh_json_add(object, "gripper slices", wh_json_text(layout->grippers[g].name),
+                      json_integer((json_int_t)ceil(late * 1e6 / (double)layout->slice_us)), NULL);
     return object;
-}
-
-static json_t *drawn_wafers(const wh_layout_t *layout, const wh_trial_t *trial) {
-    static const char *const keys[6] = {"dx", "dy", "dz", "tilt_x", "tilt_y", "turn"};
-    json_t *list = json_array();
-    for (size_t w = 0; w < layout->wafer_count; ++w) {
-        const wh_displacement_t drawn = wh_errors_draw_wafer(layout->errors, trial, w);
-        if (wh_displacement_is_any(&drawn)) {
-            wh_json_append(list, displacement(layout->wafers[w].name, &drawn, keys));
-        }
-    }
-    return list;
-}
-
-static json_t *drawn_stations(const wh_layout_t *layout, const wh_trial_t *trial) {
-    static const char *const keys[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
-    json_t *list = json_array();
-    for (size_t s = 0; s < layout->station_count; ++s) {
-        const wh_displacement_t drawn = wh_errors_draw_station(layout->errors, trial, s);
-        if (wh_displacement_is_any(&drawn)) {
-            wh_json_append(list, displacement(layout->stations[s].name, &drawn, keys));
-        }
-    }
-    return list;
-}
-
-static json_t *drawn_valves(const wh_layout_t *layout, const wh_trial_t *trial) {
-    json_t *list = json_array();
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        if (layout->errors->valves[g].width > 0) {
-            json_t *object = json_object();
-            const double late = (double)wh_errors_draw_valve(layout->errors, trial, g);
-            wh_json_put_text(object, "gripper", layout->grippers[g].name);
-            wh_json_put_integer(object, "slices", (json_int_t)ceil(late * 1e6 / (double)layout->slice_us));
-            wh_json_append(list, object);
-        }
-    }
-    return list;
 }
 
 static json_t *worst_trial(const void *subject, size_t i) {
     const wh_study_result_t *result = subject;
     const wh_tally_trial_t *worst = &result->tally->worst[i];
-    const wh_trial_t trial = {result->study->seed, worst->trial};
+    const wh_layout_t *layout = result->study->layout;
+    const draw_t draw = {layout, {result->study->seed, worst->trial}};
     json_t *object = json_object();
     json_t *drawn = json_object();
-    put_count(object, "trial", worst->trial);
-    wh_json_put(object, "ok", json_boolean(worst->met));
-    wh_json_put_real(object, "off", worst->off);
-    wh_json_put(drawn, "wafers", drawn_wafers(result->study->layout, &trial));
-    wh_json_put(drawn, "stations", drawn_stations(result->study->layout, &trial));
-    wh_json_put(drawn, "valves", drawn_valves(result->study->layout, &trial));
-    wh_json_put_real(drawn, "vacuum_s", (double)wh_errors_draw_vacuum(result->study->layout->errors, &trial));
+    (void)wh_json_add(object, "trial ok off", json_integer((json_int_t)worst->trial),
+                      json_boolean(worst->met), wh_json_real(worst->off), NULL);
+    (void)wh_json_add(drawn, "wafers stations valves vacuum_s",
+                      wh_json_list(drawn_wafer, &draw, layout->wafer_count),
+                      wh_json_list(drawn_station, &draw, layout->station_count),
+                      wh_json_list(drawn_valve, &draw, layout->machine.gripper_count),
+                      wh_json_real((double)wh_errors_draw_vacuum(layout->errors, &draw.trial)), NULL);
     wh_json_put(object, "drawn", drawn);
     return object;
 }
 
 /* ---------------------------------------------------------------------------------------------- all of it */
 
-static json_t *success(const wh_study_result_t *result) {
-    json_t *object = json_object();
-    put_count(object, "met", result->tally->met);
-    put_rate(object, result->tally->met, result->tally->trials);
-    return object;
-}
-
 static json_t *run_without_errors(const wh_study_result_t *result) {
     const wh_record_t *record = &result->study->nominal.record;
-    json_t *object = json_object();
-    wh_json_put(object, "ok", json_boolean(record->ok));
-    wh_json_put(object, "hash", json_sprintf("%016llx", (unsigned long long)record->hash));
-    wh_json_put_integer(object, "slices", record->slices);
-    wh_json_put_real(object, "simulated_s", record->simulated_s);
-    return object;
+    return wh_json_add(json_object(), "ok hash slices simulated_s", json_boolean(record->ok),
+                       json_sprintf("%016llx", (unsigned long long)record->hash),
+                       json_integer(record->slices), wh_json_real(record->simulated_s), NULL);
 }
 
 static void put_head(const wh_study_result_t *result, json_t *root) {
+    json_t *success = json_object();
     wh_json_put_integer(root, "format", 1);
     wh_json_put(root, "ok", json_boolean(wh_study_is_kept(result)));
     wh_json_put_text(root, "script", result->study->run.script);
     wh_json_put_text(root, "layout", result->study->layout->path);
     put_count(root, "seed", result->study->seed);
     put_count(root, "trials", result->tally->trials);
-    wh_json_put(root, "success", success(result));
+    wh_json_put(root, "success", success);
+    put_count(success, "met", result->tally->met);
+    put_rate(success, result->tally->met, result->tally->trials);
     wh_json_put(root, "require", result->require > 0 ? wh_json_real(result->require) : json_null());
     put_count(root, "ended", result->tally->ended);
     put_count(root, "whole", result->tally->whole);
@@ -222,7 +194,7 @@ int wh_study_print_json(const wh_study_result_t *result, FILE *out) {
     put_head(result, root);
     wh_json_put(root, "expectations", wh_json_list(expectation, result, result->tally->expectations.count));
     wh_json_put(root, "errors", wh_json_list(error, result, result->tally->errors.count));
-    wh_json_put(root, "events", events(result));
+    wh_json_put(root, "events", wh_json_list(event, result, WH_EVENT_KINDS));
     wh_json_put(root, "wafers", wh_json_list(wafer, result, result->tally->wafer_count));
     wh_json_put(root, "worst", wh_json_list(worst_trial, result, worst));
     const int status = wh_json_print(root, out);

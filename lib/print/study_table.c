@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "../math/trig.h"
-#include "../study/wilson.h"
 #include "print_internal.h"
 #include "study_print.h"
 
@@ -41,8 +40,8 @@ double wh_study_nominal(const wh_study_wafer_t *wafer, size_t q) {
 /* -------------------------------------------------------------------------------------------------- rates */
 
 static void rate_columns(wh_grid_t *grid) {
-    wh_grid_number_column(grid, "%", percent);
-    wh_grid_text_column(grid, "95 %");
+    wh_grid_number_columns(grid, percent, "%", NULL);
+    wh_grid_text_columns(grid, "95 %", NULL);
 }
 
 /* In percent, with its interval. */
@@ -60,11 +59,11 @@ static void put_trial(wh_grid_t *grid, size_t column, uint64_t trial) {
 
 static void print_expectations(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 2);
-    wh_grid_number_column(grid, "line", wh_grid_whole);
-    wh_grid_text_column(grid, "expected");
-    wh_grid_number_column(grid, "met", wh_grid_whole);
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "expected", NULL);
+    wh_grid_number_columns(grid, wh_grid_whole, "met", NULL);
     rate_columns(grid);
-    wh_grid_number_column(grid, "first missed", wh_grid_whole);
+    wh_grid_number_columns(grid, wh_grid_whole, "first missed", NULL);
     for (size_t i = 0; i < table->tally->expectations.count; ++i) {
         const wh_tally_row_t *row = &table->tally->expectations.rows[i];
         char expected[200];
@@ -81,12 +80,11 @@ static void print_expectations(const table_t *table) {
 
 static void print_errors(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 2);
-    wh_grid_number_column(grid, "line", wh_grid_whole);
-    wh_grid_text_column(grid, "command");
-    wh_grid_text_column(grid, "error");
-    wh_grid_number_column(grid, "trials", wh_grid_whole);
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "command", "error", NULL);
+    wh_grid_number_columns(grid, wh_grid_whole, "trials", NULL);
     rate_columns(grid);
-    wh_grid_number_column(grid, "first", wh_grid_whole);
+    wh_grid_number_columns(grid, wh_grid_whole, "first", NULL);
     for (size_t i = 0; i < table->tally->errors.count; ++i) {
         const wh_tally_row_t *row = &table->tally->errors.rows[i];
         wh_grid_row(grid);
@@ -102,10 +100,10 @@ static void print_errors(const table_t *table) {
 
 static void print_events(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 1);
-    wh_grid_text_column(grid, "event");
-    wh_grid_number_column(grid, "trials", wh_grid_whole);
+    wh_grid_text_columns(grid, "event", NULL);
+    wh_grid_number_columns(grid, wh_grid_whole, "trials", NULL);
     rate_columns(grid);
-    wh_grid_number_column(grid, "all in all", wh_grid_whole);
+    wh_grid_number_columns(grid, wh_grid_whole, "all in all", NULL);
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
         const wh_tally_event_t *event = &table->tally->events[kind];
         if (event->trials > 0) {
@@ -153,15 +151,10 @@ static void add_wafer(const table_t *table, wh_grid_t *grid, size_t index) {
 }
 
 static void print_wafers(const table_t *table) {
-    static const char *const headings[] = {"mean", "deviation", "min",    "0.1 %", "5 %",
-                                           "50 %", "95 %",      "99.9 %", "max"};
     wh_grid_t *grid = wh_grid_new(table->frame.style, 3);
-    wh_grid_text_column(grid, "wafer");
-    wh_grid_text_column(grid, "in");
-    wh_grid_text_column(grid, "what");
-    for (size_t i = 0; i < sizeof headings / sizeof headings[0]; ++i) {
-        wh_grid_number_column(grid, headings[i], fine);
-    }
+    wh_grid_text_columns(grid, "wafer", "in", "what", NULL);
+    wh_grid_number_columns(grid, fine, "mean", "deviation", "min", "0.1 %", "5 %", "50 %", "95 %", "99.9 %",
+                           "max", NULL);
     for (size_t w = 0; w < table->tally->wafer_count; ++w) {
         add_wafer(table, grid, w);
     }
@@ -169,12 +162,11 @@ static void print_wafers(const table_t *table) {
     for (size_t w = 0; w < table->tally->wafer_count; ++w) {
         const wh_tally_wafer_t *tally = &table->tally->wafers[w];
         if (tally->elsewhere > 0) {
-            char count[WH_PRINT_NUMBER_SIZE];
-            wh_print_count(count, (int64_t)tally->elsewhere);
             wh_print_put(&table->frame,
                          table->study->study->layout->wafers[table->study->study->wafers[w].wafer].name);
-            fprintf(table->frame.out, " ends elsewhere in %s %s, which are not in these figures\n", count,
-                    tally->elsewhere == 1 ? "trial" : "trials");
+            fputs(" ends elsewhere in ", table->frame.out);
+            wh_print_counted(table->frame.out, (int64_t)tally->elsewhere, "trial", "trials");
+            fputs(", which are not in these figures\n", table->frame.out);
         }
     }
 }
@@ -183,9 +175,9 @@ static void print_wafers(const table_t *table) {
 
 static void print_worst(const table_t *table) {
     wh_grid_t *grid = wh_grid_new(table->frame.style, 1);
-    wh_grid_number_column(grid, "trial", wh_grid_whole);
-    wh_grid_text_column(grid, "result");
-    wh_grid_number_column(grid, "off mm", fine);
+    wh_grid_number_columns(grid, wh_grid_whole, "trial", NULL);
+    wh_grid_text_columns(grid, "result", NULL);
+    wh_grid_number_columns(grid, fine, "off mm", NULL);
     const size_t count =
         table->study->worst < table->tally->worst_count ? table->study->worst : table->tally->worst_count;
     for (size_t i = 0; i < count; ++i) {
@@ -206,12 +198,12 @@ static void print_worst(const table_t *table) {
 
 static void print_head(const table_t *table) {
     const wh_study_t *study = table->study->study;
-    char trials[WH_PRINT_NUMBER_SIZE];
     wh_print_put(&table->frame, study->run.script);
     fputs(" on ", table->frame.out);
     wh_print_put(&table->frame, study->layout->path);
-    wh_print_count(trials, (int64_t)table->tally->trials);
-    fprintf(table->frame.out, "\n%s trials of seed %llu\n", trials, (unsigned long long)study->seed);
+    fputc('\n', table->frame.out);
+    wh_print_counted(table->frame.out, (int64_t)table->tally->trials, "trials", "trials");
+    fprintf(table->frame.out, " of seed %llu\n", (unsigned long long)study->seed);
     if (!study->nominal.record.ok) {
         wh_style_print(table->frame.style, table->frame.out, WH_INK_WARN,
                        "without any errors the script fails already");
@@ -221,15 +213,13 @@ static void print_head(const table_t *table) {
 
 static void print_how(const table_t *table) {
     const wh_study_t *study = table->study->study;
-    char count[WH_PRINT_NUMBER_SIZE];
-    wh_print_count(count, (int64_t)table->tally->whole);
     if (study->whole) {
         fprintf(table->frame.out,
                 "each trial ran the script whole, for in the run without errors this was read: %s\n",
                 study->whole);
     } else {
-        fprintf(table->frame.out,
-                "%s trials ran the script whole, the others are the run without errors, replayed\n", count);
+        wh_print_counted(table->frame.out, (int64_t)table->tally->whole, "trials", "trials");
+        fputs(" ran the script whole, the others are the run without errors, replayed\n", table->frame.out);
     }
 }
 

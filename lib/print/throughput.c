@@ -65,18 +65,15 @@ static int64_t sum_of(const int64_t shares[WH_SHARES]) {
 }
 
 void wh_print_times(const wh_printer_t *printer) {
-    static const char *const headings[WH_SHARES] = {"with wafer", "without", "vacuum", "valves", "waiting"};
     const wh_record_t *record = printer->record;
     if (!record->layout || record->slices == 0) {
         return;
     }
     wh_grid_t *grid = wh_grid_new(printer->style, 2);
-    wh_grid_number_column(grid, "line", wh_grid_whole);
-    wh_grid_text_column(grid, "command");
-    wh_grid_number_column(grid, "s", wh_print_seconds);
-    for (size_t share = 0; share < WH_SHARES; ++share) {
-        wh_grid_number_column(grid, headings[share], wh_print_seconds);
-    }
+    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
+    wh_grid_text_columns(grid, "command", NULL);
+    wh_grid_number_columns(grid, wh_print_seconds, "s", "with wafer", "without", "vacuum", "valves",
+                           "waiting", NULL);
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
         wh_grid_row(grid);
@@ -98,8 +95,7 @@ void wh_print_times(const wh_printer_t *printer) {
 #define SLENDER 1.0
 
 static void add_reach(const wh_printer_t *printer, wh_grid_t *grid, size_t station) {
-    wh_grid_row(grid);
-    wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", printer->record->layout->stations[station].name);
+    wh_grid_named_row(grid, printer->record->layout->stations[station].name);
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         const wh_travel_margin_t *reach = &printer->record->reach[station].axes[axis];
         const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
@@ -120,10 +116,10 @@ void wh_print_margins(const wh_printer_t *printer) {
         return;
     }
     wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_text_column(grid, "station");
+    wh_grid_text_columns(grid, "station", NULL);
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        wh_grid_number_column(grid, headings[axis], digits);
-        wh_grid_text_column(grid, "from");
+        wh_grid_number_columns(grid, digits, headings[axis], NULL);
+        wh_grid_text_columns(grid, "from", NULL);
         wh_grid_glue(grid);
     }
     for (size_t station = 0; station < record->layout->station_count; ++station) {

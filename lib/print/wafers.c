@@ -5,7 +5,7 @@
 #include "../text/array.h"
 #include "print_internal.h"
 
-enum { NAME, HELD_BY, LIES_IN, DX, DY, DZ, TILT };
+enum { NAME, HELD_BY, LIES_IN, DX };
 
 /* Above this many wafers only those are listed that something happened to. */
 #define LISTED_ALL 30
@@ -18,11 +18,6 @@ typedef struct {
     size_t *named, *picked;
 } history_t;
 
-static bool is_end_effector(const wh_layout_t *layout, int32_t gripper) {
-    return wh_is_index(gripper, layout->machine.gripper_count) &&
-           layout->grippers[gripper].station == WH_NONE;
-}
-
 static void read_history(const wh_record_t *record, const history_t *history) {
     for (size_t i = 0; i < record->event_count; ++i) {
         const wh_event_t *event = &record->events[i].event;
@@ -31,23 +26,11 @@ static void read_history(const wh_record_t *record, const history_t *history) {
         }
         const bool taken = event->kind == WH_EVENT_PICKED || event->kind == WH_EVENT_HANDED_OVER;
         history->named[event->wafer] = i + 1;
-        if (taken && is_end_effector(record->layout, event->gripper)) {
+        if (taken && wh_is_index(event->gripper, record->layout->machine.gripper_count) &&
+            record->layout->grippers[event->gripper].station == WH_NONE) {
             history->picked[event->wafer] = i + 1;
         }
     }
-}
-
-static wh_grid_t *new_grid(const wh_printer_t *printer) {
-    const wh_grid_digits_t tilt = {3, 6, false, 0};
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_text_column(grid, "wafer");
-    wh_grid_text_column(grid, "held by");
-    wh_grid_text_column(grid, "lies in");
-    wh_grid_number_column(grid, "dX mm", wh_print_millimetres);
-    wh_grid_number_column(grid, "dY mm", wh_print_millimetres);
-    wh_grid_number_column(grid, "dz mm", wh_print_millimetres);
-    wh_grid_number_column(grid, "tilt deg", tilt);
-    return grid;
 }
 
 static void fill_place(const wh_printer_t *printer, wh_grid_t *grid, const wh_wafer_record_t *wafer) {
@@ -58,16 +41,13 @@ static void fill_place(const wh_printer_t *printer, wh_grid_t *grid, const wh_wa
         return;
     }
     wh_grid_text(grid, LIES_IN, WH_INK_PLAIN, "%s %d", station, (int)place->slot);
-    wh_grid_number(grid, DX, WH_INK_PLAIN, (double)place->dx);
-    wh_grid_number(grid, DY, WH_INK_PLAIN, (double)place->dy);
-    wh_grid_number(grid, DZ, WH_INK_PLAIN, (double)place->dz);
-    wh_grid_number(grid, TILT, WH_INK_PLAIN, (double)wh_deg_from_rad(place->tilt));
+    const double values[] = {place->dx, place->dy, place->dz, wh_deg_from_rad(place->tilt)};
+    wh_grid_numbers(grid, DX, values, 4);
 }
 
 static void add_wafer(const wh_printer_t *printer, wh_grid_t *grid, size_t i) {
     const wh_wafer_record_t *wafer = &printer->record->wafers[i];
-    wh_grid_row(grid);
-    wh_grid_text(grid, NAME, WH_INK_PLAIN, "%s", wh_print_wafer(printer, (int32_t)i));
+    wh_grid_named_row(grid, wh_print_wafer(printer, (int32_t)i));
     if (wafer->holder != WH_NONE) {
         wh_grid_text(grid, HELD_BY, WH_INK_PLAIN, "%s", wh_print_gripper(printer, wafer->holder));
     }
@@ -91,7 +71,7 @@ static size_t add_wafers(const wh_printer_t *printer, wh_grid_t *grid, const his
 
 static void say_tilt(const wh_printer_t *printer, size_t wafer, const wh_event_t *pick, double tilt_deg) {
     const bool seated = printer->record->layout->grasp.seat;
-    const char *degree = wh_style_degree(printer->style);
+    const char *degree = wh_style_glyph(printer->style, WH_GLYPH_DEGREE);
     wh_print_put(printer, wh_print_wafer(printer, (int32_t)wafer));
     fprintf(printer->out, seated ? " was at %.3f%s to " : " keeps %.3f%s against ", tilt_deg, degree);
     wh_print_put(printer, wh_print_gripper(printer, pick->gripper));
@@ -117,7 +97,11 @@ static void say_tilts(const wh_printer_t *printer, const history_t *history) {
 }
 
 static void print_wafers(const wh_printer_t *printer, const history_t *history) {
-    wh_grid_t *grid = new_grid(printer);
+    const wh_grid_digits_t tilt = {3, 6, false, 0};
+    wh_grid_t *grid = wh_grid_new(printer->style, 1);
+    wh_grid_text_columns(grid, "wafer", "held by", "lies in", NULL);
+    wh_grid_number_columns(grid, wh_print_millimetres, "dX mm", "dY mm", "dz mm", NULL);
+    wh_grid_number_columns(grid, tilt, "tilt deg", NULL);
     const size_t left_out = add_wafers(printer, grid, history);
     wh_print_title(printer, "Wafers");
     if (left_out < printer->record->layout->wafer_count) {
@@ -126,10 +110,8 @@ static void print_wafers(const wh_printer_t *printer, const history_t *history) 
         wh_grid_free(grid);
     }
     if (left_out > 0) {
-        char count[WH_PRINT_NUMBER_SIZE];
-        wh_print_count(count, (int64_t)left_out);
-        fprintf(printer->out, "%s %s where nothing happened to them\n", count,
-                left_out == 1 ? "wafer lies" : "wafers lie");
+        wh_print_counted(printer->out, (int64_t)left_out, "wafer lies", "wafers lie");
+        fputs(" where nothing happened to them\n", printer->out);
     }
     say_tilts(printer, history);
 }

@@ -7,22 +7,20 @@
 
 /* -------------------------------------------------------------------------------------------------- tasks */
 
-static bool axis_moves(const wh_track_t *track, const wh_segment_t *segment, size_t axis) {
-    return wh_real_abs(segment->target[axis] - track->axes[axis]) > 0;
-}
-
-static bool robot_moves(const wh_track_t *track, const wh_segment_t *segment) {
-    bool moves = segment->kind == WH_SEGMENT_LINE;
-    for (size_t axis = 0; segment->kind == WH_SEGMENT_AXES && axis < WH_ROBOT_AXES; ++axis) {
-        moves = moves || axis_moves(track, segment, axis);
+wh_task_t wh_activity_motion(const wh_machine_t *machine, const bool moving[WH_AXES], wh_share_t share) {
+    bool robot = false;
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        robot = robot || moving[axis];
     }
-    return moves;
-}
-
-static bool is_carried(const wh_track_t *track, const wh_segment_t *segment, bool robot, size_t g) {
-    const int32_t axis = track->machine->mounts[g].axis;
-    return axis == WH_NONE ? robot
-                           : segment->kind == WH_SEGMENT_AXES && axis_moves(track, segment, (size_t)axis);
+    wh_task_t task = {share, robot, robot, 0};
+    for (size_t g = 0; g < machine->gripper_count; ++g) {
+        const int32_t axis = machine->mounts[g].axis;
+        const bool carried = axis == WH_NONE ? robot : moving[axis];
+        task.moves = task.moves || carried;
+        task.carried |= carried ? 1U << g : 0;
+    }
+    task.robot = robot || !task.moves;
+    return task;
 }
 
 static wh_share_t share_standing(const wh_segment_t *segment, bool for_vacuum) {
@@ -33,12 +31,17 @@ static wh_share_t share_standing(const wh_segment_t *segment, bool for_vacuum) {
 }
 
 wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment, bool for_vacuum) {
-    const bool moves = segment->kind == WH_SEGMENT_AXES || segment->kind == WH_SEGMENT_LINE;
-    const bool robot = robot_moves(track, segment);
-    wh_task_t task = {share_standing(segment, for_vacuum), moves, robot || !moves, 0};
-    for (size_t g = 0; moves && g < track->machine->gripper_count; ++g) {
-        task.carried |= is_carried(track, segment, robot, g) ? 1U << g : 0;
+    const bool is_line = segment->kind == WH_SEGMENT_LINE;
+    const bool is_motion = is_line || segment->kind == WH_SEGMENT_AXES;
+    bool moving[WH_AXES] = {false};
+    for (size_t axis = 0; is_motion && axis < WH_AXES; ++axis) {
+        moving[axis] =
+            is_line ? axis < WH_ROBOT_AXES : wh_real_abs(segment->target[axis] - track->axes[axis]) > 0;
     }
+    wh_task_t task = wh_activity_motion(track->machine, moving, share_standing(segment, for_vacuum));
+    /* A motion of no length is one, but keeps nobody busy. */
+    task.robot = task.robot && (task.moves || !is_motion);
+    task.moves = is_motion;
     return task;
 }
 
@@ -48,12 +51,12 @@ static void add_interval(wh_activity_t *activity, size_t resource, int64_t end) 
     const size_t beside_robot = resource > 0 ? resource - 1 : 0;
     activity->intervals = wh_array_grow(activity->intervals, activity->interval_count,
                                         &activity->interval_capacity, sizeof *activity->intervals);
-    wh_busy_span_t *added = &activity->intervals[activity->interval_count++];
-    added->who = resource == 0 ? WH_BUSY_ROBOT : (wh_busy_t)(WH_BUSY_CHUCK + beside_robot % 3);
-    added->gripper = resource == 0 ? WH_NONE : (int32_t)(beside_robot / 3);
-    added->what = activity->open[resource].what;
-    added->begin = activity->open[resource].begin;
-    added->end = end;
+    activity->intervals[activity->interval_count++] =
+        (wh_busy_span_t){.who = resource == 0 ? WH_BUSY_ROBOT : (wh_busy_t)(WH_BUSY_CHUCK + beside_robot % 3),
+                         .gripper = resource == 0 ? WH_NONE : (int32_t)(beside_robot / 3),
+                         .what = activity->open[resource].what,
+                         .begin = activity->open[resource].begin,
+                         .end = end};
 }
 
 size_t wh_activity_resource(const wh_busy_span_t *interval) {
@@ -132,10 +135,6 @@ void wh_activity_end(wh_activity_t *activity, int64_t slice) {
         note(activity, resource, 0, slice + 1);
     }
     activity->last.is_known = false;
-}
-
-void wh_activity_forget(wh_activity_t *activity) {
-    activity->interval_count = 0;
 }
 
 void wh_activity_free(wh_activity_t *activity) {

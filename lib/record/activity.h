@@ -67,8 +67,11 @@ typedef struct {
  * others. */
 wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment, bool for_vacuum);
 
+/* The task while these axes move; `share` when none does. */
+wh_task_t wh_activity_motion(const wh_machine_t *machine, const bool moving[WH_AXES], wh_share_t share);
+
 /* Counts slice command->seq, which `state` answers, and returns its share. Of the command it reads `seq` and
- * the valves. Aborts if out of memory. Cost: 4 ns for two grippers. */
+ * the valves. Cost: 4 ns for two grippers. */
 wh_share_t wh_activity_count(wh_activity_t *activity, const wh_machine_t *machine, const wh_task_t *task,
                              const wh_command_t *command, const wh_state_t *state);
 
@@ -77,9 +80,6 @@ void wh_activity_end(wh_activity_t *activity, int64_t slice);
 
 /* Which of the WH_RESOURCES an interval is of: 0 is the robot. */
 size_t wh_activity_resource(const wh_busy_span_t *interval);
-
-/* Drops the intervals that have ended; shares and what is going on stay. */
-void wh_activity_forget(wh_activity_t *activity);
 
 /* Frees the intervals. */
 void wh_activity_free(wh_activity_t *activity);

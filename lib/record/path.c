@@ -48,8 +48,7 @@ static cubic_t cubic_of(int64_t from, double v, double slope, int64_t to, double
     const double way = next - v;
     const double a = width * slope;
     const double end = width * next_slope;
-    const cubic_t cubic = {(double)from, width, v, a, 3 * way - 2 * a - end, a + end - 2 * way};
-    return cubic;
+    return (cubic_t){(double)from, width, v, a, 3 * way - 2 * a - end, a + end - 2 * way};
 }
 
 static double at_slice(const cubic_t *cubic, int64_t slice, double *slope) {
@@ -152,7 +151,8 @@ static void thin_again(void *fit) {
                covers(curve, i, end + 1)) {
             ++end;
         }
-        wh_points_copy(list, ++kept, end);
+        list->points[++kept] = list->points[end];
+        memmove(wh_points_numbers(list, kept), wh_points_numbers(list, end), 2 * sizeof *list->numbers);
         i = end;
     }
     list->count = kept + 1;
@@ -240,8 +240,7 @@ static void push(wh_path_t *curve, int64_t slice, double value) {
     const size_t count = curve->sample_count;
     curve->equal = count > 0 && is_same(curve->samples[count - 1].value, value) ? curve->equal + 1 : 1;
     curve->samples = wh_array_grow(curve->samples, count, &curve->sample_capacity, sizeof *curve->samples);
-    const wh_sample_t sample = {slice, value};
-    curve->samples[curve->sample_count++] = sample;
+    curve->samples[curve->sample_count++] = (wh_sample_t){slice, value};
 }
 
 static void begin(wh_path_t *curve, int64_t slice, double value) {

@@ -7,7 +7,7 @@
  * signal rests it is exact.
  *
  * Samples come in the order of their slices. Those since the last point are kept, at most WH_PATH_SPAN,
- * until they are too many for one cubic; a rest takes no room. Host code: aborts if out of memory.
+ * until they are too many for one cubic; a rest takes no room.
  */
 #ifndef WH_RECORD_PATH_H
 #define WH_RECORD_PATH_H

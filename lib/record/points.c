@@ -19,11 +19,6 @@ void wh_points_insert(wh_points_t *list, size_t i, int64_t slice, const double n
     list->exact_count += exact ? 1 : 0;
 }
 
-void wh_points_copy(wh_points_t *list, size_t to, size_t from) {
-    list->points[to] = list->points[from];
-    memmove(wh_points_numbers(list, to), wh_points_numbers(list, from), list->width * sizeof *list->numbers);
-}
-
 void wh_points_make_exact(wh_points_t *list, size_t i) {
     list->exact_count += list->points[i].exact ? 0 : 1;
     list->points[i].exact = true;

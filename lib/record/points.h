@@ -3,8 +3,6 @@
  *
  * If more than `limit` points are not exact, the tolerance is doubled and they are thinned again. So memory
  * is bounded, except for a signal that jumps without end.
- *
- * Host code: aborts if out of memory.
  */
 #ifndef WH_RECORD_POINTS_H
 #define WH_RECORD_POINTS_H
@@ -36,9 +34,6 @@ static inline double *wh_points_numbers(const wh_points_t *list, size_t i) {
 
 /* A new point, which becomes number `i`; those from there on follow it. */
 void wh_points_insert(wh_points_t *list, size_t i, int64_t slice, const double numbers[], bool exact);
-
-/* Point `to` becomes what point `from` is. */
-void wh_points_copy(wh_points_t *list, size_t to, size_t from);
 
 void wh_points_make_exact(wh_points_t *list, size_t i);
 

@@ -5,44 +5,43 @@
 
 #include "../text/array.h"
 
-char *wh_record_text(const char *text) {
-    char *copy = strdup(text);
-    if (!copy) {
-        abort();
+const char *wh_record_error_text(wh_status_t status) {
+    static const struct {
+        wh_status_t number;
+        const char *text;
+    } catalogue[] = {
+#define WH_STATUS(number, name, text) {WH_STATUS_##name, text},
+#include "../math/status.def"
+#undef WH_STATUS
+    };
+    for (size_t i = 0; i < sizeof catalogue / sizeof catalogue[0]; ++i) {
+        if (catalogue[i].number == status) {
+            return catalogue[i].text;
+        }
     }
-    return copy;
+    return "unknown status";
 }
 
 wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s) {
     record->commands = wh_array_grow(record->commands, record->command_count, &record->command_capacity,
                                      sizeof *record->commands);
     wh_command_record_t *command = &record->commands[record->command_count++];
-    command->line = line;
-    command->text = wh_record_text(text);
-    command->error = WH_OK;
-    command->message = NULL;
-    command->begin_s = begin_s;
-    command->end_s = begin_s;
-    memset(command->shares, 0, sizeof command->shares);
+    *command =
+        (wh_command_record_t){.line = line, .text = wh_text_copy(text), .begin_s = begin_s, .end_s = begin_s};
     return command;
 }
 
 void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event) {
     record->events =
         wh_array_grow(record->events, record->event_count, &record->event_capacity, sizeof *record->events);
-    wh_event_record_t *added = &record->events[record->event_count++];
-    added->utime = utime;
-    added->command = command;
-    added->event = *event;
+    record->events[record->event_count++] = (wh_event_record_t){utime, command, *event};
 }
 
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok) {
     record->expectations = wh_array_grow(record->expectations, record->expectation_count,
                                          &record->expectation_capacity, sizeof *record->expectations);
-    wh_expectation_record_t *added = &record->expectations[record->expectation_count++];
-    added->line = line;
-    added->text = wh_record_text(text);
-    added->ok = ok;
+    record->expectations[record->expectation_count++] =
+        (wh_expectation_record_t){line, wh_text_copy(text), ok};
 }
 
 void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put) {
@@ -54,10 +53,7 @@ void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put) {
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin) {
     record->cycles =
         wh_array_grow(record->cycles, record->cycle_count, &record->cycle_capacity, sizeof *record->cycles);
-    wh_cycle_record_t *added = &record->cycles[record->cycle_count++];
-    added->line = line;
-    added->name = wh_record_text(name);
-    added->begin = begin;
+    record->cycles[record->cycle_count++] = (wh_cycle_record_t){line, wh_text_copy(name), begin};
 }
 
 bool wh_record_is_complaint(wh_event_kind_t kind) {
@@ -65,13 +61,6 @@ bool wh_record_is_complaint(wh_event_kind_t kind) {
         1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED | 1U << WH_EVENT_BAD_INPUT |
         1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED;
     return (complaints >> (unsigned)kind & 1U) != 0;
-}
-
-void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves) {
-    if (!record->curves) {
-        record->curves = wh_array_new(1, sizeof *curves);
-    }
-    *record->curves = *curves;
 }
 
 void wh_record_begin_reach(wh_record_t *record, size_t stations) {
@@ -93,7 +82,7 @@ void wh_record_forget(wh_record_t *record) {
     }
     record->command_count = record->event_count = record->expectation_count = 0;
     record->put_count = record->cycle_count = 0;
-    wh_activity_forget(&record->activity);
+    record->activity.interval_count = 0;
 }
 
 void wh_record_free(wh_record_t *record) {

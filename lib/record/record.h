@@ -85,16 +85,13 @@ typedef struct {
     wh_curves_t *curves; /* and how they went over time; null unless checked */
 } wh_record_t;
 
-/* Appending; texts are copied. A program that runs out of memory here aborts. */
+/* Appending; texts are copied. */
 wh_command_record_t *wh_record_add_command(wh_record_t *record, int line, const char *text, double begin_s);
 void wh_record_add_event(wh_record_t *record, int64_t utime, int32_t command, const wh_event_t *event);
 void wh_record_add_expectation(wh_record_t *record, int line, const char *text, bool ok);
 void wh_record_add_put(wh_record_t *record, const wh_put_record_t *put);
 void wh_record_begin_reach(wh_record_t *record, size_t stations); /* once; then nothing */
 void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_t begin);
-
-/* Keeps a copy of the curves. */
-void wh_record_keep_curves(wh_record_t *record, const wh_curves_t *curves);
 
 /* Drops commands, events, expectations, puts, cycles and intervals; script, layout, reach and the sums stay.
  * For sessions without an end. */
@@ -104,8 +101,9 @@ void wh_record_forget(wh_record_t *record);
  * hit or may have been, a wafer slipped, or an input was refused. */
 bool wh_record_is_complaint(wh_event_kind_t kind);
 
-/* A copy of the text, to be freed. */
-char *wh_record_text(const char *text);
+/* The catalogue's text for any status: what motion control and the link answer stands in it too, which
+ * wh_status_text leaves out. Never null. */
+const char *wh_record_error_text(wh_status_t status);
 
 /* Frees everything that the record holds and zeroes it. */
 void wh_record_free(wh_record_t *record);

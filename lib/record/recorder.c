@@ -2,14 +2,13 @@
 
 #include "../text/array.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 void wh_recorder_open(wh_recorder_t *recorder, wh_record_t *record, const char *script) {
     memset(recorder, 0, sizeof *recorder);
     recorder->record = record;
     recorder->running = WH_NONE;
-    record->script = wh_record_text(script);
+    record->script = wh_text_copy(script);
 }
 
 double wh_recorder_now(const wh_recorder_t *recorder) {
@@ -52,8 +51,8 @@ static void add_put(wh_recorder_t *recorder, int32_t w, const wh_wafer_t *wafer)
     wh_place_t place;
     if (locate(recorder, wafer, &place) &&
         (wafer->holder == WH_NONE || wafer->holder == recorder->layout->places[place.station].chuck)) {
-        const wh_put_record_t put = {w, place.station, place.slot, recorder->slice};
-        wh_record_add_put(recorder->record, &put);
+        wh_record_add_put(recorder->record,
+                          &(wh_put_record_t){w, place.station, place.slot, recorder->slice});
     }
 }
 
@@ -92,7 +91,7 @@ const wh_command_record_t *wh_recorder_end(wh_recorder_t *recorder, double end_s
     if (error == WH_OK) {
         count_puts(recorder, wafers);
     } else {
-        command->message = wh_record_text(message);
+        command->message = wh_text_copy(message);
     }
     recorder->running = WH_NONE;
     return command;
@@ -152,7 +151,8 @@ void wh_recorder_finish(wh_recorder_t *recorder, const wh_recorder_end_t *end) {
     record->checked = end->world != NULL;
     if (record->checked) {
         memcpy(record->clearances, wh_world_clearances(end->world), sizeof record->clearances);
-        wh_record_keep_curves(record, wh_world_curves(end->world));
+        record->curves = wh_array_new(1, sizeof *record->curves);
+        *record->curves = *wh_world_curves(end->world);
     }
     keep_wafers(recorder, end->wafers);
 }

@@ -49,9 +49,8 @@ static void add_stay(wh_signals_t *signals, int64_t slice, int32_t wafer, int32_
                      const wh_pose_t *pose) {
     signals->stays =
         wh_array_grow(signals->stays, signals->stay_count, &signals->stay_capacity, sizeof *signals->stays);
-    const wh_stay_t stay = {slice, wafer, holder, *pose};
     signals->stay_of[wafer] = (int32_t)signals->stay_count;
-    signals->stays[signals->stay_count++] = stay;
+    signals->stays[signals->stay_count++] = (wh_stay_t){slice, wafer, holder, *pose};
 }
 
 /* The first sample is the state before the run, as motion control finds it: at home, all valves closed. */
@@ -132,8 +131,7 @@ void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value) {
         return;
     }
     steps->steps = wh_array_grow(steps->steps, steps->count, &steps->capacity, sizeof *steps->steps);
-    steps->steps[steps->count].slice = slice;
-    steps->steps[steps->count++].value = value;
+    steps->steps[steps->count++] = (wh_step_t){slice, value};
 }
 
 static void add_signals(wh_signals_t *signals, const wh_state_t *state) {
@@ -207,9 +205,7 @@ static void add_marks(wh_signals_t *signals, const wh_state_t *state) {
             signals->marks = wh_array_grow(signals->marks, signals->mark_count, &signals->mark_capacity,
                                            sizeof *signals->marks);
             wh_mark_t *mark = &signals->marks[signals->mark_count++];
-            memset(mark, 0, sizeof *mark);
-            mark->event = *event;
-            mark->utime = state->utime;
+            *mark = (wh_mark_t){.event = *event, .utime = state->utime};
             mark->has_place = place_of(event, state, &mark->at);
         }
     }

@@ -7,7 +7,7 @@
  * events and wherever wh_signals_mark is called. Slices count as in the run: a value of slice n is true at
  * its end; slice 0 is before the first.
  *
- * Host code: aborts if out of memory. Memory: what thinning leaves, steps, and 4 bytes a wafer.
+ * Memory: what thinning leaves, steps, and 4 bytes a wafer.
  */
 #ifndef WH_RECORD_SIGNALS_H
 #define WH_RECORD_SIGNALS_H

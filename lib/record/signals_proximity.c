@@ -1,7 +1,6 @@
 /* Each gripper against its nearest wafer, over time: the paper's Fig. 9. */
-#include <string.h>
-
 #include "../text/array.h"
+#include "counterpart.h"
 #include "signals.h"
 
 /* With more wafers than this, those near a gripper are on a list, made anew when it has gone so far, mm. */
@@ -20,6 +19,12 @@ static double reach_of(const wh_signals_t *signals) {
 
 /* ----------------------------------------------------------------------------------------------- vicinity */
 
+static void add(wh_neighbours_t *vicinity, int32_t wafer) {
+    vicinity->wafers =
+        wh_array_grow(vicinity->wafers, vicinity->count, &vicinity->capacity, sizeof *vicinity->wafers);
+    vicinity->wafers[vicinity->count++] = wafer;
+}
+
 static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, const wh_state_t *state,
                         const wh_vec3_t *at) {
     const double radius = reach_of(signals) + ROOM;
@@ -27,55 +32,26 @@ static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, 
     vicinity->count = 0;
     for (size_t w = 0; w < state->wafer_count; ++w) {
         if (few || square_of(&state->wafers[w].base_from_wafer.r, at) < radius * radius) {
-            vicinity->wafers = wh_array_grow(vicinity->wafers, vicinity->count, &vicinity->capacity,
-                                             sizeof *vicinity->wafers);
-            vicinity->wafers[vicinity->count++] = (int32_t)w;
+            add(vicinity, (int32_t)w);
         }
     }
     vicinity->centre = *at;
     vicinity->is_known = true;
 }
 
-typedef struct {
-    const wh_state_t *state;
-    const wh_vec3_t *at; /* the gripper */
-    double reach, least;
-    int32_t nearest;
-} search_t;
-
-static void consider(search_t *search, int32_t wafer) {
-    const wh_pose_t *pose = &search->state->wafers[wafer].base_from_wafer;
-    if (square_of(&pose->r, search->at) < search->reach * search->reach) {
-        const wh_vec3_t dr = wh_vec3_subtract(&pose->r, search->at);
-        const wh_vec3_t n1 = wh_mat3_column(&pose->R, 2);
-        const double height = wh_real_abs(wh_vec3_dot(&dr, &n1));
-        if (search->nearest == WH_NONE || height < search->least) {
-            search->least = height;
-            search->nearest = wafer;
-        }
-    }
-}
-
-/* The wafer that the gripper holds, else the one that it would take: with the smallest |dr_proj_z|. */
-static int32_t find_nearest(const wh_signals_t *signals, const wh_neighbours_t *vicinity,
-                            const wh_state_t *state, size_t g) {
-    search_t search = {.state = state,
-                       .at = &state->grippers[g].base_from_gripper.r,
-                       .reach = reach_of(signals),
-                       .nearest = WH_NONE};
-    if (state->grippers[g].wafer != WH_NONE) {
-        return state->grippers[g].wafer;
-    }
-    for (size_t i = 0; i < vicinity->count; ++i) {
-        consider(&search, vicinity->wafers[i]);
-    }
-    /* Wafers that other grippers carry may come near without being on the list. */
+/* The wafer that the gripper is measured against: see counterpart.h. Wafers that other grippers carry may come near
+ * without being on the list. */
+static int32_t find(wh_neighbours_t *vicinity, const wh_state_t *state, size_t g,
+                    const wh_tolerance_t *tolerance) {
+    const size_t listed = vicinity->count;
     for (size_t other = 0; other < state->gripper_count; ++other) {
         if (state->grippers[other].wafer != WH_NONE) {
-            consider(&search, state->grippers[other].wafer);
+            add(vicinity, state->grippers[other].wafer);
         }
     }
-    return search.nearest;
+    const int32_t found = wh_counterpart(state, g, tolerance, vicinity->wafers, vicinity->count);
+    vicinity->count = listed;
+    return found;
 }
 
 /* ------------------------------------------------------------------------------------------------- values */
@@ -94,7 +70,7 @@ static int32_t measure(wh_signals_t *signals, const wh_state_t *state, size_t g,
     if (!vicinity->is_known || square_of(&pose->r, &vicinity->centre) > ROOM * ROOM) {
         look_around(signals, vicinity, state, &pose->r);
     }
-    const int32_t nearest = find_nearest(signals, vicinity, state, g);
+    const int32_t nearest = find(vicinity, state, g, &signals->layout->grasp.tolerance);
     if (nearest == WH_NONE || wh_proximity_measure(&state->wafers[nearest].base_from_wafer, pose,
                                                    &signals->layout->grasp.tolerance, &p) != WH_OK) {
         return WH_NONE;

@@ -7,8 +7,7 @@
  *
  * Samples come in the order of their slices and none is looked at twice. The fit keeps the range of slopes
  * from the last point that miss no sample since; when a sample lies outside, the one before it becomes a
- * point. A signal that turns by more than WH_THIN_TURN from sample to sample cannot be thinned. Host code:
- * aborts if out of memory.
+ * point. A signal that turns by more than WH_THIN_TURN from sample to sample cannot be thinned.
  */
 #ifndef WH_RECORD_THIN_H
 #define WH_RECORD_THIN_H

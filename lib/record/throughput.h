@@ -39,8 +39,7 @@ typedef struct {
     size_t first, last;     /* the marked cycles over which they count, from 1; 0: the whole run */
 } wh_throughput_t;
 
-/* All zero for a record without a layout. Cost: linear in puts, cycles and wafers. Aborts if out of
- * memory. */
+/* All zero for a record without a layout. Cost: linear in puts, cycles and wafers. */
 wh_throughput_t wh_throughput(const wh_record_t *record);
 
 /* How many wafers are done in each marked cycle, for puts of this rank: an array of record->cycle_count, to

@@ -22,19 +22,37 @@ static void put_exact(wh_json_text_t *text, const char *key, double value) {
     wh_json_text_number(text, key, value, 0, true);
 }
 
+static void put_list(wh_json_text_t *text, const char *key, const double values[], size_t count) {
+    wh_json_text_begin(text, key, '[');
+    for (size_t i = 0; i < count; ++i) {
+        put_exact(text, NULL, values[i]);
+    }
+    wh_json_text_end(text, ']');
+}
+
+static void put_point(wh_json_text_t *text, const char *key, const wh_vec3_t *point) {
+    const double values[] = {point->x, point->y, point->z};
+    put_list(text, key, values, 3);
+}
+
 void wh_document_put_pose(wh_json_text_t *text, const wh_pose_t *pose) {
     double q[4];
     wh_quaternion_from_matrix(&pose->R, NULL, q);
-    wh_json_text_begin(text, "r", '[');
-    put_exact(text, NULL, pose->r.x);
-    put_exact(text, NULL, pose->r.y);
-    put_exact(text, NULL, pose->r.z);
-    wh_json_text_end(text, ']');
-    wh_json_text_begin(text, "q", '[');
-    for (size_t i = 0; i < 4; ++i) {
-        put_exact(text, NULL, q[i]);
+    put_point(text, "r", &pose->r);
+    put_list(text, "q", q, 4);
+}
+
+void wh_document_put_each(wh_json_text_t *text, const wh_document_t *document, const char *key, size_t count,
+                          wh_document_put_t *put) {
+    wh_json_text_begin(text, key, '[');
+    for (size_t i = 0; i < count; ++i) {
+        put(text, document, i);
     }
     wh_json_text_end(text, ']');
+}
+
+void wh_document_put_index(wh_json_text_t *text, const char *key, int32_t index) {
+    put_exact(text, key, index == WH_NONE ? HUGE_VAL : index);
 }
 
 /* --------------------------------------------------------------------------------------------------- head */
@@ -51,12 +69,8 @@ static void put_parameters(wh_json_text_t *text, const wh_document_t *document) 
     wh_json_text_value(text, "parameters", object);
 }
 
-static void put_notes(wh_json_text_t *text, const wh_document_t *document) {
-    wh_json_text_begin(text, "notes", '[');
-    for (size_t i = 0; i < document->note_count; ++i) {
-        put_text(text, NULL, document->notes[i]);
-    }
-    wh_json_text_end(text, ']');
+static void put_note(wh_json_text_t *text, const wh_document_t *document, size_t i) {
+    put_text(text, NULL, document->notes[i]);
 }
 
 static void put_head(wh_json_text_t *text, const wh_document_t *document) {
@@ -67,9 +81,9 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     put_text(text, "reproduce", document->reproduce);
     put_parameters(text, document);
     put_text(text, "source", document->source);
-    put_notes(text, document);
+    wh_document_put_each(text, document, "notes", document->note_count, put_note);
     wh_json_text_value(text, "run", json_incref(document->run));
-    put_exact(text, "slice_s", (double)signals->layout->slice_us / 1e6);
+    put_exact(text, "slice_s", wh_document_seconds(signals, 1));
     wh_json_text_integer(text, "slices", signals->last > 0 ? signals->last : 0);
     put_exact(text, "begin_s", wh_document_seconds(signals, signals->first));
     put_exact(text, "duration_s", wh_document_seconds(signals, signals->last));
@@ -89,13 +103,13 @@ void wh_document_name_axis(const wh_layout_t *layout, size_t axis, char *name, s
 
 /* Null if the value is not known: a chuck's, or any of a log without its layout. */
 static void put_known(wh_json_text_t *text, const char *key, bool known, double value) {
-    wh_json_text_number(text, key, known ? value : HUGE_VAL, 0, true);
+    put_exact(text, key, known ? value : HUGE_VAL);
 }
 
-static void put_axis(wh_json_text_t *text, const wh_layout_t *layout, size_t axis) {
+static void put_axis(wh_json_text_t *text, const wh_document_t *document, size_t axis) {
+    const wh_layout_t *layout = document->signals->layout;
     const wh_machine_t *machine = &layout->machine;
-    const wh_travel_t none = {0, 0};
-    const wh_travel_t travel = axis < WH_ROBOT_AXES ? machine->robot.travel[axis] : none;
+    const wh_travel_t travel = axis < WH_ROBOT_AXES ? machine->robot.travel[axis] : (wh_travel_t){0, 0};
     const double speed = axis < machine->axis_count ? wh_machine_limits(machine, axis)->speed : 0;
     char name[WH_NAME_SIZE + 8];
     wh_document_name_axis(layout, axis, name, sizeof name);
@@ -108,29 +122,25 @@ static void put_axis(wh_json_text_t *text, const wh_layout_t *layout, size_t axi
     wh_json_text_end(text, '}');
 }
 
-static void put_names(wh_json_text_t *text, const wh_signals_t *signals) {
-    const wh_layout_t *layout = signals->layout;
+static void put_wafer_name(wh_json_text_t *text, const wh_document_t *document, size_t i) {
+    put_text(text, NULL, document->signals->layout->wafers[i].name);
+}
+
+static void put_gripper_name(wh_json_text_t *text, const wh_document_t *document, size_t i) {
+    put_text(text, NULL, document->signals->layout->grippers[i].name);
+}
+
+static void put_station_name(wh_json_text_t *text, const wh_document_t *document, size_t i) {
+    put_text(text, NULL, document->signals->layout->stations[i].name);
+}
+
+static void put_names(wh_json_text_t *text, const wh_document_t *document) {
+    const wh_layout_t *layout = document->signals->layout;
     wh_json_text_begin(text, "names", '{');
-    wh_json_text_begin(text, "wafers", '[');
-    for (size_t i = 0; i < layout->wafer_count; ++i) {
-        put_text(text, NULL, layout->wafers[i].name);
-    }
-    wh_json_text_end(text, ']');
-    wh_json_text_begin(text, "grippers", '[');
-    for (size_t i = 0; i < layout->machine.gripper_count; ++i) {
-        put_text(text, NULL, layout->grippers[i].name);
-    }
-    wh_json_text_end(text, ']');
-    wh_json_text_begin(text, "stations", '[');
-    for (size_t i = 0; i < layout->station_count; ++i) {
-        put_text(text, NULL, layout->stations[i].name);
-    }
-    wh_json_text_end(text, ']');
-    wh_json_text_begin(text, "axes", '[');
-    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
-        put_axis(text, layout, axis);
-    }
-    wh_json_text_end(text, ']');
+    wh_document_put_each(text, document, "wafers", layout->wafer_count, put_wafer_name);
+    wh_document_put_each(text, document, "grippers", layout->machine.gripper_count, put_gripper_name);
+    wh_document_put_each(text, document, "stations", layout->station_count, put_station_name);
+    wh_document_put_each(text, document, "axes", document->signals->axis_count, put_axis);
     wh_json_text_end(text, '}');
 }
 
@@ -145,32 +155,27 @@ static void put_wafer(wh_json_text_t *text, const wh_layout_t *layout) {
 }
 
 /* On the robot the pose is the gripper's in the end-effector's frame, of a chuck the station's in base. */
-static void put_mount(wh_json_text_t *text, const wh_mount_t *mount) {
+static void put_mount(wh_json_text_t *text, const wh_document_t *document, size_t g) {
+    const wh_mount_t *mount = &document->signals->layout->machine.mounts[g];
     const wh_pose_t identity = wh_pose_identity();
+    const wh_pose_t *on_robot = mount->is_shifted ? &mount->effector_from_gripper : &identity;
     wh_json_text_begin(text, NULL, '{');
-    if (mount->axis == WH_NONE) {
-        wh_json_text_value(text, "axis", json_null());
-        wh_document_put_pose(text, mount->is_shifted ? &mount->effector_from_gripper : &identity);
-    } else {
-        wh_json_text_integer(text, "axis", mount->axis);
-        wh_document_put_pose(text, &mount->base_from_station);
-    }
+    wh_document_put_index(text, "axis", mount->axis);
+    wh_document_put_pose(text, mount->axis == WH_NONE ? on_robot : &mount->base_from_station);
     wh_json_text_end(text, '}');
 }
 
-static void put_machine(wh_json_text_t *text, const wh_layout_t *layout) {
+static void put_link(wh_json_text_t *text, const wh_document_t *document, size_t i) {
+    (void)document;
+    wh_json_text_string(text, NULL, wh_signals_link_names[i]);
+}
+
+static void put_machine(wh_json_text_t *text, const wh_document_t *document) {
+    const wh_layout_t *layout = document->signals->layout;
     const wh_arm_t *arm = &layout->shapes.arm;
     wh_json_text_begin(text, "machine", '{');
-    wh_json_text_begin(text, "grippers", '[');
-    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        put_mount(text, &layout->machine.mounts[g]);
-    }
-    wh_json_text_end(text, ']');
-    wh_json_text_begin(text, "links", '[');
-    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
-        wh_json_text_string(text, NULL, wh_signals_link_names[i]);
-    }
-    wh_json_text_end(text, ']');
+    wh_document_put_each(text, document, "grippers", layout->machine.gripper_count, put_mount);
+    wh_document_put_each(text, document, "links", WH_SIGNALS_LINKS, put_link);
     wh_json_text_begin(text, "arm", '{');
     put_exact(text, "reach", arm->reach);
     put_exact(text, "link", arm->link);
@@ -244,31 +249,20 @@ static void describe(const wh_layout_t *layout, const wh_event_t *event, char *t
     append(text, size, wafer ? ", " : ": ", gripper_name(layout, event->gripper));
 }
 
-static void put_mark(wh_json_text_t *text, const wh_layout_t *layout, const wh_mark_t *mark) {
+static void put_mark(wh_json_text_t *text, const wh_document_t *document, size_t i) {
+    const wh_mark_t *mark = &document->signals->marks[i];
     char words[3 * WH_PART_NAME_SIZE];
-    describe(layout, &mark->event, words, sizeof words);
+    describe(document->signals->layout, &mark->event, words, sizeof words);
     wh_json_text_begin(text, NULL, '{');
     wh_json_text_number(text, "t", (double)mark->utime / 1e6, 6, false);
     wh_json_text_string(text, "kind", wh_event_name(mark->event.kind));
-    wh_json_text_value(text, "text", wh_json_text(words));
+    put_text(text, "text", words);
     if (mark->has_place) {
-        wh_json_text_begin(text, "at", '[');
-        wh_json_text_number(text, NULL, mark->at.x, 0, true);
-        wh_json_text_number(text, NULL, mark->at.y, 0, true);
-        wh_json_text_number(text, NULL, mark->at.z, 0, true);
-        wh_json_text_end(text, ']');
+        put_point(text, "at", &mark->at);
     } else {
         wh_json_text_value(text, "at", json_null());
     }
     wh_json_text_end(text, '}');
-}
-
-static void put_marks(wh_json_text_t *text, const wh_signals_t *signals) {
-    wh_json_text_begin(text, "marks", '[');
-    for (size_t i = 0; i < signals->mark_count; ++i) {
-        put_mark(text, signals->layout, &signals->marks[i]);
-    }
-    wh_json_text_end(text, ']');
 }
 
 int wh_document_write(const wh_document_t *document, FILE *out) {
@@ -276,14 +270,14 @@ int wh_document_write(const wh_document_t *document, FILE *out) {
     const wh_signals_t *signals = document->signals;
     wh_json_text_begin(&text, NULL, '{');
     put_head(&text, document);
-    put_names(&text, signals);
+    put_names(&text, document);
     put_wafer(&text, signals->layout);
-    put_machine(&text, signals->layout);
+    put_machine(&text, document);
     put_limits(&text, &signals->layout->grasp);
     put_slots(&text, signals->layout);
     wh_document_put_thinning(&text, signals);
     wh_document_put_tracks(&text, document);
-    put_marks(&text, signals);
+    wh_document_put_each(&text, document, "marks", signals->mark_count, put_mark);
     wh_json_text_value(&text, "scene", wh_scene_make(signals, document->title, false));
     wh_json_text_end(&text, '}');
     fputc('\n', out);

@@ -59,7 +59,7 @@ typedef struct {
     const wh_signals_t *signals; /* finished */
 } wh_document_t;
 
-/* 0, or -1 when `out` does not take it. Aborts if out of memory. */
+/* 0, or -1 when `out` does not take it. Ends the program if out of memory. */
 int wh_document_write(const wh_document_t *document, FILE *out);
 
 #endif

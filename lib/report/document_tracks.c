@@ -1,9 +1,6 @@
 /* The document's tracks: all that changes over time. */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include "../text/array.h"
 #include "document_internal.h"
 
 /* With so many decimals rounding adds at most a hundredth of what thinning leaves. A slope's error counts for
@@ -30,14 +27,10 @@ typedef struct {
     int64_t of, kept;
 } sums_t;
 
-static double larger(double a, double b) {
-    return a > b ? a : b;
-}
-
 static void count(sums_t *sums, const wh_path_t *curve, double *tolerance) {
     sums->of += curve->of;
     sums->kept += (int64_t)curve->list.count;
-    *tolerance = larger(curve->list.tolerance, *tolerance);
+    *tolerance = fmax(curve->list.tolerance, *tolerance);
 }
 
 static sums_t sum_up(const wh_signals_t *signals) {
@@ -51,8 +44,8 @@ static sums_t sum_up(const wh_signals_t *signals) {
         sums.of += own->of;
         sums.kept += (int64_t)own->list.count;
         if (own->list.count > 0) {
-            sums.own_mm = larger(own->list.tolerance, sums.own_mm);
-            sums.own_rad = larger(own->turn, sums.own_rad);
+            sums.own_mm = fmax(own->list.tolerance, sums.own_mm);
+            sums.own_rad = fmax(own->turn, sums.own_rad);
         }
     }
     for (size_t axis = 0; axis < signals->axis_count; ++axis) {
@@ -70,7 +63,7 @@ static double gripper_mm(const wh_signals_t *signals, const sums_t *sums) {
         reach += mount->is_shifted ? wh_vec3_norm(&mount->effector_from_gripper.r) : 0;
     }
     const double across = sums->mm + reach * sums->rad;
-    return larger(sqrt(across * across + sums->mm * sums->mm), sums->own_mm);
+    return fmax(sqrt(across * across + sums->mm * sums->mm), sums->own_mm);
 }
 
 /* The tolerance as it is told: with what rounding adds. */
@@ -84,7 +77,7 @@ void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals)
     put_tolerance(text, "mm", sums.mm);
     put_tolerance(text, "rad", sums.rad);
     put_tolerance(text, "gripper_mm", gripper_mm(signals, &sums));
-    put_tolerance(text, "gripper_rad", larger(2 * sums.rad, sums.own_rad));
+    put_tolerance(text, "gripper_rad", fmax(2 * sums.rad, sums.own_rad));
     put_tolerance(text, "vacuum", sums.vacuum);
     /* Twice: points that are inserted may take as much again. */
     put_tolerance(text, "projz", 2 * sums.measured[WH_MEASURE_PROJZ]);
@@ -97,21 +90,17 @@ void wh_document_put_thinning(wh_json_text_t *text, const wh_signals_t *signals)
 
 /* ------------------------------------------------------------------------------------------------- curves */
 
-static void put_second(wh_json_text_t *text, const wh_signals_t *signals, int64_t slice) {
-    wh_json_text_number(text, NULL, wh_document_seconds(signals, slice), DECIMALS_S, false);
-}
-
-static void put_null(wh_json_text_t *text) {
-    wh_json_text_number(text, NULL, HUGE_VAL, 0, false);
+static void put_second(wh_json_text_t *text, const char *key, const wh_signals_t *signals, int64_t slice) {
+    wh_json_text_number(text, key, wh_document_seconds(signals, slice), DECIMALS_S, false);
 }
 
 /* Where a curve breaks off, a null stands one slice after its last point. */
 static void put_times(wh_json_text_t *text, const wh_signals_t *signals, const wh_points_t *list) {
     wh_json_text_begin(text, "t", '[');
     for (size_t i = 0; i < list->count; ++i) {
-        put_second(text, signals, list->points[i].slice);
+        put_second(text, NULL, signals, list->points[i].slice);
         if (list->points[i].ends) {
-            put_second(text, signals, list->points[i].slice + 1);
+            put_second(text, NULL, signals, list->points[i].slice + 1);
         }
     }
     wh_json_text_end(text, ']');
@@ -135,7 +124,7 @@ static void put_numbers(wh_json_text_t *text, const wh_points_t *list, const col
                                 of->exact && list->points[i].exact);
         }
         if (list->points[i].ends) {
-            put_null(text);
+            wh_document_put_index(text, NULL, WH_NONE);
         }
     }
     wh_json_text_end(text, ']');
@@ -153,76 +142,44 @@ static void put_curve(wh_json_text_t *text, const wh_signals_t *signals, const c
     wh_json_text_end(text, '}');
 }
 
-static void put_axes(wh_json_text_t *text, const wh_signals_t *signals) {
-    wh_json_text_begin(text, "axes", '[');
-    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
-        put_curve(text, signals, NULL, &signals->axes[axis], is_rad(axis) ? decimals_rad : decimals_mm);
-    }
-    wh_json_text_end(text, ']');
+static void put_axis(wh_json_text_t *text, const wh_document_t *document, size_t axis) {
+    const wh_path_t *curve = &document->signals->axes[axis];
+    put_curve(text, document->signals, NULL, curve, is_rad(axis) ? decimals_rad : decimals_mm);
 }
 
 /* ---------------------------------------------------------------------------------------------- own poses */
 
-static void put_own(wh_json_text_t *text, const wh_signals_t *signals) {
+static void put_own(wh_json_text_t *text, const wh_document_t *document, size_t g) {
     static const column_t places = {"r", 0, 3, 1, DECIMALS_OWN_MM, true};
     static const column_t turns = {"q", 3, 4, 1, DECIMALS_OWN, true};
-    wh_json_text_begin(text, "grippers", '[');
-    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
-        const wh_points_t *own = &signals->own[g].list;
-        wh_json_text_begin(text, NULL, '{');
-        put_times(text, signals, own);
-        put_numbers(text, own, &places);
-        put_numbers(text, own, &turns);
-        wh_json_text_end(text, '}');
-    }
-    wh_json_text_end(text, ']');
+    const wh_points_t *own = &document->signals->own[g].list;
+    wh_json_text_begin(text, NULL, '{');
+    put_times(text, document->signals, own);
+    put_numbers(text, own, &places);
+    put_numbers(text, own, &turns);
+    wh_json_text_end(text, '}');
 }
 
 /* ------------------------------------------------------------------------------------------------- wafers */
 
 static void put_stay(wh_json_text_t *text, const wh_signals_t *signals, const wh_stay_t *stay) {
     wh_json_text_begin(text, NULL, '{');
-    wh_json_text_number(text, "t", wh_document_seconds(signals, stay->slice), DECIMALS_S, false);
-    if (stay->holder == WH_NONE) {
-        wh_json_text_value(text, "holder", json_null());
-    } else {
-        wh_json_text_integer(text, "holder", stay->holder);
-    }
+    put_second(text, "t", signals, stay->slice);
+    wh_document_put_index(text, "holder", stay->holder);
     wh_document_put_pose(text, &stay->pose);
     wh_json_text_end(text, '}');
 }
 
-/* Indices of the stays, sorted by wafer, then by time. (The list of stays is sorted by time alone.) */
-static size_t *sort_stays(const wh_signals_t *signals, size_t *ends) {
-    size_t *sorted = wh_array_new(signals->stay_count, sizeof *sorted);
+/* The list of stays is sorted by time alone. Looking through it for each wafer costs less than writing it. */
+static void put_wafer(wh_json_text_t *text, const wh_document_t *document, size_t w) {
+    const wh_signals_t *signals = document->signals;
+    wh_json_text_begin(text, NULL, '[');
     for (size_t i = 0; i < signals->stay_count; ++i) {
-        ++ends[signals->stays[i].wafer];
-    }
-    for (size_t w = 1; w < signals->layout->wafer_count; ++w) {
-        ends[w] += ends[w - 1];
-    }
-    for (size_t i = signals->stay_count; i > 0; --i) {
-        sorted[--ends[signals->stays[i - 1].wafer]] = i - 1;
-    }
-    return sorted;
-}
-
-static void put_wafers(wh_json_text_t *text, const wh_signals_t *signals) {
-    const size_t wafers = signals->layout->wafer_count;
-    size_t *begins = wh_array_new(wafers + 1, sizeof *begins);
-    size_t *sorted = sort_stays(signals, begins);
-    begins[wafers] = signals->stay_count;
-    wh_json_text_begin(text, "wafers", '[');
-    for (size_t w = 0; w < wafers; ++w) {
-        wh_json_text_begin(text, NULL, '[');
-        for (size_t i = begins[w]; i < begins[w + 1]; ++i) {
-            put_stay(text, signals, &signals->stays[sorted[i]]);
+        if (signals->stays[i].wafer == (int32_t)w) {
+            put_stay(text, signals, &signals->stays[i]);
         }
-        wh_json_text_end(text, ']');
     }
     wh_json_text_end(text, ']');
-    free(sorted);
-    free(begins);
 }
 
 /* ------------------------------------------------------------------------------------------------ signals */
@@ -235,16 +192,12 @@ static void put_steps(wh_json_text_t *text, const wh_signals_t *signals, const c
         wh_json_text_begin(text, NULL, '{');
         wh_json_text_begin(text, "t", '[');
         for (size_t i = 0; i < lists[g].count; ++i) {
-            put_second(text, signals, lists[g].steps[i].slice);
+            put_second(text, NULL, signals, lists[g].steps[i].slice);
         }
         wh_json_text_end(text, ']');
         wh_json_text_begin(text, "v", '[');
         for (size_t i = 0; i < lists[g].count; ++i) {
-            if (lists[g].steps[i].value == WH_NONE) {
-                put_null(text);
-            } else {
-                wh_json_text_integer(text, NULL, lists[g].steps[i].value);
-            }
+            wh_document_put_index(text, NULL, lists[g].steps[i].value);
         }
         wh_json_text_end(text, ']');
         wh_json_text_end(text, '}');
@@ -252,30 +205,27 @@ static void put_steps(wh_json_text_t *text, const wh_signals_t *signals, const c
     wh_json_text_end(text, ']');
 }
 
-static void put_vacuum(wh_json_text_t *text, const wh_signals_t *signals) {
-    wh_json_text_begin(text, "vacuum", '[');
-    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
-        put_curve(text, signals, NULL, &signals->vacuum[g], decimals_level);
-    }
-    wh_json_text_end(text, ']');
+static void put_vacuum(wh_json_text_t *text, const wh_document_t *document, size_t g) {
+    put_curve(text, document->signals, NULL, &document->signals->vacuum[g], decimals_level);
 }
 
-static void put_proximity(wh_json_text_t *text, const wh_signals_t *signals) {
+static void put_proximity(wh_json_text_t *text, const wh_document_t *document, size_t g) {
     static const char *const names[WH_MEASURES] = {"dr_proj_z", "dr_proj_xy", "n1_proj_n2"};
-    wh_json_text_begin(text, "proximity", '[');
-    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
-        wh_json_text_begin(text, NULL, '{');
-        for (size_t m = 0; m < WH_MEASURES; ++m) {
-            put_curve(text, signals, names[m], &signals->proximity[g][m], decimals_measure[m]);
-        }
-        wh_json_text_end(text, '}');
+    const wh_path_t *curves = document->signals->proximity[g];
+    wh_json_text_begin(text, NULL, '{');
+    for (size_t m = 0; m < WH_MEASURES; ++m) {
+        put_curve(text, document->signals, names[m], &curves[m], decimals_measure[m]);
     }
-    wh_json_text_end(text, ']');
+    wh_json_text_end(text, '}');
 }
 
 /* --------------------------------------------------------------------------------------------- clearances */
 
+/* Nothing of a pair that never came near. */
 static void put_clearance(wh_json_text_t *text, const wh_document_t *document, size_t kind) {
+    if (document->record->clearances[kind].parts[0] == WH_NONE) {
+        return;
+    }
     const wh_curves_t *curves = document->record->curves;
     const wh_signals_t *signals = document->signals;
     const double limit = (double)signals->layout->world.limits[kind];
@@ -284,8 +234,7 @@ static void put_clearance(wh_json_text_t *text, const wh_document_t *document, s
     wh_json_text_number(text, "limit", limit > 0 ? limit : HUGE_VAL, 0, true);
     wh_json_text_begin(text, "t", '[');
     for (size_t bin = 0; bin < curves->count; ++bin) {
-        const int64_t slice = (int64_t)(curves->first + (bin + 1) * curves->slices);
-        wh_json_text_number(text, NULL, wh_document_seconds(signals, slice), DECIMALS_S, false);
+        put_second(text, NULL, signals, (int64_t)(curves->first + (bin + 1) * curves->slices));
     }
     wh_json_text_end(text, ']');
     wh_json_text_begin(text, "gap", '[');
@@ -297,28 +246,19 @@ static void put_clearance(wh_json_text_t *text, const wh_document_t *document, s
     wh_json_text_end(text, '}');
 }
 
-static void put_clearances(wh_json_text_t *text, const wh_document_t *document) {
-    const wh_record_t *record = document->record;
-    wh_json_text_begin(text, "clearances", '[');
-    for (size_t kind = 0; record->checked && record->curves && kind < WH_CLEARANCES; ++kind) {
-        if (record->clearances[kind].parts[0] != WH_NONE) {
-            put_clearance(text, document, kind);
-        }
-    }
-    wh_json_text_end(text, ']');
-}
-
 void wh_document_put_tracks(wh_json_text_t *text, const wh_document_t *document) {
     const wh_signals_t *signals = document->signals;
+    const size_t grippers = signals->layout->machine.gripper_count;
+    const bool has_gaps = document->record->checked && document->record->curves;
     wh_json_text_begin(text, "tracks", '{');
-    put_axes(text, signals);
-    put_own(text, signals);
-    put_wafers(text, signals);
+    wh_document_put_each(text, document, "axes", signals->axis_count, put_axis);
+    wh_document_put_each(text, document, "grippers", grippers, put_own);
+    wh_document_put_each(text, document, "wafers", signals->layout->wafer_count, put_wafer);
     put_steps(text, signals, "valves", signals->valves);
     put_steps(text, signals, "sensors", signals->sensors);
     put_steps(text, signals, "nearest", signals->nearest);
-    put_vacuum(text, signals);
-    put_proximity(text, signals);
-    put_clearances(text, document);
+    wh_document_put_each(text, document, "vacuum", grippers, put_vacuum);
+    wh_document_put_each(text, document, "proximity", grippers, put_proximity);
+    wh_document_put_each(text, document, "clearances", has_gaps ? WH_CLEARANCES : 0, put_clearance);
     wh_json_text_end(text, '}');
 }

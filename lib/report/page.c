@@ -72,14 +72,9 @@ static void write_inlined(FILE *out, const char *text, size_t size) {
 
 static void write_title(FILE *out, const char *title) {
     for (const char *c = title; *c; ++c) {
-        switch (*c) {
-        case '<':
-            fputs("&lt;", out);
-            break;
-        case '&':
-            fputs("&amp;", out);
-            break;
-        default:
+        if (*c == '<' || *c == '&') {
+            fputs(*c == '<' ? "&lt;" : "&amp;", out);
+        } else {
             fputc((unsigned char)*c, out);
         }
     }

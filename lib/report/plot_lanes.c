@@ -1,8 +1,8 @@
 /* Plots of lanes over time: signals, who holds what, commands and what the time goes into. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "../record/throughput.h"
+#include "../text/array.h"
 #include "../text/utf8.h"
 #include "document_internal.h"
 #include "plots_internal.h"
@@ -14,7 +14,8 @@
 
 /* A plot of lanes; open_lanes sets it up. */
 typedef struct {
-    wh_plot_t *plot;
+    wh_plots_t *plots;
+    wh_plot_t plot;
     size_t count, named, letters;
     int above;  /* pixels above the lanes; more for a key */
     FILE *out;  /* of tics */
@@ -40,16 +41,15 @@ enum { ROW = 24, MOST_LETTERS = 28, LEAST_ABOVE = 6, LEAST_PITCH = 3 };
 #define EDGED "using 1:3:1:2:($3-%g):($3+%g) with boxxyerror lw 0.6 dt 1 fc"
 #define EDGE "border lc rgb '#000000'"
 
-/* `count` lanes, to be named from the top before they are begun. */
-static void open_lanes(lanes_t *lanes, wh_plot_t *plot, size_t count) {
-    memset(lanes, 0, sizeof *lanes);
-    lanes->plot = plot;
-    lanes->count = count;
-    lanes->above = LEAST_ABOVE;
-    lanes->out = open_memstream(&lanes->tics, &lanes->size);
-    if (!lanes->out) {
-        abort();
+/* `count` lanes, to be named from the top before they are begun. False when the plot's files cannot be
+ * opened, then there is nothing to end. */
+static bool open_lanes(lanes_t *lanes, wh_plots_t *plots, const char *name, size_t count) {
+    *lanes = (lanes_t){.plots = plots, .count = count, .above = LEAST_ABOVE};
+    if (!wh_plots_open(plots, &lanes->plot, name, NULL)) {
+        return false;
     }
+    lanes->out = wh_memory_need(open_memstream(&lanes->tics, &lanes->size));
+    return true;
 }
 
 /* A lane's height in the plot; the first is the highest. */
@@ -68,7 +68,9 @@ static void name_lane(lanes_t *lanes, const char *name, const char *what) {
 }
 
 /* The script begins. Next come blocks of data and texts of bars, then what draws them, then the end. */
-static void begin_lanes(lanes_t *lanes, const wh_plots_t *plots, const char *title) {
+static void begin_lanes(lanes_t *lanes, const char *title) {
+    const double begin_s = wh_plots_begin_s(lanes->plots);
+    const double end_s = wh_plots_end_s(lanes->plots);
     const size_t letters = lanes->letters < MOST_LETTERS ? lanes->letters : MOST_LETTERS;
     const wh_plot_frame_t frame = {.panels = 1,
                                    .panel_height = (int)lanes->count * ROW,
@@ -76,12 +78,12 @@ static void begin_lanes(lanes_t *lanes, const wh_plots_t *plots, const char *tit
                                    .above = lanes->above,
                                    .keys_wrap = lanes->above > LEAST_ABOVE};
     if (fclose(lanes->out) != 0) {
-        abort();
+        wh_memory_out();
     }
-    lanes->duration = wh_plots_end_s(plots) - wh_plots_begin_s(plots);
-    wh_plot_begin(lanes->plot, &frame, title, wh_plots_begin_s(plots), wh_plots_end_s(plots));
-    wh_plot_panel(lanes->plot, "");
-    fprintf(lanes->plot->script, "set yrange [-0.5:%zu.5]\nset ytics scale 0 (%s)\n", lanes->count - 1,
+    lanes->duration = end_s - begin_s;
+    wh_plot_begin(&lanes->plot, &frame, title, begin_s, end_s);
+    wh_plot_panel(&lanes->plot, "");
+    fprintf(lanes->plot.script, "set yrange [-0.5:%zu.5]\nset ytics scale 0 (%s)\n", lanes->count - 1,
             lanes->tics);
     free(lanes->tics);
     lanes->tics = NULL;
@@ -90,31 +92,31 @@ static void begin_lanes(lanes_t *lanes, const wh_plots_t *plots, const char *tit
 /* A row of a block of bars. */
 static void add_bar(lanes_t *lanes, size_t lane, double begin, double end) {
     const double values[] = {end, lane_height(lanes, lane)};
-    wh_plot_row(lanes->plot, begin, values, 2);
+    wh_plot_row(&lanes->plot, begin, values, 2);
     ++lanes->bars;
 }
 
 /* A bar's text, where there is room for it. */
 static void add_label(lanes_t *lanes, size_t lane, double begin, double end, const char *text, bool on_dark) {
-    wh_plot_fitting_label(lanes->plot, begin, end, text);
-    fprintf(lanes->plot->script, ", %g center front%s\n", lane_height(lanes, lane),
+    wh_plot_fitting_label(&lanes->plot, begin, end, text);
+    fprintf(lanes->plot.script, ", %g center front%s\n", lane_height(lanes, lane),
             on_dark ? " textcolor rgb '#ffffff'" : "");
 }
 
 /* Begins the next part of the plot command. */
 static void put_part(lanes_t *lanes) {
-    fputs(lanes->drawn++ == 0 ? "plot " : ", \\\n  ", lanes->plot->script);
+    fputs(lanes->drawn++ == 0 ? "plot " : ", \\\n  ", lanes->plot.script);
 }
 
 /* Defines how bars are drawn: as boxes, or, if those of a lane are nearer to each other than LEAST_PITCH
  * pixels on average, as strokes as wide as a lane. A box without an edge counts for a pixel only if it covers
  * the pixel's middle; strokes are blended. */
 static void put_styles(const lanes_t *lanes) {
-    FILE *out = lanes->plot->script;
+    FILE *out = lanes->plot.script;
     fprintf(out,
             "dense = %d * %zu * abs(to_s - from_s) > (W - %d) * %.12g\n"
             "bars = dense ? \"using 1:3:($2-$1):(0) with vectors nohead lw %g dt 1 lc\" : \"",
-            LEAST_PITCH, lanes->bars, lanes->plot->frame.left + 10, lanes->duration * (double)lanes->count,
+            LEAST_PITCH, lanes->bars, lanes->plot.frame.left + 10, lanes->duration * (double)lanes->count,
             2 * HALF * ROW);
     fprintf(out, EDGED "\"\n", HALF, HALF);
     fputs("solid = dense ? '' : \"fs solid " EDGE "\"\n"
@@ -132,16 +134,16 @@ static void draw_bars(lanes_t *lanes, size_t block, const look_t *look) {
         put_styles(lanes);
     }
     put_part(lanes);
-    fprintf(lanes->plot->script, "'%s.dat' index %zu ", lanes->plot->name, block);
+    fprintf(lanes->plot.script, "'%s.dat' index %zu ", lanes->plot.name, block);
     if (look->keeps_edge) {
-        fprintf(lanes->plot->script, EDGED " rgb '%s' fs %s " EDGE " ", HALF, HALF, look->colour, look->fill);
+        fprintf(lanes->plot.script, EDGED " rgb '%s' fs %s " EDGE " ", HALF, HALF, look->colour, look->fill);
     } else {
-        fprintf(lanes->plot->script, "@bars rgb '%s' @%s ", look->colour, look->fill);
+        fprintf(lanes->plot.script, "@bars rgb '%s' @%s ", look->colour, look->fill);
     }
     if (look->text) {
-        fprintf(lanes->plot->script, "title '%s'", look->text);
+        fprintf(lanes->plot.script, "title '%s'", look->text);
     } else {
-        fputs("notitle", lanes->plot->script);
+        fputs("notitle", lanes->plot.script);
     }
 }
 
@@ -151,73 +153,70 @@ static void draw_signal(lanes_t *lanes, size_t block, size_t lane, const char *s
         return;
     }
     put_part(lanes);
-    fprintf(lanes->plot->script, "'%s.dat' index %zu using 1:(%g+%g*$2) with %s lt 1 notitle",
-            lanes->plot->name, block, lane_height(lanes, lane) - HALF, 2 * HALF, style);
+    fprintf(lanes->plot.script, "'%s.dat' index %zu using 1:(%g+%g*$2) with %s lt 1 notitle",
+            lanes->plot.name, block, lane_height(lanes, lane) - HALF, 2 * HALF, style);
 }
 
 /* A plot command without anything is an error for gnuplot: it draws the empty lanes with NaN. */
 static void end_lanes(lanes_t *lanes) {
-    if (lanes->drawn == 0) {
-        fputs("plot NaN notitle", lanes->plot->script);
-    }
-    fputc('\n', lanes->plot->script);
+    fputs(lanes->drawn == 0 ? "plot NaN notitle\n" : "\n", lanes->plot.script);
+    wh_plots_close(lanes->plots, &lanes->plot);
 }
 
 /* ------------------------------------------------------------------------------------------------ signals */
 
 /* Steps of 0 and 1. The last value goes on to the end. */
-static size_t put_steps(const wh_plots_t *plots, wh_plot_t *plot, const wh_steps_t *steps, bool inverted) {
+static size_t put_steps(lanes_t *lanes, const wh_steps_t *steps, bool inverted) {
+    const wh_signals_t *signals = lanes->plots->document->signals;
     double value = 0;
     for (size_t i = 0; i < steps->count; ++i) {
         value = inverted ? 1 - steps->steps[i].value : steps->steps[i].value;
-        wh_plot_row(plot, wh_document_seconds(plots->document->signals, steps->steps[i].slice), &value, 1);
+        wh_plot_row(&lanes->plot, wh_document_seconds(signals, steps->steps[i].slice), &value, 1);
     }
     if (steps->count > 0) {
-        wh_plot_row(plot, wh_plots_end_s(plots), &value, 1);
+        wh_plot_row(&lanes->plot, wh_plots_end_s(lanes->plots), &value, 1);
     }
-    return wh_plot_end_block(plot);
+    return wh_plot_end_block(&lanes->plot);
 }
 
-static void put_gripper_signals(const wh_plots_t *plots, lanes_t *lanes, size_t g) {
-    const wh_signals_t *signals = plots->document->signals;
+static void put_gripper_signals(lanes_t *lanes, size_t g) {
+    const wh_signals_t *signals = lanes->plots->document->signals;
     const wh_plot_curves_t level = {{&signals->vacuum[g]}, 1, 1, false, NULL};
     const char *name = signals->layout->grippers[g].name;
-    wh_plot_block(lanes->plot, name, "t (s), valve is open");
-    draw_signal(lanes, put_steps(plots, lanes->plot, &signals->valves[g], true), 3 * g, "steps");
-    wh_plot_block(lanes->plot, name, "t (s), vacuum from 0 to 1");
-    draw_signal(lanes, wh_plot_curves(lanes->plot, &level, wh_plots_slice_s(plots)), 3 * g + 1, "lines");
-    wh_plot_block(lanes->plot, name, "t (s), vacuum sensor is on");
-    draw_signal(lanes, put_steps(plots, lanes->plot, &signals->sensors[g], false), 3 * g + 2, "steps");
+    wh_plot_block(&lanes->plot, name, "t (s), valve is open");
+    draw_signal(lanes, put_steps(lanes, &signals->valves[g], true), 3 * g, "steps");
+    wh_plot_block(&lanes->plot, name, "t (s), vacuum from 0 to 1");
+    draw_signal(lanes, wh_plot_curves(&lanes->plot, &level, wh_document_seconds(signals, 1)), 3 * g + 1,
+                "lines");
+    wh_plot_block(&lanes->plot, name, "t (s), vacuum sensor is on");
+    draw_signal(lanes, put_steps(lanes, &signals->sensors[g], false), 3 * g + 2, "steps");
 }
 
 void wh_plots_signals(wh_plots_t *plots) {
     const wh_layout_t *layout = plots->document->signals->layout;
     const size_t grippers = layout->machine.gripper_count;
     lanes_t lanes;
-    wh_plot_t plot;
-    if (!wh_plots_open(plots, &plot, "valves_and_vacuum", NULL)) {
+    if (!open_lanes(&lanes, plots, "valves_and_vacuum", 3 * grippers)) {
         return;
     }
-    open_lanes(&lanes, &plot, 3 * grippers);
     for (size_t g = 0; g < grippers; ++g) {
         name_lane(&lanes, layout->grippers[g].name, "valve open");
         name_lane(&lanes, layout->grippers[g].name, "vacuum");
         name_lane(&lanes, layout->grippers[g].name, "sensor on");
     }
-    begin_lanes(&lanes, plots, "Valves, vacuum and its sensors: high is open, full, on");
+    begin_lanes(&lanes, "Valves, vacuum and its sensors: high is open, full, on");
     for (size_t g = 0; g < grippers; ++g) {
-        put_gripper_signals(plots, &lanes, g);
+        put_gripper_signals(&lanes, g);
     }
     end_lanes(&lanes);
-    wh_plots_close(plots, &plot);
 }
 
 /* ------------------------------------------------------------------------------------------------ holders */
 
-static void put_holds(const wh_plots_t *plots, lanes_t *lanes, size_t g) {
-    const wh_layout_t *layout = plots->document->signals->layout;
+static void put_holds(lanes_t *lanes, size_t g) {
+    const wh_layout_t *layout = lanes->plots->document->signals->layout;
     size_t count = 0;
-    wh_plot_hold_t *holds = wh_plots_holds(plots, (int32_t)g, &count);
+    wh_plot_hold_t *holds = wh_plots_holds(lanes->plots, (int32_t)g, &count);
     for (size_t i = 0; i < count; ++i) {
         add_bar(lanes, g, holds[i].begin_s, holds[i].end_s);
         add_label(lanes, g, holds[i].begin_s, holds[i].end_s, layout->wafers[holds[i].wafer].name, false);
@@ -230,22 +229,19 @@ void wh_plots_holders(wh_plots_t *plots) {
     const wh_layout_t *layout = plots->document->signals->layout;
     const size_t grippers = layout->machine.gripper_count;
     lanes_t lanes;
-    wh_plot_t plot;
-    if (!wh_plots_open(plots, &plot, "holders", NULL)) {
+    if (!open_lanes(&lanes, plots, "holders", grippers)) {
         return;
     }
-    open_lanes(&lanes, &plot, grippers);
     for (size_t g = 0; g < grippers; ++g) {
         name_lane(&lanes, layout->grippers[g].name, "holds");
     }
-    begin_lanes(&lanes, plots, "Who holds which wafer");
-    wh_plot_block(&plot, "holds", "from (s), to (s), lane");
+    begin_lanes(&lanes, "Who holds which wafer");
+    wh_plot_block(&lanes.plot, "holds", "from (s), to (s), lane");
     for (size_t g = 0; g < grippers; ++g) {
-        put_holds(plots, &lanes, g);
+        put_holds(&lanes, g);
     }
-    draw_bars(&lanes, wh_plot_end_block(&plot), &look);
+    draw_bars(&lanes, wh_plot_end_block(&lanes.plot), &look);
     end_lanes(&lanes);
-    wh_plots_close(plots, &plot);
 }
 
 /* ----------------------------------------------------------------------------------------------- commands */
@@ -263,7 +259,7 @@ static int look_of(const wh_record_t *record, size_t command) {
 }
 
 static size_t put_commands(lanes_t *lanes, const wh_record_t *record, int look) {
-    wh_plot_block(lanes->plot, look == FAILED ? "commands that failed" : "commands",
+    wh_plot_block(&lanes->plot, look == FAILED ? "commands that failed" : "commands",
                   "from (s), to (s), lane");
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
@@ -272,7 +268,7 @@ static size_t put_commands(lanes_t *lanes, const wh_record_t *record, int look) 
             add_label(lanes, 0, command->begin_s, command->end_s, command->text, look == FAILED);
         }
     }
-    return wh_plot_end_block(lanes->plot);
+    return wh_plot_end_block(&lanes->plot);
 }
 
 static const look_t share_looks[WH_SHARES] = {
@@ -304,7 +300,7 @@ static chuck_lanes_t find_chucks(const wh_activity_t *activity, size_t grippers)
 }
 
 static size_t put_shares(lanes_t *lanes, const wh_record_t *record, const chuck_lanes_t *chucks, int share) {
-    wh_plot_block(lanes->plot, share_looks[share].text, "from (s), to (s), lane");
+    wh_plot_block(&lanes->plot, share_looks[share].text, "from (s), to (s), lane");
     for (size_t i = 0; i < record->activity.interval_count; ++i) {
         const wh_busy_span_t *interval = &record->activity.intervals[i];
         const bool moves = interval->who == WH_BUSY_ROBOT || interval->who == WH_BUSY_CHUCK;
@@ -314,7 +310,7 @@ static size_t put_shares(lanes_t *lanes, const wh_record_t *record, const chuck_
                     wh_throughput_seconds(record, interval->end));
         }
     }
-    return wh_plot_end_block(lanes->plot);
+    return wh_plot_end_block(&lanes->plot);
 }
 
 /* Blocks first, then what draws them: labels must not come within a plot command. */
@@ -337,11 +333,9 @@ void wh_plots_commands(wh_plots_t *plots) {
     const chuck_lanes_t chucks = find_chucks(&record->activity, layout->machine.gripper_count);
     const bool has_any = record->command_count > 0 || record->activity.interval_count > 0;
     lanes_t lanes;
-    wh_plot_t plot;
-    if (!has_any || !wh_plots_open(plots, &plot, "commands", NULL)) {
+    if (!has_any || !open_lanes(&lanes, plots, "commands", 2 + chucks.count)) {
         return;
     }
-    open_lanes(&lanes, &plot, 2 + chucks.count);
     lanes.above = 20;
     name_lane(&lanes, "commands", "");
     name_lane(&lanes, "robot", "");
@@ -350,8 +344,7 @@ void wh_plots_commands(wh_plots_t *plots) {
             name_lane(&lanes, layout->grippers[g].name, "chuck");
         }
     }
-    begin_lanes(&lanes, plots, "Commands, and what the robot's and the chucks' time goes into");
+    begin_lanes(&lanes, "Commands, and what the robot's and the chucks' time goes into");
     draw_commands(&lanes, record, &chucks);
     end_lanes(&lanes);
-    wh_plots_close(plots, &plot);
 }

@@ -84,7 +84,7 @@ static void put_proximity(wh_plots_t *plots, int32_t g) {
                    name);
     wh_plot_begin(&plot, &frame, title, wh_plots_begin_s(plots), wh_plots_end_s(plots));
     wh_plot_block(&plot, name, "t (s), |dr_proj_z| (mm), |dr_proj_xy| (mm), n1_proj_n2, wafer (from 0)");
-    (void)wh_plot_curves(&plot, &values, wh_plots_slice_s(plots));
+    (void)wh_plot_curves(&plot, &values, wh_document_seconds(signals, 1));
     put_length(plots, &plot, g, "dr_proj_z", 2, limits->projz / 50, limits->projz,
                limits->projz * 4 > WH_SIGNALS_REACH ? limits->projz * 4 : WH_SIGNALS_REACH);
     put_length(plots, &plot, g, "dr_proj_xy", 3, limits->projxy / 50000, limits->projxy,
@@ -140,19 +140,15 @@ static axis_range_t look_at(const wh_signals_t *signals, const axis_panel_t *pan
 
 /* gnuplot finds no range for axes that stand still. A key of many entries is set closer, to fit into one
  * column. */
-static void put_axis_look(wh_plot_t *plot, const axis_range_t *range) {
-    if (range->high - range->low < 1e-6) {
-        fprintf(plot->script, "set yrange [%.9g:%.9g]\n", range->low - 1, range->high + 1);
-    }
-    fprintf(plot->script, "set key width %d\n", range->curves > 2 ? -2 : 0);
-}
-
 static void put_axis_panel(const wh_plots_t *plots, wh_plot_t *plot, const axis_panel_t *panel) {
     const wh_signals_t *signals = plots->document->signals;
     const axis_range_t range = look_at(signals, panel);
     int line = 0;
     wh_plot_panel(plot, panel->label);
-    put_axis_look(plot, &range);
+    if (range.high - range.low < 1e-6) {
+        fprintf(plot->script, "set yrange [%.9g:%.9g]\n", range.low - 1, range.high + 1);
+    }
+    fprintf(plot->script, "set key width %d\n", range.curves > 2 ? -2 : 0);
     for (size_t axis = 0; axis < signals->axis_count; ++axis) {
         if (is_in(signals, axis, panel)) {
             const wh_plot_curves_t curve = {
@@ -160,7 +156,7 @@ static void put_axis_panel(const wh_plots_t *plots, wh_plot_t *plot, const axis_
             char name[WH_NAME_SIZE + 8];
             wh_document_name_axis(signals->layout, axis, name, sizeof name);
             wh_plot_block(plot, name, panel->is_speed ? "t (s), speed" : "t (s), position");
-            const size_t block = wh_plot_curves(plot, &curve, wh_plots_slice_s(plots));
+            const size_t block = wh_plot_curves(plot, &curve, wh_document_seconds(signals, 1));
             ++line;
             fprintf(plot->script, "%s'%s.dat' index %zu using 1:2 with linespoints pn 9 lt %d title ",
                     line == 1 ? "plot " : ", \\\n  ", plot->name, block, line);

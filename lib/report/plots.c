@@ -31,7 +31,7 @@ static bool path_of(char path[PATH_BYTES], const char *folder, const char *name,
 
 static bool is_taken(const wh_plots_t *plots, const char *name) {
     for (size_t i = 0; i < plots->count; ++i) {
-        if (strcmp(plots->names[i].name, name) == 0) {
+        if (strcmp(plots->names[i], name) == 0) {
             return true;
         }
     }
@@ -74,7 +74,7 @@ bool wh_plots_open(wh_plots_t *plots, wh_plot_t *plot, const char *name, const c
     memset(plot, 0, sizeof *plot);
     choose_name(plots, plot->name, name, of);
     plots->names = wh_array_grow(plots->names, plots->count, &plots->capacity, sizeof *plots->names);
-    memcpy(plots->names[plots->count++].name, plot->name, sizeof plot->name);
+    memcpy(plots->names[plots->count++], plot->name, sizeof plot->name);
     plot->data = open_file(plots, plot, "dat");
     plot->script = plot->data ? open_file(plots, plot, "gp") : NULL;
     if (!plot->script) {
@@ -92,10 +92,6 @@ void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot) {
 
 /* ---------------------------------------------------------------------------------------------------- run */
 
-double wh_plots_slice_s(const wh_plots_t *plots) {
-    return (double)plots->document->signals->layout->slice_us / 1e6;
-}
-
 double wh_plots_begin_s(const wh_plots_t *plots) {
     const wh_signals_t *signals = plots->document->signals;
     return signals->first > 0 ? wh_document_seconds(signals, signals->first) : 0;
@@ -106,38 +102,34 @@ double wh_plots_end_s(const wh_plots_t *plots) {
     return signals->last > 0 ? wh_document_seconds(signals, signals->last) : 0;
 }
 
-static void add_hold(wh_plot_hold_t **list, size_t *count, size_t *capacity, const wh_plot_hold_t *hold) {
-    wh_plot_hold_t *last = *count > 0 ? &(*list)[*count - 1] : NULL;
-    if (last && last->wafer == hold->wafer && !(hold->begin_s > last->end_s)) {
-        last->end_s = hold->end_s;
-    } else {
-        *list = wh_array_grow(*list, *count, capacity, sizeof **list);
-        (*list)[(*count)++] = *hold;
-    }
-}
-
 /* A gripper holds one wafer at a time, so its stays end in the order in which they begin. */
 wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t *count) {
     const wh_signals_t *signals = plots->document->signals;
     wh_plot_hold_t *list = NULL;
-    wh_plot_hold_t open = {0, 0, WH_NONE};
+    wh_plot_hold_t *last = NULL;
     size_t capacity = 0;
+    bool holds = false;
     *count = 0;
     for (size_t i = 0; i < signals->stay_count; ++i) {
         const wh_stay_t *stay = &signals->stays[i];
         const double at = wh_document_seconds(signals, stay->slice);
-        if (open.wafer != WH_NONE && (stay->wafer == open.wafer || stay->holder == gripper)) {
-            open.end_s = at;
-            add_hold(&list, count, &capacity, &open);
-            open.wafer = WH_NONE;
+        if (holds && (stay->wafer == last->wafer || stay->holder == gripper)) {
+            last->end_s = at;
+            holds = false;
         }
-        if (stay->holder == gripper) {
-            open = (wh_plot_hold_t){at, at, stay->wafer};
+        if (stay->holder != gripper) {
+            continue;
         }
+        /* The same wafer again at once is the same hold. */
+        if (!last || last->wafer != stay->wafer || at > last->end_s) {
+            list = wh_array_grow(list, *count, &capacity, sizeof *list);
+            last = &list[(*count)++];
+            *last = (wh_plot_hold_t){at, at, stay->wafer};
+        }
+        holds = true;
     }
-    if (open.wafer != WH_NONE) {
-        open.end_s = wh_plots_end_s(plots);
-        add_hold(&list, count, &capacity, &open);
+    if (holds) {
+        last->end_s = wh_plots_end_s(plots);
     }
     return list;
 }
@@ -148,7 +140,7 @@ wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t 
  * what was there, to be freed; null if nothing was. */
 static char *set_letters(const char *letters) {
     const char *before = getenv("LC_ALL");
-    char *kept = before ? wh_record_text(before) : NULL;
+    char *kept = before ? wh_text_copy(before) : NULL;
     if (!letters || setenv("LC_ALL", letters, 1) != 0) {
         (void)unsetenv("LC_ALL");
     }
@@ -202,21 +194,13 @@ static bool draw(const wh_plots_t *plots, const char *name, char message[WH_PLOT
     return error == 0;
 }
 
-static bool draw_all(const wh_plots_t *plots, char message[WH_PLOTS_MESSAGE_BYTES]) {
-    bool drawn = true;
-    for (size_t i = 0; drawn && i < plots->count; ++i) {
-        drawn = draw(plots, plots->names[i].name, message);
-    }
-    return drawn;
-}
-
 /* ------------------------------------------------------------------------------------------------ placing */
 
 static bool place(const wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
     char from[PATH_BYTES];
     char to[PATH_BYTES];
     for (size_t i = 0; i < plots->count * ENDINGS; ++i) {
-        const char *name = plots->names[i / ENDINGS].name;
+        const char *name = plots->names[i / ENDINGS];
         const char *ending = endings[i % ENDINGS];
         errno = ENAMETOOLONG;
         if (!path_of(from, plots->folder, name, ending) || !path_of(to, folder, name, ending) ||
@@ -231,7 +215,7 @@ static bool place(const wh_plots_t *plots, const char *folder, char message[WH_P
 static void clear(const wh_plots_t *plots) {
     char path[PATH_BYTES];
     for (size_t i = 0; i < plots->count * ENDINGS; ++i) {
-        if (path_of(path, plots->folder, plots->names[i / ENDINGS].name, endings[i % ENDINGS])) {
+        if (path_of(path, plots->folder, plots->names[i / ENDINGS], endings[i % ENDINGS])) {
             (void)unlink(path);
         }
     }
@@ -252,7 +236,11 @@ static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_ME
         (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s", strerror(plots->error));
         return false;
     }
-    return draw_all(plots, message) && place(plots, folder, message);
+    bool drawn = true;
+    for (size_t i = 0; drawn && i < plots->count; ++i) {
+        drawn = draw(plots, plots->names[i], message);
+    }
+    return drawn && place(plots, folder, message);
 }
 
 static bool make_within(const wh_document_t *document, const char *folder,

@@ -5,15 +5,11 @@
 #include "gnuplot.h"
 #include "plots.h"
 
-typedef struct {
-    char name[WH_PLOT_NAME_BYTES];
-} wh_plot_name_t;
-
 /* Plots being made in a folder of their own. */
 typedef struct {
     const wh_document_t *document;
     const char *folder; /* where they are made */
-    wh_plot_name_t *names;
+    char (*names)[WH_PLOT_NAME_BYTES];
     size_t count, capacity;
     int error; /* errno of the first file that could not be written; then nothing more is */
 } wh_plots_t;
@@ -23,8 +19,7 @@ typedef struct {
 bool wh_plots_open(wh_plots_t *plots, wh_plot_t *plot, const char *name, const char *of);
 void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot);
 
-/* How long a slice is, s, and until when the run goes. */
-double wh_plots_slice_s(const wh_plots_t *plots);
+/* From when until when the run goes, s. */
 double wh_plots_begin_s(const wh_plots_t *plots);
 double wh_plots_end_s(const wh_plots_t *plots);
 

@@ -66,16 +66,12 @@ void wh_pattern_init(pattern_t *m, lua_State *L, const char *subject, size_t sub
 }
 
 void wh_pattern_settle(pattern_t *m) {
-    const uint32_t steps = m->steps;
+    wh_sandbox_charge(m->L, m->steps);
     m->steps = 0;
-    wh_sandbox_charge(m->L, steps);
 }
 
 static void count_steps(pattern_t *m, size_t steps) {
-    m->steps += (uint32_t)(steps < CHARGE_LOT ? steps : CHARGE_LOT);
-    if (steps > CHARGE_LOT) {
-        wh_sandbox_charge(m->L, steps - CHARGE_LOT);
-    }
+    m->steps += steps;
     if (m->steps >= CHARGE_LOT) {
         wh_pattern_settle(m);
     }

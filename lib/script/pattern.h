@@ -24,7 +24,7 @@ typedef struct {
     const char *pattern_end;
     int depth;      /* levels of backtracking left */
     int captures;   /* captures begun */
-    uint32_t steps; /* not charged yet */
+    uint64_t steps; /* not charged yet */
     struct {
         const char *begin;
         ptrdiff_t length;

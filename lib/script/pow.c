@@ -20,10 +20,6 @@ wh_sandbox_t *wh_pow_set_strict(wh_sandbox_t *sandbox) {
     return before;
 }
 
-wh_sandbox_t *wh_pow_strict(void) {
-    return strict_sandbox;
-}
-
 /* Exponents of 2^64 and more are even: x^y is 0, 1 or infinite. */
 static double power_huge(double x) {
     const double size = fabs(x);

@@ -20,36 +20,23 @@ static void describe_number(double value, char *text, size_t size) {
     }
 }
 
-static bool is_short_list(lua_State *L) {
-    const lua_Integer count = (lua_Integer)lua_rawlen(L, -1);
-    bool numbers = count >= 1 && count <= 4;
-    for (lua_Integer i = 1; numbers && i <= count; ++i) {
-        numbers = lua_rawgeti(L, -1, i) == LUA_TNUMBER;
-        lua_pop(L, 1);
-    }
-    return numbers;
-}
-
 /* A short list of numbers is shown as it was written, { 0, 90, 0 }; of any other table only that it is
  * one. */
 static void describe_table(lua_State *L, char *text, size_t size) {
-    if (!is_short_list(L)) {
-        snprintf(text, size, "a table");
-        return;
-    }
-    const char *before = "{ ";
+    const lua_Integer count = (lua_Integer)lua_rawlen(L, -1);
+    bool is_short_list = count >= 1 && count <= 4;
     text[0] = '\0';
-    for (lua_Integer i = 1; i <= (lua_Integer)lua_rawlen(L, -1); ++i) {
+    for (lua_Integer i = 1; is_short_list && i <= count; ++i) {
         char number[40];
-        lua_rawgeti(L, -1, i);
+        is_short_list = lua_rawgeti(L, -1, i) == LUA_TNUMBER;
         describe_number(lua_tonumber(L, -1), number, sizeof number);
         lua_pop(L, 1);
         const size_t used = strlen(text);
-        snprintf(text + used, size - used, "%s%s", before, number);
-        before = ", ";
+        snprintf(text + used, size - used, "%s%s%s", i > 1 ? ", " : "{ ", number, i == count ? " }" : "");
     }
-    const size_t used = strlen(text);
-    snprintf(text + used, size - used, " }");
+    if (!is_short_list) {
+        snprintf(text, size, "a table");
+    }
 }
 
 static void describe(lua_State *L, char *text, size_t size) {
@@ -211,7 +198,7 @@ void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file) {
 
 /* ------------------------------------------------------------------------------------------------ nesting */
 
-void wh_reader_enter_top(wh_reader_t *reader, const char *name) {
+static void enter_top(wh_reader_t *reader, const char *name) {
     const size_t length = strlen(reader->path);
     const char *dot = length > 0 && name[0] != '[' ? "." : "";
     if (!lua_istable(reader->L, -1)) {
@@ -241,7 +228,7 @@ static bool enter_top_unless_nil(wh_reader_t *reader, const char *name) {
         lua_pop(reader->L, 1);
         return false;
     }
-    wh_reader_enter_top(reader, name);
+    enter_top(reader, name);
     return true;
 }
 
@@ -285,6 +272,14 @@ static bool push_field(const wh_reader_t *reader, const char *field, bool requir
     return false;
 }
 
+/* Pops the field, or refuses it. */
+static void pop_field(const wh_reader_t *reader, const char *field, bool is_good, const char *expected) {
+    if (!is_good) {
+        wh_reader_fail(reader, field, "%s", expected);
+    }
+    lua_pop(reader->L, 1);
+}
+
 wh_real_t wh_reader_number(wh_reader_t *reader, const char *field, wh_real_t fallback, wh_real_t min,
                            wh_real_t max) {
     char expected[80];
@@ -293,10 +288,8 @@ wh_real_t wh_reader_number(wh_reader_t *reader, const char *field, wh_real_t fal
         return fallback;
     }
     const wh_real_t value = (wh_real_t)lua_tonumber(reader->L, -1);
-    if (lua_type(reader->L, -1) != LUA_TNUMBER || !(value >= min && value <= max)) {
-        wh_reader_fail(reader, field, "%s", expected);
-    }
-    lua_pop(reader->L, 1);
+    const bool is_number = lua_type(reader->L, -1) == LUA_TNUMBER;
+    pop_field(reader, field, is_number && value >= min && value <= max, expected);
     return value;
 }
 
@@ -308,10 +301,8 @@ int32_t wh_reader_whole(wh_reader_t *reader, const char *field, int32_t fallback
         return fallback;
     }
     const lua_Integer value = lua_tointegerx(reader->L, -1, &is_whole);
-    if (lua_type(reader->L, -1) != LUA_TNUMBER || !is_whole || value < min || value > max) {
-        wh_reader_fail(reader, field, "%s", expected);
-    }
-    lua_pop(reader->L, 1);
+    const bool is_number = lua_type(reader->L, -1) == LUA_TNUMBER;
+    pop_field(reader, field, is_number && is_whole && value >= min && value <= max, expected);
     return (int32_t)value;
 }
 
@@ -319,11 +310,8 @@ bool wh_reader_boolean(wh_reader_t *reader, const char *field, bool fallback) {
     if (!push_field(reader, field, false, "")) {
         return fallback;
     }
-    if (!lua_isboolean(reader->L, -1)) {
-        wh_reader_fail(reader, field, "true or false");
-    }
     const bool value = lua_toboolean(reader->L, -1) != 0;
-    lua_pop(reader->L, 1);
+    pop_field(reader, field, lua_isboolean(reader->L, -1), "true or false");
     return value;
 }
 
@@ -332,10 +320,8 @@ static wh_real_t component(wh_reader_t *reader, const char *field, lua_Integer i
     snprintf(name, sizeof name, "%s[%d]", field, (int)index);
     lua_rawgeti(reader->L, -1, index);
     const wh_real_t value = (wh_real_t)lua_tonumber(reader->L, -1);
-    if (lua_type(reader->L, -1) != LUA_TNUMBER || !(wh_real_abs(value) <= WH_REAL(1e6))) {
-        wh_reader_fail(reader, name, "a number from -1e6 to 1e6");
-    }
-    lua_pop(reader->L, 1);
+    const bool is_good = lua_type(reader->L, -1) == LUA_TNUMBER && wh_real_abs(value) <= WH_REAL(1e6);
+    pop_field(reader, name, is_good, "a number from -1e6 to 1e6");
     return value;
 }
 

@@ -53,8 +53,6 @@ bool wh_reader_enter_item(wh_reader_t *reader, lua_Integer index);
 /* wh_reader_enter and then, if there is such a table, wh_reader_refuse_unknown. */
 bool wh_reader_open(wh_reader_t *reader, const char *field, const char *known);
 
-/* Enters the table on top of the stack under a name that the caller gives. */
-void wh_reader_enter_top(wh_reader_t *reader, const char *name);
 void wh_reader_leave(wh_reader_t *reader);
 
 /* Pushes a field of the table that is read, and returns its Lua type. */

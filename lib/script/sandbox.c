@@ -1,21 +1,16 @@
 /* Creating a sandbox, running files, texts and functions in it, and the message when one fails. */
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "../text/array.h"
 #include "../text/utf8.h"
 #include "sandbox_internal.h"
 
 /* ----------------------------------------------------------------------------------------------- messages */
-
-/* The text that a person reads. Lua code (__tostring) may yet have to make it. */
-typedef struct {
-    char text[WH_SANDBOX_MESSAGE_BYTES];
-} described_t;
 
 static int note_line(lua_State *L) {
     wh_sandbox_job_t *const job = wh_sandbox_of(L)->job;
@@ -25,13 +20,11 @@ static int note_line(lua_State *L) {
     return 1;
 }
 
-/* The text of a table without __tostring is its field `message`: numbered errors are such tables. */
+/* The text that a person reads. Lua code (__tostring) may yet have to make it. The text of a table without
+ * __tostring is its field `message`: numbered errors are such tables. */
 static const char *text_of(lua_State *L, size_t *length) {
     const int type = lua_type(L, 1);
-    if (type == LUA_TSTRING || type == LUA_TNUMBER) {
-        return wh_library_tostring(L, 1, length);
-    }
-    if (luaL_getmetafield(L, 1, "__tostring") != LUA_TNIL) {
+    if (type == LUA_TSTRING || type == LUA_TNUMBER || luaL_getmetafield(L, 1, "__tostring") != LUA_TNIL) {
         return wh_library_tostring(L, 1, length);
     }
     if (type == LUA_TTABLE) {
@@ -46,7 +39,6 @@ static const char *text_of(lua_State *L, size_t *length) {
 
 /* Makes one line of it, without characters that control a terminal. */
 static int describe(lua_State *L) {
-    described_t *const described = lua_touserdata(L, 2);
     size_t length = 0;
     const char *const text = text_of(L, &length);
     char whole[WH_SANDBOX_MESSAGE_BYTES + 1];
@@ -55,14 +47,14 @@ static int describe(lua_State *L) {
         whole[i] = iscntrl((unsigned char)text[i]) ? ' ' : text[i];
     }
     whole[kept] = '\0';
-    wh_utf8_clip(described->text, sizeof described->text, whole);
+    wh_utf8_clip(lua_touserdata(L, 2), WH_SANDBOX_MESSAGE_BYTES, whole);
     return 0;
 }
 
-static void make_text(lua_State *L, described_t *described) {
+static void make_text(lua_State *L, char described[WH_SANDBOX_MESSAGE_BYTES]) {
     const wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     if (sandbox->fatal == WH_SANDBOX_OK) {
-        wh_utf8_clip(described->text, sizeof described->text, "(error object whose __tostring failed)");
+        wh_utf8_clip(described, WH_SANDBOX_MESSAGE_BYTES, "(error object whose __tostring failed)");
         lua_pushcfunction(L, describe);
         lua_pushvalue(L, -2);
         lua_pushlightuserdata(L, described);
@@ -72,7 +64,7 @@ static void make_text(lua_State *L, described_t *described) {
         }
     }
     if (sandbox->fatal != WH_SANDBOX_OK) {
-        wh_sandbox_fatal_text(sandbox, described->text, sizeof described->text);
+        wh_sandbox_fatal_text(sandbox, described, WH_SANDBOX_MESSAGE_BYTES);
     }
 }
 
@@ -84,102 +76,41 @@ static bool has_position(const char *text, const char *short_source) {
 }
 
 static void report(lua_State *L, const wh_sandbox_job_t *job, char message[WH_SANDBOX_MESSAGE_BYTES]) {
-    described_t described;
+    char described[WH_SANDBOX_MESSAGE_BYTES];
     char whole[WH_SANDBOX_MESSAGE_BYTES * 3];
-    make_text(L, &described);
+    make_text(L, described);
     lua_pop(L, 1);
     if (job->path == NULL) {
-        snprintf(whole, sizeof whole, "%s", described.text);
-    } else if (has_position(described.text, job->short_source)) {
-        snprintf(whole, sizeof whole, "%.1023s%s", job->path, described.text + strlen(job->short_source));
+        snprintf(whole, sizeof whole, "%s", described);
+    } else if (has_position(described, job->short_source)) {
+        snprintf(whole, sizeof whole, "%.1023s%s", job->path, described + strlen(job->short_source));
     } else if (job->line > 0) {
-        snprintf(whole, sizeof whole, "%.1023s:%d: %s", job->path, job->line, described.text);
+        snprintf(whole, sizeof whole, "%.1023s:%d: %s", job->path, job->line, described);
     } else {
-        snprintf(whole, sizeof whole, "%.1023s: %s", job->path, described.text);
+        snprintf(whole, sizeof whole, "%.1023s: %s", job->path, described);
     }
     wh_utf8_clip(message, WH_SANDBOX_MESSAGE_BYTES, whole);
 }
 
 /* -------------------------------------------------------------------------------------------------- files */
 
-static const char too_large[] = "cannot be read: it is larger than 16 MiB";
-
-static const char *kind_fault(const struct stat *status) {
-    if (S_ISDIR(status->st_mode)) {
-        return "cannot be read: it is a directory";
-    }
-    if (!S_ISREG(status->st_mode)) {
-        return "cannot be read: it is no regular file";
-    }
-    if (status->st_size > (off_t)WH_SANDBOX_FILE_BYTES) {
-        return too_large;
-    }
-    return NULL;
-}
-
-static const char *errno_fault(void) {
-    static __thread char text[120];
-    snprintf(text, sizeof text, "cannot be read: %s", strerror(errno));
-    return text;
-}
-
-static const char *read_open(FILE *file, char **text, size_t *size) {
+/* Why a file is not read, or null. Checks it before Lua opens it: opening a device may move it. */
+static const char *file_fault(const char *path, size_t *size) {
     struct stat status;
-    if (fstat(fileno(file), &status) != 0) {
-        return errno_fault();
-    }
-    const char *fault = kind_fault(&status);
-    if (fault != NULL) {
-        return fault;
-    }
-    const size_t capacity = WH_SANDBOX_FILE_BYTES + 1;
-    char *const whole = malloc(capacity);
-    if (whole == NULL) {
-        return "cannot be read: no memory";
-    }
-    /* Reads to the end: the file may grow meanwhile, and files below /proc have no size. */
-    *size = fread(whole, 1, capacity, file);
-    if (*size == capacity || ferror(file)) {
-        fault = ferror(file) ? errno_fault() : too_large;
-        free(whole);
-        return fault;
-    }
-    *text = whole;
-    return NULL;
-}
-
-static const char *read_file(const char *path, char **text, size_t *size) {
-    struct stat status;
-    /* Checks the file before opening it: opening a device may move it. */
     if (stat(path, &status) != 0) {
-        return errno_fault();
+        return strerror(errno);
     }
-    const char *fault = kind_fault(&status);
-    if (fault != NULL) {
-        return fault;
+    *size = (size_t)status.st_size;
+    if (S_ISDIR(status.st_mode)) {
+        return "it is a directory";
     }
-    const int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-    FILE *const file = descriptor < 0 ? NULL : fdopen(descriptor, "rb");
-    if (file == NULL) {
-        return errno_fault();
+    if (!S_ISREG(status.st_mode)) {
+        return "it is no regular file";
     }
-    fault = read_open(file, text, size);
-    (void)fclose(file);
-    return fault;
-}
-
-static const char *skip_first_line(const char *text, size_t *size) {
-    if (*size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) {
-        text += 3;
-        *size -= 3;
+    if (status.st_size > (off_t)WH_SANDBOX_FILE_BYTES) {
+        return "it is larger than 16 MiB";
     }
-    if (*size > 0 && text[0] == '#') {
-        const char *const line_break = memchr(text, '\n', *size);
-        const size_t skipped = line_break != NULL ? (size_t)(line_break - text) : *size;
-        text += skipped;
-        *size -= skipped;
-    }
-    return text;
+    return access(path, R_OK) == 0 ? NULL : strerror(errno);
 }
 
 /* ---------------------------------------------------------------------------------------------- a sandbox */
@@ -205,10 +136,7 @@ static void set_limits(wh_sandbox_t *sandbox, const wh_sandbox_limits_t *limits)
 }
 
 wh_sandbox_t *wh_sandbox_new(const wh_sandbox_limits_t *limits) {
-    wh_sandbox_t *const sandbox = calloc(1, sizeof *sandbox);
-    if (sandbox == NULL) {
-        return NULL;
-    }
+    wh_sandbox_t *const sandbox = wh_array_new(1, sizeof *sandbox);
     set_limits(sandbox, limits);
     sandbox->main = lua_newstate(wh_sandbox_allocate, sandbox);
     if (sandbox->main == NULL) {
@@ -231,18 +159,13 @@ void wh_sandbox_free(wh_sandbox_t *sandbox) {
         return;
     }
     lua_close(sandbox->main);
-    if (wh_pow_strict() == sandbox) {
-        wh_pow_set_strict(NULL);
-    }
+    wh_sandbox_t *const strict = wh_pow_set_strict(NULL);
+    wh_pow_set_strict(strict != sandbox ? strict : NULL);
     free(sandbox);
 }
 
 lua_State *wh_sandbox_state(wh_sandbox_t *sandbox) {
     return sandbox->main;
-}
-
-wh_sandbox_reason_t wh_sandbox_reason(const wh_sandbox_t *sandbox) {
-    return sandbox->reason;
 }
 
 void wh_sandbox_push_error(lua_State *L) {
@@ -290,22 +213,6 @@ static void leave(wh_sandbox_t *sandbox, const wh_sandbox_job_t *job) {
     }
 }
 
-static wh_sandbox_reason_t reason_of(const wh_sandbox_t *sandbox, const wh_sandbox_job_t *job) {
-    if (sandbox->fatal != WH_SANDBOX_OK) {
-        return sandbox->fatal;
-    }
-    return job->loaded ? WH_SANDBOX_ERROR : WH_SANDBOX_SYNTAX;
-}
-
-/* Pops the error's value from the top of the stack. */
-static void fail(lua_State *L, wh_sandbox_job_t *job, int status, wh_sandbox_result_t *result) {
-    wh_sandbox_t *const sandbox = wh_sandbox_of(L);
-    (void)wh_sandbox_is_fatal(L, status);
-    keep_error(L);
-    report(L, job, result->message);
-    sandbox->reason = result->status = reason_of(sandbox, job);
-}
-
 /* base: the index at which the results, or the error, begin. True if all went well. */
 static bool conclude(lua_State *L, wh_sandbox_job_t *job, int base, int status, wh_sandbox_result_t *result) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
@@ -317,10 +224,14 @@ static bool conclude(lua_State *L, wh_sandbox_job_t *job, int base, int status, 
         sandbox->power_pending = false;
     }
     if (status == LUA_OK) {
-        sandbox->reason = result->status = WH_SANDBOX_OK;
+        result->status = WH_SANDBOX_OK;
         result->message[0] = '\0';
     } else {
-        fail(L, job, status, result);
+        (void)wh_sandbox_is_fatal(L, status);
+        keep_error(L);
+        report(L, job, result->message);
+        result->status = job->loaded ? WH_SANDBOX_ERROR : WH_SANDBOX_SYNTAX;
+        result->status = sandbox->fatal != WH_SANDBOX_OK ? sandbox->fatal : result->status;
     }
     leave(sandbox, job);
     return status == LUA_OK;
@@ -334,7 +245,8 @@ static int load_and_run(lua_State *L) {
     wh_sandbox_charge(L, job->size);
     const char *const name = lua_pushfstring(L, "@%s", job->path);
     ++sandbox->loading;
-    const int status = luaL_loadbufferx(L, job->text, job->size, name, "t");
+    const int status = job->text != NULL ? luaL_loadbufferx(L, job->text, job->size, name, "t")
+                                         : luaL_loadfilex(L, job->path, "t");
     --sandbox->loading;
     if (status != LUA_OK) {
         return lua_error(L);
@@ -368,15 +280,19 @@ static bool run_job(lua_State *L, wh_sandbox_job_t *job, int arguments, wh_sandb
     return conclude(L, job, base, status, result != NULL ? result : &unused);
 }
 
-static bool run_text(lua_State *L, wh_sandbox_job_t *job, wh_sandbox_result_t *result) {
+static bool refuse(wh_sandbox_result_t *result, wh_sandbox_reason_t reason, const char *path,
+                   const char *why) {
+    if (result != NULL) {
+        result->status = reason;
+        snprintf(result->message, sizeof result->message, "%.900s: %.100s", path, why);
+    }
+    return false;
+}
+
+static bool load_job(lua_State *L, wh_sandbox_job_t *job, wh_sandbox_result_t *result) {
     abbreviate(job);
-    job->text = skip_first_line(job->text, &job->size);
     if (!lua_checkstack(L, 4)) {
-        if (result != NULL) {
-            result->status = WH_SANDBOX_ERROR;
-            snprintf(result->message, sizeof result->message, "%.900s: stack overflow", job->path);
-        }
-        return false;
+        return refuse(result, WH_SANDBOX_ERROR, job->path, "stack overflow");
     }
     lua_pushcfunction(L, load_and_run);
     lua_pushlightuserdata(L, job);
@@ -386,38 +302,29 @@ static bool run_text(lua_State *L, wh_sandbox_job_t *job, wh_sandbox_result_t *r
 bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, size_t size,
                               wh_sandbox_result_t *result) {
     wh_sandbox_job_t job = {.path = name, .text = text, .size = size, .results = 1};
-    return run_text(L, &job, result);
-}
-
-static bool run_file(lua_State *L, const char *path, int results, wh_sandbox_result_t *result) {
-    char *text = NULL;
-    size_t size = 0;
-    const char *const why = read_file(path, &text, &size);
-    if (why != NULL) {
-        wh_sandbox_of(L)->reason = WH_SANDBOX_UNREADABLE;
-        if (result != NULL) {
-            result->status = WH_SANDBOX_UNREADABLE;
-            snprintf(result->message, sizeof result->message, "%.900s: %s", path, why);
-        }
-        return false;
-    }
-    wh_sandbox_job_t job = {.path = path, .text = text, .size = size, .results = results};
-    const bool ok = run_text(L, &job, result);
-    free(text);
-    return ok;
-}
-
-bool wh_sandbox_run(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result) {
-    return run_file(sandbox->main, path, 0, result);
+    return load_job(L, &job, result);
 }
 
 bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *result) {
-    return run_file(L, path, 1, result);
+    wh_sandbox_job_t job = {.path = path, .results = 1};
+    const char *const why = file_fault(path, &job.size);
+    if (why != NULL) {
+        char text[100];
+        snprintf(text, sizeof text, "cannot be read: %.80s", why);
+        return refuse(result, WH_SANDBOX_UNREADABLE, path, text);
+    }
+    return load_job(L, &job, result);
 }
 
 bool wh_sandbox_call(lua_State *L, int arguments, int results, wh_sandbox_result_t *result) {
     wh_sandbox_job_t job = {.loaded = true, .results = results};
     return run_job(L, &job, arguments, result);
+}
+
+bool wh_sandbox_protect(lua_State *L, lua_CFunction function, void *argument, wh_sandbox_result_t *result) {
+    lua_pushcfunction(L, function);
+    lua_pushlightuserdata(L, argument);
+    return wh_sandbox_call(L, 1, 0, result);
 }
 
 wh_sandbox_t *wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],

@@ -8,7 +8,7 @@
  * Rules for the host:
  * - Enter Lua by the functions below. At the outermost level never call lua_pcall or lua_resume yourself: the
  *   limits need to know which coroutine runs. Inside a C function that Lua called, lua_call and lua_pcall are
- *   fine; resume coroutines by wh_sandbox_resume.
+ *   fine; resume no coroutine.
  * - A C function that loops for long charges the budget (wh_sandbox_charge), and holds no resource while it
  *   does.
  * - Give your own metatables a __metatable field, so that scripts cannot change them.
@@ -42,7 +42,7 @@ typedef struct {
     FILE *print_to; /* where print writes; the caller's; default stdout */
 } wh_sandbox_limits_t;
 
-/* Why the last chunk ended. */
+/* Why a chunk ended. */
 typedef enum {
     WH_SANDBOX_OK,
     WH_SANDBOX_ERROR,      /* it threw an error */
@@ -62,7 +62,7 @@ typedef struct {
 
 typedef struct wh_sandbox wh_sandbox_t;
 
-/* A new sandbox, which the caller frees. Null if out of memory (the cap counts). limits may be null: all
+/* A new sandbox, which the caller frees. Null if the cap is too low for it. limits may be null: all
  * defaults. Cost: about 40 KiB, 0.1 ms. */
 wh_sandbox_t *wh_sandbox_new(const wh_sandbox_limits_t *limits);
 
@@ -78,18 +78,15 @@ wh_sandbox_t *wh_sandbox_of(lua_State *L);
 
 /* ------------------------------------------------------------------------------------------------ Running */
 
-/* Reads the file, runs it and drops what it returns. True if it ended well; result may be null. The file must
- * be a regular file of text of at most WH_SANDBOX_FILE_BYTES. A byte order mark is skipped, and a first line
- * that begins with '#'. */
-bool wh_sandbox_run(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result);
-
-/* Runs a file as wh_sandbox_run does, but leaves the first returned value (or nil) on L's stack. On failure
- * L's stack is as it was. L is the sandbox's state or, in a C function that Lua called, its state. If a limit
- * is exhausted inside, the calling script ends too. */
+/* Reads the file, runs it and leaves the first value that it returns (or nil) on L's stack. True if it ended
+ * well; else L's stack is as it was. The file must be a regular file of text of at most
+ * WH_SANDBOX_FILE_BYTES. A byte order mark is skipped, and a first line that begins with '#'. L is the
+ * sandbox's state or, in a C function that Lua called, its state. If a limit is exhausted inside, the calling
+ * script ends too. `result` may be null. */
 bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *result);
 
-/* wh_sandbox_evaluate for a text in memory: the library's own Lua sources, or a line from the prompt.
- * Messages show `name` in place of a path. The text needs no final zero and is not kept. */
+/* wh_sandbox_evaluate for a text in memory, such as the library's own Lua sources; all of it is Lua. Messages
+ * show `name` in place of a path. The text needs no final zero and is not kept. */
 bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, size_t size,
                               wh_sandbox_result_t *result);
 
@@ -97,9 +94,8 @@ bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, 
  * on failure. Messages begin with no path. */
 bool wh_sandbox_call(lua_State *L, int arguments, int results, wh_sandbox_result_t *result);
 
-/* lua_resume with the sandbox's rules; same arguments and result. If a limit is exhausted inside, raises that
- * error in `from`. */
-int wh_sandbox_resume(lua_State *co, lua_State *from, int arguments, int *results);
+/* wh_sandbox_call of a C function, whose only argument is the light userdata `argument`. Leaves nothing. */
+bool wh_sandbox_protect(lua_State *L, lua_CFunction function, void *argument, wh_sandbox_result_t *result);
 
 /* Pushes the error value of the last chunk that failed, or nil if there was none. A numbered error is a
  * table. Needs one free stack slot. */
@@ -109,13 +105,10 @@ void wh_sandbox_push_error(lua_State *L);
  * levels. */
 int wh_sandbox_line(lua_State *L, const char *path);
 
-/* Why the last chunk ended. */
-wh_sandbox_reason_t wh_sandbox_reason(const wh_sandbox_t *sandbox);
-
 /* ------------------------------------------------------------------------------------------------- Limits */
 
 /* Takes steps off the budget for work done in C, such as a simulated slice or a scanned byte. Raises an error
- * if the budget is spent, so call it only where an error may pass. No effect in a state that is not ours.
+ * if the budget is spent, so call it only where an error may pass.
  * Cost: a few ns. */
 void wh_sandbox_charge(lua_State *L, uint64_t steps);
 
@@ -134,8 +127,7 @@ bool wh_sandbox_stopping(const wh_sandbox_t *sandbox);
  * one for each 64 bytes of long strings and large blocks. */
 uint64_t wh_sandbox_spent(const wh_sandbox_t *sandbox);
 
-/* Bytes that Lua holds now, and the most that it held at any time. */
-size_t wh_sandbox_memory(const wh_sandbox_t *sandbox);
+/* The most bytes that Lua held at any time. */
 size_t wh_sandbox_memory_high_water(const wh_sandbox_t *sandbox);
 
 /* --------------------------------------------------------------------------------------------- Parameters */

@@ -21,10 +21,6 @@ wh_sandbox_t *wh_sandbox_of(lua_State *L) {
     return opaque;
 }
 
-static bool is_ours(lua_State *L) {
-    return lua_getallocf(L, NULL) == wh_sandbox_allocate;
-}
-
 void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size) {
     const size_t cap = sandbox->memory_cap;
     const bool in_mib = cap >> 20 << 20 == cap;
@@ -83,13 +79,6 @@ bool wh_sandbox_is_fatal(lua_State *L, int status) {
 
 static void on_count(lua_State *L, lua_Debug *event);
 
-static int raise_power(lua_State *L, wh_sandbox_t *sandbox) {
-    sandbox->power_pending = false;
-    lua_pushfstring(L, "%s:%d: '^' needs a whole-number exponent; got %f", sandbox->power_source,
-                    sandbox->power_line, sandbox->power_exponent);
-    return lua_error(L);
-}
-
 /* Collects garbage if the memory stands above the brim, and charges for the work. */
 static void check_brim(lua_State *L, wh_sandbox_t *sandbox) {
     if (!sandbox->brimming) {
@@ -137,7 +126,10 @@ static void on_count(lua_State *L, lua_Debug *event) {
         wh_sandbox_raise(L);
     }
     if (sandbox->power_pending) {
-        raise_power(L, sandbox);
+        sandbox->power_pending = false;
+        lua_pushfstring(L, "%s:%d: '^' needs a whole-number exponent; got %f", sandbox->power_source,
+                        sandbox->power_line, sandbox->power_exponent);
+        lua_error(L);
     }
 }
 
@@ -155,9 +147,6 @@ void wh_sandbox_spend(wh_sandbox_t *sandbox, uint64_t steps) {
 }
 
 void wh_sandbox_charge(lua_State *L, uint64_t steps) {
-    if (!is_ours(L)) {
-        return;
-    }
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     wh_sandbox_spend(sandbox, steps);
     check_stop_and_budget(L, sandbox);

@@ -16,7 +16,7 @@
 /* One entry into Lua: a file, a text or a call. Jobs nest: a script names a layout, which is run too. */
 typedef struct wh_sandbox_job {
     const char *path; /* null for a call */
-    const char *text;
+    const char *text; /* null for a file */
     size_t size;
     int results;
     bool loaded;                     /* past the syntax check */
@@ -44,8 +44,7 @@ struct wh_sandbox {
     bool refused;  /* the allocator has refused in this run */
     bool brimming; /* memory went above the brim since the hook looked last */
     volatile sig_atomic_t stop;
-    wh_sandbox_reason_t fatal;  /* BUDGET, MEMORY or STOPPED once exhausted, else OK */
-    wh_sandbox_reason_t reason; /* why the last job ended */
+    wh_sandbox_reason_t fatal; /* BUDGET, MEMORY or STOPPED once exhausted, else OK */
     /* A fractional exponent that pow was asked for; the hook has yet to report it. */
     bool power_pending;
     double power_exponent;
@@ -79,15 +78,13 @@ void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size)
 /* -------------------------------------------------------------------------------------------------- pow.c */
 /* Sets the sandbox whose scripts run on this thread: `^` is strict in it. Returns the one before. */
 wh_sandbox_t *wh_pow_set_strict(wh_sandbox_t *sandbox);
-wh_sandbox_t *wh_pow_strict(void);
 
 /* --------------------------------------------------------------------- sandbox_library.c and the subjects */
 /* Builds the environment. Called once, protected. */
 int wh_sandbox_library_open(lua_State *L);
-/* Sets functions in the table on top. A null function removes the name. */
+/* Sets functions in the table on top: closures whose upvalue is what they replace. A null function removes
+ * the name. */
 void wh_library_set(lua_State *L, const luaL_Reg *functions);
-/* Replaces functions of the table on top by closures whose first upvalue is the replaced function. */
-void wh_library_wrap(lua_State *L, const luaL_Reg *wrappers);
 /* In such a closure: calls the replaced function with the same arguments. */
 int wh_library_call_stock(lua_State *L);
 /* Makes these functions of the table on top charge (bytes of string arguments >> shift) before they run. */

@@ -130,23 +130,9 @@ static int base_load(lua_State *L) {
 
 /* --------------------------------------------------------------------------------------------- parameters */
 
-/* The argument of the protected part. */
-typedef struct {
-    const char *name;
-    const char *value; /* null: no '=' */
-    size_t name_length;
-} assignment_t;
-
-static bool looks_like_name(const char *text, size_t length) {
-    if (length == 0 || isdigit((unsigned char)text[0])) {
-        return false;
-    }
-    for (size_t i = 0; i < length; ++i) {
-        if (!isalnum((unsigned char)text[i]) && text[i] != '_') {
-            return false;
-        }
-    }
-    return true;
+static bool looks_like_name(const char *text) {
+    static const char characters[] = "0123456789_ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+    return text[0] != '\0' && !isdigit((unsigned char)text[0]) && text[strspn(text, characters)] == '\0';
 }
 
 /* Asks the compiler, which knows the reserved words. */
@@ -175,13 +161,15 @@ static void push_value(lua_State *L, const char *text) {
     }
 }
 
+/* Runs protected, with where the text of the assignment stands. */
 static int assign(lua_State *L) {
-    const assignment_t *const assignment = lua_touserdata(L, 1);
-    const char *const name = lua_pushlstring(L, assignment->name, assignment->name_length);
-    if (assignment->value == NULL) {
+    const char *const text = *(const char **)lua_touserdata(L, 1);
+    const size_t length = strcspn(text, "=");
+    const char *const name = lua_pushlstring(L, text, length);
+    if (text[length] == '\0') {
         return luaL_error(L, "'%s' is no NAME=VALUE", name);
     }
-    if (!looks_like_name(name, assignment->name_length) || is_reserved(L, name)) {
+    if (!looks_like_name(name) || is_reserved(L, name)) {
         return luaL_error(L,
                           "'%s' is no name for a parameter: letters, digits and '_', not first a digit, no "
                           "reserved word of Lua",
@@ -191,21 +179,13 @@ static int assign(lua_State *L) {
         return luaL_error(L, "params is no table any more");
     }
     lua_pushvalue(L, 2);
-    push_value(L, assignment->value);
+    push_value(L, text + length + 1);
     lua_rawset(L, 3);
     return 0;
 }
 
 bool wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *text, wh_sandbox_result_t *result) {
-    const char *const equals = strchr(text, '=');
-    assignment_t assignment = {text, NULL, strlen(text)};
-    if (equals != NULL) {
-        assignment.value = equals + 1;
-        assignment.name_length = (size_t)(equals - text);
-    }
-    lua_pushcfunction(sandbox->main, assign);
-    lua_pushlightuserdata(sandbox->main, &assignment);
-    return wh_sandbox_call(sandbox->main, 1, 0, result);
+    return wh_sandbox_protect(sandbox->main, assign, &text, result);
 }
 
 /* ---------------------------------------------------------------------------------------------- all of it */
@@ -213,19 +193,12 @@ bool wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *text, wh_sandbo
 void wh_library_set(lua_State *L, const luaL_Reg *functions) {
     for (; functions->name != NULL; ++functions) {
         if (functions->func != NULL) {
-            lua_pushcfunction(L, functions->func);
+            lua_getfield(L, -1, functions->name);
+            lua_pushcclosure(L, functions->func, 1);
         } else {
             lua_pushnil(L);
         }
         lua_setfield(L, -2, functions->name);
-    }
-}
-
-void wh_library_wrap(lua_State *L, const luaL_Reg *wrappers) {
-    for (; wrappers->name != NULL; ++wrappers) {
-        lua_getfield(L, -1, wrappers->name);
-        lua_pushcclosure(L, wrappers->func, 1);
-        lua_setfield(L, -2, wrappers->name);
     }
 }
 
@@ -257,32 +230,31 @@ void wh_library_charge_strings(lua_State *L, const char *const *names, int shift
 static void open_base(lua_State *L, bool trust) {
     static const luaL_Reg functions[] = {{"print", base_print}, {"tostring", base_tostring}, {NULL, NULL}};
     static const char *const scanning[] = {"tonumber", NULL};
-    static const luaL_Reg untrusted[] = {{"load", base_load}, {"collectgarbage", NULL}, {"dofile", NULL},
-                                         {"loadfile", NULL},  {"warn", NULL},           {NULL, NULL}};
-    static const luaL_Reg wrapped[] = {
-        {"setmetatable", base_setmetatable}, {"getmetatable", base_getmetatable}, {NULL, NULL}};
+    static const luaL_Reg untrusted[] = {{"setmetatable", base_setmetatable},
+                                         {"getmetatable", base_getmetatable},
+                                         {"load", base_load},
+                                         {"collectgarbage", NULL},
+                                         {"dofile", NULL},
+                                         {"loadfile", NULL},
+                                         {"warn", NULL},
+                                         {NULL, NULL}};
     lua_pushglobaltable(L);
     wh_library_set(L, functions);
     wh_library_charge_strings(L, scanning, 4);
     if (!trust) {
         wh_library_set(L, untrusted);
-        wh_library_wrap(L, wrapped);
     }
     lua_pop(L, 1);
 }
 
-static void require(lua_State *L, const char *name, lua_CFunction open) {
-    luaL_requiref(L, name, open, 1);
-    lua_pop(L, 1);
-}
-
 static void open_untrusted(lua_State *L) {
-    require(L, LUA_GNAME, luaopen_base);
-    require(L, LUA_COLIBNAME, luaopen_coroutine);
-    require(L, LUA_TABLIBNAME, luaopen_table);
-    require(L, LUA_STRLIBNAME, luaopen_string);
-    require(L, LUA_MATHLIBNAME, luaopen_math);
-    require(L, LUA_UTF8LIBNAME, luaopen_utf8);
+    static const luaL_Reg libraries[] = {{LUA_GNAME, luaopen_base},       {LUA_COLIBNAME, luaopen_coroutine},
+                                         {LUA_TABLIBNAME, luaopen_table}, {LUA_STRLIBNAME, luaopen_string},
+                                         {LUA_MATHLIBNAME, luaopen_math}, {LUA_UTF8LIBNAME, luaopen_utf8}};
+    for (size_t i = 0; i < sizeof libraries / sizeof *libraries; ++i) {
+        luaL_requiref(L, libraries[i].name, libraries[i].func, 1);
+        lua_pop(L, 1);
+    }
 }
 
 /* The iterator that utf8.codes returns may skip any number of continuation bytes in one call, so it is
@@ -301,7 +273,7 @@ static void open_utf8(lua_State *L) {
     static const luaL_Reg wrapped[] = {{"codes", charged_codes}, {NULL, NULL}};
     lua_getglobal(L, LUA_UTF8LIBNAME);
     wh_library_charge_strings(L, scanning, 3);
-    wh_library_wrap(L, wrapped);
+    wh_library_set(L, wrapped);
     lua_pop(L, 1);
 }
 

@@ -67,14 +67,11 @@ static int math_randomseed(lua_State *L) {
     return 0;
 }
 
-static void open_random(lua_State *L) {
+static void start_random(lua_State *L) {
     lua_getfield(L, -1, "randomseed");
-    lua_pushvalue(L, -1);
     lua_pushinteger(L, RANDOM_SEED);
     lua_pushinteger(L, 0);
     lua_call(L, 2, 0);
-    lua_pushcclosure(L, math_randomseed, 1);
-    lua_setfield(L, -2, "randomseed");
 }
 
 void wh_library_open_math(lua_State *L) {
@@ -84,6 +81,7 @@ void wh_library_open_math(lua_State *L) {
                                          {"asin", math_asin},
                                          {"acos", math_acos},
                                          {"atan", math_atan},
+                                         {"randomseed", math_randomseed},
                                          /* absent: they differ between machines */
                                          {"exp", NULL},
                                          {"log", NULL},
@@ -96,7 +94,7 @@ void wh_library_open_math(lua_State *L) {
                                          {"ldexp", NULL},
                                          {NULL, NULL}};
     lua_getglobal(L, LUA_MATHLIBNAME);
+    start_random(L);
     wh_library_set(L, functions);
-    open_random(L);
     lua_pop(L, 1);
 }

@@ -78,10 +78,6 @@ size_t wh_sandbox_memory_brim(const wh_sandbox_t *sandbox) {
     return sandbox->memory_cap - sandbox->memory_cap / 8;
 }
 
-size_t wh_sandbox_memory(const wh_sandbox_t *sandbox) {
-    return sandbox->memory;
-}
-
 size_t wh_sandbox_memory_high_water(const wh_sandbox_t *sandbox) {
     return sandbox->memory_high_water;
 }

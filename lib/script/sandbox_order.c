@@ -1,20 +1,23 @@
 /* pairs and next in sorted order: the order of a hash table itself changes from run to run. */
-#include <math.h>
+#include <float.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "sandbox_internal.h"
 
-typedef enum { RANK_NUMBER, RANK_STRING, RANK_BOOLEAN } rank_t;
-
 /* A copy of a key. `text` points into the Lua string, which lives as long as its table keeps it. */
 typedef struct {
-    rank_t rank;
+    enum { RANK_NUMBER, RANK_STRING, RANK_BOOLEAN } rank;
     bool is_integer;
-    lua_Integer integer; /* also of a boolean: 0 or 1 */
-    lua_Number number;
+    /* of an integer, too, and of a boolean: 0 or 1. A table has no float key that equals an integer. */
+    long double number;
     const char *text;
     size_t length;
 } order_key_t;
+
+#if LDBL_MANT_DIG < 64
+#error "waferhand: a long double must hold each integer of Lua"
+#endif
 
 static void key_read(lua_State *L, int index, order_key_t *key) {
     memset(key, 0, sizeof *key);
@@ -22,8 +25,8 @@ static void key_read(lua_State *L, int index, order_key_t *key) {
     case LUA_TNUMBER:
         key->rank = RANK_NUMBER;
         key->is_integer = lua_isinteger(L, index);
-        key->integer = key->is_integer ? lua_tointeger(L, index) : 0;
-        key->number = lua_tonumber(L, index);
+        key->number =
+            key->is_integer ? (long double)lua_tointeger(L, index) : (long double)lua_tonumber(L, index);
         return;
     case LUA_TSTRING:
         key->rank = RANK_STRING;
@@ -31,7 +34,7 @@ static void key_read(lua_State *L, int index, order_key_t *key) {
         return;
     case LUA_TBOOLEAN:
         key->rank = RANK_BOOLEAN;
-        key->integer = lua_toboolean(L, index);
+        key->number = lua_toboolean(L, index);
         return;
     default:
         luaL_error(L, "a table with a %s for a key has no order to be read in", luaL_typename(L, index));
@@ -42,73 +45,26 @@ static void key_push(lua_State *L, const order_key_t *key) {
     if (key->rank == RANK_STRING) {
         lua_pushlstring(L, key->text, key->length);
     } else if (key->rank == RANK_BOOLEAN) {
-        lua_pushboolean(L, key->integer != 0);
+        lua_pushboolean(L, key->number != 0);
     } else if (key->is_integer) {
-        lua_pushinteger(L, key->integer);
+        lua_pushinteger(L, (lua_Integer)key->number);
     } else {
-        lua_pushnumber(L, key->number);
+        lua_pushnumber(L, (lua_Number)key->number);
     }
 }
 
-/* Exact, also for integers that no double can hold. A table has no float key that equals an integer. */
-static bool integer_less(lua_Integer a, lua_Number b) {
-    if (b >= 0x1p63) {
-        return true;
-    }
-    return b >= -0x1p63 && a <= (lua_Integer)floor(b);
-}
-
-static bool number_less(const order_key_t *a, const order_key_t *b) {
-    if (a->is_integer && b->is_integer) {
-        return a->integer < b->integer;
-    }
-    if (a->is_integer) {
-        return integer_less(a->integer, b->number);
-    }
-    return b->is_integer ? !integer_less(b->integer, a->number) : a->number < b->number;
-}
-
-static bool key_less(const order_key_t *a, const order_key_t *b) {
+/* Below 0, 0 or above 0, as qsort asks for it. */
+static int key_compare(const void *one, const void *other) {
+    const order_key_t *const a = one;
+    const order_key_t *const b = other;
     if (a->rank != b->rank) {
-        return a->rank < b->rank;
+        return a->rank < b->rank ? -1 : 1;
     }
-    if (a->rank == RANK_NUMBER) {
-        return number_less(a, b);
-    }
-    if (a->rank == RANK_BOOLEAN) {
-        return a->integer < b->integer;
+    if (a->rank != RANK_STRING) {
+        return (a->number > b->number) - (a->number < b->number);
     }
     const int order = memcmp(a->text, b->text, a->length < b->length ? a->length : b->length);
-    return order != 0 ? order < 0 : a->length < b->length;
-}
-
-/* ----------------------------------- heap sort: no worst case, and no memory that the cap would not count */
-
-static void sift(order_key_t *keys, size_t root, size_t count) {
-    const order_key_t moving = keys[root];
-    for (size_t child = 2 * root + 1; child < count; child = 2 * root + 1) {
-        if (child + 1 < count && key_less(&keys[child], &keys[child + 1])) {
-            ++child;
-        }
-        if (!key_less(&moving, &keys[child])) {
-            break;
-        }
-        keys[root] = keys[child];
-        root = child;
-    }
-    keys[root] = moving;
-}
-
-static void sort(order_key_t *keys, size_t count) {
-    for (size_t i = count / 2; i-- > 0;) {
-        sift(keys, i, count);
-    }
-    for (size_t end = count; end-- > 1;) {
-        const order_key_t largest = keys[0];
-        keys[0] = keys[end];
-        keys[end] = largest;
-        sift(keys, 0, end);
-    }
+    return order != 0 ? order : (a->length > b->length) - (a->length < b->length);
 }
 
 /* -------------------------------------------------------------------------------------------------- pairs */
@@ -140,7 +96,7 @@ static void push_sorted_keys(lua_State *L, int table) {
     for (lua_pushnil(L); lua_next(L, table); lua_pop(L, 1)) {
         key_read(L, -2, &keys[i++]);
     }
-    sort(keys, count);
+    qsort(keys, count, sizeof *keys, key_compare); /* no two keys are equal: any sort gives this order */
     lua_createtable(L, count < INT32_MAX ? (int)count : 0, 0);
     for (i = 0; i < count; ++i) {
         key_push(L, &keys[i]);
@@ -200,7 +156,7 @@ static int order_next(lua_State *L) {
     charge_scan(L);
     for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1), ++seen) {
         key_read(L, -2, &key);
-        if ((from_start || key_less(&last, &key)) && (!found || key_less(&key, &best))) {
+        if ((from_start || key_compare(&last, &key) < 0) && (!found || key_compare(&key, &best) < 0)) {
             best = key;
             found = true;
         }

@@ -4,11 +4,16 @@
 
 /* ------------------------------------------------------------------------------------------ pcall, xpcall */
 
+/* In place of a count: xpcall's handler has run. Its result, or its error, is on top of the stack. */
+#define HANDLED (-1)
+
+/* left_out: how many values at the bottom of the stack are no results. */
 static int finish(lua_State *L, int status, lua_KContext left_out) {
-    if (status == LUA_OK || status == LUA_YIELD) {
+    const bool failed = status != LUA_OK && status != LUA_YIELD;
+    if (!failed && left_out != HANDLED) {
         return lua_gettop(L) - (int)left_out;
     }
-    if (wh_sandbox_is_fatal(L, status)) {
+    if (failed && wh_sandbox_is_fatal(L, status)) {
         return wh_sandbox_raise(L);
     }
     lua_pushboolean(L, false);
@@ -24,17 +29,6 @@ static int protect_pcall(lua_State *L) {
     return finish(L, status, 0);
 }
 
-/* The handler's result, or its error, is on top of the stack. */
-static int finish_handler(lua_State *L, int status, lua_KContext context) {
-    (void)context;
-    if (status != LUA_OK && status != LUA_YIELD && wh_sandbox_is_fatal(L, status)) {
-        return wh_sandbox_raise(L);
-    }
-    lua_pushboolean(L, false);
-    lua_insert(L, -2);
-    return 2;
-}
-
 /* Calls the handler, at index 2, after the stack has been unwound. Lua itself would call it where the error
  * is. If that is in the count hook, hooks are off and the handler could loop for ever. */
 static int finish_xpcall(lua_State *L, int status, lua_KContext left_out) {
@@ -43,8 +37,7 @@ static int finish_xpcall(lua_State *L, int status, lua_KContext left_out) {
     }
     lua_pushvalue(L, 2);
     lua_insert(L, -2);
-    const int handled = lua_pcallk(L, 1, 1, 0, 0, finish_handler);
-    return finish_handler(L, handled, 0);
+    return finish(L, lua_pcallk(L, 1, 1, 0, HANDLED, finish), HANDLED);
 }
 
 static int protect_xpcall(lua_State *L) {
@@ -95,7 +88,8 @@ static lua_State *check_coroutine(lua_State *L) {
     return co;
 }
 
-int wh_sandbox_resume(lua_State *co, lua_State *from, int arguments, int *results) {
+/* lua_resume with the sandbox's rules. If a limit is exhausted inside, raises that error in `from`. */
+static int resume_noted(lua_State *co, lua_State *from, int arguments, int *results) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(co);
     lua_State *const before = sandbox->running;
     sandbox->running = co;
@@ -116,7 +110,7 @@ static int resume(lua_State *L, lua_State *co, int arguments) {
     }
     lua_xmove(L, co, arguments);
     int results = 0;
-    const int status = wh_sandbox_resume(co, L, arguments, &results);
+    const int status = resume_noted(co, L, arguments, &results);
     if (status != LUA_OK && status != LUA_YIELD) {
         lua_xmove(co, L, 1);
         return -1;

@@ -333,23 +333,20 @@ static void settle_metatable(lua_State *L) {
     lua_pushliteral(L, "");
     lua_getmetatable(L, -1);
     wh_library_charge_strings(L, arithmetic, 4);
-    wh_library_wrap(L, wrapped);
+    wh_library_set(L, wrapped);
     lua_pushboolean(L, false);
     lua_setfield(L, -2, "__metatable");
     lua_pop(L, 2);
 }
 
 void wh_library_open_string(lua_State *L, bool trust) {
-    static const luaL_Reg functions[] = {{"find", string_find},
-                                         {"match", string_match},
-                                         {"gmatch", string_gmatch},
-                                         {"gsub", string_gsub},
-                                         {NULL, NULL}};
-    static const luaL_Reg wrapped[] = {{"rep", string_rep}, {"format", string_format}, {NULL, NULL}};
+    static const luaL_Reg functions[] = {
+        {"find", string_find}, {"match", string_match}, {"gmatch", string_gmatch},
+        {"gsub", string_gsub}, {"rep", string_rep},     {"format", string_format},
+        {NULL, NULL}};
     static const char *const scanning[] = {"pack", "unpack", "packsize", NULL};
     lua_getglobal(L, LUA_STRLIBNAME);
     wh_library_set(L, functions);
-    wh_library_wrap(L, wrapped);
     wh_library_charge_strings(L, scanning, 4);
     if (!trust) {
         lua_pushnil(L);

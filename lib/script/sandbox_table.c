@@ -133,12 +133,14 @@ static int table_sort(lua_State *L) {
 }
 
 void wh_library_open_table(lua_State *L) {
-    static const luaL_Reg wrapped[] = {{"insert", table_insert}, {"remove", table_remove},
-                                       {"concat", table_concat}, {"unpack", table_unpack},
-                                       {"move", table_move},     {NULL, NULL}};
+    static const luaL_Reg functions[] = {{"insert", table_insert},
+                                         {"remove", table_remove},
+                                         {"concat", table_concat},
+                                         {"unpack", table_unpack},
+                                         {"move", table_move},
+                                         {"sort", table_sort},
+                                         {NULL, NULL}};
     lua_getglobal(L, LUA_TABLIBNAME);
-    wh_library_wrap(L, wrapped);
-    lua_pushcfunction(L, table_sort);
-    lua_setfield(L, -2, "sort");
+    wh_library_set(L, functions);
     lua_pop(L, 1);
 }

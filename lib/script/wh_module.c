@@ -3,22 +3,15 @@
 
 #include "wh_module_values.h"
 
-/* Pushes an argument, or nil if it is missing. */
-static void push_argument(lua_State *L, int number) {
-    luaL_checkstack(L, LUA_MINSTACK, NULL);
-    if (lua_isnone(L, number)) {
-        lua_pushnil(L);
-    } else {
-        lua_pushvalue(L, number);
-    }
-}
-
+/* Leaves the third argument, or nil, on top. */
 static void read_poses(lua_State *L, wh_pose_t *base_from_wafer, wh_pose_t *base_from_gripper) {
     const wh_field_t wafer = wh_lua_argument("wafer", 1);
     const wh_field_t gripper = wh_lua_argument("gripper", 2);
-    push_argument(L, 1);
+    luaL_checkstack(L, LUA_MINSTACK, NULL);
+    lua_settop(L, 3);
+    lua_pushvalue(L, 1);
     wh_lua_take_valid_pose(L, &wafer, base_from_wafer);
-    push_argument(L, 2);
+    lua_pushvalue(L, 2);
     wh_lua_take_valid_pose(L, &gripper, base_from_gripper);
 }
 
@@ -26,7 +19,6 @@ static int proximity(lua_State *L) {
     const wh_field_t at = wh_lua_argument("tolerance", 3);
     wh_pose_t wafer, gripper;
     read_poses(L, &wafer, &gripper);
-    push_argument(L, 3);
     const wh_tolerance_t tolerance = wh_lua_take_tolerance(L, &at);
     wh_proximity_t result;
     const wh_status_t status = wh_proximity_measure(&wafer, &gripper, &tolerance, &result);
@@ -41,7 +33,6 @@ static int rim_gap(lua_State *L) {
     const wh_field_t at = wh_lua_argument("radius", 3);
     wh_pose_t wafer, gripper;
     read_poses(L, &wafer, &gripper);
-    push_argument(L, 3);
     const wh_real_t radius = wh_lua_take_number(L, &at);
     if (!wh_real_is_finite(radius) || radius < 0) {
         return wh_lua_refuse(L, &at, "%f (expected a finite number, 0 or more)", radius);
@@ -52,7 +43,7 @@ static int rim_gap(lua_State *L) {
 
 static int tolerance(lua_State *L) {
     const wh_field_t at = wh_lua_argument("tolerance", 1);
-    push_argument(L, 1);
+    lua_settop(L, 1);
     const wh_tolerance_t tolerance = wh_lua_take_tolerance(L, &at);
     wh_lua_push_tolerance(L, &tolerance);
     return 1;

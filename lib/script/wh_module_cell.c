@@ -252,7 +252,6 @@ void wh_lua_open_cell(lua_State *L) {
     luaL_newmetatable(L, CELL_TYPE);
     luaL_newlib(L, methods);
     lua_setfield(L, -2, "__index");
-    lua_pushliteral(L, CELL_TYPE);
-    lua_setfield(L, -2, "__metatable");
+    wh_lua_set_text(L, "__metatable", CELL_TYPE);
     lua_pop(L, 1);
 }

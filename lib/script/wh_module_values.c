@@ -126,15 +126,11 @@ static const char *push_names(lua_State *L, const char *const *names) {
     return lua_tostring(L, -1);
 }
 
-static void check_table(lua_State *L, int index, const wh_field_t *at) {
+static void check_keys(lua_State *L, int index, const wh_field_t *at, const keys_t *keys) {
     if (!lua_istable(L, index)) {
         lua_pushvalue(L, index);
         refuse_type(L, at, "table");
     }
-}
-
-static void check_keys(lua_State *L, int index, const wh_field_t *at, const keys_t *keys) {
-    check_table(L, index, at);
     push_stranger(L, index, keys);
     if (!lua_isnil(L, -1)) {
         const wh_field_t stranger = key_field(L, at);
@@ -330,17 +326,17 @@ void wh_lua_set_index(lua_State *L, const char *name, int32_t index) {
     lua_setfield(L, -2, name);
 }
 
-static void push_triple(lua_State *L, const wh_vec3_t *v) {
-    const wh_real_t entries[3] = {v->x, v->y, v->z};
-    lua_createtable(L, 3, 0);
-    for (int i = 0; i < 3; ++i) {
-        lua_pushnumber(L, entries[i]);
-        lua_rawseti(L, -2, i + 1);
+void wh_lua_push_numbers(lua_State *L, const wh_real_t numbers[], size_t count) {
+    lua_createtable(L, (int)count, 0);
+    for (size_t i = 0; i < count; ++i) {
+        lua_pushnumber(L, numbers[i]);
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
 }
 
 void wh_lua_set_triple(lua_State *L, const char *name, const wh_vec3_t *v) {
-    push_triple(L, v);
+    const wh_real_t entries[3] = {v->x, v->y, v->z};
+    wh_lua_push_numbers(L, entries, 3);
     lua_setfield(L, -2, name);
 }
 
@@ -349,8 +345,7 @@ void wh_lua_push_pose(lua_State *L, const wh_pose_t *pose) {
     wh_lua_set_triple(L, "r", &pose->r);
     lua_createtable(L, 3, 0);
     for (size_t i = 0; i < 3; ++i) {
-        const wh_vec3_t row = wh_mat3_row(&pose->R, i);
-        push_triple(L, &row);
+        wh_lua_push_numbers(L, pose->R.m[i], 3);
         lua_rawseti(L, -2, (lua_Integer)i + 1);
     }
     lua_setfield(L, -2, "R");
@@ -377,8 +372,9 @@ static void set_failed(lua_State *L, unsigned failed) {
     lua_setfield(L, -2, "failed");
 }
 
-static void set_proximity(lua_State *L, const wh_proximity_t *p) {
+void wh_lua_push_proximity(lua_State *L, const wh_proximity_t *p) {
     const wh_tolerance_t margin = {p->margin_projz, p->margin_projxy, p->margin_planar};
+    lua_createtable(L, 0, 14);
     wh_lua_set_triple(L, "dr", &p->dr);
     wh_lua_set_number(L, "n1_proj_n2", p->n1_proj_n2);
     wh_lua_set_number(L, "dr_proj_z", p->dr_proj_z);
@@ -390,13 +386,8 @@ static void set_proximity(lua_State *L, const wh_proximity_t *p) {
     lua_setfield(L, -2, "margin");
 }
 
-void wh_lua_push_proximity(lua_State *L, const wh_proximity_t *proximity) {
-    lua_createtable(L, 0, 8);
-    set_proximity(L, proximity);
-}
-
 void wh_lua_push_event(lua_State *L, const wh_event_t *event) {
-    lua_createtable(L, 0, 14);
+    wh_lua_push_proximity(L, &event->measured);
     wh_lua_set_text(L, "kind", wh_event_name(event->kind));
     wh_lua_set_integer(L, "slice", (int64_t)event->slice);
     wh_lua_set_integer(L, "measured_slice", (int64_t)event->measured_slice);
@@ -407,5 +398,4 @@ void wh_lua_push_event(lua_State *L, const wh_event_t *event) {
     } else if (event->kind == WH_EVENT_CONTESTED) {
         wh_lua_set_index(L, "holder", event->other);
     }
-    set_proximity(L, &event->measured);
 }

@@ -73,18 +73,17 @@ void wh_lua_set_integer(lua_State *L, const char *name, int64_t value);
 void wh_lua_set_boolean(lua_State *L, const char *name, bool value);
 void wh_lua_set_text(lua_State *L, const char *name, const char *text);
 void wh_lua_set_index(lua_State *L, const char *name, int32_t index);
+void wh_lua_set_triple(lua_State *L, const char *name, const wh_vec3_t *v);
 
 void wh_lua_push_pose(lua_State *L, const wh_pose_t *pose);
 void wh_lua_push_tolerance(lua_State *L, const wh_tolerance_t *tolerance);
 /* Pushes the library's index plus one, or nil for WH_NONE. */
 void wh_lua_push_index(lua_State *L, int32_t index);
 
-/* Set a field of the table on top of the stack. */
-void wh_lua_set_number(lua_State *L, const char *name, wh_real_t value);
-void wh_lua_set_index(lua_State *L, const char *name, int32_t index);
-void wh_lua_set_triple(lua_State *L, const char *name, const wh_vec3_t *v);
+/* Pushes a list. */
+void wh_lua_push_numbers(lua_State *L, const wh_real_t numbers[], size_t count);
 
-void wh_lua_push_proximity(lua_State *L, const wh_proximity_t *proximity);
+void wh_lua_push_proximity(lua_State *L, const wh_proximity_t *p);
 void wh_lua_push_event(lua_State *L, const wh_event_t *event);
 
 /* wh.cell. */

@@ -16,6 +16,23 @@ bool wh_fault_is_of_wafer(wh_fault_kind_t kind) {
     return kind >= WH_FAULT_WAFER_MISSING;
 }
 
+/* Below everything in a cell, mm. */
+#define FAR_BELOW WH_REAL(-1e5)
+
+wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, int64_t from, int64_t until) {
+    wh_fault_t fault;
+    memset(&fault, 0, sizeof fault);
+    fault.kind = kind;
+    fault.target = kind == WH_FAULT_COMMAND_LOST ? WH_NONE : target;
+    fault.other = WH_NONE;
+    fault.value = kind == WH_FAULT_SLOW_VACUUM || kind == WH_FAULT_LEAK ? value : 0;
+    fault.offset = wh_pose_identity();
+    fault.offset.r.z = kind == WH_FAULT_WAFER_MISSING ? FAR_BELOW : 0;
+    fault.from = from;
+    fault.until = until;
+    return fault;
+}
+
 static bool names_fit(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count) {
     if (fault->kind == WH_FAULT_COMMAND_LOST) {
         return fault->target == WH_NONE && fault->other == WH_NONE;

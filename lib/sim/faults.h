@@ -29,7 +29,7 @@
  *     stack of wh_faults_validate               88    208      48    120
  *     stack of wh_faults_check                 104    224      56    136
  *     stack of wh_faults_take                   40     40      40     40
- *     stack of wh_faults_advance               192    272     148    176
+ *     stack of wh_faults_advance               192    272     140    176
  *     stack of wh_faults_overrule               72     72      56     60
  *     stack of wh_faults_of_vacuum              96     96      56     56
  *     stack of wh_faults_sensors                 0      8       0      8
@@ -43,6 +43,8 @@
 #include "../grasp/vacuum.h"
 #include "../motion/machine.h"
 
+WH_HEADER_BEGIN
+
 /* The most faults of a run at one time. */
 #define WH_FAULTS 16
 /* How far a fault may move a wafer along each axis, mm. */
@@ -50,7 +52,7 @@
 /* A fault that lasts until it is cleared. */
 #define WH_FAULT_FOREVER INT64_MAX
 
-typedef enum {
+typedef enum WH_FOUR_BYTES {
     WH_FAULT_NO_VACUUM,
     WH_FAULT_SLOW_VACUUM,
     WH_FAULT_SENSOR_ON,
@@ -78,7 +80,12 @@ typedef struct {
 } wh_fault_t;
 
 /* The phases of a fault's life. */
-typedef enum { WH_FAULT_FREE, WH_FAULT_WAITING, WH_FAULT_ACTING, WH_FAULT_OVER } wh_fault_phase_t;
+typedef enum WH_FOUR_BYTES {
+    WH_FAULT_FREE,
+    WH_FAULT_WAITING,
+    WH_FAULT_ACTING,
+    WH_FAULT_OVER
+} wh_fault_phase_t;
 
 typedef struct {
     wh_fault_t fault; /* all zero while the slot is free */
@@ -103,48 +110,67 @@ typedef struct {
 } wh_fault_changes_t;
 
 /* The kind's name as layouts and scripts spell it: no_vacuum to wafer_tilted, or "unknown". Never null. */
-const char *wh_fault_name(wh_fault_kind_t kind);
+const char *wh_fault_name(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_name);
 
 /* True if the kind is about a wafer. */
-bool wh_fault_is_of_wafer(wh_fault_kind_t kind);
+bool wh_fault_is_of_wafer(wh_fault_kind_t kind) WH_SYMBOL(wh_fault_is_of_wafer);
+
+/* A fault that acts in the slices from <= seq < until, ready to be taken or to be changed further. `target`
+ * is a gripper or a wafer, of COMMAND_LOST nothing (WH_NONE is put in its place). `value` counts for
+ * SLOW_VACUUM and LEAK alone; for other kinds 0 is put in its place. `other` is WH_NONE, the offset the
+ * identity; that of WAFER_MISSING leads 100 m down, out of every cell. The caller sets what else the kind
+ * needs: `other` and `offset` of WAFER_DOUBLED, `offset` of WAFER_CROSSED, _SHIFTED, _TILTED. Nothing is
+ * checked: see wh_fault_validate. The pump of gripper 0 is dead from the first slice on:
+ *
+ *     physics.faults[0] = wh_fault_make(WH_FAULT_NO_VACUUM, 0, 0, 1, WH_FAULT_FOREVER);
+ *     physics.fault_count = 1; */
+wh_fault_t wh_fault_make(wh_fault_kind_t kind, int32_t target, wh_real_t value, int64_t from, int64_t until)
+    WH_SYMBOL(wh_fault_make);
 
 /* WH_OK. WH_STATUS_NULL_ARGUMENT; WH_STATUS_OUT_OF_RANGE, WH_STATUS_NOT_FINITE or WH_STATUS_NOT_A_ROTATION
  * for a fault that a cell with these counts cannot have. Cost: wh_pose_validate. */
-wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count);
+wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count)
+    WH_SYMBOL(wh_fault_validate);
 
 /* The same for whole slots, such as those of a received state: WH_OK, WH_STATUS_NULL_ARGUMENT or
  * WH_STATUS_OUT_OF_RANGE. Cost: three times wh_pose_validate for each slot up to `count` in use. */
-wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, size_t wafer_count);
+wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, size_t wafer_count)
+    WH_SYMBOL(wh_faults_validate);
 
 /* Frees all slots. Cost: the struct's size in bytes written. */
-void wh_faults_clear(wh_faults_t *faults);
+void wh_faults_clear(wh_faults_t *faults) WH_SYMBOL(wh_faults_clear);
 
 /* Checks that all requests can be taken. Each must be a valid fault, for a slot that is free or over, or for
  * the slot that has this very fault (which then gets another `until`). No two may name one slot. WH_OK,
  * WH_STATUS_NULL_ARGUMENT, WH_STATUS_OUT_OF_RANGE, or what wh_fault_validate says. Cost: that for each
  * request. */
 wh_status_t wh_faults_check(const wh_faults_t *faults, const wh_fault_request_t requests[], size_t count,
-                            size_t gripper_count, size_t wafer_count);
+                            size_t gripper_count, size_t wafer_count) WH_SYMBOL(wh_faults_check);
 
 /* Takes requests that wh_faults_check has accepted. Nothing is checked. Cost: a copy of each. */
-void wh_faults_take(wh_faults_t *faults, const wh_fault_request_t requests[], size_t count);
+void wh_faults_take(wh_faults_t *faults, const wh_fault_request_t requests[], size_t count)
+    WH_SYMBOL(wh_faults_take);
 
 /* Begins and ends what is due in slice `seq`; moves wafers of the table. Nothing is checked: the faults are
  * such as wh_faults_validate accepts for this table. Cost: a look at each slot up to `count`; each wafer that
  * is moved adds 36 products and wh_grasp_place. */
-wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int64_t seq);
+wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int64_t seq)
+    WH_SYMBOL(wh_faults_advance);
 
 /* What the acting faults do to a gripper's vacuum. Nothing is checked. Cost: a look at each slot up to
  * `count`; so it is for the two below. */
-wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper);
+wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper)
+    WH_SYMBOL(wh_faults_of_vacuum);
 
 /* Makes stuck valves, stopped axes and lost commands overrule the inputs of a slice. `vacuum` has the valves
  * before; both arrays have an entry for each gripper of the table. */
 void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, const wh_vacuum_t vacuum[],
-                        wh_gripper_input_t inputs[]);
+                        wh_gripper_input_t inputs[]) WH_SYMBOL(wh_faults_overrule);
 
 /* What the sensors say, given what sensors without faults would say: bit g for gripper g, up to
  * WH_GRIPPERS. */
-uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors);
+uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors) WH_SYMBOL(wh_faults_sensors);
+
+WH_HEADER_END
 
 #endif

@@ -94,8 +94,11 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
 
 /* --------------------------------------------------------------------------------------------------- hash */
 
-static uint64_t hash_head(uint64_t hash, int32_t section, size_t index) {
-    return wh_hash_int(wh_hash_int(hash, section), (int32_t)index);
+static uint64_t hash_ints(uint64_t hash, const int32_t values[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        hash = wh_hash_int(hash, values[i]);
+    }
+    return hash;
 }
 
 static bool is_plain(const wh_vacuum_t *vacuum, const wh_gripper_t *gripper) {
@@ -103,25 +106,27 @@ static bool is_plain(const wh_vacuum_t *vacuum, const wh_gripper_t *gripper) {
     return vacuum->command == gripper->valve && vacuum->on == holds && vacuum->level == (holds ? 1 : 0);
 }
 
-static uint64_t hash_vacuum(uint64_t hash, const wh_vacuum_t *vacuum) {
+static uint64_t hash_vacuum(uint64_t hash, size_t g, const wh_vacuum_t *vacuum) {
+    const int32_t head[] = {1, (int32_t)g};
+    const int32_t rest[] = {vacuum->command, vacuum->on ? 1 : 0};
+    hash = hash_ints(hash, head, 2);
     hash = wh_hash_real(hash, vacuum->level);
-    hash = wh_hash_int(hash, vacuum->command);
-    return wh_hash_int(hash, vacuum->on ? 1 : 0);
+    return hash_ints(hash, rest, 2);
 }
 
-static uint64_t hash_carry(uint64_t hash, const wh_carry_t *carry) {
-    hash = wh_hash_int(hash, carry->known);
+static uint64_t hash_carry(uint64_t hash, size_t g, const wh_carry_t *carry) {
+    const int32_t head[] = {2, (int32_t)g, carry->known};
+    hash = hash_ints(hash, head, 3);
     hash = wh_hash_vec3(hash, &carry->before[0]);
     hash = wh_hash_vec3(hash, &carry->before[1]);
     return wh_hash_int(hash, carry->slips ? 1 : 0);
 }
 
-static uint64_t hash_slot(uint64_t hash, const wh_fault_slot_t *slot) {
+static uint64_t hash_slot(uint64_t hash, size_t i, const wh_fault_slot_t *slot) {
     const wh_fault_t *fault = &slot->fault;
-    hash = wh_hash_int(hash, (int32_t)slot->phase);
-    hash = wh_hash_int(hash, (int32_t)fault->kind);
-    hash = wh_hash_int(hash, fault->target);
-    hash = wh_hash_int(hash, fault->other);
+    const int32_t head[] = {
+        3, (int32_t)i, (int32_t)slot->phase, (int32_t)fault->kind, fault->target, fault->other};
+    hash = hash_ints(hash, head, 6);
     hash = wh_hash_real(hash, fault->value);
     hash = wh_hash_pose(hash, &fault->offset);
     hash = wh_hash_word(hash, (uint64_t)fault->from);
@@ -136,17 +141,17 @@ uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t
     uint64_t hash = wh_grasp_hash(table);
     for (size_t g = 0; g < gripper_count; ++g) {
         if (!is_plain(&state->vacuum[g], &table->storage.grippers[g])) {
-            hash = hash_vacuum(hash_head(hash, 1, g), &state->vacuum[g]);
+            hash = hash_vacuum(hash, g, &state->vacuum[g]);
         }
     }
     for (size_t g = 0; g < gripper_count; ++g) {
         if (state->carry[g].known > 0) {
-            hash = hash_carry(hash_head(hash, 2, g), &state->carry[g]);
+            hash = hash_carry(hash, g, &state->carry[g]);
         }
     }
     for (size_t i = 0; i < state->faults.count; ++i) {
         if (state->faults.slots[i].phase != WH_FAULT_FREE) {
-            hash = hash_slot(hash_head(hash, 3, i), &state->faults.slots[i]);
+            hash = hash_slot(hash, i, &state->faults.slots[i]);
         }
     }
     return hash;

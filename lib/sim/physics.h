@@ -8,7 +8,7 @@
  *     stack of wh_physics_state_start          232    232     176    184
  *     stack of wh_physics_state_validate       100    224      60    144
  *     stack of wh_physics_state_sensors         12     20       8     24
- *     stack of wh_physics_state_hash           100    124      92    112
+ *     stack of wh_physics_state_hash           124    148     116    136
  *     size of wh_physics_t                    2272           1336
  *     size of wh_physics_state_t              5992           3336
  */
@@ -17,6 +17,8 @@
 
 #include "../grasp/hold.h"
 #include "faults.h"
+
+WH_HEADER_BEGIN
 
 /* The length of a slice unless told otherwise, s. */
 #define WH_SLICE_S WH_REAL(0.001)
@@ -39,28 +41,31 @@ typedef struct {
 } wh_physics_state_t;
 
 /* Slices of WH_SLICE_S, ideal vacuum, no pads, no faults. */
-wh_physics_t wh_physics_default(void);
+wh_physics_t wh_physics_default(void) WH_SYMBOL(wh_physics_default);
 
 /* WH_OK, or what is wrong with it for a cell with these counts: WH_STATUS_NULL_ARGUMENT;
  * WH_STATUS_BAD_CAPACITY for more than WH_GRIPPERS grippers; WH_STATUS_OUT_OF_RANGE for `slice_s` or
  * `fault_count`; or what wh_vacuum_validate, wh_pads_validate or wh_fault_validate says. Cost: that
  * of wh_fault_validate for each fault. */
-wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count);
+wh_status_t wh_physics_validate(const wh_physics_t *physics, size_t gripper_count, size_t wafer_count)
+    WH_SYMBOL(wh_physics_validate);
 
 /* The state before the first slice: the `faults` of the physics, which wh_physics_validate has accepted, wait
  * in the first slots. Null: no faults. Cost: the struct's
  * size in bytes written, and a copy of each fault. */
-void wh_physics_state_start(wh_physics_state_t *state, const wh_physics_t *physics);
+void wh_physics_state_start(wh_physics_state_t *state, const wh_physics_t *physics)
+    WH_SYMBOL(wh_physics_state_start);
 
 /* Checks that a simulator can have such a state: WH_OK, WH_STATUS_NULL_ARGUMENT, WH_STATUS_BAD_CAPACITY for
  * more than WH_GRIPPERS grippers, WH_STATUS_NOT_FINITE, WH_STATUS_BAD_VALVE or WH_STATUS_OUT_OF_RANGE.
  * Cost: linear in grippers, and wh_faults_validate. */
 wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gripper_count,
-                                      size_t wafer_count);
+                                      size_t wafer_count) WH_SYMBOL(wh_physics_state_validate);
 
 /* What the vacuum sensors say: bit g for gripper g; 0 for grippers from WH_GRIPPERS on. Cost: linear
  * in grippers and slots. */
-uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t gripper_count);
+uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t gripper_count)
+    WH_SYMBOL(wh_physics_state_sensors);
 
 /* 64 bits over all that the next step depends on. It is wh_grasp_hash(table), continued by wh_hash_word
  * (math/hash.h) with these words:
@@ -74,6 +79,9 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
  * from WH_GRIPPERS on have no vacuum. Cost: wh_grasp_hash, 5 words for each gripper with vacuum, 10 for
  * each with positions, and 45 for each slot in use.
  */
-uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table);
+uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table)
+    WH_SYMBOL(wh_physics_state_hash);
+
+WH_HEADER_END
 
 #endif

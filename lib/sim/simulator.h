@@ -4,19 +4,21 @@
  * Bytes of stack and of memory on a Cortex-M7 in double and on a Cortex-M4F in float, by gcc 12
  * (tests/verify/footprint; "sampled" is a step without swept checking; what an observer takes comes on top):
  *                                             M7 -O2    -Os  M4F -O2    -Os
- *     stack of wh_simulator_init               372    304     260    232
+ *     stack of wh_simulator_init               380    304     260    232
  *     stack of wh_simulator_set_physics        256    256     200    208
- *     stack of wh_simulator_step               952   1120     644    720
+ *     stack of wh_simulator_step               936   1064     636    692
  *     stack of wh_simulator_step:sampled       936    904     600    616
  *     stack of wh_simulator_view                28     36      24     40
- *     stack of wh_simulator_hash               100    124      92    112
- *     size of wh_simulator_t                 19944          12176
+ *     stack of wh_simulator_hash               124    148     116    136
+ *     size of wh_simulator_t                 19944          12184
  */
 #ifndef WH_SIM_SIMULATOR_H
 #define WH_SIM_SIMULATOR_H
 
 #include "../cell/station.h"
 #include "slice.h"
+
+WH_HEADER_BEGIN
 
 /* Looks at each accepted step after table and cell, and may append events. `inputs` are the step's own, after
  * faults and vacuum. It must not change anything that a step depends on. Null functions are not called. */
@@ -53,12 +55,14 @@ typedef struct {
  * unchanged. Cost: that of these two, and the simulator's size in bytes written. Do not move the simulator
  * afterwards: `link` and states point into it. */
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
-                              const wh_grasp_storage_t *storage, const wh_cell_t *cell);
+                              const wh_grasp_storage_t *storage, const wh_cell_t *cell)
+    WH_SYMBOL(wh_simulator_init);
 
 /* Replaces wh_physics_default, with which wh_simulator_init begins. Refuses what wh_physics_validate refuses,
  * a run that has begun (WH_STATUS_OUT_OF_RANGE), null pointers and a simulator that is not initialised; the
  * simulator is then unchanged. Cost: wh_physics_validate. */
-wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics_t *physics);
+wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics_t *physics)
+    WH_SYMBOL(wh_simulator_set_physics);
 
 /* One slice: faults and vacuum turn the command into the grippers' inputs, the table steps, the cell judges
  * the releases, vacuum and holding follow, and `state` is filled in. Returns state->status.
@@ -69,13 +73,16 @@ wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics
  * a simulator that is not initialised nothing is read or written, and `state` shows no wafer and no
  * gripper. `seq` and `utime` are handed back; faults go by `seq`. Cost: wh_grasp_step and wh_cell_judge.
  */
-wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state);
+wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state)
+    WH_SYMBOL(wh_simulator_step);
 
 /* Fills in all of a state but utime, seq and status, without a step. It shows no wafer and no gripper of a
  * simulator that is not initialised. No argument may be null. Cost: linear in grippers. */
-void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state);
+void wh_simulator_view(const wh_simulator_t *simulator, wh_state_t *state) WH_SYMBOL(wh_simulator_view);
 
 /* wh_physics_state_hash of the simulator's state; 0 if it is not initialised. */
-uint64_t wh_simulator_hash(const wh_simulator_t *simulator);
+uint64_t wh_simulator_hash(const wh_simulator_t *simulator) WH_SYMBOL(wh_simulator_hash);
+
+WH_HEADER_END
 
 #endif

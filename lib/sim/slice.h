@@ -14,6 +14,8 @@
 #include "../motion/track.h"
 #include "physics.h"
 
+WH_HEADER_BEGIN
+
 /* The most events in one slice: those of the grasp table, then those of the cell, the vacuum, the faults and
  * the collision check. Events beyond that are not reported. */
 #define WH_SLICE_EVENTS 64
@@ -36,7 +38,8 @@ typedef struct {
 /* Fills in poses, valves and axes of the track's current slice; leaves the faults alone. Pass the same
  * command and cache each time, zeroed before the first: it computes only what changed. Cost:
  * wh_machine_update. */
-void wh_command_from_track(wh_command_t *command, wh_machine_cache_t *cache, const wh_track_t *track);
+void wh_command_from_track(wh_command_t *command, wh_machine_cache_t *cache, const wh_track_t *track)
+    WH_SYMBOL(wh_command_from_track);
 
 /* What became of a command: a view of the simulator's own memory, valid until the next exchange. */
 typedef struct {
@@ -62,5 +65,7 @@ struct wh_link {
     /* Slices of the run that never reached the simulator: 0 except in a free-running run. */
     int64_t (*missed)(wh_link_t *link);
 };
+
+WH_HEADER_END
 
 #endif

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "../math/hash.h"
+#include "../text/array.h"
 #include "../text/json.h"
 #include "../text/output.h"
 
@@ -23,25 +24,13 @@ static json_t *parameter(const void *subject, size_t i) {
 /* In the order in which a difference is told. */
 static json_t *identity_of(const wh_study_t *study) {
     const wh_script_run_options_t *run = &study->run;
-    json_t *root = json_object();
-    wh_json_put_text(root, "version", WH_VERSION);
-    wh_json_put_text(root, "script", run->script);
-    wh_json_put_text(root, "layout", study->layout->path);
-    wh_json_put(root, "seed", hex(study->seed));
-    wh_json_put_integer(root, "trials", (json_int_t)study->trials);
-    wh_json_put(root, "parameters", wh_json_list(parameter, run, run->parameter_count));
-    wh_json_put(root, "script_text", hex(study->script_hash));
-    wh_json_put(root, "layout_text", hex(study->layout_hash));
-    wh_json_put_integer(root, "budget", (json_int_t)run->limits.instructions);
-    wh_json_put_integer(root, "memory", (json_int_t)run->limits.memory_bytes);
-    wh_json_put(root, "run_without_errors", hex(study->nominal.record.hash));
-    return root;
-}
-
-static void describe(const json_t *value, char *text, size_t size) {
-    char *dumped = value ? json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
-    snprintf(text, size, "%.200s", dumped ? dumped : "nothing");
-    free(dumped);
+    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o, s:I, s:I, s:o}", "version", WH_VERSION,
+                     "script", wh_json_text(run->script), "layout", wh_json_text(study->layout->path), "seed",
+                     hex(study->seed), "trials", (json_int_t)study->trials, "parameters",
+                     wh_json_list(parameter, run, run->parameter_count), "script_text",
+                     hex(study->script_hash), "layout_text", hex(study->layout_hash), "budget",
+                     (json_int_t)run->limits.instructions, "memory", (json_int_t)run->limits.memory_bytes,
+                     "run_without_errors", hex(study->nominal.record.hash));
 }
 
 /* True if it is this study's; else the message tells the first difference. */
@@ -53,11 +42,12 @@ static bool is_same(const json_t *found, const wh_study_t *study, char *message,
     json_object_foreach(expected, key, value) {
         const json_t *other = json_object_get(found, key);
         if (same && (!other || !json_equal(other, value))) {
-            char one[256];
-            char two[256];
-            describe(other, one, sizeof one);
-            describe(value, two, sizeof two);
-            snprintf(message, size, "of another study: its %s is %s (expected %s)", key, one, two);
+            char *one = other ? json_dumps(other, JSON_ENCODE_ANY | JSON_COMPACT) : NULL;
+            char *two = json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT);
+            snprintf(message, size, "of another study: its %s is %.200s (expected %.200s)", key,
+                     one ? one : "nothing", two);
+            free(one);
+            free(two);
             same = false;
         }
     }
@@ -72,15 +62,6 @@ static bool take_count(const json_t *value, uint64_t *number) {
     const json_int_t found = json_integer_value(value);
     *number = (uint64_t)found;
     return json_is_integer(value) && found >= 0;
-}
-
-static bool take_counts(const json_t *root, const char *const keys[], uint64_t *const numbers[],
-                        size_t count) {
-    bool sound = true;
-    for (size_t i = 0; i < count; ++i) {
-        sound = take_count(json_object_get(root, keys[i]), numbers[i]) && sound;
-    }
-    return sound;
 }
 
 static json_t *put_sum(const wh_sum_t *sum) {
@@ -216,23 +197,21 @@ static bool take_events(const json_t *list, wh_tally_t *tally) {
 }
 
 static json_t *put_tally(const wh_tally_t *tally) {
-    json_t *root = json_object();
-    wh_json_put_integer(root, "trials", (json_int_t)tally->trials);
-    wh_json_put_integer(root, "met", (json_int_t)tally->met);
-    wh_json_put_integer(root, "ended", (json_int_t)tally->ended);
-    wh_json_put_integer(root, "whole", (json_int_t)tally->whole);
-    wh_json_put(root, "events", put_events(tally));
-    wh_json_put(root, "expectations", wh_json_list(put_row, &tally->expectations, tally->expectations.count));
-    wh_json_put(root, "errors", wh_json_list(put_row, &tally->errors, tally->errors.count));
-    wh_json_put(root, "wafers", wh_json_list(put_wafer, tally, tally->wafer_count));
-    wh_json_put(root, "worst", wh_json_list(put_worst, tally, tally->worst_count));
-    return root;
+    return json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "trials", (json_int_t)tally->trials,
+                     "met", (json_int_t)tally->met, "ended", (json_int_t)tally->ended, "whole",
+                     (json_int_t)tally->whole, "events", put_events(tally), "expectations",
+                     wh_json_list(put_row, &tally->expectations, tally->expectations.count), "errors",
+                     wh_json_list(put_row, &tally->errors, tally->errors.count), "wafers",
+                     wh_json_list(put_wafer, tally, tally->wafer_count), "worst",
+                     wh_json_list(put_worst, tally, tally->worst_count));
 }
 
 static bool take_tally(const json_t *root, wh_tally_t *tally) {
-    static const char *const keys[] = {"trials", "met", "ended", "whole"};
-    uint64_t *const numbers[] = {&tally->trials, &tally->met, &tally->ended, &tally->whole};
-    return take_counts(root, keys, numbers, 4) && take_events(json_object_get(root, "events"), tally) &&
+    return take_count(json_object_get(root, "trials"), &tally->trials) &&
+           take_count(json_object_get(root, "met"), &tally->met) &&
+           take_count(json_object_get(root, "ended"), &tally->ended) &&
+           take_count(json_object_get(root, "whole"), &tally->whole) &&
+           take_events(json_object_get(root, "events"), tally) &&
            take_wafers(json_object_get(root, "wafers"), tally) &&
            take_rows(json_object_get(root, "expectations"), &tally->expectations) &&
            take_rows(json_object_get(root, "errors"), &tally->errors) &&
@@ -288,11 +267,8 @@ static bool take_progress(const wh_study_t *study, const json_t *root, wh_progre
 /* ----------------------------------------------------------------------------------------- there and back */
 
 char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress) {
-    json_t *root = json_object();
-    wh_json_put_integer(root, "format", 1);
-    wh_json_put(root, "study", identity_of(study));
-    wh_json_put(root, "blocks", put_blocks(progress));
-    wh_json_put(root, "tally", put_tally(&progress->tally));
+    json_t *root = json_pack("{s:i, s:o, s:o, s:o}", "format", 1, "study", identity_of(study), "blocks",
+                             put_blocks(progress), "tally", put_tally(&progress->tally));
     char *text = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(root);
     return text;
@@ -300,10 +276,10 @@ char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress)
 
 /* Releases the root. */
 static bool take(const wh_study_t *study, json_t *root, wh_progress_t *progress, char *message, size_t size) {
-    const bool is_state = json_integer_value(json_object_get(root, "format")) == 1;
-    bool sound = is_state && is_same(json_object_get(root, "study"), study, message, size);
-    const bool is_ours = sound;
-    if (is_ours) {
+    snprintf(message, size, "damaged (expected a study's state)");
+    bool sound = json_integer_value(json_object_get(root, "format")) == 1 &&
+                 is_same(json_object_get(root, "study"), study, message, size);
+    if (sound) {
         wh_progress_t taken;
         wh_progress_init(&taken, study);
         sound = take_progress(study, root, &taken);
@@ -311,9 +287,6 @@ static bool take(const wh_study_t *study, json_t *root, wh_progress_t *progress,
             wh_progress_merge(progress, &taken);
         }
         wh_progress_free(&taken);
-    }
-    if (!sound && (is_ours || !is_state)) {
-        snprintf(message, size, "damaged (expected a study's state)");
     }
     json_decref(root);
     return sound;
@@ -368,5 +341,5 @@ char *wh_checkpoint_default_path(const wh_study_t *study) {
     json_decref(identity);
     snprintf(name, sizeof name, "study-%016llx", (unsigned long long)hash);
     wh_output_state_path(name, path, sizeof path);
-    return path[0] != '\0' && wh_output_make_folders(path) ? wh_record_text(path) : NULL;
+    return path[0] != '\0' && wh_output_make_folders(path) ? wh_text_copy(path) : NULL;
 }

@@ -25,21 +25,13 @@ struct wh_pool_worker {
 
 void wh_progress_init(wh_progress_t *progress, const wh_study_t *study) {
     progress->block_count = wh_study_blocks(study);
-    progress->done_count = 0;
     progress->done = wh_array_new((size_t)progress->block_count / 8 + 1, 1);
     wh_tally_init(&progress->tally, study->wafer_count);
 }
 
 void wh_progress_free(wh_progress_t *progress) {
     free(progress->done);
-    progress->done = NULL;
     wh_tally_free(&progress->tally);
-}
-
-void wh_progress_clear(wh_progress_t *progress) {
-    memset(progress->done, 0, (size_t)progress->block_count / 8 + 1);
-    progress->done_count = 0;
-    wh_tally_clear(&progress->tally);
 }
 
 bool wh_progress_has(const wh_progress_t *progress, uint64_t block) {
@@ -47,17 +39,13 @@ bool wh_progress_has(const wh_progress_t *progress, uint64_t block) {
 }
 
 void wh_progress_note(wh_progress_t *progress, uint64_t block) {
-    if (!wh_progress_has(progress, block)) {
-        progress->done[block / 8] = (unsigned char)(progress->done[block / 8] | 1U << block % 8);
-        ++progress->done_count;
-    }
+    progress->done[block / 8] = (unsigned char)(progress->done[block / 8] | 1U << block % 8);
 }
 
 void wh_progress_merge(wh_progress_t *progress, const wh_progress_t *other) {
     for (size_t i = 0; i <= (size_t)progress->block_count / 8; ++i) {
         progress->done[i] |= other->done[i];
     }
-    progress->done_count += other->done_count;
     wh_tally_merge(&progress->tally, &other->tally);
 }
 
@@ -71,17 +59,14 @@ static bool is_stopped(const wh_pool_t *pool) {
     return __atomic_load_n(&pool->stop, __ATOMIC_RELAXED);
 }
 
-uint64_t wh_pool_trials(const wh_pool_t *pool) {
-    return __atomic_load_n(&pool->trials, __ATOMIC_RELAXED);
-}
-
 /* --------------------------------------------------------------------------------------------- one thread */
 
 /* With the pool's lock held. */
 static void show(wh_pool_worker_t *worker) {
-    if (worker->progress.done_count > 0) {
+    if (worker->progress.tally.trials > 0) {
         wh_progress_merge(&worker->pool->progress, &worker->progress);
-        wh_progress_clear(&worker->progress);
+        wh_progress_free(&worker->progress);
+        wh_progress_init(&worker->progress, worker->pool->study);
     }
     worker->shown = wh_clock_seconds();
 }
@@ -112,7 +97,6 @@ static void play_block(wh_pool_worker_t *worker, uint64_t block) {
             return;
         }
     }
-    __atomic_fetch_add(&pool->trials, trials, __ATOMIC_RELAXED);
     wh_tally_merge(&worker->progress.tally, &worker->block);
     wh_tally_clear(&worker->block);
     wh_progress_note(&worker->progress, block);

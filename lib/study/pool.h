@@ -10,7 +10,6 @@
 typedef struct {
     uint64_t block_count;
     unsigned char *done; /* bit b % 8 of byte b / 8 */
-    uint64_t done_count;
     wh_tally_t tally;
 } wh_progress_t;
 
@@ -23,13 +22,9 @@ void wh_progress_note(wh_progress_t *progress, uint64_t block);
 /* Adds what another has done, none of it done twice. */
 void wh_progress_merge(wh_progress_t *progress, const wh_progress_t *other);
 
-/* Forgets everything. */
-void wh_progress_clear(wh_progress_t *progress);
-
 typedef struct wh_pool_worker wh_pool_worker_t;
 
-/* Fields are read and written under `lock`, but for `stop` and `trials`, which are read and written as
- * atomics. */
+/* Fields are read and written under `lock`, but for `stop`, which is read and written as an atomic. */
 typedef struct {
     const wh_study_t *study;
     pthread_mutex_t lock;
@@ -41,8 +36,7 @@ typedef struct {
     size_t working; /* workers that are not waiting */
     wh_progress_t progress;
     char message[WH_SANDBOX_MESSAGE_BYTES + 64];
-    bool stop;       /* leave everything and end: see wh_pool_stop */
-    uint64_t trials; /* see wh_pool_trials */
+    bool stop; /* leave everything and end: see wh_pool_stop */
     wh_pool_worker_t *workers;
     size_t worker_count;
 } wh_pool_t;
@@ -66,9 +60,6 @@ bool wh_pool_is_idle(wh_pool_t *pool);
 
 /* Makes the workers leave what they are at. */
 void wh_pool_stop(wh_pool_t *pool);
-
-/* How many trials the workers have played so far. */
-uint64_t wh_pool_trials(const wh_pool_t *pool);
 
 /* True if a trial was not usable; `message` then says why. */
 bool wh_pool_failed(wh_pool_t *pool);

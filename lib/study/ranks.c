@@ -17,17 +17,14 @@
 /* What a message to rank 0 begins with; then the progress, or why it failed. */
 enum { WANTS_MORE = 'M', HAS_ENDED = 'E', HAS_FAILED = 'F' };
 
-static int number_of(const char *variable, int fallback) {
+/* A number of processes as mpirun tells it; 1 without mpirun. */
+static int number_of(const char *variable) {
     const char *text = getenv(variable);
-    return text ? (int)strtol(text, NULL, 10) : fallback;
-}
-
-int wh_ranks_named(void) {
-    return number_of("OMPI_COMM_WORLD_RANK", 0);
+    return text ? (int)strtol(text, NULL, 10) : 1;
 }
 
 int wh_ranks_here(void) {
-    const int here = number_of("OMPI_COMM_WORLD_LOCAL_SIZE", 1);
+    const int here = number_of("OMPI_COMM_WORLD_LOCAL_SIZE");
     return here > 1 ? here : 1;
 }
 
@@ -54,7 +51,7 @@ static void *open_library(void) {
 
 bool wh_ranks_open(wh_ranks_t *ranks) {
     *ranks = (wh_ranks_t){.size = 1};
-    if (number_of("OMPI_COMM_WORLD_SIZE", 1) <= 1) {
+    if (number_of("OMPI_COMM_WORLD_SIZE") <= 1) {
         return true;
     }
     ranks->library = open_library();
@@ -162,7 +159,8 @@ static bool tell(const wh_ranks_t *ranks, char kind, const char *text) {
 static bool tell_progress(const wh_ranks_t *ranks, wh_pool_t *pool, char kind) {
     pthread_mutex_lock(&pool->lock);
     char *text = wh_checkpoint_text(pool->study, &pool->progress);
-    wh_progress_clear(&pool->progress);
+    wh_progress_free(&pool->progress);
+    wh_progress_init(&pool->progress, pool->study);
     pthread_mutex_unlock(&pool->lock);
     const bool told = text && tell(ranks, kind, text);
     free(text);

@@ -13,9 +13,6 @@ typedef struct {
     int ended; /* rank 0: how many others have told all */
 } wh_ranks_t;
 
-/* The rank that mpirun gave this process in the environment, 0 without: before any call of MPI. */
-int wh_ranks_named(void);
-
 /* How many ranks mpirun has started on this machine; 1 without it. */
 int wh_ranks_here(void);
 

@@ -58,13 +58,6 @@ static void choose_wafers(wh_study_t *study) {
 
 /* ------------------------------------------------------------------------------------------------ opening */
 
-static const char *why_whole(const wh_study_t *study) {
-    if (study->layout->collision) {
-        return "collisions are looked for";
-    }
-    return study->decisions.unfit;
-}
-
 bool wh_study_open(wh_study_t *study) {
     wh_script_run_options_t options = study->run;
     options.decisions = &study->decisions;
@@ -80,7 +73,7 @@ bool wh_study_open(wh_study_t *study) {
         return refuse(study->layout->path, "study: nil (expected what is drawn, as study = { placement = { "
                                            "dx = 0.3 } }, here or in the script)");
     }
-    study->whole = why_whole(study);
+    study->whole = study->layout->collision ? "collisions are looked for" : study->decisions.unfit;
     choose_wafers(study);
     return hash_file(study->run.script, &study->script_hash) &&
            hash_file(study->layout->path, &study->layout_hash);

@@ -66,18 +66,17 @@ static bool keep(keeper_t *keeper, wh_pool_t *pool) {
     const bool saved = text && wh_checkpoint_save(keeper->path, text);
     if (!saved && keeper->named) {
         fprintf(stderr, "%s: %s (expected a file that can be written)\n", keeper->path, strerror(errno));
-    }
-    free(text);
-    if (!saved && !keeper->named) {
+    } else if (!saved) {
         free(keeper->path);
         keeper->path = NULL;
     }
+    free(text);
     return saved || !keeper->named;
 }
 
 static bool open_keeper(keeper_t *keeper, const wh_study_options_t *options, wh_pool_t *pool) {
     keeper->named = options->state != NULL;
-    keeper->path = keeper->named ? wh_record_text(options->state) : wh_checkpoint_default_path(pool->study);
+    keeper->path = keeper->named ? wh_text_copy(options->state) : wh_checkpoint_default_path(pool->study);
     keeper->kept = wh_clock_seconds();
     if (!keeper->path) {
         return true;
@@ -104,22 +103,6 @@ typedef struct {
     double start, shown;   /* s */
 } bar_t;
 
-static void bar_open(bar_t *bar, FILE *out, uint64_t total, uint64_t begun) {
-    bar->out = isatty(fileno(out)) == 1 ? out : NULL;
-    bar->style = wh_style_of(out);
-    bar->total = total;
-    bar->begun = begun;
-    bar->start = wh_clock_seconds();
-    bar->shown = 0;
-}
-
-static void print_left(const bar_t *bar, uint64_t done, double elapsed) {
-    if (done > bar->begun && elapsed > 1) {
-        const double left = elapsed * (double)(bar->total - done) / (double)(done - bar->begun);
-        fprintf(bar->out, ", %d:%02d left", (int)(left / 60), (int)left % 60);
-    }
-}
-
 /* Ten times a second at most. */
 static void bar_show(bar_t *bar, uint64_t done) {
     const double now = wh_clock_seconds();
@@ -134,7 +117,10 @@ static void bar_show(bar_t *bar, uint64_t done) {
     }
     fprintf(bar->out, "] %.1f %% of %llu trials", 100 * (double)done / (double)bar->total,
             (unsigned long long)bar->total);
-    print_left(bar, done, now - bar->start);
+    if (done > bar->begun && now - bar->start > 1) {
+        const double left = (now - bar->start) * (double)(bar->total - done) / (double)(done - bar->begun);
+        fprintf(bar->out, ", %d:%02d left", (int)(left / 60), (int)left % 60);
+    }
     fflush(bar->out);
 }
 
@@ -184,30 +170,27 @@ static bool is_over(wh_pool_t *pool, const wh_ranks_t *ranks) {
     return wh_pool_is_idle(pool) && ranks->ended == ranks->size - 1;
 }
 
-static bool keep_now_and_then(keeper_t *keeper, wh_pool_t *pool) {
-    return wh_clock_seconds() - keeper->kept < KEEP_S || keep(keeper, pool);
-}
-
-static wh_study_end_t how_it_ended(wh_pool_t *pool, const wh_ranks_t *ranks) {
-    return is_interrupted() && !is_over(pool, ranks) ? WH_STUDY_INTERRUPTED : WH_STUDY_DONE;
-}
-
 static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
-    bar_t bar;
+    bar_t bar = {.out = isatty(STDERR_FILENO) == 1 ? stderr : NULL,
+                 .style = wh_style_of(stderr),
+                 .total = pool->study->trials,
+                 .begun = trials_done(pool),
+                 .start = wh_clock_seconds()};
     bool sound = true;
     queue_rest(pool);
-    bar_open(&bar, stderr, pool->study->trials, trials_done(pool));
     while (sound && !wh_pool_failed(pool) && !is_interrupted() && !is_over(pool, ranks)) {
         wh_pool_wait(pool, 50);
-        sound = wh_ranks_serve(ranks, pool) && keep_now_and_then(keeper, pool);
+        sound =
+            wh_ranks_serve(ranks, pool) && (wh_clock_seconds() - keeper->kept < KEEP_S || keep(keeper, pool));
         bar_show(&bar, trials_done(pool));
     }
     bar_close(&bar);
     if (wh_pool_failed(pool)) {
         fprintf(stderr, "%s\n", pool->message);
-        return WH_STUDY_FAILED;
+        sound = false;
     }
-    return sound ? how_it_ended(pool, ranks) : WH_STUDY_FAILED;
+    const bool left_off = is_interrupted() && !is_over(pool, ranks);
+    return !sound ? WH_STUDY_FAILED : left_off ? WH_STUDY_INTERRUPTED : WH_STUDY_DONE;
 }
 
 static void tell_interruption(const keeper_t *keeper, wh_pool_t *pool) {
@@ -217,20 +200,15 @@ static void tell_interruption(const keeper_t *keeper, wh_pool_t *pool) {
             keeper->path ? keeper->path : "");
 }
 
-/* Stops the workers and waits until all that they have done is in the progress. */
-static void stop_workers(wh_pool_t *pool) {
-    wh_pool_stop(pool);
-    while (!wh_pool_is_idle(pool)) {
-        wh_pool_wait(pool, 5);
-    }
-}
-
 static wh_study_end_t play_first(wh_pool_t *pool, const wh_study_options_t *options, wh_ranks_t *ranks) {
     keeper_t keeper;
     wh_study_end_t end = WH_STUDY_FAILED;
     if (open_keeper(&keeper, options, pool)) {
         end = lead(pool, ranks, &keeper);
-        stop_workers(pool);
+        wh_pool_stop(pool);
+        while (!wh_pool_is_idle(pool)) { /* until all that they have done is in the progress */
+            wh_pool_wait(pool, 5);
+        }
         const bool used = keeper.named || end == WH_STUDY_INTERRUPTED;
         if (used && !keep(&keeper, pool) && end == WH_STUDY_DONE) {
             end = WH_STUDY_FAILED;

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #define UNIT (1.0 / 1073741824.0)
+#define Z 1.959963984540054
 
 static int64_t whole_of(double value) {
     const double scaled = floor(value * 1073741824.0 + 0.5);
@@ -42,14 +43,14 @@ static double middle_of(uint32_t bin) {
 
 /* ------------------------------------------------------------------------------------------------- adding */
 
+static void widen(wh_sum_t *sum, int64_t least, int64_t most) {
+    sum->least = sum->count == 0 || least < sum->least ? least : sum->least;
+    sum->most = sum->count == 0 || most > sum->most ? most : sum->most;
+}
+
 void wh_sum_add(wh_sum_t *sum, double value) {
     const int64_t whole = whole_of(value);
-    if (sum->count == 0 || whole < sum->least) {
-        sum->least = whole;
-    }
-    if (sum->count == 0 || whole > sum->most) {
-        sum->most = whole;
-    }
+    widen(sum, whole, whole);
     ++sum->count;
     sum->sum += whole;
     sum->squares += (wh_uint128_t)((wh_int128_t)whole * whole);
@@ -60,12 +61,7 @@ void wh_sum_merge(wh_sum_t *sum, const wh_sum_t *other) {
     if (other->count == 0) {
         return;
     }
-    if (sum->count == 0 || other->least < sum->least) {
-        sum->least = other->least;
-    }
-    if (sum->count == 0 || other->most > sum->most) {
-        sum->most = other->most;
-    }
+    widen(sum, other->least, other->most);
     sum->count += other->count;
     sum->sum += other->sum;
     sum->squares += other->squares;
@@ -116,4 +112,19 @@ double wh_sum_quantile(const wh_sum_t *sum, uint32_t permille) {
         }
     }
     return 0;
+}
+
+wh_confidence_t wh_wilson_interval(uint64_t hits, uint64_t trials) {
+    if (trials == 0) {
+        const wh_confidence_t unknown = {0, 0, 1};
+        return unknown;
+    }
+    const double n = (double)trials;
+    const double p = (double)hits / n;
+    const double centre = p + Z * Z / (2 * n);
+    const double reach = Z * sqrt(p * (1 - p) / n + Z * Z / (4 * n * n));
+    const double scale = 1 + Z * Z / n;
+    const wh_confidence_t interval = {p, hits == 0 ? 0 : (centre - reach) / scale,
+                                      hits == trials ? 1 : (centre + reach) / scale};
+    return interval;
 }

@@ -1,4 +1,5 @@
-/* What a measured quantity does over many trials: mean, standard deviation, extremes, quantiles.
+/* What a measured quantity does over many trials: mean, standard deviation, extremes, quantiles; and how sure
+ * a rate is.
  *
  * Values are kept as whole multiples of 2^-30 (about 1e-9 mm or degrees) in exact integer sums, and counted
  * in bins that are the same for every study. So adding is commutative and associative to the last bit:
@@ -46,5 +47,17 @@ double wh_sum_most(const wh_sum_t *sum);
  * least that, as the middle of its bin, which is within 1/128 of the value, and within least and most. 0 when
  * nothing was counted. */
 double wh_sum_quantile(const wh_sum_t *sum, uint32_t permille);
+
+/* A rate, and how sure it is. */
+typedef struct {
+    double rate;      /* hits / trials; 0 without trials */
+    double low, high; /* 0 <= low <= rate <= high <= 1 */
+} wh_confidence_t;
+
+/* Wilson's score interval at 95 % (z = 1.959964): the rates p from which the one found is at most z standard
+ * deviations sqrt(p (1 - p) / trials) away (E. B. Wilson, J. Am. Stat. Assoc. 22 (1927) 209). It holds for
+ * few trials and for rates at 0 or 1, where it has a width. Without trials: 0 to 1. `hits` is at most
+ * `trials`, that at most 2^53. */
+wh_confidence_t wh_wilson_interval(uint64_t hits, uint64_t trials);
 
 #endif

@@ -13,35 +13,24 @@ void wh_tally_init(wh_tally_t *tally, size_t wafer_count) {
     tally->wafers = wh_array_new(wafer_count, sizeof *tally->wafers);
 }
 
-static void clear_rows(wh_tally_rows_t *rows) {
+static void free_rows(wh_tally_rows_t *rows) {
     for (size_t i = 0; i < rows->count; ++i) {
         free(rows->rows[i].text);
     }
-    rows->count = rows->next = 0;
-}
-
-void wh_tally_clear(wh_tally_t *tally) {
-    const wh_tally_rows_t expectations = tally->expectations;
-    const wh_tally_rows_t errors = tally->errors;
-    wh_tally_wafer_t *wafers = tally->wafers;
-    const size_t wafer_count = tally->wafer_count;
-    memset(wafers, 0, wafer_count * sizeof *wafers);
-    memset(tally, 0, sizeof *tally);
-    tally->expectations = expectations;
-    tally->errors = errors;
-    tally->wafers = wafers;
-    tally->wafer_count = wafer_count;
-    clear_rows(&tally->expectations);
-    clear_rows(&tally->errors);
+    free(rows->rows);
 }
 
 void wh_tally_free(wh_tally_t *tally) {
-    clear_rows(&tally->expectations);
-    clear_rows(&tally->errors);
-    free(tally->expectations.rows);
-    free(tally->errors.rows);
+    free_rows(&tally->expectations);
+    free_rows(&tally->errors);
     free(tally->wafers);
     memset(tally, 0, sizeof *tally);
+}
+
+void wh_tally_clear(wh_tally_t *tally) {
+    const size_t wafer_count = tally->wafer_count;
+    wh_tally_free(tally);
+    wh_tally_init(tally, wafer_count);
 }
 
 /* --------------------------------------------------------------------------------------------------- rows */
@@ -68,7 +57,7 @@ wh_tally_row_t *wh_tally_row(wh_tally_rows_t *rows, int line, int place, const c
     }
     if (!row->text || named < row->named) {
         free(row->text);
-        row->text = wh_record_text(text);
+        row->text = wh_text_copy(text);
         row->named = named;
     }
     return row;

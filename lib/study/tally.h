@@ -65,6 +65,7 @@ typedef struct {
 typedef struct {
     uint64_t trial;
     bool met, whole;
+    bool complained; /* while decisions are replayed: of an event that is a complaint */
     /* Of it commands, expectations and failure count; events and wafers are not read. */
     const wh_record_t *record;
     uint32_t events[WH_EVENT_KINDS];

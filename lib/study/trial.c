@@ -24,31 +24,24 @@ void wh_worker_close(wh_worker_t *worker) {
 static void begin(wh_worker_t *worker, uint64_t trial) {
     wh_outcome_t *outcome = &worker->outcome;
     outcome->trial = trial;
-    outcome->whole = false;
+    outcome->whole = outcome->complained = false;
     memset(outcome->events, 0, sizeof outcome->events);
 }
 
 /* ------------------------------------------------------------------------------------------ the decisions */
 
-typedef struct {
-    wh_outcome_t *outcome;
-    bool complained;
-} watcher_t;
-
 static void watch(void *user, const wh_event_t events[], size_t count) {
-    watcher_t *watcher = user;
+    wh_outcome_t *outcome = user;
     for (size_t i = 0; i < count; ++i) {
-        ++watcher->outcome->events[events[i].kind];
-        watcher->complained = watcher->complained || wh_record_is_complaint(events[i].kind);
+        ++outcome->events[events[i].kind];
+        outcome->complained = outcome->complained || wh_record_is_complaint(events[i].kind);
     }
 }
 
 static bool set_up(wh_worker_t *worker) {
     const wh_layout_t *layout = &worker->trial_cell.layout;
-    const wh_grasp_storage_t storage = {.wafers = worker->wafers,
-                                        .wafer_count = layout->wafer_count,
-                                        .grippers = worker->grippers,
-                                        .gripper_count = layout->machine.gripper_count};
+    const wh_grasp_storage_t storage = {
+        worker->wafers, layout->wafer_count, worker->grippers, layout->machine.gripper_count, NULL, 0};
     memcpy(worker->wafers, worker->start, layout->wafer_count * sizeof *worker->wafers);
     return wh_simulator_init(&worker->simulator, &layout->grasp, &storage, &layout->cell) == WH_OK &&
            wh_simulator_set_physics(&worker->simulator, &layout->physics) == WH_OK;
@@ -79,15 +72,14 @@ static bool replay(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
     const wh_study_t *study = worker->study;
     const wh_record_t *record = &study->nominal.record;
     const wh_trial_t name = {study->seed, trial};
-    watcher_t watcher = {&worker->outcome, false};
     begin(worker, trial);
     wh_trial_cell_fill(&worker->trial_cell, study->layout, &name, worker->places, worker->start);
-    if (!set_up(worker) ||
-        !wh_decisions_play(&study->decisions, &worker->trial_cell, &worker->simulator, watch, &watcher)) {
+    if (!set_up(worker) || !wh_decisions_play(&study->decisions, &worker->trial_cell, &worker->simulator,
+                                              watch, &worker->outcome)) {
         return false;
     }
     worker->outcome.record = record;
-    worker->outcome.met = met_but_for_complaints(record) && !watcher.complained;
+    worker->outcome.met = met_but_for_complaints(record) && !worker->outcome.complained;
     look_at_wafers(worker);
     wh_tally_add(tally, study, &worker->outcome);
     return true;
@@ -109,7 +101,7 @@ static void take_record(wh_worker_t *worker, const wh_record_t *record) {
     }
 }
 
-static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message, uint64_t *hash) {
+static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message) {
     const wh_trial_t name = {worker->study->seed, trial};
     worker->options.trial = &name;
     begin(worker, trial);
@@ -118,7 +110,7 @@ static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, ch
     if (usable) {
         take_record(worker, &worker->run.record);
         wh_tally_add(tally, worker->study, &worker->outcome);
-        *hash = worker->run.record.hash;
+        worker->hash = worker->run.record.hash;
     } else {
         memcpy(message, worker->run.message, WH_SANDBOX_MESSAGE_BYTES);
     }
@@ -127,18 +119,6 @@ static bool run_whole(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, ch
 }
 
 bool wh_worker_play(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message) {
-    uint64_t hash = 0;
     return (!worker->study->whole && replay(worker, trial, tally)) ||
-           run_whole(worker, trial, tally, message, &hash);
-}
-
-bool wh_worker_compare(wh_worker_t *worker, uint64_t trial, bool decisions, wh_tally_t *tally,
-                       uint64_t *hash) {
-    char message[WH_SANDBOX_MESSAGE_BYTES];
-    if (!decisions) {
-        return run_whole(worker, trial, tally, message, hash);
-    }
-    const bool played = !worker->study->whole && replay(worker, trial, tally);
-    *hash = played ? wh_simulator_hash(&worker->simulator) : 0;
-    return played;
+           run_whole(worker, trial, tally, message);
 }

@@ -16,6 +16,7 @@ typedef struct {
     wh_outcome_t outcome;
     wh_script_run_t run; /* while a script runs whole */
     wh_script_run_options_t options;
+    uint64_t hash; /* of the last state that a whole run ended in */
 } wh_worker_t;
 
 /* To be closed. If there is no memory, the program ends. */
@@ -25,10 +26,5 @@ void wh_worker_close(wh_worker_t *worker);
 /* Plays a trial and adds what came of it. False when the script turned out not to be usable in it: `message`,
  * of WH_SANDBOX_MESSAGE_BYTES, then says why. */
 bool wh_worker_play(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally, char *message);
-
-/* For comparing both ways: plays a trial by its decisions alone, or by running the script whole. False, too,
- * if the decisions do not suffice. `hash` gets the hash of the last state. */
-bool wh_worker_compare(wh_worker_t *worker, uint64_t trial, bool decisions, wh_tally_t *tally,
-                       uint64_t *hash);
 
 #endif

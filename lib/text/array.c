@@ -1,6 +1,24 @@
 #include "array.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+void wh_memory_out(void) {
+    fputs("waferhand: out of memory\n", stderr);
+    exit(2);
+}
+
+void *wh_memory_need(void *made) {
+    if (!made) {
+        wh_memory_out();
+    }
+    return made;
+}
+
+char *wh_text_copy(const char *text) {
+    return wh_memory_need(strdup(text));
+}
 
 void *wh_array_reserve(void *items, size_t needed, size_t *capacity, size_t size) {
     if (needed <= *capacity) {
@@ -8,11 +26,7 @@ void *wh_array_reserve(void *items, size_t needed, size_t *capacity, size_t size
     }
     const size_t doubled = *capacity > 0 ? 2 * *capacity : 64;
     *capacity = needed > doubled ? needed : doubled;
-    void *const grown = realloc(items, *capacity * size);
-    if (!grown) {
-        abort();
-    }
-    return grown;
+    return wh_memory_need(realloc(items, *capacity * size));
 }
 
 void *wh_array_grow(void *items, size_t count, size_t *capacity, size_t size) {
@@ -20,9 +34,5 @@ void *wh_array_grow(void *items, size_t count, size_t *capacity, size_t size) {
 }
 
 void *wh_array_new(size_t count, size_t size) {
-    void *const items = calloc(count + 1, size);
-    if (!items) {
-        abort();
-    }
-    return items;
+    return wh_memory_need(calloc(count + 1, size));
 }

@@ -1,4 +1,4 @@
-/* Arrays that grow as items are added, by doubling. If there is no memory, the program ends.
+/* Arrays that grow as items are added, by doubling; and what host code does without memory: the program ends.
  *
  *     run->marks = wh_array_grow(run->marks, run->mark_count, &run->mark_capacity, sizeof *run->marks);
  *     run->marks[run->mark_count++] = slice;
@@ -7,6 +7,15 @@
 #define WH_TEXT_ARRAY_H
 
 #include <stddef.h>
+
+/* Ends the program with status 2 and "waferhand: out of memory" on standard error. */
+__attribute__((noreturn)) void wh_memory_out(void);
+
+/* What malloc or its like returned; if that is null, the program ends so. */
+void *wh_memory_need(void *made);
+
+/* A copy of a text. Never null; the caller frees it. */
+char *wh_text_copy(const char *text);
 
 /* Makes room for at least `needed` items of `size` bytes. `items` is null at the beginning, `capacity` is
  * then 0. Returns where the items are now; the caller frees them. */

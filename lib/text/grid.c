@@ -47,13 +47,6 @@ typedef struct {
     size_t count;
 } part_t;
 
-static void *or_abort(void *made) {
-    if (!made) {
-        abort();
-    }
-    return made;
-}
-
 /* ------------------------------------------------------------------------------------------------- digits */
 
 void wh_grid_format(char *text, size_t size, double value, int decimals) {
@@ -100,7 +93,7 @@ int wh_grid_decimals(const wh_grid_digits_t *digits, double value) {
 /* ------------------------------------------------------------------------------------------------ filling */
 
 wh_grid_t *wh_grid_new(const wh_style_t *style, size_t keys) {
-    wh_grid_t *grid = or_abort(calloc(1, sizeof *grid));
+    wh_grid_t *grid = wh_array_new(1, sizeof *grid);
     grid->style = *style;
     grid->keys = keys;
     return grid;
@@ -117,22 +110,30 @@ void wh_grid_free(wh_grid_t *grid) {
     free(grid);
 }
 
-static void add_column(wh_grid_t *grid, const char *heading, bool to_right, wh_grid_digits_t digits) {
-    if (grid->column_count < WH_GRID_COLUMNS) {
-        wh_grid_column_t *column = &grid->columns[grid->column_count++];
-        column->heading = wh_style_printable(heading);
-        column->to_right = to_right;
-        column->digits = digits;
-        column->decimals = digits.least;
+static void add_columns(wh_grid_t *grid, bool to_right, wh_grid_digits_t digits, va_list headings) {
+    for (const char *heading = va_arg(headings, char *); heading; heading = va_arg(headings, char *)) {
+        if (grid->column_count < WH_GRID_COLUMNS) {
+            wh_grid_column_t *column = &grid->columns[grid->column_count++];
+            column->heading = wh_style_printable(heading);
+            column->to_right = to_right;
+            column->digits = digits;
+            column->decimals = digits.least;
+        }
     }
 }
 
-void wh_grid_text_column(wh_grid_t *grid, const char *heading) {
-    add_column(grid, heading, false, wh_grid_whole);
+void wh_grid_text_columns(wh_grid_t *grid, ...) {
+    va_list headings;
+    va_start(headings, grid);
+    add_columns(grid, false, wh_grid_whole, headings);
+    va_end(headings);
 }
 
-void wh_grid_number_column(wh_grid_t *grid, const char *heading, wh_grid_digits_t digits) {
-    add_column(grid, heading, true, digits);
+void wh_grid_number_columns(wh_grid_t *grid, wh_grid_digits_t digits, ...) {
+    va_list headings;
+    va_start(headings, digits);
+    add_columns(grid, true, digits, headings);
+    va_end(headings);
 }
 
 void wh_grid_glue(wh_grid_t *grid) {
@@ -143,6 +144,11 @@ void wh_grid_row(wh_grid_t *grid) {
     const size_t bytes = grid->column_count * sizeof *grid->cells;
     grid->cells = wh_array_grow(grid->cells, grid->row_count, &grid->row_capacity, bytes);
     memset(&grid->cells[grid->row_count++ * grid->column_count], 0, bytes);
+}
+
+void wh_grid_named_row(wh_grid_t *grid, const char *name) {
+    wh_grid_row(grid);
+    wh_grid_text(grid, 0, WH_INK_PLAIN, "%s", name);
 }
 
 size_t wh_grid_rows(const wh_grid_t *grid) {
@@ -163,7 +169,7 @@ void wh_grid_text(wh_grid_t *grid, size_t column, wh_ink_t ink, const char *form
     va_list arguments;
     va_start(arguments, format);
     if (vasprintf(&raw, format, arguments) < 0) {
-        abort();
+        wh_memory_out();
     }
     va_end(arguments);
     cell->text = wh_style_printable(raw);
@@ -182,6 +188,12 @@ void wh_grid_number(wh_grid_t *grid, size_t column, wh_ink_t ink, double value) 
     }
 }
 
+void wh_grid_numbers(wh_grid_t *grid, size_t column, const double values[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        wh_grid_number(grid, column + i, WH_INK_PLAIN, values[i]);
+    }
+}
+
 /* ----------------------------------------------------------------------------------------------- printing */
 
 /* Numbers become text when all rows are known: a column's numbers share their decimals. */
@@ -191,7 +203,7 @@ static void format_numbers(wh_grid_t *grid) {
         if (cell->is_number) {
             char text[WH_GRID_NUMBER_SIZE];
             wh_grid_format(text, sizeof text, cell->number, grid->columns[i % grid->column_count].decimals);
-            cell->text = or_abort(strdup(text));
+            cell->text = wh_text_copy(text);
             cell->is_number = false;
         }
     }
@@ -268,7 +280,8 @@ static void add_headings(const wh_grid_t *grid, const part_t *part, struct libsc
     for (size_t i = 0; i < part->count; ++i) {
         const wh_grid_column_t *column = &grid->columns[part->columns[i]];
         const int flags = column->to_right ? SCOLS_FL_RIGHT : 0;
-        struct libscols_column *added = or_abort(scols_table_new_column(table, column->heading, 0, flags));
+        struct libscols_column *added =
+            wh_memory_need(scols_table_new_column(table, column->heading, 0, flags));
         if (bold) {
             (void)scols_cell_set_color(scols_column_get_header(added), bold);
         }
@@ -276,12 +289,12 @@ static void add_headings(const wh_grid_t *grid, const part_t *part, struct libsc
 }
 
 static void add_line(const wh_grid_t *grid, const part_t *part, size_t row, struct libscols_table *table) {
-    struct libscols_line *line = or_abort(scols_table_new_line(table, NULL));
+    struct libscols_line *line = wh_memory_need(scols_table_new_line(table, NULL));
     for (size_t i = 0; i < part->count; ++i) {
         const wh_grid_cell_t *cell = &grid->cells[row * grid->column_count + part->columns[i]];
         const char *ink = wh_style_ink(&grid->style, cell->ink);
         if (cell->text && scols_line_set_data(line, i, cell->text) != 0) {
-            abort();
+            wh_memory_out();
         }
         if (cell->text && ink) {
             (void)scols_cell_set_color(scols_line_get_cell(line, i), ink);
@@ -304,7 +317,7 @@ static void print_trimmed(const char *text, FILE *out) {
 }
 
 static void print_part(const wh_grid_t *grid, const part_t *part, FILE *out) {
-    struct libscols_table *table = or_abort(scols_new_table());
+    struct libscols_table *table = wh_memory_need(scols_new_table());
     char *text = NULL;
     scols_table_enable_noencoding(table, 1);
     scols_table_enable_colors(table, grid->style.colour);
@@ -317,7 +330,7 @@ static void print_part(const wh_grid_t *grid, const part_t *part, FILE *out) {
         }
     }
     if (scols_print_table_to_string(table, &text) != 0) {
-        abort();
+        wh_memory_out();
     }
     print_trimmed(text ? text : "", out);
     free(text);

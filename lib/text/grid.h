@@ -3,7 +3,7 @@
  * Columns first, then rows, then print. Numbers of a column share their decimals, so that they line up on the
  * point, and get as many as the column's rule asks for. Nothing is ever cut off: a table wider than the
  * terminal is printed in parts that each begin with the key columns, and rows that would be empty in a later
- * part are left out there. If there is no memory, the program ends.
+ * part are left out there. Ends the program if out of memory.
  */
 #ifndef WH_TEXT_GRID_H
 #define WH_TEXT_GRID_H
@@ -27,21 +27,25 @@ typedef struct wh_grid wh_grid_t;
 /* An empty table; its first `keys` columns begin each part. */
 wh_grid_t *wh_grid_new(const wh_style_t *style, size_t keys);
 
-/* One more column, of text or of numbers (to the right, with a rule). At most WH_GRID_COLUMNS, all of them
- * before the first row. */
-void wh_grid_text_column(wh_grid_t *grid, const char *heading);
-void wh_grid_number_column(wh_grid_t *grid, const char *heading, wh_grid_digits_t digits);
+/* More columns, of text or of numbers (to the right, with a rule), by their headings; null ends them. At most
+ * WH_GRID_COLUMNS, all of them before the first row. */
+__attribute__((sentinel)) void wh_grid_text_columns(wh_grid_t *grid, ...);
+__attribute__((sentinel)) void wh_grid_number_columns(wh_grid_t *grid, wh_grid_digits_t digits, ...);
 
 /* Keeps the last column beside the one before it wherever a part has room for both. */
 void wh_grid_glue(wh_grid_t *grid);
 
-/* One more row, of empty cells. */
+/* One more row, of empty cells; or with a text in its first cell. */
 void wh_grid_row(wh_grid_t *grid);
+void wh_grid_named_row(wh_grid_t *grid, const char *name);
 
 /* Sets a cell of the last row. Text is copied and made printable. */
 __attribute__((format(printf, 4, 5))) void wh_grid_text(wh_grid_t *grid, size_t column, wh_ink_t ink,
                                                         const char *format, ...);
 void wh_grid_number(wh_grid_t *grid, size_t column, wh_ink_t ink, double value);
+
+/* Sets `count` numbers side by side, from `column` on. */
+void wh_grid_numbers(wh_grid_t *grid, size_t column, const double values[], size_t count);
 
 /* How many rows there are. */
 size_t wh_grid_rows(const wh_grid_t *grid);

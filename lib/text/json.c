@@ -1,22 +1,24 @@
 #include "json.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "array.h"
 #include "utf8.h"
 
 /* ------------------------------------------------------------------------------------------------- values */
 
 void wh_json_put(json_t *object, const char *key, json_t *value) {
     if (json_object_set_new(object, key, value) != 0) {
-        abort();
+        wh_memory_out();
     }
 }
 
 void wh_json_append(json_t *list, json_t *value) {
     if (json_array_append_new(list, value) != 0) {
-        abort();
+        wh_memory_out();
     }
 }
 
@@ -59,10 +61,27 @@ void wh_json_put_integer(json_t *object, const char *key, json_int_t value) {
     wh_json_put(object, key, json_integer(value));
 }
 
+json_t *wh_json_add(json_t *object, const char *keys, ...) {
+    va_list values;
+    va_start(values, keys);
+    while (*keys != '\0') {
+        const size_t length = strcspn(keys, " ");
+        if (json_object_setn_new(object, keys, length, va_arg(values, json_t *)) != 0) {
+            wh_memory_out();
+        }
+        keys += length + strspn(keys + length, " ");
+    }
+    va_end(values);
+    return object;
+}
+
 json_t *wh_json_list(wh_json_element_t *element, const void *subject, size_t count) {
     json_t *list = json_array();
     for (size_t i = 0; i < count; ++i) {
-        wh_json_append(list, element(subject, i));
+        json_t *made = element(subject, i);
+        if (made) {
+            wh_json_append(list, made);
+        }
     }
     return list;
 }
@@ -135,38 +154,23 @@ static void write_exact(FILE *out, double value) {
     fputs(digits, out);
 }
 
-/* Writes no zeros at the end. Counting in units of the last decimal is faster than printf and gives the same
- * digits. */
+/* Writes no zeros at the end. Counting in units of the last decimal is faster than printf of a double and
+ * gives the same digits. */
 static void write_rounded(FILE *out, double value, int decimals) {
     static const double powers[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
-    char digits[32];
-    char *to = digits + sizeof digits - 1;
-    double units = floor(fabs(value) * powers[decimals] + 0.5);
-    if (!(units < 1e15)) {
+    const double exact = floor(fabs(value) * powers[decimals] + 0.5);
+    if (!(exact < 1e15)) {
         write_exact(out, value);
         return;
     }
-    long long left = (long long)units;
-    const bool negative = value < 0 && left > 0;
-    bool significant = false;
-    *to = '\0';
-    for (int i = 0; i < decimals; ++i, left /= 10) {
-        significant = significant || left % 10 != 0;
-        if (significant) {
-            *--to = (char)('0' + left % 10);
-        }
+    char digits[32];
+    long long units = (long long)exact;
+    const char *sign = value < 0 && units > 0 ? "-" : "";
+    for (; decimals > 0 && units % 10 == 0; --decimals) {
+        units /= 10;
     }
-    if (significant) {
-        *--to = '.';
-    }
-    do {
-        *--to = (char)('0' + left % 10);
-        left /= 10;
-    } while (left > 0);
-    if (negative) {
-        *--to = '-';
-    }
-    fputs(to, out);
+    const int whole = snprintf(digits, sizeof digits, "%0*lld", decimals + 1, units) - decimals;
+    fprintf(out, "%s%.*s%s%s", sign, whole, digits, decimals > 0 ? "." : "", digits + whole);
 }
 
 void wh_json_text_number(wh_json_text_t *text, const char *key, double value, int decimals, bool exact) {

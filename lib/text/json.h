@@ -1,7 +1,7 @@
 /* JSON over jansson: values that are made and printed as a whole, and long lists that are written as they
  * come.
  *
- * If there is no memory for a value, the program ends.
+ * Ends the program if out of memory.
  */
 #ifndef WH_TEXT_JSON_H
 #define WH_TEXT_JSON_H
@@ -33,7 +33,15 @@ void wh_json_put_real(json_t *object, const char *key, double value);
 void wh_json_put_text(json_t *object, const char *key, const char *text);
 void wh_json_put_integer(json_t *object, const char *key, json_int_t value);
 
-/* A list of what `element` makes of 0 to count - 1; `subject` is what it makes them from. */
+/* Adds members: their names, with blanks between them, and as many values, which it takes over. Null ends the
+ * values. Returns the object.
+ *
+ *     return wh_json_add(json_object(), "line text", json_integer(line), wh_json_text(text), NULL);
+ */
+__attribute__((sentinel)) json_t *wh_json_add(json_t *object, const char *keys, ...);
+
+/* A list of what `element` makes of 0 to count - 1; `subject` is what it makes them from. What it makes null
+ * is left out. */
 typedef json_t *wh_json_element_t(const void *subject, size_t i);
 json_t *wh_json_list(wh_json_element_t *element, const void *subject, size_t count);
 

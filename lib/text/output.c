@@ -1,51 +1,63 @@
 #include "output.h"
 
 #include <errno.h>
-#include <limits.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-static bool is_plain(const char *path) {
+/* Names that are tried: others may be writing beside it, or have been killed. */
+#define ATTEMPTS 100
+
+/* The file to replace: the path, or what it points to. Its permissions go to `mode`, 0 if there is none.
+ * Returns 0 or an errno. */
+static int find_target(const char *path, char target[PATH_MAX], mode_t *mode) {
     struct stat status;
-    return stat(path, &status) != 0 || S_ISREG(status.st_mode);
+    const bool exists = stat(path, &status) == 0;
+    *mode = exists ? status.st_mode & 0777U : 0;
+    if (!exists && errno != ENOENT) {
+        return errno;
+    }
+    if (exists && !S_ISREG(status.st_mode)) {
+        return S_ISDIR(status.st_mode) ? EISDIR : EINVAL;
+    }
+    if (!exists || !realpath(path, target)) {
+        (void)snprintf(target, PATH_MAX, "%s", path);
+    }
+    return 0;
 }
 
-/* The permissions of the file that is replaced, or those of any new file. */
-static mode_t mode_of(const char *path) {
-    struct stat status;
-    if (stat(path, &status) == 0) {
-        return status.st_mode & 0777U;
+/* Returns a descriptor, or -1 and errno. */
+static int create_beside(wh_output_t *output) {
+    const char *const slash = strrchr(output->target, '/');
+    const int folder = slash ? (int)(slash - output->target) + 1 : 0;
+    int fd = -1;
+    for (int i = 0; fd < 0 && i < ATTEMPTS && (i == 0 || errno == EEXIST); ++i) {
+        (void)snprintf(output->beside, sizeof output->beside, "%.*s.waferhand-%ld-%d", folder, output->target,
+                       (long)getpid(), i);
+        fd = open(output->beside, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     }
-    const mode_t mask = umask(0);
-    (void)umask(mask);
-    return 0666U & ~mask;
-}
-
-static FILE *open_beside(wh_output_t *output) {
-    const size_t size = sizeof output->beside;
-    if ((size_t)snprintf(output->beside, size, "%s.XXXXXX", output->path) >= size) {
+    if (fd < 0) {
         output->beside[0] = '\0';
-        errno = ENAMETOOLONG;
-        return NULL;
     }
-    const int descriptor = mkstemp(output->beside);
-    if (descriptor < 0) {
-        output->beside[0] = '\0';
-        return NULL;
-    }
-    (void)fchmod(descriptor, mode_of(output->path));
-    return fdopen(descriptor, "wb");
+    return fd;
 }
 
 bool wh_output_open(wh_output_t *output, const char *path) {
-    output->path = path;
+    mode_t mode;
+    output->file = NULL;
     output->beside[0] = '\0';
-    if (is_plain(path) && access(path, F_OK) == 0 && access(path, W_OK) != 0) {
-        return false;
+    errno = find_target(path, output->target, &mode);
+    if (errno == EINVAL) {
+        output->file = fopen(path, "wb");
+    } else if (errno == 0 && (access(output->target, W_OK) == 0 || errno == ENOENT)) {
+        const int fd = create_beside(output);
+        if (fd >= 0 && mode != 0) {
+            (void)fchmod(fd, mode);
+        }
+        output->file = fd >= 0 ? fdopen(fd, "wb") : NULL;
     }
-    output->file = is_plain(path) ? open_beside(output) : fopen(path, "wb");
     return output->file != NULL;
 }
 
@@ -60,13 +72,13 @@ bool wh_output_commit(wh_output_t *output) {
     const bool closed = fclose(output->file) == 0;
     output->file = NULL;
     const bool placed =
-        stored && closed && (output->beside[0] == '\0' || rename(output->beside, output->path) == 0);
-    if (!placed && output->beside[0] != '\0') {
-        const int reason = errno;
-        (void)unlink(output->beside);
-        errno = reason;
+        stored && closed && (output->beside[0] == '\0' || rename(output->beside, output->target) == 0);
+    const int reason = errno;
+    if (placed) {
+        output->beside[0] = '\0';
     }
-    output->beside[0] = '\0';
+    wh_output_drop(output);
+    errno = reason;
     return placed;
 }
 
@@ -79,6 +91,32 @@ void wh_output_drop(wh_output_t *output) {
         (void)unlink(output->beside);
         output->beside[0] = '\0';
     }
+}
+
+/* True, or errno says why not: of a disk that is full it may be close that fails. */
+static bool fill(int fd, mode_t mode, const void *bytes, size_t size) {
+    errno = ENOSPC;
+    const bool filled = write(fd, bytes, size) == (ssize_t)size && (mode == 0 || fchmod(fd, mode) == 0);
+    const int error = errno;
+    const bool closed = close(fd) == 0;
+    errno = filled ? errno : error;
+    return filled && closed;
+}
+
+int wh_output_replace(const char *path, const void *bytes, size_t size) {
+    wh_output_t output = {0};
+    mode_t mode;
+    int error = find_target(path, output.target, &mode);
+    if (error != 0) {
+        return error;
+    }
+    const int fd = create_beside(&output);
+    if (fd >= 0 && fill(fd, mode, bytes, size) && rename(output.beside, output.target) == 0) {
+        return 0;
+    }
+    error = errno;
+    wh_output_drop(&output);
+    return error;
 }
 
 /* -------------------------------------------------------------------------------------------------- state */

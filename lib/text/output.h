@@ -2,14 +2,18 @@
 #ifndef WH_TEXT_OUTPUT_H
 #define WH_TEXT_OUTPUT_H
 
+#include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
 
-/* A file being written beside the one that it will replace. Zero it to begin with. */
+/* A new file in the same folder as the one that it will replace. Zero it to begin with. What a symbolic link
+ * points to is replaced; a link that points nowhere is itself replaced. An existing file keeps its
+ * permissions, a new one gets 0666 less the umask. Only a kill leaves the new file, ".waferhand-PID-N". */
 typedef struct {
     FILE *file;
-    const char *path;  /* borrowed */
-    char beside[4096]; /* empty: `path` is no plain file (a pipe, a terminal) and is written to at once */
+    char target[PATH_MAX];
+    char
+        beside[PATH_MAX + 48]; /* empty: it is no plain file (a pipe, a terminal) and is written to at once */
 } wh_output_t;
 
 /* Opens it. False and errno if it cannot be written. */
@@ -21,6 +25,11 @@ bool wh_output_commit(wh_output_t *output);
 
 /* Gives it up: the old file is still there. Does nothing after wh_output_commit. */
 void wh_output_drop(wh_output_t *output);
+
+/* Writes a small file so, whole: whoever reads it meanwhile sees the old one or the new one. Returns 0 or an
+ * errno: EISDIR for a directory, EINVAL for what else is no plain file. Then nothing has changed. Nothing is
+ * synced to the disk. */
+int wh_output_replace(const char *path, const void *bytes, size_t size);
 
 /* Where the program keeps a file for the next time: $XDG_STATE_HOME/waferhand/NAME, or
  * ~/.local/state/waferhand/NAME. Empty if the environment names no such place, or if `size` bytes do not hold

@@ -4,12 +4,11 @@
 #include <string.h>
 #include <zlib.h>
 
+#include "array.h"
+
 char *wh_packed_bytes(const char *head, const uint8_t *bytes, size_t size) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    char *text = malloc(strlen(head) + (size + 2) / 3 * 4 + 1);
-    if (!text) {
-        abort();
-    }
+    char *text = wh_memory_need(malloc(strlen(head) + (size + 2) / 3 * 4 + 1));
     char *to = stpcpy(text, head);
     for (size_t i = 0; i < size; i += 3) {
         const size_t left = size - i;
@@ -26,9 +25,9 @@ char *wh_packed_bytes(const char *head, const uint8_t *bytes, size_t size) {
 
 char *wh_packed_text(const char *text, size_t size) {
     uLongf packed_size = compressBound((uLong)size);
-    Bytef *packed = malloc(packed_size);
-    if (!packed || compress2(packed, &packed_size, (const Bytef *)text, (uLong)size, 9) != Z_OK) {
-        abort();
+    Bytef *packed = wh_memory_need(malloc(packed_size));
+    if (compress2(packed, &packed_size, (const Bytef *)text, (uLong)size, 9) != Z_OK) {
+        wh_memory_out();
     }
     char *made = wh_packed_bytes("", packed, packed_size);
     free(packed);

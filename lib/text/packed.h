@@ -1,6 +1,6 @@
 /* Bytes as text that can stand in a page: base 64, and long texts deflated before.
  *
- * Texts that are returned are the caller's to free. Host code: aborts when memory is out.
+ * Texts that are returned are the caller's to free. Ends the program if out of memory.
  */
 #ifndef WH_TEXT_PACKED_H
 #define WH_TEXT_PACKED_H

@@ -9,24 +9,22 @@
 #include <wchar.h>
 #include <wctype.h>
 
+#include "array.h"
+
 bool wh_style_wants_colour(bool terminal, const char *no_color, const char *term) {
     const bool refused = no_color && no_color[0] != '\0';
     const bool able = term && term[0] != '\0' && strcmp(term, "dumb") != 0;
     return terminal && able && !refused;
 }
 
-static size_t terminal_width(int descriptor) {
-    struct winsize size;
-    return ioctl(descriptor, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
-}
-
 wh_style_t wh_style_of(FILE *out) {
     const int descriptor = fileno(out);
     const bool terminal = descriptor >= 0 && isatty(descriptor) == 1;
+    struct winsize size;
     wh_style_t style;
     style.colour = wh_style_wants_colour(terminal, getenv("NO_COLOR"), getenv("TERM"));
     style.utf8 = strcmp(nl_langinfo(CODESET), "UTF-8") == 0;
-    style.width = terminal ? terminal_width(descriptor) : 0;
+    style.width = terminal && ioctl(descriptor, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
     return style;
 }
 
@@ -48,20 +46,12 @@ void wh_style_print(const wh_style_t *style, FILE *out, wh_ink_t ink, const char
     fputs(on ? "\033[0m" : "", out);
 }
 
-const char *wh_style_tick(const wh_style_t *style) {
-    return style->utf8 ? "✓" : "ok";
-}
-
-const char *wh_style_cross(const wh_style_t *style) {
-    return style->utf8 ? "✗" : "x";
-}
-
-const char *wh_style_arrow(const wh_style_t *style) {
-    return style->utf8 ? "→" : "->";
-}
-
-const char *wh_style_degree(const wh_style_t *style) {
-    return style->utf8 ? "°" : " deg";
+const char *wh_style_glyph(const wh_style_t *style, wh_glyph_t glyph) {
+    static const char *const glyphs[][2] = {[WH_GLYPH_TICK] = {"ok", "✓"},
+                                            [WH_GLYPH_CROSS] = {"x", "✗"},
+                                            [WH_GLYPH_ARROW] = {"->", "→"},
+                                            [WH_GLYPH_DEGREE] = {" deg", "°"}};
+    return glyphs[glyph][style->utf8 ? 1 : 0];
 }
 
 /* How many bytes the printable character at `text` has; 0 if there is none. */
@@ -75,10 +65,7 @@ static size_t printable_bytes(const char *text) {
 }
 
 char *wh_style_printable(const char *text) {
-    char *copy = malloc(4 * strlen(text) + 1);
-    if (!copy) {
-        abort();
-    }
+    char *copy = wh_memory_need(malloc(4 * strlen(text) + 1));
     char *to = copy;
     while (*text != '\0') {
         const size_t bytes = printable_bytes(text);

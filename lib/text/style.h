@@ -34,14 +34,12 @@ __attribute__((format(printf, 4, 5))) void wh_style_print(const wh_style_t *styl
                                                           const char *format, ...);
 
 /* Characters of the style: in UTF-8, or what stands for them in ASCII. */
-const char *wh_style_tick(const wh_style_t *style);
-const char *wh_style_cross(const wh_style_t *style);
-const char *wh_style_arrow(const wh_style_t *style);
-const char *wh_style_degree(const wh_style_t *style);
+typedef enum { WH_GLYPH_TICK, WH_GLYPH_CROSS, WH_GLYPH_ARROW, WH_GLYPH_DEGREE } wh_glyph_t;
+const char *wh_style_glyph(const wh_style_t *style, wh_glyph_t glyph);
 
 /* A copy in which every byte that the locale cannot print, line ends and escapes included, stands as \xNN, so
- * that a name or a message can neither break a table nor steer a terminal. The caller frees it. If there is
- * no memory, the program ends. */
+ * that a name or a message can neither break a table nor steer a terminal. The caller frees it. Ends the
+ * program if out of memory. */
 char *wh_style_printable(const char *text);
 
 /* Prints a text so. */

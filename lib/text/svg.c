@@ -10,18 +10,10 @@ static bool is_noncharacter(const char *text, size_t bytes) {
 }
 
 static const char *entity_of(char character) {
-    switch (character) {
-    case '&':
-        return "&amp;";
-    case '<':
-        return "&lt;";
-    case '>':
-        return "&gt;";
-    case '"':
-        return "&quot;";
-    default:
-        return NULL;
-    }
+    static const char characters[] = "&<>\"";
+    static const char *const entities[] = {"&amp;", "&lt;", "&gt;", "&quot;"};
+    const char *found = strchr(characters, character);
+    return found && *found != '\0' ? entities[found - characters] : NULL;
 }
 
 void wh_svg_text(FILE *out, const char *text) {

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "array.h"
+
 /* The bytes of the character that a byte begins: 0 for those that begin none. */
 static size_t length_by(unsigned char lead) {
     if (lead < 0x80) {
@@ -11,31 +13,19 @@ static size_t length_by(unsigned char lead) {
     return lead < 0xC2 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF5 ? 4 : 0;
 }
 
-/* After some leads the second byte has a smaller range: the rest would be longer than needed, a surrogate or
- * too high. */
-static bool may_follow(unsigned char lead, unsigned char second) {
-    switch (lead) {
-    case 0xE0:
-        return second >= 0xA0;
-    case 0xED:
-        return second < 0xA0;
-    case 0xF0:
-        return second >= 0x90;
-    case 0xF4:
-        return second < 0x90;
-    default:
-        return true;
-    }
-}
-
 size_t wh_utf8_bytes(const char *text) {
+    /* What a character of so many bytes is at least; below, it would be longer than needed. */
+    static const unsigned long least[] = {0, 0, 0x80, 0x800, 0x10000};
     const size_t length = length_by((unsigned char)text[0]);
+    unsigned long character = length < 2 ? 0 : (unsigned char)text[0] & (0x7FU >> length);
     for (size_t i = 1; i < length; ++i) {
         if (!wh_utf8_goes_on(text[i])) {
             return 0;
         }
+        character = character << 6 | ((unsigned char)text[i] & 0x3FU);
     }
-    return length < 2 || may_follow((unsigned char)text[0], (unsigned char)text[1]) ? length : 0;
+    const bool is_surrogate = character >= 0xD800 && character < 0xE000;
+    return character < least[length] || is_surrogate || character > 0x10FFFF ? 0 : length;
 }
 
 size_t wh_utf8_count(const char *text) {
@@ -65,10 +55,7 @@ void wh_utf8_clip(char *to, size_t size, const char *from) {
 }
 
 char *wh_utf8_repaired(const char *text) {
-    char *repaired = malloc(3 * strlen(text) + 1);
-    if (!repaired) {
-        abort();
-    }
+    char *repaired = wh_memory_need(malloc(3 * strlen(text) + 1));
     char *to = repaired;
     while (*text != '\0') {
         const size_t bytes = wh_utf8_bytes(text);

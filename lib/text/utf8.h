@@ -27,8 +27,8 @@ size_t wh_utf8_cut(const char *text, size_t length);
  * "...". */
 void wh_utf8_clip(char *to, size_t size, const char *from);
 
-/* A copy with U+FFFD for each byte that is no UTF-8. The caller frees it. If there is no memory, the program
- * ends. */
+/* A copy with U+FFFD for each byte that is no UTF-8. The caller frees it. Ends the program if out of
+ * memory. */
 char *wh_utf8_repaired(const char *text);
 
 #endif

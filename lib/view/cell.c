@@ -28,8 +28,8 @@
 /* ---------- colours * Those of the report's page, in light, but less transparent: there are no edges here */
 
 static wh_view_colour_t colour_of(uint32_t hex, float opacity) {
-    const wh_view_colour_t colour = {(float)(hex >> 16 & 0xffU) / 255, (float)(hex >> 8 & 0xffU) / 255,
-                                     (float)(hex & 0xffU) / 255, opacity};
+    const wh_view_colour_t colour = {{(float)(hex >> 16 & 0xffU) / 255, (float)(hex >> 8 & 0xffU) / 255,
+                                      (float)(hex & 0xffU) / 255, opacity}};
     return colour;
 }
 
@@ -47,17 +47,14 @@ static wh_view_colour_t colour_of_part(const wh_part_t *part) {
     return colour_of(wh_ink_looks[ink].shown.light, opacities[ink]);
 }
 
-static float mixed(float from, float to) {
-    return from + PALER * (to - from);
-}
-
 /* The colour of a held wafer: paler than its gripper's. */
 static wh_view_colour_t colour_of_held(size_t gripper) {
-    const wh_view_colour_t pure = colour_of_gripper(gripper);
     const wh_view_colour_t page = colour_of(wh_ink_stage.light, 1);
-    const wh_view_colour_t pale = {mixed(pure.red, page.red), mixed(pure.green, page.green),
-                                   mixed(pure.blue, page.blue), 1};
-    return pale;
+    wh_view_colour_t colour = colour_of_gripper(gripper);
+    for (size_t c = 0; c < 3; ++c) {
+        colour.rgba[c] += PALER * (page.rgba[c] - colour.rgba[c]);
+    }
+    return colour;
 }
 
 /* ------------------------------------------------------------------------------------------------- bodies */
@@ -73,23 +70,17 @@ static size_t plain_bytes(const char *text) {
 }
 
 /* Writes other characters as %2F and the like. '%' is one of them, so two names never become the same. */
-static void write_name(const char *name, char written[WRITTEN_SIZE]) {
+static void write_name(const char *name, char *written) {
     static const char digits[] = "0123456789ABCDEF";
-    char *to = written;
     while (*name != '\0') {
         const size_t plain = plain_bytes(name);
-        if (plain > 0) {
-            memcpy(to, name, plain);
-            to += plain;
-            name += plain;
-        } else {
-            *to++ = '%';
-            *to++ = digits[(unsigned char)*name >> 4U];
-            *to++ = digits[(unsigned char)*name & 15U];
-            ++name;
-        }
+        const char coded[3] = {'%', digits[(unsigned char)*name >> 4U], digits[(unsigned char)*name & 15U]};
+        const size_t size = plain > 0 ? plain : sizeof coded;
+        memcpy(written, plain > 0 ? name : coded, size);
+        written += size;
+        name += plain > 0 ? plain : 1;
     }
-    *to = '\0';
+    *written = '\0';
 }
 
 static char *path_of(const char *folder, const char *name) {
@@ -99,7 +90,7 @@ static char *path_of(const char *folder, const char *name) {
     }
     char *path = NULL;
     if (asprintf(&path, "%s%s%s", folder, name ? "::" : "", written) < 0) {
-        abort();
+        wh_memory_out();
     }
     return path;
 }
@@ -193,10 +184,7 @@ static void add_mark(wh_view_cell_t *cell) {
     wh_sin_cos(cell->layout->notch, &sine, &cosine);
     const double from_middle = disc.half.x - 1.5 * width + MARK;
     mark.half = wh_vec3(1.5 * width, width / 2, disc.half.z + MARK);
-    mark.body_from_shape.R = wh_mat3_identity();
-    mark.body_from_shape.R.m[0][0] = mark.body_from_shape.R.m[1][1] = cosine;
-    mark.body_from_shape.R.m[0][1] = -sine;
-    mark.body_from_shape.R.m[1][0] = sine;
+    mark.body_from_shape.R = wh_mat3_turn_z(sine, cosine);
     mark.body_from_shape.r.x = from_middle * cosine;
     mark.body_from_shape.r.y = from_middle * sine;
     add_shape(cell, &mark, &mark.body_from_shape, &colour);
@@ -260,23 +248,16 @@ static void place_robot(wh_view_cell_t *cell, const wh_pose_t base_from_grippers
     }
 }
 
-static void place_wafers(wh_view_cell_t *cell, const wh_wafer_t wafers[]) {
-    for (size_t w = 0; w < cell->layout->wafer_count; ++w) {
-        place(cell, cell->wafers + w, &wafers[w].base_from_wafer);
-    }
-}
-
-static void take_covers_away(wh_view_cell_t *cell) {
+/* Wafers and, where some may be held, their covers. */
+static void place_wafers(wh_view_cell_t *cell, const wh_wafer_t wafers[], bool may_be_held) {
     wh_pose_t away = wh_pose_identity();
     away.r.z = -WH_VIEW_AWAY;
     for (size_t g = 0; g < cell->layout->machine.gripper_count; ++g) {
         place(cell, cell->covers + g, &away);
     }
-}
-
-static void cover_held(wh_view_cell_t *cell, const wh_wafer_t wafers[]) {
     for (size_t w = 0; w < cell->layout->wafer_count; ++w) {
-        if (wafers[w].holder != WH_NONE) {
+        place(cell, cell->wafers + w, &wafers[w].base_from_wafer);
+        if (may_be_held && wafers[w].holder != WH_NONE) {
             place(cell, cell->covers + (size_t)wafers[w].holder, &wafers[w].base_from_wafer);
         }
     }
@@ -285,12 +266,9 @@ static void cover_held(wh_view_cell_t *cell, const wh_wafer_t wafers[]) {
 void wh_view_cell_move(wh_view_cell_t *cell, const wh_view_look_t *look) {
     cell->draw.timestamp = look->utime / 1000;
     place_robot(cell, look->base_from_grippers);
-    place_wafers(cell, look->wafers);
-    take_covers_away(cell);
-    cover_held(cell, look->wafers);
+    place_wafers(cell, look->wafers, true);
 }
 
-/* No cover is placed: before a run nobody holds a wafer. */
 void wh_view_cell_rest(wh_view_cell_t *cell) {
     const wh_layout_t *layout = cell->layout;
     wh_real_t axes[WH_AXES] = {0};
@@ -300,8 +278,7 @@ void wh_view_cell_rest(wh_view_cell_t *cell) {
     wh_machine_grippers(&layout->machine, axes, base_from_grippers);
     cell->draw.timestamp = 0;
     place_robot(cell, base_from_grippers);
-    place_wafers(cell, layout->start);
-    take_covers_away(cell);
+    place_wafers(cell, layout->start, false);
 }
 
 void wh_view_cell_open(wh_view_cell_t *cell, const wh_layout_t *layout, wh_view_detail_t detail) {

@@ -8,7 +8,7 @@
  * wafer that is held gets its gripper's colour by a cover, "held::EE", a quarter of a millimetre larger all
  * around, which lies over it; one that covers nothing waits WH_VIEW_AWAY below the floor.
  *
- * Host code: aborts if out of memory. Nothing is allocated after wh_view_cell_open.
+ * Host code: ends the program if out of memory. Nothing is allocated after wh_view_cell_open.
  */
 #ifndef WH_VIEW_CELL_H
 #define WH_VIEW_CELL_H

@@ -10,14 +10,6 @@
 
 #define M_PER_MM 1e-3
 
-/* A hull's points and triangles. The message has one list after the other. */
-typedef struct {
-    float (*points)[3];
-    size_t point_count;
-    uint32_t *corners;
-    size_t corner_count;
-} triangles_t;
-
 void wh_view_put_pose(const wh_pose_t *pose, float position[3], float quaternion[4]) {
     double q[4];
     wh_quaternion_from_matrix(&pose->R, NULL, q);
@@ -54,48 +46,36 @@ static void put_round(waferhand_viewer_geometry *geometry, int8_t type, const wh
 /* -------------------------------------------------------------------------------------------------- hulls */
 
 /* The index of a point, which is added if it is new. A hull's faces share their corners. */
-static uint32_t index_of(triangles_t *triangles, const float at[3]) {
-    for (size_t i = 0; i < triangles->point_count; ++i) {
-        const float *point = triangles->points[i];
-        if (point[0] == at[0] && point[1] == at[1] && point[2] == at[2]) {
-            return (uint32_t)i;
+static size_t index_of(float (*points)[3], size_t *count, const float at[3]) {
+    for (size_t i = 0; i < *count; ++i) {
+        if (points[i][0] == at[0] && points[i][1] == at[1] && points[i][2] == at[2]) {
+            return i;
         }
     }
-    memcpy(triangles->points[triangles->point_count], at, sizeof triangles->points[0]);
-    return (uint32_t)triangles->point_count++;
+    memcpy(points[*count], at, sizeof points[0]);
+    return (*count)++;
 }
 
-static triangles_t triangles_of(const wh_convex_t *convex) {
-    const wh_pose_t here = wh_pose_identity();
-    wh_mesh_t mesh = {0};
-    triangles_t triangles = {0};
-    wh_mesh_add_hull(&mesh, convex, &here);
-    triangles.points = wh_array_new(mesh.vertex_count, sizeof *triangles.points);
-    triangles.corners = wh_array_new(mesh.index_count, sizeof *triangles.corners);
-    for (size_t i = 0; i < mesh.index_count; ++i) {
-        triangles.corners[triangles.corner_count++] = index_of(&triangles, mesh.vertices[mesh.indices[i]]);
+/* The message has the numbers of points and triangles, the points, and the triangles' corners. */
+static void put_triangles(waferhand_viewer_geometry *geometry, const wh_mesh_t *mesh) {
+    float(*points)[3] = wh_array_new(mesh->vertex_count, sizeof *points);
+    float *corners = wh_array_new(mesh->index_count, sizeof *corners);
+    const size_t triangles = mesh->index_count / 3;
+    size_t count = 0;
+    for (size_t i = 0; i < mesh->index_count; ++i) {
+        corners[i] = (float)index_of(points, &count, mesh->vertices[mesh->indices[i]]);
     }
-    wh_mesh_free(&mesh);
-    return triangles;
-}
-
-static void put_triangles(waferhand_viewer_geometry *geometry, const triangles_t *triangles) {
-    const size_t count = 2 + 3 * triangles->point_count + triangles->corner_count;
-    const size_t triangle_count = triangles->corner_count / 3;
-    float *to = wh_array_new(count, sizeof *to);
     geometry->type = WH_VIEW_TRIANGLES;
-    geometry->num_float_data = (int32_t)count;
-    geometry->float_data = to;
-    *to++ = (float)triangles->point_count;
-    *to++ = (float)triangle_count;
-    for (size_t i = 0; i < triangles->point_count; ++i) {
-        for (size_t axis = 0; axis < 3; ++axis) {
-            *to++ = (float)((double)triangles->points[i][axis] * M_PER_MM);
-        }
+    geometry->num_float_data = (int32_t)(2 + 3 * count + mesh->index_count);
+    geometry->float_data = wh_array_new((size_t)geometry->num_float_data, sizeof *geometry->float_data);
+    geometry->float_data[0] = (float)count;
+    geometry->float_data[1] = (float)triangles;
+    for (size_t i = 0; i < 3 * count; ++i) {
+        geometry->float_data[2 + i] = (float)((double)points[i / 3][i % 3] * M_PER_MM);
     }
-    for (size_t i = 0; i < triangles->corner_count; ++i) {
-        *to++ = (float)triangles->corners[i];
-    }
+    memcpy(geometry->float_data + 2 + 3 * count, corners, mesh->index_count * sizeof *corners);
+    free(points);
+    free(corners);
 }
 
 /* Draws the box around a mesh. The mesh need not lie around its shape's origin, so the pose moves. */
@@ -106,24 +86,23 @@ static void put_bounds(waferhand_viewer_geometry *geometry, const wh_convex_t *c
     const wh_vec3_t edges = wh_vec3_subtract(&high, &low);
     const wh_vec3_t sum = wh_vec3_add(&high, &low);
     const wh_vec3_t middle = wh_vec3_scale(0.5, &sum);
-    const wh_vec3_t turned = wh_mat3_transform(&pose->R, &middle);
-    pose->r = wh_vec3_add(&pose->r, &turned);
+    pose->r = wh_pose_point(pose, &middle);
     put_box(geometry, &edges);
 }
 
 static void put_hull(waferhand_viewer_geometry *geometry, const wh_convex_t *convex, bool as_box,
                      wh_pose_t *pose) {
-    triangles_t triangles = {0};
+    const wh_pose_t here = wh_pose_identity();
+    wh_mesh_t mesh = {0};
     if (!as_box) {
-        triangles = triangles_of(convex);
+        wh_mesh_add_hull(&mesh, convex, &here);
     }
-    if (triangles.corner_count > 0) {
-        put_triangles(geometry, &triangles);
+    if (mesh.index_count > 0) {
+        put_triangles(geometry, &mesh);
     } else {
         put_bounds(geometry, convex, pose);
     }
-    free(triangles.points);
-    free(triangles.corners);
+    wh_mesh_free(&mesh);
 }
 
 /* ------------------------------------------------------------------------------------------------- shapes */
@@ -149,10 +128,7 @@ void wh_view_geometry_make(const wh_convex_t *convex, const wh_pose_t *body_from
         break;
     }
     wh_view_put_pose(&pose, geometry->position, geometry->quaternion);
-    geometry->color[0] = colour->red;
-    geometry->color[1] = colour->green;
-    geometry->color[2] = colour->blue;
-    geometry->color[3] = colour->opacity;
+    memcpy(geometry->color, colour->rgba, sizeof geometry->color);
     geometry->string_data = wh_link_borrowed("");
 }
 

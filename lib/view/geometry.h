@@ -3,7 +3,7 @@
  * The viewer ends if a length is not above 0, or a quaternion's length differs from 1 by more than 1e-5. No
  * shape that wh_convex_validate passes yields either.
  *
- * Host code: aborts if out of memory.
+ * Host code: ends the program if out of memory.
  */
 #ifndef WH_VIEW_GEOMETRY_H
 #define WH_VIEW_GEOMETRY_H
@@ -14,7 +14,7 @@
 
 /* As a screen has it (sRGB), 0 to 1. */
 typedef struct {
-    float red, green, blue, opacity;
+    float rgba[4];
 } wh_view_colour_t;
 
 /* waferhand_viewer_geometry.type. */

@@ -28,7 +28,7 @@ void wh_gltf_open(wh_gltf_t *gltf) {
 
 static size_t append(json_t *list, json_t *value) {
     if (!value || json_array_append_new(list, value) != 0) {
-        abort();
+        wh_memory_out();
     }
     return json_array_size(list) - 1;
 }
@@ -83,10 +83,28 @@ static void set_bounds(wh_gltf_t *gltf, size_t accessor, const float *data, size
     (void)json_object_set_new(made, "max", list_of(high, width));
 }
 
-static size_t add_floats(wh_gltf_t *gltf, const float *data, size_t width, size_t count, int target) {
+/* `width` numbers of each of `count` items that are `stride` numbers long. */
+typedef struct {
+    const float *first;
+    size_t stride, width, count;
+    float scale;
+    bool has_bounds;
+} numbers_t;
+
+static size_t add_floats(wh_gltf_t *gltf, const numbers_t *of, int target) {
     static const char *const shapes[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
-    const size_t view = add_view(gltf, data, width * count * sizeof *data, target);
-    return add_accessor(gltf, view, TYPE_FLOAT, shapes[width], count);
+    const size_t count = of->width * of->count;
+    float *values = wh_array_new(count, sizeof *values);
+    for (size_t i = 0; i < count; ++i) {
+        values[i] = of->first[i / of->width * of->stride + i % of->width] * of->scale;
+    }
+    const size_t view = add_view(gltf, values, count * sizeof *values, target);
+    const size_t accessor = add_accessor(gltf, view, TYPE_FLOAT, shapes[of->width], of->count);
+    if (of->has_bounds) {
+        set_bounds(gltf, accessor, values, of->width, of->count);
+    }
+    free(values);
+    return accessor;
 }
 
 /* -------------------------------------------------------------------------------------- materials, meshes */
@@ -103,33 +121,16 @@ size_t wh_gltf_add_material(wh_gltf_t *gltf, const wh_ink_material_t *material) 
 
 static size_t add_indices(wh_gltf_t *gltf, const wh_mesh_t *mesh) {
     const size_t count = mesh->index_count;
-    size_t view;
-    if (mesh->vertex_count <= UINT16_MAX) {
-        uint16_t *narrow = wh_array_new(count, sizeof *narrow);
-        for (size_t i = 0; i < count; ++i) {
-            narrow[i] = (uint16_t)mesh->indices[i];
-        }
-        view = add_view(gltf, narrow, count * sizeof *narrow, TARGET_INDICES);
-        free(narrow);
-        return add_accessor(gltf, view, TYPE_USHORT, "SCALAR", count);
+    const bool is_narrow = mesh->vertex_count <= UINT16_MAX;
+    uint16_t *narrow = wh_array_new(count, sizeof *narrow);
+    for (size_t i = 0; i < count; ++i) {
+        narrow[i] = (uint16_t)mesh->indices[i];
     }
-    view = add_view(gltf, mesh->indices, count * sizeof *mesh->indices, TARGET_INDICES);
-    return add_accessor(gltf, view, TYPE_UINT, "SCALAR", count);
-}
-
-/* Three numbers of each vertex, from `first` on: its place, in m, or its normal. */
-static size_t add_attribute(wh_gltf_t *gltf, const wh_mesh_t *mesh, size_t first) {
-    const bool is_place = first == 0;
-    float *values = wh_array_new(3 * mesh->vertex_count, sizeof *values);
-    for (size_t i = 0; i < 3 * mesh->vertex_count; ++i) {
-        values[i] = mesh->vertices[i / 3][first + i % 3] * (is_place ? (float)WH_GLTF_METRES : 1);
-    }
-    const size_t accessor = add_floats(gltf, values, 3, mesh->vertex_count, TARGET_VERTICES);
-    if (is_place) {
-        set_bounds(gltf, accessor, values, 3, mesh->vertex_count);
-    }
-    free(values);
-    return accessor;
+    const size_t view = is_narrow
+                            ? add_view(gltf, narrow, count * sizeof *narrow, TARGET_INDICES)
+                            : add_view(gltf, mesh->indices, count * sizeof *mesh->indices, TARGET_INDICES);
+    free(narrow);
+    return add_accessor(gltf, view, is_narrow ? TYPE_USHORT : TYPE_UINT, "SCALAR", count);
 }
 
 size_t wh_gltf_add_mesh(wh_gltf_t *gltf, const char *name, const wh_gltf_primitive_t primitives[],
@@ -137,8 +138,11 @@ size_t wh_gltf_add_mesh(wh_gltf_t *gltf, const char *name, const wh_gltf_primiti
     json_t *list = json_array();
     for (size_t i = 0; i < count; ++i) {
         const wh_mesh_t *mesh = primitives[i].mesh;
-        const size_t place = add_attribute(gltf, mesh, 0);
-        const size_t normal = add_attribute(gltf, mesh, 3);
+        const float *vertices = mesh->vertices[0];
+        const numbers_t places = {vertices, 6, 3, mesh->vertex_count, (float)WH_GLTF_METRES, true};
+        const numbers_t normals = {vertices + 3, 6, 3, mesh->vertex_count, 1, false};
+        const size_t place = add_floats(gltf, &places, TARGET_VERTICES);
+        const size_t normal = add_floats(gltf, &normals, TARGET_VERTICES);
         (void)append(list, json_pack("{s:{s:o, s:o}, s:o, s:o}", "attributes", "POSITION", index_of(place),
                                      "NORMAL", index_of(normal), "indices", index_of(add_indices(gltf, mesh)),
                                      "material", index_of(primitives[i].material)));
@@ -159,10 +163,8 @@ size_t wh_gltf_add_node(wh_gltf_t *gltf, const char *name, size_t mesh, const wh
     if (mesh != SIZE_MAX) {
         (void)json_object_set_new(node, "mesh", index_of(mesh));
     }
-    if (kind) {
-        (void)json_object_set_new(node, "extras",
-                                  json_pack("{s:s, s:o}", "kind", kind, "index", index_of(index)));
-    }
+    (void)json_object_set_new(node, "extras",
+                              json_pack("{s:s, s:o}", "kind", kind, "index", index_of(index)));
     const size_t added = append(gltf->nodes, node);
     (void)append(gltf->children, index_of(added));
     return added;
@@ -176,12 +178,14 @@ static void add_channel(wh_gltf_t *gltf, size_t node, const char *path, size_t i
                                            "node", index_of(node), "path", path));
 }
 
-void wh_gltf_add_motion(wh_gltf_t *gltf, size_t node, const float times[], const float (*places)[3],
-                        const float (*turns)[4], size_t count) {
-    const size_t input = add_floats(gltf, times, 1, count, 0);
-    set_bounds(gltf, input, times, 1, count);
-    add_channel(gltf, node, "translation", input, add_floats(gltf, &places[0][0], 3, count, 0));
-    add_channel(gltf, node, "rotation", input, add_floats(gltf, &turns[0][0], 4, count, 0));
+void wh_gltf_add_motion(wh_gltf_t *gltf, size_t node, const wh_gltf_key_t keys[], size_t count) {
+    enum { STRIDE = sizeof keys[0] / sizeof(float) };
+    const numbers_t times = {&keys->time, STRIDE, 1, count, 1, true};
+    const numbers_t places = {keys->place, STRIDE, 3, count, 1, false};
+    const numbers_t turns = {keys->turn, STRIDE, 4, count, 1, false};
+    const size_t input = add_floats(gltf, &times, 0);
+    add_channel(gltf, node, "translation", input, add_floats(gltf, &places, 0));
+    add_channel(gltf, node, "rotation", input, add_floats(gltf, &turns, 0));
 }
 
 /* ---------------------------------------------------------------------------------------------- finishing */
@@ -201,14 +205,11 @@ static void set_list(json_t *root, const char *key, json_t *list) {
     json_decref(list);
 }
 
-static json_t *cell_node(json_t *children) {
+json_t *wh_gltf_finish(wh_gltf_t *gltf, const char *name, const char *generator) {
     /* From z up to y up: -90 degrees about x. */
     static const double turn[4] = {-0.70710678118654752, 0, 0, 0.70710678118654752};
-    return json_pack("{s:s, s:o, s:o}", "name", "cell", "rotation", list_of(turn, 4), "children", children);
-}
-
-json_t *wh_gltf_finish(wh_gltf_t *gltf, const char *name, const char *generator) {
-    const size_t cell = append(gltf->nodes, cell_node(gltf->children));
+    const size_t cell = append(gltf->nodes, json_pack("{s:s, s:o, s:o}", "name", "cell", "rotation",
+                                                      list_of(turn, 4), "children", gltf->children));
     json_t *root =
         json_pack("{s:{s:s, s:s}, s:i, s:[{s:o, s:[o]}]}", "asset", "version", "2.0", "generator", generator,
                   "scene", 0, "scenes", "name", wh_json_text(name), "nodes", index_of(cell));

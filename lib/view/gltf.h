@@ -1,7 +1,7 @@
 /* A glTF 2.0 asset being built: accessors, meshes, materials, nodes and one animation over one buffer. Meshes
  * and poses come in mm and are written in m.
  *
- * Host code: aborts if out of memory.
+ * Host code: ends the program if out of memory.
  */
 #ifndef WH_VIEW_GLTF_H
 #define WH_VIEW_GLTF_H
@@ -34,14 +34,20 @@ size_t wh_gltf_add_material(wh_gltf_t *gltf, const wh_ink_material_t *material);
 size_t wh_gltf_add_mesh(wh_gltf_t *gltf, const char *name, const wh_gltf_primitive_t primitives[],
                         size_t count);
 
-/* Adds a node at a place in the cell, mm; `mesh` may be SIZE_MAX: none. `kind` and `index` (null: none) go to
+/* Adds a node at a place in the cell, mm; `mesh` may be SIZE_MAX: none. `kind` and `index` go to
  * its extras, because a name need not be unique. */
 size_t wh_gltf_add_node(wh_gltf_t *gltf, const char *name, size_t mesh, const wh_pose_t *base_from_node,
                         const char *kind, size_t index);
 
-/* The node moves: places (m) and turns (quaternions) at rising times in s. */
-void wh_gltf_add_motion(wh_gltf_t *gltf, size_t node, const float times[], const float (*places)[3],
-                        const float (*turns)[4], size_t count);
+/* Where a node is at a time. */
+typedef struct {
+    float time;     /* s */
+    float place[3]; /* m */
+    float turn[4];  /* a quaternion */
+} wh_gltf_key_t;
+
+/* The node moves from key to key, at rising times. */
+void wh_gltf_add_motion(wh_gltf_t *gltf, size_t node, const wh_gltf_key_t keys[], size_t count);
 
 /* The asset, to be released by the caller: its nodes hang on one called "cell", which turns z up to glTF's y
  * up. Frees what was collected. */

@@ -33,15 +33,11 @@ typedef struct {
 
 /* ------------------------------------------------------------------------------------------------- points */
 
-static bool is_same(const wh_vec3_t *a, const wh_vec3_t *b) {
-    const wh_vec3_t way = wh_vec3_subtract(a, b);
-    return !(wh_vec3_dot(&way, &way) > 0);
-}
-
 static void take(hull_t *hull, const wh_vec3_t *point) {
     bool is_new = hull->count < MOST_POINTS;
     for (size_t i = 0; is_new && i < hull->count; ++i) {
-        is_new = !is_same(&hull->points[i], point);
+        const wh_vec3_t way = wh_vec3_subtract(&hull->points[i], point);
+        is_new = wh_vec3_dot(&way, &way) > 0;
     }
     if (is_new) {
         hull->points[hull->count++] = *point;
@@ -110,16 +106,6 @@ static bool is_horizon(const hull_t *hull, size_t faces, size_t from, size_t to)
     return true;
 }
 
-static void drop_seen(hull_t *hull) {
-    size_t kept = 0;
-    for (size_t i = 0; i < hull->face_count; ++i) {
-        if (!hull->faces[i].is_seen) {
-            hull->faces[kept++] = hull->faces[i];
-        }
-    }
-    hull->face_count = kept;
-}
-
 /* Removes the faces that the point sees. New faces join the point to the edges around them. */
 static void add_point(hull_t *hull, size_t point) {
     const size_t faces = hull->face_count;
@@ -136,7 +122,13 @@ static void add_point(hull_t *hull, size_t point) {
             }
         }
     }
-    drop_seen(hull);
+    size_t kept = 0;
+    for (size_t i = 0; i < hull->face_count; ++i) {
+        if (!hull->faces[i].is_seen) {
+            hull->faces[kept++] = hull->faces[i];
+        }
+    }
+    hull->face_count = kept;
 }
 
 /* -------------------------------------------------------------------------------------------------- start */
@@ -193,9 +185,7 @@ void wh_mesh_add_hull(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_
     for (size_t i = 0; i < hull->face_count; ++i) {
         wh_vec3_t at[3];
         for (size_t corner = 0; corner < 3; ++corner) {
-            const wh_vec3_t turned =
-                wh_mat3_transform(&body_from_shape->R, &hull->points[hull->faces[i].corners[corner]]);
-            at[corner] = wh_vec3_add(&turned, &body_from_shape->r);
+            at[corner] = wh_pose_point(body_from_shape, &hull->points[hull->faces[i].corners[corner]]);
         }
         wh_mesh_add_triangle(mesh, &at[0], &at[1], &at[2]);
     }

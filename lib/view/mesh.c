@@ -44,15 +44,9 @@ void wh_mesh_add_triangle(wh_mesh_t *mesh, const wh_vec3_t *a, const wh_vec3_t *
                 add_vertex(mesh, c, &normal));
 }
 
-static wh_vec3_t placed(const wh_pose_t *pose, double x, double y, double z) {
-    const wh_vec3_t point = {x, y, z};
-    const wh_vec3_t turned = wh_mat3_transform(&pose->R, &point);
-    return wh_vec3_add(&turned, &pose->r);
-}
-
 static uint32_t add_placed(wh_mesh_t *mesh, const wh_pose_t *pose, const wh_vec3_t *r,
                            const wh_vec3_t *normal) {
-    const wh_vec3_t at = placed(pose, r->x, r->y, r->z);
+    const wh_vec3_t at = wh_pose_point(pose, r);
     const wh_vec3_t turned = wh_mat3_transform(&pose->R, normal);
     return add_vertex(mesh, &at, &turned);
 }
@@ -174,24 +168,18 @@ typedef struct {
 /* The rim's corners, counter-clockwise: from one side of the notch around the wafer to the other, then the
  * notch's tip. */
 static size_t draw_rim(double radius, double notch, double depth, rim_t rim[RIM_CORNERS + 1]) {
-    const double half =
-        depth > 0 ? depth / radius : 0; /* of a notch of 90 degrees: as wide as deep on each side */
+    const int notches = depth > 0 ? 1 : 0;
+    /* Of a notch of 90 degrees: as wide as deep on each side. */
+    const double half = notches * depth / radius;
     const double whole = 2 * WH_PI - 2 * half;
-    const int count = RIM_CORNERS;
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < RIM_CORNERS + notches; ++i) {
+        const bool is_tip = i == RIM_CORNERS;
+        const double out = is_tip ? radius - depth : radius;
         double sine, cosine;
-        wh_sin_cos(notch + half + whole * i / (depth > 0 ? count - 1 : count), &sine, &cosine);
-        rim[i].x = radius * cosine;
-        rim[i].y = radius * sine;
+        wh_sin_cos(is_tip ? notch : notch + half + whole * i / (RIM_CORNERS - notches), &sine, &cosine);
+        rim[i] = (rim_t){out * cosine, out * sine};
     }
-    if (!(depth > 0)) {
-        return RIM_CORNERS;
-    }
-    double sine, cosine;
-    wh_sin_cos(notch, &sine, &cosine);
-    rim[count].x = (radius - depth) * cosine;
-    rim[count].y = (radius - depth) * sine;
-    return RIM_CORNERS + 1;
+    return (size_t)(RIM_CORNERS + notches);
 }
 
 /* A fan about the middle. */

@@ -1,6 +1,6 @@
 /* Triangles of a cell's parts, for looking at: mm in the frame of the body that they are part of.
  *
- * Host code: aborts if out of memory.
+ * Host code: ends the program if out of memory.
  */
 #ifndef WH_VIEW_MESH_H
 #define WH_VIEW_MESH_H

@@ -12,17 +12,24 @@
 
 /* Keyframes being gathered. */
 typedef struct {
-    float *times;
-    float (*places)[3]; /* m */
-    float (*turns)[4];
-    size_t count, time_capacity, place_capacity, turn_capacity;
+    wh_gltf_key_t *keys;
+    size_t count, capacity;
     double last[4]; /* the last quaternion */
 } keyframes_t;
 
-/* Poses of grippers and links, on straight lines from one to the next. */
+/* A node's meshes, one for each ink, while its parts are gathered. */
 typedef struct {
+    wh_mesh_t inks[WH_INKS];
+} body_t;
+
+typedef struct {
+    const wh_signals_t *signals;
+    const wh_layout_t *layout;
+    wh_gltf_t gltf;
+    bool animated;
+    /* Poses of grippers and links where they are animated, on straight lines from one to the next. */
     wh_thin_t grippers[WH_GRIPPERS], links[WH_SIGNALS_LINKS];
-} paths_t;
+} scene_t;
 
 /* Tolerances to begin with, and the number of points beyond which they grow, for grippers and for links. */
 #define PATHS_MM 0.05
@@ -34,68 +41,55 @@ typedef struct {
 
 static void add_key(keyframes_t *motion, double seconds, const wh_vec3_t *r, const double q[4]) {
     const size_t i = motion->count;
-    motion->times = wh_array_grow(motion->times, i, &motion->time_capacity, sizeof *motion->times);
-    motion->places = wh_array_grow(motion->places, i, &motion->place_capacity, sizeof *motion->places);
-    motion->turns = wh_array_grow(motion->turns, i, &motion->turn_capacity, sizeof *motion->turns);
+    motion->keys = wh_array_grow(motion->keys, i, &motion->capacity, sizeof *motion->keys);
     /* Times must rise, and two slices may be the same time as a float. */
-    if (i > 0 && !((float)seconds > motion->times[i - 1])) {
+    if (i > 0 && !((float)seconds > motion->keys[i - 1].time)) {
         return;
     }
-    motion->times[i] = (float)seconds;
-    motion->places[i][0] = (float)(WH_GLTF_METRES * r->x);
-    motion->places[i][1] = (float)(WH_GLTF_METRES * r->y);
-    motion->places[i][2] = (float)(WH_GLTF_METRES * r->z);
-    for (size_t c = 0; c < 4; ++c) {
-        motion->turns[i][c] = (float)q[c];
-    }
+    motion->keys[i] = (wh_gltf_key_t){
+        (float)seconds,
+        {(float)(WH_GLTF_METRES * r->x), (float)(WH_GLTF_METRES * r->y), (float)(WH_GLTF_METRES * r->z)},
+        {(float)q[0], (float)q[1], (float)q[2], (float)q[3]}};
     ++motion->count;
 }
 
 /* -------------------------------------------------------------------------------------------------- paths */
 
-typedef struct {
-    const wh_signals_t *signals;
-    paths_t *paths;
-} tracing_t;
-
 static void add_places(void *user, int64_t slice) {
-    const tracing_t *tracing = user;
-    const wh_signals_t *signals = tracing->signals;
+    scene_t *scene = user;
+    const wh_signals_t *signals = scene->signals;
     wh_pose_t links[WH_SIGNALS_LINKS];
     wh_pose_t gripper;
     for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
         wh_signals_gripper(signals, g, slice, &gripper);
-        wh_thin_add_pose(&tracing->paths->grippers[g], slice, &gripper);
+        wh_thin_add_pose(&scene->grippers[g], slice, &gripper);
     }
     if (wh_signals_links(signals, slice, links)) {
         for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
-            wh_thin_add_pose(&tracing->paths->links[i], slice, &links[i]);
+            wh_thin_add_pose(&scene->links[i], slice, &links[i]);
         }
     }
 }
 
-static void for_each_path(paths_t *paths, void (*act)(wh_thin_t *path)) {
+static void for_each_path(scene_t *scene, void (*act)(wh_thin_t *path)) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        act(&paths->grippers[g]);
+        act(&scene->grippers[g]);
     }
     for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
-        act(&paths->links[i]);
+        act(&scene->links[i]);
     }
 }
 
 /* Cost: about 1 us for each place of wh_signals_walk. */
-static paths_t paths_of_signals(const wh_signals_t *signals) {
-    paths_t paths;
-    tracing_t tracing = {signals, &paths};
+static void trace_paths(scene_t *scene) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        wh_thin_open(&paths.grippers[g], 3, PATHS_MM, PATHS_RAD, PATHS_POINTS);
+        wh_thin_open(&scene->grippers[g], 3, PATHS_MM, PATHS_RAD, PATHS_POINTS);
     }
     for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
-        wh_thin_open(&paths.links[i], 3, PATHS_LINK_MM, PATHS_LINK_RAD, PATHS_LINK_POINTS);
+        wh_thin_open(&scene->links[i], 3, PATHS_LINK_MM, PATHS_LINK_RAD, PATHS_LINK_POINTS);
     }
-    wh_signals_walk(signals, add_places, &tracing);
-    for_each_path(&paths, wh_thin_finish);
-    return paths;
+    wh_signals_walk(scene->signals, add_places, scene);
+    for_each_path(scene, wh_thin_finish);
 }
 
 /* ---------------------------------------------------------------------------------------------- keyframes */
@@ -174,7 +168,8 @@ static void add_hold(keyframes_t *motion, const wh_signals_t *signals, const wh_
 }
 
 /* While a wafer is held it moves with its gripper, with more keyframes where that turns. */
-static keyframes_t keyframes_of_wafer(const wh_signals_t *signals, const paths_t *paths, int32_t wafer) {
+static keyframes_t keyframes_of_wafer(const scene_t *scene, int32_t wafer) {
+    const wh_signals_t *signals = scene->signals;
     keyframes_t motion = {0};
     const wh_stay_t *stay = NULL;
     for (size_t i = 0; i <= signals->stay_count; ++i) {
@@ -184,7 +179,7 @@ static keyframes_t keyframes_of_wafer(const wh_signals_t *signals, const paths_t
         }
         const int64_t end = over ? signals->last : signals->stays[i].slice;
         if (stay && stay->holder != WH_NONE) {
-            add_hold(&motion, signals, &paths->grippers[stay->holder], stay, end);
+            add_hold(&motion, signals, &scene->grippers[stay->holder], stay, end);
         } else if (stay) {
             add_pose(&motion, signals, (double)stay->slice, &stay->pose);
             add_pose(&motion, signals, (double)end, &stay->pose);
@@ -205,49 +200,23 @@ static bool differ(const float a[], const float b[], size_t count) {
 }
 
 static bool rests(const keyframes_t *motion) {
-    for (size_t i = 1; i < motion->count; ++i) {
-        if (differ(motion->places[i], motion->places[0], 3) ||
-            differ(motion->turns[i], motion->turns[0], 4)) {
-            return false;
-        }
+    bool same = true;
+    for (size_t i = 1; same && i < motion->count; ++i) {
+        same = !differ(motion->keys[i].place, motion->keys->place, 3) &&
+               !differ(motion->keys[i].turn, motion->keys->turn, 4);
     }
-    return true;
+    return same;
 }
 
 /* Moves the node by the keyframes unless it rests, and frees them. */
 static void move_node(const keyframes_t *motion, wh_gltf_t *gltf, size_t node) {
     if (!rests(motion)) {
-        const float(*places)[3] = (const float(*)[3])motion->places;
-        const float(*turns)[4] = (const float(*)[4])motion->turns;
-        wh_gltf_add_motion(gltf, node, motion->times, places, turns, motion->count);
+        wh_gltf_add_motion(gltf, node, motion->keys, motion->count);
     }
-    free(motion->times);
-    free(motion->places);
-    free(motion->turns);
+    free(motion->keys);
 }
-
-/* -------------------------------------------------------------------------------------------------- nodes */
-
-/* A node's meshes, one for each ink, while its parts are gathered. */
-typedef struct {
-    wh_mesh_t inks[WH_INKS];
-} body_t;
-
-typedef struct {
-    const wh_signals_t *signals;
-    const wh_layout_t *layout;
-    wh_gltf_t gltf;
-    paths_t paths; /* of what moves, where it is animated */
-    bool animated;
-} scene_t;
 
 /* -------------------------------------------------------------------------------------------------- parts */
-
-static void add_part(body_t *body, const wh_part_t *part, const wh_pose_t *base_from_body) {
-    const wh_pose_t pose = base_from_body ? wh_pose_relative(base_from_body, &part->convex.body_from_shape)
-                                          : part->convex.body_from_shape;
-    wh_mesh_add_convex(&body->inks[wh_ink_of(part)], &part->convex, &pose);
-}
 
 /* Adds all parts of some kinds with this owner. */
 static void add_parts(const scene_t *scene, body_t *body, uint32_t kinds, int32_t owner,
@@ -256,7 +225,9 @@ static void add_parts(const scene_t *scene, body_t *body, uint32_t kinds, int32_
     for (size_t i = 0; i < world->part_count; ++i) {
         const wh_part_t *part = &world->parts[i];
         if ((kinds >> (unsigned)part->kind & 1U) != 0 && part->owner == owner) {
-            add_part(body, part, base_from_body);
+            const wh_pose_t *at = &part->convex.body_from_shape;
+            const wh_pose_t pose = base_from_body ? wh_pose_relative(base_from_body, at) : *at;
+            wh_mesh_add_convex(&body->inks[wh_ink_of(part)], &part->convex, &pose);
         }
     }
 }
@@ -321,7 +292,7 @@ static void add_links(scene_t *scene) {
     for (size_t i = 0; is_there && i < WH_SIGNALS_LINKS; ++i) {
         body_t body = {0};
         add_parts(scene, &body, 1U << WH_PART_ARM, (int32_t)(WH_ARM_LIFT + i), NULL);
-        add_moving(scene, &poses[i], &scene->paths.links[i], &body, wh_signals_link_names[i], "link", i);
+        add_moving(scene, &poses[i], &scene->links[i], &body, wh_signals_link_names[i], "link", i);
     }
 }
 
@@ -332,7 +303,7 @@ static void add_grippers(scene_t *scene) {
         body_t body = {0};
         wh_signals_gripper(scene->signals, g, scene->signals->first, &pose);
         add_parts(scene, &body, 1U << WH_PART_BLADE | 1U << WH_PART_CHUCK, (int32_t)g, NULL);
-        add_moving(scene, &pose, &scene->paths.grippers[g], &body, layout->grippers[g].name, "gripper", g);
+        add_moving(scene, &pose, &scene->grippers[g], &body, layout->grippers[g].name, "gripper", g);
     }
 }
 
@@ -346,7 +317,7 @@ static void add_wafers(scene_t *scene) {
         const size_t node = wh_gltf_add_node(&scene->gltf, layout->wafers[w].name, mesh,
                                              &layout->start[w].base_from_wafer, "wafer", w);
         if (scene->animated) {
-            const keyframes_t motion = keyframes_of_wafer(scene->signals, &scene->paths, (int32_t)w);
+            const keyframes_t motion = keyframes_of_wafer(scene, (int32_t)w);
             move_node(&motion, &scene->gltf, node);
         }
     }
@@ -357,7 +328,7 @@ json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animat
     scene_t scene = {.signals = signals, .layout = signals->layout, .animated = animated};
     wh_gltf_open(&scene.gltf);
     if (animated) {
-        scene.paths = paths_of_signals(signals);
+        trace_paths(&scene);
     }
     for (size_t ink = 0; ink < WH_INKS; ++ink) {
         (void)wh_gltf_add_material(&scene.gltf, &wh_ink_materials[ink]);
@@ -367,6 +338,6 @@ json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animat
     add_links(&scene);
     add_grippers(&scene);
     add_wafers(&scene);
-    for_each_path(&scene.paths, wh_thin_close);
+    for_each_path(&scene, wh_thin_close);
     return wh_gltf_finish(&scene.gltf, name, "waferhand " WH_VERSION);
 }

@@ -14,7 +14,7 @@
 
 #include "../record/signals.h"
 
-/* The scene, to be released by the caller. Aborts if out of memory. */
+/* The scene, to be released by the caller. Ends the program if out of memory. */
 json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animated);
 
 #endif

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../text/array.h"
+
 /* Makes both messages, with as much of the cell as they have room for. */
 static bool fit(wh_viewer_t *view, const wh_layout_t *layout) {
     for (int detail = WH_VIEW_ALL; detail < WH_VIEW_DETAILS; ++detail) {
@@ -23,10 +25,9 @@ wh_status_t wh_viewer_open(wh_viewer_t *view, wh_node_t *node, const wh_layout_t
     if (!fit(view, layout)) {
         return WH_STATUS_BAD_CAPACITY;
     }
-    view->load = malloc((size_t)view->load_size);
-    view->draw = malloc((size_t)view->draw_room);
-    if (!view->load || !view->draw ||
-        waferhand_viewer_load_encode(view->load, 0, view->load_size, &view->cell.load) != view->load_size) {
+    view->load = wh_array_new((size_t)view->load_size, 1);
+    view->draw = wh_array_new((size_t)view->draw_room, 1);
+    if (waferhand_viewer_load_encode(view->load, 0, view->load_size, &view->cell.load) != view->load_size) {
         wh_viewer_close(view);
         return WH_STATUS_BAD_CAPACITY;
     }

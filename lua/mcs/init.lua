@@ -11,6 +11,15 @@ return function(native)
     return name == "layout" and native.fail("NO_LAYOUT", 'begin the script with cell "LAYOUT.lua"')
   end })
 
+  -- Raises the numbered error of that name. The numbers are kept, for a script may change wh.errors.
+  local fail, numbers = native.fail, {}
+  for name, entry in pairs(wh.errors) do
+    numbers[name] = entry.number
+  end
+  function native.fail(name, detail)
+    fail(numbers[name], detail)
+  end
+
   local lookup = native.module("mcs/lookup.lua")(native, wh.errors)
   local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), lookup)
   local queries = native.module("mcs/queries.lua")(native, lookup)

@@ -73,6 +73,17 @@ return function(native, prompt_commands, tokens, lookup)
     return command.run(read(name, command, list))
   end
 
+  -- What the cell complained of since `mark`, as text, or nil.
+  local function complaints_since(mark)
+    local texts = {}
+    for _, complaint in ipairs(native.complaints(mark)) do
+      local wafer = complaint.wafer and (' "%s"'):format(complaint.wafer) or ""
+      local height = complaint.height and (", %.3f mm high"):format(complaint.height) or ""
+      texts[#texts + 1] = complaint.kind .. wafer .. height
+    end
+    return texts[1] and table.concat(texts, "; ")
+  end
+
   local function answer(head, text, complaints)
     if text and text ~= "" then
       head = head .. " " .. text
@@ -84,7 +95,7 @@ return function(native, prompt_commands, tokens, lookup)
   return function(line)
     local begin = native.mark()
     local ok, result = pcall(perform, line)
-    local complaints = native.complaints(begin)
+    local complaints = complaints_since(begin)
     if ok then
       return 0, answer("OK", result, complaints)
     end

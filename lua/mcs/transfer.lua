@@ -24,10 +24,16 @@ return function(native, patterns, lookup, arm, targets)
     end
   end
 
+  -- Why the running command took nothing with it.
+  local function explain(gripper)
+    local wafer, reasons = native.closest(gripper)
+    return wafer and ("closest to %s: %s"):format(wafer, reasons) or "no wafer came near"
+  end
+
   -- What a GET's pattern found, as an error unless it is a wafer.
   local function judge_get(target, found)
     if found == "missing" then
-      native.fail("WAFER_MISSING", native.explain(target.gripper))
+      native.fail("WAFER_MISSING", explain(target.gripper))
     elseif found == "late" then
       native.fail("VACUUM_TIMEOUT", "a wafer lay on the pads")
     elseif found == "early" then
@@ -37,7 +43,7 @@ return function(native, patterns, lookup, arm, targets)
 
   local function judge_put(target, became)
     if became == "lost" then
-      native.fail("WAFER_LOST", native.explain(target.chuck))
+      native.fail("WAFER_LOST", explain(target.chuck))
     elseif became == "loose" then
       native.fail("VACUUM_TIMEOUT", "the wafer lies on the chuck")
     end

@@ -1,143 +1,197 @@
-/* A firmware test to copy: your controller moves axes and switches a valve; the library says who holds the
- * wafer, where it was put down, and why a pick failed. Needs libwaferhand.a and cmocka, nothing else.
- *
- * To make it yours: replace `controller` by your own registers, `gripper_pose` by your robot's kinematics,
- * and let `slice` be called wherever your firmware closes its control loop. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
+/* An example to copy: tests of a controller's firmware, which is controller.c. bench.h has the simulated machine around it. */
+#include "bench.h"
 
-#include <cmocka.h>
-#include <waferhand.h>
+/* -------------------------------------------------------------------------------------------------- good commands */
 
-/* The hardware as the firmware sees it: four axis registers (mm, degrees) and one valve output, 0 = vacuum
- * on. */
-enum { THETA, R, Z, YAW, AXES };
-static struct {
-    double axis[AXES];
-    int valve;
-} controller;
-
-/* The library's side: the arrays are yours, so nothing is ever allocated. */
-static wh_grasp_t table;
-static wh_wafer_t wafers[1];
-static wh_gripper_t grippers[1];
-static wh_event_t events[WH_EVENTS_PER_GRIPPER * 1];
-static wh_event_list_t list = {events, WH_EVENTS_PER_GRIPPER, 0};
-
-/* From axes to the gripper's pose: R out along theta, up to Z, the hand turned by theta + yaw, always level.
- */
-static wh_pose_t gripper_pose(void) {
-    const double degree = 3.14159265358979323846 / 180;
-    const double theta = controller.axis[THETA] * degree;
-    const double heading = (controller.axis[THETA] + controller.axis[YAW]) * degree;
-    wh_pose_t pose = wh_pose_identity();
-    pose.R.m[0][0] = pose.R.m[1][1] = WH_REAL(cos(heading));
-    pose.R.m[1][0] = WH_REAL(sin(heading));
-    pose.R.m[0][1] = -pose.R.m[1][0];
-    pose.r.x = WH_REAL(controller.axis[R] * cos(theta));
-    pose.r.y = WH_REAL(controller.axis[R] * sin(theta));
-    pose.r.z = WH_REAL(controller.axis[Z]);
-    return pose;
+static void a_wafer_goes_from_slot_to_slot(void **unused) {
+    (void)unused;
+    assert_int_equal(get(0, 1), CONTROLLER_READY);
+    assert_held(0);
+    assert_said("picked: wafer 0, gripper 0: |dr_proj_z| 0.4");
+    assert_int_equal(put(1, 1), CONTROLLER_READY);
+    assert_lies_in(0, 1, 1);
+    assert_int_equal(get(1, 2), CONTROLLER_READY);
+    assert_held(1);
+    assert_int_equal(put(0, 3), CONTROLLER_READY);
+    assert_lies_in(1, 0, 3);
+    assert_not_said("near miss");
+    assert_not_said("unsupported");
+    assert_not_said("occupied");
+    assert_not_said("off centre");
 }
 
-/* One tick of the control loop: hand the library this slice's pose and valve. */
-static void slice(void) {
-    const wh_gripper_input_t input = {gripper_pose(), controller.valve};
-    assert_int_equal(wh_grasp_step(&table, &input, &list), WH_OK);
-}
-
-/* The firmware under test moves one axis, 1 ms a slice. Stops at the first slice with an event, as a test may
- * want to look at it, and returns that event; null when nothing happened on the way. */
-static const wh_event_t *move(int axis, double target, double speed) {
-    const double step = speed * 0.001;
-    while (controller.axis[axis] != target) {
-        const double left = target - controller.axis[axis];
-        controller.axis[axis] = fabs(left) <= step ? target : controller.axis[axis] + copysign(step, left);
-        slice();
-        if (list.count > 0) {
-            return &events[0];
-        }
+/* The switch comes on some time after the blade has touched the wafer: the arm must not leave before. */
+static void a_get_waits_for_the_vacuum(void **unused) {
+    (void)unused;
+    int64_t touched = 0;
+    int64_t sensed = 0;
+    assert_int_equal(controller_get(&controller, 0, 1), CONTROLLER_BUSY);
+    while (controller.phase != RETRACT) {
+        tick();
+        touched = touched == 0 && wafers[0].holder == 0 ? command.seq : touched;
+        sensed = sensed == 0 && registers.sensor ? command.seq : sensed;
     }
-    return NULL;
+    assert_true(touched > 0 && sensed > touched + 40);
+    assert_true(command.seq > sensed);
 }
 
-static const wh_event_t *valve(int level) {
-    controller.valve = level;
-    slice();
-    return list.count > 0 ? &events[0] : NULL;
+/* A pump three times as slow still comes in time. */
+static void a_slower_pump_is_waited_for(void **unused) {
+    (void)unused;
+    break_it(WH_FAULT_SLOW_VACUUM, WH_REAL(0.3));
+    assert_int_equal(get(0, 1), CONTROLLER_READY);
+    assert_held(0);
 }
 
-/* Before each test: a wafer in a slot at (700, 0, 900), 2 mm off centre; the arm retracted, below it, vacuum
- * off. */
-static int set_up(void **state) {
-    (void)state;
-    const wh_grasp_config_t config = wh_grasp_config_default(); /* 0.5 mm, 50 mm, 0.99; sampled */
-    const wh_grasp_storage_t storage = {wafers, 1, grippers, 1, NULL, 0};
-    wafers[0].base_from_wafer = wh_pose_identity();
-    wafers[0].base_from_wafer.r = wh_vec3(700, 2, 900);
-    controller.axis[THETA] = controller.axis[YAW] = 0;
-    controller.axis[R] = 300;
-    controller.axis[Z] = 897;
-    controller.valve = 1;
-    return wh_grasp_init(&table, &config, &storage) == WH_OK ? 0 : -1;
+/* ---------------------------------------------------------------------------------------------- commands that fail */
+
+static void what_cannot_be_done_is_refused_at_once(void **unused) {
+    (void)unused;
+    assert_int_equal(get(0, 0), ERROR_NO_SUCH_SLOT);
+    assert_int_equal(get(0, 4), ERROR_NO_SUCH_SLOT);
+    assert_int_equal(get(2, 1), ERROR_NO_SUCH_SLOT);
+    assert_int_equal(put(0, 2), ERROR_NO_WAFER);
+    assert_int_equal(controller_get(&controller, 0, 1), CONTROLLER_BUSY);
+    assert_int_equal(controller_put(&controller, 1, 1), ERROR_BUSY);
+    assert_int_equal(finish(CONTROLLER_BUSY), CONTROLLER_READY);
+    assert_int_equal(get(1, 2), ERROR_WAFER_ON_BLADE);
 }
 
-/* GET here, PUT a quarter turn further on: who holds it, and where does it end up? */
-static void get_and_put(void **state) {
-    (void)state;
-    int32_t holder;
-    wh_pose_t wafer;
-
-    assert_null(move(R, 700, 1000)); /* extend below the wafer */
-    assert_null(valve(0));           /* vacuum on */
-    const wh_event_t *event = move(Z, 903, 20);
-    assert_non_null(event); /* the stroke up takes it ... */
-    assert_int_equal(event->kind, WH_EVENT_PICKED);
-    assert_true(event->measured.dr_proj_z < WH_REAL(0.5)); /* ... as soon as it is within 0.5 mm */
-    assert_null(move(Z, 903, 20));
-    assert_int_equal(wh_grasp_wafer(&table, 0, NULL, &holder), WH_OK);
-    assert_int_equal(holder, 0);
-
-    assert_null(move(R, 300, 1000)); /* carry it to the other station */
-    assert_null(move(THETA, 90, 180));
-    assert_null(move(R, 700, 1000));
-    assert_null(move(Z, 899.5, 20));
-    event = valve(1); /* vacuum off: it stays here */
-    assert_non_null(event);
-    assert_int_equal(event->kind, WH_EVENT_RELEASED);
-    assert_null(move(Z, 897, 20));
-
-    assert_int_equal(wh_grasp_wafer(&table, 0, &wafer, &holder), WH_OK);
-    assert_int_equal(holder, WH_NONE);
-    assert_true(fabs((double)wafer.r.x - -2) < 0.001); /* still 2 mm off centre, turned with the arm */
-    assert_true(fabs((double)wafer.r.y - 700) < 0.001);
-    assert_true(fabs((double)wafer.r.z - 900) < 0.05); /* the height within a slice's travel */
+static void an_empty_slot_is_found_empty(void **unused) {
+    (void)unused;
+    assert_int_equal(get(0, 2), ERROR_NOT_TAKEN);
+    assert_int_equal(controller.phase, IDLE);
+    assert_false(registers.vacuum_on);
+    assert_int_equal(get(0, 1), CONTROLLER_READY); /* the next command works */
 }
 
-/* The slot was taught 55 mm short: the stroke goes past the wafer, and the event says what was wrong. */
-static void a_badly_taught_slot_is_explained(void **state) {
-    (void)state;
-    assert_null(move(R, 645, 1000));
-    assert_null(valve(0));
-    assert_null(move(Z, 903, 20)); /* nothing was taken on the way */
-    const wh_event_t *event = valve(1);
-    assert_non_null(event);
-    assert_int_equal(event->kind, WH_EVENT_NEAR_MISS);
-    assert_int_equal(event->wafer, 0);
-    assert_int_equal(event->measured.failed,
-                     WH_FAILED_PROJXY);              /* height and tilt were good, the centre was not: */
-    assert_true(event->measured.margin_projxy < -5); /* by 5 mm more than the 50 that are allowed */
+/* The slot was taught 55 mm short: the stroke goes past the wafer, and Waferhand says what was wrong. */
+static void a_badly_taught_slot_is_explained(void **unused) {
+    (void)unused;
+    taught[0].reach = 645;
+    assert_int_equal(get(0, 1), ERROR_NOT_TAKEN);
+    assert_said("near miss: wafer 0, gripper 0: |dr_proj_xy| 55.000 is not below 50 (by 5.000 mm)");
+    assert_lies_in(0, 0, 1);
+}
+
+/* Without vacuum the wafer lies on the blade all the same: the arm must put it back, not drag it along. */
+static void a_dead_pump_leaves_the_wafer_in_its_slot(void **unused) {
+    (void)unused;
+    break_it(WH_FAULT_NO_VACUUM, 0);
+    assert_int_equal(get(0, 1), ERROR_NOT_TAKEN);
+    assert_said("fault armed: gripper 0: no_vacuum, fault 0");
+    assert_lies_in(0, 0, 1);
+    mend_it();
+    assert_int_equal(get(0, 1), CONTROLLER_READY);
+}
+
+static void a_pump_that_is_too_slow_ends_the_get(void **unused) {
+    (void)unused;
+    break_it(WH_FAULT_SLOW_VACUUM, 2);
+    assert_int_equal(get(0, 1), ERROR_NOT_TAKEN);
+    assert_lies_in(0, 0, 1);
+}
+
+static void a_switch_that_stays_off_ends_the_get(void **unused) {
+    (void)unused;
+    break_it(WH_FAULT_SENSOR_OFF, 0);
+    assert_int_equal(get(0, 1), ERROR_NOT_TAKEN);
+    assert_lies_in(0, 0, 1);
+}
+
+static void a_switch_that_stays_on_forbids_the_get(void **unused) {
+    (void)unused;
+    break_it(WH_FAULT_SENSOR_ON, 0);
+    tick();
+    assert_int_equal(get(0, 1), ERROR_WAFER_ON_BLADE);
+}
+
+/* The arm stops where it is; the wafer still rests on the blade. */
+static void a_leak_on_the_way_stops_the_arm(void **unused) {
+    (void)unused;
+    assert_int_equal(get(0, 1), CONTROLLER_READY);
+    break_it(WH_FAULT_LEAK, WH_REAL(0.2));
+    assert_int_equal(put(1, 1), ERROR_WAFER_LOST);
+    assert_said("vacuum lost: wafer 0, gripper 0: ");
+    assert_true(registers.axis[THETA] < 90);
+    assert_held(0);
+}
+
+/* The valve does not shut: the arm must not go down and away with a wafer that still hangs on it. */
+static void a_stuck_valve_ends_the_put_in_the_slot(void **unused) {
+    (void)unused;
+    assert_int_equal(get(0, 1), CONTROLLER_READY);
+    break_it(WH_FAULT_VALVE_STUCK, 0);
+    assert_int_equal(put(1, 1), ERROR_NOT_LEFT);
+    assert_held(0);
+    assert_true(registers.axis[Z] > 900);
+}
+
+/* No switch tells the firmware that a slot is taken. The test sees it. */
+static void a_put_onto_a_wafer_is_seen_from_outside(void **unused) {
+    (void)unused;
+    assert_int_equal(get(0, 1), CONTROLLER_READY);
+    assert_int_equal(put(1, 2), CONTROLLER_READY);
+    assert_said("slot occupied: wafer 0, gripper 0: wafer 1 lies in that slot");
+}
+
+static void a_put_beside_the_middle_is_seen_from_outside(void **unused) {
+    (void)unused;
+    taught[1].reach = 698;
+    assert_int_equal(get(0, 1), CONTROLLER_READY);
+    assert_int_equal(put(1, 1), CONTROLLER_READY);
+    assert_said("placed off centre: wafer 0, gripper 0: 2.000 mm beside the centre (limit 0.5 mm)");
+}
+
+/* ------------------------------------------------------------------------------------------------------ a snapshot */
+
+/* The way to the slot is simulated once; each fault is then tried from there. */
+static void many_faults_are_tried_from_one_moment(void **unused) {
+    (void)unused;
+    static const wh_fault_kind_t kinds[] = {WH_FAULT_NO_VACUUM, WH_FAULT_SENSOR_OFF, WH_FAULT_COMMAND_LOST};
+    static const answer_t answers[] = {ERROR_NOT_TAKEN, ERROR_NOT_TAKEN, ERROR_NOT_TAKEN};
+    assert_int_equal(controller_get(&controller, 0, 1), CONTROLLER_BUSY);
+    while (controller.phase != SWITCH) {
+        tick();
+    }
+    static wh_simulator_t saved_machine;
+    static wh_wafer_t saved_wafers[WAFERS];
+    static wh_gripper_t saved_grippers[1];
+    const controller_t saved_controller = controller;
+    const registers_t saved_registers = registers;
+    const wh_command_t saved_command = command;
+    saved_machine = machine;
+    memcpy(saved_wafers, wafers, sizeof wafers);
+    memcpy(saved_grippers, grippers, sizeof grippers);
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {
+        controller = saved_controller;
+        registers = saved_registers;
+        command = saved_command;
+        machine = saved_machine;
+        memcpy(wafers, saved_wafers, sizeof wafers);
+        memcpy(grippers, saved_grippers, sizeof grippers);
+        break_it(kinds[i], 0);
+        assert_int_equal(finish(CONTROLLER_BUSY), answers[i]);
+    }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(get_and_put, set_up),
+        cmocka_unit_test_setup(a_wafer_goes_from_slot_to_slot, set_up),
+        cmocka_unit_test_setup(a_get_waits_for_the_vacuum, set_up),
+        cmocka_unit_test_setup(a_slower_pump_is_waited_for, set_up),
+        cmocka_unit_test_setup(what_cannot_be_done_is_refused_at_once, set_up),
+        cmocka_unit_test_setup(an_empty_slot_is_found_empty, set_up),
         cmocka_unit_test_setup(a_badly_taught_slot_is_explained, set_up),
+        cmocka_unit_test_setup(a_dead_pump_leaves_the_wafer_in_its_slot, set_up),
+        cmocka_unit_test_setup(a_pump_that_is_too_slow_ends_the_get, set_up),
+        cmocka_unit_test_setup(a_switch_that_stays_off_ends_the_get, set_up),
+        cmocka_unit_test_setup(a_switch_that_stays_on_forbids_the_get, set_up),
+        cmocka_unit_test_setup(a_leak_on_the_way_stops_the_arm, set_up),
+        cmocka_unit_test_setup(a_stuck_valve_ends_the_put_in_the_slot, set_up),
+        cmocka_unit_test_setup(a_put_onto_a_wafer_is_seen_from_outside, set_up),
+        cmocka_unit_test_setup(a_put_beside_the_middle_is_seen_from_outside, set_up),
+        cmocka_unit_test_setup(many_faults_are_tried_from_one_moment, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

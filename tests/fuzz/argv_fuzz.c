@@ -70,16 +70,12 @@ error_t __wrap_argp_parse(const struct argp *argp, int argc, char **argv, unsign
 int __wrap_wh_run_and_print(wh_run_arguments_t *arguments);
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
 bool __wrap_wh_study_open(wh_study_t *study);
-bool __wrap_wh_open_node(wh_node_t *node, const char *url, const char *record_path);
-wh_sandbox_t *__wrap_wh_sandbox_new(const wh_sandbox_limits_t *limits);
-wh_sandbox_t *__real_wh_sandbox_new(const wh_sandbox_limits_t *limits);
+bool __wrap_wh_node_open(wh_node_t *node, const char *url, const char *record);
+wh_sandbox_t *__wrap_wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
+                                         size_t count, wh_sandbox_result_t *result);
 void __wrap_wh_sandbox_free(wh_sandbox_t *sandbox);
 const wh_layout_t *__wrap_wh_layout_load(wh_sandbox_t *sandbox, const char *path,
                                          wh_sandbox_result_t *result);
-bool __real_wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *assignment,
-                                     wh_sandbox_result_t *result);
-bool __wrap_wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *assignment,
-                                     wh_sandbox_result_t *result);
 FILE *__real_fopen(const char *path, const char *mode);
 FILE *__wrap_fopen(const char *path, const char *mode);
 
@@ -119,14 +115,15 @@ bool __wrap_wh_study_open(wh_study_t *study) {
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
     (void)link;
     reached = true;
-    REQUIRE(refused || options->rate == 0 || (options->rate >= 1e-3 && options->rate <= 1e3));
+    REQUIRE(refused || options->client.rate == 0 ||
+            (options->client.rate >= 1e-3 && options->client.rate <= 1e3));
     return false;
 }
 
-bool __wrap_wh_open_node(wh_node_t *node, const char *url, const char *record_path) {
+bool __wrap_wh_node_open(wh_node_t *node, const char *url, const char *record) {
     (void)node;
     (void)url;
-    (void)record_path;
+    (void)record;
     reached = true;
     return false;
 }
@@ -137,15 +134,24 @@ static unsigned uses;
 
 void __real_wh_sandbox_free(wh_sandbox_t *sandbox);
 
-wh_sandbox_t *__wrap_wh_sandbox_new(const wh_sandbox_limits_t *limits) {
+/* The real function sets each parameter: what it refuses it says in one line. */
+wh_sandbox_t *__wrap_wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
+                                         size_t count, wh_sandbox_result_t *result) {
+    bool set = true;
     if (++uses % 1000 == 0) {
         __real_wh_sandbox_free(shared);
         shared = NULL;
     }
     if (!shared) {
-        shared = __real_wh_sandbox_new(limits);
+        shared = wh_sandbox_new(limits);
     }
-    return shared;
+    reached = true;
+    check_parameters(assignments, count);
+    for (size_t i = 0; set && i < count; ++i) {
+        set = wh_sandbox_set_parameter(shared, assignments[i], result);
+        REQUIRE(set == (result->message[0] == '\0') && fuzz_is_one_line(result->message));
+    }
+    return set ? shared : NULL;
 }
 
 void __wrap_wh_sandbox_free(wh_sandbox_t *sandbox) {
@@ -170,15 +176,6 @@ FILE *__wrap_fopen(const char *path, const char *mode) {
     REQUIRE(refused || path != NULL);
     errno = ENOENT;
     return NULL;
-}
-
-/* The real one: what it refuses it says in one line. */
-bool __wrap_wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *assignment,
-                                     wh_sandbox_result_t *result) {
-    const bool set = __real_wh_sandbox_set_parameter(sandbox, assignment, result);
-    reached = true;
-    REQUIRE(set == (result->message[0] == '\0') && fuzz_is_one_line(result->message));
-    return set;
 }
 
 int LLVMFuzzerInitialize(int *argc, char ***argv) {

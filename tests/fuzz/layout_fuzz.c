@@ -80,14 +80,14 @@ static void check_set_up(const wh_layout_t *layout) {
 /* What `sim` tells of its cell is what `replay` makes its own of. */
 static void check_message(const wh_layout_t *layout) {
     static uint8_t bytes[WH_LINK_DATAGRAM];
+    static wh_link_cell_t room;
     const wh_link_identity_t identity = {1, wh_layout_hash(layout)};
     waferhand_cell cell;
     if (layout->wafer_count > WH_LINK_WAFERS) {
         return;
     }
-    REQUIRE(wh_link_cell_from_layout(layout, &identity, &cell));
-    const int size = waferhand_cell_encode(bytes, 0, (int)sizeof bytes, &cell);
-    wh_link_cell_free(&cell);
+    REQUIRE(wh_link_cell_from_layout(layout, &identity, &room));
+    const int size = waferhand_cell_encode(bytes, 0, (int)sizeof bytes, &room.message);
     if (size < 0) {
         return; /* no datagram holds it */
     }

@@ -70,7 +70,7 @@ static void execute(const char *line) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     fuzz_snapshot_restore();
-    session.record.script = wh_record_text("prompt");
+    session.record.script = wh_text_copy("prompt");
     char *const text = malloc(size + 1);
     REQUIRE(text != NULL);
     if (size > 0) {

@@ -57,7 +57,7 @@ static wh_log_result_t read_log(size_t size, bool *differs, bool *compared) {
     static wh_log_t log;
     FILE *const in = fopen(path, "rb");
     REQUIRE(in != NULL);
-    wh_replay_open(&replay);
+    memset(&replay, 0, sizeof replay);
     wh_log_open(&log, in);
     wh_log_result_t result = wh_log_next(&log);
     for (uint64_t count = 1; result == WH_LOG_EVENT; ++count, result = wh_log_next(&log)) {

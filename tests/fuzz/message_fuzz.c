@@ -46,11 +46,6 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
     return 0;
 }
 
-static void stay_silent(void *user, const char *text) {
-    (void)user;
-    REQUIRE(fuzz_is_one_line(text));
-}
-
 /* Both arrays in a table that takes over only what is sound. */
 static void check_sound(const wh_wafer_t *wafers, const wh_gripper_t *grippers,
                         const wh_physics_state_t *condition, uint64_t slice, uint64_t hash) {
@@ -140,7 +135,7 @@ static void deliver_to_simulator(const fuzz_frame_t *frame) {
 static void run_simulator(fuzz_frames_t *frames) {
     fuzz_frame_t frame;
     fuzz_on_publish = check_published;
-    REQUIRE(wh_sim_process_open(&simulation, &node, layout, stay_silent, NULL) == WH_OK);
+    REQUIRE(wh_sim_process_open(&simulation, &node, layout, true) == WH_OK);
     wh_link_identity_t identity = simulation.server.identity;
     frames->identity = &identity;
     while (true) {
@@ -214,7 +209,7 @@ static void check_report(void) {
     static const wh_style_t style = {.utf8 = true, .width = 80};
     if (record.event_count > 0) {
         record.layout = layout;
-        record.script = wh_record_text("fuzz");
+        record.script = wh_text_copy("fuzz");
         record.wafers = calloc(layout->wafer_count + 1, sizeof *record.wafers);
         for (size_t w = 0; record.wafers && w < layout->wafer_count; ++w) {
             record.wafers[w].base_from_wafer = wh_pose_identity();
@@ -250,8 +245,7 @@ static void fill_command(wh_command_t *command, int64_t seq) {
 
 static wh_link_t *open_control(bool free_running) {
     static wh_mcs_t mcs;
-    const wh_mcs_process_options_t options = {
-        .rate = free_running ? 1 : 0, .stop = &stop, .say = stay_silent, .user = NULL};
+    const wh_protocol_client_options_t options = {.rate = free_running ? 1 : 0, .stop = &stop};
     mcs.layout = layout;
     REQUIRE(wh_mcs_process_open(&control, &node, &options));
     const wh_mcs_partners_t partners = wh_mcs_process_partners(&control);
@@ -294,7 +288,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     layout = data[0] & SWEPT ? swept : sampled;
     fuzz_next_message = next_message;
     fuzz_clock_us = 1000000;
-    REQUIRE(wh_node_open(&node, NULL));
+    REQUIRE(wh_node_open(&node, NULL, NULL));
     if (data[0] & TO_MOTION_CONTROL) {
         run_motion_control(&frames, (data[0] & FREE_RUNNING) != 0);
     } else {

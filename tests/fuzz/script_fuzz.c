@@ -52,7 +52,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv) {
 
 static void begin(void) {
     fuzz_snapshot_restore();
-    record.script = wh_record_text(NAME);
+    record.script = wh_text_copy(NAME);
 }
 
 static void end(void) {

@@ -32,14 +32,22 @@ static void compare_tallies(const wh_tally_t *one, const wh_tally_t *other) {
     }
 }
 
-static void compare_trial(wh_worker_t *worker, comparison_t *comparison, uint64_t trial) {
-    uint64_t hash = 0;
-    uint64_t whole_hash = 0;
-    wh_tally_clear(&comparison->replayed);
-    wh_tally_clear(&comparison->whole);
-    assert_true(wh_worker_compare(worker, trial, false, &comparison->whole, &whole_hash));
-    if (wh_worker_compare(worker, trial, true, &comparison->replayed, &hash)) {
-        assert_int_equal(hash, whole_hash);
+static void play(wh_worker_t *worker, uint64_t trial, wh_tally_t *tally) {
+    char message[WH_SANDBOX_MESSAGE_BYTES];
+    wh_tally_clear(tally);
+    assert_true(wh_worker_play(worker, trial, tally, message));
+}
+
+/* Plays a trial as the study does, and once more with a reason to run the script whole. */
+static void compare_trial(wh_worker_t *worker, wh_study_t *study, comparison_t *comparison, uint64_t trial) {
+    const char *whole = study->whole;
+    study->whole = "to compare with";
+    play(worker, trial, &comparison->whole);
+    assert_true(worker->outcome.whole);
+    study->whole = whole;
+    play(worker, trial, &comparison->replayed);
+    if (!worker->outcome.whole) {
+        assert_int_equal(wh_simulator_hash(&worker->simulator), worker->hash);
         compare_tallies(&comparison->replayed, &comparison->whole);
         ++comparison->replays;
     }
@@ -62,7 +70,7 @@ static void compare(const char *script, const char *const parameters[], size_t p
     wh_tally_init(&comparison.replayed, study.wafer_count);
     wh_tally_init(&comparison.whole, study.wafer_count);
     for (uint64_t trial = 0; trial < study.trials; ++trial) {
-        compare_trial(&worker, &comparison, trial);
+        compare_trial(&worker, &study, &comparison, trial);
     }
     assert_in_range(comparison.replays, least, most);
     wh_tally_free(&comparison.replayed);

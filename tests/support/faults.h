@@ -46,14 +46,9 @@ static inline void step(double z, int valve) {
 }
 
 static inline wh_fault_t fault_of(wh_fault_kind_t kind, int32_t target) {
-    wh_fault_t fault;
-    memset(&fault, 0, sizeof fault);
-    fault.kind = kind;
+    wh_fault_t fault = wh_fault_make(kind, target, 0, command.seq + 1, WH_FAULT_FOREVER);
     fault.target = target;
-    fault.other = WH_NONE;
     fault.offset = wh_pose_identity();
-    fault.from = command.seq + 1;
-    fault.until = WH_FAULT_FOREVER;
     return fault;
 }
 

@@ -5,6 +5,9 @@
 #include "grasp/grasp.h"
 #include "support/pose.h"
 
+/* Swept checking, where the library has it. */
+#define SWEPT_IF_BUILT (WH_SWEEP_BUILT ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED)
+
 enum { CELL_WAFERS = 4, CELL_GRIPPERS = 3, OPEN = WH_VALVE_OPEN, CLOSED = WH_VALVE_CLOSED };
 
 typedef struct {

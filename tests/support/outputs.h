@@ -91,7 +91,7 @@ static inline unsigned outputs_update(outputs_fixture_t *f) {
     assert_int_equal(reported, f->reader.finding != before.finding);
     assert_int_equal(switched, memcmp(f->reader.valves, before.valves, sizeof before.valves) != 0);
     assert_true(outputs_looks(&f->reader) - outputs_looks(&before) <= 1);
-    assert_true(wh_outputs_due(&f->reader) > f->now_us);
+    assert_true(f->reader.due_us > f->now_us);
     outputs_check_counters(&f->reader);
     return result;
 }
@@ -100,8 +100,8 @@ static inline unsigned outputs_update(outputs_fixture_t *f) {
 static inline unsigned outputs_pass(outputs_fixture_t *f, int64_t us) {
     const int64_t end_us = f->now_us + us;
     unsigned result = outputs_update(f);
-    while (wh_outputs_due(&f->reader) <= end_us) {
-        f->now_us = wh_outputs_due(&f->reader);
+    while (f->reader.due_us <= end_us) {
+        f->now_us = f->reader.due_us;
         result |= outputs_update(f);
     }
     f->now_us = end_us;

@@ -103,6 +103,16 @@ static void count_idle(const char *name, wh_check_t check) {
     printf("step %s idle %u\n", name, (unsigned)step());
 }
 
+/* Both grippers are open between two slots of the stack, as on their way in: no wafer is near enough to be watched. */
+static void count_between(const char *name, wh_check_t check) {
+    begin_table(check, false, 10);
+    inputs[0].base_from_gripper = at(0, 0, 115);
+    inputs[1].base_from_gripper = at(0, 1, 125);
+    (void)step();
+    printf("step %s between %u%s\n", name, (unsigned)step(),
+           grippers[0].approach.wafer == WH_NONE && grippers[0].wafer == WH_NONE ? "" : " WRONG");
+}
+
 /* Both grippers hold a wafer and move on. */
 static void count_carry(void) {
     begin_table(WH_CHECK_SAMPLED, false, 10);
@@ -171,6 +181,8 @@ int main(void) {
     count_measure();
     count_idle("sampled", WH_CHECK_SAMPLED);
     count_idle("swept", WH_CHECK_SWEPT);
+    count_between("sampled", WH_CHECK_SAMPLED);
+    count_between("swept", WH_CHECK_SWEPT);
     count_carry();
     count_worst("sampled", WH_CHECK_SAMPLED);
     count_worst("swept", WH_CHECK_SWEPT);

@@ -12,7 +12,8 @@ import sys
 # What a compiler calls on its own account, and what newlib's versions take.
 LEAVES = {"memcpy": 16, "memset": 16}
 
-NODE = re.compile(r'node: { title: "([^"]+)" label: "[^"]*?\\n[^"]*?(?:\\n(\d+) bytes \((\w+)[^)]*\))?"')
+# WH_SYMBOL's end of a name, which the functions are not asked by
+SYMBOL = re.compile(r'"((?:[^":]*:)?)\*(wh_\w+?)_\d[df](?:_\w*)?(?=[".])')
 EDGE = re.compile(r'edge: { sourcename: "([^"]+)" targetname: "([^"]+)"')
 
 
@@ -21,7 +22,7 @@ def read(paths):
     frames, calls = {}, {}
     for path in paths:
         with open(path, encoding="utf-8") as file:
-            text = file.read()
+            text = SYMBOL.sub(r'"\1\2', file.read())
         for name, size, kind in re.findall(r'title: "([^"]+)" label: "[^"]*\\n(\d+) bytes \((\w+)', text):
             if kind != "static":
                 sys.exit(f"{name}: its frame is {kind}, not known when compiling")

@@ -1,20 +1,23 @@
 # The machines that the library is tried on besides the host: how to compile for each, and how to run what was compiled.
 # shellcheck shell=bash disable=SC2034 # what target sets is for the scripts that ask
 
-readonly OPTIONS='-std=c99 -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno -Wall -Wextra -Ilib -Itests'
+readonly OPTIONS='-std=c99 -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION -fno-math-errno -Wall -Wextra -Ilib -Itests'
 readonly M7='-mthumb -mcpu=cortex-m7 -mfpu=fpv5-d16 -mfloat-abi=hard'
+readonly M0='-mthumb -mcpu=cortex-m0plus'
 readonly M4='-mthumb -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard'
 
-# Sets COMPILER, FLAGS, LINK, RUN and FLOAT for m7 (Cortex-M7, double), m4f (Cortex-M4F, float), m4 (the same machine,
+# Sets COMPILER, FLAGS, LINK, RUN and FLOAT for m7 (Cortex-M7, double), m4f (Cortex-M4F, float), m0 (Cortex-M0+, float in
+# software, on an M4 that knows the same instructions), m4 (the same machine,
 # double in software, with an addition of our own: tests/target/soft_double.c says why), rv64, aarch64 and powerpc (big-endian, 32 bits).
 target() {
     FLOAT='' LINK='' RUN=()
     case $1 in
-    m7 | m4f | m4)
+    m7 | m4f | m4 | m0)
         COMPILER=arm-none-eabi-gcc
         FLAGS="-O2 $M4"
         [[ $1 != m7 ]] || FLAGS="-O2 $M7"
-        [[ $1 != m4f ]] || FLOAT=1
+        [[ $1 != m0 ]] || FLAGS="-O2 $M0"
+        [[ $1 != m4f && $1 != m0 ]] || FLOAT=1
         LINK='--specs=rdimon.specs -T tests/target/mps2.ld tests/target/startup.c'
         [[ $1 != m4 ]] || LINK="tests/target/soft_double.c -Wl,--allow-multiple-definition $LINK"
         RUN=(qemu-system-arm -M "$([[ $1 == m7 ]] && echo mps2-an500 || echo mps2-an386)" -nographic -monitor none

@@ -10,20 +10,19 @@
 #include <histedit.h>
 #include <limits.h>
 
+#include "../../text/array.h"
 #include "../../text/output.h"
 #include "../../text/style.h"
 #include "../../text/utf8.h"
 #include "history.h"
 
 struct wh_editor {
-    wh_input_t *input;
-    wh_session_t *session;
+    const wh_input_t *input;
     EditLine *edit;
     History *history;
     char history_path[PATH_MAX];
     char *line;            /* the last one */
     wh_line_event_t event; /* why there is no further character */
-    bool reading;
     mbstate_t decoding;
 };
 
@@ -72,7 +71,7 @@ static bool wait_for_byte(wh_editor_t *editor) {
             return true;
         }
         if (event != WH_INPUT_SIGNAL) {
-            editor->event = event == WH_INPUT_LEAVE ? WH_LINE_LEAVING : WH_LINE_END;
+            editor->event = WH_LINE_END;
             return false;
         }
         if (!handle_signals(editor)) {
@@ -196,13 +195,10 @@ static void replace_word(EditLine *edit, const char *word, const wh_candidates_t
 static unsigned char complete(EditLine *edit, int key) {
     wh_candidates_t candidates;
     const LineInfo *line = el_line(edit);
-    char *before = strndup(line->buffer, (size_t)(line->cursor - line->buffer));
+    char *before = wh_memory_need(strndup(line->buffer, (size_t)(line->cursor - line->buffer)));
     unsigned char result = CC_ERROR;
-    if (!before) {
-        return CC_ERROR;
-    }
     (void)key;
-    wh_session_complete(editor_of(edit)->session, before, &candidates);
+    wh_session_complete(editor_of(edit)->input->session, before, &candidates);
     if (candidates.count > 0) {
         const char *word = before + candidates.start;
         const size_t length = common_length(&candidates);
@@ -235,13 +231,9 @@ static void set_up(wh_editor_t *editor) {
     el_set(editor->edit, EL_GETCFN, read_character);
 }
 
-wh_editor_t *wh_editor_open(wh_input_t *input, wh_session_t *session) {
-    wh_editor_t *editor = calloc(1, sizeof *editor);
-    if (!editor) {
-        return NULL;
-    }
+wh_editor_t *wh_editor_open(const wh_input_t *input) {
+    wh_editor_t *editor = wh_array_new(1, sizeof *editor);
     editor->input = input;
-    editor->session = session;
     editor->edit = el_init("waferhand", stdin, stdout, stderr);
     if (!editor->edit) {
         free(editor);
@@ -255,12 +247,10 @@ wh_line_event_t wh_editor_read(wh_editor_t *editor, const char **line) {
     int length = 0;
     editor->event = WH_LINE_END;
     memset(&editor->decoding, 0, sizeof editor->decoding);
-    editor->reading = true;
     /* libedit itself prepares the terminal after it has shown the prompt: a Ctrl-D in between would be
      * lost. */
     el_set(editor->edit, EL_PREP_TERM, 1);
     const char *typed = el_gets(editor->edit, &length);
-    editor->reading = false;
     free(editor->line);
     editor->line = typed && length > 0 ? strndup(typed, strcspn(typed, "\n")) : NULL;
     if (!editor->line) {
@@ -271,16 +261,6 @@ wh_line_event_t wh_editor_read(wh_editor_t *editor, const char **line) {
     remember(editor, editor->line);
     *line = editor->line;
     return WH_LINE_READ;
-}
-
-void wh_editor_say(wh_editor_t *editor, const char *text) {
-    fputs(editor->reading ? "\r\033[K" : "", stdout);
-    wh_style_put(stdout, text);
-    putchar('\n');
-    fflush(stdout);
-    if (editor->reading) {
-        el_set(editor->edit, EL_REFRESH);
-    }
 }
 
 void wh_editor_close(wh_editor_t *editor) {

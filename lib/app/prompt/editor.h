@@ -14,13 +14,10 @@ typedef enum {
 typedef struct wh_editor wh_editor_t;
 
 /* On standard input and output; null if libedit refuses them. */
-wh_editor_t *wh_editor_open(wh_input_t *input, wh_session_t *session);
+wh_editor_t *wh_editor_open(const wh_input_t *input);
 
 /* The next line, without its end; it lives until the next call. */
 wh_line_event_t wh_editor_read(wh_editor_t *editor, const char **line);
-
-/* Prints a text above the line that is being edited. */
-void wh_editor_say(wh_editor_t *editor, const char *text);
 
 void wh_editor_close(wh_editor_t *editor);
 

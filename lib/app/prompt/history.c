@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "../../mcs/session.h"
+#include "../../text/array.h"
 #include "../../text/output.h"
 
 /* ------------------------------------------------------------------------------------------------ reading */
@@ -20,11 +21,9 @@ static char *read_text(const char *path) {
     if (fd >= 0 && fstat(fd, &about) == 0 && S_ISREG(about.st_mode)) {
         /* Only the end of a long file is read. */
         const off_t skipped = about.st_size > WH_HISTORY_BYTES ? about.st_size - WH_HISTORY_BYTES : 0;
-        text = calloc(1, WH_HISTORY_BYTES + 1);
-        const ssize_t bytes = text ? pread(fd, text, WH_HISTORY_BYTES, skipped) : 0;
-        if (text) {
-            text[bytes > 0 ? bytes : 0] = '\0';
-        }
+        text = wh_array_new(WH_HISTORY_BYTES, 1);
+        const ssize_t bytes = pread(fd, text, WH_HISTORY_BYTES, skipped);
+        text[bytes > 0 ? bytes : 0] = '\0';
     }
     if (fd >= 0) {
         close(fd);

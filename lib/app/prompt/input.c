@@ -33,10 +33,8 @@ static void on_signal(int number) {
 }
 
 void wh_interrupt_hold(bool terminal) {
-    struct sigaction action;
+    const struct sigaction action = {.sa_handler = on_signal};
     memset(&signals, 0, sizeof signals);
-    memset(&action, 0, sizeof action);
-    action.sa_handler = on_signal;
     signals.count = terminal ? HELD : HELD_WITHOUT_TERMINAL;
     sigprocmask(SIG_BLOCK, NULL, &signals.mask_before);
     signals.mask_held = signals.mask_running = signals.mask_before;
@@ -94,35 +92,24 @@ void wh_interrupt_stop_session(wh_session_t *session) {
 
 /* ------------------------------------------------------------------------------------------------ waiting */
 
-static void call_watches(wh_input_t *input, const struct pollfd *polled, size_t count) {
-    wh_interrupt_stop_session(input->session);
-    for (size_t i = 0; i < count && i < input->watch_count; ++i) {
-        if (polled[i].revents != 0) {
-            input->watches[i].ready(input->watches[i].user);
-        }
-    }
-    wh_interrupt_stop_session(NULL);
-}
-
-wh_input_event_t wh_input_wait(wh_input_t *input) {
-    struct pollfd polled[WH_PROMPT_WATCHES + 1];
-    while (!input->leaving) {
-        const size_t count = input->watch_count;
-        for (size_t i = 0; i < count; ++i) {
-            polled[i] = (struct pollfd){.fd = input->watches[i].fd, .events = POLLIN};
-        }
-        polled[count] = (struct pollfd){.fd = STDIN_FILENO, .events = POLLIN};
+wh_input_event_t wh_input_wait(const wh_input_t *input) {
+    static const struct timespec tenth = {0, 100000000};
+    struct pollfd polled[] = {{.fd = input->watch.fd, .events = POLLIN},
+                              {.fd = STDIN_FILENO, .events = POLLIN}};
+    for (;;) {
         /* With the mask as it was before, so that ppoll ends with EINTR when a held signal arrives. */
-        if (ppoll(polled, count + 1, NULL, &signals.mask_before) < 0) {
+        const int ready = ppoll(polled, 2, &tenth, &signals.mask_before);
+        if (ready < 0) {
             return errno == EINTR ? WH_INPUT_SIGNAL : WH_INPUT_BROKEN;
         }
-        call_watches(input, polled, count);
+        wh_interrupt_stop_session(input->session);
+        input->watch.look(input->watch.user);
+        wh_interrupt_stop_session(NULL);
         if (is_pending()) {
             return WH_INPUT_SIGNAL;
         }
-        if (polled[count].revents != 0 && !input->leaving) {
+        if (polled[1].revents != 0) {
             return WH_INPUT_READY;
         }
     }
-    return WH_INPUT_LEAVE;
 }

@@ -1,4 +1,4 @@
-/* Where the prompt waits: for standard input, for signals, and for the descriptors of others.
+/* Where the prompt waits: for standard input, for signals, and for what else is looked after.
  *
  * While a prompt is open, signals arrive only where it waits and while a command runs, so that none is missed
  * between a look and a wait. Held are SIGINT, SIGTERM, SIGHUP, and for a terminal SIGTSTP and SIGWINCH; one
@@ -11,23 +11,19 @@
 
 #include "prompt.h"
 
-/* Zero it to begin with. */
 typedef struct {
-    wh_prompt_watch_t watches[WH_PROMPT_WATCHES];
-    size_t watch_count;
-    wh_session_t *session; /* whose commands the watches may execute, and signals then stop */
-    bool leaving;          /* set by a watch: the wait is to end */
+    wh_prompt_watch_t watch;
+    wh_session_t *session; /* whose commands the watch may execute, and signals then stop */
 } wh_input_t;
 
 typedef enum {
     WH_INPUT_READY,  /* a read will not block: bytes, the end, or an error */
     WH_INPUT_SIGNAL, /* a held signal has arrived: take it */
-    WH_INPUT_LEAVE,  /* `leaving` was set */
     WH_INPUT_BROKEN  /* waiting is not possible: errno says why */
 } wh_input_event_t;
 
-/* Waits, and meanwhile calls the watches whose descriptors are ready. */
-wh_input_event_t wh_input_wait(wh_input_t *input);
+/* Waits, and looks after the watch each time that it wakes. */
+wh_input_event_t wh_input_wait(const wh_input_t *input);
 
 /* ------------------------------------------------------------------------------------------------ signals */
 

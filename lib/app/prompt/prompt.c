@@ -7,40 +7,36 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "../../text/array.h"
 #include "../../text/style.h"
 #include "../app.h"
 #include "editor.h"
 
 /* Lines from a pipe or a file: bytes, whatever they are. */
 typedef struct {
-    wh_input_t *input;
     char buffer[4096];
     size_t begin, end;
     char line[WH_SESSION_LINE_BYTES + 2]; /* one more than a session takes, so that it refuses longer lines */
 } plain_t;
 
 struct wh_prompt {
-    wh_session_t *session;
     wh_input_t input;
     wh_editor_t *editor; /* null: plain */
     plain_t plain;
     wh_style_t style;
-    bool failed; /* a command did */
+    bool failed;  /* a command did */
+    bool leaving; /* a signal ended a command, and the prompt with it */
     char answer[WH_SESSION_ANSWER_BYTES];
 };
 
-wh_prompt_t *wh_prompt_open(wh_session_t *session) {
-    wh_prompt_t *prompt = calloc(1, sizeof *prompt);
-    if (!prompt) {
-        return NULL;
-    }
+wh_prompt_t *wh_prompt_open(wh_session_t *session, const wh_prompt_watch_t *watch) {
+    wh_prompt_t *prompt = wh_array_new(1, sizeof *prompt);
     const bool terminal = isatty(STDIN_FILENO) && isatty(STDOUT_FILENO);
-    prompt->session = session;
     prompt->input.session = session;
-    prompt->plain.input = &prompt->input;
+    prompt->input.watch = *watch;
     prompt->style = wh_style_of(stdout);
     wh_interrupt_hold(terminal);
-    prompt->editor = terminal ? wh_editor_open(&prompt->input, session) : NULL;
+    prompt->editor = terminal ? wh_editor_open(&prompt->input) : NULL;
     return prompt;
 }
 
@@ -50,26 +46,6 @@ void wh_prompt_close(wh_prompt_t *prompt) {
         wh_interrupt_release();
         free(prompt);
     }
-}
-
-bool wh_prompt_watch(wh_prompt_t *prompt, const wh_prompt_watch_t *watch) {
-    if (prompt->input.watch_count == WH_PROMPT_WATCHES) {
-        return false;
-    }
-    prompt->input.watches[prompt->input.watch_count++] = *watch;
-    return true;
-}
-
-void wh_prompt_say(wh_prompt_t *prompt, const char *text) {
-    if (prompt->editor) {
-        wh_editor_say(prompt->editor, text);
-    } else {
-        fprintf(stderr, "%s\n", text);
-    }
-}
-
-void wh_prompt_leave(wh_prompt_t *prompt) {
-    prompt->input.leaving = true;
 }
 
 /* -------------------------------------------------------------------------------------------- plain lines */
@@ -86,11 +62,11 @@ static wh_line_event_t read_bytes(plain_t *plain) {
 }
 
 /* Fills the empty buffer. */
-static wh_line_event_t fill(plain_t *plain) {
+static wh_line_event_t fill(plain_t *plain, const wh_input_t *input) {
     wh_line_event_t line = WH_LINE_NONE;
     while (line == WH_LINE_NONE) {
-        const wh_input_event_t event = wh_input_wait(plain->input);
-        if (event == WH_INPUT_LEAVE || (event == WH_INPUT_SIGNAL && wh_interrupt_take() != 0)) {
+        const wh_input_event_t event = wh_input_wait(input);
+        if (event == WH_INPUT_SIGNAL && wh_interrupt_take() != 0) {
             line = WH_LINE_LEAVING;
         } else if (event == WH_INPUT_BROKEN) {
             line = WH_LINE_END;
@@ -111,11 +87,11 @@ static wh_line_event_t finish(plain_t *plain, size_t length) {
 
 /* The next line, in plain->line: without its end, cut if it is too long, a byte 0 replaced by 1, which is
  * refused too. */
-static wh_line_event_t read_plain(plain_t *plain) {
+static wh_line_event_t read_plain(plain_t *plain, const wh_input_t *input) {
     size_t length = 0;
     for (bool any = false;; any = true) {
         if (plain->begin == plain->end) {
-            const wh_line_event_t event = fill(plain);
+            const wh_line_event_t event = fill(plain, input);
             if (event != WH_LINE_READ) {
                 return event == WH_LINE_END && any ? finish(plain, length) : event;
             }
@@ -137,7 +113,7 @@ static wh_line_event_t read_line(wh_prompt_t *prompt, const char **line) {
         return wh_editor_read(prompt->editor, line);
     }
     *line = prompt->plain.line;
-    return read_plain(&prompt->plain);
+    return read_plain(&prompt->plain, &prompt->input);
 }
 
 static void print_answer(wh_prompt_t *prompt, wh_status_t status) {
@@ -167,15 +143,13 @@ static bool is_interrupted(const wh_prompt_t *prompt) {
 }
 
 static void execute(wh_prompt_t *prompt, const char *line) {
-    wh_interrupt_stop_session(prompt->session);
-    const wh_status_t status =
-        wh_session_execute(prompt->session, line, prompt->answer, sizeof prompt->answer);
+    wh_session_t *session = prompt->input.session;
+    wh_interrupt_stop_session(session);
+    const wh_status_t status = wh_session_execute(session, line, prompt->answer, sizeof prompt->answer);
     wh_interrupt_stop_session(NULL);
     prompt->failed = prompt->failed || status != WH_OK;
     print_answer(prompt, status);
-    if (is_interrupted(prompt)) {
-        prompt->input.leaving = true;
-    }
+    prompt->leaving = is_interrupted(prompt);
 }
 
 static bool is_quit(const char *line) {
@@ -200,7 +174,7 @@ static bool take_line(wh_prompt_t *prompt, const char *line) {
     if (!says_nothing(line)) {
         execute(prompt, line);
     }
-    return fflush(stdout) == 0 && !prompt->input.leaving;
+    return fflush(stdout) == 0 && !prompt->leaving;
 }
 
 /* Reads and executes lines. Returns WH_LINE_END or WH_LINE_LEAVING. */
@@ -221,6 +195,6 @@ int wh_prompt_run(wh_prompt_t *prompt) {
     if (!wh_app_is_printed(0)) {
         return WH_EXIT_USAGE;
     }
-    const bool failed = !prompt->editor && (prompt->failed || prompt->session->complaints > 0);
-    return event == WH_LINE_LEAVING || prompt->input.leaving || failed ? WH_EXIT_FAILED : WH_EXIT_MET;
+    const bool failed = !prompt->editor && (prompt->failed || prompt->input.session->complaints > 0);
+    return event == WH_LINE_LEAVING || prompt->leaving || failed ? WH_EXIT_FAILED : WH_EXIT_MET;
 }

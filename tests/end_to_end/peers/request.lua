@@ -26,27 +26,30 @@ link:subscribe("WAFERHAND_STATE", function(_, data)
   last = data
 end)
 
--- Sends the line again every 200 ms until its answer comes: motion control executes a number once.
+-- Sends the line again each second until its answer comes: motion control executes a number once.
 local function ask(number, line)
-  for _ = 1, 100 do
-    local message = request:new()
-    message.utime, message.seq, message.run, message.layout_hash = 0, number, 0, 0
-    message.command_line = line
-    link:publish("WAFERHAND_REQUEST", message:encode())
-    local begin = os.clock()
-    while link:timedhandle(200) do
-      if answers[number] then
-        return answers[number]
-      end
-      if os.clock() - begin > 0.2 then
-        break
-      end
+  local sent, give_up = nil, os.time() + 30
+  while not answers[number] do
+    if os.time() > give_up then
+      error("no answer to " .. line)
     end
+    if sent ~= os.time() then
+      local message = request:new()
+      message.utime, message.seq, message.run, message.layout_hash = 0, number, 0, 0
+      message.command_line = line
+      link:publish("WAFERHAND_REQUEST", message:encode())
+      sent = os.time()
+    end
+    link:timedhandle(200)
   end
-  error("no answer to " .. line)
+  return answers[number]
 end
 
-local first = os.time() * 1000
+-- Motion control remembers numbers: those of two hosts, or of a host that is started again, must differ.
+local first = 0
+for byte in io.open("/dev/urandom", "rb"):read(6):gmatch "." do
+  first = first * 256 + byte:byte()
+end
 for i = 2, #arg do
   local answer = ask(first + i, arg[i])
   print(("%s -> %d %s"):format(arg[i], answer.error, answer.text))

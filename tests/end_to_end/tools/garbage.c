@@ -1,16 +1,21 @@
 /* garbage URL COUNT SEED: sends COUNT datagrams that are no messages on all channels that the two processes hear: random
  * bytes, and real messages that it has overheard, cut short, with flipped bits, with wrong fingerprints, with huge counts,
- * with NaN, or on the wrong channel. Prints how many of each. */
+ * with NaN, or on the wrong channel; among them fragments whose places make no sense, and channels whose names have no
+ * end, which liblcm 1.3.1 does not survive. Prints how many of each. */
+#include <arpa/inet.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 
 #include "link/messages.h"
 #include "link/node.h"
 
 #define CHANNELS 6
 #define KINDS 7
+/* After so many of those the two that go around liblcm, which would not send them. */
+#define RAW_EVERY 64
 
 static const char *const channels[CHANNELS] = {WH_CHANNEL_COMMAND, WH_CHANNEL_STATE,   WH_CHANNEL_RESTORE,
                                                WH_CHANNEL_MCS,     WH_CHANNEL_REQUEST, WH_CHANNEL_CELL};
@@ -100,6 +105,58 @@ static size_t make(uint32_t kind, uint8_t *bytes, size_t *size) {
     }
 }
 
+static uint8_t *put_big_endian(uint8_t *bytes, uint64_t value, size_t size) {
+    for (size_t i = 0; i < size; ++i) {
+        bytes[i] = (uint8_t)(value >> 8 * (size - 1 - i));
+    }
+    return bytes + size;
+}
+
+/* One of three parts of a message of 100,000 bytes: the first has the channel's name. */
+static size_t make_fragment(uint8_t *datagram, uint32_t part, uint32_t offset) {
+    const char *channel = channels[below(CHANNELS)];
+    uint8_t *end = put_big_endian(datagram, 0x4c433033, 4);
+    end = put_big_endian(end, 1, 4);
+    end = put_big_endian(end, 100000, 4);
+    end = put_big_endian(end, offset, 4);
+    end = put_big_endian(end, part, 2);
+    end = put_big_endian(end, 3, 2);
+    memset(end, 'x', 1000);
+    if (part == 0) {
+        memcpy(end, channel, strlen(channel) + 1);
+    }
+    return (size_t)(end - datagram) + 1000;
+}
+
+/* A channel's name up to the datagram's end, at times a known one. */
+static size_t make_endless_name(uint8_t *datagram) {
+    const char *channel = channels[below(CHANNELS)];
+    uint8_t *end = put_big_endian(put_big_endian(datagram, 0x4c433032, 4), below(1000), 4);
+    const size_t size = below(2) == 0 ? strlen(channel) : below(100);
+    memset(end, 'x', size);
+    memcpy(end, channel, size < strlen(channel) ? size : strlen(channel));
+    return (size_t)(end - datagram) + size;
+}
+
+static bool open_raw(const char *url, int *raw) {
+    wh_multicast_t multicast;
+    if (wh_multicast_parse(url, &multicast) != NULL) {
+        return false;
+    }
+    const struct sockaddr_in to = {
+        .sin_family = AF_INET, .sin_addr.s_addr = multicast.address, .sin_port = htons(multicast.port)};
+    *raw = socket(AF_INET, SOCK_DGRAM, 0);
+    return *raw >= 0 && connect(*raw, (const struct sockaddr *)&to, sizeof to) == 0;
+}
+
+static void send_raw(int raw) {
+    uint8_t datagram[2000];
+    (void)send(raw, datagram, make_fragment(datagram, 0, 0), 0);
+    (void)send(raw, datagram,
+               make_fragment(datagram, 1 + below(3), 0xfffffff0 - below(2) * below(0x7fffffff)), 0);
+    (void)send(raw, datagram, make_endless_name(datagram), 0);
+}
+
 static void listen_a_while(wh_node_t *node) {
     const int64_t end = wh_node_clock_us() + 300000;
     while (wh_node_clock_us() < end) {
@@ -112,7 +169,9 @@ int main(int argc, char **argv) {
     unsigned long long sent[KINDS] = {0};
     wh_node_t ears;
     wh_node_t node;
-    if (argc != 4 || !wh_node_open(&ears, argv[1]) || !wh_node_open(&node, argv[1])) {
+    int raw = -1;
+    if (argc != 4 || !wh_node_open(&ears, argv[1], NULL) || !wh_node_open(&node, argv[1], NULL) ||
+        !open_raw(argv[1], &raw)) {
         fprintf(stderr, "usage: garbage URL COUNT SEED\n");
         return 2;
     }
@@ -134,6 +193,9 @@ int main(int argc, char **argv) {
         const size_t channel = make(kind, bytes, &size);
         (void)wh_node_publish(&node, channels[channel], bytes, size);
         ++sent[kind];
+        if (left % RAW_EVERY == 0) {
+            send_raw(raw);
+        }
     }
     printf("random %llu, cut %llu, flipped %llu, fingerprint %llu, counts %llu, NaN %llu, channel %llu\n",
            sent[0], sent[1], sent[2], sent[3], sent[4], sent[5], sent[6]);

@@ -1,66 +1,51 @@
-/* Plays what `waferhand run --segments` wrote, with the library alone, as a firmware test would. The file's hash is that of
- * double; float has its own. */
+/* Plays what `waferhand run --segments` wrote, with the library alone, as a firmware test would: as C99 to C23, and C++11 to
+ * C++23. PLAYED is the file, RUN its run; ALSO and ALSO_RUN are a second one. A file's hash is that of double; float has its
+ * own. */
 #include <stdio.h>
 
 #include PLAYED
+#if defined(ALSO)
+#include ALSO
+#endif
 
-static wh_wafer_t wafers[sizeof played_wafers / sizeof played_wafers[0]];
+enum { WAFERS = 64 };
+
+static wh_wafer_t wafers[WAFERS];
 static wh_gripper_t grippers[WH_GRIPPERS];
-static wh_grasp_t table;
-static wh_track_t track;
+static wh_player_t player;
 
-static wh_status_t step(void) {
-    wh_pose_t poses[WH_GRIPPERS];
-    wh_gripper_input_t inputs[WH_GRIPPERS];
-    wh_machine_grippers(&played_machine, track.axes, poses);
-    for (size_t g = 0; g < played_machine.gripper_count; ++g) {
-        inputs[g].base_from_gripper = poses[g];
-        inputs[g].valve = track.valves[g];
+static void print_hash(uint64_t hash) {
+    for (int shift = 60; shift >= 0; shift -= 4) {
+        putchar("0123456789abcdef"[hash >> shift & 15]);
     }
-    return wh_grasp_step(&table, inputs, NULL);
+    putchar('\n');
 }
 
-static uint32_t sensors(void) {
-    uint32_t on = 0;
-    for (size_t g = 0; g < played_machine.gripper_count; ++g) {
-        on |= grippers[g].wafer == WH_NONE ? 0U : 1U << g;
+/* True if it ended as it was recorded. */
+static bool play(const wh_played_t *run) {
+    const wh_grasp_storage_t storage = {
+        wafers, run->wafer_count, grippers, run->machine->gripper_count, NULL, 0};
+    const bool exact = sizeof(wh_real_t) == sizeof(double);
+    wh_status_t status = run->wafer_count > WAFERS ? WH_STATUS_BAD_CAPACITY : WH_OK;
+    status = status == WH_OK ? wh_player_init(&player, run, &storage) : status;
+    while (status == WH_OK && wh_player_next(&player)) {
+        status = player.state.status;
     }
-    return on;
-}
-
-static wh_status_t play(const wh_segment_t *segment) {
-    wh_status_t status = wh_track_begin(&track, segment);
-    while (status == WH_OK && wh_track_next(&track, sensors()) == WH_TRACK_MOVING) {
-        status = step();
+    status = status == WH_OK ? player.status : status;
+    if (status != WH_OK) {
+        printf("%s after %ld slices\n", wh_status_text(status), (long)player.track.slice);
+        return false;
     }
-    return status;
-}
-
-static wh_status_t play_all(void) {
-    wh_grasp_storage_t storage = {.wafers = wafers,
-                                  .wafer_count = played_wafer_count,
-                                  .grippers = grippers,
-                                  .gripper_count = played_machine.gripper_count};
-    for (size_t w = 0; w < played_wafer_count; ++w) {
-        wafers[w].base_from_wafer = played_wafers[w];
-    }
-    wh_status_t status = wh_grasp_init(&table, &played_config, &storage);
-    if (status == WH_OK) {
-        status = wh_track_init(&track, &played_machine, played_slice_us);
-    }
-    for (size_t i = 0; i < played_segment_count && status == WH_OK; ++i) {
-        status = play(&played_segments[i]);
-    }
-    return status;
+    const uint64_t hash = wh_simulator_hash(&player.simulator);
+    printf(exact ? "double transfer " : "float transfer ");
+    print_hash(hash);
+    return !exact || (player.track.slice == run->slices && hash == run->hash);
 }
 
 int main(void) {
-    const wh_status_t status = play_all();
-    const uint64_t hash = wh_grasp_hash(&table);
-    const bool exact = sizeof(wh_real_t) == sizeof(double);
-    if (status != WH_OK) {
-        printf("%s after %lld slices\n", wh_status_text(status), (long long)track.slice);
-    }
-    printf("%s transfer %016llx\n", exact ? "double" : "float", (unsigned long long)hash);
-    return status == WH_OK && (!exact || (track.slice == played_slices && hash == played_hash)) ? 0 : 1;
+    bool good = play(&RUN);
+#if defined(ALSO)
+    good = play(&ALSO_RUN) && good;
+#endif
+    return good ? 0 : 1;
 }

@@ -110,7 +110,7 @@ int main(int argc, char **argv) {
     static route_t routes[2][4];
     wh_node_t a;
     wh_node_t b;
-    if (argc != 4 || !wh_node_open(&a, argv[1]) || !wh_node_open(&b, argv[2])) {
+    if (argc != 4 || !wh_node_open(&a, argv[1], NULL) || !wh_node_open(&b, argv[2], NULL)) {
         fprintf(stderr, "usage: relay URL-A URL-B SEED\n");
         return 2;
     }

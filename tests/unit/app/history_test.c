@@ -1,6 +1,8 @@
-/* The prompt's history file: where it is, what is taken from it, how it is kept short and private. */
+/* The prompt's history file: where it is, what is taken from it, how it is kept short and private. And how any file of
+ * the program replaces the one before it. */
 #include "support/support.h"
 
+#include <errno.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -142,11 +144,58 @@ static void what_is_no_file_does_no_harm(void **state) {
     assert_int_equal(count, 0);
 }
 
+static void a_file_is_replaced_whole_and_a_link_stays(void **state) {
+    char link[220];
+    struct stat about;
+    wh_output_t output = {0};
+    (void)state;
+    write_file("old", 3);
+    snprintf(link, sizeof link, "%s-link", path);
+    assert_int_equal(chmod(path, 0604), 0);
+    assert_int_equal(symlink(path, link), 0);
+    for (int kept = 0; kept < 2; ++kept) {
+        assert_true(wh_output_open(&output, link));
+        fputs("newer", output.file);
+        assert_int_equal(stat(path, &about), 0);
+        assert_int_equal(about.st_size, 3);
+        if (kept) {
+            assert_true(wh_output_commit(&output));
+        }
+        wh_output_drop(&output);
+    }
+    assert_int_equal(lstat(link, &about), 0);
+    assert_true(S_ISLNK(about.st_mode));
+    assert_int_equal(stat(path, &about), 0);
+    assert_int_equal(about.st_size, 5);
+    assert_int_equal(about.st_mode & 0777, 0604);
+    snprintf(link, sizeof link, "test $(ls -A '%s/waferhand' | wc -l) = 2", folder);
+    assert_int_equal(system(link), 0);
+}
+
+static void what_is_no_plain_file_is_written_at_once(void **state) {
+    wh_output_t output = {0};
+    (void)state;
+    assert_true(wh_output_open(&output, "/dev/null"));
+    fputs("nowhere", output.file);
+    assert_true(wh_output_commit(&output));
+    assert_false(wh_output_open(&output, folder));
+    assert_int_equal(errno, EISDIR);
+    snprintf(path, sizeof path, "%s/none/file", folder);
+    assert_false(wh_output_open(&output, path));
+    assert_int_equal(errno, ENOENT);
+}
+
 int main(void) {
 #define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(where_it_is), IN_FOLDER(lines_come_back),    IN_FOLDER(what_is_no_line_is_left_out),
-        IN_FOLDER(a_long_file_is_cut), IN_FOLDER(a_huge_file_is_cut), IN_FOLDER(what_is_no_file_does_no_harm),
+        cmocka_unit_test(where_it_is),
+        IN_FOLDER(lines_come_back),
+        IN_FOLDER(what_is_no_line_is_left_out),
+        IN_FOLDER(a_long_file_is_cut),
+        IN_FOLDER(a_huge_file_is_cut),
+        IN_FOLDER(what_is_no_file_does_no_harm),
+        IN_FOLDER(a_file_is_replaced_whole_and_a_link_stays),
+        IN_FOLDER(what_is_no_plain_file_is_written_at_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
-/* The prompt looks after other descriptors while it waits: as LCM's will be. */
+/* The prompt looks after another descriptor while it waits: as LCM's is. */
 #include "support/support.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/signalfd.h>
 #include <time.h>
@@ -11,17 +12,18 @@
 static wh_session_t session;
 static wh_prompt_t *prompt;
 static int input[2], other[2], before;
-static int calls;
+static int calls, looks;
 static char answer[200];
 
 static int open_all(void **state) {
     const wh_session_options_t options = {.layout = "lua/layouts/paper.lua", .limits = {.print_to = stderr}};
     (void)state;
-    calls = 0;
+    calls = looks = 0;
     before = dup(STDIN_FILENO);
     if (pipe(input) != 0 || pipe(other) != 0 || dup2(input[0], STDIN_FILENO) < 0) {
         return -1;
     }
+    fcntl(other[0], F_SETFL, O_NONBLOCK);
     return wh_session_open(&session, &options) ? 0 : -1;
 }
 
@@ -41,26 +43,25 @@ static void put(int fd, const char *text) {
     assert_int_equal(write(fd, text, strlen(text)), strlen(text));
 }
 
-/* A request from elsewhere: executed; the third one ends the prompt. */
+/* A request from elsewhere: executed; the third one ends the prompt by a signal. */
 static void take_request(void *user) {
     char byte;
     assert_ptr_equal(user, &calls);
-    assert_int_equal(read(other[0], &byte, 1), 1);
-    wh_session_execute(&session, "WAIT 1", answer, sizeof answer);
-    wh_prompt_say(prompt, "a request was executed");
-    if (++calls == 3) {
-        wh_prompt_leave(prompt);
+    ++looks;
+    if (read(other[0], &byte, 1) == 1) {
+        wh_session_execute(&session, "WAIT 1", answer, sizeof answer);
+        if (++calls == 3) {
+            raise(SIGTERM);
+        }
     }
 }
 
 static void open_prompt(void) {
     const wh_prompt_watch_t watch = {other[0], take_request, &calls};
-    prompt = wh_prompt_open(&session);
-    assert_non_null(prompt);
-    assert_true(wh_prompt_watch(prompt, &watch));
+    prompt = wh_prompt_open(&session, &watch);
 }
 
-static void watches_are_called_while_it_waits(void **state) {
+static void the_watch_is_called_while_it_waits(void **state) {
     (void)state;
     open_prompt();
     put(other[1], "123");
@@ -82,14 +83,25 @@ static void lines_and_requests_take_turns(void **state) {
     assert_int_equal(session.record.command_count, 2 + calls);
 }
 
-static void only_so_many_watches(void **state) {
-    const wh_prompt_watch_t watch = {other[0], take_request, &calls};
-    (void)state;
-    open_prompt();
-    for (int i = 1; i < WH_PROMPT_WATCHES; ++i) {
-        assert_true(wh_prompt_watch(prompt, &watch));
+static void leave_at_the_third_look(void *user) {
+    (void)user;
+    if (++looks == 3) {
+        raise(SIGTERM);
     }
-    assert_false(wh_prompt_watch(prompt, &watch));
+}
+
+/* Nothing comes: the watch is looked after all the same, every 100 ms. */
+static void the_watch_is_called_in_silence(void **state) {
+    const wh_prompt_watch_t watch = {other[0], leave_at_the_third_look, NULL};
+    struct timespec begin, end;
+    (void)state;
+    prompt = wh_prompt_open(&session, &watch);
+    clock_gettime(CLOCK_MONOTONIC, &begin);
+    assert_int_equal(wh_prompt_run(prompt), 1);
+    clock_gettime(CLOCK_MONOTONIC, &end);
+    assert_int_equal(looks, 3);
+    const double seconds = (double)(end.tv_sec - begin.tv_sec) + (double)(end.tv_nsec - begin.tv_nsec) / 1e9;
+    assert_true(seconds > 0.29);
 }
 
 static int signal_descriptor;
@@ -97,9 +109,11 @@ static int signal_descriptor;
 static void take_signal(void *user) {
     struct signalfd_siginfo info;
     (void)user;
-    assert_int_equal(read(signal_descriptor, &info, sizeof info), sizeof info);
-    assert_int_equal(info.ssi_signo, SIGTERM);
-    wh_prompt_leave(prompt);
+    if (read(signal_descriptor, &info, sizeof info) == sizeof info) {
+        ++calls;
+        assert_int_equal(info.ssi_signo, SIGTERM);
+        close(input[1]);
+    }
 }
 
 /* Who has blocked a signal for a signalfd gets it there, also when it comes before the wait. */
@@ -109,12 +123,12 @@ static void a_signal_descriptor_wakes_it(void **state) {
     sigemptyset(&mask);
     sigaddset(&mask, SIGTERM);
     sigprocmask(SIG_BLOCK, &mask, NULL);
-    signal_descriptor = signalfd(-1, &mask, SFD_CLOEXEC);
-    open_prompt();
+    signal_descriptor = signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK);
     const wh_prompt_watch_t watch = {signal_descriptor, take_signal, NULL};
-    assert_true(wh_prompt_watch(prompt, &watch));
+    prompt = wh_prompt_open(&session, &watch);
     raise(SIGTERM);
-    assert_int_equal(wh_prompt_run(prompt), 1);
+    assert_int_equal(wh_prompt_run(prompt), 0);
+    assert_int_equal(calls, 1);
     close(signal_descriptor);
     wh_prompt_close(prompt); /* which brings back the mask from before it */
     prompt = NULL;
@@ -137,8 +151,9 @@ static void signal_before_the_wait(void **state) {
 static void take_long_request(void *user) {
     char byte;
     (void)user;
-    assert_int_equal(read(other[0], &byte, 1), 1);
-    wh_session_execute(&session, "WAIT 40000", answer, sizeof answer);
+    if (read(other[0], &byte, 1) == 1) {
+        wh_session_execute(&session, "WAIT 40000", answer, sizeof answer);
+    }
 }
 
 /* A signal stops a watch's command, too, and is then the prompt's. */
@@ -148,8 +163,7 @@ static void signal_during_a_request(void **state) {
     struct sigevent event = {.sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGTERM};
     timer_t timer;
     (void)state;
-    prompt = wh_prompt_open(&session);
-    assert_true(wh_prompt_watch(prompt, &watch));
+    prompt = wh_prompt_open(&session, &watch);
     put(other[1], "1");
     assert_int_equal(timer_create(CLOCK_MONOTONIC, &event, &timer), 0);
     assert_int_equal(timer_settime(timer, 0, &soon, NULL), 0);
@@ -161,9 +175,9 @@ static void signal_during_a_request(void **state) {
 int main(void) {
 #define IN_PIPES(test) cmocka_unit_test_setup_teardown(test, open_all, close_all)
     const struct CMUnitTest tests[] = {
-        IN_PIPES(watches_are_called_while_it_waits),
+        IN_PIPES(the_watch_is_called_while_it_waits),
         IN_PIPES(lines_and_requests_take_turns),
-        IN_PIPES(only_so_many_watches),
+        IN_PIPES(the_watch_is_called_in_silence),
         IN_PIPES(a_signal_descriptor_wakes_it),
         IN_PIPES(signal_before_the_wait),
         IN_PIPES(signal_during_a_request),

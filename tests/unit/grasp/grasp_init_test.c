@@ -1,4 +1,5 @@
 /* Setting a table up, placing wafers by hand: what is taken, what is refused, and what is forgotten. */
+#include "grasp/restore.h"
 #include "support/grasp.h"
 
 /* A cell in the middle of things. */
@@ -48,10 +49,12 @@ static void init_refuses(void **state) {
     memcpy(&before, &cell, sizeof before);
     for (int what = 0; what <= 28; ++what) {
         const wh_status_t status = init_with(&cell, what);
-        assert_int_equal(status, what < 21   ? WH_STATUS_BAD_TOLERANCE
-                                 : what < 22 ? WH_STATUS_OUT_OF_RANGE
-                                 : what < 25 ? WH_STATUS_NULL_ARGUMENT
-                                             : WH_STATUS_BAD_CAPACITY);
+        const bool has_buckets = what == 24 || what >= 27;
+        assert_int_equal(status, what < 21                        ? WH_STATUS_BAD_TOLERANCE
+                                 : what < 22                      ? WH_STATUS_OUT_OF_RANGE
+                                 : has_buckets && !WH_INDEX_BUILT ? WH_STATUS_NOT_BUILT
+                                 : what < 25                      ? WH_STATUS_NULL_ARGUMENT
+                                                                  : WH_STATUS_BAD_CAPACITY);
         assert_memory_equal(&cell, &before, sizeof cell);
     }
     const wh_grasp_config_t config = wh_grasp_config_default();
@@ -81,11 +84,47 @@ static void init_takes_the_greatest_counts(void **state) {
     const wh_pose_t good = cell.wafer[0].base_from_wafer;
     cell.wafer[0].base_from_wafer.r.x = WH_REAL(NAN);
     for (size_t i = 0; i < 4; ++i) {
-        assert_int_equal(wh_grasp_init(&cell.table, &config, &most[i]), WH_STATUS_NOT_FINITE);
+        const bool built = WH_INDEX_BUILT || i != 2;
+        assert_int_equal(wh_grasp_init(&cell.table, &config, &most[i]),
+                         built ? WH_STATUS_NOT_FINITE : WH_STATUS_NOT_BUILT);
     }
     cell.wafer[0].base_from_wafer = good;
-    assert_int_equal(wh_grasp_init(&cell.table, &config, &most[2]), WH_OK);
+    assert_int_equal(wh_grasp_init(&cell.table, &config, &most[2]),
+                     WH_INDEX_BUILT ? WH_OK : WH_STATUS_NOT_BUILT);
     assert_int_equal(wh_grasp_init(&cell.table, &config, &most[3]), WH_OK);
+}
+
+/* A library without swept checking or without the index says so, and the table stays as it was. So does a table that such a
+ * library never set up, when it should be restored. */
+static void what_is_not_built_is_refused(void **state) {
+    (void)state;
+    cell_t cell;
+    cell_t before;
+    uint32_t buckets[WH_GRASP_BUCKETS(CELL_WAFERS, CELL_GRIPPERS)];
+    begin_busy(&cell);
+    memcpy(&before, &cell, sizeof before);
+    wh_grasp_config_t config = wh_grasp_config_default();
+    wh_grasp_storage_t storage = {cell.wafer, CELL_WAFERS, cell.gripper, CELL_GRIPPERS, NULL, 0};
+    config.check = WH_CHECK_SWEPT;
+    assert_int_equal(wh_grasp_init(&cell.table, &config, &storage),
+                     WH_SWEEP_BUILT ? WH_OK : WH_STATUS_NOT_BUILT);
+    assert_true(WH_SWEEP_BUILT || memcmp(&cell, &before, sizeof cell) == 0);
+    cell.table.config.check = WH_CHECK_SWEPT;
+    assert_int_equal(wh_grasp_restore(&cell.table, 9, cell.wafer, cell.gripper),
+                     WH_SWEEP_BUILT ? WH_OK : WH_STATUS_NOT_BUILT);
+    begin_busy(&cell);
+    memcpy(&before, &cell, sizeof before);
+    config.check = WH_CHECK_SAMPLED;
+    storage.buckets = buckets;
+    storage.bucket_count = sizeof buckets / sizeof buckets[0];
+    assert_int_equal(wh_grasp_buckets(CELL_WAFERS, CELL_GRIPPERS), WH_INDEX_BUILT ? storage.bucket_count : 0);
+    assert_int_equal(wh_grasp_init(&cell.table, &config, &storage),
+                     WH_INDEX_BUILT ? WH_OK : WH_STATUS_NOT_BUILT);
+    assert_true(WH_INDEX_BUILT || memcmp(&cell, &before, sizeof cell) == 0);
+    cell.table.storage.buckets = buckets;
+    cell.table.storage.bucket_count = storage.bucket_count;
+    assert_int_equal(wh_grasp_restore(&cell.table, 9, cell.wafer, cell.gripper),
+                     WH_INDEX_BUILT ? WH_OK : WH_STATUS_NOT_BUILT);
 }
 
 /* The ends of the ranges are in them. */
@@ -203,7 +242,7 @@ static void play_beside_neighbours(wh_check_t check) {
 static void neighbours_of_the_arrays_are_left_alone(void **state) {
     (void)state;
     play_beside_neighbours(WH_CHECK_SAMPLED);
-    play_beside_neighbours(WH_CHECK_SWEPT);
+    play_beside_neighbours(SWEPT_IF_BUILT);
 }
 
 static void indices_far_out_are_refused(void **state) {
@@ -224,6 +263,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(init_refuses),
         cmocka_unit_test(init_takes_the_greatest_counts),
+        cmocka_unit_test(what_is_not_built_is_refused),
         cmocka_unit_test(init_takes_the_ranges_ends),
         cmocka_unit_test(one_of_nothing_is_refused),
         cmocka_unit_test(init_begins_anew),

@@ -324,7 +324,7 @@ static void huge_numbers_are_far_away(void **state) {
     const double huge = DBL_MAX;
 #endif
     wh_grasp_config_t config = wh_grasp_config_default();
-    config.check = WH_CHECK_SWEPT;
+    config.check = SWEPT_IF_BUILT;
     cell_t cell;
     cell_begin(&cell, &config);
     cell_place(&cell, 0, huge, huge, huge);

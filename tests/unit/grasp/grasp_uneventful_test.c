@@ -20,18 +20,21 @@ static void begin(fixture_t *fixture, wh_check_t check) {
     assert_int_equal(wh_grasp_init(&fixture->cell.table, &config, &storage), WH_OK);
     cell_move(&fixture->cell, 1, 1000, 499.5, -500, OPEN);
     cell_move(&fixture->cell, 1, 1000, 500, -500, OPEN);
-    assert_true(wh_horizon_is_clear(&fixture->cell.table, 1));
+    assert_true(
+        wh_horizon_is_clear_at(&fixture->cell.table, 1, &fixture->cell.gripper[1].base_from_gripper.r));
 }
 
-/* Whether gripper 1 takes no look in the next slice, not even whether it is within its horizon: the bit that says so, taken
- * away before, stays away. */
+/* Whether gripper 1 takes no look in the next slice, not even whether it is within its horizon: what a slice notes is over at
+ * its end, and such a slice takes no note. */
 static bool looks_at_nothing(fixture_t *fixture) {
     wh_grasp_t *table = &fixture->cell.table;
-    wh_horizon_words(table, 1)[3] &= ~(uint32_t)WH_HORIZON_CLEAR;
     const uint64_t slice = table->slice;
+    table->storage.grippers[1].approach.holder = WH_HORIZON_CLEAR;
     cell_step(&fixture->cell);
     assert_int_equal(table->slice, slice + 1);
-    return !wh_horizon_is_clear(table, 1);
+    const bool untouched = wh_horizon_is_clear(table, 1);
+    table->storage.grippers[1].approach.holder = WH_NONE;
+    return untouched;
 }
 
 static void within_the_horizon_nothing_is_looked_at(void **state) {
@@ -175,7 +178,7 @@ static void a_contest_ends_though_nothing_rests_near(void **state) {
     assert_int_equal(wh_grasp_restore(&cell->table, cell->table.slice, wafers, grippers), WH_OK);
     cell_set(cell, 0, 0, 0, -500, CLOSED);
     cell_move(cell, 1, 1000, 500, -500, OPEN);
-    assert_true(wh_horizon_is_clear(&cell->table, 1));
+    assert_true(wh_horizon_is_clear_at(&cell->table, 1, &cell->gripper[1].base_from_gripper.r));
     cell_expect(cell, WH_EVENT_CONTESTED, 0, 1, 0);
     assert_int_equal(cell->gripper[1].contest.wafer, WH_NONE);
 }

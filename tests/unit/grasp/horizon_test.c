@@ -1,5 +1,6 @@
 /* How far a gripper's horizon reaches, to the number: what is taken off for rounding, what a word cannot hold, and that it
  * ends before any wafer matters. That horizons change no result is shown by tests/property/horizon_random.c. */
+#include "grasp/grasp_internal.h"
 #include "grasp/horizon_internal.h"
 #include "support/grasp.h"
 
@@ -43,7 +44,7 @@ static uint32_t *words(const fixture_t *fixture) {
 }
 
 static void store(fixture_t *fixture, const wh_vec3_t *place, double gap) {
-    const wh_horizon_t horizon = {.gap = WH_REAL(gap), .measured = true};
+    const wh_horizon_t horizon = {.gap = WH_REAL(gap)};
     wh_horizon_store(&fixture->cell.table, G, place, &horizon);
 }
 
@@ -61,7 +62,7 @@ static void words_are_each_grippers_own(void **state) {
         assert_int_equal(wh_horizon_words(&fixture.cell.table, g)[3], 0);
         assert_false(wh_horizon_is_clear(&fixture.cell.table, g));
     }
-    wh_horizon_set_clear(&fixture.cell.table, G);
+    wh_horizon_note(&fixture.cell.table, G, true);
     for (size_t g = 0; g < CELL_GRIPPERS; ++g) {
         assert_true(wh_horizon_is_clear(&fixture.cell.table, g) == (g == G));
         wh_horizon_words(&fixture.cell.table, g)[3] = UINT32_MAX;
@@ -76,20 +77,41 @@ static void words_are_each_grippers_own(void **state) {
     assert_memory_equal(next, others, sizeof others);
 }
 
-static void without_buckets_there_are_none(void **state) {
+/* A table without buckets has no horizon. It notes if no wafer was near in this step, so that a step looks at all of them
+ * once: they lie 1000 mm apart along x. */
+static void without_buckets_it_is_noted_that_nothing_is_near(void **state) {
+    (void)state;
+    static const struct {
+        double x, y, z;
+        bool clear;
+    } cases[] = {{500, 0, 0, true},   {0, 500, 0, true},  {-500, 0, 0, true}, {0, -500, 0, true},
+                 {0, 0, 1000, true},  {0, 0, -5, true},   {0, 0, -4, false},  {70, 70, -1, false},
+                 {3000, 0, 4, false}, {0, 0, 1e30, true}, {1e30, 0, 0, true}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        cell_t cell;
+        cell_begin_default(&cell);
+        const wh_pose_t pose = wh_test_at(cases[i].x, cases[i].y, cases[i].z);
+        assert_int_equal(wh_grasp_find_ready(&cell.table, G, &pose), WH_NONE);
+        assert_true(wh_horizon_is_clear(&cell.table, G) == cases[i].clear);
+        assert_false(wh_horizon_is_clear_at(&cell.table, G, &pose.r));
+    }
+}
+
+/* It is of one step, and of a gripper that watches no wafer. */
+static void the_note_is_over_with_the_step(void **state) {
     (void)state;
     cell_t cell;
     cell_begin_default(&cell);
-    const wh_vec3_t place = cell.gripper[G].base_from_gripper.r;
-    const wh_found_t near = wh_index_all(&cell.table);
-    wh_horizon_t horizon = wh_horizon_begin(&cell.table, G, &near, 5);
-    assert_false(horizon.measured);
-    assert_true(horizon.gap == LONGEST);
-    assert_false(wh_horizon_measure(&horizon, &cell.wafer[0].base_from_wafer, &place));
-    assert_true(horizon.gap == LONGEST);
-    wh_horizon_set(&cell.table, G, &place, &horizon);
-    assert_false(wh_horizon_is_clear_at(&cell.table, G, &place));
-    assert_false(wh_horizon_is_clear(&cell.table, G));
+    cell.gripper[G].approach.holder = WH_HORIZON_CLEAR;
+    cell_move(&cell, G, 0, 0, -4, OPEN);
+    assert_int_equal(cell.gripper[G].approach.wafer, 0);
+    assert_int_equal(cell.gripper[G].approach.holder, WH_NONE);
+    wh_horizon_note(&cell.table, G, true);
+    assert_int_equal(cell.gripper[G].approach.holder, WH_NONE);
+    cell_move(&cell, G, 0, 0, -500, OPEN);
+    cell_move(&cell, G, 0, 0, -500, OPEN);
+    assert_int_equal(cell.gripper[G].approach.wafer, WH_NONE);
+    assert_int_equal(cell.gripper[G].approach.holder, WH_NONE);
 }
 
 /* From the way of a slice, along several axes at once or against them, to the margin. */
@@ -140,11 +162,11 @@ static void measuring_begins_with_the_margin(void **state) {
     const wh_found_t some = {&listed, 1};
     const wh_found_t all = wh_index_all(&fixture.cell.table);
     wh_horizon_t horizon = wh_horizon_begin(&fixture.cell.table, G, &some, 5);
-    assert_true(horizon.measured && horizon.gap == 5);
+    assert_true(horizon.gap == 5);
     assert_true(horizon.limits.projz == 4 && horizon.limits.projxy == 60);
     fixture.cell.gripper[G].approach.wafer = 0;
     horizon = wh_horizon_begin(&fixture.cell.table, G, &all, 5);
-    assert_true(horizon.measured && horizon.gap == LONGEST);
+    assert_true(horizon.gap == LONGEST);
     assert_true(horizon.limits.projz == WH_REAL(0.5) && horizon.limits.projxy == WH_REAL(0.25));
 }
 
@@ -158,7 +180,7 @@ static void gaps_are_measured_from_the_neighbourhood(void **state) {
                                       {3, -4, 1, 100, 0, 0},        {0, 0, 10, 6, 6, 1},
                                       {0, 0, 10, 5, 5, 1},          {80, 0, 0, 5, 5, 1},
                                       {80, 0, 0, 20, 20, 1},        {60, 0, 0, 100, 0, 0},
-                                      {0, 0, 4, 100, 0, 0},         {0, 0, 4, 0, 0, 0},
+                                      {0, 0, 4, 100, 0, 0},         {0, 0, 4, 0, 0, 1},
                                       {60.5, 0, 4, 9, 0.5, 1},      {0, 60.5, 4, 9, 0.5, 1},
                                       {0, 0, 4.5, 9, 0.5, 1},       {0, 0, 4.5, 0, 0, 1},
                                       {60.5, 0, 3.5, 0, 0, 1},      {0, 0, (double)NAN, 9, 0, 0},
@@ -174,7 +196,7 @@ static void gaps_are_measured_from_the_neighbourhood(void **state) {
         wh_pose_t wafer = {turns[i % 2], {0, 0, 0}};
         wafer.r = wh_mat3_transform(&wafer.R, &p);
         wafer.r = wh_vec3_add(&wafer.r, &place);
-        wh_horizon_t horizon = {.limits = {4, 60}, .gap = WH_REAL(c[3]), .measured = true};
+        wh_horizon_t horizon = {.limits = {4, 60}, .gap = WH_REAL(c[3])};
         assert_int_equal(wh_horizon_measure(&horizon, &wafer, &place), c[5] != 0);
         assert_near(horizon.gap, c[4], 0);
     }
@@ -220,7 +242,7 @@ static void distances_fit_their_word(void **state) {
     begin(&fixture, 4, 60);
     for (size_t i = 0; i < 6; ++i) {
         store(&fixture, &place, gaps[i]);
-        assert_int_equal(words(&fixture)[3], 4 * (uint32_t)LONGEST + WH_HORIZON_CLEAR);
+        assert_int_equal(words(&fixture)[3], 4 * (uint32_t)LONGEST);
     }
     assert_true(covers(&fixture, 0, 8388000, 0));
     assert_false(covers(&fixture, 0, 8389000, 0));
@@ -242,12 +264,12 @@ static void short_ones_do_not_hold(void **state) {
     store(&fixture, &place, 3.5 / 64);
     assert_int_equal(words(&fixture)[3], 4 * 1);
     store(&fixture, &place, 4.5 / 64);
-    assert_int_equal(words(&fixture)[3], 4 * 2 + WH_HORIZON_CLEAR);
+    assert_int_equal(words(&fixture)[3], 4 * 2);
     fixture.cell.gripper[G].approach.wafer = 0;
     store(&fixture, &place, 3.5 / 64);
     assert_int_equal(words(&fixture)[3], 4 * 1 + WH_HORIZON_OF_TOLERANCE);
     store(&fixture, &place, 4.5 / 64);
-    assert_int_equal(words(&fixture)[3], 4 * 2 + WH_HORIZON_OF_TOLERANCE + WH_HORIZON_CLEAR);
+    assert_int_equal(words(&fixture)[3], 4 * 2 + WH_HORIZON_OF_TOLERANCE);
     /* It is of use as long as that goes on. */
     assert_true(covers(&fixture, 0, 0, 0));
     fixture.cell.gripper[G].approach.wafer = WH_NONE;
@@ -329,7 +351,7 @@ static void look(fixture_t *fixture, const wh_vec3_t *from) {
     const wh_found_t all = wh_index_all(&fixture->cell.table);
     wh_horizon_t horizon = wh_horizon_begin(&fixture->cell.table, G, &all, 0);
     (void)wh_horizon_measure(&horizon, &fixture->cell.wafer[0].base_from_wafer, from);
-    wh_horizon_set(&fixture->cell.table, G, from, &horizon);
+    wh_horizon_store(&fixture->cell.table, G, from, &horizon);
 }
 
 /* The last place on the way from one to another that is within the horizon of the first. */
@@ -386,7 +408,8 @@ int main(void) {
     (void)wh_test_seed();
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(words_are_each_grippers_own),
-        cmocka_unit_test(without_buckets_there_are_none),
+        cmocka_unit_test(without_buckets_it_is_noted_that_nothing_is_near),
+        cmocka_unit_test(the_note_is_over_with_the_step),
         cmocka_unit_test(margin_goes_with_the_way),
         cmocka_unit_test(measuring_begins_with_the_margin),
         cmocka_unit_test(gaps_are_measured_from_the_neighbourhood),

@@ -24,16 +24,22 @@ static struct {
 static struct {
     int32_t error[64];
     int count[64];
+    char text[400]; /* of the last one */
 } heard;
 
-static void publish_request(int64_t seq, const char *line) {
+static void publish(waferhand_request message, const char *line) {
     uint8_t encoded[1200];
-    char text[1001];
+    char text[1100];
     snprintf(text, sizeof text, "%s", line);
-    const waferhand_request message = {.seq = seq, .command_line = text};
+    message.command_line = text;
     const int size = waferhand_request_encode(encoded, 0, (int)sizeof encoded, &message);
     assert_true(size > 0);
     assert_true(wh_node_publish(&node, WH_CHANNEL_REQUEST, encoded, (size_t)size));
+}
+
+static void publish_request(int64_t seq, const char *line) {
+    const waferhand_request message = {.seq = seq};
+    publish(message, line);
 }
 
 /* Motion control's own link, and the requests before the slice in which they are due. */
@@ -56,12 +62,13 @@ static void on_mcs(void *user, const void *data, size_t size) {
     if (ends && message.request > 0 && message.request < 64) {
         heard.error[message.request] = message.error;
         ++heard.count[message.request];
+        snprintf(heard.text, sizeof heard.text, "%s", message.text);
     }
     (void)waferhand_mcs_decode_cleanup(&message);
 }
 
 static wh_link_t *connect_all(void *user, wh_mcs_t *mcs) {
-    assert_int_equal(wh_sim_process_open(&simulation, &node, mcs->layout, NULL, NULL), WH_OK);
+    assert_int_equal(wh_sim_process_open(&simulation, &node, mcs->layout, true), WH_OK);
     assert_ptr_equal(wh_mcs_process_partners(user).connect(user, mcs), &control.client.link);
     asking.exchange = exchange;
     return &asking;
@@ -69,10 +76,10 @@ static wh_link_t *connect_all(void *user, wh_mcs_t *mcs) {
 
 static int open_all(void **state) {
     (void)state;
-    const wh_mcs_process_options_t options = {.rate = 0};
+    const wh_protocol_client_options_t options = {.rate = 0};
     memset(&plan, 0, sizeof plan);
     memset(&heard, 0, sizeof heard);
-    assert_true(wh_node_open(&node, "memq://"));
+    assert_true(wh_node_open(&node, "memq://", NULL));
     assert_true(wh_mcs_process_open(&control, &node, &options));
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_MCS, on_mcs, NULL));
     wh_session_options_t wanted = {.layout = "lua/layouts/paper.lua", .limits = {.print_to = stderr}};
@@ -119,6 +126,68 @@ static void requests_wait_for_their_turn(void **state) {
     execute_requests();
     assert_heard(1, WH_OK);
     assert_heard(2, WH_OK);
+}
+
+static void a_number_that_comes_again_is_answered_again_and_not_executed(void **state) {
+    (void)state;
+    publish_request(1, "GET A 1");
+    execute_requests();
+    publish_request(1, "GET A 1");
+    execute_requests();
+    assert_int_equal(heard.count[1], 2);
+    assert_int_equal(heard.error[1], WH_OK);
+}
+
+static void a_number_with_another_line_is_refused_and_the_first_line_named(void **state) {
+    (void)state;
+    publish_request(1, "GET A 1");
+    execute_requests();
+    publish_request(1, "PUT B 2");
+    execute_requests();
+    assert_int_equal(heard.error[1], WH_STATUS_NUMBER_TAKEN);
+    assert_string_equal(heard.text,
+                        "the request's number was another request's: 1 was \"GET A 1\" (expected a "
+                        "number of its own for each line)");
+    publish_request(1, "GET A 1");
+    execute_requests();
+    assert_int_equal(heard.error[1], WH_OK);
+    publish_request(2, "HOLDER \"Wafer 1\"");
+    execute_requests();
+    assert_string_equal(heard.text, "OK holder=EE");
+}
+
+/* While it is executed, and while it waits. */
+static void a_number_is_taken_before_its_answer(void **state) {
+    (void)state;
+    plan.at = 500;
+    plan.count = 1;
+    plan.lines[0] = "PUT B 2";
+    plan.seq = 4;
+    publish_request(5, "GET A 1");
+    execute_requests();
+    assert_int_equal(heard.count[5], 2);
+    assert_int_equal(heard.error[5], WH_OK);
+    publish_request(6, "AXES");
+    publish_request(6, "PUT B 2");
+    execute_requests();
+    assert_int_equal(heard.count[6], 2);
+    assert_int_equal(heard.error[6], WH_OK);
+}
+
+static void a_request_for_another_run_or_layout_or_too_long_is_told_so(void **state) {
+    (void)state;
+    static char line[1050];
+    const waferhand_request run = {.seq = 1, .run = 12345};
+    const waferhand_request layout = {.seq = 2, .layout_hash = 12345};
+    memset(line, 'A', sizeof line - 1);
+    publish(run, "GET A 1");
+    publish(layout, "GET A 1");
+    publish_request(3, line);
+    execute_requests();
+    assert_heard(1, WH_STATUS_UNKNOWN_RUN);
+    assert_heard(2, WH_STATUS_OTHER_LAYOUT);
+    assert_heard(3, WH_STATUS_BAD_ARGUMENT);
+    assert_string_equal(heard.text, "the line is too long (expected at most 1000 bytes)");
 }
 
 static void one_too_many_is_turned_away(void **state) {
@@ -172,6 +241,10 @@ static void stop_of_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         IN_PAPER(requests_wait_for_their_turn),
+        IN_PAPER(a_number_that_comes_again_is_answered_again_and_not_executed),
+        IN_PAPER(a_number_with_another_line_is_refused_and_the_first_line_named),
+        IN_PAPER(a_number_is_taken_before_its_answer),
+        IN_PAPER(a_request_for_another_run_or_layout_or_too_long_is_told_so),
         IN_PAPER(one_too_many_is_turned_away),
         IN_PAPER(stop_goes_past_the_queue),
         IN_PAPER(stop_of_nothing),

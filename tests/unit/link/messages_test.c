@@ -10,10 +10,10 @@ static wh_protocol_client_t client;
 static wh_sim_process_t simulation;
 
 static wh_link_t *connect(void *user, wh_mcs_t *mcs) {
-    const wh_protocol_client_options_t options = {.layout = mcs->layout};
+    const wh_protocol_client_options_t options = {.rate = 0};
     (void)user;
-    assert_int_equal(wh_sim_process_open(&simulation, &node, mcs->layout, NULL, NULL), WH_OK);
-    assert_true(wh_protocol_client_open(&client, &node, &options));
+    assert_int_equal(wh_sim_process_open(&simulation, &node, mcs->layout, true), WH_OK);
+    assert_true(wh_protocol_client_open(&client, &node, mcs->layout, &options));
     return &client.link;
 }
 
@@ -21,7 +21,7 @@ static uint64_t play(const char *script, bool over_messages) {
     wh_script_run_options_t options = {.script = script, .limits = {.print_to = stderr}};
     wh_script_run_t run;
     if (over_messages) {
-        assert_true(wh_node_open(&node, "memq://"));
+        assert_true(wh_node_open(&node, "memq://", NULL));
         options.partners.connect = connect;
     }
     assert_int_equal(wh_script_run(&run, &options), WH_RUN_MET);

@@ -208,7 +208,7 @@ static void hammer(writer_t writer, const char *name) {
     assert_int_equal(outputs_update(&f), 0);
     const pid_t child = start(writer, f.path);
     for (bool ended = false; !ended;) {
-        struct pollfd waiting = {.fd = wh_outputs_fd(&f.reader), .events = POLLIN};
+        struct pollfd waiting = {.fd = f.reader.fd, .events = POLLIN};
         (void)poll(&waiting, 1, 10);
         ended = has_ended(child);
         do {

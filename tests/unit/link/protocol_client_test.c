@@ -79,15 +79,15 @@ static void on_command(void *user, const void *data, size_t size) {
 static uint64_t malformed_after(change_t *what) {
     wh_command_t command = {.seq = 1, .utime = 1000, .gripper_count = 2, .axis_count = 5};
     wh_state_t state = {.status = WH_OK};
-    const wh_protocol_client_options_t options = {.layout = layout};
+    const wh_protocol_client_options_t options = {.rate = 0};
     for (size_t g = 0; g < 2; ++g) {
         command.grippers[g].base_from_gripper = wh_pose_identity();
         command.grippers[g].valve = WH_VALVE_CLOSED;
     }
     change = what;
-    assert_true(wh_node_open(&node, "memq://"));
+    assert_true(wh_node_open(&node, "memq://", NULL));
     assert_int_equal(wh_protocol_server_open(&server, layout), WH_OK);
-    assert_true(wh_protocol_client_open(&client, &node, &options));
+    assert_true(wh_protocol_client_open(&client, &node, layout, &options));
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, on_command, NULL));
     assert_int_equal(client.link.exchange(&client.link, &command, &state), WH_OK);
     (void)wh_node_drain(&node, 64);

@@ -144,7 +144,7 @@ static void no_other_condition_is_taken_over(void **state) {
 static void the_cell_tells_it_all(void **state) {
     wh_script_run_options_t options = {.script = SCRIPT};
     wh_script_run_t run;
-    waferhand_cell cell;
+    static wh_link_cell_t cell;
     (void)state;
     options.partners.connect = connect_server;
     restart_every = 0;
@@ -152,7 +152,7 @@ static void the_cell_tells_it_all(void **state) {
     const wh_layout_t *layout = server->layout;
     const wh_link_identity_t identity = {1, wh_layout_hash(layout)};
     assert_true(wh_link_cell_from_layout(layout, &identity, &cell));
-    wh_layout_t *made = wh_link_layout_from_cell(&cell);
+    wh_layout_t *made = wh_link_layout_from_cell(&cell.message);
     assert_non_null(made);
     assert_int_equal(made->physics.fault_count, 4);
     assert_memory_equal(&made->physics.vacuum, &layout->physics.vacuum, sizeof made->physics.vacuum);
@@ -162,9 +162,8 @@ static void the_cell_tells_it_all(void **state) {
     assert_int_equal(wh_protocol_server_open(&servers[1], made), WH_OK);
     assert_true(wh_protocol_server_hash(&servers[0]) == wh_protocol_server_hash(&servers[1]));
     wh_link_layout_free(made);
-    cell.vacuum_sensor_on = 0;
-    assert_null(wh_link_layout_from_cell(&cell));
-    wh_link_cell_free(&cell);
+    cell.message.vacuum_sensor_on = 0;
+    assert_null(wh_link_layout_from_cell(&cell.message));
     wh_script_run_close(&run);
 }
 

@@ -1,5 +1,6 @@
 /* Poses: products against long double, what counts as a rotation, and how a worn one is mended. */
 #include "math/pose.h"
+#include "math/rotation.h"
 #include "support/pose.h"
 
 #define RUNS 20000
@@ -201,6 +202,128 @@ static void orthonormalise_squares_the_error(void **state) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------- the way in */
+
+/* A matrix with each entry rounded to a multiple of 1/32768 that fits 16 bits, as Q15 has it. */
+static wh_mat3_t in_q15(const wh_mat3_t *R) {
+    wh_mat3_t rounded;
+    for (int k = 0; k < 9; ++k) {
+        const long q15 = lround((double)R->m[k / 3][k % 3] * 32768);
+        rounded.m[k / 3][k % 3] = WH_REAL(q15 > 32767 ? 32767 : q15) / 32768;
+    }
+    return rounded;
+}
+
+/* The angle of the turn from one rotation to another, rad, if it is small. */
+static double turn_between(const wh_mat3_t *a, const wh_mat3_t *b) {
+    double sum = 0;
+    for (int k = 0; k < 9; ++k) {
+        const double difference = (double)a->m[k / 3][k % 3] - (double)b->m[k / 3][k % 3];
+        sum += difference * difference;
+    }
+    return sqrt(sum / 2);
+}
+
+/* The nearest rotation differs from the matrix by a symmetric factor: R^T A = (R^T A)^T. */
+static double asymmetry(const wh_mat3_t *R, const wh_mat3_t *A) {
+    const wh_mat3_t factor = wh_mat3_multiply_back(R, A);
+    return fmax(fabs((double)(factor.m[0][1] - factor.m[1][0])),
+                fmax(fabs((double)(factor.m[0][2] - factor.m[2][0])),
+                     fabs((double)(factor.m[1][2] - factor.m[2][1]))));
+}
+
+static void fixed_point_rotations_are_refused_as_they_are_and_good_once_mended(void **state) {
+    (void)state;
+    int refused = 0;
+    for (int run = 0; run < RUNS; ++run) {
+        const wh_mat3_t exact = wh_test_random_turn(WH_TEST_PI);
+        const wh_mat3_t q15 = in_q15(&exact);
+        wh_pose_t pose = with_R(q15);
+        refused += wh_pose_validate(&pose) == WH_STATUS_NOT_A_ROTATION ? 1 : 0;
+        assert_int_equal(wh_rotation_mend(&pose.R), WH_OK);
+        assert_int_equal(wh_pose_validate(&pose), WH_OK);
+        assert_true(turn_between(&pose.R, &exact) < 2.2 / 32768 + 16 * WH_TEST_ROUNDING);
+    }
+    assert_true(refused > RUNS * 9 / 10);
+}
+
+/* Up to the limit: mended to the nearest rotation; beyond: refused, not a bit of it changed. */
+static void mending_ends_where_its_header_says(void **state) {
+    (void)state;
+    int mended = 0;
+    int refused = 0;
+    for (int run = 0; run < RUNS; ++run) {
+        wh_mat3_t worn = wh_test_random_turn(WH_TEST_PI);
+        const double error = wh_test_decades(1e-6, 0.2);
+        for (int k = 0; k < 9; ++k) {
+            worn.m[k / 3][k % 3] += WH_REAL(wh_test_uniform(-error, error));
+        }
+        wh_mat3_t R = worn;
+        const double off = (double)(off_orthonormal(&worn) - (long double)WH_ROTATION_MENDABLE);
+        const wh_status_t status = wh_rotation_mend(&R);
+        if (off < -1e-6) {
+            assert_int_equal(status, WH_OK);
+            assert_near(off_orthonormal(&R), 0, sizeof(wh_real_t) == sizeof(double) ? 1e-14 : 5e-6);
+            assert_near(asymmetry(&R, &worn), 0, 32 * WH_TEST_ROUNDING);
+            ++mended;
+        } else if (off > 1e-6) {
+            assert_int_equal(status, WH_STATUS_NOT_A_ROTATION);
+            assert_memory_equal(&R, &worn, sizeof R);
+            ++refused;
+        }
+    }
+    assert_true(mended > RUNS / 10 && refused > RUNS / 10);
+}
+
+static void mirrors_and_numbers_that_are_none_are_not_mended(void **state) {
+    (void)state;
+    wh_mat3_t R = wh_mat3_identity();
+    R.m[2][2] = -1;
+    assert_int_equal(wh_rotation_mend(&R), WH_STATUS_NOT_A_ROTATION);
+    for (int k = 0; k < 9; ++k) {
+        R = wh_mat3_identity();
+        R.m[k / 3][k % 3] = WH_REAL(k % 2 == 0 ? NAN : INFINITY);
+        assert_int_equal(wh_rotation_mend(&R), WH_STATUS_NOT_FINITE);
+    }
+    assert_int_equal(wh_rotation_mend(NULL), WH_STATUS_NULL_ARGUMENT);
+}
+
+/* Against Rodrigues' formula, which shares nothing with it; of any length within the limit, and either sign. */
+static void quaternions_are_turns_about_their_axes(void **state) {
+    (void)state;
+    for (int run = 0; run < RUNS; ++run) {
+        const double a[3] = {wh_test_uniform(-1, 1), wh_test_uniform(-1, 1), wh_test_uniform(0.1, 1)};
+        const double angle = wh_test_uniform(-WH_TEST_PI, WH_TEST_PI);
+        const double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+        const double size = (run % 2 == 0 ? 1 : -1) * wh_test_uniform(0.976, 1.024);
+        const double s = size * sin(angle / 2) / length;
+        const wh_mat3_t wanted = wh_test_rotation(a[0], a[1], a[2], angle);
+        wh_pose_t pose = wh_pose_identity();
+        assert_int_equal(wh_rotation_from_quaternion(&pose.R, WH_REAL(size * cos(angle / 2)),
+                                                     WH_REAL(s * a[0]), WH_REAL(s * a[1]), WH_REAL(s * a[2])),
+                         WH_OK);
+        assert_near(turn_between(&pose.R, &wanted), 0, 16 * WH_TEST_ROUNDING);
+        assert_int_equal(wh_pose_validate(&pose), WH_OK);
+    }
+}
+
+static void quaternions_that_are_none_change_nothing(void **state) {
+    (void)state;
+    const wh_mat3_t before = wh_test_random_turn(1);
+    wh_mat3_t R = before;
+    const wh_real_t bad[] = {WH_REAL(NAN), WH_REAL(INFINITY)};
+    for (size_t b = 0; b < 2; ++b) {
+        assert_int_equal(wh_rotation_from_quaternion(&R, bad[b], 0, 0, 0), WH_STATUS_NOT_FINITE);
+        assert_int_equal(wh_rotation_from_quaternion(&R, 1, 0, bad[b], 0), WH_STATUS_NOT_FINITE);
+    }
+    assert_int_equal(wh_rotation_from_quaternion(&R, 0, 0, 0, 0), WH_STATUS_NOT_A_ROTATION);
+    assert_int_equal(wh_rotation_from_quaternion(&R, WH_REAL(1.03), 0, 0, 0), WH_STATUS_NOT_A_ROTATION);
+    assert_int_equal(wh_rotation_from_quaternion(&R, 0, WH_REAL(0.97), 0, 0), WH_STATUS_NOT_A_ROTATION);
+    assert_int_equal(wh_rotation_from_quaternion(&R, WH_TEST_LARGEST, 0, 0, 0), WH_STATUS_NOT_A_ROTATION);
+    assert_int_equal(wh_rotation_from_quaternion(NULL, 1, 0, 0, 0), WH_STATUS_NULL_ARGUMENT);
+    assert_memory_equal(&R, &before, sizeof R);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(compose_is_the_matrix_product),
@@ -213,6 +336,11 @@ int main(void) {
         cmocka_unit_test(scale_is_limited),
         cmocka_unit_test(random_errors_are_judged_by_the_definition),
         cmocka_unit_test(orthonormalise_squares_the_error),
+        cmocka_unit_test(fixed_point_rotations_are_refused_as_they_are_and_good_once_mended),
+        cmocka_unit_test(mending_ends_where_its_header_says),
+        cmocka_unit_test(mirrors_and_numbers_that_are_none_are_not_mended),
+        cmocka_unit_test(quaternions_are_turns_about_their_axes),
+        cmocka_unit_test(quaternions_that_are_none_change_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

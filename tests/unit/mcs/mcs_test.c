@@ -1,6 +1,8 @@
 /* The MCS's host against scripts that do what no operator would. */
 #include "support/support.h"
 
+#include <unistd.h>
+
 #include "mcs/script_run.h"
 
 static wh_script_run_t run;
@@ -28,6 +30,33 @@ static void a_command_within_a_command_is_refused(void **state) {
     assert_string_equal(run.record.commands[2].text, "WAIT 0.1");
     assert_int_equal(run.record.commands[2].error, WH_OK);
     assert_true(run.record.slices == 200);
+}
+
+static wh_link_t *connect_nowhere(void *user, wh_mcs_t *mcs) {
+    (void)user;
+    (void)mcs;
+    return NULL;
+}
+
+/* The script has kept the error of `cell` to itself: without a link nothing may seem to move. */
+static void nothing_moves_without_a_link(void **state) {
+    (void)state;
+    char script[] = "/tmp/waferhand_mcs_XXXXXX", folder[1000];
+    FILE *file = fdopen(mkstemp(script), "w");
+    assert_non_null(file);
+    assert_non_null(getcwd(folder, sizeof folder));
+    fprintf(file, "pcall(cell, '%s/lua/layouts/paper.lua')\npcall(wait, 0.1)\nwait(0.1)\n", folder);
+    fclose(file);
+    const wh_script_run_options_t options = {
+        .script = script, .limits = {.print_to = stderr}, .partners = {.connect = connect_nowhere}};
+    assert_int_equal(wh_script_run(&run, &options), WH_RUN_FAILED);
+    remove(script);
+    assert_int_equal(run.record.command_count, 2);
+    for (size_t i = 0; i < run.record.command_count; ++i) {
+        assert_int_equal(run.record.commands[i].error, WH_STATUS_NO_LAYOUT);
+        assert_non_null(strstr(run.record.commands[i].message, "cell was refused"));
+    }
+    assert_true(run.record.slices == 0);
 }
 
 static void assert_expected(const char *script, size_t expectations) {
@@ -83,13 +112,14 @@ static void a_stop_may_come_at_any_time(void **state) {
 static void the_record_is_paid_for_from_the_budget(void **state) {
     (void)state;
     assert_int_equal(play("tests/end_to_end/data/endless_record.lua", 50000000), WH_RUN_BAD_INPUT);
-    assert_int_equal(wh_sandbox_reason(run.sandbox), WH_SANDBOX_BUDGET);
+    assert_non_null(strstr(run.message, "instruction budget of 50000000 spent"));
     assert_in_range(run.record.expectation_count, 1, 13);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(a_command_within_a_command_is_refused, close_run),
+        cmocka_unit_test_teardown(nothing_moves_without_a_link, close_run),
         cmocka_unit_test_teardown(errors_within_a_pattern_name_the_line, close_run),
         cmocka_unit_test_teardown(frames_are_measured, close_run),
         cmocka_unit_test_teardown(a_script_may_use_the_names_of_functions, close_run),

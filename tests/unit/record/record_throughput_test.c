@@ -311,6 +311,15 @@ static void json_of_nothing(void **state) {
     json_decref(root);
 }
 
+/* The library's wh_status_text leaves out what only the program answers. */
+static void every_status_has_its_text(void **state) {
+    (void)state;
+#define WH_STATUS(number, name, text) assert_string_equal(wh_record_error_text(WH_STATUS_##name), text);
+#include "math/status.def"
+#undef WH_STATUS
+    assert_string_equal(wh_record_error_text((wh_status_t)255), "unknown status");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gantt_shows_the_commands),
@@ -323,6 +332,7 @@ int main(void) {
         cmocka_unit_test(json_sums),
         cmocka_unit_test(json_gantt),
         cmocka_unit_test(json_reach),
+        cmocka_unit_test(every_status_has_its_text),
         cmocka_unit_test(json_of_nothing),
     };
     if (!setlocale(LC_CTYPE, "C.UTF-8") && !setlocale(LC_CTYPE, "C.utf8")) {

@@ -25,7 +25,7 @@ static const char *file_with(const char *name, const char *text, size_t size) {
 static void assert_run(const char *path, wh_sandbox_reason_t reason, const char *part) {
     wh_sandbox_result_t result;
     wh_sandbox_t *const sandbox = new_small();
-    (void)wh_sandbox_run(sandbox, path, &result);
+    (void)wh_sandbox_evaluate(wh_sandbox_state(sandbox), path, &result);
     if (result.status != reason || strstr(result.message, part) == NULL ||
         (reason != WH_SANDBOX_OK && strncmp(result.message, path, strlen(path)) != 0)) {
         fail_msg("%s ended with %d, \"%s\"", path, (int)result.status, result.message);
@@ -36,6 +36,7 @@ static void assert_run(const char *path, wh_sandbox_reason_t reason, const char 
 static void files_are_read_or_refused(void **state) {
     (void)state;
     assert_run(file_with("ok.lua", "\xEF\xBB\xBF# first\nassert(true)", 23), WH_SANDBOX_OK, "");
+    assert_run(file_with("program.lua", "#!/usr/bin/waferhand\nassert(1 == 1)", 35), WH_SANDBOX_OK, "");
     assert_run(file_with("throws.lua", "\nerror('x')", 11), WH_SANDBOX_ERROR, "throws.lua:2: x");
     assert_run(file_with("binary.lua", "\x1bLua\0\0", 6), WH_SANDBOX_SYNTAX, "binary chunk");
     assert_run(file_with("a_name_that_is_longer_than_lua_itself_would_ever_show_in_a_message_of_its_own.lua",

@@ -11,7 +11,6 @@ typedef struct {
 
 static const case_t cases[] = {
     {"local x = 1 + 1", WH_SANDBOX_OK, ""},
-    {"#!/usr/bin/waferhand\nassert(1 == 1)", WH_SANDBOX_OK, ""},
     /* thrown errors of every kind */
     {"\nlocal x = nil + 1", WH_SANDBOX_ERROR, "case.lua:2: attempt to perform arithmetic on a nil value"},
     {"\n\nerror('broken')", WH_SANDBOX_ERROR, "case.lua:3: broken"},
@@ -180,7 +179,6 @@ static bool ended_as_told(const case_t *c) {
         print_error("%s\n  ended with %d, \"%s\", not %d, \"%s\"\n", c->script, (int)result.status,
                     result.message, (int)c->reason, c->message);
     }
-    assert_int_equal(wh_sandbox_reason(sandbox), result.status);
     lua_settop(wh_sandbox_state(sandbox), 0);
     assert_usable(sandbox);
     assert_true(wh_sandbox_memory_high_water(sandbox) <= (size_t)16 << 20);

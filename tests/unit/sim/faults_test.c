@@ -57,6 +57,29 @@ static void what_no_cell_can_have_is_refused(void **state) {
     refuse_fault(&f, WH_STATUS_NOT_FINITE);
 }
 
+/* As they are made, or with the one thing more that their kind needs, a cell takes them and they act. */
+static void faults_are_made_ready_to_be_taken(void **state) {
+    (void)state;
+    for (int i = 0; i < WH_FAULT_KINDS; ++i) {
+        const wh_fault_kind_t kind = (wh_fault_kind_t)i;
+        assert_int_equal(set_up(NULL), 0);
+        command.seq = 0;
+        wh_fault_t fault = wh_fault_make(kind, 0, WH_REAL(0.5), 2, 4);
+        fault.other = kind == WH_FAULT_WAFER_DOUBLED ? 1 : fault.other;
+        assert_int_equal(wh_fault_validate(&fault, GRIPPERS, WAFERS), WH_OK);
+        bring(3, &fault);
+        step(880, CLOSED);
+        assert_int_equal(answer.event_count, 0);
+        step(880, CLOSED);
+        expect_event(WH_EVENT_FAULT_ARMED, wh_fault_is_of_wafer(kind) ? 0 : WH_NONE,
+                     wh_fault_is_of_wafer(kind) || kind == WH_FAULT_COMMAND_LOST ? WH_NONE : 0, 3);
+        assert_true(kind != WH_FAULT_WAFER_MISSING || wafers[0].base_from_wafer.r.z == WH_REAL(900 - 1e5));
+        step(880, CLOSED);
+        step(880, CLOSED);
+        assert_non_null(find(WH_EVENT_FAULT_CLEARED));
+    }
+}
+
 static void values_have_their_ranges(void **state) {
     static const struct {
         wh_fault_kind_t kind;
@@ -244,6 +267,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(faults_have_names, set_up),
         cmocka_unit_test_setup(what_no_cell_can_have_is_refused, set_up),
+        cmocka_unit_test_setup(faults_are_made_ready_to_be_taken, set_up),
         cmocka_unit_test_setup(values_have_their_ranges, set_up),
         cmocka_unit_test_setup(the_ends_of_the_ranges, set_up),
         cmocka_unit_test_setup(no_offset_takes_a_wafer_out_of_the_numbers, set_up),

@@ -1,6 +1,11 @@
-/* Options that a table binds to variables: each kind, defaults, shared tables. Refusals are tests/end_to_end/bad_input's. */
+/* Options that a table binds to variables: each kind, defaults, shared tables. Refusals are tests/end_to_end/bad_input's.
+ * And the arrays that their lists are: without memory the program ends. */
 #include "support/support.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "text/array.h"
 #include "text/options.h"
 
 typedef struct {
@@ -78,8 +83,29 @@ static void each_kind_is_taken(void **state) {
     assert_int_equal(arguments.shared.set.count, 0);
 }
 
+static void without_memory_the_program_ends(void **state) {
+    int ends[2];
+    int status = 0;
+    char said[100] = "";
+    (void)state;
+    assert_int_equal(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        (void)dup2(ends[1], STDERR_FILENO);
+        (void)wh_memory_need(NULL);
+        _exit(0);
+    }
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 2);
+    assert_true(read(ends[0], said, sizeof said - 1) > 0);
+    assert_string_equal(said, "waferhand: out of memory\n");
+    (void)close(ends[0]);
+    (void)close(ends[1]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_not_given_stays),
-                                       cmocka_unit_test(each_kind_is_taken)};
+                                       cmocka_unit_test(each_kind_is_taken),
+                                       cmocka_unit_test(without_memory_the_program_ends)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

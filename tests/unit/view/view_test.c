@@ -59,7 +59,7 @@ static void turns_are_of_length_one(void **state) {
 
 /* -------------------------------------------------------------------------------------------------- shapes */
 
-static const wh_view_colour_t grey = {0.5F, 0.5F, 0.5F, 1};
+static const wh_view_colour_t grey = {{0.5F, 0.5F, 0.5F, 1}};
 
 static waferhand_viewer_geometry made(const wh_convex_t *convex, bool as_box) {
     waferhand_viewer_geometry geometry;

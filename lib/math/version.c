@@ -1,0 +1,5 @@
+#include "config.h"
+
+const char *wh_version(void) {
+    return WH_VERSION;
+}

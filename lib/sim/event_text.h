@@ -1,0 +1,48 @@
+/* Events in words, as the program prints them: what happened, to which wafer and gripper, and why.
+ *
+ *     near miss: wafer 0, gripper 0: |dr_proj_xy| 55.000 is not below 50 (by 5.000 mm)
+ *
+ * For a test's log and for a firmware's: no stdio, no heap, nothing static.
+ */
+#ifndef WH_SIM_EVENT_TEXT_H
+#define WH_SIM_EVENT_TEXT_H
+
+#include "../grasp/event.h"
+
+WH_HEADER_BEGIN
+
+/* Room for every text of wh_event_text if no name has more than 63 bytes. */
+#define WH_EVENT_TEXT_SIZE 640
+
+/* Of what a name is asked for. */
+typedef enum WH_FOUR_BYTES {
+    WH_NAME_WAFER,
+    WH_NAME_GRIPPER,
+    WH_NAME_PART /* of the collision world */
+} wh_name_kind_t;
+
+/* How things are called. All zero, or null in place of it: "wafer 0", "gripper 0", "part 0", "fault 0", with
+ * the index. */
+typedef struct {
+    /* The name of one thing, or null if it has none; `index` may be WH_NONE. Null: nothing has a name. */
+    const char *(*find)(const void *user, wh_name_kind_t kind, int32_t index);
+    const void *user;
+    int32_t first;                   /* what the first index is called, 0 or 1 */
+    const wh_tolerance_t *tolerance; /* the table's; null: limits are worked out from the margins */
+    const char *degree;              /* null: " deg" */
+} wh_event_names_t;
+
+/* Writes the whole text, without a full stop or a line end. Returns its length without the terminator; if
+ * that is not below `size`, the text is cut off. `buffer` always ends with a terminator, unless `size` is 0.
+ * `event` is not null; what its indices name need not exist. Cost: a few microseconds. */
+size_t wh_event_text(const wh_event_t *event, const wh_event_names_t *names, char *buffer, size_t size)
+    WH_SYMBOL(wh_event_text);
+
+/* The reasons alone, one by one, from 0: of a near miss each condition that failed, of other events at most
+ * one. Returns the length as wh_event_text does; 0, with an empty text, if there is no such reason. */
+size_t wh_event_reason(const wh_event_t *event, const wh_event_names_t *names, size_t index, char *buffer,
+                       size_t size) WH_SYMBOL(wh_event_reason);
+
+WH_HEADER_END
+
+#endif

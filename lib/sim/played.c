@@ -1,0 +1,98 @@
+#include "played.h"
+
+#include <string.h>
+
+static wh_status_t check_run(const wh_played_t *run, const wh_grasp_storage_t *storage) {
+    const bool lacks_wafers = run->wafer_count > 0 && (!run->wafers || !storage->wafers);
+    if (!run->machine || lacks_wafers) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const bool fits =
+        storage->wafer_count == run->wafer_count && storage->gripper_count == run->machine->gripper_count;
+    return fits ? WH_OK : WH_STATUS_BAD_CAPACITY;
+}
+
+static wh_status_t set_up(wh_player_t *player, const wh_grasp_storage_t *storage) {
+    const wh_played_t *run = player->run;
+    wh_status_t status = wh_track_init(&player->track, run->machine, run->slice_us);
+    for (size_t w = 0; w < run->wafer_count; ++w) {
+        storage->wafers[w].base_from_wafer = run->wafers[w];
+    }
+    if (status == WH_OK) {
+        status = wh_simulator_init(&player->simulator, &run->config, storage, &run->cell);
+    }
+    if (status == WH_OK) {
+        status = wh_simulator_set_physics(&player->simulator, &run->physics);
+    }
+    if (status == WH_OK) {
+        wh_simulator_view(&player->simulator, &player->state);
+    }
+    return status;
+}
+
+wh_status_t wh_player_init(wh_player_t *player, const wh_played_t *run, const wh_grasp_storage_t *storage) {
+    const wh_status_t status = player && run && storage ? check_run(run, storage) : WH_STATUS_NULL_ARGUMENT;
+    if (status != WH_OK) {
+        return status;
+    }
+    memset(player, 0, sizeof *player);
+    player->run = run;
+    player->status = set_up(player, storage);
+    return player->status;
+}
+
+/* The faults of the slice that the track has come to. */
+static void bring_faults(wh_player_t *player) {
+    const wh_played_t *run = player->run;
+    wh_command_t *command = &player->command;
+    command->fault_count = 0;
+    while (player->fault < run->fault_count && run->faults[player->fault].seq <= command->seq &&
+           command->fault_count < WH_COMMAND_FAULTS) {
+        command->faults[command->fault_count] = run->faults[player->fault].request;
+        ++command->fault_count;
+        ++player->fault;
+    }
+}
+
+static void step(wh_player_t *player) {
+    wh_command_from_track(&player->command, &player->cache, &player->track);
+    bring_faults(player);
+    player->status = wh_simulator_step(&player->simulator, &player->command, &player->state);
+}
+
+static void begin_segment(wh_player_t *player) {
+    const wh_played_segment_t *next = &player->run->segments[player->segment];
+    player->status = wh_track_begin(&player->track, &next->segment);
+    player->is_moving = player->status == WH_OK;
+    player->left = next->slices;
+    ++player->segment;
+}
+
+/* One slice of the running segment; false if it needs none any more. */
+static bool go_on(wh_player_t *player) {
+    if (wh_track_next(&player->track, player->state.sensors) != WH_TRACK_MOVING) {
+        player->is_moving = false;
+        return false;
+    }
+    step(player);
+    if (player->left > 0) {
+        --player->left;
+        player->is_moving = player->left > 0;
+    }
+    return true;
+}
+
+bool wh_player_next(wh_player_t *player) {
+    while (player->status == WH_OK) {
+        if (player->is_moving) {
+            if (go_on(player)) {
+                return player->status == WH_OK;
+            }
+        } else if (player->segment < player->run->segment_count) {
+            begin_segment(player);
+        } else {
+            return false;
+        }
+    }
+    return false;
+}

@@ -1,0 +1,491 @@
+#include "snapshot.h"
+
+#include <string.h>
+
+#include "../grasp/restore.h"
+#include "../math/hash.h"
+
+/* ---------------------------------------------------------------------------------------------- in memory */
+
+static bool lacks_arrays(const wh_grasp_storage_t *storage) {
+    return (!storage->wafers && storage->wafer_count > 0) ||
+           (!storage->grippers && storage->gripper_count > 0) ||
+           (!storage->buckets && storage->bucket_count > 0);
+}
+
+static wh_status_t check_storage(const wh_grasp_storage_t *ours, const wh_grasp_storage_t *other) {
+    if (lacks_arrays(other)) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const size_t buckets = wh_grasp_buckets(other->wafer_count, other->gripper_count);
+    const bool has_room = other->bucket_count == 0 || (buckets > 0 && other->bucket_count >= buckets);
+    const bool fits =
+        other->wafer_count == ours->wafer_count && other->gripper_count == ours->gripper_count && has_room;
+    return fits ? WH_OK : WH_STATUS_BAD_CAPACITY;
+}
+
+/* wh_grasp_restore that does not count a refusal, from arrays that may be the table's own. */
+static wh_status_t restore(wh_grasp_t *table, uint64_t slice, const wh_wafer_t wafers[],
+                           const wh_gripper_t grippers[]) {
+    const uint64_t refused = table->counters.refused;
+    const wh_status_t status = wh_grasp_restore(table, slice, wafers, grippers);
+    table->counters.refused = refused;
+    return status;
+}
+
+wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storage_t *storage) {
+    if (!simulator || !storage) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    wh_grasp_t *table = &simulator->table;
+    const wh_grasp_storage_t before = table->storage;
+    wh_status_t status = check_storage(&before, storage);
+    if (status != WH_OK) {
+        return status;
+    }
+    table->storage = *storage;
+    status = restore(table, table->slice, table->storage.wafers, table->storage.grippers);
+    if (status != WH_OK) {
+        table->storage = before;
+    } else if (table->storage.wafers != before.wafers || table->storage.grippers != before.grippers) {
+        simulator->observer = (wh_observer_t){NULL, NULL, NULL};
+    }
+    return status;
+}
+
+/* -------------------------------------------------------------------------------------------- description */
+
+static uint64_t hash_tolerance(uint64_t hash, const wh_tolerance_t *tolerance) {
+    hash = wh_hash_real(hash, tolerance->projz);
+    hash = wh_hash_real(hash, tolerance->projxy);
+    return wh_hash_real(hash, tolerance->planar);
+}
+
+static uint64_t hash_config(uint64_t hash, const wh_grasp_config_t *config) {
+    hash = hash_tolerance(hash, &config->tolerance);
+    hash = wh_hash_int(hash, (int32_t)config->check);
+    hash = wh_hash_int(hash, config->seat ? 1 : 0);
+    hash = wh_hash_real(hash, config->near_projz);
+    return wh_hash_real(hash, config->near_projxy);
+}
+
+static uint64_t hash_physics(uint64_t hash, const wh_simulator_t *simulator) {
+    const wh_vacuum_config_t *vacuum = &simulator->vacuum;
+    const wh_pads_t *pads = &simulator->pads;
+    const wh_real_t values[] = {simulator->slice_s, vacuum->build, vacuum->vent,    vacuum->idle,
+                                vacuum->on,         vacuum->off,   vacuum->release, pads->friction,
+                                pads->force,        pads->mass,    pads->gravity};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i) {
+        hash = wh_hash_real(hash, values[i]);
+    }
+    return hash;
+}
+
+static uint64_t hash_cell(uint64_t hash, const wh_cell_t *cell) {
+    hash = hash_tolerance(hash, &cell->tolerance);
+    hash = wh_hash_real(hash, cell->off_centre);
+    hash = wh_hash_real(hash, cell->askew);
+    hash = wh_hash_int(hash, cell->settle ? 1 : 0);
+    for (size_t s = 0; s < cell->count; ++s) {
+        hash = wh_hash_pose(hash, &cell->stations[s].base_from_station);
+        hash = wh_hash_int(hash, cell->stations[s].slots);
+        hash = wh_hash_real(hash, cell->stations[s].pitch);
+        hash = wh_hash_int(hash, cell->stations[s].chuck);
+    }
+    return hash;
+}
+
+/* Over all that does not change during a run. */
+static uint64_t describe(const wh_simulator_t *simulator) {
+    const wh_grasp_storage_t *storage = &simulator->table.storage;
+    uint64_t hash = hash_config(WH_HASH_START, &simulator->table.config);
+    hash = hash_physics(hash, simulator);
+    hash = hash_cell(hash, &simulator->cell);
+    hash = wh_hash_word(hash, (uint64_t)storage->wafer_count);
+    return wh_hash_word(hash, (uint64_t)storage->gripper_count);
+}
+
+/* ------------------------------------------------------------------------------------- one way in and out */
+
+/* Bytes that values go to, or else come from: one function for both ways keeps them alike. */
+typedef struct {
+    uint8_t *to; /* null: values are read */
+    const uint8_t *from;
+    bool is_bad; /* a byte that no snapshot has was read */
+} stream_t;
+
+/* The lowest byte first. */
+static void pass_bytes(stream_t *stream, uint64_t *value, unsigned count) {
+    uint64_t read = 0;
+    for (unsigned i = 0; i < count; ++i) {
+        if (stream->to) {
+            *stream->to = (uint8_t)(*value >> (8 * i));
+            ++stream->to;
+        } else {
+            read |= (uint64_t)*stream->from << (8 * i);
+            ++stream->from;
+        }
+    }
+    *value = stream->to ? *value : read;
+}
+
+static void pass_int(stream_t *stream, int32_t *value) {
+    uint64_t word = (uint32_t)*value;
+    pass_bytes(stream, &word, 4);
+    const uint32_t bits = (uint32_t)word;
+    memcpy(value, &bits, sizeof bits);
+}
+
+static void pass_time(stream_t *stream, int64_t *value) {
+    uint64_t word = (uint64_t)*value;
+    pass_bytes(stream, &word, 8);
+    memcpy(value, &word, sizeof word);
+}
+
+static void pass_bool(stream_t *stream, bool *value) {
+    uint64_t word = *value ? 1 : 0;
+    pass_bytes(stream, &word, 1);
+    stream->is_bad = stream->is_bad || word > 1;
+    *value = word == 1;
+}
+
+static void pass_real(stream_t *stream, wh_real_t *value) {
+#if defined(WH_FLOAT)
+    uint32_t bits;
+#else
+    uint64_t bits;
+#endif
+    memcpy(&bits, value, sizeof bits);
+    uint64_t word = bits;
+    pass_bytes(stream, &word, (unsigned)sizeof bits);
+#if defined(WH_FLOAT)
+    bits = (uint32_t)word;
+#else
+    bits = word;
+#endif
+    memcpy(value, &bits, sizeof bits);
+}
+
+static void pass_vector(stream_t *stream, wh_vec3_t *v) {
+    pass_real(stream, &v->x);
+    pass_real(stream, &v->y);
+    pass_real(stream, &v->z);
+}
+
+static void pass_pose(stream_t *stream, wh_pose_t *pose) {
+    for (size_t i = 0; i < 9; ++i) {
+        pass_real(stream, &pose->R.m[i / 3][i % 3]);
+    }
+    pass_vector(stream, &pose->r);
+}
+
+/* ---------------------------------------------------------------------------------------------- the parts */
+
+static void pass_wafer(stream_t *stream, wh_wafer_t *wafer) {
+    pass_pose(stream, &wafer->base_from_wafer);
+    pass_int(stream, &wafer->holder);
+    wafer->released_by = WH_NONE;
+}
+
+static void pass_measured(stream_t *stream, wh_proximity_t *p) {
+    uint64_t failed = p->failed;
+    pass_vector(stream, &p->dr);
+    pass_real(stream, &p->n1_proj_n2);
+    pass_real(stream, &p->dr_proj_z);
+    pass_vector(stream, &p->dr_proj_xy);
+    pass_real(stream, &p->dr_proj_xy_norm);
+    pass_real(stream, &p->margin_projz);
+    pass_real(stream, &p->margin_projxy);
+    pass_real(stream, &p->margin_planar);
+    pass_bytes(stream, &failed, 4);
+    pass_bool(stream, &p->ready);
+    p->failed = (unsigned)failed;
+    stream->is_bad = stream->is_bad || failed > (WH_FAILED_PROJZ | WH_FAILED_PROJXY | WH_FAILED_PLANAR) ||
+                     !wh_real_is_finite(p->margin_projz) || !wh_real_is_finite(p->margin_projxy) ||
+                     !wh_real_is_finite(p->margin_planar);
+}
+
+static void pass_encounter(stream_t *stream, wh_encounter_t *encounter) {
+    pass_int(stream, &encounter->wafer);
+    pass_int(stream, &encounter->holder);
+    pass_bytes(stream, &encounter->slice, 8);
+    pass_measured(stream, &encounter->measured);
+}
+
+static void pass_gripper(stream_t *stream, wh_gripper_t *gripper) {
+    pass_pose(stream, &gripper->base_from_gripper);
+    pass_pose(stream, &gripper->gripper_from_wafer);
+    pass_int(stream, &gripper->wafer);
+    pass_int(stream, &gripper->valve);
+    pass_encounter(stream, &gripper->approach);
+    pass_encounter(stream, &gripper->contest);
+}
+
+/* One gripper's share of the physics. */
+typedef struct {
+    wh_vacuum_t vacuum;
+    wh_carry_t carry;
+    int32_t told;
+} share_t;
+
+static void pass_share(stream_t *stream, share_t *share) {
+    pass_real(stream, &share->vacuum.level);
+    pass_int(stream, &share->vacuum.command);
+    pass_bool(stream, &share->vacuum.on);
+    pass_vector(stream, &share->carry.before[0]);
+    pass_vector(stream, &share->carry.before[1]);
+    pass_int(stream, &share->carry.known);
+    pass_bool(stream, &share->carry.slips);
+    pass_int(stream, &share->told);
+}
+
+static void pass_slot(stream_t *stream, wh_fault_slot_t *slot) {
+    wh_fault_t *fault = &slot->fault;
+    int32_t kind = (int32_t)fault->kind;
+    int32_t phase = (int32_t)slot->phase;
+    pass_int(stream, &kind);
+    pass_int(stream, &fault->target);
+    pass_int(stream, &fault->other);
+    pass_real(stream, &fault->value);
+    pass_pose(stream, &fault->offset);
+    pass_time(stream, &fault->from);
+    pass_time(stream, &fault->until);
+    pass_int(stream, &phase);
+    pass_pose(stream, &slot->before);
+    pass_pose(stream, &slot->placed);
+    stream->is_bad =
+        stream->is_bad || kind < 0 || kind >= WH_FAULT_KINDS || phase < 0 || phase > WH_FAULT_OVER;
+    fault->kind = stream->is_bad ? WH_FAULT_NO_VACUUM : (wh_fault_kind_t)kind;
+    slot->phase = stream->is_bad ? WH_FAULT_FREE : (wh_fault_phase_t)phase;
+}
+
+/* --------------------------------------------------------------------------------------------------- ends */
+
+#define HEAD_SIZE 16 /* mark, version, number type, description */
+#define SUM_SIZE 8
+
+static uint64_t sum_of(const uint8_t bytes[], size_t size) {
+    uint64_t sum = WH_HASH_START;
+    for (size_t i = 0; i < size; ++i) {
+        sum = wh_hash_word(sum, bytes[i]);
+    }
+    return sum;
+}
+
+static const uint8_t mark[6] = {'W', 'H', 'S', 'N', 'A', 'P'};
+
+/* How many bytes a snapshot has with so many slots of faults. */
+static size_t size_with(const wh_grasp_storage_t *storage, size_t slots) {
+    return WH_SNAPSHOT_SIZE(storage->wafer_count, storage->gripper_count) -
+           (37 * sizeof(wh_real_t) + 32) * (WH_FAULTS - slots);
+}
+
+size_t wh_simulator_saved_size(const wh_simulator_t *simulator) {
+    return size_with(&simulator->table.storage, simulator->physics.faults.count);
+}
+
+static void pass_counters(stream_t *stream, wh_grasp_counters_t *counters) {
+    uint64_t *const all[] = {&counters->refused,     &counters->picked,      &counters->released,
+                             &counters->handed_over, &counters->near_misses, &counters->contested};
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i) {
+        pass_bytes(stream, all[i], 8);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- saving */
+
+static void save_head(stream_t *stream, const wh_simulator_t *simulator) {
+    uint64_t version = WH_SNAPSHOT_VERSION;
+    uint64_t number = sizeof(wh_real_t);
+    uint64_t description = describe(simulator);
+    for (size_t i = 0; i < sizeof mark; ++i) {
+        uint64_t letter = mark[i];
+        pass_bytes(stream, &letter, 1);
+    }
+    pass_bytes(stream, &version, 1);
+    pass_bytes(stream, &number, 1);
+    pass_bytes(stream, &description, 8);
+}
+
+/* Without what the last wafer left behind: equal states have equal bytes. */
+static wh_gripper_t without_leftovers(const wh_gripper_t *from) {
+    wh_gripper_t gripper;
+    gripper = *from;
+    if (gripper.wafer == WH_NONE) {
+        gripper.gripper_from_wafer = wh_pose_identity();
+    }
+    if (gripper.approach.wafer == WH_NONE) {
+        memset(&gripper.approach, 0, sizeof gripper.approach);
+        gripper.approach.wafer = WH_NONE;
+        gripper.approach.holder = WH_NONE;
+    }
+    if (gripper.contest.wafer == WH_NONE) {
+        memset(&gripper.contest, 0, sizeof gripper.contest);
+        gripper.contest.wafer = WH_NONE;
+        gripper.contest.holder = WH_NONE;
+    }
+    return gripper;
+}
+
+static void save_table(stream_t *stream, const wh_grasp_t *table) {
+    uint64_t slice = table->slice;
+    wh_grasp_counters_t counters;
+    counters = table->counters;
+    pass_bytes(stream, &slice, 8);
+    pass_counters(stream, &counters);
+    for (size_t w = 0; w < table->storage.wafer_count; ++w) {
+        wh_wafer_t wafer;
+        wafer = table->storage.wafers[w];
+        pass_wafer(stream, &wafer);
+    }
+    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
+        wh_gripper_t gripper;
+        gripper = without_leftovers(&table->storage.grippers[g]);
+        pass_gripper(stream, &gripper);
+    }
+}
+
+static void save_physics(stream_t *stream, const wh_physics_state_t *physics, size_t gripper_count) {
+    for (size_t g = 0; g < gripper_count; ++g) {
+        share_t share;
+        share.vacuum = physics->vacuum[g];
+        share.carry = physics->carry[g];
+        share.told = physics->told[g];
+        pass_share(stream, &share);
+    }
+    uint64_t count = physics->faults.count;
+    pass_bytes(stream, &count, 4);
+    for (size_t i = 0; i < physics->faults.count; ++i) {
+        wh_fault_slot_t slot;
+        slot = physics->faults.slots[i];
+        pass_slot(stream, &slot);
+    }
+}
+
+wh_status_t wh_simulator_save(const wh_simulator_t *simulator, uint8_t bytes[], size_t capacity,
+                              size_t *size) {
+    if (!simulator || !bytes || !size) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const size_t needed = wh_simulator_saved_size(simulator);
+    if (capacity < needed) {
+        return WH_STATUS_BAD_CAPACITY;
+    }
+    stream_t stream = {bytes, NULL, false};
+    save_head(&stream, simulator);
+    save_table(&stream, &simulator->table);
+    save_physics(&stream, &simulator->physics, simulator->table.storage.gripper_count);
+    uint64_t sum = sum_of(bytes, needed - SUM_SIZE);
+    pass_bytes(&stream, &sum, SUM_SIZE);
+    *size = needed;
+    return WH_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------ loading */
+
+static uint64_t read_bytes(const uint8_t bytes[], unsigned count) {
+    stream_t stream = {NULL, bytes, false};
+    uint64_t value = 0;
+    pass_bytes(&stream, &value, count);
+    return value;
+}
+
+static bool is_marked(const uint8_t bytes[]) {
+    bool marked = true;
+    for (size_t i = 0; i < sizeof mark; ++i) {
+        marked = marked && bytes[i] == mark[i];
+    }
+    return marked;
+}
+
+/* All but the state itself. */
+static wh_status_t check_ends(const wh_simulator_t *simulator, const uint8_t bytes[], size_t size) {
+    if (size < HEAD_SIZE + SUM_SIZE || !is_marked(bytes)) {
+        return WH_STATUS_DAMAGED;
+    }
+    if (bytes[6] != WH_SNAPSHOT_VERSION || bytes[7] != sizeof(wh_real_t)) {
+        return WH_STATUS_OTHER_SNAPSHOT;
+    }
+    if (read_bytes(&bytes[size - SUM_SIZE], SUM_SIZE) != sum_of(bytes, size - SUM_SIZE)) {
+        return WH_STATUS_DAMAGED;
+    }
+    if (read_bytes(&bytes[8], 8) != describe(simulator)) {
+        return WH_STATUS_OTHER_SNAPSHOT;
+    }
+    return size >= size_with(&simulator->table.storage, 0) ? WH_OK : WH_STATUS_DAMAGED;
+}
+
+static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t gripper_count) {
+    const wh_physics_t none = wh_physics_default();
+    wh_physics_state_start(physics, &none);
+    for (size_t g = 0; g < gripper_count; ++g) {
+        share_t share;
+        memset(&share, 0, sizeof share);
+        pass_share(stream, &share);
+        physics->vacuum[g] = share.vacuum;
+        physics->carry[g] = share.carry;
+        physics->told[g] = share.told;
+    }
+}
+
+/* False if there are not as many bytes as these slots take. */
+static bool load_faults(stream_t *stream, wh_faults_t *faults, const wh_grasp_storage_t *storage,
+                        size_t size) {
+    uint64_t count = 0;
+    pass_bytes(stream, &count, 4);
+    if (count > WH_FAULTS || size != size_with(storage, (size_t)count)) {
+        return false;
+    }
+    faults->count = (size_t)count;
+    for (size_t i = 0; i < faults->count; ++i) {
+        pass_slot(stream, &faults->slots[i]);
+    }
+    return true;
+}
+
+/* Reads everything into the room; false if it cannot be. */
+static bool load_state(stream_t *stream, const wh_grasp_storage_t *storage, size_t size,
+                       wh_snapshot_room_t *room) {
+    for (size_t w = 0; w < storage->wafer_count; ++w) {
+        pass_wafer(stream, &room->wafers[w]);
+    }
+    for (size_t g = 0; g < storage->gripper_count; ++g) {
+        pass_gripper(stream, &room->grippers[g]);
+    }
+    load_physics(stream, &room->physics, storage->gripper_count);
+    return load_faults(stream, &room->physics.faults, storage, size) && !stream->is_bad &&
+           wh_physics_state_validate(&room->physics, storage->gripper_count, storage->wafer_count) == WH_OK;
+}
+
+/* All of it, from bytes whose ends are good. */
+static wh_status_t load(wh_simulator_t *simulator, const uint8_t bytes[], size_t size,
+                        wh_snapshot_room_t *room) {
+    wh_grasp_t *table = &simulator->table;
+    stream_t stream = {NULL, &bytes[HEAD_SIZE], false};
+    uint64_t slice = 0;
+    wh_grasp_counters_t counters;
+    memset(&counters, 0, sizeof counters);
+    pass_bytes(&stream, &slice, 8);
+    pass_counters(&stream, &counters);
+    if (!load_state(&stream, &table->storage, size, room) ||
+        restore(table, slice, room->wafers, room->grippers) != WH_OK) {
+        return WH_STATUS_DAMAGED;
+    }
+    table->counters = counters;
+    simulator->physics = room->physics;
+    simulator->event_count = 0;
+    return WH_OK;
+}
+
+wh_status_t wh_simulator_load(wh_simulator_t *simulator, const uint8_t bytes[], size_t size,
+                              wh_snapshot_room_t *room) {
+    if (!simulator || !bytes || !room) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const wh_grasp_storage_t *storage = &simulator->table.storage;
+    if ((!room->wafers && storage->wafer_count > 0) || (!room->grippers && storage->gripper_count > 0)) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const wh_status_t status = check_ends(simulator, bytes, size);
+    return status == WH_OK ? load(simulator, bytes, size, room) : status;
+}

@@ -1,0 +1,30 @@
+/* Within sim: text written piece by piece into a caller's buffer, numbers by digits of our own. No stdio, so
+ * that a firmware pays for nothing else. */
+#ifndef WH_SIM_WORDS_INTERNAL_H
+#define WH_SIM_WORDS_INTERNAL_H
+
+#include "../math/vector.h"
+
+/* `length` counts what was put in, also beyond the room; with room for at least one byte the text always
+ * ends. */
+typedef struct {
+    char *buffer;
+    size_t size, length;
+} wh_words_t;
+
+/* An empty text. `buffer` may be null if `size` is 0. */
+wh_words_t wh_words_begin(char *buffer, size_t size) WH_SYMBOL(wh_words_begin);
+
+void wh_words_put(wh_words_t *words, const char *text) WH_SYMBOL(wh_words_put);
+
+/* A whole number. */
+void wh_words_integer(wh_words_t *words, int64_t value) WH_SYMBOL(wh_words_integer);
+
+/* `decimals` (0 to 15) digits after the point, rounded as printf's %.*f does: exactly, halves to even. From
+ * 1e15 on "more than 1e15", with a minus for "less than"; "nan" for what is no number. */
+void wh_words_fixed(wh_words_t *words, wh_real_t value, int decimals) WH_SYMBOL(wh_words_fixed);
+
+/* At most `digits` (1 to 15) digits that count, without zeros at the end: 0.5, 50, 0.00005. */
+void wh_words_short(wh_words_t *words, wh_real_t value, int digits) WH_SYMBOL(wh_words_short);
+
+#endif

@@ -1,0 +1,158 @@
+/* An example to copy: a bench for a controller's firmware, with a simulated machine. Each millisecond the firmware runs once,
+ * Waferhand moves the gripper to where the axes stand, and the vacuum switch is read back. What happened stands in words in
+ * `said`.
+ *
+ * To make it yours: put your firmware's registers into `tick`, your robot's kinematics into `gripper_pose`, your stations into
+ * `stations` and `taught`. It needs libwaferhand.a and cmocka, and runs on a host as on a Cortex-M. */
+#ifndef BENCH_H
+#define BENCH_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+#include <waferhand.h>
+
+#include "controller.h"
+
+enum { STATIONS = 2, WAFERS = 2, SAID = 4000 };
+
+/* The machine as it is: two stacks of three slots, 700 mm from the robot, at 0 and at 90 degrees. */
+static const wh_station_t stations[STATIONS] = {
+    {{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {700, 0, 900}}, 3, 10, WH_NONE},
+    {{{{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}}, {0, 700, 900}}, 3, 10, WH_NONE}};
+
+/* And as it was taught; a test may teach it badly. */
+static taught_t taught[STATIONS];
+
+static registers_t registers;
+static controller_t controller;
+static wh_wafer_t wafers[WAFERS];
+static wh_gripper_t grippers[1];
+static wh_simulator_t machine;
+static wh_command_t command;
+static wh_state_t state;
+static char said[SAID];
+
+/* Where the gripper is. This robot is Waferhand's own kind: theta, R, Z and yaw. */
+static inline wh_pose_t gripper_pose(void) {
+    const wh_real_t q[WH_ROBOT_AXES] = {wh_rad_from_deg(WH_REAL(registers.axis[THETA])),
+                                        WH_REAL(registers.axis[R]), WH_REAL(registers.axis[Z]),
+                                        wh_rad_from_deg(WH_REAL(registers.axis[YAW]))};
+    wh_pose_t pose;
+    wh_robot_forward(q, &pose);
+    return pose;
+}
+
+static inline void note_events(void) {
+    for (size_t i = 0; i < state.event_count; ++i) {
+        const size_t length = strlen(said);
+        assert_true(wh_event_text(&state.events[i], NULL, said + length, SAID - length - 1) <
+                    SAID - length - 1);
+        strcat(said, "\n");
+    }
+}
+
+/* A millisecond: the firmware, then the machine. */
+static inline void tick(void) {
+    controller_tick(&controller);
+    ++command.seq;
+    command.utime = 1000 * command.seq;
+    command.gripper_count = 1;
+    command.grippers[0].base_from_gripper = gripper_pose();
+    command.grippers[0].valve = registers.vacuum_on ? WH_VALVE_OPEN : WH_VALVE_CLOSED;
+    assert_int_equal(wh_simulator_step(&machine, &command, &state), WH_OK);
+    command.fault_count = 0;
+    registers.sensor = (state.sensors & 1U) != 0;
+    note_events();
+}
+
+/* Wafer 0 lies in slot 1 of station 0, wafer 1 in slot 2 of station 1. The vacuum takes its time, and what is let go settles. */
+static inline int set_up(void **unused) {
+    (void)unused;
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = {wafers, WAFERS, grippers, 1, NULL, 0};
+    const wh_cell_t cell = {stations, STATIONS, wh_tolerance_paper(), WH_REAL(0.5), 0, true};
+    wh_physics_t physics = wh_physics_default();
+    physics.vacuum = wh_vacuum_delayed();
+    wafers[0].base_from_wafer = wh_station_slot(&stations[0], 1);
+    wafers[1].base_from_wafer = wh_station_slot(&stations[1], 2);
+    memset(&command, 0, sizeof command);
+    memset(&registers, 0, sizeof registers);
+    said[0] = '\0';
+    taught[0] = (taught_t){0, 700, 900, 3, 10, 3};
+    taught[1] = (taught_t){90, 700, 900, 3, 10, 3};
+    controller_init(&controller, &registers, taught, STATIONS);
+    const bool good = wh_simulator_init(&machine, &config, &storage, &cell) == WH_OK &&
+                      wh_simulator_set_physics(&machine, &physics) == WH_OK;
+    return good ? 0 : -1;
+}
+
+/* ------------------------------------------------------------------------------------------------ for the tests */
+
+static inline answer_t finish(answer_t answer) {
+    for (int ms = 0; answer == CONTROLLER_BUSY && ms < 20000; ++ms) {
+        tick();
+        answer = controller.answer;
+    }
+    return answer;
+}
+
+static inline answer_t get(int station, int slot) {
+    return finish(controller_get(&controller, station, slot));
+}
+
+static inline answer_t put(int station, int slot) {
+    return finish(controller_put(&controller, station, slot));
+}
+
+/* From the next millisecond on, in the place of a fault of this kind that was there before. */
+static inline void break_it(wh_fault_kind_t kind, wh_real_t value) {
+    command.faults[0].index = 0;
+    command.faults[0].fault = wh_fault_make(kind, 0, value, command.seq + 1, WH_FAULT_FOREVER);
+    command.fault_count = 1;
+}
+
+static inline void mend_it(void) {
+    command.faults[0].fault.until = command.seq + 1;
+    command.fault_count = 1;
+}
+
+static inline void assert_said(const char *text) {
+    if (!strstr(said, text)) {
+        print_error("not said: %s\n%s", text, said);
+        fail();
+    }
+}
+
+static inline void assert_not_said(const char *text) {
+    if (strstr(said, text)) {
+        print_error("said: %s\n%s", text, said);
+        fail();
+    }
+}
+
+/* The wafer lies in this slot, flat, within 0.1 mm of its middle. */
+static inline void assert_lies_in(size_t wafer, int station, int slot) {
+    wh_pose_t pose;
+    int32_t holder;
+    wh_place_t place;
+    assert_int_equal(wh_grasp_wafer(&machine.table, wafer, &pose, &holder), WH_OK);
+    assert_int_equal(holder, WH_NONE);
+    assert_true(wh_cell_locate(&machine.cell, &pose, &place));
+    assert_int_equal(place.station, station);
+    assert_int_equal(place.slot, slot);
+    assert_true(wh_real_abs(place.dx) < WH_REAL(0.1) && wh_real_abs(place.dy) < WH_REAL(0.1) &&
+                wh_real_abs(place.dz) < WH_REAL(0.1));
+}
+
+static inline void assert_held(size_t wafer) {
+    assert_int_equal(wafers[wafer].holder, 0);
+}
+
+#endif

@@ -1,0 +1,269 @@
+/* Events in words: digits against printf's, each kind of event, names, and what does not fit. */
+#include "sim/event_text.h"
+
+#include "sim/faults.h"
+#include "sim/words_internal.h"
+#include "support/pose.h"
+
+/* ------------------------------------------------------------------------------------------------- digits */
+
+static const char *fixed(wh_real_t value, int decimals) {
+    static char text[80];
+    wh_words_t words = wh_words_begin(text, sizeof text);
+    wh_words_fixed(&words, value, decimals);
+    assert_int_equal(words.length, strlen(text));
+    return text;
+}
+
+static const char *in_short(wh_real_t value, int digits) {
+    static char text[80];
+    wh_words_t words = wh_words_begin(text, sizeof text);
+    wh_words_short(&words, value, digits);
+    return text;
+}
+
+static void expect_fixed(wh_real_t value, int decimals) {
+    char wanted[80];
+    snprintf(wanted, sizeof wanted, "%.*f", decimals, (double)value);
+    assert_string_equal(fixed(value, decimals), value == 0 && wanted[0] == '-' ? wanted + 1 : wanted);
+}
+
+static void decimals_are_those_of_printf(void **state) {
+    (void)state;
+    for (int run = 0; run < 200000; ++run) {
+        const double magnitude = wh_test_decades(1e-25, 9e14);
+        expect_fixed(WH_REAL(run % 2 == 0 ? magnitude : -magnitude), run % 16);
+    }
+}
+
+/* Halves of the last decimal, which only binary fractions hit, go to the even digit. */
+static void halves_are_rounded_to_even(void **state) {
+    (void)state;
+    for (int i = 0; i < 4096; ++i) {
+        for (int decimals = 0; decimals < 12; ++decimals) {
+            expect_fixed(WH_REAL(i) / 16, decimals);
+        }
+    }
+    assert_string_equal(fixed(WH_REAL(0.5), 0), "0");
+    assert_string_equal(fixed(WH_REAL(1.5), 0), "2");
+    assert_string_equal(fixed(WH_REAL(-2.5), 0), "-2");
+    assert_string_equal(fixed(WH_REAL(0.9999999), 3), "1.000");
+}
+
+static void short_numbers_are_those_of_printf_without_exponents(void **state) {
+    (void)state;
+    for (int run = 0; run < 200000; ++run) {
+        const int digits = 3 + run % 8;
+        const wh_real_t value = WH_REAL(wh_test_decades(1.01e-4, 999));
+        char wanted[80];
+        snprintf(wanted, sizeof wanted, "%.*g", digits, (double)value);
+        assert_string_equal(in_short(value, digits), wanted);
+    }
+    assert_string_equal(in_short(WH_REAL(0.5), 6), "0.5");
+    assert_string_equal(in_short(-50, 6), "-50");
+    assert_string_equal(in_short(1000000, 6), "1000000");
+    assert_string_equal(in_short(WH_REAL(0.00005), 6), "0.00005");
+    assert_string_equal(in_short(0, 6), "0");
+}
+
+static void numbers_that_have_no_digits_are_named(void **state) {
+    (void)state;
+    assert_string_equal(fixed(WH_REAL(NAN), 3), "nan");
+    assert_string_equal(fixed(WH_REAL(INFINITY), 3), "more than 1e15");
+    assert_string_equal(in_short(-WH_TEST_LARGEST, 3), "less than -1e15");
+    assert_string_equal(fixed(WH_REAL(1e-30), 15), "0.000000000000000");
+}
+
+static void whole_numbers_are_written_in_full(void **state) {
+    (void)state;
+    const int64_t values[] = {0, 7, -7, 1234567890123, INT64_MAX, INT64_MIN};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i) {
+        char text[40];
+        char wanted[40];
+        wh_words_t words = wh_words_begin(text, sizeof text);
+        wh_words_integer(&words, values[i]);
+        snprintf(wanted, sizeof wanted, "%lld", (long long)values[i]);
+        assert_string_equal(text, wanted);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- events */
+
+static wh_event_t event_of(wh_event_kind_t kind) {
+    wh_event_t event;
+    memset(&event, 0, sizeof event);
+    event.kind = kind;
+    event.wafer = 2;
+    event.gripper = 1;
+    event.other = 3;
+    event.parts[0] = 4;
+    event.parts[1] = 5;
+    return event;
+}
+
+static const char *text_of(const wh_event_t *event, const wh_event_names_t *names) {
+    static char text[WH_EVENT_TEXT_SIZE];
+    const size_t length = wh_event_text(event, names, text, sizeof text);
+    assert_int_equal(length, strlen(text));
+    return text;
+}
+
+static wh_event_t missed_by_tolerance(double dz, double dx, double tilt) {
+    const wh_tolerance_t tolerance = wh_tolerance_paper();
+    const wh_pose_t wafer = wh_test_pose(wh_test_rotation(1, 0, 0, tilt), dx, 0, 900);
+    const wh_pose_t gripper = wh_test_at(0, 0, 900 - dz);
+    wh_event_t event = event_of(WH_EVENT_NEAR_MISS);
+    assert_int_equal(wh_proximity_measure(&wafer, &gripper, &tolerance, &event.measured), WH_OK);
+    return event;
+}
+
+static void a_missed_pick_is_explained(void **state) {
+    (void)state;
+    const wh_tolerance_t tolerance = wh_tolerance_paper();
+    const wh_event_names_t names = {.tolerance = &tolerance};
+    wh_event_t event = missed_by_tolerance(0, 55, 0);
+    assert_string_equal(text_of(&event, &names),
+                        "near miss: wafer 2, gripper 1: |dr_proj_xy| 55.000 is not below 50 (by 5.000 mm)");
+    /* without the tolerance: from the margin */
+    assert_string_equal(text_of(&event, NULL),
+                        "near miss: wafer 2, gripper 1: |dr_proj_xy| 55.000 is not below 50 (by 5.000 mm)");
+    event = missed_by_tolerance(0.5, 0, 0);
+    assert_string_equal(text_of(&event, &names),
+                        "near miss: wafer 2, gripper 1: |dr_proj_z| 0.500 is not below 0.5 (it is equal)");
+    event.measured.failed = 0;
+    assert_string_equal(text_of(&event, NULL), "near miss: wafer 2, gripper 1: ready, but not taken");
+}
+
+static void each_condition_that_failed_is_a_reason(void **state) {
+    (void)state;
+    const wh_event_t event = missed_by_tolerance(0.75, 60, 0.2);
+    char reason[WH_EVENT_TEXT_SIZE];
+    size_t count = 0;
+    while (wh_event_reason(&event, NULL, count, reason, sizeof reason) > 0) {
+        ++count;
+    }
+    assert_int_equal(count, 3);
+    assert_string_equal(reason, "");
+    (void)wh_event_reason(&event, NULL, 2, reason, sizeof reason);
+    assert_string_equal(reason, "n1_proj_n2 0.980067 is not above 0.99 (by 0.009933): tilted by 11.459 deg");
+}
+
+static void each_kind_has_its_words(void **state) {
+    (void)state;
+    static const struct {
+        wh_event_kind_t kind;
+        const char *text;
+    } wanted[] = {
+        {WH_EVENT_PICKED,
+         "picked: wafer 2, gripper 1: |dr_proj_z| 0.000 mm, |dr_proj_xy| 0.000 mm, n1_proj_n2 0.000000"},
+        {WH_EVENT_RELEASED, "released: wafer 2, gripper 1"},
+        {WH_EVENT_HANDED_OVER,
+         "handed over: wafer 2, gripper 1: from gripper 3, |dr_proj_z| 0.000 mm, |dr_proj_xy| 0.000 "
+         "mm, n1_proj_n2 0.000000"},
+        {WH_EVENT_CONTESTED, "contested: wafer 2, gripper 1: ready, but gripper 3 holds it"},
+        {WH_EVENT_BAD_INPUT, "bad input: wafer 2, gripper 1: a number is NaN or infinite"},
+        {WH_EVENT_RELEASED_UNSUPPORTED,
+         "released unsupported: wafer 2, gripper 1: in no slot, 3.250 mm above what is below"},
+        {WH_EVENT_SLOT_OCCUPIED, "slot occupied: wafer 2, gripper 1: wafer 3 lies in that slot"},
+        {WH_EVENT_PLACED_OFF_CENTRE,
+         "placed off centre: wafer 2, gripper 1: 0.750 mm beside the centre (limit 0.5 mm)"},
+        {WH_EVENT_PLACED_ASKEW, "placed askew: wafer 2, gripper 1: tilted by 42.972 deg (limit 28.6479 deg)"},
+        {WH_EVENT_SETTLED, "settled: wafer 2, gripper 1: 0.750 mm lower"},
+        {WH_EVENT_HIT, "hit: wafer 2, gripper 1: part 4 and part 5 touch at 1.000, -2.000, 0.125 mm"},
+        {WH_EVENT_UNDECIDED,
+         "undecided: wafer 2, gripper 1: whether part 4 and part 5 touch could not be decided"},
+        {WH_EVENT_TOO_CLOSE,
+         "too close: wafer 2, gripper 1: part 4 and part 5: 0.750 mm apart (limit 0.5 mm)"},
+        {WH_EVENT_SLIPPED, "slipped: wafer 2, gripper 1: the motion asks for 1 mm/s^2, the pads carry 0"},
+        {WH_EVENT_VACUUM_LOST,
+         "vacuum lost: wafer 2, gripper 1: 75 % of the full vacuum, the sensor wants 50"},
+        {WH_EVENT_FAULT_ARMED, "fault armed: wafer 2, gripper 1: valve_stuck, fault 4"},
+        {WH_EVENT_FAULT_CLEARED, "fault cleared: wafer 2, gripper 1: valve_stuck, fault 4"}};
+    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; ++i) {
+        wh_event_t event = event_of(wanted[i].kind);
+        event.status = WH_STATUS_NOT_FINITE;
+        event.height = WH_REAL(3.25);
+        event.value = WH_REAL(0.75);
+        event.limit = WH_REAL(0.5);
+        event.at = wh_vec3(1, -2, WH_REAL(0.125));
+        assert_string_equal(text_of(&event, NULL), wanted[i].text);
+    }
+    assert_int_equal(sizeof wanted / sizeof wanted[0], WH_EVENT_KINDS - 1); /* all but the near miss */
+}
+
+static const char *find(const void *user, wh_name_kind_t kind, int32_t index) {
+    static const char *const names[3][6] = {{"A1", "A2", "A3", "A4", NULL, NULL},
+                                            {"left", "right", NULL, "chuck", NULL, NULL},
+                                            {NULL, NULL, NULL, NULL, "blade", NULL}};
+    assert_string_equal(user, "user");
+    return index >= 0 && index < 6 ? names[kind][index] : NULL;
+}
+
+static void things_have_their_names(void **state) {
+    (void)state;
+    const wh_event_names_t names = {.find = find, .user = "user", .first = 1, .degree = "\xc2\xb0"};
+    wh_event_t event = event_of(WH_EVENT_CONTESTED);
+    assert_string_equal(text_of(&event, &names), "contested: A3, right: ready, but chuck holds it");
+    event.gripper = 2;
+    event.kind = WH_EVENT_RELEASED;
+    assert_string_equal(text_of(&event, &names), "released: A3, gripper 3");
+    event.kind = WH_EVENT_HIT;
+    event.wafer = event.gripper = WH_NONE;
+    assert_string_equal(text_of(&event, &names), "hit: blade and part 6 touch at 0.000, 0.000, 0.000 mm");
+    event.kind = WH_EVENT_UNDECIDED;
+    event.parts[0] = event.parts[1] = WH_NONE;
+    assert_string_equal(text_of(&event, NULL),
+                        "undecided: whether more than can be looked at and more than can be "
+                        "looked at touch could not be decided");
+    event.kind = WH_EVENT_FAULT_ARMED;
+    event.gripper = 0;
+    event.parts[0] = 0;
+    event.parts[1] = WH_FAULT_LEAK;
+    assert_string_equal(text_of(&event, &names), "fault armed: left: leak, fault 1");
+    event.kind = WH_EVENT_PLACED_ASKEW;
+    assert_string_equal(text_of(&event, &names),
+                        "placed askew: left: tilted by 0.000\xc2\xb0 (limit 0\xc2\xb0)");
+}
+
+/* Whatever stands in an event, its text ends within the buffer, and the whole text begins with what fits. */
+static void what_does_not_fit_is_cut_off(void **state) {
+    (void)state;
+    for (int run = 0; run < 2000; ++run) {
+        wh_event_t event = missed_by_tolerance(0.75, 60, 0.2);
+        event.kind = (wh_event_kind_t)wh_test_below(WH_EVENT_KINDS + 2);
+        event.value = WH_REAL(wh_test_decades(1e-20, 1e20));
+        event.wafer = event.other = (int32_t)wh_test_random();
+        event.parts[0] = event.parts[1] = (int32_t)wh_test_random();
+        char whole[2 * WH_EVENT_TEXT_SIZE];
+        char part[WH_EVENT_TEXT_SIZE + 1];
+        const size_t length = wh_event_text(&event, NULL, whole, sizeof whole);
+        const size_t size = wh_test_below(WH_EVENT_TEXT_SIZE);
+        assert_true(length > 0 && length < WH_EVENT_TEXT_SIZE);
+        memset(part, '#', sizeof part);
+        assert_int_equal(wh_event_text(&event, NULL, part, size), length);
+        if (size > 0) {
+            const size_t kept = length < size ? length : size - 1;
+            assert_int_equal(strlen(part), kept);
+            assert_memory_equal(part, whole, kept);
+        }
+        assert_int_equal(part[size], '#');
+    }
+    const wh_event_t event = event_of(WH_EVENT_RELEASED);
+    assert_int_equal(wh_event_text(&event, NULL, NULL, 0), strlen("released: wafer 2, gripper 1"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(decimals_are_those_of_printf),
+        cmocka_unit_test(halves_are_rounded_to_even),
+        cmocka_unit_test(short_numbers_are_those_of_printf_without_exponents),
+        cmocka_unit_test(numbers_that_have_no_digits_are_named),
+        cmocka_unit_test(whole_numbers_are_written_in_full),
+        cmocka_unit_test(a_missed_pick_is_explained),
+        cmocka_unit_test(each_condition_that_failed_is_a_reason),
+        cmocka_unit_test(each_kind_has_its_words),
+        cmocka_unit_test(things_have_their_names),
+        cmocka_unit_test(what_does_not_fit_is_cut_off),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
