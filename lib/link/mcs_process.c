@@ -105,7 +105,8 @@ static void stop_all(wh_mcs_process_t *control, const waferhand_request *message
     wh_sandbox_stop(control->sandbox);
     control->node->interrupted = true; /* also a wait for a simulator that is silent */
     while (wh_mcs_process_next_request(control, line)) {
-        remember(control, control->executing.seq, WH_STATUS_STOPPED, line, wh_record_error_text(WH_STATUS_STOPPED));
+        remember(control, control->executing.seq, WH_STATUS_STOPPED, line,
+                 wh_record_error_text(WH_STATUS_STOPPED));
     }
     control->executing = executing;
     remember(control, message->seq, WH_OK, message->command_line, "OK");

@@ -58,8 +58,8 @@ int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *de
     wh_lua_set_integer(L, "number", status);
     wh_lua_set_text(L, "name", wh_status_name(status));
     wh_lua_set_integer(L, "line", line);
-    lua_pushfstring(L, "error %d %s: %s%s%s", (int)status, wh_status_name(status), wh_record_error_text(status),
-                    detail ? "; " : "", detail ? detail : "");
+    lua_pushfstring(L, "error %d %s: %s%s%s", (int)status, wh_status_name(status),
+                    wh_record_error_text(status), detail ? "; " : "", detail ? detail : "");
     lua_pushfstring(L, "%s:%d: %s%s%s", mcs->script, line, command, command[0] ? ": " : "",
                     lua_tostring(L, -1));
     lua_setfield(L, -3, "message");

@@ -23,8 +23,8 @@ static void print_hash(uint64_t hash) {
 
 /* True if it ended as it was recorded. */
 static bool play(const wh_played_t *run) {
-    const wh_grasp_storage_t storage = {
-        wafers, run->wafer_count, grippers, run->machine->gripper_count, NULL, 0};
+    const wh_grasp_storage_t storage = {wafers, run->wafer_count, grippers, run->machine->gripper_count, NULL,
+                                        0};
     const bool exact = sizeof(wh_real_t) == sizeof(double);
     wh_status_t status = run->wafer_count > WAFERS ? WH_STATUS_BAD_CAPACITY : WH_OK;
     status = status == WH_OK ? wh_player_init(&player, run, &storage) : status;

@@ -93,7 +93,8 @@ static void missed_pick_run(void **state) {
     (void)state;
     assert_int_equal(play("lua/examples/03_missed_pick.lua"), WH_RUN_MET);
     assert_int_equal(run.record.commands[0].error, WH_STATUS_WAFER_MISSING);
-    assert_non_null(strstr(run.record.commands[0].message, "|dr_proj_xy| 54.083 is not below 50 (by 4.083 mm)"));
+    assert_non_null(
+        strstr(run.record.commands[0].message, "|dr_proj_xy| 54.083 is not below 50 (by 4.083 mm)"));
     const wh_event_t *miss = event(WH_EVENT_NEAR_MISS, 0);
     assert_int_equal(miss->measured.failed, WH_FAILED_PROJXY);
     assert_near(miss->measured.dr_proj_xy_norm, sqrt(30.0 * 30.0 + 45.0 * 45.0), 1e-9);
