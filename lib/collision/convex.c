@@ -55,7 +55,8 @@ static wh_vec3_t farthest_out(const wh_convex_t *mesh, span_t span, const wh_vec
 
 static bool has_volume(const wh_convex_t *mesh) {
     wh_real_t most = 0;
-    wh_vec3_t line = farthest_out(mesh, SPAN_POINT, NULL, &most);
+    const wh_vec3_t none = {0, 0, 0};
+    wh_vec3_t line = farthest_out(mesh, SPAN_POINT, &none, &most);
     if (!(most >= WH_CONVEX_THINNEST)) {
         return false;
     }

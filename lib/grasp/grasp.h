@@ -156,7 +156,8 @@ wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
  * WH_EVENTS_PER_GRIPPER events for each gripper (WH_STATUS_BAD_CAPACITY), a pose that does not pass
  * wh_pose_validate, a valve that is neither 0 nor 1; the last two also yield the one event
  * WH_EVENT_BAD_INPUT, the others leave the list empty. Cost: linear in grippers. Each open, empty gripper
- * adds a look at each other gripper's wafer and a check of every wafer, two where one is near, at 3 products each for a wafer too high or too low.
+ * adds a look at each other gripper's wafer and a check of every wafer, two where one is near, at 3 products
+ * each for a wafer too high or too low.
  * With buckets it adds less than a dozen products instead while it is within its horizon; beyond it two
  * searches of the wafers around it, which do not depend on how many there are elsewhere; and the checks of
  * all wafers only where it goes very far in one slice or most wafers are around it. A release adds a search

@@ -85,7 +85,7 @@ static inline bool wh_proximity_ready(const wh_pose_t *base_from_wafer, const wh
         !(wh_vec3_dot(&n1, &n2) > tolerance->planar)) {
         return false;
     }
-    /* (1)-(8) never look at the lengths of the gripper's first two axes: a NaN there shows in their product. */
+    /* (1)-(8) never look at the gripper's first two axes: a NaN there shows in their product. */
     const wh_real_t across = g->m[0][0] * g->m[0][1] + g->m[1][0] * g->m[1][1] + g->m[2][0] * g->m[2][1];
     return across - across == 0;
 }

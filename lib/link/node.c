@@ -40,28 +40,36 @@ static const char *open_multicast(wh_receiver_t *receiver, const char *url) {
     return NULL;
 }
 
-bool wh_node_open(wh_node_t *node, const char *url, const char *record) {
-    const char *from_environment = getenv("LCM_DEFAULT_URL");
-    const char *fallback = from_environment && from_environment[0] ? from_environment : WH_NODE_URL;
-    memset(node, 0, sizeof *node);
-    node->receiver.socket = -1;
-    url = url ? url : fallback;
+static bool connect_to(wh_node_t *node, const char *url) {
     const char *problem = wh_multicast_is(url) ? open_multicast(&node->receiver, url) : NULL;
     if (!problem) {
         node->lcm = lcm_create(url);
         problem = node->lcm ? NULL : NO_ROUTE;
     }
-    if (!problem && record) {
-        node->log = lcm_eventlog_create(record, "w");
-        url = record;
-        problem = node->log ? NULL : strerror(errno);
-    }
     if (problem) {
-        fprintf(stderr, "%s: %s%s\n", url, problem,
-                url == record ? " (expected a file that can be written)" : "");
-        wh_node_close(node);
+        fprintf(stderr, "%s: %s\n", url, problem);
     }
     return problem == NULL;
+}
+
+static bool open_record(wh_node_t *node, const char *path) {
+    node->log = lcm_eventlog_create(path, "w");
+    if (!node->log) {
+        fprintf(stderr, "%s: %s (expected a file that can be written)\n", path, strerror(errno));
+    }
+    return node->log != NULL;
+}
+
+bool wh_node_open(wh_node_t *node, const char *url, const char *record) {
+    const char *from_environment = getenv("LCM_DEFAULT_URL");
+    const char *fallback = from_environment && from_environment[0] ? from_environment : WH_NODE_URL;
+    memset(node, 0, sizeof *node);
+    node->receiver.socket = -1;
+    const bool sound = connect_to(node, url ? url : fallback) && (!record || open_record(node, record));
+    if (!sound) {
+        wh_node_close(node);
+    }
+    return sound;
 }
 
 static void fail_record(wh_node_t *node) {

@@ -48,8 +48,8 @@ const char *wh_multicast_parse(const char *url, wh_multicast_t *multicast) {
 
 /* ------------------------------------------------------------------------------------------------- socket */
 
-/* Many processes of one host share the port. The buffer is as large as the system allows: what does not fit is
- * lost, as on a network. */
+/* Many processes of one host share the port. The buffer is as large as the system allows: what does not fit
+ * is lost, as on a network. */
 static bool set_options(int socket, const wh_multicast_t *multicast) {
     const int on = 1;
     const int bytes = multicast->buffer_bytes > 0 ? multicast->buffer_bytes : FULL_BUFFER_BYTES;

@@ -1,5 +1,5 @@
 /* pairs and next in sorted order: the order of a hash table itself changes from run to run. */
-#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,15 +9,11 @@
 typedef struct {
     enum { RANK_NUMBER, RANK_STRING, RANK_BOOLEAN } rank;
     bool is_integer;
-    /* of an integer, too, and of a boolean: 0 or 1. A table has no float key that equals an integer. */
-    long double number;
+    lua_Integer integer; /* of a boolean, too: 0 or 1 */
+    lua_Number number;
     const char *text;
     size_t length;
 } order_key_t;
-
-#if LDBL_MANT_DIG < 64
-#error "waferhand: a long double must hold each integer of Lua"
-#endif
 
 static void key_read(lua_State *L, int index, order_key_t *key) {
     memset(key, 0, sizeof *key);
@@ -25,8 +21,8 @@ static void key_read(lua_State *L, int index, order_key_t *key) {
     case LUA_TNUMBER:
         key->rank = RANK_NUMBER;
         key->is_integer = lua_isinteger(L, index);
-        key->number =
-            key->is_integer ? (long double)lua_tointeger(L, index) : (long double)lua_tonumber(L, index);
+        key->integer = lua_tointeger(L, index);
+        key->number = lua_tonumber(L, index);
         return;
     case LUA_TSTRING:
         key->rank = RANK_STRING;
@@ -34,7 +30,8 @@ static void key_read(lua_State *L, int index, order_key_t *key) {
         return;
     case LUA_TBOOLEAN:
         key->rank = RANK_BOOLEAN;
-        key->number = lua_toboolean(L, index);
+        key->is_integer = true;
+        key->integer = lua_toboolean(L, index);
         return;
     default:
         luaL_error(L, "a table with a %s for a key has no order to be read in", luaL_typename(L, index));
@@ -45,12 +42,34 @@ static void key_push(lua_State *L, const order_key_t *key) {
     if (key->rank == RANK_STRING) {
         lua_pushlstring(L, key->text, key->length);
     } else if (key->rank == RANK_BOOLEAN) {
-        lua_pushboolean(L, key->number != 0);
+        lua_pushboolean(L, key->integer != 0);
     } else if (key->is_integer) {
-        lua_pushinteger(L, (lua_Integer)key->number);
+        lua_pushinteger(L, key->integer);
     } else {
-        lua_pushnumber(L, (lua_Number)key->number);
+        lua_pushnumber(L, key->number);
     }
+}
+
+/* True if an integer is below a number that is none. Above all integers, and below them, doubles are too far
+ * apart to be converted. */
+static bool is_integer_below(lua_Integer integer, lua_Number number) {
+    if (number >= 0x1p63 || number < -0x1p63) {
+        return number > 0;
+    }
+    return integer <= (lua_Integer)floor(number);
+}
+
+static int number_compare(const order_key_t *a, const order_key_t *b) {
+    if (a->is_integer && b->is_integer) {
+        return (a->integer > b->integer) - (a->integer < b->integer);
+    }
+    if (a->is_integer) {
+        return is_integer_below(a->integer, b->number) ? -1 : 1;
+    }
+    if (b->is_integer) {
+        return is_integer_below(b->integer, a->number) ? 1 : -1;
+    }
+    return (a->number > b->number) - (a->number < b->number);
 }
 
 /* Below 0, 0 or above 0, as qsort asks for it. */
@@ -61,7 +80,7 @@ static int key_compare(const void *one, const void *other) {
         return a->rank < b->rank ? -1 : 1;
     }
     if (a->rank != RANK_STRING) {
-        return (a->number > b->number) - (a->number < b->number);
+        return number_compare(a, b);
     }
     const int order = memcmp(a->text, b->text, a->length < b->length ? a->length : b->length);
     return order != 0 ? order : (a->length > b->length) - (a->length < b->length);

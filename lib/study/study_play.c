@@ -170,6 +170,12 @@ static bool is_over(wh_pool_t *pool, const wh_ranks_t *ranks) {
     return wh_pool_is_idle(pool) && ranks->ended == ranks->size - 1;
 }
 
+/* Each 50 ms: what other ranks sent is taken, and what is done is kept. False if that failed. */
+static bool attend(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
+    wh_pool_wait(pool, 50);
+    return wh_ranks_serve(ranks, pool) && (wh_clock_seconds() - keeper->kept < KEEP_S || keep(keeper, pool));
+}
+
 static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
     bar_t bar = {.out = isatty(STDERR_FILENO) == 1 ? stderr : NULL,
                  .style = wh_style_of(stderr),
@@ -179,9 +185,7 @@ static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper)
     bool sound = true;
     queue_rest(pool);
     while (sound && !wh_pool_failed(pool) && !is_interrupted() && !is_over(pool, ranks)) {
-        wh_pool_wait(pool, 50);
-        sound =
-            wh_ranks_serve(ranks, pool) && (wh_clock_seconds() - keeper->kept < KEEP_S || keep(keeper, pool));
+        sound = attend(pool, ranks, keeper);
         bar_show(&bar, trials_done(pool));
     }
     bar_close(&bar);
