@@ -143,7 +143,7 @@ static void read_checks(wh_reader_t *reader, wh_layout_t *layout) {
 wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_reader_t reader;
     wh_layout_t *layout = wh_layout_memory(L, 1, sizeof *layout);
-    layout->path = strcpy(wh_layout_memory(L, strlen(path) + 1, 1), path);
+    layout->path = memcpy(wh_layout_memory(L, strlen(path) + 1, 1), path, strlen(path) + 1);
     wh_reader_start(&reader, L, layout->path);
     if (!lua_istable(L, -1)) {
         wh_reader_fail(&reader, "what the file returns", "a table");

@@ -1,4 +1,5 @@
 #include "trial_cell.h"
+#include "../math/hash.h"
 
 #include <math.h>
 #include <string.h>
@@ -40,6 +41,11 @@ static void place_stations(wh_trial_cell_t *trial_cell, const wh_layout_t *layou
     }
 }
 
+/* To the last bit. */
+static bool is_same(const wh_pose_t *a, const wh_pose_t *b) {
+    return wh_hash_pose(WH_HASH_START, a) == wh_hash_pose(WH_HASH_START, b);
+}
+
 /* Each wafer lies in its slot as the layout says; then what was drawn moves it along the slot's axes and
  * turns it about its own centre. */
 static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout, const wh_station_t places[],
@@ -48,9 +54,8 @@ static void place_wafers(wh_trial_cell_t *trial_cell, const wh_layout_t *layout,
         const wh_layout_wafer_t *lies = &layout->wafers[w];
         const wh_displacement_t drawn = wh_errors_draw_wafer(layout->errors, &trial_cell->trial, w);
         start[w] = layout->start[w];
-        if (!wh_displacement_is_any(&drawn) &&
-            memcmp(&places[lies->station].base_from_station, &layout->places[lies->station].base_from_station,
-                   sizeof(wh_pose_t)) == 0) {
+        if (!wh_displacement_is_any(&drawn) && is_same(&places[lies->station].base_from_station,
+                                                       &layout->places[lies->station].base_from_station)) {
             continue;
         }
         const wh_pose_t taught = wh_station_slot(&layout->places[lies->station], lies->slot);

@@ -39,8 +39,8 @@ static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, 
     vicinity->is_known = true;
 }
 
-/* The wafer that the gripper is measured against: see counterpart.h. Wafers that other grippers carry may come
- * near without being on the list. */
+/* The wafer that the gripper is measured against: see counterpart.h. Wafers that other grippers carry may
+ * come near without being on the list. */
 static int32_t find(wh_neighbours_t *vicinity, const wh_state_t *state, size_t g,
                     const wh_tolerance_t *tolerance) {
     const size_t listed = vicinity->count;

@@ -53,7 +53,8 @@ static void key_push(lua_State *L, const order_key_t *key) {
 /* True if an integer is below a number that is none. Above all integers, and below them, doubles are too far
  * apart to be converted. */
 static bool is_integer_below(lua_Integer integer, lua_Number number) {
-    if (number >= 0x1p63 || number < -0x1p63) {
+    const lua_Number beyond = 9223372036854775808.0;
+    if (number >= beyond || number < -beyond) {
         return number > 0;
     }
     return integer <= (lua_Integer)floor(number);

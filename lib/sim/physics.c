@@ -136,15 +136,14 @@ static uint64_t hash_slot(uint64_t hash, size_t i, const wh_fault_slot_t *slot) 
 }
 
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table) {
-    const size_t gripper_count =
-        table->storage.gripper_count < WH_GRIPPERS ? table->storage.gripper_count : WH_GRIPPERS;
+    const size_t gripper_count = table->storage.gripper_count;
     uint64_t hash = wh_grasp_hash(table);
-    for (size_t g = 0; g < gripper_count; ++g) {
+    for (size_t g = 0; g < gripper_count && g < WH_GRIPPERS; ++g) {
         if (!is_plain(&state->vacuum[g], &table->storage.grippers[g])) {
             hash = hash_vacuum(hash, g, &state->vacuum[g]);
         }
     }
-    for (size_t g = 0; g < gripper_count; ++g) {
+    for (size_t g = 0; g < gripper_count && g < WH_GRIPPERS; ++g) {
         if (state->carry[g].known > 0) {
             hash = hash_carry(hash, g, &state->carry[g]);
         }
