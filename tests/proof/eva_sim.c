@@ -142,7 +142,10 @@ static wh_cell_t any_cell(const wh_station_t *stations, size_t count) {
 }
 
 static wh_fault_t any_fault(void) {
-    wh_fault_t fault = {.kind = (wh_fault_kind_t)integer, .target = integer, .other = integer};
+    wh_fault_t fault = wh_fault_make((wh_fault_kind_t)integer, integer, real, time, time);
+    fault.kind = (wh_fault_kind_t)integer;
+    fault.target = integer;
+    fault.other = integer;
     fault.value = real;
     fault.offset = any_pose();
     fault.from = time;
