@@ -7,6 +7,7 @@
 #include "script/sandbox_internal.h"
 #include "snapshot.h"
 #include "sound_cell.h"
+#include "text/array.h"
 
 #define MEMORY ((size_t)4 << 20)
 #define BUDGET 20000

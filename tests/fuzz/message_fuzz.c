@@ -16,6 +16,7 @@
 #include "link/messages.h"
 #include "link/sim_process.h"
 #include "print/record_print.h"
+#include "text/array.h"
 
 /* An input's first byte. */
 enum { TO_MOTION_CONTROL = 1, FREE_RUNNING = 2, SWEPT = 4 };

@@ -9,6 +9,7 @@
 #include "script/sandbox_internal.h"
 #include "snapshot.h"
 #include "sound_cell.h"
+#include "text/array.h"
 
 #define NAME "tests/fuzz/script.lua"
 #define MEMORY ((size_t)4 << 20)
