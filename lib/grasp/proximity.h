@@ -25,6 +25,10 @@ typedef struct {
     wh_real_t projz, projxy, planar;
 } wh_tolerance_t;
 
+/* Between slices a wafer is taken well inside the window, within this part of eps_projz, so that rounding
+ * cannot put it outside again. */
+#define WH_SWEEP_INSIDE WH_REAL(0.998)
+
 /* Conditions that did not hold, as bits of wh_proximity_t.failed. */
 enum { WH_FAILED_PROJZ = 1, WH_FAILED_PROJXY = 2, WH_FAILED_PLANAR = 4 };
 

@@ -9,10 +9,6 @@
 
 #include "proximity.h"
 
-/* Between slices a wafer is taken well inside the window, within this part of eps_projz, so that rounding
- * cannot put it outside again. */
-#define WH_SWEEP_INSIDE WH_REAL(0.998)
-
 typedef struct {
     const wh_pose_t *begin, *end; /* the caller's */
     wh_vec3_t travel;             /* end.r - begin.r */

@@ -182,6 +182,9 @@ static void put_event(const wh_event_t *event, waferhand_event *out) {
     memcpy(out->parts, event->parts, sizeof out->parts);
     put_vec3(&event->at, out->at);
     put_measured(&event->measured, &out->measured);
+    if (event->kind == WH_EVENT_NEAR_MISS) {
+        out->limit = wh_real_abs(event->measured.dr_proj_z) + event->measured.margin_projz;
+    }
 }
 
 static void put_arrays(const wh_state_t *state, wh_link_state_t *room) {
@@ -248,6 +251,16 @@ static void take_condition(const waferhand_gripper_state *in, size_t g, wh_physi
     condition->carry[g].before[1] = take_vec3(in->wafer_before[1]);
 }
 
+/* A near miss between two slices was held against a smaller window, as its limit tells. */
+static void take_near_miss(double limit, const wh_tolerance_t *tolerance, wh_event_t *out) {
+    wh_tolerance_t inside = *tolerance;
+    inside.projz *= WH_SWEEP_INSIDE;
+    out->limit = 0;
+    if (limit > 0 && limit < (inside.projz + tolerance->projz) / 2) {
+        wh_proximity_judge(&inside, &out->measured);
+    }
+}
+
 static void take_event(const waferhand_event *in, int64_t seq, const wh_tolerance_t *tolerance,
                        wh_event_t *out) {
     out->kind = (wh_event_kind_t)in->kind;
@@ -263,6 +276,9 @@ static void take_event(const waferhand_event *in, int64_t seq, const wh_toleranc
     memcpy(out->parts, in->parts, sizeof out->parts);
     out->at = take_vec3(in->at);
     take_measured(&in->measured, tolerance, &out->measured);
+    if (out->kind == WH_EVENT_NEAR_MISS) {
+        take_near_miss(in->limit, tolerance, out);
+    }
 }
 
 /* True if `other` is what this kind of event has there. */

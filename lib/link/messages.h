@@ -107,7 +107,7 @@ void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t 
 /* Back: fills `arrays`, and `state` as a view of them. Refuses counts out of range and events that no step
  * yields (WH_STATUS_OUT_OF_RANGE); wafers and grippers are for wh_grasp_restore to judge, the condition for
  * wh_physics_state_validate. Margins and verdicts of measured values, which do not travel, are made anew from
- * `tolerance`. */
+ * `tolerance`; those of a near miss from the limit that its message carries. */
 wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_tolerance_t *tolerance,
                                        wh_link_arrays_t *arrays, wh_state_t *state);
 

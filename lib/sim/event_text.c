@@ -71,14 +71,24 @@ typedef struct {
     wh_real_t value, limit, margin;
 } condition_t;
 
+/* Between two slices the window is smaller; the margin, made by the same operations, shows that. */
+static wh_real_t projz_limit(const wh_proximity_t *p, const wh_tolerance_t *limits) {
+    const wh_real_t height = wh_real_abs(p->dr_proj_z);
+    if (!limits) {
+        return height + p->margin_projz;
+    }
+    const wh_real_t inside = WH_SWEEP_INSIDE * limits->projz;
+    const bool is_inside = p->margin_projz == inside - height && p->margin_projz != limits->projz - height;
+    return is_inside ? inside : limits->projz;
+}
+
 static condition_t find_condition(const said_t *said, unsigned failed) {
     const wh_proximity_t *p = &said->event->measured;
     const wh_tolerance_t *limits = said->names->tolerance;
     const wh_real_t height = wh_real_abs(p->dr_proj_z);
     if (failed == WH_FAILED_PROJZ) {
-        const condition_t projz = {
-            "|dr_proj_z| ", "below ", " mm", 3, height, limits ? limits->projz : height + p->margin_projz,
-            p->margin_projz};
+        const condition_t projz = {"|dr_proj_z| ",         "below ",       " mm", 3, height,
+                                   projz_limit(p, limits), p->margin_projz};
         return projz;
     }
     if (failed == WH_FAILED_PROJXY) {

@@ -27,9 +27,11 @@ typedef struct {
     /* The name of one thing, or null if it has none; `index` may be WH_NONE. Null: nothing has a name. */
     const char *(*find)(const void *user, wh_name_kind_t kind, int32_t index);
     const void *user;
-    int32_t first;                   /* what the first index is called, 0 or 1 */
-    const wh_tolerance_t *tolerance; /* the table's; null: limits are worked out from the margins */
-    const char *degree;              /* null: " deg" */
+    int32_t first; /* what the first index is called, 0 or 1 */
+    /* The table's. Of a near miss between two slices the text names 0.998 eps_projz, as that is the limit
+     * there. Null: limits are worked out from the margins. */
+    const wh_tolerance_t *tolerance;
+    const char *degree; /* null: " deg" */
 } wh_event_names_t;
 
 /* Writes the whole text, without a full stop or a line end. Returns its length without the terminator; if

@@ -31,13 +31,15 @@ static wh_status_t set_up(wh_player_t *player, const wh_grasp_storage_t *storage
 }
 
 wh_status_t wh_player_init(wh_player_t *player, const wh_played_t *run, const wh_grasp_storage_t *storage) {
-    const wh_status_t status = player && run && storage ? check_run(run, storage) : WH_STATUS_NULL_ARGUMENT;
-    if (status != WH_OK) {
-        return status;
+    if (!player) {
+        return WH_STATUS_NULL_ARGUMENT;
     }
     memset(player, 0, sizeof *player);
     player->run = run;
-    player->status = set_up(player, storage);
+    player->status = run && storage ? check_run(run, storage) : WH_STATUS_NULL_ARGUMENT;
+    if (player->status == WH_OK) {
+        player->status = set_up(player, storage);
+    }
     return player->status;
 }
 
@@ -83,6 +85,10 @@ static bool go_on(wh_player_t *player) {
 }
 
 bool wh_player_next(wh_player_t *player) {
+    if (player->simulator.mark != WH_SIMULATOR_MARK) {
+        player->status = player->status == WH_OK ? WH_STATUS_NOT_INITIALISED : player->status;
+        return false;
+    }
     while (player->status == WH_OK) {
         if (player->is_moving) {
             if (go_on(player)) {

@@ -72,7 +72,9 @@ typedef struct {
 wh_status_t wh_player_init(wh_player_t *player, const wh_played_t *run, const wh_grasp_storage_t *storage)
     WH_SYMBOL(wh_player_init);
 
-/* Plays one slice. False if there was none: the run is over, or player->status says what was refused. An
+/* Plays one slice. False if there was none: the run is over, or player->status says what was refused. Of a
+ * player that was never initialised or was refused (WH_STATUS_NOT_INITIALISED, if it is zeroed) nothing is
+ * read but its simulator's mark; see WH_SIMULATOR_MARK. An
  * observer may be set in player->simulator before the first. Cost: wh_track_next and wh_simulator_step. */
 bool wh_player_next(wh_player_t *player) WH_SYMBOL(wh_player_next);
 

@@ -5,6 +5,10 @@
 #include "../grasp/restore.h"
 #include "../math/hash.h"
 
+static bool is_initialised(const wh_simulator_t *simulator) {
+    return simulator->mark == WH_SIMULATOR_MARK && simulator->table.mark == WH_GRASP_MARK;
+}
+
 /* ---------------------------------------------------------------------------------------------- in memory */
 
 static bool lacks_arrays(const wh_grasp_storage_t *storage) {
@@ -37,7 +41,7 @@ wh_status_t wh_simulator_relink(wh_simulator_t *simulator, const wh_grasp_storag
     if (!simulator || !storage) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (simulator->mark != WH_SIMULATOR_MARK) {
+    if (!is_initialised(simulator)) {
         return WH_STATUS_NOT_INITIALISED;
     }
     wh_grasp_t *table = &simulator->table;
@@ -284,7 +288,8 @@ static size_t size_with(const wh_grasp_storage_t *storage, size_t slots) {
 }
 
 size_t wh_simulator_saved_size(const wh_simulator_t *simulator) {
-    return size_with(&simulator->table.storage, simulator->physics.faults.count);
+    return is_initialised(simulator) ? size_with(&simulator->table.storage, simulator->physics.faults.count)
+                                     : 0;
 }
 
 static void pass_counters(stream_t *stream, wh_grasp_counters_t *counters) {
@@ -370,7 +375,7 @@ wh_status_t wh_simulator_save(const wh_simulator_t *simulator, uint8_t bytes[], 
     if (!simulator || !bytes || !size) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (simulator->mark != WH_SIMULATOR_MARK) {
+    if (!is_initialised(simulator)) {
         return WH_STATUS_NOT_INITIALISED;
     }
     const size_t needed = wh_simulator_saved_size(simulator);
@@ -486,18 +491,26 @@ static wh_status_t load(wh_simulator_t *simulator, const uint8_t bytes[], size_t
     return WH_OK;
 }
 
+static wh_status_t check_room(const wh_grasp_storage_t *storage, const wh_snapshot_room_t *room) {
+    if ((!room->wafers && storage->wafer_count > 0) || (!room->grippers && storage->gripper_count > 0)) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    const bool is_own = (room->wafers == storage->wafers && storage->wafer_count > 0) ||
+                        (room->grippers == storage->grippers && storage->gripper_count > 0);
+    return is_own ? WH_STATUS_BAD_CAPACITY : WH_OK;
+}
+
 wh_status_t wh_simulator_load(wh_simulator_t *simulator, const uint8_t bytes[], size_t size,
                               wh_snapshot_room_t *room) {
     if (!simulator || !bytes || !room) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    if (simulator->mark != WH_SIMULATOR_MARK) {
+    if (!is_initialised(simulator)) {
         return WH_STATUS_NOT_INITIALISED;
     }
-    const wh_grasp_storage_t *storage = &simulator->table.storage;
-    if ((!room->wafers && storage->wafer_count > 0) || (!room->grippers && storage->gripper_count > 0)) {
-        return WH_STATUS_NULL_ARGUMENT;
+    wh_status_t status = check_room(&simulator->table.storage, room);
+    if (status == WH_OK) {
+        status = check_ends(simulator, bytes, size);
     }
-    const wh_status_t status = check_ends(simulator, bytes, size);
     return status == WH_OK ? load(simulator, bytes, size, room) : status;
 }

@@ -3,7 +3,7 @@
 
 #include "sim/faults.h"
 #include "sim/words_internal.h"
-#include "support/pose.h"
+#include "support/grasp.h"
 
 /* ------------------------------------------------------------------------------------------------- digits */
 
@@ -134,6 +134,27 @@ static void a_missed_pick_is_explained(void **state) {
     assert_string_equal(text_of(&event, NULL), "near miss: wafer 2, gripper 1: ready, but not taken");
 }
 
+/* Between two slices 0.998 of the limit counts: the text says so, with the tolerance and without it. */
+static void a_swept_near_miss_names_the_limit_that_was_applied(void **state) {
+    (void)state;
+    wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_event_names_t names = {.tolerance = &config.tolerance};
+    cell_t cell;
+    config.check = SWEPT_IF_BUILT;
+    cell_begin(&cell, &config);
+    cell_move(&cell, 0, 50 - 30 * 0.3348, 0, -0.6, OPEN);
+    cell_move(&cell, 0, 50 + 30 * (1 - 0.3348), 0, -0.3, OPEN);
+    cell_move(&cell, 0, 300, 0, -0.3, OPEN);
+    const wh_event_t *miss = cell_event(&cell, WH_EVENT_NEAR_MISS);
+    assert_non_null(miss);
+    if (WH_SWEEP_BUILT) {
+        static const char text[] = "near miss: wafer 0, gripper 0: |dr_proj_z| 0.4998 is not below 0.499 "
+                                   "(by 0.0008 mm)";
+        assert_string_equal(text_of(miss, &names), text);
+        assert_string_equal(text_of(miss, NULL), text);
+    }
+}
+
 static void each_condition_that_failed_is_a_reason(void **state) {
     (void)state;
     const wh_event_t event = missed_by_tolerance(0.75, 60, 0.2);
@@ -260,6 +281,7 @@ int main(void) {
         cmocka_unit_test(numbers_that_have_no_digits_are_named),
         cmocka_unit_test(whole_numbers_are_written_in_full),
         cmocka_unit_test(a_missed_pick_is_explained),
+        cmocka_unit_test(a_swept_near_miss_names_the_limit_that_was_applied),
         cmocka_unit_test(each_condition_that_failed_is_a_reason),
         cmocka_unit_test(each_kind_has_its_words),
         cmocka_unit_test(things_have_their_names),

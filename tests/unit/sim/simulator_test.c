@@ -1,6 +1,7 @@
 /* The simulator: what it refuses, what a state shows, and that the cell has its say. */
 #include "support/pose.h"
 
+#include "sim/played.h"
 #include "sim/simulator.h"
 
 enum { WAFERS = 2, GRIPPERS = 2, OPEN = WH_VALVE_OPEN, CLOSED = WH_VALVE_CLOSED };
@@ -281,6 +282,27 @@ static void the_link_is_the_simulator(void **state) {
     assert_int_equal(link->missed(link), 0); /* a call is never late */
 }
 
+/* Zeroed, and after each refusal of wh_player_init, whatever stood there before. */
+static void a_player_without_a_run_plays_nothing(void **state) {
+    (void)state;
+    static wh_player_t player;
+    static wh_played_t run;
+    const wh_grasp_storage_t storage = storage_here();
+    assert_false(wh_player_next(&player));
+    assert_int_equal(player.status, WH_STATUS_NOT_INITIALISED);
+    memset(&player, 0xa5, sizeof player);
+    assert_false(wh_player_next(&player));
+    for (int missing = 0; missing < 3; ++missing) {
+        memset(&player, 0, sizeof player);
+        assert_int_equal(wh_player_init(&player, missing == 0 ? NULL : &run, missing == 1 ? NULL : &storage),
+                         WH_STATUS_NULL_ARGUMENT);
+        assert_int_equal(player.status, WH_STATUS_NULL_ARGUMENT);
+        assert_false(wh_player_next(&player));
+        assert_int_equal(player.status, WH_STATUS_NULL_ARGUMENT);
+    }
+    assert_int_equal(wh_player_init(NULL, &run, &storage), WH_STATUS_NULL_ARGUMENT);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(init_refuses_what_it_cannot_use, set_up),
@@ -297,6 +319,7 @@ int main(void) {
         cmocka_unit_test_setup(null_pointers_touch_nothing, set_up),
         cmocka_unit_test_setup(entries_beyond_the_count_are_not_looked_at, set_up),
         cmocka_unit_test_setup(the_link_is_the_simulator, set_up),
+        cmocka_unit_test_setup(a_player_without_a_run_plays_nothing, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

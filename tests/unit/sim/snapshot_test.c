@@ -285,17 +285,50 @@ static void what_is_missing_is_refused(void **state) {
     assert_int_equal(wh_simulator_load(&run.simulator, bytes, size, &none), WH_STATUS_NULL_ARGUMENT);
 }
 
+static void the_simulators_own_arrays_are_no_room(void **state) {
+    (void)state;
+    play_to(WH_CHECK_SAMPLED, true, 100);
+    const size_t size = save(&run);
+    static wh_snapshot_room_t own;
+    own.wafers = run.wafers;
+    own.grippers = room_grippers;
+    assert_int_equal(wh_simulator_load(&run.simulator, bytes, size, &own), WH_STATUS_BAD_CAPACITY);
+    own.wafers = room_wafers;
+    own.grippers = run.grippers;
+    assert_int_equal(wh_simulator_load(&run.simulator, bytes, size, &own), WH_STATUS_BAD_CAPACITY);
+    assert_int_equal(wh_simulator_load(&run.simulator, bytes, size, &room), WH_OK);
+}
+
+static void expect_not_initialised(run_t *of) {
+    const wh_grasp_storage_t storage = storage_of(of, false);
+    size_t size = 1;
+    assert_int_equal(wh_simulator_saved_size(&of->simulator), 0);
+    assert_int_equal(wh_simulator_relink(&of->simulator, &storage), WH_STATUS_NOT_INITIALISED);
+    assert_int_equal(wh_simulator_save(&of->simulator, bytes, sizeof bytes, &size),
+                     WH_STATUS_NOT_INITIALISED);
+    assert_int_equal(size, 1);
+    assert_int_equal(wh_simulator_load(&of->simulator, bytes, sizeof bytes, &room),
+                     WH_STATUS_NOT_INITIALISED);
+}
+
+/* Nothing, garbage, what wh_simulator_init refused, and a simulator whose one mark or other was overwritten. */
 static void what_was_never_initialised_is_refused(void **state) {
     (void)state;
-    static run_t zero;
-    size_t size = 0;
-    memset(&zero, 0, sizeof zero);
-    const wh_grasp_storage_t storage = storage_of(&zero, false);
-    assert_int_equal(wh_simulator_relink(&zero.simulator, &storage), WH_STATUS_NOT_INITIALISED);
-    assert_int_equal(wh_simulator_save(&zero.simulator, bytes, sizeof bytes, &size),
-                     WH_STATUS_NOT_INITIALISED);
-    assert_int_equal(wh_simulator_load(&zero.simulator, bytes, sizeof bytes, &room),
-                     WH_STATUS_NOT_INITIALISED);
+    static run_t none;
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = storage_of(&none, false);
+    memset(&none, 0xa5, sizeof none);
+    expect_not_initialised(&none);
+    memset(&none, 0, sizeof none);
+    expect_not_initialised(&none);
+    assert_int_not_equal(wh_simulator_init(&none.simulator, &config, &storage, NULL), WH_OK);
+    expect_not_initialised(&none);
+    begin(&none, WH_CHECK_SAMPLED, true);
+    none.simulator.table.mark = 0;
+    expect_not_initialised(&none);
+    none.simulator.table.mark = WH_GRASP_MARK;
+    none.simulator.mark = 0;
+    expect_not_initialised(&none);
 }
 
 static void look(void *user, const wh_gripper_input_t inputs[], const wh_grasp_t *table,
@@ -372,6 +405,13 @@ static void sealed_bytes_give_a_sound_state_or_none(void **state) {
     assert_true(taken > 100);
 }
 
+/* As snapshot.h says. */
+static void the_most_bytes_are_those_of_the_manual(void **state) {
+    (void)state;
+    assert_int_equal(WH_SNAPSHOT_SIZE(25, 2), sizeof(wh_real_t) == 8 ? 8840 : 4832);
+    assert_int_equal((37 * sizeof(wh_real_t) + 32) * WH_FAULTS, sizeof(wh_real_t) == 8 ? 5248 : 2880);
+}
+
 /* What stands in a header for everyone: the same bytes on every machine. The sum was noted on x86-64. */
 static void bytes_are_the_same_everywhere(void **state) {
     (void)state;
@@ -396,9 +436,11 @@ int main(void) {
         cmocka_unit_test(another_version_or_number_type_is_named),
         cmocka_unit_test(a_snapshot_of_another_cell_is_refused),
         cmocka_unit_test(what_is_missing_is_refused),
+        cmocka_unit_test(the_simulators_own_arrays_are_no_room),
         cmocka_unit_test(what_was_never_initialised_is_refused),
         cmocka_unit_test(relinking_looks_at_what_it_is_given),
         cmocka_unit_test(sealed_bytes_give_a_sound_state_or_none),
+        cmocka_unit_test(the_most_bytes_are_those_of_the_manual),
         cmocka_unit_test(bytes_are_the_same_everywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
