@@ -372,6 +372,11 @@ static void sealed_bytes_give_a_sound_state_or_none(void **state) {
     assert_true(taken > 100);
 }
 
+static void the_size_is_what_the_header_says(void **state) {
+    (void)state;
+    assert_int_equal(WH_SNAPSHOT_SIZE(25, 2), sizeof(wh_real_t) == 8 ? 8840 : 4832);
+}
+
 /* What stands in a header for everyone: the same bytes on every machine. The sum was noted on x86-64. */
 static void bytes_are_the_same_everywhere(void **state) {
     (void)state;
@@ -399,6 +404,7 @@ int main(void) {
         cmocka_unit_test(what_was_never_initialised_is_refused),
         cmocka_unit_test(relinking_looks_at_what_it_is_given),
         cmocka_unit_test(sealed_bytes_give_a_sound_state_or_none),
+        cmocka_unit_test(the_size_is_what_the_header_says),
         cmocka_unit_test(bytes_are_the_same_everywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
