@@ -4,9 +4,10 @@
 # Settings, as in `make CC=clang WERROR=1`:
 #   CC CXX CFLAGS CXXFLAGS LDFLAGS  as usual; EXTRA is appended to every compiler call
 #   FLOAT=1    the library's number is float instead of double
+#   WITHOUT="sweep index"   the library has no swept checking, no index over the wafers, or neither
 #   SHARED=1   libwaferhand.so is installed, too; COLLISION=1 for install-library: so is collision, over libccd
 #   WERROR=1   warnings are errors (so they are where CI is set)
-#   V=1        shows the commands
+#   V=1        shows the commands; 0 switches off what 1 switches on, and is the default
 #   B=build    the folder to build in, as in `make library B=build/m7 CC=arm-none-eabi-gcc CFLAGS=...`
 #   PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=   where `make install` puts things
 
@@ -22,7 +23,7 @@ BUILD = @+$(MAKE) --no-print-directory $(JOBS) -f lib/build/build.mk
 SANITIZE = CFLAGS='-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE' CXXFLAGS='-O1 -g -DWH_DEBUG -DWH_DEBUG_TABLE' \
            EXTRA='$(EXTRA) -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all'
 
-include tests/tests.mk
+include lib/build/switches.mk tests/tests.mk
 
 # Checks that need tools of their own; tests/README.md says which claim is checked by which of them.
 CORE_PARTS := symbols footprint instructions bits on_target eva fuzz
@@ -101,5 +102,7 @@ uninstall: ## takes away what install put there
 clean: ## removes build/
 	rm -rf build
 
-help: ## this list
+help: ## this list, and the settings
 	@sed -n 's/^\([a-z-]*\):.*## /make \1\t/p' Makefile | expand -t 18
+	@echo
+	@sed -n 's/^# \(Settings,.*\)/\1/p; s/^#   /  /p' Makefile

@@ -1,6 +1,7 @@
 # What is made from what, below B. Called by the Makefile, once everything it needs is installed.
 
 B := build
+include lib/build/switches.mk
 CFLAGS ?= -O2 -g
 CXXFLAGS ?= -O2 -g
 PKG_CONFIG ?= pkg-config

@@ -40,7 +40,7 @@ UPWARDS := $(if $(filter $(PREFIX)/%,$(LIBDIR)),../../$(subst $() ,/,$(patsubst 
 FILLED := waferhand.pc waferhand_collision.pc waferhand-config.cmake waferhand-config-version.cmake
 $(FILLED:%=$(B)/%): $(B)/%: lib/build/%.in FORCE
 	@mkdir -p $(@D)
-	@sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(LIBDIR)|' -e 's|@version@|$(VERSION)|' -e 's|@abi@|$(ABI)|' \
+	@sed -e 's|@prefix@|$(PREFIX)|' -e 's|@libdir@|$(LIBDIR)|' -e 's|@version@|$(VERSION)|' -e 's|@abi@|$(ABI)|g' \
 	    -e 's|@flags@|$(SAME_BITS)|' -e 's|@defines@|$(DEFINES)|' \
 	    -e 's|@include@|$(if $(UPWARDS),$${CMAKE_CURRENT_LIST_DIR}/$(UPWARDS),$(PREFIX))/include|' $< >$@
 

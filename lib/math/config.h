@@ -41,11 +41,21 @@
 
 /* The same inputs must give the same bits on every machine, which these builds cannot hold. Nor can one that
  * fuses products and sums, which no macro tells: build everything that includes these headers with
- * -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION, as pkg-config, CMake and meson do. */
+ * -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION, as pkg-config, CMake and meson do.
+ * gcc has a macro for each part of -ffast-math. clang has macros only for the whole and for
+ * -ffinite-math-only; on x86 the pragma below finds all other parts but -fno-honor-nans and
+ * -fno-honor-infinities. What remains unseen: lib/README.md. */
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) ||                 \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
-#error                                                                                                       \
-    "waferhand: -ffast-math (or a part of it) reorders sums and drops NaN, so builds would differ: remove it"
+#error "waferhand: -ffast-math or a part of it reorders sums and drops NaN, so builds would differ: remove it"
+#elif defined(__clang__)
+#pragma clang diagnostic push
+#pragma clang diagnostic ignored "-Wignored-pragmas"
+#pragma clang diagnostic ignored "-Wunknown-pragmas"
+static inline void wh_refuse_fast_math(void) {
+#pragma STDC FENV_ACCESS ON /* waferhand: clang refuses this line under a part of -ffast-math: remove it */
+}
+#pragma clang diagnostic pop
 #endif
 #if defined(FLT_EVAL_METHOD)
 #if FLT_EVAL_METHOD != 0
@@ -66,6 +76,12 @@ typedef float wh_real_t;
 typedef double wh_real_t;
 #define WH_ROTATION_TOLERANCE 1e-6
 #define WH_SYMBOL_NUMBER "d"
+#endif
+
+/* -fsingle-precision-constant changes numbers, and no macro tells. A file of yours that includes the headers of
+ * floats may have it; the library may not. */
+#if !defined(WH_FLOAT) || defined(WH_BUILDING_LIBRARY)
+typedef char wh_constants_need_double[sizeof(0.1) == sizeof(double) ? 1 : -1];
 #endif
 
 /* True where numbers are computed by software: there a comparison that saves a product pays. Changes no
