@@ -48,14 +48,10 @@
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) ||                 \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
 #error "waferhand: -ffast-math or a part of it reorders sums and drops NaN, so builds would differ: remove it"
-#elif defined(__clang__)
-#pragma clang diagnostic push
-#pragma clang diagnostic ignored "-Wignored-pragmas"
-#pragma clang diagnostic ignored "-Wunknown-pragmas"
+#elif defined(__clang__) && (defined(__x86_64__) || defined(__i386__))
 static inline void wh_refuse_fast_math(void) {
 #pragma STDC FENV_ACCESS ON /* waferhand: clang refuses this line under a part of -ffast-math: remove it */
 }
-#pragma clang diagnostic pop
 #endif
 #if defined(FLT_EVAL_METHOD)
 #if FLT_EVAL_METHOD != 0
@@ -78,8 +74,8 @@ typedef double wh_real_t;
 #define WH_SYMBOL_NUMBER "d"
 #endif
 
-/* -fsingle-precision-constant changes numbers, and no macro tells. A file of yours that includes the headers of
- * floats may have it; the library may not. */
+/* -fsingle-precision-constant changes numbers, and no macro tells. A file of yours that includes the headers
+ * of floats may have it; the library may not. */
 #if !defined(WH_FLOAT) || defined(WH_BUILDING_LIBRARY)
 typedef char wh_constants_need_double[sizeof(0.1) == sizeof(double) ? 1 : -1];
 #endif
