@@ -28,8 +28,8 @@ WH_HEADER_BEGIN
 /* Goes up when the bytes change. */
 #define WH_SNAPSHOT_VERSION 1
 
-/* The most bytes of a snapshot: a constant, for an array. For 25 wafers and 2 grippers 8840 in double, of which
- * 5248 are for faults, and 4832 in float. */
+/* The most bytes of a snapshot: a constant, for an array. For 25 wafers and 2 grippers 8840 in double, of
+ * which 5248 are for faults, and 4832 in float. */
 #define WH_SNAPSHOT_SIZE(wafer_count, gripper_count)                                                         \
     (84 + (12 * sizeof(wh_real_t) + 4) * (size_t)(wafer_count) +                                             \
      (55 * sizeof(wh_real_t) + 64) * (size_t)(gripper_count) + (37 * sizeof(wh_real_t) + 32) * WH_FAULTS)
