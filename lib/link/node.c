@@ -9,9 +9,8 @@
 #include <time.h>
 
 #define NO_ROUTE                                                                                             \
-    "LCM is not to be had at this URL (expected a multicast route, as by `ip route add 224.0.0.0/4 dev "     \
-    "lo`, "                                                                                                  \
-    "or another URL)"
+    "LCM is not to be had at this URL (expected a multicast route, as by "                                   \
+    "`ip route add 224.0.0.0/4 dev lo`, or another URL)"
 
 static int64_t now_us(clockid_t clock) {
     struct timespec now;

@@ -65,11 +65,13 @@ static inline void wh_refuse_fast_math(void) {
 /* The library's real number: double, or float when built with -DWH_FLOAT. Library and program must agree. */
 #if defined(WH_FLOAT)
 typedef float wh_real_t;
+typedef uint32_t wh_real_bits_t; /* as many bits, to be copied from and to a real */
 /* How far the largest entry of |R^T R - I| may be from zero. */
 #define WH_ROTATION_TOLERANCE 1e-5F
 #define WH_SYMBOL_NUMBER "f"
 #else
 typedef double wh_real_t;
+typedef uint64_t wh_real_bits_t;
 #define WH_ROTATION_TOLERANCE 1e-6
 #define WH_SYMBOL_NUMBER "d"
 #endif

@@ -22,11 +22,7 @@ static inline uint64_t wh_hash_int(uint64_t hash, int32_t value) {
 
 /* By its bits, so -0 and 0 differ. */
 static inline uint64_t wh_hash_real(uint64_t hash, wh_real_t value) {
-#if defined(WH_FLOAT)
-    uint32_t bits;
-#else
-    uint64_t bits;
-#endif
+    wh_real_bits_t bits;
     memcpy(&bits, &value, sizeof bits);
     return wh_hash_word(hash, bits);
 }

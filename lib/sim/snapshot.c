@@ -157,19 +157,11 @@ static void pass_bool(stream_t *stream, bool *value) {
 }
 
 static void pass_real(stream_t *stream, wh_real_t *value) {
-#if defined(WH_FLOAT)
-    uint32_t bits;
-#else
-    uint64_t bits;
-#endif
+    wh_real_bits_t bits;
     memcpy(&bits, value, sizeof bits);
     uint64_t word = bits;
     pass_bytes(stream, &word, (unsigned)sizeof bits);
-#if defined(WH_FLOAT)
-    bits = (uint32_t)word;
-#else
-    bits = word;
-#endif
+    bits = (wh_real_bits_t)word;
     memcpy(value, &bits, sizeof bits);
 }
 
@@ -279,7 +271,8 @@ static uint64_t sum_of(const uint8_t bytes[], size_t size) {
     return sum;
 }
 
-static const uint8_t mark[6] = {'W', 'H', 'S', 'N', 'A', 'P'};
+#define MARK UINT64_C(0x50414E534857) /* "WHSNAP", first letter first */
+#define MARK_SIZE 6
 
 /* How many bytes a snapshot has with so many slots of faults. */
 static size_t size_with(const wh_grasp_storage_t *storage, size_t slots) {
@@ -303,13 +296,11 @@ static void pass_counters(stream_t *stream, wh_grasp_counters_t *counters) {
 /* ------------------------------------------------------------------------------------------------- saving */
 
 static void save_head(stream_t *stream, const wh_simulator_t *simulator) {
+    uint64_t mark = MARK;
     uint64_t version = WH_SNAPSHOT_VERSION;
     uint64_t number = sizeof(wh_real_t);
     uint64_t description = describe(simulator);
-    for (size_t i = 0; i < sizeof mark; ++i) {
-        uint64_t letter = mark[i];
-        pass_bytes(stream, &letter, 1);
-    }
+    pass_bytes(stream, &mark, MARK_SIZE);
     pass_bytes(stream, &version, 1);
     pass_bytes(stream, &number, 1);
     pass_bytes(stream, &description, 8);
@@ -401,17 +392,9 @@ static uint64_t read_bytes(const uint8_t bytes[], unsigned count) {
     return value;
 }
 
-static bool is_marked(const uint8_t bytes[]) {
-    bool marked = true;
-    for (size_t i = 0; i < sizeof mark; ++i) {
-        marked = marked && bytes[i] == mark[i];
-    }
-    return marked;
-}
-
 /* All but the state itself. */
 static wh_status_t check_ends(const wh_simulator_t *simulator, const uint8_t bytes[], size_t size) {
-    if (size < HEAD_SIZE + SUM_SIZE || !is_marked(bytes)) {
+    if (size < HEAD_SIZE + SUM_SIZE || read_bytes(bytes, MARK_SIZE) != MARK) {
         return WH_STATUS_DAMAGED;
     }
     if (bytes[6] != WH_SNAPSHOT_VERSION || bytes[7] != sizeof(wh_real_t)) {
@@ -427,11 +410,7 @@ static wh_status_t check_ends(const wh_simulator_t *simulator, const uint8_t byt
 }
 
 static void load_physics(stream_t *stream, wh_physics_state_t *physics, size_t gripper_count) {
-    memset(physics, 0, sizeof *physics);
-    for (size_t g = gripper_count; g < WH_GRIPPERS; ++g) {
-        physics->vacuum[g] = wh_vacuum_start();
-        physics->told[g] = WH_VALVE_CLOSED;
-    }
+    wh_physics_state_start(physics, NULL);
     for (size_t g = 0; g < gripper_count; ++g) {
         share_t share;
         memset(&share, 0, sizeof share);

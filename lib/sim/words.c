@@ -92,11 +92,7 @@ typedef struct {
 
 /* Magnitude = mantissa * 2^exponent. */
 static uint64_t take_apart(wh_real_t magnitude, int *exponent) {
-#if defined(WH_FLOAT)
-    uint32_t bits;
-#else
-    uint64_t bits;
-#endif
+    wh_real_bits_t bits;
     memcpy(&bits, &magnitude, sizeof bits);
     const uint64_t low = (uint64_t)bits & ((UINT64_C(1) << BITS) - 1);
     const int field = (int)((uint64_t)bits >> BITS);

@@ -1,11 +1,11 @@
 /* The program that Eva analyses: it calls every public function of the core, in every order, with every bit pattern.
- * Eva takes what is read from a volatile object for any value of its type, NaN and infinities among them.
  *
  * Assumed, as the headers ask: pointers are null only where a function refuses null; arrays have as many elements as
  * their counts say, GRIPPERS and WAFERS; a bool is 0 or 1; a table is only handed on once wh_grasp_init accepted it.
  * What the arrays hold, before and between the calls, is otherwise up to the library; what the slice, counters and
  * buckets hold is anything.
  */
+#include "eva_any.h"
 #include "grasp/hold.h"
 #include "grasp/restore.h"
 
@@ -14,26 +14,7 @@
 #define EVENTS (GRIPPERS * WH_EVENTS_PER_GRIPPER)
 #define BUCKETS WH_GRASP_BUCKETS(WAFERS, GRIPPERS)
 
-static volatile wh_real_t real;
-static volatile int32_t integer;
-static volatile uint64_t word;
-static volatile size_t size;
 static volatile uint32_t bits;
-
-static bool any_bool(void) {
-    return (integer & 1) != 0;
-}
-
-static wh_pose_t any_pose(void) {
-    wh_pose_t pose;
-    for (size_t i = 0; i < 3; ++i) {
-        for (size_t j = 0; j < 3; ++j) {
-            pose.R.m[i][j] = real;
-        }
-    }
-    pose.r = wh_vec3(real, real, real);
-    return pose;
-}
 
 static wh_tolerance_t any_tolerance(void) {
     const wh_tolerance_t tolerance = {real, real, real};

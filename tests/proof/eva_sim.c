@@ -8,32 +8,14 @@
  * Faults are checked here in any number and with any bits, but none acts: that each names what the table has is a relation that
  * Eva loses on the way. tests/fuzz/simulator_fuzz.c has them act.
  */
+#include "eva_any.h"
 #include "sim/simulator.h"
 
 #define GRIPPERS 2
 #define WAFERS 2
 #define STATIONS 1
 
-static volatile wh_real_t real;
-static volatile int32_t integer;
 static volatile int64_t time;
-static volatile size_t size;
-static volatile uint64_t word;
-
-static bool any_bool(void) {
-    return (integer & 1) != 0;
-}
-
-static wh_pose_t any_pose(void) {
-    wh_pose_t pose;
-    for (size_t i = 0; i < 3; ++i) {
-        for (size_t j = 0; j < 3; ++j) {
-            pose.R.m[i][j] = real;
-        }
-    }
-    pose.r = wh_vec3(real, real, real);
-    return pose;
-}
 
 static int32_t any_index(size_t count) {
     const int32_t index = integer;

@@ -1,4 +1,5 @@
 /* The functions that stand in headers, for WP to prove once. */
+#include "grasp/encounter_internal.h"
 #include "grasp/grasp_internal.h"
 #include "grasp/horizon_internal.h"
 #include "math/hash.h"
