@@ -13,15 +13,20 @@ static int close_run(void **state) {
     return 0;
 }
 
-static wh_script_run_outcome_t play(const char *script, uint64_t instructions) {
+#define ODD_SCRIPTS "tests/end_to_end/data/odd_scripts.lua"
+
+/* `parameter`: which of the script's cases, or null. */
+static wh_script_run_outcome_t play(const char *script, const char *parameter, uint64_t instructions) {
     const wh_script_run_options_t options = {.script = script,
-                                             .limits = {.print_to = stderr, .instructions = instructions}};
+                                             .limits = {.print_to = stderr, .instructions = instructions},
+                                             .parameters = &parameter,
+                                             .parameter_count = parameter ? 1 : 0};
     return wh_script_run(&run, &options);
 }
 
 static void a_command_within_a_command_is_refused(void **state) {
     (void)state;
-    assert_int_equal(play("tests/end_to_end/data/nested_command.lua", 0), WH_RUN_MET);
+    assert_int_equal(play(ODD_SCRIPTS, "case=nested_command", 0), WH_RUN_MET);
     assert_int_equal(run.record.command_count, 3);
     /* The value's name is asked for before its command begins, and again within it to say what is wrong. */
     assert_string_equal(run.record.commands[0].text, "WAIT 0.1");
@@ -59,8 +64,8 @@ static void nothing_moves_without_a_link(void **state) {
     assert_true(run.record.slices == 0);
 }
 
-static void assert_expected(const char *script, size_t expectations) {
-    const wh_script_run_outcome_t outcome = play(script, 0);
+static void assert_expected(const char *script, const char *parameter, size_t expectations) {
+    const wh_script_run_outcome_t outcome = play(script, parameter, 0);
     for (size_t i = 0; i < run.record.expectation_count; ++i) {
         if (!run.record.expectations[i].ok) {
             print_error("%s\n", run.record.expectations[i].text);
@@ -75,17 +80,17 @@ static void assert_expected(const char *script, size_t expectations) {
 
 static void errors_within_a_pattern_name_the_line(void **state) {
     (void)state;
-    assert_expected("tests/end_to_end/data/error_lines.lua", 2);
+    assert_expected(ODD_SCRIPTS, "case=error_lines", 2);
 }
 
 static void frames_are_measured(void **state) {
     (void)state;
-    assert_expected("tests/end_to_end/data/measure.lua", 77);
+    assert_expected("tests/end_to_end/data/measure.lua", NULL, 77);
 }
 
 static void a_script_may_use_the_names_of_functions(void **state) {
     (void)state;
-    assert_int_equal(play("tests/end_to_end/data/globals.lua", 0), WH_RUN_MET);
+    assert_int_equal(play(ODD_SCRIPTS, "case=globals", 0), WH_RUN_MET);
 }
 
 /* Whenever a STOP comes, no wafer is dropped on the way out, and work goes on after HOME. */
@@ -111,7 +116,7 @@ static void a_stop_may_come_at_any_time(void **state) {
 
 static void the_record_is_paid_for_from_the_budget(void **state) {
     (void)state;
-    assert_int_equal(play("tests/end_to_end/data/endless_record.lua", 50000000), WH_RUN_BAD_INPUT);
+    assert_int_equal(play(ODD_SCRIPTS, "case=endless_record", 50000000), WH_RUN_BAD_INPUT);
     assert_non_null(strstr(run.message, "instruction budget of 50000000 spent"));
     assert_in_range(run.record.expectation_count, 1, 13);
 }
