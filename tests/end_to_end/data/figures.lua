@@ -26,7 +26,7 @@ function cases.errors()
   end })
   pcall(valve, "EE", evil)
   expect(early.name == "NO_LAYOUT", "before the cell: " .. tostring(early))
-  expect(number.name == "BAD_ARGUMENT" and number.line == 19, "a number: " .. tostring(number))
+  expect(number.name == "BAD_ARGUMENT" and number.line == 20, "a number: " .. tostring(number))
   expect(within and within.name == "BUSY", "within a command: " .. tostring(within))
 end
 
