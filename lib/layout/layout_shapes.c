@@ -284,7 +284,9 @@ static void add_parts(wh_layout_t *layout, wh_part_list_t *list, const obstacles
     add_obstacles(list, obstacles, true);
     wh_shapes_add_robot(list, &layout->shapes);
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        wh_shapes_add_gripper(list, &layout->shapes, (int32_t)g, layout->grippers[g].station == WH_NONE,
+        const bool on_robot = layout->grippers[g].station == WH_NONE;
+        wh_shapes_add_gripper(list, &layout->shapes, (int32_t)g,
+                              on_robot ? &layout->machine.mounts[g].effector_from_gripper : NULL,
                               layout->grippers[g].name);
     }
     layout->hung_count = list->count;

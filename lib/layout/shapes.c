@@ -7,6 +7,8 @@
 /* Heights of the arm's links below the end-effector's contact plane, mm: the links fold over each other. */
 enum { HAND_BOTTOM = -60, FOREARM_TOP = -65, FOREARM_BOTTOM = -110, UPPER_TOP = -115, UPPER_BOTTOM = -160 };
 enum { LIFT_TOP = -165, LINK_HALF_WIDTH = 35, HAND_RADIUS = 40, LIFT_RADIUS = 90, COLUMN_RADIUS = 120 };
+/* A wrist farther aside than this, mm, makes the neck askew. */
+#define NECK_STRAIGHT WH_REAL(1e-6)
 enum { BODY_BOTTOM = -220 }; /* of a prealigner, below the chuck's upper side */
 
 wh_shapes_t wh_shapes_default(wh_real_t diameter, wh_real_t thickness, wh_real_t farthest, wh_real_t lowest) {
@@ -96,16 +98,63 @@ static void add_blade(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t g
     wh_shapes_add(list, &part, "%s finger right", name);
     part.convex = box(-b->palm, b->finger - b->palm, -b->half_width, b->half_width, bottom, 0);
     wh_shapes_add(list, &part, "%s palm", name);
-    if (shapes->arm.reach > b->palm) {
-        part.convex = box(-shapes->arm.reach, -b->palm, -b->half_width / 2, b->half_width / 2, bottom, 0);
-        wh_shapes_add(list, &part, "%s neck", name);
-    }
 }
 
-void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper, bool on_robot,
-                           const char *name) {
-    if (on_robot) {
+/* The wrist's axis meets the blade's plane here, in the gripper's frame; z is the wrist's height. */
+static wh_vec3_t wrist_of(const wh_shapes_t *shapes, const wh_pose_t *effector_from_gripper) {
+    const wh_vec3_t wrist = {-shapes->arm.reach, 0, 0};
+    const wh_vec3_t from_gripper = wh_vec3_subtract(&wrist, &effector_from_gripper->r);
+    return wh_mat3_transform_back(&effector_from_gripper->R, &from_gripper);
+}
+
+/* From the middle of the palm's end to the wrist, wherever on the end-effector the blade is. */
+static void add_neck(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper, const wh_vec3_t *wrist,
+                     const char *name) {
+    const wh_blade_t *b = &shapes->blade;
+    const wh_real_t dx = wrist->x + b->palm;
+    const wh_real_t length = wh_real_sqrt(dx * dx + wrist->y * wrist->y);
+    wh_part_t part = {.kind = WH_PART_BLADE, .owner = gripper};
+    const bool is_straight = !(wh_real_abs(wrist->y) > NECK_STRAIGHT);
+    if (is_straight && !(dx < 0)) {
+        return; /* the palm is over the wrist */
+    }
+    if (is_straight) {
+        part.convex = box(wrist->x, -b->palm, -b->half_width / 2, b->half_width / 2, -b->thickness, 0);
+    } else {
+        part.convex = box(0, length, -b->half_width / 2, b->half_width / 2, -b->thickness, 0);
+        const wh_pose_t gripper_from_neck = {
+            {{{dx / length, -wrist->y / length, 0}, {wrist->y / length, dx / length, 0}, {0, 0, 1}}},
+            {-b->palm, 0, 0}};
+        part.convex.body_from_shape = wh_pose_compose(&gripper_from_neck, &part.convex.body_from_shape);
+    }
+    wh_shapes_add(list, &part, "%s neck", name);
+}
+
+/* A blade above the hand, or below it, stands on a post at the wrist. */
+static void add_post(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper, const wh_vec3_t *wrist,
+                     const char *name) {
+    const wh_real_t top = wrist->z - shapes->blade.thickness;
+    const wh_real_t bottom = wrist->z + HAND_BOTTOM;
+    wh_part_t part = {.kind = WH_PART_BLADE, .owner = gripper};
+    if (top < -shapes->blade.thickness) {
+        part.convex = cylinder(HAND_RADIUS, top, -shapes->blade.thickness);
+    } else if (bottom > 0) {
+        part.convex = cylinder(HAND_RADIUS, 0, bottom);
+    } else {
+        return;
+    }
+    part.convex.body_from_shape.r.x = wrist->x;
+    part.convex.body_from_shape.r.y = wrist->y;
+    wh_shapes_add(list, &part, "%s post", name);
+}
+
+void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper,
+                           const wh_pose_t *effector_from_gripper, const char *name) {
+    if (effector_from_gripper) {
+        const wh_vec3_t wrist = wrist_of(shapes, effector_from_gripper);
         add_blade(list, shapes, gripper, name);
+        add_neck(list, shapes, gripper, &wrist, name);
+        add_post(list, shapes, gripper, &wrist, name);
         return;
     }
     const wh_part_t part = {.kind = WH_PART_CHUCK,

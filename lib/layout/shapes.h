@@ -16,7 +16,7 @@ typedef struct {
     wh_real_t half_width; /* of the horseshoe */
     wh_real_t finger;     /* width of a finger, less than half_width */
     wh_real_t length;     /* from the gripper's origin forward to the finger tips */
-    wh_real_t palm;       /* from the gripper's origin back to the horseshoe's end, where the neck begins */
+    wh_real_t palm; /* from the gripper's origin back to the horseshoe's end; the neck goes on to the wrist */
 } wh_blade_t;
 
 /* The ledges that carry a wafer left and right, in the slot's frame: their upper side is the slot's plane.
@@ -77,9 +77,10 @@ void wh_shapes_add_station(wh_part_list_t *list, const wh_shapes_t *shapes, cons
 /* Adds the robot's column and arm. */
 void wh_shapes_add_robot(wh_part_list_t *list, const wh_shapes_t *shapes);
 
-/* Adds a gripper's blade, or its chuck. */
-void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper, bool on_robot,
-                           const char *name);
+/* Adds a gripper's blade with its neck to the wrist, and with a post where the blade is above or below the hand;
+ * without a pose (null) the chuck of a prealigner. The pose turns about z alone. */
+void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper,
+                           const wh_pose_t *effector_from_gripper, const char *name);
 
 /* Adds a part, for which there must be room. Its name is cut to fit. */
 void wh_shapes_add(wh_part_list_t *list, const wh_part_t *part, const char *name, ...)

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include "support/layout.h"
+#include "support/random.h"
 
 #include "layout/layout.h"
 
@@ -115,6 +116,55 @@ static void a_robot_has_its_shapes(void **state) {
         read_sound("robot = { z = { min = 100 } }, shapes = { arm = { reach = 50 } }, " CELL);
     assert_int_equal(find(low, "column"), WH_NONE);
     assert_int_equal(find(low, "EE neck"), WH_NONE);
+}
+
+static double random_in(uint64_t *random, double low, double high) {
+    return low + (high - low) * (double)(wh_test_splitmix(random) >> 11) * 0x1p-53;
+}
+
+/* How far a point, in the gripper's frame, is outside of a box or a cylinder along its worst axis. */
+static double outside(const wh_convex_t *convex, wh_vec3_t point) {
+    const wh_vec3_t dr = wh_vec3_subtract(&point, &convex->body_from_shape.r);
+    const wh_vec3_t at = wh_mat3_transform_back(&convex->body_from_shape.R, &dr);
+    const double along = fabs(at.z) - convex->half.z;
+    if (convex->kind == WH_CONVEX_CYLINDER) {
+        return fmax(hypot(at.x, at.y) - convex->half.x, along);
+    }
+    return fmax(fmax(fabs(at.x) - convex->half.x, fabs(at.y) - convex->half.y), along);
+}
+
+/* Wherever a blade is on the end-effector, what moves is in the world: nothing hangs in the air. */
+static void a_blade_is_joined_to_the_wrist(void **state) {
+    (void)state;
+    uint64_t random = 20261122;
+    for (int i = 0; i < 300; ++i) {
+        char text[700];
+        const double x = random_in(&random, -400, 400), y = random_in(&random, -400, 400);
+        const double z = random_in(&random, -120, 60), yaw = random_in(&random, -180, 180);
+        const double reach = i % 3 == 0 ? 0 : random_in(&random, 0, 300);
+        (void)snprintf(
+            text, sizeof text,
+            "shapes = { arm = { reach = %.17g } }, grippers = { { name = 'EE', at = { %.17g, %.17g, "
+            "%.17g }, rpy = { 0, 0, %.17g } } }, stations = { A = { at = { 760, 0, 900 } } }, ",
+            reach, x, y, z, yaw);
+        const wh_layout_t *layout = read_sound(text);
+        const wh_pose_t *pose = &layout->machine.mounts[0].effector_from_gripper;
+        const wh_vec3_t wrist = {-reach, 0, 0}, dr = wh_vec3_subtract(&wrist, &pose->r);
+        const wh_vec3_t at = wh_mat3_transform_back(&pose->R, &dr);
+        const wh_convex_t *neck = &part(layout, "EE neck")->convex;
+        assert_true(outside(neck, wh_vec3(-80, 0, -1.5)) < 1e-9);
+        assert_true(outside(neck, wh_vec3(at.x, at.y, -1.5)) < 1e-9);
+        /* The hand reaches from 60 to 3 mm below the wrist's plane. */
+        if (z > 0) {
+            assert_true(outside(&part(layout, "EE post")->convex, wh_vec3(at.x, at.y, -3)) < 1e-9);
+            assert_true(outside(&part(layout, "EE post")->convex, wh_vec3(at.x, at.y, -z - 3)) < 1e-9);
+        } else if (z < -60) {
+            assert_true(outside(&part(layout, "EE post")->convex, wh_vec3(at.x, at.y, 0)) < 1e-9);
+            assert_true(outside(&part(layout, "EE post")->convex, wh_vec3(at.x, at.y, -z - 60)) < 1e-9);
+        } else {
+            assert_int_equal(find(layout, "EE post"), WH_NONE);
+        }
+    }
 }
 
 static void names_and_order(void **state) {
@@ -309,6 +359,7 @@ int main(void) {
         cmocka_unit_test(shapes_of_smaller_wafers),
         cmocka_unit_test(a_foup_has_its_shell),
         cmocka_unit_test(a_robot_has_its_shapes),
+        cmocka_unit_test(a_blade_is_joined_to_the_wrist),
         cmocka_unit_test(names_and_order),
         cmocka_unit_test(own_sizes),
         cmocka_unit_test(obstacles_of_each_kind),
