@@ -1,6 +1,9 @@
 /* What the cell says of a release, and how the wafer then comes to lie. */
 #include "station.h"
 
+/* A wafer that is nearer to its slot's plane than this, mm, lies on it. */
+#define SUPPORT_TOUCH WH_REAL(1e-3)
+
 /* A wafer's height above its support: the nearest slot plane below, or base's floor. */
 static wh_real_t height_above_support(const wh_cell_t *cell, const wh_pose_t *base_from_wafer) {
     wh_real_t height = base_from_wafer->r.z;
@@ -120,29 +123,42 @@ static void turn_towards(wh_mat3_t *R, const wh_vec3_t *n) {
     wh_mat3_orthonormalise(R);
 }
 
-static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list, size_t release) {
+/* A wafer that a support has stopped comes up to the plane, from where the slice has carried it. */
+static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list, size_t release,
+                   bool is_stopped) {
     const int32_t wafer = list->events[release].wafer;
     wh_place_t place;
     wh_pose_t pose = table->storage.wafers[wafer].base_from_wafer;
-    if (!wh_cell_locate(cell, &pose, &place) || !(place.dz > 0)) {
+    if (!wh_cell_locate(cell, &pose, &place) || !(place.dz > 0 || is_stopped)) {
         return;
     }
     const wh_vec3_t up = wh_mat3_column(&cell->stations[place.station].base_from_station.R, 2);
     const wh_vec3_t down = wh_vec3_scale(place.dz, &up);
     pose.r = wh_vec3_subtract(&pose.r, &down);
-    turn_towards(&pose.R, &up);
+    if (cell->settle) {
+        turn_towards(&pose.R, &up);
+    }
     const bool moved = wh_grasp_place(table, (size_t)wafer, &pose) == WH_OK;
-    wh_event_t *said = moved ? append_as(release, list, WH_EVENT_SETTLED) : NULL;
+    wh_event_t *said = moved && !is_stopped ? append_as(release, list, WH_EVENT_SETTLED) : NULL;
     if (said != NULL) {
         said->value = place.dz;
     }
 }
 
-void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list) {
+void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list, uint32_t stopped) {
     const size_t count = list->count;
-    for (size_t i = 0; cell->settle && i < count; ++i) {
-        if (list->events[i].kind == WH_EVENT_RELEASED) {
-            settle(cell, table, list, i);
+    for (size_t i = 0; i < count; ++i) {
+        const bool is_stopped = (stopped >> list->events[i].gripper & 1U) != 0;
+        if (list->events[i].kind == WH_EVENT_RELEASED && (cell->settle || is_stopped)) {
+            settle(cell, table, list, i, is_stopped);
         }
     }
+}
+
+bool wh_cell_stops(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, const wh_pose_t *next) {
+    wh_place_t place;
+    if (!wh_cell_locate(cell, base_from_wafer, &place) || place.dz < -SUPPORT_TOUCH) {
+        return false;
+    }
+    return wh_station_measure(&cell->stations[place.station], place.slot, next).dz < SUPPORT_TOUCH;
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../math/deviate.h"
 #include "../math/trig.h"
 #include "layout_internal.h"
 
@@ -63,6 +64,13 @@ static void check_stroke(wh_reader_t *reader, const wh_station_t *place, const w
     }
 }
 
+/* s: twice as long as the layout's vacuum takes to let go of a wafer and to be felt under the next gripper. */
+static double default_timeout(const wh_vacuum_config_t *vacuum) {
+    const double least = 0.25, below_full = vacuum->on < 1 ? 1 - vacuum->on : 1e-3;
+    const double slow = -2 * (vacuum->vent * wh_ln(vacuum->release) + vacuum->build * wh_ln(below_full));
+    return slow < least ? least : (slow < 3600 ? slow : 3600);
+}
+
 static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, const wh_station_t *place,
                        wh_layout_station_t *station) {
     static const char *const handovers[] = {"new_first", "same_slice", NULL};
@@ -75,7 +83,7 @@ static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, const wh_
     station->release =
         wh_reader_number(reader, "release", release, station->offset - station->stroke, station->offset);
     station->vacuum_delay = wh_reader_number(reader, "vacuum_delay", 0, 0, 3600);
-    station->timeout = wh_reader_number(reader, "timeout", 0.25, 0, 3600);
+    station->timeout = wh_reader_number(reader, "timeout", default_timeout(&layout->physics.vacuum), 0, 3600);
     station->handover = wh_reader_choice(reader, "handover", 0, handovers) == 0 ? WH_HANDOVER_NEW_FIRST
                                                                                 : WH_HANDOVER_SAME_SLICE;
     station->pickup_acceleration = wh_reader_number(reader, "pickup_acceleration", 0, 0, 1e8);

@@ -23,6 +23,7 @@
 #define wh_cell_judge WH_SYMBOL_RENAMED(wh_cell_judge)
 #define wh_cell_locate WH_SYMBOL_RENAMED(wh_cell_locate)
 #define wh_cell_settle WH_SYMBOL_RENAMED(wh_cell_settle)
+#define wh_cell_stops WH_SYMBOL_RENAMED(wh_cell_stops)
 #define wh_cell_validate WH_SYMBOL_RENAMED(wh_cell_validate)
 #define wh_clearance_name WH_SYMBOL_RENAMED(wh_clearance_name)
 #define wh_closeness_measure WH_SYMBOL_RENAMED(wh_closeness_measure)

@@ -94,11 +94,34 @@ uint32_t wh_physics_state_sensors(const wh_physics_state_t *state, size_t grippe
 
 /* --------------------------------------------------------------------------------------------------- hash */
 
+/* Out of line: in this file a small copy counts for more than a fast one. */
+static WH_OUT_OF_LINE uint64_t hash_word(uint64_t hash, uint64_t word) {
+    return wh_hash_word(hash, word);
+}
+
+static WH_OUT_OF_LINE uint64_t hash_real(uint64_t hash, wh_real_t value) {
+    return wh_hash_real(hash, value);
+}
+
 static uint64_t hash_ints(uint64_t hash, const int32_t values[], size_t count) {
     for (size_t i = 0; i < count; ++i) {
-        hash = wh_hash_int(hash, values[i]);
+        hash = hash_word(hash, (uint64_t)(int64_t)values[i]);
     }
     return hash;
+}
+
+static uint64_t hash_vec3(uint64_t hash, const wh_vec3_t *v) {
+    hash = hash_real(hash, v->x);
+    hash = hash_real(hash, v->y);
+    return hash_real(hash, v->z);
+}
+
+static uint64_t hash_pose(uint64_t hash, const wh_pose_t *pose) {
+    for (size_t row = 0; row < 3; ++row) {
+        const wh_vec3_t of_row = wh_mat3_row(&pose->R, row);
+        hash = hash_vec3(hash, &of_row);
+    }
+    return hash_vec3(hash, &pose->r);
 }
 
 static bool is_plain(const wh_vacuum_t *vacuum, const wh_gripper_t *gripper) {
@@ -110,15 +133,15 @@ static uint64_t hash_vacuum(uint64_t hash, size_t g, const wh_vacuum_t *vacuum) 
     const int32_t head[] = {1, (int32_t)g};
     const int32_t rest[] = {vacuum->command, vacuum->on ? 1 : 0};
     hash = hash_ints(hash, head, 2);
-    hash = wh_hash_real(hash, vacuum->level);
+    hash = hash_real(hash, vacuum->level);
     return hash_ints(hash, rest, 2);
 }
 
 static uint64_t hash_carry(uint64_t hash, size_t g, const wh_carry_t *carry) {
     const int32_t head[] = {2, (int32_t)g, carry->known};
     hash = hash_ints(hash, head, 3);
-    hash = wh_hash_vec3(hash, &carry->before[0]);
-    hash = wh_hash_vec3(hash, &carry->before[1]);
+    hash = hash_vec3(hash, &carry->before[0]);
+    hash = hash_vec3(hash, &carry->before[1]);
     return wh_hash_int(hash, carry->slips ? 1 : 0);
 }
 
@@ -127,12 +150,12 @@ static uint64_t hash_slot(uint64_t hash, size_t i, const wh_fault_slot_t *slot) 
     const int32_t head[] = {
         3, (int32_t)i, (int32_t)slot->phase, (int32_t)fault->kind, fault->target, fault->other};
     hash = hash_ints(hash, head, 6);
-    hash = wh_hash_real(hash, fault->value);
-    hash = wh_hash_pose(hash, &fault->offset);
-    hash = wh_hash_word(hash, (uint64_t)fault->from);
-    hash = wh_hash_word(hash, (uint64_t)fault->until);
-    hash = wh_hash_pose(hash, &slot->before);
-    return wh_hash_pose(hash, &slot->placed);
+    hash = hash_real(hash, fault->value);
+    hash = hash_pose(hash, &fault->offset);
+    hash = hash_word(hash, (uint64_t)fault->from);
+    hash = hash_word(hash, (uint64_t)fault->until);
+    hash = hash_pose(hash, &slot->before);
+    return hash_pose(hash, &slot->placed);
 }
 
 uint64_t wh_physics_state_hash(const wh_physics_state_t *state, const wh_grasp_t *table) {

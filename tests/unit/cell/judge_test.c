@@ -282,7 +282,7 @@ static void a_full_list_takes_no_more(void **state) {
 static size_t settle(scene_t *scene, const wh_pose_t *base_from_wafer) {
     let_go(scene, base_from_wafer);
     cell.settle = true;
-    wh_cell_settle(&cell, &scene->table, &scene->list);
+    wh_cell_settle(&cell, &scene->table, &scene->list, 0);
     cell.settle = false;
     return scene->list.count - 1;
 }
@@ -321,7 +321,7 @@ static void what_does_not_settle(void **state) {
     scene_t scene;
     const wh_pose_t above = wh_test_at(700, 0, 900.25);
     let_go(&scene, &above);
-    wh_cell_settle(&cell, &scene.table, &scene.list); /* not asked for */
+    wh_cell_settle(&cell, &scene.table, &scene.list, 0); /* not asked for */
     assert_int_equal(scene.list.count, 1);
     assert_near(scene.wafers[0].base_from_wafer.r.z, 900.25, 0);
     const wh_pose_t below = wh_test_at(700, 0, 899.9);
@@ -332,7 +332,7 @@ static void what_does_not_settle(void **state) {
     let_go(&scene, &above);
     scene.events[0].kind = WH_EVENT_HANDED_OVER;
     cell.settle = true;
-    wh_cell_settle(&cell, &scene.table, &scene.list);
+    wh_cell_settle(&cell, &scene.table, &scene.list, 0);
     cell.settle = false;
     assert_int_equal(scene.list.count, 1);
 }
@@ -350,7 +350,7 @@ static void each_release_settles_in_turn(void **state) {
         scene.events[w].wafer = w;
     }
     scene.list.count = 2;
-    wh_cell_settle(&cell, &scene.table, &scene.list);
+    wh_cell_settle(&cell, &scene.table, &scene.list, 0);
     assert_int_equal(scene.list.count, 3);
     assert_near(scene.wafers[1].base_from_wafer.r.z, 910, 4096 * WH_TEST_ROUNDING);
     assert_near(scene.wafers[2].base_from_wafer.r.z, 920.25, 0);
@@ -358,7 +358,7 @@ static void each_release_settles_in_turn(void **state) {
     scene.wafers[2].base_from_wafer = wh_test_at(700, 0, 920.25);
     scene.events[1] = scene.events[0];
     scene.events[1].wafer = 2;
-    wh_cell_settle(&cell, &scene.table, &scene.list);
+    wh_cell_settle(&cell, &scene.table, &scene.list, 0);
     assert_int_equal(scene.list.count, 1);
     assert_near(scene.wafers[2].base_from_wafer.r.z, 920.25, 0);
     cell.settle = false;
@@ -372,12 +372,12 @@ static void settling_without_room_or_while_held(void **state) {
     cell.settle = true;
     let_go(&scene, &above);
     scene.list.capacity = 1;
-    wh_cell_settle(&cell, &scene.table, &scene.list);
+    wh_cell_settle(&cell, &scene.table, &scene.list, 0);
     assert_int_equal(scene.list.count, 1);
     assert_near(scene.wafers[0].base_from_wafer.r.z, 900, 4096 * WH_TEST_ROUNDING);
     let_go(&scene, &above);
     scene.wafers[0].holder = 0;
-    wh_cell_settle(&cell, &scene.table, &scene.list);
+    wh_cell_settle(&cell, &scene.table, &scene.list, 0);
     assert_int_equal(scene.list.count, 1);
     assert_near(scene.wafers[0].base_from_wafer.r.z, 900.25, 0);
     cell.settle = false;

@@ -114,6 +114,69 @@ static void a_stop_may_come_at_any_time(void **state) {
     }
 }
 
+static void write_text(const char *folder, const char *name, const char *text) {
+    char path[200];
+    (void)snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void remove_file(const char *folder, const char *name) {
+    char path[200];
+    (void)snprintf(path, sizeof path, "%s/%s", folder, name);
+    remove(path);
+}
+
+/* Whatever holds on for however long: a support stops the wafer, the blade leaves it, and the next GET finds it. */
+static void a_put_leaves_the_wafer_on_its_support(void **state) {
+    (void)state;
+    static const char layout[] =
+        "return { seat = params.seat == 'yes', settle = params.settle == 'yes', collision = true, \n"
+        "look_ahead = params.ahead == 'yes', check = params.check, wafer = { diameter = params.diameter },\n"
+        "vacuum = params.vent > 0 and { build = 0.02, vent = params.vent } or nil,\n"
+        "grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } }, stations = {\n"
+        "  A = { kind = 'foup', at = { 800, 0, 900 } }, B = { at = { 0, 800, 900 }, rpy = { 0, 0, 90 }, "
+        "slots = 5 },\n"
+        "  P = { kind = 'prealigner', at = { -600, 0, 950 }, rpy = { 0, 0, 180 } } },\n"
+        "wafers = { { name = 'W', station = 'A', slot = 1 }, { name = 'V', station = 'A', slot = 2 } } }\n";
+    static const char script[] =
+        "cell 'cell.lua'\n"
+        "for _, to in ipairs { { 'B', 2 }, { 'A', 1 }, { 'P', 1 }, { 'B', 3 }, { 'B', 4 } } do\n"
+        "  get(from and from[1] or 'A', from and from[2] or 1) put(to[1], to[2]) from = to\n"
+        "  local _, _, dz = offset('W', to[1], to[2])\n"
+        "  expect(dz > -1.001e-3 and dz < 0.51, to[1] .. ': ' .. dz)\n"
+        "end\n"
+        "expect(#hits() == 0, 'no hit')\n";
+    char folder[] = "/tmp/waferhand_mcs_XXXXXX", path[200];
+    assert_non_null(mkdtemp(folder));
+    write_text(folder, "cell.lua", layout);
+    write_text(folder, "script.lua", script);
+    (void)snprintf(path, sizeof path, "%s/script.lua", folder);
+    for (unsigned bits = 0; bits < 4 * 8; ++bits) {
+        static const char *const vents[] = {"vent=0", "vent=0.015", "vent=0.1", "vent=0.4"};
+        static const char *const diameters[] = {"diameter=300", "diameter=200", "diameter=150"};
+        const char *const parameters[] = {diameters[bits % 3],
+                                          vents[bits / 8 % 4],
+                                          bits & 1 ? "seat=yes" : "seat=no",
+                                          bits & 2 ? "settle=yes" : "settle=no",
+                                          bits & 4 ? "ahead=yes" : "ahead=no",
+                                          bits & 1 ? "check=sampled" : "check=swept"};
+        const wh_script_run_options_t options = {
+            .script = path, .limits = {.print_to = stderr}, .parameters = parameters, .parameter_count = 6};
+        if (wh_script_run(&run, &options) != WH_RUN_MET) {
+            const wh_record_t *record = &run.record;
+            fail_msg("%s %s %s %s %s %s: %s", parameters[0], parameters[1], parameters[2], parameters[3],
+                     parameters[4], parameters[5], record->failure ? record->failure : run.message);
+        }
+        wh_script_run_close(&run);
+    }
+    remove_file(folder, "cell.lua");
+    remove_file(folder, "script.lua");
+    rmdir(folder);
+}
+
 static void the_record_is_paid_for_from_the_budget(void **state) {
     (void)state;
     assert_int_equal(play(ODD_SCRIPTS, "case=endless_record", 50000000), WH_RUN_BAD_INPUT);
@@ -129,6 +192,7 @@ int main(void) {
         cmocka_unit_test_teardown(frames_are_measured, close_run),
         cmocka_unit_test_teardown(a_script_may_use_the_names_of_functions, close_run),
         cmocka_unit_test(a_stop_may_come_at_any_time),
+        cmocka_unit_test_teardown(a_put_leaves_the_wafer_on_its_support, close_run),
         cmocka_unit_test_teardown(the_record_is_paid_for_from_the_budget, close_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

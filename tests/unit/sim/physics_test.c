@@ -314,6 +314,80 @@ static void what_does_not_fit_is_not_told(void **state) {
     assert_int_equal(placed, 1);
 }
 
+/* A cell with one station of two slots, 10 mm apart, where the first wafer lies in slot 2, and a slow vacuum. */
+static wh_station_t shelf;
+
+static void stand_on_a_shelf(void) {
+    const wh_grasp_config_t config = wh_grasp_config_default();
+    const wh_grasp_storage_t storage = place_wafers(wafers, grippers);
+    for (int i = 1; i < WAFERS; ++i) {
+        wafers[i].base_from_wafer = wh_test_at(5000, 0, 50 * i);
+    }
+    wafers[0].base_from_wafer = wh_test_at(0, 0, 0);
+    shelf = (wh_station_t){wh_test_at(0, 0, -10), 2, 10, WH_NONE};
+    const wh_cell_t cell = {.stations = &shelf, .count = 1, .tolerance = wh_tolerance_paper()};
+    assert_int_equal(wh_simulator_init(&simulator, &config, &storage, &cell), WH_OK);
+    physics.vacuum = wh_vacuum_delayed();
+    physics.vacuum.vent = 10; /* s: it holds through the whole test */
+    use();
+    step(0, 0, OPEN);
+    for (int i = 0; i < 500; ++i) {
+        step(0, WH_REAL(0.01) * (wh_real_t)i, OPEN);
+    }
+    assert_int_equal(answer.grippers[0].wafer, 0);
+}
+
+static wh_real_t height(void) {
+    return answer.wafers[0].base_from_wafer.r.z;
+}
+
+static void a_support_stops_a_wafer_whose_vacuum_still_holds(void **state) {
+    (void)state;
+    stand_on_a_shelf();
+    for (int i = 0; i <= 16; ++i) {
+        step(0, 5 - WH_REAL(0.3) * (wh_real_t)i, CLOSED);
+        assert_int_equal(answer.grippers[0].wafer, 0);
+        assert_near(height(), 5 - 0.3 * i, 1e-5);
+    }
+    step(0, WH_REAL(-0.1), CLOSED);
+    assert_int_equal(answer.grippers[0].wafer, WH_NONE);
+    assert_int_equal(count(WH_EVENT_RELEASED), 1);
+    assert_near(height(), 0, 1e-6);
+    step(100, WH_REAL(-5.0), CLOSED);
+    assert_near(height(), 0, 1e-6);
+    assert_near(answer.wafers[0].base_from_wafer.r.x, 0, 0);
+}
+
+/* At the plane itself, as in a PUT of a seated wafer: the support has it as soon as the valve closes. */
+static void a_wafer_at_the_plane_stays_there(void **state) {
+    (void)state;
+    stand_on_a_shelf();
+    step(0, 0, OPEN);
+    assert_int_equal(answer.grippers[0].wafer, 0);
+    step(0, 0, CLOSED);
+    assert_int_equal(answer.grippers[0].wafer, WH_NONE);
+    step(0, WH_REAL(-0.002), CLOSED);
+    assert_near(height(), 0, 1e-6);
+}
+
+static void only_a_support_below_stops_a_wafer(void **state) {
+    (void)state;
+    /* With an open valve the blade pulls on: collisions tell. */
+    stand_on_a_shelf();
+    step(0, WH_REAL(0.5), OPEN);
+    step(0, WH_REAL(-0.5), OPEN);
+    assert_int_equal(answer.grippers[0].wafer, 0);
+    /* From below the plane, too, and upwards through the plane of slot 2. */
+    step(0, WH_REAL(-1.0), CLOSED);
+    step(0, WH_REAL(1.0), CLOSED);
+    assert_int_equal(answer.grippers[0].wafer, 0);
+    /* Beside the slot there is none. */
+    step(100, WH_REAL(1.0), CLOSED);
+    step(100, WH_REAL(-1.0), CLOSED);
+    assert_int_equal(answer.grippers[0].wafer, 0);
+    assert_near(height(), -1, 1e-5);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(what_is_refused, set_up),
@@ -326,6 +400,9 @@ int main(void) {
         cmocka_unit_test_setup(all_slots_at_once, set_up),
         cmocka_unit_test_setup(a_fault_from_the_beginning, set_up),
         cmocka_unit_test_setup(what_does_not_fit_is_not_told, set_up),
+        cmocka_unit_test_setup(a_support_stops_a_wafer_whose_vacuum_still_holds, set_up),
+        cmocka_unit_test_setup(a_wafer_at_the_plane_stays_there, set_up),
+        cmocka_unit_test_setup(only_a_support_below_stops_a_wafer, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
