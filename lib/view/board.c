@@ -24,8 +24,10 @@ enum { WIDE = 5, HIGH = 7, ADVANCE = 6, LINE = 10, MARGIN = 3, DIGIT = 7 };
 /* Characters from the left edge to the command. */
 #define COMMAND_COLUMN 10
 
-/* Of the cell's width, the board's. */
+/* The board's part of the cell's width, and how high it hangs above the cell, as a part of height and depth:
+ * what is nearer to the camera looks taller. */
 #define PART_OF_CELL 0.9
+#define ABOVE 0.07
 
 /* Numbers of a rectangle in a mesh: four points, two triangles. */
 enum { POINTS = 4, POINT_NUMBERS = 12, NUMBERS = 18 };
@@ -324,11 +326,12 @@ static void place_board(wh_view_board_t *board, const wh_layout_t *layout) {
     const double width = 2 * PART_OF_CELL * extent(&bounds, &right);
     const double back = extent(&bounds, &nearer);
     const wh_vec3_t sum = wh_vec3_add(&bounds.low, &bounds.high);
+    const double above = ABOVE * (bounds.high.z - bounds.low.z + 2 * back);
     wh_pose_t *pose = &board->base_from_board;
     board->dot = width / board_width;
     pose->R = (wh_mat3_t){{{right.x, 0, nearer.x}, {right.y, 0, nearer.y}, {0, 1, 0}}};
     pose->r = wh_vec3(sum.x / 2 - back * nearer.x - width / 2 * right.x,
-                      sum.y / 2 - back * nearer.y - width / 2 * right.y, bounds.high.z);
+                      sum.y / 2 - back * nearer.y - width / 2 * right.y, bounds.high.z + above);
 }
 
 void wh_view_board_open(wh_view_board_t *board, const wh_layout_t *layout) {

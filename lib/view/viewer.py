@@ -10,7 +10,7 @@ from pydrake.visualization import meldis
 # Where one who looks at the cell stands, from its middle: as in board.c, whose writing faces there.
 FROM = numpy.array([1.1, -1.3, 1.1])
 # The camera's angle up and down, deg, and the narrowest window for which all is seen, width by height.
-ANGLE, NARROWEST = 40, 1.3
+ANGLE, NARROWEST = 30, 1.3
 # What is so far away, m, is put aside: it is not to be seen.
 AWAY = 100
 CHANNELS = ("", "_ILLUSTRATION")
