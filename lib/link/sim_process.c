@@ -118,7 +118,8 @@ static void on_restore(void *user, const void *data, size_t size) {
 static void note_command(wh_sim_process_t *simulation, const waferhand_mcs *message) {
     const bool is_running = message->phase == WH_LINK_PHASE_BEGINS || message->phase == WH_LINK_PHASE_GOES_ON;
     if (message->run == 0 || message->run == simulation->server.identity.run) {
-        snprintf(simulation->command, sizeof simulation->command, "%s", is_running ? message->command : "");
+        (void)snprintf(simulation->command, sizeof simulation->command, "%s",
+                       is_running ? message->command : "");
     }
 }
 

@@ -32,7 +32,7 @@ enum { WIDE = 5, HIGH = 7, ADVANCE = 6, LINE = 10, MARGIN = 3, DIGIT = 7 };
 /* Numbers of a rectangle in a mesh: four points, two triangles. */
 enum { POINTS = 4, POINT_NUMBERS = 12, NUMBERS = 18 };
 
-/* ----------------------------------------------------------------------------------------------- characters */
+/* ------------------------------------------------------------------------------------------- characters */
 
 /* Rows from above, the leftmost dot is 0x10. */
 static const uint8_t dots[128][HIGH] = {
@@ -112,7 +112,7 @@ static bool take_rectangle(uint8_t left[HIGH], rectangle_t *rectangle) {
     return true;
 }
 
-/* ----------------------------------------------------------------------------------------------------- lines */
+/* ------------------------------------------------------------------------------------------------ lines */
 
 /* Adds a rectangle to a mesh with room for WH_VIEW_RECTANGLES of them, whose points come first. */
 static void put_rectangle(float *numbers, size_t index, const rectangle_t *r, double dot) {
@@ -168,7 +168,7 @@ static void copy_line(const char *text, size_t most, char line[WH_VIEW_COLUMNS +
     line[count] = '\0';
 }
 
-/* ---------------------------------------------------------------------------------------------------- bodies */
+/* ----------------------------------------------------------------------------------------------- bodies */
 
 enum { BACK, UNIT, FIRST_LINE, FIRST_SEGMENT = FIRST_LINE + WH_VIEW_LINES };
 
@@ -224,10 +224,10 @@ static void name_bodies(wh_view_board_t *board) {
     for (size_t i = 0; i < WH_VIEW_BOARD_BODIES; ++i) {
         const size_t segment = i < FIRST_SEGMENT ? 0 : i - FIRST_SEGMENT;
         if (i < FIRST_SEGMENT) {
-            snprintf(board->names[i], sizeof board->names[i], "%s", names[i]);
+            (void)snprintf(board->names[i], sizeof board->names[i], "%s", names[i]);
         } else {
-            snprintf(board->names[i], sizeof board->names[i], "board::time %zu%c",
-                     segment / WH_VIEW_SEGMENTS + 1, "abcdefg"[segment % WH_VIEW_SEGMENTS]);
+            (void)snprintf(board->names[i], sizeof board->names[i], "board::time %zu%c",
+                           segment / WH_VIEW_SEGMENTS + 1, "abcdefg"[segment % WH_VIEW_SEGMENTS]);
         }
         board->name_list[i] = board->names[i];
         board->bodies[i].name = board->names[i];
@@ -267,7 +267,7 @@ static void make_shapes(wh_view_board_t *board) {
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- place */
+/* ------------------------------------------------------------------------------------------------ place */
 
 typedef struct {
     wh_vec3_t low, high;
@@ -342,7 +342,8 @@ void wh_view_board_open(wh_view_board_t *board, const wh_layout_t *layout) {
     for (size_t i = 0; i < WH_VIEW_BOARD_BODIES; ++i) {
         wh_view_put_pose(&board->base_from_board, board->positions[i], board->quaternions[i]);
     }
-    wh_view_board_set_time(board, 0);
+    board->tenths = -1;
+    (void)wh_view_board_set_time(board, 0);
 }
 
 int wh_view_board_room(const wh_view_board_t *board) {
@@ -362,7 +363,7 @@ bool wh_view_board_write(wh_view_board_t *board, wh_view_line_t line, const char
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------ time */
+/* ------------------------------------------------------------------------------------------------- time */
 
 /* Bit s: segment s is on. The last one is of no digit. */
 static const uint8_t segments[11] = {0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f, 0};
@@ -382,13 +383,19 @@ static void show_digit(wh_view_board_t *board, size_t place, size_t digit) {
     }
 }
 
-void wh_view_board_set_time(wh_view_board_t *board, int64_t utime) {
-    uint64_t tenths = (uint64_t)utime / 100000 % 1000000; /* as many as the digits show */
+bool wh_view_board_set_time(wh_view_board_t *board, int64_t utime) {
+    const int64_t shown = utime / 100000 % 1000000; /* as many as the digits show */
+    int64_t tenths = shown;
     board->draw.timestamp = utime / 1000;
+    if (shown == board->tenths) {
+        return false;
+    }
+    board->tenths = shown;
     for (size_t place = WH_VIEW_DIGITS; place-- > 0; tenths /= 10) {
         const bool leads = tenths == 0 && place + 2 < WH_VIEW_DIGITS;
         show_digit(board, place, leads ? 10 : (size_t)(tenths % 10));
     }
+    return true;
 }
 
 void wh_view_board_free(wh_view_board_t *board) {

@@ -35,6 +35,7 @@ typedef struct {
     waferhand_viewer_draw draw;
     wh_pose_t base_from_board; /* x to the right, y up, z to whom looks */
     double dot;                /* mm */
+    int64_t tenths;            /* of a second: what the digits show */
     char lines[WH_VIEW_LINES][WH_VIEW_COLUMNS + 1];
     waferhand_viewer_link bodies[WH_VIEW_BOARD_BODIES];
     waferhand_viewer_geometry shapes[WH_VIEW_BOARD_BODIES];
@@ -57,8 +58,8 @@ int wh_view_board_room(const wh_view_board_t *board);
 /* Writes a line for `load`, cut off at the board's edge. False if it is there already. */
 bool wh_view_board_write(wh_view_board_t *board, wh_view_line_t line, const char *text);
 
-/* Shows a time for `draw`: up to 99999.9 s, from there on again from 0. */
-void wh_view_board_set_time(wh_view_board_t *board, int64_t utime);
+/* Shows a time for `draw`: up to 99999.9 s, from there on again from 0. False if no digit changes. */
+bool wh_view_board_set_time(wh_view_board_t *board, int64_t utime);
 
 void wh_view_board_free(wh_view_board_t *board);
 

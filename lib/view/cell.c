@@ -57,7 +57,7 @@ static wh_view_colour_t colour_of_held(size_t gripper) {
     return colour;
 }
 
-/* ------------------------------------------------------------------------------------------------- bodies */
+/* ----------------------------------------------------------------------------------------------- bodies */
 
 /* The length of the character at `text` if it may stay as it is; 0 if the viewer would take it for part of a
  * path, or could not read it. */
@@ -115,7 +115,7 @@ static void add_shape(wh_view_cell_t *cell, const wh_convex_t *convex, const wh_
                           &body->geom[body->num_geom++]);
 }
 
-/* -------------------------------------------------------------------------------------------------- parts */
+/* ------------------------------------------------------------------------------------------------ parts */
 
 /* Notes that the next shape of the last body is this part. */
 static void note_shape(wh_view_cell_t *cell, size_t part) {
@@ -179,7 +179,7 @@ static void add_grippers(wh_view_cell_t *cell) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- wafers */
+/* ----------------------------------------------------------------------------------------------- wafers */
 
 static void add_disc(wh_view_cell_t *cell, double larger, const wh_view_colour_t *colour) {
     wh_convex_t disc = wh_shapes_wafer(&cell->layout->shapes);
@@ -226,7 +226,7 @@ static void add_wafers(wh_view_cell_t *cell) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- places */
+/* ----------------------------------------------------------------------------------------------- places */
 
 static void place(wh_view_cell_t *cell, size_t body, const wh_pose_t *base_from_body) {
     wh_view_put_pose(base_from_body, cell->draw.position[body], cell->draw.quaternion[body]);
@@ -318,7 +318,7 @@ void wh_view_cell_open(wh_view_cell_t *cell, const wh_layout_t *layout, wh_view_
     wh_view_cell_rest(cell);
 }
 
-/* ----------------------------------------------------------------------------------------------------- hits */
+/* ------------------------------------------------------------------------------------------------- hits */
 
 /* The colour of a part's shape; null if it is not shown. */
 static float *colour_at(const wh_view_cell_t *cell, int32_t part) {

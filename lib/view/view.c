@@ -60,12 +60,11 @@ static void publish(wh_viewer_t *view, const char *channel, const uint8_t *data,
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- looking */
+/* ---------------------------------------------------------------------------------------------- looking */
 
 /* Before the first slice grippers have no poses yet: all is shown at rest. */
 static void look_at(wh_viewer_t *view, const wh_protocol_server_t *server) {
     wh_pose_t base_from_grippers[WH_GRIPPERS];
-    wh_view_board_set_time(&view->board, server->seq == 0 ? 0 : server->state.utime);
     if (server->seq == 0) {
         wh_view_cell_rest(&view->cell);
         return;
@@ -111,7 +110,7 @@ static void look_for_hits(wh_viewer_t *view, const wh_protocol_server_t *server)
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- sending */
+/* ---------------------------------------------------------------------------------------------- sending */
 
 static void send_bodies(wh_viewer_t *view, wh_viewer_bytes_t *bytes, const char *channel) {
     bytes->is_new = false;
@@ -123,15 +122,19 @@ static void send_places(wh_viewer_t *view, const wh_viewer_bytes_t *bytes, const
     publish(view, channel, bytes->draw, waferhand_viewer_draw_encode(bytes->draw, 0, bytes->draw_room, draw));
 }
 
-static void send(wh_viewer_t *view, bool all) {
+/* The board's places only when a digit has changed. */
+static void send(wh_viewer_t *view, bool all, int64_t utime) {
     if (all || view->cell_bytes.is_new) {
         ++view->loads;
         send_bodies(view, &view->cell_bytes, WH_CHANNEL_VIEWER_LOAD);
     }
     ++view->draws;
     send_places(view, &view->cell_bytes, &view->cell.draw, WH_CHANNEL_VIEWER_DRAW);
+    const bool is_other_time = wh_view_board_set_time(&view->board, utime);
     if (all || view->board_bytes.is_new) {
         send_bodies(view, &view->board_bytes, WH_CHANNEL_BOARD_LOAD);
+    } else if (!is_other_time) {
+        return;
     }
     send_places(view, &view->board_bytes, &view->board.draw, WH_CHANNEL_BOARD_DRAW);
 }
@@ -152,7 +155,7 @@ void wh_viewer_tick(wh_viewer_t *view, const wh_protocol_server_t *server) {
     view->run = server->identity.run;
     view->seq = server->seq;
     look_at(view, server);
-    send(view, is_load_due);
+    send(view, is_load_due, server->seq == 0 ? 0 : server->state.utime);
 }
 
 static void free_bytes(wh_viewer_bytes_t *bytes) {

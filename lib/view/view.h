@@ -48,7 +48,8 @@ typedef struct {
 
 /* Opens a view of a layout. WH_STATUS_BAD_CAPACITY, and nothing to close, if the cell does not fit
  * WH_VIEW_BYTES even without ledges and with boxes for meshes; view->cell.detail tells what was left out.
- * `node`, which may be null, and `layout` must outlive the view, and so must what is then set as `command`. */
+ * `node`, which may be null, and `layout` must outlive the view, and so must what `command` is
+ * set to then. */
 wh_status_t wh_viewer_open(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *layout);
 
 /* Publishes what is due: to be called after each step and at least every 100 ms. Allocates nothing. */

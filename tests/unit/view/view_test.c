@@ -484,7 +484,8 @@ static void the_board_shows_the_time(void **state) {
     (void)state;
     wh_view_board_open(&board, read_sound(CELL));
     for (size_t i = 0; i < sizeof tenths / sizeof tenths[0]; ++i) {
-        wh_view_board_set_time(&board, tenths[i] * 100000 + 99999);
+        assert_int_equal(wh_view_board_set_time(&board, tenths[i] * 100000), tenths[i] > 0);
+        assert_false(wh_view_board_set_time(&board, tenths[i] * 100000 + 99999));
         assert_true(board.draw.timestamp == tenths[i] * 100 + 99);
         segments_of(&board, digits);
         snprintf(text, sizeof text, "%6lld", (long long)(tenths[i] % 1000000));
