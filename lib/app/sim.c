@@ -106,7 +106,7 @@ static bool open_view(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *lay
         return false;
     }
     fprintf(stderr, "sim: shown to viewers: %d bodies in %d bytes%s\n", view->cell.load.num_links,
-            view->load_size, left_out[view->cell.detail]);
+            view->cell_bytes.load_size, left_out[view->cell.detail]);
     return true;
 }
 
@@ -144,6 +144,7 @@ static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *
         close_served(&served);
         return WH_EXIT_USAGE;
     }
+    served.view.command = simulation->command;
     fprintf(stderr, "sim: %s is ready, layout %016" PRIx64 "\n", layout->path,
             simulation->server.identity.layout_hash);
     int handled = 0;

@@ -1,6 +1,7 @@
 #include "sim_process.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 /* ------------------------------------------------------------------------------------------------ sending */
@@ -113,6 +114,15 @@ static void on_restore(void *user, const void *data, size_t size) {
     (void)waferhand_state_decode_cleanup(&message);
 }
 
+/* The first command of a run begins before the run has a number. */
+static void note_command(wh_sim_process_t *simulation, const waferhand_mcs *message) {
+    const bool is_running = message->phase == WH_LINK_PHASE_BEGINS || message->phase == WH_LINK_PHASE_GOES_ON;
+    if (message->run == 0 || message->run == simulation->server.identity.run) {
+        (void)snprintf(simulation->command, sizeof simulation->command, "%s",
+                       is_running ? message->command : "");
+    }
+}
+
 static void on_mcs(void *user, const void *data, size_t size) {
     wh_sim_process_t *simulation = user;
     waferhand_mcs message;
@@ -120,6 +130,7 @@ static void on_mcs(void *user, const void *data, size_t size) {
         drop(simulation, WH_CHANNEL_MCS, size);
         return;
     }
+    note_command(simulation, &message);
     if (message.run == simulation->server.identity.run && message.phase == WH_LINK_PHASE_OVER &&
         simulation->running) {
         simulation->running = false;

@@ -57,7 +57,7 @@ static wh_view_colour_t colour_of_held(size_t gripper) {
     return colour;
 }
 
-/* ------------------------------------------------------------------------------------------------- bodies */
+/* ----------------------------------------------------------------------------------------------- bodies */
 
 /* The length of the character at `text` if it may stay as it is; 0 if the viewer would take it for part of a
  * path, or could not read it. */
@@ -115,7 +115,22 @@ static void add_shape(wh_view_cell_t *cell, const wh_convex_t *convex, const wh_
                           &body->geom[body->num_geom++]);
 }
 
-/* -------------------------------------------------------------------------------------------------- parts */
+/* ------------------------------------------------------------------------------------------------ parts */
+
+/* Notes that the next shape of the last body is this part. */
+static void note_shape(wh_view_cell_t *cell, size_t part) {
+    cell->shown[part][0] = cell->load.num_links - 1;
+    cell->shown[part][1] = cell->load.link[cell->load.num_links - 1].num_geom;
+}
+
+static void open_shown(wh_view_cell_t *cell) {
+    const size_t count = cell->layout->world.part_count + cell->layout->wafer_count;
+    cell->shown = wh_array_new(count, sizeof *cell->shown);
+    for (size_t i = 0; i < count; ++i) {
+        cell->shown[i][0] = WH_NONE;
+    }
+    cell->hit[0] = cell->hit[1] = WH_NONE;
+}
 
 static void add_parts(wh_view_cell_t *cell, uint32_t kinds, int32_t owner, const wh_pose_t *base_from_body) {
     const wh_world_config_t *world = &cell->layout->world;
@@ -128,6 +143,7 @@ static void add_parts(wh_view_cell_t *cell, uint32_t kinds, int32_t owner, const
         const wh_pose_t *at = &part->convex.body_from_shape;
         const wh_pose_t pose = base_from_body ? wh_pose_relative(base_from_body, at) : *at;
         const wh_view_colour_t colour = colour_of_part(part);
+        note_shape(cell, i);
         add_shape(cell, &part->convex, &pose, &colour);
     }
 }
@@ -163,7 +179,7 @@ static void add_grippers(wh_view_cell_t *cell) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- wafers */
+/* ----------------------------------------------------------------------------------------------- wafers */
 
 static void add_disc(wh_view_cell_t *cell, double larger, const wh_view_colour_t *colour) {
     wh_convex_t disc = wh_shapes_wafer(&cell->layout->shapes);
@@ -204,12 +220,13 @@ static void add_wafers(wh_view_cell_t *cell) {
     cell->wafers = (size_t)cell->load.num_links;
     for (size_t w = 0; w < cell->layout->wafer_count; ++w) {
         (void)add_body(cell, "wafers", cell->layout->wafers[w].name);
+        note_shape(cell, cell->layout->world.part_count + w);
         add_disc(cell, 0, &colour);
         add_mark(cell);
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- places */
+/* ----------------------------------------------------------------------------------------------- places */
 
 static void place(wh_view_cell_t *cell, size_t body, const wh_pose_t *base_from_body) {
     wh_view_put_pose(base_from_body, cell->draw.position[body], cell->draw.quaternion[body]);
@@ -257,7 +274,9 @@ static void place_wafers(wh_view_cell_t *cell, const wh_wafer_t wafers[], bool m
     }
     for (size_t w = 0; w < cell->layout->wafer_count; ++w) {
         place(cell, cell->wafers + w, &wafers[w].base_from_wafer);
-        if (may_be_held && wafers[w].holder != WH_NONE) {
+        const int32_t part = (int32_t)(cell->layout->world.part_count + w);
+        const bool is_red = part == cell->hit[0] || part == cell->hit[1];
+        if (may_be_held && wafers[w].holder != WH_NONE && !is_red) {
             place(cell, cell->covers + (size_t)wafers[w].holder, &wafers[w].base_from_wafer);
         }
     }
@@ -285,6 +304,7 @@ void wh_view_cell_open(wh_view_cell_t *cell, const wh_layout_t *layout, wh_view_
     memset(cell, 0, sizeof *cell);
     cell->layout = layout;
     cell->detail = detail;
+    open_shown(cell);
     add_obstacles(cell);
     add_stations(cell);
     add_robot(cell);
@@ -296,6 +316,39 @@ void wh_view_cell_open(wh_view_cell_t *cell, const wh_layout_t *layout, wh_view_
         place(cell, 1 + s, &layout->places[s].base_from_station);
     }
     wh_view_cell_rest(cell);
+}
+
+/* ------------------------------------------------------------------------------------------------- hits */
+
+/* The colour of a part's shape; null if it is not shown. */
+static float *colour_at(const wh_view_cell_t *cell, int32_t part) {
+    const size_t count = cell->layout->world.part_count + cell->layout->wafer_count;
+    if (part < 0 || (size_t)part >= count || cell->shown[part][0] == WH_NONE) {
+        return NULL;
+    }
+    return cell->load.link[cell->shown[part][0]].geom[cell->shown[part][1]].color;
+}
+
+bool wh_view_cell_set_hit(wh_view_cell_t *cell, const int32_t parts[2]) {
+    const wh_view_colour_t red = colour_of(0xe5001f, 1);
+    if (memcmp(cell->hit, parts, sizeof cell->hit) == 0) {
+        return false;
+    }
+    for (size_t i = 2; i-- > 0;) { /* backwards: both may be the same shape */
+        float *colour = colour_at(cell, cell->hit[i]);
+        if (colour) {
+            memcpy(colour, cell->plain[i], sizeof cell->plain[i]);
+        }
+    }
+    memcpy(cell->hit, parts, sizeof cell->hit);
+    for (size_t i = 0; i < 2; ++i) {
+        float *colour = colour_at(cell, cell->hit[i]);
+        if (colour) {
+            memcpy(cell->plain[i], colour, sizeof cell->plain[i]);
+            memcpy(colour, red.rgba, sizeof cell->plain[i]);
+        }
+    }
+    return true;
 }
 
 static void free_body(waferhand_viewer_link *body) {
@@ -316,5 +369,6 @@ void wh_view_cell_free(wh_view_cell_t *cell) {
     free(cell->draw.position);
     free(cell->draw.quaternion);
     free(cell->places);
+    free(cell->shown);
     memset(cell, 0, sizeof *cell);
 }

@@ -6,7 +6,8 @@
  *
  * A body's colour is part of LOAD, and a LOAD that differs from the last makes the viewer begin anew. So a
  * wafer that is held gets its gripper's colour by a cover, "held::EE", a quarter of a millimetre larger all
- * around, which lies over it; one that covers nothing waits WH_VIEW_AWAY below the floor.
+ * around, which lies over it; one that covers nothing waits WH_VIEW_AWAY below the floor. What collided
+ * becomes red, in a LOAD of its own: that is the end of a run.
  *
  * Host code: ends the program if out of memory. Nothing is allocated after wh_view_cell_open.
  */
@@ -34,6 +35,10 @@ typedef struct {
     size_t capacity;
     size_t links, grippers, covers, wafers;
     float (*places)[7]; /* of each body: position, quaternion */
+    /* Of each part of the collision world, wafers included: its body, or WH_NONE, and its shape there. */
+    int32_t (*shown)[2];
+    int32_t hit[2];    /* the parts that are red, or WH_NONE */
+    float plain[2][4]; /* their own colours */
     wh_pose_t base_from_effector;
 } wh_view_cell_t;
 
@@ -54,6 +59,10 @@ void wh_view_cell_move(wh_view_cell_t *cell, const wh_view_look_t *look);
 
 /* Where everything is before a run. */
 void wh_view_cell_rest(wh_view_cell_t *cell);
+
+/* Paints two parts of the collision world red in `load`, instead of those that were; WH_NONE: none. A wafer
+ * that is red is not covered. False if nothing changes. */
+bool wh_view_cell_set_hit(wh_view_cell_t *cell, const int32_t parts[2]);
 
 void wh_view_cell_free(wh_view_cell_t *cell);
 

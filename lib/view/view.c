@@ -1,18 +1,35 @@
 #include "view.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../text/array.h"
 
-/* Makes both messages, with as much of the cell as they have room for. */
+/* Encodes the bodies. */
+static bool encode_load(wh_viewer_bytes_t *bytes, const waferhand_viewer_load *load) {
+    bytes->load_size = waferhand_viewer_load_encode(bytes->load, 0, bytes->load_room, load);
+    bytes->is_new = true;
+    return bytes->load_size > 0;
+}
+
+static bool open_bytes(wh_viewer_bytes_t *bytes, const waferhand_viewer_load *load, int load_room,
+                       const waferhand_viewer_draw *draw) {
+    bytes->load_room = load_room;
+    bytes->draw_room = waferhand_viewer_draw_encoded_size(draw);
+    bytes->load = wh_array_new((size_t)bytes->load_room, 1);
+    bytes->draw = wh_array_new((size_t)bytes->draw_room, 1);
+    return encode_load(bytes, load);
+}
+
+/* Makes the cell's messages, with as much of the cell as they have room for. */
 static bool fit(wh_viewer_t *view, const wh_layout_t *layout) {
     for (int detail = WH_VIEW_ALL; detail < WH_VIEW_DETAILS; ++detail) {
         wh_view_cell_open(&view->cell, layout, (wh_view_detail_t)detail);
-        view->load_size = waferhand_viewer_load_encoded_size(&view->cell.load);
-        view->draw_room = waferhand_viewer_draw_encoded_size(&view->cell.draw);
-        if (view->load_size <= WH_VIEW_BYTES && view->draw_room <= WH_LINK_DATAGRAM) {
-            return true;
+        const int load_size = waferhand_viewer_load_encoded_size(&view->cell.load);
+        if (load_size <= WH_VIEW_BYTES &&
+            waferhand_viewer_draw_encoded_size(&view->cell.draw) <= WH_LINK_DATAGRAM) {
+            return open_bytes(&view->cell_bytes, &view->cell.load, load_size, &view->cell.draw);
         }
         wh_view_cell_free(&view->cell);
     }
@@ -23,11 +40,12 @@ wh_status_t wh_viewer_open(wh_viewer_t *view, wh_node_t *node, const wh_layout_t
     memset(view, 0, sizeof *view);
     view->node = node;
     if (!fit(view, layout)) {
+        wh_viewer_close(view);
         return WH_STATUS_BAD_CAPACITY;
     }
-    view->load = wh_array_new((size_t)view->load_size, 1);
-    view->draw = wh_array_new((size_t)view->draw_room, 1);
-    if (waferhand_viewer_load_encode(view->load, 0, view->load_size, &view->cell.load) != view->load_size) {
+    wh_view_board_open(&view->board, layout);
+    if (!open_bytes(&view->board_bytes, &view->board.load, wh_view_board_room(&view->board),
+                    &view->board.draw)) {
         wh_viewer_close(view);
         return WH_STATUS_BAD_CAPACITY;
     }
@@ -41,6 +59,8 @@ static void publish(wh_viewer_t *view, const char *channel, const uint8_t *data,
         ++view->unsent;
     }
 }
+
+/* ---------------------------------------------------------------------------------------------- looking */
 
 /* Before the first slice grippers have no poses yet: all is shown at rest. */
 static void look_at(wh_viewer_t *view, const wh_protocol_server_t *server) {
@@ -56,31 +76,97 @@ static void look_at(wh_viewer_t *view, const wh_protocol_server_t *server) {
     wh_view_cell_move(&view->cell, &look);
 }
 
+static void write_line(wh_viewer_t *view, wh_view_line_t line, const char *text) {
+    if (wh_view_board_write(&view->board, line, text)) {
+        (void)encode_load(&view->board_bytes, &view->board.load);
+    }
+}
+
+static void show_hit(wh_viewer_t *view, const char *what, const int32_t parts[2]) {
+    const char *first = wh_layout_part_name(view->cell.layout, parts[0]);
+    const char *second = wh_layout_part_name(view->cell.layout, parts[1]);
+    char text[WH_PART_NAME_SIZE + 16];
+    (void)snprintf(text, sizeof text, "%s%s", what, first ? first : "");
+    write_line(view, WH_VIEW_HIT, text);
+    (void)snprintf(text, sizeof text, "%s%s", second ? "and " : "", second ? second : "");
+    write_line(view, WH_VIEW_HIT_WITH, text);
+    if (wh_view_cell_set_hit(&view->cell, parts)) {
+        (void)encode_load(&view->cell_bytes, &view->cell.load);
+    }
+}
+
+/* What collided stays red until another run begins. */
+static void look_for_hits(wh_viewer_t *view, const wh_protocol_server_t *server) {
+    static const int32_t none[2] = {WH_NONE, WH_NONE};
+    if (server->identity.run != view->hit_run) {
+        view->hit_run = server->identity.run;
+        show_hit(view, "", none);
+    }
+    for (size_t i = 0; i < server->state.event_count; ++i) {
+        const wh_event_t *event = &server->state.events[i];
+        if (event->kind == WH_EVENT_HIT || event->kind == WH_EVENT_UNDECIDED) {
+            show_hit(view, event->kind == WH_EVENT_HIT ? "hit: " : "undecided: ", event->parts);
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------- sending */
+
+static void send_bodies(wh_viewer_t *view, wh_viewer_bytes_t *bytes, const char *channel) {
+    bytes->is_new = false;
+    publish(view, channel, bytes->load, bytes->load_size);
+}
+
+static void send_places(wh_viewer_t *view, const wh_viewer_bytes_t *bytes, const waferhand_viewer_draw *draw,
+                        const char *channel) {
+    publish(view, channel, bytes->draw, waferhand_viewer_draw_encode(bytes->draw, 0, bytes->draw_room, draw));
+}
+
+/* The board's places only when a digit has changed. */
+static void send(wh_viewer_t *view, bool all, int64_t utime) {
+    if (all || view->cell_bytes.is_new) {
+        ++view->loads;
+        send_bodies(view, &view->cell_bytes, WH_CHANNEL_VIEWER_LOAD);
+    }
+    ++view->draws;
+    send_places(view, &view->cell_bytes, &view->cell.draw, WH_CHANNEL_VIEWER_DRAW);
+    const bool is_other_time = wh_view_board_set_time(&view->board, utime);
+    if (all || view->board_bytes.is_new) {
+        send_bodies(view, &view->board_bytes, WH_CHANNEL_BOARD_LOAD);
+    } else if (!is_other_time) {
+        return;
+    }
+    send_places(view, &view->board_bytes, &view->board.draw, WH_CHANNEL_BOARD_DRAW);
+}
+
 void wh_viewer_tick(wh_viewer_t *view, const wh_protocol_server_t *server) {
     const int64_t now = wh_node_clock_us();
     const bool is_load_due = now - view->last_load_us >= WH_VIEW_LOAD_US;
+    look_for_hits(view, server);
+    write_line(view, WH_VIEW_COMMAND, view->command ? view->command : "");
     /* A slice is shown once; while nothing moves, only the second's beat goes on. */
-    const bool is_new = server->identity.run != view->run || server->seq != view->seq;
+    const bool is_new = server->identity.run != view->run || server->seq != view->seq ||
+                        view->cell_bytes.is_new || view->board_bytes.is_new;
     if (!is_load_due && (!is_new || now - view->last_draw_us < WH_VIEW_DRAW_US)) {
         return;
     }
-    if (is_load_due) {
-        view->last_load_us = now;
-        ++view->loads;
-        publish(view, WH_CHANNEL_VIEWER_LOAD, view->load, view->load_size);
-    }
+    view->last_load_us = is_load_due ? now : view->last_load_us;
     view->last_draw_us = now;
     view->run = server->identity.run;
     view->seq = server->seq;
-    ++view->draws;
     look_at(view, server);
-    publish(view, WH_CHANNEL_VIEWER_DRAW, view->draw,
-            waferhand_viewer_draw_encode(view->draw, 0, view->draw_room, &view->cell.draw));
+    send(view, is_load_due, server->seq == 0 ? 0 : server->state.utime);
+}
+
+static void free_bytes(wh_viewer_bytes_t *bytes) {
+    free(bytes->load);
+    free(bytes->draw);
 }
 
 void wh_viewer_close(wh_viewer_t *view) {
-    free(view->load);
-    free(view->draw);
+    free_bytes(&view->cell_bytes);
+    free_bytes(&view->board_bytes);
+    wh_view_board_free(&view->board);
     wh_view_cell_free(&view->cell);
     memset(view, 0, sizeof *view);
 }

@@ -57,10 +57,11 @@ final class ProximityChart {
         return String.format(Locale.ROOT, format, number) + UNITS[value];
     }
 
-    void paint(Graphics2D g, ProximityHistory.Strip strip, double now) {
+    /** `now` is the value in words above the plot, `good` whether its condition holds. */
+    void paint(Graphics2D g, ProximityHistory.Strip strip, double now, boolean good) {
         range(strip);
         final int small = g.getFontMetrics().getHeight();
-        paintTitle(g, now);
+        paintTitle(g, now, good);
         g.setColor(Color.WHITE);
         g.fill(plot);
         paintInside(g);
@@ -114,7 +115,7 @@ final class ProximityChart {
     }
 
     // ------------------------------------------------------------------------------------------- painting
-    private void paintTitle(Graphics2D g, double now) {
+    private void paintTitle(Graphics2D g, double now, boolean good) {
         final FontMetrics metrics = g.getFontMetrics();
         final int baseline = plot.y - metrics.getDescent() - 3;
         g.setColor(INK);
@@ -140,7 +141,7 @@ final class ProximityChart {
             x -= size / 3;
         }
         if (!Double.isNaN(now) && x > left) {
-            mark(g, holds(value, now, limit), x - size, baseline - size + 2, size - 2);
+            mark(g, good, x - size, baseline - size + 2, size - 2);
         }
     }
 
@@ -224,7 +225,7 @@ final class ProximityChart {
             if (strip.samples[x] == 0) {
                 continue;
             }
-            if (before >= 0 && strip.joined[x]) {
+            if (before >= 0 && strip.same[x]) {
                 segment(path, before, strip.last[value][before], x, strip.first[value][x]);
             }
             segment(path, x, strip.low[value][x], x, strip.high[value][x]);

@@ -1,19 +1,25 @@
 package waferhand;
 
+import java.util.ArrayList;
 import java.util.Arrays;
+import java.util.List;
 
 /**
- * The proximity messages of one run, as far back as there is room. It needs no display, and may be filled and read by
- * different threads. Whatever a message contains, it is stored, or dropped and counted.
+ * The proximity messages of one run, as far back as there is room, and what is marked beside them. It needs no display,
+ * and may be filled and read by different threads. Whatever a message contains, it is stored, or dropped and counted.
  */
 final class ProximityHistory {
     /** Values of a gripper. */
     static final int Z = 0, XY = 1, PLANAR = 2, VALUES = 3;
     /** Bits of a gripper's flags. */
     static final int READY = 1, OPEN = 2, HOLDS = 4;
+    /** Shifted left by the value's number: its condition holds. */
+    static final int CONDITION = 8;
+    private static final int MOMENTARY = READY | OPEN | HOLDS;
 
-    private static final int FIRST_CAPACITY = 1 << 12;
-    private static final int CAPACITY = 1 << 18;
+    /** Samples: 87 minutes of those that come each 5 ms; of eight grippers 137 MB. */
+    static final int CAPACITY = 1 << 20;
+    private static final int CHUNK = 1 << 12;
     private static final int GRIPPERS = 8;
     /** A message older than the newest by more than this, us, is the same run played again, not a late one. */
     private static final double LATE = 1e6;
@@ -27,8 +33,8 @@ final class ProximityHistory {
     static final class Strip {
         /** By value and column: the smallest, the largest, the first and the last number. */
         final double[][] low, high, first, last;
-        /** By column: whether its first sample is to be joined with the one before it. */
-        final boolean[] joined;
+        /** By column: whether its first sample follows the one before it, and is of the same wafer. */
+        final boolean[] joined, same;
         /** By column: flags that are set in one of its samples; 0 without samples. */
         final int[] flags;
         /** By column: how many samples. */
@@ -40,6 +46,7 @@ final class ProximityHistory {
             first = nothing(columns);
             last = nothing(columns);
             joined = new boolean[columns];
+            same = new boolean[columns];
             flags = new int[columns];
             samples = new int[columns];
         }
@@ -52,13 +59,15 @@ final class ProximityHistory {
             return numbers;
         }
 
-        private void add(int column, double[] values, int offset, int flag, boolean join) {
+        private void add(int column, Chunk chunk, int at, int gripper, boolean sameWafer) {
+            final int k = at * chunk.grippers + gripper;
             if (samples[column]++ == 0) {
-                joined[column] = join;
+                joined[column] = chunk.joins[at];
+                same[column] = chunk.joins[at] && sameWafer;
             }
-            flags[column] |= flag;
+            flags[column] |= chunk.flags[k] & MOMENTARY;
             for (int v = 0; v < VALUES; v++) {
-                final double value = values[offset + v];
+                final double value = chunk.values[k * VALUES + v];
                 if (samples[column] == 1) {
                     first[v][column] = value;
                 }
@@ -83,21 +92,46 @@ final class ProximityHistory {
 
     /** How the run goes, in numbers. */
     static final class Summary {
-        long run, first, last, seen, unseen, late, refused;
+        long run, first, last, seen, unseen, late, refused, statesMissing;
         int grippers;
         double[] limits;
         /** As the layout has them; null where it is not known. */
         String[] names, valves;
     }
 
-    private long[] utimes, seqs;
-    private double[] values;
-    private byte[] flags;
-    private int[] wafers;
-    private boolean[] joins;
-    /** The oldest sample's place, and how many there are. */
-    private int begin, count;
-    private int grippers;
+    /** Samples that lie together. A full one never changes, so copies share it. */
+    private static final class Chunk {
+        final int grippers;
+        final long[] utimes = new long[CHUNK], seqs = new long[CHUNK];
+        final boolean[] joins = new boolean[CHUNK];
+        /** By sample and gripper, and the values by number, too. */
+        final float[] values;
+        final byte[] flags;
+        final short[] wafers;
+
+        Chunk(int grippers) {
+            this.grippers = grippers;
+            values = new float[CHUNK * grippers * VALUES];
+            flags = new byte[CHUNK * grippers];
+            wafers = new short[CHUNK * grippers];
+        }
+
+        /** A copy of its first samples. */
+        Chunk copy(int count) {
+            final Chunk other = new Chunk(grippers);
+            System.arraycopy(utimes, 0, other.utimes, 0, count);
+            System.arraycopy(seqs, 0, other.seqs, 0, count);
+            System.arraycopy(joins, 0, other.joins, 0, count);
+            System.arraycopy(values, 0, other.values, 0, count * grippers * VALUES);
+            System.arraycopy(flags, 0, other.flags, 0, count * grippers);
+            System.arraycopy(wafers, 0, other.wafers, 0, count * grippers);
+            return other;
+        }
+    }
+
+    private final ArrayList<Chunk> chunks = new ArrayList<>();
+    private int count, grippers;
+    private ProximityMarks marks = new ProximityMarks();
 
     private long run, layout, previousRun;
     private boolean started, hasPrevious;
@@ -122,10 +156,32 @@ final class ProximityHistory {
         }
         lateInARow = 0;
         if (!started || !continues(message)) {
-            begin(message);
+            begin(message.run, message.layout_hash, message.utime);
+        }
+        if (grippers != message.gripper_count) {
+            chunks.clear();
+            count = 0;
+            grippers = message.gripper_count;
         }
         append(message);
         return true;
+    }
+
+    /** Takes a state's events. A new run begins with its first state, which comes before its proximity. */
+    synchronized void add(ProximityMarks.State message) {
+        final boolean same = started && message.run == run && message.layout == layout;
+        if (!same && hasPrevious && message.run == previousRun) {
+            return;
+        }
+        if (!same || count > 0 && (double)newest() - message.utime > LATE) {
+            begin(message.run, message.layout, message.utime);
+        }
+        marks.add(message);
+    }
+
+    /** Takes how far a command has come. */
+    synchronized void add(ProximityMarks.Progress message) {
+        marks.add(message);
     }
 
     /** Takes the names of grippers and wafers. */
@@ -139,7 +195,8 @@ final class ProximityHistory {
     }
 
     private boolean sameRun(proximity message) {
-        return message.run == run && message.layout_hash == layout && message.gripper_count == grippers;
+        return message.run == run && message.layout_hash == layout &&
+            (count == 0 || message.gripper_count == grippers);
     }
 
     private boolean isLate(proximity message) {
@@ -149,61 +206,72 @@ final class ProximityHistory {
         if (!sameRun(message)) {
             return hasPrevious && message.run == previousRun && message.run != run;
         }
-        final long newest = utimes[place(count - 1)];
-        return message.utime <= newest && (double)newest - message.utime <= LATE;
+        return count > 0 && message.utime <= newest() && (double)newest() - message.utime <= LATE;
     }
 
     private boolean continues(proximity message) {
-        return sameRun(message) && message.utime > utimes[place(count - 1)];
+        return sameRun(message) && (count == 0 || message.utime > newest());
     }
 
-    private void begin(proximity message) {
-        if (seen > 0 && message.run != run) {
+    private long newest() {
+        return chunk(count - 1).utimes[count - 1 & CHUNK - 1];
+    }
+
+    private void begin(long newRun, long newLayout, long utime) {
+        if ((seen > 0 || started) && newRun != run) {
             previousRun = run;
             hasPrevious = true;
         }
-        run = message.run;
-        layout = message.layout_hash;
+        run = newRun;
+        layout = newLayout;
         started = true;
-        begin = 0;
+        chunks.clear();
         count = 0;
         seen = 0;
         unseen = 0;
         late = 0;
         step = 0;
-        if (grippers != message.gripper_count || utimes == null) {
-            grippers = message.gripper_count;
-            allocate(FIRST_CAPACITY);
-        }
+        marks.begin(newRun, utime);
+    }
+
+    private Chunk chunk(int index) {
+        return chunks.get(index / CHUNK);
     }
 
     private void append(proximity message) {
         makeRoom();
-        final int at = place(count);
-        joins[at] = count > 0 && follows(message, place(count - 1));
-        utimes[at] = message.utime;
-        seqs[at] = message.seq;
+        final Chunk chunk = chunk(count);
+        final int at = count % CHUNK;
+        chunk.joins[at] = count > 0 && follows(message);
+        chunk.utimes[at] = message.utime;
+        chunk.seqs[at] = message.seq;
         for (int g = 0; g < grippers; g++) {
-            final int k = at * grippers + g;
-            values[k * VALUES + Z] = Math.abs(message.dr_proj_z[g]);
-            values[k * VALUES + XY] = message.dr_proj_xy_norm[g];
-            values[k * VALUES + PLANAR] = message.n1_proj_n2[g];
-            wafers[k] = message.wafer[g];
-            flags[k] = (byte)((message.ready[g] == 1 ? READY : 0) | (message.valve[g] == 0 ? OPEN : 0) |
-                              (message.holds[g] == 1 ? HOLDS : 0));
-            if (message.wafer[g] < 0) {
-                Arrays.fill(values, k * VALUES, (k + 1) * VALUES, Double.NaN);
-            }
+            put(message, g, chunk, at * grippers + g);
         }
         limits = new double[] {message.eps_projz, message.eps_projxy, message.eps_planar};
         count++;
         seen++;
     }
 
-    /** Whether the message goes on from the sample there; counts the slices between them. */
-    private boolean follows(proximity message, int before) {
-        final double elapsed = (double)message.utime - utimes[before];
-        final double slices = (double)message.seq - seqs[before];
+    private static void put(proximity message, int g, Chunk chunk, int k) {
+        final double[] values = {Math.abs(message.dr_proj_z[g]), message.dr_proj_xy_norm[g],
+                                 message.n1_proj_n2[g]};
+        final double[] limits = {message.eps_projz, message.eps_projxy, message.eps_planar};
+        final boolean some = message.wafer[g] >= 0;
+        int flags = (message.ready[g] == 1 ? READY : 0) | (message.valve[g] == 0 ? OPEN : 0) |
+                    (message.holds[g] == 1 ? HOLDS : 0);
+        for (int v = 0; v < VALUES; v++) {
+            chunk.values[k * VALUES + v] = some ? (float)values[v] : Float.NaN;
+            flags |= some && ProximityChart.holds(v, values[v], limits[v]) ? CONDITION << v : 0;
+        }
+        chunk.wafers[k] = (short)Math.max(-1, Math.min(message.wafer[g], Short.MAX_VALUE));
+        chunk.flags[k] = (byte)flags;
+    }
+
+    /** Whether the message goes on from the newest sample; counts the slices between them. */
+    private boolean follows(proximity message) {
+        final double elapsed = (double)message.utime - newest();
+        final double slices = (double)message.seq - chunk(count - 1).seqs[(count - 1) % CHUNK];
         if (slices > 1 && slices < 1e9) {
             unseen += (long)slices - 1;
         }
@@ -212,47 +280,26 @@ final class ProximityHistory {
         return near;
     }
 
-    private int place(int index) {
-        return (begin + index) % utimes.length;
-    }
-
     private void makeRoom() {
-        if (count < utimes.length) {
-            return;
+        if (count == CAPACITY) {
+            chunks.remove(0);
+            count -= CHUNK;
         }
-        if (utimes.length < CAPACITY) {
-            allocate(2 * utimes.length); // it has not gone round yet: begin is 0
-        } else {
-            begin = place(1);
-            count--;
+        if (count == chunks.size() * CHUNK) {
+            chunks.add(new Chunk(grippers));
         }
     }
 
-    private void allocate(int capacity) {
-        final boolean keep = count > 0;
-        utimes = keep ? Arrays.copyOf(utimes, capacity) : new long[capacity];
-        seqs = keep ? Arrays.copyOf(seqs, capacity) : new long[capacity];
-        joins = keep ? Arrays.copyOf(joins, capacity) : new boolean[capacity];
-        wafers = keep ? Arrays.copyOf(wafers, capacity * grippers) : new int[capacity * grippers];
-        flags = keep ? Arrays.copyOf(flags, capacity * grippers) : new byte[capacity * grippers];
-        values = keep ? Arrays.copyOf(values, capacity * grippers * VALUES)
-                      : new double[capacity * grippers * VALUES];
-    }
-
-    /** A copy that later messages do not change. */
+    /** A copy that later messages do not change. It shares the full chunks, which do not change either. */
     synchronized ProximityHistory copy() {
         final ProximityHistory other = new ProximityHistory();
-        if (utimes != null) {
-            other.utimes = utimes.clone();
-            other.seqs = seqs.clone();
-            other.joins = joins.clone();
-            other.wafers = wafers.clone();
-            other.flags = flags.clone();
-            other.values = values.clone();
+        other.chunks.addAll(chunks);
+        if (count % CHUNK > 0) {
+            other.chunks.set(chunks.size() - 1, chunk(count - 1).copy(count % CHUNK));
         }
-        other.begin = begin;
         other.count = count;
         other.grippers = grippers;
+        other.marks = marks.copy();
         other.run = run;
         other.layout = layout;
         other.started = started;
@@ -271,7 +318,7 @@ final class ProximityHistory {
         int high = count;
         while (low < high) {
             final int middle = (low + high) >>> 1;
-            if (utimes[place(middle)] < utime) {
+            if (chunk(middle).utimes[middle % CHUNK] < utime) {
                 low = middle + 1;
             } else {
                 high = middle;
@@ -287,16 +334,29 @@ final class ProximityHistory {
         if (count == 0 || gripper < 0 || gripper >= grippers || !(to > from)) {
             return strip;
         }
+        int before = -1;
         for (int i = Math.max(0, find(from) - 1); i < count; i++) {
-            final int at = place(i);
-            if (utimes[at] >= to) {
+            final Chunk chunk = chunk(i);
+            final int at = i % CHUNK;
+            if (chunk.utimes[at] >= to) {
                 break;
             }
-            final int column = (int)Math.max(0, (utimes[at] - from) / (to - from) * columns);
-            final int k = at * grippers + gripper;
-            strip.add(Math.min(columns - 1, column), values, k * VALUES, flags[k], joins[at]);
+            final int wafer = chunk.wafers[at * grippers + gripper];
+            final int column = (int)Math.max(0, (chunk.utimes[at] - from) / (to - from) * columns);
+            strip.add(Math.min(columns - 1, column), chunk, at, gripper, wafer == before);
+            before = wafer;
         }
         return strip;
+    }
+
+    /** The events of a gripper that lie between two times, us, in order. */
+    synchronized List<ProximityMarks.Event> events(int gripper, double from, double to) {
+        return marks.events(gripper, from, to);
+    }
+
+    /** The commands that lie at least in part between two times, us, in order. */
+    synchronized List<ProximityMarks.Command> commands(double from, double to) {
+        return marks.commands(run, from, to);
     }
 
     /** The newest sample that is not after a time, us; null if there is none. */
@@ -305,18 +365,21 @@ final class ProximityHistory {
         if (after == 0) {
             return null;
         }
-        final int at = place(after - 1);
+        final Chunk chunk = chunk(after - 1);
+        final int at = (after - 1) % CHUNK;
         final Reading reading = new Reading();
-        reading.utime = utimes[at];
-        reading.seq = seqs[at];
-        reading.values = new double[grippers][];
+        reading.utime = chunk.utimes[at];
+        reading.seq = chunk.seqs[at];
+        reading.values = new double[grippers][VALUES];
         reading.flags = new int[grippers];
         reading.wafer = new int[grippers];
         for (int g = 0; g < grippers; g++) {
             final int k = at * grippers + g;
-            reading.values[g] = Arrays.copyOfRange(values, k * VALUES, (k + 1) * VALUES);
-            reading.flags[g] = flags[k];
-            reading.wafer[g] = wafers[k];
+            for (int v = 0; v < VALUES; v++) {
+                reading.values[g][v] = chunk.values[k * VALUES + v];
+            }
+            reading.flags[g] = chunk.flags[k];
+            reading.wafer[g] = chunk.wafers[k];
         }
         return reading;
     }
@@ -325,12 +388,13 @@ final class ProximityHistory {
         final Summary summary = new Summary();
         summary.run = run;
         summary.grippers = count == 0 ? 0 : grippers;
-        summary.first = count == 0 ? 0 : utimes[begin];
-        summary.last = count == 0 ? 0 : utimes[place(count - 1)];
+        summary.first = count == 0 ? 0 : chunk(0).utimes[0];
+        summary.last = count == 0 ? 0 : newest();
         summary.seen = seen;
         summary.unseen = unseen;
         summary.late = late;
         summary.refused = refused;
+        summary.statesMissing = marks.missing();
         summary.limits = limits.clone();
         summary.names = new String[grippers];
         summary.valves = new String[grippers];
@@ -348,6 +412,15 @@ final class ProximityHistory {
             return null;
         }
         return isNamed() && wafer < named.wafers.length ? named.wafers[wafer] : "wafer " + wafer;
+    }
+
+    /** A gripper's name, or its number; null for none. */
+    synchronized String gripperName(int gripper) {
+        if (gripper < 0) {
+            return null;
+        }
+        final boolean known = isNamed() && gripper < named.grippers.length;
+        return known ? named.grippers[gripper] : "gripper " + gripper;
     }
 
     private boolean isNamed() {

@@ -7,6 +7,10 @@ import java.awt.event.ActionEvent;
 import java.awt.event.WindowAdapter;
 import java.awt.event.WindowEvent;
 import java.io.IOException;
+import java.nio.ByteBuffer;
+import java.util.HashMap;
+import java.util.Map;
+import java.util.regex.Matcher;
 import java.util.regex.Pattern;
 import javax.swing.AbstractAction;
 import javax.swing.Action;
@@ -20,8 +24,17 @@ import lcm.lcm.LCMSubscriber;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
-/** lcm-spy's view of a channel of proximity messages. lcm-spy finds it by its interface. */
+/**
+ * lcm-spy's view of a channel of proximity messages. lcm-spy finds it by its interface, and makes one when it starts: from
+ * then on it collects, whether or not a view is open.
+ */
 public final class ProximityPlugin implements SpyPlugin {
+    private final Collector collector = new Collector();
+
+    public ProximityPlugin() {
+        collector.subscribe(LCM.getSingleton());
+    }
+
     @Override
     public boolean canHandle(long fingerprint) {
         return fingerprint == proximity.LCM_FINGERPRINT;
@@ -30,41 +43,57 @@ public final class ProximityPlugin implements SpyPlugin {
     /** The action that a double click does, in a desktop of its own. Both are null when only its name is asked for. */
     @Override
     public Action getAction(JDesktopPane desktop, ChannelData channel) {
-        return new Open(desktop, channel);
+        return new Open(desktop, channel, collector);
     }
 
-    /** Fills a history from two channels. */
-    static final class Feed implements LCMSubscriber {
-        private final ProximityHistory history;
-        private final String channel, names;
+    /** What has been collected of a channel. */
+    ProximityHistory history(String channel) {
+        return collector.history(channel);
+    }
 
-        Feed(ProximityHistory history, String channel) {
-            this.history = history;
-            this.channel = channel;
-            this.names = channel.replaceFirst("PROXIMITY$", "CELL");
-        }
+    /** Fills histories, one for each beginning that channels have before PROXIMITY, STATE, MCS and CELL. */
+    static final class Collector implements LCMSubscriber {
+        private static final Pattern CHANNELS = Pattern.compile("(.*?)(PROXIMITY|STATE|MCS|CELL)");
+        private static final int HISTORIES = 4;
+        private final Map<String, ProximityHistory> histories = new HashMap<>();
 
         void subscribe(LCM lcm) {
-            lcm.subscribe(Pattern.quote(channel), this);
-            lcm.subscribe(Pattern.quote(names), this);
+            lcm.subscribe(CHANNELS.pattern(), this);
         }
 
-        void unsubscribe(LCM lcm) {
-            lcm.unsubscribe(Pattern.quote(channel), this);
-            lcm.unsubscribe(Pattern.quote(names), this);
+        /** The one that a channel belongs to. Beyond a few there is one that nothing fills. */
+        synchronized ProximityHistory history(String channel) {
+            final Matcher matcher = CHANNELS.matcher(channel);
+            final String beginning = matcher.matches() ? matcher.group(1) : channel;
+            if (histories.size() >= HISTORIES && !histories.containsKey(beginning)) {
+                return new ProximityHistory();
+            }
+            return histories.computeIfAbsent(beginning, each -> new ProximityHistory());
         }
 
         @Override
-        public void messageReceived(LCM lcm, String from, LCMDataInputStream data) {
+        public void messageReceived(LCM lcm, String channel, LCMDataInputStream data) {
             try {
-                if (from.equals(channel)) {
-                    history.add(new proximity(data));
-                } else {
-                    history.add(new ProximityNames(data));
-                }
+                take(channel, data);
             } catch (IOException | RuntimeException refused) {
-                history.refuse();
+                history(channel).refuse();
             }
+        }
+
+        private void take(String channel, LCMDataInputStream data) throws IOException {
+            if (channel.endsWith("PROXIMITY")) {
+                history(channel).add(new proximity(data));
+            } else if (channel.endsWith("CELL")) {
+                history(channel).add(new ProximityNames(data));
+            } else if (channel.endsWith("STATE")) {
+                history(channel).add(new ProximityMarks.State(bytes(data)));
+            } else {
+                history(channel).add(new ProximityMarks.Progress(bytes(data)));
+            }
+        }
+
+        private static ByteBuffer bytes(LCMDataInputStream data) {
+            return ByteBuffer.wrap(data.getBuffer(), data.getBufferOffset(), data.available()).slice();
         }
     }
 
@@ -72,18 +101,18 @@ public final class ProximityPlugin implements SpyPlugin {
         private static final long serialVersionUID = 1;
         private final transient JDesktopPane desktop;
         private final transient ChannelData channel;
+        private final transient Collector collector;
 
-        Open(JDesktopPane desktop, ChannelData channel) {
+        Open(JDesktopPane desktop, ChannelData channel, Collector collector) {
             super("Proximity against its limits");
             this.desktop = desktop;
             this.channel = channel;
+            this.collector = collector;
         }
 
         @Override
         public void actionPerformed(ActionEvent event) {
-            final ProximityHistory history = new ProximityHistory();
-            final Feed feed = new Feed(history, channel.name);
-            final ProximityView view = new ProximityView(history);
+            final ProximityView view = new ProximityView(collector.history(channel.name));
             final JFrame frame = frame();
             frame.setTitle("Proximity: " + channel.name);
             frame.getContentPane().removeAll();
@@ -93,7 +122,6 @@ public final class ProximityPlugin implements SpyPlugin {
             frame.addWindowListener(new WindowAdapter() {
                 @Override
                 public void windowClosed(WindowEvent closed) {
-                    feed.unsubscribe(LCM.getSingleton());
                     view.stop();
                 }
             });
@@ -102,7 +130,6 @@ public final class ProximityPlugin implements SpyPlugin {
             frame.setVisible(true);
             frame.validate();
             view.start();
-            feed.subscribe(LCM.getSingleton());
         }
 
         /** The window that lcm-spy has opened around its desktop, else one of our own. */

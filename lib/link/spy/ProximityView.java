@@ -7,42 +7,58 @@ import java.awt.Font;
 import java.awt.FontMetrics;
 import java.awt.Graphics;
 import java.awt.Graphics2D;
+import java.awt.Point;
 import java.awt.Rectangle;
 import java.awt.RenderingHints;
 import java.awt.event.ActionEvent;
 import java.awt.event.MouseAdapter;
 import java.awt.event.MouseEvent;
 import java.awt.event.MouseWheelEvent;
+import java.util.List;
 import java.util.Locale;
 import javax.swing.AbstractAction;
+import javax.swing.JButton;
 import javax.swing.JComponent;
 import javax.swing.JPanel;
 import javax.swing.KeyStroke;
 import javax.swing.Timer;
 
-/** Each gripper's proximity values over simulated time, as in the paper's Fig. 9, with its valve and what it holds. */
+/**
+ * Each gripper's proximity values over simulated time, as in the paper's Fig. 9, with its valve and what it holds, events
+ * and commands. Which wafer is measured, and whether it is ready, the messages say.
+ */
 final class ProximityView extends JPanel {
     private static final long serialVersionUID = 1;
-    private static final String KEYS = "space pause   + − time span   ← → scroll   L scale";
-    private static final double[] SPANS = {0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200};
+    private static final String KEYS = "+ − time span   ← → scroll   L scale   space:";
+    private static final double[] SPANS = {0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000};
     private static final String[] LANES = {"ready", "vacuum", "holds"};
     private static final int[] LANE_FLAGS = {ProximityHistory.READY, ProximityHistory.OPEN,
                                              ProximityHistory.HOLDS};
     private static final Color[] LANE_COLOURS = {ProximityChart.GOOD, new Color(0x56, 0xb4, 0xe9),
                                                  new Color(0xe6, 0x9f, 0x00)};
+    static final Color PAPER = new Color(0xf7, 0xf7, 0xf7);
     private static final int FRAMES_PER_SECOND = 25;
+    /** Painting may take this part of the time: what lasts longer is painted less often. */
+    private static final int PAINTING_PART = 4;
+    /** How near to an event the mouse must be, pixels. */
+    private static final int NEAR = 4;
     /** Without a message for this long, ns, the view says that it is waiting. */
     private static final long SILENCE = 1_000_000_000L;
 
     private final transient ProximityHistory live;
-    /** What is painted: live, or while paused a copy. */
+    /** A copy while the view is frozen, else null. Messages go on being collected. */
+    private transient ProximityHistory frozen;
+    /** What is being painted. */
     private transient ProximityHistory shown;
+    private final JButton freeze = new JButton("Freeze");
     private final Timer timer;
     private int span = 5;
-    /** How far the right end is behind the newest sample, us; 0 unless paused. */
+    /** How far the right end is behind the newest sample, us; 0 unless frozen. */
     private double behind;
     private boolean logarithmic = true;
-    private int mouse = -1;
+    private int mouse = -1, mouseY;
+    /** What is said beside the mouse. */
+    private transient List<String> words = List.of();
     private long lastSeen;
     private long lastChange = System.nanoTime();
 
@@ -52,9 +68,15 @@ final class ProximityView extends JPanel {
         shown = history;
         timer = new Timer(1000 / FRAMES_PER_SECOND, event -> repaint());
         setFocusable(true);
-        setBackground(new Color(0xf7, 0xf7, 0xf7));
+        setBackground(PAPER);
         setPreferredSize(new Dimension(1100, 720));
-        bind("SPACE", this::pause);
+        freeze.setFocusable(false); // its key is the view's
+        freeze.addActionListener(event -> {
+            freeze();
+            repaint();
+        });
+        add(freeze);
+        bind("SPACE", this::freeze);
         bind("typed +", () -> zoom(-1));
         bind("typed -", () -> zoom(1));
         bind("LEFT", () -> scroll(0.25));
@@ -69,6 +91,7 @@ final class ProximityView extends JPanel {
             @Override
             public void mouseMoved(MouseEvent event) {
                 mouse = event.getX();
+                mouseY = event.getY();
             }
 
             @Override
@@ -110,9 +133,12 @@ final class ProximityView extends JPanel {
         });
     }
 
-    void pause() {
+    /** Stops the picture, or lets it go on. */
+    void freeze() {
         behind = 0;
-        shown = shown == live ? live.copy() : live;
+        frozen = frozen == null ? live.copy() : null;
+        freeze.setText(frozen == null ? "Freeze" : "Go on");
+        revalidate();
     }
 
     void zoom(int by) {
@@ -120,11 +146,11 @@ final class ProximityView extends JPanel {
     }
 
     void scroll(double spans) {
-        if (shown == live) {
-            pause();
+        if (frozen == null) {
+            freeze();
         }
-        final ProximityHistory.Summary summary = shown.summary();
-        final double length = Math.max(0, (double)summary.last - summary.first);
+        final ProximityHistory.Summary summary = frozen.summary();
+        final double length = Math.max(0, (double)summary.last - summary.first - SPANS[span] * 1e6);
         behind = Math.max(0, Math.min(length, behind + spans * SPANS[span] * 1e6));
     }
 
@@ -132,6 +158,9 @@ final class ProximityView extends JPanel {
     @Override
     protected void paintComponent(Graphics graphics) {
         super.paintComponent(graphics);
+        final long begun = System.nanoTime();
+        shown = frozen == null ? live.copy() : frozen;
+        words = List.of();
         final Graphics2D g = (Graphics2D)graphics.create();
         g.setRenderingHint(RenderingHints.KEY_ANTIALIASING, RenderingHints.VALUE_ANTIALIAS_ON);
         g.setRenderingHint(RenderingHints.KEY_TEXT_ANTIALIASING, RenderingHints.VALUE_TEXT_ANTIALIAS_ON);
@@ -140,7 +169,7 @@ final class ProximityView extends JPanel {
         final int rows = summary.grippers > 4 ? 2 : 1;
         g.setFont(font(columns, rows));
         final int line = g.getFontMetrics().getHeight();
-        final int footer = 2 * line;
+        final int footer = footer(line);
         if (summary.grippers == 0) {
             centre(g, "Waiting for the first message …");
         }
@@ -151,7 +180,20 @@ final class ProximityView extends JPanel {
             paintGripper(g, summary, k, new Rectangle(left, k / columns * height, right - left, height));
         }
         paintFooter(g, summary, line);
+        ProximityTimes.paintWords(g, words, new Point(mouse, mouseY), getSize());
         g.dispose();
+        final long took = (System.nanoTime() - begun) / 1_000_000;
+        timer.setDelay((int)Math.max(1000 / FRAMES_PER_SECOND, PAINTING_PART * took));
+    }
+
+    private int footer(int line) {
+        return Math.max(2 * line, freeze.getPreferredSize().height + 8);
+    }
+
+    @Override
+    public void doLayout() {
+        final Dimension size = freeze.getPreferredSize();
+        freeze.setBounds(getWidth() - size.width - 8, getHeight() - size.height - 4, size.width, size.height);
     }
 
     private Font font(int columns, int rows) {
@@ -166,10 +208,11 @@ final class ProximityView extends JPanel {
 
     private void paintGripper(Graphics2D g, ProximityHistory.Summary summary, int gripper, Rectangle area) {
         final int line = g.getFontMetrics().getHeight();
-        final int axis = g.getFontMetrics().stringWidth("vacuum") + 14;
+        final int axis = g.getFontMetrics().stringWidth("command") + 14;
         final int left = area.x + axis;
         final int width = Math.max(20, area.width - axis - line);
-        final double to = summary.last - behind;
+        // A run that is shorter than the axis begins at its left end.
+        final double to = Math.max(summary.last - behind, summary.first + SPANS[span] * 1e6);
         final double from = to - SPANS[span] * 1e6;
         // To the right of the newest sample there is nothing, and it lies within.
         final ProximityHistory.Strip strip = shown.strip(gripper, from, Math.nextUp(to), width);
@@ -178,27 +221,43 @@ final class ProximityView extends JPanel {
         final double time = pointed ? from + (to - from) * (x + 1) / width : to;
         final ProximityHistory.Reading reading = shown.at(time);
 
+        final ProximityTimes times = new ProximityTimes(from, to, left, width);
+        final List<ProximityMarks.Event> events = shown.events(gripper, from, to);
+
         int y = area.y + line / 2;
         paintHeader(g, summary, gripper, reading, new Rectangle(left, y, width, 3 * line));
         y += 3 * line;
-        final int lanes = LANES.length * (line + 3);
+        final int lanes = (LANES.length + 2) * (line + 3);
         final int each = Math.max(2 * line, (area.y + area.height - y - lanes - 2 * line) / 3);
         for (int v = 0; v < ProximityHistory.VALUES; v++) {
             final Rectangle plot = new Rectangle(left, y + line + 6, width, Math.max(4, each - line - 14));
             final double now = reading == null ? Double.NaN : reading.values[gripper][v];
-            new ProximityChart(v, summary.limits[v], plot, logarithmic).paint(g, strip, now);
+            final int condition = ProximityHistory.CONDITION << v;
+            final boolean good = reading != null && (reading.flags[gripper] & condition) != 0;
+            new ProximityChart(v, summary.limits[v], plot, logarithmic).paint(g, strip, now, good);
+            times.paintLines(g, events, plot.y, plot.y + plot.height);
             y += each;
         }
         y += 2;
+        times.paintLines(g, events, y, y + LANES.length * (line + 3));
         for (int k = 0; k < LANES.length; k++) {
             paintLane(g, strip, k, new Rectangle(left, y, width, line));
             y += line + 3;
         }
-        paintTimes(g, from, to, new Rectangle(left, y, width, line));
+        times.paintEvents(g, events, shown, new Rectangle(left, y, width, line));
+        y += line + 3;
+        final List<ProximityMarks.Command> commands = shown.commands(from, Math.min(to, summary.last));
+        times.paintCommands(g, commands, new Rectangle(left, y, width, line));
+        y += line + 3;
+        times.paintTicks(g, y);
         if (pointed) {
             g.setStroke(new BasicStroke(1));
             g.setColor(ProximityChart.INK);
             g.drawLine(mouse, area.y + 3 * line + line / 2, mouse, y);
+            if (mouseY >= area.y && mouseY < area.y + area.height) {
+                final boolean onLane = mouseY >= y - line - 3 && mouseY < y;
+                words = times.words(mouse, onLane ? 0 : NEAR, onLane ? List.of() : events, commands, shown);
+            }
         }
     }
 
@@ -238,7 +297,7 @@ final class ProximityView extends JPanel {
         final boolean holds = (flags & ProximityHistory.HOLDS) != 0;
         final String text = wafer == null
                                 ? fitting(g, room, "no wafer", "")
-                                : fitting(g, room, (holds ? "holds " : "nearest: ") + wafer, wafer, "");
+                                : fitting(g, room, (holds ? "holds " : "measured: ") + wafer, wafer, "");
         g.drawString(text, area.x + area.width - g.getFontMetrics().stringWidth(text), second);
     }
 
@@ -290,29 +349,19 @@ final class ProximityView extends JPanel {
         }
     }
 
-    private static void paintTimes(Graphics2D g, double from, double to, Rectangle area) {
-        final FontMetrics metrics = g.getFontMetrics();
-        final double seconds = (to - from) / 1e6;
-        final double step =
-            ProximityChart.niceStep(seconds * metrics.stringWidth("0000.00 s") / Math.max(1, area.width));
-        g.setColor(ProximityChart.FAINT);
-        for (double tick = Math.ceil(Math.max(0, from) / 1e6 / step) * step; tick * 1e6 <= to; tick += step) {
-            final int x = area.x + (int)Math.round((tick * 1e6 - from) / (to - from) * area.width);
-            final String text = ProximityChart.shortest(tick) + " s";
-            g.drawLine(x, area.y, x, area.y + 3);
-            g.drawString(text, x - metrics.stringWidth(text) / 2, area.y + 4 + metrics.getAscent());
-        }
-    }
-
     private void paintFooter(Graphics2D g, ProximityHistory.Summary summary, int line) {
-        final int y = getHeight() - line / 2 - 2;
-        g.setColor(ProximityChart.GRID);
-        g.fillRect(0, getHeight() - 2 * line + 4, getWidth(), 1);
+        final int footer = footer(line);
         final FontMetrics metrics = g.getFontMetrics();
-        final int end = getWidth() - metrics.stringWidth(KEYS) - line;
+        final int y = getHeight() - footer / 2 + metrics.getAscent() / 2 - 1;
+        g.setColor(ProximityChart.GRID);
+        g.fillRect(0, getHeight() - footer, getWidth(), 1);
+        final int button = getWidth() - freeze.getPreferredSize().width - 8;
+        final int end = button - metrics.stringWidth(KEYS) - 4;
         g.setColor(ProximityChart.FAINT);
         final String text = status(summary);
-        g.drawString(text, line, y);
+        g.drawString(fitting(g, button - 2 * line, text, text.replaceFirst(" {3}run [0-9a-f]*", ""),
+                             text.replaceFirst(" {3}run .*", "")),
+                     line, y);
         if (line + metrics.stringWidth(text) + line < end) {
             g.drawString(KEYS, end, y);
         }
@@ -320,14 +369,15 @@ final class ProximityView extends JPanel {
 
     private String status(ProximityHistory.Summary summary) {
         final StringBuilder text = new StringBuilder();
-        if (shown != live) {
-            text.append("PAUSED   ");
+        text.append(String.format(Locale.ROOT, "%.3f s", summary.last / 1e6));
+        if (frozen != null) {
+            text.append(String.format(Locale.ROOT, ", frozen; now %.3f s", live.summary().last / 1e6));
         } else if (isSilent(summary)) {
-            text.append("no new messages   ");
+            text.append(", no new messages");
         }
-        text.append(String.format(Locale.ROOT, "%.3f s   run %016x   %d slices seen", summary.last / 1e6,
-                                  summary.run, summary.seen));
-        append(text, summary.unseen, "not seen");
+        text.append(
+            String.format(Locale.ROOT, "   run %016x   %d slices measured", summary.run, summary.seen));
+        append(text, summary.statesMissing, "states missing");
         append(text, summary.late, "late");
         append(text, summary.refused, "refused");
         return text.toString();

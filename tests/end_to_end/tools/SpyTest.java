@@ -1,16 +1,21 @@
 package waferhand;
 
 import java.awt.Graphics2D;
+import java.awt.event.MouseEvent;
 import java.awt.image.BufferedImage;
 import java.io.ByteArrayOutputStream;
 import java.io.DataOutputStream;
+import java.io.EOFException;
 import java.io.IOException;
 import java.util.ArrayList;
 import java.util.List;
 import java.util.Random;
 import javax.swing.Action;
+import javax.swing.JButton;
+import lcm.lcm.LCM;
 import lcm.lcm.LCMDataInputStream;
 import lcm.lcm.LCMEncodable;
+import lcm.logging.Log;
 import lcm.spy.SpyPlugin;
 import lcm.util.ClassDiscoverer;
 
@@ -51,14 +56,67 @@ final class SpyTest {
 
     private static ProximityHistory filled(long run, long from, long to) {
         final ProximityHistory history = new ProximityHistory();
-        for (long seq = from; seq <= to; seq++) {
-            check(history.add(message(run, seq)), "in order");
-        }
+        fill(history, run, from, to);
         return history;
     }
 
+    private static void fill(ProximityHistory history, long run, long from, long to) {
+        for (long seq = from; seq <= to; seq++) {
+            check(history.add(message(run, seq)), "in order");
+        }
+    }
+
+    /** A state with an event of each of these kinds, by gripper 1 of wafer 0. */
+    private static state step(long run, long seq, int... kinds) {
+        final state message = new state();
+        message.run = run;
+        message.seq = seq;
+        message.utime = seq * 1000;
+        message.layout_hash = 7;
+        message.wafer_count = 1;
+        message.wafers = new wafer_state[] {new wafer_state()};
+        message.gripper_count = 2;
+        message.grippers = new gripper_state[] {gripper(), gripper()};
+        message.event_count = kinds.length;
+        message.events = new event[kinds.length];
+        for (int k = 0; k < kinds.length; k++) {
+            message.events[k] = new event();
+            message.events[k].kind = kinds[k];
+            message.events[k].gripper = 1;
+            message.events[k].other = kinds[k] == 2 ? 0 : -1;
+            message.events[k].measured = new measurement();
+            message.events[k].measured.dr_proj_z = -0.25;
+            message.events[k].measured.dr_proj_xy_norm = 12.5;
+            message.events[k].measured.n1_proj_n2 = 0.9996;
+        }
+        message.faults = new fault_slot[0];
+        return message;
+    }
+
+    private static gripper_state gripper() {
+        final gripper_state message = new gripper_state();
+        message.approach = new encounter();
+        message.approach.measured = new measurement();
+        message.contest = new encounter();
+        message.contest.measured = new measurement();
+        return message;
+    }
+
+    private static mcs progress(long run, long seq, int phase, String command) {
+        final mcs message = new mcs();
+        message.run = run;
+        message.seq = seq;
+        message.utime = seq * 1000;
+        message.phase = phase;
+        message.line = 4;
+        message.error = phase == 4 ? 32 : 0;
+        message.command = command;
+        message.text = phase == 4 ? "no wafer was taken" : "";
+        return message;
+    }
+
     // ---------------------------------------------------------------------------------------- the plugin
-    private static void findsPlugin() throws ReflectiveOperationException {
+    private static void findsPlugin() throws Exception {
         final List<Class<?>> found = new ArrayList<>();
         ClassDiscoverer.findClasses((jar, type) -> {
             for (final Class<?> implemented : type.getInterfaces()) {
@@ -72,6 +130,22 @@ final class SpyTest {
         check(plugin.canHandle(proximity.LCM_FINGERPRINT), "takes proximity");
         check(!plugin.canHandle(state.LCM_FINGERPRINT) && !plugin.canHandle(0), "takes nothing else");
         check(plugin.getAction(null, null).getValue(Action.NAME) != null, "says its name");
+        collectsFromTheStart((ProximityPlugin)plugin);
+    }
+
+    /** No view has been opened. */
+    private static void collectsFromTheStart(ProximityPlugin plugin)
+        throws IOException, InterruptedException {
+        LCM.getSingleton().publish("WAFERHAND_PROXIMITY", message(RUN, 1));
+        LCM.getSingleton().publish("OTHER_PROXIMITY", message(RUN + 1, 1));
+        for (int k = 0; k < 500 && plugin.history("OTHER_PROXIMITY").summary().seen == 0; k++) {
+            Thread.sleep(10);
+        }
+        check(plugin.history("WAFERHAND_PROXIMITY").summary().seen == 1, "collects before a view is opened");
+        check(plugin.history("OTHER_PROXIMITY").summary().run == RUN + 1, "other channels apart");
+        for (int k = 0; k < 100; k++) {
+            check(plugin.history("C" + k + "_PROXIMITY").summary().seen == 0, "no more than a few");
+        }
     }
 
     private static byte[] encode(LCMEncodable message) throws IOException {
@@ -98,8 +172,8 @@ final class SpyTest {
     }
 
     private static void decodes() throws IOException {
-        final ProximityHistory history = new ProximityHistory();
-        final ProximityPlugin.Feed feed = new ProximityPlugin.Feed(history, "WAFERHAND_PROXIMITY");
+        final ProximityPlugin.Collector feed = new ProximityPlugin.Collector();
+        final ProximityHistory history = feed.history("WAFERHAND_PROXIMITY");
         feed.messageReceived(null, "WAFERHAND_PROXIMITY", new LCMDataInputStream(encode(message(RUN, 1))));
         check(history.summary().seen == 1 && history.summary().names[0] == null, "no names yet");
         feed.messageReceived(null, "WAFERHAND_CELL", new LCMDataInputStream(encode(names())));
@@ -112,18 +186,21 @@ final class SpyTest {
     }
 
     private static void survivesGarbage() throws IOException {
-        final ProximityHistory history = filled(RUN, 1, 10);
-        final ProximityPlugin.Feed feed = new ProximityPlugin.Feed(history, "WAFERHAND_PROXIMITY");
+        final ProximityPlugin.Collector feed = new ProximityPlugin.Collector();
+        final ProximityHistory history = feed.history("WAFERHAND_PROXIMITY");
+        fill(history, RUN, 1, 10);
         final Random random = new Random(1);
-        final byte[][] whole = {encode(message(RUN, 11)), encode(names())};
+        final String[] channels = {"WAFERHAND_PROXIMITY", "WAFERHAND_CELL", "WAFERHAND_STATE",
+                                   "WAFERHAND_MCS"};
+        final byte[][] whole = {encode(message(RUN, 11)), encode(names()), encode(step(RUN, 11, 0, 3, 11)),
+                                encode(progress(RUN, 11, 1, "GET A 1"))};
         for (int k = 0; k < 20000; k++) {
-            final byte[] bytes = whole[k % 2].clone();
+            final byte[] bytes = whole[k % 4].clone();
             for (int flips = random.nextInt(4); flips >= 0; flips--) {
                 bytes[random.nextInt(bytes.length)] ^= (byte)(1 << random.nextInt(8));
             }
             final int length = random.nextInt(3) == 0 ? random.nextInt(bytes.length) : bytes.length;
-            feed.messageReceived(null, k % 2 == 0 ? "WAFERHAND_PROXIMITY" : "WAFERHAND_CELL",
-                                 new LCMDataInputStream(bytes, 0, length));
+            feed.messageReceived(null, channels[k % 4], new LCMDataInputStream(bytes, 0, length));
             if (k % 500 == 0) {
                 paint(new ProximityView(history), 300, 300);
             }
@@ -192,6 +269,162 @@ final class SpyTest {
         check(history.summary().last == 5000, "a time beyond all clears itself");
     }
 
+    private static void take(ProximityPlugin.Collector feed, String channel, LCMEncodable message)
+        throws IOException {
+        feed.messageReceived(null, channel, new LCMDataInputStream(encode(message)));
+    }
+
+    private static String kinds(ProximityHistory history, int gripper) {
+        final StringBuilder text = new StringBuilder();
+        for (final ProximityMarks.Event event : history.events(gripper, 0, AT_END)) {
+            text.append(event.utime / 1000).append(' ').append(event.name()).append(", ");
+        }
+        return text.toString();
+    }
+
+    private static String lines(ProximityHistory history) {
+        final StringBuilder text = new StringBuilder();
+        for (final ProximityMarks.Command command : history.commands(0, 1e9)) {
+            text.append(command.text).append(' ').append(command.begin / 1000).append('-');
+            text.append(command.end / 1000).append(command.phase == 4 ? " failed" : "").append(", ");
+        }
+        return text.toString();
+    }
+
+    /** Events come with states, of which some are missing and some come twice. */
+    private static void marksEvents() throws IOException {
+        final ProximityPlugin.Collector feed = new ProximityPlugin.Collector();
+        final ProximityHistory history = feed.history("WAFERHAND_STATE");
+        take(feed, "WAFERHAND_STATE", step(RUN, 1));
+        take(feed, "WAFERHAND_STATE", step(RUN, 2, 0, 3));
+        take(feed, "WAFERHAND_STATE", step(RUN, 2, 0, 3));
+        take(feed, "WAFERHAND_STATE", step(RUN, 1, 1));
+        fill(history, RUN, 1, 100);
+        take(feed, "WAFERHAND_STATE", step(RUN, 6, 2, 99));
+        check(kinds(history, 1).equals("2 picked, 2 near miss, 6 handed over, 6 event of kind 99, "),
+              kinds(history, 1));
+        check(kinds(history, 0).equals("6 handed over, "), "what another gripper has a part in");
+        check(history.summary().statesMissing == 3 && history.summary().seen == 100, "counts");
+        final ProximityMarks.Event event = history.events(1, 0, AT_END).get(0);
+        check(event.values().equals("|z| 0.250 mm, |xy| 12.50 mm, n1\u00b7n2 0.999600"), event.values());
+        check(history.events(1, 3000, AT_END).size() == 2, "between two times");
+
+        final ProximityHistory copy = history.copy();
+        final state refused = step(RUN, 7, 5);
+        refused.status = 3;
+        take(feed, "WAFERHAND_STATE", refused);
+        take(feed, "WAFERHAND_STATE", step(RUN + 1, 1, 11));
+        take(feed, "WAFERHAND_STATE", step(RUN, 8, 1));
+        check(kinds(history, 1).equals("1 hit, "), "a new run has its own events: " + kinds(history, 1));
+        check(history.add(message(RUN + 1, 1)) && kinds(history, 1).equals("1 hit, "), "and keeps them");
+        check(copy.events(1, 0, AT_END).size() == 4, "a copy stays");
+
+        fill(history, RUN + 1, 2, 5000);
+        take(feed, "WAFERHAND_STATE", step(RUN + 1, 1, 0));
+        check(kinds(history, 1).equals("1 picked, ") && history.summary().seen == 0, "a replay begins anew");
+        for (long seq = 2; seq < 2 * ProximityMarks.MOST; seq++) {
+            history.add(new ProximityMarks.State(java.nio.ByteBuffer.wrap(encode(step(RUN + 1, seq, 0)))));
+        }
+        check(history.events(1, 0, AT_END).size() <= ProximityMarks.MOST, "no more than there is room for");
+        check(history.events(1, 2e6 * ProximityMarks.MOST / 1000 - 1000, AT_END).size() > 0,
+              "the newest stay");
+    }
+
+    /** Commands come with motion control's messages, of which some are missing. */
+    private static void marksCommands() throws IOException {
+        final ProximityPlugin.Collector feed = new ProximityPlugin.Collector();
+        final ProximityHistory history = feed.history("WAFERHAND_MCS");
+        take(feed, "WAFERHAND_MCS", progress(0, 0, 0, ""));
+        take(feed, "WAFERHAND_MCS", progress(0, 0, 1, "GET A 1")); // no run's number has been drawn yet
+        fill(history, RUN, 1, 900);
+        check(lines(history).equals("GET A 1 0-1000000, "), "goes on: " + lines(history));
+        take(feed, "WAFERHAND_MCS", progress(RUN, 50, 2, "GET A 1"));
+        take(feed, "WAFERHAND_MCS", progress(RUN, 100, 3, "GET A 1"));
+        take(feed, "WAFERHAND_MCS", progress(RUN, 100, 3, "GET A 1"));
+        final mcs answer = progress(RUN, 100, 3, "get a 1");
+        answer.request = 17;
+        take(feed, "WAFERHAND_MCS", answer);                           // to a request: not another command
+        take(feed, "WAFERHAND_MCS", progress(RUN, 150, 2, "PUT B 2")); // its begin is missing
+        take(feed, "WAFERHAND_MCS", progress(RUN, 300, 1, "GET B 1")); // and its end
+        take(feed, "WAFERHAND_MCS", progress(RUN, 400, 4, "GET B 1"));
+        take(feed, "WAFERHAND_MCS", progress(RUN, 400, 1, "GET B 1"));
+        take(feed, "WAFERHAND_MCS", progress(RUN, 500, 3, "GET B 1"));
+        take(feed, "WAFERHAND_MCS", progress(RUN, 500, 5, ""));
+        check(lines(history).equals(
+                  "GET A 1 0-100, PUT B 2 150-300, GET B 1 300-400 failed, GET B 1 400-500, "),
+              lines(history));
+        check(history.commands(120e3, 160e3).size() == 1, "between two times");
+        take(feed, "WAFERHAND_MCS", progress(RUN + 1, 0, 1, "GET C 1"));
+        take(feed, "WAFERHAND_STATE", step(RUN + 1, 1));
+        check(history.commands(0, 1e6).size() == 1 && lines(history).startsWith("GET C 1 0-"),
+              "a new run has its own");
+        for (int k = 0; k < 3 * ProximityMarks.MOST; k++) {
+            history.add(new ProximityMarks.Progress(
+                java.nio.ByteBuffer.wrap(encode(progress(RUN + 1, k, 1, "GET C " + k)))));
+        }
+        check(history.commands(0, 1e9).size() <= ProximityMarks.MOST, "no more than there is room for");
+    }
+
+    /** What the messages say is shown, whatever the values are: which wafer, whether it is ready. */
+    private static void believesTheSimulator() {
+        final ProximityHistory history = filled(RUN, 1, 10);
+        final proximity ready = message(RUN, 11);
+        ready.wafer[0] = 5;
+        ready.dr_proj_z[0] = 400;
+        ready.ready[0] = 1;
+        ready.holds[0] = 1;
+        history.add(ready);
+        final ProximityHistory.Reading reading = history.at(AT_END);
+        check(reading.wafer[0] == 5 && reading.values[0][ProximityHistory.Z] == 400,
+              "the wafer of the message");
+        check((reading.flags[0] & ProximityHistory.READY) != 0, "ready is the message's");
+        check((reading.flags[0] & ProximityHistory.CONDITION << ProximityHistory.Z) == 0,
+              "a condition is its value's");
+        final ProximityHistory.Strip strip = history.strip(0, 0, 20000, 20);
+        check(strip.same[10] && strip.joined[11] && !strip.same[11], "no line from one wafer to another");
+        final proximity close = message(RUN, 12);
+        close.dr_proj_z[0] = Math.nextDown(0.5);
+        history.add(close);
+        check((history.at(AT_END).flags[0] & ProximityHistory.CONDITION << ProximityHistory.Z) != 0,
+              "the last double below the limit holds");
+    }
+
+    /** A recorded run, written by the simulator itself. */
+    private static void takesARecordedRun(String path) throws IOException {
+        final ProximityPlugin.Collector feed = new ProximityPlugin.Collector();
+        final ProximityHistory history = feed.history("WAFERHAND_STATE");
+        final Log log = new Log(path, "r");
+        try {
+            while (true) {
+                final Log.Event event = log.readNext();
+                if (event.channel.matches("WAFERHAND_(PROXIMITY|STATE|MCS|CELL)")) {
+                    feed.messageReceived(null, event.channel, new LCMDataInputStream(event.data));
+                }
+            }
+        } catch (EOFException end) {
+            log.close();
+        }
+        check(history.summary().refused == 0, "each message is whole, by its check, too");
+        final StringBuilder text = new StringBuilder();
+        for (final ProximityMarks.Event event : history.events(0, 0, AT_END)) {
+            text.append(event.name()).append(' ').append(history.waferName(event.wafer)).append(", ");
+            final ProximityHistory.Reading reading = history.at(event.utime);
+            if (event.name().equals("picked")) {
+                check(reading.utime == event.utime && reading.wafer[0] == event.wafer,
+                      "the wafer that is picked");
+                check((reading.flags[0] & ProximityHistory.HOLDS) != 0, "is shown as held");
+            }
+        }
+        check(text.toString().equals("picked Wafer 1, released Wafer 1, picked Wafer 2, released Wafer 2, "),
+              text.toString());
+        check(lines(history).startsWith(
+                  "GET A 1 0-1965, PUT B 2 1965-4302, GET B 1 4302-6119, PUT B 10 6119-8283, "),
+              lines(history));
+        check(count(paint(new ProximityView(history), 1100, 720), new java.awt.Color(0xdc, 0xe3, 0xea)) >
+                  1000,
+              "commands are drawn");
+    }
+
     private static void strips() {
         final ProximityHistory history = filled(RUN, 1, 1000);
         final proximity odd = message(RUN, 1001);
@@ -204,7 +437,7 @@ final class SpyTest {
         history.add(message(RUN, 3000));
         final ProximityHistory.Strip strip = history.strip(0, 0, 1000000, 10);
         check(strip.samples[0] == 99 && strip.samples[9] == 100, "samples");
-        check(strip.low[ProximityHistory.Z][5] == 0.5 && strip.high[ProximityHistory.Z][5] == 0.599,
+        check(strip.low[ProximityHistory.Z][5] == 0.5 && strip.high[ProximityHistory.Z][5] == (float)0.599,
               "extremes");
         check(strip.first[ProximityHistory.XY][3] == 300 && strip.last[ProximityHistory.XY][3] == 399,
               "ends");
@@ -221,15 +454,30 @@ final class SpyTest {
         check(history.strip(0, 5, 5, 5).samples[0] == 0, "an empty time");
     }
 
+    /** An hour of eight grippers at 200 messages a second stays; then the oldest are forgotten. */
     private static void forgets() {
-        final ProximityHistory history = filled(RUN, 1, 600000);
+        final ProximityHistory history = new ProximityHistory();
+        final proximity message = message(RUN, 1);
+        message.gripper_count = 8;
+        final long hour = 720000;
+        for (long seq = 1; seq <= 2 * hour; seq++) {
+            message.seq = 5 * seq;
+            message.utime = 5000 * seq;
+            check(history.add(message), "in order");
+            if (seq == hour) {
+                check(history.summary().first == 5000, "an hour is kept");
+                check(history.at(1e6 * 1800).seq == 5 * hour / 2, "and looked up");
+                check(history.strip(7, 0, 3.6e9, 500).samples[250] > 1000, "and shown");
+            }
+        }
         final ProximityHistory.Summary summary = history.summary();
-        check(summary.seen == 600000 && summary.last == 600000000L, "all seen");
-        check(summary.first == (600000 - (1 << 18) + 1) * 1000L, "the oldest forgotten");
-        check(history.at(summary.first).seq * 1000 == summary.first, "the ring's beginning");
+        final long kept = (summary.last - summary.first) / 5000 + 1;
+        check(summary.seen == 2 * hour && summary.last == 5000 * 2 * hour, "all seen");
+        check(kept <= ProximityHistory.CAPACITY && kept > hour, "the oldest forgotten");
+        check(history.at(summary.first).seq * 1000 == summary.first, "the oldest");
         final ProximityHistory copy = history.copy();
         history.add(message(RUN + 1, 1));
-        check(copy.at(AT_END).seq == 600000 && copy.summary().run == RUN, "a copy stays");
+        check(copy.at(AT_END).seq == 5 * 2 * hour && copy.summary().run == RUN, "a copy stays");
     }
 
     // ------------------------------------------------------------------------------------------ the view
@@ -280,31 +528,64 @@ final class SpyTest {
         }
     }
 
-    private static void pauses() {
+    private static void freezes() {
         final ProximityHistory history = filled(RUN, 1, 30000);
         final ProximityView view = new ProximityView(history);
-        view.pause();
-        final int before = java.util.Arrays.hashCode(pixels(view));
+        final JButton button = (JButton)view.getComponent(0);
+        check(button.getText().equals("Freeze"), "a button says what it does");
+        button.doClick();
+        check(button.getText().equals("Go on"), "and what it would do next");
+        final int before = picture(view);
         for (long seq = 30001; seq < 40000; seq++) {
             history.add(message(RUN, seq));
         }
-        check(java.util.Arrays.hashCode(pixels(view)) == before, "a paused view stands still");
+        check(picture(view) == before, "a frozen view stands still");
+        check(history.summary().last == 39999000, "time goes on being collected");
         view.scroll(0.5);
-        check(java.util.Arrays.hashCode(pixels(view)) != before, "it can be scrolled");
+        check(picture(view) != before, "it can be scrolled");
         view.scroll(1e9);
         view.scroll(-1e9);
-        check(java.util.Arrays.hashCode(pixels(view)) == before, "and back, and no further than there is");
-        view.pause();
-        check(java.util.Arrays.hashCode(pixels(view)) != before, "it goes on");
+        check(picture(view) == before, "and back, and no further than there is");
+        history.add(message(RUN + 1, 1));
+        check(picture(view) == before, "another run does not end it");
+        view.getActionMap().get("SPACE").actionPerformed(null);
+        check(picture(view) != before && button.getText().equals("Freeze"), "it goes on, by the key too");
         view.zoom(-100);
         paint(view, 500, 500);
         view.zoom(100);
         paint(view, 500, 500);
     }
 
+    /** Without its last lines, where the time that is collected is told. */
+    private static int picture(ProximityView view) {
+        return java.util.Arrays.hashCode(pixels(view));
+    }
+
+    private static void drawsMarks() {
+        final ProximityHistory history = filled(RUN, 1, 4000);
+        final ProximityView view = new ProximityView(history);
+        final int alarms = count(paint(view, 900, 700), ProximityChart.LIMIT);
+        try {
+            history.add(new ProximityMarks.State(java.nio.ByteBuffer.wrap(encode(step(RUN, 3500, 3, 11)))));
+            history.add(new ProximityMarks.Progress(
+                java.nio.ByteBuffer.wrap(encode(progress(RUN, 3800, 4, "GET A 1")))));
+        } catch (IOException impossible) {
+            throw new AssertionError(impossible);
+        }
+        check(count(paint(view, 900, 700), ProximityChart.LIMIT) > alarms + 20, "a near miss is marked");
+        for (int x = 0; x < 900; x += 7) {
+            for (int y = 0; y < 700; y += 70) {
+                view.dispatchEvent(new MouseEvent(view, MouseEvent.MOUSE_MOVED, 0, 0, x, y, 0, false));
+                if (y == 350) {
+                    paint(view, 900, 700);
+                }
+            }
+        }
+    }
+
     private static int[] pixels(ProximityView view) {
         final BufferedImage image = paint(view, 700, 500);
-        return image.getRGB(0, 0, 700, 500, null, 0, 700);
+        return image.getRGB(0, 0, 700, 450, null, 0, 700);
     }
 
     private static void formats() {
@@ -331,7 +612,12 @@ final class SpyTest {
         strips();
         forgets();
         paints();
-        pauses();
+        freezes();
+        drawsMarks();
+        marksEvents();
+        marksCommands();
+        believesTheSimulator();
+        takesARecordedRun(arguments[0]);
         formats();
         System.out.println(checks + " checks passed");
     }

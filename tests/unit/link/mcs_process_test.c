@@ -42,11 +42,15 @@ static void publish_request(int64_t seq, const char *line) {
     publish(message, line);
 }
 
+/* What the simulator takes for the running command in the slice before the last. */
+static char running[WH_LINK_LINE];
+
 /* Motion control's own link, and the requests before the slice in which they are due. */
 static wh_link_t asking;
 
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     (void)link;
+    snprintf(running, sizeof running, "%s", simulation.command);
     for (size_t i = 0; command->seq >= plan.at && i < plan.count; ++i) {
         publish_request(++plan.seq, plan.lines[i]);
     }
@@ -114,6 +118,27 @@ static void execute_requests(void) {
 static void assert_heard(int64_t seq, wh_status_t error) {
     assert_int_equal(heard.count[seq], 1);
     assert_int_equal(heard.error[seq], error);
+}
+
+static void the_simulator_knows_the_running_command(void **state) {
+    (void)state;
+    assert_string_equal(simulation.command, "");
+    assert_int_equal(execute("GET A 1"), WH_OK);
+    assert_string_equal(running, "GET A 1"); /* though it began before the run had a number */
+    (void)wh_node_drain(&node, 1000);
+    assert_string_equal(simulation.command, "");
+    assert_int_equal(execute("PUT B 2"), WH_OK);
+    assert_string_equal(running, "PUT B 2");
+    (void)wh_node_drain(&node, 1000);
+
+    uint8_t encoded[200];
+    char line[] = "GET Z 1", nothing[] = "";
+    const waferhand_mcs other = {
+        .run = control.identity.run ^ 1, .phase = WH_LINK_PHASE_BEGINS, .command = line, .text = nothing};
+    const int size = waferhand_mcs_encode(encoded, 0, (int)sizeof encoded, &other);
+    assert_true(wh_node_publish(&node, WH_CHANNEL_MCS, encoded, (size_t)size));
+    (void)wh_node_drain(&node, 1000);
+    assert_string_equal(simulation.command, ""); /* another motion control's */
 }
 
 static void requests_wait_for_their_turn(void **state) {
@@ -240,6 +265,7 @@ static void stop_of_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        IN_PAPER(the_simulator_knows_the_running_command),
         IN_PAPER(requests_wait_for_their_turn),
         IN_PAPER(a_number_that_comes_again_is_answered_again_and_not_executed),
         IN_PAPER(a_number_with_another_line_is_refused_and_the_first_line_named),

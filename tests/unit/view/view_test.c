@@ -291,6 +291,231 @@ static void wafers_and_covers(void **state) {
     wh_view_cell_free(&cell);
 }
 
+/* ----------------------------------------------------------------------------------------------------- hits */
+
+static const float *colour_of_body(const wh_view_cell_t *cell, size_t body, size_t shape) {
+    return cell->load.link[body].geom[shape].color;
+}
+
+static bool is_red(const float rgba[4]) {
+    return rgba[0] > 0.8F && rgba[1] < 0.1F && rgba[2] < 0.2F && rgba[3] >= 1;
+}
+
+static size_t count_red(const wh_view_cell_t *cell) {
+    size_t count = 0;
+    for (int32_t i = 0; i < cell->load.num_links; ++i) {
+        for (int32_t k = 0; k < cell->load.link[i].num_geom; ++k) {
+            count += is_red(colour_of_body(cell, (size_t)i, (size_t)k));
+        }
+    }
+    return count;
+}
+
+/* The first part of a kind and owner. */
+static int32_t part_of(const wh_layout_t *layout, wh_part_kind_t kind, int32_t owner) {
+    for (size_t i = 0; i < layout->world.part_count; ++i) {
+        if (layout->world.parts[i].kind == kind && layout->world.parts[i].owner == owner) {
+            return (int32_t)i;
+        }
+    }
+    return WH_NONE;
+}
+
+static void what_collided_is_red_and_nothing_else(void **state) {
+    static const int32_t none[2] = {WH_NONE, WH_NONE};
+    wh_view_cell_t cell;
+    (void)state;
+    const wh_layout_t *layout = read_sound(CELL);
+    wh_view_cell_open(&cell, layout, WH_VIEW_ALL);
+    const int size = waferhand_viewer_load_encoded_size(&cell.load);
+    uint8_t *plain = calloc((size_t)size, 1), *again = calloc((size_t)size, 1);
+    assert_non_null(plain);
+    assert_non_null(again);
+    assert_int_equal(waferhand_viewer_load_encode(plain, 0, size, &cell.load), size);
+    assert_false(wh_view_cell_set_hit(&cell, none));
+    for (int32_t part = 0; part < (int32_t)(layout->world.part_count + 2); ++part) {
+        const int32_t parts[2] = {part, part_of(layout, WH_PART_BLADE, 0)};
+        assert_true(wh_view_cell_set_hit(&cell, parts));
+        assert_false(wh_view_cell_set_hit(&cell, parts));
+        assert_int_equal(count_red(&cell), part == parts[1] ? 1 : 2);
+        assert_true(is_red(colour_of_body(&cell, cell.grippers, 0)));
+    }
+    const int32_t beyond[2] = {(int32_t)(layout->world.part_count + 2), -7};
+    assert_true(wh_view_cell_set_hit(&cell, beyond));
+    assert_int_equal(waferhand_viewer_load_encode(again, 0, size, &cell.load), size);
+    assert_memory_equal(plain, again, (size_t)size);
+    free(plain);
+    free(again);
+    wh_view_cell_free(&cell);
+}
+
+/* Its cover would hide that it is red. */
+static void a_red_wafer_is_not_covered(void **state) {
+    wh_view_cell_t cell;
+    const wh_pose_t grippers[2] = {wh_pose_identity(), wh_pose_identity()};
+    wh_wafer_t wafers[2];
+    (void)state;
+    const wh_layout_t *layout = read_sound(CELL);
+    memcpy(wafers, layout->start, sizeof wafers);
+    wafers[0].holder = WH_NONE;
+    wafers[1].holder = 0;
+    wh_view_cell_open(&cell, layout, WH_VIEW_ALL);
+    const int32_t parts[2] = {WH_NONE, (int32_t)layout->world.part_count + 1};
+    const wh_view_look_t look = {1000, grippers, wafers};
+    wh_view_cell_move(&cell, &look);
+    assert_at(&cell, cell.covers, &wafers[1].base_from_wafer.r);
+    assert_true(wh_view_cell_set_hit(&cell, parts));
+    wh_view_cell_move(&cell, &look);
+    assert_away(&cell, cell.covers);
+    assert_true(is_red(colour_of_body(&cell, cell.wafers + 1, 0)));
+    wh_view_cell_free(&cell);
+}
+
+/* ---------------------------------------------------------------------------------------------------- board */
+
+static const waferhand_viewer_link *body_of(const wh_view_board_t *board, const char *name) {
+    for (int32_t i = 0; i < board->load.num_links; ++i) {
+        assert_string_equal(board->load.link[i].name, board->draw.link_name[i]);
+        if (strcmp(board->load.link[i].name, name) == 0) {
+            return &board->load.link[i];
+        }
+    }
+    fail_msg("no body %s", name);
+    return NULL;
+}
+
+/* The text of a line, read back: what stands at each dot of each character, from the mesh alone. */
+static void read_dots(const wh_view_board_t *board, const char *name, char *rows, size_t columns) {
+    const waferhand_viewer_link *body = body_of(board, name);
+    memset(rows, '.', 7 * columns);
+    if (body->num_geom == 0) {
+        return;
+    }
+    const float *numbers = body->geom[0].float_data;
+    const size_t points = (size_t)numbers[0], triangles = (size_t)numbers[1];
+    assert_int_equal(body->geom[0].num_float_data, 2 + 3 * points + 3 * triangles);
+    assert_int_equal(points, 2 * triangles);
+    for (size_t i = 0; i < 3 * triangles; ++i) {
+        assert_in_range(numbers[2 + 3 * points + i], 0, points - 1);
+    }
+    for (size_t i = 0; i < points; i += 4) { /* left lower, right lower, right upper, left upper */
+        const float *at = numbers + 2 + 3 * i;
+        for (size_t row = 0; row < 7; ++row) {
+            for (size_t column = 0; column < columns; ++column) {
+                const double x = ((double)column + 0.5) * board->dot / 1000;
+                const double y = -((double)row + 0.5) * board->dot / 1000;
+                if (x > (double)at[0] && x < (double)at[3] && y > (double)at[1] && y < (double)at[7]) {
+                    assert_int_equal(rows[row * columns + column], '.'); /* no dot twice */
+                    rows[row * columns + column] = '#';
+                }
+            }
+        }
+    }
+}
+
+static void the_board_writes_capitals(void **state) {
+    static wh_view_board_t board;
+    char rows[7 * 12], same[7 * 12];
+    (void)state;
+    wh_view_board_open(&board, read_sound(CELL));
+    assert_true(wh_view_board_write(&board, WH_VIEW_HIT, "T\xc3\xa9"));
+    read_dots(&board, "board::hit", rows, 12);
+    assert_memory_equal(rows,
+                        "#####.#####."
+                        "..#...#...#."
+                        "..#...#...#."
+                        "..#...#...#."
+                        "..#...#...#."
+                        "..#...#...#."
+                        "..#...#####.",
+                        sizeof rows);
+    assert_false(wh_view_board_write(&board, WH_VIEW_HIT, "T\xc3\xa9"));
+    for (int c = ' '; c < 127; ++c) { /* no two characters look alike, but for capitals and boxes */
+        const char text[2] = {(char)c, '\0'};
+        (void)wh_view_board_write(&board, WH_VIEW_HIT, text);
+        (void)wh_view_board_write(&board, WH_VIEW_HIT_WITH, "x");
+        read_dots(&board, "board::hit", rows, 12);
+        read_dots(&board, "board::with", same, 12);
+        assert_int_equal(memcmp(rows, same, sizeof rows) == 0, c == 'x' || c == 'X');
+        assert_int_equal(body_of(&board, "board::hit")->num_geom, c != ' ');
+    }
+    wh_view_board_free(&board);
+}
+
+/* However long and odd the lines are, the message has room for them. */
+static void a_line_is_cut_off_at_the_edge(void **state) {
+    static wh_view_board_t board;
+    char text[400];
+    (void)state;
+    wh_view_board_open(&board, read_sound(CELL));
+    for (int i = 0; i < 2000; ++i) {
+        const size_t length = wh_test_below(sizeof text - 1);
+        for (size_t k = 0; k < length; ++k) {
+            text[k] = (char)(i < 100 ? '%' : 1 + (int)wh_test_below(255));
+        }
+        text[length] = '\0';
+        (void)wh_view_board_write(&board, (wh_view_line_t)(i % WH_VIEW_LINES), text);
+        assert_in_range(waferhand_viewer_load_encoded_size(&board.load), 1, wh_view_board_room(&board));
+        assert_true(strlen(board.lines[i % WH_VIEW_LINES]) <= WH_VIEW_COLUMNS);
+    }
+    assert_in_range(wh_view_board_room(&board), 1, WH_VIEW_BYTES);
+    assert_in_range(waferhand_viewer_draw_encoded_size(&board.draw), 1, WH_LINK_DATAGRAM);
+    wh_view_board_free(&board);
+}
+
+/* Bit s of each digit: its segment s is where it can be seen. */
+static void segments_of(const wh_view_board_t *board, unsigned digits[WH_VIEW_DIGITS]) {
+    memset(digits, 0, WH_VIEW_DIGITS * sizeof *digits);
+    for (int32_t i = 0; i < board->draw.num_links; ++i) {
+        const char *name = board->draw.link_name[i];
+        assert_unit(board->draw.quaternion[i]);
+        if (strncmp(name, "board::time ", 12) == 0 && board->draw.position[i][2] > -100) {
+            digits[name[12] - '1'] |= 1U << (unsigned)(name[13] - 'a');
+        }
+    }
+}
+
+static void the_board_shows_the_time(void **state) {
+    static const unsigned shapes[10] = {0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f};
+    static const int64_t tenths[] = {0, 1, 82, 99, 100, 12345, 999999, 1000000, 1234567};
+    static wh_view_board_t board;
+    unsigned digits[WH_VIEW_DIGITS];
+    char text[32];
+    (void)state;
+    wh_view_board_open(&board, read_sound(CELL));
+    for (size_t i = 0; i < sizeof tenths / sizeof tenths[0]; ++i) {
+        assert_int_equal(wh_view_board_set_time(&board, tenths[i] * 100000), tenths[i] > 0);
+        assert_false(wh_view_board_set_time(&board, tenths[i] * 100000 + 99999));
+        assert_true(board.draw.timestamp == tenths[i] * 100 + 99);
+        segments_of(&board, digits);
+        snprintf(text, sizeof text, "%6lld", (long long)(tenths[i] % 1000000));
+        for (size_t k = 0; k < WH_VIEW_DIGITS; ++k) {
+            const bool is_blank = tenths[i] % 1000000 < 10 ? k < 4 : text[k] == ' ';
+            const unsigned digit = text[k] == ' ' ? 0 : (unsigned)(text[k] - '0');
+            assert_int_equal(digits[k], is_blank ? 0 : shapes[digit]);
+        }
+    }
+    wh_view_board_free(&board);
+}
+
+/* Behind and above all that stands, and read from where the camera begins. */
+static void the_board_stands_behind_the_cell(void **state) {
+    static wh_view_board_t board;
+    (void)state;
+    const wh_layout_t *layout = read_sound(CELL);
+    wh_view_board_open(&board, layout);
+    const wh_pose_t *pose = &board.base_from_board;
+    assert_int_equal(wh_pose_validate(pose), WH_OK);
+    const wh_vec3_t normal = wh_mat3_column(&pose->R, 2), up = wh_mat3_column(&pose->R, 1);
+    assert_true(wh_vec3_dot(&normal, &wh_view_from) > 0 && up.z > 0.999);
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        const wh_vec3_t from_board =
+            wh_vec3_subtract(&layout->places[s].base_from_station.r, &board.base_from_board.r);
+        assert_true(wh_vec3_dot(&from_board, &normal) > 0 && from_board.z < 0);
+    }
+    wh_view_board_free(&board);
+}
+
 /* ----------------------------------------------------------------------------------------------- large cells */
 
 /* A cell with so many parts of one kind, and what of it was shown; WH_VIEW_DETAILS: refused. */
@@ -309,7 +534,7 @@ static wh_view_detail_t detail_with(wh_part_kind_t kind, size_t count, const wh_
     wh_view_detail_t detail = WH_VIEW_DETAILS;
     if (wh_viewer_open(&view, NULL, &own) == WH_OK) {
         detail = view.cell.detail;
-        assert_true(view.load_size <= WH_VIEW_BYTES);
+        assert_true(view.cell_bytes.load_size <= WH_VIEW_BYTES);
         wh_viewer_close(&view);
     }
     free(parts);
@@ -370,6 +595,50 @@ static void what_is_due_when(void **state) {
     wh_protocol_server_close(&server);
 }
 
+/* A hit goes out at once, stays, and goes with the next run; so does the command. */
+static void hits_and_commands_go_out(void **state) {
+    static wh_protocol_server_t server;
+    static wh_viewer_t view;
+    static wh_event_t events[1] = {{.kind = WH_EVENT_HIT}};
+    char command[] = "GET A 1";
+    (void)state;
+    const wh_layout_t *layout = read_sound(CELL);
+    assert_int_equal(wh_protocol_server_open(&server, layout), WH_OK);
+    assert_int_equal(wh_viewer_open(&view, NULL, layout), WH_OK);
+    view.command = command;
+    wh_viewer_tick(&view, &server);
+    assert_true(view.loads == 1);
+    assert_string_equal(view.board.lines[WH_VIEW_COMMAND], "GET A 1");
+
+    events[0].parts[0] = part_of(layout, WH_PART_BLADE, 0);
+    events[0].parts[1] = (int32_t)layout->world.part_count + 1;
+    const wh_event_t *const own = server.state.events;
+    server.state.events = events;
+    server.state.event_count = 1;
+    step_once(&server);
+    wh_viewer_tick(&view, &server); /* too early to be sent, but it is not forgotten */
+    server.state.events = own;
+    server.state.event_count = 0;
+    assert_true(view.loads == 1 && count_red(&view.cell) == 2);
+    assert_string_equal(view.board.lines[WH_VIEW_HIT_WITH], "and a::b");
+    view.last_draw_us -= WH_VIEW_DRAW_US;
+    wh_viewer_tick(&view, &server);
+    assert_true(view.loads == 2 && view.draws == 2);
+    view.last_draw_us -= WH_VIEW_DRAW_US;
+    wh_viewer_tick(&view, &server);
+    assert_true(view.loads == 2 && view.draws == 2);
+
+    ++server.identity.run;
+    command[0] = '\0';
+    view.last_draw_us -= WH_VIEW_DRAW_US;
+    wh_viewer_tick(&view, &server);
+    assert_true(view.loads == 3 && count_red(&view.cell) == 0);
+    assert_string_equal(view.board.lines[WH_VIEW_HIT], "");
+    assert_string_equal(view.board.lines[WH_VIEW_COMMAND], "");
+    wh_viewer_close(&view);
+    wh_protocol_server_close(&server);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fingerprints_are_drakes),
@@ -381,6 +650,13 @@ int main(void) {
         cmocka_unit_test_setup_teardown(names_of_any_bytes, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(bodies_are_where_they_are, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(wafers_and_covers, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(what_collided_is_red_and_nothing_else, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(a_red_wafer_is_not_covered, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(the_board_writes_capitals, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(a_line_is_cut_off_at_the_edge, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(the_board_shows_the_time, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(the_board_stands_behind_the_cell, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(hits_and_commands_go_out, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(what_a_large_cell_leaves_out, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(what_is_due_when, open_sandbox, close_sandbox),
     };

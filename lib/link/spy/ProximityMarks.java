@@ -1,0 +1,302 @@
+package waferhand;
+
+import java.nio.ByteBuffer;
+import java.nio.charset.StandardCharsets;
+import java.util.ArrayList;
+import java.util.List;
+import java.util.Locale;
+
+/**
+ * What is marked on the time axis of a run: the events out of state messages, and the commands out of motion control's.
+ * Both are read by hand: the generated classes believe any count and any length.
+ */
+final class ProximityMarks {
+    /** More of each than a run of many hours has; beyond that the oldest are forgotten. */
+    static final int MOST = 1 << 15;
+
+    /** As event.lcm numbers them. */
+    private static final String[] KINDS = {
+        "picked",     "released",      "handed over", "near miss",   "contested",   "bad input",
+        "no support", "slot occupied", "off centre",  "askew",       "settled",     "hit",
+        "undecided",  "too close",     "slipped",     "vacuum lost", "fault armed", "fault cleared"};
+    private static final int HANDED_OVER = 2, NEAR_MISS = 3, CONTESTED = 4;
+    /** By kind, a bit: what is as it should be. */
+    private static final int WELCOME = 1 | 1 << 1 | 1 << HANDED_OVER | 1 << 10 | 1 << 17;
+
+    /** Something that happened in a slice. */
+    static final class Event {
+        long utime;
+        int kind, wafer, gripper, other;
+        double value, limit, z, xy, planar;
+
+        boolean isWelcome() {
+            return kind >= 0 && kind < KINDS.length && (WELCOME >> kind & 1) != 0;
+        }
+
+        /** Whether it is marked where this gripper's values are shown. Those of no gripper are marked everywhere. */
+        boolean concerns(int which) {
+            final boolean isOther = (kind == HANDED_OVER || kind == CONTESTED) && other == which;
+            return gripper < 0 || gripper == which || isOther;
+        }
+
+        String name() {
+            return kind >= 0 && kind < KINDS.length ? KINDS[kind] : "event of kind " + kind;
+        }
+
+        /** The values that explain it, in words. */
+        String values() {
+            if (kind <= CONTESTED) {
+                return String.format(Locale.ROOT, "|z| %.3f mm, |xy| %.2f mm, n1·n2 %.6f", Math.abs(z), xy,
+                                     planar);
+            }
+            return limit > 0 ? String.format(Locale.ROOT, "%.4g, limit %.4g", value, limit)
+            : value != 0     ? String.format(Locale.ROOT, "%.4g", value)
+                             : "";
+        }
+    }
+
+    /** A line that motion control executes. */
+    static final class Command {
+        static final int GOES_ON = 2, DONE = 3, FAILED = 4;
+        long run, begin, end;
+        int phase, line, error;
+        String text, result;
+
+        boolean isOver() {
+            return phase >= DONE;
+        }
+
+        private Command copy(double until) {
+            final Command other = new Command();
+            other.run = run;
+            other.begin = begin;
+            other.end = (long)Math.max(begin, until);
+            other.phase = phase;
+            other.line = line;
+            other.error = error;
+            other.text = text;
+            other.result = result;
+            return other;
+        }
+    }
+
+    /** The events of one state message. */
+    static final class State {
+        private static final int HEAD = 88, WAFER = 100, GRIPPER = 446, EVENT = 156, FAULT = 328, CHECK = 8;
+        private static final int WAFERS = 256, GRIPPERS = 8, EVENTS = 64, FAULTS = 16;
+
+        final long utime, seq, run, layout;
+        final List<Event> events = new ArrayList<>();
+
+        /** Throws an IllegalArgumentException or a BufferUnderflowException when the bytes are not a whole state. */
+        State(ByteBuffer data) {
+            final int size = data.remaining();
+            demand(data.getLong() == state.LCM_FINGERPRINT, "a state");
+            utime = data.getLong();
+            seq = data.getLong();
+            run = data.getLong();
+            layout = data.getLong();
+            final int status = data.getInt();
+            final int wafers = count(data, WAFERS);
+            final int grippers = count(data, GRIPPERS);
+            final int count = count(data, EVENTS);
+            final int faults = count(data, FAULTS);
+            demand(size == HEAD + WAFER * wafers + GRIPPER * grippers + EVENT * count + FAULT * faults,
+                   "a whole state");
+            demand(utime >= 0 && seq >= 0 && isSound(data, size), "a sound state");
+            final int first = HEAD - CHECK + WAFER * wafers + GRIPPER * grippers;
+            for (int k = 0; status == 0 && k < count; k++) {
+                data.position(first + k * EVENT);
+                events.add(event(data));
+            }
+        }
+
+        private Event event(ByteBuffer data) {
+            final Event event = new Event();
+            event.utime = utime;
+            event.kind = data.getInt();
+            event.wafer = data.getInt();
+            event.gripper = data.getInt();
+            event.other = data.getInt();
+            data.position(data.position() + 4 + 8 + 8); // status, the slice measured, height
+            event.value = data.getDouble();
+            event.limit = data.getDouble();
+            data.position(data.position() + 2 * 4 + 3 * 8 + 3 * 8); // parts, place, dr
+            event.planar = data.getDouble();
+            event.z = data.getDouble();
+            data.position(data.position() + 3 * 8);
+            event.xy = data.getDouble();
+            return event;
+        }
+
+        /** The check that lib/link/messages.h describes. */
+        private static boolean isSound(ByteBuffer data, int size) {
+            final long written = data.getLong(size - CHECK);
+            long h = 0x6a09e667f3bcc908L;
+            for (int at = 0; at < size - CHECK; at += 8) {
+                long word = 0;
+                for (int k = 0; k < 8; k++) {
+                    word = word << 8 | (at + k < size - CHECK ? data.get(at + k) & 0xff : 0);
+                }
+                h = (h ^ word) * 0x9e3779b97f4a7c15L;
+                h ^= h >>> 32;
+            }
+            return written == 0 || written == (h == 0 ? 1 : h);
+        }
+    }
+
+    /** One message of motion control. */
+    static final class Progress {
+        static final int BEGINS = 1;
+        final long utime, run, request;
+        final int phase, line, error;
+        final String command, text;
+
+        /** Throws like State. */
+        Progress(ByteBuffer data) {
+            demand(data.getLong() == mcs.LCM_FINGERPRINT, "motion control's");
+            utime = data.getLong();
+            data.getLong(); // the slice
+            run = data.getLong();
+            data.getLong(); // the layout
+            phase = data.getInt();
+            request = data.getLong();
+            line = data.getInt();
+            error = data.getInt();
+            command = text(data);
+            text = text(data);
+            demand(!data.hasRemaining() && utime >= 0, "a whole message of motion control");
+        }
+    }
+
+    private final ArrayList<Event> events = new ArrayList<>();
+    private final ArrayList<Command> commands = new ArrayList<>();
+    private long lastSeq, missing;
+
+    private static void demand(boolean good, String what) {
+        if (!good) {
+            throw new IllegalArgumentException("not " + what);
+        }
+    }
+
+    private static int count(ByteBuffer data, int most) {
+        final int count = data.getInt();
+        demand(count >= 0 && count <= most, "a count");
+        return count;
+    }
+
+    private static String text(ByteBuffer data) {
+        final int length = data.getInt();
+        demand(length >= 1 && length <= data.remaining(), "a text");
+        final byte[] bytes = new byte[length];
+        data.get(bytes);
+        return new String(bytes, 0, length - 1, StandardCharsets.UTF_8);
+    }
+
+    /** Another run begins, or the same one again: keeps only commands of it that have begun already. */
+    void begin(long run, long utime) {
+        events.clear();
+        for (final Command command : commands) {
+            command.run = command.run == 0 ? run : command.run;
+        }
+        commands.removeIf(command -> command.run != run || command.begin > utime || command.isOver());
+        lastSeq = 0;
+        missing = 0;
+    }
+
+    /** Takes the events of a state that comes for the first time. A state that is sent again has them again. */
+    void add(State message) {
+        if (message.seq <= lastSeq) {
+            return;
+        }
+        if (lastSeq > 0 && message.seq - lastSeq < 1_000_000_000L) {
+            missing += message.seq - lastSeq - 1;
+        }
+        lastSeq = message.seq;
+        events.addAll(message.events);
+        forget(events);
+    }
+
+    /** Takes how far a command has come. Messages may be missing: what goes on or ends has begun. The first command of a
+     * run begins before motion control has drawn the run's number. */
+    void add(Progress message) {
+        final boolean answers = message.request != 0 && message.phase >= Command.DONE;
+        if (message.phase < Progress.BEGINS || message.phase > Command.FAILED || answers ||
+            message.command.isEmpty()) {
+            return;
+        }
+        Command command = commands.isEmpty() ? null : commands.get(commands.size() - 1);
+        final boolean same = command != null && (command.run == 0 || command.run == message.run) &&
+                             command.line == message.line && command.text.equals(message.command);
+        final boolean begins = message.phase == Progress.BEGINS;
+        if (same && (begins ? !command.isOver() && command.begin == message.utime
+                            : command.isOver() && command.end >= message.utime)) {
+            return; // it is told again
+        }
+        if (!same || begins || command.isOver()) {
+            command = new Command();
+            command.run = message.run;
+            command.begin = message.utime;
+            command.line = message.line;
+            command.text = message.command;
+            commands.add(command);
+            forget(commands);
+        }
+        command.run = message.run;
+        command.end = Math.max(command.begin, message.utime);
+        command.phase = message.phase;
+        command.error = message.error;
+        command.result = message.text;
+    }
+
+    private static void forget(ArrayList<?> marks) {
+        if (marks.size() > MOST) {
+            marks.subList(0, marks.size() - MOST / 2).clear();
+        }
+    }
+
+    /** How many states of the run never came, and with them what happened there. */
+    long missing() {
+        return missing;
+    }
+
+    /** The marked events of a gripper between two times, us, in order. */
+    List<Event> events(int gripper, double from, double to) {
+        final List<Event> found = new ArrayList<>();
+        for (final Event event : events) {
+            if (event.utime >= from && event.utime <= to && event.concerns(gripper)) {
+                found.add(event);
+            }
+        }
+        return found;
+    }
+
+    /** The commands of a run that lie at least in part between two times, us. One that is not over goes on to `to`,
+     * unless another one has begun. */
+    List<Command> commands(long run, double from, double to) {
+        final List<Command> found = new ArrayList<>();
+        for (int k = 0; k < commands.size(); k++) {
+            final Command command = commands.get(k);
+            final boolean last = k + 1 == commands.size();
+            final double end = command.isOver() ? command.end : last ? to : commands.get(k + 1).begin;
+            if (command.run == run && end >= from && command.begin <= to) {
+                found.add(command.copy(end));
+            }
+        }
+        return found;
+    }
+
+    /** A copy that later messages do not change. */
+    ProximityMarks copy() {
+        final ProximityMarks other = new ProximityMarks();
+        other.events.addAll(events);
+        other.commands.addAll(commands);
+        if (!commands.isEmpty()) { // only the last one still changes
+            final Command last = commands.get(commands.size() - 1);
+            other.commands.set(commands.size() - 1, last.copy(last.end));
+        }
+        other.lastSeq = lastSeq;
+        other.missing = missing;
+        return other;
+    }
+}

@@ -1,0 +1,66 @@
+/* A board above the cell, for Drake's viewer: simulated time, the command that runs, and what was hit.
+ *
+ * The viewer has no text of its own that LCM reaches. So lines are meshes of small rectangles, in capitals of
+ * five by seven dots; a byte that is no such character is a box. The digits of the time are seven-segment
+ * ones, whose segments DRAW moves, so that the time runs without a new LOAD. The board has channels of its
+ * own: a new line makes the viewer begin anew with the board, not with the cell.
+ *
+ * Host code: ends the program if out of memory. Nothing is allocated after wh_view_board_open.
+ */
+#ifndef WH_VIEW_BOARD_H
+#define WH_VIEW_BOARD_H
+
+#include <waferhand_viewer_draw.h>
+#include <waferhand_viewer_load.h>
+
+#include "../layout/layout.h"
+
+/* Characters across the board, and digits of the time, the last of them tenths of a second. */
+#define WH_VIEW_COLUMNS 30
+#define WH_VIEW_DIGITS 6
+#define WH_VIEW_SEGMENTS 7
+
+/* The command stands behind the time and has 20 characters, the lines below have all. */
+typedef enum { WH_VIEW_COMMAND, WH_VIEW_HIT, WH_VIEW_HIT_WITH, WH_VIEW_LINES } wh_view_line_t;
+
+/* Rectangles of a line: a text that needs more is cut off. */
+#define WH_VIEW_RECTANGLES 300
+
+/* The back, the unit of time, the lines, the segments. */
+#define WH_VIEW_BOARD_BODIES (2 + WH_VIEW_LINES + WH_VIEW_DIGITS * WH_VIEW_SEGMENTS)
+
+/* Must not be moved once opened: the messages point into it. */
+typedef struct {
+    waferhand_viewer_load load;
+    waferhand_viewer_draw draw;
+    wh_pose_t base_from_board; /* x to the right, y up, z to whom looks */
+    double dot;                /* mm */
+    int64_t tenths;            /* of a second: what the digits show */
+    char lines[WH_VIEW_LINES][WH_VIEW_COLUMNS + 1];
+    waferhand_viewer_link bodies[WH_VIEW_BOARD_BODIES];
+    waferhand_viewer_geometry shapes[WH_VIEW_BOARD_BODIES];
+    char names[WH_VIEW_BOARD_BODIES][16];
+    char *name_list[WH_VIEW_BOARD_BODIES];
+    int32_t robots[WH_VIEW_BOARD_BODIES];
+    float places[WH_VIEW_BOARD_BODIES][7]; /* position, quaternion */
+    float *positions[WH_VIEW_BOARD_BODIES], *quaternions[WH_VIEW_BOARD_BODIES];
+} wh_view_board_t;
+
+/* Where one who looks at the cell stands, from the cell's middle, in base: of any length. */
+extern const wh_vec3_t wh_view_from;
+
+/* A board behind the cell, over its highest part, as wide as most of the cell; it shows 0 s and no lines. */
+void wh_view_board_open(wh_view_board_t *board, const wh_layout_t *layout);
+
+/* The most bytes that `load` encoded may have, whatever is written. */
+int wh_view_board_room(const wh_view_board_t *board);
+
+/* Writes a line for `load`, cut off at the board's edge. False if it is there already. */
+bool wh_view_board_write(wh_view_board_t *board, wh_view_line_t line, const char *text);
+
+/* Shows a time for `draw`: up to 99999.9 s, from there on again from 0. False if no digit changes. */
+bool wh_view_board_set_time(wh_view_board_t *board, int64_t utime);
+
+void wh_view_board_free(wh_view_board_t *board);
+
+#endif
