@@ -100,10 +100,24 @@ static void set_up_local(lua_State *L, wh_local_cell_t *local, const wh_layout_t
     }
 }
 
-static void set_up_look_ahead(lua_State *L, wh_rehearsal_t *rehearsal, const wh_layout_t *layout) {
-    if (layout->look_ahead && !rehearsal->look_ahead) {
-        wh_rehearsal_look_ahead(rehearsal, layout, lua_memory(L, wh_rehearsal_ahead_bytes(layout)));
+static void hear_nominal(void *user, const wh_command_t *command, const wh_state_t *state) {
+    if (state->status == WH_OK) {
+        wh_nominal_slice(user, command);
     }
+}
+
+static void set_up_look_ahead(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout,
+                              const wh_layout_t *real) {
+    wh_nominal_t *nominal = NULL;
+    if (!layout->look_ahead || mcs->rehearsal.look_ahead) {
+        return;
+    }
+    if (real != layout) {
+        nominal = wh_nominal_begin(lua_memory(L, wh_nominal_bytes(layout)), layout, real);
+        wh_mcs_listen(mcs, hear_nominal, nominal);
+    }
+    wh_rehearsal_look_ahead(&mcs->rehearsal, layout, nominal,
+                            lua_memory(L, wh_rehearsal_ahead_bytes(layout)));
 }
 
 static void hear_decisions(void *user, const wh_command_t *command, const wh_state_t *state) {
@@ -135,7 +149,7 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
     if (status != WH_OK) {
         luaL_error(L, "%s: %s", layout->path, wh_record_error_text(status));
     }
-    set_up_look_ahead(L, &mcs->rehearsal, layout);
+    set_up_look_ahead(L, mcs, layout, real);
     wh_simulator_view(&mcs->local.simulator, &mcs->state);
     mcs->layout = layout;
     mcs->real = real;

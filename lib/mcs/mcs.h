@@ -43,7 +43,7 @@ typedef struct {
 
 /* Who hears of slices: decisions, recorder, a collision check beside a simulator elsewhere, the run's
  * listener. */
-#define WH_MCS_LISTENERS 4
+#define WH_MCS_LISTENERS 5
 
 /* A segment that was played, and the command of the record that asked for it (or WH_NONE). */
 typedef struct {

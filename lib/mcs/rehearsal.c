@@ -80,6 +80,7 @@ void wh_rehearsal_note_reach(const wh_rehearsal_t *rehearsal, const wh_track_t *
 /* The copy of the cell. */
 typedef struct {
     const wh_layout_t *layout;
+    wh_nominal_t *nominal; /* null: no trial */
     wh_simulator_t simulator;
     wh_collision_t collision;
     wh_gripper_t grippers[WH_GRIPPERS];
@@ -133,10 +134,14 @@ static bool judge(void *user, const wh_track_t *begun, const wh_state_t *now, bo
     wh_track_t track = *begun;
     wh_command_t command = {.fault_count = 0};
     wh_machine_cache_t cache = {.is_taken = false};
-    wh_state_t state;
-    if (track.segment.kind == WH_SEGMENT_SENSOR || (first && !begin(ahead, now))) {
+    wh_state_t state = *now;
+    if (first && ahead->nominal) {
+        wh_nominal_believe(ahead->nominal, now, &state);
+    }
+    if (track.segment.kind == WH_SEGMENT_SENSOR || (first && !begin(ahead, &state))) {
         return false;
     }
+    track.machine = &ahead->layout->machine;
     while (wh_track_next(&track, 0) == WH_TRACK_MOVING) {
         wh_command_from_track(&command, &cache, &track);
         (void)wh_simulator_step(&ahead->simulator, &command, &state);
@@ -149,10 +154,12 @@ static bool judge(void *user, const wh_track_t *begun, const wh_state_t *now, bo
     return false;
 }
 
-void wh_rehearsal_look_ahead(wh_rehearsal_t *rehearsal, const wh_layout_t *layout, void *memory) {
+void wh_rehearsal_look_ahead(wh_rehearsal_t *rehearsal, const wh_layout_t *layout, wh_nominal_t *nominal,
+                             void *memory) {
     ahead_t *ahead = memory;
     memset(ahead, 0, sizeof *ahead);
     ahead->layout = layout;
+    ahead->nominal = nominal;
     ahead->world_memory = (unsigned char *)memory + own_bytes(layout);
     rehearsal->look_ahead = judge;
     rehearsal->look_ahead_user = ahead;

@@ -11,6 +11,7 @@
 #include "../motion/track.h"
 #include "../record/record.h"
 #include "../sim/slice.h"
+#include "nominal.h"
 
 /* Judges a segment that `track` has just begun: its valves are as the segments before it leave them. `state`
  * is the last one from the cell, and nothing of the command has been played since; `first`: no segment of
@@ -51,11 +52,12 @@ void wh_rehearsal_add(wh_rehearsal_t *rehearsal, const wh_planned_t *planned);
 void wh_rehearsal_note_reach(const wh_rehearsal_t *rehearsal, const wh_track_t *track, wh_record_t *record);
 
 /* Has collisions looked for ahead, on a copy of the cell. The copy begins where motion control last saw
- * wafers and grippers. It takes and lets go by the paper's rule, with vacuum that is there at once, and knows
- * nothing of faults to come. `memory`, as many bytes and aligned as malloc's, and the layout must outlive
- * it. */
+ * wafers and grippers, or, in a trial, where it believes them to be (`nominal`; null: no trial). It takes and lets
+ * go by the paper's rule, with vacuum that is there at once, and knows nothing of faults to come. `memory`, as
+ * many bytes and aligned as malloc's, the layout and `nominal` must outlive it. */
 size_t wh_rehearsal_ahead_bytes(const wh_layout_t *layout);
-void wh_rehearsal_look_ahead(wh_rehearsal_t *rehearsal, const wh_layout_t *layout, void *memory);
+void wh_rehearsal_look_ahead(wh_rehearsal_t *rehearsal, const wh_layout_t *layout, wh_nominal_t *nominal,
+                             void *memory);
 
 /* If a rehearsal goes on, it is over: the track is where it was. */
 void wh_rehearsal_end(wh_rehearsal_t *rehearsal, wh_track_t *track);
