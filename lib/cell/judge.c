@@ -123,13 +123,16 @@ static void turn_towards(wh_mat3_t *R, const wh_vec3_t *n) {
     wh_mat3_orthonormalise(R);
 }
 
-/* A wafer that a support has stopped comes up to the plane, from where the slice has carried it. */
-static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list, size_t release,
-                   bool is_stopped) {
+/* From above its plane only if wafers settle; from below a support has stopped the wafer. */
+static bool comes_to_lie(const wh_cell_t *cell, const wh_place_t *place) {
+    return place->dz > 0 ? cell->settle : place->dz < 0 && place->dz > -cell->tolerance.projz;
+}
+
+static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list, size_t release) {
     const int32_t wafer = list->events[release].wafer;
     wh_place_t place;
     wh_pose_t pose = table->storage.wafers[wafer].base_from_wafer;
-    if (!wh_cell_locate(cell, &pose, &place) || !(place.dz > 0 || is_stopped)) {
+    if (!wh_cell_locate(cell, &pose, &place) || !comes_to_lie(cell, &place)) {
         return;
     }
     const wh_vec3_t up = wh_mat3_column(&cell->stations[place.station].base_from_station.R, 2);
@@ -139,18 +142,17 @@ static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *li
         turn_towards(&pose.R, &up);
     }
     const bool moved = wh_grasp_place(table, (size_t)wafer, &pose) == WH_OK;
-    wh_event_t *said = moved && !is_stopped ? append_as(release, list, WH_EVENT_SETTLED) : NULL;
+    wh_event_t *said = moved && place.dz > 0 ? append_as(release, list, WH_EVENT_SETTLED) : NULL;
     if (said != NULL) {
         said->value = place.dz;
     }
 }
 
-void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list, uint32_t stopped) {
+void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list) {
     const size_t count = list->count;
     for (size_t i = 0; i < count; ++i) {
-        const bool is_stopped = (stopped >> list->events[i].gripper & 1U) != 0;
-        if (list->events[i].kind == WH_EVENT_RELEASED && (cell->settle || is_stopped)) {
-            settle(cell, table, list, i, is_stopped);
+        if (list->events[i].kind == WH_EVENT_RELEASED) {
+            settle(cell, table, list, i);
         }
     }
 }

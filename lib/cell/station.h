@@ -93,14 +93,13 @@ size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_li
 bool wh_cell_stops(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, const wh_pose_t *next)
     WH_SYMBOL(wh_cell_stops);
 
-/* Call it after wh_cell_judge. With cell->settle each released wafer above the plane of its slot comes to lie on
- * it: its centre moves down along the slot's z to the plane, and the wafer turns by the smallest rotation that takes
- * its normal to z. Appends WH_EVENT_SETTLED, with the release's values and `value` the way down, while the list has
- * room. A wafer in no slot, or below the plane, stays, but bit g of `stopped` says that a support stopped the wafer
- * that gripper g let go of: its centre comes up to the plane, with cell->settle the wafer turns, too, and nothing is
- * appended. Nothing is done without cell->settle and with `stopped` 0. Cost: linear in the list; each such wafer
- * adds the stations and wh_grasp_place. */
-void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list, uint32_t stopped)
+/* Call it after wh_cell_judge. A released wafer less than tolerance.projz below the plane of its slot was stopped by the
+ * support: its centre comes up along the slot's z to the plane. With cell->settle a released wafer above the plane comes
+ * to lie on it: its centre moves down. In both cases, with cell->settle, the wafer turns by the smallest rotation that
+ * takes its normal to z. A wafer in no slot, or farther below the plane, stays. Appends WH_EVENT_SETTLED for a wafer that
+ * went down, with the release's values and `value` the way down, while the list has room. Cost: linear in the list;
+ * each released wafer adds the stations, and wh_grasp_place if it moves. */
+void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list)
     WH_SYMBOL(wh_cell_settle);
 
 WH_HEADER_END

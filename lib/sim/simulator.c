@@ -168,9 +168,8 @@ static WH_OUT_OF_LINE bool is_set_down(const wh_simulator_t *simulator, size_t g
 }
 
 /* Applies the valves to the vacuum. The result goes into `vacuum`, for the table may yet refuse the step. A valve that
- * closes while its vacuum still holds acts once a support has the wafer: bit g of the result. */
-static uint32_t switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
-    uint32_t set_down = 0;
+ * closes while its vacuum still holds acts once a support has the wafer. */
+static void switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
         const wh_vacuum_fault_t fault = wh_faults_of_vacuum(&simulator->physics.faults, g);
         int32_t *valve = &simulator->inputs[g].valve;
@@ -180,10 +179,8 @@ static uint32_t switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
                                   &vacuum[g]);
         if (is_let_go && *valve == WH_VALVE_OPEN && is_set_down(simulator, g)) {
             *valve = WH_VALVE_CLOSED;
-            set_down |= UINT32_C(1) << g;
         }
     }
-    return set_down;
 }
 
 static void update_vacuum(wh_simulator_t *simulator, const wh_command_t *command,
@@ -242,13 +239,12 @@ static void show(wh_simulator_t *simulator, const wh_gripper_input_t inputs[], u
     }
 }
 
-static wh_status_t step_cell(wh_simulator_t *simulator, const wh_gripper_input_t inputs[], uint32_t changed,
-                             uint32_t set_down) {
+static wh_status_t step_cell(wh_simulator_t *simulator, const wh_gripper_input_t inputs[], uint32_t changed) {
     wh_event_list_t list = {simulator->events, WH_SLICE_EVENTS, 0};
     const wh_status_t status = wh_grasp_step(&simulator->table, inputs, &list);
     if (status == WH_OK && list.count > 0) {
         (void)wh_cell_judge(&simulator->cell, &simulator->table, &list);
-        wh_cell_settle(&simulator->cell, &simulator->table, &list, set_down);
+        wh_cell_settle(&simulator->cell, &simulator->table, &list);
     }
     if (status == WH_OK) {
         show(simulator, inputs, changed, &list);
@@ -258,7 +254,7 @@ static wh_status_t step_cell(wh_simulator_t *simulator, const wh_gripper_input_t
 }
 
 static wh_status_t step_direct(wh_simulator_t *simulator, const wh_command_t *command) {
-    const wh_status_t status = step_cell(simulator, command->grippers, 0, 0);
+    const wh_status_t status = step_cell(simulator, command->grippers, 0);
     if (status == WH_OK) {
         take_vacuum(simulator, command);
         watch_holding(simulator);
@@ -270,9 +266,8 @@ static wh_status_t step_with_faults(wh_simulator_t *simulator, const wh_command_
     wh_vacuum_t vacuum[WH_GRIPPERS];
     memcpy(simulator->inputs, command->grippers, command->gripper_count * sizeof command->grippers[0]);
     const wh_fault_changes_t changes = apply_faults(simulator, command);
-    const uint32_t set_down = switch_valves(simulator, vacuum);
-    const wh_status_t status =
-        step_cell(simulator, simulator->inputs, changes.armed | changes.cleared, set_down);
+    switch_valves(simulator, vacuum);
+    const wh_status_t status = step_cell(simulator, simulator->inputs, changes.armed | changes.cleared);
     if (status == WH_OK) {
         update_vacuum(simulator, command, vacuum);
         watch_holding(simulator);

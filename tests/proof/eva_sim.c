@@ -169,13 +169,12 @@ static void call_judge(void) {
     stations[0] = good_station();
     events[0].kind = WH_EVENT_RELEASED;
     events[0].wafer = any_bool() ? 1 : 0;
-    events[0].gripper = any_bool() ? 1 : 0;
     const wh_pose_t now = any_pose();
     const wh_pose_t next = any_pose();
     (void)wh_cell_stops(&cell, &now, &next);
     if (wh_grasp_init(&table, &config, &storage) == WH_OK) {
         (void)wh_cell_judge(&cell, &table, &list);
-        wh_cell_settle(&cell, &table, &list, (uint32_t)integer);
+        wh_cell_settle(&cell, &table, &list);
     }
 }
 

@@ -282,7 +282,7 @@ static void a_full_list_takes_no_more(void **state) {
 static size_t settle(scene_t *scene, const wh_pose_t *base_from_wafer) {
     let_go(scene, base_from_wafer);
     cell.settle = true;
-    wh_cell_settle(&cell, &scene->table, &scene->list, 0);
+    wh_cell_settle(&cell, &scene->table, &scene->list);
     cell.settle = false;
     return scene->list.count - 1;
 }
@@ -321,20 +321,38 @@ static void what_does_not_settle(void **state) {
     scene_t scene;
     const wh_pose_t above = wh_test_at(700, 0, 900.25);
     let_go(&scene, &above);
-    wh_cell_settle(&cell, &scene.table, &scene.list, 0); /* not asked for */
+    wh_cell_settle(&cell, &scene.table, &scene.list); /* not asked for */
     assert_int_equal(scene.list.count, 1);
     assert_near(scene.wafers[0].base_from_wafer.r.z, 900.25, 0);
-    const wh_pose_t below = wh_test_at(700, 0, 899.9);
-    assert_int_equal(settle(&scene, &below), 0);
+    const wh_pose_t far_below = wh_test_at(700, 0, WH_REAL(899.4)); /* the tolerance is 0.5 */
+    assert_int_equal(settle(&scene, &far_below), 0);
+    assert_near(scene.wafers[0].base_from_wafer.r.z, 899.4, 1e-3);
     const wh_pose_t outside = wh_test_at(800, 0, 900.25);
     assert_int_equal(settle(&scene, &outside), 0);
     assert_near(scene.wafers[0].base_from_wafer.r.z, 900.25, 0);
     let_go(&scene, &above);
     scene.events[0].kind = WH_EVENT_HANDED_OVER;
     cell.settle = true;
-    wh_cell_settle(&cell, &scene.table, &scene.list, 0);
+    wh_cell_settle(&cell, &scene.table, &scene.list);
     cell.settle = false;
     assert_int_equal(scene.list.count, 1);
+}
+
+/* With settling and without: what was let down a little too far has stayed on its ledges, and nothing is said. */
+static void a_support_stops_what_was_let_go_below_it(void **state) {
+    (void)state;
+    scene_t scene;
+    for (int i = 1; i < 10; ++i) {
+        const wh_pose_t below = wh_test_at(700, 3, 900 - WH_REAL(0.05) * (wh_real_t)i);
+        let_go(&scene, &below);
+        cell.settle = i % 2 == 0;
+        wh_cell_settle(&cell, &scene.table, &scene.list);
+        cell.settle = false;
+        assert_int_equal(scene.list.count, 1);
+        assert_near(scene.wafers[0].base_from_wafer.r.x, 700, 1e-3);
+        assert_near(scene.wafers[0].base_from_wafer.r.y, 3, 1e-3);
+        assert_near(scene.wafers[0].base_from_wafer.r.z, 900, 1e-3);
+    }
 }
 
 /* Each release of a list, and none that stands beyond its end. */
@@ -350,7 +368,7 @@ static void each_release_settles_in_turn(void **state) {
         scene.events[w].wafer = w;
     }
     scene.list.count = 2;
-    wh_cell_settle(&cell, &scene.table, &scene.list, 0);
+    wh_cell_settle(&cell, &scene.table, &scene.list);
     assert_int_equal(scene.list.count, 3);
     assert_near(scene.wafers[1].base_from_wafer.r.z, 910, 4096 * WH_TEST_ROUNDING);
     assert_near(scene.wafers[2].base_from_wafer.r.z, 920.25, 0);
@@ -358,7 +376,7 @@ static void each_release_settles_in_turn(void **state) {
     scene.wafers[2].base_from_wafer = wh_test_at(700, 0, 920.25);
     scene.events[1] = scene.events[0];
     scene.events[1].wafer = 2;
-    wh_cell_settle(&cell, &scene.table, &scene.list, 0);
+    wh_cell_settle(&cell, &scene.table, &scene.list);
     assert_int_equal(scene.list.count, 1);
     assert_near(scene.wafers[2].base_from_wafer.r.z, 920.25, 0);
     cell.settle = false;
@@ -372,12 +390,12 @@ static void settling_without_room_or_while_held(void **state) {
     cell.settle = true;
     let_go(&scene, &above);
     scene.list.capacity = 1;
-    wh_cell_settle(&cell, &scene.table, &scene.list, 0);
+    wh_cell_settle(&cell, &scene.table, &scene.list);
     assert_int_equal(scene.list.count, 1);
     assert_near(scene.wafers[0].base_from_wafer.r.z, 900, 4096 * WH_TEST_ROUNDING);
     let_go(&scene, &above);
     scene.wafers[0].holder = 0;
-    wh_cell_settle(&cell, &scene.table, &scene.list, 0);
+    wh_cell_settle(&cell, &scene.table, &scene.list);
     assert_int_equal(scene.list.count, 1);
     assert_near(scene.wafers[0].base_from_wafer.r.z, 900.25, 0);
     cell.settle = false;
@@ -400,6 +418,7 @@ int main(void) {
         cmocka_unit_test_setup(a_full_list_takes_no_more, set_up),
         cmocka_unit_test_setup(a_wafer_comes_to_lie_on_its_slot, set_up),
         cmocka_unit_test_setup(what_does_not_settle, set_up),
+        cmocka_unit_test_setup(a_support_stops_what_was_let_go_below_it, set_up),
         cmocka_unit_test_setup(each_release_settles_in_turn, set_up),
         cmocka_unit_test_setup(settling_without_room_or_while_held, set_up),
     };
