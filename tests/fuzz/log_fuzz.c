@@ -1,5 +1,6 @@
 /* Any bytes as a recording, read and stepped again as `waferhand replay` does it: the reader's places add up, the counts of
- * each run too, the exit status says what was found, and --json prints JSON.
+ * each run too, the exit status says what was found, and --json prints JSON. A block of slices that can be decoded can be
+ * encoded, to the same slices.
  *
  * Mutation goes event by event: lengths and sync words of a log are right more often than chance would have it. */
 #include <fcntl.h>
@@ -9,7 +10,7 @@
 
 #include "app/app.h"
 #include "fuzz.h"
-#include "link/messages.h"
+#include "link/slices.h"
 #include "log/log_run.h"
 #include "log/replay.h"
 #include "print/record_print.h"
@@ -51,6 +52,38 @@ static void check_runs(const wh_replay_t *replay) {
     }
 }
 
+/* Adds up what a block gives, which is then the same of another. */
+static void give(const wh_slices_t *slices, wh_slices_t *to) {
+    waferhand_command command;
+    int32_t told[WH_GRIPPERS];
+    uint64_t hash;
+    to->count = 0;
+    for (size_t i = 0; i < slices->count; ++i) {
+        wh_slices_get(slices, i, &command, told, &hash);
+        REQUIRE(wh_slices_add(to, &command, told, hash));
+    }
+}
+
+static void check_slices(const uint8_t *data, size_t size) {
+    static wh_slices_t slices;
+    static wh_slices_t again;
+    static uint8_t bytes[WH_SLICES_BYTES];
+    if (!wh_slices_decode(data, size, &slices)) {
+        return;
+    }
+    give(&slices, &again);
+    REQUIRE(again.count == slices.count);
+    for (size_t from = 0, at = 0; from < again.count; at = from) {
+        const size_t length = wh_slices_encode(&again, &from, bytes);
+        REQUIRE(wh_slices_decode(bytes, length, &slices) && slices.count == from - at);
+        REQUIRE(memcmp(slices.hash, again.hash + at, slices.count * sizeof *slices.hash) == 0);
+        REQUIRE(memcmp(slices.valves, again.valves + at, slices.count) == 0);
+        for (size_t c = 0; c < again.axes + 12 * again.grippers; ++c) {
+            REQUIRE(memcmp(slices.column[c], again.column[c] + at, slices.count * sizeof(uint64_t)) == 0);
+        }
+    }
+}
+
 /* Reads the whole log; returns how it ended, and whether a run differed or a slice was compared. */
 static wh_log_result_t read_log(size_t size, bool *differs, bool *compared) {
     static wh_replay_t replay;
@@ -64,6 +97,9 @@ static wh_log_result_t read_log(size_t size, bool *differs, bool *compared) {
         REQUIRE(log.count == count && log.offset + HEADER < log.next && log.next <= size);
         REQUIRE(log.size <= sizeof log.data && strlen(log.channel) < sizeof log.channel);
         wh_replay_event(&replay, log.channel, log.data, log.size);
+        if (strcmp(log.channel, WH_CHANNEL_SLICES) == 0) {
+            check_slices(log.data, log.size);
+        }
     }
     REQUIRE(result != WH_LOG_END || log.offset == size);
     wh_replay_finish(&replay);
