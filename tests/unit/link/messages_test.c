@@ -324,6 +324,7 @@ static void a_damaged_block_is_refused(void **state) {
 /* Collects what goes by; a slice that does not fit is passed over. */
 typedef struct {
     waferhand_command command;
+    int64_t seq;
     size_t slices, left_out, bytes;
 } passing_t;
 
@@ -351,6 +352,11 @@ static void on_passing_state(void *user, const void *data, size_t size) {
         slice.told[g] = message.grippers[g].valve_told;
     }
     (void)waferhand_state_decode_cleanup(&message);
+    /* A busy machine has commands repeated. */
+    if (message.seq == passing->seq) {
+        return;
+    }
+    passing->seq = message.seq;
     if (collected.count == WH_SLICES_MOST) {
         flush_passing(passing);
     }
