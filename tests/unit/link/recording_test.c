@@ -4,7 +4,10 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 #include <zstd.h>
 
@@ -503,6 +506,93 @@ static void what_was_recorded_reaches_the_file_though_nothing_comes(void **state
     assert_true(wh_recording_close(&record));
 }
 
+/* ------------------------------------------------------------------------------------------------- killed */
+
+/* What the child has recorded when, seen by the parent. */
+#define MOMENTS 100000
+typedef struct {
+    volatile size_t count;
+    int64_t us[MOMENTS];
+    int64_t seq[MOMENTS];
+} moments_t;
+
+static int64_t now_us(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
+}
+
+static void record_for_ever(const char *name, moments_t *moments) {
+    const bool is_open = begin(name, false, false, 0);
+    for (int64_t seq = 1; is_open && moments->count < MOMENTS; ++seq) {
+        send_slice(seq);
+        if (seq % 16 == 0) {
+            moments->us[moments->count] = now_us();
+            moments->seq[moments->count] = seq;
+            ++moments->count;
+            usleep(100);
+        }
+    }
+    _exit(1);
+}
+
+/* The last slice in the log, which is cut off somewhere. */
+static int64_t find_last_seq(FILE *file) {
+    int64_t last = 0;
+    assert_non_null(file);
+    wh_log_open(&in, file);
+    while (wh_log_next(&in) == WH_LOG_EVENT) {
+        if (strcmp(in.channel, WH_CHANNEL_SLICES) == 0) {
+            assert_true(wh_slices_decode(in.data, in.size, &block));
+            assert_int_equal(block.first, last + 1);
+            last += (int64_t)block.count;
+        }
+    }
+    (void)fclose(file);
+    return last;
+}
+
+/* Kills a recording after so long; returns by how many us its log ends before that. */
+static int64_t kill_after(const char *name, int64_t us, moments_t *moments) {
+    char command[3 * PATH_MAX];
+    int status;
+    moments->count = 0;
+    (void)unlink(in_folder(name));
+    const pid_t child = fork();
+    if (child == 0) {
+        record_for_ever(name, moments);
+    }
+    usleep((useconds_t)us);
+    (void)kill(child, SIGKILL);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    const int64_t killed = moments->us[moments->count - 1];
+    snprintf(command, sizeof command, "zstd -dqcf %s >%s/cut.log 2>/dev/null", in_folder(name), folder);
+    (void)!system(command);
+    const int64_t last = find_last_seq(wh_log_file(in_folder("cut.log")));
+    size_t i = 0;
+    while (i < moments->count && moments->seq[i] <= last) {
+        ++i;
+    }
+    return i < moments->count ? killed - moments->us[i] : 0;
+}
+
+static void killed_at_any_moment_a_record_has_all_of_a_tenth_of_a_second_before(void **state) {
+    moments_t *moments =
+        mmap(NULL, sizeof *moments, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    int64_t most = 0;
+    (void)state;
+    wh_test_seed();
+    for (int i = 0; i < 20; ++i) {
+        const int64_t lost =
+            kill_after(i % 2 == 0 ? "killed.log" : "killed.log.zst", 150000 + wh_test_below(200000), moments);
+        most = lost > most ? lost : most;
+    }
+    print_message("at most the last %lld ms were lost\n", (long long)most / 1000);
+    /* As long again for a machine that is busy. */
+    assert_true(most < 2 * WH_RECORDING_WAIT_US);
+    (void)munmap(moments, sizeof *moments);
+}
+
 static void a_record_that_fails_is_told(void **state) {
     (void)state;
     assert_false(begin("missing/run.log", false, false, 0));
@@ -536,6 +626,7 @@ int main(void) {
         cmocka_unit_test(the_file_is_locked_while_it_is_written),
         cmocka_unit_test(what_was_recorded_reaches_the_file_though_nothing_comes),
         cmocka_unit_test(a_record_that_fails_is_told),
+        cmocka_unit_test(killed_at_any_moment_a_record_has_all_of_a_tenth_of_a_second_before),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
