@@ -176,9 +176,9 @@ bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *docume
 
 /* -------------------------------------------------------------------------------------------------- a run */
 
-static int print_result(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
+int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record) {
     if (arguments->json) {
-        return wh_record_print_json(&run->record, stdout);
+        return wh_record_print_json(record, stdout);
     }
     if (arguments->quiet) {
         return 0;
@@ -186,7 +186,7 @@ static int print_result(const wh_run_arguments_t *arguments, const wh_script_run
     const wh_style_t style = wh_style_of(stdout);
     const unsigned sections =
         (arguments->gantt ? WH_TABLE_GANTT : 0U) | (arguments->margins ? WH_TABLE_MARGINS : 0U);
-    return wh_record_print_table(&run->record, stdout, &style, sections);
+    return wh_record_print_table(record, stdout, &style, sections);
 }
 
 static bool write_segments(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
@@ -227,16 +227,27 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
     return written;
 }
 
+/* A script that ends with an error of its own: what came before is shown, if a slice did, and the error with
+ * it. */
+static int hand_on_bad(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
+                       wh_signals_t *signals) {
+    fprintf(stderr, "%s\n", run->message);
+    if (run->record.layout && run->record.slices > 0 && write_report(arguments, run, signals) &&
+        arguments->json) {
+        (void)wh_app_is_printed(wh_run_print(arguments, &run->record));
+    }
+    return WH_EXIT_USAGE;
+}
+
 static int hand_on(const wh_run_arguments_t *arguments, const wh_script_run_t *run, wh_signals_t *signals,
                    wh_script_run_outcome_t outcome) {
     if (outcome == WH_RUN_BAD_INPUT) {
-        fprintf(stderr, "%s\n", run->message);
-        return WH_EXIT_USAGE;
+        return hand_on_bad(arguments, run, signals);
     }
     if (!write_segments(arguments, run) || !write_report(arguments, run, signals)) {
         return WH_EXIT_USAGE;
     }
-    if (!wh_app_is_printed(print_result(arguments, run))) {
+    if (!wh_app_is_printed(wh_run_print(arguments, &run->record))) {
         return WH_EXIT_USAGE;
     }
     /* The table ends with the failure. Without a terminal nobody sees the table, so it goes to standard

@@ -38,6 +38,10 @@ extern const wh_option_t wh_run_options[];
 void wh_run_arguments_take(wh_run_arguments_t *arguments);
 void wh_run_arguments_free(wh_run_arguments_t *arguments);
 
+/* Prints a record as the arguments want it: as JSON, as tables, or not at all. 0, or -1 if standard output
+ * does not take it. */
+int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record);
+
 /* Runs the script and prints what came of it. Returns the exit status. */
 int wh_run_and_print(wh_run_arguments_t *arguments);
 

@@ -42,7 +42,11 @@ enum {
     WH_LINK_PHASE_GOES_ON,
     WH_LINK_PHASE_DONE,
     WH_LINK_PHASE_FAILED,
-    WH_LINK_PHASE_OVER
+    WH_LINK_PHASE_OVER,
+    WH_LINK_PHASE_MET,
+    WH_LINK_PHASE_UNMET,
+    WH_LINK_PHASE_CYCLE,
+    WH_LINK_PHASES
 };
 
 /* Who talks about which run: the first fields of each message after its times. */
