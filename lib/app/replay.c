@@ -94,7 +94,7 @@ static void print_difference(const wh_replay_t *replay, const wh_replay_run_t *r
            " slices differ%s\n",
            doubtful ? "not the same" : "DIFFERS", difference->slice, difference->what, difference->recorded,
            difference->replayed, run->differing, run->compared,
-           doubtful ? ", or the cell does, which the log tells in more than one way" : "");
+           doubtful ? ", or the cell does: nothing vouches for it" : "");
 }
 
 static int64_t lost_expectations(const wh_replay_run_t *run) {
@@ -103,19 +103,15 @@ static int64_t lost_expectations(const wh_replay_run_t *run) {
 }
 
 static void print_outcome(const wh_replay_run_t *run) {
-    switch (run->told.verdict) {
-    case WH_OUTCOME_PASSED:
-    case WH_OUTCOME_FAILED:
-        printf("  the run %s: %" PRId64 " of %" PRId64 " expectations met\n",
-               wh_outcome_word(run->told.verdict), run->told.met, run->told.expectations);
-        break;
-    case WH_OUTCOME_ENDED:
+    const wh_outcome_verdict_t verdict = run->told.verdict;
+    if (verdict == WH_OUTCOME_PASSED || verdict == WH_OUTCOME_FAILED) {
+        printf("  the run %s: %" PRId64 " of %" PRId64 " expectations met\n", wh_outcome_word(verdict),
+               run->told.met, run->told.expectations);
+    } else if (verdict == WH_OUTCOME_ENDED) {
         puts("  the session ended");
-        break;
-    default:
+    } else {
         puts(run->unmet > 0 ? "  the run failed: an expectation was not met; the log does not tell its end"
                             : "  the log does not tell if the run passed");
-        break;
     }
     print_counted(lost_expectations(run), "expectation is not in the log", "expectations are not in the log");
 }
@@ -125,6 +121,9 @@ static void print_run(const wh_replay_t *replay, const wh_replay_run_t *run) {
            "%s\n",
            (uint64_t)run->run, run->first_slice, run->last_slice, run->compared, run->hash,
            run->over ? "" : "; its end is not in the log");
+    if (run->begins_in_part) {
+        printf("  begins in the part before this one of its recording\n");
+    }
     print_outcome(run);
     print_counts(run, wh_reading_lacks_end(replay, run));
     print_difference(replay, run);
@@ -185,6 +184,17 @@ static void print_numbers(const wh_log_numbers_t *numbers) {
     }
 }
 
+/* What the recording says of itself. */
+static void print_recording(const wh_replay_recording_t *recording) {
+    if (recording->part > 1 || recording->closed == WH_RECORDING_GOES_ON) {
+        printf("part %d of a recording%s\n", (int)recording->part,
+               recording->closed == WH_RECORDING_GOES_ON ? ", which goes on in the next part" : "");
+    }
+    if (recording->is_changed) {
+        puts("the log's digest is another one: something in it was changed, lost or put in");
+    }
+}
+
 static void print_damage(const char *path, const wh_reading_t *reading) {
     for (size_t i = 0; i < reading->damage_count && i < WH_READING_DAMAGES; ++i) {
         printf("%s: damaged at byte %" PRIu64 ": %" PRIu64 " bytes are no event\n", path,
@@ -208,6 +218,7 @@ static void print_table(const result_t *result) {
     for (size_t i = 0; i < result->replay->run_count; ++i) {
         print_run(result->replay, &result->replay->runs[i]);
     }
+    print_recording(&result->replay->recording);
     print_losses(result->replay);
     print_numbers(&result->reading->numbers);
     print_damage(result->arguments->path, result->reading);
@@ -269,6 +280,15 @@ static json_t *damage_to_json(const void *subject, size_t i) {
                        json_integer((json_int_t)reading->damages[i].to), NULL);
 }
 
+static void put_recording(const wh_replay_recording_t *recording, json_t *root) {
+    const bool tells = recording->version > 0;
+    (void)wh_json_add(
+        root, "version part closed program changed", json_integer(tells ? recording->version : 1),
+        tells ? json_integer(recording->part) : json_null(),
+        tells ? json_boolean(recording->closed != WH_RECORDING_BEGINS) : json_null(),
+        tells ? wh_json_text(recording->program) : json_null(), json_boolean(recording->is_changed), NULL);
+}
+
 static void put_losses(const wh_replay_t *replay, json_t *root) {
     json_t *first = json_object();
     for (size_t i = 0; i < WH_REPLAY_LOSSES; ++i) {
@@ -302,6 +322,7 @@ static int print_json(const result_t *result) {
         json_boolean(result->verdict == WH_READING_SAME), wh_json_text(wh_reading_word(result->verdict)),
         json_boolean(result->arguments->lenient), wh_json_text(result->arguments->path),
         json_integer((json_int_t)result->reading->events), NULL);
+    put_recording(&result->replay->recording, root);
     put_losses(result->replay, root);
     put_file(result->reading, root);
     wh_json_put(root, "runs", wh_json_list(run_to_json, result->replay, result->replay->run_count));
@@ -312,12 +333,22 @@ static int print_json(const result_t *result) {
 
 /* ------------------------------------------------------------------------------------------------- reading */
 
+static void print_unusable(const result_t *result) {
+    const char *path = result->arguments->path;
+    if (wh_reading_is_unknown(result->replay)) {
+        fprintf(stderr, "%s: a recording of version %d (expected 1 or %d)\n", path,
+                (int)result->replay->recording.version, WH_RECORDING_VERSION);
+        return;
+    }
+    fprintf(stderr,
+            "%s: no run in it, in %" PRIu64 " events up to byte %" PRIu64
+            " (expected an LCM event log of Waferhand's channels)\n",
+            path, result->reading->events, result->reading->bytes);
+}
+
 static int print(const result_t *result) {
     if (result->verdict == WH_READING_UNUSABLE) {
-        fprintf(stderr,
-                "%s: no run in it, in %" PRIu64 " events up to byte %" PRIu64
-                " (expected an LCM event log of Waferhand's channels)\n",
-                result->arguments->path, result->reading->events, result->reading->bytes);
+        print_unusable(result);
         return WH_EXIT_USAGE;
     }
     int printed = 0;

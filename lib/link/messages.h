@@ -13,6 +13,7 @@
 #include "../sim/slice.h"
 
 /* Channels: lcm_types/README.md says who sends what. */
+#define WH_LINK_OURS "WAFERHAND_"
 #define WH_CHANNEL_COMMAND "WAFERHAND_COMMAND"
 #define WH_CHANNEL_STATE "WAFERHAND_STATE"
 #define WH_CHANNEL_RESTORE "WAFERHAND_RESTORE"

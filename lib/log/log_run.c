@@ -271,6 +271,13 @@ static void add_run(wh_log_run_t *run, int64_t id, uint64_t layout_hash) {
     run->runs[run->run_count++] = (wh_log_run_entry_t){id, layout_hash};
 }
 
+static void look_at_slices(wh_log_run_t *run) {
+    static wh_slices_t slices;
+    if (wh_slices_decode(run->log.data, run->log.size, &slices) && slices.identity.run != 0) {
+        add_run(run, slices.identity.run, slices.identity.layout_hash);
+    }
+}
+
 static void look_at(wh_log_run_t *run) {
     const wh_log_t *log = &run->log;
     waferhand_mcs told;
@@ -278,6 +285,8 @@ static void look_at(wh_log_run_t *run) {
     if (strcmp(log->channel, WH_CHANNEL_MCS) == 0 && wh_link_decode_mcs(log->data, log->size, &told)) {
         add_told(run, &told);
         (void)waferhand_mcs_decode_cleanup(&told);
+    } else if (strcmp(log->channel, WH_CHANNEL_SLICES) == 0) {
+        look_at_slices(run);
     } else if (strcmp(log->channel, WH_CHANNEL_STATE) == 0 &&
                wh_link_decode_state(log->data, log->size, &state)) {
         if (state.status == WH_OK && state.seq > 0 && state.run != 0) {

@@ -23,8 +23,12 @@ static void find_first_cell(FILE *file, wh_log_t *log, wh_replay_t *replay) {
         }
     }
     rewind(file);
-    replay->messages = 0;
+    replay->messages = replay->events = replay->digest = 0;
     memset(replay->losses, 0, sizeof replay->losses);
+    for (size_t i = 0; i < replay->cell_count; ++i) {
+        replay->cells[i].is_sure = false;
+        replay->cells[i].times = 0;
+    }
     replay->unknown_run = 0;
 }
 
@@ -67,9 +71,15 @@ static const wh_replay_run_t *last_begun(const wh_replay_t *replay) {
     return last;
 }
 
+bool wh_reading_is_unknown(const wh_replay_t *replay) {
+    return replay->recording.version != 0 && replay->recording.version != WH_RECORDING_VERSION;
+}
+
 bool wh_reading_is_doubtful(const wh_replay_t *replay, const wh_replay_run_t *run) {
     for (size_t i = 0; i < replay->cell_count; ++i) {
-        if (replay->cells[i].hash == run->layout_hash && replay->cells[i].is_contradicted) {
+        const wh_replay_cell_t *cell = &replay->cells[i];
+        if (cell->hash == run->layout_hash &&
+            (cell->is_contradicted || (replay->recording.version > 0 && !cell->is_sure))) {
             return true;
         }
     }
@@ -77,7 +87,7 @@ bool wh_reading_is_doubtful(const wh_replay_t *replay, const wh_replay_run_t *ru
 }
 
 bool wh_reading_lacks_end(const wh_replay_t *replay, const wh_replay_run_t *run) {
-    return !run->over && run == last_begun(replay);
+    return !run->over && run == last_begun(replay) && replay->recording.closed == WH_RECORDING_BEGINS;
 }
 
 /* What no network does. */
@@ -86,7 +96,8 @@ static bool is_file_damaged(const wh_replay_t *replay, const wh_reading_t *readi
     bool damaged = reading->damage_count > 0 ||
                    numbers->doubled + numbers->moved + numbers->misnumbered > 0 ||
                    wh_log_numbers_missing(numbers) > 0 || replay->losses[WH_REPLAY_CONTRADICTS].count > 0 ||
-                   replay->losses[WH_REPLAY_STRAY].count > 0 || replay->runs_left_out > 0;
+                   replay->losses[WH_REPLAY_STRAY].count > 0 || replay->runs_left_out > 0 ||
+                   replay->recording.is_changed;
     for (size_t i = 0; i < replay->run_count; ++i) {
         damaged = damaged || replay->runs[i].doubtful > 0;
     }
@@ -125,12 +136,14 @@ wh_reading_verdict_t wh_reading_judge(const wh_replay_t *replay, const wh_readin
         }
         doubtful = doubtful || run->differing > 0;
     }
-    if (!last) {
+    if (!last || wh_reading_is_unknown(replay)) {
         return WH_READING_UNUSABLE;
     }
     if (doubtful || compared == 0 || is_file_damaged(replay, reading) ||
         (!lenient && is_something_missing(replay))) {
         return WH_READING_INCOMPLETE;
     }
-    return reading->is_cut || !last->over ? WH_READING_CUT : WH_READING_SAME;
+    const bool ends =
+        replay->recording.version > 0 ? replay->recording.closed != WH_RECORDING_BEGINS : last->over;
+    return reading->is_cut || !ends ? WH_READING_CUT : WH_READING_SAME;
 }

@@ -41,7 +41,11 @@ void wh_reading_replay(FILE *file, wh_log_t *log, wh_replay_t *replay, wh_readin
  * runs that begin in the middle; never what the file has lost. */
 wh_reading_verdict_t wh_reading_judge(const wh_replay_t *replay, const wh_reading_t *reading, bool lenient);
 
-/* True if this run's differences may be the cell's, which the log tells in more than one way. */
+/* True if the log is of a version of the format that this program does not know. */
+bool wh_reading_is_unknown(const wh_replay_t *replay);
+
+/* True if this run's differences may be the cell's: the log tells it in more than one way, or only once, and
+ * nothing vouches for it. */
 bool wh_reading_is_doubtful(const wh_replay_t *replay, const wh_replay_run_t *run);
 
 /* True if this run's end is not in the log, and no later run is: the log may have been cut off. */

@@ -7,7 +7,7 @@
 #include "../text/array.h"
 #include "replay_internal.h"
 
-static void lose(wh_replay_t *replay, wh_replay_loss_t loss) {
+void wh_replay_lose(wh_replay_t *replay, wh_replay_loss_t loss) {
     if (replay->losses[loss].count++ == 0) {
         replay->losses[loss].first = replay->at;
     }
@@ -15,7 +15,7 @@ static void lose(wh_replay_t *replay, wh_replay_loss_t loss) {
 
 /* ---------------------------------------------------------------------------------------------------- runs */
 
-static wh_replay_run_t *find_run(wh_replay_t *replay, int64_t run) {
+wh_replay_run_t *wh_replay_find_run(wh_replay_t *replay, int64_t run) {
     for (size_t i = replay->run_count; i > 0; --i) {
         if (replay->runs[i - 1].run == run) {
             return &replay->runs[i - 1];
@@ -24,9 +24,8 @@ static wh_replay_run_t *find_run(wh_replay_t *replay, int64_t run) {
     return NULL;
 }
 
-/* The entry of a run, made if it is not there; null if there are too many. */
-static wh_replay_run_t *entry(wh_replay_t *replay, int64_t run) {
-    wh_replay_run_t *found = find_run(replay, run);
+wh_replay_run_t *wh_replay_entry(wh_replay_t *replay, int64_t run) {
+    wh_replay_run_t *found = wh_replay_find_run(replay, run);
     if (found || replay->run_count == WH_REPLAY_RUNS) {
         replay->runs_left_out += found ? 0 : 1;
         return found;
@@ -37,17 +36,13 @@ static wh_replay_run_t *entry(wh_replay_t *replay, int64_t run) {
     return made;
 }
 
-static wh_replay_cell_t *find_cell(wh_replay_t *replay, uint64_t hash) {
+wh_replay_cell_t *wh_replay_find_cell(wh_replay_t *replay, uint64_t hash) {
     for (size_t i = 0; i < replay->cell_count; ++i) {
         if (replay->cells[i].hash == hash) {
             return &replay->cells[i];
         }
     }
     return NULL;
-}
-
-static bool is_wanted(const wh_replay_t *replay, int64_t run) {
-    return replay->only_run == 0 || replay->only_run == run;
 }
 
 static void begin_run(wh_replay_t *replay, wh_replay_run_t *run, const wh_replay_cell_t *cell) {
@@ -60,6 +55,7 @@ static void begin_run(wh_replay_t *replay, wh_replay_run_t *run, const wh_replay
         wh_protocol_server_close(&replay->server);
         (void)wh_protocol_server_open(&replay->server, cell->layout);
         replay->server.identity.layout_hash = cell->hash;
+        replay->server.encodes_later = true;
         replay->cell = cell;
     }
 }
@@ -69,12 +65,12 @@ static bool enter_run(wh_replay_t *replay, int64_t id, uint64_t layout_hash) {
     if (replay->run && replay->run->run == id) {
         return true;
     }
-    const wh_replay_cell_t *cell = find_cell(replay, layout_hash);
-    wh_replay_run_t *run = cell ? entry(replay, id) : NULL;
+    const wh_replay_cell_t *cell = wh_replay_find_cell(replay, layout_hash);
+    wh_replay_run_t *run = cell ? wh_replay_entry(replay, id) : NULL;
     if (!cell) {
-        lose(replay, WH_REPLAY_HOMELESS);
+        wh_replay_lose(replay, WH_REPLAY_HOMELESS);
     } else if (run && run->is_begun) {
-        lose(replay, WH_REPLAY_LATE);
+        wh_replay_lose(replay, WH_REPLAY_LATE);
         return false;
     }
     if (!run) {
@@ -161,6 +157,15 @@ static void tell(const wh_replay_t *replay, const waferhand_command *command,
     }
 }
 
+/* A block's last slice, whose whole state has not come. */
+static void tell_last(wh_replay_t *replay) {
+    if (replay->has_last && replay->listener) {
+        wh_protocol_server_encode(&replay->server);
+        tell(replay, &replay->last, &replay->server.room.message);
+    }
+    replay->has_last = false;
+}
+
 static void note_difference(wh_replay_run_t *run, int64_t slice, const wh_replay_difference_t *difference) {
     if (run->differing++ == 0) {
         run->difference = *difference;
@@ -189,15 +194,21 @@ static bool restore(wh_replay_t *replay, const waferhand_state *message) {
     return replay->is_synchronous;
 }
 
-/* The recorded state with the server's answer. */
+/* The recorded state with the server's. */
+static bool is_same(wh_replay_t *replay, const waferhand_state *message, const uint8_t *bytes, size_t size,
+                    wh_replay_difference_t *difference) {
+    wh_protocol_server_t *server = &replay->server;
+    wh_protocol_server_encode(server);
+    replay->run->collisions += count_collisions(message);
+    return (size == server->encoded_size && memcmp(bytes, server->encoded, size - 8) == 0) ||
+           !wh_replay_differs(server->layout, message, &server->room.message, difference);
+}
+
 static void compare(wh_replay_t *replay, const waferhand_state *message, const uint8_t *bytes, size_t size) {
-    const wh_protocol_server_t *server = &replay->server;
     wh_replay_run_t *run = replay->run;
     wh_replay_difference_t difference;
     ++run->compared;
-    run->collisions += count_collisions(message);
-    const bool same = size == server->encoded_size && memcmp(bytes, server->encoded, size - 8) == 0;
-    if (same || !wh_replay_differs(server->layout, message, &server->room.message, &difference)) {
+    if (is_same(replay, message, bytes, size, &difference)) {
         replay->is_unsure = false;
     } else if (replay->is_unsure) {
         ++run->doubtful;
@@ -274,11 +285,13 @@ static void take_up(wh_replay_t *replay, int64_t seq) {
     waferhand_state message;
     if (wh_link_decode_state(slot->state, slot->size, &message)) {
         if (restore(replay, &message)) {
-            ++replay->run->taken_up;
-            replay->run->skipped += skipped;
+            replay->run->begins_in_part = replay->run->begins_in_part || replay->part_begins;
+            replay->run->taken_up += replay->part_begins ? 0 : 1;
+            replay->run->skipped += replay->part_begins ? 0 : skipped;
+            replay->part_begins = false;
             tell(replay, slot->has_command ? &slot->command : NULL, &message);
         } else {
-            lose(replay, WH_REPLAY_GARBAGE);
+            wh_replay_lose(replay, WH_REPLAY_GARBAGE);
         }
         (void)waferhand_state_decode_cleanup(&message);
     }
@@ -372,6 +385,7 @@ static wh_replay_slot_t *make_slot(wh_replay_t *replay, int64_t seq) {
 }
 
 void wh_replay_finish(wh_replay_t *replay) {
+    tell_last(replay);
     while (replay->run && (let_through(replay) || force(replay))) {
     }
     while (replay->run && first_command(replay) > 0) {
@@ -381,58 +395,37 @@ void wh_replay_finish(wh_replay_t *replay) {
     }
 }
 
-/* -------------------------------------------------------------------------------------- commands and states */
+/* ------------------------------------------------------------------------------------- commands and states */
 
-static bool is_slice(int64_t run, int64_t seq) {
-    return run != 0 && seq >= 1 && seq <= WH_LINK_SLICES;
+/* True if a slice may still go through: its run is the current one, and it has not gone through already. */
+static bool is_new(wh_replay_t *replay, int64_t run, int64_t seq, int64_t layout_hash) {
+    const wh_replay_run_t *known = wh_replay_find_run(replay, run);
+    const bool is_again = known && known != replay->run && seq <= known->last_slice;
+    return !is_again && enter_run(replay, run, (uint64_t)layout_hash) && seq > replay->seq;
 }
 
-static void count_check(wh_replay_t *replay, int64_t check) {
-    ++replay->messages;
-    if (check == 0) {
-        lose(replay, WH_REPLAY_UNCHECKED);
-    }
-}
-
-static void on_command(wh_replay_t *replay, const void *data, size_t size) {
-    waferhand_command message;
-    if (!wh_link_decode_command(data, size, &message) || !is_slice(message.run, message.seq)) {
-        lose(replay, WH_REPLAY_GARBAGE);
+void wh_replay_take_command(wh_replay_t *replay, const waferhand_command *message) {
+    if (!is_new(replay, message->run, message->seq, message->layout_hash)) {
         return;
     }
-    if (!is_wanted(replay, message.run)) {
-        return;
-    }
-    count_check(replay, message.check);
-    const wh_replay_run_t *known = find_run(replay, message.run);
-    const bool is_again = known && known != replay->run && message.seq <= known->last_slice;
-    if (is_again || !enter_run(replay, message.run, (uint64_t)message.layout_hash) ||
-        message.seq <= replay->seq) {
-        return;
-    }
-    wh_replay_slot_t *slot = make_slot(replay, message.seq);
+    wh_replay_slot_t *slot = make_slot(replay, message->seq);
     if (!slot->has_command) {
         slot->has_command = true;
-        slot->command = message;
+        slot->command = *message;
         while (let_through(replay)) {
         }
     }
 }
 
-/* What depends on more than the run: what another simulator knew. */
-static bool is_refusal_of_protocol(int32_t status) {
-    return status == WH_STATUS_UNKNOWN_RUN || status == WH_STATUS_RUN_OVER ||
-           status == WH_STATUS_OTHER_LAYOUT;
-}
-
 /* The replay must refuse the same command for the same reason. */
-static void take_refusal(wh_replay_t *replay, const waferhand_state *message, const void *data, size_t size) {
+void wh_replay_take_refusal(wh_replay_t *replay, const waferhand_state *message, const void *data,
+                            size_t size) {
     wh_replay_run_t *run = replay->run;
     wh_protocol_server_t *server = &replay->server;
     if (!run || run->run != message->run || message->seq != replay->seq + 1 || !is_at_hand(replay) ||
         !has_command(replay, message->seq)) {
         if (!run || run->run != message->run || message->seq > run->last_refused) {
-            lose(replay, WH_REPLAY_LATE);
+            wh_replay_lose(replay, WH_REPLAY_LATE);
         }
         return;
     }
@@ -450,11 +443,29 @@ static void take_refusal(wh_replay_t *replay, const waferhand_state *message, co
     tell(replay, NULL, message);
 }
 
-static void take_state(wh_replay_t *replay, const waferhand_state *message, const void *data, size_t size) {
-    const wh_replay_run_t *known = find_run(replay, message->run);
-    const bool is_again = known && known != replay->run && message->seq <= known->last_slice;
-    if (is_again || !enter_run(replay, message->run, (uint64_t)message->layout_hash) ||
-        message->seq <= replay->seq) {
+/* The whole state of the slice that went through last, in a block. */
+static void take_last_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
+                            size_t size) {
+    wh_replay_difference_t difference;
+    if (!is_same(replay, message, data, size, &difference) && !replay->last_differs) {
+        note_difference(replay->run, message->seq, &difference);
+    }
+    tell(replay, &replay->last, message);
+    replay->has_last = false;
+}
+
+void wh_replay_take_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
+                          size_t size) {
+    const bool is_current = replay->run && replay->run->run == message->run;
+    if (is_current && replay->has_last && message->seq == replay->seq) {
+        take_last_state(replay, message, data, size);
+        return;
+    }
+    tell_last(replay);
+    if (is_current && !replay->is_synchronous && message->seq == replay->seq) {
+        --replay->seq; /* behind a block that could not be stepped */
+    }
+    if (!is_new(replay, message->run, message->seq, message->layout_hash)) {
         return;
     }
     wh_replay_slot_t *slot = make_slot(replay, message->seq);
@@ -468,209 +479,77 @@ static void take_state(wh_replay_t *replay, const waferhand_state *message, cons
     }
 }
 
-static void on_state(wh_replay_t *replay, const void *data, size_t size) {
-    waferhand_state message;
-    if (!wh_link_decode_state(data, size, &message)) {
-        lose(replay, WH_REPLAY_GARBAGE);
+/* --------------------------------------------------------------------------------------------------- blocks */
+
+/* A slice of a block: the hash stands for the state. */
+static void step_hashed(wh_replay_t *replay, const int32_t told[], uint64_t hash) {
+    const waferhand_command *command = &replay->last;
+    const bool outside = memcmp(told, command->valve, (size_t)command->gripper_count * sizeof *told) != 0;
+    const wh_protocol_server_result_t result =
+        wh_protocol_server_command(&replay->server, command, outside ? told : NULL);
+    wh_replay_run_t *run = replay->run;
+    replay->is_synchronous = result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN;
+    replay->seq = command->seq;
+    replay->last_differs = true;
+    if (!replay->is_synchronous) {
+        differ_in_status(run, command->seq, WH_OK, replay->server.room.message.status);
         return;
     }
-    if (!is_slice(message.run, message.seq)) {
-        lose(replay, WH_REPLAY_GARBAGE);
-    } else if (is_wanted(replay, message.run)) {
-        count_check(replay, message.check);
-        if (message.status == WH_OK) {
-            take_state(replay, &message, data, size);
-        } else if (!is_refusal_of_protocol(message.status)) {
-            take_refusal(replay, &message, data, size);
-        }
-    }
-    (void)waferhand_state_decode_cleanup(&message);
-}
-
-/* ------------------------------------------------------------------------------------------ other messages */
-
-/* The cell as it is told each time: without when and in which run. Returns its size. */
-static size_t encode_cell(waferhand_cell *message, uint8_t bytes[WH_LINK_DATAGRAM]) {
-    message->utime = message->seq = message->run = 0;
-    const int size = waferhand_cell_encode(bytes, 0, WH_LINK_DATAGRAM, message);
-    return size > 0 ? (size_t)size : 0;
-}
-
-static void add_cell(wh_replay_t *replay, waferhand_cell *message) {
-    static uint8_t bytes[WH_LINK_DATAGRAM];
-    const uint64_t hash = (uint64_t)message->layout_hash;
-    wh_replay_cell_t *known = find_cell(replay, hash);
-    const size_t size = encode_cell(message, bytes);
-    if (known) {
-        if (known->size != size || memcmp(known->told, bytes, size) != 0) {
-            known->is_contradicted = true;
-            lose(replay, WH_REPLAY_CONTRADICTS);
-        }
-        return;
-    }
-    wh_layout_t *layout = replay->cell_count < WH_REPLAY_CELLS ? wh_link_layout_from_cell(message) : NULL;
-    if (!layout) {
-        lose(replay, WH_REPLAY_GARBAGE);
-        return;
-    }
-    wh_replay_cell_t *cell = &replay->cells[replay->cell_count++];
-    *cell = (wh_replay_cell_t){.hash = hash, .layout = layout, .told = wh_array_new(size, 1), .size = size};
-    memcpy(cell->told, bytes, size);
-}
-
-/* True if time and number of a slice fit each other, and the layout the run. */
-static bool is_placed(wh_replay_t *replay, int64_t utime, int64_t seq, int64_t run, int64_t layout_hash) {
-    const wh_replay_run_t *known = find_run(replay, run);
-    const wh_replay_cell_t *cell = find_cell(replay, (uint64_t)layout_hash);
-    const bool fits = !known || !known->is_begun || known->layout_hash == (uint64_t)layout_hash;
-    return fits && (!cell || (seq >= 0 && seq <= WH_LINK_SLICES && utime == seq * cell->layout->slice_us));
-}
-
-static void on_cell(wh_replay_t *replay, const void *data, size_t size) {
-    waferhand_cell message;
-    if (!wh_link_decode_cell(data, size, &message)) {
-        lose(replay, WH_REPLAY_GARBAGE);
-        return;
-    }
-    ++replay->messages;
-    if (!is_placed(replay, message.utime, message.seq, message.run, message.layout_hash)) {
-        lose(replay, WH_REPLAY_CONTRADICTS);
-    } else if (message.run != 0 && !find_run(replay, message.run) && replay->unknown_run == 0) {
-        replay->unknown_run = message.run;
-        replay->unknown_at = replay->at;
-    }
-    add_cell(replay, &message);
-    (void)waferhand_cell_decode_cleanup(&message);
-}
-
-static void take_mcs(wh_replay_t *replay, const waferhand_mcs *message) {
-    const bool tells = message->run != 0 && message->phase != WH_LINK_PHASE_IDLE &&
-                       message->phase != WH_LINK_PHASE_GOES_ON && is_wanted(replay, message->run);
-    wh_replay_run_t *run = tells ? entry(replay, message->run) : NULL;
-    if (!run) {
-        return;
-    }
-    if (message->phase == WH_LINK_PHASE_OVER) {
-        run->over = true;
-        (void)wh_outcome_read(message->text, &run->told);
-    } else if (message->phase == WH_LINK_PHASE_MET || message->phase == WH_LINK_PHASE_UNMET) {
-        const uint64_t doubled = run->expectations.doubled;
-        wh_log_numbers_take(&run->expectations, (uint64_t)message->error - 1, replay->at);
-        if (message->phase == WH_LINK_PHASE_UNMET && run->expectations.doubled == doubled) {
-            ++run->unmet;
-        }
-    }
-}
-
-static void on_mcs(wh_replay_t *replay, const void *data, size_t size) {
-    waferhand_mcs message;
-    if (!wh_link_decode_mcs(data, size, &message)) {
-        lose(replay, WH_REPLAY_GARBAGE);
-        return;
-    }
-    ++replay->messages;
-    if (message.phase < 0 || message.phase >= WH_LINK_PHASES) {
-        lose(replay, WH_REPLAY_GARBAGE);
-    } else if (!is_placed(replay, message.utime, message.seq, message.run, message.layout_hash)) {
-        lose(replay, WH_REPLAY_CONTRADICTS);
+    run->outside_valves += outside ? 1 : 0;
+    note_slice(replay);
+    ++run->compared;
+    replay->has_last = true;
+    replay->last_differs = hash != run->hash;
+    if (!replay->last_differs) {
+        replay->is_unsure = false;
+    } else if (replay->is_unsure) {
+        ++run->doubtful;
+        replay->is_synchronous = false;
     } else {
-        take_mcs(replay, &message);
+        wh_replay_difference_t difference = {.recorded = (double)hash, .replayed = (double)run->hash};
+        (void)snprintf(difference.what, sizeof difference.what, "hash");
+        note_difference(run, command->seq, &difference);
     }
-    (void)waferhand_mcs_decode_cleanup(&message);
 }
 
-/* What was sent again to a simulator that was started anew: nothing follows from it that its state does not
- * tell. */
-static void on_restore(wh_replay_t *replay, const void *data, size_t size) {
-    waferhand_state message;
-    if (!wh_link_decode_state(data, size, &message)) {
-        lose(replay, WH_REPLAY_GARBAGE);
+void wh_replay_take_slices(wh_replay_t *replay, const wh_slices_t *slices) {
+    const int64_t end = slices->first + (int64_t)slices->count - 1;
+    if (!is_new(replay, slices->identity.run, end, (int64_t)slices->identity.layout_hash)) {
         return;
     }
-    count_check(replay, message.check);
-    (void)waferhand_state_decode_cleanup(&message);
-}
-
-static void on_request(wh_replay_t *replay, const void *data, size_t size) {
-    waferhand_request message;
-    if (!wh_link_decode_request(data, size, &message)) {
-        lose(replay, WH_REPLAY_GARBAGE);
-        return;
+    if (replay->seq + 1 != slices->first || replay->last_pending > replay->seq) {
+        wh_replay_finish(replay); /* nothing of what waits comes behind a block */
     }
-    ++replay->messages;
-    (void)waferhand_request_decode_cleanup(&message);
-}
-
-/* It follows from its slice's state. */
-static void on_proximity(wh_replay_t *replay, const void *data, size_t size) {
-    const wh_protocol_server_t *server = &replay->server;
-    waferhand_proximity message;
-    waferhand_proximity made;
-    uint8_t bytes[1024];
-    if (size > sizeof bytes || waferhand_proximity_decode(data, 0, (int)size, &message) != (int)size) {
-        lose(replay, WH_REPLAY_GARBAGE);
-        return;
-    }
-    if (!is_wanted(replay, message.run)) {
-        return;
-    }
-    ++replay->messages;
-    if (!replay->is_synchronous || server->identity.run != message.run || server->seq != message.seq) {
-        ++replay->proximities;
-        return;
-    }
-    wh_link_proximity_to_message(&server->state, &server->identity, &server->layout->grasp.tolerance, &made);
-    if (waferhand_proximity_encode(bytes, 0, (int)sizeof bytes, &made) != (int)size ||
-        memcmp(bytes, data, size) != 0) {
-        lose(replay, WH_REPLAY_CONTRADICTS);
+    for (size_t i = 0; i < slices->count; ++i) {
+        int32_t told[WH_GRIPPERS];
+        uint64_t hash;
+        const int64_t seq = slices->first + (int64_t)i;
+        const bool follows = replay->is_synchronous || (replay->seq == 0 && seq == 1);
+        if (seq <= replay->seq) {
+            continue;
+        }
+        if (!follows || seq != replay->seq + 1) {
+            replay->run->skipped += end - replay->seq;
+            replay->is_synchronous = false;
+            replay->seq = end;
+            return;
+        }
+        tell_last(replay);
+        wh_slices_get(slices, i, &replay->last, told, &hash);
+        step_hashed(replay, told, hash);
     }
 }
 
 /* ---------------------------------------------------------------------------------------------- the whole */
-
-/* True if a datagram begins with the fingerprint of one of our messages. */
-static bool is_ours(const uint8_t *data, size_t size) {
-    const int64_t fingerprints[] = {__waferhand_command_get_hash(), __waferhand_state_get_hash(),
-                                    __waferhand_cell_get_hash(),    __waferhand_proximity_get_hash(),
-                                    __waferhand_mcs_get_hash(),     __waferhand_request_get_hash()};
-    uint64_t first = 0;
-    bool ours = false;
-    for (size_t i = 0; size >= 8 && i < 8; ++i) {
-        first = first << 8 | data[i];
-    }
-    for (size_t i = 0; i < sizeof fingerprints / sizeof fingerprints[0]; ++i) {
-        ours = ours || (uint64_t)fingerprints[i] == first;
-    }
-    return ours;
-}
-
-void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data, size_t size) {
-    static const struct {
-        const char *channel;
-        void (*handle)(wh_replay_t *replay, const void *data, size_t size);
-    } handlers[] = {{WH_CHANNEL_CELL, on_cell},          {WH_CHANNEL_COMMAND, on_command},
-                    {WH_CHANNEL_STATE, on_state},        {WH_CHANNEL_MCS, on_mcs},
-                    {WH_CHANNEL_RESTORE, on_restore},    {WH_CHANNEL_REQUEST, on_request},
-                    {WH_CHANNEL_PROXIMITY, on_proximity}};
-    for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; ++i) {
-        if (strcmp(handlers[i].channel, channel) == 0) {
-            handlers[i].handle(replay, data, size);
-            return;
-        }
-    }
-    if (strncmp(channel, "WAFERHAND_", 10) == 0 || is_ours(data, size)) {
-        lose(replay, WH_REPLAY_STRAY);
-    }
-}
 
 void wh_replay_end(wh_replay_t *replay) {
     wh_replay_finish(replay);
     for (size_t i = 0; i < replay->run_count; ++i) {
         wh_log_numbers_finish(&replay->runs[i].expectations);
     }
-    if (replay->unknown_run != 0 && !find_run(replay, replay->unknown_run)) {
+    if (replay->unknown_run != 0 && !wh_replay_find_run(replay, replay->unknown_run)) {
         replay->at = replay->unknown_at;
-        lose(replay, WH_REPLAY_CONTRADICTS);
+        wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
     }
 }
 

@@ -4,19 +4,20 @@
  *
  * A command waits for its state, and a state for its command, at most WH_REPLAY_WINDOW slices: messages may
  * stand in any order. A command is stepped with the valves that its state says were in force (they may have
- * come from outputs.txt). Where commands are not in the log, the replay is taken up from the next whole
+ * come from outputs.txt). A slice of a block (link/slices.h) is compared by its hash. Where commands are not in the log, the replay is taken up from the next whole
  * state. Each slice is compared once; what comes again, as over a lossy network, is passed over. Of each run
  * the first difference is named, and how many slices differ.
  *
  * What was passed over, and why, is counted: nothing of ours is left out in silence. Not compared are events
- * of the collision check, since messages do not tell shapes, and what stands in WAFERHAND_MCS and
- * WAFERHAND_REQUEST, which have no check.
+ * of the collision check, since messages do not tell shapes. WAFERHAND_MCS and WAFERHAND_REQUEST have no
+ * check: the digest of a recording that was closed vouches for them.
  */
 #ifndef WH_LOG_REPLAY_H
 #define WH_LOG_REPLAY_H
 
 #include "../link/outcome.h"
 #include "../link/protocol_server.h"
+#include "../link/slices.h"
 #include "logfile.h"
 
 #define WH_REPLAY_RUNS 256
@@ -34,7 +35,8 @@ typedef struct {
 
 typedef struct {
     int64_t run;
-    bool is_begun; /* it has commands or states */
+    bool is_begun;       /* it has commands or states */
+    bool begins_in_part; /* of the recording: its first slices are in another file */
     uint64_t layout_hash;
     int64_t first_slice, last_slice; /* stepped or taken over */
     int64_t compared;                /* slices whose state was compared */
@@ -88,11 +90,22 @@ typedef struct {
     wh_layout_t *layout;
     uint8_t *told; /* the message, without when and in which run */
     size_t size;
-    bool is_contradicted; /* it was told in another way, too */
+    uint64_t times;       /* that it was told */
+    bool is_contradicted; /* and once in another way */
+    bool is_sure;         /* it was told twice, or the recording's digest is of it */
 } wh_replay_cell_t;
 
+/* What the log is, as WAFERHAND_RECORDING tells. */
+typedef struct {
+    int32_t version; /* 0: it does not tell, as logs of version 1 */
+    int32_t part;
+    int8_t mode, closed;
+    bool is_changed;  /* what stands before it is not what was written */
+    char program[60]; /* and its version */
+} wh_replay_recording_t;
+
 /* Hears of each slice in order, and of refusals. `command` is null if the log has it not. `message` is the
- * recorded state. */
+ * recorded state; within a block the replayed one, whose hash was compared. */
 typedef void wh_replay_listener_t(void *user, const waferhand_command *command,
                                   const waferhand_state *message);
 
@@ -108,8 +121,10 @@ typedef struct {
 
     wh_replay_run_t runs[WH_REPLAY_RUNS];
     size_t run_count;
-    uint64_t runs_left_out; /* beyond WH_REPLAY_RUNS */
-    uint64_t messages;      /* of ours, sound */
+    uint64_t runs_left_out;    /* beyond WH_REPLAY_RUNS */
+    uint64_t events, messages; /* all; of ours, sound */
+    uint64_t digest;           /* wh_link_digest of ours */
+    wh_replay_recording_t recording;
     wh_replay_count_t losses[WH_REPLAY_LOSSES];
     uint64_t proximities; /* such as could not be compared: their slice was not the last one */
     int64_t unknown_run;  /* of which a cell tells, before the run itself; 0: none */
@@ -117,7 +132,10 @@ typedef struct {
 
     const wh_replay_cell_t *cell; /* of the current run, whose slices go through: */
     wh_protocol_server_t server;
-    wh_replay_run_t *run;      /* null before the first */
+    wh_replay_run_t *run;   /* null before the first */
+    waferhand_command last; /* a block's last slice, while its whole state may follow: */
+    bool has_last, last_differs;
+    bool part_begins;          /* a later part of a recording, before its first state */
     bool is_synchronous;       /* the server is at `seq` of the run */
     bool is_unsure;            /* since the last comparison a slice was stepped whose valves are not known */
     int64_t seq, last_pending; /* the last slice that went through; the last one that waits */

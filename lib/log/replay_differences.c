@@ -109,16 +109,13 @@ static double value_of(kind_t kind, const char *at) {
         int64_t wide;
     } value;
     memcpy(&value, at, sizes[kind]);
-    switch (kind) {
-    case INT8:
+    if (kind == INT8) {
         return value.small;
-    case INT32:
-        return value.integer;
-    case INT64:
-        return (double)value.wide;
-    default:
-        return value.real;
     }
+    if (kind == INT32) {
+        return value.integer;
+    }
+    return kind == INT64 ? (double)value.wide : value.real;
 }
 
 static void name_entry(const field_t *field, size_t i, char name[80]) {

@@ -1,5 +1,6 @@
 /* Any bytes as a recording, read and stepped again as `waferhand replay` does it: the reader's places add up, the counts of
- * each run too, the exit status says what was found, and --json prints JSON.
+ * each run too, the exit status says what was found, and --json prints JSON. A block of slices that can be decoded can be
+ * encoded, to the same slices.
  *
  * Mutation goes event by event: lengths and sync words of a log are right more often than chance would have it. */
 #include <fcntl.h>
@@ -9,7 +10,7 @@
 
 #include "app/app.h"
 #include "fuzz.h"
-#include "link/messages.h"
+#include "link/slices.h"
 #include "log/log_run.h"
 #include "print/record_print.h"
 #include "report/document.h"
@@ -50,6 +51,38 @@ static void check_runs(const wh_replay_t *replay) {
     }
 }
 
+/* Adds up what a block gives, which is then the same of another. */
+static void give(const wh_slices_t *slices, wh_slices_t *to) {
+    waferhand_command command;
+    int32_t told[WH_GRIPPERS];
+    uint64_t hash;
+    to->count = 0;
+    for (size_t i = 0; i < slices->count; ++i) {
+        wh_slices_get(slices, i, &command, told, &hash);
+        REQUIRE(wh_slices_add(to, &command, told, hash));
+    }
+}
+
+static void check_slices(const uint8_t *data, size_t size) {
+    static wh_slices_t slices;
+    static wh_slices_t again;
+    static uint8_t bytes[WH_SLICES_BYTES];
+    if (!wh_slices_decode(data, size, &slices)) {
+        return;
+    }
+    give(&slices, &again);
+    REQUIRE(again.count == slices.count);
+    for (size_t from = 0, at = 0; from < again.count; at = from) {
+        const size_t length = wh_slices_encode(&again, &from, bytes);
+        REQUIRE(wh_slices_decode(bytes, length, &slices) && slices.count == from - at);
+        REQUIRE(memcmp(slices.hash, again.hash + at, slices.count * sizeof *slices.hash) == 0);
+        REQUIRE(memcmp(slices.valves, again.valves + at, slices.count) == 0);
+        for (size_t c = 0; c < again.axes + 12 * again.grippers; ++c) {
+            REQUIRE(memcmp(slices.column[c], again.column[c] + at, slices.count * sizeof(uint64_t)) == 0);
+        }
+    }
+}
+
 /* Places add up: nothing of the file is left out, nothing is read twice. */
 static void check_places(FILE *in, wh_log_t *log, size_t size) {
     uint64_t count = 0;
@@ -58,6 +91,9 @@ static void check_places(FILE *in, wh_log_t *log, size_t size) {
     wh_log_result_t result = wh_log_next(log);
     for (; result == WH_LOG_EVENT || result == WH_LOG_DAMAGED; result = wh_log_next(log)) {
         count += result == WH_LOG_EVENT ? 1 : 0;
+        if (result == WH_LOG_EVENT && strcmp(log->channel, WH_CHANNEL_SLICES) == 0) {
+            check_slices(log->data, log->size);
+        }
         REQUIRE(log->count == count && log->offset == end && log->offset < log->next && log->next <= size);
         REQUIRE(log->size <= WH_LOG_EVENT_BYTES && strlen(log->channel) < sizeof log->channel);
         end = log->next;
