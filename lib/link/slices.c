@@ -295,13 +295,10 @@ static void take_column(bytes_t *bytes, wh_slices_t *slices, size_t c) {
 
 /* ------------------------------------------------------------------------------------------------- adding */
 
+/* At most as much as all rotations of a command. */
 static bool is_zero(const void *bytes, size_t size) {
-    const uint8_t *at = bytes;
-    uint8_t any = 0;
-    for (size_t i = 0; i < size; ++i) {
-        any |= at[i];
-    }
-    return any == 0;
+    static const uint8_t zeros[9 * sizeof(double) * WH_GRIPPERS];
+    return memcmp(bytes, zeros, size) == 0;
 }
 
 static bool is_no_fault(const waferhand_fault *fault) {
