@@ -196,15 +196,20 @@ static void print_recording(const wh_replay_recording_t *recording) {
 }
 
 static void print_damage(const char *path, const wh_reading_t *reading) {
+    const char *where = reading->is_compressed ? " of what was decompressed" : "";
+    if (reading->broken > 0) {
+        printf("%s: damaged at byte %" PRIu64 ", within a compressed frame; %" PRIu64 " such %s\n", path,
+               reading->first_broken, reading->broken, reading->broken == 1 ? "place" : "places");
+    }
     for (size_t i = 0; i < reading->damage_count && i < WH_READING_DAMAGES; ++i) {
-        printf("%s: damaged at byte %" PRIu64 ": %" PRIu64 " bytes are no event\n", path,
-               reading->damages[i].from, reading->damages[i].to - reading->damages[i].from);
+        printf("%s: damaged at byte %" PRIu64 "%s: %" PRIu64 " bytes are no event\n", path,
+               reading->damages[i].from, where, reading->damages[i].to - reading->damages[i].from);
     }
     if (reading->damage_count > WH_READING_DAMAGES) {
         printf("%s: and %" PRIu64 " more times\n", path, reading->damage_count - WH_READING_DAMAGES);
     }
     if (reading->is_cut) {
-        printf("%s: cut off at byte %" PRIu64 ", within an event\n", path, reading->cut_at);
+        printf("%s: cut off at byte %" PRIu64 "%s\n", path, reading->cut_at, where);
     }
 }
 
@@ -313,6 +318,7 @@ static void put_file(const wh_reading_t *reading, json_t *root) {
     wh_json_put(root, "gaps", wh_json_list(gap_to_json, numbers, numbers->gap_count));
     wh_json_put_integer(root, "damaged", (json_int_t)reading->damage_count);
     wh_json_put(root, "damage", wh_json_list(damage_to_json, reading, named));
+    wh_json_put_integer(root, "frames_damaged", (json_int_t)reading->broken);
     wh_json_put(root, "cut_at", reading->is_cut ? json_integer((json_int_t)reading->cut_at) : json_null());
 }
 
@@ -373,6 +379,7 @@ int wh_app_replay(int argc, char **argv) {
     }
     memset(&replay, 0, sizeof replay);
     wh_reading_replay(file, &log, &replay, &reading);
+    wh_log_close(&log);
     (void)fclose(file);
     const result_t result = {&arguments, &replay, &reading,
                              wh_reading_judge(&replay, &reading, arguments.lenient)};

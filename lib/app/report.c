@@ -56,6 +56,9 @@ static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
         fprintf(stderr, "%s\n", run->message);
         return false;
     }
+    if (!wh_run_files_are_apart(&arguments->run, run->cell.layout->path)) {
+        return false;
+    }
     char *command = wh_run_files_command("replay", given->script, NULL, 0);
     const wh_document_t document = {.title = given->script,
                                     .reproduce = command,
@@ -94,7 +97,7 @@ static int report_script(arguments_t *arguments, bool is_text) {
     return status == WH_EXIT_USAGE ? WH_EXIT_USAGE : WH_EXIT_MET;
 }
 
-/* Reads how the run begins: a log begins with LCM's sync word, and a script is text. */
+/* Reads how the run begins: a log begins with LCM's sync word or is compressed, and a script is text. */
 static int report(arguments_t *arguments) {
     static const unsigned char sync[4] = {0xED, 0xA1, 0xDA, 0x01};
     char begin[512];
@@ -103,7 +106,8 @@ static int report(arguments_t *arguments) {
     if (file) {
         (void)fclose(file);
     }
-    const bool is_log = size >= sizeof sync && memcmp(begin, sync, sizeof sync) == 0;
+    const bool is_log = wh_log_source_is_packed(begin, size) ||
+                        (size >= sizeof sync && memcmp(begin, sync, sizeof sync) == 0);
     return is_log ? report_log(arguments) : report_script(arguments, !memchr(begin, '\0', size));
 }
 

@@ -190,6 +190,7 @@ int wh_app_run(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
+    arguments.run.record = arguments.record.all ? arguments.record.all : arguments.record.slices;
     const bool published = arguments.lcm || arguments.record.slices || arguments.record.all;
     const int status = published ? run_published(&arguments) : wh_run_and_print(&arguments.run);
     wh_run_arguments_free(&arguments.run);

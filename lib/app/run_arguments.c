@@ -13,6 +13,7 @@
 #include "../text/output.h"
 #include "../text/style.h"
 #include "../view/scene.h"
+#include "apart.h"
 #include "app.h"
 #include "segments.h"
 
@@ -157,6 +158,19 @@ static bool write_plots(const wh_document_t *document, const char *folder) {
     return true;
 }
 
+bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *input) {
+    const wh_run_files_t *files = &arguments->files;
+    const wh_named_file_t named[] = {{"the input", arguments->run.script, false},
+                                     {"the layout", input, false},
+                                     {"--report", files->page, true},
+                                     {"--gltf", files->scene, true},
+                                     {"--data", files->document, true},
+                                     {"--svg", files->plots, true},
+                                     {"--segments", arguments->segments_path, true},
+                                     {"the recording", arguments->record, true}};
+    return wh_files_are_apart(named, sizeof named / sizeof named[0], arguments->json || !arguments->quiet);
+}
+
 bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *document) {
     wh_document_t whole = *document;
     content_t content = {.document = &whole};
@@ -232,8 +246,9 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
 static int hand_on_bad(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                        wh_signals_t *signals) {
     fprintf(stderr, "%s\n", run->message);
-    if (run->record.layout && run->record.slices > 0 && write_report(arguments, run, signals) &&
-        arguments->json) {
+    if (run->record.layout && run->record.slices > 0 &&
+        wh_run_files_are_apart(arguments, run->record.layout->path) &&
+        write_report(arguments, run, signals) && arguments->json) {
         (void)wh_app_is_printed(wh_run_print(arguments, &run->record));
     }
     return WH_EXIT_USAGE;
@@ -244,7 +259,9 @@ static int hand_on(const wh_run_arguments_t *arguments, const wh_script_run_t *r
     if (outcome == WH_RUN_BAD_INPUT) {
         return hand_on_bad(arguments, run, signals);
     }
-    if (!write_segments(arguments, run) || !write_report(arguments, run, signals)) {
+    const char *layout = run->record.layout ? run->record.layout->path : NULL;
+    if (!wh_run_files_are_apart(arguments, layout) || !write_segments(arguments, run) ||
+        !write_report(arguments, run, signals)) {
         return WH_EXIT_USAGE;
     }
     if (!wh_app_is_printed(wh_run_print(arguments, &run->record))) {
@@ -272,6 +289,9 @@ void wh_run_arguments_free(wh_run_arguments_t *arguments) {
 int wh_run_and_print(wh_run_arguments_t *arguments) {
     wh_script_run_t run;
     wh_signals_t signals = {0};
+    if (!wh_run_files_are_apart(arguments, NULL)) {
+        return WH_EXIT_USAGE;
+    }
     if (wh_run_files_wanted(&arguments->files)) {
         arguments->run.listener = (wh_mcs_listener_t){on_slice, on_boundary, &signals};
     }

@@ -307,7 +307,6 @@ static uint64_t look_ahead(wh_log_run_t *run, FILE *file) {
             look_at(run);
         }
     } while (result == WH_LOG_EVENT || result == WH_LOG_DAMAGED);
-    rewind(file);
     return run->log.count;
 }
 
@@ -356,7 +355,6 @@ static bool find_cell(wh_log_run_t *run, FILE *file) {
             (void)waferhand_cell_decode_cleanup(&message);
         }
     } while (!run->cell.layout && (result == WH_LOG_EVENT || result == WH_LOG_DAMAGED));
-    rewind(file);
     return run->cell.layout != NULL;
 }
 
@@ -506,6 +504,7 @@ void wh_log_run_close(wh_log_run_t *run) {
     free(run->collision.memory);
     wh_log_layout_free(&run->cell);
     wh_replay_close(&run->replay);
+    wh_log_close(&run->log);
     for (size_t i = 0; i < run->told_count; ++i) {
         forget_told(&run->told[i]);
     }

@@ -24,9 +24,15 @@ FILE *wh_log_file(const char *path) {
 }
 
 void wh_log_open(wh_log_t *log, FILE *file) {
+    wh_log_close(log);
     memset(log, 0, offsetof(wh_log_t, window));
     log->begin = log->end = 0;
-    log->file = file;
+    rewind(file);
+    wh_log_source_open(&log->source, file);
+}
+
+void wh_log_close(wh_log_t *log) {
+    wh_log_source_close(&log->source);
 }
 
 /* ------------------------------------------------------------------------------------------------- window */
@@ -37,7 +43,7 @@ static size_t look(wh_log_t *log, size_t wanted) {
         memmove(log->window, log->window + log->begin, log->end - log->begin);
         log->end -= log->begin;
         log->begin = 0;
-        log->end += fread(log->window + log->end, 1, sizeof log->window - log->end, log->file);
+        log->end += wh_log_source_read(&log->source, log->window + log->end, sizeof log->window - log->end);
     }
     return log->end - log->begin;
 }
@@ -187,7 +193,7 @@ wh_log_result_t wh_log_next(wh_log_t *log) {
     const size_t there = look(log, HEADER);
     const uint8_t *bytes = log->window + log->begin;
     if (there == 0) {
-        return WH_LOG_END;
+        return wh_log_source_is_cut(&log->source) ? WH_LOG_CUT : WH_LOG_END;
     }
     if (!is_sync(bytes, there)) {
         return skip_damage(log);

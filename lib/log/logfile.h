@@ -13,6 +13,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "log_source.h"
+
 #define WH_LOG_EVENT_BYTES 65536
 #define WH_LOG_CHANNEL_BYTES 64
 /* So much of the file is looked at together. */
@@ -21,13 +23,14 @@
 typedef enum {
     WH_LOG_EVENT,  /* channel, data and size hold the next event */
     WH_LOG_END,    /* the file ends where an event ends */
-    WH_LOG_CUT,    /* it ends within an event, which begins at `offset`: nothing follows */
+    WH_LOG_CUT,    /* it ends within an event, which begins at `offset`, or within a compressed frame */
     WH_LOG_DAMAGED /* what stands from `offset` to `next` is no event: reading goes on at `next` */
 } wh_log_result_t;
 
+/* Zero it before the first opening. */
 typedef struct {
-    FILE *file;      /* the caller's */
-    uint64_t offset; /* where the last event, or the damage, begins */
+    wh_log_source_t source;
+    uint64_t offset; /* where the last event, or the damage, begins; of a compressed file, decompressed */
     uint64_t next;   /* where it ends */
     uint64_t count;  /* events read */
     uint64_t number; /* as the event says: from 0, one more each */
@@ -43,8 +46,11 @@ typedef struct {
 /* Opens a file for reading. Null, and errno says why, if it cannot be read; a folder is no file. */
 FILE *wh_log_file(const char *path);
 
-/* Starts at the file's current place. */
+/* Starts at the beginning of the file, which stays the caller's. Also after an earlier opening. */
 void wh_log_open(wh_log_t *log, FILE *file);
+
+/* Releases what a compressed file took. Also before any opening. */
+void wh_log_close(wh_log_t *log);
 
 /* The next event, or what stands in its place. After WH_LOG_END and WH_LOG_CUT there is nothing more. */
 wh_log_result_t wh_log_next(wh_log_t *log);

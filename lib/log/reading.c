@@ -22,7 +22,6 @@ static void find_first_cell(FILE *file, wh_log_t *log, wh_replay_t *replay) {
             wh_replay_event(replay, log->channel, log->data, log->size);
         }
     }
-    rewind(file);
     replay->messages = replay->events = replay->digest = 0;
     memset(replay->losses, 0, sizeof replay->losses);
     for (size_t i = 0; i < replay->cell_count; ++i) {
@@ -57,6 +56,9 @@ void wh_reading_replay(FILE *file, wh_log_t *log, wh_replay_t *replay, wh_readin
     wh_replay_end(replay);
     reading->events = log->count;
     reading->bytes = log->next;
+    reading->is_compressed = log->source.zstd != NULL;
+    reading->broken = log->source.broken;
+    reading->first_broken = log->source.first_broken;
     reading->is_cut = result == WH_LOG_CUT;
     reading->cut_at = log->offset;
 }
@@ -93,7 +95,7 @@ bool wh_reading_lacks_end(const wh_replay_t *replay, const wh_replay_run_t *run)
 /* What no network does. */
 static bool is_file_damaged(const wh_replay_t *replay, const wh_reading_t *reading) {
     const wh_log_numbers_t *numbers = &reading->numbers;
-    bool damaged = reading->damage_count > 0 ||
+    bool damaged = reading->damage_count > 0 || reading->broken > 0 ||
                    numbers->doubled + numbers->moved + numbers->misnumbered > 0 ||
                    wh_log_numbers_missing(numbers) > 0 || replay->losses[WH_REPLAY_CONTRADICTS].count > 0 ||
                    replay->losses[WH_REPLAY_STRAY].count > 0 || replay->runs_left_out > 0 ||

@@ -20,6 +20,8 @@ typedef struct {
     uint64_t damage_count; /* all of them */
     bool is_cut;           /* the file ends within an event, which begins at `cut_at` */
     uint64_t cut_at;
+    bool is_compressed;            /* all bytes above are counted decompressed; these are not: */
+    uint64_t broken, first_broken; /* damaged stretches of the compressed file, and where the first begins */
 } wh_reading_t;
 
 /* The exit status of `replay`, too. */
@@ -34,7 +36,8 @@ typedef enum {
 /* One word: same, differs, unusable, incomplete, cut. */
 const char *wh_reading_word(wh_reading_verdict_t verdict);
 
-/* Replays the file from its beginning. `replay` is as wh_replay_t says, `log` the caller's memory. */
+/* Replays the file from its beginning. `replay` is as wh_replay_t says, `log` the caller's memory, to be closed
+ * by the caller. */
 void wh_reading_replay(FILE *file, wh_log_t *log, wh_replay_t *replay, wh_reading_t *reading);
 
 /* What was read shows. `lenient` excuses what a network may do: messages that are lost, late or garbage, and
