@@ -183,6 +183,7 @@ static wh_log_result_t take_event(wh_log_t *log, uint64_t length) {
     if (!fits || log->passed_over) {
         return pass_event(log, length);
     }
+    log->is_loose = !is_followed;
     pass(log, (size_t)length);
     ++log->count;
     return WH_LOG_EVENT;

@@ -37,6 +37,7 @@ typedef struct {
     int64_t timestamp_us;
     char channel[WH_LOG_CHANNEL_BYTES]; /* empty for a longer name, which is none of ours */
     bool passed_over;                   /* it is too long for us: no data */
+    bool is_loose;                      /* what follows is no event: its own end may be wrong */
     size_t size;                        /* of the data */
     const uint8_t *data;                /* valid until the next call */
     uint8_t window[WH_LOG_WINDOW];      /* the reader's: bytes from `next` on stand from `begin` to `end` */

@@ -50,6 +50,7 @@ void wh_reading_replay(FILE *file, wh_log_t *log, wh_replay_t *replay, wh_readin
         }
         wh_log_numbers_take(&reading->numbers, log->number, log->offset);
         replay->at = log->offset;
+        replay->is_loose = log->is_loose;
         wh_replay_event(replay, log->channel, log->data, log->size);
     }
     wh_log_numbers_finish(&reading->numbers);

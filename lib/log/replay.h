@@ -115,6 +115,7 @@ typedef struct {
     void *user;
     int64_t only_run; /* 0: all */
     uint64_t at;      /* the byte of the event that is handed over; the caller's */
+    bool is_loose;    /* and nothing says that it ends where it should; the caller's */
 
     wh_replay_cell_t cells[WH_REPLAY_CELLS];
     size_t cell_count;

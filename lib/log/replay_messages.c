@@ -15,19 +15,21 @@ static bool is_slice(int64_t run, int64_t seq) {
     return run != 0 && seq >= 1 && seq <= WH_LINK_SLICES;
 }
 
-static void count_check(wh_replay_t *replay, int64_t check) {
-    ++replay->messages;
+/* A message without a check may be a sender's that makes none; false if it may be a torn one as well. */
+static bool is_to_be_had(wh_replay_t *replay, int64_t check) {
     if (check == 0) {
-        wh_replay_lose(replay, WH_REPLAY_UNCHECKED);
+        wh_replay_lose(replay, replay->is_loose ? WH_REPLAY_GARBAGE : WH_REPLAY_UNCHECKED);
+        return !replay->is_loose;
     }
+    ++replay->messages;
+    return true;
 }
 
 static void on_command(wh_replay_t *replay, const void *data, size_t size) {
     waferhand_command message;
     if (!wh_link_decode_command(data, size, &message) || !is_slice(message.run, message.seq)) {
         wh_replay_lose(replay, WH_REPLAY_GARBAGE);
-    } else if (is_wanted(replay, message.run)) {
-        count_check(replay, message.check);
+    } else if (is_wanted(replay, message.run) && is_to_be_had(replay, message.check)) {
         wh_replay_take_command(replay, &message);
     }
 }
@@ -46,8 +48,7 @@ static void on_state(wh_replay_t *replay, const void *data, size_t size) {
     }
     if (!is_slice(message.run, message.seq)) {
         wh_replay_lose(replay, WH_REPLAY_GARBAGE);
-    } else if (is_wanted(replay, message.run)) {
-        count_check(replay, message.check);
+    } else if (is_wanted(replay, message.run) && is_to_be_had(replay, message.check)) {
         if (message.status == WH_OK) {
             wh_replay_take_state(replay, &message, data, size);
         } else if (!is_refusal_of_protocol(message.status)) {
@@ -170,7 +171,7 @@ static void check_recording(wh_replay_t *replay, const waferhand_recording *mess
         return;
     }
     for (size_t i = 0; i < replay->cell_count; ++i) {
-        replay->cells[i].is_sure = true;
+        replay->cells[i].is_sure = replay->cells[i].is_sure || replay->cells[i].times > 0;
     }
 }
 
@@ -210,7 +211,7 @@ static void on_restore(wh_replay_t *replay, const void *data, size_t size) {
         wh_replay_lose(replay, WH_REPLAY_GARBAGE);
         return;
     }
-    count_check(replay, message.check);
+    (void)is_to_be_had(replay, message.check);
     (void)waferhand_state_decode_cleanup(&message);
 }
 
@@ -293,7 +294,7 @@ void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data,
     if (ours) {
         replay->digest = wh_link_digest(replay->digest, channel, data, size);
     }
-    if (is_ours(data, size) ? !ours : ours && !is_known) {
+    if (!is_known && (ours || is_ours(data, size))) {
         wh_replay_lose(replay, WH_REPLAY_STRAY);
     }
 }
