@@ -167,7 +167,7 @@ bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *inp
                                      {"--data", files->document, true},
                                      {"--svg", files->plots, true},
                                      {"--segments", arguments->segments_path, true},
-                                     {"the recording", arguments->record, true}};
+                                     {"the recording", arguments->record, false}};
     return wh_files_are_apart(named, sizeof named / sizeof named[0], arguments->json || !arguments->quiet);
 }
 
