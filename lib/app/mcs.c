@@ -119,6 +119,8 @@ int wh_app_mcs(int argc, char **argv) {
     arguments_t arguments = {.link = {.client = {.stop = &wh_stop_requested}}};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
+    arguments.run.record =
+        arguments.link.record.all ? arguments.link.record.all : arguments.link.record.slices;
     int status = WH_EXIT_USAGE;
     if (wh_mcs_link_open(&link, &arguments.link)) {
         arguments.run.run.partners = wh_mcs_process_partners(&link.control);

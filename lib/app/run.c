@@ -126,6 +126,8 @@ static wh_link_t *connect_simulation(void *user, wh_mcs_t *mcs) {
     broadcast->simulation.server.encodes_later = !broadcast->is_watched;
     broadcast->record.options.inputs[1] = mcs->layout->path;
     broadcast->connected = true;
+    broadcast->control.identity = broadcast->identity;
+    wh_mcs_process_catch_up(&broadcast->control, mcs);
     return &broadcast->link;
 }
 
@@ -134,8 +136,28 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
     wh_mcs_process_partners(control).watch(control, mcs, command, ended);
 }
 
+static void expected(void *user, const wh_mcs_t *mcs) {
+    wh_mcs_process_t *control = &((broadcast_t *)user)->control;
+    wh_mcs_process_partners(control).expected(control, mcs);
+}
+
+static void cycle(void *user, const wh_mcs_t *mcs) {
+    wh_mcs_process_t *control = &((broadcast_t *)user)->control;
+    wh_mcs_process_partners(control).cycle(control, mcs);
+}
+
+static void finished(void *user, const wh_mcs_t *mcs) {
+    wh_mcs_process_t *control = &((broadcast_t *)user)->control;
+    wh_mcs_process_partners(control).finished(control, mcs);
+}
+
 static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
-    const wh_mcs_partners_t partners = {.connect = connect_simulation, .watch = watch, .user = broadcast};
+    const wh_mcs_partners_t partners = {.connect = connect_simulation,
+                                        .watch = watch,
+                                        .expected = expected,
+                                        .cycle = cycle,
+                                        .finished = finished,
+                                        .user = broadcast};
     const wh_protocol_client_options_t lockstep = {.rate = 0};
     if (!wh_mcs_process_open(&broadcast->control, &broadcast->node, &lockstep)) {
         return WH_EXIT_USAGE;
@@ -168,6 +190,7 @@ int wh_app_run(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
+    arguments.run.record = arguments.record.all ? arguments.record.all : arguments.record.slices;
     const bool published = arguments.lcm || arguments.record.slices || arguments.record.all;
     const int status = published ? run_published(&arguments) : wh_run_and_print(&arguments.run);
     wh_run_arguments_free(&arguments.run);

@@ -175,6 +175,13 @@ bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message)
 
 /* --------------------------------------------------------------------------------------------- recordings */
 
+uint64_t wh_link_digest(uint64_t before, const char *channel, const void *data, size_t size) {
+    char name[WH_LINK_CHANNEL];
+    const size_t length = strnlen(channel, sizeof name);
+    memcpy(name, channel, length);
+    return wh_hash_word(wh_hash_word(before, check_of((const uint8_t *)name, length)), check_of(data, size));
+}
+
 bool wh_link_is_slices(const void *data, size_t size) {
     walk_t walk = walk_over(data, size);
     skip(&walk, SLICES_FIXED);
@@ -188,7 +195,7 @@ bool wh_link_decode_recording(const void *data, size_t size, waferhand_recording
     skip(&walk, RECORDING_FIXED);
     skip_text(&walk);
     skip_text(&walk);
-    skip(&walk, 2 * 8 + CHECK);
+    skip(&walk, 3 * 8 + CHECK);
     return ends(&walk) && is_sealed(data, size) &&
            waferhand_recording_decode(data, 0, (int)size, message) == (int)size;
 }

@@ -46,11 +46,14 @@ void wh_recording_write_event(wh_recording_t *recording, const char *channel, co
     if (!wh_record_file_put(&recording->file, recording->event, whole) && open_file(recording)) {
         (void)wh_record_file_put(&recording->file, recording->event, whole);
     }
+    if (strncmp(channel, WH_LINK_OURS, strlen(WH_LINK_OURS)) == 0) {
+        recording->digest = wh_link_digest(recording->digest, channel, data, size);
+    }
     ++recording->events;
 }
 
-/* Says what the log is: at its beginning and at its end. */
-static void write_recording(wh_recording_t *recording, int8_t closed) {
+/* Says what the log is, and what is in it so far: at its beginning, behind a cell, and at its end. */
+void wh_recording_say(wh_recording_t *recording, int8_t closed) {
     const wh_recording_place_t *last = &recording->last;
     const waferhand_recording message = {.utime = last->utime,
                                          .seq = last->seq,
@@ -65,7 +68,8 @@ static void write_recording(wh_recording_t *recording, int8_t closed) {
                                          .program = wh_link_borrowed(recording->options.program),
                                          .program_version = wh_link_borrowed(wh_version()),
                                          .events = recording->events,
-                                         .slices = recording->slices};
+                                         .slices = recording->slices,
+                                         .digest = (int64_t)recording->digest};
     const int size =
         waferhand_recording_encode(recording->encoded, 0, (int)sizeof recording->encoded, &message);
     wh_link_seal(recording->encoded, (size_t)size);
@@ -87,7 +91,8 @@ static void begin_part(wh_recording_t *recording) {
     ++recording->part;
     recording->events = 0;
     recording->slices = 0;
-    write_recording(recording, WH_RECORDING_BEGINS);
+    recording->digest = 0;
+    wh_recording_say(recording, WH_RECORDING_BEGINS);
 }
 
 static bool open_named(wh_recording_t *recording, const char *path) {
@@ -118,7 +123,7 @@ void wh_recording_split(wh_recording_t *recording, const void *state, size_t siz
     if (bytes <= 0 || !file->is_plain_file || file->failed || (double)file->written < bytes) {
         return;
     }
-    write_recording(recording, WH_RECORDING_GOES_ON);
+    wh_recording_say(recording, WH_RECORDING_GOES_ON);
     if (!wh_record_file_close(file)) {
         return;
     }
@@ -126,6 +131,7 @@ void wh_recording_split(wh_recording_t *recording, const void *state, size_t siz
     if (open_file(recording)) {
         if (recording->cell_size > 0) {
             wh_recording_write_event(recording, WH_CHANNEL_CELL, recording->cell, recording->cell_size);
+            wh_recording_say(recording, WH_RECORDING_BEGINS);
         }
         wh_recording_write_event(recording, WH_CHANNEL_STATE, state, size);
     }
@@ -303,6 +309,6 @@ bool wh_recording_close(wh_recording_t *recording) {
     }
     wh_recording_give_up(recording, recording->command_count);
     wh_recording_flush_block(recording);
-    write_recording(recording, WH_RECORDING_ENDS);
+    wh_recording_say(recording, WH_RECORDING_ENDS);
     return wh_record_file_close(file);
 }

@@ -55,6 +55,7 @@ typedef struct {
     int64_t id;
     int32_t part;
     int64_t events, slices; /* of the part */
+    uint64_t digest;
     wh_recording_place_t last;
     int64_t since_state; /* slices since a whole state */
     wh_slices_t block;
