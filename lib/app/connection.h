@@ -32,8 +32,8 @@ typedef struct {
 /* Catches signals and opens LCM; says on standard error what is wrong. */
 bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
 
-/* Tells all listeners that the run is over, prints which messages were lost, and closes. False if the record or the
- * file of the valves could not be written: standard error has said so. */
+/* Tells all listeners that the run is over, prints which messages were lost, and closes. False if the
+ * record or the file of the valves could not be written: standard error has said so. */
 bool wh_mcs_link_close(wh_mcs_link_t *link);
 
 #endif

@@ -42,10 +42,11 @@ struct wh_node {
     size_t subscriber_count;
 };
 
-/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). If `record` is not null and its
- * options have a path, it is opened then, and gets all that is published and received. It stays the caller's,
- * who closes it after the node. The node must not be moved afterwards. False, and standard error says why, when
- * LCM cannot (no multicast route, a bad URL) or the file cannot be made: nothing is then open. */
+/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). If `record` is not null
+ * and its options have a path, it is opened then, and gets all that is published and received. It stays
+ * the caller's, who closes it after the node. The node must not be moved afterwards. False, and standard
+ * error says why, when LCM cannot (no multicast route, a bad URL) or the file cannot be made: nothing is
+ * then open. */
 bool wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
 
 /* Subscribes one channel, whose name must outlive the node. False if there is no room. */

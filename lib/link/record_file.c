@@ -211,30 +211,38 @@ static void write_packed(wh_record_file_t *file, ZSTD_EndDirective directive) {
     }
 }
 
-/* What waits goes into the file; with `ends` the frame ends. */
-static void hand_over(wh_record_file_t *file, bool ends) {
-    if (file->fd < 0 || file->failed || !is_ours(file)) {
-        file->used = file->failed ? 0 : file->used;
-        return;
-    }
-    if (!file->zstd) {
-        write_all(file, file->buffer, file->used);
-    } else if (file->used > 0 || (ends && file->frame_bytes > 0)) {
-        const int64_t now = clock_us();
-        file->frame_us = file->frame_bytes == 0 ? now : file->frame_us;
-        file->frame_bytes += file->used;
-        const bool over =
-            ends || file->frame_bytes >= WH_RECORD_FRAME_BYTES || now - file->frame_us >= WH_RECORD_FRAME_US;
+/* Packs what waits; with `ends`, or if it is large or old enough, the frame ends. */
+static void pack(wh_record_file_t *file, bool ends) {
+    const int64_t now = clock_us();
+    file->frame_us = file->frame_bytes == 0 ? now : file->frame_us;
+    file->frame_bytes += file->used;
+    const bool over =
+        ends || file->frame_bytes >= WH_RECORD_FRAME_BYTES || now - file->frame_us >= WH_RECORD_FRAME_US;
+    if (file->used > 0 || (over && file->frame_bytes > 0)) {
         write_packed(file, over ? ZSTD_e_end : ZSTD_e_flush);
         file->frame_bytes = over ? 0 : file->frame_bytes;
+    }
+}
+
+/* What waits goes into the file; with `ends` the frame ends. */
+static void hand_over(wh_record_file_t *file, bool ends) {
+    if (file->fd < 0) {
+        return;
+    }
+    if (file->failed || !is_ours(file)) {
+        file->used = 0;
+        return;
+    }
+    if (file->zstd) {
+        pack(file, ends);
+    } else {
+        write_all(file, file->buffer, file->used);
     }
     file->used = 0;
 }
 
 void wh_record_file_flush(wh_record_file_t *file) {
-    const bool late =
-        file->frame_bytes > 0 && file->zstd && clock_us() - file->frame_us >= WH_RECORD_FRAME_US;
-    hand_over(file, late);
+    hand_over(file, false);
 }
 
 bool wh_record_file_put(wh_record_file_t *file, const void *bytes, size_t size) {

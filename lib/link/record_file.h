@@ -41,8 +41,8 @@ bool wh_record_file_create(wh_record_file_t *file, const char *path);
  * another recording has locked, and one of the `inputs` (a list that ends with null). */
 bool wh_record_file_replace(wh_record_file_t *file, const char *path, const char *const inputs[]);
 
-/* The name with "." and a tag put before its ending: run.log becomes run.TAG.log, run.log.zst run.TAG.log.zst.
- * False if that is too long. */
+/* The name with "." and a tag put before its ending: run.log becomes run.TAG.log, run.log.zst
+ * run.TAG.log.zst. False if that is too long. */
 bool wh_record_file_name(const char *path, const char *tag, char name[PATH_MAX]);
 
 /* Adds bytes, of `size` at most WH_RECORD_BUFFER, to what waits to be written. A file that is not open yet

@@ -1,4 +1,4 @@
-#include "recording.h"
+#include "recording_internal.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -10,9 +10,6 @@
 #define EVENT_HEADER 28
 /* Longer names are no channels of LCM. */
 #define CHANNEL_MOST 63
-/* A cell's fingerprint; then utime, seq and run, which tell when it was sent; then what it says. */
-#define CELL_FINGERPRINT 8
-#define CELL_CONTENT (8 + 3 * 8)
 
 /* ------------------------------------------------------------------------------------------------- events */
 
@@ -32,7 +29,7 @@ static int64_t wall_us(void) {
 static bool open_file(wh_recording_t *recording);
 
 /* Writes one event. What is longer than a datagram comes from nobody. */
-static void write_event(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
+void wh_recording_write_event(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
     const size_t length = strnlen(channel, CHANNEL_MOST);
     uint8_t *out = recording->event;
     if (size > WH_LINK_DATAGRAM) {
@@ -76,14 +73,18 @@ static void write_recording(wh_recording_t *recording, int8_t closed) {
     const int size =
         waferhand_recording_encode(recording->encoded, 0, (int)sizeof recording->encoded, &message);
     wh_link_seal(recording->encoded, (size_t)size);
-    write_event(recording, WH_CHANNEL_RECORDING, recording->encoded, (size_t)size);
+    wh_recording_write_event(recording, WH_CHANNEL_RECORDING, recording->encoded, (size_t)size);
 }
 
-static void flush_block(wh_recording_t *recording) {
+void wh_recording_seal(wh_recording_t *recording) {
+    write_recording(recording, WH_RECORDING_BEGINS);
+}
+
+void wh_recording_flush_block(wh_recording_t *recording) {
     wh_slices_t *block = &recording->block;
     for (size_t from = 0; from < block->count;) {
         const size_t size = wh_slices_encode(block, &from, recording->encoded);
-        write_event(recording, WH_CHANNEL_SLICES, recording->encoded, size);
+        wh_recording_write_event(recording, WH_CHANNEL_SLICES, recording->encoded, size);
     }
     block->count = 0;
 }
@@ -120,7 +121,7 @@ static bool open_file(wh_recording_t *recording) {
 }
 
 /* Ends a part that has become large enough, at a whole state, with which the next part begins. */
-static void split(wh_recording_t *recording, const void *state, size_t size) {
+void wh_recording_split(wh_recording_t *recording, const void *state, size_t size) {
     const double bytes = recording->options.part_mb * 1e6;
     wh_record_file_t *file = &recording->file;
     if (bytes <= 0 || !file->is_plain_file || file->failed || (double)file->written < bytes) {
@@ -133,24 +134,24 @@ static void split(wh_recording_t *recording, const void *state, size_t size) {
     begin_part(recording);
     if (open_file(recording)) {
         if (recording->cell_size > 0) {
-            write_event(recording, WH_CHANNEL_CELL, recording->cell, recording->cell_size);
-            write_recording(recording, WH_RECORDING_BEGINS);
+            wh_recording_write_event(recording, WH_CHANNEL_CELL, recording->cell, recording->cell_size);
+            wh_recording_seal(recording);
         }
-        write_event(recording, WH_CHANNEL_STATE, state, size);
+        wh_recording_write_event(recording, WH_CHANNEL_STATE, state, size);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------- slices */
 
 /* The first slice of anything: a file that waits for it is opened. */
-static void see_slice(wh_recording_t *recording) {
+void wh_recording_see_slice(wh_recording_t *recording) {
     if (recording->file.fd < 0 && !recording->file.failed) {
         (void)open_file(recording);
     }
-    ++recording->slices;
+    recording->slices += recording->options.all ? 0 : 1;
 }
 
-static void note_place(wh_recording_t *recording, const waferhand_command *command, int64_t missed) {
+void wh_recording_note_place(wh_recording_t *recording, const waferhand_command *command, int64_t missed) {
     recording->last = (wh_recording_place_t){.run = command->run,
                                              .seq = command->seq,
                                              .utime = command->utime,
@@ -171,243 +172,26 @@ static bool add_slice(wh_recording_t *recording, const waferhand_command *comman
     if (wh_slices_add(&recording->block, command, told, hash)) {
         return true;
     }
-    flush_block(recording);
+    wh_recording_flush_block(recording);
     return wh_slices_add(&recording->block, command, told, hash);
 }
 
-static wh_recorded_t take_slice(wh_recording_t *recording, const waferhand_command *command,
-                                const int32_t told[], int64_t missed, uint64_t hash, bool has_events) {
+wh_recorded_t wh_recording_take_slice(wh_recording_t *recording, const waferhand_command *command,
+                                      const int32_t told[], int64_t missed, uint64_t hash, bool has_events) {
     if (!follows(&recording->last, command, missed) || !add_slice(recording, command, told, hash)) {
         return WH_NOT_RECORDED;
     }
-    see_slice(recording);
-    note_place(recording, command, missed);
+    wh_recording_see_slice(recording);
+    wh_recording_note_place(recording, command, missed);
     ++recording->since_state;
     return has_events || recording->since_state >= WH_SLICES_MOST ? WH_RECORDED_STATE : WH_RECORDED;
 }
 
-static void take_state(wh_recording_t *recording, const void *data, size_t size) {
-    flush_block(recording);
-    write_event(recording, WH_CHANNEL_STATE, data, size);
+void wh_recording_take_state(wh_recording_t *recording, const void *data, size_t size) {
+    wh_recording_flush_block(recording);
+    wh_recording_write_event(recording, WH_CHANNEL_STATE, data, size);
     recording->since_state = 0;
-    split(recording, data, size);
-}
-
-/* ----------------------------------------------------------------------------------------------- messages */
-
-static wh_recording_command_t *waiting(wh_recording_t *recording, size_t i) {
-    return &recording->commands[(recording->first_command + i) % WH_RECORDING_COMMANDS];
-}
-
-/* The oldest commands, so many, were not answered, or will be later: they stand by themselves. */
-static void give_up(wh_recording_t *recording, size_t count) {
-    if (count > 0) {
-        flush_block(recording);
-    }
-    for (size_t i = 0; i < count; ++i) {
-        const wh_recording_command_t *command = waiting(recording, i);
-        write_event(recording, WH_CHANNEL_COMMAND, command->bytes, command->size);
-    }
-    recording->first_command = (recording->first_command + count) % WH_RECORDING_COMMANDS;
-    recording->command_count -= count;
-}
-
-/* Which of the waiting commands this slice's is; their count if it is none of them. */
-static size_t find_waiting(wh_recording_t *recording, int64_t run, int64_t seq) {
-    size_t i = 0;
-    while (i < recording->command_count &&
-           (waiting(recording, i)->run != run || waiting(recording, i)->seq != seq)) {
-        ++i;
-    }
-    return i;
-}
-
-static void write_whole(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
-    flush_block(recording);
-    write_event(recording, channel, data, size);
-}
-
-static void on_command(wh_recording_t *recording, const void *data, size_t size) {
-    waferhand_command message;
-    if (size > WH_RECORDING_COMMAND_BYTES || !wh_link_decode_command(data, size, &message) ||
-        message.check == 0) {
-        write_whole(recording, WH_CHANNEL_COMMAND, data, size);
-        return;
-    }
-    const size_t same = find_waiting(recording, message.run, message.seq);
-    const wh_recording_place_t *last = &recording->last;
-    if ((same < recording->command_count && waiting(recording, same)->size == size &&
-         memcmp(waiting(recording, same)->bytes, data, size) == 0) ||
-        (message.run == last->run && message.seq == last->seq && message.check == last->command_check)) {
-        return;
-    }
-    if (recording->command_count == WH_RECORDING_COMMANDS) {
-        give_up(recording, 1);
-    }
-    wh_recording_command_t *command = waiting(recording, recording->command_count++);
-    command->run = message.run;
-    command->seq = message.seq;
-    command->size = size;
-    memcpy(command->bytes, data, size);
-}
-
-/* True if the state is what its command, replayed, can yield. */
-static bool answers(const waferhand_state *state, const waferhand_command *command) {
-    return state->utime == command->utime && state->layout_hash == command->layout_hash &&
-           state->gripper_count == command->gripper_count;
-}
-
-/* The command and the state that answers it. */
-static void take_pair(wh_recording_t *recording, const wh_recording_command_t *waited,
-                      const waferhand_state *state, const void *data, size_t size) {
-    waferhand_command command;
-    int32_t told[WH_GRIPPERS];
-    wh_recorded_t recorded = WH_NOT_RECORDED;
-    (void)wh_link_decode_command(waited->bytes, waited->size, &command);
-    for (int32_t g = 0; g < state->gripper_count; ++g) {
-        told[g] = state->grippers[g].valve_told;
-    }
-    if (answers(state, &command)) {
-        recorded = take_slice(recording, &command, told, state->missed, (uint64_t)state->hash,
-                              state->event_count > 0);
-    }
-    if (recorded == WH_NOT_RECORDED) {
-        write_whole(recording, WH_CHANNEL_COMMAND, waited->bytes, waited->size);
-        see_slice(recording);
-        note_place(recording, &command, state->missed);
-    }
-    recording->last.command_check = command.check;
-    recording->last.state_check = state->check;
-    if (recorded != WH_RECORDED) {
-        take_state(recording, data, size);
-    }
-}
-
-/* A state that no waiting command asked for: of a simulator that was given a state, say. */
-static void take_lone_state(wh_recording_t *recording, const waferhand_state *state, const void *data,
-                            size_t size) {
-    wh_recording_place_t *last = &recording->last;
-    write_whole(recording, WH_CHANNEL_STATE, data, size);
-    if (state->status == WH_OK && state->check != 0 && (state->run != last->run || state->seq > last->seq)) {
-        *last = (wh_recording_place_t){.run = state->run,
-                                       .seq = state->seq,
-                                       .utime = state->utime,
-                                       .missed = state->missed,
-                                       .layout_hash = (uint64_t)state->layout_hash,
-                                       .state_check = state->check};
-        recording->since_state = 0;
-    }
-}
-
-static void on_sound_state(wh_recording_t *recording, const waferhand_state *state, const void *data,
-                           size_t size) {
-    const wh_recording_place_t *last = &recording->last;
-    const size_t i = find_waiting(recording, state->run, state->seq);
-    const bool is_answer = i < recording->command_count && state->check != 0;
-    if (state->run == last->run && state->seq == last->seq && state->check != 0 &&
-        state->check == last->state_check) {
-        return;
-    }
-    if (!is_answer) {
-        take_lone_state(recording, state, data, size);
-    } else if (state->status != WH_OK) {
-        give_up(recording, i + 1);
-        write_whole(recording, WH_CHANNEL_STATE, data, size);
-    } else {
-        give_up(recording, i);
-        const wh_recording_command_t *command = waiting(recording, 0);
-        recording->first_command = (recording->first_command + 1) % WH_RECORDING_COMMANDS;
-        --recording->command_count;
-        take_pair(recording, command, state, data, size);
-    }
-}
-
-static void on_state(wh_recording_t *recording, const void *data, size_t size) {
-    waferhand_state message;
-    if (!wh_link_decode_state(data, size, &message)) {
-        write_whole(recording, WH_CHANNEL_STATE, data, size);
-        return;
-    }
-    on_sound_state(recording, &message, data, size);
-    (void)waferhand_state_decode_cleanup(&message);
-}
-
-/* True if the cell says what the last one said, but for when it was sent, and in which run. */
-static bool is_known_cell(const wh_recording_t *recording, const void *data, size_t size) {
-    const uint8_t *bytes = data;
-    return size == recording->cell_size && size > CELL_CONTENT &&
-           memcmp(bytes, recording->cell, CELL_FINGERPRINT) == 0 &&
-           memcmp(bytes + CELL_CONTENT, recording->cell + CELL_CONTENT, size - CELL_CONTENT) == 0;
-}
-
-static void keep_cell(wh_recording_t *recording, const void *data, size_t size) {
-    if (size <= sizeof recording->cell) {
-        memcpy(recording->cell, data, size);
-        recording->cell_size = size;
-    }
-}
-
-static void on_cell(wh_recording_t *recording, const void *data, size_t size) {
-    waferhand_cell message;
-    const bool known = is_known_cell(recording, data, size);
-    if (!known) {
-        write_whole(recording, WH_CHANNEL_CELL, data, size);
-        write_recording(recording, WH_RECORDING_BEGINS);
-    }
-    if (wh_link_decode_cell(data, size, &message)) {
-        keep_cell(recording, data, size);
-        (void)waferhand_cell_decode_cleanup(&message);
-    }
-}
-
-/* Progress, and that nothing moves: who replays the slices knows that. */
-static void on_mcs(wh_recording_t *recording, const void *data, size_t size) {
-    waferhand_mcs message;
-    bool wanted = true;
-    if (wh_link_decode_mcs(data, size, &message)) {
-        wanted = message.phase != WH_LINK_PHASE_IDLE && message.phase != WH_LINK_PHASE_GOES_ON;
-        (void)waferhand_mcs_decode_cleanup(&message);
-    }
-    if (wanted) {
-        write_whole(recording, WH_CHANNEL_MCS, data, size);
-    }
-}
-
-/* Every message. A part ends at a state that answers the last command. */
-static void take_any(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
-    waferhand_command command;
-    waferhand_state state;
-    write_event(recording, channel, data, size);
-    if (strcmp(channel, WH_CHANNEL_CELL) == 0) {
-        keep_cell(recording, data, size);
-    } else if (strcmp(channel, WH_CHANNEL_COMMAND) == 0 && wh_link_decode_command(data, size, &command)) {
-        if (recording->file.fd < 0 && !recording->file.failed) {
-            (void)open_file(recording);
-        }
-        note_place(recording, &command, 0);
-    } else if (strcmp(channel, WH_CHANNEL_STATE) == 0 && recording->options.part_mb > 0 &&
-               wh_link_decode_state(data, size, &state)) {
-        if (state.run == recording->last.run && state.seq == recording->last.seq && state.status == WH_OK) {
-            split(recording, data, size);
-        }
-        (void)waferhand_state_decode_cleanup(&state);
-    }
-}
-
-static void take_message(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
-    if (recording->options.all) {
-        take_any(recording, channel, data, size);
-    } else if (strcmp(channel, WH_CHANNEL_COMMAND) == 0) {
-        on_command(recording, data, size);
-    } else if (strcmp(channel, WH_CHANNEL_STATE) == 0) {
-        on_state(recording, data, size);
-    } else if (strcmp(channel, WH_CHANNEL_CELL) == 0) {
-        on_cell(recording, data, size);
-    } else if (strcmp(channel, WH_CHANNEL_MCS) == 0) {
-        on_mcs(recording, data, size);
-    } else if (strcmp(channel, WH_CHANNEL_REQUEST) == 0 || strcmp(channel, WH_CHANNEL_RESTORE) == 0) {
-        write_whole(recording, channel, data, size);
-    }
+    wh_recording_split(recording, data, size);
 }
 
 /* ------------------------------------------------------------------------------------------------ calling */
@@ -419,7 +203,7 @@ bool wh_recording_is_idle(const wh_recording_t *recording) {
 void wh_recording_message(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
     (void)pthread_mutex_lock(&recording->lock);
     if (!wh_recording_is_idle(recording)) {
-        take_message(recording, channel, data, size);
+        wh_recording_take_message(recording, channel, data, size);
     }
     (void)pthread_mutex_unlock(&recording->lock);
 }
@@ -429,7 +213,7 @@ wh_recorded_t wh_recording_slice(wh_recording_t *recording, const waferhand_comm
     wh_recorded_t recorded = WH_RECORDED;
     (void)pthread_mutex_lock(&recording->lock);
     if (!wh_recording_is_idle(recording)) {
-        recorded = take_slice(recording, command, told, missed, hash, has_events);
+        recorded = wh_recording_take_slice(recording, command, told, missed, hash, has_events);
     }
     (void)pthread_mutex_unlock(&recording->lock);
     return recorded;
@@ -438,7 +222,7 @@ wh_recorded_t wh_recording_slice(wh_recording_t *recording, const waferhand_comm
 void wh_recording_state(wh_recording_t *recording, const void *data, size_t size) {
     (void)pthread_mutex_lock(&recording->lock);
     if (!wh_recording_is_idle(recording)) {
-        take_state(recording, data, size);
+        wh_recording_take_state(recording, data, size);
     }
     (void)pthread_mutex_unlock(&recording->lock);
 }
@@ -456,7 +240,7 @@ static void *flush_now_and_then(void *user) {
         until.tv_nsec %= 1000000000;
         (void)pthread_cond_timedwait(&recording->wake, &recording->lock, &until);
         if (recording->file.fd >= 0 && !recording->file.failed) {
-            flush_block(recording);
+            wh_recording_flush_block(recording);
             wh_record_file_flush(&recording->file);
         }
     }
@@ -527,8 +311,8 @@ bool wh_recording_close(wh_recording_t *recording) {
         }
         return !file->failed;
     }
-    give_up(recording, recording->command_count);
-    flush_block(recording);
+    wh_recording_give_up(recording, recording->command_count);
+    wh_recording_flush_block(recording);
     write_recording(recording, WH_RECORDING_ENDS);
     return wh_record_file_close(file);
 }

@@ -1,8 +1,8 @@
 /* A recording: what a process hears and says goes into an LCM event log, as slices or message by message.
  *
- * lcm_types/README.md says what stands in it. A thread of its own sees to it that what was recorded reaches the
- * file within 100 ms, whatever the process does meanwhile; the functions may be called by one other thread.
- * A recording that fails says so at once and takes nothing more: the process goes on, and
+ * lcm_types/README.md says what stands in it. A thread of its own sees to it that what was recorded
+ * reaches the file within 100 ms, whatever the process does meanwhile; the functions may be called by one
+ * other thread. A recording that fails says so at once and takes nothing more: the process goes on, and
  * wh_recording_close tells. Nothing here allocates for a slice.
  */
 #ifndef WH_LINK_RECORDING_H
@@ -74,12 +74,12 @@ typedef enum {
     WH_NOT_RECORDED    /* it does not fit: both messages are to be recorded, by wh_recording_message */
 } wh_recorded_t;
 
-/* Begins. Creates the file, unless `replaces` has that wait for the first slice. False, and standard error says
- * why, if that was not possible: there is then nothing to close. */
+/* Begins. Creates the file, unless `replaces` has that wait for the first slice. False, and standard
+ * error says why, if that was not possible: there is then nothing to close. */
 bool wh_recording_open(wh_recording_t *recording);
 
-/* Records a message that was sent or came, whatever it is. With slices it is left out or becomes part of a block
- * where that loses nothing. */
+/* Records a message that was sent or came, whatever it is. With slices it is left out or becomes part of
+ * a block where that loses nothing. */
 void wh_recording_message(wh_recording_t *recording, const char *channel, const void *data, size_t size);
 
 /* Records a slice without its messages. `told` has the state's valve_told for each of the command's grippers,

@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-/* Prediction by polynomials of degree 0 to 6: axes are cubic in time, poses are smooth. */
-#define ORDERS 7
+#include "prediction.h"
+
 #define SIGN (UINT64_C(1) << 63)
 /* No time of a run is near to what 64 bits hold. */
 #define FARTHEST (INT64_C(1) << 62)
@@ -22,71 +22,6 @@ static double real_of(uint64_t bits) {
     double value;
     memcpy(&value, &bits, sizeof value);
     return value;
-}
-
-/* --------------------------------------------------------------------------------------------- prediction */
-
-/* What the values so far let expect. Coder and decoder keep one each, in step. */
-typedef struct {
-    size_t seen;
-    uint64_t last;
-    double differences[ORDERS]; /* of order 0, the last value, to 6 */
-    uint64_t guesses[ORDERS];   /* bits, by each order */
-    uint32_t scores[ORDERS];    /* how badly each order has guessed of late */
-} predictor_t;
-
-/* The bits as a number that grows with the value, so that neighbouring values differ by little. */
-static uint64_t rank_of(uint64_t bits) {
-    return (bits & SIGN) != 0 ? bits ^ (SIGN - 1) : bits;
-}
-
-static uint64_t fold(uint64_t difference) {
-    return difference << 1 ^ ((difference & SIGN) != 0 ? UINT64_MAX : 0);
-}
-
-static uint64_t unfold(uint64_t folded) {
-    return folded >> 1 ^ ((folded & 1) != 0 ? UINT64_MAX : 0);
-}
-
-static size_t best_order(const predictor_t *predictor) {
-    const size_t most = predictor->seen < ORDERS ? predictor->seen : ORDERS;
-    size_t best = 0;
-    for (size_t order = 1; order < most; ++order) {
-        best = predictor->scores[order] < predictor->scores[best] ? order : best;
-    }
-    return best;
-}
-
-/* The rank of the next value, as far as one can tell. */
-static uint64_t predict(predictor_t *predictor) {
-    double sum = 0;
-    predictor->guesses[0] = predictor->last;
-    for (size_t order = 1; order < ORDERS; ++order) {
-        sum += predictor->differences[order];
-        const double guess = predictor->differences[0] + sum;
-        /* Which of many bits a sum that is no number has, differs from machine to machine. */
-        predictor->guesses[order] = guess == guess ? bits_of(guess) : predictor->last;
-    }
-    return rank_of(predictor->guesses[best_order(predictor)]);
-}
-
-static uint32_t length_of(uint64_t folded) {
-    return 64U - (uint32_t)__builtin_clzll(folded | 1);
-}
-
-static void learn(predictor_t *predictor, uint64_t bits) {
-    double difference = real_of(bits);
-    for (size_t order = 0; predictor->seen > 0 && order < ORDERS; ++order) {
-        const uint64_t miss = fold(rank_of(bits) - rank_of(predictor->guesses[order]));
-        predictor->scores[order] = predictor->scores[order] / 2 + 8 * length_of(miss);
-    }
-    for (size_t order = 0; order < ORDERS; ++order) {
-        const double next = difference - predictor->differences[order];
-        predictor->differences[order] = difference;
-        difference = next;
-    }
-    predictor->last = bits;
-    ++predictor->seen;
 }
 
 /* ------------------------------------------------------------------------------------------------- coding */
@@ -223,11 +158,10 @@ static void put_zeros(bytes_t *bytes, size_t *zeros) {
 }
 
 static void put_predicted(bytes_t *bytes, const uint64_t *column, size_t from, size_t end) {
-    predictor_t predictor = {0};
+    wh_prediction_t prediction = {0};
     size_t zeros = 0;
     for (size_t i = from; bytes->good && i < end; ++i) {
-        const uint64_t miss = fold(rank_of(column[i]) - predict(&predictor));
-        learn(&predictor, column[i]);
+        const uint64_t miss = wh_prediction_miss(&prediction, column[i]);
         if (miss == 0) {
             ++zeros;
         } else {
@@ -239,7 +173,7 @@ static void put_predicted(bytes_t *bytes, const uint64_t *column, size_t from, s
 }
 
 static void take_predicted(bytes_t *bytes, uint64_t *column, size_t count) {
-    predictor_t predictor = {0};
+    wh_prediction_t prediction = {0};
     size_t zeros = 0;
     for (size_t i = 0; bytes->good && i < count; ++i) {
         const uint64_t miss = zeros > 0 ? 0 : take_number(bytes);
@@ -248,8 +182,7 @@ static void take_predicted(bytes_t *bytes, uint64_t *column, size_t count) {
         } else if (miss == 0) {
             zeros = take_run(bytes, count - i) - 1;
         }
-        column[i] = rank_of(predict(&predictor) + unfold(miss));
-        learn(&predictor, column[i]);
+        column[i] = wh_prediction_mend(&prediction, miss);
     }
 }
 
@@ -483,13 +416,20 @@ size_t wh_slices_encode(const wh_slices_t *slices, size_t *from, uint8_t bytes[W
     return (size_t)size;
 }
 
-static bool fits(const waferhand_slices *message) {
-    const bool counted = message->count >= 1 && message->count <= WH_SLICES_MOST && message->first >= 1 &&
-                         message->first <= WH_LINK_SLICES && message->seq <= WH_LINK_SLICES &&
-                         message->seq - message->first == message->count - 1;
-    return counted && message->slice_us >= 0 && message->slice_us <= SLICE_US_MOST &&
+static bool is_counted(const waferhand_slices *message) {
+    return message->count >= 1 && message->count <= WH_SLICES_MOST && message->first >= 1 &&
+           message->first <= WH_LINK_SLICES && message->seq <= WH_LINK_SLICES &&
+           message->seq - message->first == message->count - 1;
+}
+
+static bool is_timed(const waferhand_slices *message) {
+    return message->slice_us >= 0 && message->slice_us <= SLICE_US_MOST &&
            (message->count > 1 || message->slice_us == 0) && message->utime > -FARTHEST &&
-           message->utime < FARTHEST && (message->lockstep == 0 || message->lockstep == 1) &&
+           message->utime < FARTHEST;
+}
+
+static bool fits(const waferhand_slices *message) {
+    return is_counted(message) && is_timed(message) && (message->lockstep == 0 || message->lockstep == 1) &&
            message->gripper_count >= 1 && message->gripper_count <= WH_GRIPPERS && message->axis_count >= 0 &&
            message->axis_count <= WH_AXES;
 }

@@ -134,6 +134,17 @@ static double odd_real(void) {
     return bits % 4 == 0 ? real_of(odd[bits >> 8 & 7]) : real_of(wh_test_random());
 }
 
+/* A zero with changing signs, or anything; now and then something odd, else smooth. */
+static double rough_number(uint64_t kind, size_t i) {
+    if (kind == 4) {
+        return i % 50 == 0 ? odd_real() : 1.0 / (1.0 + (double)i * 1e-3);
+    }
+    if (kind == 5) {
+        return i % 2 == 0 ? 0.0 : -0.0;
+    }
+    return odd_real();
+}
+
 /* A number of slice i: each kind is one that a column may have. */
 static double number(uint64_t kind, size_t i) {
     const double t = (double)i * 1e-3;
@@ -146,14 +157,8 @@ static double number(uint64_t kind, size_t i) {
         return 700 * cos(3 * t);
     case 3:
         return -700 * cos(3 * t);
-    case 4:
-        return i < 400 ? 1.0 : 1.0 + (t - 0.4) * (t - 0.4) * (t - 0.4);
-    case 5:
-        return i % 50 == 0 ? odd_real() : 1.0 / (1.0 + t);
-    case 6:
-        return i % 2 == 0 ? 0.0 : -0.0;
     default:
-        return odd_real();
+        return rough_number(kind % 8, i);
     }
 }
 

@@ -246,35 +246,39 @@ static void put_fed(const message_t *message) {
     }
 }
 
-/* The first messages of all.log, some of them lost, doubled, damaged or swapped. */
+/* By luck a message is lost, or damaged, doubled or swapped with one of the last. */
+static void put_by_luck(message_t *message) {
+    const uint32_t luck = wh_test_below(100);
+    if (luck == 0) {
+        return;
+    }
+    if (luck == 1) {
+        message->data[wh_test_below((uint32_t)message->size)] ^= 1;
+    }
+    put_fed(message);
+    if (luck == 2 || luck == 3) {
+        put_fed(message);
+    }
+    if (luck >= 4 && luck < 7 && fed_count > 8) {
+        const size_t other = fed_count - 2 - wh_test_below(6);
+        const message_t swapped = fed[other];
+        fed[other] = fed[fed_count - 1];
+        fed[fed_count - 1] = swapped;
+    }
+}
+
+/* The first messages of all.log, as they come over a poor network. */
 static void make_poor(void) {
     static message_t message;
     FILE *file = wh_log_file(in_folder("all.log"));
     wh_log_open(&in, file);
     fed_count = 0;
     while (fed_count < FED && wh_log_next(&in) == WH_LOG_EVENT) {
-        const uint32_t luck = wh_test_below(100);
-        if (in.size > sizeof message.data || strcmp(in.channel, WH_CHANNEL_RECORDING) == 0) {
-            continue;
-        }
-        memcpy(message.channel, in.channel, sizeof message.channel);
-        message.size = in.size;
-        memcpy(message.data, in.data, in.size);
-        if (luck == 0) {
-            continue;
-        }
-        if (luck == 1) {
-            message.data[wh_test_below((uint32_t)message.size)] ^= 1;
-        }
-        put_fed(&message);
-        if (luck == 2 || luck == 3) {
-            put_fed(&message);
-        }
-        if (luck >= 4 && luck < 7 && fed_count > 8) {
-            const size_t other = fed_count - 2 - wh_test_below(6);
-            const message_t swapped = fed[other];
-            fed[other] = fed[fed_count - 1];
-            fed[fed_count - 1] = swapped;
+        if (in.size <= sizeof message.data && strcmp(in.channel, WH_CHANNEL_RECORDING) != 0) {
+            memcpy(message.channel, in.channel, sizeof message.channel);
+            message.size = in.size;
+            memcpy(message.data, in.data, in.size);
+            put_by_luck(&message);
         }
     }
     (void)fclose(file);
