@@ -53,7 +53,7 @@ void wh_recording_write_event(wh_recording_t *recording, const char *channel, co
 }
 
 /* Says what the log is, and what is in it so far: at its beginning, behind a cell, and at its end. */
-void wh_recording_say(wh_recording_t *recording, int8_t closed) {
+static void write_recording(wh_recording_t *recording, int8_t closed) {
     const wh_recording_place_t *last = &recording->last;
     const waferhand_recording message = {.utime = last->utime,
                                          .seq = last->seq,
@@ -76,6 +76,10 @@ void wh_recording_say(wh_recording_t *recording, int8_t closed) {
     wh_recording_write_event(recording, WH_CHANNEL_RECORDING, recording->encoded, (size_t)size);
 }
 
+void wh_recording_seal(wh_recording_t *recording) {
+    write_recording(recording, WH_RECORDING_BEGINS);
+}
+
 void wh_recording_flush_block(wh_recording_t *recording) {
     wh_slices_t *block = &recording->block;
     for (size_t from = 0; from < block->count;) {
@@ -92,7 +96,7 @@ static void begin_part(wh_recording_t *recording) {
     recording->events = 0;
     recording->slices = 0;
     recording->digest = 0;
-    wh_recording_say(recording, WH_RECORDING_BEGINS);
+    write_recording(recording, WH_RECORDING_BEGINS);
 }
 
 static bool open_named(wh_recording_t *recording, const char *path) {
@@ -123,7 +127,7 @@ void wh_recording_split(wh_recording_t *recording, const void *state, size_t siz
     if (bytes <= 0 || !file->is_plain_file || file->failed || (double)file->written < bytes) {
         return;
     }
-    wh_recording_say(recording, WH_RECORDING_GOES_ON);
+    write_recording(recording, WH_RECORDING_GOES_ON);
     if (!wh_record_file_close(file)) {
         return;
     }
@@ -131,7 +135,7 @@ void wh_recording_split(wh_recording_t *recording, const void *state, size_t siz
     if (open_file(recording)) {
         if (recording->cell_size > 0) {
             wh_recording_write_event(recording, WH_CHANNEL_CELL, recording->cell, recording->cell_size);
-            wh_recording_say(recording, WH_RECORDING_BEGINS);
+            wh_recording_seal(recording);
         }
         wh_recording_write_event(recording, WH_CHANNEL_STATE, state, size);
     }
@@ -309,6 +313,6 @@ bool wh_recording_close(wh_recording_t *recording) {
     }
     wh_recording_give_up(recording, recording->command_count);
     wh_recording_flush_block(recording);
-    wh_recording_say(recording, WH_RECORDING_ENDS);
+    write_recording(recording, WH_RECORDING_ENDS);
     return wh_record_file_close(file);
 }

@@ -7,8 +7,8 @@
 /* Writes one event. What is longer than a datagram comes from nobody. */
 void wh_recording_write_event(wh_recording_t *recording, const char *channel, const void *data, size_t size);
 
-/* Says what the log is, and what is in it so far: at its beginning, behind a cell, and at its end. */
-void wh_recording_say(wh_recording_t *recording, int8_t closed);
+/* Writes what the log has so far: a cell, which has no check of its own, is vouched for by the digest. */
+void wh_recording_seal(wh_recording_t *recording);
 
 /* Writes the slices that were collected. */
 void wh_recording_flush_block(wh_recording_t *recording);

@@ -177,10 +177,12 @@ static void on_cell(wh_recording_t *recording, const void *data, size_t size) {
     const bool known = is_known_cell(recording, data, size);
     if (!known) {
         write_whole(recording, WH_CHANNEL_CELL, data, size);
-        wh_recording_say(recording, WH_RECORDING_BEGINS);
     }
     if (wh_link_decode_cell(data, size, &message)) {
         keep_cell(recording, data, size);
+        if (!known) {
+            wh_recording_seal(recording);
+        }
         (void)waferhand_cell_decode_cleanup(&message);
     }
 }
