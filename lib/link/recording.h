@@ -90,9 +90,6 @@ wh_recorded_t wh_recording_slice(wh_recording_t *recording, const waferhand_comm
 /* Records the whole state of the last slice. */
 void wh_recording_state(wh_recording_t *recording, const void *data, size_t size);
 
-/* True if nothing is recorded any more: without a path, or because it failed. */
-bool wh_recording_is_idle(const wh_recording_t *recording);
-
 /* Completes the log and closes it. False if the recording failed; standard error has said how. True without a
  * path, and of a recording that is not open. */
 bool wh_recording_close(wh_recording_t *recording);
