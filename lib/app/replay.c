@@ -117,6 +117,11 @@ static void print_outcome(const wh_replay_run_t *run) {
 }
 
 static void print_run(const wh_replay_t *replay, const wh_replay_run_t *run) {
+    if (!run->is_begun) {
+        printf("run %016" PRIx64 ": no slices\n", (uint64_t)run->run);
+        print_outcome(run);
+        return;
+    }
     printf("run %016" PRIx64 ": slices %" PRId64 " to %" PRId64 ", %" PRId64 " compared, hash %016" PRIx64
            "%s\n",
            (uint64_t)run->run, run->first_slice, run->last_slice, run->compared, run->hash,

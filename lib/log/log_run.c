@@ -1,5 +1,5 @@
 /* One run of a log: its record and its signals, as motion control would have kept them. */
-#include "log_run.h"
+#include "log_run_internal.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -35,79 +35,6 @@ __attribute__((format(printf, 2, 3))) static bool refuse(wh_log_run_t *run, cons
     (void)vsnprintf(run->message + length, sizeof run->message - (size_t)length, format, values);
     va_end(values);
     return false;
-}
-
-/* ------------------------------------------------------------------------------------------ what was told */
-
-static const char *running_text(const wh_log_run_t *run) {
-    return run->recorder.running == WH_NONE ? NULL : run->record.commands[run->recorder.running].text;
-}
-
-/* A command begins once, however often that is said. */
-static bool is_running(const wh_log_run_t *run, const wh_log_told_t *told) {
-    const char *text = running_text(run);
-    return text && strcmp(text, told->command) == 0;
-}
-
-static void mark(wh_log_run_t *run) {
-    run->has_opened_valve = false;
-    if (run->signals.layout && run->signals.last > 0) {
-        wh_signals_mark(&run->signals);
-    }
-}
-
-static void take_begin(wh_log_run_t *run, const wh_log_told_t *told) {
-    if (!is_running(run, told)) {
-        wh_recorder_begin(&run->recorder, told->line, told->command, (double)told->utime / 1e6);
-        mark(run);
-    }
-}
-
-static void take_end(wh_log_run_t *run, const wh_log_told_t *told) {
-    if (!told->is_answer && is_running(run, told)) {
-        const wh_status_t error = told->phase == WH_LINK_PHASE_DONE ? WH_OK : (wh_status_t)told->number;
-        wh_recorder_end(&run->recorder, (double)told->utime / 1e6, error, told->text, run->state.wafers);
-        mark(run);
-    }
-}
-
-/* Numbers go up within a run: what comes again is passed over. */
-static bool is_new(int32_t number, int32_t *last) {
-    const bool new = number > *last;
-    *last = new ? number : *last;
-    return new;
-}
-
-static void take_told(wh_log_run_t *run, const wh_log_told_t *told) {
-    switch (told->phase) {
-    case WH_LINK_PHASE_BEGINS:
-        take_begin(run, told);
-        break;
-    case WH_LINK_PHASE_DONE:
-    case WH_LINK_PHASE_FAILED:
-        take_end(run, told);
-        break;
-    case WH_LINK_PHASE_MET:
-    case WH_LINK_PHASE_UNMET:
-        if (is_new(told->number, &run->last_expectation)) {
-            wh_record_add_expectation(&run->record, told->line, told->text, told->phase == WH_LINK_PHASE_MET);
-        }
-        break;
-    case WH_LINK_PHASE_CYCLE:
-        if (is_new(told->number, &run->last_cycle)) {
-            wh_record_add_cycle(&run->record, told->line, told->text, told->seq);
-        }
-        break;
-    default:
-        break;
-    }
-}
-
-/* What was told of slices before this one. */
-static void take_told_before(wh_log_run_t *run, int64_t seq) {
-    while (run->told_next < run->told_count && run->told[run->told_next].seq < seq) {
-        take_told(run, &run->told[run->told_next++]);
-    }
 }
 
 /* ------------------------------------------------------------------------------------------------- slices */
@@ -229,7 +156,7 @@ static bool is_sound(const wh_state_t *state, const wh_layout_t *layout) {
 static void on_state(void *user, const waferhand_command *command, const waferhand_state *message) {
     wh_log_run_t *run = user;
     const wh_layout_t *layout = run->cell.layout;
-    take_told_before(run, message->seq);
+    wh_log_run_take_told(run, message->seq);
     if (wh_link_state_from_message(message, &layout->grasp.tolerance, &run->arrays, &run->state) != WH_OK ||
         !is_sound(&run->state, layout)) {
         return;
@@ -241,25 +168,6 @@ static void on_state(void *user, const waferhand_command *command, const waferha
 }
 
 /* --------------------------------------------------------------------------------- what there is in the log */
-
-static void add_told(wh_log_run_t *run, const waferhand_mcs *message) {
-    if (message->run == 0 || message->phase == WH_LINK_PHASE_IDLE ||
-        message->phase == WH_LINK_PHASE_GOES_ON) {
-        return;
-    }
-    run->told = wh_array_grow(run->told, run->told_count, &run->told_capacity, sizeof *run->told);
-    run->told[run->told_count] = (wh_log_told_t){.run = message->run,
-                                                 .seq = message->seq,
-                                                 .utime = message->utime,
-                                                 .order = run->told_count,
-                                                 .phase = message->phase,
-                                                 .line = message->line,
-                                                 .number = message->error,
-                                                 .is_answer = message->request != 0,
-                                                 .command = wh_text_copy(message->command),
-                                                 .text = wh_text_copy(message->text)};
-    ++run->told_count;
-}
 
 static void add_run(wh_log_run_t *run, int64_t id, uint64_t layout_hash) {
     for (size_t i = run->run_count; i > 0; --i) {
@@ -283,7 +191,7 @@ static void look_at(wh_log_run_t *run) {
     waferhand_mcs told;
     waferhand_state state;
     if (strcmp(log->channel, WH_CHANNEL_MCS) == 0 && wh_link_decode_mcs(log->data, log->size, &told)) {
-        add_told(run, &told);
+        wh_log_run_add_told(run, &told);
         (void)waferhand_mcs_decode_cleanup(&told);
     } else if (strcmp(log->channel, WH_CHANNEL_SLICES) == 0) {
         look_at_slices(run);
@@ -308,36 +216,6 @@ static uint64_t look_ahead(wh_log_run_t *run, FILE *file) {
         }
     } while (result == WH_LOG_EVENT || result == WH_LOG_DAMAGED);
     return run->log.count;
-}
-
-static int compare(const void *a, const void *b) {
-    const wh_log_told_t *one = a;
-    const wh_log_told_t *two = b;
-    if (one->seq != two->seq) {
-        return one->seq < two->seq ? -1 : 1;
-    }
-    return (one->order > two->order) - (one->order < two->order);
-}
-
-static void forget_told(wh_log_told_t *told) {
-    free(told->command);
-    free(told->text);
-}
-
-/* Keeps what was told of the wanted run. */
-static void choose_told(wh_log_run_t *run) {
-    size_t kept = 0;
-    for (size_t i = 0; i < run->told_count; ++i) {
-        if (run->told[i].run == run->wanted->run) {
-            run->told[kept++] = run->told[i];
-        } else {
-            forget_told(&run->told[i]);
-        }
-    }
-    run->told_count = kept;
-    if (kept > 0) {
-        qsort(run->told, kept, sizeof *run->told, compare);
-    }
 }
 
 /* The cell of the wanted run. False if the log has it not. */
@@ -379,20 +257,7 @@ static void follow(wh_log_run_t *run, FILE *file) {
     run->replay.listener = on_state;
     run->replay.user = run;
     wh_reading_replay(file, &run->log, &run->replay, &run->reading);
-    take_told_before(run, INT64_MAX);
-}
-
-/* What motion control told last of all: the verdict. */
-static void judge(wh_log_run_t *run) {
-    const char *reason = NULL;
-    for (size_t i = 0; i < run->told_count; ++i) {
-        if (run->told[i].phase == WH_LINK_PHASE_OVER) {
-            reason = wh_outcome_read(run->told[i].text, &run->outcome);
-        }
-    }
-    if (run->outcome.verdict == WH_OUTCOME_FAILED && reason && reason[0] != '\0') {
-        run->record.failure = wh_text_copy(reason);
-    }
+    wh_log_run_take_told(run, INT64_MAX);
 }
 
 static void finish_run(wh_log_run_t *run) {
@@ -400,7 +265,7 @@ static void finish_run(wh_log_run_t *run) {
     if (run->recorder.running != WH_NONE) {
         run->record.commands[run->recorder.running].end_s = wh_recorder_now(&run->recorder);
     }
-    judge(run);
+    wh_log_run_judge(run);
     wh_recorder_finish(&run->recorder, &end);
     run->record.wall_s = (double)NAN;
     if (run->outcome.verdict == WH_OUTCOME_FAILED) {
@@ -470,7 +335,7 @@ static bool read_runs(wh_log_run_t *run, FILE *file) {
         return refuse(run, "no run %zu in it (expected 1 to %zu)", run->options.number, run->run_count);
     }
     run->wanted = &run->runs[(run->options.number > 0 ? run->options.number : run->run_count) - 1];
-    choose_told(run);
+    wh_log_run_choose_told(run);
     if (!find_cell(run, file)) {
         return refuse(run, "no cell of this run in it (expected WAFERHAND_CELL, which a simulator tells once "
                            "a second)");
@@ -506,7 +371,7 @@ void wh_log_run_close(wh_log_run_t *run) {
     wh_replay_close(&run->replay);
     wh_log_close(&run->log);
     for (size_t i = 0; i < run->told_count; ++i) {
-        forget_told(&run->told[i]);
+        wh_log_run_forget_told(&run->told[i]);
     }
     free(run->told);
     free(run->runs);

@@ -64,7 +64,7 @@ typedef struct {
     wh_command_t last;     /* the last slice: its number, axes and valves */
     bool has_opened_valve; /* in the running command, since an axis other than Z moved */
     wh_outcome_t outcome;
-    int32_t last_expectation, last_cycle;
+    int32_t last_expectation, last_cycle; /* the highest numbers that were told */
     char text[WH_LOG_NOTES][WH_LOG_NOTE_BYTES];
     const char *notes[WH_LOG_NOTES];
     size_t note_count;

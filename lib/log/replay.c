@@ -1,6 +1,5 @@
 #include "replay.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -81,16 +80,6 @@ static bool enter_run(wh_replay_t *replay, int64_t id, uint64_t layout_hash) {
     return true;
 }
 
-static void note_slice(wh_replay_t *replay) {
-    wh_replay_run_t *run = replay->run;
-    if (run->first_slice == 0) {
-        run->first_slice = replay->server.seq;
-    }
-    run->last_slice = replay->server.seq;
-    run->missed = replay->server.missed;
-    run->hash = wh_protocol_server_hash(&replay->server);
-}
-
 /* ------------------------------------------------------------------------------------------------- waiting */
 
 static wh_replay_slot_t *slot_of(wh_replay_t *replay, int64_t seq) {
@@ -148,118 +137,13 @@ static int64_t missed_so_far(const wh_replay_t *replay) {
     return replay->is_synchronous ? replay->server.missed : 0;
 }
 
-/* ---------------------------------------------------------------------------------------------- comparing */
-
-static void tell(const wh_replay_t *replay, const waferhand_command *command,
-                 const waferhand_state *message) {
-    if (replay->listener) {
-        replay->listener(replay->user, command, message);
-    }
-}
-
-/* A block's last slice, whose whole state has not come. */
-static void tell_last(wh_replay_t *replay) {
-    if (replay->has_last && replay->listener) {
-        wh_protocol_server_encode(&replay->server);
-        tell(replay, &replay->last, &replay->server.room.message);
-    }
-    replay->has_last = false;
-}
-
-static void note_difference(wh_replay_run_t *run, int64_t slice, const wh_replay_difference_t *difference) {
-    if (run->differing++ == 0) {
-        run->difference = *difference;
-        run->difference.slice = slice;
-    }
-}
-
-static int64_t count_collisions(const waferhand_state *message) {
-    int64_t count = 0;
-    for (int32_t i = 0; i < message->event_count; ++i) {
-        count += wh_replay_is_collision(message->events[i].kind) ? 1 : 0;
-    }
-    return count;
-}
-
-/* Goes on from a recorded state. False if no simulator could have been in it. */
-static bool restore(wh_replay_t *replay, const waferhand_state *message) {
-    if (replay->server.identity.run == message->run) {
-        replay->server.identity.run = 0; /* else what is behind it is refused */
-    }
-    replay->is_unsure = false;
-    replay->is_synchronous = wh_protocol_server_restore(&replay->server, message) == WH_SERVER_RESTORED;
-    if (replay->is_synchronous) {
-        note_slice(replay);
-    }
-    return replay->is_synchronous;
-}
-
-/* The recorded state with the server's. */
-static bool is_same(wh_replay_t *replay, const waferhand_state *message, const uint8_t *bytes, size_t size,
-                    wh_replay_difference_t *difference) {
-    wh_protocol_server_t *server = &replay->server;
-    wh_protocol_server_encode(server);
-    replay->run->collisions += count_collisions(message);
-    return (size == server->encoded_size && memcmp(bytes, server->encoded, size - 8) == 0) ||
-           !wh_replay_differs(server->layout, message, &server->room.message, difference);
-}
-
-static void compare(wh_replay_t *replay, const waferhand_state *message, const uint8_t *bytes, size_t size) {
-    wh_replay_run_t *run = replay->run;
-    wh_replay_difference_t difference;
-    ++run->compared;
-    if (is_same(replay, message, bytes, size, &difference)) {
-        replay->is_unsure = false;
-    } else if (replay->is_unsure) {
-        ++run->doubtful;
-        (void)restore(replay, message);
-    } else {
-        note_difference(run, message->seq, &difference);
-    }
-}
-
-/* A command that the simulator took and the replay refuses, or the other way round. */
-static void differ_in_status(wh_replay_run_t *run, int64_t slice, int32_t recorded, int32_t replayed) {
-    wh_replay_difference_t difference = {.recorded = recorded, .replayed = replayed};
-    (void)snprintf(difference.what, sizeof difference.what, "status");
-    ++run->compared;
-    note_difference(run, slice, &difference);
-}
-
-/* The valves in force as the state tells; null if they are the command's. */
-static const int32_t *find_valves(const waferhand_command *command, const waferhand_state *message,
-                                  int32_t valves[WH_GRIPPERS]) {
-    bool outside = false;
-    for (int32_t g = 0; g < message->gripper_count && g < command->gripper_count && g < WH_GRIPPERS; ++g) {
-        valves[g] = message->grippers[g].valve_told;
-        outside = outside || valves[g] != command->valve[g];
-    }
-    return outside ? valves : NULL;
-}
-
-static void step(wh_replay_t *replay, const waferhand_command *command, const waferhand_state *message,
-                 const wh_replay_slot_t *slot) {
-    int32_t told[WH_GRIPPERS] = {0};
-    const int32_t *valves = find_valves(command, message, told);
-    const wh_protocol_server_result_t result = wh_protocol_server_command(&replay->server, command, valves);
-    if (result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN) {
-        replay->is_synchronous = true;
-        replay->run->outside_valves += valves ? 1 : 0;
-        note_slice(replay);
-        compare(replay, message, slot->state, slot->size);
-    } else {
-        differ_in_status(replay->run, message->seq, WH_OK, replay->server.room.message.status);
-        (void)restore(replay, message);
-    }
-}
-
 /* A slice of which command and state are there. */
 static void resolve(wh_replay_t *replay, int64_t seq) {
     const wh_replay_slot_t *slot = slot_of(replay, seq);
     waferhand_state message;
     if (wh_link_decode_state(slot->state, slot->size, &message)) {
-        step(replay, &slot->command, &message, slot);
-        tell(replay, &slot->command, &message);
+        wh_replay_step(replay, &slot->command, &message, slot->state, slot->size);
+        wh_replay_tell(replay, &slot->command, &message);
         (void)waferhand_state_decode_cleanup(&message);
     }
     advance_to(replay, seq);
@@ -267,14 +151,7 @@ static void resolve(wh_replay_t *replay, int64_t seq) {
 
 /* A slice whose state is not in the log, though later ones are. */
 static void step_unanswered(wh_replay_t *replay, int64_t seq) {
-    const wh_protocol_server_result_t result =
-        wh_protocol_server_command(&replay->server, &slot_of(replay, seq)->command, NULL);
-    ++replay->run->unanswered;
-    replay->is_unsure = true;
-    replay->is_synchronous = result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN;
-    if (replay->is_synchronous) {
-        note_slice(replay);
-    }
+    wh_replay_step_alone(replay, &slot_of(replay, seq)->command);
     advance_to(replay, seq);
 }
 
@@ -284,12 +161,12 @@ static void take_up(wh_replay_t *replay, int64_t seq) {
     const int64_t skipped = seq - replay->seq - 1;
     waferhand_state message;
     if (wh_link_decode_state(slot->state, slot->size, &message)) {
-        if (restore(replay, &message)) {
+        if (wh_replay_restore(replay, &message)) {
             replay->run->begins_in_part = replay->run->begins_in_part || replay->part_begins;
             replay->run->taken_up += replay->part_begins ? 0 : 1;
             replay->run->skipped += replay->part_begins ? 0 : skipped;
             replay->part_begins = false;
-            tell(replay, slot->has_command ? &slot->command : NULL, &message);
+            wh_replay_tell(replay, slot->has_command ? &slot->command : NULL, &message);
         } else {
             wh_replay_lose(replay, WH_REPLAY_GARBAGE);
         }
@@ -385,7 +262,7 @@ static wh_replay_slot_t *make_slot(wh_replay_t *replay, int64_t seq) {
 }
 
 void wh_replay_finish(wh_replay_t *replay) {
-    tell_last(replay);
+    wh_replay_tell_last(replay);
     while (replay->run && (let_through(replay) || force(replay))) {
     }
     while (replay->run && first_command(replay) > 0) {
@@ -435,33 +312,22 @@ void wh_replay_take_refusal(wh_replay_t *replay, const waferhand_state *message,
     run->last_refused = message->seq;
     if (result != WH_SERVER_ANSWERED || server->encoded_size != size ||
         memcmp(server->encoded, data, size - 8) != 0) {
-        differ_in_status(run, message->seq, message->status, server->room.message.status);
+        wh_replay_differ_in_status(run, message->seq, message->status, server->room.message.status);
         replay->is_synchronous = result == WH_SERVER_ANSWERED && replay->is_synchronous;
         return;
     }
     ++run->refused;
-    tell(replay, NULL, message);
-}
-
-/* The whole state of the slice that went through last, in a block. */
-static void take_last_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
-                            size_t size) {
-    wh_replay_difference_t difference;
-    if (!is_same(replay, message, data, size, &difference) && !replay->last_differs) {
-        note_difference(replay->run, message->seq, &difference);
-    }
-    tell(replay, &replay->last, message);
-    replay->has_last = false;
+    wh_replay_tell(replay, NULL, message);
 }
 
 void wh_replay_take_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
                           size_t size) {
     const bool is_current = replay->run && replay->run->run == message->run;
     if (is_current && replay->has_last && message->seq == replay->seq) {
-        take_last_state(replay, message, data, size);
+        wh_replay_take_last_state(replay, message, data, size);
         return;
     }
-    tell_last(replay);
+    wh_replay_tell_last(replay);
     if (is_current && !replay->is_synchronous && message->seq == replay->seq) {
         --replay->seq; /* behind a block that could not be stepped */
     }
@@ -476,39 +342,6 @@ void wh_replay_take_state(wh_replay_t *replay, const waferhand_state *message, c
         slot->missed = message->missed;
         while (let_through(replay)) {
         }
-    }
-}
-
-/* --------------------------------------------------------------------------------------------------- blocks */
-
-/* A slice of a block: the hash stands for the state. */
-static void step_hashed(wh_replay_t *replay, const int32_t told[], uint64_t hash) {
-    const waferhand_command *command = &replay->last;
-    const bool outside = memcmp(told, command->valve, (size_t)command->gripper_count * sizeof *told) != 0;
-    const wh_protocol_server_result_t result =
-        wh_protocol_server_command(&replay->server, command, outside ? told : NULL);
-    wh_replay_run_t *run = replay->run;
-    replay->is_synchronous = result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN;
-    replay->seq = command->seq;
-    replay->last_differs = true;
-    if (!replay->is_synchronous) {
-        differ_in_status(run, command->seq, WH_OK, replay->server.room.message.status);
-        return;
-    }
-    run->outside_valves += outside ? 1 : 0;
-    note_slice(replay);
-    ++run->compared;
-    replay->has_last = true;
-    replay->last_differs = hash != run->hash;
-    if (!replay->last_differs) {
-        replay->is_unsure = false;
-    } else if (replay->is_unsure) {
-        ++run->doubtful;
-        replay->is_synchronous = false;
-    } else {
-        wh_replay_difference_t difference = {.recorded = (double)hash, .replayed = (double)run->hash};
-        (void)snprintf(difference.what, sizeof difference.what, "hash");
-        note_difference(run, command->seq, &difference);
     }
 }
 
@@ -534,9 +367,9 @@ void wh_replay_take_slices(wh_replay_t *replay, const wh_slices_t *slices) {
             replay->seq = end;
             return;
         }
-        tell_last(replay);
+        wh_replay_tell_last(replay);
         wh_slices_get(slices, i, &replay->last, told, &hash);
-        step_hashed(replay, told, hash);
+        wh_replay_step_hashed(replay, told, hash);
     }
 }
 

@@ -23,6 +23,33 @@ void wh_replay_take_refusal(wh_replay_t *replay, const waferhand_state *message,
                             size_t size);
 void wh_replay_take_slices(wh_replay_t *replay, const wh_slices_t *slices);
 
+/* Tells the listener, if there is one. */
+void wh_replay_tell(const wh_replay_t *replay, const waferhand_command *command,
+                    const waferhand_state *message);
+
+/* Tells of a block's last slice, whose whole state has not come. */
+void wh_replay_tell_last(wh_replay_t *replay);
+
+/* Goes on from a recorded state. False if no simulator could have been in it. */
+bool wh_replay_restore(wh_replay_t *replay, const waferhand_state *message);
+
+/* Steps a command and compares the state, which is as it came in `bytes`. */
+void wh_replay_step(wh_replay_t *replay, const waferhand_command *command, const waferhand_state *message,
+                    const uint8_t *bytes, size_t size);
+
+/* Steps a command whose state is not in the log. */
+void wh_replay_step_alone(wh_replay_t *replay, const waferhand_command *command);
+
+/* Steps a slice of a block, replay->last, whose hash stands for the state. */
+void wh_replay_step_hashed(wh_replay_t *replay, const int32_t told[], uint64_t hash);
+
+/* Compares the whole state of the block's last slice. */
+void wh_replay_take_last_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
+                               size_t size);
+
+/* A command that the simulator took and the replay refuses, or the other way round. */
+void wh_replay_differ_in_status(wh_replay_run_t *run, int64_t slice, int32_t recorded, int32_t replayed);
+
 /* True if an event is the collision check's, which a replay has not. */
 bool wh_replay_is_collision(int32_t kind);
 
