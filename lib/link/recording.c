@@ -178,7 +178,8 @@ static bool add_slice(wh_recording_t *recording, const waferhand_command *comman
 
 wh_recorded_t wh_recording_take_slice(wh_recording_t *recording, const waferhand_command *command,
                                       const int32_t told[], int64_t missed, uint64_t hash, bool has_events) {
-    if (!follows(&recording->last, command, missed) || !add_slice(recording, command, told, hash)) {
+    if (recording->is_interrupted || !follows(&recording->last, command, missed) ||
+        !add_slice(recording, command, told, hash)) {
         return WH_NOT_RECORDED;
     }
     wh_recording_see_slice(recording);

@@ -57,6 +57,7 @@ typedef struct {
     int64_t events, slices; /* of the part */
     uint64_t digest;
     wh_recording_place_t last;
+    bool is_interrupted; /* a command stands alone, or a state came back: the next slice stands whole */
     int64_t since_state; /* slices since a whole state */
     wh_slices_t block;
     wh_recording_command_t commands[WH_RECORDING_COMMANDS];

@@ -19,6 +19,9 @@ void wh_recording_give_up(wh_recording_t *recording, size_t count) {
     for (size_t i = 0; i < count; ++i) {
         const wh_recording_command_t *command = waiting(recording, i);
         wh_recording_write_event(recording, WH_CHANNEL_COMMAND, command->bytes, command->size);
+        /* One of an earlier slice came late, and changes nothing. */
+        recording->is_interrupted = recording->is_interrupted || command->run != recording->last.run ||
+                                    command->seq > recording->last.seq;
     }
     recording->first_command = (recording->first_command + count) % WH_RECORDING_COMMANDS;
     recording->command_count -= count;
@@ -100,6 +103,7 @@ static void take_pair(wh_recording_t *recording, const wh_recording_command_t *w
         write_whole(recording, WH_CHANNEL_COMMAND, waited->bytes, waited->size);
         wh_recording_see_slice(recording);
         wh_recording_note_place(recording, &command, state->missed);
+        recording->is_interrupted = false;
     }
     recording->last.command_check = command.check;
     recording->last.state_check = state->check;
@@ -244,7 +248,10 @@ void wh_recording_take_message(wh_recording_t *recording, const char *channel, c
         on_cell(recording, data, size);
     } else if (strcmp(channel, WH_CHANNEL_MCS) == 0) {
         on_mcs(recording, data, size);
-    } else if (strcmp(channel, WH_CHANNEL_REQUEST) == 0 || strcmp(channel, WH_CHANNEL_RESTORE) == 0) {
+    } else if (strcmp(channel, WH_CHANNEL_RESTORE) == 0) {
+        write_whole(recording, channel, data, size);
+        recording->is_interrupted = true;
+    } else if (strcmp(channel, WH_CHANNEL_REQUEST) == 0) {
         write_whole(recording, channel, data, size);
     }
 }
