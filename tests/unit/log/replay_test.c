@@ -239,7 +239,7 @@ static void garbage_is_counted(void **state) {
     assert_int_equal(replay.run_count, 0);
 }
 
-/* ------------------------------------------------------------------------------------------ what is not said */
+/* --------------------------------------------------------------------------------------- what is not said */
 
 static void narrow_height(waferhand_state *message) {
     message->wafers[1].position[1] += 1e-9;
@@ -330,7 +330,7 @@ static void messages_on_other_channels(void **state) {
     assert_int_equal(replay.losses[WH_REPLAY_STRAY].count, 3);
 }
 
-/* -------------------------------------------------------------------------------------------- event numbers */
+/* ------------------------------------------------------------------------------------------ event numbers */
 
 typedef struct {
     const char *numbers;
@@ -360,7 +360,7 @@ static void event_numbers_tell_what_is_missing(void **state) {
     }
 }
 
-/* ------------------------------------------------------------------------------------- logs damaged at random */
+/* --------------------------------------------------------------------------------- logs damaged at random */
 
 #define HEADER 28
 #define EVENTS 2000
