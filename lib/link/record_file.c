@@ -23,7 +23,8 @@ static int64_t clock_us(void) {
 
 void wh_record_file_fail(wh_record_file_t *file, const char *path, const char *reason) {
     if (!file->failed) {
-        fprintf(stderr, "%s: %s: %s (the recording ends here)\n", file->speaker, path, reason);
+        fprintf(stderr, "%s: %s: %s%s\n", file->speaker, path, reason,
+                file->fd >= 0 ? " (the recording ends here)" : "");
     }
     file->failed = true;
 }

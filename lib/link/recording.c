@@ -196,13 +196,14 @@ void wh_recording_take_state(wh_recording_t *recording, const void *data, size_t
 
 /* ------------------------------------------------------------------------------------------------ calling */
 
-bool wh_recording_is_idle(const wh_recording_t *recording) {
+/* True if nothing is recorded any more. */
+static bool is_idle(const wh_recording_t *recording) {
     return !recording->is_open || recording->file.failed;
 }
 
 void wh_recording_message(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
     (void)pthread_mutex_lock(&recording->lock);
-    if (!wh_recording_is_idle(recording)) {
+    if (!is_idle(recording)) {
         wh_recording_take_message(recording, channel, data, size);
     }
     (void)pthread_mutex_unlock(&recording->lock);
@@ -212,7 +213,7 @@ wh_recorded_t wh_recording_slice(wh_recording_t *recording, const waferhand_comm
                                  const int32_t told[], int64_t missed, uint64_t hash, bool has_events) {
     wh_recorded_t recorded = WH_RECORDED;
     (void)pthread_mutex_lock(&recording->lock);
-    if (!wh_recording_is_idle(recording)) {
+    if (!is_idle(recording)) {
         recorded = wh_recording_take_slice(recording, command, told, missed, hash, has_events);
     }
     (void)pthread_mutex_unlock(&recording->lock);
@@ -221,7 +222,7 @@ wh_recorded_t wh_recording_slice(wh_recording_t *recording, const waferhand_comm
 
 void wh_recording_state(wh_recording_t *recording, const void *data, size_t size) {
     (void)pthread_mutex_lock(&recording->lock);
-    if (!wh_recording_is_idle(recording)) {
+    if (!is_idle(recording)) {
         wh_recording_take_state(recording, data, size);
     }
     (void)pthread_mutex_unlock(&recording->lock);

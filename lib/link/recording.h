@@ -15,8 +15,8 @@
 
 /* How long something recorded may wait, us. */
 #define WH_RECORDING_WAIT_US 100000
-/* Commands that wait for their states. */
-#define WH_RECORDING_COMMANDS 256
+/* Commands that wait for their states: a free-running motion control may be so far ahead. */
+#define WH_RECORDING_COMMANDS 4096
 #define WH_RECORDING_COMMAND_BYTES 1500
 /* Files that a recording must not replace, at most. */
 #define WH_RECORDING_INPUTS 3
@@ -44,7 +44,7 @@ typedef struct {
     int64_t command_check, state_check; /* of its messages; 0: not known */
 } wh_recording_place_t;
 
-/* 2 MB. Zero it and set the options. Must not be moved once opened. */
+/* 8 MB. Zero it and set the options. Must not be moved once opened. */
 typedef struct {
     wh_recording_options_t options;
     pthread_mutex_t lock;
@@ -89,9 +89,6 @@ wh_recorded_t wh_recording_slice(wh_recording_t *recording, const waferhand_comm
 
 /* Records the whole state of the last slice. */
 void wh_recording_state(wh_recording_t *recording, const void *data, size_t size);
-
-/* True if nothing is recorded any more: without a path, or because it failed. */
-bool wh_recording_is_idle(const wh_recording_t *recording);
 
 /* Completes the log and closes it. False if the recording failed; standard error has said how. True without a
  * path, and of a recording that is not open. */

@@ -27,6 +27,11 @@ void wh_recording_give_up(wh_recording_t *recording, size_t count) {
 /* Which of the waiting commands this slice's is; their count if it is none of them. */
 static size_t find_waiting(wh_recording_t *recording, int64_t run, int64_t seq) {
     size_t i = 0;
+    /* A new command, as most are: without a search. */
+    if (recording->command_count > 0) {
+        const wh_recording_command_t *newest = waiting(recording, recording->command_count - 1);
+        i = newest->run == run && newest->seq < seq ? recording->command_count : 0;
+    }
     while (i < recording->command_count &&
            (waiting(recording, i)->run != run || waiting(recording, i)->seq != seq)) {
         ++i;
