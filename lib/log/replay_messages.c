@@ -180,8 +180,9 @@ static void check_recording(wh_replay_t *replay, const waferhand_recording *mess
 
 static void take_recording(wh_replay_t *replay, const waferhand_recording *message) {
     wh_replay_recording_t *recording = &replay->recording;
-    recording->version = message->version;
-    if (message->version != WH_RECORDING_VERSION) {
+    const bool is_known = recording->version == 0 || recording->version == WH_RECORDING_VERSION;
+    recording->version = is_known ? message->version : recording->version;
+    if (recording->version != WH_RECORDING_VERSION) {
         return;
     }
     check_recording(replay, message);
