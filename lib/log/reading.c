@@ -93,14 +93,25 @@ bool wh_reading_lacks_end(const wh_replay_t *replay, const wh_replay_run_t *run)
     return !run->over && run == last_begun(replay) && replay->recording.closed == WH_RECORDING_BEGINS;
 }
 
+/* True if the recording's digest shows that all of it is as it was written. */
+static bool is_vouched_for(const wh_replay_recording_t *recording) {
+    return recording->version > 0 && recording->closed != WH_RECORDING_BEGINS && !recording->is_changed;
+}
+
+/* Messages that a network may have made so, as well as the file. */
+static bool has_strange_messages(const wh_replay_t *replay) {
+    return replay->losses[WH_REPLAY_CONTRADICTS].count + replay->losses[WH_REPLAY_STRAY].count > 0 &&
+           !is_vouched_for(&replay->recording);
+}
+
+static bool are_numbers_odd(const wh_log_numbers_t *numbers) {
+    return numbers->doubled + numbers->moved + numbers->misnumbered + wh_log_numbers_missing(numbers) > 0;
+}
+
 /* What no network does. */
 static bool is_file_damaged(const wh_replay_t *replay, const wh_reading_t *reading) {
-    const wh_log_numbers_t *numbers = &reading->numbers;
-    bool damaged = reading->damage_count > 0 || reading->broken > 0 ||
-                   numbers->doubled + numbers->moved + numbers->misnumbered > 0 ||
-                   wh_log_numbers_missing(numbers) > 0 || replay->losses[WH_REPLAY_CONTRADICTS].count > 0 ||
-                   replay->losses[WH_REPLAY_STRAY].count > 0 || replay->runs_left_out > 0 ||
-                   replay->recording.is_changed;
+    bool damaged = reading->damage_count > 0 || reading->broken > 0 || are_numbers_odd(&reading->numbers) ||
+                   has_strange_messages(replay) || replay->runs_left_out > 0 || replay->recording.is_changed;
     for (size_t i = 0; i < replay->run_count; ++i) {
         damaged = damaged || replay->runs[i].doubtful > 0;
     }
