@@ -3,8 +3,8 @@
  * Commands, expectations, cycles and the verdict come from WAFERHAND_MCS. They go by the slices that they
  * name, not by their places in the log. Everything else is what the slices' states say, as a replay goes
  * through them (log/replay.h): commands beside their states, whichever came first. A log does not tell why
- * the robot stood still. It counts as waiting for vacuum if within the same command a valve has opened since an axis
- * other than Z moved.
+ * the robot stood still. It counts as waiting for vacuum if within the same command a valve has opened since
+ * an axis other than Z moved.
  */
 #ifndef WH_LOG_LOG_RUN_H
 #define WH_LOG_LOG_RUN_H

@@ -5,9 +5,9 @@
  * A command waits for its state, and a state for its command, at most WH_REPLAY_WINDOW slices: messages may
  * stand in any order. A command is stepped with the valves that its state says were in force (they may have
  * come from outputs.txt). A slice of a block (link/slices.h) is compared by its hash. Where commands are not
- * in the log, the replay is taken up from the next whole state. Each slice is compared once; what comes again,
- * as over a lossy network, is passed over. Of each run the first difference is named, and how many slices
- * differ.
+ * in the log, the replay is taken up from the next whole state. Each slice is compared once; what comes
+ * again, as over a lossy network, is passed over. Of each run the first difference is named, and how many
+ * slices differ.
  *
  * What was passed over, and why, is counted: nothing of ours is left out in silence. Not compared are events
  * of the collision check, since messages do not tell shapes. WAFERHAND_MCS and WAFERHAND_REQUEST have no
