@@ -20,13 +20,15 @@ void wh_catch_signals(void) {
 
 bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
     wh_catch_signals();
-    if (!wh_node_open(&link->node, options->url, options->record)) {
+    wh_record_arguments_apply(&options->record, "mcs", false, &link->record);
+    if (!wh_node_open(&link->node, options->url, &link->record)) {
         return false;
     }
     link->node.speaker = "mcs";
     if (!wh_mcs_process_open(&link->control, &link->node, &options->client)) {
         fprintf(stderr, "mcs: LCM takes no subscription\n");
         wh_node_close(&link->node);
+        (void)wh_recording_close(&link->record);
         return false;
     }
     return true;
@@ -49,10 +51,11 @@ static void print_counters(const wh_mcs_process_t *control) {
     }
 }
 
-void wh_mcs_link_close(wh_mcs_link_t *link) {
+bool wh_mcs_link_close(wh_mcs_link_t *link) {
     wh_mcs_process_finish(&link->control);
     if (link->control.connected) {
         print_counters(&link->control);
     }
     wh_node_close(&link->node);
+    return wh_recording_close(&link->record) && link->control.client.counters.unwritten == 0;
 }

@@ -18,8 +18,6 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, layout)},
     {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL ")", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, link.url)},
-    {"record", 0, "FILE", "Write all messages into an LCM event log", WH_OPTION_TEXT,
-     .variable = offsetof(arguments_t, link.record)},
     {"rate", 0, "FACTOR", "Run free at this factor of real time instead of in lockstep", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, link.client.rate), 1e-3, 1e3, "a number from 0.001 to 1000"},
     {"outputs", 0, "FILE", "Write the valves to this file, too, one value per gripper", WH_OPTION_TEXT,
@@ -27,6 +25,7 @@ static const wh_option_t options[] = {
     {0}};
 
 static const wh_option_table_t tables[] = {{options, 0, NULL},
+                                           {wh_record_options, offsetof(arguments_t, link.record), NULL},
                                            {wh_run_options, offsetof(arguments_t, run), NULL},
                                            {wh_run_files_options, offsetof(arguments_t, run.files), NULL},
                                            {0}};
@@ -48,6 +47,7 @@ static void check(const void *given, struct argp_state *state) {
         argp_error(state,
                    "--json, --gantt, --margins, --segments, --report, --gltf and --data go with a script");
     }
+    wh_record_arguments_check(&arguments->link.record, state);
 }
 
 static const wh_command_line_t command_line = {
@@ -119,11 +119,13 @@ int wh_app_mcs(int argc, char **argv) {
     arguments_t arguments = {.link = {.client = {.stop = &wh_stop_requested}}};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
+    arguments.run.record =
+        arguments.link.record.all ? arguments.link.record.all : arguments.link.record.slices;
     int status = WH_EXIT_USAGE;
     if (wh_mcs_link_open(&link, &arguments.link)) {
         arguments.run.run.partners = wh_mcs_process_partners(&link.control);
         status = arguments.layout ? run_prompt(&arguments, &link) : wh_run_and_print(&arguments.run);
-        wh_mcs_link_close(&link);
+        status = wh_mcs_link_close(&link) ? status : WH_EXIT_USAGE;
     }
     wh_run_arguments_free(&arguments.run);
     return status;

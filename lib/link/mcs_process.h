@@ -9,6 +9,7 @@
 #define WH_LINK_MCS_PROCESS_H
 
 #include "../mcs/mcs.h"
+#include "outcome.h"
 #include "protocol_client.h"
 
 /* Requests that wait; more are answered with "busy". */
@@ -46,7 +47,9 @@ typedef struct {
     size_t first_waiting, waiting_count;
     wh_mcs_process_answer_t answered[WH_CONTROL_ANSWERED];
     size_t answered_count;
-    uint64_t requests, garbage; /* datagrams on WAFERHAND_REQUEST: sound ones, others */
+    uint64_t requests, garbage;            /* datagrams on WAFERHAND_REQUEST: sound ones, others */
+    wh_run_told_t outcome;                 /* what was told so far, and the verdict once there is one */
+    char reason[WH_SANDBOX_MESSAGE_BYTES]; /* of the verdict */
     uint8_t encoded[8192];
 } wh_mcs_process_t;
 
@@ -69,7 +72,11 @@ bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LI
 /* Answers the request being executed: error is 0 or its number, text what an operator would read. */
 void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *line, const char *text);
 
-/* Tells that the run is over. */
+/* Tells what was expected before there was a run to tell it of. Call it once the identity is known, as
+ * connecting by the partners does. */
+void wh_mcs_process_catch_up(wh_mcs_process_t *control, const wh_mcs_t *mcs);
+
+/* Tells that the run is over, how it ended, and how much was told of it (link/outcome.h). */
 void wh_mcs_process_finish(wh_mcs_process_t *control);
 
 #endif

@@ -162,6 +162,9 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
         end.world = mcs->local.collision.world;
     }
     wh_recorder_finish(&mcs->recorder, &end);
+    if (mcs->layout && mcs->partners.finished) {
+        mcs->partners.finished(mcs->partners.user, mcs);
+    }
 }
 
 void wh_mcs_close(wh_mcs_t *mcs) {

@@ -26,6 +26,12 @@ typedef struct {
     wh_link_t *(*connect)(void *user, wh_mcs_t *mcs);
     /* A command of the record begins (`ended` false) or has ended. */
     void (*watch)(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended);
+    /* The last expectation of the record was added, or its last cycle. */
+    void (*expected)(void *user, const wh_mcs_t *mcs);
+    void (*cycle)(void *user, const wh_mcs_t *mcs);
+    /* The record is closed: the run has ended, also by an error. Not called without a cell, nor at a
+     * prompt. */
+    void (*finished)(void *user, const wh_mcs_t *mcs);
     void *user;
 } wh_mcs_partners_t;
 
