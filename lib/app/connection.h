@@ -6,6 +6,9 @@
 
 #include "../link/mcs_process.h"
 
+/* What ends the noun behind a count. */
+#define WH_PLURAL(count) ((count) == 1 ? "" : "s")
+
 /* Set by SIGINT and SIGTERM once wh_catch_signals was called. */
 extern volatile sig_atomic_t wh_stop_requested;
 
@@ -17,6 +20,7 @@ void wh_catch_signals(void);
 
 typedef struct {
     const char *url, *record; /* null: the default, no record */
+    bool log_time;
     wh_protocol_client_options_t client;
 } wh_mcs_link_options_t;
 

@@ -95,6 +95,7 @@ static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
     arguments->run.partners = partners;
     const int status = wh_run_and_print(arguments);
     wh_mcs_process_finish(&broadcast->control);
+    wh_mcs_process_close(&broadcast->control);
     if (broadcast->connected) {
         wh_sim_process_close(&broadcast->simulation);
     }
@@ -105,7 +106,8 @@ static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
 static int run_published(arguments_t *arguments) {
     static broadcast_t broadcast = {.link = {exchange, last_hash, missed_slices}};
     const char *url = arguments->lcm ? arguments->url : "memq://";
-    if (!wh_node_open(&broadcast.node, url, arguments->record)) {
+    if ((arguments->lcm && !wh_node_reaches_others(url)) ||
+        !wh_node_open(&broadcast.node, url, arguments->record)) {
         return WH_EXIT_USAGE;
     }
     const int status = run_on(&broadcast, &arguments->run);

@@ -1,5 +1,6 @@
 #include "mcs.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -154,12 +155,23 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
 
 /* ---------------------------------------------------------------------------------------------- finishing */
 
+/* A free-running simulator may miss some slices, but no more than the user allows. */
+static void judge_missed(wh_mcs_t *mcs, int64_t missed) {
+    char text[100];
+    if (mcs->limits_missed) {
+        snprintf(text, sizeof text, "at most %lld missed slices; the simulator missed %lld",
+                 (long long)mcs->most_missed, (long long)missed);
+        wh_record_add_expectation(mcs->recorder.record, 0, text, missed <= mcs->most_missed);
+    }
+}
+
 void wh_mcs_finish(wh_mcs_t *mcs) {
     wh_recorder_end_t end = {.wafers = mcs->state.wafers};
     if (mcs->link) {
         end.hash = mcs->link->hash(mcs->link);
         end.missed = mcs->link->missed(mcs->link);
         end.world = mcs->local.collision.world;
+        judge_missed(mcs, end.missed);
     }
     wh_recorder_finish(&mcs->recorder, &end);
 }

@@ -44,6 +44,8 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
         return refuse(run, result.message);
     }
     run->mcs.keep_segments = options->keep_segments;
+    run->mcs.limits_missed = options->limits_missed;
+    run->mcs.most_missed = options->most_missed;
     run->mcs.partners = options->partners;
     run->mcs.trial = options->trial;
     run->mcs.decisions = options->decisions;

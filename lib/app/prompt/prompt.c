@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 #include "../../text/array.h"
@@ -45,6 +44,14 @@ void wh_prompt_close(wh_prompt_t *prompt) {
         wh_editor_close(prompt->editor);
         wh_interrupt_release();
         free(prompt);
+    }
+}
+
+void wh_prompt_say(wh_prompt_t *prompt, const char *line) {
+    if (prompt->editor) {
+        wh_editor_say(prompt->editor, line);
+    } else {
+        fprintf(stderr, "%s\n", line);
     }
 }
 
@@ -152,11 +159,6 @@ static void execute(wh_prompt_t *prompt, const char *line) {
     prompt->leaving = is_interrupted(prompt);
 }
 
-static bool is_quit(const char *line) {
-    line += strspn(line, " ");
-    return strncasecmp(line, "QUIT", 4) == 0 && line[4 + strspn(line + 4, " ")] == '\0';
-}
-
 /* True for blank lines and comments. A line of blanks that was cut does not count: its end is unknown. */
 static bool says_nothing(const char *line) {
     const size_t blanks = strspn(line, " ");
@@ -165,7 +167,7 @@ static bool says_nothing(const char *line) {
 
 /* True if the prompt goes on after this line. */
 static bool take_line(wh_prompt_t *prompt, const char *line) {
-    if (is_quit(line)) {
+    if (wh_session_says(line, "QUIT")) {
         if (!prompt->editor) {
             puts("OK");
         }
