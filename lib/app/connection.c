@@ -26,7 +26,7 @@ bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options)
     link->node.speaker = "mcs";
     link->node.log_time = options->log_time;
     if (!wh_mcs_process_open(&link->control, &link->node, &options->client)) {
-        fprintf(stderr, "mcs: LCM takes no subscription\n");
+        wh_node_warn(&link->node, "LCM takes no subscription");
         wh_node_close(&link->node);
         return false;
     }

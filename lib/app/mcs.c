@@ -35,7 +35,8 @@ static const wh_option_t options[] = {
      WH_OPTION_REAL, .variable = offsetof(arguments_t, timeout_s), 1e-3, 1e6, "a number from 0.001 to 1e+06"},
     {"outputs", 0, "FILE", "Write the valves to this file, too, one value per gripper", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, link.client.outputs)},
-    {"log-time", 0, NULL, "Begin each line of standard error with the time (UTC) and a level", WH_OPTION_FLAG,
+    {"log-time", 0, NULL,
+     "Put time (UTC) and level before each line of standard error that begins with \"mcs:\"", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, link.log_time)},
     {0}};
 
@@ -119,7 +120,8 @@ static int take_commands(wh_session_t *session, wh_mcs_link_t *link) {
 }
 
 /* A session's run has no expectations that would say it. */
-static int judge_missed(const arguments_t *arguments, const wh_session_t *session, int status) {
+static int judge_missed(const arguments_t *arguments, const wh_session_t *session, const wh_node_t *node,
+                        int status) {
     wh_link_t *link = session->mcs.link;
     if (arguments->most_missed == NO_LIMIT) {
         return status;
@@ -129,8 +131,8 @@ static int judge_missed(const arguments_t *arguments, const wh_session_t *sessio
     if (missed <= (int64_t)arguments->most_missed) {
         return status;
     }
-    fprintf(stderr, "mcs: the simulator missed %lld slices (expected at most %llu: --max-missed)\n",
-            (long long)missed, (unsigned long long)arguments->most_missed);
+    wh_node_warn(node, "the simulator missed %lld slices (expected at most %llu: --max-missed)",
+                 (long long)missed, (unsigned long long)arguments->most_missed);
     return status == WH_EXIT_MET ? WH_EXIT_FAILED : status;
 }
 
@@ -147,7 +149,7 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
     /* Standard output is for answers: what scripts print goes to standard error. */
     wanted.limits.print_to = stderr;
     if (wh_session_open(&session, &wanted)) {
-        status = judge_missed(arguments, &session, take_commands(&session, link));
+        status = judge_missed(arguments, &session, &link->node, take_commands(&session, link));
     } else {
         fprintf(stderr, "%s\n", session.message);
     }
@@ -155,7 +157,7 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
     return status;
 }
 
-/* ---------------------------------------------------------------------------------------------- subcommand */
+/* --------------------------------------------------------------------------------------------- subcommand */
 
 static int run_script(arguments_t *arguments, wh_mcs_link_t *link) {
     wh_script_run_options_t *run = &arguments->run.run;

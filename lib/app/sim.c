@@ -31,7 +31,8 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, view)},
     {"json", 0, NULL, "Print the counters as one JSON object at the end", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, json)},
-    {"log-time", 0, NULL, "Begin each line of standard error with the time (UTC) and a level", WH_OPTION_FLAG,
+    {"log-time", 0, NULL,
+     "Put time (UTC) and level before each line of standard error that begins with \"sim:\"", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, log_time)},
     {0}};
 
@@ -154,7 +155,7 @@ static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *la
                         const arguments_t *arguments) {
     const wh_status_t status = wh_sim_process_open(&served->simulation, node, layout, true);
     if (status == WH_STATUS_NO_NETWORK) {
-        fprintf(stderr, "sim: LCM takes no subscription\n");
+        wh_node_warn(node, "LCM takes no subscription");
         return false;
     }
     if (status != WH_OK) {

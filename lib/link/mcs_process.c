@@ -337,7 +337,7 @@ static void on_cell(void *user, const void *data, size_t size) {
     (void)waferhand_cell_decode_cleanup(&message);
 }
 
-/* ------------------------------------------------------------------------------------- opening and closing */
+/* ------------------------------------------------------------------------------------ opening and closing */
 
 bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
                          const wh_protocol_client_options_t *options) {

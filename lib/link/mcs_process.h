@@ -19,9 +19,9 @@
 
 /* Requests that wait; more are answered with "busy". */
 #define WH_CONTROL_REQUESTS 16
-/* So many answers are remembered: asked again with the same line, they are given again. With another line the
- * number is taken: WH_STATUS_NUMBER_TAKEN. STATUS and VERSION change nothing: they are answered anew each time
- * and not remembered, nor is what was turned away before its turn. */
+/* So many answers are remembered: asked again with the same line, they are given again. With another line
+ * the number is taken: WH_STATUS_NUMBER_TAKEN. STATUS and VERSION change nothing: they are answered anew
+ * each time and not remembered, nor is what was turned away before its turn. */
 #define WH_CONTROL_ANSWERED 64
 
 typedef struct {

@@ -216,7 +216,7 @@ static bool is_readable(wh_node_t *node, int64_t us) {
 int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
     const int64_t us = timeout_us > 0 ? timeout_us : 0;
     if (node->receiver.socket >= 0) {
-        return take(node) == 1 || (us > 0 && is_readable(node, us) && take(node) == 1) ? 1 : 0;
+        return us == 0 || is_readable(node, us) ? take(node) : 0;
     }
     if (!is_readable(node, us)) {
         return 0;

@@ -49,8 +49,8 @@ struct wh_node {
     size_t subscriber_count;
 };
 
-/* False, and standard error says why, if nobody outside of this process can be reached at the URL (null: as in
- * wh_node_open): it is one of memory or of a file. */
+/* False, and standard error says why, if nobody outside of this process can be reached at the URL (null:
+ * as in wh_node_open): it is one of memory or of a file. */
 bool wh_node_reaches_others(const char *url);
 
 /* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). If `record` is not null, all

@@ -4,8 +4,9 @@
  * after a few round trips, then less and less often. A simulator that was started anew gets the last state
  * back. Free-running, it sends one command each slice of wall-clock time and takes the states as they come;
  * the first slice is always in lockstep. Silence of the simulator is reported within a second, and its
- * return: it is silent only while it owes an answer. Two simulators that answer in turns are reported, too. No state is taken whose hash is not the one that its own content has, nor one that no grasp table
- * could be in.
+ * return: it is silent only while it owes an answer. Two simulators that answer in turns are reported, too.
+ * No state is taken whose hash is not the one that its own content has, nor one that no grasp table could
+ * be in.
  */
 #ifndef WH_LINK_PROTOCOL_CLIENT_H
 #define WH_LINK_PROTOCOL_CLIENT_H

@@ -64,7 +64,8 @@ typedef struct {
 } wh_local_cell_t;
 
 /* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `decisions`,
- * `limits_missed`, `most_missed` and `rehearsal.look_ahead`, which may be set between opening and the cell. Must not be moved once opened. */
+ * `limits_missed`, `most_missed` and `rehearsal.look_ahead`, which may be set between opening and the cell.
+ * Must not be moved once opened. */
 struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
     wh_sandbox_t *sandbox;
@@ -84,6 +85,7 @@ struct wh_mcs {
     wh_vacuum_watch_t watch; /* of the running segment */
     int64_t stop_slice;      /* at which a STOP comes; INT64_MAX: none */
     bool stop_requested;     /* a STOP has come: see wh_mcs_stop */
+    bool link_stopped;       /* the link has answered a slice with WH_STATUS_STOPPED */
     bool limits_missed;      /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;
     wh_fault_t faults[WH_FAULTS]; /* by slot, as the simulator has them or is about to */

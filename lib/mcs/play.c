@@ -50,8 +50,13 @@ __attribute__((noreturn)) static void raise_stopped(lua_State *L, wh_mcs_t *mcs)
     wh_mcs_raise(L, mcs, WH_STATUS_STOPPED, by);
 }
 
+/* A script may catch that its link was stopped, by a signal, but only once: it would else not end. */
 __attribute__((noreturn)) static void raise_refused(lua_State *L, wh_mcs_t *mcs, wh_status_t status) {
     const wh_mcs_partners_t *partners = &mcs->partners;
+    if (status == WH_STATUS_STOPPED && mcs->link_stopped) {
+        wh_sandbox_stop(mcs->sandbox);
+    }
+    mcs->link_stopped = status == WH_STATUS_STOPPED;
     wh_mcs_raise(L, mcs, status,
                  partners->explain ? partners->explain(partners->user, status)
                                    : "the simulator refused a slice");

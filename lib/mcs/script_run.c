@@ -10,7 +10,7 @@ static wh_script_run_outcome_t refuse(wh_script_run_t *run, const char *message)
     return WH_RUN_BAD_INPUT;
 }
 
-/* True if a numbered error ended the script: a result, not bad input. */
+/* True if a numbered error ended the script: a result, not bad input, as a stop past all Lua is. */
 static bool ended_by_numbered_error(lua_State *L) {
     wh_sandbox_push_error(L);
     bool numbered = false;
@@ -25,11 +25,16 @@ static bool ended_by_numbered_error(lua_State *L) {
 }
 
 static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_sandbox_result_t *result) {
+    const bool stopped = result->status == WH_SANDBOX_STOPPED;
     if (result->status != WH_SANDBOX_OK) {
-        if (result->status != WH_SANDBOX_ERROR || !ended_by_numbered_error(wh_sandbox_state(run->sandbox))) {
+        if (!stopped && (result->status != WH_SANDBOX_ERROR ||
+                         !ended_by_numbered_error(wh_sandbox_state(run->sandbox)))) {
             return refuse(run, result->message);
         }
         run->record.failure = wh_text_copy(result->message);
+    }
+    if (stopped) {
+        wh_mcs_cut_short(&run->mcs, WH_STATUS_STOPPED, result->message);
     }
     wh_mcs_finish(&run->mcs);
     return run->record.ok ? WH_RUN_MET : WH_RUN_FAILED;

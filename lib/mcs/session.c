@@ -54,7 +54,7 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
            refuse(session, result.message);
 }
 
-/* ----------------------------------------------------------------------------------------------- resetting */
+/* ---------------------------------------------------------------------------------------------- resetting */
 
 bool wh_session_says(const char *line, const char *word) {
     const char *begin = line + strspn(line, " ");

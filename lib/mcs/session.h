@@ -58,12 +58,11 @@ typedef struct {
  * usable. To be closed either way. */
 bool wh_session_open(wh_session_t *session, const wh_session_options_t *options);
 
-/* Executes a line with a fresh budget. RESET reads the layout anew and begins another run, with its wafers and
- * a slot book that knows nothing; if the layout is no longer usable, that is an error, and the session goes on
- * as it was. `answer`, of at least 8 bytes, gets one line of printable text without
- * its end: "OK" and values, or "ERROR 42 WAFER_MISSING: ..."; control characters stand in it as \xNN. Returns
- * the error's number. Called from within a command (a link's exchange, a report) it answers
- * WH_STATUS_BUSY. */
+/* Executes a line with a fresh budget. RESET reads the layout anew and begins another run, with its wafers
+ * and a slot book that knows nothing; if the layout is no longer usable, that is an error, and the session
+ * goes on as it was. `answer`, of at least 8 bytes, gets one line of printable text without its end: "OK"
+ * and values, or "ERROR 42 WAFER_MISSING: ..."; control characters stand in it as \xNN. Returns the
+ * error's number. Called from within a command (a link's exchange, a report) it answers WH_STATUS_BUSY. */
 wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *answer, size_t size);
 
 /* Ends the running command with WH_STATUS_STOPPED; without one, nothing. For signal handlers of the thread
