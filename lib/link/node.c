@@ -261,7 +261,8 @@ static void put_time(char *text, size_t size, const char *level) {
     snprintf(text, size, "%s.%03dZ %s ", date, (int)(us % 1000000 / 1000), level);
 }
 
-static void say(const wh_node_t *node, const char *level, const char *format, va_list arguments) {
+__attribute__((format(printf, 3, 0))) static void say(const wh_node_t *node, const char *level,
+                                                      const char *format, va_list arguments) {
     char text[600];
     char begin[64] = "";
     char line[sizeof begin + 40 + sizeof text];

@@ -105,7 +105,7 @@ void wh_node_flush_record(wh_node_t *node) {
 }
 
 /* What would be said must be one line. Nobody hears it. */
-static void check_line(const char *format, va_list arguments) {
+__attribute__((format(printf, 1, 0))) static void check_line(const char *format, va_list arguments) {
     char text[600];
     REQUIRE(vsnprintf(text, sizeof text, format, arguments) > 0);
     REQUIRE(fuzz_is_one_line(text));

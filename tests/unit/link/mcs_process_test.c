@@ -10,6 +10,8 @@ static wh_node_t node;
 static wh_mcs_process_t control;
 static wh_sim_process_t simulation;
 static wh_session_t session;
+static wh_sandbox_t *sandbox; /* of the simulator's own layout */
+static const wh_layout_t *simulated;
 static char answer[WH_SESSION_ANSWER_BYTES];
 
 /* Lines that are requested when the simulator has stepped `at`. */
@@ -70,7 +72,7 @@ static void on_mcs(void *user, const void *data, size_t size) {
 static wh_link_t *connect_all(void *user, wh_mcs_t *mcs) {
     /* After a RESET the same simulator goes on. */
     if (!control.connected) {
-        assert_int_equal(wh_sim_process_open(&simulation, &node, mcs->layout, true), WH_OK);
+        assert_int_equal(wh_sim_process_open(&simulation, &node, simulated, true), WH_OK);
     }
     assert_ptr_equal(wh_mcs_process_partners(user).connect(user, mcs), &control.client.link);
     asking.exchange = exchange;
@@ -82,6 +84,9 @@ static int open_all(void **state) {
     const wh_protocol_client_options_t options = {.rate = 0};
     memset(&plan, 0, sizeof plan);
     memset(&heard, 0, sizeof heard);
+    sandbox = wh_sandbox_new(NULL);
+    simulated = wh_layout_load(sandbox, "lua/layouts/paper.lua", NULL);
+    assert_non_null(simulated);
     assert_true(wh_node_open(&node, "memq://", NULL));
     assert_true(wh_mcs_process_open(&control, &node, &options));
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_MCS, on_mcs, NULL));
@@ -97,6 +102,7 @@ static int close_all(void **state) {
     wh_mcs_process_close(&control);
     wh_sim_process_close(&simulation);
     wh_node_close(&node);
+    wh_sandbox_free(sandbox);
     return 0;
 }
 
