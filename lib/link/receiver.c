@@ -169,7 +169,7 @@ static uint64_t sender_of(const struct sockaddr_in *from, socklen_t size) {
 
 bool wh_receiver_take(wh_receiver_t *receiver, wh_received_t *message) {
     for (int datagrams = 0; datagrams < WH_RECEIVER_MOST; ++datagrams) {
-        struct sockaddr_in from;
+        struct sockaddr_in from = {.sin_family = AF_UNSPEC};
         socklen_t from_size = sizeof from;
         const ssize_t size = recvfrom(receiver->socket, receiver->datagram, sizeof receiver->datagram,
                                       MSG_DONTWAIT | MSG_TRUNC, (struct sockaddr *)&from, &from_size);
