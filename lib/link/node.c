@@ -213,10 +213,11 @@ static bool is_readable(wh_node_t *node, int64_t us) {
     return count > 0;
 }
 
+/* Receives first: what a process has published comes back to it at once, and often more has come. */
 int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
     const int64_t us = timeout_us > 0 ? timeout_us : 0;
     if (node->receiver.socket >= 0) {
-        return us == 0 || is_readable(node, us) ? take(node) : 0;
+        return take(node) == 1 || (us > 0 && is_readable(node, us) && take(node) == 1) ? 1 : 0;
     }
     if (!is_readable(node, us)) {
         return 0;
