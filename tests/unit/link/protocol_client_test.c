@@ -225,7 +225,7 @@ static void a_simulator_that_does_not_answer_in_time_is_an_error_until_it_answer
     for (int times = 0; times < 2; ++times) {
         const int64_t begin = wh_node_clock_us();
         assert_int_equal(send_slice(1, &answer), WH_STATUS_NO_ANSWER);
-        assert_in_range(wh_node_clock_us() - begin, 100000, 1000000);
+        assert_in_range(wh_node_clock_us() - begin, 100000, 5000000);
         assert_true(client.timed_out);
     }
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_truly, NULL));
