@@ -3,9 +3,6 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* The cell is not told more often than so, whoever asks. */
-#define CELL_LEAST_US 20000
-
 /* ------------------------------------------------------------------------------------------------ sending */
 
 static void publish(wh_sim_process_t *simulation, const char *channel, const void *data, int size) {
@@ -25,9 +22,11 @@ static void tell_cell(wh_sim_process_t *simulation) {
             waferhand_cell_encode(simulation->encoded, 0, (int)sizeof simulation->encoded, cell));
 }
 
-/* Before a motion control with another layout is turned away, so that it can name this one. */
-static void tell_layout(wh_sim_process_t *simulation) {
-    if (wh_node_clock_us() - simulation->last_cell_us >= CELL_LEAST_US) {
+/* Before the first command of a run with another layout is turned away, so that its sender can name this
+ * one. */
+static void tell_layout(wh_sim_process_t *simulation, int64_t run) {
+    if (simulation->other_run != run) {
+        simulation->other_run = run;
         tell_cell(simulation);
     }
 }
@@ -96,7 +95,7 @@ static void handle_command(wh_sim_process_t *simulation, const waferhand_command
     const wh_protocol_server_result_t result =
         wh_protocol_server_command(&simulation->server, message, simulation->valves);
     if (simulation->server.counters.other_layout > others) {
-        tell_layout(simulation);
+        tell_layout(simulation, message->run);
     }
     /* Late commands of an old run are no sign of life. */
     if (message->run == simulation->server.identity.run) {

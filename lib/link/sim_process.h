@@ -27,8 +27,9 @@ typedef struct {
     wh_link_cell_t cell;
     const int32_t *valves; /* from outputs.txt; null: the commands' own */
     int64_t last_command_us, last_cell_us, last_proximity_us;
-    bool running; /* a run has begun and is not over */
-    bool silent;  /* and motion control has fallen silent */
+    int64_t other_run; /* the last one that was turned away for its layout */
+    bool running;      /* a run has begun and is not over */
+    bool silent;       /* and motion control has fallen silent */
     wh_sim_process_counters_t counters;
     uint8_t encoded[WH_LINK_DATAGRAM];
 } wh_sim_process_t;
