@@ -20,7 +20,8 @@ void wh_catch_signals(void) {
 
 bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
     wh_catch_signals();
-    if (!wh_node_reaches_others(options->url) || !wh_node_open(&link->node, options->url, options->record)) {
+    wh_record_arguments_apply(&options->record, "mcs", false, &link->record);
+    if (!wh_node_reaches_others(options->url) || !wh_node_open(&link->node, options->url, &link->record)) {
         return false;
     }
     link->node.speaker = "mcs";
@@ -28,6 +29,7 @@ bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options)
     if (!wh_mcs_process_open(&link->control, &link->node, &options->client)) {
         wh_node_warn(&link->node, "LCM takes no subscription");
         wh_node_close(&link->node);
+        (void)wh_recording_close(&link->record);
         return false;
     }
     return true;
@@ -53,11 +55,12 @@ static void print_counters(const wh_mcs_link_t *link) {
     }
 }
 
-void wh_mcs_link_close(wh_mcs_link_t *link) {
+bool wh_mcs_link_close(wh_mcs_link_t *link) {
     wh_mcs_process_finish(&link->control);
     if (link->control.connected) {
         print_counters(link);
     }
     wh_mcs_process_close(&link->control);
     wh_node_close(&link->node);
+    return wh_recording_close(&link->record) && link->control.client.counters.unwritten == 0;
 }

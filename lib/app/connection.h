@@ -5,6 +5,7 @@
 #include <signal.h>
 
 #include "../link/mcs_process.h"
+#include "record_arguments.h"
 
 /* What ends the noun behind a count. */
 #define WH_PLURAL(count) ((count) == 1 ? "" : "s")
@@ -19,7 +20,8 @@ void wh_catch_signals(void);
 /* --------------------------------------------------------------------------------------- motion control's */
 
 typedef struct {
-    const char *url, *record; /* null: the default, no record */
+    const char *url; /* null: the default */
+    wh_record_arguments_t record;
     bool log_time;
     wh_protocol_client_options_t client;
 } wh_mcs_link_options_t;
@@ -27,13 +29,15 @@ typedef struct {
 /* Must not be moved once opened. */
 typedef struct {
     wh_node_t node;
+    wh_recording_t record;
     wh_mcs_process_t control;
 } wh_mcs_link_t;
 
 /* Catches signals and opens LCM; says on standard error what is wrong. */
 bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
 
-/* Tells all listeners that the run is over, prints which messages were lost, and closes. */
-void wh_mcs_link_close(wh_mcs_link_t *link);
+/* Tells all listeners that the run is over, prints which messages were lost, and closes. False if the
+ * record or the file of the valves could not be written: standard error has said so. */
+bool wh_mcs_link_close(wh_mcs_link_t *link);
 
 #endif

@@ -22,8 +22,6 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, layout)},
     {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL ")", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, link.url)},
-    {"record", 0, "FILE", "Write all messages into an LCM event log", WH_OPTION_TEXT,
-     .variable = offsetof(arguments_t, link.record)},
     {"rate", 0, "FACTOR", "Run free at this factor of real time instead of in lockstep", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, link.client.rate), 1e-3, 1e3, "a number from 0.001 to 1000"},
     {"max-missed", 0, "N", "Fail if the simulator misses more than N slices; goes with --rate",
@@ -41,6 +39,7 @@ static const wh_option_t options[] = {
     {0}};
 
 static const wh_option_table_t tables[] = {{options, 0, NULL},
+                                           {wh_record_options, offsetof(arguments_t, link.record), NULL},
                                            {wh_run_options, offsetof(arguments_t, run), NULL},
                                            {wh_run_files_options, offsetof(arguments_t, run.files), NULL},
                                            {0}};
@@ -66,6 +65,7 @@ static void check(const void *given, struct argp_state *state) {
         argp_error(state,
                    "--json, --gantt, --margins, --segments, --report, --gltf and --data go with a script");
     }
+    wh_record_arguments_check(&arguments->link.record, state);
 }
 
 static const wh_command_line_t command_line = {
@@ -174,13 +174,15 @@ int wh_app_mcs(int argc, char **argv) {
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
     arguments.link.client.timeout_us = (int64_t)(arguments.timeout_s * 1e6);
+    arguments.run.record =
+        arguments.link.record.all ? arguments.link.record.all : arguments.link.record.slices;
     int status = WH_EXIT_USAGE;
     if (wh_mcs_link_open(&link, &arguments.link)) {
         status = arguments.layout ? run_prompt(&arguments, &link) : run_script(&arguments, &link);
         if (status == WH_EXIT_FAILED && link.control.client.timed_out) {
             status = WH_EXIT_NO_ANSWER;
         }
-        wh_mcs_link_close(&link);
+        status = wh_mcs_link_close(&link) ? status : WH_EXIT_USAGE;
     }
     wh_run_arguments_free(&arguments.run);
     return status;

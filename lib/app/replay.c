@@ -1,22 +1,26 @@
 /* waferhand replay FILE */
 #include <errno.h>
 #include <inttypes.h>
-#include <jansson.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "../log/replay.h"
+#include "../log/reading.h"
+#include "../text/json.h"
 #include "../text/options.h"
 #include "app.h"
 
 typedef struct {
     const char *path;
-    bool json;
+    bool json, lenient;
 } arguments_t;
 
-static const wh_option_t options[] = {{"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
-                                       .variable = offsetof(arguments_t, json)},
-                                      {0}};
+static const wh_option_t options[] = {
+    {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, json)},
+    {"lenient", 0, NULL,
+     "Of a log that a lossy network fed: messages may be missing, late or garbage, and are only named",
+     WH_OPTION_FLAG, .variable = offsetof(arguments_t, lenient)},
+    {0}};
 
 static const wh_option_table_t tables[] = {{options, 0, NULL}, {0}};
 
@@ -24,189 +28,367 @@ static const wh_command_line_t command_line = {
     .name = "replay",
     .synopsis = "FILE",
     .about =
-        "Steps the library through the commands of an LCM event log and compares the hash of each slice.\v"
-        "Exit status: 0 if every slice is as recorded and the log is whole, 1 if one differs, 2 if the log "
-        "is "
-        "unreadable, damaged or has no run in it.",
+        "Steps the library through the commands of an LCM event log and compares each slice's state, body "
+        "and hash.\v"
+        "Exit status: 0 the log is whole and every slice is as recorded; 1 a slice differs; 2 unusable: "
+        "unreadable, no log, or no run in it; 3 damaged or incomplete: something of ours is missing, "
+        "garbage, or was passed over; 4 cut off: all before is as recorded, and the end of the run is not "
+        "there. It is about the recording: whether the run passed is printed.",
     .tables = tables,
     .operand = "file",
     .operand_variable = offsetof(arguments_t, path)};
 
-/* How the file ended. */
+/* What was read. */
 typedef struct {
-    wh_log_result_t result;
-    uint64_t offset, events;
-    uint64_t first_garbage; /* byte; valid if there is garbage */
-} ending_t;
+    const arguments_t *arguments;
+    const wh_replay_t *replay;
+    const wh_reading_t *reading;
+    wh_reading_verdict_t verdict;
+} result_t;
 
-/* --------------------------------------------------------------------------------------------- for people */
+/* ---------------------------------------------------------------------------------------------- for people */
 
-static void print_run(const wh_replay_run_t *run) {
+/* Prints "  1 slice ..." or "  2 slices ..." unless it is none. */
+static void print_counted(int64_t count, const char *one, const char *many) {
+    if (count > 0) {
+        printf("  %" PRId64 " %s\n", count, count == 1 ? one : many);
+    }
+}
+
+static void print_counts(const wh_replay_run_t *run, bool lacks_end) {
+    print_counted(run->unanswered, "command whose state is not in the log",
+                  "commands whose states are not in the log");
+    if (lacks_end) {
+        print_counted(run->last_unanswered, "command at the end: the log ends before its state",
+                      "commands at the end: the log ends before their states");
+    } else {
+        print_counted(run->last_unanswered, "command at the run's end whose state is not in the log",
+                      "commands at the run's end whose states are not in the log");
+    }
+    print_counted(run->outside_valves, "slice with valves from outside", "slices with valves from outside");
+    print_counted(run->missed, "slice that never reached the simulator",
+                  "slices that never reached the simulator");
+    print_counted(run->refused, "command that the simulator refused, and so does the replay",
+                  "commands that the simulator refused, and so does the replay");
+    print_counted(run->collisions, "event of the collision check: not compared",
+                  "events of the collision check: not compared");
+    if (run->taken_up > 0) {
+        printf("  taken up from a recorded state %" PRId64 " %s, where commands are not in the log; %" PRId64
+               " %s passed over\n",
+               run->taken_up, run->taken_up == 1 ? "time" : "times", run->skipped,
+               run->skipped == 1 ? "slice" : "slices");
+    }
+    print_counted(
+        run->doubtful,
+        "slice that is not as recorded behind commands without states: their valves are not known",
+        "slices that are not as recorded behind commands without states: their valves are not known");
+}
+
+static void print_difference(const wh_replay_t *replay, const wh_replay_run_t *run) {
+    if (run->differing == 0) {
+        return;
+    }
+    const wh_replay_difference_t *difference = &run->difference;
+    const bool doubtful = wh_reading_is_doubtful(replay, run);
+    printf("  %s at slice %" PRId64 ": %s: recorded %.17g, replayed %.17g; %" PRId64 " of %" PRId64
+           " slices differ%s\n",
+           doubtful ? "not the same" : "DIFFERS", difference->slice, difference->what, difference->recorded,
+           difference->replayed, run->differing, run->compared,
+           doubtful ? ", or the cell does: nothing vouches for it" : "");
+}
+
+static int64_t lost_expectations(const wh_replay_run_t *run) {
+    const int64_t there = (int64_t)(run->expectations.next - wh_log_numbers_missing(&run->expectations));
+    return run->told.verdict == WH_OUTCOME_UNTOLD ? 0 : run->told.expectations - there;
+}
+
+static void print_outcome(const wh_replay_run_t *run) {
+    const wh_outcome_verdict_t verdict = run->told.verdict;
+    if (verdict == WH_OUTCOME_PASSED || verdict == WH_OUTCOME_FAILED) {
+        printf("  the run %s: %" PRId64 " of %" PRId64 " expectations met\n", wh_outcome_word(verdict),
+               run->told.met, run->told.expectations);
+    } else if (verdict == WH_OUTCOME_ENDED) {
+        puts("  the session ended");
+    } else {
+        puts(run->unmet > 0 ? "  the run failed: an expectation was not met; the log does not tell its end"
+                            : "  the log does not tell if the run passed");
+    }
+    print_counted(lost_expectations(run), "expectation is not in the log", "expectations are not in the log");
+}
+
+static void print_run(const wh_replay_t *replay, const wh_replay_run_t *run) {
+    if (!run->is_begun) {
+        printf("run %016" PRIx64 ": no slices\n", (uint64_t)run->run);
+        print_outcome(run);
+        return;
+    }
     printf("run %016" PRIx64 ": slices %" PRId64 " to %" PRId64 ", %" PRId64 " compared, hash %016" PRIx64
            "%s\n",
            (uint64_t)run->run, run->first_slice, run->last_slice, run->compared, run->hash,
-           run->over ? "" : "; cut off: its end is not in the log");
-    if (run->unanswered > 0) {
-        printf("  %" PRId64 " slices whose state is not in the log\n", run->unanswered);
+           run->over ? "" : "; its end is not in the log");
+    if (run->begins_in_part) {
+        printf("  begins in the part before this one of its recording\n");
     }
-    if (run->outside_valves > 0) {
-        printf("  %" PRId64 " slices with valves from outside\n", run->outside_valves);
-    }
-    if (run->missed > 0) {
-        printf("  %" PRId64 " slices that never reached the simulator\n", run->missed);
-    }
-    if (run->taken_up > 0) {
-        printf("  taken up %" PRId64 " times from a recorded state, where commands are not in the log\n",
-               run->taken_up);
-    }
-    if (run->differs) {
-        printf("  DIFFERS at slice %" PRId64 ": %s: recorded %.17g, replayed %.17g\n", run->difference.slice,
-               run->difference.what, run->difference.recorded, run->difference.replayed);
-    }
+    print_outcome(run);
+    print_counts(run, wh_reading_lacks_end(replay, run));
+    print_difference(replay, run);
 }
 
-static void print_ending(const char *path, const ending_t *ending) {
-    if (ending->result == WH_LOG_CUT) {
-        printf("%s: cut off at byte %" PRIu64 ", within event %" PRIu64 ": replayed up to there\n", path,
-               ending->offset, ending->events + 1);
-    } else if (ending->result == WH_LOG_DAMAGED) {
-        printf("%s: damaged at byte %" PRIu64 ", where event %" PRIu64
-               " should begin: replayed up to there\n",
-               path, ending->offset, ending->events + 1);
-    }
-}
+/* What is said of each loss, and its key in JSON. */
+static const struct {
+    const char *key, *one, *many;
+} losses[WH_REPLAY_LOSSES] = {
+    [WH_REPLAY_GARBAGE] = {"garbage", "event on our channels is no sound message",
+                           "events on our channels are no sound messages"},
+    [WH_REPLAY_UNCHECKED] = {"unchecked", "command or state has no check",
+                             "commands and states have no check"},
+    [WH_REPLAY_STRAY] = {"stray", "message of ours is on another channel",
+                         "messages of ours are on other channels"},
+    [WH_REPLAY_CONTRADICTS] = {"contradicting", "message does not fit what the log tells elsewhere",
+                               "messages do not fit what the log tells elsewhere"},
+    [WH_REPLAY_HOMELESS] = {"homeless", "message is of a layout whose cell is not in the log",
+                            "messages are of layouts whose cells are not in the log"},
+    [WH_REPLAY_LATE] = {"late", "message of a run comes when another one goes on",
+                        "messages of a run come when another one goes on"}};
 
-static void print_table(const char *path, const wh_replay_t *replay, const ending_t *ending, bool ok) {
-    for (size_t i = 0; i < replay->run_count; ++i) {
-        print_run(&replay->runs[i]);
+static void print_losses(const wh_replay_t *replay) {
+    for (size_t i = 0; i < WH_REPLAY_LOSSES; ++i) {
+        const wh_replay_count_t *loss = &replay->losses[i];
+        if (loss->count > 0) {
+            printf("%" PRIu64 " %s, the first at byte %" PRIu64 "\n", loss->count,
+                   loss->count == 1 ? losses[i].one : losses[i].many, loss->first);
+        }
+    }
+    if (replay->proximities > 0) {
+        printf("%" PRIu64 " proximities could not be compared\n", replay->proximities);
     }
     if (replay->runs_left_out > 0) {
         printf("more than %d runs: the rest is left out\n", WH_REPLAY_RUNS);
     }
-    if (replay->garbage > 0) {
-        printf("%" PRIu64 " events on our channels are no sound messages, the first at byte %" PRIu64 "\n",
-               replay->garbage, ending->first_garbage);
-    }
-    if (replay->homeless > 0) {
-        printf("%" PRIu64 " messages come before the cell is told, and were passed over\n", replay->homeless);
-    }
-    print_ending(path, ending);
-    puts(ok ? "every slice that was compared is as recorded" : "not shown to be as recorded");
 }
 
-/* ------------------------------------------------------------------------------------------- for programs */
-
-static json_t *run_to_json(const wh_replay_run_t *run) {
-    char id[17];
-    char hash[17];
-    snprintf(id, sizeof id, "%016" PRIx64, (uint64_t)run->run);
-    snprintf(hash, sizeof hash, "%016" PRIx64, run->hash);
-    json_t *difference = run->differs
-                             ? json_pack("{s:I, s:s, s:f, s:f}", "slice", (json_int_t)run->difference.slice,
-                                         "what", run->difference.what, "recorded", run->difference.recorded,
-                                         "replayed", run->difference.replayed)
-                             : json_null();
-    return json_pack("{s:s, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:b, s:s, s:o}", "run", id, "first_slice",
-                     (json_int_t)run->first_slice, "last_slice", (json_int_t)run->last_slice, "compared",
-                     (json_int_t)run->compared, "unanswered", (json_int_t)run->unanswered, "outside_valves",
-                     (json_int_t)run->outside_valves, "taken_up", (json_int_t)run->taken_up, "missed",
-                     (json_int_t)run->missed, "over", run->over ? 1 : 0, "hash", hash, "first_difference",
-                     difference);
+static void print_numbers(const wh_log_numbers_t *numbers) {
+    const uint64_t odd = numbers->doubled + numbers->moved + numbers->misnumbered;
+    for (size_t i = 0; i < numbers->gap_count; ++i) {
+        const uint64_t from = numbers->gaps[i].from;
+        const uint64_t count = numbers->gaps[i].to - from;
+        printf("%" PRIu64 " %s missing ", count, count == 1 ? "event is" : "events are");
+        if (from == 0) {
+            puts("at the beginning");
+        } else {
+            printf("after event %" PRIu64 "\n", from - 1);
+        }
+    }
+    if (numbers->beyond > 0) {
+        printf("%" PRIu64 " more events are missing\n", numbers->beyond);
+    }
+    if (odd > 0) {
+        printf("events: %" PRIu64 " doubled, %" PRIu64 " out of order, %" PRIu64
+               " with a wrong number; the first at byte %" PRIu64 "\n",
+               numbers->doubled, numbers->moved, numbers->misnumbered, numbers->first);
+    }
 }
 
-static void print_json(const char *path, const wh_replay_t *replay, const ending_t *ending, bool ok) {
-    json_t *runs = json_array();
-    for (size_t i = 0; i < replay->run_count; ++i) {
-        json_array_append_new(runs, run_to_json(&replay->runs[i]));
+/* What the recording says of itself. */
+static void print_recording(const wh_replay_recording_t *recording) {
+    if (recording->part > 1 || recording->closed == WH_RECORDING_GOES_ON) {
+        printf("part %d of a recording%s\n", (int)recording->part,
+               recording->closed == WH_RECORDING_GOES_ON ? ", which goes on in the next part" : "");
     }
-    json_t *damage =
-        ending->result == WH_LOG_END
-            ? json_null()
-            : json_pack("{s:s, s:I}", "kind", ending->result == WH_LOG_CUT ? "cut off" : "damaged", "byte",
-                        (json_int_t)ending->offset);
-    json_t *root = json_pack("{s:i, s:b, s:s, s:I, s:I, s:o, s:o}", "format", 1, "ok", ok ? 1 : 0, "file",
-                             path, "events", (json_int_t)ending->events, "garbage",
-                             (json_int_t)replay->garbage, "runs", runs, "damage", damage);
-    json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
-    putchar('\n');
+    if (recording->is_changed) {
+        puts("the log's digest is another one: something in it was changed, lost or put in");
+    }
+}
+
+static void print_damage(const char *path, const wh_reading_t *reading) {
+    const char *where = reading->is_compressed ? " of what was decompressed" : "";
+    if (reading->broken > 0) {
+        printf("%s: damaged at byte %" PRIu64 ", within a compressed frame; %" PRIu64 " such %s\n", path,
+               reading->first_broken, reading->broken, reading->broken == 1 ? "place" : "places");
+    }
+    for (size_t i = 0; i < reading->damage_count && i < WH_READING_DAMAGES; ++i) {
+        printf("%s: damaged at byte %" PRIu64 "%s: %" PRIu64 " bytes are no event\n", path,
+               reading->damages[i].from, where, reading->damages[i].to - reading->damages[i].from);
+    }
+    if (reading->damage_count > WH_READING_DAMAGES) {
+        printf("%s: and %" PRIu64 " more times\n", path, reading->damage_count - WH_READING_DAMAGES);
+    }
+    if (reading->is_cut) {
+        printf("%s: cut off at byte %" PRIu64 "%s\n", path, reading->cut_at, where);
+    }
+}
+
+static void print_table(const result_t *result) {
+    static const char *const verdicts[] = {[WH_READING_SAME] = "every slice is as recorded",
+                                           [WH_READING_DIFFERS] = "not as recorded",
+                                           [WH_READING_UNUSABLE] = "",
+                                           [WH_READING_INCOMPLETE] =
+                                               "damaged or incomplete: not shown to be as recorded",
+                                           [WH_READING_CUT] = "cut off: every slice before is as recorded"};
+    for (size_t i = 0; i < result->replay->run_count; ++i) {
+        print_run(result->replay, &result->replay->runs[i]);
+    }
+    print_recording(&result->replay->recording);
+    print_losses(result->replay);
+    print_numbers(&result->reading->numbers);
+    print_damage(result->arguments->path, result->reading);
+    puts(verdicts[result->verdict]);
+}
+
+/* -------------------------------------------------------------------------------------------- for programs */
+
+static json_t *hexadecimal(uint64_t value) {
+    return json_sprintf("%016llx", (unsigned long long)value);
+}
+
+static json_t *difference_to_json(const wh_replay_run_t *run) {
+    if (run->differing == 0) {
+        return json_null();
+    }
+    const wh_replay_difference_t *from = &run->difference;
+    return wh_json_add(json_object(), "slice what recorded replayed", json_integer(from->slice),
+                       wh_json_text(from->what), wh_json_real(from->recorded), wh_json_real(from->replayed),
+                       NULL);
+}
+
+static json_t *outcome_to_json(const wh_replay_run_t *run) {
+    const wh_outcome_t *told = &run->told;
+    if (told->verdict == WH_OUTCOME_UNTOLD) {
+        return json_null();
+    }
+    return wh_json_add(json_object(), "verdict commands expectations met cycles expectations_lost",
+                       wh_json_text(wh_outcome_word(told->verdict)), json_integer(told->commands),
+                       json_integer(told->expectations), json_integer(told->met), json_integer(told->cycles),
+                       json_integer(lost_expectations(run)), NULL);
+}
+
+static json_t *run_to_json(const void *subject, size_t i) {
+    const wh_replay_run_t *run = &((const wh_replay_t *)subject)->runs[i];
+    json_t *object =
+        wh_json_add(json_object(), "run first_slice last_slice compared differing unanswered last_unanswered",
+                    hexadecimal((uint64_t)run->run), json_integer(run->first_slice),
+                    json_integer(run->last_slice), json_integer(run->compared), json_integer(run->differing),
+                    json_integer(run->unanswered), json_integer(run->last_unanswered), NULL);
+    return wh_json_add(object,
+                       "outside_valves taken_up skipped missed refused doubtful collisions_not_compared over "
+                       "hash outcome first_difference",
+                       json_integer(run->outside_valves), json_integer(run->taken_up),
+                       json_integer(run->skipped), json_integer(run->missed), json_integer(run->refused),
+                       json_integer(run->doubtful), json_integer(run->collisions), json_boolean(run->over),
+                       hexadecimal(run->hash), outcome_to_json(run), difference_to_json(run), NULL);
+}
+
+static json_t *gap_to_json(const void *subject, size_t i) {
+    const wh_log_numbers_t *numbers = subject;
+    return wh_json_add(json_object(), "from to", json_integer((json_int_t)numbers->gaps[i].from),
+                       json_integer((json_int_t)numbers->gaps[i].to), NULL);
+}
+
+static json_t *damage_to_json(const void *subject, size_t i) {
+    const wh_reading_t *reading = subject;
+    return wh_json_add(json_object(), "from to", json_integer((json_int_t)reading->damages[i].from),
+                       json_integer((json_int_t)reading->damages[i].to), NULL);
+}
+
+static void put_recording(const wh_replay_recording_t *recording, json_t *root) {
+    const bool tells = recording->version > 0;
+    (void)wh_json_add(
+        root, "version part closed program changed", json_integer(tells ? recording->version : 1),
+        tells ? json_integer(recording->part) : json_null(),
+        tells ? json_boolean(recording->closed != WH_RECORDING_BEGINS) : json_null(),
+        tells ? wh_json_text(recording->program) : json_null(), json_boolean(recording->is_changed), NULL);
+}
+
+static void put_losses(const wh_replay_t *replay, json_t *root) {
+    json_t *first = json_object();
+    for (size_t i = 0; i < WH_REPLAY_LOSSES; ++i) {
+        wh_json_put_integer(root, losses[i].key, (json_int_t)replay->losses[i].count);
+        if (replay->losses[i].count > 0) {
+            wh_json_put_integer(first, losses[i].key, (json_int_t)replay->losses[i].first);
+        }
+    }
+    wh_json_put(root, "first_bytes", first);
+    wh_json_put_integer(root, "proximities_not_compared", (json_int_t)replay->proximities);
+    wh_json_put_integer(root, "runs_left_out", (json_int_t)replay->runs_left_out);
+}
+
+static void put_file(const wh_reading_t *reading, json_t *root) {
+    const wh_log_numbers_t *numbers = &reading->numbers;
+    const size_t named =
+        reading->damage_count < WH_READING_DAMAGES ? (size_t)reading->damage_count : WH_READING_DAMAGES;
+    (void)wh_json_add(root, "events_missing events_doubled events_out_of_order events_misnumbered",
+                      json_integer((json_int_t)wh_log_numbers_missing(numbers)),
+                      json_integer((json_int_t)numbers->doubled), json_integer((json_int_t)numbers->moved),
+                      json_integer((json_int_t)numbers->misnumbered), NULL);
+    wh_json_put(root, "gaps", wh_json_list(gap_to_json, numbers, numbers->gap_count));
+    wh_json_put_integer(root, "damaged", (json_int_t)reading->damage_count);
+    wh_json_put(root, "damage", wh_json_list(damage_to_json, reading, named));
+    wh_json_put_integer(root, "frames_damaged", (json_int_t)reading->broken);
+    wh_json_put(root, "cut_at", reading->is_cut ? json_integer((json_int_t)reading->cut_at) : json_null());
+}
+
+static int print_json(const result_t *result) {
+    json_t *root = wh_json_add(
+        json_object(), "format ok verdict lenient file events", json_integer(2),
+        json_boolean(result->verdict == WH_READING_SAME), wh_json_text(wh_reading_word(result->verdict)),
+        json_boolean(result->arguments->lenient), wh_json_text(result->arguments->path),
+        json_integer((json_int_t)result->reading->events), NULL);
+    put_recording(&result->replay->recording, root);
+    put_losses(result->replay, root);
+    put_file(result->reading, root);
+    wh_json_put(root, "runs", wh_json_list(run_to_json, result->replay, result->replay->run_count));
+    const int status = wh_json_print(root, stdout);
     json_decref(root);
-}
-
-/* ------------------------------------------------------------------------------------------------ reading */
-
-static wh_log_t record;
-
-/* Finds the first message that describes the cell. It is sent once a second, so a recording may begin before
- * it. */
-static void find_cell(FILE *file, wh_replay_t *replay) {
-    wh_log_open(&record, file);
-    while (!replay->layout && wh_log_next(&record) == WH_LOG_EVENT) {
-        if (strcmp(record.channel, WH_CHANNEL_CELL) == 0) {
-            wh_replay_event(replay, record.channel, record.data, record.size);
-        }
-    }
-    rewind(file);
-    replay->messages = 0;
-    replay->garbage = 0;
-}
-
-static ending_t read_all(FILE *file, wh_replay_t *replay) {
-    ending_t ending = {.first_garbage = 0};
-    find_cell(file, replay);
-    wh_log_open(&record, file);
-    while ((ending.result = wh_log_next(&record)) == WH_LOG_EVENT) {
-        const bool sound = replay->garbage == 0;
-        if (record.size > 0) {
-            wh_replay_event(replay, record.channel, record.data, record.size);
-        }
-        if (sound && replay->garbage > 0) {
-            ending.first_garbage = record.offset;
-        }
-    }
-    wh_replay_finish(replay);
-    ending.offset = record.offset;
-    ending.events = record.count;
-    return ending;
-}
-
-static int judge(const wh_replay_t *replay, const ending_t *ending) {
-    bool same = true;
-    int64_t compared = 0;
-    for (size_t i = 0; i < replay->run_count; ++i) {
-        same = same && !replay->runs[i].differs;
-        compared += replay->runs[i].compared;
-    }
-    if (!same) {
-        return WH_EXIT_FAILED;
-    }
-    return ending->result == WH_LOG_END && compared > 0 ? WH_EXIT_MET : WH_EXIT_USAGE;
-}
-
-static int replay_file(const arguments_t *arguments) {
-    static wh_replay_t replay;
-    FILE *file = wh_log_file(arguments->path);
-    if (!file) {
-        fprintf(stderr, "%s: %s (expected an LCM event record)\n", arguments->path, strerror(errno));
-        return WH_EXIT_USAGE;
-    }
-    const ending_t ending = read_all(file, &replay);
-    const int status = judge(&replay, &ending);
-    fclose(file);
-    if (replay.run_count == 0) {
-        fprintf(stderr,
-                "%s: no run in it, in %" PRIu64 " events up to byte %" PRIu64
-                " (expected an LCM event log of Waferhand's channels)\n",
-                arguments->path, ending.events, ending.offset);
-    } else {
-        (arguments->json ? print_json : print_table)(arguments->path, &replay, &ending,
-                                                     status == WH_EXIT_MET);
-    }
-    wh_replay_close(&replay);
     return status;
 }
 
+/* ------------------------------------------------------------------------------------------------- reading */
+
+static void print_unusable(const result_t *result) {
+    const char *path = result->arguments->path;
+    if (wh_reading_is_unknown(result->replay)) {
+        fprintf(stderr, "%s: a recording of version %d (expected 1 or %d)\n", path,
+                (int)result->replay->recording.version, WH_RECORDING_VERSION);
+        return;
+    }
+    fprintf(stderr,
+            "%s: no run in it, in %" PRIu64 " events up to byte %" PRIu64
+            " (expected an LCM event log of Waferhand's channels)\n",
+            path, result->reading->events, result->reading->bytes);
+}
+
+static int print(const result_t *result) {
+    if (result->verdict == WH_READING_UNUSABLE) {
+        print_unusable(result);
+        return WH_EXIT_USAGE;
+    }
+    int printed = 0;
+    if (result->arguments->json) {
+        printed = print_json(result);
+    } else {
+        print_table(result);
+    }
+    return wh_app_is_printed(printed) ? (int)result->verdict : WH_EXIT_USAGE;
+}
+
 int wh_app_replay(int argc, char **argv) {
+    static wh_replay_t replay;
+    static wh_log_t log;
     arguments_t arguments = {0};
+    wh_reading_t reading;
     wh_options_parse(&command_line, argc, argv, &arguments);
-    return replay_file(&arguments);
+    FILE *file = wh_log_file(arguments.path);
+    if (!file) {
+        fprintf(stderr, "%s: %s (expected an LCM event record)\n", arguments.path, strerror(errno));
+        return WH_EXIT_USAGE;
+    }
+    memset(&replay, 0, sizeof replay);
+    wh_reading_replay(file, &log, &replay, &reading);
+    wh_log_close(&log);
+    (void)fclose(file);
+    const result_t result = {&arguments, &replay, &reading,
+                             wh_reading_judge(&replay, &reading, arguments.lenient)};
+    const int status = print(&result);
+    wh_replay_close(&replay);
+    return status;
 }

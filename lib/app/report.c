@@ -16,7 +16,7 @@ typedef struct {
 static const wh_option_t options[] = {
     {"layout", 0, "FILE", "Of a log: its layout's file, if it is not where the log says", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, layout)},
-    {"run", 0, "N", "Of a log: its N-th run (default: the last)", WH_OPTION_COUNT,
+    {"run", 0, "N", "Of a log: its N-th run that has slices (default: the last)", WH_OPTION_COUNT,
      .variable = offsetof(arguments_t, number), .least = 1, .expected = "a whole number from 1"},
     {0}};
 
@@ -30,8 +30,8 @@ static void check(const void *given, struct argp_state *state) {
     if (!arguments->run.run.script) {
         argp_error(state, "of which run?");
     }
-    if (!wh_run_files_wanted(&arguments->run.files)) {
-        argp_error(state, "into which file? (-o FILE, --gltf FILE, --data FILE or --svg DIR)");
+    if (!wh_run_files_wanted(&arguments->run.files) && !arguments->run.json) {
+        argp_error(state, "into which file? (-o FILE, --gltf FILE, --data FILE or --svg DIR; or --json)");
     }
 }
 
@@ -56,6 +56,9 @@ static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
         fprintf(stderr, "%s\n", run->message);
         return false;
     }
+    if (!wh_run_files_are_apart(&arguments->run, run->cell.layout->path)) {
+        return false;
+    }
     char *command = wh_run_files_command("replay", given->script, NULL, 0);
     const wh_document_t document = {.title = given->script,
                                     .reproduce = command,
@@ -66,9 +69,10 @@ static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
                                     .note_count = run->note_count,
                                     .record = &run->record,
                                     .signals = &run->signals};
-    const bool written = wh_run_files_write(&arguments->run.files, &document);
+    const bool written =
+        !wh_run_files_wanted(&arguments->run.files) || wh_run_files_write(&arguments->run.files, &document);
     free(command);
-    return written;
+    return written && wh_app_is_printed(wh_run_print(&arguments->run, &run->record));
 }
 
 static int report_log(const arguments_t *arguments) {
@@ -93,7 +97,7 @@ static int report_script(arguments_t *arguments, bool is_text) {
     return status == WH_EXIT_USAGE ? WH_EXIT_USAGE : WH_EXIT_MET;
 }
 
-/* Reads how the run begins: a log begins with LCM's sync word, and a script is text. */
+/* Reads how the run begins: a log begins with LCM's sync word or is compressed, and a script is text. */
 static int report(arguments_t *arguments) {
     static const unsigned char sync[4] = {0xED, 0xA1, 0xDA, 0x01};
     char begin[512];
@@ -102,7 +106,8 @@ static int report(arguments_t *arguments) {
     if (file) {
         (void)fclose(file);
     }
-    const bool is_log = size >= sizeof sync && memcmp(begin, sync, sizeof sync) == 0;
+    const bool is_log = wh_log_source_is_packed(begin, size) ||
+                        (size >= sizeof sync && memcmp(begin, sync, sizeof sync) == 0);
     return is_log ? report_log(arguments) : report_script(arguments, !memchr(begin, '\0', size));
 }
 

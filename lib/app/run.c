@@ -2,11 +2,13 @@
 #include "../link/mcs_process.h"
 #include "../link/sim_process.h"
 #include "app.h"
+#include "record_arguments.h"
 #include "run_arguments.h"
 
 typedef struct {
     wh_run_arguments_t run;
-    const char *url, *record;
+    wh_record_arguments_t record;
+    const char *url;
     bool lcm;
 } arguments_t;
 
@@ -15,14 +17,21 @@ static const wh_option_t options[] = {
      WH_OPTION_FLAG, .variable = offsetof(arguments_t, lcm)},
     {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --lcm", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, url)},
-    {"record", 0, "FILE", "Write these messages into an LCM event log; without --lcm no network is needed",
-     WH_OPTION_TEXT, .variable = offsetof(arguments_t, record)},
     {0}};
 
 static const wh_option_table_t tables[] = {{options, 0, NULL},
+                                           {wh_record_options, offsetof(arguments_t, record), NULL},
                                            {wh_run_options, offsetof(arguments_t, run), NULL},
                                            {wh_run_files_options, offsetof(arguments_t, run.files), NULL},
                                            {0}};
+
+static void check(const void *given, struct argp_state *state) {
+    const arguments_t *arguments = given;
+    if (!arguments->run.run.script) {
+        argp_error(state, "which script?");
+    }
+    wh_record_arguments_check(&arguments->record, state);
+}
 
 static const wh_command_line_t command_line = {
     .name = "run",
@@ -33,7 +42,8 @@ static const wh_command_line_t command_line = {
         "2 for wrong usage or a bad input file.",
     .tables = tables,
     .operand = "script",
-    .operand_variable = offsetof(arguments_t, run.run.script)};
+    .operand_variable = offsetof(arguments_t, run.run.script),
+    .check = check};
 
 /* ---------------------------------------------------------------------------------------------- broadcast */
 
@@ -42,11 +52,44 @@ static const wh_command_line_t command_line = {
 typedef struct {
     wh_link_t link; /* first */
     wh_node_t node;
+    wh_recording_t record;
+    bool is_watched;          /* the messages are wanted one by one, not slices in a record alone */
     wh_mcs_process_t control; /* tells the commands; its client is not used */
     wh_sim_process_t simulation;
     wh_link_identity_t identity;
     bool connected;
 } broadcast_t;
+
+/* Records command and answer of a slice that fits no block. */
+static void record_messages(broadcast_t *broadcast, const waferhand_command *message) {
+    const wh_protocol_server_t *server = &broadcast->simulation.server;
+    wh_protocol_client_publish(&broadcast->node, message);
+    wh_recording_message(&broadcast->record, WH_CHANNEL_STATE, server->encoded, server->encoded_size);
+}
+
+/* Steps the command for a record of slices alone: of most slices no message is made. */
+static wh_status_t record(broadcast_t *broadcast, const waferhand_command *message, wh_state_t *state) {
+    wh_protocol_server_t *server = &broadcast->simulation.server;
+    const wh_protocol_server_result_t result = wh_protocol_server_command(server, message, NULL);
+    *state = server->state;
+    if (result != WH_SERVER_STEPPED && result != WH_SERVER_NEW_RUN) {
+        record_messages(broadcast, message);
+        state->status = (wh_status_t)server->room.message.status;
+        return state->status;
+    }
+    const wh_recorded_t recorded =
+        wh_recording_slice(&broadcast->record, message, server->simulator.physics.told, server->missed,
+                           wh_protocol_server_hash(server), server->state.event_count > 0);
+    if (recorded != WH_RECORDED) {
+        wh_protocol_server_encode(server);
+    }
+    if (recorded == WH_RECORDED_STATE) {
+        wh_recording_state(&broadcast->record, server->encoded, server->encoded_size);
+    } else if (recorded == WH_NOT_RECORDED) {
+        record_messages(broadcast, message);
+    }
+    return state->status;
+}
 
 /* The command goes out as a client would send it, but the simulator is called, so that nothing can be lost
  * between the two. */
@@ -54,10 +97,13 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     broadcast_t *broadcast = (broadcast_t *)link;
     waferhand_command message;
     wh_link_command_to_message(command, &broadcast->identity, true, &message);
-    wh_protocol_client_publish(&broadcast->node, &message);
     broadcast->control.identity = broadcast->identity;
     broadcast->control.utime = command->utime;
     broadcast->control.seq = command->seq;
+    if (!broadcast->is_watched) {
+        return record(broadcast, &message, state);
+    }
+    wh_protocol_client_publish(&broadcast->node, &message);
     return wh_sim_process_step(&broadcast->simulation, &message, state);
 }
 
@@ -77,7 +123,11 @@ static wh_link_t *connect_simulation(void *user, wh_mcs_t *mcs) {
     }
     broadcast->identity.run = wh_protocol_client_draw_run();
     broadcast->identity.layout_hash = broadcast->simulation.server.identity.layout_hash;
+    broadcast->simulation.server.encodes_later = !broadcast->is_watched;
+    broadcast->record.options.inputs[1] = mcs->layout->path;
     broadcast->connected = true;
+    broadcast->control.identity = broadcast->identity;
+    wh_mcs_process_catch_up(&broadcast->control, mcs);
     return &broadcast->link;
 }
 
@@ -86,8 +136,28 @@ static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *co
     wh_mcs_process_partners(control).watch(control, mcs, command, ended);
 }
 
+static void expected(void *user, const wh_mcs_t *mcs) {
+    wh_mcs_process_t *control = &((broadcast_t *)user)->control;
+    wh_mcs_process_partners(control).expected(control, mcs);
+}
+
+static void cycle(void *user, const wh_mcs_t *mcs) {
+    wh_mcs_process_t *control = &((broadcast_t *)user)->control;
+    wh_mcs_process_partners(control).cycle(control, mcs);
+}
+
+static void finished(void *user, const wh_mcs_t *mcs) {
+    wh_mcs_process_t *control = &((broadcast_t *)user)->control;
+    wh_mcs_process_partners(control).finished(control, mcs);
+}
+
 static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
-    const wh_mcs_partners_t partners = {.connect = connect_simulation, .watch = watch, .user = broadcast};
+    const wh_mcs_partners_t partners = {.connect = connect_simulation,
+                                        .watch = watch,
+                                        .expected = expected,
+                                        .cycle = cycle,
+                                        .finished = finished,
+                                        .user = broadcast};
     const wh_protocol_client_options_t lockstep = {.rate = 0};
     if (!wh_mcs_process_open(&broadcast->control, &broadcast->node, &lockstep)) {
         return WH_EXIT_USAGE;
@@ -106,20 +176,24 @@ static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
 static int run_published(arguments_t *arguments) {
     static broadcast_t broadcast = {.link = {exchange, last_hash, missed_slices}};
     const char *url = arguments->lcm ? arguments->url : "memq://";
+    broadcast.is_watched = arguments->lcm || arguments->record.all;
+    wh_record_arguments_apply(&arguments->record, "run", true, &broadcast.record);
+    broadcast.record.options.inputs[0] = arguments->run.run.script;
     if ((arguments->lcm && !wh_node_reaches_others(url)) ||
-        !wh_node_open(&broadcast.node, url, arguments->record)) {
+        !wh_node_open(&broadcast.node, url, &broadcast.record)) {
         return WH_EXIT_USAGE;
     }
     const int status = run_on(&broadcast, &arguments->run);
     wh_node_close(&broadcast.node);
-    return status;
+    return wh_recording_close(&broadcast.record) ? status : WH_EXIT_USAGE;
 }
 
 int wh_app_run(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
-    const bool published = arguments.lcm || arguments.record;
+    arguments.run.record = arguments.record.all ? arguments.record.all : arguments.record.slices;
+    const bool published = arguments.lcm || arguments.record.slices || arguments.record.all;
     const int status = published ? run_published(&arguments) : wh_run_and_print(&arguments.run);
     wh_run_arguments_free(&arguments.run);
     return status;

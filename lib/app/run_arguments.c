@@ -13,6 +13,7 @@
 #include "../text/output.h"
 #include "../text/style.h"
 #include "../view/scene.h"
+#include "apart.h"
 #include "app.h"
 #include "segments.h"
 
@@ -157,6 +158,19 @@ static bool write_plots(const wh_document_t *document, const char *folder) {
     return true;
 }
 
+bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *input) {
+    const wh_run_files_t *files = &arguments->files;
+    const wh_named_file_t named[] = {{"the input", arguments->run.script, false},
+                                     {"the layout", input, false},
+                                     {"--report", files->page, true},
+                                     {"--gltf", files->scene, true},
+                                     {"--data", files->document, true},
+                                     {"--svg", files->plots, true},
+                                     {"--segments", arguments->segments_path, true},
+                                     {"the recording", arguments->record, false}};
+    return wh_files_are_apart(named, sizeof named / sizeof named[0], arguments->json || !arguments->quiet);
+}
+
 bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *document) {
     wh_document_t whole = *document;
     content_t content = {.document = &whole};
@@ -176,9 +190,9 @@ bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *docume
 
 /* -------------------------------------------------------------------------------------------------- a run */
 
-static int print_result(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
+int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record) {
     if (arguments->json) {
-        return wh_record_print_json(&run->record, stdout);
+        return wh_record_print_json(record, stdout);
     }
     if (arguments->quiet) {
         return 0;
@@ -186,7 +200,7 @@ static int print_result(const wh_run_arguments_t *arguments, const wh_script_run
     const wh_style_t style = wh_style_of(stdout);
     const unsigned sections =
         (arguments->gantt ? WH_TABLE_GANTT : 0U) | (arguments->margins ? WH_TABLE_MARGINS : 0U);
-    return wh_record_print_table(&run->record, stdout, &style, sections);
+    return wh_record_print_table(record, stdout, &style, sections);
 }
 
 static bool write_segments(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
@@ -227,16 +241,30 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
     return written;
 }
 
+/* A script that ends with an error of its own: what came before is shown, if a slice did, and the error with
+ * it. */
+static int hand_on_bad(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
+                       wh_signals_t *signals) {
+    fprintf(stderr, "%s\n", run->message);
+    if (run->record.layout && run->record.slices > 0 &&
+        wh_run_files_are_apart(arguments, run->record.layout->path) &&
+        write_report(arguments, run, signals) && arguments->json) {
+        (void)wh_app_is_printed(wh_run_print(arguments, &run->record));
+    }
+    return WH_EXIT_USAGE;
+}
+
 static int hand_on(const wh_run_arguments_t *arguments, const wh_script_run_t *run, wh_signals_t *signals,
                    wh_script_run_outcome_t outcome) {
     if (outcome == WH_RUN_BAD_INPUT) {
-        fprintf(stderr, "%s\n", run->message);
+        return hand_on_bad(arguments, run, signals);
+    }
+    const char *layout = run->record.layout ? run->record.layout->path : NULL;
+    if (!wh_run_files_are_apart(arguments, layout) || !write_segments(arguments, run) ||
+        !write_report(arguments, run, signals)) {
         return WH_EXIT_USAGE;
     }
-    if (!write_segments(arguments, run) || !write_report(arguments, run, signals)) {
-        return WH_EXIT_USAGE;
-    }
-    if (!wh_app_is_printed(print_result(arguments, run))) {
+    if (!wh_app_is_printed(wh_run_print(arguments, &run->record))) {
         return WH_EXIT_USAGE;
     }
     /* The table ends with the failure. Without a terminal nobody sees the table, so it goes to standard
@@ -261,6 +289,9 @@ void wh_run_arguments_free(wh_run_arguments_t *arguments) {
 int wh_run_and_print(wh_run_arguments_t *arguments) {
     wh_script_run_t run;
     wh_signals_t signals = {0};
+    if (!wh_run_files_are_apart(arguments, NULL)) {
+        return WH_EXIT_USAGE;
+    }
     if (wh_run_files_wanted(&arguments->files)) {
         arguments->run.listener = (wh_mcs_listener_t){on_slice, on_boundary, &signals};
     }

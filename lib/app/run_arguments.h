@@ -25,6 +25,7 @@ typedef struct {
     wh_option_list_t parameters;
     double budget, memory_mib; /* 0: the defaults */
     const char *segments_path;
+    const char *record; /* the recording, which another file must not be; null: none */
     bool json, gantt, margins;
     bool quiet;          /* print no tables, and nothing at all without `json` */
     const char *command; /* the subcommand that plays it again; null: run */
@@ -37,6 +38,14 @@ extern const wh_option_t wh_run_options[];
 /* Hands what was parsed on to `run`. */
 void wh_run_arguments_take(wh_run_arguments_t *arguments);
 void wh_run_arguments_free(wh_run_arguments_t *arguments);
+
+/* True if no output is the script, `input` (null: none), what a cell is described by, or another output; else
+ * standard error says which. */
+bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *input);
+
+/* Prints a record as the arguments want it: as JSON, as tables, or not at all. 0, or -1 if standard output
+ * does not take it. */
+int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record);
 
 /* Runs the script and prints what came of it. Returns the exit status. */
 int wh_run_and_print(wh_run_arguments_t *arguments);

@@ -13,18 +13,18 @@
 #include "app.h"
 #include "connection.h"
 #include "layout_arguments.h"
+#include "record_arguments.h"
 
 typedef struct {
     wh_layout_arguments_t layout;
-    const char *url, *record, *outputs;
+    wh_record_arguments_t record;
+    const char *url, *outputs;
     bool view, json, log_time;
 } arguments_t;
 
 static const wh_option_t options[] = {
     {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL ")", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, url)},
-    {"record", 0, "FILE", "Write all messages into an LCM event log", WH_OPTION_TEXT,
-     .variable = offsetof(arguments_t, record)},
     {"outputs", 0, "FILE", "Take the valves from this file, one value per gripper, 0 or 1", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, outputs)},
     {"view", 0, NULL, "Publish the cell for Drake's viewer, live; `make view` starts one", WH_OPTION_FLAG,
@@ -36,8 +36,18 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, log_time)},
     {0}};
 
-static const wh_option_table_t tables[] = {
-    {options, 0, NULL}, {wh_layout_options, offsetof(arguments_t, layout), NULL}, {0}};
+static const wh_option_table_t tables[] = {{options, 0, NULL},
+                                           {wh_record_options, offsetof(arguments_t, record), NULL},
+                                           {wh_layout_options, offsetof(arguments_t, layout), NULL},
+                                           {0}};
+
+static void check(const void *given, struct argp_state *state) {
+    const arguments_t *arguments = given;
+    if (!arguments->layout.path) {
+        argp_error(state, "which layout?");
+    }
+    wh_record_arguments_check(&arguments->record, state);
+}
 
 static const wh_command_line_t command_line = {
     .name = "sim",
@@ -45,7 +55,8 @@ static const wh_command_line_t command_line = {
     .about = "Simulates the layout's cell for whoever sends commands over LCM, until SIGINT or SIGTERM.",
     .tables = tables,
     .operand = "layout",
-    .operand_variable = offsetof(arguments_t, layout.path)};
+    .operand_variable = offsetof(arguments_t, layout.path),
+    .check = check};
 
 static void say_counters(const wh_sim_process_t *simulation) {
     const wh_protocol_server_counters_t *c = &simulation->server.counters;
@@ -99,8 +110,7 @@ static void update_valves(wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     simulation->valves = outputs->count > 0 ? outputs->valves : NULL;
 }
 
-/* Waits for a message or a change of the file, at most 100 ms. If neither comes, flushes the record, so that
- * others can read it. */
+/* Waits for a message or a change of the file, at most 100 ms. */
 static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     struct pollfd ready[] = {{.fd = wh_node_descriptor(node), .events = POLLIN},
                              {.fd = outputs->count > 0 ? outputs->fd : -1, .events = POLLIN}};
@@ -109,9 +119,7 @@ static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_sim_proces
         const int64_t due_ms = (outputs->due_us - wh_node_clock_us()) / 1000 + 1;
         wait_ms = due_ms < wait_ms ? due_ms : wait_ms;
     }
-    if (poll(ready, 2, wait_ms > 0 ? (int)wait_ms : 0) == 0) {
-        wh_node_flush_record(node);
-    }
+    (void)poll(ready, 2, wait_ms > 0 ? (int)wait_ms : 0);
     update_valves(outputs, simulation);
     return wh_node_wait(node, 0); /* one call of the system: poll has waited */
 }
@@ -206,16 +214,18 @@ static int run(arguments_t *arguments) {
     if (!layout) {
         return WH_EXIT_USAGE;
     }
+    static wh_recording_t record;
     wh_node_t node;
     wh_catch_signals();
-    if (!wh_node_reaches_others(arguments->url) || !wh_node_open(&node, arguments->url, arguments->record)) {
+    wh_record_arguments_apply(&arguments->record, "sim", false, &record);
+    if (!wh_node_reaches_others(arguments->url) || !wh_node_open(&node, arguments->url, &record)) {
         return WH_EXIT_USAGE;
     }
     node.speaker = "sim";
     node.log_time = arguments->log_time;
     const int status = serve(&node, layout, arguments);
     wh_node_close(&node);
-    return status;
+    return wh_recording_close(&record) ? status : WH_EXIT_USAGE;
 }
 
 int wh_app_sim(int argc, char **argv) {

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "../math/hash.h"
-#include "messages.h"
+#include "slices.h"
 
 /* Encoded sizes, which the generated *_encoded_size functions confirm in a test. */
 #define FINGERPRINT 8
@@ -18,6 +18,8 @@
 #define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
 #define CELL_FIXED (8 + 7 * 8 + 3 + 10 * 8)
 #define STATION_FIXED (12 * 8 + 4 + 8 + 4)
+#define SLICES_FIXED (FINGERPRINT + HEADER + 8 + 2 * 4 + 1 + 2 * 4)
+#define RECORDING_FIXED (FINGERPRINT + HEADER + 4 + 8 + 4 + 2)
 
 static uint64_t word_at(const uint8_t *bytes, size_t size) {
     uint64_t word = 0;
@@ -54,6 +56,11 @@ static bool is_intact(const void *data, size_t size) {
     }
     const uint64_t told = word_at(bytes + size - 8, 8);
     return told == 0 || told == check_of(bytes, size - 8);
+}
+
+/* The same for what is written with a check only. */
+static bool is_sealed(const void *data, size_t size) {
+    return is_intact(data, size) && word_at((const uint8_t *)data + size - 8, 8) != 0;
 }
 
 /* A place in a datagram. `good` becomes false if something would lie beyond the end, and stays so. */
@@ -164,4 +171,31 @@ bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message)
     walk_t walk = walk_over(data, size);
     skip_cell(&walk);
     return ends(&walk) && waferhand_cell_decode(data, 0, (int)size, message) == (int)size;
+}
+
+/* --------------------------------------------------------------------------------------------- recordings */
+
+uint64_t wh_link_digest(uint64_t before, const char *channel, const void *data, size_t size) {
+    char name[WH_LINK_CHANNEL];
+    const size_t length = strnlen(channel, sizeof name);
+    memcpy(name, channel, length);
+    return wh_hash_word(wh_hash_word(before, check_of((const uint8_t *)name, length)), check_of(data, size));
+}
+
+bool wh_link_is_slices(const void *data, size_t size) {
+    walk_t walk = walk_over(data, size);
+    skip(&walk, SLICES_FIXED);
+    skip(&walk, take_count(&walk, WH_SLICES_BYTES));
+    skip(&walk, CHECK);
+    return ends(&walk) && is_sealed(data, size);
+}
+
+bool wh_link_decode_recording(const void *data, size_t size, waferhand_recording *message) {
+    walk_t walk = walk_over(data, size);
+    skip(&walk, RECORDING_FIXED);
+    skip_text(&walk);
+    skip_text(&walk);
+    skip(&walk, 3 * 8 + CHECK);
+    return ends(&walk) && is_sealed(data, size) &&
+           waferhand_recording_decode(data, 0, (int)size, message) == (int)size;
 }

@@ -43,9 +43,71 @@ static void tell(wh_mcs_process_t *control, int64_t request, int32_t phase, int 
     }
 }
 
+/* The longest text of a script that is told whole, with its terminator. */
+#define TEXT_BYTES 4000
+
+/* Tells a text of the script's, which may be of any length. `number`: which one of the run it is, from 1. */
+static void tell_text(wh_mcs_process_t *control, int32_t phase, int line, int64_t number, const char *text) {
+    char cut[TEXT_BYTES];
+    const size_t length = strlen(text);
+    if (length >= sizeof cut) {
+        snprintf(cut, sizeof cut, "%.*s... (%zu bytes, cut)", TEXT_BYTES - 60, text, length);
+    }
+    tell(control, 0, phase, line, (wh_status_t)number, "", length < sizeof cut ? text : cut);
+}
+
+static void tell_expectation(wh_mcs_process_t *control, const wh_expectation_record_t *expectation) {
+    ++control->outcome.expectations;
+    control->outcome.met += expectation->ok ? 1 : 0;
+    tell_text(control, expectation->ok ? WH_LINK_PHASE_MET : WH_LINK_PHASE_UNMET, expectation->line,
+              control->outcome.expectations, expectation->text);
+}
+
+void wh_mcs_process_catch_up(wh_mcs_process_t *control, const wh_mcs_t *mcs) {
+    const wh_record_t *record = mcs->recorder.record;
+    for (size_t i = (size_t)control->outcome.expectations; i < record->expectation_count; ++i) {
+        tell_expectation(control, &record->expectations[i]);
+    }
+}
+
+/* Before there is a run they are kept: nobody could tell whose they are. */
+static void expected(void *user, const wh_mcs_t *mcs) {
+    wh_mcs_process_t *control = user;
+    if (control->identity.run != 0 || control->connected) {
+        wh_mcs_process_catch_up(control, mcs);
+    }
+}
+
+static void cycle(void *user, const wh_mcs_t *mcs) {
+    wh_mcs_process_t *control = user;
+    const wh_cycle_record_t *begun = &mcs->recorder.record->cycles[mcs->recorder.record->cycle_count - 1];
+    ++control->outcome.cycles;
+    tell_text(control, WH_LINK_PHASE_CYCLE, begun->line, control->outcome.cycles, begun->name);
+}
+
+static void finished(void *user, const wh_mcs_t *mcs) {
+    wh_mcs_process_t *control = user;
+    const wh_record_t *record = mcs->recorder.record;
+    control->outcome.verdict = record->ok ? WH_OUTCOME_PASSED : WH_OUTCOME_FAILED;
+    snprintf(control->reason, sizeof control->reason, "%s", record->failure ? record->failure : "");
+}
+
+/* The run is over; the next one, of a session, has its own counts. */
+static void tell_over(wh_mcs_process_t *control) {
+    char text[WH_OUTCOME_BYTES + sizeof control->reason];
+    if (control->outcome.verdict == WH_OUTCOME_UNTOLD) {
+        control->outcome.verdict = WH_OUTCOME_ENDED;
+    }
+    wh_outcome_write(&control->outcome, control->reason, text, sizeof text);
+    tell(control, control->executing.seq, WH_LINK_PHASE_OVER, 0, WH_OK, "", text);
+    memset(&control->outcome, 0, sizeof control->outcome);
+    control->reason[0] = '\0';
+}
+
 static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
     wh_mcs_process_t *control = user;
     (void)mcs;
+    control->outcome.commands += ended ? 0 : 1;
     wh_utf8_clip(control->running, sizeof control->running, ended ? "" : command->text);
     control->running_line = command->line;
     if (!ended) {
@@ -280,12 +342,15 @@ static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
     }
     control->mcs = mcs;
     if (control->connected) {
-        tell(control, control->executing.seq, WH_LINK_PHASE_OVER, 0, WH_OK, "", "");
+        tell_over(control);
         wh_protocol_client_begin(&control->client, mcs->layout);
         return &control->client.link;
     }
     control->connected =
         wh_protocol_client_open(&control->client, control->node, mcs->layout, &control->options);
+    if (control->connected) {
+        wh_mcs_process_catch_up(control, mcs);
+    }
     return control->connected ? &control->client.link : NULL;
 }
 
@@ -351,8 +416,13 @@ bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
 }
 
 wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
-    return (wh_mcs_partners_t){
-        .connect = connect_client, .watch = watch, .explain = explain, .user = control};
+    return (wh_mcs_partners_t){.connect = connect_client,
+                               .watch = watch,
+                               .explain = explain,
+                               .expected = expected,
+                               .cycle = cycle,
+                               .finished = finished,
+                               .user = control};
 }
 
 void wh_mcs_process_idle(wh_mcs_process_t *control) {
@@ -371,7 +441,7 @@ void wh_mcs_process_idle(wh_mcs_process_t *control) {
 void wh_mcs_process_finish(wh_mcs_process_t *control) {
     control->mcs = NULL;
     stop_waiting(control);
-    tell(control, control->executing.seq, WH_LINK_PHASE_OVER, 0, WH_OK, "", "");
+    tell_over(control);
 }
 
 void wh_mcs_process_close(wh_mcs_process_t *control) {

@@ -15,6 +15,7 @@
 #define WH_LINK_MCS_PROCESS_H
 
 #include "../mcs/mcs.h"
+#include "outcome.h"
 #include "protocol_client.h"
 
 /* Requests that wait; more are answered with "busy". */
@@ -54,8 +55,10 @@ typedef struct {
     size_t first_waiting, waiting_count;
     wh_mcs_process_answer_t answered[WH_CONTROL_ANSWERED];
     size_t answered_count;
-    uint64_t requests, garbage; /* datagrams on WAFERHAND_REQUEST: sound ones, others */
-    uint64_t simulator_layout;  /* as the last cell told it: the hash, and the path, fit to print */
+    uint64_t requests, garbage;            /* datagrams on WAFERHAND_REQUEST: sound ones, others */
+    wh_outcome_t outcome;                  /* what was told so far, and the verdict once there is one */
+    char reason[WH_SANDBOX_MESSAGE_BYTES]; /* of the verdict */
+    uint64_t simulator_layout; /* as the last cell told it: the hash, and the path, fit to print */
     char simulator_path[200];
     char explanation[700];
     uint8_t encoded[WH_LINK_DATAGRAM];
@@ -81,7 +84,12 @@ bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LI
  * that does not fit a datagram the answer tells how much was cut off. */
 void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *line, const char *text);
 
-/* Answers the requests that wait, and tells that the run is over. Run or session may be gone by now. */
+/* Tells what was expected before there was a run to tell it of. Call it once the identity is known; connecting
+ * by the partners does so. */
+void wh_mcs_process_catch_up(wh_mcs_process_t *control, const wh_mcs_t *mcs);
+
+/* Answers the requests that wait, and tells that the run is over, how it ended, and how much was told of it
+ * (link/outcome.h). Run or session may be gone by now. */
 void wh_mcs_process_finish(wh_mcs_process_t *control);
 
 /* Frees the answers. One that was never opened must be all zero. */

@@ -13,6 +13,7 @@
 #include "../sim/slice.h"
 
 /* Channels: lcm_types/README.md says who sends what. */
+#define WH_LINK_OURS "WAFERHAND_"
 #define WH_CHANNEL_COMMAND "WAFERHAND_COMMAND"
 #define WH_CHANNEL_STATE "WAFERHAND_STATE"
 #define WH_CHANNEL_RESTORE "WAFERHAND_RESTORE"
@@ -42,7 +43,11 @@ enum {
     WH_LINK_PHASE_GOES_ON,
     WH_LINK_PHASE_DONE,
     WH_LINK_PHASE_FAILED,
-    WH_LINK_PHASE_OVER
+    WH_LINK_PHASE_OVER,
+    WH_LINK_PHASE_MET,
+    WH_LINK_PHASE_UNMET,
+    WH_LINK_PHASE_CYCLE,
+    WH_LINK_PHASES
 };
 
 /* Who talks about which run: the first fields of each message after its times. */

@@ -103,56 +103,21 @@ static bool connect_to(wh_node_t *node, const url_t *url) {
     return node->lcm != NULL;
 }
 
-/* ------------------------------------------------------------------------------------------------- record */
-
-static bool open_record(wh_node_t *node, const char *path) {
-    node->log = lcm_eventlog_create(path, "w");
-    if (!node->log) {
-        fprintf(stderr, "%s: %s (expected a file that can be written)\n", path, strerror(errno));
-    }
-    return node->log != NULL;
-}
-
-bool wh_node_open(wh_node_t *node, const char *url, const char *record) {
+bool wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record) {
     const url_t asked = url_of(url);
     memset(node, 0, sizeof *node);
     node->receiver.socket = -1;
-    const bool sound = connect_to(node, &asked) && (!record || open_record(node, record));
+    node->record = record && record->options.path ? record : NULL;
+    const bool sound = connect_to(node, &asked) && (!node->record || wh_recording_open(node->record));
     if (!sound) {
         wh_node_close(node);
     }
     return sound;
 }
 
-static void fail_record(wh_node_t *node) {
-    node->log_failed = true;
-    fprintf(stderr, "record: writing failed; what was written so far stays\n");
-}
-
-void wh_node_flush_record(wh_node_t *node) {
-    if (node->log && !node->log_failed && fflush(node->log->f) != 0) {
-        fail_record(node);
-    }
-}
-
-/* Writes what lcm-logger would. LCM's type has plain pointers, though it only reads what they point to. */
 static void keep(wh_node_t *node, const char *channel, const void *data, size_t size) {
-    union {
-        const void *constant;
-        void *plain;
-    } bytes = {data};
-    char name[LCM_MAX_CHANNEL_NAME_LENGTH + 1];
-    if (!node->log || node->log_failed) {
-        return;
-    }
-    snprintf(name, sizeof name, "%s", channel);
-    lcm_eventlog_event_t event = {.timestamp = wh_node_wall_us(),
-                                  .channellen = (int32_t)strlen(name),
-                                  .datalen = (int32_t)size,
-                                  .channel = name,
-                                  .data = bytes.plain};
-    if (lcm_eventlog_write_event(node->log, &event) != 0) {
-        fail_record(node);
+    if (node->record) {
+        wh_recording_message(node->record, channel, data, size);
     }
 }
 
@@ -238,10 +203,6 @@ int wh_node_descriptor(const wh_node_t *node) {
 }
 
 void wh_node_close(wh_node_t *node) {
-    if (node->log) {
-        lcm_eventlog_destroy(node->log);
-        node->log = NULL;
-    }
     wh_receiver_close(&node->receiver);
     if (node->lcm) {
         lcm_destroy(node->lcm);

@@ -1,5 +1,5 @@
-/* A process on LCM: publishing, subscriptions that drop nothing, a wait with a short time limit, and the
- * record.
+/* A process on LCM: publishing, subscriptions that drop nothing, a wait with a short time limit, and what
+ * becomes a record.
  *
  * Nothing here allocates while messages are published; receiving allocates in liblcm. One thread per node.
  */
@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "receiver.h"
+#include "recording.h"
 
 /* Nothing leaves the host unless another URL is asked for. */
 #define WH_NODE_URL "udpm://239.255.76.67:7667?ttl=0"
@@ -40,9 +41,8 @@ struct wh_node {
     void *listener_user;
     lcm_t *lcm;             /* sends; receives if the URL is not multicast */
     wh_receiver_t receiver; /* receives multicast */
-    lcm_eventlog_t *log;    /* null: not recording */
+    wh_recording_t *record; /* the caller's; null: not recording */
     bool interrupted;       /* a signal ended a wait since this was last cleared */
-    bool log_failed;        /* writing stopped: the disk is full, say */
     uint64_t published, received;
     uint64_t sender; /* of the message that is being handled: see wh_received_t */
     wh_node_subscriber_t subscribers[WH_NODE_SUBSCRIPTIONS];
@@ -53,16 +53,12 @@ struct wh_node {
  * as in wh_node_open): it is one of memory or of a file. */
 bool wh_node_reaches_others(const char *url);
 
-/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). If `record` is not null, all
- * that is published and received goes into an event log with this path, as lcm-logger writes it. The node
- * must not be moved afterwards. False, and standard error says why, when LCM cannot (no multicast route, a
- * bad URL, and whose it is: --lcm-url's or the environment's) or the file cannot be made: nothing is then
- * open. */
-bool wh_node_open(wh_node_t *node, const char *url, const char *record);
-
-/* Hands what was recorded over to the system: others can read all of it from then on. Nothing without a
- * record. */
-void wh_node_flush_record(wh_node_t *node);
+/* Opens LCM at a URL (null: LCM_DEFAULT_URL of the environment, or WH_NODE_URL). If `record` is not null
+ * and its options have a path, it is opened then, and gets all that is published and received. It stays
+ * the caller's, who closes it after the node. The node must not be moved afterwards. False, and standard
+ * error says why, when LCM cannot (no multicast route, a bad URL, and whose it is: --lcm-url's or the
+ * environment's) or the file cannot be made: nothing is then open. */
+bool wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
 
 /* Subscribes one channel, whose name must outlive the node. False if there is no room. */
 bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user);
@@ -81,7 +77,7 @@ int wh_node_drain(wh_node_t *node, int most);
 /* A descriptor that is readable when a message is there. */
 int wh_node_descriptor(const wh_node_t *node);
 
-/* Completes the record and closes LCM. */
+/* Closes LCM. */
 void wh_node_close(wh_node_t *node);
 
 /* Tells people a line, cut at 599 bytes: on standard error, or to the listener. The speaker stands before it;

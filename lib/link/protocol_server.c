@@ -73,9 +73,8 @@ static wh_protocol_server_result_t turn_away(wh_protocol_server_t *server, const
     return WH_SERVER_ANSWERED;
 }
 
-static wh_protocol_server_result_t answer_again(wh_protocol_server_t *server) {
+void wh_protocol_server_encode(wh_protocol_server_t *server) {
     encode(server, &server->state, &server->identity);
-    return WH_SERVER_ANSWERED;
 }
 
 /* ----------------------------------------------------------------------------------------------- commands */
@@ -121,7 +120,9 @@ static wh_protocol_server_result_t step(wh_protocol_server_t *server, const wafe
     server->missed += gap;
     server->seq = message->seq;
     server->lockstep = message->lockstep != 0;
-    encode(server, &server->state, &server->identity);
+    if (!server->encodes_later) {
+        wh_protocol_server_encode(server);
+    }
     return WH_SERVER_STEPPED;
 }
 
@@ -142,7 +143,8 @@ static wh_protocol_server_result_t go_on(wh_protocol_server_t *server, const waf
     }
     if (message->seq == server->seq) {
         ++server->counters.repeated;
-        return answer_again(server);
+        wh_protocol_server_encode(server);
+        return WH_SERVER_ANSWERED;
     }
     /* Nothing is skipped in lockstep: this simulator was started anew and lacks the slices between. */
     if (gap && message->lockstep != 0) {

@@ -35,6 +35,7 @@ typedef struct {
     int64_t seq;              /* of the last step; 0: none yet */
     int64_t missed;           /* slices that never came, in a free-running run */
     bool lockstep;            /* the last command's */
+    bool encodes_later; /* set by the caller: the state of a step is encoded by wh_protocol_server_encode */
     int64_t past_runs[WH_SERVER_PAST_RUNS];
     size_t past_count;
     wh_protocol_server_counters_t counters;
@@ -71,6 +72,9 @@ wh_protocol_server_result_t wh_protocol_server_command(wh_protocol_server_t *ser
  * hash is the one that it says. */
 wh_protocol_server_result_t wh_protocol_server_restore(wh_protocol_server_t *server,
                                                        const waferhand_state *message);
+
+/* Encodes the state after the last step, as an answer. */
+void wh_protocol_server_encode(wh_protocol_server_t *server);
 
 /* wh_simulator_hash. */
 uint64_t wh_protocol_server_hash(const wh_protocol_server_t *server);

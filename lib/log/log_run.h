@@ -1,9 +1,10 @@
 /* A recorded run, read from an LCM event log: what a report shows of it.
  *
- * Commands come from WAFERHAND_MCS, everything else from WAFERHAND_CELL, WAFERHAND_COMMAND and
- * WAFERHAND_STATE: what was recorded, not what stepping it again would give (that is `waferhand replay`'s). A
- * log does not tell what a script expected, its cycles, and why the robot stood still: it counts as waiting
- * for vacuum if a valve is open and its sensor off, in another command than WAIT.
+ * Commands, expectations, cycles and the verdict come from WAFERHAND_MCS, and go by the slices that they name,
+ * not by their places in the log. Everything else is what the slices' states say, as a replay goes through
+ * them (log/replay.h): commands beside their states, whichever came first. A log does not tell why the robot
+ * stood still. It counts as waiting for vacuum if within the same command a valve has opened since an axis
+ * other than Z moved.
  */
 #ifndef WH_LOG_LOG_RUN_H
 #define WH_LOG_LOG_RUN_H
@@ -12,61 +13,67 @@
 #include "../record/recorder.h"
 #include "../record/signals.h"
 #include "log_layout.h"
-#include "logfile.h"
+#include "reading.h"
 
 #define WH_LOG_NOTE_BYTES 240
+#define WH_LOG_NOTES 8
 
 typedef struct {
     const char *path;
-    size_t number; /* which run of the log, from 1; 0: the last */
+    size_t number; /* which of the log's runs that have slices, from 1; 0: the last */
     wh_log_layout_options_t layout;
 } wh_log_run_options_t;
 
-/* A command that began before its run's first slice. */
+/* A run of the log. */
 typedef struct {
-    bool is_there;
-    int line;
-    char text[200];
-} wh_log_begin_t;
+    int64_t run;
+    uint64_t layout_hash;
+} wh_log_run_entry_t;
 
-/* A slice with which a command begins or ends. */
+/* What motion control told of a run. */
 typedef struct {
-    int64_t run, seq;
-} wh_log_boundary_t;
+    int64_t run, seq, utime;
+    size_t order; /* in the log */
+    int32_t phase, line, number;
+    bool is_answer; /* of a request */
+    char *command, *text;
+} wh_log_told_t;
 
-/* Zero it to begin with, or leave it static; must not be moved. Read record, trace, notes and message. */
+/* Zero it to begin with, or leave it static; must not be moved. Read record, signals, notes and message. */
 typedef struct {
     wh_log_run_options_t options;
     wh_log_t log;
-    wh_log_layout_t cell, next_cell; /* of the run; and told since, for the next one */
-    wh_recorder_t recorder;          /* of the run; without a record until it begins */
+    wh_replay_t replay;
+    wh_reading_t reading;
+    wh_log_run_entry_t *runs;
+    size_t run_count, run_capacity;
+    const wh_log_run_entry_t *wanted;
+    wh_log_told_t *told; /* sorted by their slices */
+    size_t told_count, told_capacity, told_next;
+    wh_log_layout_t cell;
+    wh_recorder_t recorder;
     wh_record_t record;
     wh_state_t state; /* the last one */
     wh_collision_t collision;
     wh_signals_t signals;
     wh_link_arrays_t arrays;
-    wh_log_boundary_t *boundaries; /* sorted: messages of them may come late */
-    size_t boundary_count, boundary_capacity;
-    waferhand_command command; /* the last one */
-    bool has_command;
-    wh_log_begin_t begin;
-    int64_t run, seq; /* of the last state */
-    bool is_wanted;   /* that run */
-    int64_t refused;  /* seq of the last refusal */
-    size_t run_count;
+    int64_t seq; /* of the last slice */
     uint64_t hash;
     int64_t missed;
-    size_t gaps;       /* stretches of slices that are not in the log */
-    wh_command_t told; /* in the last slice: its number, axes and valves */
-    char text[4][WH_LOG_NOTE_BYTES];
-    const char *notes[4];
+    size_t gaps;           /* stretches of slices that are not in the log */
+    wh_command_t last;     /* the last slice: its number, axes and valves */
+    bool has_opened_valve; /* in the running command, since an axis other than Z moved */
+    wh_outcome_t outcome;
+    int32_t last_expectation, last_cycle; /* the highest numbers that were told */
+    char text[WH_LOG_NOTES][WH_LOG_NOTE_BYTES];
+    const char *notes[WH_LOG_NOTES];
     size_t note_count;
     char message[800]; /* why there is nothing to show */
 } wh_log_run_t;
 
 /* Reads the whole log. False, and the reason in `message`, if the file cannot be read, is no log, or has no
- * such run. A log that is cut off or damaged is read up to there, and a note says so. To be closed in any
- * case. */
+ * such run. What is damaged or missing, a note says. The record says how the run ended if the log tells it:
+ * else it is untold. To be closed in any case. */
 bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options);
 
 void wh_log_run_close(wh_log_run_t *run);

@@ -6,8 +6,11 @@
 
 #define HEADER 28
 #define SYNC UINT32_C(0xeda1da01)
+#define SYNC_BYTES 4
 /* No event of any program is longer. */
-#define LONGEST INT32_C(0x10000000)
+#define LONGEST UINT64_C(0x10000000)
+/* No channel of any program has a longer name. */
+#define LONGEST_CHANNEL 1000
 
 FILE *wh_log_file(const char *path) {
     struct stat status;
@@ -21,9 +24,50 @@ FILE *wh_log_file(const char *path) {
 }
 
 void wh_log_open(wh_log_t *log, FILE *file) {
-    memset(log, 0, sizeof *log);
-    log->file = file;
+    wh_log_close(log);
+    memset(log, 0, offsetof(wh_log_t, window));
+    log->begin = log->end = 0;
+    rewind(file);
+    wh_log_source_open(&log->source, file);
 }
+
+void wh_log_close(wh_log_t *log) {
+    wh_log_source_close(&log->source);
+}
+
+/* ------------------------------------------------------------------------------------------------- window */
+
+/* Has `wanted` bytes from `next` on in the window, or all that there are. Returns how many. */
+static size_t look(wh_log_t *log, size_t wanted) {
+    if (log->end - log->begin < wanted) {
+        memmove(log->window, log->window + log->begin, log->end - log->begin);
+        log->end -= log->begin;
+        log->begin = 0;
+        log->end += wh_log_source_read(&log->source, log->window + log->end, sizeof log->window - log->end);
+    }
+    return log->end - log->begin;
+}
+
+static void pass(wh_log_t *log, size_t size) {
+    log->begin += size;
+    log->next += size;
+}
+
+/* Passes over more than the window has. False if the file ends before. */
+static bool pass_over(wh_log_t *log, uint64_t size) {
+    while (size > 0) {
+        const size_t there = look(log, 1);
+        const size_t part = size < there ? (size_t)size : there;
+        if (part == 0) {
+            return false;
+        }
+        pass(log, part);
+        size -= part;
+    }
+    return true;
+}
+
+/* ------------------------------------------------------------------------------------------------- headers */
 
 static uint64_t big_endian(const uint8_t *bytes, size_t count) {
     uint64_t value = 0;
@@ -33,63 +77,219 @@ static uint64_t big_endian(const uint8_t *bytes, size_t count) {
     return value;
 }
 
-static bool pass_over(FILE *file, size_t size) {
-    uint8_t waste[4096];
-    while (size > 0) {
-        const size_t part = size < sizeof waste ? size : sizeof waste;
-        if (fread(waste, 1, part, file) != part) {
-            return false;
+/* True if these bytes are a sync word, or as much of it as there is. */
+static bool is_sync(const uint8_t *bytes, size_t there) {
+    const size_t count = there < SYNC_BYTES ? there : SYNC_BYTES;
+    return count == 0 || big_endian(bytes, count) == SYNC >> (8 * (SYNC_BYTES - count));
+}
+
+/* The event's whole length, 0 if no event has such a header. */
+static uint64_t length_of(const uint8_t *header) {
+    const uint64_t channel = big_endian(header + 20, 4);
+    const uint64_t data = big_endian(header + 24, 4);
+    const bool sound = channel > 0 && channel <= LONGEST_CHANNEL && data <= LONGEST;
+    return sound ? HEADER + channel + data : 0;
+}
+
+/* True if at these bytes, the last ones in the window, an event begins, behind which another one begins or
+ * the file ends. `ends` tells if the file ends with them. */
+static bool is_linked(const uint8_t *bytes, size_t there, bool ends) {
+    if (there < HEADER || !is_sync(bytes, there)) {
+        return false;
+    }
+    const uint64_t length = length_of(bytes);
+    if (length == 0 || length > there || (length == there && !ends)) {
+        return false;
+    }
+    return length == there || (there - length >= SYNC_BYTES && is_sync(bytes + length, there - length));
+}
+
+/* The first place behind the beginning of the window, and before `limit`, where events follow one another;
+ * 0 if there is none. */
+static size_t find_link(wh_log_t *log, size_t limit) {
+    const size_t there = look(log, sizeof log->window);
+    const bool ends = there < sizeof log->window;
+    const uint8_t *bytes = log->window + log->begin;
+    for (size_t at = 1; at < limit && at < there; ++at) {
+        const uint8_t *found = memchr(bytes + at, (int)(SYNC >> 24), there - at);
+        if (!found) {
+            return 0;
         }
-        size -= part;
+        at = (size_t)(found - bytes);
+        if (at < limit && is_linked(found, there - at, ends)) {
+            return at;
+        }
     }
-    return true;
+    return 0;
 }
 
-static bool read_channel(wh_log_t *log, size_t length) {
-    if (length >= sizeof log->channel) {
-        log->channel[0] = '\0';
-        return pass_over(log->file, length);
+/* Passes over damage, up to where events follow one another again, or to the end. */
+static wh_log_result_t skip_damage(wh_log_t *log) {
+    for (;;) {
+        const size_t there = look(log, sizeof log->window);
+        const size_t found = find_link(log, there);
+        if (found > 0 || there < sizeof log->window) {
+            pass(log, found > 0 ? found : there);
+            return WH_LOG_DAMAGED;
+        }
+        /* The next event may begin so near to the window's end that its own end is not in it. */
+        pass(log, sizeof log->window / 2);
     }
-    log->channel[length] = '\0';
-    return fread(log->channel, 1, length, log->file) == length;
 }
 
-static bool read_data(wh_log_t *log, size_t length) {
-    log->size = length <= sizeof log->data ? length : 0;
-    if (length > sizeof log->data) {
-        return pass_over(log->file, length);
-    }
-    return fread(log->data, 1, length, log->file) == length;
+/* -------------------------------------------------------------------------------------------------- events */
+
+static void take_header(wh_log_t *log, const uint8_t *bytes) {
+    const size_t channel = (size_t)big_endian(bytes + 20, 4);
+    const bool fits = channel < sizeof log->channel;
+    log->number = big_endian(bytes + 4, 8);
+    log->timestamp_us = (int64_t)big_endian(bytes + 12, 8);
+    memcpy(log->channel, bytes + HEADER, fits ? channel : 0);
+    log->channel[fits ? channel : 0] = '\0';
+    log->data = bytes + HEADER + channel;
+    log->size = (size_t)big_endian(bytes + 24, 4);
+    log->passed_over = log->size > WH_LOG_EVENT_BYTES;
 }
 
-static wh_log_result_t read_header(wh_log_t *log, uint8_t header[HEADER]) {
-    const size_t got = fread(header, 1, HEADER, log->file);
-    if (got == 0) {
-        return WH_LOG_END;
+/* An event of another program that is longer than ours are. */
+static wh_log_result_t pass_event(wh_log_t *log, uint64_t length) {
+    log->data = NULL;
+    log->size = 0;
+    if (!pass_over(log, length)) {
+        return WH_LOG_CUT;
     }
-    if (got >= 4 && big_endian(header, 4) != SYNC) {
-        return WH_LOG_DAMAGED;
+    ++log->count;
+    return WH_LOG_EVENT;
+}
+
+/* The event at the window's beginning, of which the header is there. Where its length may be wrong, events
+ * within it say so. */
+static wh_log_result_t take_event(wh_log_t *log, uint64_t length) {
+    const size_t most = HEADER + LONGEST_CHANNEL + WH_LOG_EVENT_BYTES;
+    const size_t there = look(log, most + SYNC_BYTES);
+    const uint8_t *bytes = log->window + log->begin;
+    const bool fits = length <= most;
+    const bool is_whole = fits && length <= there;
+    const bool is_followed = is_whole && is_sync(bytes + length, there - (size_t)length);
+    const size_t within = length < sizeof log->window ? (size_t)length : sizeof log->window;
+    if (!is_followed && find_link(log, within) > 0) {
+        return skip_damage(log);
     }
-    return got < HEADER ? WH_LOG_CUT : WH_LOG_EVENT;
+    if (fits && !is_whole) {
+        return WH_LOG_CUT;
+    }
+    bytes = log->window + log->begin;
+    take_header(log, bytes);
+    if (!fits || log->passed_over) {
+        return pass_event(log, length);
+    }
+    log->is_loose = !is_followed;
+    pass(log, (size_t)length);
+    ++log->count;
+    return WH_LOG_EVENT;
 }
 
 wh_log_result_t wh_log_next(wh_log_t *log) {
-    uint8_t header[HEADER];
     log->offset = log->next;
-    const wh_log_result_t result = read_header(log, header);
-    if (result != WH_LOG_EVENT) {
-        return result;
+    const size_t there = look(log, HEADER);
+    const uint8_t *bytes = log->window + log->begin;
+    if (there == 0) {
+        return wh_log_source_is_cut(&log->source) ? WH_LOG_CUT : WH_LOG_END;
     }
-    const uint64_t channel = big_endian(header + 20, 4);
-    const uint64_t data = big_endian(header + 24, 4);
-    if (channel == 0 || channel > 1000 || data > LONGEST) {
-        return WH_LOG_DAMAGED;
+    if (!is_sync(bytes, there)) {
+        return skip_damage(log);
     }
-    log->timestamp_us = (int64_t)big_endian(header + 12, 8);
-    if (!read_channel(log, (size_t)channel) || !read_data(log, (size_t)data)) {
+    if (there < HEADER) {
         return WH_LOG_CUT;
     }
-    log->next = log->offset + HEADER + channel + data;
-    ++log->count;
-    return WH_LOG_EVENT;
+    const uint64_t length = length_of(bytes);
+    return length > 0 ? take_event(log, length) : skip_damage(log);
+}
+
+/* ------------------------------------------------------------------------------------------------- numbers */
+
+static void note_gap(wh_log_numbers_t *numbers, uint64_t from, uint64_t to) {
+    if (numbers->gap_count < WH_LOG_GAPS) {
+        numbers->gaps[numbers->gap_count].from = from;
+        numbers->gaps[numbers->gap_count++].to = to;
+    } else {
+        numbers->beyond += to - from;
+    }
+}
+
+/* Takes a number out of its gap, of which one or two are left, or none. False if it is in none. */
+static bool fill_gap(wh_log_numbers_t *numbers, uint64_t number) {
+    for (size_t i = 0; i < numbers->gap_count; ++i) {
+        const uint64_t to = numbers->gaps[i].to;
+        if (number < numbers->gaps[i].from || number >= to) {
+            continue;
+        }
+        numbers->gaps[i].to = number;
+        if (number == numbers->gaps[i].from) {
+            numbers->gaps[i] = numbers->gaps[--numbers->gap_count];
+        }
+        if (number + 1 < to) {
+            note_gap(numbers, number + 1, to);
+        }
+        return true;
+    }
+    return false;
+}
+
+static void note_first(wh_log_numbers_t *numbers, uint64_t at) {
+    if (numbers->doubled + numbers->moved + numbers->misnumbered == 0) {
+        numbers->first = at;
+    }
+}
+
+static void insert(wh_log_numbers_t *numbers, uint64_t number, uint64_t at) {
+    if (number >= numbers->next) {
+        if (number > numbers->next) {
+            note_gap(numbers, numbers->next, number);
+        }
+        numbers->next = number + 1;
+        return;
+    }
+    note_first(numbers, at);
+    if (fill_gap(numbers, number)) {
+        ++numbers->moved;
+    } else {
+        ++numbers->doubled;
+    }
+}
+
+void wh_log_numbers_take(wh_log_numbers_t *numbers, uint64_t number, uint64_t at) {
+    if (numbers->waits) {
+        numbers->waits = false;
+        if (number == numbers->expected + 1) {
+            note_first(numbers, numbers->odd_at);
+            ++numbers->misnumbered;
+            numbers->next = number;
+        } else {
+            insert(numbers, numbers->odd, numbers->odd_at);
+        }
+    }
+    if (number == numbers->next) {
+        ++numbers->next;
+        return;
+    }
+    numbers->waits = true;
+    numbers->odd = number;
+    numbers->expected = numbers->next;
+    numbers->odd_at = at;
+}
+
+void wh_log_numbers_finish(wh_log_numbers_t *numbers) {
+    if (numbers->waits) {
+        numbers->waits = false;
+        insert(numbers, numbers->odd, numbers->odd_at);
+    }
+}
+
+uint64_t wh_log_numbers_missing(const wh_log_numbers_t *numbers) {
+    uint64_t missing = numbers->beyond;
+    for (size_t i = 0; i < numbers->gap_count; ++i) {
+        missing += numbers->gaps[i].to - numbers->gaps[i].from;
+    }
+    return missing;
 }

@@ -3,6 +3,7 @@
  * Each event is, big-endian: a sync word, its number (8 bytes), a time stamp (8 bytes, us), the lengths of
  * channel and data (4 bytes each), the channel's name, the data. Nothing in a file can make the reader crash
  * or take memory beyond one event of WH_LOG_EVENT_BYTES; larger ones, of other programs, are passed over.
+ * What is no event is damage: the reader names its bytes and goes on where events follow one another again.
  */
 #ifndef WH_LOG_LOGFILE_H
 #define WH_LOG_LOGFILE_H
@@ -12,33 +13,77 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "log_source.h"
+
 #define WH_LOG_EVENT_BYTES 65536
 #define WH_LOG_CHANNEL_BYTES 64
+/* So much of the file is looked at together. */
+#define WH_LOG_WINDOW (1 << 18)
 
 typedef enum {
     WH_LOG_EVENT,  /* channel, data and size hold the next event */
     WH_LOG_END,    /* the file ends where an event ends */
-    WH_LOG_CUT,    /* it ends within an event */
-    WH_LOG_DAMAGED /* what stands at `offset` is no event */
+    WH_LOG_CUT,    /* it ends within an event, which begins at `offset`, or within a compressed frame */
+    WH_LOG_DAMAGED /* what stands from `offset` to `next` is no event: reading goes on at `next` */
 } wh_log_result_t;
 
+/* Zero it before the first opening. */
 typedef struct {
-    FILE *file;      /* the caller's */
-    uint64_t offset; /* where the last event, or the damage, begins */
-    uint64_t next;   /* where the next one begins */
+    wh_log_source_t source;
+    uint64_t offset; /* where the last event, or the damage, begins; of a compressed file, decompressed */
+    uint64_t next;   /* where it ends */
     uint64_t count;  /* events read */
+    uint64_t number; /* as the event says: from 0, one more each */
     int64_t timestamp_us;
     char channel[WH_LOG_CHANNEL_BYTES]; /* empty for a longer name, which is none of ours */
-    size_t size;                        /* of the data; 0 for an event that was passed over */
-    uint8_t data[WH_LOG_EVENT_BYTES];
+    bool passed_over;                   /* it is too long for us: no data */
+    bool is_loose;                      /* what follows is no event: its own end may be wrong */
+    size_t size;                        /* of the data */
+    const uint8_t *data;                /* valid until the next call */
+    uint8_t window[WH_LOG_WINDOW];      /* the reader's: bytes from `next` on stand from `begin` to `end` */
+    size_t begin, end;
 } wh_log_t;
 
 /* Opens a file for reading. Null, and errno says why, if it cannot be read; a folder is no file. */
 FILE *wh_log_file(const char *path);
 
-/* Starts at the file's current place. */
+/* Starts at the beginning of the file, which stays the caller's. Also after an earlier opening. */
 void wh_log_open(wh_log_t *log, FILE *file);
 
+/* Releases what a compressed file took. Also before any opening. */
+void wh_log_close(wh_log_t *log);
+
+/* The next event, or what stands in its place. After WH_LOG_END and WH_LOG_CUT there is nothing more. */
 wh_log_result_t wh_log_next(wh_log_t *log);
+
+/* ------------------------------------------------------------------------------------------------- numbers */
+
+/* Stretches of numbers that did not come; more than these are only counted together. */
+#define WH_LOG_GAPS 64
+
+/* Which events did not come: their numbers are consecutive from 0. Zero it to begin with. */
+typedef struct {
+    uint64_t next;        /* one more than the highest number that came */
+    uint64_t doubled;     /* numbers that came more than once */
+    uint64_t moved;       /* events that stand behind ones with higher numbers */
+    uint64_t misnumbered; /* events whose number fits neither what is before nor what is behind */
+    uint64_t first;       /* the byte of the first event of these three kinds */
+    struct {
+        uint64_t from, to; /* without `to` */
+    } gaps[WH_LOG_GAPS];
+    size_t gap_count;
+    uint64_t beyond; /* numbers in gaps for which there was no room */
+    bool waits;      /* the last number was not the expected one: */
+    uint64_t odd, expected, odd_at;
+} wh_log_numbers_t;
+
+/* An event with this number, at this byte. */
+void wh_log_numbers_take(wh_log_numbers_t *numbers, uint64_t number, uint64_t at);
+
+/* No more events. */
+void wh_log_numbers_finish(wh_log_numbers_t *numbers);
+
+/* How many did not come. */
+uint64_t wh_log_numbers_missing(const wh_log_numbers_t *numbers);
 
 #endif

@@ -1,23 +1,33 @@
 #include "replay.h"
 
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "../link/messages.h"
-#include "../math/hash.h"
+#include "../text/array.h"
+#include "replay_internal.h"
 
-/* --------------------------------------------------------------------------------------------------- runs */
+void wh_replay_lose(wh_replay_t *replay, wh_replay_loss_t loss) {
+    if (replay->losses[loss].count++ == 0) {
+        replay->losses[loss].first = replay->at;
+    }
+}
 
-/* The entry of a run, made if it is not there; null if there are too many. */
-static wh_replay_run_t *entry(wh_replay_t *replay, int64_t run) {
+/* ---------------------------------------------------------------------------------------------------- runs */
+
+wh_replay_run_t *wh_replay_find_run(wh_replay_t *replay, int64_t run) {
     for (size_t i = replay->run_count; i > 0; --i) {
         if (replay->runs[i - 1].run == run) {
             return &replay->runs[i - 1];
         }
     }
-    if (replay->run_count == WH_REPLAY_RUNS) {
-        ++replay->runs_left_out;
-        return NULL;
+    return NULL;
+}
+
+wh_replay_run_t *wh_replay_entry(wh_replay_t *replay, int64_t run) {
+    wh_replay_run_t *found = wh_replay_find_run(replay, run);
+    if (found || replay->run_count == WH_REPLAY_RUNS) {
+        replay->runs_left_out += found ? 0 : 1;
+        return found;
     }
     wh_replay_run_t *made = &replay->runs[replay->run_count++];
     memset(made, 0, sizeof *made);
@@ -25,280 +35,368 @@ static wh_replay_run_t *entry(wh_replay_t *replay, int64_t run) {
     return made;
 }
 
-static void note_slice(wh_replay_t *replay, wh_replay_run_t *run) {
-    if (run->first_slice == 0) {
-        run->first_slice = replay->server.seq;
+wh_replay_cell_t *wh_replay_find_cell(wh_replay_t *replay, uint64_t hash) {
+    for (size_t i = 0; i < replay->cell_count; ++i) {
+        if (replay->cells[i].hash == hash) {
+            return &replay->cells[i];
+        }
     }
-    run->last_slice = replay->server.seq;
-    run->missed = replay->server.missed;
-    run->hash = wh_protocol_server_hash(&replay->server);
+    return NULL;
 }
 
-/* -------------------------------------------------------------------------------------------- differences */
+static void begin_run(wh_replay_t *replay, wh_replay_run_t *run, const wh_replay_cell_t *cell) {
+    replay->run = run;
+    run->is_begun = true;
+    run->layout_hash = cell->hash;
+    replay->seq = replay->last_pending = 0;
+    replay->is_synchronous = replay->is_unsure = false;
+    if (replay->cell != cell) {
+        wh_protocol_server_close(&replay->server);
+        (void)wh_protocol_server_open(&replay->server, cell->layout);
+        replay->server.identity.layout_hash = cell->hash;
+        replay->server.encodes_later = true;
+        replay->cell = cell;
+    }
+}
 
-static bool differs(wh_replay_difference_t *difference, const char *of, const char *what, double recorded,
-                    double replayed) {
-    /* By their bits: the hash tells -0 from 0, too. */
-    if (wh_hash_real(WH_HASH_START, recorded) == wh_hash_real(WH_HASH_START, replayed)) {
+/* Makes the run of a command or a state the current one. False, and counted, if it cannot go through. */
+static bool enter_run(wh_replay_t *replay, int64_t id, uint64_t layout_hash) {
+    if (replay->run && replay->run->run == id) {
+        return true;
+    }
+    const wh_replay_cell_t *cell = wh_replay_find_cell(replay, layout_hash);
+    wh_replay_run_t *run = cell ? wh_replay_entry(replay, id) : NULL;
+    if (!cell) {
+        wh_replay_lose(replay, WH_REPLAY_HOMELESS);
+    } else if (run && run->is_begun) {
+        wh_replay_lose(replay, WH_REPLAY_LATE);
         return false;
     }
-    snprintf(difference->what, sizeof difference->what, "%s, %s", of, what);
-    difference->recorded = recorded;
-    difference->replayed = replayed;
+    if (!run) {
+        return false;
+    }
+    wh_replay_finish(replay);
+    begin_run(replay, run, cell);
     return true;
 }
 
-static bool pose_differs(wh_replay_difference_t *difference, const char *of, const wh_pose_t *recorded,
-                         const wh_pose_t *replayed) {
-    char entry[60];
-    for (size_t i = 0; i < 9; ++i) {
-        snprintf(entry, sizeof entry, "rotation %zu,%zu", i / 3 + 1, i % 3 + 1);
-        if (differs(difference, of, entry, recorded->R.m[i / 3][i % 3], replayed->R.m[i / 3][i % 3])) {
-            return true;
+/* ------------------------------------------------------------------------------------------------- waiting */
+
+static wh_replay_slot_t *slot_of(wh_replay_t *replay, int64_t seq) {
+    return &replay->slots[seq % WH_REPLAY_WINDOW];
+}
+
+static bool has_command(wh_replay_t *replay, int64_t seq) {
+    return slot_of(replay, seq)->seq == seq && slot_of(replay, seq)->has_command;
+}
+
+static bool has_state(wh_replay_t *replay, int64_t seq) {
+    return slot_of(replay, seq)->seq == seq && slot_of(replay, seq)->state;
+}
+
+static void empty(wh_replay_slot_t *slot) {
+    free(slot->state);
+    memset(slot, 0, offsetof(wh_replay_slot_t, command));
+    slot->state = NULL;
+    slot->size = 0;
+}
+
+/* Slices up to this one have gone through. */
+static void advance_to(wh_replay_t *replay, int64_t seq) {
+    const int64_t last = seq < replay->last_pending ? seq : replay->last_pending;
+    for (int64_t i = replay->seq + 1; i <= last; ++i) {
+        if (slot_of(replay, i)->seq == i) {
+            empty(slot_of(replay, i));
         }
     }
-    return differs(difference, of, "position x", recorded->r.x, replayed->r.x) ||
-           differs(difference, of, "position y", recorded->r.y, replayed->r.y) ||
-           differs(difference, of, "position z", recorded->r.z, replayed->r.z);
+    replay->seq = seq;
 }
 
-static bool gripper_differs(wh_replay_difference_t *difference, const char *of, const wh_gripper_t *recorded,
-                            const wh_gripper_t *replayed) {
-    char held[120];
-    snprintf(held, sizeof held, "%.60s, the held wafer in its frame", of);
-    return pose_differs(difference, of, &recorded->base_from_gripper, &replayed->base_from_gripper) ||
-           differs(difference, of, "valve", recorded->valve, replayed->valve) ||
-           differs(difference, of, "index of the held wafer", recorded->wafer, replayed->wafer) ||
-           (recorded->wafer != WH_NONE &&
-            pose_differs(difference, held, &recorded->gripper_from_wafer, &replayed->gripper_from_wafer));
+static int64_t first_command(wh_replay_t *replay) {
+    int64_t seq = replay->seq + 1;
+    while (seq <= replay->last_pending && !has_command(replay, seq)) {
+        ++seq;
+    }
+    return seq <= replay->last_pending ? seq : 0;
 }
 
-static bool condition_differs(wh_replay_difference_t *difference, const char *of, size_t g,
-                              const wh_physics_state_t *recorded, const wh_physics_state_t *replayed) {
-    return differs(difference, of, "vacuum level", recorded->vacuum[g].level, replayed->vacuum[g].level) ||
-           differs(difference, of, "valve's command", recorded->vacuum[g].command,
-                   replayed->vacuum[g].command) ||
-           differs(difference, of, "vacuum sensor", recorded->vacuum[g].on, replayed->vacuum[g].on);
+static int64_t first_state(wh_replay_t *replay) {
+    int64_t seq = replay->seq + 1;
+    while (seq <= replay->last_pending && !has_state(replay, seq)) {
+        ++seq;
+    }
+    return seq <= replay->last_pending ? seq : 0;
 }
 
-static void name_difference(wh_replay_t *replay, const wh_state_t *recorded,
-                            wh_replay_difference_t *difference) {
-    const wh_grasp_storage_t *storage = &replay->server.simulator.table.storage;
-    difference->slice = recorded->seq;
-    for (size_t w = 0; w < storage->wafer_count; ++w) {
-        const char *name = replay->layout->wafers[w].name;
-        if (pose_differs(difference, name, &recorded->wafers[w].base_from_wafer,
-                         &storage->wafers[w].base_from_wafer) ||
-            differs(difference, name, "index of the holder", recorded->wafers[w].holder,
-                    storage->wafers[w].holder)) {
-            return;
+/* True if the next slice can be stepped, once it is there: the run is known up to here. */
+static bool is_at_hand(wh_replay_t *replay) {
+    return replay->is_synchronous || (replay->seq == 0 && has_command(replay, 1));
+}
+
+static int64_t missed_so_far(const wh_replay_t *replay) {
+    return replay->is_synchronous ? replay->server.missed : 0;
+}
+
+/* A slice of which command and state are there. */
+static void resolve(wh_replay_t *replay, int64_t seq) {
+    const wh_replay_slot_t *slot = slot_of(replay, seq);
+    waferhand_state message;
+    if (wh_link_decode_state(slot->state, slot->size, &message)) {
+        wh_replay_step(replay, &slot->command, &message, slot->state, slot->size);
+        wh_replay_tell(replay, &slot->command, &message);
+        (void)waferhand_state_decode_cleanup(&message);
+    }
+    advance_to(replay, seq);
+}
+
+/* A slice whose state is not in the log, though later ones are. */
+static void step_unanswered(wh_replay_t *replay, int64_t seq) {
+    wh_replay_step_alone(replay, &slot_of(replay, seq)->command);
+    advance_to(replay, seq);
+}
+
+/* A state whose command, or one before it, is not in the log. */
+static void take_up(wh_replay_t *replay, int64_t seq) {
+    const wh_replay_slot_t *slot = slot_of(replay, seq);
+    const int64_t skipped = seq - replay->seq - 1;
+    waferhand_state message;
+    if (wh_link_decode_state(slot->state, slot->size, &message)) {
+        if (wh_replay_restore(replay, &message)) {
+            replay->run->begins_in_part = replay->run->begins_in_part || replay->part_begins;
+            replay->run->taken_up += replay->part_begins ? 0 : 1;
+            replay->run->skipped += replay->part_begins ? 0 : skipped;
+            replay->part_begins = false;
+            wh_replay_tell(replay, slot->has_command ? &slot->command : NULL, &message);
+        } else {
+            wh_replay_lose(replay, WH_REPLAY_GARBAGE);
         }
+        (void)waferhand_state_decode_cleanup(&message);
     }
-    for (size_t g = 0; g < storage->gripper_count; ++g) {
-        if (gripper_differs(difference, replay->layout->grippers[g].name, &recorded->grippers[g],
-                            &storage->grippers[g]) ||
-            condition_differs(difference, replay->layout->grippers[g].name, g, recorded->physics,
-                              &replay->server.simulator.physics)) {
-            return;
-        }
-    }
-    snprintf(difference->what, sizeof difference->what,
-             "the closest approaches, the contests, the faults or the slices' count");
+    advance_to(replay, seq);
 }
 
-/* ----------------------------------------------------------------------------------------------- stepping */
+/* ------------------------------------------------------------------------------------------ going through */
 
-static void take_up(wh_replay_t *replay, const waferhand_state *message) {
-    wh_replay_run_t *run = entry(replay, message->run);
-    if (run && wh_protocol_server_restore(&replay->server, message) == WH_SERVER_RESTORED) {
-        ++run->taken_up;
-        note_slice(replay, run);
-    }
+/* Free-running: true if the simulator says that it missed all commands before this state's. */
+static bool is_behind_missed(wh_replay_t *replay, int64_t state) {
+    const wh_replay_slot_t *slot = slot_of(replay, state);
+    return has_command(replay, state) && slot->command.lockstep == 0 &&
+           slot->missed - missed_so_far(replay) == state - replay->seq - 1;
 }
 
-/* Steps the waiting command, with the valves in force if they are known. True if it was stepped. */
-static bool step(wh_replay_t *replay, const int32_t valves[], wh_replay_run_t **run) {
-    replay->has_command = false;
-    const wh_protocol_server_result_t result =
-        wh_protocol_server_command(&replay->server, &replay->command, valves);
-    if (result != WH_SERVER_STEPPED && result != WH_SERVER_NEW_RUN) {
+/* Lets the next slice through if it is there. */
+static bool let_through(wh_replay_t *replay) {
+    const int64_t state = first_state(replay);
+    if (state == 0) {
         return false;
     }
-    *run = entry(replay, replay->command.run);
-    if (*run) {
-        note_slice(replay, *run);
+    if (!is_at_hand(replay) && !(replay->seq == 0 && state == 1)) {
+        take_up(replay, state);
+        return true;
     }
-    return *run != NULL;
+    const bool is_next = state == replay->seq + 1 && has_command(replay, state);
+    if (is_next || is_behind_missed(replay, state)) {
+        resolve(replay, state);
+        return true;
+    }
+    return false;
 }
 
-static void compare(wh_replay_t *replay, wh_replay_run_t *run, const waferhand_state *message) {
-    wh_state_t recorded;
-    if (run->differs) {
-        return;
+/* True if each slice up to this one's has its command, and the simulator missed none. */
+static bool is_stepped_to(wh_replay_t *replay, int64_t state) {
+    bool whole = is_at_hand(replay);
+    for (int64_t seq = replay->seq + 1; whole && seq <= state; ++seq) {
+        whole = has_command(replay, seq);
     }
-    ++run->compared;
-    if ((uint64_t)message->hash == run->hash) {
-        return;
-    }
-    run->differs = true;
-    if (wh_link_state_from_message(message, &replay->layout->grasp.tolerance, &replay->recorded, &recorded) ==
-        WH_OK) {
-        name_difference(replay, &recorded, &run->difference);
-    }
+    return whole && slot_of(replay, state)->missed == missed_so_far(replay);
 }
 
-static void resolve(wh_replay_t *replay, const waferhand_state *message) {
-    const waferhand_command *command = &replay->command;
-    int32_t valves[WH_GRIPPERS] = {0};
-    bool outside = false;
-    wh_replay_run_t *run = NULL;
-    for (int32_t g = 0; g < message->gripper_count && g < command->gripper_count; ++g) {
-        valves[g] = message->grippers[g].valve_told;
-        outside = outside || valves[g] != command->valve[g];
+/* Something does not come any more: what waits longest goes through without it. False if only commands
+ * wait. */
+static bool force(wh_replay_t *replay) {
+    const int64_t state = first_state(replay);
+    if (state == 0) {
+        return false;
     }
-    if (!step(replay, outside ? valves : NULL, &run)) {
-        take_up(replay, message);
-        return;
-    }
-    run->outside_valves += outside ? 1 : 0;
-    compare(replay, run, message);
-}
-
-/* ----------------------------------------------------------------------------------------------- messages */
-
-static void on_cell(wh_replay_t *replay, const void *data, size_t size) {
-    waferhand_cell message;
-    if (!wh_link_decode_cell(data, size, &message)) {
-        ++replay->garbage;
-        return;
-    }
-    ++replay->messages;
-    if (!replay->layout || replay->server.identity.layout_hash != (uint64_t)message.layout_hash) {
-        wh_layout_t *layout = wh_link_layout_from_cell(&message);
-        if (layout) {
-            wh_replay_finish(replay);
-            wh_link_layout_free(replay->layout);
-            replay->layout = layout;
-            (void)wh_protocol_server_open(&replay->server, layout);
-            replay->server.identity.layout_hash = (uint64_t)message.layout_hash;
-        } else {
-            ++replay->garbage;
-        }
-    }
-    (void)waferhand_cell_decode_cleanup(&message);
-}
-
-static bool is_new(const wh_replay_t *replay, int64_t run, int64_t seq) {
-    return run != replay->server.identity.run || seq > replay->server.seq;
-}
-
-/* True if this command waits for its state. */
-static bool is_waiting(const wh_replay_t *replay, int64_t run, int64_t seq) {
-    return replay->has_command && replay->command.run == run && replay->command.seq == seq;
-}
-
-/* A state that came before its command. */
-static bool is_held(const wh_replay_t *replay, int64_t run, int64_t seq) {
-    return replay->state_size > 0 && replay->state_run == run && replay->state_seq == seq;
-}
-
-static void on_command(wh_replay_t *replay, const void *data, size_t size) {
-    waferhand_command message;
-    waferhand_state state;
-    if (!wh_link_decode_command(data, size, &message)) {
-        ++replay->garbage;
-        return;
-    }
-    ++replay->messages;
-    if (!replay->layout) {
-        ++replay->homeless;
-        return;
-    }
-    if (!is_new(replay, message.run, message.seq) || is_waiting(replay, message.run, message.seq)) {
-        return;
-    }
-    wh_replay_finish(replay);
-    replay->command = message;
-    replay->has_command = true;
-    if (is_held(replay, message.run, message.seq) &&
-        wh_link_decode_state(replay->state, replay->state_size, &state)) {
-        replay->state_size = 0;
-        resolve(replay, &state);
-        (void)waferhand_state_decode_cleanup(&state);
-    }
-}
-
-static void hold_state(wh_replay_t *replay, const waferhand_state *message, const void *data, size_t size) {
-    memcpy(replay->state, data, size);
-    replay->state_size = size;
-    replay->state_run = message->run;
-    replay->state_seq = message->seq;
-}
-
-static void on_state(wh_replay_t *replay, const void *data, size_t size) {
-    waferhand_state message;
-    if (!wh_link_decode_state(data, size, &message)) {
-        ++replay->garbage;
-        return;
-    }
-    ++replay->messages;
-    if (!replay->layout) {
-        ++replay->homeless;
-    } else if (message.status != WH_OK || !is_new(replay, message.run, message.seq)) {
-        /* A refusal, or an answer once more. */
-    } else if (is_waiting(replay, message.run, message.seq)) {
-        resolve(replay, &message);
-    } else if (message.run == replay->server.identity.run && message.seq == replay->server.seq + 1) {
-        hold_state(replay, &message, data, size);
+    if (!is_stepped_to(replay, state)) {
+        take_up(replay, state);
+    } else if (state > replay->seq + 1) {
+        step_unanswered(replay, replay->seq + 1);
     } else {
-        wh_replay_finish(replay);
-        take_up(replay, &message);
+        resolve(replay, state);
     }
-    (void)waferhand_state_decode_cleanup(&message);
+    return true;
 }
 
-static void on_mcs(wh_replay_t *replay, const void *data, size_t size) {
-    waferhand_mcs message;
-    if (!wh_link_decode_mcs(data, size, &message)) {
-        ++replay->garbage;
+/* The same where only commands wait. False if none does. */
+static bool force_command(wh_replay_t *replay) {
+    const int64_t command = first_command(replay);
+    if (command == 0) {
+        return false;
+    }
+    if (command == replay->seq + 1 && is_at_hand(replay)) {
+        step_unanswered(replay, command);
+    } else {
+        ++replay->run->unanswered;
+        replay->is_synchronous = false;
+        advance_to(replay, command);
+    }
+    return true;
+}
+
+/* The slice's place in the window, which moves on for it. */
+static wh_replay_slot_t *make_slot(wh_replay_t *replay, int64_t seq) {
+    while (seq - replay->seq > WH_REPLAY_WINDOW && (force(replay) || force_command(replay))) {
+    }
+    if (seq - replay->seq > WH_REPLAY_WINDOW) {
+        replay->is_synchronous = false;
+        replay->seq = seq - 2; /* the state before the first command may come again */
+    }
+    wh_replay_slot_t *slot = slot_of(replay, seq);
+    if (slot->seq != seq) {
+        empty(slot);
+        slot->seq = seq;
+    }
+    replay->last_pending = seq > replay->last_pending ? seq : replay->last_pending;
+    return slot;
+}
+
+void wh_replay_finish(wh_replay_t *replay) {
+    wh_replay_tell_last(replay);
+    while (replay->run && (let_through(replay) || force(replay))) {
+    }
+    while (replay->run && first_command(replay) > 0) {
+        ++replay->run->last_unanswered;
+        advance_to(replay, first_command(replay));
+        replay->is_synchronous = false;
+    }
+}
+
+/* ------------------------------------------------------------------------------------- commands and states */
+
+/* True if a slice may still go through: its run is the current one, and it has not gone through already. */
+static bool is_new(wh_replay_t *replay, int64_t run, int64_t seq, int64_t layout_hash) {
+    const wh_replay_run_t *known = wh_replay_find_run(replay, run);
+    const bool is_again = known && known != replay->run && seq <= known->last_slice;
+    return !is_again && enter_run(replay, run, (uint64_t)layout_hash) && seq > replay->seq;
+}
+
+void wh_replay_take_command(wh_replay_t *replay, const waferhand_command *message) {
+    if (!is_new(replay, message->run, message->seq, message->layout_hash)) {
         return;
     }
-    ++replay->messages;
-    if (message.phase == WH_LINK_PHASE_OVER && message.run != 0) {
-        wh_replay_finish(replay);
-        wh_replay_run_t *run = entry(replay, message.run);
-        if (run) {
-            run->over = true;
+    wh_replay_slot_t *slot = make_slot(replay, message->seq);
+    if (!slot->has_command) {
+        slot->has_command = true;
+        slot->command = *message;
+        while (let_through(replay)) {
         }
     }
-    (void)waferhand_mcs_decode_cleanup(&message);
+}
+
+/* The replay must refuse the same command for the same reason. */
+void wh_replay_take_refusal(wh_replay_t *replay, const waferhand_state *message, const void *data,
+                            size_t size) {
+    wh_replay_run_t *run = replay->run;
+    wh_protocol_server_t *server = &replay->server;
+    if (!run || run->run != message->run || message->seq != replay->seq + 1 || !is_at_hand(replay) ||
+        !has_command(replay, message->seq)) {
+        if (!run || run->run != message->run || message->seq > run->last_refused) {
+            wh_replay_lose(replay, WH_REPLAY_LATE);
+        }
+        return;
+    }
+    wh_replay_slot_t *slot = slot_of(replay, message->seq);
+    const wh_protocol_server_result_t result = wh_protocol_server_command(server, &slot->command, NULL);
+    slot->has_command = false;
+    run->last_refused = message->seq;
+    if (result != WH_SERVER_ANSWERED || server->encoded_size != size ||
+        memcmp(server->encoded, data, size - 8) != 0) {
+        wh_replay_differ_in_status(run, message->seq, message->status, server->room.message.status);
+        replay->is_synchronous = result == WH_SERVER_ANSWERED && replay->is_synchronous;
+        return;
+    }
+    ++run->refused;
+    wh_replay_tell(replay, NULL, message);
+}
+
+void wh_replay_take_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
+                          size_t size) {
+    const bool is_current = replay->run && replay->run->run == message->run;
+    if (is_current && replay->has_last && message->seq == replay->seq) {
+        wh_replay_take_last_state(replay, message, data, size);
+        return;
+    }
+    wh_replay_tell_last(replay);
+    if (is_current && !replay->is_synchronous && message->seq == replay->seq) {
+        --replay->seq; /* behind a block that could not be stepped */
+    }
+    if (!is_new(replay, message->run, message->seq, message->layout_hash)) {
+        return;
+    }
+    wh_replay_slot_t *slot = make_slot(replay, message->seq);
+    if (!slot->state) {
+        slot->state = wh_array_new(size, 1);
+        memcpy(slot->state, data, size);
+        slot->size = size;
+        slot->missed = message->missed;
+        while (let_through(replay)) {
+        }
+    }
+}
+
+void wh_replay_take_slices(wh_replay_t *replay, const wh_slices_t *slices) {
+    const int64_t end = slices->first + (int64_t)slices->count - 1;
+    if (!is_new(replay, slices->identity.run, end, (int64_t)slices->identity.layout_hash)) {
+        return;
+    }
+    if (replay->seq + 1 != slices->first || replay->last_pending > replay->seq) {
+        wh_replay_finish(replay); /* nothing of what waits comes behind a block */
+    }
+    for (size_t i = 0; i < slices->count; ++i) {
+        int32_t told[WH_GRIPPERS];
+        uint64_t hash;
+        const int64_t seq = slices->first + (int64_t)i;
+        const bool follows = replay->is_synchronous || (replay->seq == 0 && seq == 1);
+        if (seq <= replay->seq) {
+            continue;
+        }
+        if (!follows || seq != replay->seq + 1) {
+            replay->run->skipped += end - replay->seq;
+            replay->is_synchronous = false;
+            replay->seq = end;
+            return;
+        }
+        wh_replay_tell_last(replay);
+        wh_slices_get(slices, i, &replay->last, told, &hash);
+        wh_replay_step_hashed(replay, told, hash);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------- the whole */
 
-void wh_replay_event(wh_replay_t *replay, const char *channel, const void *data, size_t size) {
-    static const struct {
-        const char *channel;
-        void (*handle)(wh_replay_t *replay, const void *data, size_t size);
-    } handlers[] = {{WH_CHANNEL_CELL, on_cell},
-                    {WH_CHANNEL_COMMAND, on_command},
-                    {WH_CHANNEL_STATE, on_state},
-                    {WH_CHANNEL_MCS, on_mcs}};
-    for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; ++i) {
-        if (size <= WH_LINK_DATAGRAM && strcmp(handlers[i].channel, channel) == 0) {
-            handlers[i].handle(replay, data, size);
-        }
+void wh_replay_end(wh_replay_t *replay) {
+    wh_replay_finish(replay);
+    for (size_t i = 0; i < replay->run_count; ++i) {
+        wh_log_numbers_finish(&replay->runs[i].expectations);
     }
-}
-
-void wh_replay_finish(wh_replay_t *replay) {
-    wh_replay_run_t *run = NULL;
-    if (replay->has_command && step(replay, NULL, &run)) {
-        ++run->unanswered;
+    if (replay->unknown_run != 0 && !wh_replay_find_run(replay, replay->unknown_run)) {
+        replay->at = replay->unknown_at;
+        wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
     }
 }
 
 void wh_replay_close(wh_replay_t *replay) {
-    wh_link_layout_free(replay->layout);
-    replay->layout = NULL;
+    for (size_t i = 0; i < WH_REPLAY_WINDOW; ++i) {
+        empty(&replay->slots[i]);
+    }
+    for (size_t i = 0; i < replay->cell_count; ++i) {
+        wh_link_layout_free(replay->cells[i].layout);
+        free(replay->cells[i].told);
+    }
+    replay->cell_count = 0;
+    if (replay->cell) {
+        wh_protocol_server_close(&replay->server);
+        replay->cell = NULL;
+    }
 }

@@ -77,6 +77,9 @@ static int add_expectation(lua_State *L) {
     const bool ok = lua_toboolean(L, 1) != 0;
     const char *text = pay_for_text(L, 2);
     wh_record_add_expectation(mcs->recorder.record, wh_sandbox_line(L, mcs->script), text, ok);
+    if (mcs->partners.expected) {
+        mcs->partners.expected(mcs->partners.user, mcs);
+    }
     return 0;
 }
 
@@ -89,6 +92,9 @@ static int begin_cycle(lua_State *L) {
     }
     (void)pay_for_text(L, 1);
     wh_record_add_cycle(mcs->recorder.record, wh_sandbox_line(L, mcs->script), name, mcs->track.slice);
+    if (mcs->partners.cycle) {
+        mcs->partners.cycle(mcs->partners.user, mcs);
+    }
     return 0;
 }
 

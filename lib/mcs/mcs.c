@@ -163,6 +163,9 @@ static void judge_missed(wh_mcs_t *mcs, int64_t missed) {
         snprintf(text, sizeof text, "at most %lld missed slices; the simulator missed %lld",
                  (long long)mcs->most_missed, (long long)missed);
         wh_record_add_expectation(mcs->recorder.record, 0, text, missed <= mcs->most_missed);
+        if (mcs->partners.expected) {
+            mcs->partners.expected(mcs->partners.user, mcs);
+        }
     }
 }
 
@@ -175,6 +178,9 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
         judge_missed(mcs, end.missed);
     }
     wh_recorder_finish(&mcs->recorder, &end);
+    if (mcs->layout && mcs->partners.finished) {
+        mcs->partners.finished(mcs->partners.user, mcs);
+    }
 }
 
 void wh_mcs_close(wh_mcs_t *mcs) {

@@ -29,6 +29,12 @@ typedef struct {
     /* Why the link answered a slice with this error, for its message: true until the next call. Null: the
      * error says it all. */
     const char *(*explain)(void *user, wh_status_t status);
+    /* The last expectation of the record was added, or its last cycle. */
+    void (*expected)(void *user, const wh_mcs_t *mcs);
+    void (*cycle)(void *user, const wh_mcs_t *mcs);
+    /* The record is closed: the run has ended, also by an error. Not called without a cell, nor at a
+     * prompt. */
+    void (*finished)(void *user, const wh_mcs_t *mcs);
     void *user;
 } wh_mcs_partners_t;
 

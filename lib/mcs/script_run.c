@@ -26,17 +26,19 @@ static bool ended_by_numbered_error(lua_State *L) {
 
 static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_sandbox_result_t *result) {
     const bool stopped = result->status == WH_SANDBOX_STOPPED;
+    bool is_bad_input = false;
     if (result->status != WH_SANDBOX_OK) {
-        if (!stopped && (result->status != WH_SANDBOX_ERROR ||
-                         !ended_by_numbered_error(wh_sandbox_state(run->sandbox)))) {
-            return refuse(run, result->message);
-        }
+        is_bad_input = !stopped && (result->status != WH_SANDBOX_ERROR ||
+                                    !ended_by_numbered_error(wh_sandbox_state(run->sandbox)));
         run->record.failure = wh_text_copy(result->message);
     }
     if (stopped) {
         wh_mcs_cut_short(&run->mcs, WH_STATUS_STOPPED, result->message);
     }
     wh_mcs_finish(&run->mcs);
+    if (is_bad_input) {
+        return refuse(run, result->message);
+    }
     return run->record.ok ? WH_RUN_MET : WH_RUN_FAILED;
 }
 

@@ -29,7 +29,8 @@ typedef struct {
 typedef enum {
     WH_RUN_MET,    /* the script ended and all it expected came true */
     WH_RUN_FAILED, /* an expectation, the cell, or an uncaught numbered error: the record tells */
-    /* Script, layout or parameter is not usable: `message` tells, the record is incomplete. */
+    /* Script, layout or parameter is not usable: `message` tells. The record has what came before, and the
+     * message as its failure; its layout is null if there was no cell yet. */
     WH_RUN_BAD_INPUT
 } wh_script_run_outcome_t;
 

@@ -332,7 +332,7 @@ static json_t *expectation(const void *subject, size_t i) {
 
 static void put_head(const wh_record_t *record, json_t *root) {
     wh_json_put_integer(root, "format", FORMAT);
-    wh_json_put(root, "ok", json_boolean(record->ok));
+    wh_json_put(root, "ok", record->is_untold ? json_null() : json_boolean(record->ok));
     if (record->failure) {
         wh_json_put_text(root, "failure", record->failure);
     }

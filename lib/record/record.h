@@ -61,8 +61,9 @@ typedef struct {
 typedef struct {
     char *script;              /* path as given */
     const wh_layout_t *layout; /* null when the script named none; lives as long as the record */
-    bool ok;       /* no command failed uncaught, every expectation was met, the cell had no complaint */
-    char *failure; /* the uncaught error's message with file and line, or null */
+    bool ok;        /* no command failed uncaught, every expectation was met, the cell had no complaint */
+    bool is_untold; /* read from a log that does not tell how the run ended: `ok` is then false */
+    char *failure;  /* the uncaught error's message with file and line, or null */
     int64_t slices;
     int64_t missed; /* of them, those that a free-running run lost on the way to the simulator */
     double simulated_s, wall_s;

@@ -70,7 +70,7 @@ error_t __wrap_argp_parse(const struct argp *argp, int argc, char **argv, unsign
 int __wrap_wh_run_and_print(wh_run_arguments_t *arguments);
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
 bool __wrap_wh_study_open(wh_study_t *study);
-bool __wrap_wh_node_open(wh_node_t *node, const char *url, const char *record);
+bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
 bool __wrap_wh_node_reaches_others(const char *url);
 wh_sandbox_t *__wrap_wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
                                          size_t count, wh_sandbox_result_t *result);
@@ -127,7 +127,7 @@ bool __wrap_wh_node_reaches_others(const char *url) {
     return true;
 }
 
-bool __wrap_wh_node_open(wh_node_t *node, const char *url, const char *record) {
+bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record) {
     (void)node;
     (void)url;
     (void)record;

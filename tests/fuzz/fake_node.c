@@ -20,7 +20,7 @@ static struct {
 } subscriptions[SUBSCRIPTIONS];
 static size_t subscription_count;
 
-bool wh_node_open(wh_node_t *node, const char *url, const char *record) {
+bool wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record) {
     (void)url;
     (void)record;
     memset(node, 0, sizeof *node);
@@ -98,10 +98,6 @@ int64_t wh_node_wall_us(void) {
 int64_t wh_node_clock_us(void) {
     /* Never 0, and no two the same, as with a real one. */
     return ++fuzz_clock_us;
-}
-
-void wh_node_flush_record(wh_node_t *node) {
-    (void)node;
 }
 
 /* What would be said must be one line. Nobody hears it. */

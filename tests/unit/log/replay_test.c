@@ -1,9 +1,11 @@
 /* Recordings in memory: what is the same, what differs and how that is named, what is not there. */
 #include "support/support.h"
 
+#include <unistd.h>
+
 #include "layout/layout.h"
-#include "link/messages.h"
-#include "log/replay.h"
+#include "link/recording.h"
+#include "log/reading.h"
 
 #define RUN 4711
 
@@ -87,7 +89,7 @@ static void record_changed_state(void (*change)(waferhand_state *message)) {
 }
 
 static const wh_replay_run_t *only_run(void) {
-    wh_replay_finish(&replay);
+    wh_replay_end(&replay);
     assert_int_equal(replay.run_count, 1);
     assert_int_equal(replay.runs[0].run, RUN);
     return &replay.runs[0];
@@ -104,7 +106,7 @@ static void the_same(void **state) {
         record_state();
     }
     assert_int_equal(only_run()->compared, 30);
-    assert_false(only_run()->differs);
+    assert_int_equal(only_run()->differing, 0);
     assert_true(only_run()->hash == wh_protocol_server_hash(&server));
     assert_int_equal(replay.server.simulator.table.counters.picked, 1);
 }
@@ -150,12 +152,12 @@ static void the_first_difference_is_named(void **state) {
         }
     }
     const wh_replay_run_t *run = only_run();
-    assert_true(run->differs);
+    assert_int_equal(run->differing, 2);
     assert_int_equal(run->difference.slice, 4);
     assert_string_equal(run->difference.what, "Wafer 2, position z");
     assert_near(run->difference.recorded, 900.5, 0);
     assert_near(run->difference.replayed, 900, 0);
-    assert_int_equal(run->compared, 4);
+    assert_int_equal(run->compared, 6);
 }
 
 static void another_command_is_found_out(void **state) {
@@ -167,7 +169,7 @@ static void another_command_is_found_out(void **state) {
         record_command(&message);
         record_state();
     }
-    assert_true(only_run()->differs);
+    assert_int_equal(only_run()->differing, 1);
     assert_int_equal(only_run()->difference.slice, 2);
     assert_string_equal(only_run()->difference.what, "EE, position y");
 }
@@ -180,7 +182,7 @@ static void valves_from_outside_are_followed(void **state) {
     record_command(&message);
     record_state();
     assert_int_equal(only_run()->outside_valves, 1);
-    assert_false(only_run()->differs);
+    assert_int_equal(only_run()->differing, 0);
 }
 
 static void a_hole_is_bridged(void **state) {
@@ -193,7 +195,7 @@ static void a_hole_is_bridged(void **state) {
             record_state();
         }
     }
-    assert_false(only_run()->differs);
+    assert_int_equal(only_run()->differing, 0);
     assert_int_equal(only_run()->taken_up, 1);
     assert_int_equal(only_run()->last_slice, 9);
 }
@@ -233,8 +235,410 @@ static void garbage_is_counted(void **state) {
     wh_replay_event(&replay, WH_CHANNEL_STATE, bytes, 10);
     wh_replay_event(&replay, WH_CHANNEL_CELL, bytes, 0);
     wh_replay_event(&replay, "SOMEBODY_ELSE", bytes, 1000);
-    assert_int_equal(replay.garbage, 3);
+    assert_int_equal(replay.losses[WH_REPLAY_GARBAGE].count, 3);
     assert_int_equal(replay.run_count, 0);
+}
+
+/* ------------------------------------------------------------------------------------------ what is not said */
+
+static void narrow_height(waferhand_state *message) {
+    message->wafers[1].position[1] += 1e-9;
+}
+
+/* The hash is the right one: the body alone is another. */
+static void a_body_without_a_check_differs(void **state) {
+    waferhand_state message;
+    (void)state;
+    for (int64_t seq = 1; seq <= 3; ++seq) {
+        const waferhand_command sent = command(seq);
+        simulate(seq);
+        record_command(&sent);
+        if (seq != 2) {
+            record_state();
+            continue;
+        }
+        assert_true(wh_link_decode_state(server.encoded, server.encoded_size, &message));
+        narrow_height(&message);
+        message.check = 0;
+        const int size = waferhand_state_encode(bytes, 0, (int)sizeof bytes, &message);
+        wh_replay_event(&replay, WH_CHANNEL_STATE, bytes, (size_t)size);
+        (void)waferhand_state_decode_cleanup(&message);
+    }
+    assert_int_equal(only_run()->compared, 3);
+    assert_int_equal(only_run()->differing, 1);
+    assert_int_equal(only_run()->difference.slice, 2);
+    assert_string_equal(only_run()->difference.what, "Wafer 2, position y");
+    assert_int_equal(replay.losses[WH_REPLAY_UNCHECKED].count, 1);
+}
+
+/* Free-running: states come some commands later, and some commands never came. */
+static void states_behind_later_commands(void **state) {
+    enum { SLICES = 40, LATE = 7 };
+    static uint8_t kept[SLICES + 1][8192];
+    static size_t sizes[SLICES + 1];
+    int64_t missed = 0;
+    (void)state;
+    for (int64_t seq = 1; seq <= SLICES + LATE; ++seq) {
+        waferhand_command sent = command(seq);
+        sent.lockstep = seq == 1 ? 1 : 0;
+        if (seq <= SLICES) {
+            record_command(&sent);
+            sizes[seq] = 0;
+            if (seq % 9 == 5) {
+                ++missed;
+            } else {
+                assert_int_not_equal(wh_protocol_server_command(&server, &sent, NULL), WH_SERVER_IGNORED);
+                memcpy(kept[seq], server.encoded, server.encoded_size);
+                sizes[seq] = server.encoded_size;
+            }
+        }
+        if (seq > LATE && sizes[seq - LATE] > 0) {
+            wh_replay_event(&replay, WH_CHANNEL_STATE, kept[seq - LATE], sizes[seq - LATE]);
+        }
+    }
+    const wh_replay_run_t *run = only_run();
+    assert_int_equal(run->compared, SLICES - missed);
+    assert_int_equal(run->differing, 0);
+    assert_int_equal(run->missed, missed);
+    assert_int_equal(run->unanswered + run->last_unanswered + run->taken_up + run->skipped, 0);
+}
+
+static void a_state_that_is_missing_is_counted(void **state) {
+    (void)state;
+    for (int64_t seq = 1; seq <= 9; ++seq) {
+        const waferhand_command sent = command(seq);
+        simulate(seq);
+        record_command(&sent);
+        if (seq != 4 && seq != 9) {
+            record_state();
+        }
+    }
+    assert_int_equal(only_run()->compared, 7);
+    assert_int_equal(only_run()->unanswered, 1);
+    assert_int_equal(only_run()->last_unanswered, 1);
+    assert_int_equal(only_run()->differing, 0);
+}
+
+static void messages_on_other_channels(void **state) {
+    (void)state;
+    const waferhand_command sent = command(1);
+    const int size = waferhand_command_encode(bytes, 0, (int)sizeof bytes, &sent);
+    wh_replay_event(&replay, "WAFERHAND_COMMANE", bytes, (size_t)size);
+    wh_replay_event(&replay, "SOMEBODY_ELSE", bytes, (size_t)size);
+    wh_replay_event(&replay, "WAFERHAND_ELSE", "12345678", 8);
+    wh_replay_event(&replay, "SOMEBODY_ELSE", "12345678", 8);
+    assert_int_equal(replay.losses[WH_REPLAY_STRAY].count, 3);
+}
+
+/* -------------------------------------------------------------------------------------------- event numbers */
+
+typedef struct {
+    const char *numbers;
+    uint64_t missing, doubled, moved, misnumbered;
+} numbered_t;
+
+static void event_numbers_tell_what_is_missing(void **state) {
+    static const numbered_t cases[] = {
+        {"0 1 2 3", 0, 0, 0, 0},     {"", 0, 0, 0, 0},          {"2 3", 2, 0, 0, 0},
+        {"0 1 4 5", 2, 0, 0, 0},     {"0 1 1 2", 0, 1, 0, 0},   {"0 1 2 2", 0, 1, 0, 0},
+        {"0 2 1 3", 0, 0, 1, 0},     {"0 1 9 3", 0, 0, 0, 1},   {"0 1 2 9", 6, 0, 0, 0},
+        {"0 4 1 2 3 5", 0, 0, 3, 0}, {"0 1 0 1 2", 0, 2, 0, 0}, {"5", 5, 0, 0, 0},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        wh_log_numbers_t numbers = {0};
+        const char *at = cases[i].numbers;
+        for (char *end = NULL; *at; at = end) {
+            wh_log_numbers_take(&numbers, strtoull(at, &end, 10), 0);
+        }
+        wh_log_numbers_finish(&numbers);
+        print_message("%s\n", cases[i].numbers);
+        assert_int_equal(wh_log_numbers_missing(&numbers), cases[i].missing);
+        assert_int_equal(numbers.doubled, cases[i].doubled);
+        assert_int_equal(numbers.moved, cases[i].moved);
+        assert_int_equal(numbers.misnumbered, cases[i].misnumbered);
+    }
+}
+
+/* ------------------------------------------------------------------------------------- logs damaged at random */
+
+#define HEADER 28
+#define EVENTS 2000
+/* Slices of the logs that are damaged. */
+#define SLICES 120
+
+typedef enum { OF_SLICES, OF_ALL, OF_VERSION_1, VERSIONS } version_t;
+
+/* A log in memory, and where its events begin. */
+typedef struct {
+    uint8_t *bytes;
+    size_t size;
+    size_t starts[EVENTS + 1];
+    size_t count;
+} log_t;
+
+static log_t whole[VERSIONS], damaged;
+static wh_recording_t recording;
+static wh_log_t reader;
+
+static void say(int32_t phase, int64_t seq, const char *text) {
+    const waferhand_mcs message = {.utime = 1000 * seq,
+                                   .seq = seq,
+                                   .run = RUN,
+                                   .layout_hash = (int64_t)server.identity.layout_hash,
+                                   .phase = phase,
+                                   .error = phase == WH_LINK_PHASE_MET ? 1 : 0,
+                                   .command = wh_link_borrowed(""),
+                                   .text = wh_link_borrowed(text)};
+    const int size = waferhand_mcs_encode(bytes, 0, (int)sizeof bytes, &message);
+    wh_recording_message(&recording, WH_CHANNEL_MCS, bytes, (size_t)size);
+}
+
+static void say_cell(void) {
+    static wh_link_cell_t cell;
+    assert_true(wh_link_cell_from_layout(layout, &server.identity, &cell));
+    const int size = waferhand_cell_encode(bytes, 0, (int)sizeof bytes, &cell.message);
+    wh_recording_message(&recording, WH_CHANNEL_CELL, bytes, (size_t)size);
+}
+
+static void say_slices(void) {
+    for (int64_t seq = 1; seq <= SLICES; ++seq) {
+        const waferhand_command message = command(seq);
+        const int size = waferhand_command_encode(bytes, 0, (int)sizeof bytes, &message);
+        wh_link_seal(bytes, (size_t)size);
+        wh_recording_message(&recording, WH_CHANNEL_COMMAND, bytes, (size_t)size);
+        simulate(seq);
+        wh_recording_message(&recording, WH_CHANNEL_STATE, server.encoded, server.encoded_size);
+        if (seq == SLICES / 2) {
+            say(WH_LINK_PHASE_MET, seq, "half of it");
+            say_cell();
+        }
+    }
+    say(WH_LINK_PHASE_OVER, SLICES, "passed; commands 0, expectations 1, met 1, cycles 0");
+}
+
+static size_t length_at(const log_t *log, size_t at) {
+    const uint8_t *header = log->bytes + at;
+    size_t channel = 0;
+    size_t data = 0;
+    for (size_t i = 0; i < 4; ++i) {
+        channel = channel << 8 | header[20 + i];
+        data = data << 8 | header[24 + i];
+    }
+    return HEADER + channel + data;
+}
+
+static void find_events(log_t *log) {
+    log->count = 0;
+    for (size_t at = 0; at < log->size; at += length_at(log, at)) {
+        assert_true(log->count < EVENTS);
+        log->starts[log->count++] = at;
+    }
+    log->starts[log->count] = log->size;
+}
+
+static bool is_on(const log_t *log, size_t event, const char *channel) {
+    return strncmp((const char *)log->bytes + log->starts[event] + HEADER, channel, strlen(channel)) == 0;
+}
+
+static void put_event(log_t *log, const log_t *from, size_t event) {
+    const size_t length = from->starts[event + 1] - from->starts[event];
+    memcpy(log->bytes + log->size, from->bytes + from->starts[event], length);
+    log->size += length;
+}
+
+/* As programs before recordings wrote it. */
+static void make_version_1(void) {
+    log_t *log = &whole[OF_VERSION_1];
+    uint64_t number = 0;
+    log->bytes = malloc(whole[OF_ALL].size);
+    log->size = 0;
+    for (size_t i = 0; i < whole[OF_ALL].count; ++i) {
+        if (is_on(&whole[OF_ALL], i, WH_CHANNEL_RECORDING)) {
+            continue;
+        }
+        uint8_t *header = log->bytes + log->size;
+        put_event(log, &whole[OF_ALL], i);
+        for (size_t k = 0; k < 8; ++k) {
+            header[4 + k] = (uint8_t)(number >> (56 - 8 * k));
+        }
+        ++number;
+    }
+    find_events(log);
+}
+
+static void record_whole(version_t version) {
+    char path[] = "/tmp/waferhand_replay_XXXXXX";
+    const int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    memset(&recording, 0, sizeof recording);
+    recording.options =
+        (wh_recording_options_t){.path = path, .program = "test", .all = version == OF_ALL, .replaces = true};
+    assert_true(wh_recording_open(&recording));
+    assert_int_equal(wh_protocol_server_open(&server, layout), WH_OK);
+    say_cell();
+    say_slices();
+    assert_true(wh_recording_close(&recording));
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    whole[version].bytes = malloc(1 << 20);
+    whole[version].size = fread(whole[version].bytes, 1, 1 << 20, file);
+    (void)fclose(file);
+    (void)close(fd);
+    (void)unlink(path);
+    find_events(&whole[version]);
+}
+
+static void record_all_versions(void) {
+    record_whole(OF_SLICES);
+    record_whole(OF_ALL);
+    make_version_1();
+    damaged.bytes = malloc(1 << 21);
+}
+
+/* Replays a log; `replay` then has its runs. */
+static wh_reading_verdict_t verdict_of(const log_t *log, bool lenient) {
+    wh_reading_t reading;
+    FILE *file = fmemopen(log->bytes, log->size > 0 ? log->size : 1, "rb");
+    assert_non_null(file);
+    wh_replay_close(&replay);
+    memset(&replay, 0, sizeof replay);
+    wh_reading_replay(file, &reader, &replay, &reading);
+    wh_log_close(&reader);
+    (void)fclose(file);
+    return wh_reading_judge(&replay, &reading, lenient);
+}
+
+static void copy_whole(const log_t *log) {
+    memcpy(damaged.bytes, log->bytes, log->size);
+    damaged.size = log->size;
+}
+
+/* True for a byte that nothing vouches for: a time stamp; and in a log of version 1 what is in messages without
+ * a check. */
+static bool is_unguarded(const log_t *log, version_t version, size_t at) {
+    size_t event = 0;
+    while (log->starts[event + 1] <= at) {
+        ++event;
+    }
+    const size_t within = at - log->starts[event];
+    const bool checked = is_on(log, event, WH_CHANNEL_COMMAND) || is_on(log, event, WH_CHANNEL_STATE);
+    return (within >= 12 && within < 20) || (version == OF_VERSION_1 && within >= HEADER && !checked);
+}
+
+static void flip_bits(const log_t *log, version_t version) {
+    copy_whole(log);
+    for (uint64_t left = 1 + wh_test_below(3); left > 0;) {
+        const size_t at = wh_test_below((uint32_t)log->size);
+        if (!is_unguarded(log, version, at)) {
+            damaged.bytes[at] ^= (uint8_t)(1U << wh_test_below(8));
+            --left;
+        }
+    }
+}
+
+static void overwrite(const log_t *log, version_t version) {
+    size_t at = wh_test_below((uint32_t)log->size);
+    copy_whole(log);
+    while (is_unguarded(log, version, at)) {
+        at = wh_test_below((uint32_t)log->size);
+    }
+    damaged.bytes[at] = (uint8_t)~damaged.bytes[at];
+    for (size_t left = wh_test_below(5000); left > 0 && ++at < log->size; --left) {
+        damaged.bytes[at] = (uint8_t)wh_test_random();
+    }
+}
+
+static void cut_off(const log_t *log, version_t version) {
+    (void)version;
+    copy_whole(log);
+    damaged.size = wh_test_below((uint32_t)log->size);
+}
+
+static void cut_out(const log_t *log, version_t version) {
+    const size_t at = wh_test_below((uint32_t)log->size);
+    const size_t length = 1 + wh_test_below((uint32_t)(log->size - at < 9000 ? log->size - at : 9000));
+    (void)version;
+    copy_whole(log);
+    memmove(damaged.bytes + at, damaged.bytes + at + length, log->size - at - length);
+    damaged.size -= length;
+}
+
+/* Events in another order, one of them twice or not at all. */
+static void shuffle(const log_t *log, version_t version) {
+    const size_t one = wh_test_below((uint32_t)log->count);
+    const size_t other = (one + 1 + wh_test_below((uint32_t)log->count - 1)) % log->count;
+    const uint64_t what = wh_test_below(4);
+    (void)version;
+    damaged.size = 0;
+    for (size_t i = 0; i < log->count; ++i) {
+        if (what == 0) { /* swapped */
+            put_event(&damaged, log, i == one ? other : (i == other ? one : i));
+        } else if (i != one) {
+            put_event(&damaged, log, i);
+        } else if (what == 1) { /* doubled */
+            put_event(&damaged, log, i);
+            put_event(&damaged, log, i);
+        }                              /* else: lost */
+        if (what == 3 && i == other) { /* moved */
+            put_event(&damaged, log, one);
+        }
+    }
+}
+
+static const struct {
+    const char *name;
+    void (*damage)(const log_t *log, version_t version);
+} kinds[] = {{"flipped bits", flip_bits},
+             {"bytes overwritten", overwrite},
+             {"cut off", cut_off},
+             {"bytes cut out", cut_out},
+             {"events shuffled", shuffle}};
+
+/* No damage yields a right check: no slice in the log is another one, so none may be said to differ. */
+static void damaged_logs_never_say_more_than_they_have(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    record_all_versions();
+    for (version_t version = OF_SLICES; version < VERSIONS; ++version) {
+        const wh_reading_verdict_t verdict = verdict_of(&whole[version], false);
+        assert_int_equal(verdict, WH_READING_SAME);
+        assert_int_equal(replay.runs[0].compared, SLICES);
+    }
+    for (int i = 0; i < 1000; ++i) {
+        const version_t version = (version_t)wh_test_below(VERSIONS);
+        const size_t kind = wh_test_below(sizeof kinds / sizeof kinds[0]);
+        do {
+            kinds[kind].damage(&whole[version], version);
+        } while (damaged.size == whole[version].size &&
+                 memcmp(damaged.bytes, whole[version].bytes, damaged.size) == 0);
+        const wh_reading_verdict_t lenient = verdict_of(&damaged, true);
+        const wh_reading_verdict_t verdict = verdict_of(&damaged, false);
+        if (verdict == WH_READING_SAME || verdict == WH_READING_DIFFERS || lenient == WH_READING_DIFFERS) {
+            fail_msg("log %d, version %d, %s: %s", i, (int)version, kinds[kind].name,
+                     wh_reading_word(verdict));
+        }
+    }
+}
+
+/* A state with another body and the right check of it differs in that slice alone. */
+static void a_forged_state_differs_where_it_stands(void **state) {
+    (void)state;
+    record_all_versions();
+    for (version_t version = OF_SLICES; version < VERSIONS; ++version) {
+        const log_t *log = &whole[version];
+        for (size_t event = 0; event < log->count; ++event) {
+            if (!is_on(log, event, WH_CHANNEL_STATE)) {
+                continue;
+            }
+            const size_t data = log->starts[event] + HEADER + strlen(WH_CHANNEL_STATE);
+            copy_whole(log);
+            damaged.bytes[data + 100 + wh_test_below(80)] ^= 1;
+            wh_link_seal(damaged.bytes + data, log->starts[event + 1] - data);
+            assert_int_equal(verdict_of(&damaged, false), WH_READING_DIFFERS);
+            assert_int_equal(replay.runs[0].differing, 1);
+        }
+    }
 }
 
 int main(void) {
@@ -247,6 +651,13 @@ int main(void) {
         cmocka_unit_test_setup_teardown(a_hole_is_bridged, set_up, tear_down),
         cmocka_unit_test_setup_teardown(cells_that_no_layout_describes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(garbage_is_counted, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_body_without_a_check_differs, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(states_behind_later_commands, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_state_that_is_missing_is_counted, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(messages_on_other_channels, set_up, tear_down),
+        cmocka_unit_test(event_numbers_tell_what_is_missing),
+        cmocka_unit_test_setup_teardown(damaged_logs_never_say_more_than_they_have, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_forged_state_differs_where_it_stands, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,61 @@
+/* Within the replay: how messages get to the slices, and how a recorded state is compared with the replayed
+ * one. */
+#ifndef WH_LOG_REPLAY_INTERNAL_H
+#define WH_LOG_REPLAY_INTERNAL_H
+
+#include "replay.h"
+
+/* Counts something of ours that is not used. */
+void wh_replay_lose(wh_replay_t *replay, wh_replay_loss_t loss);
+
+/* The entry of a run: null if it is not there; or made, null if there are too many. */
+wh_replay_run_t *wh_replay_find_run(wh_replay_t *replay, int64_t run);
+wh_replay_run_t *wh_replay_entry(wh_replay_t *replay, int64_t run);
+
+/* Null if no cell with this hash was told. */
+wh_replay_cell_t *wh_replay_find_cell(wh_replay_t *replay, uint64_t hash);
+
+/* Sound messages of slices, with a run and a number in range. The state is accepted or refused (its status);
+ * data and size are as it came. */
+void wh_replay_take_command(wh_replay_t *replay, const waferhand_command *message);
+void wh_replay_take_state(wh_replay_t *replay, const waferhand_state *message, const void *data, size_t size);
+void wh_replay_take_refusal(wh_replay_t *replay, const waferhand_state *message, const void *data,
+                            size_t size);
+void wh_replay_take_slices(wh_replay_t *replay, const wh_slices_t *slices);
+
+/* Tells the listener, if there is one. */
+void wh_replay_tell(const wh_replay_t *replay, const waferhand_command *command,
+                    const waferhand_state *message);
+
+/* Tells of a block's last slice, whose whole state has not come. */
+void wh_replay_tell_last(wh_replay_t *replay);
+
+/* Goes on from a recorded state. False if no simulator could have been in it. */
+bool wh_replay_restore(wh_replay_t *replay, const waferhand_state *message);
+
+/* Steps a command and compares the state, which is as it came in `bytes`. */
+void wh_replay_step(wh_replay_t *replay, const waferhand_command *command, const waferhand_state *message,
+                    const uint8_t *bytes, size_t size);
+
+/* Steps a command whose state is not in the log. */
+void wh_replay_step_alone(wh_replay_t *replay, const waferhand_command *command);
+
+/* Steps a slice of a block, replay->last, whose hash stands for the state. */
+void wh_replay_step_hashed(wh_replay_t *replay, const int32_t told[], uint64_t hash);
+
+/* Compares the whole state of the block's last slice. */
+void wh_replay_take_last_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
+                               size_t size);
+
+/* A command that the simulator took and the replay refuses, or the other way round. */
+void wh_replay_differ_in_status(wh_replay_run_t *run, int64_t slice, int32_t recorded, int32_t replayed);
+
+/* True if an event is the collision check's, which a replay has not. */
+bool wh_replay_is_collision(int32_t kind);
+
+/* True if the states are not the same, bit for bit, but for their checks and events of the collision check.
+ * `difference` then says where; else it is unchanged. */
+bool wh_replay_differs(const wh_layout_t *layout, const waferhand_state *recorded,
+                       const waferhand_state *replayed, wh_replay_difference_t *difference);
+
+#endif
