@@ -188,7 +188,6 @@ static void perform(wh_session_t *session, request_t *request) {
         wh_record_forget(&session->record);
     }
     const size_t events = session->record.event_count;
-    wh_sandbox_renew(session->sandbox);
     if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), execute_line, request, &result)) {
         request->status = status_of(result.status);
         write_error(request->answer, request->size, request->status,
@@ -205,6 +204,7 @@ wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *an
         write_error(answer, size, WH_STATUS_BUSY, "");
         return WH_STATUS_BUSY;
     }
+    wh_sandbox_renew(session->sandbox); /* before a stop may come: it would take that back */
     session->executing = 1;
     if (session->options.report) {
         session->options.report(session->options.report_user, line, WH_OK, NULL);

@@ -149,10 +149,19 @@ static bool is_interrupted(const wh_prompt_t *prompt) {
     return interrupted;
 }
 
+/* A signal that came before the command stops it, too: it is not begun. */
+static wh_status_t perform(wh_prompt_t *prompt, const char *line) {
+    if (!wh_interrupt_is_due()) {
+        return wh_session_execute(prompt->input.session, line, prompt->answer, sizeof prompt->answer);
+    }
+    snprintf(prompt->answer, sizeof prompt->answer, "ERROR %d %s: %s", (int)WH_STATUS_STOPPED,
+             wh_status_name(WH_STATUS_STOPPED), wh_record_error_text(WH_STATUS_STOPPED));
+    return WH_STATUS_STOPPED;
+}
+
 static void execute(wh_prompt_t *prompt, const char *line) {
-    wh_session_t *session = prompt->input.session;
-    wh_interrupt_stop_session(session);
-    const wh_status_t status = wh_session_execute(session, line, prompt->answer, sizeof prompt->answer);
+    wh_interrupt_stop_session(prompt->input.session);
+    const wh_status_t status = perform(prompt, line);
     wh_interrupt_stop_session(NULL);
     prompt->failed = prompt->failed || status != WH_OK;
     print_answer(prompt, status);
