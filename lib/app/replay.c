@@ -46,7 +46,7 @@ typedef struct {
     wh_reading_verdict_t verdict;
 } result_t;
 
-/* ---------------------------------------------------------------------------------------------- for people */
+/* --------------------------------------------------------------------------------------------- for people */
 
 /* Prints "  1 slice ..." or "  2 slices ..." unless it is none. */
 static void print_counted(int64_t count, const char *one, const char *many) {
@@ -235,7 +235,7 @@ static void print_table(const result_t *result) {
     puts(verdicts[result->verdict]);
 }
 
-/* -------------------------------------------------------------------------------------------- for programs */
+/* ------------------------------------------------------------------------------------------- for programs */
 
 static json_t *hexadecimal(uint64_t value) {
     return json_sprintf("%016llx", (unsigned long long)value);
@@ -252,7 +252,7 @@ static json_t *difference_to_json(const wh_replay_run_t *run) {
 }
 
 static json_t *outcome_to_json(const wh_replay_run_t *run) {
-    const wh_outcome_t *told = &run->told;
+    const wh_run_told_t *told = &run->told;
     if (told->verdict == WH_OUTCOME_UNTOLD) {
         return json_null();
     }
@@ -342,7 +342,7 @@ static int print_json(const result_t *result) {
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------- reading */
+/* ------------------------------------------------------------------------------------------------ reading */
 
 static void print_unusable(const result_t *result) {
     const char *path = result->arguments->path;

@@ -241,6 +241,13 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
     return written;
 }
 
+static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
+                        wh_signals_t *signals) {
+    const char *layout = run->record.layout ? run->record.layout->path : NULL;
+    return wh_run_files_are_apart(arguments, layout) && write_segments(arguments, run) &&
+           write_report(arguments, run, signals);
+}
+
 /* A script that ends with an error of its own: what came before is shown, if a slice did, and the error with
  * it. */
 static int hand_on_bad(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
@@ -259,12 +266,7 @@ static int hand_on(const wh_run_arguments_t *arguments, const wh_script_run_t *r
     if (outcome == WH_RUN_BAD_INPUT) {
         return hand_on_bad(arguments, run, signals);
     }
-    const char *layout = run->record.layout ? run->record.layout->path : NULL;
-    if (!wh_run_files_are_apart(arguments, layout) || !write_segments(arguments, run) ||
-        !write_report(arguments, run, signals)) {
-        return WH_EXIT_USAGE;
-    }
-    if (!wh_app_is_printed(wh_run_print(arguments, &run->record))) {
+    if (!write_files(arguments, run, signals) || !wh_app_is_printed(wh_run_print(arguments, &run->record))) {
         return WH_EXIT_USAGE;
     }
     /* The table ends with the failure. Without a terminal nobody sees the table, so it goes to standard

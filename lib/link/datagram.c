@@ -29,9 +29,19 @@ static uint64_t word_at(const uint8_t *bytes, size_t size) {
     return word;
 }
 
+/* The same of a whole word, which compilers make one instruction or two of. */
+static uint64_t whole_word_at(const uint8_t *b) {
+    return (uint64_t)b[0] << 56 | (uint64_t)b[1] << 48 | (uint64_t)b[2] << 40 | (uint64_t)b[3] << 32 |
+           (uint64_t)b[4] << 24 | (uint64_t)b[5] << 16 | (uint64_t)b[6] << 8 | (uint64_t)b[7];
+}
+
 static uint64_t check_of(const uint8_t *bytes, size_t size) {
     uint64_t hash = WH_HASH_START;
-    for (size_t at = 0; at < size; at += 8) {
+    size_t at = 0;
+    for (; at + 8 <= size; at += 8) {
+        hash = wh_hash_word(hash, whole_word_at(bytes + at));
+    }
+    if (at < size) {
         hash = wh_hash_word(hash, word_at(bytes + at, size - at));
     }
     return hash != 0 ? hash : 1;

@@ -56,7 +56,7 @@ typedef struct {
     wh_mcs_process_answer_t answered[WH_CONTROL_ANSWERED];
     size_t answered_count;
     uint64_t requests, garbage;            /* datagrams on WAFERHAND_REQUEST: sound ones, others */
-    wh_outcome_t outcome;                  /* what was told so far, and the verdict once there is one */
+    wh_run_told_t outcome;                 /* what was told so far, and the verdict once there is one */
     char reason[WH_SANDBOX_MESSAGE_BYTES]; /* of the verdict */
     uint64_t simulator_layout; /* as the last cell told it: the hash, and the path, fit to print */
     char simulator_path[200];
@@ -84,8 +84,8 @@ bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LI
  * that does not fit a datagram the answer tells how much was cut off. */
 void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *line, const char *text);
 
-/* Tells what was expected before there was a run to tell it of. Call it once the identity is known; connecting
- * by the partners does so. */
+/* Tells what was expected before there was a run to tell it of. Call it once the identity is known, as
+ * connecting by the partners does. */
 void wh_mcs_process_catch_up(wh_mcs_process_t *control, const wh_mcs_t *mcs);
 
 /* Answers the requests that wait, and tells that the run is over, how it ended, and how much was told of it

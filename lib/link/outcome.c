@@ -13,7 +13,7 @@ const char *wh_outcome_word(wh_outcome_verdict_t verdict) {
     return words[verdict];
 }
 
-void wh_outcome_write(const wh_outcome_t *outcome, const char *reason, char *text, size_t size) {
+void wh_outcome_write(const wh_run_told_t *outcome, const char *reason, char *text, size_t size) {
     const bool has_reason = reason && reason[0] != '\0';
     (void)snprintf(text, size,
                    "%s; commands %" PRId64 ", expectations %" PRId64 ", met %" PRId64 ", cycles %" PRId64
@@ -32,8 +32,12 @@ static bool read_verdict(const char *word, wh_outcome_verdict_t *verdict) {
     return false;
 }
 
-const char *wh_outcome_read(const char *text, wh_outcome_t *outcome) {
-    wh_outcome_t read = {0};
+static bool is_count_sound(const wh_run_told_t *told) {
+    return told->commands >= 0 && told->met >= 0 && told->cycles >= 0 && told->met <= told->expectations;
+}
+
+const char *wh_outcome_read(const char *text, wh_run_told_t *outcome) {
+    wh_run_told_t read = {0};
     char word[8];
     int length = 0;
     const int count = sscanf(text,
@@ -41,9 +45,8 @@ const char *wh_outcome_read(const char *text, wh_outcome_t *outcome) {
                              ", cycles %18" SCNd64 "%n",
                              word, &read.commands, &read.expectations, &read.met, &read.cycles, &length);
     const char *rest = text + length;
-    const bool sound = count == 5 && length > 0 && read.commands >= 0 && read.met >= 0 && read.cycles >= 0 &&
-                       read.met <= read.expectations && (rest[0] == '\0' || strncmp(rest, "; ", 2) == 0);
-    if (!sound || !read_verdict(word, &read.verdict)) {
+    const bool ends = rest[0] == '\0' || strncmp(rest, "; ", 2) == 0;
+    if (count != 5 || !ends || !is_count_sound(&read) || !read_verdict(word, &read.verdict)) {
         return NULL;
     }
     *outcome = read;

@@ -23,7 +23,7 @@ typedef enum {
 typedef struct {
     wh_outcome_verdict_t verdict;
     int64_t commands, expectations, met, cycles;
-} wh_outcome_t;
+} wh_run_told_t;
 
 /* Room for a text without a reason. */
 #define WH_OUTCOME_BYTES 160
@@ -32,10 +32,10 @@ typedef struct {
 const char *wh_outcome_word(wh_outcome_verdict_t verdict);
 
 /* Writes the text, with `reason` behind it unless that is null or empty. */
-void wh_outcome_write(const wh_outcome_t *outcome, const char *reason, char *text, size_t size);
+void wh_outcome_write(const wh_run_told_t *outcome, const char *reason, char *text, size_t size);
 
-/* Reads it. Returns the reason within `text`, "" if there is none; null, and nothing written, if it is no such
- * text, as from an older program. */
-const char *wh_outcome_read(const char *text, wh_outcome_t *outcome);
+/* Reads it. Returns the reason within `text`, "" if there is none; null, and nothing written, if it is no
+ * such text, as from an older program. */
+const char *wh_outcome_read(const char *text, wh_run_told_t *outcome);
 
 #endif

@@ -77,10 +77,11 @@ bool wh_link_is_slices(const void *data, size_t size);
 /* The longest name of a channel. */
 #define WH_LINK_CHANNEL 63
 
-/* waferhand_recording.digest: with one more event on one of our channels. Begin with 0. Cost: about 2 ns for each
- * eight bytes.
+/* waferhand_recording.digest: with one more event on one of our channels. Begin with 0. Cost: about 2 ns for
+ * each eight bytes.
  *
- * d = wh_hash_word(wh_hash_word(d, c), m) with the checks (messages.h) of channel and data, all of their bytes. */
+ * d = wh_hash_word(wh_hash_word(d, c), m) with the checks (messages.h) of channel and data, over all of their
+ * bytes. */
 uint64_t wh_link_digest(uint64_t before, const char *channel, const void *data, size_t size);
 
 /* Decodes what a log is; the check must be there and right. True for other versions, too, if they have the

@@ -13,7 +13,7 @@
 /* No cell has anything farther away, mm or rad. */
 #define FARTHEST 1e9
 
-/* --------------------------------------------------------------------------------------------------- texts */
+/* -------------------------------------------------------------------------------------------------- texts */
 
 __attribute__((format(printf, 2, 3))) static void note(wh_log_run_t *run, const char *format, ...) {
     if (run->note_count == WH_LOG_NOTES) {
@@ -167,7 +167,7 @@ static void on_state(void *user, const waferhand_command *command, const waferha
     }
 }
 
-/* --------------------------------------------------------------------------------- what there is in the log */
+/* ------------------------------------------------------------------------------- what there is in the log */
 
 static void add_run(wh_log_run_t *run, int64_t id, uint64_t layout_hash) {
     for (size_t i = run->run_count; i > 0; --i) {
@@ -284,7 +284,7 @@ static void note_lost(wh_log_run_t *run, const char *what, int64_t told, size_t 
 }
 
 static void note_outcome(wh_log_run_t *run) {
-    const wh_outcome_t *outcome = &run->outcome;
+    const wh_run_told_t *outcome = &run->outcome;
     if (outcome->verdict == WH_OUTCOME_UNTOLD) {
         note(run, "The log does not tell if the run passed.");
         return;

@@ -1,9 +1,9 @@
 /* A recorded run, read from an LCM event log: what a report shows of it.
  *
- * Commands, expectations, cycles and the verdict come from WAFERHAND_MCS, and go by the slices that they name,
- * not by their places in the log. Everything else is what the slices' states say, as a replay goes through
- * them (log/replay.h): commands beside their states, whichever came first. A log does not tell why the robot
- * stood still. It counts as waiting for vacuum if within the same command a valve has opened since an axis
+ * Commands, expectations, cycles and the verdict come from WAFERHAND_MCS. They go by the slices that they
+ * name, not by their places in the log. Everything else is what the slices' states say, as a replay goes
+ * through them (log/replay.h): commands beside their states, whichever came first. A log does not tell why
+ * the robot stood still. It counts as waiting for vacuum if within the same command a valve has opened since an axis
  * other than Z moved.
  */
 #ifndef WH_LOG_LOG_RUN_H
@@ -63,7 +63,7 @@ typedef struct {
     size_t gaps;           /* stretches of slices that are not in the log */
     wh_command_t last;     /* the last slice: its number, axes and valves */
     bool has_opened_valve; /* in the running command, since an axis other than Z moved */
-    wh_outcome_t outcome;
+    wh_run_told_t outcome;
     int32_t last_expectation, last_cycle; /* the highest numbers that were told */
     char text[WH_LOG_NOTES][WH_LOG_NOTE_BYTES];
     const char *notes[WH_LOG_NOTES];

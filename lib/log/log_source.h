@@ -1,7 +1,7 @@
 /* The bytes of a log: as they stand in the file, or decompressed if it begins as zstd's do.
  *
- * A compressed file has frames that each stand alone. A frame that is damaged is left where it goes wrong, and
- * reading goes on with the next one that begins in the file.
+ * A compressed file has frames that each stand alone. A frame that is damaged is left where it goes wrong.
+ * Reading goes on with the next one that begins in the file.
  */
 #ifndef WH_LOG_LOG_SOURCE_H
 #define WH_LOG_LOG_SOURCE_H

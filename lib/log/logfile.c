@@ -67,7 +67,7 @@ static bool pass_over(wh_log_t *log, uint64_t size) {
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------- headers */
+/* ------------------------------------------------------------------------------------------------ headers */
 
 static uint64_t big_endian(const uint8_t *bytes, size_t count) {
     uint64_t value = 0;
@@ -137,7 +137,7 @@ static wh_log_result_t skip_damage(wh_log_t *log) {
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- events */
+/* ------------------------------------------------------------------------------------------------- events */
 
 static void take_header(wh_log_t *log, const uint8_t *bytes) {
     const size_t channel = (size_t)big_endian(bytes + 20, 4);
@@ -206,7 +206,7 @@ wh_log_result_t wh_log_next(wh_log_t *log) {
     return length > 0 ? take_event(log, length) : skip_damage(log);
 }
 
-/* ------------------------------------------------------------------------------------------------- numbers */
+/* ------------------------------------------------------------------------------------------------ numbers */
 
 static void note_gap(wh_log_numbers_t *numbers, uint64_t from, uint64_t to) {
     if (numbers->gap_count < WH_LOG_GAPS) {

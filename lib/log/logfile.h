@@ -56,7 +56,7 @@ void wh_log_close(wh_log_t *log);
 /* The next event, or what stands in its place. After WH_LOG_END and WH_LOG_CUT there is nothing more. */
 wh_log_result_t wh_log_next(wh_log_t *log);
 
-/* ------------------------------------------------------------------------------------------------- numbers */
+/* ------------------------------------------------------------------------------------------------ numbers */
 
 /* Stretches of numbers that did not come; more than these are only counted together. */
 #define WH_LOG_GAPS 64

@@ -7,7 +7,7 @@ const char *wh_reading_word(wh_reading_verdict_t verdict) {
     return words[verdict];
 }
 
-/* ------------------------------------------------------------------------------------------------- reading */
+/* ------------------------------------------------------------------------------------------------ reading */
 
 static bool is_over(wh_log_result_t result) {
     return result == WH_LOG_END || result == WH_LOG_CUT;
@@ -64,7 +64,7 @@ void wh_reading_replay(FILE *file, wh_log_t *log, wh_replay_t *replay, wh_readin
     reading->cut_at = log->offset;
 }
 
-/* ------------------------------------------------------------------------------------------------- judging */
+/* ------------------------------------------------------------------------------------------------ judging */
 
 static const wh_replay_run_t *last_begun(const wh_replay_t *replay) {
     const wh_replay_run_t *last = NULL;
@@ -93,14 +93,25 @@ bool wh_reading_lacks_end(const wh_replay_t *replay, const wh_replay_run_t *run)
     return !run->over && run == last_begun(replay) && replay->recording.closed == WH_RECORDING_BEGINS;
 }
 
+/* True if the recording's digest shows that all of it is as it was written. */
+static bool is_vouched_for(const wh_replay_recording_t *recording) {
+    return recording->version > 0 && recording->closed != WH_RECORDING_BEGINS && !recording->is_changed;
+}
+
+/* Messages that a network may have made so, as well as the file. */
+static bool has_strange_messages(const wh_replay_t *replay) {
+    return replay->losses[WH_REPLAY_CONTRADICTS].count + replay->losses[WH_REPLAY_STRAY].count > 0 &&
+           !is_vouched_for(&replay->recording);
+}
+
+static bool are_numbers_odd(const wh_log_numbers_t *numbers) {
+    return numbers->doubled + numbers->moved + numbers->misnumbered + wh_log_numbers_missing(numbers) > 0;
+}
+
 /* What no network does. */
 static bool is_file_damaged(const wh_replay_t *replay, const wh_reading_t *reading) {
-    const wh_log_numbers_t *numbers = &reading->numbers;
-    bool damaged = reading->damage_count > 0 || reading->broken > 0 ||
-                   numbers->doubled + numbers->moved + numbers->misnumbered > 0 ||
-                   wh_log_numbers_missing(numbers) > 0 || replay->losses[WH_REPLAY_CONTRADICTS].count > 0 ||
-                   replay->losses[WH_REPLAY_STRAY].count > 0 || replay->runs_left_out > 0 ||
-                   replay->recording.is_changed;
+    bool damaged = reading->damage_count > 0 || reading->broken > 0 || are_numbers_odd(&reading->numbers) ||
+                   has_strange_messages(replay) || replay->runs_left_out > 0 || replay->recording.is_changed;
     for (size_t i = 0; i < replay->run_count; ++i) {
         damaged = damaged || replay->runs[i].doubtful > 0;
     }
@@ -127,26 +138,40 @@ static bool is_something_missing(const wh_replay_t *replay) {
     return missing;
 }
 
-wh_reading_verdict_t wh_reading_judge(const wh_replay_t *replay, const wh_reading_t *reading, bool lenient) {
-    const wh_replay_run_t *last = last_begun(replay);
-    int64_t compared = 0;
-    bool doubtful = false;
+typedef struct {
+    int64_t compared;
+    bool differs, is_doubtful;
+} found_t;
+
+static found_t look_at_runs(const wh_replay_t *replay) {
+    found_t found = {0, false, false};
     for (size_t i = 0; i < replay->run_count; ++i) {
         const wh_replay_run_t *run = &replay->runs[i];
-        compared += run->compared;
-        if (run->differing > 0 && !wh_reading_is_doubtful(replay, run)) {
-            return WH_READING_DIFFERS;
-        }
-        doubtful = doubtful || run->differing > 0;
+        const bool doubtful = wh_reading_is_doubtful(replay, run);
+        found.compared += run->compared;
+        found.differs = found.differs || (run->differing > 0 && !doubtful);
+        found.is_doubtful = found.is_doubtful || (run->differing > 0 && doubtful);
     }
-    if (!last || wh_reading_is_unknown(replay)) {
+    return found;
+}
+
+static bool has_end(const wh_replay_t *replay, const wh_reading_t *reading) {
+    const bool ends = replay->recording.version > 0 ? replay->recording.closed != WH_RECORDING_BEGINS
+                                                    : last_begun(replay)->over;
+    return ends && !reading->is_cut;
+}
+
+wh_reading_verdict_t wh_reading_judge(const wh_replay_t *replay, const wh_reading_t *reading, bool lenient) {
+    const found_t found = look_at_runs(replay);
+    if (!last_begun(replay) || wh_reading_is_unknown(replay)) {
         return WH_READING_UNUSABLE;
     }
-    if (doubtful || compared == 0 || is_file_damaged(replay, reading) ||
+    if (found.differs) {
+        return WH_READING_DIFFERS;
+    }
+    if (found.is_doubtful || found.compared == 0 || is_file_damaged(replay, reading) ||
         (!lenient && is_something_missing(replay))) {
         return WH_READING_INCOMPLETE;
     }
-    const bool ends =
-        replay->recording.version > 0 ? replay->recording.closed != WH_RECORDING_BEGINS : last->over;
-    return reading->is_cut || !ends ? WH_READING_CUT : WH_READING_SAME;
+    return has_end(replay, reading) ? WH_READING_SAME : WH_READING_CUT;
 }

@@ -36,8 +36,8 @@ typedef enum {
 /* One word: same, differs, unusable, incomplete, cut. */
 const char *wh_reading_word(wh_reading_verdict_t verdict);
 
-/* Replays the file from its beginning. `replay` is as wh_replay_t says, `log` the caller's memory, to be closed
- * by the caller. */
+/* Replays the file from its beginning. `replay` is as wh_replay_t says, `log` the caller's memory, which the
+ * caller closes. */
 void wh_reading_replay(FILE *file, wh_log_t *log, wh_replay_t *replay, wh_reading_t *reading);
 
 /* What was read shows. `lenient` excuses what a network may do: messages that are lost, late or garbage, and

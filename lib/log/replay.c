@@ -12,7 +12,7 @@ void wh_replay_lose(wh_replay_t *replay, wh_replay_loss_t loss) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- runs */
+/* --------------------------------------------------------------------------------------------------- runs */
 
 wh_replay_run_t *wh_replay_find_run(wh_replay_t *replay, int64_t run) {
     for (size_t i = replay->run_count; i > 0; --i) {
@@ -80,7 +80,7 @@ static bool enter_run(wh_replay_t *replay, int64_t id, uint64_t layout_hash) {
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------- waiting */
+/* ------------------------------------------------------------------------------------------------ waiting */
 
 static wh_replay_slot_t *slot_of(wh_replay_t *replay, int64_t seq) {
     return &replay->slots[seq % WH_REPLAY_WINDOW];
@@ -272,7 +272,7 @@ void wh_replay_finish(wh_replay_t *replay) {
     }
 }
 
-/* ------------------------------------------------------------------------------------- commands and states */
+/* ------------------------------------------------------------------------------------ commands and states */
 
 /* True if a slice may still go through: its run is the current one, and it has not gone through already. */
 static bool is_new(wh_replay_t *replay, int64_t run, int64_t seq, int64_t layout_hash) {
@@ -295,17 +295,9 @@ void wh_replay_take_command(wh_replay_t *replay, const waferhand_command *messag
 }
 
 /* The replay must refuse the same command for the same reason. */
-void wh_replay_take_refusal(wh_replay_t *replay, const waferhand_state *message, const void *data,
-                            size_t size) {
+static void refuse_again(wh_replay_t *replay, const waferhand_state *message, const void *data, size_t size) {
     wh_replay_run_t *run = replay->run;
     wh_protocol_server_t *server = &replay->server;
-    if (!run || run->run != message->run || message->seq != replay->seq + 1 || !is_at_hand(replay) ||
-        !has_command(replay, message->seq)) {
-        if (!run || run->run != message->run || message->seq > run->last_refused) {
-            wh_replay_lose(replay, WH_REPLAY_LATE);
-        }
-        return;
-    }
     wh_replay_slot_t *slot = slot_of(replay, message->seq);
     const wh_protocol_server_result_t result = wh_protocol_server_command(server, &slot->command, NULL);
     slot->has_command = false;
@@ -320,20 +312,19 @@ void wh_replay_take_refusal(wh_replay_t *replay, const waferhand_state *message,
     wh_replay_tell(replay, NULL, message);
 }
 
-void wh_replay_take_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
-                          size_t size) {
+void wh_replay_take_refusal(wh_replay_t *replay, const waferhand_state *message, const void *data,
+                            size_t size) {
     const bool is_current = replay->run && replay->run->run == message->run;
-    if (is_current && replay->has_last && message->seq == replay->seq) {
-        wh_replay_take_last_state(replay, message, data, size);
-        return;
-    }
     wh_replay_tell_last(replay);
-    if (is_current && !replay->is_synchronous && message->seq == replay->seq) {
-        --replay->seq; /* behind a block that could not be stepped */
+    if (is_current && message->seq == replay->seq + 1 && is_at_hand(replay) &&
+        has_command(replay, message->seq)) {
+        refuse_again(replay, message, data, size);
+    } else if (!is_current || message->seq > replay->run->last_refused) {
+        wh_replay_lose(replay, WH_REPLAY_LATE);
     }
-    if (!is_new(replay, message->run, message->seq, message->layout_hash)) {
-        return;
-    }
+}
+
+static void keep_state(wh_replay_t *replay, const waferhand_state *message, const void *data, size_t size) {
     wh_replay_slot_t *slot = make_slot(replay, message->seq);
     if (!slot->state) {
         slot->state = wh_array_new(size, 1);
@@ -342,6 +333,22 @@ void wh_replay_take_state(wh_replay_t *replay, const waferhand_state *message, c
         slot->missed = message->missed;
         while (let_through(replay)) {
         }
+    }
+}
+
+void wh_replay_take_state(wh_replay_t *replay, const waferhand_state *message, const void *data,
+                          size_t size) {
+    const bool is_last = replay->run && replay->run->run == message->run && message->seq == replay->seq;
+    if (is_last && replay->has_last) {
+        wh_replay_take_last_state(replay, message, data, size);
+        return;
+    }
+    wh_replay_tell_last(replay);
+    if (is_last && !replay->is_synchronous && replay->seq > 0) {
+        --replay->seq; /* behind a block that could not be stepped */
+    }
+    if (is_new(replay, message->run, message->seq, message->layout_hash)) {
+        keep_state(replay, message, data, size);
     }
 }
 

@@ -4,9 +4,10 @@
  *
  * A command waits for its state, and a state for its command, at most WH_REPLAY_WINDOW slices: messages may
  * stand in any order. A command is stepped with the valves that its state says were in force (they may have
- * come from outputs.txt). A slice of a block (link/slices.h) is compared by its hash. Where commands are not in the log, the replay is taken up from the next whole
- * state. Each slice is compared once; what comes again, as over a lossy network, is passed over. Of each run
- * the first difference is named, and how many slices differ.
+ * come from outputs.txt). A slice of a block (link/slices.h) is compared by its hash. Where commands are not
+ * in the log, the replay is taken up from the next whole state. Each slice is compared once; what comes again,
+ * as over a lossy network, is passed over. Of each run the first difference is named, and how many slices
+ * differ.
  *
  * What was passed over, and why, is counted: nothing of ours is left out in silence. Not compared are events
  * of the collision check, since messages do not tell shapes. WAFERHAND_MCS and WAFERHAND_REQUEST have no
@@ -54,9 +55,9 @@ typedef struct {
     uint64_t hash;          /* after the last slice */
     wh_replay_difference_t difference; /* if any differ */
     bool over;                         /* motion control said that the run was over */
-    wh_outcome_t told;                 /* and how it ended */
+    wh_run_told_t told;                /* and how it ended */
     wh_log_numbers_t expectations;     /* those that are in the log */
-    int64_t unmet;                     /* of these */
+    int64_t unmet;                     /* messages that say so of one */
 } wh_replay_run_t;
 
 /* Why something of ours was not used. */
@@ -64,7 +65,7 @@ typedef enum {
     WH_REPLAY_GARBAGE,     /* on our channels, and no sound message */
     WH_REPLAY_UNCHECKED,   /* a command or a state without a check: nobody knows if it is as it was sent */
     WH_REPLAY_STRAY,       /* a message of ours on a channel that is none of ours */
-    WH_REPLAY_CONTRADICTS, /* a cell that is not as it was told before, or a proximity that its state has not */
+    WH_REPLAY_CONTRADICTS, /* what the log tells in another way elsewhere, such as a cell */
     WH_REPLAY_HOMELESS,    /* a command or a state of a layout whose cell is not in the log */
     WH_REPLAY_LATE         /* a state or a command of a run that is over, never compared */
 } wh_replay_loss_t;

@@ -96,7 +96,7 @@ static const field_t fault_fields[] = {{"phase", AT(fault_slot, phase), INT32},
                                        {"wafer placed, rotation", AT(fault_slot, placed_rotation), MATRIX},
                                        {0}};
 
-/* -------------------------------------------------------------------------------------------------- fields */
+/* ------------------------------------------------------------------------------------------------- fields */
 
 static const size_t counts[] = {[REAL] = 1, [VECTOR] = 3, [MATRIX] = 9, [INT8] = 1, [INT32] = 1, [INT64] = 1};
 static const size_t sizes[] = {[REAL] = 8, [VECTOR] = 8, [MATRIX] = 8, [INT8] = 1, [INT32] = 4, [INT64] = 8};
@@ -149,7 +149,7 @@ static bool differ(const field_t fields[], const char *of, const void *recorded,
     return false;
 }
 
-/* -------------------------------------------------------------------------------------------------- states */
+/* ------------------------------------------------------------------------------------------------- states */
 
 bool wh_replay_is_collision(int32_t kind) {
     return kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED || kind == WH_EVENT_TOO_CLOSE;

@@ -9,7 +9,7 @@ static bool is_wanted(const wh_replay_t *replay, int64_t run) {
     return replay->only_run == 0 || replay->only_run == run;
 }
 
-/* -------------------------------------------------------------------------------------- commands and states */
+/* ------------------------------------------------------------------------------------ commands and states */
 
 static bool is_slice(int64_t run, int64_t seq) {
     return run != 0 && seq >= 1 && seq <= WH_LINK_SLICES;
@@ -58,7 +58,7 @@ static void on_state(wh_replay_t *replay, const void *data, size_t size) {
     (void)waferhand_state_decode_cleanup(&message);
 }
 
-/* ------------------------------------------------------------------------------------------ other messages */
+/* ----------------------------------------------------------------------------------------- other messages */
 
 /* The cell as it is told each time: without when and in which run. Returns its size. */
 static size_t encode_cell(waferhand_cell *message, uint8_t bytes[WH_LINK_DATAGRAM]) {
@@ -117,22 +117,25 @@ static void on_cell(wh_replay_t *replay, const void *data, size_t size) {
     (void)waferhand_cell_decode_cleanup(&message);
 }
 
+/* Which expectations are there. */
+static void take_expectation(wh_replay_t *replay, wh_replay_run_t *run, const waferhand_mcs *message) {
+    if (message->error < 1) {
+        wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
+        return;
+    }
+    wh_log_numbers_take(&run->expectations, (uint64_t)message->error - 1, replay->at);
+    run->unmet += message->phase == WH_LINK_PHASE_UNMET ? 1 : 0;
+}
+
 static void take_mcs(wh_replay_t *replay, const waferhand_mcs *message) {
     const bool tells = message->run != 0 && message->phase != WH_LINK_PHASE_IDLE &&
                        message->phase != WH_LINK_PHASE_GOES_ON && is_wanted(replay, message->run);
     wh_replay_run_t *run = tells ? wh_replay_entry(replay, message->run) : NULL;
-    if (!run) {
-        return;
-    }
-    if (message->phase == WH_LINK_PHASE_OVER) {
+    if (run && message->phase == WH_LINK_PHASE_OVER) {
         run->over = true;
         (void)wh_outcome_read(message->text, &run->told);
-    } else if (message->phase == WH_LINK_PHASE_MET || message->phase == WH_LINK_PHASE_UNMET) {
-        const uint64_t doubled = run->expectations.doubled;
-        wh_log_numbers_take(&run->expectations, (uint64_t)message->error - 1, replay->at);
-        if (message->phase == WH_LINK_PHASE_UNMET && run->expectations.doubled == doubled) {
-            ++run->unmet;
-        }
+    } else if (run && (message->phase == WH_LINK_PHASE_MET || message->phase == WH_LINK_PHASE_UNMET)) {
+        take_expectation(replay, run, message);
     }
 }
 
@@ -177,8 +180,9 @@ static void check_recording(wh_replay_t *replay, const waferhand_recording *mess
 
 static void take_recording(wh_replay_t *replay, const waferhand_recording *message) {
     wh_replay_recording_t *recording = &replay->recording;
-    recording->version = message->version;
-    if (message->version != WH_RECORDING_VERSION) {
+    const bool is_known = recording->version == 0 || recording->version == WH_RECORDING_VERSION;
+    recording->version = is_known ? message->version : recording->version;
+    if (recording->version != WH_RECORDING_VERSION) {
         return;
     }
     check_recording(replay, message);

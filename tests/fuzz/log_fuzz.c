@@ -83,23 +83,30 @@ static void check_slices(const uint8_t *data, size_t size) {
     }
 }
 
+static void check_event(const wh_log_t *log, wh_log_result_t result, uint64_t *count) {
+    *count += result == WH_LOG_EVENT ? 1 : 0;
+    if (result == WH_LOG_EVENT && strcmp(log->channel, WH_CHANNEL_SLICES) == 0) {
+        check_slices(log->data, log->size);
+    }
+    REQUIRE(log->count == *count && log->size <= WH_LOG_EVENT_BYTES);
+    REQUIRE(strlen(log->channel) < sizeof log->channel);
+}
+
 /* Places add up: nothing of the file is left out, nothing is read twice. */
 static void check_places(FILE *in, wh_log_t *log, size_t size) {
     uint64_t count = 0;
     uint64_t end = 0;
     wh_log_open(log, in);
+    if (log->source.zstd) {
+        return;
+    }
     wh_log_result_t result = wh_log_next(log);
     for (; result == WH_LOG_EVENT || result == WH_LOG_DAMAGED; result = wh_log_next(log)) {
-        count += result == WH_LOG_EVENT ? 1 : 0;
-        if (result == WH_LOG_EVENT && strcmp(log->channel, WH_CHANNEL_SLICES) == 0) {
-            check_slices(log->data, log->size);
-        }
-        REQUIRE(log->count == count && log->offset == end && log->offset < log->next && log->next <= size);
-        REQUIRE(log->size <= WH_LOG_EVENT_BYTES && strlen(log->channel) < sizeof log->channel);
+        check_event(log, result, &count);
+        REQUIRE(log->offset == end && log->offset < log->next && log->next <= size);
         end = log->next;
     }
     REQUIRE(log->offset == end && (result == WH_LOG_CUT || end == size));
-    rewind(in);
 }
 
 /* Reads the whole log; returns what it shows. */
@@ -119,6 +126,7 @@ static wh_reading_verdict_t read_log(size_t size) {
     REQUIRE(verdict == lenient || verdict == WH_READING_INCOMPLETE);
     REQUIRE(verdict != WH_READING_SAME || (reading.damage_count == 0 && !reading.is_cut));
     wh_replay_close(&replay);
+    wh_log_close(&log);
     fclose(in);
     return verdict;
 }

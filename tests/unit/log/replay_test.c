@@ -239,7 +239,7 @@ static void garbage_is_counted(void **state) {
     assert_int_equal(replay.run_count, 0);
 }
 
-/* ------------------------------------------------------------------------------------------ what is not said */
+/* --------------------------------------------------------------------------------------- what is not said */
 
 static void narrow_height(waferhand_state *message) {
     message->wafers[1].position[1] += 1e-9;
@@ -330,7 +330,7 @@ static void messages_on_other_channels(void **state) {
     assert_int_equal(replay.losses[WH_REPLAY_STRAY].count, 3);
 }
 
-/* -------------------------------------------------------------------------------------------- event numbers */
+/* ------------------------------------------------------------------------------------------ event numbers */
 
 typedef struct {
     const char *numbers;
@@ -360,10 +360,11 @@ static void event_numbers_tell_what_is_missing(void **state) {
     }
 }
 
-/* ------------------------------------------------------------------------------------- logs damaged at random */
+/* --------------------------------------------------------------------------------- logs damaged at random */
 
 #define HEADER 28
 #define EVENTS 2000
+#define LOG_BYTES (1 << 20)
 /* Slices of the logs that are damaged. */
 #define SLICES 120
 
@@ -371,7 +372,7 @@ typedef enum { OF_SLICES, OF_ALL, OF_VERSION_1, VERSIONS } version_t;
 
 /* A log in memory, and where its events begin. */
 typedef struct {
-    uint8_t *bytes;
+    uint8_t bytes[2 * LOG_BYTES]; /* room for what is put in */
     size_t size;
     size_t starts[EVENTS + 1];
     size_t count;
@@ -451,7 +452,6 @@ static void put_event(log_t *log, const log_t *from, size_t event) {
 static void make_version_1(void) {
     log_t *log = &whole[OF_VERSION_1];
     uint64_t number = 0;
-    log->bytes = malloc(whole[OF_ALL].size);
     log->size = 0;
     for (size_t i = 0; i < whole[OF_ALL].count; ++i) {
         if (is_on(&whole[OF_ALL], i, WH_CHANNEL_RECORDING)) {
@@ -481,8 +481,7 @@ static void record_whole(version_t version) {
     assert_true(wh_recording_close(&recording));
     FILE *file = fopen(path, "rb");
     assert_non_null(file);
-    whole[version].bytes = malloc(1 << 20);
-    whole[version].size = fread(whole[version].bytes, 1, 1 << 20, file);
+    whole[version].size = fread(whole[version].bytes, 1, LOG_BYTES, file);
     (void)fclose(file);
     (void)close(fd);
     (void)unlink(path);
@@ -493,11 +492,10 @@ static void record_all_versions(void) {
     record_whole(OF_SLICES);
     record_whole(OF_ALL);
     make_version_1();
-    damaged.bytes = malloc(1 << 21);
 }
 
 /* Replays a log; `replay` then has its runs. */
-static wh_reading_verdict_t verdict_of(const log_t *log, bool lenient) {
+static wh_reading_verdict_t verdict_of(log_t *log, bool lenient) {
     wh_reading_t reading;
     FILE *file = fmemopen(log->bytes, log->size > 0 ? log->size : 1, "rb");
     assert_non_null(file);
@@ -641,6 +639,49 @@ static void a_forged_state_differs_where_it_stands(void **state) {
     }
 }
 
+static void an_unknown_version_is_refused(void **state) {
+    (void)state;
+    record_all_versions();
+    const log_t *log = &whole[OF_SLICES];
+    copy_whole(log);
+    const size_t data = log->starts[0] + HEADER + strlen(WH_CHANNEL_RECORDING);
+    damaged.bytes[data + 43] = 3;
+    wh_link_seal(damaged.bytes + data, log->starts[1] - data);
+    assert_int_equal(verdict_of(&damaged, false), WH_READING_UNUSABLE);
+    assert_int_equal(replay.recording.version, 3);
+}
+
+/* A bit of the cell alone: the slices may be what they were. */
+static void a_changed_cell_is_no_difference(void **state) {
+    (void)state;
+    record_all_versions();
+    for (version_t version = OF_SLICES; version <= OF_ALL; ++version) {
+        const log_t *log = &whole[version];
+        const size_t data = log->starts[1] + HEADER + strlen(WH_CHANNEL_CELL);
+        for (size_t at = data + 8; at < log->starts[2]; ++at) {
+            copy_whole(log);
+            damaged.bytes[at] ^= (uint8_t)(1U << at % 8);
+            const wh_reading_verdict_t verdict = verdict_of(&damaged, false);
+            assert_true(verdict == WH_READING_INCOMPLETE || verdict == WH_READING_UNUSABLE);
+        }
+    }
+}
+
+/* Begun and not closed, wherever it ends. */
+static void a_log_that_is_not_closed_is_cut(void **state) {
+    (void)state;
+    record_all_versions();
+    for (version_t version = OF_SLICES; version < VERSIONS; ++version) {
+        const log_t *log = &whole[version];
+        copy_whole(log);
+        damaged.size = log->starts[log->count - 1];
+        assert_int_equal(verdict_of(&damaged, false), WH_READING_CUT);
+        assert_int_equal(replay.runs[0].compared, SLICES);
+        damaged.size += 30;
+        assert_int_equal(verdict_of(&damaged, true), WH_READING_CUT);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(the_same, set_up, tear_down),
@@ -658,6 +699,9 @@ int main(void) {
         cmocka_unit_test(event_numbers_tell_what_is_missing),
         cmocka_unit_test_setup_teardown(damaged_logs_never_say_more_than_they_have, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_forged_state_differs_where_it_stands, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(an_unknown_version_is_refused, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_changed_cell_is_no_difference, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_log_that_is_not_closed_is_cut, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
