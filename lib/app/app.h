@@ -1,5 +1,6 @@
 /* The program's subcommands. Each takes the arguments from its own name on and returns the exit status:
- * 0 all expectations met, 1 not so, 2 wrong usage or a bad input file. */
+ * 0 all expectations met, 1 not so, 2 wrong usage or a bad input file, 5 (mcs) no simulator answered in
+ * time. */
 #ifndef WH_APP_APP_H
 #define WH_APP_APP_H
 
@@ -8,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WH_EXIT_MET = 0, WH_EXIT_FAILED = 1, WH_EXIT_USAGE = 2 };
+enum { WH_EXIT_MET = 0, WH_EXIT_FAILED = 1, WH_EXIT_USAGE = 2, WH_EXIT_NO_ANSWER = 5 };
 
 /* True if all that was to be printed has left; else says so on standard error. `status` is 0 if it could be
  * made. */

@@ -7,6 +7,9 @@
 #include "../link/mcs_process.h"
 #include "record_arguments.h"
 
+/* What ends the noun behind a count. */
+#define WH_PLURAL(count) ((count) == 1 ? "" : "s")
+
 /* Set by SIGINT and SIGTERM once wh_catch_signals was called. */
 extern volatile sig_atomic_t wh_stop_requested;
 
@@ -19,6 +22,7 @@ void wh_catch_signals(void);
 typedef struct {
     const char *url; /* null: the default */
     wh_record_arguments_t record;
+    bool log_time;
     wh_protocol_client_options_t client;
 } wh_mcs_link_options_t;
 

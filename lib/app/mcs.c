@@ -10,7 +10,11 @@ typedef struct {
     wh_run_arguments_t run;
     wh_mcs_link_options_t link;
     const char *layout;
+    double timeout_s;     /* 0: for ever */
+    uint64_t most_missed; /* NO_LIMIT: as many as it likes */
 } arguments_t;
+
+#define NO_LIMIT UINT64_MAX
 
 static const wh_option_t options[] = {
     {"layout", 0, "FILE",
@@ -20,8 +24,18 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, link.url)},
     {"rate", 0, "FACTOR", "Run free at this factor of real time instead of in lockstep", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, link.client.rate), 1e-3, 1e3, "a number from 0.001 to 1000"},
+    {"max-missed", 0, "N", "Fail if the simulator misses more than N slices; goes with --rate",
+     WH_OPTION_WHOLE, .variable = offsetof(arguments_t, most_missed), 0, 1e15,
+     "a whole number from 0 to 1e+15"},
+    {"timeout", 0, "S",
+     "Wait at most S seconds for the simulator, at the beginning and when it falls silent (default: for "
+     "ever)",
+     WH_OPTION_REAL, .variable = offsetof(arguments_t, timeout_s), 1e-3, 1e6, "a number from 0.001 to 1e+06"},
     {"outputs", 0, "FILE", "Write the valves to this file, too, one value per gripper", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, link.client.outputs)},
+    {"log-time", 0, NULL,
+     "Put time (UTC) and level before each line of standard error that begins with \"mcs:\"", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, link.log_time)},
     {0}};
 
 static const wh_option_table_t tables[] = {{options, 0, NULL},
@@ -43,6 +57,10 @@ static void check(const void *given, struct argp_state *state) {
     if (arguments->run.run.script && arguments->layout) {
         argp_error(state, "--layout: %s (a script names its layout itself)", arguments->layout);
     }
+    if (arguments->most_missed != NO_LIMIT && arguments->link.client.rate <= 0) {
+        argp_error(state, "--max-missed: %llu (goes with --rate: in lockstep no slice is missed)",
+                   (unsigned long long)arguments->most_missed);
+    }
     if (arguments->layout && wants_run(&arguments->run)) {
         argp_error(state,
                    "--json, --gantt, --margins, --segments, --report, --gltf and --data go with a script");
@@ -58,7 +76,8 @@ static const wh_command_line_t command_line = {
              "from standard input and WAFERHAND_REQUEST and answers each in one line.\v"
              "Exit status: 0 if all expectations were met or all commands succeeded, 1 if not or if the cell "
              "failed, "
-             "2 for wrong usage or a bad input file. At a terminal commands may fail.",
+             "2 for wrong usage or a bad input file, 5 if it failed because the simulator did not answer "
+             "within --timeout. At a terminal commands may fail.",
     .tables = tables,
     .operand = "script",
     .operand_variable = offsetof(arguments_t, run.run.script),
@@ -83,14 +102,38 @@ static void attend(void *user) {
     }
 }
 
+static void say(void *user, const char *line) {
+    wh_prompt_say(user, line);
+}
+
 static int take_commands(wh_session_t *session, wh_mcs_link_t *link) {
     attendance_t attendance = {link, session};
     const wh_prompt_watch_t watch = {wh_node_descriptor(&link->node), attend, &attendance};
     wh_prompt_t *prompt = wh_prompt_open(session, &watch);
     link->control.last_beat_us = wh_node_clock_us(); /* what is piped in goes before the first beat */
+    link->node.listener = say;
+    link->node.listener_user = prompt;
     const int status = wh_prompt_run(prompt);
+    link->node.listener = NULL;
     wh_prompt_close(prompt);
     return status;
+}
+
+/* A session's run has no expectations that would say it. */
+static int judge_missed(const arguments_t *arguments, const wh_session_t *session, const wh_node_t *node,
+                        int status) {
+    wh_link_t *link = session->mcs.link;
+    if (arguments->most_missed == NO_LIMIT) {
+        return status;
+    }
+    (void)link->hash(link); /* waits for the last states */
+    const int64_t missed = link->missed(link);
+    if (missed <= (int64_t)arguments->most_missed) {
+        return status;
+    }
+    wh_node_warn(node, "the simulator missed %lld slices (expected at most %llu: --max-missed)",
+                 (long long)missed, (unsigned long long)arguments->most_missed);
+    return status == WH_EXIT_MET ? WH_EXIT_FAILED : status;
 }
 
 static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
@@ -106,7 +149,7 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
     /* Standard output is for answers: what scripts print goes to standard error. */
     wanted.limits.print_to = stderr;
     if (wh_session_open(&session, &wanted)) {
-        status = take_commands(&session, link);
+        status = judge_missed(arguments, &session, &link->node, take_commands(&session, link));
     } else {
         fprintf(stderr, "%s\n", session.message);
     }
@@ -114,17 +157,31 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
     return status;
 }
 
+/* --------------------------------------------------------------------------------------------- subcommand */
+
+static int run_script(arguments_t *arguments, wh_mcs_link_t *link) {
+    wh_script_run_options_t *run = &arguments->run.run;
+    link->control.script = run->script;
+    run->partners = wh_mcs_process_partners(&link->control);
+    run->limits_missed = arguments->most_missed != NO_LIMIT;
+    run->most_missed = run->limits_missed ? (int64_t)arguments->most_missed : 0;
+    return wh_run_and_print(&arguments->run);
+}
+
 int wh_app_mcs(int argc, char **argv) {
     static wh_mcs_link_t link;
-    arguments_t arguments = {.link = {.client = {.stop = &wh_stop_requested}}};
+    arguments_t arguments = {.link = {.client = {.stop = &wh_stop_requested}}, .most_missed = NO_LIMIT};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
+    arguments.link.client.timeout_us = (int64_t)(arguments.timeout_s * 1e6);
     arguments.run.record =
         arguments.link.record.all ? arguments.link.record.all : arguments.link.record.slices;
     int status = WH_EXIT_USAGE;
     if (wh_mcs_link_open(&link, &arguments.link)) {
-        arguments.run.run.partners = wh_mcs_process_partners(&link.control);
-        status = arguments.layout ? run_prompt(&arguments, &link) : wh_run_and_print(&arguments.run);
+        status = arguments.layout ? run_prompt(&arguments, &link) : run_script(&arguments, &link);
+        if (status == WH_EXIT_FAILED && link.control.client.timed_out) {
+            status = WH_EXIT_NO_ANSWER;
+        }
         status = wh_mcs_link_close(&link) ? status : WH_EXIT_USAGE;
     }
     wh_run_arguments_free(&arguments.run);

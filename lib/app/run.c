@@ -165,6 +165,7 @@ static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
     arguments->run.partners = partners;
     const int status = wh_run_and_print(arguments);
     wh_mcs_process_finish(&broadcast->control);
+    wh_mcs_process_close(&broadcast->control);
     if (broadcast->connected) {
         wh_sim_process_close(&broadcast->simulation);
     }
@@ -178,7 +179,8 @@ static int run_published(arguments_t *arguments) {
     broadcast.is_watched = arguments->lcm || arguments->record.all;
     wh_record_arguments_apply(&arguments->record, "run", true, &broadcast.record);
     broadcast.record.options.inputs[0] = arguments->run.run.script;
-    if (!wh_node_open(&broadcast.node, url, &broadcast.record)) {
+    if ((arguments->lcm && !wh_node_reaches_others(url)) ||
+        !wh_node_open(&broadcast.node, url, &broadcast.record)) {
         return WH_EXIT_USAGE;
     }
     const int status = run_on(&broadcast, &arguments->run);

@@ -2,10 +2,12 @@
 #include <inttypes.h>
 #include <poll.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../link/outputs.h"
 #include "../link/sim_process.h"
+#include "../text/json.h"
 #include "../text/style.h"
 #include "../view/view.h"
 #include "app.h"
@@ -17,7 +19,7 @@ typedef struct {
     wh_layout_arguments_t layout;
     wh_record_arguments_t record;
     const char *url, *outputs;
-    bool view;
+    bool view, json, log_time;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -27,6 +29,11 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, outputs)},
     {"view", 0, NULL, "Publish the cell for Drake's viewer, live; `make view` starts one", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, view)},
+    {"json", 0, NULL, "Print the counters as one JSON object at the end", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, json)},
+    {"log-time", 0, NULL,
+     "Put time (UTC) and level before each line of standard error that begins with \"sim:\"", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, log_time)},
     {0}};
 
 static const wh_option_table_t tables[] = {{options, 0, NULL},
@@ -51,27 +58,54 @@ static const wh_command_line_t command_line = {
     .operand_variable = offsetof(arguments_t, layout.path),
     .check = check};
 
-static void print_counters(const wh_sim_process_t *simulation) {
+static void say_counters(const wh_sim_process_t *simulation) {
     const wh_protocol_server_counters_t *c = &simulation->server.counters;
-    fprintf(stderr,
-            "sim: %" PRIu64 " commands: %" PRIu64 " stepped, %" PRIu64 " repeated, %" PRIu64
-            " stale, %" PRIu64 " refused, %" PRIu64 " of unknown runs, %" PRIu64 " of other layouts, %" PRIu64
-            " of runs that were over, %" PRIu64 " malformed\n",
-            c->commands, c->stepped, c->repeated, c->stale, c->refused, c->unknown_run, c->other_layout,
-            c->run_over, c->malformed);
-    fprintf(stderr,
-            "sim: %" PRIu64 " states taken back of %" PRIu64 "; %" PRId64 " slices missed; %" PRIu64
-            " datagrams of garbage, %" PRIu64 " not sent\n",
-            c->restored, c->restores, simulation->server.missed, simulation->counters.garbage,
-            simulation->counters.unsent);
+    wh_node_say(simulation->node,
+                "%" PRIu64 " command%s: %" PRIu64 " stepped, %" PRIu64 " repeated, %" PRIu64
+                " stale, %" PRIu64 " refused, %" PRIu64 " of unknown runs, %" PRIu64
+                " of other layouts, %" PRIu64 " of runs that were over, %" PRIu64 " malformed",
+                c->commands, WH_PLURAL(c->commands), c->stepped, c->repeated, c->stale, c->refused,
+                c->unknown_run, c->other_layout, c->run_over, c->malformed);
+    wh_node_say(simulation->node,
+                "%" PRIu64 " state%s taken back of %" PRIu64 "; %" PRId64 " slice%s missed; %" PRIu64
+                " datagram%s of garbage, %" PRIu64 " not sent",
+                c->restored, WH_PLURAL(c->restored), c->restores, simulation->server.missed,
+                WH_PLURAL(simulation->server.missed), simulation->counters.garbage,
+                WH_PLURAL(simulation->counters.garbage), simulation->counters.unsent);
+}
+
+static json_t *count(uint64_t value) {
+    return json_integer((json_int_t)value);
+}
+
+/* True if standard output took it. */
+static bool print_counters(const wh_sim_process_t *simulation) {
+    const wh_protocol_server_t *server = &simulation->server;
+    const wh_protocol_server_counters_t *c = &server->counters;
+    json_t *root = wh_json_add(
+        json_object(), "layout layout_hash run slice hash", wh_json_text(server->layout->path),
+        json_sprintf("%016" PRIx64, server->identity.layout_hash),
+        json_sprintf("%016" PRIx64, (uint64_t)server->identity.run), json_integer((json_int_t)server->seq),
+        json_sprintf("%016" PRIx64, wh_protocol_server_hash(server)), NULL);
+    (void)wh_json_add(
+        root, "commands stepped repeated stale refused unknown_run other_layout run_over malformed",
+        count(c->commands), count(c->stepped), count(c->repeated), count(c->stale), count(c->refused),
+        count(c->unknown_run), count(c->other_layout), count(c->run_over), count(c->malformed), NULL);
+    (void)wh_json_add(root, "restores restored restore_ignored restore_refused", count(c->restores),
+                      count(c->restored), count(c->restore_ignored), count(c->restore_refused), NULL);
+    (void)wh_json_add(root, "missed garbage unsent silences", json_integer((json_int_t)server->missed),
+                      count(simulation->counters.garbage), count(simulation->counters.unsent),
+                      count(simulation->counters.silences), NULL);
+    const int status = wh_json_print(root, stdout);
+    return wh_app_is_printed(status);
 }
 
 /* The file is looked at before each message, so that valves written before a command are in force for it. */
 static void update_valves(wh_outputs_t *outputs, wh_sim_process_t *simulation) {
     if (outputs->count > 0 && (wh_outputs_update(outputs, wh_node_clock_us()) & WH_OUTPUTS_REPORTED) != 0) {
-        fputs("sim: ", stderr);
-        wh_style_put(stderr, outputs->report);
-        fputc('\n', stderr);
+        char *report = wh_style_printable(outputs->report);
+        wh_node_warn(simulation->node, "%s", report);
+        free(report);
     }
     simulation->valves = outputs->count > 0 ? outputs->valves : NULL;
 }
@@ -87,7 +121,7 @@ static int wait_and_handle(wh_node_t *node, wh_outputs_t *outputs, wh_sim_proces
     }
     (void)poll(ready, 2, wait_ms > 0 ? (int)wait_ms : 0);
     update_valves(outputs, simulation);
-    return wh_node_wait(node, 0);
+    return wh_node_wait(node, 0); /* one call of the system: poll has waited */
 }
 
 static bool open_outputs(wh_outputs_t *outputs, const char *path, size_t count) {
@@ -113,8 +147,8 @@ static bool open_view(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *lay
                 WH_VIEW_BYTES);
         return false;
     }
-    fprintf(stderr, "sim: shown to viewers: %d bodies in %d bytes%s\n", view->cell.load.num_links,
-            view->cell_bytes.load_size, left_out[view->cell.detail]);
+    wh_node_say(node, "shown to viewers: %d bodies in %d bytes%s", view->cell.load.num_links,
+                view->cell_bytes.load_size, left_out[view->cell.detail]);
     return true;
 }
 
@@ -128,6 +162,10 @@ typedef struct {
 static bool open_served(served_t *served, wh_node_t *node, const wh_layout_t *layout,
                         const arguments_t *arguments) {
     const wh_status_t status = wh_sim_process_open(&served->simulation, node, layout, true);
+    if (status == WH_STATUS_NO_NETWORK) {
+        wh_node_warn(node, "LCM takes no subscription");
+        return false;
+    }
     if (status != WH_OK) {
         fprintf(stderr, "%s: %s (expected at most %d wafers, and a cell that fits one datagram)\n",
                 layout->path, wh_status_text(status), WH_LINK_WAFERS);
@@ -153,8 +191,8 @@ static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *
         return WH_EXIT_USAGE;
     }
     served.view.command = simulation->command;
-    fprintf(stderr, "sim: %s is ready, layout %016" PRIx64 "\n", layout->path,
-            simulation->server.identity.layout_hash);
+    wh_node_say(node, "%s is ready, layout %016" PRIx64, layout->path,
+                simulation->server.identity.layout_hash);
     int handled = 0;
     while (!wh_stop_requested && handled >= 0) {
         handled = wait_and_handle(node, &served.outputs, simulation);
@@ -163,8 +201,12 @@ static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *
             wh_viewer_tick(&served.view, &simulation->server);
         }
     }
-    print_counters(simulation);
+    say_counters(simulation);
+    const bool printed = !arguments->json || print_counters(simulation);
     close_served(&served);
+    if (!printed) {
+        return WH_EXIT_USAGE;
+    }
     return handled < 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
 }
 
@@ -177,10 +219,11 @@ static int run(arguments_t *arguments) {
     wh_node_t node;
     wh_catch_signals();
     wh_record_arguments_apply(&arguments->record, "sim", false, &record);
-    if (!wh_node_open(&node, arguments->url, &record)) {
+    if (!wh_node_reaches_others(arguments->url) || !wh_node_open(&node, arguments->url, &record)) {
         return WH_EXIT_USAGE;
     }
     node.speaker = "sim";
+    node.log_time = arguments->log_time;
     const int status = serve(&node, layout, arguments);
     wh_node_close(&node);
     return wh_recording_close(&record) ? status : WH_EXIT_USAGE;

@@ -2,10 +2,17 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <strings.h>
+
+#include "../mcs/session.h"
+#include "../text/array.h"
+#include "../text/style.h"
+#include "../text/utf8.h"
 
 #define HEARTBEAT_US 200000
+/* What a datagram has besides the two texts of a message. */
+#define MESSAGE_BYTES 128
 #define TOO_LONG "the line is too long (expected at most 1000 bytes)"
 /* How long the end of a free-running command waits for the state of its last slice. */
 #define COMMAND_SETTLE_US 100000
@@ -85,11 +92,23 @@ static void finished(void *user, const wh_mcs_t *mcs) {
     snprintf(control->reason, sizeof control->reason, "%s", record->failure ? record->failure : "");
 }
 
+/* The run is over; the next one, of a session, has its own counts. */
+static void tell_over(wh_mcs_process_t *control) {
+    char text[WH_OUTCOME_BYTES + sizeof control->reason];
+    if (control->outcome.verdict == WH_OUTCOME_UNTOLD) {
+        control->outcome.verdict = WH_OUTCOME_ENDED;
+    }
+    wh_outcome_write(&control->outcome, control->reason, text, sizeof text);
+    tell(control, control->executing.seq, WH_LINK_PHASE_OVER, 0, WH_OK, "", text);
+    memset(&control->outcome, 0, sizeof control->outcome);
+    control->reason[0] = '\0';
+}
+
 static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
     wh_mcs_process_t *control = user;
-    control->sandbox = mcs->sandbox;
+    (void)mcs;
     control->outcome.commands += ended ? 0 : 1;
-    snprintf(control->running, sizeof control->running, "%s", ended ? "" : command->text);
+    wh_utf8_clip(control->running, sizeof control->running, ended ? "" : command->text);
     control->running_line = command->line;
     if (!ended) {
         tell(control, control->executing.seq, WH_LINK_PHASE_BEGINS, command->line, WH_OK, command->text, "");
@@ -131,35 +150,56 @@ static void tell_answer(wh_mcs_process_t *control, const wh_mcs_process_answer_t
          (wh_status_t)answer->error, answer->line, answer->text);
 }
 
+/* A copy, of which a datagram takes all; else it tells how much is left. */
+static char *copy_text(const char *text, size_t room) {
+    const size_t length = strlen(text);
+    if (length <= room) {
+        return wh_text_copy(text);
+    }
+    char *copy = wh_array_new(room + 1, 1);
+    const size_t kept = wh_utf8_cut(text, room - 60);
+    snprintf(copy, room + 1, "%.*s... (cut: the first %zu bytes of %zu)", (int)kept, text, kept, length);
+    return copy;
+}
+
 static void remember(wh_mcs_process_t *control, int64_t seq, wh_status_t error, const char *line,
                      const char *text) {
     wh_mcs_process_answer_t *answer = &control->answered[control->answered_count++ % WH_CONTROL_ANSWERED];
+    free(answer->text);
     answer->seq = seq;
     answer->error = (int32_t)error;
     snprintf(answer->line, sizeof answer->line, "%s", line);
-    snprintf(answer->text, sizeof answer->text, "%s", text);
+    answer->text = copy_text(text, WH_LINK_DATAGRAM - MESSAGE_BYTES - strlen(answer->line));
     tell_answer(control, answer);
 }
 
-/* True for STOP in any case, with blanks around it. */
-static bool is_stop(const char *line) {
-    const size_t blanks = strspn(line, " ");
-    return strncasecmp(line + blanks, "STOP", 4) == 0 &&
-           line[blanks + 4 + strspn(line + blanks + 4, " ")] == '\0';
-}
-
-/* Ends the running command, and answers the waiting ones without beginning them. */
-static void stop_all(wh_mcs_process_t *control, const waferhand_request *message) {
+/* Answers the requests that wait without beginning them. */
+static void stop_waiting(wh_mcs_process_t *control) {
     char line[WH_LINK_LINE];
     const wh_mcs_process_request_t executing = control->executing;
-    wh_sandbox_stop(control->sandbox);
-    control->node->interrupted = true; /* also a wait for a simulator that is silent */
     while (wh_mcs_process_next_request(control, line)) {
         remember(control, control->executing.seq, WH_STATUS_STOPPED, line,
                  wh_record_error_text(WH_STATUS_STOPPED));
     }
     control->executing = executing;
+}
+
+/* Ends the running command, too. */
+static void stop_all(wh_mcs_process_t *control, const waferhand_request *message) {
+    if (control->mcs) {
+        wh_mcs_stop(control->mcs);
+    }
+    control->node->interrupted = true; /* also a wait for a simulator that is silent */
+    stop_waiting(control);
     remember(control, message->seq, WH_OK, message->command_line, "OK");
+}
+
+static void tell_status(wh_mcs_process_t *control, const waferhand_request *message) {
+    char text[WH_MCS_DESCRIPTION_BYTES + 4] = "OK phase=over";
+    if (control->mcs) {
+        wh_mcs_describe(control->mcs, text + 3);
+    }
+    tell(control, message->seq, WH_LINK_PHASE_DONE, 0, WH_OK, message->command_line, text);
 }
 
 /* An answer that is not remembered: asked again, the request may be taken. */
@@ -173,6 +213,13 @@ static void turn_away_number(wh_mcs_process_t *control, const waferhand_request 
     snprintf(text, sizeof text, "%s: %" PRId64 " was \"%.200s\" (expected a number of its own for each line)",
              wh_record_error_text(WH_STATUS_NUMBER_TAKEN), message->seq, taken);
     turn_away(control, message, WH_STATUS_NUMBER_TAKEN, text);
+}
+
+static void turn_away_in_script(wh_mcs_process_t *control, const waferhand_request *message) {
+    char text[400];
+    snprintf(text, sizeof text, "%s: the script %.200s runs (expected STATUS, VERSION or STOP)",
+             wh_record_error_text(WH_STATUS_BUSY), control->script);
+    turn_away(control, message, WH_STATUS_BUSY, text);
 }
 
 static void enqueue(wh_mcs_process_t *control, const waferhand_request *message) {
@@ -203,6 +250,23 @@ static const char *misdirected(const wh_mcs_process_t *control, const waferhand_
     return strlen(message->command_line) < WH_LINK_LINE ? NULL : TOO_LONG;
 }
 
+/* One that has not come before. */
+static void take_new(wh_mcs_process_t *control, const waferhand_request *message) {
+    const char *line = message->command_line;
+    const bool stoppable = control->script || control->running[0] != '\0';
+    if (wh_session_says(line, "STATUS")) {
+        tell_status(control, message);
+    } else if (wh_session_says(line, "VERSION")) {
+        tell(control, message->seq, WH_LINK_PHASE_DONE, 0, WH_OK, line, "OK version=" WH_VERSION);
+    } else if (stoppable && wh_session_says(line, "STOP")) {
+        stop_all(control, message);
+    } else if (control->script) {
+        turn_away_in_script(control, message);
+    } else {
+        enqueue(control, message);
+    }
+}
+
 /* A request that comes again is answered again, not executed again: the answer may have been lost. */
 static void take_request(wh_mcs_process_t *control, const waferhand_request *message) {
     wh_status_t error;
@@ -216,10 +280,8 @@ static void take_request(wh_mcs_process_t *control, const waferhand_request *mes
         turn_away_number(control, message, line);
     } else if (answer) {
         tell_answer(control, answer);
-    } else if (!pending && control->running[0] != '\0' && is_stop(message->command_line)) {
-        stop_all(control, message);
     } else if (!pending) {
-        enqueue(control, message);
+        take_new(control, message);
     }
 }
 
@@ -228,8 +290,10 @@ static void on_request(void *user, const void *data, size_t size) {
     waferhand_request message;
     if (!wh_link_decode_request(data, size, &message)) {
         if (control->garbage++ == 0) {
-            wh_node_say(control->node,
-                        WH_CHANNEL_REQUEST ": a datagram is no such message: dropped, like all that follow");
+            wh_node_warn(control->node,
+                         WH_CHANNEL_REQUEST ": a datagram of %zu bytes is no request and was dropped; "
+                                            "others will be dropped without a word",
+                         size);
         }
         return;
     }
@@ -269,11 +333,18 @@ static void tell_progress(void *user) {
     }
 }
 
+/* A second time, for another run of a session: the one before is over. */
 static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
     wh_mcs_process_t *control = user;
     if (mcs->layout->wafer_count > WH_LINK_WAFERS) {
-        wh_node_say(control->node, "the layout has more wafers than a message carries (256)");
+        wh_node_warn(control->node, "the layout has more wafers than a message carries (256)");
         return NULL;
+    }
+    control->mcs = mcs;
+    if (control->connected) {
+        tell_over(control);
+        wh_protocol_client_begin(&control->client, mcs->layout);
+        return &control->client.link;
     }
     control->connected =
         wh_protocol_client_open(&control->client, control->node, mcs->layout, &control->options);
@@ -283,12 +354,55 @@ static wh_link_t *connect_client(void *user, wh_mcs_t *mcs) {
     return control->connected ? &control->client.link : NULL;
 }
 
-/* Subscribed only so that the record holds the cell: it can then be replayed without the layout's file. */
-static void on_cell(void *user, const void *data, size_t size) {
-    (void)user;
-    (void)data;
-    (void)size;
+/* ------------------------------------------------------------------------------------------- explanations */
+
+static void explain_layout(wh_mcs_process_t *control) {
+    const wh_protocol_client_t *client = &control->client;
+    const uint64_t other = client->other_layout_hash;
+    const bool known = control->simulator_path[0] != '\0' && control->simulator_layout == other;
+    snprintf(control->explanation, sizeof control->explanation,
+             "%s%shash %016" PRIx64 " (expected %.200s, hash %016" PRIx64 ")",
+             known ? control->simulator_path : "", known ? ", " : "", other, client->layout->path,
+             client->identity.layout_hash);
 }
+
+static const char *explain(void *user, wh_status_t status) {
+    wh_mcs_process_t *control = user;
+    switch ((int)status) {
+    case WH_STATUS_STOPPED:
+        return "by a signal";
+    case WH_STATUS_OTHER_LAYOUT:
+        explain_layout(control);
+        return control->explanation;
+    case WH_STATUS_NO_ANSWER:
+        snprintf(control->explanation, sizeof control->explanation, "none for %g s, slice %" PRId64 " waits",
+                 (double)control->options.timeout_us / 1e6, control->client.command.seq);
+        return control->explanation;
+    case WH_STATUS_RUN_OVER:
+    case WH_STATUS_NO_NETWORK:
+        return NULL;
+    default:
+        return "the simulator refused a slice";
+    }
+}
+
+/* The record holds the cell, so that it can be replayed without the layout's file. */
+static void on_cell(void *user, const void *data, size_t size) {
+    wh_mcs_process_t *control = user;
+    waferhand_cell message;
+    if (!wh_link_decode_cell(data, size, &message)) {
+        return;
+    }
+    if (control->simulator_path[0] == '\0' || control->simulator_layout != (uint64_t)message.layout_hash) {
+        char *path = wh_style_printable(message.layout);
+        wh_utf8_clip(control->simulator_path, sizeof control->simulator_path, path);
+        free(path);
+        control->simulator_layout = (uint64_t)message.layout_hash;
+    }
+    (void)waferhand_cell_decode_cleanup(&message);
+}
+
+/* ------------------------------------------------------------------------------------ opening and closing */
 
 bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
                          const wh_protocol_client_options_t *options) {
@@ -304,6 +418,7 @@ bool wh_mcs_process_open(wh_mcs_process_t *control, wh_node_t *node,
 wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
     return (wh_mcs_partners_t){.connect = connect_client,
                                .watch = watch,
+                               .explain = explain,
                                .expected = expected,
                                .cycle = cycle,
                                .finished = finished,
@@ -324,10 +439,14 @@ void wh_mcs_process_idle(wh_mcs_process_t *control) {
 }
 
 void wh_mcs_process_finish(wh_mcs_process_t *control) {
-    char text[WH_OUTCOME_BYTES + sizeof control->reason];
-    if (control->outcome.verdict == WH_OUTCOME_UNTOLD) {
-        control->outcome.verdict = WH_OUTCOME_ENDED;
+    control->mcs = NULL;
+    stop_waiting(control);
+    tell_over(control);
+}
+
+void wh_mcs_process_close(wh_mcs_process_t *control) {
+    for (size_t i = 0; i < WH_CONTROL_ANSWERED; ++i) {
+        free(control->answered[i].text);
+        control->answered[i].text = NULL;
     }
-    wh_outcome_write(&control->outcome, control->reason, text, sizeof text);
-    tell(control, control->executing.seq, WH_LINK_PHASE_OVER, 0, WH_OK, "", text);
 }

@@ -1,9 +1,15 @@
 /* Motion control as a process: a client for the slices, and what it tells all about its commands.
  *
  * Made to be the partners of a run (mcs/mcs.h): connect opens the client once the layout is known, watch
- * tells the commands on WAFERHAND_MCS. Requests from others are kept until somebody has time for them, but
- * for STOP: while a command runs it is answered at once, the command and the requests that wait end with
- * WH_STATUS_STOPPED.
+ * tells the commands on WAFERHAND_MCS. Requests from others are kept until a session has time for them, but
+ * for three that are answered at once, also while a command runs:
+ *
+ *   STOP     the command and the requests that wait end with WH_STATUS_STOPPED
+ *   STATUS   what wh_mcs_describe says
+ *   VERSION  the program's
+ *
+ * A script takes no other requests: WH_STATUS_BUSY. In a script STOP ends the command that runs, or the next
+ * one if it comes between two.
  */
 #ifndef WH_LINK_MCS_PROCESS_H
 #define WH_LINK_MCS_PROCESS_H
@@ -14,8 +20,9 @@
 
 /* Requests that wait; more are answered with "busy". */
 #define WH_CONTROL_REQUESTS 16
-/* Requests that were answered lately: asked again with the same line, they are answered again. With another
- * line the number is taken: WH_STATUS_NUMBER_TAKEN. */
+/* So many answers are remembered: asked again with the same line, they are given again. With another line
+ * the number is taken: WH_STATUS_NUMBER_TAKEN. STATUS and VERSION change nothing: they are answered anew
+ * each time and not remembered, nor is what was turned away before its turn. */
 #define WH_CONTROL_ANSWERED 64
 
 typedef struct {
@@ -27,7 +34,7 @@ typedef struct {
     int64_t seq; /* 0: free */
     int32_t error;
     char line[WH_LINK_LINE];
-    char text[400];
+    char *text; /* of its own; null: free */
 } wh_mcs_process_answer_t;
 
 /* Must not be moved once opened. */
@@ -36,10 +43,11 @@ typedef struct {
     wh_protocol_client_options_t options;
     wh_protocol_client_t client;
     bool connected;
-    wh_sandbox_t *sandbox;       /* of the run or session; null before its first command */
+    const char *script;          /* set by its owner, who keeps it; null: a session takes requests */
+    wh_mcs_t *mcs;               /* of the run or session; null before it connects */
     wh_link_identity_t identity; /* of the run; and where it is (without a client, to be set): */
     int64_t utime, seq;
-    char running[200]; /* the command that goes on; empty: none */
+    char running[WH_LINK_LINE]; /* the command that goes on; empty: none */
     int running_line;
     wh_mcs_process_request_t executing; /* seq 0: none */
     int64_t last_beat_us;
@@ -50,7 +58,10 @@ typedef struct {
     uint64_t requests, garbage;            /* datagrams on WAFERHAND_REQUEST: sound ones, others */
     wh_run_told_t outcome;                 /* what was told so far, and the verdict once there is one */
     char reason[WH_SANDBOX_MESSAGE_BYTES]; /* of the verdict */
-    uint8_t encoded[8192];
+    uint64_t simulator_layout; /* as the last cell told it: the hash, and the path, fit to print */
+    char simulator_path[200];
+    char explanation[700];
+    uint8_t encoded[WH_LINK_DATAGRAM];
 } wh_mcs_process_t;
 
 /* Subscribes to requests. The options are the client's; `tick` and `user` are set here. False when LCM has no
@@ -69,14 +80,19 @@ void wh_mcs_process_idle(wh_mcs_process_t *control);
  * wh_mcs_process_answer. */
 bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LINE]);
 
-/* Answers the request being executed: error is 0 or its number, text what an operator would read. */
+/* Answers the request being executed: error is 0 or its number, text what an operator would read. Of a text
+ * that does not fit a datagram the answer tells how much was cut off. */
 void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *line, const char *text);
 
 /* Tells what was expected before there was a run to tell it of. Call it once the identity is known, as
  * connecting by the partners does. */
 void wh_mcs_process_catch_up(wh_mcs_process_t *control, const wh_mcs_t *mcs);
 
-/* Tells that the run is over, how it ended, and how much was told of it (link/outcome.h). */
+/* Answers the requests that wait, and tells that the run is over, how it ended, and how much was told of it
+ * (link/outcome.h). Run or session may be gone by now. */
 void wh_mcs_process_finish(wh_mcs_process_t *control);
+
+/* Frees the answers. One that was never opened must be all zero. */
+void wh_mcs_process_close(wh_mcs_process_t *control);
 
 #endif

@@ -124,8 +124,9 @@ bool wh_link_state_is_sound(const waferhand_state *message, const wh_layout_t *l
 /* A grasp table with the layout's rules over the wafers and grippers of a sound state. */
 wh_grasp_t wh_link_table(const waferhand_state *message, const wh_layout_t *layout, wh_link_arrays_t *arrays);
 
-/* The values of the paper's Fig. 9: each gripper of the state against its counterpart (record/counterpart.h).
- * Cost: linear in grippers times wafers. */
+/* The values of the paper's Fig. 9: each gripper of the state against the wafer that it holds, or else the
+ * one nearest to the limits (record/counterpart.h); those that other grippers hold count too. Cost: linear
+ * in grippers times wafers. */
 void wh_link_proximity_to_message(const wh_state_t *state, const wh_link_identity_t *identity,
                                   const wh_tolerance_t *tolerance, waferhand_proximity *message);
 

@@ -11,6 +11,9 @@
 #define NO_ROUTE                                                                                             \
     "LCM is not to be had at this URL (expected a multicast route, as by "                                   \
     "`ip route add 224.0.0.0/4 dev lo`, or another URL)"
+#define NO_SCHEME                                                                                            \
+    "scheme (expected a URL that begins with udpm://, as in udpm://239.255.76.67:7667, or with another "     \
+    "scheme of LCM's)"
 
 static int64_t now_us(clockid_t clock) {
     struct timespec now;
@@ -26,39 +29,86 @@ int64_t wh_node_clock_us(void) {
     return now_us(CLOCK_MONOTONIC);
 }
 
-/* What is wrong, or null. */
-static const char *open_multicast(wh_receiver_t *receiver, const char *url) {
-    wh_multicast_t multicast;
-    const char *expected = wh_multicast_parse(url, &multicast);
-    if (expected) {
-        return expected;
+/* ---------------------------------------------------------------------------------------------------- URL */
+
+/* A URL, and who gave it; null: nobody, it is the default. */
+typedef struct {
+    const char *text, *giver;
+} url_t;
+
+static url_t url_of(const char *given) {
+    const char *from_environment = getenv("LCM_DEFAULT_URL");
+    if (given) {
+        return (url_t){given, "--lcm-url"};
     }
-    if (!wh_receiver_open(receiver, &multicast)) {
-        return errno == ENODEV ? NO_ROUTE : strerror(errno);
+    if (from_environment && from_environment[0]) {
+        return (url_t){from_environment, "LCM_DEFAULT_URL"};
     }
-    return NULL;
+    return (url_t){WH_NODE_URL, NULL};
 }
 
-static bool connect_to(wh_node_t *node, const char *url) {
-    const char *problem = wh_multicast_is(url) ? open_multicast(&node->receiver, url) : NULL;
-    if (!problem) {
-        node->lcm = lcm_create(url);
-        problem = node->lcm ? NULL : NO_ROUTE;
+static void refuse_url(const url_t *url, const char *problem) {
+    fprintf(stderr, "%s%s%s: %s\n", url->giver ? url->giver : "", url->giver ? ": " : "", url->text, problem);
+}
+
+static bool begins_with(const char *text, const char *const beginnings[], size_t count) {
+    for (size_t i = 0; i < count; ++i) {
+        if (strncmp(text, beginnings[i], strlen(beginnings[i])) == 0) {
+            return true;
+        }
     }
-    if (problem) {
-        fprintf(stderr, "%s: %s\n", url, problem);
+    return false;
+}
+
+bool wh_node_reaches_others(const char *url) {
+    static const char *const alone[] = {"memq:", "file:"};
+    const url_t asked = url_of(url);
+    const bool is_alone = begins_with(asked.text, alone, sizeof alone / sizeof alone[0]);
+    if (is_alone) {
+        refuse_url(&asked, "scheme (expected one that reaches another process, as udpm:// does: this one "
+                           "stays within the process or a file)");
     }
-    return problem == NULL;
+    return !is_alone;
+}
+
+static bool open_multicast(wh_receiver_t *receiver, const url_t *url) {
+    wh_multicast_t multicast;
+    char problem[WH_MULTICAST_PROBLEM_BYTES];
+    if (!wh_multicast_parse(url->text, &multicast, problem)) {
+        refuse_url(url, problem);
+        return false;
+    }
+    if (!wh_receiver_open(receiver, &multicast)) {
+        refuse_url(url, errno == ENODEV ? NO_ROUTE : strerror(errno));
+        return false;
+    }
+    return true;
+}
+
+static bool connect_to(wh_node_t *node, const url_t *url) {
+    static const char *const schemes[] = {"udpm://", "mpudpm://", "tcpq://", "memq://", "file://"};
+    if (!begins_with(url->text, schemes, sizeof schemes / sizeof schemes[0])) {
+        refuse_url(url, NO_SCHEME);
+        return false;
+    }
+    if (wh_multicast_is(url->text) && !open_multicast(&node->receiver, url)) {
+        return false;
+    }
+    node->lcm = lcm_create(url->text);
+    if (!node->lcm) {
+        refuse_url(url, strstr(url->text, "udpm://") == NULL
+                            ? "LCM does not open this URL (expected one where a server or a file is)"
+                            : NO_ROUTE);
+    }
+    return node->lcm != NULL;
 }
 
 bool wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record) {
-    const char *from_environment = getenv("LCM_DEFAULT_URL");
-    const char *fallback = from_environment && from_environment[0] ? from_environment : WH_NODE_URL;
+    const url_t asked = url_of(url);
     memset(node, 0, sizeof *node);
     node->receiver.socket = -1;
     node->record = record && record->options.path ? record : NULL;
-    const bool sound =
-        connect_to(node, url ? url : fallback) && (!node->record || wh_recording_open(node->record));
+    const bool sound = connect_to(node, &asked) && (!node->record || wh_recording_open(node->record));
     if (!sound) {
         wh_node_close(node);
     }
@@ -109,6 +159,7 @@ static int take(wh_node_t *node) {
     if (!wh_receiver_take(&node->receiver, &message)) {
         return 0;
     }
+    node->sender = message.sender;
     for (size_t i = 0; i < node->subscriber_count; ++i) {
         if (strcmp(node->subscribers[i].channel, message.channel) == 0) {
             hand_over(&node->subscribers[i], message.data, message.size);
@@ -117,18 +168,24 @@ static int take(wh_node_t *node) {
     return 1;
 }
 
-int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
+/* True if something can be read within so many microseconds. LCM's own wait counts in ms, which may be longer
+ * than a slice. */
+static bool is_readable(wh_node_t *node, int64_t us) {
     struct pollfd ready = {.fd = wh_node_descriptor(node), .events = POLLIN};
-    /* LCM's own wait counts in ms, which may be longer than a slice. */
-    const int64_t us = timeout_us > 0 ? timeout_us : 0;
     const struct timespec timeout = {.tv_sec = us / 1000000, .tv_nsec = us % 1000000 * 1000};
     const int count = ppoll(&ready, 1, &timeout, NULL);
-    if (count <= 0) {
-        node->interrupted = node->interrupted || count < 0;
-        return 0;
-    }
+    node->interrupted = node->interrupted || count < 0;
+    return count > 0;
+}
+
+/* Receives first: what a process has published comes back to it at once, and often more has come. */
+int wh_node_wait(wh_node_t *node, int64_t timeout_us) {
+    const int64_t us = timeout_us > 0 ? timeout_us : 0;
     if (node->receiver.socket >= 0) {
-        return take(node);
+        return take(node) == 1 || (us > 0 && is_readable(node, us) && take(node) == 1) ? 1 : 0;
+    }
+    if (!is_readable(node, us)) {
+        return 0;
     }
     return lcm_handle_timeout(node->lcm, 0) < 0 ? -1 : 1;
 }
@@ -153,13 +210,49 @@ void wh_node_close(wh_node_t *node) {
     }
 }
 
-void wh_node_say(const wh_node_t *node, const char *format, ...) {
-    char text[200];
-    va_list arguments;
-    if (node->speaker) {
-        va_start(arguments, format);
-        (void)vsnprintf(text, sizeof text, format, arguments);
-        va_end(arguments);
-        fprintf(stderr, "%s: %s\n", node->speaker, text);
+/* ------------------------------------------------------------------------------------------------- saying */
+
+/* The time as ISO 8601 has it, in UTC and ms, and the level. */
+static void put_time(char *text, size_t size, const char *level) {
+    const int64_t us = wh_node_wall_us();
+    const time_t seconds = (time_t)(us / 1000000);
+    struct tm parts;
+    char date[32];
+    (void)gmtime_r(&seconds, &parts);
+    (void)strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S", &parts);
+    snprintf(text, size, "%s.%03dZ %s ", date, (int)(us % 1000000 / 1000), level);
+}
+
+__attribute__((format(printf, 3, 0))) static void say(const wh_node_t *node, const char *level,
+                                                      const char *format, va_list arguments) {
+    char text[600];
+    char begin[64] = "";
+    char line[sizeof begin + 40 + sizeof text];
+    if (!node->speaker) {
+        return;
     }
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    if (node->log_time) {
+        put_time(begin, sizeof begin, level);
+    }
+    snprintf(line, sizeof line, "%s%.30s: %s", begin, node->speaker, text);
+    if (node->listener) {
+        node->listener(node->listener_user, line);
+    } else {
+        fprintf(stderr, "%s\n", line);
+    }
+}
+
+void wh_node_say(const wh_node_t *node, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    say(node, "info", format, arguments);
+    va_end(arguments);
+}
+
+void wh_node_warn(const wh_node_t *node, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    say(node, "warning", format, arguments);
+    va_end(arguments);
 }

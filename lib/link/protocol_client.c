@@ -18,6 +18,10 @@
 #define RESENDS_AT_FIRST_PACE 20
 /* The longest single wait: between waits the client looks for silence and for a stop. */
 #define WAIT_MOST_US 50000
+/* After a stop the answer to what was sent is waited for so long: the simulator has stepped that slice. */
+#define STOP_GRACE_US 100000
+/* A simulator that was started anew may ask for its state several times: it is said once in this time. */
+#define RESTORE_SAID_US 1000000
 
 static bool is_stopped(const wh_protocol_client_t *client) {
     return client->options.stop && *client->options.stop != 0;
@@ -39,9 +43,26 @@ void wh_protocol_client_publish(wh_node_t *node, const waferhand_command *comman
     }
 }
 
+/* Sends the last command. From the first one that is not answered on, the simulator owes an answer. */
+static void send_command(wh_protocol_client_t *client) {
+    if (client->asked_us == 0) {
+        client->asked_us = wh_node_clock_us();
+    }
+    wh_protocol_client_publish(client->node, &client->command);
+}
+
 static void send_again(wh_protocol_client_t *client) {
     ++client->counters.repeated;
-    wh_protocol_client_publish(client->node, &client->command);
+    send_command(client);
+}
+
+static void say_restored(wh_protocol_client_t *client) {
+    const int64_t now = wh_node_clock_us();
+    if (!client->shared && (client->restored_us == 0 || now - client->restored_us > RESTORE_SAID_US)) {
+        client->restored_us = now;
+        wh_node_warn(client->node, "the simulator was started anew: it gets the state of slice %" PRId64,
+                     client->state.seq);
+    }
 }
 
 /* Sends the last state, then the command, if a simulator that was started anew has asked for it. */
@@ -52,8 +73,7 @@ static void restore_simulator(wh_protocol_client_t *client) {
         return;
     }
     ++client->counters.restored;
-    wh_node_say(client->node, "the simulator was started anew: it gets the state of slice %" PRId64,
-                client->state.seq);
+    say_restored(client);
     (void)wh_node_publish(client->node, WH_CHANNEL_RESTORE, client->restore, client->restore_size);
     send_again(client);
 }
@@ -61,11 +81,28 @@ static void restore_simulator(wh_protocol_client_t *client) {
 /* ---------------------------------------------------------------------------------------------- receiving */
 
 static void heard(wh_protocol_client_t *client) {
-    client->last_heard_us = wh_node_clock_us();
+    client->asked_us = 0;
+    client->timed_out = false;
     if (client->silent) {
         client->silent = false;
         wh_node_say(client->node, "the simulator answers again");
     }
+}
+
+/* A simulator that was started anew sends from another socket, and the one before it never again. Two send in
+ * turns. */
+static void notice_second_simulator(wh_protocol_client_t *client) {
+    const uint64_t sender = client->node->sender;
+    if (sender == 0 || sender == client->senders[0]) {
+        return;
+    }
+    if (sender == client->senders[1] && !client->shared) {
+        client->shared = true;
+        wh_node_warn(client->node, "two simulators answer (expected one at a URL: stop the other one, or "
+                                   "give it another --lcm-url)");
+    }
+    client->senders[1] = client->senders[0];
+    client->senders[0] = sender;
 }
 
 /* Copies the state to client->arrays. False if it is not sound, or no grasp table could be in it. */
@@ -111,6 +148,7 @@ static void take_refusal(wh_protocol_client_t *client, const waferhand_state *me
         client->asked_for_state = true;
     } else {
         client->refusal = (wh_status_t)message->status;
+        client->other_layout_hash = (uint64_t)message->layout_hash;
     }
 }
 
@@ -125,6 +163,7 @@ static void take_message(wh_protocol_client_t *client, const waferhand_state *me
         return;
     }
     heard(client);
+    notice_second_simulator(client);
     if (message->status != WH_OK) {
         take_refusal(client, message);
     } else if (!wanted) {
@@ -149,16 +188,24 @@ static void on_state(void *user, const void *data, size_t size) {
 
 /* ------------------------------------------------------------------------------------------------ waiting */
 
-/* Reports a silent simulator, once: nothing was heard for long, counted from `since_us` or from the last
- * message. */
-static void notice_silence(wh_protocol_client_t *client, int64_t since_us) {
-    const int64_t last = client->last_heard_us > since_us ? client->last_heard_us : since_us;
-    if (!client->silent && wh_node_clock_us() - last > WH_CLIENT_SILENCE_US) {
-        client->silent = true;
-        ++client->counters.silences;
-        wh_node_say(client->node,
-                    "no answer from the simulator: holding at slice %" PRId64 " until it returns",
-                    client->command.seq);
+/* How long the simulator has owed an answer. */
+static int64_t owed_us(const wh_protocol_client_t *client) {
+    return client->asked_us == 0 ? 0 : wh_node_clock_us() - client->asked_us;
+}
+
+/* Reports a silent simulator, once. */
+static void notice_silence(wh_protocol_client_t *client) {
+    if (client->silent || owed_us(client) <= WH_CLIENT_SILENCE_US) {
+        return;
+    }
+    client->silent = true;
+    ++client->counters.silences;
+    if (client->has_state) {
+        wh_node_warn(client->node,
+                     "no answer from the simulator: holding at slice %" PRId64 " until it returns",
+                     client->command.seq);
+    } else {
+        wh_node_warn(client->node, "no answer from the simulator: waiting until there is one");
     }
 }
 
@@ -186,26 +233,37 @@ static void resend_when_due(wh_protocol_client_t *client, resend_t *resend) {
     resend->due = wh_node_clock_us() + resend->pause;
 }
 
-/* True if the run is stopped. Any signal ends a wait for a silent simulator: a program's own handler is
- * enough. */
-static bool is_given_up(const wh_protocol_client_t *client) {
-    return is_stopped(client) || (client->silent && client->node->interrupted);
+/* WH_OK while an answer may come. Any signal ends a wait for a silent simulator: a program's own handler is
+ * enough. `stopped_us` is when a stop was first seen, 0 before. */
+static wh_status_t why_give_up(wh_protocol_client_t *client, int64_t *stopped_us) {
+    const int64_t now = wh_node_clock_us();
+    if (client->options.timeout_us > 0 && owed_us(client) > client->options.timeout_us) {
+        client->timed_out = true;
+        return WH_STATUS_NO_ANSWER;
+    }
+    if (is_stopped(client) && *stopped_us == 0) {
+        *stopped_us = now;
+    }
+    const bool waited = *stopped_us != 0 && (client->silent || now - *stopped_us > STOP_GRACE_US);
+    return waited || (client->silent && client->node->interrupted) ? WH_STATUS_STOPPED : WH_OK;
 }
 
 /* Waits for the answer to the last command, sending it again and again. */
 static wh_status_t await_answer(wh_protocol_client_t *client) {
     const int64_t begin = wh_node_clock_us();
+    int64_t stopped_us = 0;
     resend_t resend = {client->resend_us, begin + client->resend_us, client->counters.repeated};
     while (!client->answered && client->refusal == WH_OK) {
-        if (is_given_up(client)) {
-            return WH_STATUS_STOPPED;
+        const wh_status_t why = why_give_up(client, &stopped_us);
+        if (why != WH_OK) {
+            return why;
         }
         if (wh_node_wait(client->node, clamp(resend.due - wh_node_clock_us(), 0, WAIT_MOST_US)) < 0) {
             return WH_STATUS_NO_NETWORK;
         }
         restore_simulator(client);
         resend_when_due(client, &resend);
-        notice_silence(client, begin);
+        notice_silence(client);
     }
     if (client->counters.repeated == resend.before) {
         client->resend_us = clamp(4 * (wh_node_clock_us() - begin), RESEND_LEAST_US, RESEND_MOST_US);
@@ -227,7 +285,7 @@ static wh_status_t await_due_time(wh_protocol_client_t *client) {
         }
     }
     (void)wh_node_drain(client->node, 64);
-    if (client->asked_for_state || wh_node_clock_us() - client->last_heard_us > WH_CLIENT_SILENCE_US) {
+    if (client->asked_for_state || owed_us(client) > WH_CLIENT_SILENCE_US) {
         client->start_us = 0;
         return await_answer(client);
     }
@@ -247,8 +305,8 @@ static void write_outputs(wh_protocol_client_t *client) {
     if (problem == 0) {
         memcpy(client->written, client->command.valve, count * sizeof(int32_t));
     } else if (client->counters.unwritten++ == 0) {
-        wh_node_say(client->node, "%s: %s (expected a file that can be written)", client->options.outputs,
-                    strerror(problem));
+        wh_node_warn(client->node, "%s: %s (expected a file that can be written)", client->options.outputs,
+                     strerror(problem));
     }
 }
 
@@ -296,7 +354,11 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     const bool free_running = is_free_running(client);
     client->node->interrupted = false;
     client->refusal = WH_OK;
-    const wh_status_t before = see_through(client);
+    forget_delivered_events(client);
+    if (client->timed_out) {
+        client->asked_us = 0; /* it may take its time again */
+    }
+    const wh_status_t before = is_stopped(client) ? WH_STATUS_STOPPED : see_through(client);
     if (before != WH_OK) {
         hand_over(client, state, before);
         return before;
@@ -305,10 +367,9 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     client->answered = false;
     client->asked_for_state = false;
     client->refusal = WH_OK;
-    forget_delivered_events(client);
     write_outputs(client);
     ++client->counters.sent;
-    wh_protocol_client_publish(client->node, &client->command);
+    send_command(client);
     tick(client);
     const wh_status_t status = free_running ? await_due_time(client) : await_answer(client);
     client->pending = !free_running && !client->answered && client->refusal == WH_OK;
@@ -316,32 +377,46 @@ static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_sta
     return status;
 }
 
+/* The slice whose state is still to come; 0: none. */
+static int64_t owed_slice(const wh_protocol_client_t *client) {
+    const bool owed = client->refusal == WH_OK && client->state.seq != client->command.seq;
+    return owed ? client->command.seq : 0;
+}
+
 /* Waits a little: in a free-running run the last states may still be on their way. */
 static uint64_t last_hash(wh_link_t *link) {
     wh_protocol_client_t *client = (wh_protocol_client_t *)link;
-    if (!wh_protocol_client_settle(client, SETTLE_US)) {
-        wh_node_say(client->node, "the state of the last slice did not come: the hash is of slice %" PRId64,
-                    client->state.seq);
+    const bool settled = wh_protocol_client_settle(client, is_stopped(client) ? STOP_GRACE_US : SETTLE_US);
+    if (!settled && client->has_state) {
+        wh_node_warn(client->node,
+                     "the state of slice %" PRId64 " did not come: the hash is of slice %" PRId64,
+                     client->command.seq, client->state.seq);
+    } else if (!settled) {
+        wh_node_warn(client->node, "no state has come: the run has no hash");
     }
     return client->hash;
 }
 
+/* Those at the end that no state tells of count: nobody has seen that they arrived. */
 static int64_t missed_slices(wh_link_t *link) {
-    return ((wh_protocol_client_t *)link)->missed;
+    const wh_protocol_client_t *client = (wh_protocol_client_t *)link;
+    const bool untold = client->options.rate > 0 && owed_slice(client) != 0;
+    return client->missed + (untold ? client->command.seq - client->state.seq : 0);
 }
 
 void wh_protocol_client_heartbeat(wh_protocol_client_t *client) {
-    if (client->counters.sent > 0) {
+    if (client->command.seq > 0) {
         send_again(client);
     }
     (void)wh_node_drain(client->node, 64);
     restore_simulator(client);
-    notice_silence(client, client->last_heard_us);
+    notice_silence(client);
 }
 
 bool wh_protocol_client_settle(wh_protocol_client_t *client, int64_t timeout_us) {
     const int64_t end = wh_node_clock_us() + timeout_us;
-    while (client->counters.sent > 0 && client->state.seq != client->command.seq && !is_stopped(client)) {
+    (void)wh_node_drain(client->node, 64);
+    while (owed_slice(client) != 0) {
         if (wh_node_clock_us() > end || wh_node_wait(client->node, 1000) < 0) {
             return false;
         }
@@ -360,18 +435,29 @@ int64_t wh_protocol_client_draw_run(void) {
     return (int64_t)bits;
 }
 
-bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node, const wh_layout_t *layout,
-                             const wh_protocol_client_options_t *options) {
+void wh_protocol_client_begin(wh_protocol_client_t *client, const wh_layout_t *layout) {
+    wh_node_t *const node = client->node;
+    const wh_protocol_client_options_t options = client->options;
+    const wh_protocol_client_counters_t counters = client->counters;
     memset(client, 0, sizeof *client);
     client->link.exchange = exchange;
     client->link.hash = last_hash;
     client->link.missed = missed_slices;
     client->node = node;
     client->layout = layout;
-    client->options = *options;
+    client->options = options;
+    client->counters = counters;
     client->identity.run = wh_protocol_client_draw_run();
     client->identity.layout_hash = wh_layout_hash(layout);
     client->resend_us = FIRST_RESEND_US;
     memset(client->written, 0xff, sizeof client->written);
+}
+
+bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node, const wh_layout_t *layout,
+                             const wh_protocol_client_options_t *options) {
+    memset(client, 0, sizeof *client);
+    client->node = node;
+    client->options = *options;
+    wh_protocol_client_begin(client, layout);
     return wh_node_subscribe(node, WH_CHANNEL_STATE, on_state, client);
 }

@@ -4,8 +4,9 @@
  * after a few round trips, then less and less often. A simulator that was started anew gets the last state
  * back. Free-running, it sends one command each slice of wall-clock time and takes the states as they come;
  * the first slice is always in lockstep. Silence of the simulator is reported within a second, and its
- * return. No state is taken whose hash is not the one that its own content has, nor one that no grasp table
- * could be in.
+ * return: it is silent only while it owes an answer. Two simulators that answer in turns are reported, too.
+ * No state is taken whose hash is not the one that its own content has, nor one that no grasp table could
+ * be in.
  */
 #ifndef WH_LINK_PROTOCOL_CLIENT_H
 #define WH_LINK_PROTOCOL_CLIENT_H
@@ -30,7 +31,8 @@ typedef struct {
 typedef struct {
     const char *outputs;               /* write the valves to this file, too, before a slice; may be null */
     double rate;                       /* wall-clock rate of a free-running run; 0: lockstep */
-    const volatile sig_atomic_t *stop; /* not zero: give up; may be null */
+    int64_t timeout_us;                /* wait so long for an answer; 0: for ever */
+    const volatile sig_atomic_t *stop; /* not zero: send nothing more; may be null */
     void (*tick)(void *user);          /* called once a second of a long motion; may be null */
     void *user;
 } wh_protocol_client_options_t;
@@ -47,12 +49,17 @@ typedef struct {
     int32_t written[WH_GRIPPERS]; /* the valves in the outputs file; -1 before the first */
     bool pending;                 /* the last command was given up before its answer came */
     bool has_state, answered, asked_for_state;
-    wh_status_t refusal; /* why the last command was not stepped */
-    int64_t missed;      /* as the simulator counts */
-    uint64_t hash;       /* of the last state */
-    int64_t resend_us;   /* how long to wait before sending again */
-    int64_t last_heard_us, start_us, last_tick_us;
+    wh_status_t refusal;        /* why the last command was not stepped */
+    uint64_t other_layout_hash; /* with WH_STATUS_OTHER_LAYOUT: the simulator's */
+    int64_t missed;             /* as the simulator counts */
+    uint64_t hash;              /* of the last state */
+    int64_t resend_us;          /* how long to wait before sending again */
+    int64_t asked_us; /* when the first command went out that nothing was heard since; 0: no answer is owed */
+    int64_t start_us, last_tick_us, restored_us;
     bool silent;
+    bool timed_out;      /* an exchange waited longer than it may, and nothing was heard since */
+    uint64_t senders[2]; /* of states: the last one, and the other one before it; 0: unknown */
+    bool shared;         /* both send: two simulators */
     wh_protocol_client_counters_t counters;
     wh_link_arrays_t arrays;
     wh_link_arrays_t spare;
@@ -67,6 +74,9 @@ typedef struct {
 bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node, const wh_layout_t *layout,
                              const wh_protocol_client_options_t *options);
 
+/* Forgets the run and begins another one, of a layout that may be another. Counters stay. */
+void wh_protocol_client_begin(wh_protocol_client_t *client, const wh_layout_t *layout);
+
 /* Sends a command. One that is lost is no error: whoever waits for the answer sends it again. */
 void wh_protocol_client_publish(wh_node_t *node, const waferhand_command *command);
 
@@ -77,8 +87,8 @@ int64_t wh_protocol_client_draw_run(void);
  * notices by the answer whether it is. To be called now and then between commands; handles what has come. */
 void wh_protocol_client_heartbeat(wh_protocol_client_t *client);
 
-/* Free-running: waits up to so long for the state of the last command, so that what is asked next is asked of
- * it. True in lockstep, or when it came. */
+/* Waits up to so long for the state of the last command, so that what is asked next is asked of it. True when
+ * it came, or when none is to come. */
 bool wh_protocol_client_settle(wh_protocol_client_t *client, int64_t timeout_us);
 
 #endif

@@ -3,7 +3,6 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -18,32 +17,91 @@ bool wh_multicast_is(const char *url) {
     return strncmp(url, SCHEME, strlen(SCHEME)) == 0;
 }
 
-/* A whole number that ends where `end` says; -1 if there is none. */
-static long number(const char *text, const char *end) {
-    char *stop;
-    const long value = *text >= '0' && *text <= '9' ? strtol(text, &stop, 10) : -1;
-    return value >= 0 && stop == end ? value : -1;
+/* A part of a URL. */
+typedef struct {
+    const char *text;
+    size_t length;
+} part_t;
+
+/* Up to one of these characters or the end. */
+static part_t part_at(const char *text, const char *ends) {
+    return (part_t){text, strcspn(text, ends)};
 }
 
-const char *wh_multicast_parse(const char *url, wh_multicast_t *multicast) {
-    char address[INET_ADDRSTRLEN];
-    const char *begin = url + strlen(SCHEME);
-    const size_t length = strcspn(begin, ":?");
-    const char *options = begin + strcspn(begin, "?");
-    const char *buffer = strstr(options, "recv_buf_size=");
+/* A whole number up to `most`, written as people do; -1 if there is none: not 07, which liblcm would take for
+ * an octal one. */
+static int64_t number(part_t part, int64_t most) {
+    int64_t value = 0;
+    for (size_t i = 0; i < part.length && value <= most; ++i) {
+        const char digit = part.text[i];
+        value = digit >= '0' && digit <= '9' ? 10 * value + (digit - '0') : INT64_MAX;
+    }
+    const bool led_by_zero = part.length > 1 && part.text[0] == '0';
+    return part.length > 0 && !led_by_zero && value <= most ? value : -1;
+}
+
+/* At most so much of what a user typed is repeated. */
+static int shown(part_t part) {
+    return part.length < 40 ? (int)part.length : 40;
+}
+
+static bool refuse(char *problem, part_t name, part_t given, const char *expected) {
+    const part_t value = given.length > 0 ? given : part_at("nothing", "");
+    snprintf(problem, WH_MULTICAST_PROBLEM_BYTES, "%.*s: %.*s (expected %s)", shown(name), name.text,
+             shown(value), value.text, expected);
+    return false;
+}
+
+static bool is_named(part_t part, const char *name) {
+    return part.length == strlen(name) && strncmp(part.text, name, part.length) == 0;
+}
+
+/* One of liblcm's options, up to the next `&`. */
+static bool take_option(const char *text, wh_multicast_t *multicast, char *problem) {
+    const part_t name = part_at(text, "=&");
+    const part_t value = text[name.length] == '=' ? part_at(text + name.length + 1, "&") : (part_t){"", 0};
+    if (is_named(name, "ttl")) {
+        return number(value, 255) >= 0 || refuse(problem, name, value, "a whole number from 0 to 255");
+    }
+    if (is_named(name, "recv_buf_size")) {
+        const int64_t bytes = number(value, INT32_MAX);
+        multicast->buffer_bytes = bytes > 0 ? (int)bytes : 0;
+        return bytes >= 0 || refuse(problem, name, value, "a whole number of bytes from 0 to 2147483647");
+    }
+    return refuse(problem, name, value, "ttl=... or recv_buf_size=..., with a & between them");
+}
+
+static bool take_options(const char *options, wh_multicast_t *multicast, char *problem) {
+    const char *text = options;
+    while (*text != '\0') {
+        ++text; /* the `?`, or a `&` */
+        if (!take_option(text, multicast, problem)) {
+            return false;
+        }
+        text += strcspn(text, "&");
+    }
+    return true;
+}
+
+bool wh_multicast_parse(const char *url, wh_multicast_t *multicast,
+                        char problem[WH_MULTICAST_PROBLEM_BYTES]) {
+    char text[INET_ADDRSTRLEN];
+    const part_t address = part_at(url + strlen(SCHEME), ":?");
+    const char *behind = address.text + address.length;
+    const part_t port = behind[0] == ':' ? part_at(behind + 1, "?") : (part_t){"", 0};
     memset(multicast, 0, sizeof *multicast);
-    snprintf(address, sizeof address, "%.*s", (int)(length < sizeof address ? length : 0), begin);
-    if (inet_pton(AF_INET, address, &multicast->address) != 1 || !IN_MULTICAST(ntohl(multicast->address))) {
-        return "expected an address of multicast, 224.0.0.0 to 239.255.255.255, as in "
-               "udpm://239.255.76.67:7667";
+    snprintf(text, sizeof text, "%.*s", (int)(address.length < sizeof text ? address.length : 0),
+             address.text);
+    if (inet_pton(AF_INET, text, &multicast->address) != 1 || !IN_MULTICAST(ntohl(multicast->address))) {
+        return refuse(problem, part_at("address", ""), address,
+                      "one of multicast, 224.0.0.0 to 239.255.255.255, as in udpm://239.255.76.67:7667");
     }
-    const long port = begin[length] == ':' ? number(begin + length + 1, options) : -1;
-    if (port < 1 || port > 65535) {
-        return "expected a port from 1 to 65535 behind the address, as in udpm://239.255.76.67:7667";
+    if (number(port, 65535) < 1) {
+        return refuse(problem, part_at("port", ""), port,
+                      "1 to 65535 behind the address, as in udpm://239.255.76.67:7667");
     }
-    multicast->port = (uint16_t)port;
-    multicast->buffer_bytes = buffer ? (int)strtol(buffer + strlen("recv_buf_size="), NULL, 10) : 0;
-    return NULL;
+    multicast->port = (uint16_t)number(port, 65535);
+    return take_options(url + strcspn(url, "?"), multicast, problem);
 }
 
 /* ------------------------------------------------------------------------------------------------- socket */
@@ -101,14 +159,25 @@ static bool parse(const uint8_t *datagram, size_t size, wh_received_t *message) 
     return true;
 }
 
+/* Address and port; of other sockets 0. */
+static uint64_t sender_of(const struct sockaddr_in *from, socklen_t size) {
+    if (size != sizeof *from || from->sin_family != AF_INET) {
+        return 0;
+    }
+    return (uint64_t)ntohl(from->sin_addr.s_addr) << 16 | ntohs(from->sin_port);
+}
+
 bool wh_receiver_take(wh_receiver_t *receiver, wh_received_t *message) {
     for (int datagrams = 0; datagrams < WH_RECEIVER_MOST; ++datagrams) {
-        const ssize_t size =
-            recv(receiver->socket, receiver->datagram, sizeof receiver->datagram, MSG_DONTWAIT | MSG_TRUNC);
+        struct sockaddr_in from = {.sin_family = AF_UNSPEC};
+        socklen_t from_size = sizeof from;
+        const ssize_t size = recvfrom(receiver->socket, receiver->datagram, sizeof receiver->datagram,
+                                      MSG_DONTWAIT | MSG_TRUNC, (struct sockaddr *)&from, &from_size);
         if (size < 0) {
             return false;
         }
         if ((size_t)size <= sizeof receiver->datagram && parse(receiver->datagram, (size_t)size, message)) {
+            message->sender = sender_of(&from, from_size);
             return true;
         }
         ++receiver->dropped;

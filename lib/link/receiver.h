@@ -19,6 +19,9 @@
 /* After so many datagrams that are no messages the caller's other work gets its turn. */
 #define WH_RECEIVER_MOST 64
 
+/* Room for what is wrong with a URL. */
+#define WH_MULTICAST_PROBLEM_BYTES 200
+
 /* A multicast group, as an URL tells it. */
 typedef struct {
     uint32_t address; /* in network order */
@@ -37,11 +40,13 @@ typedef struct {
     const char *channel;
     const void *data;
     size_t size;
+    uint64_t sender; /* the socket that it came from: each process has another one; 0: unknown */
 } wh_received_t;
 
-/* Reads `udpm://ADDRESS:PORT`, with or without liblcm's options behind a `?`. Returns null, or what was
- * expected instead; `multicast` is then not for use. */
-const char *wh_multicast_parse(const char *url, wh_multicast_t *multicast);
+/* Reads `udpm://ADDRESS:PORT`, with or without liblcm's options behind a `?`: `ttl` and `recv_buf_size`, with
+ * a `&` between them. False, and `problem` tells which part is wrong, its value and what was expected;
+ * `multicast` is then not for use. */
+bool wh_multicast_parse(const char *url, wh_multicast_t *multicast, char problem[WH_MULTICAST_PROBLEM_BYTES]);
 
 /* True if liblcm would take this URL for multicast. */
 bool wh_multicast_is(const char *url);

@@ -23,6 +23,15 @@ static void tell_cell(wh_sim_process_t *simulation) {
             waferhand_cell_encode(simulation->encoded, 0, (int)sizeof simulation->encoded, cell));
 }
 
+/* Before the first command of a run with another layout is turned away, so that its sender can name this
+ * one. */
+static void tell_layout(wh_sim_process_t *simulation, int64_t run) {
+    if (simulation->other_run != run) {
+        simulation->other_run = run;
+        tell_cell(simulation);
+    }
+}
+
 static void tell_proximity(wh_sim_process_t *simulation) {
     const int64_t now = wh_node_clock_us();
     const bool due = now - simulation->last_proximity_us >= WH_SIMULATION_PROXIMITY_US;
@@ -45,9 +54,10 @@ static void answer(wh_sim_process_t *simulation) {
 
 static void drop(wh_sim_process_t *simulation, const char *channel, size_t size) {
     if (simulation->counters.garbage++ == 0) {
-        wh_node_say(simulation->node,
-                    "%s: a datagram of %zu bytes is no such message: dropped, like all that follow", channel,
-                    size);
+        wh_node_warn(simulation->node,
+                     "%s: a datagram of %zu bytes is no such message and was dropped; others will be dropped "
+                     "without a word, and counted",
+                     channel, size);
     }
 }
 
@@ -65,6 +75,9 @@ static void act_on(wh_sim_process_t *simulation, wh_protocol_server_result_t res
     }
     /* First of all: motion control waits for the answer. */
     answer(simulation);
+    if (result == WH_SERVER_RESTORED) {
+        heard_motion_control(simulation);
+    }
     if (result == WH_SERVER_NEW_RUN || result == WH_SERVER_RESTORED) {
         simulation->running = true;
         wh_node_say(simulation->node, "run %016" PRIx64 " %s slice %" PRId64,
@@ -79,16 +92,20 @@ static void act_on(wh_sim_process_t *simulation, wh_protocol_server_result_t res
 
 static void handle_command(wh_sim_process_t *simulation, const waferhand_command *message) {
     const int64_t missed = simulation->server.missed;
+    const uint64_t others = simulation->server.counters.other_layout;
     const wh_protocol_server_result_t result =
         wh_protocol_server_command(&simulation->server, message, simulation->valves);
+    if (simulation->server.counters.other_layout > others) {
+        tell_layout(simulation, message->run);
+    }
     /* Late commands of an old run are no sign of life. */
     if (message->run == simulation->server.identity.run) {
         heard_motion_control(simulation);
     }
     if (simulation->server.missed > missed && missed == 0) {
-        wh_node_say(simulation->node,
-                    "slices are missing, the first before slice %" PRId64 ": they are counted",
-                    simulation->server.seq);
+        wh_node_warn(simulation->node,
+                     "slices are missing, the first before slice %" PRId64 ": they are counted",
+                     simulation->server.seq);
     }
     act_on(simulation, result);
 }
@@ -191,8 +208,9 @@ void wh_sim_process_tick(wh_sim_process_t *simulation) {
         now - simulation->last_command_us > WH_SIMULATION_SILENCE_US) {
         simulation->silent = true;
         ++simulation->counters.silences;
-        wh_node_say(simulation->node, "motion control has fallen silent: holding the state of slice %" PRId64,
-                    simulation->server.seq);
+        wh_node_warn(simulation->node,
+                     "motion control has fallen silent: holding the state of slice %" PRId64,
+                     simulation->server.seq);
     }
 }
 

@@ -27,6 +27,7 @@ typedef struct {
     wh_link_cell_t cell;
     const int32_t *valves; /* from outputs.txt; null: the commands' own */
     int64_t last_command_us, last_cell_us, last_proximity_us;
+    int64_t other_run;          /* the last one that was turned away for its layout */
     bool running;               /* a run has begun and is not over */
     bool silent;                /* and motion control has fallen silent */
     char command[WH_LINK_LINE]; /* the line that motion control says it executes; empty: none */

@@ -127,7 +127,9 @@ static void hear_decisions(void *user, const wh_command_t *command, const wh_sta
 
 static void hear_record(void *user, const wh_command_t *command, const wh_state_t *state) {
     wh_recorder_events(user, state);
-    wh_recorder_slice(user, command, state);
+    if (state->status == WH_OK) {
+        wh_recorder_slice(user, command, state);
+    }
 }
 
 static void set_up_listeners(wh_mcs_t *mcs) {

@@ -1,5 +1,6 @@
 #include "mcs.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -119,9 +120,10 @@ static char prompt_key;
 /* Runs protected: pushes the native table and hands it to lua/mcs/init.lua, which sets the globals. */
 static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
-    const luaL_Reg *const groups[] = {module_functions,       wh_mcs_cell_functions, wh_mcs_command_functions,
-                                      wh_mcs_fault_functions, wh_mcs_plan_functions, wh_mcs_play_functions,
-                                      wh_mcs_query_functions, wh_mcs_scan_functions};
+    const luaL_Reg *const groups[] = {
+        module_functions,       wh_mcs_cell_functions,     wh_mcs_command_functions,
+        wh_mcs_fault_functions, wh_mcs_describe_functions, wh_mcs_plan_functions,
+        wh_mcs_play_functions,  wh_mcs_query_functions,    wh_mcs_scan_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -154,12 +156,26 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
 
 /* ---------------------------------------------------------------------------------------------- finishing */
 
+/* A free-running simulator may miss some slices, but no more than the user allows. */
+static void judge_missed(wh_mcs_t *mcs, int64_t missed) {
+    char text[100];
+    if (mcs->limits_missed) {
+        snprintf(text, sizeof text, "at most %lld missed slices; the simulator missed %lld",
+                 (long long)mcs->most_missed, (long long)missed);
+        wh_record_add_expectation(mcs->recorder.record, 0, text, missed <= mcs->most_missed);
+        if (mcs->partners.expected) {
+            mcs->partners.expected(mcs->partners.user, mcs);
+        }
+    }
+}
+
 void wh_mcs_finish(wh_mcs_t *mcs) {
     wh_recorder_end_t end = {.wafers = mcs->state.wafers};
     if (mcs->link) {
         end.hash = mcs->link->hash(mcs->link);
         end.missed = mcs->link->missed(mcs->link);
         end.world = mcs->local.collision.world;
+        judge_missed(mcs, end.missed);
     }
     wh_recorder_finish(&mcs->recorder, &end);
     if (mcs->layout && mcs->partners.finished) {

@@ -26,6 +26,9 @@ typedef struct {
     wh_link_t *(*connect)(void *user, wh_mcs_t *mcs);
     /* A command of the record begins (`ended` false) or has ended. */
     void (*watch)(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended);
+    /* Why the link answered a slice with this error, for its message: true until the next call. Null: the
+     * error says it all. */
+    const char *(*explain)(void *user, wh_status_t status);
     /* The last expectation of the record was added, or its last cycle. */
     void (*expected)(void *user, const wh_mcs_t *mcs);
     void (*cycle)(void *user, const wh_mcs_t *mcs);
@@ -66,8 +69,9 @@ typedef struct {
     wh_trial_cell_t *trial; /* null: the cell is as its layout says */
 } wh_local_cell_t;
 
-/* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `decisions` and
- * `rehearsal.look_ahead`, which may be set between opening and the cell. Must not be moved once opened. */
+/* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `decisions`,
+ * `limits_missed`, `most_missed` and `rehearsal.look_ahead`, which may be set between opening and the cell.
+ * Must not be moved once opened. */
 struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
     wh_sandbox_t *sandbox;
@@ -84,8 +88,12 @@ struct wh_mcs {
     wh_state_t state;         /* the answer to it */
 
     wh_rehearsal_t rehearsal;
-    wh_vacuum_watch_t watch;      /* of the running segment */
-    int64_t stop_slice;           /* at which a STOP comes; INT64_MAX: none */
+    wh_vacuum_watch_t watch; /* of the running segment */
+    int64_t stop_slice;      /* at which a STOP comes; INT64_MAX: none */
+    bool stop_requested;     /* a STOP has come: see wh_mcs_stop */
+    bool link_stopped;       /* the link has answered a slice with WH_STATUS_STOPPED */
+    bool limits_missed;      /* the run fails if the simulator misses more slices than `most_missed` */
+    int64_t most_missed;
     wh_fault_t faults[WH_FAULTS]; /* by slot, as the simulator has them or is about to */
     size_t fault_count;
 
@@ -114,9 +122,23 @@ struct wh_mcs {
 bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_record_t *record,
                  wh_sandbox_result_t *result);
 
-/* Leaves on the stack of L, within a protected call and after `cell`, what executes a typed line and what
+/* Leaves on the stack of L, within a protected call, what executes a typed line and what
  * completes one: two functions, see lua/mcs/prompt.lua and lua/mcs/completion.lua. */
 void wh_mcs_push_prompt(lua_State *L);
+
+/* A STOP, from within the link's exchange or between two commands: the running command ends with
+ * WH_STATUS_STOPPED after this slice, the next one before its first. A script can catch that error. */
+void wh_mcs_stop(wh_mcs_t *mcs);
+
+/* Room for what wh_mcs_describe writes. */
+#define WH_MCS_DESCRIPTION_BYTES 4096
+
+/* What motion control does, as name=value with blanks between them, spelt as answers at the prompt are:
+ * `phase`, idle or running, and the running `command`; `seq` and `time` (s) of the last slice; where the
+ * robot's axes are commanded to, `theta` and `yaw` in degrees, `r` and `z` in mm; for each gripper the wafer
+ * that it `holds`, as the last state tells; and `error`, the number of the last command's that failed in this
+ * run, with its `error_name` and `error_command`, or 0. May be called from within the link's exchange. */
+void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]);
 
 /* The running command has ended with an error past all Lua. Without a running command nothing. */
 void wh_mcs_cut_short(wh_mcs_t *mcs, wh_status_t error, const char *message);

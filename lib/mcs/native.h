@@ -39,6 +39,7 @@ static inline uint64_t wh_mcs_steps(int64_t slices) {
 /* Functions of the native table, by file. */
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_command_functions[];
+extern const luaL_Reg wh_mcs_describe_functions[];
 extern const luaL_Reg wh_mcs_fault_functions[];
 extern const luaL_Reg wh_mcs_plan_functions[];
 extern const luaL_Reg wh_mcs_play_functions[];

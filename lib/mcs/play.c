@@ -34,7 +34,32 @@ static wh_status_t exchange(wh_mcs_t *mcs) {
 }
 
 static bool stop_has_come(const wh_mcs_t *mcs) {
-    return mcs->track.slice >= mcs->stop_slice;
+    return mcs->stop_requested || mcs->track.slice >= mcs->stop_slice;
+}
+
+void wh_mcs_stop(wh_mcs_t *mcs) {
+    mcs->stop_requested = true;
+}
+
+__attribute__((noreturn)) static void raise_stopped(lua_State *L, wh_mcs_t *mcs) {
+    const char *by = mcs->stop_requested ? "by a request" : "by stop_in";
+    if (!mcs->stop_requested) {
+        mcs->stop_slice = INT64_MAX;
+    }
+    mcs->stop_requested = false;
+    wh_mcs_raise(L, mcs, WH_STATUS_STOPPED, by);
+}
+
+/* A script may catch that its link was stopped, by a signal, but only once: it would else not end. */
+__attribute__((noreturn)) static void raise_refused(lua_State *L, wh_mcs_t *mcs, wh_status_t status) {
+    const wh_mcs_partners_t *partners = &mcs->partners;
+    if (status == WH_STATUS_STOPPED && mcs->link_stopped) {
+        wh_sandbox_stop(mcs->sandbox);
+    }
+    mcs->link_stopped = status == WH_STATUS_STOPPED;
+    wh_mcs_raise(L, mcs, status,
+                 partners->explain ? partners->explain(partners->user, status)
+                                   : "the simulator refused a slice");
 }
 
 /* Plays up to SLICES_PER_CHARGE slices of the segment; fewer if the sandbox is to stop, for over a link at a
@@ -59,17 +84,19 @@ static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
 static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
     wh_status_t status = WH_OK;
     wh_track_state_t state = WH_TRACK_MOVING;
+    if (mcs->stop_requested) {
+        raise_stopped(L, mcs);
+    }
     while (state == WH_TRACK_MOVING) {
         const int64_t before = mcs->track.slice;
         state = play_portion(mcs, &status);
         /* First, for a link that gave up waiting because of a stop returns with some status too. */
         wh_sandbox_charge(L, wh_mcs_steps(mcs->track.slice - before));
-        if (status != WH_OK) {
-            wh_mcs_raise(L, mcs, status, "the simulator refused a slice");
+        if (status != WH_OK && !(status == WH_STATUS_STOPPED && mcs->stop_requested)) {
+            raise_refused(L, mcs, status);
         }
         if (stop_has_come(mcs)) {
-            mcs->stop_slice = INT64_MAX;
-            wh_mcs_raise(L, mcs, WH_STATUS_STOPPED, "by stop_in");
+            raise_stopped(L, mcs);
         }
     }
     return state;

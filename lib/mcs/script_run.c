@@ -10,7 +10,7 @@ static wh_script_run_outcome_t refuse(wh_script_run_t *run, const char *message)
     return WH_RUN_BAD_INPUT;
 }
 
-/* True if a numbered error ended the script: a result, not bad input. */
+/* True if a numbered error ended the script: a result, not bad input, as a stop past all Lua is. */
 static bool ended_by_numbered_error(lua_State *L) {
     wh_sandbox_push_error(L);
     bool numbered = false;
@@ -25,11 +25,15 @@ static bool ended_by_numbered_error(lua_State *L) {
 }
 
 static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_sandbox_result_t *result) {
+    const bool stopped = result->status == WH_SANDBOX_STOPPED;
     bool is_bad_input = false;
     if (result->status != WH_SANDBOX_OK) {
-        is_bad_input =
-            result->status != WH_SANDBOX_ERROR || !ended_by_numbered_error(wh_sandbox_state(run->sandbox));
+        is_bad_input = !stopped && (result->status != WH_SANDBOX_ERROR ||
+                                    !ended_by_numbered_error(wh_sandbox_state(run->sandbox)));
         run->record.failure = wh_text_copy(result->message);
+    }
+    if (stopped) {
+        wh_mcs_cut_short(&run->mcs, WH_STATUS_STOPPED, result->message);
     }
     wh_mcs_finish(&run->mcs);
     if (is_bad_input) {
@@ -47,6 +51,8 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
         return refuse(run, result.message);
     }
     run->mcs.keep_segments = options->keep_segments;
+    run->mcs.limits_missed = options->limits_missed;
+    run->mcs.most_missed = options->most_missed;
     run->mcs.partners = options->partners;
     run->mcs.trial = options->trial;
     run->mcs.decisions = options->decisions;

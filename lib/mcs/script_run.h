@@ -12,8 +12,10 @@ typedef struct {
     wh_mcs_partners_t partners; /* all null: the simulator in this process */
     wh_mcs_listener_t listener; /* all null: nobody listens */
     bool keep_segments;         /* run->mcs.segments then holds what was played */
-    const wh_trial_t *trial;    /* of a study: the cell has its errors, if layout or script says which */
-    wh_decisions_t *decisions;  /* all zero: then keeps what is commanded and read back; null: nobody does */
+    bool limits_missed;         /* the run fails if the simulator misses more slices than `most_missed` */
+    int64_t most_missed;
+    const wh_trial_t *trial;   /* of a study: the cell has its errors, if layout or script says which */
+    wh_decisions_t *decisions; /* all zero: then keeps what is commanded and read back; null: nobody does */
 } wh_script_run_options_t;
 
 /* What is left when the script has ended. wh_script_run_close frees it. */

@@ -1,10 +1,13 @@
 #include "session.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include <lauxlib.h>
 
+#include "../text/array.h"
 #include "../text/utf8.h"
 
 /* The record forgets what it holds once it has so many commands. */
@@ -22,14 +25,15 @@ static bool refuse(wh_session_t *session, const char *message) {
 
 /* ------------------------------------------------------------------------------------------------ opening */
 
-/* Runs protected: cell(layout), then the prompt. */
+/* Runs protected: the prompt, then cell(layout), which connects as the last thing of all: what can fail fails
+ * before the link leaves an earlier run. */
 static int open_cell(lua_State *L) {
-    lua_getglobal(L, "cell");
-    lua_pushstring(L, *(const char **)lua_touserdata(L, 1));
-    lua_call(L, 1, 0);
     wh_mcs_push_prompt(L);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &complete_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &execute_key);
+    lua_getglobal(L, "cell");
+    lua_pushstring(L, *(const char **)lua_touserdata(L, 1));
+    lua_call(L, 1, 0);
     return 0;
 }
 
@@ -37,8 +41,7 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
     wh_sandbox_result_t result;
     const char *layout = options->layout;
     memset(session, 0, sizeof *session);
-    session->report = options->report;
-    session->report_user = options->report_user;
+    session->options = *options;
     /* A "script" without a folder: so layouts are looked for from the working directory. */
     session->sandbox =
         wh_sandbox_new_with(&options->limits, options->parameters, options->parameter_count, &result);
@@ -49,6 +52,36 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
     session->mcs.partners = options->partners;
     return wh_sandbox_protect(wh_sandbox_state(session->sandbox), open_cell, &layout, &result) ||
            refuse(session, result.message);
+}
+
+/* ---------------------------------------------------------------------------------------------- resetting */
+
+bool wh_session_says(const char *line, const char *word) {
+    const char *begin = line + strspn(line, " ");
+    const size_t length = strlen(word);
+    return strncasecmp(begin, word, length) == 0 && begin[length + strspn(begin + length, " ")] == '\0';
+}
+
+/* The session that was is put aside and comes back to the same place, where all that points to it finds it,
+ * if the new one cannot be opened. */
+static bool reset(wh_session_t *session, char message[WH_SANDBOX_MESSAGE_BYTES]) {
+    const wh_session_options_t options = session->options;
+    wh_session_t *before = wh_array_new(1, sizeof *before);
+    *before = *session;
+    const bool opened = wh_session_open(session, &options);
+    if (opened) {
+        wh_mcs_close(&before->mcs);
+        wh_record_free(&before->record);
+        wh_sandbox_free(before->sandbox);
+    } else {
+        snprintf(message, WH_SANDBOX_MESSAGE_BYTES, "%s", session->message);
+        wh_session_close(session);
+        *session = *before;
+    }
+    session->complaints = before->complaints;
+    session->executing = before->executing;
+    free(before);
+    return opened;
 }
 
 void wh_session_close(wh_session_t *session) {
@@ -134,13 +167,27 @@ static void count_complaints(wh_session_t *session, size_t from) {
     }
 }
 
+static void perform_reset(wh_session_t *session, request_t *request) {
+    char message[WH_SANDBOX_MESSAGE_BYTES];
+    if (reset(session, message)) {
+        request->status = WH_OK;
+        write_answer(request->answer, request->size, "OK");
+    } else {
+        request->status = WH_STATUS_BAD_ARGUMENT;
+        write_error(request->answer, request->size, request->status, message);
+    }
+}
+
 static void perform(wh_session_t *session, request_t *request) {
     wh_sandbox_result_t result;
+    if (wh_session_says(request->line, "RESET")) {
+        perform_reset(session, request);
+        return;
+    }
     if (session->record.command_count >= REMEMBERED_COMMANDS) {
         wh_record_forget(&session->record);
     }
     const size_t events = session->record.event_count;
-    wh_sandbox_renew(session->sandbox);
     if (!wh_sandbox_protect(wh_sandbox_state(session->sandbox), execute_line, request, &result)) {
         request->status = status_of(result.status);
         write_error(request->answer, request->size, request->status,
@@ -157,13 +204,14 @@ wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *an
         write_error(answer, size, WH_STATUS_BUSY, "");
         return WH_STATUS_BUSY;
     }
+    wh_sandbox_renew(session->sandbox); /* before a stop may come: it would take that back */
     session->executing = 1;
-    if (session->report) {
-        session->report(session->report_user, line, WH_OK, NULL);
+    if (session->options.report) {
+        session->options.report(session->options.report_user, line, WH_OK, NULL);
     }
     perform(session, &request);
-    if (session->report) {
-        session->report(session->report_user, line, request.status, answer);
+    if (session->options.report) {
+        session->options.report(session->options.report_user, line, request.status, answer);
     }
     session->executing = 0;
     return request.status;

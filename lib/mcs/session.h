@@ -27,6 +27,9 @@
  * commands. For publishing on WAFERHAND_MCS. */
 typedef void wh_session_report_t(void *user, const char *line, wh_status_t status, const char *answer);
 
+/* True if the line is this word, in upper or lower case, and nothing else but blanks. */
+bool wh_session_says(const char *line, const char *word);
+
 /* Zero or null fields mean their default. */
 typedef struct {
     const char *layout;            /* path, relative to the working directory */
@@ -46,20 +49,20 @@ typedef struct {
     wh_record_t record; /* of the last commands: a session without an end forgets the oldest */
     char message[WH_SANDBOX_MESSAGE_BYTES]; /* why it could not be opened */
     size_t complaints;                      /* how many events were complaints: see wh_record_is_complaint */
-    wh_session_report_t *report;
-    void *report_user;
+    wh_session_options_t options;
     volatile sig_atomic_t executing;
 } wh_session_t;
 
-/* Reads the layout, sets up the cell and connects. `options` may go afterwards, but what partners.user and
- * report_user point to may not. False, and the reason in `message`, when layout, parameter or link is not
+/* Reads the layout, sets up the cell and connects. `options` may go afterwards, but what it points to may
+ * not. False, and the reason in `message`, when layout, parameter or link is not
  * usable. To be closed either way. */
 bool wh_session_open(wh_session_t *session, const wh_session_options_t *options);
 
-/* Executes a line with a fresh budget. `answer`, of at least 8 bytes, gets one line of printable text without
- * its end: "OK" and values, or "ERROR 42 WAFER_MISSING: ..."; control characters stand in it as \xNN. Returns
- * the error's number. Called from within a command (a link's exchange, a report) it answers
- * WH_STATUS_BUSY. */
+/* Executes a line with a fresh budget. RESET reads the layout anew and begins another run, with its wafers
+ * and a slot book that knows nothing; if the layout is no longer usable, that is an error, and the session
+ * goes on as it was. `answer`, of at least 8 bytes, gets one line of printable text without its end: "OK"
+ * and values, or "ERROR 42 WAFER_MISSING: ..."; control characters stand in it as \xNN. Returns the
+ * error's number. Called from within a command (a link's exchange, a report) it answers WH_STATUS_BUSY. */
 wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *answer, size_t size);
 
 /* Ends the running command with WH_STATUS_STOPPED; without one, nothing. For signal handlers of the thread

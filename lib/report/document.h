@@ -32,8 +32,9 @@
  *                from t on
  *                vacuum [curve], 0 to 1
  *                proximity [{ dr_proj_z, dr_proj_xy, n1_proj_n2 }]: curves, the first two as absolute values:
- *                each gripper against `nearest`, the wafer that it holds, or else would take: with the
- *                smallest |dr_proj_z|, while they are within 20 mm and twice near_projxy
+ *                each gripper against `nearest`: the wafer that it holds, or else the one nearest to the
+ *                three limits together (record/counterpart.h), while it is within 20 mm and twice
+ *                near_projxy
  *                clearances [{ pair, limit (null: none), t, gap (null: wider than 20 mm) }]
  *   marks        [{ t, kind, text, at (null: nowhere) }]: events worth a mark in the cell
  *   scene        glTF 2.0 (view/scene.h), without animation

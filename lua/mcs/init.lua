@@ -1,5 +1,6 @@
 -- Makes the operator's words out of what the host offers (`native`) and sets them as globals. Returns what
--- makes the same words of typed lines: a session calls it once the cell is set up, a script's run never does.
+-- makes the same words of typed lines: a session calls it before it sets up the cell, a script's run never
+-- does.
 
 -- Kept, for a script may set globals of these names.
 local error, ipairs, pairs, setmetatable, tostring, type = error, ipairs, pairs, setmetatable, tostring, type

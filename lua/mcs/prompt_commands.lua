@@ -261,6 +261,18 @@ return function(native, commands, queries, lookup, tokens)
   local function stop()
   end
 
+  -- RESET begins the session anew, which the host does: it comes here only with a word too many.
+  local function reset()
+  end
+
+  local function status()
+    return native.status()
+  end
+
+  local function version()
+    return tokens.pairs { { "version", native.version() } }
+  end
+
   local function quit()
     native.fail("NO_SUCH_COMMAND", "QUIT is for the prompt alone")
   end
@@ -296,6 +308,10 @@ return function(native, commands, queries, lookup, tokens)
     RECOVER = { takes = {}, run = moving(commands.recover),
                 does = "straight out of the station that the arm stands in" },
     STOP = { takes = {}, run = stop, does = "ends the command that runs" },
+    RESET = { takes = {}, run = reset,
+              does = "reads the layout anew and begins another run, with the layout's wafers" },
+    STATUS = { takes = {}, run = status, does = "what goes on, where the robot is, what is held, the last error" },
+    VERSION = { takes = {}, run = version, does = "the program's version" },
     ROTATE = { takes = { "station", "degrees" }, run = moving(commands.rotate),
                does = "turns a prealigner's chuck by so much" },
     VALVE = { takes = { "gripper", "level" }, run = moving(commands.valve),

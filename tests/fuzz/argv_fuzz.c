@@ -71,6 +71,7 @@ int __wrap_wh_run_and_print(wh_run_arguments_t *arguments);
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
 bool __wrap_wh_study_open(wh_study_t *study);
 bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
+bool __wrap_wh_node_reaches_others(const char *url);
 wh_sandbox_t *__wrap_wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
                                          size_t count, wh_sandbox_result_t *result);
 void __wrap_wh_sandbox_free(wh_sandbox_t *sandbox);
@@ -117,7 +118,13 @@ bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *o
     reached = true;
     REQUIRE(refused || options->client.rate == 0 ||
             (options->client.rate >= 1e-3 && options->client.rate <= 1e3));
+    REQUIRE(refused || (options->client.timeout_us >= 0 && options->client.timeout_us <= 1000000000000));
     return false;
+}
+
+bool __wrap_wh_node_reaches_others(const char *url) {
+    (void)url;
+    return true;
 }
 
 bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record) {

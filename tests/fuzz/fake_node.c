@@ -100,13 +100,25 @@ int64_t wh_node_clock_us(void) {
     return ++fuzz_clock_us;
 }
 
-/* What would be said must be whole and one line. Nobody hears it. */
+/* What would be said must be one line. Nobody hears it. */
+__attribute__((format(printf, 1, 0))) static void check_line(const char *format, va_list arguments) {
+    char text[600];
+    REQUIRE(vsnprintf(text, sizeof text, format, arguments) > 0);
+    REQUIRE(fuzz_is_one_line(text));
+}
+
 void wh_node_say(const wh_node_t *node, const char *format, ...) {
-    char text[200];
     va_list arguments;
     (void)node;
     va_start(arguments, format);
-    REQUIRE(vsnprintf(text, sizeof text, format, arguments) > 0);
+    check_line(format, arguments);
     va_end(arguments);
-    REQUIRE(fuzz_is_one_line(text));
+}
+
+void wh_node_warn(const wh_node_t *node, const char *format, ...) {
+    va_list arguments;
+    (void)node;
+    va_start(arguments, format);
+    check_line(format, arguments);
+    va_end(arguments);
 }

@@ -159,6 +159,7 @@ static wh_mcs_process_t control;
 static fuzz_frames_t *incoming;
 static volatile sig_atomic_t stop;
 static wh_record_t record;
+static wh_record_t asked; /* what STATUS looks at */
 
 static bool next_message(wh_node_t *to) {
     fuzz_frame_t frame;
@@ -248,11 +249,15 @@ static wh_link_t *open_control(bool free_running) {
     static wh_mcs_t mcs;
     const wh_protocol_client_options_t options = {.rate = free_running ? 1 : 0, .stop = &stop};
     mcs.layout = layout;
+    if (!mcs.recorder.record) {
+        wh_recorder_open(&mcs.recorder, &asked, "fuzz");
+    }
     REQUIRE(wh_mcs_process_open(&control, &node, &options));
     const wh_mcs_partners_t partners = wh_mcs_process_partners(&control);
     wh_link_t *const link = partners.connect(partners.user, &mcs);
     REQUIRE(link != NULL);
     control.client.identity.run = RUN;
+    control.script = free_running ? "fuzz.lua" : NULL;
     return link;
 }
 
@@ -278,6 +283,7 @@ static void run_motion_control(fuzz_frames_t *frames, bool free_running) {
     }
     (void)link->hash(link);
     wh_mcs_process_finish(&control);
+    wh_mcs_process_close(&control);
     check_report();
 }
 

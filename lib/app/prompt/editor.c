@@ -16,12 +16,15 @@
 #include "../../text/utf8.h"
 #include "history.h"
 
+#define PROMPT "mcs> "
+
 struct wh_editor {
     const wh_input_t *input;
     EditLine *edit;
     History *history;
     char history_path[PATH_MAX];
     char *line;            /* the last one */
+    bool typing;           /* the prompt is shown */
     wh_line_event_t event; /* why there is no further character */
     mbstate_t decoding;
 };
@@ -33,7 +36,7 @@ static wh_editor_t *editor_of(EditLine *edit) {
 }
 
 static char *prompt_text(EditLine *edit) {
-    static char text[] = "mcs> ";
+    static char text[] = PROMPT;
     (void)edit;
     return text;
 }
@@ -250,7 +253,9 @@ wh_line_event_t wh_editor_read(wh_editor_t *editor, const char **line) {
     /* libedit itself prepares the terminal after it has shown the prompt: a Ctrl-D in between would be
      * lost. */
     el_set(editor->edit, EL_PREP_TERM, 1);
+    editor->typing = true;
     const char *typed = el_gets(editor->edit, &length);
+    editor->typing = false;
     free(editor->line);
     editor->line = typed && length > 0 ? strndup(typed, strcspn(typed, "\n")) : NULL;
     if (!editor->line) {
@@ -261,6 +266,25 @@ wh_line_event_t wh_editor_read(wh_editor_t *editor, const char **line) {
     remember(editor, editor->line);
     *line = editor->line;
     return WH_LINE_READ;
+}
+
+void wh_editor_say(wh_editor_t *editor, const char *line) {
+    char *printable = wh_style_printable(line);
+    const size_t columns = wh_style_of(stdout).width;
+    if (!editor->typing || !isatty(STDERR_FILENO)) {
+        fprintf(stderr, "%s\n", printable);
+    } else {
+        const LineInfo *typed = el_line(editor->edit);
+        const size_t shown = strlen(PROMPT) + (size_t)(typed->lastchar - typed->buffer);
+        const size_t length = wh_style_columns(printable);
+        /* Blanks over what is there; a line that has become longer than the terminal stays where it is. */
+        const bool fits = columns == 0 || shown < columns;
+        fflush(stdout);
+        fprintf(stderr, "%s%s%*s\n", fits ? "\r" : "\n", printable,
+                fits && shown > length ? (int)(shown - length) : 0, "");
+        el_set(editor->edit, EL_REFRESH);
+    }
+    free(printable);
 }
 
 void wh_editor_close(wh_editor_t *editor) {

@@ -19,6 +19,10 @@ wh_editor_t *wh_editor_open(const wh_input_t *input);
 /* The next line, without its end; it lives until the next call. */
 wh_line_event_t wh_editor_read(wh_editor_t *editor, const char **line);
 
+/* Prints a line on standard error. While a line is being typed and both are on the terminal, the line comes
+ * in its place, and what is typed is drawn again below. */
+void wh_editor_say(wh_editor_t *editor, const char *line);
+
 void wh_editor_close(wh_editor_t *editor);
 
 #endif

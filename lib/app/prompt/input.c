@@ -80,6 +80,10 @@ int wh_interrupt_take(void) {
     return 0;
 }
 
+bool wh_interrupt_is_due(void) {
+    return signals.arrived[0] || signals.arrived[1] || signals.arrived[2];
+}
+
 void wh_interrupt_stop_session(wh_session_t *session) {
     if (session) {
         signals.session = session;

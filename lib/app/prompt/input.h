@@ -36,6 +36,9 @@ void wh_interrupt_release(void);
 /* Takes one of the signals that have arrived. Returns 0 if there is none. */
 int wh_interrupt_take(void);
 
+/* True if SIGINT, SIGTERM or SIGHUP has arrived and was not taken yet. */
+bool wh_interrupt_is_due(void);
+
 /* Lets SIGINT, SIGTERM and SIGHUP in, to stop the session's command if one runs; null: holds them again. */
 void wh_interrupt_stop_session(wh_session_t *session);
 

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 #include "../../text/array.h"
@@ -45,6 +44,14 @@ void wh_prompt_close(wh_prompt_t *prompt) {
         wh_editor_close(prompt->editor);
         wh_interrupt_release();
         free(prompt);
+    }
+}
+
+void wh_prompt_say(wh_prompt_t *prompt, const char *line) {
+    if (prompt->editor) {
+        wh_editor_say(prompt->editor, line);
+    } else {
+        fprintf(stderr, "%s\n", line);
     }
 }
 
@@ -142,19 +149,23 @@ static bool is_interrupted(const wh_prompt_t *prompt) {
     return interrupted;
 }
 
+/* A signal that came before the command stops it, too: it is not begun. */
+static wh_status_t perform(wh_prompt_t *prompt, const char *line) {
+    if (!wh_interrupt_is_due()) {
+        return wh_session_execute(prompt->input.session, line, prompt->answer, sizeof prompt->answer);
+    }
+    snprintf(prompt->answer, sizeof prompt->answer, "ERROR %d %s: %s", (int)WH_STATUS_STOPPED,
+             wh_status_name(WH_STATUS_STOPPED), wh_record_error_text(WH_STATUS_STOPPED));
+    return WH_STATUS_STOPPED;
+}
+
 static void execute(wh_prompt_t *prompt, const char *line) {
-    wh_session_t *session = prompt->input.session;
-    wh_interrupt_stop_session(session);
-    const wh_status_t status = wh_session_execute(session, line, prompt->answer, sizeof prompt->answer);
+    wh_interrupt_stop_session(prompt->input.session);
+    const wh_status_t status = perform(prompt, line);
     wh_interrupt_stop_session(NULL);
     prompt->failed = prompt->failed || status != WH_OK;
     print_answer(prompt, status);
     prompt->leaving = is_interrupted(prompt);
-}
-
-static bool is_quit(const char *line) {
-    line += strspn(line, " ");
-    return strncasecmp(line, "QUIT", 4) == 0 && line[4 + strspn(line + 4, " ")] == '\0';
 }
 
 /* True for blank lines and comments. A line of blanks that was cut does not count: its end is unknown. */
@@ -165,7 +176,7 @@ static bool says_nothing(const char *line) {
 
 /* True if the prompt goes on after this line. */
 static bool take_line(wh_prompt_t *prompt, const char *line) {
-    if (is_quit(line)) {
+    if (wh_session_says(line, "QUIT")) {
         if (!prompt->editor) {
             puts("OK");
         }

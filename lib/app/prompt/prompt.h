@@ -35,6 +35,10 @@ wh_prompt_t *wh_prompt_open(wh_session_t *session, const wh_prompt_watch_t *watc
  * the cell complained, 1 when a signal ended it, 2 when the answers could not be written. */
 int wh_prompt_run(wh_prompt_t *prompt);
 
+/* Prints a line of another matter on standard error: at a terminal above the line that is being typed, which
+ * is drawn again. */
+void wh_prompt_say(wh_prompt_t *prompt, const char *line);
+
 /* Leaves the terminal and the signals as they were. Null is allowed. */
 void wh_prompt_close(wh_prompt_t *prompt);
 

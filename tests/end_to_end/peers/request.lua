@@ -3,7 +3,7 @@
 --   lcm-gen -l lcm_types/*.lcm --lpath TYPES
 --   LUA_PATH="TYPES/?.lua;TYPES/?/init.lua;;" lua5.2 request.lua URL "GET A 1" "PUT B 2"
 --
--- Needs Lua 5.2 with Debian's liblcm-lua; both mcs and sim must run at URL.
+-- Needs Lua 5.2 with Debian's liblcm-lua; both mcs and sim must run at URL. If a state comes meanwhile, the last is printed.
 
 unpack = unpack or table.unpack -- the generated code is for Lua 5.1
 
@@ -54,7 +54,9 @@ for i = 2, #arg do
   local answer = ask(first + i, arg[i])
   print(("%s -> %d %s"):format(arg[i], answer.error, answer.text))
 end
-last = state.decode(last)
-print(("state of slice %d: %d wafers, the first at %.3f %.3f %.3f, sensors %d"):format(
-  last.seq, last.wafer_count, last.wafers[1].position[1], last.wafers[1].position[2], last.wafers[1].position[3],
-  last.sensors))
+if last then
+  last = state.decode(last)
+  print(("state of slice %d: %d wafers, the first at %.3f %.3f %.3f, sensors %d"):format(
+    last.seq, last.wafer_count, last.wafers[1].position[1], last.wafers[1].position[2], last.wafers[1].position[3],
+    last.sensors))
+end

@@ -140,7 +140,8 @@ static size_t make_endless_name(uint8_t *datagram) {
 
 static bool open_raw(const char *url, int *raw) {
     wh_multicast_t multicast;
-    if (wh_multicast_parse(url, &multicast) != NULL) {
+    char problem[WH_MULTICAST_PROBLEM_BYTES];
+    if (!wh_multicast_parse(url, &multicast, problem)) {
         return false;
     }
     const struct sockaddr_in to = {

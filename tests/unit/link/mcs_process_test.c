@@ -10,6 +10,8 @@ static wh_node_t node;
 static wh_mcs_process_t control;
 static wh_sim_process_t simulation;
 static wh_session_t session;
+static wh_sandbox_t *sandbox; /* of the simulator's own layout */
+static const wh_layout_t *simulated;
 static char answer[WH_SESSION_ANSWER_BYTES];
 
 /* Lines that are requested when the simulator has stepped `at`. */
@@ -24,7 +26,7 @@ static struct {
 static struct {
     int32_t error[64];
     int count[64];
-    char text[400]; /* of the last one */
+    char text[WH_LINK_DATAGRAM]; /* of the last one */
 } heard;
 
 static void publish(waferhand_request message, const char *line) {
@@ -72,7 +74,10 @@ static void on_mcs(void *user, const void *data, size_t size) {
 }
 
 static wh_link_t *connect_all(void *user, wh_mcs_t *mcs) {
-    assert_int_equal(wh_sim_process_open(&simulation, &node, mcs->layout, true), WH_OK);
+    /* After a RESET the same simulator goes on. */
+    if (!control.connected) {
+        assert_int_equal(wh_sim_process_open(&simulation, &node, simulated, true), WH_OK);
+    }
     assert_ptr_equal(wh_mcs_process_partners(user).connect(user, mcs), &control.client.link);
     asking.exchange = exchange;
     return &asking;
@@ -83,6 +88,9 @@ static int open_all(void **state) {
     const wh_protocol_client_options_t options = {.rate = 0};
     memset(&plan, 0, sizeof plan);
     memset(&heard, 0, sizeof heard);
+    sandbox = wh_sandbox_new(NULL);
+    simulated = wh_layout_load(sandbox, "lua/layouts/paper.lua", NULL);
+    assert_non_null(simulated);
     assert_true(wh_node_open(&node, "memq://", NULL));
     assert_true(wh_mcs_process_open(&control, &node, &options));
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_MCS, on_mcs, NULL));
@@ -95,8 +103,10 @@ static int open_all(void **state) {
 static int close_all(void **state) {
     (void)state;
     wh_session_close(&session);
+    wh_mcs_process_close(&control);
     wh_sim_process_close(&simulation);
     wh_node_close(&node);
+    wh_sandbox_free(sandbox);
     return 0;
 }
 
@@ -261,6 +271,146 @@ static void stop_of_nothing(void **state) {
     assert_heard(1, WH_STATUS_BAD_ARGUMENT);
 }
 
+/* ------------------------------------------------------------------------------- STATUS, VERSION, RESET, scripts
+ */
+
+static void status_and_version_are_answered_while_a_command_runs(void **state) {
+    (void)state;
+    plan.at = 1500;
+    plan.count = 2;
+    plan.lines[0] = "VERSION";
+    plan.lines[1] = "status";
+    assert_int_equal(execute("GET A 1"), WH_OK);
+    assert_heard(1, WH_OK);
+    assert_heard(2, WH_OK);
+    assert_non_null(strstr(heard.text, "OK phase=running command=\"GET A 1\" seq="));
+    assert_non_null(strstr(heard.text, " EE.holds=\"Wafer 1\" PA.holds=none error=0"));
+    publish_request(3, "VERSION");
+    execute_requests();
+    assert_string_equal(heard.text, "OK version=" WH_VERSION);
+}
+
+/* Its answer is of the moment, and makes no other answer forgotten. */
+static void status_is_answered_anew_each_time(void **state) {
+    (void)state;
+    publish_request(1, "GET A 1");
+    execute_requests();
+    for (int i = 0; i < 2 * WH_CONTROL_ANSWERED; ++i) {
+        publish_request(2, "STATUS");
+        execute_requests();
+    }
+    assert_int_equal(heard.count[2], 2 * WH_CONTROL_ANSWERED);
+    assert_non_null(strstr(heard.text, "phase=idle seq=1965 time=1.965 "));
+    publish_request(1, "GET A 1");
+    execute_requests();
+    assert_int_equal(heard.count[1], 2);
+    assert_int_equal(heard.error[1], WH_OK);
+    assert_int_equal(execute("GET A 2"), WH_STATUS_WAFER_ON_GRIPPER);
+    publish_request(2, "STATUS");
+    execute_requests();
+    assert_non_null(strstr(heard.text, " error=44 error_name=WAFER_ON_GRIPPER error_command=\"GET A 2\""));
+}
+
+static void reset_begins_another_run_for_both(void **state) {
+    (void)state;
+    publish_request(1, "GET A 1");
+    publish_request(2, " reset ");
+    publish_request(3, "HOLDER \"Wafer 1\"");
+    (void)wh_node_drain(&node, 1000);
+    const int64_t run = control.client.identity.run;
+    execute_requests();
+    assert_heard(1, WH_OK);
+    assert_heard(2, WH_OK);
+    assert_string_equal(heard.text, "OK holder=none");
+    assert_true(control.client.identity.run != run);
+    assert_int_equal(execute("GET A 1"), WH_OK);
+    assert_true(simulation.server.identity.run == control.client.identity.run);
+    assert_int_equal(simulation.server.seq, 1965);
+    publish_request(2, "RESET");
+    execute_requests();
+    assert_int_equal(heard.error[2], WH_STATUS_NUMBER_TAKEN);
+}
+
+/* The command that runs here is the session's; control takes it for a script's. */
+static void a_script_takes_no_requests_but_stop(void **state) {
+    (void)state;
+    control.script = "some/script.lua";
+    plan.at = 500;
+    plan.count = 2;
+    plan.lines[0] = "GET A 2";
+    plan.lines[1] = "STATUS";
+    assert_int_equal(execute("GET A 1"), WH_OK);
+    assert_heard(1, WH_STATUS_BUSY);
+    assert_heard(2, WH_OK);
+    publish_request(3, "RESET");
+    (void)wh_node_drain(&node, 1000);
+    assert_heard(3, WH_STATUS_BUSY);
+    assert_string_equal(heard.text, "another command is being executed: the script some/script.lua runs "
+                                    "(expected STATUS, VERSION or STOP)");
+    /* Between two commands: the next one does not begin to move. */
+    publish_request(4, "STOP");
+    (void)wh_node_drain(&node, 1000);
+    assert_heard(4, WH_OK);
+    const int64_t slice = session.mcs.track.slice;
+    assert_int_equal(execute("MOVE z=1000"), WH_STATUS_STOPPED);
+    assert_non_null(strstr(answer, "; by a request"));
+    assert_int_equal(session.mcs.track.slice, slice);
+    assert_int_equal(execute("MOVE z=1000"), WH_OK);
+}
+
+static void an_answer_is_whole_or_tells_that_it_was_cut(void **state) {
+    (void)state;
+    static char text[80001];
+    char line[WH_LINK_LINE];
+    memset(text, 'x', 50000);
+    publish_request(1, "WHERE");
+    publish_request(2, "WHERE");
+    (void)wh_node_drain(&node, 1000);
+    assert_true(wh_mcs_process_next_request(&control, line));
+    wh_mcs_process_answer(&control, WH_OK, line, text);
+    (void)wh_node_drain(&node, 1000);
+    assert_string_equal(heard.text, text);
+    memset(text, 'x', sizeof text - 1);
+    assert_true(wh_mcs_process_next_request(&control, line));
+    wh_mcs_process_answer(&control, WH_OK, line, text);
+    (void)wh_node_drain(&node, 1000);
+    assert_heard(2, WH_OK);
+    const size_t kept = strspn(heard.text, "x");
+    char expected[100];
+    snprintf(expected, sizeof expected, "... (cut: the first %zu bytes of 80000)", kept);
+    assert_string_equal(heard.text + kept, expected);
+    assert_in_range(kept, 64000, 65499);
+}
+
+static void requests_that_wait_when_all_ends_are_told_so(void **state) {
+    (void)state;
+    publish_request(1, "GET A 1");
+    (void)wh_node_drain(&node, 1000);
+    wh_mcs_process_finish(&control);
+    (void)wh_node_drain(&node, 1000);
+    assert_heard(1, WH_STATUS_STOPPED);
+}
+
+/* It has heard nothing of a command since it began, but motion control is there. */
+static void a_simulator_that_was_given_its_state_back_does_not_call_motion_control_silent(void **state) {
+    (void)state;
+    assert_int_equal(execute("WAIT 0.1"), WH_OK);
+    simulation.server.identity.run = 12345;
+    simulation.server.seq = 0;
+    simulation.last_command_us = 0;
+    control.last_beat_us = 0;
+    wh_mcs_process_idle(&control);
+    for (int i = 0; i < 10 && simulation.server.counters.restored == 0; ++i) {
+        wh_protocol_client_heartbeat(&control.client);
+        (void)wh_node_drain(&node, 1000);
+        if (simulation.server.counters.restored == 1) {
+            wh_sim_process_tick(&simulation);
+        }
+    }
+    assert_int_equal(simulation.server.counters.restored, 1);
+    assert_int_equal(simulation.counters.silences, 0);
+}
+
 #define IN_PAPER(test) cmocka_unit_test_setup_teardown(test, open_all, close_all)
 
 int main(void) {
@@ -274,6 +424,13 @@ int main(void) {
         IN_PAPER(one_too_many_is_turned_away),
         IN_PAPER(stop_goes_past_the_queue),
         IN_PAPER(stop_of_nothing),
+        IN_PAPER(status_and_version_are_answered_while_a_command_runs),
+        IN_PAPER(status_is_answered_anew_each_time),
+        IN_PAPER(reset_begins_another_run_for_both),
+        IN_PAPER(a_script_takes_no_requests_but_stop),
+        IN_PAPER(an_answer_is_whole_or_tells_that_it_was_cut),
+        IN_PAPER(requests_that_wait_when_all_ends_are_told_so),
+        IN_PAPER(a_simulator_that_was_given_its_state_back_does_not_call_motion_control_silent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,8 @@
 /* What motion control takes as a state, and what not, though its hash is right: a simulator on memq that says something
- * impossible first, and then the truth. */
+ * impossible first, and then the truth. When motion control waits no longer, and what it takes for silence. */
 #include "support/support.h"
+
+#include <time.h>
 
 #include "layout/layout.h"
 #include "link/messages.h"
@@ -171,10 +173,164 @@ static void impossible_states_are_not(void **state) {
     }
 }
 
+/* ------------------------------------------------------------------------------------ when to wait no longer */
+
+static volatile sig_atomic_t stop;
+static char said[4096];
+
+static void hear_line(void *user, const char *line) {
+    (void)user;
+    const size_t length = strlen(said);
+    snprintf(said + length, sizeof said - length, "%s\n", line);
+}
+
+static void open_client(const wh_protocol_client_options_t *options) {
+    stop = 0;
+    said[0] = '\0';
+    assert_true(wh_node_open(&node, "memq://", NULL));
+    node.speaker = "mcs";
+    node.listener = hear_line;
+    assert_int_equal(wh_protocol_server_open(&server, layout), WH_OK);
+    assert_true(wh_protocol_client_open(&client, &node, layout, options));
+}
+
+static wh_status_t send_slice(int64_t seq, wh_state_t *state) {
+    wh_command_t command = {.seq = seq, .utime = 1000 * seq, .gripper_count = 2, .axis_count = 5};
+    for (size_t g = 0; g < 2; ++g) {
+        command.grippers[g].base_from_gripper = wh_pose_identity();
+        command.grippers[g].valve = WH_VALVE_CLOSED;
+    }
+    return client.link.exchange(&client.link, &command, state);
+}
+
+static void answer_truly(void *user, const void *data, size_t size) {
+    (void)user;
+    waferhand_command message;
+    assert_true(wh_link_decode_command(data, size, &message));
+    (void)wh_protocol_server_command(&server, &message, NULL);
+    assert_true(wh_node_publish(&node, WH_CHANNEL_STATE, server.encoded, server.encoded_size));
+}
+
+/* As a signal does that comes once the command is out. */
+static void stop_and_answer(void *user, const void *data, size_t size) {
+    stop = 1;
+    answer_truly(user, data, size);
+}
+
+static void a_simulator_that_does_not_answer_in_time_is_an_error_until_it_answers(void **state) {
+    (void)state;
+    const wh_protocol_client_options_t options = {.timeout_us = 100000};
+    wh_state_t answer = {.status = WH_OK};
+    open_client(&options);
+    for (int times = 0; times < 2; ++times) {
+        const int64_t begin = wh_node_clock_us();
+        assert_int_equal(send_slice(1, &answer), WH_STATUS_NO_ANSWER);
+        assert_in_range(wh_node_clock_us() - begin, 100000, 5000000);
+        assert_true(client.timed_out);
+    }
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_truly, NULL));
+    assert_int_equal(send_slice(2, &answer), WH_OK);
+    assert_false(client.timed_out);
+    assert_int_equal(server.seq, 2);
+    wh_node_close(&node);
+}
+
+/* What the simulator has stepped is taken; nothing is sent after the stop. */
+static void a_stop_loses_no_slice(void **state) {
+    (void)state;
+    const wh_protocol_client_options_t options = {.stop = &stop};
+    wh_state_t answer = {.status = WH_OK};
+    open_client(&options);
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, stop_and_answer, NULL));
+    assert_int_equal(send_slice(1, &answer), WH_OK);
+    assert_int_equal(answer.seq, 1);
+    const uint64_t commands = server.counters.commands;
+    assert_int_equal(send_slice(2, &answer), WH_STATUS_STOPPED);
+    (void)wh_node_drain(&node, 64);
+    assert_int_equal(server.counters.commands, commands);
+    assert_true(client.link.hash(&client.link) == wh_protocol_server_hash(&server));
+    assert_int_equal(server.seq, 1);
+    wh_node_close(&node);
+}
+
+/* The senders of the states, slice by slice. */
+static bool is_shared(const uint64_t *senders, size_t count) {
+    const wh_protocol_client_options_t options = {.rate = 0};
+    wh_state_t answer = {.status = WH_OK};
+    open_client(&options);
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_truly, NULL));
+    for (size_t i = 0; i < count; ++i) {
+        node.sender = senders[i];
+        assert_int_equal(send_slice((int64_t)i + 1, &answer), WH_OK);
+    }
+    wh_node_close(&node);
+    assert_true(client.shared == (strstr(said, "two simulators answer") != NULL));
+    return client.shared;
+}
+
+static void two_simulators_are_told_from_one_that_was_started_anew(void **state) {
+    (void)state;
+    static const uint64_t anew[] = {1, 1, 2, 2, 3, 3, 3}, two[] = {1, 1, 2, 1}, unknown[] = {0, 0, 0};
+    assert_false(is_shared(anew, 7));
+    assert_true(is_shared(two, 4));
+    assert_false(is_shared(unknown, 3));
+}
+
+static void sleep_ms(long ms) {
+    const struct timespec pause = {ms / 1000, ms % 1000 * 1000000};
+    (void)nanosleep(&pause, NULL);
+}
+
+/* It owes no answer: before the first command, and while nothing is sent. Then it does. */
+static void a_simulator_that_was_not_asked_is_not_silent(void **state) {
+    (void)state;
+    const wh_protocol_client_options_t options = {.rate = 0};
+    wh_state_t answer = {.status = WH_OK};
+    open_client(&options);
+    sleep_ms(WH_CLIENT_SILENCE_US / 1000 + 100);
+    wh_protocol_client_heartbeat(&client);
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_truly, NULL));
+    assert_int_equal(send_slice(1, &answer), WH_OK);
+    sleep_ms(WH_CLIENT_SILENCE_US / 1000 + 100);
+    wh_protocol_client_heartbeat(&client);
+    wh_protocol_client_heartbeat(&client);
+    assert_int_equal(client.counters.silences, 0);
+    assert_string_equal(said, "");
+    wh_node_close(&node);
+    assert_true(wh_node_open(&node, "memq://", NULL)); /* where nobody is */
+    wh_protocol_client_heartbeat(&client);
+    sleep_ms(WH_CLIENT_SILENCE_US / 1000 + 100);
+    wh_protocol_client_heartbeat(&client);
+    assert_int_equal(client.counters.silences, 1);
+    wh_node_close(&node);
+}
+
+/* Those behind the last state, of which nobody knows. */
+static void slices_that_no_state_tells_of_are_missed_ones_of_a_free_run(void **state) {
+    (void)state;
+    const wh_protocol_client_options_t options = {.rate = 1000};
+    wh_state_t answer = {.status = WH_OK};
+    open_client(&options);
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_truly, NULL));
+    assert_int_equal(send_slice(1, &answer), WH_OK);
+    assert_int_equal(client.link.missed(&client.link), 0);
+    client.command.seq = 4;
+    assert_int_equal(client.link.missed(&client.link), 3);
+    wh_node_close(&node);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(a_possible_state_is_taken, set_up, tear_down),
         cmocka_unit_test_setup_teardown(impossible_states_are_not, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_simulator_that_does_not_answer_in_time_is_an_error_until_it_answers,
+                                        set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_stop_loses_no_slice, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(two_simulators_are_told_from_one_that_was_started_anew, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(a_simulator_that_was_not_asked_is_not_silent, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(slices_that_no_state_tells_of_are_missed_ones_of_a_free_run, set_up,
+                                        tear_down),
     };
     return cmocka_run_group_tests_name("client", tests, NULL, NULL);
 }

@@ -81,39 +81,85 @@ static void a_flood_of_garbage_leaves_the_caller_its_turn(void **state) {
     assert_int_equal(receiver.dropped, WH_RECEIVER_MOST);
 }
 
+static char problem[WH_MULTICAST_PROBLEM_BYTES];
+
 static void an_url_tells_address_port_and_buffer(void **state) {
     (void)state;
     wh_multicast_t group;
-    assert_null(wh_multicast_parse("udpm://239.255.76.67:7667?ttl=0&recv_buf_size=1000", &group));
+    assert_true(wh_multicast_parse("udpm://239.255.76.67:7667?ttl=0&recv_buf_size=1000", &group, problem));
     assert_int_equal(ntohl(group.address), 0xefff4c43);
     assert_int_equal(group.port, 7667);
     assert_int_equal(group.buffer_bytes, 1000);
+    assert_true(wh_multicast_parse("udpm://239.255.76.67:7667", &group, problem));
+    assert_true(wh_multicast_parse("udpm://239.255.76.67:7667?ttl=255", &group, problem));
+    assert_true(wh_multicast_parse("udpm://239.255.76.67:1?recv_buf_size=0", &group, problem));
     assert_true(wh_multicast_is("udpm://"));
     assert_false(wh_multicast_is("memq://"));
 }
 
-static void an_url_without_address_or_port_is_refused(void **state) {
+static void a_wrong_part_of_an_url_is_named_with_its_value_and_what_was_expected(void **state) {
     (void)state;
-    static const char *const urls[] = {"udpm://",
-                                       "udpm://:7667",
-                                       "udpm://10.0.0.1:7667",
-                                       "udpm://239.255.76:7667",
-                                       "udpm://host:7667",
-                                       "udpm://239.255.76.67",
-                                       "udpm://239.255.76.67:",
-                                       "udpm://239.255.76.67?ttl=0",
-                                       "udpm://239.1.1.1:0",
-                                       "udpm://239.1.1.1:65536",
-                                       "udpm://239.1.1.1:12x?ttl=0",
-                                       "udpm://239.1.1.1:-1"};
-    for (size_t i = 0; i < sizeof urls / sizeof urls[0]; ++i) {
+    static const struct {
+        const char *url, *said;
+    } cases[] = {
+        {"udpm://", "address: nothing (expected one of multicast"},
+        {"udpm://:7667", "address: nothing ("},
+        {"udpm://10.0.0.1:7667", "address: 10.0.0.1 ("},
+        {"udpm://239.255.76:7667", "address: 239.255.76 ("},
+        {"udpm://host:7667", "address: host ("},
+        {"udpm://239.255.76.67", "port: nothing (expected 1 to 65535"},
+        {"udpm://239.255.76.67:", "port: nothing ("},
+        {"udpm://239.255.76.67?ttl=0", "port: nothing ("},
+        {"udpm://239.1.1.1:0", "port: 0 ("},
+        {"udpm://239.1.1.1:65536", "port: 65536 ("},
+        {"udpm://239.1.1.1:99999999999999999999", "port: 99999999999999999999 ("},
+        {"udpm://239.1.1.1:12x?ttl=0", "port: 12x ("},
+        {"udpm://239.1.1.1:-1", "port: -1 ("},
+        {"udpm://239.1.1.1:1?ttl=-1", "ttl: -1 (expected a whole number from 0 to 255)"},
+        {"udpm://239.1.1.1:1?ttl=256", "ttl: 256 ("},
+        {"udpm://239.1.1.1:1?ttl=abc", "ttl: abc ("},
+        {"udpm://239.1.1.1:1?ttl=1x", "ttl: 1x ("},
+        {"udpm://239.1.1.1:1?ttl=010", "ttl: 010 ("},
+        {"udpm://239.1.1.1:1?ttl=", "ttl: nothing ("},
+        {"udpm://239.1.1.1:1?ttl", "ttl: nothing ("},
+        {"udpm://239.1.1.1:1?ttl=0&recv_buf_size=-5", "recv_buf_size: -5 (expected a whole number of bytes"},
+        {"udpm://239.1.1.1:1?recv_buf_size=2147483648", "recv_buf_size: 2147483648 ("},
+        {"udpm://239.1.1.1:1?tll=0", "tll: 0 (expected ttl=... or recv_buf_size=..."}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         wh_multicast_t group;
-        const char *expected = wh_multicast_parse(urls[i], &group);
-        if (!expected) {
-            fail_msg("%s is taken", urls[i]);
+        if (wh_multicast_parse(cases[i].url, &group, problem)) {
+            fail_msg("%s is taken", cases[i].url);
         }
-        assert_ptr_equal(strstr(expected, "expected"), expected);
+        if (strncmp(problem, cases[i].said, strlen(cases[i].said)) != 0) {
+            fail_msg("%s: %s", cases[i].url, problem);
+        }
     }
+}
+
+/* One is as good as another: only that they differ counts. */
+static void a_message_tells_which_socket_it_came_from(void **state) {
+    (void)state;
+    struct sockaddr_in place = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    socklen_t size = sizeof place;
+    uint64_t senders[2];
+    int from[2];
+    receiver.socket = socket(AF_INET, SOCK_DGRAM, 0);
+    assert_int_equal(bind(receiver.socket, (const struct sockaddr *)&place, sizeof place), 0);
+    assert_int_equal(getsockname(receiver.socket, (struct sockaddr *)&place, &size), 0);
+    for (size_t i = 0; i < 2; ++i) {
+        from[i] = socket(AF_INET, SOCK_DGRAM, 0);
+        for (int sent = 0; sent < 2; ++sent) {
+            assert_int_equal(sendto(from[i], "LC02\0\0\0\7C\0", 10, 0, (const struct sockaddr *)&place, size),
+                             10);
+            assert_true(wh_receiver_take(&receiver, &message));
+            assert_true(sent == 0 || senders[i] == message.sender);
+            senders[i] = message.sender;
+        }
+    }
+    (void)close(from[0]);
+    (void)close(from[1]);
+    assert_true(senders[0] != 0 && senders[0] != senders[1]);
+    wh_receiver_close(&receiver);
 }
 
 int main(void) {
@@ -124,7 +170,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(what_is_no_whole_message_is_dropped, open_pair, close_pair),
         cmocka_unit_test_setup_teardown(a_flood_of_garbage_leaves_the_caller_its_turn, open_pair, close_pair),
         cmocka_unit_test(an_url_tells_address_port_and_buffer),
-        cmocka_unit_test(an_url_without_address_or_port_is_refused),
+        cmocka_unit_test(a_wrong_part_of_an_url_is_named_with_its_value_and_what_was_expected),
+        cmocka_unit_test(a_message_tells_which_socket_it_came_from),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

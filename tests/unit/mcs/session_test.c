@@ -493,6 +493,82 @@ static void a_layout_that_spoils_the_strings(void **state) {
     wh_session_close(&spoilt);
 }
 
+/* ------------------------------------------------------------------------------------- STATUS, VERSION, RESET
+ */
+
+static void status_tells_where_all_is(void **state) {
+    (void)state;
+    static const exchange_t dialogue[] = {
+        {"STATUS",
+         "OK phase=idle seq=0 time=0 theta=0 r=300 z=900 yaw=0 EE.holds=none PA.holds=none error=0"},
+        {"GET A 1", "OK "},
+        {"status", "OK phase=idle seq=1965 time=1.965 theta=0 r=400 z=903 yaw=0 EE.holds=\"Wafer 1\" "
+                   "PA.holds=none error=0"},
+        {"PUT Q 1", "ERROR 40"},
+        {"MOVE theta=10", "OK "},
+        {"STATUS NOW", "ERROR 48"},
+        {"VERSION", "OK version=" WH_VERSION},
+    };
+    ASSERT_DIALOGUE(dialogue);
+    assert_answer("STATUS", "OK phase=idle seq=");
+    assert_non_null(strstr(answer, " theta=10 r=400 "));
+    assert_non_null(strstr(answer, " error=40 error_name=NO_SUCH_STATION error_command=\"PUT Q 1\""));
+}
+
+/* Wafers, arm, slot book, time and errors are those of the beginning; that the cell complained is not
+ * forgotten. */
+static void reset_is_a_new_beginning(void **state) {
+    (void)state;
+    static const exchange_t dialogue[] = {
+        {"GET A 1", "OK "},
+        {"VALVE EE 1", "OK seconds=0.001; released_unsupported"},
+        {"PUT A 5", "ERROR 43"},
+        {"RESET", "OK"},
+        {"STATUS",
+         "OK phase=idle seq=0 time=0 theta=0 r=300 z=900 yaw=0 EE.holds=none PA.holds=none error=0"},
+        {"GET A 1", "OK wafer=\"Wafer 1\" seconds=1.965"},
+        {" reset ", "OK"},
+        {"GET A 1", "OK wafer=\"Wafer 1\" seconds=1.965"},
+        {"RESET NOW", "ERROR 48"},
+        {"PUT B 2", "OK wafer=\"Wafer 1\" seconds=2.337"},
+    };
+    ASSERT_DIALOGUE(dialogue);
+    assert_int_equal(session.complaints, 1);
+}
+
+static void write_layout(const char *path, const char *text) {
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void a_reset_to_a_layout_that_is_refused_changes_nothing(void **state) {
+    (void)state;
+    static const char path[] = "build/session_test_layout.lua";
+    static const char good[] =
+        "return { grippers = { { name = 'EE', on = 'robot' } }, stations = { A = { at = { 700, 0, 900 }, "
+        "slots = 5, pitch = 10 } }, wafers = { { name = 'W', station = 'A', slot = %d } } }";
+    const wh_session_options_t options = {.layout = path, .limits = {.print_to = stderr}};
+    char text[400];
+    snprintf(text, sizeof text, good, 1);
+    write_layout(path, text);
+    assert_true(wh_session_open(&session, &options));
+    assert_answer("GET A 1", "OK wafer=W");
+    write_layout(path, "return { stations = 5 }");
+    assert_answer("RESET",
+                  "ERROR 48 BAD_ARGUMENT: a command's argument is out of range or of the wrong kind; "
+                  "build/session_test_layout.lua: stations: 5");
+    assert_answer("HOLDER W", "OK holder=EE");
+    assert_answer("PUT A 2", "OK wafer=W");
+    snprintf(text, sizeof text, good, 4);
+    write_layout(path, text);
+    assert_answer("RESET", "OK");
+    assert_answer("GET A 4", "OK wafer=W");
+    wh_session_close(&session);
+    (void)remove(path);
+}
+
 int main(void) {
 #define IN_PAPER(test) cmocka_unit_test_setup_teardown(test, open_paper, close_session)
 #define IN_BETWEEN(test) cmocka_unit_test_setup_teardown(test, open_between, close_session)
@@ -516,6 +592,9 @@ int main(void) {
         cmocka_unit_test_teardown(a_line_is_reported, close_session),
         cmocka_unit_test(what_cannot_be_opened),
         cmocka_unit_test(a_layout_that_spoils_the_strings),
+        IN_PAPER(status_tells_where_all_is),
+        IN_PAPER(reset_is_a_new_beginning),
+        cmocka_unit_test(a_reset_to_a_layout_that_is_refused_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
