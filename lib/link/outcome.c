@@ -1,7 +1,9 @@
 #include "outcome.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *const words[] = {[WH_OUTCOME_UNTOLD] = "untold",
@@ -22,31 +24,38 @@ void wh_outcome_write(const wh_run_told_t *outcome, const char *reason, char *te
                    outcome->cycles, has_reason ? "; " : "", has_reason ? reason : "");
 }
 
-static bool read_verdict(const char *word, wh_outcome_verdict_t *verdict) {
+/* What follows the verdict's word; null if there is none. */
+static const char *read_verdict(const char *text, wh_outcome_verdict_t *verdict) {
     for (size_t i = WH_OUTCOME_PASSED; i < sizeof words / sizeof words[0]; ++i) {
-        if (strcmp(word, words[i]) == 0) {
+        const size_t length = strlen(words[i]);
+        if (strncmp(text, words[i], length) == 0) {
             *verdict = (wh_outcome_verdict_t)i;
-            return true;
+            return text + length;
         }
     }
-    return false;
+    return NULL;
 }
 
-static bool is_count_sound(const wh_run_told_t *told) {
-    return told->commands >= 0 && told->met >= 0 && told->cycles >= 0 && told->met <= told->expectations;
+/* What follows a count; null if it does not stand there. */
+static const char *read_count(const char *text, const char *before, int64_t *count) {
+    const size_t length = strlen(before);
+    if (!text || strncmp(text, before, length) != 0 || text[length] < '0' || text[length] > '9') {
+        return NULL;
+    }
+    char *end = NULL;
+    errno = 0;
+    *count = strtoll(text + length, &end, 10);
+    return errno == 0 ? end : NULL;
 }
 
 const char *wh_outcome_read(const char *text, wh_run_told_t *outcome) {
     wh_run_told_t read = {0};
-    char word[8];
-    int length = 0;
-    const int count = sscanf(text,
-                             "%7[a-z]; commands %18" SCNd64 ", expectations %18" SCNd64 ", met %18" SCNd64
-                             ", cycles %18" SCNd64 "%n",
-                             word, &read.commands, &read.expectations, &read.met, &read.cycles, &length);
-    const char *rest = text + length;
-    const bool ends = rest[0] == '\0' || strncmp(rest, "; ", 2) == 0;
-    if (count != 5 || !ends || !is_count_sound(&read) || !read_verdict(word, &read.verdict)) {
+    const char *rest = read_verdict(text, &read.verdict);
+    rest = read_count(rest, "; commands ", &read.commands);
+    rest = read_count(rest, ", expectations ", &read.expectations);
+    rest = read_count(rest, ", met ", &read.met);
+    rest = read_count(rest, ", cycles ", &read.cycles);
+    if (!rest || read.met > read.expectations || (rest[0] != '\0' && strncmp(rest, "; ", 2) != 0)) {
         return NULL;
     }
     *outcome = read;

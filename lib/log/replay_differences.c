@@ -13,20 +13,19 @@ typedef struct {
     kind_t kind;
 } field_t;
 
-/* Where the field stands, counted in the caller's struct. */
 #define AT(type, member) offsetof(waferhand_##type, member)
 
-#define MEASURED(type, of, member)                                                                           \
-    {of "dr", AT(type, member.dr), VECTOR}, {of "n1_proj_n2", AT(type, member.n1_proj_n2), REAL},            \
-        {of "dr_proj_z", AT(type, member.dr_proj_z), REAL},                                                  \
-        {of "dr_proj_xy", AT(type, member.dr_proj_xy), VECTOR}, {                                            \
-        of "dr_proj_xy_norm", AT(type, member.dr_proj_xy_norm), REAL                                         \
-    }
+static const field_t measured_fields[] = {{"dr", AT(measurement, dr), VECTOR},
+                                          {"n1_proj_n2", AT(measurement, n1_proj_n2), REAL},
+                                          {"dr_proj_z", AT(measurement, dr_proj_z), REAL},
+                                          {"dr_proj_xy", AT(measurement, dr_proj_xy), VECTOR},
+                                          {"dr_proj_xy_norm", AT(measurement, dr_proj_xy_norm), REAL},
+                                          {0}};
 
-#define ENCOUNTER(of, member)                                                                                \
-    {of "wafer", AT(gripper_state, member.wafer), INT32},                                                    \
-        {of "holder", AT(gripper_state, member.holder), INT32},                                              \
-        {of "slice", AT(gripper_state, member.slice), INT64}, MEASURED(gripper_state, of, member.measured)
+static const field_t encounter_fields[] = {{"wafer", AT(encounter, wafer), INT32},
+                                           {"holder", AT(encounter, holder), INT32},
+                                           {"slice", AT(encounter, slice), INT64},
+                                           {0}};
 
 static const field_t head_fields[] = {{"utime", AT(state, utime), INT64},
                                       {"slice", AT(state, seq), INT64},
@@ -62,8 +61,6 @@ static const field_t gripper_fields[] = {
     {"positions known", AT(gripper_state, positions_known), INT32},
     {"the held wafer a slice before", AT(gripper_state, wafer_before[0]), VECTOR},
     {"the held wafer two slices before", AT(gripper_state, wafer_before[1]), VECTOR},
-    ENCOUNTER("closest approach, ", approach),
-    ENCOUNTER("contest, ", contest),
     {0}};
 
 static const field_t event_fields[] = {{"kind", AT(event, kind), INT32},
@@ -78,7 +75,6 @@ static const field_t event_fields[] = {{"kind", AT(event, kind), INT32},
                                        {"first part", AT(event, parts[0]), INT32},
                                        {"second part", AT(event, parts[1]), INT32},
                                        {"place", AT(event, at), VECTOR},
-                                       MEASURED(event, "", measured),
                                        {0}};
 
 static const field_t fault_fields[] = {{"phase", AT(fault_slot, phase), INT32},
@@ -163,14 +159,35 @@ static int32_t next_event(const waferhand_state *message, int32_t from) {
     return from;
 }
 
+static bool encounter_differs(const char *of, const char *which, const waferhand_encounter *recorded,
+                              const waferhand_encounter *replayed, wh_replay_difference_t *difference) {
+    char name[80];
+    (void)snprintf(name, sizeof name, "%.40s, %s", of, which);
+    return differ(encounter_fields, name, recorded, replayed, difference) ||
+           differ(measured_fields, name, &recorded->measured, &replayed->measured, difference);
+}
+
+static bool gripper_differs(const char *of, const waferhand_gripper_state *recorded,
+                            const waferhand_gripper_state *replayed, wh_replay_difference_t *difference) {
+    return differ(gripper_fields, of, recorded, replayed, difference) ||
+           encounter_differs(of, "closest approach", &recorded->approach, &replayed->approach, difference) ||
+           encounter_differs(of, "contest", &recorded->contest, &replayed->contest, difference);
+}
+
+static bool event_differs(int number, const waferhand_event *recorded, const waferhand_event *replayed,
+                          wh_replay_difference_t *difference) {
+    char of[20];
+    (void)snprintf(of, sizeof of, "event %d", number);
+    return differ(event_fields, of, recorded, replayed, difference) ||
+           differ(measured_fields, of, &recorded->measured, &replayed->measured, difference);
+}
+
 static bool events_differ(const waferhand_state *recorded, const waferhand_state *replayed,
                           wh_replay_difference_t *difference) {
     int32_t a = next_event(recorded, 0);
     int32_t b = next_event(replayed, 0);
     for (int number = 1; a < recorded->event_count && b < replayed->event_count; ++number) {
-        char of[20];
-        (void)snprintf(of, sizeof of, "event %d", number);
-        if (differ(event_fields, of, &recorded->events[a], &replayed->events[b], difference)) {
+        if (event_differs(number, &recorded->events[a], &replayed->events[b], difference)) {
             return true;
         }
         a = next_event(recorded, a + 1);
@@ -213,8 +230,8 @@ bool wh_replay_differs(const wh_layout_t *layout, const waferhand_state *recorde
         }
     }
     for (int32_t g = 0; g < recorded->gripper_count; ++g) {
-        if (differ(gripper_fields, layout->grippers[g].name, &recorded->grippers[g], &replayed->grippers[g],
-                   difference)) {
+        if (gripper_differs(layout->grippers[g].name, &recorded->grippers[g], &replayed->grippers[g],
+                            difference)) {
             return true;
         }
     }
