@@ -26,6 +26,7 @@
 #include "../grasp/proximity.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(batch);
 
 /* How many numbers a batch of so many wafers takes, and in how many lines of 64: 24.5 bytes a wafer, rounded
  * up to whole blocks of 32 wafers and of 32 spheres. Layout: for each 32 spheres 32 x of the centre, 32 y, 32

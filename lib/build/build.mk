@@ -19,7 +19,6 @@ endif
 # Of lib/math/config.h
 defined = $(shell sed -n 's/^.define $(1) //p' lib/math/config.h)
 VERSION := $(call defined,WH_VERSION_MAJOR).$(call defined,WH_VERSION_MINOR).$(call defined,WH_VERSION_PATCH)
-ABI := $(call defined,WH_ABI)$(if $(FLOAT),f)
 
 # ---------------------------------------------------------------------------------------------- sources
 include tests/tests.mk
@@ -53,15 +52,20 @@ C_WARNINGS := -Wstrict-prototypes -Wmissing-prototypes
 NUMBER_WARNINGS := -Wconversion -Wdouble-promotion
 
 # Contraction to fused multiply-adds would change bits from machine to machine, and gcc 12's vectoriser of straight code
-# fuses a*b + c*d beside e*f - g*h whatever it was told; errno keeps sqrt from being one instruction. The prefix map keeps
-# the folder's name out of what is built.
-SAME_BITS := -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION
+# fuses a*b + c*d beside e*f - g*h whatever it was told; errno keeps sqrt from being one instruction. Users of the library
+# compile with these as well.
+SAME_BITS := -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno -DWH_NO_CONTRACTION
 $(if $(filter-out sweep index,$(WITHOUT)),$(error WITHOUT=: of "sweep" and "index", not "$(WITHOUT)"))
-# What the users of the library have to define as well.
-DEFINES := $(strip $(if $(FLOAT),-DWH_FLOAT) $(addprefix -DWH_WITHOUT_,$(shell echo '$(WITHOUT)' | tr a-z A-Z)))
-BASE := $(SAME_BITS) -fno-math-errno $(call accepts,-ffile-prefix-map=$(CURDIR)=.) $(WARNINGS) \
-        $(if $(WERROR),-Werror) $(DEFINES)
-LIBRARY_FLAGS := $(if $(GNU),-std=c99 $(BASE) $(C_WARNINGS) $(NUMBER_WARNINGS),$(DEFINES)) -DWH_BUILDING_LIBRARY
+SETTINGS := $(strip $(if $(FLOAT),-DWH_FLOAT) $(addprefix -DWH_WITHOUT_,$(shell echo '$(WITHOUT)' | tr a-z A-Z)))
+# What the users of the library have to define as well: number type and what is left out, be it said by FLOAT and WITHOUT,
+# in CFLAGS, or in the header that WH_CONFIG_FILE names.
+DEFINES := $(if $(GNU),$(shell $(CC) $(CFLAGS) $(EXTRA) $(SETTINGS) -ffreestanding -dM -E lib/math/config.h 2>/dev/null | \
+    sed -nE 's/^.define (WH_FLOAT|WH_WITHOUT_SWEEP|WH_WITHOUT_INDEX)\b ?(.*)$$/-D\1=\2/p' | sed 's/=1$$//' | sort),$(SETTINGS))
+ABI := $(call defined,WH_ABI)$(if $(filter -DWH_FLOAT%,$(DEFINES)),f)
+# The prefix map keeps the folder's name out of what is built.
+BASE := $(SAME_BITS) $(call accepts,-ffile-prefix-map=$(CURDIR)=.) $(WARNINGS) \
+        $(if $(WERROR),-Werror) $(SETTINGS)
+LIBRARY_FLAGS := $(if $(GNU),-std=c99 $(BASE) $(C_WARNINGS) $(NUMBER_WARNINGS),$(SETTINGS)) -DWH_BUILDING_LIBRARY
 COLLISION_FLAGS = $(LIBRARY_FLAGS) $(call package_flags,ccd)
 HOST_FLAGS := -std=c99 -D_GNU_SOURCE $(BASE) $(C_WARNINGS)
 

@@ -24,6 +24,7 @@
 #include "../grasp/grasp.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(station);
 
 typedef struct {
     wh_pose_t base_from_station;

@@ -12,6 +12,7 @@
 #include "../math/pose.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(arm);
 
 /* The bodies of the robot, each hanging on the one before it. */
 typedef enum WH_FOUR_BYTES {

@@ -12,6 +12,7 @@
 #include "../math/pose.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(convex);
 
 /* The thinnest and the largest shape, and the most points of a mesh. */
 #define WH_CONVEX_THINNEST 0.01

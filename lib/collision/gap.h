@@ -38,6 +38,7 @@
 #include "convex.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(gap);
 
 #if defined(WH_FLOAT)
 #error "waferhand: lib/collision is there in double only"

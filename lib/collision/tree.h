@@ -12,6 +12,7 @@
 #include "../math/vector.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(tree);
 
 /* From `low` to `high`, mm in base. A box with low above high is empty: it overlaps nothing. */
 typedef struct {

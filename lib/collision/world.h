@@ -31,6 +31,7 @@
 #include "tree.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(world);
 
 /* The most grippers of a world. */
 #define WH_WORLD_GRIPPERS 8

@@ -5,6 +5,7 @@
 #include "proximity.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(event);
 
 /* A step of the grasp table yields at most this many events for each of its grippers. */
 #define WH_EVENTS_PER_GRIPPER 4

@@ -47,6 +47,7 @@
 #include "event.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(grasp);
 
 typedef enum WH_FOUR_BYTES { WH_CHECK_SAMPLED, WH_CHECK_SWEPT } wh_check_t;
 

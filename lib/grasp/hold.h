@@ -17,6 +17,7 @@
 #include "vacuum.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(hold);
 
 /* What the pads and the wafer are. Immutable during a run; a mass of 0: holding is not looked at. */
 typedef struct {

@@ -19,6 +19,7 @@
 #include "../math/pose.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(proximity);
 
 /* The three limits: eps_projz in (0, 1e6] mm, eps_projxy in [1e-6, 1e6] mm, eps_planar in [0, 1). */
 typedef struct {

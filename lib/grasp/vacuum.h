@@ -27,6 +27,7 @@
 #include "grasp.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(vacuum);
 
 /* Immutable during a run. */
 typedef struct {

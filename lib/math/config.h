@@ -28,6 +28,19 @@
 #if defined(WH_CONFIG_FILE)
 #include WH_CONFIG_FILE
 #endif
+/* Whatever the value, the preprocessor takes these for on: so 0, which looks like off, is refused. */
+#if defined(WH_FLOAT) && (0 - WH_FLOAT - 1) != 1 && (0 - WH_FLOAT - 1) != -2
+#error "waferhand: WH_FLOAT is 0, or not 1: define it as 1 or as nothing for float, leave it out for double"
+#endif
+#if defined(WH_WITHOUT_SWEEP) && (0 - WH_WITHOUT_SWEEP - 1) != 1 && (0 - WH_WITHOUT_SWEEP - 1) != -2
+#error "waferhand: WH_WITHOUT_SWEEP is 0, or not 1: define it as 1 or as nothing, or leave it out"
+#endif
+#if defined(WH_WITHOUT_INDEX) && (0 - WH_WITHOUT_INDEX - 1) != 1 && (0 - WH_WITHOUT_INDEX - 1) != -2
+#error "waferhand: WH_WITHOUT_INDEX is 0, or not 1: define it as 1 or as nothing, or leave it out"
+#endif
+#if defined(WH_NO_CONTRACTION) && (0 - WH_NO_CONTRACTION - 1) != 1 && (0 - WH_NO_CONTRACTION - 1) != -2
+#error "waferhand: WH_NO_CONTRACTION is 0, or not 1: define it as 1 or as nothing, or leave it out"
+#endif
 #if defined(WH_WITHOUT_SWEEP)
 #define WH_SWEEP_BUILT false
 #else
@@ -41,7 +54,8 @@
 
 /* The same inputs must give the same bits on every machine, which these builds cannot hold. Nor can one that
  * fuses products and sums, which no macro tells: build everything that includes these headers with
- * -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION, as pkg-config, CMake and meson do.
+ * -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION, as pkg-config, CMake and meson do. They add
+ * -fno-math-errno, which changes no bits: square roots are one instruction then, and smaller.
  * gcc has a macro for each part of -ffast-math. clang has macros only for the whole and for
  * -ffinite-math-only; on x86 the pragma below finds all other parts but -fno-honor-nans and
  * -fno-honor-infinities. What remains unseen: lib/README.md. */
@@ -76,11 +90,32 @@ typedef uint64_t wh_real_bits_t;
 #define WH_SYMBOL_NUMBER "d"
 #endif
 
-/* -fsingle-precision-constant changes numbers, and no macro tells. A file of yours that includes the headers
- * of floats may have it; the library may not. */
-#if !defined(WH_FLOAT) || defined(WH_BUILDING_LIBRARY)
+/* -fsingle-precision-constant changes numbers, in float as well, where random numbers are computed in double.
+ * No macro tells. */
 typedef char wh_constants_need_double[sizeof(0.1) == sizeof(double) ? 1 : -1];
+
+/* Structs go from your files to the library and back. A `#pragma pack` that a header before ours left open,
+ * or -fpack-struct, would lay them out in another way on one side. So each header with structs begins with a
+ * sample, which is refused unless it is as large as the one here, for which no packing counts. */
+#pragma pack(push, 16)
+typedef struct {
+    char before;
+    wh_real_t real;
+    char between;
+    uint64_t whole;
+} wh_unpacked_t;
+#pragma pack(pop)
+#if defined(__BIGGEST_ALIGNMENT__) && __BIGGEST_ALIGNMENT__ > 1 /* gcc's -fpack-struct packs that one, too */
+typedef char wh_structs_are_packed[sizeof(wh_unpacked_t) > 2 + sizeof(wh_real_t) + sizeof(uint64_t) ? 1 : -1];
 #endif
+#define WH_REFUSE_PACKING(header)                                                                            \
+    typedef struct {                                                                                         \
+        char before;                                                                                         \
+        wh_real_t real;                                                                                      \
+        char between;                                                                                        \
+        uint64_t whole;                                                                                      \
+    } wh_##header##_sample_t;                                                                                \
+    typedef char wh_##header##_is_packed[sizeof(wh_##header##_sample_t) == sizeof(wh_unpacked_t) ? 1 : -1]
 
 /* True where numbers are computed by software: there a comparison that saves a product pays. Changes no
  * result. */
@@ -146,6 +181,29 @@ typedef char wh_enumerations_need_4_bytes[sizeof(wh_enum_shortest_t) == 4 ? 1 : 
 #define WH_SYMBOL_JOIN_(name, abi, features) name##_##abi##d##features
 #endif
 #include "symbols.h"
+#endif
+
+/* Functions that stand in headers have no symbol to end by the number type. So each file of yours that gcc
+ * compiles tells the linker the type that the file has: two that differ in WH_FLOAT, or in the ABI, do not
+ * link, "multiple definition of waferhand_files_differ_in_WH_FLOAT". It takes no byte of the program. In
+ * clang with -flto it would refuse good files, and no macro tells. A program that has both types on purpose,
+ * in files that share no struct of ours, defines WH_BOTH_NUMBERS in those of one type. */
+#if defined(__GNUC__) && !defined(__clang__) && defined(__ELF__) && !defined(WH_BUILDING_LIBRARY) &&         \
+    !defined(WH_BOTH_NUMBERS)
+#define WH_NUMBER_OF_FILE "waferhand_" WH_TEXT(WH_ABI) WH_SYMBOL_NUMBER
+/* With -flto several files become one for the assembler: hence the questions. */
+__asm__(".ifndef .L" WH_NUMBER_OF_FILE "\n"
+        ".ifdef waferhand_files_differ_in_WH_FLOAT\n"
+        ".error \"waferhand: files differ in WH_FLOAT\"\n"
+        ".else\n"
+        ".set .L" WH_NUMBER_OF_FILE ", 1\n"
+        ".pushsection .rodata.waferhand,\"aG\",%progbits," WH_NUMBER_OF_FILE ",comdat\n"
+        ".globl waferhand_files_differ_in_WH_FLOAT\n"
+        ".hidden waferhand_files_differ_in_WH_FLOAT\n"
+        "waferhand_files_differ_in_WH_FLOAT:\n"
+        ".popsection\n"
+        ".endif\n"
+        ".endif");
 #endif
 
 /* Each public header begins and ends with these: C's names in C++, and the same bits of the inline functions

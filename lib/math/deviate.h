@@ -9,6 +9,7 @@
 #include "config.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(deviate);
 
 typedef struct {
     uint64_t seed, trial;

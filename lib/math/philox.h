@@ -10,6 +10,7 @@
 #include "config.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(philox);
 
 typedef struct {
     uint32_t words[4];

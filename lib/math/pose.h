@@ -10,6 +10,7 @@
 #include "vector.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(pose);
 
 typedef struct {
     wh_mat3_t R;

@@ -5,6 +5,7 @@
 #include "pose.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(relation);
 
 typedef struct {
     wh_real_t distance; /* of the origins, mm */

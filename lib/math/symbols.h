@@ -181,6 +181,7 @@
 #define wh_vacuum_validate WH_SYMBOL_RENAMED(wh_vacuum_validate)
 #define wh_version WH_SYMBOL_RENAMED(wh_version)
 #define wh_wafer_mass WH_SYMBOL_RENAMED(wh_wafer_mass)
+#define wh_words_apart WH_SYMBOL_RENAMED(wh_words_apart)
 #define wh_words_begin WH_SYMBOL_RENAMED(wh_words_begin)
 #define wh_words_fixed WH_SYMBOL_RENAMED(wh_words_fixed)
 #define wh_words_integer WH_SYMBOL_RENAMED(wh_words_integer)

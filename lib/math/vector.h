@@ -11,6 +11,7 @@
 #include "config.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(vector);
 
 static inline wh_real_t wh_real_max(wh_real_t a, wh_real_t b) {
     return a > b ? a : b;

@@ -18,6 +18,7 @@
 #include "robot.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(line);
 
 /* A planned line. Written by wh_line_plan only; reading its fields is fine. */
 typedef struct {

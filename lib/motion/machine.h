@@ -13,6 +13,7 @@
 #include "robot.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(machine);
 
 /* The most grippers of a machine, and of a command message. */
 #define WH_GRIPPERS 8

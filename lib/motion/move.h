@@ -13,6 +13,7 @@
 #include "profile.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(move);
 
 /* The most axes of a move, a message and a track. */
 #define WH_AXES 8

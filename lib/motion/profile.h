@@ -23,6 +23,7 @@
 #include "../math/vector.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(profile);
 
 /* The limits of an axis, as magnitudes: mm/s, mm/s^2, mm/s^3 or rad/s, rad/s^2, rad/s^3. */
 typedef struct {

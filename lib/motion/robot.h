@@ -16,6 +16,7 @@
 #include "profile.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(robot);
 
 #define WH_ROBOT_AXES 4
 

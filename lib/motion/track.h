@@ -18,6 +18,7 @@
 #include "machine.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(track);
 
 typedef enum WH_FOUR_BYTES {
     WH_SEGMENT_AXES,   /* axes go to target[], synchronised, each at rest at both ends */

@@ -27,17 +27,29 @@ static void put_fixed(said_t *said, wh_real_t value, int decimals) {
     wh_words_fixed(&said->words, value, decimals);
 }
 
-static void put_short(said_t *said, wh_real_t value) {
-    wh_words_short(&said->words, value, SHORT_DIGITS);
+/* A value, what stands between, and its limit. However near they are, they do not read the same. */
+static void put_against(said_t *said, wh_real_t value, const char *between, wh_real_t limit,
+                        const char *unit) {
+    const int decimals = wh_words_apart(value, limit, 3);
+    put_fixed(said, value, decimals);
+    put_text(said, unit);
+    put_text(said, between);
+    put_text(said, " (limit ");
+    wh_words_short(&said->words, limit, SHORT_DIGITS, decimals);
+    put_text(said, unit);
+    put_text(said, ")");
 }
 
-static void put_degrees(said_t *said, wh_real_t degrees, bool is_limit) {
-    if (is_limit) {
-        put_short(said, degrees);
-    } else {
-        put_fixed(said, degrees, 3);
-    }
-    put_text(said, said->names->degree ? said->names->degree : " deg");
+/* The same for large numbers: no decimals where none are needed. */
+static void put_whole_against(said_t *said, wh_real_t value, const char *between, wh_real_t limit) {
+    const int decimals = wh_words_apart(value, limit, 0);
+    put_fixed(said, value, decimals);
+    put_text(said, between);
+    put_fixed(said, limit, decimals);
+}
+
+static const char *degree_of(const said_t *said) {
+    return said->names->degree ? said->names->degree : " deg";
 }
 
 static void put_name(said_t *said, wh_name_kind_t kind, int32_t index) {
@@ -132,7 +144,8 @@ static void put_condition(said_t *said, unsigned failed) {
     put_fixed(said, condition.value, decimals);
     put_text(said, " is not ");
     put_text(said, condition.relation);
-    wh_words_short(&said->words, condition.limit, said->names->tolerance ? LIMIT_DIGITS : SHORT_DIGITS);
+    wh_words_short(&said->words, condition.limit, said->names->tolerance ? LIMIT_DIGITS : SHORT_DIGITS,
+                   decimals);
     if (condition.margin < 0) {
         put_text(said, " (by ");
         put_fixed(said, -condition.margin, decimals);
@@ -143,7 +156,8 @@ static void put_condition(said_t *said, unsigned failed) {
     }
     if (failed == WH_FAILED_PLANAR) {
         put_text(said, ": tilted by ");
-        put_degrees(said, wh_deg_from_rad(wh_acos(condition.value)), false);
+        put_fixed(said, wh_deg_from_rad(wh_acos(condition.value)), 3);
+        put_text(said, degree_of(said));
     }
 }
 
@@ -169,14 +183,11 @@ static void say_of_physics(said_t *said) {
     switch ((int)event->kind) {
     case WH_EVENT_SLIPPED:
         put_text(said, "the motion asks for ");
-        put_fixed(said, event->value, 0);
-        put_text(said, " mm/s^2, the pads carry ");
-        put_fixed(said, event->limit, 0);
+        put_whole_against(said, event->value, " mm/s^2, the pads carry ", event->limit);
         break;
     case WH_EVENT_VACUUM_LOST:
-        put_fixed(said, 100 * event->value, 0);
-        put_text(said, " % of the full vacuum, the sensor wants ");
-        put_fixed(said, 100 * event->limit, 0);
+        put_whole_against(said, 100 * event->value, " % of the full vacuum, the sensor wants ",
+                          100 * event->limit);
         break;
     case WH_EVENT_FAULT_ARMED:
     case WH_EVENT_FAULT_CLEARED:
@@ -210,10 +221,7 @@ static void say_of_contact(said_t *said) {
         break;
     case WH_EVENT_TOO_CLOSE:
         put_parts(said, "", ": ");
-        put_fixed(said, said->event->value, 3);
-        put_text(said, " mm apart (limit ");
-        put_short(said, said->event->limit);
-        put_text(said, " mm)");
+        put_against(said, said->event->value, " apart", said->event->limit, " mm");
         break;
     default:
         say_of_physics(said);
@@ -235,17 +243,11 @@ static void say_of_cell(said_t *said) {
         put_text(said, " lies in that slot");
         break;
     case WH_EVENT_PLACED_OFF_CENTRE:
-        put_fixed(said, event->value, 3);
-        put_text(said, " mm beside the centre (limit ");
-        put_short(said, event->limit);
-        put_text(said, " mm)");
+        put_against(said, event->value, " beside the centre", event->limit, " mm");
         break;
     case WH_EVENT_PLACED_ASKEW:
         put_text(said, "tilted by ");
-        put_degrees(said, wh_deg_from_rad(event->value), false);
-        put_text(said, " (limit ");
-        put_degrees(said, wh_deg_from_rad(event->limit), true);
-        put_text(said, ")");
+        put_against(said, wh_deg_from_rad(event->value), "", wh_deg_from_rad(event->limit), degree_of(said));
         break;
     case WH_EVENT_SETTLED:
         put_fixed(said, event->value, 3);

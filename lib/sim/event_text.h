@@ -10,6 +10,7 @@
 #include "../grasp/event.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(event_text);
 
 /* Room for every text of wh_event_text if no name has more than 63 bytes. */
 #define WH_EVENT_TEXT_SIZE 640

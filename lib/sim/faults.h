@@ -44,6 +44,7 @@
 #include "../motion/machine.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(faults);
 
 /* The most faults of a run at one time. */
 #define WH_FAULTS 16

@@ -19,6 +19,7 @@
 #include "faults.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(physics);
 
 /* The length of a slice unless told otherwise, s. */
 #define WH_SLICE_S WH_REAL(0.001)

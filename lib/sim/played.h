@@ -21,6 +21,7 @@
 #include "simulator.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(played);
 
 /* A segment as it was played: to its end, or (not 0) cut off by a STOP after so many slices. */
 typedef struct {

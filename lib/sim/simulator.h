@@ -19,6 +19,7 @@
 #include "slice.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(simulator);
 
 /* Looks at each accepted step after table and cell, and may append events. `inputs` are the step's own, after
  * faults and vacuum. It must not change anything that a step depends on. Null functions are not called. */

@@ -15,6 +15,7 @@
 #include "physics.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(slice);
 
 /* The most events in one slice: those of the grasp table, then those of the cell, the vacuum, the faults and
  * the collision check. Events beyond that are not reported. */

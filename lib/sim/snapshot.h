@@ -24,6 +24,7 @@
 #include "simulator.h"
 
 WH_HEADER_BEGIN
+WH_REFUSE_PACKING(snapshot);
 
 /* Goes up when the bytes change. */
 #define WH_SNAPSHOT_VERSION 1

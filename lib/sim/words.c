@@ -203,14 +203,34 @@ static bool ends_in_zero(fixed_t fixed, int decimals) {
     return fixed.whole == shorter.whole && digits == fewer * 10;
 }
 
-void wh_words_short(wh_words_t *words, wh_real_t value, int digits) {
+void wh_words_short(wh_words_t *words, wh_real_t value, int digits, int least) {
     if (put_special(words, value)) {
         return;
     }
     const fixed_t fixed = to_fixed(wh_real_abs(value));
     int decimals = decimals_for(fixed, digits);
+    decimals = decimals < least ? least : decimals;
     while (decimals > 0 && ends_in_zero(fixed, decimals)) {
         --decimals;
     }
     put_number(words, value, fixed, decimals);
+}
+
+/* Rounding keeps the order, so that what does not read the same reads the right way round. */
+static bool reads_same(wh_real_t a, wh_real_t b, int decimals) {
+    fixed_t one = to_fixed(wh_real_abs(a));
+    fixed_t other = to_fixed(wh_real_abs(b));
+    const uint64_t digits = round_decimals(&one, decimals);
+    return digits == round_decimals(&other, decimals) && one.whole == other.whole;
+}
+
+int wh_words_apart(wh_real_t a, wh_real_t b, int least) {
+    if (a == b || !(wh_real_abs(a) < TOO_LARGE) || !(wh_real_abs(b) < TOO_LARGE)) {
+        return least;
+    }
+    int decimals = least;
+    while (decimals < MOST_DECIMALS && reads_same(a, b, decimals)) {
+        ++decimals;
+    }
+    return reads_same(a, b, decimals) ? least : decimals;
 }

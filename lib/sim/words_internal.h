@@ -24,7 +24,12 @@ void wh_words_integer(wh_words_t *words, int64_t value) WH_SYMBOL(wh_words_integ
  * 1e15 on "more than 1e15", with a minus for "less than"; "nan" for what is no number. */
 void wh_words_fixed(wh_words_t *words, wh_real_t value, int decimals) WH_SYMBOL(wh_words_fixed);
 
-/* At most `digits` (1 to 15) digits that count, without zeros at the end: 0.5, 50, 0.00005. */
-void wh_words_short(wh_words_t *words, wh_real_t value, int digits) WH_SYMBOL(wh_words_short);
+/* At most `digits` (1 to 15) digits that count, but not fewer than `least` decimals; without zeros at the
+ * end: 0.5, 50, 0.00005. */
+void wh_words_short(wh_words_t *words, wh_real_t value, int digits, int least) WH_SYMBOL(wh_words_short);
+
+/* The fewest decimals, at least `least`, with which two numbers of the same sign do not read the same, and
+ * the larger one reads as the larger; `least` if 15 show no difference. */
+int wh_words_apart(wh_real_t a, wh_real_t b, int least) WH_SYMBOL(wh_words_apart);
 
 #endif

@@ -35,7 +35,7 @@ check-paths:
 check-proofs:
 	@tests/check/proofs
 
-# The matrix of compilers, flags and build systems: about 90 s on two processors. What a missing tool would have done is skipped by name.
+# The matrix of compilers, flags and build systems: about two minutes on two processors. What a missing tool would have done is skipped by name.
 check-builds:
 	@tests/check/builds
 

@@ -1,8 +1,10 @@
 /* A long run whose bits have to be the same on every machine: random steps of the grasp table, and random calls of
- * everything in lib/motion; and the bytes of a snapshot. Prints a hash of each, to be compared with tests/target/golden.txt.
+ * everything in lib/motion; the bytes of a snapshot; and random numbers, which are doubles in float as well. Prints a hash of
+ * each: the lines of tests/target/golden.txt for its number type, but for the last, "transfer", which tests/verify/bits makes.
  *
  * Needs nothing but the library, so that it can be built for a target of your own. */
 #include <stdio.h>
+#include <string.h>
 
 #include <waferhand.h>
 
@@ -175,7 +177,6 @@ static void moves(const wh_robot_t *robot) {
     }
 }
 
-/* In halves: newlib-nano prints no integer of 64 bits. */
 /* The bytes of a snapshot, of a gripper that has just taken a wafer: the same on machines of either byte order. False if it is
  * not read again. */
 static bool snapshot(void) {
@@ -214,6 +215,25 @@ static bool snapshot(void) {
     return good && grippers[0].wafer == 0 && wh_simulator_load(&simulator, bytes, size, &room) == WH_OK;
 }
 
+static void add_double(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    hash = wh_hash_word(hash, bits);
+}
+
+/* Numbers drawn by name and number, and the logarithm behind the normal ones. */
+static void deviates(void) {
+    wh_trial_t trial;
+    trial.seed = wh_test_splitmix(&state);
+    trial.trial = wh_test_splitmix(&state);
+    const uint32_t field = below(1000);
+    const uint32_t index = below(1000);
+    add_double(wh_deviate_uniform(&trial, field, index));
+    add_double(wh_deviate_normal(&trial, field, index));
+    add_double(wh_ln((double)(1 + below(1U << 31)) / 1024));
+}
+
+/* In halves: newlib-nano prints no integer of 64 bits. */
 static int report(const char *what, bool good) {
     printf("%s %s %08lx%08lx\n", sizeof(wh_real_t) == sizeof(double) ? "double" : "float", what,
            (unsigned long)(hash >> 32), (unsigned long)(hash & 0xffffffffU));
@@ -243,5 +263,12 @@ int main(void) {
     hash = WH_HASH_START;
     good = snapshot();
     failed += report("snapshot", good);
+    state = 20240229;
+    hash = WH_HASH_START;
+    add_double(wh_ln(3));
+    for (int call = 0; call < CALLS; ++call) {
+        deviates();
+    }
+    failed += report("deviate", true);
     return failed;
 }

@@ -1,7 +1,7 @@
 # The machines that the library is tried on besides the host: how to compile for each, and how to run what was compiled.
 # shellcheck shell=bash disable=SC2034 # what target sets is for the scripts that ask
 
-readonly OPTIONS='-std=c99 -ffp-contract=off -fno-tree-slp-vectorize -DWH_NO_CONTRACTION -fno-math-errno -Wall -Wextra -Ilib -Itests'
+readonly OPTIONS='-std=c99 -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno -DWH_NO_CONTRACTION -Wall -Wextra -Ilib -Itests'
 readonly M7='-mthumb -mcpu=cortex-m7 -mfpu=fpv5-d16 -mfloat-abi=hard'
 readonly M0='-mthumb -mcpu=cortex-m0plus'
 readonly M4='-mthumb -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard'

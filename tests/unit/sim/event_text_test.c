@@ -18,7 +18,7 @@ static const char *fixed(wh_real_t value, int decimals) {
 static const char *in_short(wh_real_t value, int digits) {
     static char text[80];
     wh_words_t words = wh_words_begin(text, sizeof text);
-    wh_words_short(&words, value, digits);
+    wh_words_short(&words, value, digits, 0);
     return text;
 }
 
@@ -132,6 +132,52 @@ static void a_missed_pick_is_explained(void **state) {
                         "near miss: wafer 2, gripper 1: |dr_proj_z| 0.500 is not below 0.5 (it is equal)");
     event.measured.failed = 0;
     assert_string_equal(text_of(&event, NULL), "near miss: wafer 2, gripper 1: ready, but not taken");
+}
+
+/* The first two numbers of a text, from its last colon but one on. */
+static void numbers_of(const char *text, double numbers[2]) {
+    const char *at = strstr(text, "gripper 1: ") + strlen("gripper 1: ");
+    for (size_t i = 0; i < 2; ++i) {
+        at = strpbrk(at, "0123456789");
+        char *end = NULL;
+        numbers[i] = strtod(at, &end);
+        at = strncmp(end, " mm/s^2", 7) == 0 ? end + 7 : end;
+    }
+}
+
+/* A value as near to its limit as its number type can be is on its own side of it, as they are written. */
+static void a_value_beside_its_limit_does_not_read_as_the_limit(void **state) {
+    (void)state;
+    static const wh_event_kind_t kinds[] = {WH_EVENT_TOO_CLOSE, WH_EVENT_PLACED_OFF_CENTRE,
+                                            WH_EVENT_PLACED_ASKEW, WH_EVENT_SLIPPED, WH_EVENT_VACUUM_LOST};
+    for (int run = 0; run < 20000; ++run) {
+        wh_event_t event = event_of(kinds[run % 5]);
+        const bool is_below = event.kind == WH_EVENT_TOO_CLOSE || event.kind == WH_EVENT_VACUUM_LOST;
+        const bool is_fast = event.kind == WH_EVENT_SLIPPED;
+        const double limit = is_fast ? wh_test_uniform(100, 9000) : wh_test_uniform(0.01, 1);
+        const double apart = wh_test_decades(sizeof(wh_real_t) == sizeof(double) ? 1e-12 : 1e-5, 1e-1);
+        event.limit = WH_REAL(run % 3 == 0 ? limit : floor(limit * 100) / 100 + 0.01);
+        event.value = event.limit * WH_REAL(is_below ? 1 - apart : 1 + apart);
+        event.parts[0] = event.parts[1] = WH_NONE;
+        double numbers[2];
+        numbers_of(text_of(&event, NULL), numbers);
+        assert_true(is_below ? numbers[0] < numbers[1] : numbers[0] > numbers[1]);
+    }
+    wh_event_t event = event_of(WH_EVENT_VACUUM_LOST);
+    event.limit = WH_REAL(0.6);
+    event.value = WH_REAL(0.5996);
+    assert_string_equal(
+        text_of(&event, NULL),
+        "vacuum lost: wafer 2, gripper 1: 59.96 % of the full vacuum, the sensor wants 60.00");
+    event = event_of(WH_EVENT_TOO_CLOSE);
+    event.limit = WH_REAL(0.5);
+    event.value = WH_REAL(0.49996);
+    assert_string_equal(text_of(&event, NULL),
+                        "too close: wafer 2, gripper 1: part 4 and part 5: 0.49996 mm apart (limit 0.5 mm)");
+    event = missed_by_tolerance(0, 50.00004, 0);
+    assert_string_equal(
+        text_of(&event, NULL),
+        "near miss: wafer 2, gripper 1: |dr_proj_xy| 50.00004 is not below 50 (by 0.00004 mm)");
 }
 
 /* Between two slices 0.998 of the limit counts: the text says so, with the tolerance and without it. */
@@ -281,6 +327,7 @@ int main(void) {
         cmocka_unit_test(numbers_that_have_no_digits_are_named),
         cmocka_unit_test(whole_numbers_are_written_in_full),
         cmocka_unit_test(a_missed_pick_is_explained),
+        cmocka_unit_test(a_value_beside_its_limit_does_not_read_as_the_limit),
         cmocka_unit_test(a_swept_near_miss_names_the_limit_that_was_applied),
         cmocka_unit_test(each_condition_that_failed_is_a_reason),
         cmocka_unit_test(each_kind_has_its_words),
