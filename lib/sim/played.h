@@ -2,7 +2,7 @@
  *
  * The file has all that the run needs: machine, vacuum, pads, faults, stations, wafers, and the segments of
  * its motion, under the lines of the script that asked for them. Of motion.h all names begin with motion_, so
- * one program can have several:
+ * one program can have several; the second of two with the same names is an #error:
  *
  *     static wh_wafer_t wafers[MOTION_WAFERS];
  *     static wh_gripper_t grippers[MOTION_GRIPPERS];
