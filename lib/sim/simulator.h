@@ -49,11 +49,13 @@ typedef struct {
  * what that shows and what it does not. */
 #define WH_SIMULATOR_MARK UINT32_C(0x51a07e5d)
 
-/* Sets up a run: all wafers are free, at their places in storage->wafers. `cell->stations` and the arrays
- * of `storage` must outlive the simulator. Refuses what wh_grasp_init refuses, what wh_cell_validate
- * refuses, and more than WH_GRIPPERS grippers (WH_STATUS_BAD_CAPACITY); simulator and arrays are then
- * unchanged. Cost: that of these two, and the simulator's size in bytes written. Do not move the simulator
- * afterwards: `link` and states point into it. */
+/* Sets up a run: all wafers are free, at their places in storage->wafers. `cell->stations` and the
+ * arrays of `storage` must outlive the simulator. Refuses what wh_grasp_init refuses, what
+ * wh_cell_validate refuses, and more than WH_GRIPPERS grippers (WH_STATUS_BAD_CAPACITY); simulator and
+ * arrays are then unchanged. Stations may overlap: each wafer then lies in the nearest slot of all, and
+ * WH_EVENT_SLOT_OCCUPIED comes only for two wafers in one and the same slot. Cost: that of these two, and
+ * the simulator's size in bytes written. Do not move the simulator afterwards: `link` and states point
+ * into it. */
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
                               const wh_grasp_storage_t *storage, const wh_cell_t *cell)
     WH_SYMBOL(wh_simulator_init);
