@@ -29,13 +29,13 @@
  * (tests/verify/footprint):
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_fault_validate                56    176      16     88
- *     stack of wh_faults_validate               88    208      48    120
- *     stack of wh_faults_check                 104    224      56    136
- *     stack of wh_faults_take                   40     40      40     40
- *     stack of wh_faults_advance               192    272     140    176
- *     stack of wh_faults_overrule               72     72      56     60
+ *     stack of wh_faults_validate               80    200      48    112
+ *     stack of wh_faults_check                 104    224      64    136
+ *     stack of wh_faults_take                   48     40      48     40
+ *     stack of wh_faults_advance               176    264     124    168
+ *     stack of wh_faults_overrule               80     64      72     56
  *     stack of wh_faults_of_vacuum              96     96      56     56
- *     stack of wh_faults_sensors                 0      8       0      8
+ *     stack of wh_faults_sensors                 4      8       0      8
  *     size of wh_fault_t                       136             80
  *     size of wh_faults_t                     5384           2952
  *     size of wh_fault_request_t               144             88
@@ -161,8 +161,8 @@ void wh_faults_take(wh_faults_t *faults, const wh_fault_request_t requests[], si
     WH_SYMBOL(wh_faults_take);
 
 /* Begins and ends what is due in slice `seq`; moves wafers of the table. Nothing is checked: the faults are
- * such as wh_faults_validate accepts for this table. Cost: a look at each slot up to `count`; each that acts on
- * a wafer adds another, and each wafer that is moved 36 products and wh_grasp_place. */
+ * such as wh_faults_validate accepts for this table. Cost: a look at each slot up to `count`; each that acts
+ * on a wafer adds another, and each wafer that is moved 36 products and wh_grasp_place. */
 wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int64_t seq)
     WH_SYMBOL(wh_faults_advance);
 

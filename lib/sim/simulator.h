@@ -5,10 +5,10 @@
  * (tests/verify/footprint; "sampled" is a step without swept checking; what an observer takes comes on top):
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_simulator_init               380    304     260    232
- *     stack of wh_simulator_set_physics        256    256     200    208
+ *     stack of wh_simulator_set_physics        264    256     208    208
  *     stack of wh_simulator_step               936   1064     636    692
  *     stack of wh_simulator_step:sampled       936    904     600    616
- *     stack of wh_simulator_view                28     36      24     40
+ *     stack of wh_simulator_view                32     36      24     40
  *     stack of wh_simulator_hash               124    148     116    136
  *     size of wh_simulator_t                 19944          12184
  */
