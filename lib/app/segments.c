@@ -26,14 +26,16 @@ static bool is_word(char c) {
     return isascii((unsigned char)c) && isalnum((unsigned char)c);
 }
 
+static bool is_letter(char c) {
+    return is_word(c) && !isdigit((unsigned char)c);
+}
+
 /* The file's name up to its first dot, as a C identifier. */
 static void name_prefix(writer_t *writer, const char *path) {
     const char *slash = strrchr(path, '/');
     const char *from = slash ? slash + 1 : path;
     char *prefix = writer->prefix;
-    size_t length = is_word(from[0]) && !isdigit((unsigned char)from[0])
-                        ? 0
-                        : (size_t)snprintf(prefix, PREFIX_SIZE, "run_");
+    size_t length = is_letter(from[0]) ? 0 : (size_t)snprintf(prefix, PREFIX_SIZE, "run_");
     for (; *from != '\0' && *from != '.' && length + 1 < PREFIX_SIZE; ++from) {
         if (is_word(*from) || prefix[length - 1] != '_') {
             prefix[length++] = is_word(*from) ? *from : '_';
