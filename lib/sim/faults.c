@@ -46,7 +46,9 @@ static bool names_fit(const wh_fault_t *fault, size_t gripper_count, size_t wafe
 }
 
 static bool value_fits(const wh_fault_t *fault) {
-    const wh_real_t most = fault->kind == WH_FAULT_SLOW_VACUUM ? 3600 : fault->kind == WH_FAULT_LEAK ? 1 : 0;
+    const wh_real_t most = fault->kind == WH_FAULT_SLOW_VACUUM ? WH_REAL(3600)
+                           : fault->kind == WH_FAULT_LEAK      ? WH_REAL(1)
+                                                               : WH_REAL(0);
     return fault->value >= 0 && fault->value <= most;
 }
 
@@ -72,7 +74,7 @@ static bool is_straight(const wh_mat3_t *R) {
 /* Of a wafer's fault: small enough that adding it to any finite position stays finite. */
 static bool offset_fits(const wh_fault_t *fault) {
     const bool of_wafer = wh_fault_is_of_wafer(fault->kind);
-    const wh_real_t reach = of_wafer ? WH_FAULT_REACH : 0;
+    const wh_real_t reach = of_wafer ? WH_FAULT_REACH : WH_REAL(0);
     const wh_vec3_t *r = &fault->offset.r;
     return wh_real_abs(r->x) <= reach && wh_real_abs(r->y) <= reach && wh_real_abs(r->z) <= reach &&
            (of_wafer || is_straight(&fault->offset.R));
