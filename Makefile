@@ -9,7 +9,7 @@
 #   WERROR=1   warnings are errors (so they are where CI is set)
 #   V=1        shows the commands; 0 switches off what 1 switches on, and is the default
 #   B=build    the folder to build in, as in `make library B=build/m7 CC=arm-none-eabi-gcc CFLAGS=...`
-#   PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=   where `make install` puts things
+#   PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=   where `make install` puts things; the first two without blanks
 
 # Commands run one after the other, the builds that they start in parallel: `make -j run test` would else
 # have two makes at work in build/.

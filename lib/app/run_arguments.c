@@ -24,8 +24,11 @@ const wh_option_t wh_run_options[] = {
      .variable = offsetof(wh_run_arguments_t, gantt)},
     {"margins", 0, NULL, "Also print how near the axes come to the ends of their travel at each station",
      WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, margins)},
-    {"segments", 0, "FILE", "Write the run as C source that a firmware test plays", WH_OPTION_TEXT,
-     .variable = offsetof(wh_run_arguments_t, segments_path)},
+    {"segments", 0, "FILE",
+     "Write the run as C source that a firmware test plays; its names begin with FILE's, in which all but "
+     "ASCII "
+     "letters and digits becomes _",
+     WH_OPTION_TEXT, .variable = offsetof(wh_run_arguments_t, segments_path)},
     {"set", 0, "NAME=VALUE", "Hand the script a parameter: params.NAME", WH_OPTION_LIST,
      .variable = offsetof(wh_run_arguments_t, parameters)},
     {"trust", 0, NULL, "Let the script use all of Lua, files and native modules too", WH_OPTION_FLAG,

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../math/hash.h"
 #include "../text/array.h"
 #include "../text/output.h"
 
@@ -25,12 +26,16 @@ static bool is_word(char c) {
     return isascii((unsigned char)c) && isalnum((unsigned char)c);
 }
 
-/* The file's name up to its first dot, as a C identifier: other characters become underscores. */
+static bool is_letter(char c) {
+    return is_word(c) && !isdigit((unsigned char)c);
+}
+
+/* The file's name up to its first dot, as a C identifier. */
 static void name_prefix(writer_t *writer, const char *path) {
     const char *slash = strrchr(path, '/');
     const char *from = slash ? slash + 1 : path;
     char *prefix = writer->prefix;
-    size_t length = isalpha((unsigned char)from[0]) ? 0 : (size_t)snprintf(prefix, PREFIX_SIZE, "run_");
+    size_t length = is_letter(from[0]) ? 0 : (size_t)snprintf(prefix, PREFIX_SIZE, "run_");
     for (; *from != '\0' && *from != '.' && length + 1 < PREFIX_SIZE; ++from) {
         if (is_word(*from) || prefix[length - 1] != '_') {
             prefix[length++] = is_word(*from) ? *from : '_';
@@ -347,14 +352,23 @@ static void write_run(const writer_t *writer) {
             mcs->recorder.record->slices, mcs->recorder.record->hash);
 }
 
-static void write_all(writer_t *writer) {
+/* Several file names give one C name. So the guard tells the contents: the same file may come twice, and of
+ * two files the second is an error. */
+static void write_head(const writer_t *writer, uint64_t contents) {
+    const char *upper = writer->upper;
     fputs("/* ", writer->out);
     write_in_comment(writer->out, writer->mcs->script);
-    fprintf(writer->out,
-            " as waferhand " WH_VERSION " played it: see waferhand/sim/played.h.\n"
-            " * Each line of the script stands above its segments, and the command that it gave. */\n"
-            "#ifndef %s_RUN_H\n#define %s_RUN_H\n\n#include <waferhand.h>\n\n",
-            writer->upper, writer->upper);
+    fprintf(
+        writer->out,
+        " as waferhand " WH_VERSION " played it: see waferhand/sim/played.h.\n"
+        " * Each line of the script stands above its segments, and the command that it gave. */\n"
+        "#ifdef %s_RUN_H\n#if %s_RUN_H != 0x%016" PRIx64 "u\n"
+        "#error \"another file has the names %s_run and %s_WAFERS: call one of the two files otherwise\"\n"
+        "#endif\n#else\n#define %s_RUN_H 0x%016" PRIx64 "u\n\n#include <waferhand.h>\n\n",
+        upper, upper, contents, writer->prefix, upper, upper, contents);
+}
+
+static void write_contents(writer_t *writer) {
     read_lines(writer);
     write_machine(writer);
     write_segments(writer);
@@ -365,16 +379,37 @@ static void write_all(writer_t *writer) {
     free_lines(writer);
 }
 
+static uint64_t hash_bytes(const char *bytes, size_t size) {
+    uint64_t hash = WH_HASH_START;
+    for (size_t i = 0; i < size; ++i) {
+        hash = wh_hash_word(hash, (unsigned char)bytes[i]);
+    }
+    return hash;
+}
+
+/* The contents come first, for the head names their hash. */
+static void write_all(writer_t *writer, FILE *out) {
+    char *contents = NULL;
+    size_t size = 0;
+    writer->out = wh_memory_need(open_memstream(&contents, &size));
+    write_contents(writer);
+    (void)fclose(writer->out);
+    writer->out = out;
+    write_head(writer, hash_bytes(contents, size));
+    (void)fwrite(contents, 1, size, out);
+    free(contents);
+}
+
 int wh_segments_write(const wh_mcs_t *mcs, const char *path) {
     wh_output_t output = {0};
     if (!wh_output_open(&output, path)) {
         return -1;
     }
     if (mcs->layout) {
-        writer_t writer = {.out = output.file, .mcs = mcs};
+        writer_t writer = {.mcs = mcs};
         name_prefix(&writer, path);
         name_constants(&writer);
-        write_all(&writer);
+        write_all(&writer, output.file);
     }
     return wh_output_commit(&output) ? 0 : -1;
 }

@@ -1,5 +1,10 @@
 # Where things go on a system.
 
+# What is installed names these places, so they are absolute; for make a blank ends a name.
+$(foreach place,PREFIX LIBDIR,\
+    $(if $(filter-out 0 1,$(words $($(place)))),$(error $(place)=: a path without a blank, not "$($(place))")) \
+    $(eval override $(place) := $(abspath $($(place)))))
+
 INCLUDES := $(PREFIX)/include/waferhand
 # One line each, beside the tree: <waferhand.h> and <waferhand_collision.h>.
 public = $(filter-out %_internal.h,$(foreach room,$(1),$(wildcard lib/$(room)/*.h lib/$(room)/*.def)))

@@ -55,7 +55,8 @@ typedef struct {
  * null stations where count is not 0 (WH_STATUS_NULL_ARGUMENT); more than INT32_MAX stations
  * (WH_STATUS_BAD_CAPACITY); a tolerance that wh_tolerance_validate refuses, unless there is no station
  * (WH_STATUS_BAD_TOLERANCE); another number outside the ranges above, NaN too (WH_STATUS_OUT_OF_RANGE); a
- * station's pose that wh_pose_validate refuses, with its status. wh_simulator_init asks this. Cost:
+ * station's pose that wh_pose_validate refuses, with its status. Stations may overlap: each wafer then lies in
+ * the nearest slot of all, and WH_EVENT_SLOT_OCCUPIED comes only for two wafers in one and the same slot. wh_simulator_init asks this. Cost:
  * wh_pose_validate for each station. */
 wh_status_t wh_cell_validate(const wh_cell_t *cell, size_t gripper_count) WH_SYMBOL(wh_cell_validate);
 

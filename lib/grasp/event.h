@@ -36,7 +36,9 @@ typedef enum WH_FOUR_BYTES {
     /* From the cell, beside the release and with its values: no support is under the wafer, which is `height`
      * mm above what is below (negative: below base's z = 0 and above no slot). */
     WH_EVENT_RELEASED_UNSUPPORTED,
-    /* From the cell, beside the release and with its values: wafer `other` lies in the same slot. */
+    /* From the cell, beside the release and with its values: wafer `other` lies in the same slot. Each wafer
+     * lies in one slot, the nearest of all stations. Where stations overlap, two wafers that collide may lie
+     * in two slots: then this event does not come. */
     WH_EVENT_SLOT_OCCUPIED,
     /* From the cell, beside the release and with its values: it lies in a slot or on a chuck, but `value` mm
      * beside its centre, which is above `limit`. */

@@ -142,11 +142,13 @@ size_t wh_grasp_buckets(size_t wafer_count, size_t gripper_count) WH_SYMBOL(wh_g
 /* The paper's tolerance, sampled, no seating; neighbourhood 4.5 mm and 2 eps_projxy. */
 wh_grasp_config_t wh_grasp_config_default(void) WH_SYMBOL(wh_grasp_config_default);
 
-/* Sets up a table: all wafers free where storage->wafers has them, all grippers empty and closed. Refuses
- * null pointers (an array may be null when its count is 0), counts above INT32_MAX, fewer buckets than
- * wh_grasp_buckets says but not 0, invalid wafer poses, configurations outside the ranges above, and swept
- * checking or buckets if the library was built without them (WH_STATUS_NOT_BUILT); table and arrays are then
- * unchanged. Cost: linear in wafers and grippers. */
+/* Sets up a table: all wafers free where storage->wafers has them, all grippers empty and closed. Refused,
+ * table and arrays unchanged: null pointers, but for an array whose count is 0 (WH_STATUS_NULL_ARGUMENT);
+ * counts above INT32_MAX, and fewer buckets than wh_grasp_buckets says but not 0 (WH_STATUS_BAD_CAPACITY); a
+ * wafer's pose that wh_pose_validate refuses, with its status; a `check` that is none
+ * (WH_STATUS_OUT_OF_RANGE); a tolerance, near_projz or near_projxy out of its range or NaN
+ * (WH_STATUS_BAD_TOLERANCE); swept checking or buckets if the library was built without them
+ * (WH_STATUS_NOT_BUILT). Cost: linear in wafers and grippers. */
 wh_status_t wh_grasp_init(wh_grasp_t *table, const wh_grasp_config_t *config,
                           const wh_grasp_storage_t *storage) WH_SYMBOL(wh_grasp_init);
 

@@ -77,8 +77,8 @@ void wh_shapes_add_station(wh_part_list_t *list, const wh_shapes_t *shapes, cons
 /* Adds the robot's column and arm. */
 void wh_shapes_add_robot(wh_part_list_t *list, const wh_shapes_t *shapes);
 
-/* Adds a gripper's blade with its neck to the wrist, and with a post where the blade is above or below the hand;
- * without a pose (null) the chuck of a prealigner. The pose turns about z alone. */
+/* Adds a gripper's blade with its neck to the wrist, and with a post where the blade is above or below the
+ * hand; without a pose (null) the chuck of a prealigner. The pose turns about z alone. */
 void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gripper,
                            const wh_pose_t *effector_from_gripper, const char *name);
 

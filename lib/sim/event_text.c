@@ -167,7 +167,7 @@ static void say_failed(said_t *said, size_t index) {
     if (rest == 0 && index == 0) {
         put_text(said, "ready, but not taken");
     }
-    for (; index > 0; --index) {
+    for (; index > 0 && rest != 0; --index) {
         rest &= rest - 1;
     }
     if (rest != 0) {

@@ -46,19 +46,38 @@ static bool names_fit(const wh_fault_t *fault, size_t gripper_count, size_t wafe
 }
 
 static bool value_fits(const wh_fault_t *fault) {
-    if (fault->kind == WH_FAULT_SLOW_VACUUM) {
-        return fault->value >= 0 && fault->value <= 3600;
-    }
-    if (fault->kind == WH_FAULT_LEAK) {
-        return fault->value >= 0 && fault->value <= 1;
-    }
-    return fault->value == 0;
+    const wh_real_t most = fault->kind == WH_FAULT_SLOW_VACUUM ? WH_REAL(3600)
+                           : fault->kind == WH_FAULT_LEAK      ? WH_REAL(1)
+                                                               : WH_REAL(0);
+    return fault->value >= 0 && fault->value <= most;
 }
 
-/* Small enough that adding it to any finite position stays finite. */
-static bool offset_fits(const wh_vec3_t *r) {
-    return wh_real_abs(r->x) <= WH_FAULT_REACH && wh_real_abs(r->y) <= WH_FAULT_REACH &&
-           wh_real_abs(r->z) <= WH_FAULT_REACH;
+/* Byte by byte: a pose has no gaps, and equal bits are what the hash sees. */
+static bool is_same_pose(const wh_pose_t *a, const wh_pose_t *b) {
+    const unsigned char *left = (const unsigned char *)a;
+    const unsigned char *right = (const unsigned char *)b;
+    size_t same = 0;
+    while (same < sizeof *a && left[same] == right[same]) {
+        ++same;
+    }
+    return same == sizeof *a;
+}
+
+static bool is_straight(const wh_mat3_t *R) {
+    size_t same = 0;
+    while (same < 9 && R->m[same / 3][same % 3] == (same % 4 == 0 ? 1 : 0)) {
+        ++same;
+    }
+    return same == 9;
+}
+
+/* Of a wafer's fault: small enough that adding it to any finite position stays finite. */
+static bool offset_fits(const wh_fault_t *fault) {
+    const bool of_wafer = wh_fault_is_of_wafer(fault->kind);
+    const wh_real_t reach = of_wafer ? WH_FAULT_REACH : WH_REAL(0);
+    const wh_vec3_t *r = &fault->offset.r;
+    return wh_real_abs(r->x) <= reach && wh_real_abs(r->y) <= reach && wh_real_abs(r->z) <= reach &&
+           (of_wafer || is_straight(&fault->offset.R));
 }
 
 wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, size_t wafer_count) {
@@ -70,17 +89,23 @@ wh_status_t wh_fault_validate(const wh_fault_t *fault, size_t gripper_count, siz
         return WH_STATUS_OUT_OF_RANGE;
     }
     const wh_status_t status = wh_pose_validate(&fault->offset);
-    return status != WH_OK || offset_fits(&fault->offset.r) ? status : WH_STATUS_OUT_OF_RANGE;
+    return status != WH_OK || offset_fits(fault) ? status : WH_STATUS_OUT_OF_RANGE;
+}
+
+/* True if the fault has moved a wafer and puts it back when it ends. */
+static bool has_moved(const wh_fault_slot_t *slot) {
+    return slot->phase == WH_FAULT_ACTING && wh_fault_is_of_wafer(slot->fault.kind);
 }
 
 static bool slot_fits(const wh_fault_slot_t *slot, size_t gripper_count, size_t wafer_count) {
-    const bool moved = wh_fault_is_of_wafer(slot->fault.kind) && slot->phase == WH_FAULT_ACTING;
     if (slot->phase == WH_FAULT_FREE) {
         return true;
     }
-    return (unsigned)slot->phase <= WH_FAULT_OVER &&
+    return (unsigned)slot->phase <= WH_FAULT_TAKEN &&
+           (slot->phase != WH_FAULT_TAKEN || wh_fault_is_of_wafer(slot->fault.kind)) &&
            wh_fault_validate(&slot->fault, gripper_count, wafer_count) == WH_OK &&
-           (!moved || (wh_pose_validate(&slot->before) == WH_OK && wh_pose_validate(&slot->placed) == WH_OK));
+           (!has_moved(slot) ||
+            (wh_pose_validate(&slot->before) == WH_OK && wh_pose_validate(&slot->placed) == WH_OK));
 }
 
 wh_status_t wh_faults_validate(const wh_faults_t *faults, size_t gripper_count, size_t wafer_count) {
@@ -103,18 +128,15 @@ void wh_faults_clear(wh_faults_t *faults) {
     memset(faults, 0, sizeof *faults);
 }
 
-static bool is_same_pose(const wh_pose_t *a, const wh_pose_t *b) {
-    bool same = a->r.x == b->r.x && a->r.y == b->r.y && a->r.z == b->r.z;
-    for (size_t i = 0; i < 9; ++i) {
-        same = same && a->R.m[i / 3][i % 3] == b->R.m[i / 3][i % 3];
-    }
-    return same;
-}
-
 /* Compares all but `until`. */
 static bool is_same(const wh_fault_t *a, const wh_fault_t *b) {
     return a->kind == b->kind && a->target == b->target && a->other == b->other && a->from == b->from &&
            a->value == b->value && is_same_pose(&a->offset, &b->offset);
+}
+
+/* True if the fault has not ended yet. */
+static bool is_alive(const wh_fault_slot_t *slot) {
+    return slot->phase != WH_FAULT_FREE && slot->phase != WH_FAULT_OVER;
 }
 
 static bool may_take(const wh_faults_t *faults, const wh_fault_request_t *request) {
@@ -122,8 +144,8 @@ static bool may_take(const wh_faults_t *faults, const wh_fault_request_t *reques
         return false;
     }
     const wh_fault_slot_t *slot = &faults->slots[request->index];
-    return (size_t)request->index >= faults->count || slot->phase == WH_FAULT_FREE ||
-           slot->phase == WH_FAULT_OVER || is_same(&slot->fault, &request->fault);
+    return (size_t)request->index >= faults->count || !is_alive(slot) ||
+           is_same(&slot->fault, &request->fault);
 }
 
 wh_status_t wh_faults_check(const wh_faults_t *faults, const wh_fault_request_t requests[], size_t count,
@@ -148,7 +170,7 @@ wh_status_t wh_faults_check(const wh_faults_t *faults, const wh_fault_request_t 
 
 static void take(wh_faults_t *faults, const wh_fault_request_t *request) {
     wh_fault_slot_t *slot = &faults->slots[request->index];
-    if (slot->phase == WH_FAULT_WAITING || slot->phase == WH_FAULT_ACTING) {
+    if (is_alive(slot)) {
         slot->fault.until = request->fault.until;
         return;
     }
@@ -185,24 +207,27 @@ static bool move_wafer(wh_fault_slot_t *slot, wh_grasp_t *table) {
     return true;
 }
 
-/* If another fault has moved the wafer since, gives it the place from before both: it will put the wafer back
- * there. */
-static void hand_down(const wh_fault_slot_t *slot, wh_faults_t *faults) {
-    for (size_t i = 0; i < faults->count; ++i) {
-        wh_fault_slot_t *later = &faults->slots[i];
-        if (later != slot && later->phase == WH_FAULT_ACTING && wh_fault_is_of_wafer(later->fault.kind) &&
-            later->fault.target == slot->fault.target && is_same_pose(&later->before, &slot->placed)) {
-            later->before = slot->before;
+/* The fault that acts on this wafer and has put the wafer there, or (not `placed`) has found it there. */
+static wh_fault_slot_t *find_move(wh_faults_t *faults, int32_t wafer, const wh_pose_t *there, bool placed) {
+    wh_fault_slot_t *found = NULL;
+    for (size_t i = 0; !found && i < faults->count; ++i) {
+        wh_fault_slot_t *slot = &faults->slots[i];
+        if (has_moved(slot) && slot->fault.target == wafer &&
+            is_same_pose(placed ? &slot->placed : &slot->before, there)) {
+            found = slot;
         }
     }
+    return found;
 }
 
+/* If another fault has moved the wafer since, that one puts it back, to where it was before both. */
 static void put_back(const wh_fault_slot_t *slot, wh_faults_t *faults, wh_grasp_t *table) {
-    const wh_wafer_t *wafer = &table->storage.wafers[slot->fault.target];
-    if (wafer->holder == WH_NONE && is_same_pose(&wafer->base_from_wafer, &slot->placed)) {
-        (void)wh_grasp_place(table, (size_t)slot->fault.target, &slot->before);
-    } else {
-        hand_down(slot, faults);
+    const int32_t wafer = slot->fault.target;
+    wh_fault_slot_t *later = find_move(faults, wafer, &slot->placed, false);
+    if (is_same_pose(&table->storage.wafers[wafer].base_from_wafer, &slot->placed)) {
+        (void)wh_grasp_place(table, (size_t)wafer, &slot->before);
+    } else if (later) {
+        later->before = slot->before;
     }
 }
 
@@ -217,20 +242,35 @@ static bool begin(wh_fault_slot_t *slot, wh_grasp_t *table) {
 
 /* True if the fault has acted until now. */
 static bool end(wh_fault_slot_t *slot, wh_faults_t *faults, wh_grasp_t *table) {
-    const bool acted = slot->phase == WH_FAULT_ACTING;
-    if (acted && wh_fault_is_of_wafer(slot->fault.kind)) {
+    const bool acted = slot->phase != WH_FAULT_WAITING;
+    const bool moved = has_moved(slot);
+    slot->phase = WH_FAULT_OVER;
+    if (moved) {
         put_back(slot, faults, table);
     }
-    slot->phase = WH_FAULT_OVER;
     return acted;
+}
+
+/* A wafer that was taken or moved since the last slice is no fault's any more. It is held for one slice at
+ * least, so that no gripper takes it unseen. */
+static void give_up(wh_faults_t *faults, const wh_grasp_t *table) {
+    for (size_t i = 0; i < faults->count; ++i) {
+        wh_fault_slot_t *slot = &faults->slots[i];
+        if (has_moved(slot)) {
+            const int32_t target = slot->fault.target;
+            const wh_wafer_t *wafer = &table->storage.wafers[target];
+            const bool is_there = find_move(faults, target, &wafer->base_from_wafer, true) != NULL;
+            slot->phase = is_there && wafer->holder == WH_NONE ? WH_FAULT_ACTING : WH_FAULT_TAKEN;
+        }
+    }
 }
 
 wh_fault_changes_t wh_faults_advance(wh_faults_t *faults, wh_grasp_t *table, int64_t seq) {
     wh_fault_changes_t changes = {0, 0};
+    give_up(faults, table);
     for (size_t i = 0; i < faults->count; ++i) {
         wh_fault_slot_t *slot = &faults->slots[i];
-        const bool alive = slot->phase == WH_FAULT_WAITING || slot->phase == WH_FAULT_ACTING;
-        if (alive && seq >= slot->fault.until) {
+        if (is_alive(slot) && seq >= slot->fault.until) {
             changes.cleared |= end(slot, faults, table) ? 1U << i : 0U;
         } else if (slot->phase == WH_FAULT_WAITING && seq >= slot->fault.from) {
             changes.armed |= begin(slot, table) ? 1U << i : 0U;
@@ -259,32 +299,24 @@ wh_vacuum_fault_t wh_faults_of_vacuum(const wh_faults_t *faults, size_t gripper)
     return sum;
 }
 
-static void stop_gripper(const wh_grasp_t *table, size_t g, wh_gripper_input_t inputs[]) {
-    if (table->slice > 0) {
-        inputs[g].base_from_gripper = table->storage.grippers[g].base_from_gripper;
+static void overrule(const wh_fault_t *fault, const wh_grasp_t *table, size_t g, int32_t valve,
+                     wh_gripper_input_t *input) {
+    const bool is_lost = fault->kind == WH_FAULT_COMMAND_LOST;
+    const bool is_its = is_lost || fault->target == (int32_t)g;
+    if (is_its && (is_lost || fault->kind == WH_FAULT_AXIS_STOPPED) && table->slice > 0) {
+        input->base_from_gripper = table->storage.grippers[g].base_from_gripper;
     }
-}
-
-static void lose_command(const wh_grasp_t *table, const wh_vacuum_t vacuum[], wh_gripper_input_t inputs[]) {
-    for (size_t g = 0; g < table->storage.gripper_count; ++g) {
-        stop_gripper(table, g, inputs);
-        inputs[g].valve = vacuum[g].command;
+    if (is_its && (is_lost || fault->kind == WH_FAULT_VALVE_STUCK)) {
+        input->valve = valve;
     }
 }
 
 void wh_faults_overrule(const wh_faults_t *faults, const wh_grasp_t *table, const wh_vacuum_t vacuum[],
                         wh_gripper_input_t inputs[]) {
     for (size_t i = 0; i < faults->count; ++i) {
-        const wh_fault_t *fault = &faults->slots[i].fault;
-        if (faults->slots[i].phase != WH_FAULT_ACTING) {
-            continue;
-        }
-        if (fault->kind == WH_FAULT_COMMAND_LOST) {
-            lose_command(table, vacuum, inputs);
-        } else if (fault->kind == WH_FAULT_AXIS_STOPPED) {
-            stop_gripper(table, (size_t)fault->target, inputs);
-        } else if (fault->kind == WH_FAULT_VALVE_STUCK) {
-            inputs[fault->target].valve = vacuum[fault->target].command;
+        const wh_fault_slot_t *slot = &faults->slots[i];
+        for (size_t g = 0; slot->phase == WH_FAULT_ACTING && g < table->storage.gripper_count; ++g) {
+            overrule(&slot->fault, table, g, vacuum[g].command, &inputs[g]);
         }
     }
 }
@@ -297,13 +329,11 @@ static uint32_t sensor_of(int32_t gripper) {
 uint32_t wh_faults_sensors(const wh_faults_t *faults, uint32_t sensors) {
     for (size_t i = 0; i < faults->count; ++i) {
         const wh_fault_t *fault = &faults->slots[i].fault;
-        if (faults->slots[i].phase != WH_FAULT_ACTING) {
-            continue;
-        }
+        const uint32_t sensor = faults->slots[i].phase == WH_FAULT_ACTING ? sensor_of(fault->target) : 0;
         if (fault->kind == WH_FAULT_SENSOR_ON) {
-            sensors |= sensor_of(fault->target);
+            sensors |= sensor;
         } else if (fault->kind == WH_FAULT_SENSOR_OFF) {
-            sensors &= ~sensor_of(fault->target);
+            sensors &= ~sensor;
         }
     }
     return sensors;

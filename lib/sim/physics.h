@@ -5,9 +5,9 @@
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_physics_default             2376   2376    1384   1408
  *     stack of wh_physics_validate              88    200      48    112
- *     stack of wh_physics_state_start          232    232     176    184
- *     stack of wh_physics_state_validate       100    224      60    144
- *     stack of wh_physics_state_sensors         12     20       8     24
+ *     stack of wh_physics_state_start          240    232     184    184
+ *     stack of wh_physics_state_validate        92    216      60    136
+ *     stack of wh_physics_state_sensors         16     20       8     24
  *     stack of wh_physics_state_hash           124    148     116    136
  *     size of wh_physics_t                    2272           1336
  *     size of wh_physics_state_t              5992           3336

@@ -2,14 +2,37 @@
 
 #include <string.h>
 
+static bool lacks_arrays(const wh_played_t *run, const wh_grasp_storage_t *storage) {
+    return !run->machine || (run->wafer_count > 0 && (!run->wafers || !storage->wafers)) ||
+           (run->segment_count > 0 && !run->segments) || (run->fault_count > 0 && !run->faults);
+}
+
+/* Faults are brought one after the other, as many in a slice as a command has room for. */
+static bool is_in_order(const wh_played_fault_t faults[], size_t count) {
+    bool good = count == 0 || faults[0].seq >= 1;
+    for (size_t i = 1; i < count; ++i) {
+        good = good && faults[i].seq >= faults[i - 1].seq;
+        good = good && (i < WH_COMMAND_FAULTS || faults[i].seq != faults[i - WH_COMMAND_FAULTS].seq);
+    }
+    return good;
+}
+
+/* The track counts in microseconds and the vacuum in seconds. False for NaN. */
+static bool is_one_slice(int64_t slice_us, wh_real_t slice_s) {
+    const wh_real_t us = (wh_real_t)slice_us;
+    return wh_real_abs(slice_s * WH_REAL(1e6) - us) <= us * WH_REAL(1e-6);
+}
+
 static wh_status_t check_run(const wh_played_t *run, const wh_grasp_storage_t *storage) {
-    const bool lacks_wafers = run->wafer_count > 0 && (!run->wafers || !storage->wafers);
-    if (!run->machine || lacks_wafers) {
+    if (lacks_arrays(run, storage)) {
         return WH_STATUS_NULL_ARGUMENT;
     }
-    const bool fits =
-        storage->wafer_count == run->wafer_count && storage->gripper_count == run->machine->gripper_count;
-    return fits ? WH_OK : WH_STATUS_BAD_CAPACITY;
+    if (storage->wafer_count != run->wafer_count || storage->gripper_count != run->machine->gripper_count) {
+        return WH_STATUS_BAD_CAPACITY;
+    }
+    const bool good =
+        is_in_order(run->faults, run->fault_count) && is_one_slice(run->slice_us, run->physics.slice_s);
+    return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
 static wh_status_t set_up(wh_player_t *player, const wh_grasp_storage_t *storage) {

@@ -2,7 +2,7 @@
  *
  * The file has all that the run needs: machine, vacuum, pads, faults, stations, wafers, and the segments of
  * its motion, under the lines of the script that asked for them. Of motion.h all names begin with motion_, so
- * one program can have several:
+ * one program can have several; the second of two with the same names is an #error:
  *
  *     static wh_wafer_t wafers[MOTION_WAFERS];
  *     static wh_gripper_t grippers[MOTION_GRIPPERS];
@@ -40,13 +40,13 @@ typedef struct {
     const wh_machine_t *machine;
     const wh_played_segment_t *segments;
     size_t segment_count;
-    const wh_played_fault_t *faults; /* by seq, at most WH_COMMAND_FAULTS of each */
+    const wh_played_fault_t *faults; /* in order of seq, from 1; at most WH_COMMAND_FAULTS of each */
     size_t fault_count;
     const wh_pose_t *wafers; /* base_from_wafer at the start */
     size_t wafer_count;
     int64_t slice_us;
     wh_grasp_config_t config;
-    wh_physics_t physics; /* with the faults at the start */
+    wh_physics_t physics; /* with the faults at the start; slice_s is slice_us, to a millionth */
     wh_cell_t cell;
     int64_t slices; /* of the whole run */
     uint64_t hash;  /* wh_simulator_hash at its end, in double */
@@ -69,7 +69,9 @@ typedef struct {
 /* Sets up the run before its first slice: machine, simulator, and storage->wafers as the run begins with
  * them. `run` and the arrays must outlive the player. Returns player->status: what wh_track_init,
  * wh_simulator_init and wh_simulator_set_physics refuse; WH_STATUS_BAD_CAPACITY for other counts than the
- * run's; WH_STATUS_NULL_ARGUMENT. */
+ * run's; WH_STATUS_OUT_OF_RANGE for faults or a physics.slice_s that are not as wh_played_t says;
+ * WH_STATUS_NULL_ARGUMENT, also for an array of the run that is null though its count is not 0. Cost: that of
+ * these three, linear in faults. */
 wh_status_t wh_player_init(wh_player_t *player, const wh_played_t *run, const wh_grasp_storage_t *storage)
     WH_SYMBOL(wh_player_init);
 

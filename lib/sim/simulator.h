@@ -5,10 +5,10 @@
  * (tests/verify/footprint; "sampled" is a step without swept checking; what an observer takes comes on top):
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_simulator_init               380    304     260    232
- *     stack of wh_simulator_set_physics        256    256     200    208
+ *     stack of wh_simulator_set_physics        264    256     208    208
  *     stack of wh_simulator_step               936   1064     636    692
  *     stack of wh_simulator_step:sampled       936    904     600    616
- *     stack of wh_simulator_view                28     36      24     40
+ *     stack of wh_simulator_view                32     36      24     40
  *     stack of wh_simulator_hash               124    148     116    136
  *     size of wh_simulator_t                 19944          12184
  */
@@ -50,11 +50,13 @@ typedef struct {
  * what that shows and what it does not. */
 #define WH_SIMULATOR_MARK UINT32_C(0x51a07e5d)
 
-/* Sets up a run: all wafers are free, at their places in storage->wafers. `cell->stations` and the arrays
- * of `storage` must outlive the simulator. Refuses what wh_grasp_init refuses, what wh_cell_validate
- * refuses, and more than WH_GRIPPERS grippers (WH_STATUS_BAD_CAPACITY); simulator and arrays are then
- * unchanged. Cost: that of these two, and the simulator's size in bytes written. Do not move the simulator
- * afterwards: `link` and states point into it. */
+/* Sets up a run: all wafers are free, at their places in storage->wafers. `cell->stations` and the
+ * arrays of `storage` must outlive the simulator. Refuses what wh_grasp_init refuses, what
+ * wh_cell_validate refuses, and more than WH_GRIPPERS grippers (WH_STATUS_BAD_CAPACITY); simulator and
+ * arrays are then unchanged. Stations may overlap: each wafer then lies in the nearest slot of all, and
+ * WH_EVENT_SLOT_OCCUPIED comes only for two wafers in one and the same slot. Cost: that of these two, and
+ * the simulator's size in bytes written. Do not move the simulator afterwards: `link` and states point
+ * into it. */
 wh_status_t wh_simulator_init(wh_simulator_t *simulator, const wh_grasp_config_t *config,
                               const wh_grasp_storage_t *storage, const wh_cell_t *cell)
     WH_SYMBOL(wh_simulator_init);

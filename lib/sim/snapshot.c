@@ -253,7 +253,7 @@ static void pass_slot(stream_t *stream, wh_fault_slot_t *slot) {
     pass_pose(stream, &slot->before);
     pass_pose(stream, &slot->placed);
     stream->is_bad =
-        stream->is_bad || kind < 0 || kind >= WH_FAULT_KINDS || phase < 0 || phase > WH_FAULT_OVER;
+        stream->is_bad || kind < 0 || kind >= WH_FAULT_KINDS || phase < 0 || phase > WH_FAULT_TAKEN;
     fault->kind = stream->is_bad ? WH_FAULT_NO_VACUUM : (wh_fault_kind_t)kind;
     slot->phase = stream->is_bad ? WH_FAULT_FREE : (wh_fault_phase_t)phase;
 }

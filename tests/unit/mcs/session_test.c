@@ -121,6 +121,10 @@ static void commands_are_recorded(void **state) {
 static void errors_have_their_numbers(void **state) {
     (void)state;
     static const exchange_t dialogue[] = {
+        {"FAULT leak value=0.3 after=-1",
+         "ERROR 48 BAD_ARGUMENT: fault: after: -1 (expected a number from 0 to "},
+        {"FAULT leak value=0.3 lasting=-1",
+         "ERROR 48 BAD_ARGUMENT: fault: lasting: -1 (expected a number from 0 to "},
         {"FLY", "ERROR 47 NO_SUCH_COMMAND: "},
         {"", "ERROR 47 "},
         {"   ", "ERROR 47 "},

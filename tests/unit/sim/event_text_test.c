@@ -319,6 +319,22 @@ static void what_does_not_fit_is_cut_off(void **state) {
     assert_int_equal(wh_event_text(&event, NULL, NULL, 0), strlen("released: wafer 2, gripper 1"));
 }
 
+/* Past the last reason there is nothing, however far past: that takes no time. */
+static void there_is_no_reason_beyond_the_last(void **state) {
+    (void)state;
+    wh_event_t event = missed_by_tolerance(0.75, 60, 0.2);
+    char text[WH_EVENT_TEXT_SIZE];
+    for (unsigned failed = 0; failed < 8; ++failed) {
+        const size_t beyond[] = {3, 4, 1000, SIZE_MAX - 1, SIZE_MAX};
+        event.measured.failed = failed;
+        for (size_t i = 0; i < sizeof beyond / sizeof beyond[0]; ++i) {
+            text[0] = '#';
+            assert_int_equal(wh_event_reason(&event, NULL, beyond[i], text, sizeof text), 0);
+            assert_string_equal(text, "");
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(decimals_are_those_of_printf),
@@ -333,6 +349,7 @@ int main(void) {
         cmocka_unit_test(each_kind_has_its_words),
         cmocka_unit_test(things_have_their_names),
         cmocka_unit_test(what_does_not_fit_is_cut_off),
+        cmocka_unit_test(there_is_no_reason_beyond_the_last),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

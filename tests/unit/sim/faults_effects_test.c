@@ -328,6 +328,102 @@ static void a_wafer_that_is_held_in_its_place_is_not_put_back(void **state) {
     assert_int_equal(simulator.table.counters.refused, 0);
 }
 
+/* Shifts wafer 0, which gripper 0 then takes and sets down where it lay: the same bits. */
+static void take_and_set_down(void) {
+    const wh_pose_t placed = wafers[0].base_from_wafer;
+    step(880, OPEN);
+    step(900, OPEN);
+    assert_int_equal(wafers[0].holder, 0);
+    step(890, OPEN);
+    step(900, CLOSED);
+    assert_int_equal(wafers[0].holder, WH_NONE);
+    assert_memory_equal(&wafers[0].base_from_wafer, &placed, sizeof placed);
+    step(880, CLOSED);
+}
+
+/* What a gripper has set down lies there, be it where the fault had put it to the last bit. */
+static void a_wafer_that_was_set_down_in_its_place_is_not_put_back(void **state) {
+    (void)state;
+    shift(2, 0);
+    take_and_set_down();
+    assert_int_equal(simulator.physics.faults.slots[2].phase, WH_FAULT_TAKEN);
+    assert_int_equal(wh_physics_state_validate(&simulator.physics, GRIPPERS, WAFERS), WH_OK);
+    clear_slot(2);
+    step(880, CLOSED);
+    expect_event(WH_EVENT_FAULT_CLEARED, 0, WH_NONE, 2);
+    assert_int_equal(simulator.physics.faults.slots[2].phase, WH_FAULT_OVER);
+    assert_true(wafers[0].base_from_wafer.r.x == 703);
+}
+
+/* Taken and let go again within the fewest slices. */
+static void a_wafer_that_was_held_for_one_slice_is_not_put_back(void **state) {
+    (void)state;
+    shift(0, 0);
+    step(900, OPEN);
+    step(900, CLOSED);
+    assert_int_equal(wafers[0].holder, WH_NONE);
+    expect_x_after_clearing(0, 703);
+}
+
+/* Neither fault puts back the wafer that was set down between them, and a later one finds it where it was set down. */
+static void a_fault_after_the_taking_puts_back_to_where_the_wafer_was_set_down(void **state) {
+    (void)state;
+    for (int order = 0; order < 2; ++order) {
+        set_up(state);
+        command.seq = 0;
+        shift(1, 0);
+        shift(2, 0);
+        take_and_set_down();
+        shift(0, 0);
+        shift(3, 0);
+        assert_true(wafers[0].base_from_wafer.r.x == 712);
+        expect_x_after_clearing(order == 0 ? 1 : 2, 712);
+        expect_x_after_clearing(order == 0 ? 2 : 1, 712);
+        expect_x_after_clearing(order == 0 ? 3 : 0, order == 0 ? 709 : 712);
+        expect_x_after_clearing(order == 0 ? 0 : 3, 706);
+    }
+}
+
+/* Moved by hand, and moved back later; or to where another fault then takes it to the old place. */
+static void a_wafer_that_was_placed_by_hand_is_not_put_back(void **state) {
+    (void)state;
+    const wh_pose_t away = wh_test_at(700, 0, 900);
+    shift(1, 0);
+    const wh_pose_t placed = wafers[0].base_from_wafer;
+    assert_int_equal(wh_grasp_place(&simulator.table, 0, &away), WH_OK);
+    step(880, CLOSED);
+    assert_int_equal(wh_grasp_place(&simulator.table, 0, &placed), WH_OK);
+    step(880, CLOSED);
+    expect_x_after_clearing(1, 703);
+    set_up(state);
+    command.seq = 0;
+    shift(1, 0);
+    assert_int_equal(wh_grasp_place(&simulator.table, 0, &away), WH_OK);
+    shift(0, 0);
+    assert_true(wafers[0].base_from_wafer.r.x == 703);
+    expect_x_after_clearing(1, 703);
+    expect_x_after_clearing(0, 700);
+}
+
+/* The end of a fault whose wafer was taken can still be changed, and its slot is not free before. */
+static void a_taken_wafers_fault_goes_on(void **state) {
+    (void)state;
+    shift(0, 0);
+    take_and_set_down();
+    wh_fault_t f = fault_of(WH_FAULT_SENSOR_ON, 0);
+    bring(0, &f);
+    assert_int_equal(try_step(880, CLOSED), WH_STATUS_OUT_OF_RANGE);
+    f = simulator.physics.faults.slots[0].fault;
+    f.until = command.seq + 3;
+    bring(0, &f);
+    step(880, CLOSED);
+    assert_null(find(WH_EVENT_FAULT_CLEARED));
+    step(880, CLOSED);
+    assert_null(find(WH_EVENT_FAULT_CLEARED));
+    step(880, CLOSED);
+    expect_event(WH_EVENT_FAULT_CLEARED, 0, WH_NONE, 0);
+}
+
 static void a_held_wafer_is_waited_for(void **state) {
     (void)state;
     pick();
@@ -362,6 +458,11 @@ int main(void) {
         cmocka_unit_test_setup(three_faults_of_one_wafer_among_others, set_up),
         cmocka_unit_test_setup(faults_overrule_grippers_each_in_turn, set_up),
         cmocka_unit_test_setup(a_wafer_that_is_held_in_its_place_is_not_put_back, set_up),
+        cmocka_unit_test_setup(a_wafer_that_was_set_down_in_its_place_is_not_put_back, set_up),
+        cmocka_unit_test_setup(a_wafer_that_was_held_for_one_slice_is_not_put_back, set_up),
+        cmocka_unit_test_setup(a_fault_after_the_taking_puts_back_to_where_the_wafer_was_set_down, set_up),
+        cmocka_unit_test_setup(a_wafer_that_was_placed_by_hand_is_not_put_back, set_up),
+        cmocka_unit_test_setup(a_taken_wafers_fault_goes_on, set_up),
         cmocka_unit_test_setup(a_held_wafer_is_waited_for, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -57,6 +57,33 @@ static void what_no_cell_can_have_is_refused(void **state) {
     refuse_fault(&f, WH_STATUS_NOT_FINITE);
 }
 
+/* An offset that is none of a wafer's says nothing: a fault that has one is a mistake, as with a wrong `other`. */
+static void only_a_wafers_fault_has_an_offset(void **state) {
+    (void)state;
+    for (int kind = 0; kind < WH_FAULT_KINDS; ++kind) {
+        const bool of_wafer = wh_fault_is_of_wafer((wh_fault_kind_t)kind);
+        for (int entry = 0; entry < 5; ++entry) {
+            wh_fault_t f = wh_fault_make((wh_fault_kind_t)kind, 0, WH_REAL(0.5), 1, 9);
+            f.other = kind == WH_FAULT_WAFER_DOUBLED ? 1 : f.other;
+            assert_int_equal(wh_fault_validate(&f, GRIPPERS, WAFERS), WH_OK);
+            wh_real_t *const entries[] = {&f.offset.r.x, &f.offset.r.y, &f.offset.r.z};
+            if (entry < 3) {
+                *entries[entry] += entry == 0 ? 123 : WH_REAL(1e-30);
+            } else {
+                f.offset.R = wh_test_rotation(entry == 3, 0, entry == 4, 0.1);
+            }
+            const wh_pose_t made = wh_fault_make((wh_fault_kind_t)kind, 0, 0, 1, 9).offset;
+            const bool is_other = memcmp(&made, &f.offset, sizeof made) != 0;
+            assert_int_equal(wh_fault_validate(&f, GRIPPERS, WAFERS),
+                             of_wafer || !is_other ? WH_OK : WH_STATUS_OUT_OF_RANGE);
+            assert_true(of_wafer || is_other);
+        }
+    }
+    wh_fault_t nan = fault_of(WH_FAULT_LEAK, 0);
+    nan.value = (wh_real_t)NAN;
+    refuse_fault(&nan, WH_STATUS_OUT_OF_RANGE);
+}
+
 /* As they are made, or with the one thing more that their kind needs, a cell takes them and they act. */
 static void faults_are_made_ready_to_be_taken(void **state) {
     (void)state;
@@ -247,6 +274,26 @@ static void a_slot_that_is_used_again_is_new(void **state) {
     assert_memory_equal(&slot->placed, &none, sizeof none);
 }
 
+/* A new one whose slices are past is taken, and is over in that slice: no event, nothing acts. */
+static void a_fault_whose_slices_are_past(void **state) {
+    (void)state;
+    for (int i = 0; i < 9; ++i) {
+        step(880, CLOSED);
+    }
+    for (int64_t until = 0; until <= 10; ++until) {
+        const wh_fault_t sensor = wh_fault_make(WH_FAULT_SENSOR_ON, 1, 0, 1, until);
+        const wh_fault_t wafer = wh_fault_make(WH_FAULT_WAFER_MISSING, 1, 0, 1, until);
+        bring(0, &sensor);
+        bring(1, &wafer);
+        step(880, CLOSED);
+        assert_int_equal(answer.event_count, 0);
+        assert_int_equal(answer.sensors, 0);
+        assert_true(wafers[1].base_from_wafer.r.z == 910);
+        assert_int_equal(simulator.physics.faults.slots[0].phase, WH_FAULT_OVER);
+        assert_int_equal(simulator.physics.faults.slots[1].phase, WH_FAULT_OVER);
+    }
+}
+
 /* One that is cleared before it began was never there, for whoever reads events. */
 static void a_fault_that_never_begins(void **state) {
     (void)state;
@@ -267,6 +314,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(faults_have_names, set_up),
         cmocka_unit_test_setup(what_no_cell_can_have_is_refused, set_up),
+        cmocka_unit_test_setup(only_a_wafers_fault_has_an_offset, set_up),
         cmocka_unit_test_setup(faults_are_made_ready_to_be_taken, set_up),
         cmocka_unit_test_setup(values_have_their_ranges, set_up),
         cmocka_unit_test_setup(the_ends_of_the_ranges, set_up),
@@ -277,6 +325,7 @@ int main(void) {
         cmocka_unit_test_setup(an_end_that_has_passed, set_up),
         cmocka_unit_test_setup(a_slot_that_is_used_again_is_new, set_up),
         cmocka_unit_test_setup(a_fault_that_never_begins, set_up),
+        cmocka_unit_test_setup(a_fault_whose_slices_are_past, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

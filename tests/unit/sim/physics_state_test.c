@@ -13,8 +13,8 @@ static void conditions_that_no_simulator_leaves(void **state) {
     bring(0, &f);
     step(880, CLOSED);
     const wh_physics_state_t good = simulator.physics;
-    wh_physics_state_t bad[14];
-    for (size_t i = 0; i < 14; ++i) {
+    wh_physics_state_t bad[15];
+    for (size_t i = 0; i < 15; ++i) {
         bad[i] = good;
     }
     bad[0].vacuum[1].command = 2;
@@ -28,11 +28,13 @@ static void conditions_that_no_simulator_leaves(void **state) {
     bad[8].faults.slots[0].fault.from = 0;
     bad[9].faults.slots[0].placed.r.x = (wh_real_t)NAN;
     bad[10].faults.slots[0].before.R.m[0][0] = 2;
-    bad[11].faults.slots[0].phase = (wh_fault_phase_t)4;
+    bad[11].faults.slots[0].phase = (wh_fault_phase_t)5;
     bad[12].carry[0].before[0].y = (wh_real_t)INFINITY;
     bad[13].vacuum[1].level = WH_REAL(-0.001);
+    bad[14].faults.slots[0].fault = fault_of(WH_FAULT_SENSOR_ON, 0); /* takes no wafer */
+    bad[14].faults.slots[0].phase = WH_FAULT_TAKEN;
     assert_int_equal(wh_physics_state_validate(&good, GRIPPERS, WAFERS), WH_OK);
-    for (size_t i = 0; i < 14; ++i) {
+    for (size_t i = 0; i < 15; ++i) {
         assert_int_not_equal(wh_physics_state_validate(&bad[i], GRIPPERS, WAFERS), WH_OK);
     }
     wh_physics_state_t more = good;
@@ -48,6 +50,8 @@ static void conditions_that_no_simulator_leaves(void **state) {
     assert_int_equal(wh_physics_state_validate(&more, GRIPPERS, WAFERS), WH_OK);
     more.faults.slots[0].phase = WH_FAULT_OVER; /* its poses do not matter any more */
     more.faults.slots[0].placed.r.x = (wh_real_t)NAN;
+    assert_int_equal(wh_physics_state_validate(&more, GRIPPERS, WAFERS), WH_OK);
+    more.faults.slots[0].phase = WH_FAULT_TAKEN;
     assert_int_equal(wh_physics_state_validate(&more, GRIPPERS, WAFERS), WH_OK);
 }
 
