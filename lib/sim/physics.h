@@ -8,7 +8,7 @@
  *     stack of wh_physics_state_start          240    232     184    184
  *     stack of wh_physics_state_validate        92    216      60    136
  *     stack of wh_physics_state_sensors         16     20       8     24
- *     stack of wh_physics_state_hash           124    148     116    136
+ *     stack of wh_physics_state_hash           120    140     124    136
  *     size of wh_physics_t                    2272           1336
  *     size of wh_physics_state_t              5992           3336
  */

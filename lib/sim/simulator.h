@@ -6,10 +6,10 @@
  *                                             M7 -O2    -Os  M4F -O2    -Os
  *     stack of wh_simulator_init               380    304     260    232
  *     stack of wh_simulator_set_physics        264    256     208    208
- *     stack of wh_simulator_step               936   1064     636    692
- *     stack of wh_simulator_step:sampled       936    904     600    616
+ *     stack of wh_simulator_step               928   1064     636    700
+ *     stack of wh_simulator_step:sampled       928    904     608    632
  *     stack of wh_simulator_view                32     36      24     40
- *     stack of wh_simulator_hash               124    148     116    136
+ *     stack of wh_simulator_hash               120    140     124    136
  *     size of wh_simulator_t                 19944          12184
  */
 #ifndef WH_SIM_SIMULATOR_H
