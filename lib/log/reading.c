@@ -93,15 +93,10 @@ bool wh_reading_lacks_end(const wh_replay_t *replay, const wh_replay_run_t *run)
     return !run->over && run == last_begun(replay) && replay->recording.closed == WH_RECORDING_BEGINS;
 }
 
-/* True if the recording's digest shows that all of it is as it was written. */
-static bool is_vouched_for(const wh_replay_recording_t *recording) {
-    return recording->version > 0 && recording->closed != WH_RECORDING_BEGINS && !recording->is_changed;
-}
-
 /* Messages that a network may have made so, as well as the file. */
 static bool has_strange_messages(const wh_replay_t *replay) {
     return replay->losses[WH_REPLAY_CONTRADICTS].count + replay->losses[WH_REPLAY_STRAY].count > 0 &&
-           !is_vouched_for(&replay->recording);
+           !wh_replay_is_vouched_for(replay);
 }
 
 static bool are_numbers_odd(const wh_log_numbers_t *numbers) {

@@ -153,6 +153,9 @@ void wh_replay_finish(wh_replay_t *replay);
 /* The same at the log's end: nothing more comes. */
 void wh_replay_end(wh_replay_t *replay);
 
+/* True if the recording's digest shows that all of it is as it was written. To be asked at its end. */
+bool wh_replay_is_vouched_for(const wh_replay_t *replay);
+
 void wh_replay_close(wh_replay_t *replay);
 
 #endif
