@@ -4,7 +4,8 @@
  * motion_run (a wh_played_t, see sim/played.h) and the constants MOTION_WAFERS and MOTION_GRIPPERS. In a name
  * stand the ASCII letters and digits of the file's; all that is between two of them becomes one underscore,
  * and what does not begin with a letter gets run_ before it. Where two different files with the same names,
- * in small letters or capitals, are included together, the second is an #error. Numbers are decimal, with as many digits as it takes to lose none, so that every compiler reads them.
+ * in small letters or capitals, are included together, the second is an #error. Numbers are decimal, with as
+ * many digits as it takes to lose none, so that every compiler reads them.
  */
 #ifndef WH_APP_SEGMENTS_H
 #define WH_APP_SEGMENTS_H

@@ -55,9 +55,9 @@ typedef struct {
  * null stations where count is not 0 (WH_STATUS_NULL_ARGUMENT); more than INT32_MAX stations
  * (WH_STATUS_BAD_CAPACITY); a tolerance that wh_tolerance_validate refuses, unless there is no station
  * (WH_STATUS_BAD_TOLERANCE); another number outside the ranges above, NaN too (WH_STATUS_OUT_OF_RANGE); a
- * station's pose that wh_pose_validate refuses, with its status. Stations may overlap: each wafer then lies in
- * the nearest slot of all, and WH_EVENT_SLOT_OCCUPIED comes only for two wafers in one and the same slot. wh_simulator_init asks this. Cost:
- * wh_pose_validate for each station. */
+ * station's pose that wh_pose_validate refuses, with its status. Stations may overlap: each wafer then lies
+ * in the nearest slot of all, and WH_EVENT_SLOT_OCCUPIED comes only for two wafers in one and the same slot.
+ * wh_simulator_init asks this. Cost: wh_pose_validate for each station. */
 wh_status_t wh_cell_validate(const wh_cell_t *cell, size_t gripper_count) WH_SYMBOL(wh_cell_validate);
 
 /* base_from_slot. `slot` is not checked; the rotation is the station's. Cost: 3 products. */
@@ -89,18 +89,19 @@ bool wh_cell_locate(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, wh_
 size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_list_t *list)
     WH_SYMBOL(wh_cell_judge);
 
-/* True if a wafer that moves from the first pose to the next comes to the plane of the slot in which it lies, or goes
- * down through it (at the plane is what is within 1e-3 mm): a support stops it. Arguments are not checked; numbers that
- * are not finite give false. Cost: wh_cell_locate and wh_station_measure. */
+/* True if a wafer that moves from the first pose to the next comes to the plane of the slot in which it lies,
+ * or goes down through it (at the plane is what is within 1e-3 mm): a support stops it. Arguments are not
+ * checked; numbers that are not finite give false. Cost: wh_cell_locate and wh_station_measure. */
 bool wh_cell_stops(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, const wh_pose_t *next)
     WH_SYMBOL(wh_cell_stops);
 
-/* Call it after wh_cell_judge. A released wafer less than tolerance.projz below the plane of its slot was stopped by the
- * support: its centre comes up along the slot's z to the plane. With cell->settle a released wafer above the plane comes
- * to lie on it: its centre moves down. In both cases, with cell->settle, the wafer turns by the smallest rotation that
- * takes its normal to z. A wafer in no slot, or farther below the plane, stays. Appends WH_EVENT_SETTLED for a wafer that
- * went down, with the release's values and `value` the way down, while the list has room. Cost: linear in the list;
- * each released wafer adds the stations, and wh_grasp_place if it moves. */
+/* Call it after wh_cell_judge. A released wafer less than tolerance.projz below the plane of its slot was
+ * stopped by the support: its centre comes up along the slot's z to the plane. With cell->settle a released
+ * wafer above the plane comes to lie on it: its centre moves down. In both cases, with cell->settle, the
+ * wafer turns by the smallest rotation that takes its normal to z. A wafer in no slot, or farther below the
+ * plane, stays. Appends WH_EVENT_SETTLED for a wafer that went down, with the release's values and `value`
+ * the way down, while the list has room. Cost: linear in the list; each released wafer adds the stations, and
+ * wh_grasp_place if it moves. */
 void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list)
     WH_SYMBOL(wh_cell_settle);
 

@@ -64,7 +64,8 @@ static void check_stroke(wh_reader_t *reader, const wh_station_t *place, const w
     }
 }
 
-/* s: twice as long as the layout's vacuum takes to let go of a wafer and to be felt under the next gripper. */
+/* s: twice as long as the layout's vacuum takes to let go of a wafer and to be felt under the next
+ * gripper. */
 static double default_timeout(const wh_vacuum_config_t *vacuum) {
     const double least = 0.25, below_full = vacuum->on < 1 ? 1 - vacuum->on : 1e-3;
     const double slow = -2 * (vacuum->vent * wh_ln(vacuum->release) + vacuum->build * wh_ln(below_full));

@@ -151,8 +151,9 @@ static found_t look_at_runs(const wh_replay_t *replay) {
 }
 
 static bool has_end(const wh_replay_t *replay, const wh_reading_t *reading) {
-    const bool ends = replay->recording.version > 0 ? replay->recording.closed != WH_RECORDING_BEGINS
-                                                    : last_begun(replay)->over;
+    const wh_replay_run_t *last = last_begun(replay);
+    const bool ends =
+        replay->recording.version > 0 ? replay->recording.closed != WH_RECORDING_BEGINS : last && last->over;
     return ends && !reading->is_cut;
 }
 

@@ -34,7 +34,7 @@ void wh_nominal_slice(wh_nominal_t *nominal, const wh_command_t *command) {
     (void)wh_simulator_step(&nominal->simulator, &taught, &state);
 }
 
-/* ------------------------------------------------------------------------------------------------ believing */
+/* ---------------------------------------------------------------------------------------------- believing */
 
 static bool lies_in_the_same_slot(const wh_nominal_t *nominal, const wh_pose_t *believed,
                                   const wh_pose_t *truth) {

@@ -1,9 +1,10 @@
 /* A trial's cell as motion control believes it to be: the layout's own, without what the trial has drawn.
  *
- * A look ahead must not know a trial's errors, or a study would judge true wafers against taught stations. So the
- * layout's cell is stepped beside the real one, with the same commands and a vacuum that is there at once. Where the two
- * disagree on what a robot can tell, that is who holds a wafer and in which slot it lies, the real cell is right: the
- * wafer then lies in the middle of that slot as it was taught, or as it is on its gripper.
+ * A look ahead must not know a trial's errors, or a study would judge true wafers against taught stations. So
+ * the layout's cell is stepped beside the real one, with the same commands and a vacuum that is there at
+ * once. Where the two disagree on what a robot can tell, that is who holds a wafer and in which slot it lies,
+ * the real cell is right: the wafer then lies in the middle of that slot as it was taught, or as it is on its
+ * gripper.
  */
 #ifndef WH_MCS_NOMINAL_H
 #define WH_MCS_NOMINAL_H
@@ -25,8 +26,8 @@ typedef struct {
 /* What a wh_nominal_t takes. */
 size_t wh_nominal_bytes(const wh_layout_t *layout);
 
-/* Begins a run in memory of wh_nominal_bytes, aligned as malloc's. The layouts must outlive it. Null if the table
- * cannot be set up, which a layout that was read never causes. */
+/* Begins a run in memory of wh_nominal_bytes, aligned as malloc's. The layouts must outlive it. Null if the
+ * table cannot be set up, which a layout that was read never causes. */
 wh_nominal_t *wh_nominal_begin(void *memory, const wh_layout_t *layout, const wh_layout_t *real);
 
 /* Steps the command of a slice, as motion control sent it. Cost: wh_simulator_step. */

@@ -52,9 +52,9 @@ void wh_rehearsal_add(wh_rehearsal_t *rehearsal, const wh_planned_t *planned);
 void wh_rehearsal_note_reach(const wh_rehearsal_t *rehearsal, const wh_track_t *track, wh_record_t *record);
 
 /* Has collisions looked for ahead, on a copy of the cell. The copy begins where motion control last saw
- * wafers and grippers, or, in a trial, where it believes them to be (`nominal`; null: no trial). It takes and lets
- * go by the paper's rule, with vacuum that is there at once, and knows nothing of faults to come. `memory`, as
- * many bytes and aligned as malloc's, the layout and `nominal` must outlive it. */
+ * wafers and grippers, or, in a trial, where it believes them to be (`nominal`; null: no trial). It takes and
+ * lets go by the paper's rule, with vacuum that is there at once, and knows nothing of faults to come.
+ * `memory`, as many bytes and aligned as malloc's, the layout and `nominal` must outlive it. */
 size_t wh_rehearsal_ahead_bytes(const wh_layout_t *layout);
 void wh_rehearsal_look_ahead(wh_rehearsal_t *rehearsal, const wh_layout_t *layout, wh_nominal_t *nominal,
                              void *memory);

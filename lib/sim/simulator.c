@@ -167,8 +167,8 @@ static WH_OUT_OF_LINE bool is_set_down(const wh_simulator_t *simulator, size_t g
     return wh_cell_stops(&simulator->cell, &storage->wafers[wafer].base_from_wafer, &carried);
 }
 
-/* Applies the valves to the vacuum. The result goes into `vacuum`, for the table may yet refuse the step. A valve that
- * closes while its vacuum still holds acts once a support has the wafer. */
+/* Applies the valves to the vacuum. The result goes into `vacuum`, for the table may yet refuse the step. A
+ * valve that closes while its vacuum still holds acts once a support has the wafer. */
 static void switch_valves(wh_simulator_t *simulator, wh_vacuum_t vacuum[]) {
     for (size_t g = 0; g < simulator->table.storage.gripper_count; ++g) {
         const wh_vacuum_fault_t fault = wh_faults_of_vacuum(&simulator->physics.faults, g);

@@ -70,14 +70,14 @@ wh_status_t wh_simulator_set_physics(wh_simulator_t *simulator, const wh_physics
 /* One slice: faults and vacuum turn the command into the grippers' inputs, the table steps, the cell judges
  * the releases, vacuum and holding follow, and `state` is filled in. Returns state->status.
  *
- * While a valve is closed and its vacuum still holds the wafer, a support stops the wafer: the gripper lets go of it in
- * the slice that would carry the wafer to the plane of its slot or below (wh_cell_stops).
+ * While a valve is closed and its vacuum still holds the wafer, a support stops the wafer: the gripper lets
+ * go of it in the slice that would carry the wafer to the plane of its slot or below (wh_cell_stops).
  *
  * A refused command leaves everything as it was, but table.counters.refused counts it. Refused is what
  * wh_grasp_step refuses and, without an event, a gripper_count other than the table's and what
- * wh_faults_check refuses. With a null pointer (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. Of
- * a simulator that is not initialised nothing is read or written, and `state` shows no wafer and no
- * gripper. `seq` and `utime` are handed back; faults go by `seq`. Cost: wh_grasp_step and wh_cell_judge.
+ * wh_faults_check refuses. With a null pointer (WH_STATUS_NULL_ARGUMENT) nothing is written or counted. Of a
+ * simulator that is not initialised nothing is read or written, and `state` shows no wafer and no gripper.
+ * `seq` and `utime` are handed back; faults go by `seq`. Cost: wh_grasp_step and wh_cell_judge.
  */
 wh_status_t wh_simulator_step(wh_simulator_t *simulator, const wh_command_t *command, wh_state_t *state)
     WH_SYMBOL(wh_simulator_step);
