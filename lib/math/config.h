@@ -108,6 +108,9 @@ typedef struct {
 #if defined(__BIGGEST_ALIGNMENT__) && __BIGGEST_ALIGNMENT__ > 1 /* gcc's -fpack-struct packs that one, too */
 typedef char wh_structs_are_packed[sizeof(wh_unpacked_t) > 2 + sizeof(wh_real_t) + sizeof(uint64_t) ? 1 : -1];
 #endif
+#if defined(__FRAMAC__) /* which reads the pragma in another way, and packs nothing */
+#define WH_REFUSE_PACKING(header) typedef char wh_##header##_is_packed[1]
+#else
 #define WH_REFUSE_PACKING(header)                                                                            \
     typedef struct {                                                                                         \
         char before;                                                                                         \
@@ -116,6 +119,7 @@ typedef char wh_structs_are_packed[sizeof(wh_unpacked_t) > 2 + sizeof(wh_real_t)
         uint64_t whole;                                                                                      \
     } wh_##header##_sample_t;                                                                                \
     typedef char wh_##header##_is_packed[sizeof(wh_##header##_sample_t) == sizeof(wh_unpacked_t) ? 1 : -1]
+#endif
 
 /* True where numbers are computed by software: there a comparison that saves a product pays. Changes no
  * result. */
