@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "../text/output.h"
+
 /* The path of a file that is not there: its folder's, without links, and its name. False if the folder is not
  * there. */
 static bool resolve(const char *path, char resolved[PATH_MAX]) {
@@ -23,18 +25,13 @@ static bool resolve(const char *path, char resolved[PATH_MAX]) {
 
 static bool is_same_file(const char *a, const char *b) {
     struct stat one;
-    struct stat two;
     char first[PATH_MAX];
     char second[PATH_MAX];
-    const bool is_there = stat(a, &one) == 0;
-    if (is_there != (stat(b, &two) == 0)) {
-        return false;
-    }
-    if (is_there) {
+    if (stat(a, &one) == 0) {
         return !S_ISCHR(one.st_mode) && !S_ISFIFO(one.st_mode) && !S_ISSOCK(one.st_mode) &&
-               one.st_dev == two.st_dev && one.st_ino == two.st_ino;
+               wh_output_is_one_file(a, b);
     }
-    return resolve(a, first) && resolve(b, second) && strcmp(first, second) == 0;
+    return stat(b, &one) != 0 && resolve(a, first) && resolve(b, second) && strcmp(first, second) == 0;
 }
 
 static bool is_standard_output(const char *path) {

@@ -5,18 +5,6 @@
 #define ORDERS WH_PREDICTION_ORDERS
 #define SIGN (UINT64_C(1) << 63)
 
-static uint64_t bits_of(double value) {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return bits;
-}
-
-static double real_of(uint64_t bits) {
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 /* The bits as a number that grows with the value, so that neighbouring values differ by little. Done
  * twice, it is undone. */
 static uint64_t rank_of(uint64_t bits) {
@@ -49,7 +37,7 @@ static uint64_t predict(wh_prediction_t *prediction) {
         sum += prediction->differences[order];
         const double guess = prediction->differences[0] + sum;
         /* Which of many bits a sum that is no number has, differs from machine to machine. */
-        prediction->guesses[order] = guess == guess ? bits_of(guess) : prediction->last;
+        prediction->guesses[order] = guess == guess ? wh_prediction_bits(guess) : prediction->last;
     }
     return rank_of(prediction->guesses[best_order(prediction)]);
 }
@@ -59,7 +47,7 @@ static uint32_t length_of(uint64_t folded) {
 }
 
 static void learn(wh_prediction_t *prediction, uint64_t bits) {
-    double difference = real_of(bits);
+    double difference = wh_prediction_double(bits);
     for (size_t order = 0; prediction->seen > 0 && order < ORDERS; ++order) {
         const uint64_t miss = fold(rank_of(bits) - rank_of(prediction->guesses[order]));
         prediction->scores[order] = prediction->scores[order] / 2 + 8 * length_of(miss);

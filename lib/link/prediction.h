@@ -9,8 +9,22 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define WH_PREDICTION_ORDERS 7
+
+/* A double's bits, and the double that has them. */
+static inline uint64_t wh_prediction_bits(double value) {
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static inline double wh_prediction_double(uint64_t bits) {
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
 
 /* Zero it to begin with. */
 typedef struct {

@@ -131,12 +131,11 @@ static bool is_locked(const char *path) {
 /* What must not be replaced at this path, in words; else null. */
 static const char *find_owner(const char *path, const char *const inputs[]) {
     struct stat old;
-    struct stat input;
     if (stat(path, &old) != 0 || !S_ISREG(old.st_mode)) {
         return NULL;
     }
     for (size_t i = 0; inputs[i]; ++i) {
-        if (stat(inputs[i], &input) == 0 && input.st_dev == old.st_dev && input.st_ino == old.st_ino) {
+        if (wh_output_is_one_file(inputs[i], path)) {
             return "this is an input of the run (expected another name for its record)";
         }
     }

@@ -12,18 +12,6 @@
 /* How a column is coded. */
 enum { CONSTANT, SAME, NEGATIVE, PREDICTED };
 
-static uint64_t bits_of(double value) {
-    uint64_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return bits;
-}
-
-static double real_of(uint64_t bits) {
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 /* ------------------------------------------------------------------------------------------------- coding */
 
 /* Bytes that are written or read. `good` becomes false if there are too few, and stays so. */
@@ -303,15 +291,15 @@ static void begin(wh_slices_t *slices, const waferhand_command *command) {
 static void put_slice(wh_slices_t *slices, const waferhand_command *command) {
     const size_t i = slices->count;
     for (size_t a = 0; a < slices->axes; ++a) {
-        slices->column[a][i] = bits_of(command->axis_position[a]);
+        slices->column[a][i] = wh_prediction_bits(command->axis_position[a]);
     }
     for (size_t g = 0; g < slices->grippers; ++g) {
         const size_t c = slices->axes + 12 * g;
         for (size_t k = 0; k < 3; ++k) {
-            slices->column[c + k][i] = bits_of(command->gripper_position[g][k]);
+            slices->column[c + k][i] = wh_prediction_bits(command->gripper_position[g][k]);
         }
         for (size_t k = 0; k < 9; ++k) {
-            slices->column[c + 3 + k][i] = bits_of(command->gripper_rotation[g][k]);
+            slices->column[c + 3 + k][i] = wh_prediction_bits(command->gripper_rotation[g][k]);
         }
     }
 }
@@ -349,13 +337,13 @@ void wh_slices_get(const wh_slices_t *slices, size_t i, waferhand_command *comma
     command->gripper_count = (int32_t)slices->grippers;
     command->axis_count = (int32_t)slices->axes;
     for (size_t a = 0; a < slices->axes; ++a) {
-        command->axis_position[a] = real_of(slices->column[a][i]);
+        command->axis_position[a] = wh_prediction_double(slices->column[a][i]);
     }
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         const size_t c = slices->axes + 12 * g;
         for (size_t k = 0; g < slices->grippers && k < 12; ++k) {
             *(k < 3 ? &command->gripper_position[g][k] : &command->gripper_rotation[g][k - 3]) =
-                real_of(slices->column[c + k][i]);
+                wh_prediction_double(slices->column[c + k][i]);
         }
         command->valve[g] = slices->valves[i] >> g & 1;
         told[g] = slices->told[i] >> g & 1;

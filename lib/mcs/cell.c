@@ -1,16 +1,10 @@
 /* The cell: its layout is found, read and handed to Lua, and gets a simulator in this process. */
 #include <stddef.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "../script/wh_module_values.h"
+#include "../text/output.h"
 #include "native.h"
-
-static bool is_same_file(const char *a, const char *b) {
-    struct stat one;
-    struct stat two;
-    return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_dev == two.st_dev && one.st_ino == two.st_ino;
-}
 
 /* Shortens "lua/examples/../layouts" to "lua/layouts", if that is the same file: a symbolic link may make it
  * another. */
@@ -26,7 +20,7 @@ static const char *push_short_path(lua_State *L, const char *path) {
     lua_pushlstring(L, path, (size_t)(start - path));
     lua_pushstring(L, up + 4);
     lua_concat(L, 2);
-    return is_same_file(path, lua_tostring(L, -1)) ? lua_tostring(L, -1) : lua_pushstring(L, path);
+    return wh_output_is_one_file(path, lua_tostring(L, -1)) ? lua_tostring(L, -1) : lua_pushstring(L, path);
 }
 
 /* The layout's path relative to the script's own folder. */

@@ -71,7 +71,8 @@ static void correct_gripper(wh_gripper_t *gripper, const wh_gripper_t *real) {
     gripper->contest = gripper->approach;
 }
 
-static void correct(wh_nominal_t *nominal, const wh_state_t *truth) {
+/* False if no table can be in that state. */
+static bool correct(wh_nominal_t *nominal, const wh_state_t *truth) {
     const wh_grasp_t *table = &nominal->simulator.table;
     memcpy(nominal->next, nominal->wafers, truth->wafer_count * sizeof *nominal->next);
     memcpy(nominal->next_grippers, nominal->grippers, sizeof nominal->next_grippers);
@@ -91,7 +92,8 @@ static void correct(wh_nominal_t *nominal, const wh_state_t *truth) {
             gripper ? wh_pose_compose(&gripper->base_from_gripper, &gripper->gripper_from_wafer)
                     : taught_place(nominal, &truth->wafers[w].base_from_wafer);
     }
-    (void)wh_grasp_restore(&nominal->simulator.table, table->slice, nominal->next, nominal->next_grippers);
+    return wh_grasp_restore(&nominal->simulator.table, table->slice, nominal->next, nominal->next_grippers) ==
+           WH_OK;
 }
 
 void wh_nominal_believe(wh_nominal_t *nominal, const wh_state_t *truth, wh_state_t *believed) {
@@ -99,10 +101,10 @@ void wh_nominal_believe(wh_nominal_t *nominal, const wh_state_t *truth, wh_state
     for (size_t w = 0; all && w < truth->wafer_count; ++w) {
         all = agrees(nominal, w, truth);
     }
-    if (!all) {
-        correct(nominal, truth);
-    }
     *believed = *truth;
+    if (!all && !correct(nominal, truth)) {
+        return;
+    }
     believed->wafers = nominal->wafers;
     believed->grippers = nominal->grippers;
 }

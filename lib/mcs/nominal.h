@@ -34,7 +34,8 @@ wh_nominal_t *wh_nominal_begin(void *memory, const wh_layout_t *layout, const wh
 void wh_nominal_slice(wh_nominal_t *nominal, const wh_command_t *command);
 
 /* Brings the believed cell in line with what a robot can tell of the true one; `wafers` and `grippers` of
- * `believed` then are its own, the rest is the truth's. Cost: wafers times stations. */
+ * `believed` then are its own, the rest is the truth's. If no table can be in such a state, all is the
+ * truth's. Cost: wafers times stations. */
 void wh_nominal_believe(wh_nominal_t *nominal, const wh_state_t *truth, wh_state_t *believed);
 
 #endif

@@ -146,3 +146,9 @@ bool wh_output_make_folders(const char *path) {
     }
     return made;
 }
+
+bool wh_output_is_one_file(const char *a, const char *b) {
+    struct stat one;
+    struct stat two;
+    return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_dev == two.st_dev && one.st_ino == two.st_ino;
+}

@@ -31,6 +31,9 @@ void wh_output_drop(wh_output_t *output);
  * synced to the disk. */
 int wh_output_replace(const char *path, const void *bytes, size_t size);
 
+/* True if both paths lead to one file, which is there: by links, or in other spellings. */
+bool wh_output_is_one_file(const char *a, const char *b);
+
 /* Where the program keeps a file for the next time: $XDG_STATE_HOME/waferhand/NAME, or
  * ~/.local/state/waferhand/NAME. Empty if the environment names no such place, or if `size` bytes do not hold
  * it. */
