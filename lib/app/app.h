@@ -1,6 +1,5 @@
-/* The program's subcommands. Each takes the arguments from its own name on and returns the exit status:
- * 0 all expectations met, 1 not so, 2 wrong usage or a bad input file, 5 (mcs) no simulator answered in
- * time. */
+/* The program's subcommands. Each takes the arguments from its own name on and returns the exit status. Their
+ * table is in lua/README.md, and from there in the manual page. */
 #ifndef WH_APP_APP_H
 #define WH_APP_APP_H
 
@@ -10,6 +9,9 @@
 #include <string.h>
 
 enum { WH_EXIT_MET = 0, WH_EXIT_FAILED = 1, WH_EXIT_USAGE = 2, WH_EXIT_NO_ANSWER = 5 };
+
+/* What each --help says of it. */
+#define WH_HELP_EXIT "Exit status: see the manual page, waferhand(1), EXIT STATUS."
 
 /* True if all that was to be printed has left; else says so on standard error. `status` is 0 if it could be
  * made. */

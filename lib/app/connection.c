@@ -1,7 +1,6 @@
 #include "connection.h"
 
 #include <inttypes.h>
-#include <stdio.h>
 
 volatile sig_atomic_t wh_stop_requested = 0;
 
@@ -14,6 +13,45 @@ void wh_catch_signals(void) {
     const struct sigaction action = {.sa_handler = request_stop};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+}
+
+/* --------------------------------------------------------------------------------------------- recordings */
+
+const wh_option_t wh_record_options[] = {
+    {"record", 0, "FILE",
+     "Record slices into an LCM event log: what `replay` and `report` need; compressed if the name ends in "
+     ".zst",
+     WH_OPTION_TEXT, .variable = offsetof(wh_record_arguments_t, slices)},
+    {"record-all", 0, "FILE", "Record every message instead, as lcm-spy and viewers want it", WH_OPTION_TEXT,
+     .variable = offsetof(wh_record_arguments_t, all)},
+    {"record-size", 0, "MB", "Go on in a new file (run.part2.log) when one is so large", WH_OPTION_REAL,
+     .variable = offsetof(wh_record_arguments_t, part_mb), 0.01, 1e6, "a number from 0.01 to 1e+06"},
+    {0}};
+
+void wh_record_arguments_check(const void *given, struct argp_state *state) {
+    const wh_record_arguments_t *arguments = given;
+    if (arguments->slices && arguments->all) {
+        argp_error(state, "--record-all: %s (--record is given, too: one recording at a time)",
+                   arguments->all);
+    }
+    if (arguments->part_mb > 0 && !arguments->slices && !arguments->all) {
+        argp_error(state, "--record-size goes with --record or --record-all");
+    }
+}
+
+const char *wh_record_arguments_path(const wh_record_arguments_t *arguments, const char **option) {
+    *option = arguments->all ? "--record-all" : "--record";
+    return arguments->all ? arguments->all : arguments->slices;
+}
+
+void wh_record_arguments_apply(const wh_record_arguments_t *arguments, const char *program, bool replaces,
+                               wh_recording_t *recording) {
+    const char *option = NULL;
+    recording->options = (wh_recording_options_t){.path = wh_record_arguments_path(arguments, &option),
+                                                  .program = program,
+                                                  .all = arguments->all != NULL,
+                                                  .replaces = replaces,
+                                                  .part_mb = arguments->part_mb};
 }
 
 /* --------------------------------------------------------------------------------------- motion control's */
@@ -35,7 +73,7 @@ bool wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options)
     return true;
 }
 
-static void print_counters(const wh_mcs_link_t *link) {
+static void print_counters(wh_mcs_link_t *link) {
     const wh_mcs_process_t *control = &link->control;
     const wh_protocol_client_counters_t *c = &control->client.counters;
     /* Repeated commands alone are normal: nothing is printed. */
@@ -49,9 +87,10 @@ static void print_counters(const wh_mcs_link_t *link) {
         c->sent, WH_PLURAL(c->sent), c->repeated, WH_PLURAL(c->repeated), c->answers, WH_PLURAL(c->answers),
         c->unasked, c->malformed, c->restored, WH_PLURAL(c->restored), c->silences, WH_PLURAL(c->silences));
     if (control->options.rate > 0) {
+        const int64_t missed = link->control.client.link.missed(&link->control.client.link);
         wh_node_say(&link->node,
                     "free-running: %" PRId64 " slice%s missed by the simulator, %" PRIu64 " sent late",
-                    control->client.missed, WH_PLURAL(control->client.missed), c->late);
+                    missed, WH_PLURAL(missed), c->late);
     }
 }
 

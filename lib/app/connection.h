@@ -1,11 +1,12 @@
-/* How `sim` and `mcs` are ended by signals, and how `mcs` is linked to LCM. */
+/* How `run`, `sim` and `mcs` are recorded, how the last two are ended by signals, and how `mcs` is linked to
+ * LCM. */
 #ifndef WH_APP_CONNECTION_H
 #define WH_APP_CONNECTION_H
 
 #include <signal.h>
 
 #include "../link/mcs_process.h"
-#include "record_arguments.h"
+#include "../text/options.h"
 
 /* What ends the noun behind a count. */
 #define WH_PLURAL(count) ((count) == 1 ? "" : "s")
@@ -16,6 +17,27 @@ extern volatile sig_atomic_t wh_stop_requested;
 /* From now on SIGINT and SIGTERM set wh_stop_requested and interrupt waits. They no longer end the
  * process. */
 void wh_catch_signals(void);
+
+/* --------------------------------------------------------------------------------------------- recordings */
+
+typedef struct {
+    const char *slices, *all; /* files */
+    double part_mb;
+} wh_record_arguments_t;
+
+/* The options of `run`, `sim` and `mcs` about a recording. */
+extern const wh_option_t wh_record_options[];
+
+/* Of their table: refuses what does not go together. */
+void wh_record_arguments_check(const void *arguments, struct argp_state *state);
+
+/* The recording's file, null if none was given, and the `option` that gives it. */
+const char *wh_record_arguments_path(const wh_record_arguments_t *arguments, const char **option);
+
+/* Sets the options of a recording, by `program`, which must outlive it; it replaces an old file or does
+ * not. */
+void wh_record_arguments_apply(const wh_record_arguments_t *arguments, const char *program, bool replaces,
+                               wh_recording_t *recording);
 
 /* --------------------------------------------------------------------------------------- motion control's */
 

@@ -1,28 +1,35 @@
 /* waferhand layout LAYOUT */
-#include <errno.h>
-#include <string.h>
+#include <stdlib.h>
 
 #include "../layout/drawing.h"
+#include "../mcs/survey.h"
 #include "../print/layout_print.h"
-#include "../text/output.h"
+#include "../text/array.h"
+#include "apart.h"
 #include "app.h"
 #include "layout_arguments.h"
 
 /* -------------------------------------------------------------------------------------- what sim has, too */
 
-const wh_option_t wh_layout_options[] = {{"set", 0, "NAME=VALUE", "Hand the layout a parameter: params.NAME",
-                                          WH_OPTION_LIST,
-                                          .variable = offsetof(wh_layout_arguments_t, parameters)},
-                                         {0}};
+const wh_option_t wh_layout_options[] = {
+    {"set", 0, "NAME=VALUE",
+     "Hand the layout a parameter, params.NAME: a number if VALUE is one, true, false or text",
+     WH_OPTION_LIST, .variable = offsetof(wh_layout_arguments_t, parameters)},
+    {"memory", 0, "MIB", "Let the layout use so many MiB of memory (default 256)", WH_OPTION_REAL,
+     .variable = offsetof(wh_layout_arguments_t, memory_mib), 1, 1e6, "a number from 1 to 1e+06"},
+    {0}};
 
 const wh_layout_t *wh_layout_arguments_load(wh_layout_arguments_t *arguments) {
     wh_sandbox_result_t result;
+    const wh_sandbox_limits_t limits = {.memory_bytes = (size_t)(arguments->memory_mib * 1048576)};
     wh_sandbox_t *sandbox =
-        wh_sandbox_new_with(NULL, arguments->parameters.items, arguments->parameters.count, &result);
+        wh_sandbox_new_with(&limits, arguments->parameters.items, arguments->parameters.count, &result);
     const wh_layout_t *layout = sandbox ? wh_layout_load(sandbox, arguments->path, &result) : NULL;
     arguments->sandbox = sandbox;
     if (!layout) {
         fprintf(stderr, "%s\n", result.message);
+    } else if (wh_sandbox_find_unread(sandbox, result.message)) {
+        fprintf(stderr, "%s: note: %s\n", arguments->path, result.message);
     }
     return layout;
 }
@@ -48,27 +55,26 @@ static const wh_option_t options[] = {{"json", 0, NULL, "Print one JSON object i
                                       {0}};
 
 static const wh_option_table_t tables[] = {
-    {options, 0, NULL}, {wh_layout_options, offsetof(arguments_t, layout), NULL}, {0}};
+    {options, 0, NULL, NULL}, {wh_layout_options, offsetof(arguments_t, layout), NULL, NULL}, {0}};
 
 static const wh_command_line_t command_line = {
     .name = "layout",
     .synopsis = "LAYOUT",
-    .about = "Lists what a layout describes, checks it before anything moves, and draws it.\v"
-             "Exit status: 0 if nothing is wrong with it, 1 if something is, 2 for wrong usage or a bad "
-             "input file.",
+    .about = "Lists what a layout describes, checks it before anything moves, and draws it.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "layout",
     .operand_variable = offsetof(arguments_t, layout.path)};
 
-static bool write_svg(const wh_feasibility_t *check, const char *path) {
-    wh_output_t output = {0};
-    const bool written = wh_output_open(&output, path) && wh_layout_print_svg(check, output.file) == 0 &&
-                         wh_output_commit(&output);
-    if (!written) {
-        fprintf(stderr, "%s: %s (expected a file that can be written)\n", path, strerror(errno));
-    }
-    wh_output_drop(&output);
-    return written;
+static bool write_svg(void *check, FILE *out) {
+    return wh_layout_print_svg(check, out) == 0;
+}
+
+/* Once the layout was read, so that all that it reads is known. */
+static bool is_apart(const arguments_t *arguments) {
+    const wh_named_file_t named[] = {{"the layout", arguments->layout.path, false},
+                                     {"--svg", arguments->svg, true}};
+    return wh_files_are_apart(named, 2, true) &&
+           (!arguments->svg || wh_file_is_free("--svg", arguments->svg));
 }
 
 static int print(const arguments_t *arguments, const wh_feasibility_t *check) {
@@ -78,14 +84,28 @@ static int print(const arguments_t *arguments, const wh_feasibility_t *check) {
     if (!wh_app_is_printed(status)) {
         return WH_EXIT_USAGE;
     }
-    return check->count > 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
+    return check->wrong > 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
+}
+
+/* Adds what a run would refuse. */
+static bool survey(const arguments_t *arguments, const wh_layout_t *layout, wh_feasibility_t *check) {
+    wh_sandbox_result_t result;
+    wh_survey_t *planned = wh_array_new(1, sizeof *planned);
+    const bool good = wh_survey_open(planned, arguments->layout.sandbox, layout, check, &result);
+    if (!good) {
+        fprintf(stderr, "%s\n", result.message);
+    }
+    wh_survey_close(planned);
+    free(planned);
+    return good;
 }
 
 static int look_at(const arguments_t *arguments, const wh_layout_t *layout) {
     wh_feasibility_t check;
     int status = WH_EXIT_USAGE;
     wh_feasibility(&check, layout);
-    if (!arguments->svg || write_svg(&check, arguments->svg)) {
+    if (is_apart(arguments) && survey(arguments, layout, &check) &&
+        wh_file_write("--svg", arguments->svg, write_svg, &check, NULL)) {
         status = print(arguments, &check);
     }
     wh_feasibility_free(&check);

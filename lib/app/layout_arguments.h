@@ -9,10 +9,11 @@
 typedef struct {
     const char *path;
     wh_option_list_t parameters;
+    double memory_mib;     /* that the layout may use; 0: the sandbox's default */
     wh_sandbox_t *sandbox; /* in which the layout is read, and which owns it */
 } wh_layout_arguments_t;
 
-/* --set, into a wh_layout_arguments_t; the path is the subcommand's operand. */
+/* --set and --memory, into a wh_layout_arguments_t; the path is the subcommand's operand. */
 extern const wh_option_t wh_layout_options[];
 
 /* Reads the layout. Null if it or a parameter is refused: standard error then says why. */

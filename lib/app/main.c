@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "../math/config.h"
+#include "../text/guard.h"
+#include "../text/nearest.h"
 #include "app.h"
 
 static const struct {
@@ -29,14 +31,24 @@ static void print_help(FILE *out) {
         fprintf(out, "  %-8s %s\n", subcommands[i].name, subcommands[i].purpose);
     }
     fputs("\n  waferhand COMMAND --help    tells the options of a command\n"
-          "  waferhand --version         prints the version\n\n"
-          "Exit status: 0 if all expectations were met, 1 if not, 2 for wrong usage or a bad input file.\n",
+          "  waferhand --version         prints the version\n\n" WH_HELP_EXIT "\n",
           out);
+}
+
+static void refuse(const char *word) {
+    const char *names[SUBCOMMANDS + 2] = {[SUBCOMMANDS] = "--help", [SUBCOMMANDS + 1] = "--version"};
+    for (size_t i = 0; i < SUBCOMMANDS; ++i) {
+        names[i] = subcommands[i].name;
+    }
+    char meant[WH_NEAREST_TEXT];
+    fprintf(stderr, "waferhand: %s: no such command (see waferhand --help%s)\n", word,
+            wh_text_did_you_mean(meant, "; ", "", wh_text_nearest(word, names, SUBCOMMANDS + 2)));
 }
 
 int main(int argc, char **argv) {
     /* The locale says which bytes are characters. Numbers and sorting stay those of the "C" locale. */
     setlocale(LC_CTYPE, "");
+    wh_guard_stderr();
     argp_err_exit_status = WH_EXIT_USAGE;
     argp_program_version = "waferhand " WH_VERSION;
     if (argc < 2) {
@@ -45,17 +57,17 @@ int main(int argc, char **argv) {
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-?") == 0) {
         print_help(stdout);
-        return WH_EXIT_MET;
+        return wh_app_is_printed(0) ? WH_EXIT_MET : WH_EXIT_USAGE;
     }
     if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0) {
         puts(argp_program_version);
-        return WH_EXIT_MET;
+        return wh_app_is_printed(0) ? WH_EXIT_MET : WH_EXIT_USAGE;
     }
     for (size_t i = 0; i < SUBCOMMANDS; ++i) {
         if (strcmp(argv[1], subcommands[i].name) == 0) {
             return subcommands[i].act(argc - 1, argv + 1);
         }
     }
-    fprintf(stderr, "waferhand: %s: no such command (see waferhand --help)\n", argv[1]);
+    refuse(argv[1]);
     return WH_EXIT_USAGE;
 }

@@ -3,6 +3,7 @@
 
 #include "app.h"
 #include "connection.h"
+#include "prompt/input.h"
 #include "prompt/prompt.h"
 #include "run_arguments.h"
 
@@ -38,11 +39,12 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, link.log_time)},
     {0}};
 
-static const wh_option_table_t tables[] = {{options, 0, NULL},
-                                           {wh_record_options, offsetof(arguments_t, link.record), NULL},
-                                           {wh_run_options, offsetof(arguments_t, run), NULL},
-                                           {wh_run_files_options, offsetof(arguments_t, run.files), NULL},
-                                           {0}};
+static const wh_option_table_t tables[] = {
+    {options, 0, NULL, NULL},
+    {wh_record_options, offsetof(arguments_t, link.record), NULL, wh_record_arguments_check},
+    {wh_run_options, offsetof(arguments_t, run), NULL, NULL},
+    {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
+    {0}};
 
 /* True if an output is wanted that only a script's run has. */
 static bool wants_run(const wh_run_arguments_t *run) {
@@ -62,10 +64,10 @@ static void check(const void *given, struct argp_state *state) {
                    (unsigned long long)arguments->most_missed);
     }
     if (arguments->layout && wants_run(&arguments->run)) {
-        argp_error(state,
-                   "--json, --gantt, --margins, --segments, --report, --gltf and --data go with a script");
+        argp_error(
+            state,
+            "--json, --gantt, --margins, --segments, --report, --gltf, --data and --svg go with a script");
     }
-    wh_record_arguments_check(&arguments->link.record, state);
 }
 
 static const wh_command_line_t command_line = {
@@ -73,14 +75,13 @@ static const wh_command_line_t command_line = {
     .synopsis = "SCRIPT\n--layout FILE",
     .about = "Motion control over LCM: plays a script against the simulator, or takes an operator's commands "
              "such as GET A 1 "
-             "from standard input and WAFERHAND_REQUEST and answers each in one line.\v"
-             "Exit status: 0 if all expectations were met or all commands succeeded, 1 if not or if the cell "
-             "failed, "
-             "2 for wrong usage or a bad input file, 5 if it failed because the simulator did not answer "
-             "within --timeout. At a terminal commands may fail.",
+             "from standard input and WAFERHAND_REQUEST and answers each in one line. The simulator is "
+             "another process at the same URL, waferhand sim LAYOUT, with the same layout; either may start "
+             "first.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "script",
     .operand_variable = offsetof(arguments_t, run.run.script),
+    .operand_may_lack = true,
     .check = check};
 
 /* --------------------------------------------------------------------------------------------- the prompt */
@@ -96,10 +97,15 @@ static void attend(void *user) {
     attendance_t *attendance = user;
     char line[WH_LINK_LINE];
     wh_mcs_process_idle(&attendance->link->control);
-    while (wh_mcs_process_next_request(&attendance->link->control, line)) {
+    while (!wh_interrupt_is_due() && wh_mcs_process_next_request(&attendance->link->control, line)) {
         const wh_status_t status = wh_session_execute(attendance->session, line, answer, sizeof answer);
-        wh_mcs_process_answer(&attendance->link->control, status, line, answer);
+        wh_mcs_process_answer(&attendance->link->control, status, answer);
     }
+}
+
+static void stop_waiting(void *user) {
+    const attendance_t *attendance = user;
+    wh_mcs_process_stop_waiting(&attendance->link->control);
 }
 
 static void say(void *user, const char *line) {
@@ -108,7 +114,7 @@ static void say(void *user, const char *line) {
 
 static int take_commands(wh_session_t *session, wh_mcs_link_t *link) {
     attendance_t attendance = {link, session};
-    const wh_prompt_watch_t watch = {wh_node_descriptor(&link->node), attend, &attendance};
+    const wh_prompt_watch_t watch = {wh_node_descriptor(&link->node), attend, stop_waiting, &attendance};
     wh_prompt_t *prompt = wh_prompt_open(session, &watch);
     link->control.last_beat_us = wh_node_clock_us(); /* what is piped in goes before the first beat */
     link->node.listener = say;
@@ -162,6 +168,8 @@ static int run_prompt(const arguments_t *arguments, wh_mcs_link_t *link) {
 static int run_script(arguments_t *arguments, wh_mcs_link_t *link) {
     wh_script_run_options_t *run = &arguments->run.run;
     link->control.script = run->script;
+    arguments->run.recording = arguments->run.record ? &link->record : NULL;
+    arguments->run.unwritten = &link->control.client.counters.unwritten;
     run->partners = wh_mcs_process_partners(&link->control);
     run->limits_missed = arguments->most_missed != NO_LIMIT;
     run->most_missed = run->limits_missed ? (int64_t)arguments->most_missed : 0;
@@ -170,16 +178,19 @@ static int run_script(arguments_t *arguments, wh_mcs_link_t *link) {
 
 int wh_app_mcs(int argc, char **argv) {
     static wh_mcs_link_t link;
-    arguments_t arguments = {.link = {.client = {.stop = &wh_stop_requested}}, .most_missed = NO_LIMIT};
+    arguments_t arguments = {
+        .link = {.client = {.stop = &wh_stop_requested, .interrupted = wh_interrupt_is_due}},
+        .most_missed = NO_LIMIT};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
     arguments.link.client.timeout_us = (int64_t)(arguments.timeout_s * 1e6);
-    arguments.run.record =
-        arguments.link.record.all ? arguments.link.record.all : arguments.link.record.slices;
+    arguments.run.record = wh_record_arguments_path(&arguments.link.record, &arguments.run.record_option);
+    arguments.run.outputs = arguments.link.client.outputs;
     int status = WH_EXIT_USAGE;
-    if (wh_mcs_link_open(&link, &arguments.link)) {
+    if (wh_run_files_are_apart(&arguments.run, arguments.layout) &&
+        wh_mcs_link_open(&link, &arguments.link)) {
         status = arguments.layout ? run_prompt(&arguments, &link) : run_script(&arguments, &link);
-        if (status == WH_EXIT_FAILED && link.control.client.timed_out) {
+        if (status == WH_EXIT_FAILED && link.control.ended_with == WH_STATUS_NO_ANSWER) {
             status = WH_EXIT_NO_ANSWER;
         }
         status = wh_mcs_link_close(&link) ? status : WH_EXIT_USAGE;

@@ -1,12 +1,14 @@
 /* waferhand replay FILE */
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../log/reading.h"
 #include "../text/json.h"
 #include "../text/options.h"
+#include "../text/style.h"
+#include "apart.h"
 #include "app.h"
 
 typedef struct {
@@ -22,18 +24,14 @@ static const wh_option_t options[] = {
      WH_OPTION_FLAG, .variable = offsetof(arguments_t, lenient)},
     {0}};
 
-static const wh_option_table_t tables[] = {{options, 0, NULL}, {0}};
+static const wh_option_table_t tables[] = {{options, 0, NULL, NULL}, {0}};
 
 static const wh_command_line_t command_line = {
     .name = "replay",
     .synopsis = "FILE",
     .about =
         "Steps the library through the commands of an LCM event log and compares each slice's state, body "
-        "and hash.\v"
-        "Exit status: 0 the log is whole and every slice is as recorded; 1 a slice differs; 2 unusable: "
-        "unreadable, no log, or no run in it; 3 damaged or incomplete: something of ours is missing, "
-        "garbage, or was passed over; 4 cut off: all before is as recorded, and the end of the run is not "
-        "there. It is about the recording: whether the run passed is printed.",
+        "and hash.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "file",
     .operand_variable = offsetof(arguments_t, path)};
@@ -44,6 +42,7 @@ typedef struct {
     const wh_replay_t *replay;
     const wh_reading_t *reading;
     wh_reading_verdict_t verdict;
+    char reason[WH_READING_REASON];
 } result_t;
 
 /* --------------------------------------------------------------------------------------------- for people */
@@ -73,11 +72,10 @@ static void print_counts(const wh_replay_run_t *run, bool lacks_end) {
     print_counted(run->collisions, "event of the collision check: not compared",
                   "events of the collision check: not compared");
     if (run->taken_up > 0) {
-        printf("  taken up from a recorded state %" PRId64 " %s, where commands are not in the log; %" PRId64
-               " %s passed over\n",
-               run->taken_up, run->taken_up == 1 ? "time" : "times", run->skipped,
-               run->skipped == 1 ? "slice" : "slices");
+        printf("  taken up from a recorded state %" PRId64 " %s, where commands are not in the log\n",
+               run->taken_up, run->taken_up == 1 ? "time" : "times");
     }
+    print_counted(run->skipped, "slice was passed over", "slices were passed over");
     print_counted(
         run->doubtful,
         "slice that is not as recorded behind commands without states: their valves are not known",
@@ -97,29 +95,48 @@ static void print_difference(const wh_replay_t *replay, const wh_replay_run_t *r
            doubtful ? ", or the cell does: nothing vouches for it" : "");
 }
 
-static int64_t lost_expectations(const wh_replay_run_t *run) {
-    const int64_t there = (int64_t)(run->expectations.next - wh_log_numbers_missing(&run->expectations));
-    return run->told.verdict == WH_OUTCOME_UNTOLD ? 0 : run->told.expectations - there;
+/* Why the run failed: as motion control told, or what its counts leave. */
+static void print_reason(const wh_replay_run_t *run) {
+    if (run->reason) {
+        char *reason = wh_style_printable(run->reason);
+        printf("; %s", reason);
+        free(reason);
+    } else if (run->told.verdict == WH_OUTCOME_FAILED && run->told.met == run->told.expectations) {
+        fputs("; the cell complained", stdout);
+    }
 }
 
 static void print_outcome(const wh_replay_run_t *run) {
     const wh_outcome_verdict_t verdict = run->told.verdict;
-    if (verdict == WH_OUTCOME_PASSED || verdict == WH_OUTCOME_FAILED) {
-        printf("  the run %s: %" PRId64 " of %" PRId64 " expectations met\n", wh_outcome_word(verdict),
+    if (run->is_told_wrong) {
+        puts("  what the log tells of the run's result contradicts itself");
+    } else if (verdict == WH_OUTCOME_PASSED || verdict == WH_OUTCOME_FAILED) {
+        printf("  the run %s: %" PRId64 " of %" PRId64 " expectations met", wh_outcome_word(verdict),
                run->told.met, run->told.expectations);
+        print_reason(run);
+        putchar('\n');
     } else if (verdict == WH_OUTCOME_ENDED) {
         puts("  the session ended");
     } else {
         puts(run->unmet > 0 ? "  the run failed: an expectation was not met; the log does not tell its end"
                             : "  the log does not tell if the run passed");
     }
-    print_counted(lost_expectations(run), "expectation is not in the log", "expectations are not in the log");
+    print_counted(wh_reading_lost_expectations(run), "expectation is not in the log",
+                  "expectations are not in the log");
+}
+
+static void print_other_layout(const wh_replay_run_t *run) {
+    if (run->is_other_layout) {
+        print_counted(run->homeless, "command of another layout, which the simulator refused",
+                      "commands of another layout, which the simulator refused");
+    }
 }
 
 static void print_run(const wh_replay_t *replay, const wh_replay_run_t *run) {
     if (!run->is_begun) {
         printf("run %016" PRIx64 ": no slices\n", (uint64_t)run->run);
         print_outcome(run);
+        print_other_layout(run);
         return;
     }
     printf("run %016" PRIx64 ": slices %" PRId64 " to %" PRId64 ", %" PRId64 " compared, hash %016" PRIx64
@@ -134,29 +151,12 @@ static void print_run(const wh_replay_t *replay, const wh_replay_run_t *run) {
     print_difference(replay, run);
 }
 
-/* What is said of each loss, and its key in JSON. */
-static const struct {
-    const char *key, *one, *many;
-} losses[WH_REPLAY_LOSSES] = {
-    [WH_REPLAY_GARBAGE] = {"garbage", "event on our channels is no sound message",
-                           "events on our channels are no sound messages"},
-    [WH_REPLAY_UNCHECKED] = {"unchecked", "command or state has no check",
-                             "commands and states have no check"},
-    [WH_REPLAY_STRAY] = {"stray", "message of ours is on another channel",
-                         "messages of ours are on other channels"},
-    [WH_REPLAY_CONTRADICTS] = {"contradicting", "message does not fit what the log tells elsewhere",
-                               "messages do not fit what the log tells elsewhere"},
-    [WH_REPLAY_HOMELESS] = {"homeless", "message is of a layout whose cell is not in the log",
-                            "messages are of layouts whose cells are not in the log"},
-    [WH_REPLAY_LATE] = {"late", "message of a run comes when another one goes on",
-                        "messages of a run come when another one goes on"}};
-
 static void print_losses(const wh_replay_t *replay) {
     for (size_t i = 0; i < WH_REPLAY_LOSSES; ++i) {
         const wh_replay_count_t *loss = &replay->losses[i];
         if (loss->count > 0) {
             printf("%" PRIu64 " %s, the first at byte %" PRIu64 "\n", loss->count,
-                   loss->count == 1 ? losses[i].one : losses[i].many, loss->first);
+                   loss->count == 1 ? wh_reading_losses[i].one : wh_reading_losses[i].many, loss->first);
         }
     }
     if (replay->proximities > 0) {
@@ -192,11 +192,11 @@ static void print_numbers(const wh_log_numbers_t *numbers) {
 /* What the recording says of itself. */
 static void print_recording(const wh_replay_recording_t *recording) {
     if (recording->part > 1 || recording->closed == WH_RECORDING_GOES_ON) {
-        printf("part %d of a recording%s\n", (int)recording->part,
+        printf("part %d of recording %016" PRIx64 "%s\n", (int)recording->part, (uint64_t)recording->id,
                recording->closed == WH_RECORDING_GOES_ON ? ", which goes on in the next part" : "");
     }
     if (recording->is_changed) {
-        puts("the log's digest is another one: something in it was changed, lost or put in");
+        puts(WH_READING_CHANGED);
     }
 }
 
@@ -218,28 +218,27 @@ static void print_damage(const char *path, const wh_reading_t *reading) {
     }
 }
 
-static void print_table(const result_t *result) {
+static int print_table(const result_t *result) {
     static const char *const verdicts[] = {[WH_READING_SAME] = "every slice is as recorded",
                                            [WH_READING_DIFFERS] = "not as recorded",
                                            [WH_READING_UNUSABLE] = "",
                                            [WH_READING_INCOMPLETE] =
-                                               "damaged or incomplete: not shown to be as recorded",
-                                           [WH_READING_CUT] = "cut off: every slice before is as recorded"};
+                                               "damaged or incomplete, not shown to be as recorded",
+                                           [WH_READING_CUT] = "cut off, every slice before is as recorded"};
     for (size_t i = 0; i < result->replay->run_count; ++i) {
         print_run(result->replay, &result->replay->runs[i]);
     }
     print_recording(&result->replay->recording);
     print_losses(result->replay);
     print_numbers(&result->reading->numbers);
-    print_damage(result->arguments->path, result->reading);
-    puts(verdicts[result->verdict]);
+    char *path = wh_style_printable(result->arguments->path);
+    print_damage(path, result->reading);
+    free(path);
+    printf("%s%s%s\n", verdicts[result->verdict], result->reason[0] ? ": " : "", result->reason);
+    return 0;
 }
 
 /* ------------------------------------------------------------------------------------------- for programs */
-
-static json_t *hexadecimal(uint64_t value) {
-    return json_sprintf("%016llx", (unsigned long long)value);
-}
 
 static json_t *difference_to_json(const wh_replay_run_t *run) {
     if (run->differing == 0) {
@@ -253,29 +252,33 @@ static json_t *difference_to_json(const wh_replay_run_t *run) {
 
 static json_t *outcome_to_json(const wh_replay_run_t *run) {
     const wh_run_told_t *told = &run->told;
-    if (told->verdict == WH_OUTCOME_UNTOLD) {
+    if (told->verdict == WH_OUTCOME_UNTOLD && !run->is_told_wrong) {
         return json_null();
     }
-    return wh_json_add(json_object(), "verdict commands expectations met cycles expectations_lost",
-                       wh_json_text(wh_outcome_word(told->verdict)), json_integer(told->commands),
+    return wh_json_add(json_object(),
+                       "verdict reason contradicts commands expectations met cycles expectations_lost",
+                       wh_json_text(wh_outcome_word(told->verdict)), wh_json_text(run->reason),
+                       json_boolean(run->is_told_wrong), json_integer(told->commands),
                        json_integer(told->expectations), json_integer(told->met), json_integer(told->cycles),
-                       json_integer(lost_expectations(run)), NULL);
+                       json_integer(wh_reading_lost_expectations(run)), NULL);
 }
 
 static json_t *run_to_json(const void *subject, size_t i) {
     const wh_replay_run_t *run = &((const wh_replay_t *)subject)->runs[i];
     json_t *object =
         wh_json_add(json_object(), "run first_slice last_slice compared differing unanswered last_unanswered",
-                    hexadecimal((uint64_t)run->run), json_integer(run->first_slice),
+                    wh_json_hash((uint64_t)run->run), json_integer(run->first_slice),
                     json_integer(run->last_slice), json_integer(run->compared), json_integer(run->differing),
                     json_integer(run->unanswered), json_integer(run->last_unanswered), NULL);
     return wh_json_add(object,
-                       "outside_valves taken_up skipped missed refused doubtful collisions_not_compared over "
-                       "hash outcome first_difference",
+                       "outside_valves taken_up skipped missed refused other_layout doubtful "
+                       "collisions_not_compared begins_in_part over hash outcome first_difference",
                        json_integer(run->outside_valves), json_integer(run->taken_up),
                        json_integer(run->skipped), json_integer(run->missed), json_integer(run->refused),
-                       json_integer(run->doubtful), json_integer(run->collisions), json_boolean(run->over),
-                       hexadecimal(run->hash), outcome_to_json(run), difference_to_json(run), NULL);
+                       json_integer(run->is_other_layout ? run->homeless : 0), json_integer(run->doubtful),
+                       json_integer(run->collisions), json_boolean(run->begins_in_part),
+                       json_boolean(run->over), wh_json_hash(run->hash), outcome_to_json(run),
+                       difference_to_json(run), NULL);
 }
 
 static json_t *gap_to_json(const void *subject, size_t i) {
@@ -293,23 +296,25 @@ static json_t *damage_to_json(const void *subject, size_t i) {
 static void put_recording(const wh_replay_recording_t *recording, json_t *root) {
     const bool tells = recording->version > 0;
     (void)wh_json_add(
-        root, "version part closed program changed", json_integer(tells ? recording->version : 1),
+        root, "version id part closed goes_on program changed", json_integer(tells ? recording->version : 1),
+        tells ? wh_json_hash((uint64_t)recording->id) : json_null(),
         tells ? json_integer(recording->part) : json_null(),
         tells ? json_boolean(recording->closed != WH_RECORDING_BEGINS) : json_null(),
+        tells ? json_boolean(recording->closed == WH_RECORDING_GOES_ON) : json_null(),
         tells ? wh_json_text(recording->program) : json_null(), json_boolean(recording->is_changed), NULL);
 }
 
 static void put_losses(const wh_replay_t *replay, json_t *root) {
     json_t *first = json_object();
     for (size_t i = 0; i < WH_REPLAY_LOSSES; ++i) {
-        wh_json_put_integer(root, losses[i].key, (json_int_t)replay->losses[i].count);
+        wh_json_put(root, wh_reading_losses[i].key, json_integer((json_int_t)replay->losses[i].count));
         if (replay->losses[i].count > 0) {
-            wh_json_put_integer(first, losses[i].key, (json_int_t)replay->losses[i].first);
+            wh_json_put(first, wh_reading_losses[i].key, json_integer((json_int_t)replay->losses[i].first));
         }
     }
     wh_json_put(root, "first_bytes", first);
-    wh_json_put_integer(root, "proximities_not_compared", (json_int_t)replay->proximities);
-    wh_json_put_integer(root, "runs_left_out", (json_int_t)replay->runs_left_out);
+    wh_json_put(root, "proximities_not_compared", json_integer((json_int_t)replay->proximities));
+    wh_json_put(root, "runs_left_out", json_integer((json_int_t)replay->runs_left_out));
 }
 
 static void put_file(const wh_reading_t *reading, json_t *root) {
@@ -321,18 +326,18 @@ static void put_file(const wh_reading_t *reading, json_t *root) {
                       json_integer((json_int_t)numbers->doubled), json_integer((json_int_t)numbers->moved),
                       json_integer((json_int_t)numbers->misnumbered), NULL);
     wh_json_put(root, "gaps", wh_json_list(gap_to_json, numbers, numbers->gap_count));
-    wh_json_put_integer(root, "damaged", (json_int_t)reading->damage_count);
+    wh_json_put(root, "damaged", json_integer((json_int_t)reading->damage_count));
     wh_json_put(root, "damage", wh_json_list(damage_to_json, reading, named));
-    wh_json_put_integer(root, "frames_damaged", (json_int_t)reading->broken);
+    wh_json_put(root, "frames_damaged", json_integer((json_int_t)reading->broken));
     wh_json_put(root, "cut_at", reading->is_cut ? json_integer((json_int_t)reading->cut_at) : json_null());
 }
 
 static int print_json(const result_t *result) {
     json_t *root = wh_json_add(
-        json_object(), "format ok verdict lenient file events", json_integer(2),
+        json_object(), "format ok verdict reason lenient file events", json_integer(2),
         json_boolean(result->verdict == WH_READING_SAME), wh_json_text(wh_reading_word(result->verdict)),
-        json_boolean(result->arguments->lenient), wh_json_text(result->arguments->path),
-        json_integer((json_int_t)result->reading->events), NULL);
+        wh_json_text(result->reason[0] ? result->reason : NULL), json_boolean(result->arguments->lenient),
+        wh_json_text(result->arguments->path), json_integer((json_int_t)result->reading->events), NULL);
     put_recording(&result->replay->recording, root);
     put_losses(result->replay, root);
     put_file(result->reading, root);
@@ -362,12 +367,7 @@ static int print(const result_t *result) {
         print_unusable(result);
         return WH_EXIT_USAGE;
     }
-    int printed = 0;
-    if (result->arguments->json) {
-        printed = print_json(result);
-    } else {
-        print_table(result);
-    }
+    const int printed = result->arguments->json ? print_json(result) : print_table(result);
     return wh_app_is_printed(printed) ? (int)result->verdict : WH_EXIT_USAGE;
 }
 
@@ -377,17 +377,22 @@ int wh_app_replay(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_reading_t reading;
     wh_options_parse(&command_line, argc, argv, &arguments);
-    FILE *file = wh_log_file(arguments.path);
+    const wh_named_file_t named = {"the log", arguments.path, false};
+    if (!wh_files_are_apart(&named, 1, true)) {
+        return WH_EXIT_USAGE;
+    }
+    const char *fault = NULL;
+    FILE *file = wh_log_file(arguments.path, &fault);
     if (!file) {
-        fprintf(stderr, "%s: %s (expected an LCM event record)\n", arguments.path, strerror(errno));
+        fprintf(stderr, "%s: %s (expected an LCM event record)\n", arguments.path, fault);
         return WH_EXIT_USAGE;
     }
     memset(&replay, 0, sizeof replay);
     wh_reading_replay(file, &log, &replay, &reading);
     wh_log_close(&log);
     (void)fclose(file);
-    const result_t result = {&arguments, &replay, &reading,
-                             wh_reading_judge(&replay, &reading, arguments.lenient)};
+    result_t result = {.arguments = &arguments, .replay = &replay, .reading = &reading};
+    result.verdict = wh_reading_judge(&replay, &reading, arguments.lenient, result.reason);
     const int status = print(&result);
     wh_replay_close(&replay);
     return status;

@@ -1,6 +1,5 @@
 /* waferhand report RUN */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "../log/log_run.h"
@@ -14,39 +13,68 @@ typedef struct {
 } arguments_t;
 
 static const wh_option_t options[] = {
-    {"layout", 0, "FILE", "Of a log: its layout's file, if it is not where the log says", WH_OPTION_TEXT,
-     .variable = offsetof(arguments_t, layout)},
+    {"layout", 0, "FILE",
+     "Of a log: its layout's file, if it is not where the log says; another layout is refused",
+     WH_OPTION_TEXT, .variable = offsetof(arguments_t, layout)},
     {"run", 0, "N", "Of a log: its N-th run that has slices (default: the last)", WH_OPTION_COUNT,
      .variable = offsetof(arguments_t, number), .least = 1, .expected = "a whole number from 1"},
     {0}};
 
-static const wh_option_table_t tables[] = {{options, 0, NULL},
-                                           {wh_run_options, offsetof(arguments_t, run), NULL},
-                                           {wh_run_files_options, offsetof(arguments_t, run.files), NULL},
-                                           {0}};
+static const wh_option_table_t tables[] = {
+    {options, 0, NULL, NULL},
+    {wh_run_options, offsetof(arguments_t, run), NULL, NULL},
+    {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
+    {0}};
 
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (!arguments->run.run.script) {
         argp_error(state, "of which run?");
     }
-    if (!wh_run_files_wanted(&arguments->run.files) && !arguments->run.json) {
-        argp_error(state, "into which file? (-o FILE, --gltf FILE, --data FILE or --svg DIR; or --json)");
+    if (arguments->run.gantt || arguments->run.margins) {
+        argp_error(state, "%s: a report prints no table (waferhand run SCRIPT does)",
+                   arguments->run.gantt ? "--gantt" : "--margins");
+    }
+    if (!wh_run_files_wanted(&arguments->run.files) && !arguments->run.segments_path &&
+        !arguments->run.json) {
+        argp_error(state, "into which file? (-o FILE, --gltf FILE, --data FILE, --svg DIR or, of a script, "
+                          "--segments FILE; or --json)");
     }
 }
 
 static const wh_command_line_t command_line = {
     .name = "report",
     .synopsis = "RUN",
-    .about =
-        "Makes a page of a run, which is a script that is run again, or an LCM event log: the cell in "
-        "motion, plots "
-        "and tables, in one file that opens without a network; or its plots for print.\v"
-        "Exit status: 0 if it was written, whatever came of the run; 2 for wrong usage or a bad input file.",
+    .about = "Makes a page of a run, which is a script that is run again, or an LCM event log: the cell in "
+             "motion, plots "
+             "and tables, in one file that opens without a network; or its plots for print.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "script",
     .operand_variable = offsetof(arguments_t, run.run.script),
+    .operand_may_lack = true,
     .check = check};
+
+/* A parameter goes to the layout's file, if that is the log's. Of a layout that reads some, the others may be
+ * the script's. */
+static bool is_set_read(const wh_log_run_t *run) {
+    wh_sandbox_result_t result;
+    const wh_log_run_options_t *given = &run->options;
+    if (given->layout.parameter_count == 0) {
+        return true;
+    }
+    if (!run->cell.is_whole) {
+        fprintf(stderr, "--set %s: %s (expected the log's layout, which --layout FILE names)\n",
+                given->layout.parameters[0], run->cell.note);
+        return false;
+    }
+    wh_sandbox_t *sandbox = run->cell.sandbox;
+    const bool unread =
+        wh_sandbox_find_unread(sandbox, result.message) && !wh_sandbox_reads_parameters(sandbox);
+    if (unread) {
+        fprintf(stderr, "%s: %s\n", given->path, result.message);
+    }
+    return !unread;
+}
 
 static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
     const wh_script_run_options_t *given = &arguments->run.run;
@@ -59,24 +87,43 @@ static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
     if (!wh_run_files_are_apart(&arguments->run, run->cell.layout->path)) {
         return false;
     }
-    char *command = wh_run_files_command("replay", given->script, NULL, 0);
-    const wh_document_t document = {.title = given->script,
-                                    .reproduce = command,
-                                    .source = "log",
-                                    .parameters = given->parameters,
-                                    .parameter_count = given->parameter_count,
+    if (!is_set_read(run)) {
+        return false;
+    }
+    if (run->worth.reason[0] != '\0') {
+        fprintf(stderr, "%s: %s: %s\n", given->script, run->worth.verdict, run->worth.reason);
+    }
+    const wh_document_t document = {.source = "log",
                                     .notes = run->notes,
                                     .note_count = run->note_count,
                                     .record = &run->record,
                                     .signals = &run->signals};
-    const bool written =
-        !wh_run_files_wanted(&arguments->run.files) || wh_run_files_write(&arguments->run.files, &document);
-    free(command);
-    return written && wh_app_is_printed(wh_run_print(&arguments->run, &run->record));
+    return wh_run_files_write(&arguments->run, &document) &&
+           wh_app_is_printed(wh_run_print(&arguments->run, &run->record));
+}
+
+/* What only a script has. */
+static const char *find_foreign(const wh_run_arguments_t *run) {
+    return run->budget > 0         ? "--budget"
+           : run->memory_mib > 0   ? "--memory"
+           : run->run.limits.trust ? "--trust"
+                                   : NULL;
 }
 
 static int report_log(const arguments_t *arguments) {
     static wh_log_run_t run;
+    const char *foreign = find_foreign(&arguments->run);
+    if (foreign) {
+        fprintf(stderr, "%s goes with a script: %s is a log, of which nothing is played\n", foreign,
+                arguments->run.run.script);
+        return WH_EXIT_USAGE;
+    }
+    if (arguments->run.segments_path) {
+        fprintf(stderr,
+                "--segments %s: not written: %s is a log (expected a script, whose run has segments)\n",
+                arguments->run.segments_path, arguments->run.run.script);
+        return WH_EXIT_USAGE;
+    }
     const bool written = write_log(arguments, &run);
     wh_log_run_close(&run);
     return written ? WH_EXIT_MET : WH_EXIT_USAGE;
@@ -101,13 +148,14 @@ static int report_script(arguments_t *arguments, bool is_text) {
 static int report(arguments_t *arguments) {
     static const unsigned char sync[4] = {0xED, 0xA1, 0xDA, 0x01};
     char begin[512];
-    FILE *file = fopen(arguments->run.run.script, "rb");
+    const char *fault = NULL; /* which a script's reader tells */
+    FILE *file = wh_log_file(arguments->run.run.script, &fault);
     const size_t size = file ? fread(begin, 1, sizeof begin, file) : 0;
     if (file) {
         (void)fclose(file);
     }
-    const bool is_log = wh_log_source_is_packed(begin, size) ||
-                        (size >= sizeof sync && memcmp(begin, sync, sizeof sync) == 0);
+    const bool is_log =
+        wh_log_is_packed(begin, size) || (size >= sizeof sync && memcmp(begin, sync, sizeof sync) == 0);
     return is_log ? report_log(arguments) : report_script(arguments, !memchr(begin, '\0', size));
 }
 

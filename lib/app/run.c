@@ -1,8 +1,7 @@
 /* waferhand run SCRIPT */
-#include "../link/mcs_process.h"
 #include "../link/sim_process.h"
 #include "app.h"
-#include "record_arguments.h"
+#include "connection.h"
 #include "run_arguments.h"
 
 typedef struct {
@@ -19,31 +18,27 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, url)},
     {0}};
 
-static const wh_option_table_t tables[] = {{options, 0, NULL},
-                                           {wh_record_options, offsetof(arguments_t, record), NULL},
-                                           {wh_run_options, offsetof(arguments_t, run), NULL},
-                                           {wh_run_files_options, offsetof(arguments_t, run.files), NULL},
-                                           {0}};
-
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
-    if (!arguments->run.run.script) {
-        argp_error(state, "which script?");
+    if (arguments->url && !arguments->lcm) {
+        argp_error(state, "--lcm-url: %s (goes with --lcm)", arguments->url);
     }
-    wh_record_arguments_check(&arguments->record, state);
 }
+
+static const wh_option_table_t tables[] = {
+    {options, 0, NULL, check},
+    {wh_record_options, offsetof(arguments_t, record), NULL, wh_record_arguments_check},
+    {wh_run_options, offsetof(arguments_t, run), NULL, NULL},
+    {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
+    {0}};
 
 static const wh_command_line_t command_line = {
     .name = "run",
     .synopsis = "SCRIPT",
-    .about =
-        "Plays a motion script against the simulator and prints what came of it.\v"
-        "Exit status: 0 if all expectations were met, 1 if the script's expectations or the cell failed, "
-        "2 for wrong usage or a bad input file.",
+    .about = "Plays a motion script against the simulator and prints what came of it.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "script",
-    .operand_variable = offsetof(arguments_t, run.run.script),
-    .check = check};
+    .operand_variable = offsetof(arguments_t, run.run.script)};
 
 /* ---------------------------------------------------------------------------------------------- broadcast */
 
@@ -116,48 +111,29 @@ static int64_t missed_slices(wh_link_t *link) {
     return 0;
 }
 
+/* `user` is the broadcast's motion control. */
 static wh_link_t *connect_simulation(void *user, wh_mcs_t *mcs) {
-    broadcast_t *broadcast = user;
+    broadcast_t *broadcast = (broadcast_t *)(void *)((char *)user - offsetof(broadcast_t, control));
     if (wh_sim_process_open(&broadcast->simulation, &broadcast->node, mcs->layout, false) != WH_OK) {
         return NULL;
     }
     broadcast->identity.run = wh_protocol_client_draw_run();
     broadcast->identity.layout_hash = broadcast->simulation.server.identity.layout_hash;
     broadcast->simulation.server.encodes_later = !broadcast->is_watched;
-    broadcast->record.options.inputs[1] = mcs->layout->path;
     broadcast->connected = true;
     broadcast->control.identity = broadcast->identity;
     wh_mcs_process_catch_up(&broadcast->control, mcs);
     return &broadcast->link;
 }
 
-static void watch(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
-    wh_mcs_process_t *control = &((broadcast_t *)user)->control;
-    wh_mcs_process_partners(control).watch(control, mcs, command, ended);
-}
-
-static void expected(void *user, const wh_mcs_t *mcs) {
-    wh_mcs_process_t *control = &((broadcast_t *)user)->control;
-    wh_mcs_process_partners(control).expected(control, mcs);
-}
-
-static void cycle(void *user, const wh_mcs_t *mcs) {
-    wh_mcs_process_t *control = &((broadcast_t *)user)->control;
-    wh_mcs_process_partners(control).cycle(control, mcs);
-}
-
-static void finished(void *user, const wh_mcs_t *mcs) {
-    wh_mcs_process_t *control = &((broadcast_t *)user)->control;
-    wh_mcs_process_partners(control).finished(control, mcs);
-}
-
 static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
+    const wh_mcs_partners_t told = wh_mcs_process_partners(&broadcast->control);
     const wh_mcs_partners_t partners = {.connect = connect_simulation,
-                                        .watch = watch,
-                                        .expected = expected,
-                                        .cycle = cycle,
-                                        .finished = finished,
-                                        .user = broadcast};
+                                        .watch = told.watch,
+                                        .expected = told.expected,
+                                        .cycle = told.cycle,
+                                        .finished = told.finished,
+                                        .user = told.user};
     const wh_protocol_client_options_t lockstep = {.rate = 0};
     if (!wh_mcs_process_open(&broadcast->control, &broadcast->node, &lockstep)) {
         return WH_EXIT_USAGE;
@@ -178,11 +154,11 @@ static int run_published(arguments_t *arguments) {
     const char *url = arguments->lcm ? arguments->url : "memq://";
     broadcast.is_watched = arguments->lcm || arguments->record.all;
     wh_record_arguments_apply(&arguments->record, "run", true, &broadcast.record);
-    broadcast.record.options.inputs[0] = arguments->run.run.script;
     if ((arguments->lcm && !wh_node_reaches_others(url)) ||
         !wh_node_open(&broadcast.node, url, &broadcast.record)) {
         return WH_EXIT_USAGE;
     }
+    arguments->run.recording = broadcast.record.options.path ? &broadcast.record : NULL;
     const int status = run_on(&broadcast, &arguments->run);
     wh_node_close(&broadcast.node);
     return wh_recording_close(&broadcast.record) ? status : WH_EXIT_USAGE;
@@ -192,9 +168,12 @@ int wh_app_run(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
-    arguments.run.record = arguments.record.all ? arguments.record.all : arguments.record.slices;
-    const bool published = arguments.lcm || arguments.record.slices || arguments.record.all;
-    const int status = published ? run_published(&arguments) : wh_run_and_print(&arguments.run);
+    arguments.run.record = wh_record_arguments_path(&arguments.record, &arguments.run.record_option);
+    const bool published = arguments.lcm || arguments.run.record;
+    int status = WH_EXIT_USAGE;
+    if (wh_run_files_are_apart(&arguments.run, NULL)) {
+        status = published ? run_published(&arguments) : wh_run_and_print(&arguments.run);
+    }
     wh_run_arguments_free(&arguments.run);
     return status;
 }

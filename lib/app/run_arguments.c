@@ -1,16 +1,15 @@
 /* A script's run, for `run` and `mcs`, and the files that it is written to. */
 #include "run_arguments.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "../link/outputs.h"
 #include "../print/record_print.h"
 #include "../report/page.h"
 #include "../report/plots.h"
 #include "../text/array.h"
-#include "../text/output.h"
 #include "../text/style.h"
 #include "../view/scene.h"
 #include "apart.h"
@@ -29,8 +28,9 @@ const wh_option_t wh_run_options[] = {
      "ASCII "
      "letters and digits becomes _",
      WH_OPTION_TEXT, .variable = offsetof(wh_run_arguments_t, segments_path)},
-    {"set", 0, "NAME=VALUE", "Hand the script a parameter: params.NAME", WH_OPTION_LIST,
-     .variable = offsetof(wh_run_arguments_t, parameters)},
+    {"set", 0, "NAME=VALUE",
+     "Hand the script a parameter, params.NAME: a number if VALUE is one, true, false or text",
+     WH_OPTION_LIST, .variable = offsetof(wh_run_arguments_t, parameters)},
     {"trust", 0, NULL, "Let the script use all of Lua, files and native modules too", WH_OPTION_FLAG,
      .variable = offsetof(wh_run_arguments_t, run.limits.trust)},
     {"budget", 0, "N", "End the script after N steps of Lua and simulated slices (default 1e9)",
@@ -93,16 +93,19 @@ static void write_word(FILE *out, const char *word) {
     fputc('\'', out);
 }
 
-char *wh_run_files_command(const char *command, const char *file, const char *const parameters[],
-                           size_t count) {
+/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and
+ * a log. */
+static char *make_command(const wh_run_arguments_t *arguments, bool is_log) {
+    const wh_script_run_options_t *run = &arguments->run;
+    const char *command = arguments->command ? arguments->command : "run";
     char *text = NULL;
     size_t size = 0;
     FILE *out = wh_memory_need(open_memstream(&text, &size));
-    fprintf(out, "waferhand %s ", command);
-    write_word(out, file);
-    for (size_t i = 0; i < count; ++i) {
+    fprintf(out, "waferhand %s ", is_log ? "replay" : command);
+    write_word(out, run->script);
+    for (size_t i = 0; i < run->parameter_count && !is_log; ++i) {
         fputs(" --set ", out);
-        write_word(out, parameters[i]);
+        write_word(out, run->parameters[i]);
     }
     (void)fclose(out);
     return text;
@@ -117,45 +120,28 @@ typedef struct {
     char message[WH_PAGE_MESSAGE_BYTES]; /* why a page was not written; empty: errno says it */
 } content_t;
 
-/* Writes one of the files. */
-typedef bool writer_t(content_t *content, FILE *out);
-
-static bool write_page(content_t *content, FILE *out) {
+static bool write_page(void *user, FILE *out) {
+    content_t *content = user;
     return wh_page_write(out, content->document->title, content->text, content->size, content->message);
 }
 
-static bool write_scene(content_t *content, FILE *out) {
+static bool write_scene(void *user, FILE *out) {
+    const content_t *content = user;
     json_t *scene = wh_scene_make(content->document->signals, content->document->title, true);
     const bool written = json_dumpf(scene, out, JSON_COMPACT | JSON_REAL_PRECISION(9)) == 0;
     json_decref(scene);
     return written && fputc('\n', out) != EOF;
 }
 
-static bool write_document(content_t *content, FILE *out) {
+static bool write_document(void *user, FILE *out) {
+    const content_t *content = user;
     return fwrite(content->text, 1, content->size, out) == content->size;
-}
-
-static bool write_file(content_t *content, const char *path, writer_t *writer) {
-    wh_output_t output = {0};
-    if (!path) {
-        return true;
-    }
-    const bool written =
-        wh_output_open(&output, path) && writer(content, output.file) && wh_output_commit(&output);
-    const int reason = errno;
-    wh_output_drop(&output);
-    if (!written && content->message[0] != '\0') {
-        fprintf(stderr, "%s: not written: %s\n", path, content->message);
-    } else if (!written) {
-        fprintf(stderr, "%s: %s (expected a file that can be written)\n", path, strerror(reason));
-    }
-    return written;
 }
 
 static bool write_plots(const wh_document_t *document, const char *folder) {
     char message[WH_PLOTS_MESSAGE_BYTES] = "";
     if (folder && !wh_plots_write(document, folder, message)) {
-        fprintf(stderr, "%s: not written: %s\n", folder, message);
+        fprintf(stderr, "--svg %s: not written: %s\n", folder, message);
         return false;
     }
     return true;
@@ -163,6 +149,8 @@ static bool write_plots(const wh_document_t *document, const char *folder) {
 
 bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *input) {
     const wh_run_files_t *files = &arguments->files;
+    const bool is_told = arguments->recording && !wh_recording_is_sound(arguments->recording);
+    const char *record = is_told ? NULL : arguments->record;
     const wh_named_file_t named[] = {{"the input", arguments->run.script, false},
                                      {"the layout", input, false},
                                      {"--report", files->page, true},
@@ -170,23 +158,35 @@ bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *inp
                                      {"--data", files->document, true},
                                      {"--svg", files->plots, true},
                                      {"--segments", arguments->segments_path, true},
-                                     {"the recording", arguments->record, false}};
+                                     {arguments->record_option, record, true},
+                                     {"--outputs", arguments->outputs, true}};
     return wh_files_are_apart(named, sizeof named / sizeof named[0], arguments->json || !arguments->quiet);
 }
 
-bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *document) {
+bool wh_run_files_write(const wh_run_arguments_t *arguments, const wh_document_t *document) {
+    const wh_run_files_t *files = &arguments->files;
     wh_document_t whole = *document;
     content_t content = {.document = &whole};
+    if (!wh_run_files_wanted(files)) {
+        return true;
+    }
     FILE *out = wh_memory_need(open_memstream(&content.text, &content.size));
+    char *command = make_command(arguments, strcmp(document->source, "log") == 0);
+    whole.title = arguments->run.script;
+    whole.reproduce = command;
+    whole.parameters = arguments->run.parameters;
+    whole.parameter_count = arguments->run.parameter_count;
     whole.run = wh_record_to_json(document->record);
     const bool made = wh_document_write(&whole, out) == 0;
     if (fclose(out) != 0 || !made) {
         wh_memory_out();
     }
-    const bool written = write_file(&content, files->document, write_document) &&
-                         write_file(&content, files->scene, write_scene) &&
-                         write_file(&content, files->page, write_page) && write_plots(&whole, files->plots);
+    const bool written = wh_file_write("--data", files->document, write_document, &content, NULL) &&
+                         wh_file_write("--gltf", files->scene, write_scene, &content, NULL) &&
+                         wh_file_write("--report", files->page, write_page, &content, content.message) &&
+                         write_plots(&whole, files->plots);
     free(content.text);
+    free(command);
     json_decref(whole.run);
     return written;
 }
@@ -206,48 +206,30 @@ int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record)
     return wh_record_print_table(record, stdout, &style, sections);
 }
 
-static bool write_segments(const wh_run_arguments_t *arguments, const wh_script_run_t *run) {
-    if (arguments->segments_path && wh_segments_write(&run->mcs, arguments->segments_path) != 0) {
-        fprintf(stderr, "%s: %s (expected a file that can be written)\n", arguments->segments_path,
-                strerror(errno));
-        return false;
-    }
-    return true;
-}
-
 static bool write_report(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                          wh_signals_t *signals) {
-    const wh_script_run_options_t *script = &arguments->run;
     if (!wh_run_files_wanted(&arguments->files)) {
         return true;
     }
     if (!run->record.layout) {
         fprintf(stderr, "%s: no cell (expected a script that names a layout: there is nothing to show)\n",
-                script->script);
+                arguments->run.script);
         return false;
     }
     if (!signals->layout) {
         wh_signals_begin(signals, run->record.layout, true);
     }
     wh_signals_finish(signals);
-    char *command = wh_run_files_command(arguments->command ? arguments->command : "run", script->script,
-                                         script->parameters, script->parameter_count);
-    const wh_document_t document = {.title = script->script,
-                                    .reproduce = command,
-                                    .source = "run",
-                                    .parameters = script->parameters,
-                                    .parameter_count = script->parameter_count,
-                                    .record = &run->record,
-                                    .signals = signals};
-    const bool written = wh_run_files_write(&arguments->files, &document);
-    free(command);
-    return written;
+    const wh_document_t document = {.source = "run", .record = &run->record, .signals = signals};
+    return wh_run_files_write(arguments, &document);
 }
 
 static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                         wh_signals_t *signals) {
     const char *layout = run->record.layout ? run->record.layout->path : NULL;
-    return wh_run_files_are_apart(arguments, layout) && write_segments(arguments, run) &&
+    wh_segments_t segments = {&run->mcs, arguments->segments_path};
+    return wh_run_files_are_apart(arguments, layout) &&
+           wh_file_write("--segments", segments.path, wh_segments_write, &segments, NULL) &&
            write_report(arguments, run, signals);
 }
 
@@ -264,17 +246,36 @@ static int hand_on_bad(const wh_run_arguments_t *arguments, const wh_script_run_
     return WH_EXIT_USAGE;
 }
 
-static int hand_on(const wh_run_arguments_t *arguments, const wh_script_run_t *run, wh_signals_t *signals,
+/* A run of which the recording failed, or the valves were not written, is not told as good. Returns if it
+ * failed so. */
+static bool note_unwritten(const wh_run_arguments_t *arguments, wh_record_t *record) {
+    char text[PATH_MAX + 100] = "";
+    if (arguments->recording && !wh_recording_is_sound(arguments->recording)) {
+        (void)snprintf(text, sizeof text, "%s %s: the recording failed", arguments->record_option,
+                       arguments->record);
+    } else if (arguments->unwritten && *arguments->unwritten > 0) {
+        (void)snprintf(text, sizeof text, WH_OUTPUTS_UNWRITTEN, arguments->outputs);
+    }
+    if (text[0] == '\0') {
+        return false;
+    }
+    record->ok = false;
+    record->failure = record->failure ? record->failure : wh_text_copy(text);
+    return true;
+}
+
+static int hand_on(const wh_run_arguments_t *arguments, wh_script_run_t *run, wh_signals_t *signals,
                    wh_script_run_outcome_t outcome) {
     if (outcome == WH_RUN_BAD_INPUT) {
         return hand_on_bad(arguments, run, signals);
     }
+    const bool is_told = note_unwritten(arguments, &run->record);
     if (!write_files(arguments, run, signals) || !wh_app_is_printed(wh_run_print(arguments, &run->record))) {
         return WH_EXIT_USAGE;
     }
     /* The table ends with the failure. Without a terminal nobody sees the table, so it goes to standard
      * error, too. */
-    if (run->record.failure && (arguments->json || !isatty(STDOUT_FILENO))) {
+    if (run->record.failure && !is_told && (arguments->json || !isatty(STDOUT_FILENO))) {
         fprintf(stderr, "%s\n", run->record.failure);
     }
     return outcome == WH_RUN_MET ? WH_EXIT_MET : WH_EXIT_FAILED;

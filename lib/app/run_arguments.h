@@ -3,6 +3,7 @@
 #ifndef WH_APP_RUN_ARGUMENTS_H
 #define WH_APP_RUN_ARGUMENTS_H
 
+#include "../link/recording.h"
 #include "../mcs/script_run.h"
 #include "../report/document.h"
 #include "../text/options.h"
@@ -25,7 +26,10 @@ typedef struct {
     wh_option_list_t parameters;
     double budget, memory_mib; /* 0: the defaults */
     const char *segments_path;
-    const char *record; /* the recording, which another file must not be; null: none */
+    const char *record, *outputs; /* what else is written, not by this; null: none */
+    const char *record_option;    /* that gave `record` */
+    wh_recording_t *recording; /* that goes into `record`: a run that it does not keep has failed; or null */
+    const uint64_t *unwritten; /* how often `outputs` was not written: the same; null: nobody counts */
     bool json, gantt, margins;
     bool quiet;          /* print no tables, and nothing at all without `json` */
     const char *command; /* the subcommand that plays it again; null: run */
@@ -40,7 +44,7 @@ void wh_run_arguments_take(wh_run_arguments_t *arguments);
 void wh_run_arguments_free(wh_run_arguments_t *arguments);
 
 /* True if no output is the script, `input` (null: none), what a cell is described by, or another output; else
- * standard error says which. */
+ * standard error says which. A recording that has failed has told that itself, and is left out. */
 bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *input);
 
 /* Prints a record as the arguments want it: as JSON, as tables, or not at all. 0, or -1 if standard output
@@ -50,13 +54,9 @@ int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record)
 /* Runs the script and prints what came of it. Returns the exit status. */
 int wh_run_and_print(wh_run_arguments_t *arguments);
 
-/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and
- * a log. */
-char *wh_run_files_command(const char *command, const char *file, const char *const parameters[],
-                           size_t count);
-
-/* Writes those that are wanted, from a document that lacks only `run`, which is made of the record. Each file
- * is there whole or as it was. False, with a line on standard error, if one cannot be written. */
-bool wh_run_files_write(const wh_run_files_t *files, const wh_document_t *document);
+/* Writes those that are wanted, if any is, from a document that has source, record, signals and notes; the
+ * rest is made of the arguments. Each file is there whole or as it was. False, with a line on standard error,
+ * if one cannot be written. */
+bool wh_run_files_write(const wh_run_arguments_t *arguments, const wh_document_t *document);
 
 #endif

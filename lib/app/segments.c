@@ -2,13 +2,12 @@
 
 #include <ctype.h>
 #include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../math/hash.h"
 #include "../text/array.h"
-#include "../text/output.h"
+#include "../text/json.h"
 
 /* Room for a prefix: a file's name. */
 #define PREFIX_SIZE 256
@@ -79,13 +78,10 @@ static void free_lines(writer_t *writer) {
 
 /* ------------------------------------------------------------------------------------------------ numbers */
 
-/* As short as reads back to the same bits. With a point or an exponent: a whole number would be of another
- * type. */
+/* With a point or an exponent: a whole number would be of another type. */
 static void write_real(FILE *out, wh_real_t value) {
-    char text[40] = "";
-    for (int digits = 15; digits <= 17 && (digits == 15 || strtod(text, NULL) != value); ++digits) {
-        (void)snprintf(text, sizeof text, "%.*g", digits, value);
-    }
+    char text[WH_JSON_DIGITS];
+    wh_json_digits(value, text);
     fprintf(out, "%s%s", text, strpbrk(text, ".en") ? "" : ".0");
 }
 
@@ -98,8 +94,11 @@ static void write_numbers(FILE *out, const wh_real_t values[], size_t count) {
 }
 
 static void write_vector(FILE *out, const wh_vec3_t *v) {
-    const wh_real_t values[] = {v->x, v->y, v->z};
-    write_numbers(out, values, 3);
+    write_numbers(out, (const wh_real_t[]){v->x, v->y, v->z}, 3);
+}
+
+static void write_tolerance(FILE *out, const wh_tolerance_t *t) {
+    write_numbers(out, (const wh_real_t[]){t->projz, t->projxy, t->planar}, 3);
 }
 
 static void write_pose(FILE *out, const wh_pose_t *pose) {
@@ -112,18 +111,27 @@ static void write_pose(FILE *out, const wh_pose_t *pose) {
     fputs("}", out);
 }
 
+/* An array with each item on lines of its own. C99 has no empty arrays: of none the first is written all the
+ * same. */
+static void write_array(const writer_t *writer, const char *type, const char *name, size_t count,
+                        void (*write)(const writer_t *writer, size_t i)) {
+    fprintf(writer->out, "static const %s %s_%s[] = {\n", type, writer->prefix, name);
+    for (size_t i = 0; i < count || i == 0; ++i) {
+        write(writer, i);
+        fputs(i + 1 < count ? ",\n" : "};\n\n", writer->out);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------ machine */
 
 static void write_limits(FILE *out, const wh_limits_t *limits) {
-    const wh_real_t values[] = {limits->speed, limits->acceleration, limits->jerk};
-    write_numbers(out, values, 3);
+    write_numbers(out, (const wh_real_t[]){limits->speed, limits->acceleration, limits->jerk}, 3);
 }
 
 static void write_robot(FILE *out, const wh_robot_t *robot) {
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        const wh_real_t ends[] = {robot->travel[axis].min, robot->travel[axis].max};
         fputs(axis > 0 ? ", " : "    {{", out);
-        write_numbers(out, ends, 2);
+        write_numbers(out, (const wh_real_t[]){robot->travel[axis].min, robot->travel[axis].max}, 2);
     }
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         fputs(axis > 0 ? ", " : "},\n     {", out);
@@ -183,13 +191,19 @@ static void write_command(const writer_t *writer, int32_t index) {
     fputs(" */\n", writer->out);
 }
 
-static void write_segment(FILE *out, const wh_kept_segment_t *kept) {
+static void write_segment(const writer_t *writer, size_t index) {
     static const char *const kinds[] = {
         [WH_SEGMENT_AXES] = "AXES",   [WH_SEGMENT_LINE] = "LINE",     [WH_SEGMENT_VALVES] = "VALVES",
         [WH_SEGMENT_DWELL] = "DWELL", [WH_SEGMENT_SENSOR] = "SENSOR",
     };
+    static const wh_kept_segment_t none = {.segment.kind = WH_SEGMENT_DWELL, .command = WH_NONE};
+    const wh_kept_segment_t *kept = writer->mcs->segment_count > 0 ? &writer->mcs->segments[index] : &none;
     const wh_segment_t *segment = &kept->segment;
     const wh_real_t values[] = {segment->speed, segment->acceleration, segment->seconds};
+    FILE *out = writer->out;
+    if (index == 0 || kept->command != kept[-1].command) {
+        write_command(writer, kept->command);
+    }
     fprintf(out, "    {{WH_SEGMENT_%s, ", kinds[segment->kind]);
     write_numbers(out, segment->target, WH_AXES);
     fputs(", ", out);
@@ -202,25 +216,6 @@ static void write_segment(FILE *out, const wh_kept_segment_t *kept) {
         fprintf(out, "%s%" PRId32, g > 0 ? ", " : ", {", segment->valves[g]);
     }
     fprintf(out, "}, %" PRId32 "}, %" PRId64 "}", segment->gripper, kept->ended ? 0 : kept->slices);
-}
-
-/* C99 has no empty arrays: one item that is not counted stands for none. */
-static void write_segments(const writer_t *writer) {
-    static const wh_kept_segment_t none = {.segment.kind = WH_SEGMENT_DWELL};
-    const wh_mcs_t *mcs = writer->mcs;
-    FILE *out = writer->out;
-    fprintf(out, "static const wh_played_segment_t %s_segments[] = {\n", writer->prefix);
-    for (size_t i = 0; i < mcs->segment_count; ++i) {
-        if (i == 0 || mcs->segments[i].command != mcs->segments[i - 1].command) {
-            write_command(writer, mcs->segments[i].command);
-        }
-        write_segment(out, &mcs->segments[i]);
-        fputs(i + 1 < mcs->segment_count ? ",\n" : "", out);
-    }
-    if (mcs->segment_count == 0) {
-        write_segment(out, &none);
-    }
-    fputs("};\n\n", out);
 }
 
 /* ------------------------------------------------------------------------------------------------- faults */
@@ -247,57 +242,39 @@ static void write_fault(FILE *out, const wh_fault_t *fault) {
     fputs("}", out);
 }
 
-static void write_faults(const writer_t *writer) {
+static void write_kept_fault(const writer_t *writer, size_t i) {
     static const wh_played_fault_t none = {0};
-    const wh_mcs_t *mcs = writer->mcs;
-    const size_t shown = mcs->kept_fault_count > 0 ? mcs->kept_fault_count : 1;
-    fprintf(writer->out, "static const wh_played_fault_t %s_faults[] = {\n", writer->prefix);
-    for (size_t i = 0; i < shown; ++i) {
-        const wh_played_fault_t *fault = mcs->kept_fault_count > 0 ? &mcs->kept_faults[i] : &none;
-        fprintf(writer->out, "    {%" PRId64 ", {%" PRId32 ", ", fault->seq, fault->request.index);
-        write_fault(writer->out, &fault->request.fault);
-        fputs(i + 1 < shown ? "}},\n" : "}}", writer->out);
-    }
-    fputs("};\n\n", writer->out);
+    const wh_played_fault_t *fault = writer->mcs->kept_fault_count > 0 ? &writer->mcs->kept_faults[i] : &none;
+    fprintf(writer->out, "    {%" PRId64 ", {%" PRId32 ", ", fault->seq, fault->request.index);
+    write_fault(writer->out, &fault->request.fault);
+    fputs("}}", writer->out);
 }
 
 /* --------------------------------------------------------------------------------------------------- cell */
 
-static void write_stations(const writer_t *writer) {
+static void write_station(const writer_t *writer, size_t i) {
     static const wh_station_t none = {.slots = 1, .pitch = 1, .chuck = WH_NONE};
     const wh_cell_t *cell = &writer->mcs->real->cell;
-    fprintf(writer->out, "static const wh_station_t %s_stations[] = {\n", writer->prefix);
-    for (size_t s = 0; s < cell->count || s == 0; ++s) {
-        const wh_station_t *station = cell->count > 0 ? &cell->stations[s] : &none;
-        fputs("    {", writer->out);
-        write_pose(writer->out, &station->base_from_station);
-        fprintf(writer->out, ", %" PRId32 ", ", station->slots);
-        write_real(writer->out, station->pitch);
-        fprintf(writer->out, ", %" PRId32 "}%s", station->chuck, s + 1 < cell->count ? ",\n" : "");
-    }
-    fputs("};\n\n", writer->out);
+    const wh_station_t *station = cell->count > 0 ? &cell->stations[i] : &none;
+    fputs("    {", writer->out);
+    write_pose(writer->out, &station->base_from_station);
+    fprintf(writer->out, ", %" PRId32 ", ", station->slots);
+    write_real(writer->out, station->pitch);
+    fprintf(writer->out, ", %" PRId32 "}", station->chuck);
 }
 
-static void write_wafers(const writer_t *writer) {
+static void write_wafer(const writer_t *writer, size_t i) {
     const wh_pose_t none = wh_pose_identity();
     const wh_layout_t *layout = writer->mcs->real;
-    fprintf(writer->out, "static const wh_pose_t %s_wafers[] = {\n", writer->prefix);
-    for (size_t w = 0; w < layout->wafer_count || w == 0; ++w) {
-        fputs("    ", writer->out);
-        write_pose(writer->out, layout->wafer_count > 0 ? &layout->start[w].base_from_wafer : &none);
-        fputs(w + 1 < layout->wafer_count ? ",\n" : "", writer->out);
-    }
-    fprintf(writer->out, "};\n\nenum { %s_WAFERS = %zu, %s_GRIPPERS = %zu };\n\n", writer->upper,
-            layout->wafer_count, writer->upper, layout->machine.gripper_count);
+    fputs("    ", writer->out);
+    write_pose(writer->out, layout->wafer_count > 0 ? &layout->start[i].base_from_wafer : &none);
 }
 
 /* ---------------------------------------------------------------------------------------------- the whole */
 
 static void write_config(FILE *out, const wh_grasp_config_t *config) {
-    const wh_real_t tolerance[] = {config->tolerance.projz, config->tolerance.projxy,
-                                   config->tolerance.planar};
     fputs("    {", out);
-    write_numbers(out, tolerance, 3);
+    write_tolerance(out, &config->tolerance);
     fprintf(out, ", %s, %s, ", config->check == WH_CHECK_SWEPT ? "WH_CHECK_SWEPT" : "WH_CHECK_SAMPLED",
             config->seat ? "true" : "false");
     write_real(out, config->near_projz);
@@ -309,15 +286,13 @@ static void write_config(FILE *out, const wh_grasp_config_t *config) {
 static void write_physics(FILE *out, const wh_physics_t *physics) {
     static const wh_fault_t none = {0};
     const wh_vacuum_config_t *v = &physics->vacuum;
-    const wh_real_t vacuum[] = {v->build, v->vent, v->idle, v->on, v->off, v->release};
-    const wh_real_t pads[] = {physics->pads.friction, physics->pads.force, physics->pads.mass,
-                              physics->pads.gravity};
+    const wh_pads_t *pads = &physics->pads;
     fputs("    {", out);
     write_real(out, physics->slice_s);
     fputs(", ", out);
-    write_numbers(out, vacuum, sizeof vacuum / sizeof vacuum[0]);
+    write_numbers(out, (const wh_real_t[]){v->build, v->vent, v->idle, v->on, v->off, v->release}, 6);
     fputs(", ", out);
-    write_numbers(out, pads, sizeof pads / sizeof pads[0]);
+    write_numbers(out, (const wh_real_t[]){pads->friction, pads->force, pads->mass, pads->gravity}, 4);
     for (size_t i = 0; i < physics->fault_count || i == 0; ++i) {
         fputs(i > 0 ? ",\n      " : ",\n     {", out);
         write_fault(out, physics->fault_count > 0 ? &physics->faults[i] : &none);
@@ -327,9 +302,8 @@ static void write_physics(FILE *out, const wh_physics_t *physics) {
 
 static void write_cell(const writer_t *writer) {
     const wh_cell_t *cell = &writer->mcs->real->cell;
-    const wh_real_t tolerance[] = {cell->tolerance.projz, cell->tolerance.projxy, cell->tolerance.planar};
     fprintf(writer->out, "    {%s_stations, %zu, ", writer->prefix, cell->count);
-    write_numbers(writer->out, tolerance, 3);
+    write_tolerance(writer->out, &cell->tolerance);
     fputs(", ", writer->out);
     write_real(writer->out, cell->off_centre);
     fputs(", ", writer->out);
@@ -341,9 +315,10 @@ static void write_run(const writer_t *writer) {
     const wh_mcs_t *mcs = writer->mcs;
     const char *prefix = writer->prefix;
     fprintf(writer->out,
-            "static const wh_played_t %s_run = {\n"
+            "enum { %s_WAFERS = %zu, %s_GRIPPERS = %zu };\n\nstatic const wh_played_t %s_run = {\n"
             "    &%s_machine, %s_segments, %zu, %s_faults, %zu, %s_wafers, %s_WAFERS, %" PRId64 ",\n",
-            prefix, prefix, prefix, mcs->segment_count, prefix, mcs->kept_fault_count, prefix, writer->upper,
+            writer->upper, mcs->real->wafer_count, writer->upper, mcs->real->machine.gripper_count, prefix,
+            prefix, prefix, mcs->segment_count, prefix, mcs->kept_fault_count, prefix, writer->upper,
             mcs->layout->slice_us);
     write_config(writer->out, &mcs->real->grasp);
     write_physics(writer->out, &mcs->real->physics);
@@ -371,10 +346,10 @@ static void write_head(const writer_t *writer, uint64_t contents) {
 static void write_contents(writer_t *writer) {
     read_lines(writer);
     write_machine(writer);
-    write_segments(writer);
-    write_faults(writer);
-    write_stations(writer);
-    write_wafers(writer);
+    write_array(writer, "wh_played_segment_t", "segments", writer->mcs->segment_count, write_segment);
+    write_array(writer, "wh_played_fault_t", "faults", writer->mcs->kept_fault_count, write_kept_fault);
+    write_array(writer, "wh_station_t", "stations", writer->mcs->real->cell.count, write_station);
+    write_array(writer, "wh_pose_t", "wafers", writer->mcs->real->wafer_count, write_wafer);
     write_run(writer);
     free_lines(writer);
 }
@@ -400,16 +375,13 @@ static void write_all(writer_t *writer, FILE *out) {
     free(contents);
 }
 
-int wh_segments_write(const wh_mcs_t *mcs, const char *path) {
-    wh_output_t output = {0};
-    if (!wh_output_open(&output, path)) {
-        return -1;
-    }
-    if (mcs->layout) {
-        writer_t writer = {.mcs = mcs};
-        name_prefix(&writer, path);
+bool wh_segments_write(void *segments, FILE *out) {
+    const wh_segments_t *wanted = segments;
+    writer_t writer = {.mcs = wanted->mcs};
+    if (writer.mcs->layout) {
+        name_prefix(&writer, wanted->path);
         name_constants(&writer);
-        write_all(&writer, output.file);
+        write_all(&writer, out);
     }
-    return wh_output_commit(&output) ? 0 : -1;
+    return true;
 }

@@ -10,10 +10,17 @@
 #ifndef WH_APP_SEGMENTS_H
 #define WH_APP_SEGMENTS_H
 
+#include <stdio.h>
+
 #include "../mcs/mcs.h"
 
-/* Writes `path` anew, by way of a file beside it that is renamed when it is complete. Needs a run with
- * keep_segments. 0, or -1 with errno set, the old file being as it was. */
-int wh_segments_write(const wh_mcs_t *mcs, const char *path);
+/* Of which run, with keep_segments, and the file's path, which names it. */
+typedef struct {
+    const wh_mcs_t *mcs;
+    const char *path;
+} wh_segments_t;
+
+/* Writes a wh_segments_t: see wh_file_write. Without a cell nothing is written. */
+bool wh_segments_write(void *segments, FILE *out);
 
 #endif

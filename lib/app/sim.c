@@ -1,4 +1,5 @@
 /* waferhand sim LAYOUT */
+#include <errno.h>
 #include <inttypes.h>
 #include <poll.h>
 #include <stdio.h>
@@ -10,10 +11,10 @@
 #include "../text/json.h"
 #include "../text/style.h"
 #include "../view/view.h"
+#include "apart.h"
 #include "app.h"
 #include "connection.h"
 #include "layout_arguments.h"
-#include "record_arguments.h"
 
 typedef struct {
     wh_layout_arguments_t layout;
@@ -36,27 +37,20 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, log_time)},
     {0}};
 
-static const wh_option_table_t tables[] = {{options, 0, NULL},
-                                           {wh_record_options, offsetof(arguments_t, record), NULL},
-                                           {wh_layout_options, offsetof(arguments_t, layout), NULL},
-                                           {0}};
+static const wh_option_table_t tables[] = {
+    {options, 0, NULL, NULL},
+    {wh_record_options, offsetof(arguments_t, record), NULL, wh_record_arguments_check},
+    {wh_layout_options, offsetof(arguments_t, layout), NULL, NULL},
+    {0}};
 
-static void check(const void *given, struct argp_state *state) {
-    const arguments_t *arguments = given;
-    if (!arguments->layout.path) {
-        argp_error(state, "which layout?");
-    }
-    wh_record_arguments_check(&arguments->record, state);
-}
-
-static const wh_command_line_t command_line = {
-    .name = "sim",
-    .synopsis = "LAYOUT",
-    .about = "Simulates the layout's cell for whoever sends commands over LCM, until SIGINT or SIGTERM.",
-    .tables = tables,
-    .operand = "layout",
-    .operand_variable = offsetof(arguments_t, layout.path),
-    .check = check};
+static const wh_command_line_t command_line = {.name = "sim",
+                                               .synopsis = "LAYOUT",
+                                               .about =
+                                                   "Simulates the layout's cell for whoever sends commands "
+                                                   "over LCM, until SIGINT or SIGTERM.\v" WH_HELP_EXIT,
+                                               .tables = tables,
+                                               .operand = "layout",
+                                               .operand_variable = offsetof(arguments_t, layout.path)};
 
 static void say_counters(const wh_sim_process_t *simulation) {
     const wh_protocol_server_counters_t *c = &simulation->server.counters;
@@ -84,9 +78,8 @@ static bool print_counters(const wh_sim_process_t *simulation) {
     const wh_protocol_server_counters_t *c = &server->counters;
     json_t *root = wh_json_add(
         json_object(), "layout layout_hash run slice hash", wh_json_text(server->layout->path),
-        json_sprintf("%016" PRIx64, server->identity.layout_hash),
-        json_sprintf("%016" PRIx64, (uint64_t)server->identity.run), json_integer((json_int_t)server->seq),
-        json_sprintf("%016" PRIx64, wh_protocol_server_hash(server)), NULL);
+        wh_json_hash(server->identity.layout_hash), wh_json_hash((uint64_t)server->identity.run),
+        json_integer((json_int_t)server->seq), wh_json_hash(wh_protocol_server_hash(server)), NULL);
     (void)wh_json_add(
         root, "commands stepped repeated stale refused unknown_run other_layout run_over malformed",
         count(c->commands), count(c->stepped), count(c->repeated), count(c->stale), count(c->refused),
@@ -131,7 +124,8 @@ static bool open_outputs(wh_outputs_t *outputs, const char *path, size_t count) 
     }
     const int problem = wh_outputs_open(outputs, path, closed, count);
     if (problem != 0) {
-        fprintf(stderr, "%s: %s (expected the path of a file)\n", path, strerror(problem));
+        fprintf(stderr, "--outputs %s: %s (expected the path of a file)\n", path,
+                problem == EINVAL ? "this is a folder" : strerror(problem));
     }
     return problem == 0;
 }
@@ -147,7 +141,7 @@ static bool open_view(wh_viewer_t *view, wh_node_t *node, const wh_layout_t *lay
                 WH_VIEW_BYTES);
         return false;
     }
-    wh_node_say(node, "shown to viewers: %d bodies in %d bytes%s", view->cell.load.num_links,
+    wh_node_say(node, "shown to viewers: %d bodies in %d bytes%s", view->cell.bodies.load.num_links,
                 view->cell_bytes.load_size, left_out[view->cell.detail]);
     return true;
 }
@@ -210,6 +204,15 @@ static int serve(wh_node_t *node, const wh_layout_t *layout, const arguments_t *
     return handled < 0 ? WH_EXIT_FAILED : WH_EXIT_MET;
 }
 
+static bool is_apart(const arguments_t *arguments) {
+    const char *option = NULL;
+    const char *record = wh_record_arguments_path(&arguments->record, &option);
+    const wh_named_file_t named[] = {{"the layout", arguments->layout.path, false},
+                                     {"--outputs", arguments->outputs, false},
+                                     {option, record, true}};
+    return wh_files_are_apart(named, sizeof named / sizeof named[0], arguments->json);
+}
+
 static int run(arguments_t *arguments) {
     const wh_layout_t *layout = wh_layout_arguments_load(&arguments->layout);
     if (!layout) {
@@ -217,6 +220,9 @@ static int run(arguments_t *arguments) {
     }
     static wh_recording_t record;
     wh_node_t node;
+    if (!is_apart(arguments)) {
+        return WH_EXIT_USAGE;
+    }
     wh_catch_signals();
     wh_record_arguments_apply(&arguments->record, "sim", false, &record);
     if (!wh_node_reaches_others(arguments->url) || !wh_node_open(&node, arguments->url, &record)) {

@@ -1,9 +1,7 @@
 /* waferhand study SCRIPT */
-#include <errno.h>
-#include <string.h>
-
 #include "../print/study_print.h"
 #include "../study/study_play.h"
+#include "apart.h"
 #include "app.h"
 #include "run_arguments.h"
 
@@ -11,6 +9,10 @@
 
 /* The trial if --trial is not given. */
 #define NO_TRIAL UINT64_MAX
+
+/* --worst and --require if they are not given. */
+#define NO_WORST UINT64_MAX
+#define NO_RATE (-1)
 
 typedef struct {
     wh_run_arguments_t run; /* the script, its parameters and limits, and --json */
@@ -38,8 +40,9 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, worst), 0, WH_STUDY_WORST, "a number from 0 to 100"},
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, run.json)},
-    {"set", 0, "NAME=VALUE", "Hand script and layout a parameter: params.NAME", WH_OPTION_LIST,
-     .variable = offsetof(arguments_t, run.parameters)},
+    {"set", 0, "NAME=VALUE",
+     "Hand script and layout a parameter, params.NAME: a number if VALUE is one, true, false or text",
+     WH_OPTION_LIST, .variable = offsetof(arguments_t, run.parameters)},
     {"budget", 0, "N", "End a trial's script after N steps of Lua and simulated slices (default 1e9)",
      WH_OPTION_REAL, .variable = offsetof(arguments_t, run.budget), 1, 1e18, "a number from 1 to 1e+18"},
     {"memory", 0, "MIB", "Let a script use so many MiB of memory (default 256)", WH_OPTION_REAL,
@@ -47,14 +50,26 @@ static const wh_option_t options[] = {
     {0}};
 
 static const wh_option_table_t tables[] = {
-    {options, 0, NULL},
-    {wh_run_files_options, offsetof(arguments_t, run.files), "Of the one trial that --trial plays:"},
+    {options, 0, NULL, NULL},
+    {wh_run_files_options, offsetof(arguments_t, run.files), "Of the one trial that --trial plays:", NULL},
     {0}};
+
+/* Refuses what only many trials can have. */
+static void check_one(const arguments_t *arguments, struct argp_state *state) {
+    const char *option = arguments->trials > 0          ? "--trials"
+                         : arguments->state             ? "--state"
+                         : arguments->require >= 0      ? "--require"
+                         : arguments->worst != NO_WORST ? "--worst"
+                                                        : NULL;
+    if (option) {
+        argp_error(state, "%s does not go with --trial, which plays one trial alone", option);
+    }
+}
 
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
-    if (!arguments->run.run.script) {
-        argp_error(state, "which script?");
+    if (arguments->trial != NO_TRIAL) {
+        check_one(arguments, state);
     }
     if (wh_run_files_wanted(&arguments->run.files) && arguments->trial == NO_TRIAL) {
         argp_error(state, "a report of which trial? (expected --trial)");
@@ -68,10 +83,7 @@ static const wh_command_line_t command_line = {
              "the layout's "
              "`study` says, and tells how often all goes well and where the wafers end up. Under mpirun the "
              "ranks share the "
-             "trials.\v"
-             "Exit status: 0 if the study was finished and what is required is kept, 1 if not, 2 for wrong "
-             "usage or a bad "
-             "input file; with --trial as for run.",
+             "trials.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "script",
     .operand_variable = offsetof(arguments_t, run.run.script),
@@ -91,49 +103,38 @@ static int print(const arguments_t *arguments, const wh_study_t *study, const wh
 }
 
 static int play(const arguments_t *arguments, const wh_study_t *study, wh_ranks_t *ranks) {
+    static const int statuses[] = {[WH_STUDY_INTERRUPTED] = WH_EXIT_FAILED,
+                                   [WH_STUDY_FAILED] = WH_EXIT_USAGE,
+                                   [WH_STUDY_HELPED] = WH_EXIT_MET};
     const wh_study_options_t wanted = {(size_t)arguments->threads, arguments->state};
     wh_progress_t progress;
-    switch (wh_study_play(study, &wanted, ranks, &progress)) {
-    case WH_STUDY_DONE: {
-        const int status = print(arguments, study, &progress.tally);
+    const wh_study_end_t end = wh_study_play(study, &wanted, ranks, &progress);
+    int status = statuses[end];
+    if (end == WH_STUDY_DONE) {
+        status = print(arguments, study, &progress.tally);
         wh_progress_free(&progress);
-        return status;
     }
-    case WH_STUDY_INTERRUPTED:
-        return WH_EXIT_FAILED;
-    case WH_STUDY_HELPED:
-        return WH_EXIT_MET;
-    case WH_STUDY_FAILED:
-    default:
-        return WH_EXIT_USAGE;
-    }
+    return status;
 }
 
 /* Scripts print into /dev/null: the output of many trials would be mixed. */
-static int study_with(const arguments_t *arguments, FILE *nowhere) {
+static int study_all(const arguments_t *arguments) {
     static wh_study_t study;
     wh_ranks_t ranks;
     int status = WH_EXIT_USAGE;
-    memset(&study, 0, sizeof study);
-    study.run = arguments->run.run;
+    FILE *nowhere = fopen("/dev/null", "w");
+    if (!nowhere) {
+        perror("/dev/null");
+        return status;
+    }
+    study = (wh_study_t){.run = arguments->run.run, .trials = arguments->trials, .seed = arguments->seed};
     study.run.limits.print_to = nowhere;
-    study.trials = arguments->trials;
-    study.seed = arguments->seed;
-    if (wh_study_open(&study) && wh_ranks_open(&ranks)) {
+    if (wh_study_open(&study) && (!arguments->state || wh_file_is_free("--state", arguments->state)) &&
+        wh_ranks_open(&ranks)) {
         status = play(arguments, &study, &ranks);
         wh_ranks_close(&ranks, status == WH_EXIT_USAGE ? status : 0);
     }
     wh_study_close(&study);
-    return status;
-}
-
-static int study_all(const arguments_t *arguments) {
-    FILE *nowhere = fopen("/dev/null", "w");
-    if (!nowhere) {
-        perror("/dev/null");
-        return WH_EXIT_USAGE;
-    }
-    const int status = study_with(arguments, nowhere);
     fclose(nowhere);
     return status;
 }
@@ -148,11 +149,23 @@ static int play_one(arguments_t *arguments) {
     return wh_run_and_print(&arguments->run);
 }
 
+static void fill_in(arguments_t *arguments) {
+    arguments->trials = arguments->trials > 0 ? arguments->trials : 1000;
+    arguments->worst = arguments->worst != NO_WORST ? arguments->worst : 10;
+    arguments->require = arguments->require >= 0 ? arguments->require : 0;
+}
+
 int wh_app_study(int argc, char **argv) {
-    arguments_t arguments = {.trials = 1000, .seed = 1, .trial = NO_TRIAL, .worst = 10};
+    arguments_t arguments = {.seed = 1, .trial = NO_TRIAL, .worst = NO_WORST, .require = NO_RATE};
     wh_options_parse(&command_line, argc, argv, &arguments);
+    fill_in(&arguments);
     wh_run_arguments_take(&arguments.run);
-    const int status = arguments.trial != NO_TRIAL ? play_one(&arguments) : study_all(&arguments);
+    const wh_named_file_t named[] = {{"the script", arguments.run.run.script, false},
+                                     {"--state", arguments.state, true}};
+    int status = WH_EXIT_USAGE;
+    if (wh_files_are_apart(named, 2, true)) {
+        status = arguments.trial != NO_TRIAL ? play_one(&arguments) : study_all(&arguments);
+    }
     wh_run_arguments_free(&arguments.run);
     return status;
 }

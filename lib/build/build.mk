@@ -236,9 +236,11 @@ $(B)/spy/types.jar: $(MESSAGES:%=lcm_types/%.lcm) $(SPY_SOURCES) $(B)/messages
 spy: $(B)/spy/types.jar
 
 # ----------------------------------------------------------------------------------- manual, installing
-# The manual's table of errors is lib/math/status.def.
-$(B)/waferhand.1: lib/build/waferhand.1.in lib/math/status.def lib/math/config.h
+# The manual's table of errors is lib/math/status.def, its exit statuses are those of lua/README.md.
+$(B)/waferhand.1: lib/build/waferhand.1.in lib/math/status.def lib/math/config.h lua/README.md
+	@awk -F ' *[|] *' '/^## / { on = $$0 == "## Exit status" } on && $$3 ~ /^[0-9]+$$/ \
+	    { gsub(/`/, ""); gsub(/-/, "\\-"); print ".TP\n.B " $$2 " " $$3 "\n" $$4 }' lua/README.md >$@.exits
 	@sed -n 's/^WH_STATUS(\([1-9][0-9]*\), \([A-Z_]*\), "\(.*\)")$$/.TP\n.B \1 \2\n\3/p' lib/math/status.def >$@.errors
-	@sed -e 's/@version@/$(VERSION)/' -e '/@errors@/{r $@.errors' -e 'd}' lib/build/waferhand.1.in >$@
+	@sed -e 's/@version@/$(VERSION)/' -e '/@errors@/{r $@.errors' -e 'd}' -e '/@exits@/{r $@.exits' -e 'd}' lib/build/waferhand.1.in >$@
 
 include lib/build/install.mk tests/check/check.mk tests/fuzz/fuzz.mk tests/bench/bench.mk

@@ -123,9 +123,14 @@ static void turn_towards(wh_mat3_t *R, const wh_vec3_t *n) {
     wh_mat3_orthonormalise(R);
 }
 
+/* Within the tolerance below its plane a wafer is on its support. */
+static bool is_supported(const wh_cell_t *cell, const wh_place_t *place) {
+    return place->dz < 0 && place->dz > -cell->tolerance.projz;
+}
+
 /* From above its plane only if wafers settle; from below a support has stopped the wafer. */
 static bool comes_to_lie(const wh_cell_t *cell, const wh_place_t *place) {
-    return place->dz > 0 ? cell->settle : place->dz < 0 && place->dz > -cell->tolerance.projz;
+    return place->dz > 0 ? cell->settle : is_supported(cell, place);
 }
 
 static void settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *list, size_t release) {
@@ -159,7 +164,8 @@ void wh_cell_settle(const wh_cell_t *cell, wh_grasp_t *table, wh_event_list_t *l
 
 bool wh_cell_stops(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, const wh_pose_t *next) {
     wh_place_t place;
-    if (!wh_cell_locate(cell, base_from_wafer, &place) || place.dz < -SUPPORT_TOUCH) {
+    if (!wh_cell_locate(cell, base_from_wafer, &place) ||
+        (place.dz < -SUPPORT_TOUCH && !is_supported(cell, &place))) {
         return false;
     }
     return wh_station_measure(&cell->stations[place.station], place.slot, next).dz < SUPPORT_TOUCH;

@@ -90,8 +90,9 @@ size_t wh_cell_judge(const wh_cell_t *cell, const wh_grasp_t *table, wh_event_li
     WH_SYMBOL(wh_cell_judge);
 
 /* True if a wafer that moves from the first pose to the next comes to the plane of the slot in which it lies,
- * or goes down through it (at the plane is what is within 1e-3 mm): a support stops it. Arguments are not
- * checked; numbers that are not finite give false. Cost: wh_cell_locate and wh_station_measure. */
+ * or goes down through it, or is less than tolerance.projz below it already (at the plane is what is within
+ * 1e-3 mm): a support stops it. Arguments are not checked; numbers that are not finite give false. Cost:
+ * wh_cell_locate and wh_station_measure. */
 bool wh_cell_stops(const wh_cell_t *cell, const wh_pose_t *base_from_wafer, const wh_pose_t *next)
     WH_SYMBOL(wh_cell_stops);
 

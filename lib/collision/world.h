@@ -14,8 +14,8 @@
  *
  * These may touch, and nothing else:
  *   - a gripper's parts and the wafer that it holds, is about to take or has just let go: within the
- *     tolerance sideways and near_projz in height, with an open valve, and until the gripper has gone 1 mm
- *     sideways;
+ *     tolerance sideways and near_projz in height, with an open valve or from another gripper or a chuck, and
+ *     until the gripper has gone 1 mm sideways;
  *   - a wafer and the ledges of its slot, or the chuck that it lies on;
  *   - neighbours in the chain of the arm;
  *   - parts that do not move against each other.
@@ -165,10 +165,11 @@ typedef struct {
 
 const wh_world_counters_t *wh_world_counters(const wh_world_t *world) WH_SYMBOL(wh_world_counters);
 
-/* Checks everything that rests, as `waferhand layout` does before a run. Writes the first two parts that
- * overlap and must not to `parts`; false if there are none. Cost: n log n. */
-bool wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int32_t parts[2])
-    WH_SYMBOL(wh_world_check_rest);
+/* Checks everything that rests, as `waferhand layout` does before a run. Returns how many pairs of parts
+ * overlap and must not, and writes the first `capacity` of them to `pairs`: wafers first, in their order,
+ * then what hangs on arm and grippers. At most 256 things near one part are looked at. Cost: n log n. */
+size_t wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int32_t pairs[][2],
+                           size_t capacity) WH_SYMBOL(wh_world_check_rest);
 
 WH_HEADER_END
 

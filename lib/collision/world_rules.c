@@ -57,6 +57,15 @@ static void put_in_order(const wh_side_t **a, const wh_side_t **b) {
     *a = first;
 }
 
+/* True if somebody has the wafer from whom a gripper may take it with a closed valve: another gripper, or a
+ * chuck on which it lies, held or not. */
+static bool is_offered(const wh_look_t *look, const wh_wafer_t *wafer) {
+    const wh_cell_t *cell = look->world->config->cell;
+    wh_place_t place;
+    return wafer->holder != WH_NONE || (wh_cell_locate(cell, &wafer->base_from_wafer, &place) &&
+                                        cell->stations[place.station].chuck != WH_NONE);
+}
+
 /* True if gripper and wafer are meant to come together: they are within reach, and the gripper takes or
  * gives. */
 static bool do_business(const wh_look_t *look, const wh_side_t *wafer, const wh_side_t *gripper) {
@@ -72,8 +81,8 @@ static bool do_business(const wh_look_t *look, const wh_side_t *wafer, const wh_
     }
     /* Let go in this slice: the world keeps it as held until the slice is over. */
     const bool released = look->world->held[gripper->owner] == wafer->owner;
-    return state->valve == WH_VALVE_OPEN || w->holder != WH_NONE || gripper->kind == WH_PART_CHUCK ||
-           released || look->world->left[gripper->owner].wafer == wafer->owner;
+    return state->valve == WH_VALVE_OPEN || gripper->kind == WH_PART_CHUCK || released ||
+           look->world->left[gripper->owner].wafer == wafer->owner || is_offered(look, w);
 }
 
 bool wh_world_may_touch(const wh_look_t *look, const wh_side_t *a, const wh_side_t *b) {

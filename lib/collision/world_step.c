@@ -67,58 +67,66 @@ static bool cut(const wh_side_t *a, const wh_side_t *b) {
     return gap.state == WH_GAP_HIT || gap.state == WH_GAP_UNDECIDED;
 }
 
-/* Finds the first thing at rest that this part overlaps. Fixed parts may overlap each other: one thing may be
- * made of several. */
-static bool cuts_rest(const wh_look_t *look, const wh_side_t *a, int32_t self, int32_t *part) {
+/* The pairs that were found, of which the first `capacity` are kept. */
+typedef struct {
+    int32_t (*pairs)[2];
+    size_t count, capacity;
+} contacts_t;
+
+static void add_contact(contacts_t *contacts, const wh_side_t *a, const wh_side_t *b) {
+    if (contacts->count < contacts->capacity) {
+        contacts->pairs[contacts->count][0] = a->part;
+        contacts->pairs[contacts->count][1] = b->part;
+    }
+    ++contacts->count;
+}
+
+/* Adds the things at rest that this part overlaps, if they come after item `self`: so two wafers are a pair
+ * once. Fixed parts may overlap each other: one thing may be made of several. */
+static void add_rest(const wh_look_t *look, const wh_side_t *a, int32_t self, contacts_t *contacts) {
+    const int32_t fixed_count = (int32_t)look->world->fixed_count;
     int32_t found[MOST_NEAR];
     const wh_box_t box = wh_world_box(a);
     const size_t count = wh_tree_find(&look->world->tree, &box, found, MOST_NEAR);
     for (size_t i = 0; i < count && i < MOST_NEAR; ++i) {
         const wh_side_t b = wh_world_side_of_item(look->world, found[i]);
-        if (found[i] != self && !wh_world_may_touch(look, a, &b) && cut(a, &b)) {
-            *part = b.part;
-            return true;
+        const bool is_new = found[i] < fixed_count || found[i] > self;
+        if (is_new && !wh_world_may_touch(look, a, &b) && cut(a, &b)) {
+            add_contact(contacts, a, &b);
         }
     }
-    return false;
 }
 
-static bool mover_cuts(const wh_look_t *look, const wh_mover_t *mover, int32_t parts[2]) {
-    if (mover->part == WH_NONE) {
-        return false;
-    }
-    const wh_side_t a = wh_world_side_of_mover(look->world, mover);
-    parts[0] = a.part;
-    return cuts_rest(look, &a, WH_NONE, &parts[1]);
-}
-
-static bool pair_cuts(const wh_look_t *look, const wh_mover_pair_t *pair, int32_t parts[2]) {
+static void add_pair(const wh_look_t *look, const wh_mover_pair_t *pair, contacts_t *contacts) {
     const wh_mover_t *a = &look->world->movers[pair->a];
     const wh_mover_t *b = &look->world->movers[pair->b];
     if (a->part == WH_NONE || b->part == WH_NONE) {
-        return false;
+        return;
     }
     const wh_side_t one = wh_world_side_of_mover(look->world, a);
     const wh_side_t two = wh_world_side_of_mover(look->world, b);
-    parts[0] = one.part;
-    parts[1] = two.part;
-    return !wh_world_may_touch(look, &one, &two) && cut(&one, &two);
+    if (!wh_world_may_touch(look, &one, &two) && cut(&one, &two)) {
+        add_contact(contacts, &one, &two);
+    }
 }
 
-bool wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int32_t parts[2]) {
+size_t wh_world_check_rest(wh_world_t *world, const wh_world_input_t *input, int32_t pairs[][2],
+                           size_t capacity) {
     const wh_look_t look = {world, input, NULL};
-    bool found = false;
-    for (size_t w = 0; !found && w < world->config->wafer_count; ++w) {
+    contacts_t contacts = {pairs, 0, capacity};
+    for (size_t w = 0; w < world->config->wafer_count; ++w) {
         const int32_t item = wh_world_item_of_wafer(world, (int32_t)w);
         const wh_side_t a = wh_world_side_of_item(world, item);
-        parts[0] = a.part;
-        found = cuts_rest(&look, &a, item, &parts[1]);
+        add_rest(&look, &a, item, &contacts);
     }
-    for (size_t i = 0; !found && i < world->mover_count; ++i) {
-        found = mover_cuts(&look, &world->movers[i], parts);
+    for (size_t i = 0; i < world->mover_count; ++i) {
+        if (world->movers[i].part != WH_NONE) {
+            const wh_side_t a = wh_world_side_of_mover(world, &world->movers[i]);
+            add_rest(&look, &a, WH_NONE, &contacts);
+        }
     }
-    for (size_t i = 0; !found && i < world->pair_count; ++i) {
-        found = pair_cuts(&look, &world->pairs[i], parts);
+    for (size_t i = 0; i < world->pair_count; ++i) {
+        add_pair(&look, &world->pairs[i], &contacts);
     }
-    return found;
+    return contacts.count;
 }

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "../script/wh_module_values.h"
 #include "layout_internal.h"
 
 /* --------------------------------------------------------------------------------------------------- read */
@@ -18,6 +19,12 @@ static wh_shape_t read_shape(wh_reader_t *reader, wh_shape_t fallback) {
     return (wh_shape_t)wh_reader_choice(reader, "shape", (int)fallback, shapes);
 }
 
+#define PLACEMENT "dx dy dz tilt turn shape"
+static const char *const placement_names[] = {"dx", "dy", "dz", "tilt", "turn", NULL};
+
+#define TEACHING "x y z roll pitch yaw shape"
+static const char *const teaching_names[] = {"x", "y", "z", "roll", "pitch", "yaw", NULL};
+
 /* Reads a width for each name, with its own default and the table's shape. The first three are in mm. */
 static void read_spreads(wh_reader_t *reader, const char *const names[], wh_spreads_t *spreads) {
     for (size_t i = 0; names[i]; ++i) {
@@ -25,18 +32,6 @@ static void read_spreads(wh_reader_t *reader, const char *const names[], wh_spre
         spread->shape = read_shape(reader, spread->shape);
         spread->width = wh_reader_number(reader, names[i], spread->width, 0, i < 3 ? MOST_MM : MOST_DEG);
     }
-}
-
-static void read_placement(wh_reader_t *reader, wh_spreads_t *placement) {
-    static const char *const names[] = {"dx", "dy", "dz", "tilt", "turn", NULL};
-    wh_reader_refuse_unknown(reader, "dx dy dz tilt turn shape");
-    read_spreads(reader, names, placement);
-}
-
-static void read_teaching(wh_reader_t *reader, wh_spreads_t *teaching) {
-    static const char *const names[] = {"x", "y", "z", "roll", "pitch", "yaw", NULL};
-    wh_reader_refuse_unknown(reader, "x y z roll pitch yaw shape");
-    read_spreads(reader, names, teaching);
 }
 
 /* ------------------------------------------------------------------------------------------------- timing */
@@ -56,7 +51,6 @@ static void read_valve(wh_reader_t *reader, const wh_layout_t *layout, wh_spread
 }
 
 static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_errors_t *errors) {
-    wh_reader_refuse_unknown(reader, "valve vacuum shape");
     errors->vacuum.shape = read_shape(reader, errors->vacuum.shape);
     errors->vacuum.width = wh_reader_number(reader, "vacuum", 0, 0, MOST_S);
     errors->valves[0].shape = errors->vacuum.shape;
@@ -71,6 +65,7 @@ static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_error
 /* A table whose keys are names of the layout's wafers, stations or grippers. */
 typedef struct {
     const char *field, *what;
+    const char *known; /* the fields of each of its tables */
     const void *items; /* each begins with its name */
     size_t size, count;
     wh_layout_find_t *find;
@@ -78,16 +73,15 @@ typedef struct {
 } section_t;
 
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
-    read_placement(reader, &layout->errors->wafers[index]);
+    read_spreads(reader, placement_names, &layout->errors->wafers[index]);
 }
 
 static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
-    read_teaching(reader, &layout->errors->stations[index]);
+    read_spreads(reader, teaching_names, &layout->errors->stations[index]);
 }
 
 static void read_gripper(wh_reader_t *reader, wh_layout_t *layout, size_t index) {
     wh_spread_t *valve = &layout->errors->valves[index];
-    wh_reader_refuse_unknown(reader, "valve shape");
     valve->shape = read_shape(reader, valve->shape);
     read_valve(reader, layout, valve);
 }
@@ -96,18 +90,22 @@ static void read_gripper(wh_reader_t *reader, wh_layout_t *layout, size_t index)
 static void refuse_strangers(const wh_reader_t *reader, const wh_layout_t *layout, const section_t *section) {
     lua_State *L = reader->L;
     const char *first = NULL;
+    size_t first_length = 0;
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
         if (lua_type(L, -2) != LUA_TSTRING) {
             lua_pushvalue(L, -2);
             wh_reader_fail(reader, NULL, "tables by the name of a %s", section->what);
         }
-        const char *name = lua_tostring(L, -2);
-        if ((!first || strcmp(name, first) < 0) && section->find(layout, name) == WH_NONE) {
+        size_t length = 0;
+        const char *name = lua_tolstring(L, -2, &length);
+        if ((!first || strcmp(name, first) < 0) && section->find(layout, wh_lua_word(L, -2)) == WH_NONE) {
             first = name;
+            first_length = length;
         }
     }
     if (first) {
-        wh_reader_refuse(reader, NULL, first, "the name of a %s of this layout", section->what);
+        lua_pushlstring(L, first, first_length);
+        wh_reader_fail(reader, NULL, "the name of a %s of this layout", section->what);
     }
 }
 
@@ -116,7 +114,7 @@ static void read_section(wh_reader_t *reader, wh_layout_t *layout, const section
         return;
     }
     for (size_t i = 0; i < section->count; ++i) {
-        if (wh_reader_enter(reader, (const char *)section->items + i * section->size)) {
+        if (wh_reader_open(reader, (const char *)section->items + i * section->size, section->known)) {
             section->read(reader, layout, i);
             wh_reader_leave(reader);
         }
@@ -127,30 +125,22 @@ static void read_section(wh_reader_t *reader, wh_layout_t *layout, const section
 
 /* ---------------------------------------------------------------------------------------------- all of it */
 
-static void set_shapes(wh_spread_t of[], size_t count, wh_shape_t shape) {
-    for (size_t i = 0; i < count; ++i) {
-        of[i].shape = shape;
-    }
-}
-
 static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t shape) {
     wh_spreads_t placement = {{{0, shape}}};
-    set_shapes(placement.of, WH_SPREADS, shape);
+    for (size_t i = 1; i < WH_SPREADS; ++i) {
+        placement.of[i] = placement.of[0];
+    }
     wh_spreads_t teaching = placement;
-    set_shapes(layout->errors->valves, WH_GRIPPERS, shape);
     layout->errors->vacuum.shape = shape;
-    if (wh_reader_enter(reader, "placement")) {
-        read_placement(reader, &placement);
-        wh_reader_leave(reader);
-    }
-    if (wh_reader_enter(reader, "teaching")) {
-        read_teaching(reader, &teaching);
-        wh_reader_leave(reader);
-    }
-    if (wh_reader_enter(reader, "timing")) {
-        read_timing(reader, layout, layout->errors);
-        wh_reader_leave(reader);
-    }
+    wh_reader_open_section(reader, "placement", PLACEMENT);
+    read_spreads(reader, placement_names, &placement);
+    wh_reader_leave(reader);
+    wh_reader_open_section(reader, "teaching", TEACHING);
+    read_spreads(reader, teaching_names, &teaching);
+    wh_reader_leave(reader);
+    wh_reader_open_section(reader, "timing", "valve vacuum shape");
+    read_timing(reader, layout, layout->errors);
+    wh_reader_leave(reader);
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         layout->errors->wafers[w] = placement;
     }
@@ -160,12 +150,13 @@ static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t sh
 }
 
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
-    const section_t sections[] = {{"wafers", "wafer", layout->wafers, sizeof *layout->wafers,
-                                   layout->wafer_count, wh_layout_find_wafer, read_wafer},
-                                  {"stations", "station", layout->stations, sizeof *layout->stations,
-                                   layout->station_count, wh_layout_find_station, read_station},
-                                  {"grippers", "gripper", layout->grippers, sizeof layout->grippers[0],
-                                   layout->machine.gripper_count, wh_layout_find_gripper, read_gripper}};
+    const section_t sections[] = {
+        {"wafers", "wafer", PLACEMENT, layout->wafers, sizeof *layout->wafers, layout->wafer_count,
+         wh_layout_find_wafer, read_wafer},
+        {"stations", "station", TEACHING, layout->stations, sizeof *layout->stations, layout->station_count,
+         wh_layout_find_station, read_station},
+        {"grippers", "gripper", "valve shape", layout->grippers, sizeof layout->grippers[0],
+         layout->machine.gripper_count, wh_layout_find_gripper, read_gripper}};
     if (!wh_reader_open(reader, "study", "shape placement teaching timing wafers stations grippers")) {
         return;
     }

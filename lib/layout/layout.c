@@ -6,20 +6,16 @@
 #include <string.h>
 
 #include "../math/trig.h"
+#include "../text/nearest.h"
 #include "layout_internal.h"
 
 /* The registry's list of all memory of layouts. It is never cleared, for a record may outlive a second
  * `cell`. */
-static char owned_key;
+#define OWNED "waferhand.layouts"
 
 void *wh_layout_memory(lua_State *L, size_t count, size_t size) {
     const size_t bytes = (count > 0 ? count : 1) * size;
-    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &owned_key) != LUA_TTABLE) {
-        lua_pop(L, 1);
-        lua_newtable(L);
-        lua_pushvalue(L, -1);
-        lua_rawsetp(L, LUA_REGISTRYINDEX, &owned_key);
-    }
+    (void)luaL_getsubtable(L, LUA_REGISTRYINDEX, OWNED);
     void *memory = lua_newuserdatauv(L, bytes, 0);
     memset(memory, 0, bytes);
     lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
@@ -29,20 +25,60 @@ void *wh_layout_memory(lua_State *L, size_t count, size_t size) {
 
 /* ------------------------------------------------------------------------------------ how a run is judged */
 
-static double default_thickness(double diameter) {
-    static const struct {
-        double diameter, thickness;
-    } standard[] = {{100, 0.525}, {125, 0.625}, {150, 0.675}, {200, 0.725}, {300, 0.775}};
-    for (size_t i = 0; i < sizeof standard / sizeof standard[0]; ++i) {
-        if (diameter <= standard[i].diameter) {
-            return standard[i].thickness;
-        }
+/* The usual sizes of wafers, all in mm. Others have no thickness and pitch of their own. */
+static const struct wafer_size {
+    double diameter, thickness, pitch; /* 0: ends the list */
+} sizes[] = {{100, 0.525, 4.76}, {125, 0.625, 4.76}, {150, 0.675, 4.76},
+             {200, 0.725, 6.35}, {300, 0.775, 10},   {0, 0, 0}};
+
+/* A wafer's diameter may differ from its size by so much, mm. */
+#define SIZE_SLACK 1
+
+/* Wafers below this, mm, have flats in place of a notch. */
+#define LEAST_NOTCHED 199
+
+/* The size of a layout's wafers, or the end of the list. */
+static const struct wafer_size *size_of(const wh_layout_t *layout) {
+    const struct wafer_size *size = sizes;
+    while (size->diameter > 0 && fabs(layout->wafer_diameter - size->diameter) > SIZE_SLACK) {
+        ++size;
     }
-    return standard[4].thickness;
+    return size;
+}
+
+double wh_layout_sized(wh_reader_t *reader, const wh_layout_t *layout, const char *field, double fallback,
+                       double min, double max) {
+    if (!(fallback > 0) && !wh_reader_has(reader, field)) {
+        wh_reader_refuse(
+            reader, field, NULL,
+            "a number from %.12g to %.12g: wafers of %.12g mm have no default, those of 100, 125, "
+            "150, 200 and 300 mm have",
+            min, max, layout->wafer_diameter);
+    }
+    return wh_reader_number(reader, field, fallback > 0 ? fallback : min, min, max);
+}
+
+double wh_layout_default_pitch(const wh_layout_t *layout) {
+    return size_of(layout)->pitch;
+}
+
+/* Below the smallest wafers there are, and around the numbers of sizes in inches. */
+static void refuse_inches(wh_reader_t *reader) {
+    const double least = 25;
+    const bool is_number = wh_reader_push(reader, "diameter") == LUA_TNUMBER;
+    const double diameter = lua_tonumber(reader->L, -1);
+    if (is_number && diameter > 0 && diameter < least) {
+        wh_reader_fail(reader, "diameter",
+                       "mm, from %.12g to 1000; is that inches? 6 inches are 150 mm, 8 are 200, 12 are 300, "
+                       "18 are 450",
+                       least);
+    }
+    lua_pop(reader->L, 1);
 }
 
 /* The notch shows people and prealigners how the wafer is turned. For the checks the wafer stays a disc. */
 static void read_notch(wh_reader_t *reader, wh_layout_t *layout) {
+    layout->notch_depth = layout->wafer_diameter < LEAST_NOTCHED ? 0 : 1;
     if (wh_reader_open(reader, "notch", "at depth")) {
         layout->notch = wh_rad_from_deg(wh_reader_number(reader, "at", 0, -360, 360));
         layout->notch_depth = wh_reader_number(reader, "depth", 1, 0, layout->wafer_diameter / 4);
@@ -51,23 +87,25 @@ static void read_notch(wh_reader_t *reader, wh_layout_t *layout) {
 }
 
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout) {
-    layout->wafer_diameter = 300;
-    layout->wafer_thickness = default_thickness(300);
-    layout->notch_depth = 1;
-    if (wh_reader_open(reader, "wafer", "diameter thickness notch")) {
-        layout->wafer_diameter = wh_reader_number(reader, "diameter", 300, 1, 1000);
-        layout->wafer_thickness =
-            wh_reader_number(reader, "thickness", default_thickness(layout->wafer_diameter), 0.01, 100);
-        read_notch(reader, layout);
-        wh_reader_leave(reader);
-    }
+    wh_reader_open_section(reader, "wafer", "diameter thickness notch");
+    refuse_inches(reader);
+    layout->wafer_diameter = wh_reader_number(reader, "diameter", 300, 25, 1000);
+    layout->wafer_thickness =
+        wh_layout_sized(reader, layout, "thickness", size_of(layout)->thickness, 0.01, 100);
+    read_notch(reader, layout);
+    wh_reader_leave(reader);
 }
 
-static void read_limits(wh_reader_t *reader, wh_tolerance_t *tolerance) {
+static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
+    static const char *const names[WH_TOLERANCE_LIMITS] = {"projz", "projxy", "planar"};
+    wh_tolerance_t *tolerance = &layout->grasp.tolerance;
     (void)wh_reader_open(reader, "tolerance", "projz projxy planar");
-    tolerance->projz = wh_reader_number(reader, "projz", tolerance->projz, 1e-9, 1e6);
-    tolerance->projxy = wh_reader_number(reader, "projxy", tolerance->projxy, 1e-6, 1e6);
-    tolerance->planar = wh_reader_number(reader, "planar", tolerance->planar, 0, 0.999999999999);
+    for (size_t i = 0; i < WH_TOLERANCE_LIMITS; ++i) {
+        layout->tolerance_default[i] = !wh_reader_has(reader, names[i]);
+    }
+    tolerance->projz = wh_reader_number(reader, names[0], tolerance->projz, 1e-9, 1e6);
+    tolerance->projxy = wh_reader_number(reader, names[1], tolerance->projxy, 1e-6, 1e6);
+    tolerance->planar = wh_reader_number(reader, names[2], tolerance->planar, 0, 0.999999999999);
     wh_reader_leave(reader);
 }
 
@@ -84,7 +122,7 @@ static void read_tolerance(wh_reader_t *reader, wh_layout_t *layout) {
     }
     lua_pop(reader->L, 1);
     if (type == LUA_TTABLE) {
-        read_limits(reader, &layout->grasp.tolerance);
+        read_limits(reader, layout);
     } else {
         const int preset = wh_reader_choice(reader, "tolerance", 0, presets);
         name = wh_tolerance_preset((size_t)preset, &layout->grasp.tolerance);
@@ -95,11 +133,10 @@ static void read_tolerance(wh_reader_t *reader, wh_layout_t *layout) {
 static void read_near(wh_reader_t *reader, wh_layout_t *layout) {
     const wh_real_t twice = 2 * layout->grasp.tolerance.projxy;
     layout->grasp.near_projxy = twice < WH_REAL(1e6) ? twice : WH_REAL(1e6);
-    if (wh_reader_open(reader, "near", "projz projxy")) {
-        layout->grasp.near_projz = wh_reader_number(reader, "projz", layout->grasp.near_projz, 1e-9, 1e6);
-        layout->grasp.near_projxy = wh_reader_number(reader, "projxy", layout->grasp.near_projxy, 1e-9, 1e6);
-        wh_reader_leave(reader);
-    }
+    wh_reader_open_section(reader, "near", "projz projxy");
+    layout->grasp.near_projz = wh_reader_number(reader, "projz", layout->grasp.near_projz, 1e-9, 1e6);
+    layout->grasp.near_projxy = wh_reader_number(reader, "projxy", layout->grasp.near_projxy, 1e-9, 1e6);
+    wh_reader_leave(reader);
 }
 
 /* A slice is a whole number of microseconds, so that times of slices are exact. */
@@ -116,11 +153,10 @@ static void read_slice(wh_reader_t *reader, wh_layout_t *layout) {
 /* How a released wafer comes to lie, and the limits above which its place is reported. */
 static void read_placing(wh_reader_t *reader, wh_cell_t *cell) {
     cell->settle = wh_reader_boolean(reader, "settle", false);
-    if (wh_reader_open(reader, "placing", "off_centre askew")) {
-        cell->off_centre = wh_reader_number(reader, "off_centre", 0, 0, 1000);
-        cell->askew = wh_rad_from_deg(wh_reader_number(reader, "askew", 0, 0, 90));
-        wh_reader_leave(reader);
-    }
+    wh_reader_open_section(reader, "placing", "off_centre askew");
+    cell->off_centre = wh_reader_number(reader, "off_centre", 0, 0, 1000);
+    cell->askew = wh_rad_from_deg(wh_reader_number(reader, "askew", 0, 0, 90));
+    wh_reader_leave(reader);
 }
 
 static void read_checks(wh_reader_t *reader, wh_layout_t *layout) {
@@ -212,13 +248,39 @@ int32_t wh_layout_find_wafer(const wh_layout_t *layout, const char *name) {
     return find(layout->wafers, layout->wafer_count, sizeof *layout->wafers, name);
 }
 
+/* Among how many names the nearest one is looked for. */
+#define MOST_NAMES 1000
+
+/* The name of thing `i` of those that `lookup` looks among; null behind the last one. */
+static const char *name_at(const wh_layout_t *layout, wh_layout_find_t *lookup, size_t i) {
+    if (lookup == wh_layout_find_station) {
+        return i < layout->station_count ? layout->stations[i].name : NULL;
+    }
+    if (lookup == wh_layout_find_gripper) {
+        return i < layout->machine.gripper_count ? layout->grippers[i].name : NULL;
+    }
+    return i < layout->wafer_count ? layout->wafers[i].name : NULL;
+}
+
+static const char *nearest_name(const wh_layout_t *layout, wh_layout_find_t *lookup, const char *name) {
+    const char *names[MOST_NAMES];
+    size_t count = 0;
+    while (count < MOST_NAMES && name_at(layout, lookup, count)) {
+        names[count] = name_at(layout, lookup, count);
+        ++count;
+    }
+    return wh_text_nearest(name, names, count);
+}
+
 int32_t wh_layout_read_name(wh_reader_t *reader, const wh_layout_t *layout, const char *field,
                             const char *fallback, wh_layout_find_t *lookup, const char *expected) {
     char name[WH_NAME_SIZE];
     wh_reader_text(reader, field, fallback, name, sizeof name);
     const int32_t found = lookup(layout, name);
     if (found == WH_NONE) {
-        wh_reader_refuse(reader, field, name, "%s", expected);
+        char meant[WH_NEAREST_TEXT];
+        wh_reader_refuse(reader, field, name, "%s%s", expected,
+                         wh_text_did_you_mean(meant, "; ", "", nearest_name(layout, lookup, name)));
     }
     return found;
 }

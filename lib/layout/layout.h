@@ -24,6 +24,9 @@
 #define WH_LAYOUT_STATIONS 1000
 #define WH_LAYOUT_SLOTS 1000
 
+/* The limits of a tolerance: projz, projxy, planar. */
+#define WH_TOLERANCE_LIMITS 3
+
 /* The most parts that a collision check may have, and the most obstacles among them. */
 #define WH_LAYOUT_PARTS 100000
 #define WH_LAYOUT_OBSTACLES 1000
@@ -56,9 +59,11 @@ typedef struct {
     char name[WH_NAME_SIZE];
     bool prealigner;
     bool foup;              /* with walls and a load port around its slots */
+    bool counts;            /* a wafer that is put here is done: for wafers per hour */
     wh_real_t stroke;       /* from entry below the wafer to exit above it */
     wh_real_t offset;       /* how far above the slot a GET leaves and a PUT starts */
     wh_real_t retract;      /* how far before the slot the end-effector enters the line */
+    bool retract_default;   /* the layout does not say it */
     wh_real_t pickup_speed; /* of the strokes, mm/s */
     wh_real_t release;      /* height above the slot's plane at which a PUT switches the valves */
     wh_real_t vacuum_delay; /* from the stroke's end until the sensor is asked, s */
@@ -84,8 +89,11 @@ typedef struct {
 typedef struct {
     const char *path;        /* as the caller named it */
     char tolerance_name[16]; /* the preset's, or "own" */
+    /* of "own": the layout does not give projz, projxy, planar, and the paper's stands */
+    bool tolerance_default[WH_TOLERANCE_LIMITS];
     double wafer_diameter, wafer_thickness;
-    double notch, notch_depth; /* direction of the notch, rad about e3 from e1, and its depth, mm */
+    /* direction of the notch, rad about e3 from e1, and its depth, mm; depth 0: no notch */
+    double notch, notch_depth;
     wh_grasp_config_t grasp;
     int64_t slice_us;
     wh_physics_t physics; /* vacuum, pads, faults at the start */
@@ -117,6 +125,16 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path);
 /* Runs the file in the sandbox and reads what it returns. Null, and the reason in `result`, if that fails.
  * The layout lives as long as the sandbox. */
 const wh_layout_t *wh_layout_load(wh_sandbox_t *sandbox, const char *path, wh_sandbox_result_t *result);
+
+/* A station parameter that is a number, as a layout and as a command may set it. */
+typedef struct {
+    const char *name;
+    double least, most;
+    const char *unit; /* empty: a count */
+} wh_station_range_t;
+
+/* All of them, up to one without a name. `offset` and `release` must also be within the stroke. */
+extern const wh_station_range_t wh_station_ranges[];
 
 /* Reads the fault that the reader is at: a table with its kind, gripper or wafer, time and size. Raises the
  * reader's errors. `first` is the slice that `after = 0` means. */

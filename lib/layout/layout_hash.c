@@ -1,5 +1,3 @@
-#include <string.h>
-
 #include "../math/hash.h"
 #include "layout.h"
 

@@ -20,6 +20,14 @@ int32_t wh_layout_read_name(wh_reader_t *reader, const wh_layout_t *layout, cons
 int32_t wh_layout_read_gripper_name(wh_reader_t *reader, const wh_layout_t *layout, const char *field,
                                     const char *expected);
 
+/* The pitch of the wafers' size, mm; 0: there is none for such wafers. */
+double wh_layout_default_pitch(const wh_layout_t *layout);
+
+/* wh_reader_number of a field whose default follows from the wafers' size. If there is none (0), the field is
+ * required, and the error says so. */
+double wh_layout_sized(wh_reader_t *reader, const wh_layout_t *layout, const char *field, double fallback,
+                       double min, double max);
+
 /* Each reads its fields from the layout's top table, at which the reader is. */
 void wh_layout_read_physics(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout);

@@ -43,10 +43,7 @@ static void read_axis(wh_reader_t *reader, wh_robot_t *robot, size_t axis, const
     const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
     const wh_real_t reach = turns ? WH_REAL(1e6) : WH_REAL(1e5);
     wh_travel_t *travel = &robot->travel[axis];
-    if (!wh_reader_enter(reader, name)) {
-        return;
-    }
-    wh_reader_refuse_unknown(reader, "min max home speed acceleration jerk");
+    wh_reader_open_section(reader, name, "min max home speed acceleration jerk");
     travel->min = read_quantity(reader, "min", turns, travel->min, axis == WH_AXIS_R ? 0 : -reach, reach);
     travel->max = read_quantity(reader, "max", turns, travel->max, to_layout(turns, travel->min), reach);
     robot->home[axis] = read_quantity(reader, "home", turns, robot->home[axis], to_layout(turns, travel->min),
@@ -59,9 +56,7 @@ static void read_axis(wh_reader_t *reader, wh_robot_t *robot, size_t axis, const
 static void read_robot(wh_reader_t *reader, wh_robot_t *robot) {
     static const char *const kinds[] = {"TRZY", NULL};
     static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-    if (!wh_reader_open(reader, "robot", "kind theta r z yaw")) {
-        return;
-    }
+    wh_reader_open_section(reader, "robot", "kind theta r z yaw");
     wh_reader_choice(reader, "kind", 0, kinds);
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         read_axis(reader, robot, axis, names[axis]);
@@ -79,10 +74,9 @@ void wh_layout_read_robot(wh_reader_t *reader, wh_layout_t *layout) {
     machine->chuck_limits = machine->robot.limits[WH_AXIS_YAW];
     read_robot(reader, &machine->robot);
     layout->homed = wh_reader_boolean(reader, "homed", true);
-    if (wh_reader_open(reader, "chuck", "speed acceleration jerk")) {
-        read_axis_limits(reader, true, &machine->chuck_limits);
-        wh_reader_leave(reader);
-    }
+    wh_reader_open_section(reader, "chuck", "speed acceleration jerk");
+    read_axis_limits(reader, true, &machine->chuck_limits);
+    wh_reader_leave(reader);
 }
 
 /* Mounts a gripper on the chuck of a prealigner, and gives the chuck an axis. */
@@ -187,8 +181,7 @@ static void check_grippers(wh_reader_t *reader, const wh_layout_t *layout) {
 
 void wh_layout_read_grippers(wh_reader_t *reader, wh_layout_t *layout) {
     if (!wh_reader_enter(reader, "grippers")) {
-        lua_pushnil(reader->L);
-        wh_reader_fail(reader, "grippers", "a list of grippers");
+        wh_reader_refuse(reader, "grippers", NULL, "a list of grippers");
     }
     const size_t count = wh_reader_list(reader);
     if (count > WH_GRIPPERS) {

@@ -1,6 +1,5 @@
 /* The fields of a layout about vacuum, holding and faults. */
 #include <math.h>
-#include <string.h>
 
 #include "../math/trig.h"
 #include "layout_internal.h"
@@ -93,8 +92,7 @@ static wh_fault_kind_t read_kind(wh_reader_t *reader) {
     }
     const int kind = wh_reader_choice(reader, "kind", WH_NONE, names);
     if (kind == WH_NONE) {
-        lua_pushnil(reader->L);
-        wh_reader_fail(reader, "kind", "the kind of a fault, such as \"%s\"", names[0]);
+        wh_reader_refuse(reader, "kind", NULL, "the kind of a fault, such as \"%s\"", names[0]);
     }
     return (wh_fault_kind_t)kind;
 }

@@ -58,8 +58,7 @@ static void read_mesh(wh_reader_t *reader, const wh_layout_t *layout, wh_convex_
     wh_reader_text(reader, "mesh", NULL, name, sizeof name);
     const int unit = wh_reader_choice(reader, "unit", -1, units);
     if (unit < 0) {
-        lua_pushnil(reader->L);
-        wh_reader_fail(reader, "unit", "the mesh's unit: \"mm\", \"cm\", \"m\" or \"inch\"");
+        wh_reader_refuse(reader, "unit", NULL, "the mesh's unit: \"mm\", \"cm\", \"m\" or \"inch\"");
     }
     path_of(path, sizeof path, layout, name);
     if (!wh_stl_read(path, mm_per_unit[unit], &points, &convex->point_count, message, sizeof message)) {
@@ -86,12 +85,15 @@ static void read_shape(wh_reader_t *reader, const wh_layout_t *layout, wh_convex
         }
     }
     if (given < 0) {
-        lua_pushnil(reader->L);
-        wh_reader_fail(reader, "box", "a shape: box = { x, y, z }, cylinder, capsule or mesh");
+        wh_reader_refuse(reader, "box", NULL, "a shape: box = { x, y, z }, cylinder, capsule or mesh");
     }
     convex->kind = (wh_convex_kind_t)given;
     if (convex->kind == WH_CONVEX_BOX) {
         const wh_vec3_t size = wh_reader_vector(reader, "box", NULL);
+        if (size.x < WH_CONVEX_THINNEST || size.y < WH_CONVEX_THINNEST || size.z < WH_CONVEX_THINNEST) {
+            (void)wh_reader_push(reader, "box");
+            wh_reader_fail(reader, "box", "three sizes of at least %g mm", (double)WH_CONVEX_THINNEST);
+        }
         convex->half = wh_vec3_scale(WH_REAL(0.5), &size);
     } else if (convex->kind == WH_CONVEX_MESH) {
         read_mesh(reader, layout, convex);
@@ -167,9 +169,7 @@ static void read_obstacles(wh_reader_t *reader, const wh_layout_t *layout, obsta
 }
 
 static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
-    if (!wh_reader_open(reader, "blade", "thickness half_width finger length palm")) {
-        return;
-    }
+    wh_reader_open_section(reader, "blade", "thickness half_width finger length palm");
     blade->thickness = wh_reader_number(reader, "thickness", blade->thickness, 0.1, 50);
     blade->half_width = wh_reader_number(reader, "half_width", blade->half_width, 1, 500);
     blade->finger = wh_reader_number(
@@ -181,9 +181,7 @@ static void read_blade(wh_reader_t *reader, wh_blade_t *blade) {
 }
 
 static void read_arm(wh_reader_t *reader, wh_arm_t *arm) {
-    if (!wh_reader_open(reader, "arm", "reach link right_handed")) {
-        return;
-    }
+    wh_reader_open_section(reader, "arm", "reach link right_handed");
     arm->reach = wh_reader_number(reader, "reach", arm->reach, 0, 2000);
     arm->link = wh_reader_number(reader, "link", arm->link, 10, 5000);
     arm->right_handed = wh_reader_boolean(reader, "right_handed", arm->right_handed);
@@ -191,9 +189,7 @@ static void read_arm(wh_reader_t *reader, wh_arm_t *arm) {
 }
 
 static void read_ledge(wh_reader_t *reader, wh_ledge_t *ledge) {
-    if (!wh_reader_open(reader, "ledge", "inner outer thickness length")) {
-        return;
-    }
+    wh_reader_open_section(reader, "ledge", "inner outer thickness length");
     ledge->outer = wh_reader_number(reader, "outer", ledge->outer, 1, 2000);
     ledge->inner =
         wh_reader_number(reader, "inner", ledge->inner < ledge->outer ? ledge->inner : 0.9 * ledge->outer, 0,
@@ -204,9 +200,7 @@ static void read_ledge(wh_reader_t *reader, wh_ledge_t *ledge) {
 }
 
 static void read_shell(wh_reader_t *reader, wh_shell_t *shell) {
-    if (!wh_reader_open(reader, "foup", "room wall floor roof")) {
-        return;
-    }
+    wh_reader_open_section(reader, "foup", "room wall floor roof");
     shell->room = wh_reader_number(reader, "room", shell->room, 0.1, 500);
     shell->wall = wh_reader_number(reader, "wall", shell->wall, 0.1, 100);
     shell->floor = wh_reader_number(reader, "floor", shell->floor, 1, 500);
@@ -215,9 +209,7 @@ static void read_shell(wh_reader_t *reader, wh_shell_t *shell) {
 }
 
 static void read_chuck(wh_reader_t *reader, wh_spindle_t *chuck) {
-    if (!wh_reader_open(reader, "chuck", "radius height body")) {
-        return;
-    }
+    wh_reader_open_section(reader, "chuck", "radius height body");
     chuck->radius = wh_reader_number(reader, "radius", chuck->radius, 1, 500);
     chuck->height = wh_reader_number(reader, "height", chuck->height, 1, 200);
     chuck->body = wh_reader_number(reader, "body", chuck->body, 1, 1000);
@@ -229,14 +221,13 @@ void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout) {
     wh_shapes_t *shapes = &layout->shapes;
     *shapes = wh_shapes_default(layout->wafer_diameter, layout->wafer_thickness, travel[WH_AXIS_R].max,
                                 travel[WH_AXIS_Z].min);
-    if (wh_reader_open(reader, "shapes", "blade arm ledge foup chuck")) {
-        read_blade(reader, &shapes->blade);
-        read_arm(reader, &shapes->arm);
-        read_ledge(reader, &shapes->ledge);
-        read_shell(reader, &shapes->shell);
-        read_chuck(reader, &shapes->chuck);
-        wh_reader_leave(reader);
-    }
+    wh_reader_open_section(reader, "shapes", "blade arm ledge foup chuck");
+    read_blade(reader, &shapes->blade);
+    read_arm(reader, &shapes->arm);
+    read_ledge(reader, &shapes->ledge);
+    read_shell(reader, &shapes->shell);
+    read_chuck(reader, &shapes->chuck);
+    wh_reader_leave(reader);
 }
 
 /* --------------------------------------------------------------------------------------------- clearances */
@@ -248,9 +239,7 @@ static void read_limits(wh_reader_t *reader, wh_layout_t *layout) {
         length += (size_t)snprintf(known + length, sizeof known - length, "%s%s", kind > 0 ? " " : "",
                                    wh_clearance_name((wh_clearance_kind_t)kind));
     }
-    if (!wh_reader_open(reader, "clearance", known)) {
-        return;
-    }
+    wh_reader_open_section(reader, "clearance", known);
     for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
         const char *name = wh_clearance_name((wh_clearance_kind_t)kind);
         layout->world.limits[kind] = wh_reader_number(reader, name, 0, 0, WH_CLEARANCE_RANGE);
@@ -313,8 +302,43 @@ void wh_layout_set_parts(wh_layout_t *layout, wh_part_list_t *list) {
     set_parts(layout, list, &none);
 }
 
+/* How many parts hang on each gripper, its own included, and last on the arm. */
+static void count_hanging(const wh_world_config_t *world, int counts[WH_GRIPPERS + 1]) {
+    memset(counts, 0, (WH_GRIPPERS + 1) * sizeof *counts);
+    for (size_t i = 0; i < world->part_count; ++i) {
+        const wh_part_t *part = &world->parts[i];
+        if (part->kind == WH_PART_BLADE || part->kind == WH_PART_CHUCK) {
+            ++counts[part->owner];
+        } else if (part->kind == WH_PART_ARM) {
+            ++counts[WH_GRIPPERS];
+        }
+    }
+}
+
+/* The world's limit, told with the body that has most of the parts. */
+static void check_hanging(const wh_reader_t *reader, const wh_layout_t *layout) {
+    int counts[WH_GRIPPERS + 1];
+    size_t fullest = WH_GRIPPERS;
+    int sum = 0;
+    count_hanging(&layout->world, counts);
+    for (size_t i = 0; i <= WH_GRIPPERS; ++i) {
+        sum += counts[i];
+        fullest = counts[i] > counts[fullest] ? i : fullest;
+    }
+    if (sum > WH_WORLD_MOVING) {
+        lua_pushinteger(reader->L, sum);
+        wh_reader_fail(
+            reader, "obstacles",
+            "at most %d parts on robot and grippers together, their own included; %s has %d of them: "
+            "join obstacles on it into one convex shape or mesh, or leave some out",
+            WH_WORLD_MOVING, fullest == WH_GRIPPERS ? "the arm" : layout->grippers[fullest].name,
+            counts[fullest]);
+    }
+}
+
 static void check_world(wh_reader_t *reader, const wh_layout_t *layout) {
     int32_t part = WH_NONE;
+    check_hanging(reader, layout);
     const wh_status_t status = wh_world_validate(&layout->world, &part);
     if (status != WH_OK) {
         wh_reader_refuse(reader, "shapes", part == WH_NONE ? "all parts" : layout->part_names[part],

@@ -1,6 +1,5 @@
 /* A layout's stations and wafers: places, the parameters of GET and PUT, and where wafers lie when a run
  * begins. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,11 +13,43 @@
 #define STATION_FIELDS                                                                                       \
     "kind at rpy taught slots pitch effector stroke offset retract pickup_speed pickup_acceleration "        \
     "release "                                                                                               \
-    "vacuum_delay vacuum_check timeout retries wait map_speed check_map handover"
+    "vacuum_delay vacuum_check timeout retries wait map_speed check_map handover counts"
 
 /* A default for wafers up to 150 mm, up to 200 mm, and larger ones. */
 static double by_size(const wh_layout_t *layout, double small, double middle, double large) {
     return layout->wafer_diameter <= 150 ? small : layout->wafer_diameter <= 200 ? middle : large;
+}
+
+/* A single slot needs none but for how near a wafer lies. */
+static double default_pitch(const wh_layout_t *layout, int32_t slots) {
+    const double pitch = wh_layout_default_pitch(layout);
+    return pitch > 0 || slots > 1 ? pitch : by_size(layout, 4.76, 6.35, 10);
+}
+
+const wh_station_range_t wh_station_ranges[] = {{"stroke", 0.01, 1000, "mm"},
+                                                {"offset", 0, 1000, "mm"},
+                                                {"retract", 1, 10000, "mm"},
+                                                {"release", -1000, 1000, "mm"},
+                                                {"pickup_speed", 0.001, 10000, "mm/s"},
+                                                {"pickup_acceleration", 0, 1e8, "mm/s^2"},
+                                                {"map_speed", 0.001, 10000, "mm/s"},
+                                                {"vacuum_delay", 0, 3600, "s"},
+                                                {"timeout", 0, 3600, "s"},
+                                                {"wait", 0, 3600, "s"},
+                                                {"retries", 0, 100, ""},
+                                                {NULL, 0, 0, NULL}};
+
+static const wh_station_range_t *find_range(const char *field) {
+    const wh_station_range_t *range = wh_station_ranges;
+    while (strcmp(range->name, field) != 0) {
+        ++range;
+    }
+    return range;
+}
+
+static double read_number(wh_reader_t *reader, const char *field, double fallback) {
+    const wh_station_range_t *range = find_range(field);
+    return wh_reader_number(reader, field, fallback, range->least, range->most);
 }
 
 static void read_place(wh_reader_t *reader, const wh_layout_t *layout, const wh_layout_station_t *station,
@@ -29,7 +60,7 @@ static void read_place(wh_reader_t *reader, const wh_layout_t *layout, const wh_
     place->base_from_station.R = wh_mat3_from_rpy_deg(rpy.x, rpy.y, rpy.z);
     place->slots = wh_reader_whole(reader, "slots", station->foup ? 25 : 1, 1,
                                    station->prealigner ? 1 : WH_LAYOUT_SLOTS);
-    place->pitch = wh_reader_number(reader, "pitch", by_size(layout, 4.76, 6.35, 10), 0.1, 1000);
+    place->pitch = wh_layout_sized(reader, layout, "pitch", default_pitch(layout, place->slots), 0.1, 1000);
     place->chuck = WH_NONE;
     if (place->base_from_station.R.m[2][2] < WH_REAL(0.7)) {
         (void)wh_reader_push(reader, "rpy");
@@ -75,20 +106,22 @@ static double default_timeout(const wh_vacuum_config_t *vacuum) {
 static void read_moves(wh_reader_t *reader, const wh_layout_t *layout, const wh_station_t *place,
                        wh_layout_station_t *station) {
     static const char *const handovers[] = {"new_first", "same_slice", NULL};
-    const double release = layout->grasp.seat ? 0 : -layout->grasp.tolerance.projz / 2;
+    const double lowered = layout->grasp.seat ? 0 : -layout->grasp.tolerance.projz / 2;
     /* With this stroke the blade enters about midway between two wafers at the default pitch. */
-    station->stroke = wh_reader_number(reader, "stroke", by_size(layout, 3, 4, 6), 0.01, 1000);
+    station->stroke = read_number(reader, "stroke", by_size(layout, 3, 4, 6));
     station->offset = wh_reader_number(reader, "offset", station->stroke / 2, 0, station->stroke);
-    station->retract = wh_reader_number(reader, "retract", 300, 1, 10000);
-    station->pickup_speed = wh_reader_number(reader, "pickup_speed", 20, 0.001, 10000);
+    station->retract_default = !wh_reader_has(reader, "retract");
+    station->retract = read_number(reader, "retract", 300);
+    station->pickup_speed = read_number(reader, "pickup_speed", 20);
+    const double bottom = station->offset - station->stroke;
     station->release =
-        wh_reader_number(reader, "release", release, station->offset - station->stroke, station->offset);
-    station->vacuum_delay = wh_reader_number(reader, "vacuum_delay", 0, 0, 3600);
-    station->timeout = wh_reader_number(reader, "timeout", default_timeout(&layout->physics.vacuum), 0, 3600);
+        wh_reader_number(reader, "release", lowered > bottom ? lowered : bottom, bottom, station->offset);
+    station->vacuum_delay = read_number(reader, "vacuum_delay", 0);
+    station->timeout = read_number(reader, "timeout", default_timeout(&layout->physics.vacuum));
     station->handover = wh_reader_choice(reader, "handover", 0, handovers) == 0 ? WH_HANDOVER_NEW_FIRST
                                                                                 : WH_HANDOVER_SAME_SLICE;
-    station->pickup_acceleration = wh_reader_number(reader, "pickup_acceleration", 0, 0, 1e8);
-    station->wait = wh_reader_number(reader, "wait", 0, 0, 3600);
+    station->pickup_acceleration = read_number(reader, "pickup_acceleration", 0);
+    station->wait = read_number(reader, "wait", 0);
     check_stroke(reader, place, station);
     check_speed(reader, layout, station->pickup_speed);
 }
@@ -97,9 +130,9 @@ static void read_checks(wh_reader_t *reader, wh_layout_station_t *station) {
     static const char *const modes[] = {"both", "get", "put", "none", NULL};
     station->taught = wh_reader_boolean(reader, "taught", true);
     station->check = (wh_vacuum_check_t)wh_reader_choice(reader, "vacuum_check", WH_VACUUM_CHECK_BOTH, modes);
-    station->retries = wh_reader_whole(reader, "retries", 0, 0, 100);
+    station->retries = wh_reader_whole(reader, "retries", 0, 0, (int32_t)find_range("retries")->most);
     station->check_map = wh_reader_boolean(reader, "check_map", false);
-    station->map_speed = wh_reader_number(reader, "map_speed", 100, 0.001, 10000);
+    station->map_speed = read_number(reader, "map_speed", 100);
 }
 
 static int compare_names(const void *a, const void *b) {
@@ -121,8 +154,10 @@ static void read_names(wh_reader_t *reader, wh_layout_t *layout) {
         size_t length = 0;
         const char *name = lua_type(L, -2) == LUA_TSTRING ? lua_tolstring(L, -2, &length) : "";
         if (length == 0 || length >= WH_NAME_SIZE || !wh_reader_is_plain(name, length)) {
+            const bool fits = length > 0 && length < WH_NAME_SIZE;
             lua_pushvalue(L, -2);
-            wh_reader_fail(reader, NULL, "stations by name, of 1 to %d bytes", WH_NAME_SIZE - 1);
+            wh_reader_fail(reader, NULL, "stations by name, of 1 to %d bytes%s", WH_NAME_SIZE - 1,
+                           fits ? " without control characters" : "");
         }
         memcpy(layout->stations[layout->station_count++].name, name, length + 1);
     }
@@ -143,15 +178,46 @@ static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t index)
     wh_reader_leave(reader);
 }
 
+/* Where wafers end up, if nothing is said: in FOUPs, else among several slots, else in one, never on a
+ * chuck. */
+static int rank_of(const wh_layout_t *layout, size_t s) {
+    const wh_layout_station_t *station = &layout->stations[s];
+    const int by_slots = layout->places[s].slots > 1 ? 2 : 1;
+    return station->prealigner ? 0 : station->foup ? 3 : by_slots;
+}
+
+static bool says_counts(wh_reader_t *reader, const wh_layout_station_t *station) {
+    wh_reader_enter(reader, station->name);
+    const bool says = wh_reader_has(reader, "counts");
+    wh_reader_leave(reader);
+    return says;
+}
+
+/* Of stations that do not say if they count, those of the highest rank do. */
+static void read_counts(wh_reader_t *reader, wh_layout_t *layout) {
+    int highest = 1;
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        if (!says_counts(reader, &layout->stations[s])) {
+            const int rank = rank_of(layout, s);
+            highest = rank > highest ? rank : highest;
+        }
+    }
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        wh_reader_enter(reader, layout->stations[s].name);
+        layout->stations[s].counts = wh_reader_boolean(reader, "counts", rank_of(layout, s) == highest);
+        wh_reader_leave(reader);
+    }
+}
+
 void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout) {
     if (!wh_reader_enter(reader, "stations")) {
-        lua_pushnil(reader->L);
-        wh_reader_fail(reader, "stations", "a table of stations by name");
+        wh_reader_refuse(reader, "stations", NULL, "a table of stations by name");
     }
     read_names(reader, layout);
     for (size_t s = 0; s < layout->station_count; ++s) {
         read_station(reader, layout, s);
     }
+    read_counts(reader, layout);
     wh_layout_place(layout);
     wh_reader_leave(reader);
 }

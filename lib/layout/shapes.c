@@ -100,6 +100,11 @@ static void add_blade(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t g
     wh_shapes_add(list, &part, "%s palm", name);
 }
 
+/* True for a length that a part cannot have: what it would join is together without it. */
+static bool is_too_short(wh_real_t half) {
+    return half < WH_CONVEX_THINNEST / 2;
+}
+
 /* The wrist's axis meets the blade's plane here, in the gripper's frame; z is the wrist's height. */
 static wh_vec3_t wrist_of(const wh_shapes_t *shapes, const wh_pose_t *effector_from_gripper) {
     const wh_vec3_t wrist = {-shapes->arm.reach, 0, 0};
@@ -127,6 +132,9 @@ static void add_neck(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gr
             {-b->palm, 0, 0}};
         part.convex.body_from_shape = wh_pose_compose(&gripper_from_neck, &part.convex.body_from_shape);
     }
+    if (is_too_short(part.convex.half.x)) {
+        return;
+    }
     wh_shapes_add(list, &part, "%s neck", name);
 }
 
@@ -141,6 +149,9 @@ static void add_post(wh_part_list_t *list, const wh_shapes_t *shapes, int32_t gr
     } else if (bottom > 0) {
         part.convex = cylinder(HAND_RADIUS, 0, bottom);
     } else {
+        return;
+    }
+    if (is_too_short(part.convex.half.z)) {
         return;
     }
     part.convex.body_from_shape.r.x = wrist->x;
@@ -166,15 +177,8 @@ void wh_shapes_add_gripper(wh_part_list_t *list, const wh_shapes_t *shapes, int3
 /* ----------------------------------------------------------------------------------------------- stations */
 
 size_t wh_shapes_count_station(wh_stand_t stand, int32_t slots) {
-    switch (stand) {
-    case WH_STAND_LEDGES:
-        return 2 * (size_t)slots;
-    case WH_STAND_FOUP:
-        return 2 * (size_t)slots + 6;
-    case WH_STAND_CHUCK:
-        return 1;
-    }
-    return 0;
+    const size_t shell = stand == WH_STAND_FOUP ? 6 : 0;
+    return stand == WH_STAND_CHUCK ? 1 : 2 * (size_t)slots + shell;
 }
 
 static void place(wh_part_t *part, const wh_pose_t *base_from_frame, const wh_convex_t *convex) {
@@ -227,17 +231,13 @@ static void add_foup(wh_part_list_t *list, const wh_shapes_t *shapes, const wh_s
 
 void wh_shapes_add_station(wh_part_list_t *list, const wh_shapes_t *shapes, const wh_station_t *station,
                            int32_t index, wh_stand_t stand, const char *name) {
-    switch (stand) {
-    case WH_STAND_LEDGES:
-        add_ledges(list, &shapes->ledge, station, index, name);
-        break;
-    case WH_STAND_FOUP:
-        add_ledges(list, &shapes->ledge, station, index, name);
-        add_foup(list, shapes, station, index, name);
-        break;
-    case WH_STAND_CHUCK:
+    if (stand == WH_STAND_CHUCK) {
         add_fixed(list, station, index, cylinder(shapes->chuck.body, BODY_BOTTOM, -shapes->chuck.height - 1),
                   name, "body");
-        break;
+        return;
+    }
+    add_ledges(list, &shapes->ledge, station, index, name);
+    if (stand == WH_STAND_FOUP) {
+        add_foup(list, shapes, station, index, name);
     }
 }

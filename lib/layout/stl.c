@@ -2,13 +2,17 @@
 
 #include <endian.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "../text/array.h"
+#include "../text/output.h"
 
 /* The rounding of a file's numbers, relative to the largest: seven digits, or a single float. */
 static const wh_real_t file_digits = 1e-6;
@@ -124,12 +128,6 @@ static bool refuse_word(stl_t *stl, const char *word, const char *expected) {
     return refuse(stl, ":%u: \"%s\" (expected %s)", stl->line, word, expected);
 }
 
-static bool expect(stl_t *stl, const char *keyword) {
-    char word[WORD];
-    next_word(stl, word);
-    return strcasecmp(word, keyword) == 0 || refuse_word(stl, word, keyword);
-}
-
 static bool read_number(stl_t *stl, double *number) {
     char word[WORD];
     next_word(stl, word);
@@ -139,39 +137,33 @@ static bool read_number(stl_t *stl, double *number) {
            refuse_word(stl, word, "a number");
 }
 
-static bool read_vertex(stl_t *stl, size_t corner) {
+static bool read_corner(stl_t *stl, size_t corner) {
     double xyz[3];
-    if (!expect(stl, "vertex")) {
-        return false;
-    }
+    char where[WORD];
     for (size_t i = 0; i < 3; ++i) {
         if (!read_number(stl, &xyz[i])) {
             return false;
         }
     }
-    char where[WORD];
     (void)snprintf(where, sizeof where, ":%u", stl->line);
     return take_corner(stl, xyz, corner, where);
 }
 
 /* Reads what follows the word `facet`. The normal may be anything: some programs write none. */
 static bool read_facet(stl_t *stl) {
-    char ignored[WORD];
-    if (!expect(stl, "normal")) {
-        return false;
-    }
-    for (size_t i = 0; i < 3; ++i) {
-        next_word(stl, ignored);
-    }
-    if (!expect(stl, "outer") || !expect(stl, "loop")) {
-        return false;
-    }
-    for (size_t corner = 0; corner < 3; ++corner) {
-        if (!read_vertex(stl, corner)) {
-            return false;
+    static const char *const words[] = {"normal", "",       "",       "",        "outer",   "loop",
+                                        "vertex", "vertex", "vertex", "endloop", "endfacet"};
+    size_t corner = 0;
+    bool good = true;
+    for (size_t i = 0; good && i < sizeof words / sizeof words[0]; ++i) {
+        char word[WORD];
+        next_word(stl, word);
+        good = words[i][0] == '\0' || strcasecmp(word, words[i]) == 0 || refuse_word(stl, word, words[i]);
+        if (good && words[i][0] == 'v') {
+            good = read_corner(stl, corner++);
         }
     }
-    return expect(stl, "endloop") && expect(stl, "endfacet");
+    return good;
 }
 
 static bool read_text(stl_t *stl) {
@@ -361,13 +353,30 @@ bool wh_stl_parse(const char *path, const char *bytes, size_t length, wh_real_t 
     return good;
 }
 
+/* Opens a regular file. It waits for nobody at the other end of a pipe. Null: the message says why. */
+static FILE *open_regular(stl_t *stl) {
+    struct stat status;
+    const int fd = open(stl->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (fd < 0) {
+        (void)refuse(stl, ": %s", strerror(errno));
+        return NULL;
+    }
+    if (fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
+        (void)refuse(stl, ": it is no regular file");
+        (void)close(fd);
+        return NULL;
+    }
+    return wh_memory_need(fdopen(fd, "rb"));
+}
+
 bool wh_stl_read(const char *path, wh_real_t mm_per_unit, wh_vec3_t **points, size_t *count, char *message,
                  size_t size) {
     stl_t stl = {.path = path, .message = message, .message_size = size};
-    FILE *file = fopen(path, "rb");
+    FILE *file = open_regular(&stl);
     if (file == NULL) {
-        return refuse(&stl, ": %s", strerror(errno));
+        return false;
     }
+    wh_output_keep(path);
     char *bytes = wh_array_new(WH_STL_BYTES + 1, 1);
     const size_t length = fread(bytes, 1, WH_STL_BYTES + 1, file);
     const bool good = ferror(file) != 0

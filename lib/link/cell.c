@@ -5,15 +5,6 @@
 #include "../text/array.h"
 #include "messages.h"
 
-static void put_station(const wh_layout_t *layout, size_t s, waferhand_station *out) {
-    const wh_station_t *place = &layout->places[s];
-    out->name = wh_link_borrowed(layout->stations[s].name);
-    wh_link_put_pose(&place->base_from_station, out->position, out->rotation);
-    out->slots = place->slots;
-    out->pitch = place->pitch;
-    out->chuck = place->chuck;
-}
-
 static void put_lists(const wh_layout_t *layout, wh_link_cell_t *room) {
     waferhand_cell *message = &room->message;
     message->gripper_names = room->gripper_names;
@@ -27,7 +18,13 @@ static void put_lists(const wh_layout_t *layout, wh_link_cell_t *room) {
         message->valve_names[g] = wh_link_borrowed(layout->grippers[g].valve);
     }
     for (size_t s = 0; s < layout->station_count; ++s) {
-        put_station(layout, s, &message->stations[s]);
+        const wh_station_t *place = &layout->places[s];
+        waferhand_station *out = &message->stations[s];
+        out->name = wh_link_borrowed(layout->stations[s].name);
+        wh_link_put_pose(&place->base_from_station, out->position, out->rotation);
+        out->slots = place->slots;
+        out->pitch = place->pitch;
+        out->chuck = place->chuck;
     }
     for (size_t w = 0; w < layout->wafer_count; ++w) {
         message->wafer_names[w] = wh_link_borrowed(layout->wafers[w].name);
@@ -99,11 +96,11 @@ static bool take_pose(const double position[3], const double rotation[9], wh_pos
     return wh_pose_validate(pose) == WH_OK;
 }
 
-/* True if a layout's file may say this of a tolerance or a neighbourhood. */
-static bool is_limit(double mm) {
-    return mm >= 1e-9 && mm <= 1e6;
+static bool is_within(double value, double least, double most) {
+    return value >= least && value <= most;
 }
 
+/* What a layout's file may say of checks and places. */
 static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_grasp_config_t *grasp = &layout->grasp;
     grasp->tolerance.projz = cell->eps_projz;
@@ -114,16 +111,13 @@ static bool take_checks(const waferhand_cell *cell, wh_layout_t *layout) {
     grasp->check = cell->check != 0 ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED;
     grasp->seat = cell->seat != 0;
     layout->slice_us = cell->slice_us;
-    return wh_tolerance_validate(&grasp->tolerance) == WH_OK && is_limit(cell->eps_projz) &&
-           is_limit(cell->near_projz) && is_limit(cell->near_projxy) && cell->slice_us >= 1 &&
+    layout->cell.settle = cell->settle != 0;
+    layout->cell.off_centre = cell->off_centre;
+    layout->cell.askew = cell->askew;
+    return wh_tolerance_validate(&grasp->tolerance) == WH_OK && is_within(cell->eps_projz, 1e-9, 1e6) &&
+           is_within(cell->near_projz, 1e-9, 1e6) && is_within(cell->near_projxy, 1e-9, 1e6) &&
+           is_within(cell->off_centre, 0, 1e6) && is_within(cell->askew, 0, 10) && cell->slice_us >= 1 &&
            cell->slice_us <= 1000000;
-}
-
-static bool take_placing(const waferhand_cell *from, wh_cell_t *cell) {
-    cell->settle = from->settle != 0;
-    cell->off_centre = from->off_centre;
-    cell->askew = from->askew;
-    return from->off_centre >= 0 && from->off_centre <= 1e6 && from->askew >= 0 && from->askew <= 10;
 }
 
 static bool take_station(const waferhand_station *from, size_t grippers, wh_layout_station_t *station,
@@ -132,8 +126,8 @@ static bool take_station(const waferhand_station *from, size_t grippers, wh_layo
     place->pitch = from->pitch;
     place->chuck = from->chuck;
     return take_name(from->name, station->name) &&
-           take_pose(from->position, from->rotation, &place->base_from_station) && from->slots >= 1 &&
-           from->slots <= WH_LAYOUT_SLOTS && from->pitch > 0 && from->pitch <= 1e6 &&
+           take_pose(from->position, from->rotation, &place->base_from_station) &&
+           is_within(from->slots, 1, WH_LAYOUT_SLOTS) && from->pitch > 0 && from->pitch <= 1e6 &&
            from->chuck >= WH_NONE && from->chuck < (int32_t)grippers;
 }
 
@@ -160,12 +154,11 @@ static bool take_lists(const waferhand_cell *cell, wh_layout_t *layout) {
  * way. */
 static bool take_physics(const waferhand_cell *cell, wh_layout_t *layout) {
     wh_physics_t *physics = &layout->physics;
-    const wh_vacuum_config_t vacuum = {cell->vacuum_build,     cell->vacuum_vent,       cell->vacuum_idle,
-                                       cell->vacuum_sensor_on, cell->vacuum_sensor_off, cell->vacuum_release};
-    const wh_pads_t pads = {cell->pads_friction, cell->pads_force, cell->pads_mass, cell->pads_gravity};
     physics->slice_s = (wh_real_t)cell->slice_us / 1e6;
-    physics->vacuum = vacuum;
-    physics->pads = pads;
+    physics->vacuum =
+        (wh_vacuum_config_t){cell->vacuum_build,     cell->vacuum_vent,       cell->vacuum_idle,
+                             cell->vacuum_sensor_on, cell->vacuum_sensor_off, cell->vacuum_release};
+    physics->pads = (wh_pads_t){cell->pads_friction, cell->pads_force, cell->pads_mass, cell->pads_gravity};
     physics->fault_count = (size_t)cell->fault_count;
     for (size_t i = 0; i < physics->fault_count; ++i) {
         physics->faults[i] = wh_link_take_fault(&cell->faults[i]);
@@ -188,8 +181,8 @@ static wh_layout_t *make_layout(const waferhand_cell *cell) {
 
 wh_layout_t *wh_link_layout_from_cell(const waferhand_cell *cell) {
     wh_layout_t *layout = make_layout(cell);
-    if (cell->gripper_count < 1 || !take_checks(cell, layout) || !take_placing(cell, &layout->cell) ||
-        !take_lists(cell, layout) || !take_physics(cell, layout)) {
+    if (cell->gripper_count < 1 || !take_checks(cell, layout) || !take_lists(cell, layout) ||
+        !take_physics(cell, layout)) {
         wh_link_layout_free(layout);
         return NULL;
     }

@@ -1,4 +1,5 @@
 /* Datagrams: their check, and a look at them before LCM's generated code, which trusts counts and lengths. */
+#include <endian.h>
 #include <string.h>
 
 #include "../math/hash.h"
@@ -21,40 +22,29 @@
 #define SLICES_FIXED (FINGERPRINT + HEADER + 8 + 2 * 4 + 1 + 2 * 4)
 #define RECORDING_FIXED (FINGERPRINT + HEADER + 4 + 8 + 4 + 2)
 
+/* A big-endian word; one that `size` cuts off is filled up with zeros. */
 static uint64_t word_at(const uint8_t *bytes, size_t size) {
     uint64_t word = 0;
-    for (size_t i = 0; i < 8; ++i) {
-        word = word << 8 | (i < size ? bytes[i] : 0U);
+    if (size >= sizeof word) {
+        memcpy(&word, bytes, sizeof word);
+    } else {
+        memcpy(&word, bytes, size);
     }
-    return word;
-}
-
-/* The same of a whole word, which compilers make one instruction or two of. */
-static uint64_t whole_word_at(const uint8_t *b) {
-    return (uint64_t)b[0] << 56 | (uint64_t)b[1] << 48 | (uint64_t)b[2] << 40 | (uint64_t)b[3] << 32 |
-           (uint64_t)b[4] << 24 | (uint64_t)b[5] << 16 | (uint64_t)b[6] << 8 | (uint64_t)b[7];
+    return be64toh(word);
 }
 
 static uint64_t check_of(const uint8_t *bytes, size_t size) {
     uint64_t hash = WH_HASH_START;
-    size_t at = 0;
-    for (; at + 8 <= size; at += 8) {
-        hash = wh_hash_word(hash, whole_word_at(bytes + at));
-    }
-    if (at < size) {
+    for (size_t at = 0; at < size; at += 8) {
         hash = wh_hash_word(hash, word_at(bytes + at, size - at));
     }
     return hash != 0 ? hash : 1;
 }
 
 void wh_link_seal(uint8_t *bytes, size_t size) {
-    if (size < 8) {
-        return;
-    }
-    uint64_t check = check_of(bytes, size - 8);
-    for (size_t i = 1; i <= 8; ++i) {
-        bytes[size - i] = (uint8_t)(check & 0xffU);
-        check >>= 8;
+    if (size >= CHECK) {
+        const uint64_t check = htobe64(check_of(bytes, size - CHECK));
+        memcpy(bytes + size - CHECK, &check, sizeof check);
     }
 }
 
@@ -91,8 +81,9 @@ static int32_t take_int(walk_t *walk) {
     if (!walk->good) {
         return -1;
     }
-    const uint8_t *b = walk->bytes + at;
-    return (int32_t)((uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | (uint32_t)b[3]);
+    uint32_t word;
+    memcpy(&word, walk->bytes + at, sizeof word);
+    return (int32_t)be32toh(word);
 }
 
 static size_t take_count(walk_t *walk, int32_t most) {
@@ -115,10 +106,6 @@ static bool ends(const walk_t *walk) {
     return walk->good && walk->at == walk->size;
 }
 
-static walk_t walk_over(const void *data, size_t size) {
-    return (walk_t){data, size, 0, true};
-}
-
 /* ----------------------------------------------------------------------------------------------- messages */
 
 bool wh_link_decode_command(const void *data, size_t size, waferhand_command *message) {
@@ -127,7 +114,7 @@ bool wh_link_decode_command(const void *data, size_t size, waferhand_command *me
 }
 
 bool wh_link_decode_state(const void *data, size_t size, waferhand_state *message) {
-    walk_t walk = walk_over(data, size);
+    walk_t walk = {data, size, 0, true};
     skip(&walk, STATE_COUNTS);
     const size_t wafers = take_count(&walk, WH_LINK_WAFERS);
     const size_t grippers = take_count(&walk, WH_GRIPPERS);
@@ -140,7 +127,7 @@ bool wh_link_decode_state(const void *data, size_t size, waferhand_state *messag
 }
 
 bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message) {
-    walk_t walk = walk_over(data, size);
+    walk_t walk = {data, size, 0, true};
     skip(&walk, MCS_FIXED);
     skip_text(&walk);
     skip_text(&walk);
@@ -148,10 +135,17 @@ bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message) {
 }
 
 bool wh_link_decode_request(const void *data, size_t size, waferhand_request *message) {
-    walk_t walk = walk_over(data, size);
+    walk_t walk = {data, size, 0, true};
     skip(&walk, FINGERPRINT + HEADER);
     skip_text(&walk);
     return ends(&walk) && waferhand_request_decode(data, 0, (int)size, message) == (int)size;
+}
+
+int64_t wh_link_request_number(const void *data, size_t size) {
+    const uint8_t *bytes = data;
+    const bool is_one =
+        size >= FINGERPRINT + HEADER && word_at(bytes, 8) == (uint64_t)__waferhand_request_get_hash();
+    return is_one ? (int64_t)word_at(bytes + FINGERPRINT + 8, 8) : 0;
 }
 
 static void skip_texts(walk_t *walk, size_t count) {
@@ -160,26 +154,22 @@ static void skip_texts(walk_t *walk, size_t count) {
     }
 }
 
-static void skip_cell(walk_t *walk) {
-    skip(walk, FINGERPRINT + HEADER);
-    skip_text(walk);
-    skip(walk, CELL_FIXED);
-    const size_t grippers = take_count(walk, WH_GRIPPERS);
-    const size_t stations = take_count(walk, WH_LAYOUT_STATIONS);
-    const size_t wafers = take_count(walk, WH_LINK_WAFERS);
-    const size_t faults = take_count(walk, WH_FAULTS);
-    skip_texts(walk, 2 * grippers);
-    for (size_t i = 0; i < stations && walk->good; ++i) {
-        skip_text(walk);
-        skip(walk, STATION_FIXED);
-    }
-    skip_texts(walk, wafers);
-    skip(walk, wafers * WAFER + faults * FAULT);
-}
-
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message) {
-    walk_t walk = walk_over(data, size);
-    skip_cell(&walk);
+    walk_t walk = {data, size, 0, true};
+    skip(&walk, FINGERPRINT + HEADER);
+    skip_text(&walk);
+    skip(&walk, CELL_FIXED);
+    const size_t grippers = take_count(&walk, WH_GRIPPERS);
+    const size_t stations = take_count(&walk, WH_LAYOUT_STATIONS);
+    const size_t wafers = take_count(&walk, WH_LINK_WAFERS);
+    const size_t faults = take_count(&walk, WH_FAULTS);
+    skip_texts(&walk, 2 * grippers);
+    for (size_t i = 0; i < stations && walk.good; ++i) {
+        skip_text(&walk);
+        skip(&walk, STATION_FIXED);
+    }
+    skip_texts(&walk, wafers);
+    skip(&walk, wafers * WAFER + faults * FAULT);
     return ends(&walk) && waferhand_cell_decode(data, 0, (int)size, message) == (int)size;
 }
 
@@ -193,7 +183,7 @@ uint64_t wh_link_digest(uint64_t before, const char *channel, const void *data, 
 }
 
 bool wh_link_is_slices(const void *data, size_t size) {
-    walk_t walk = walk_over(data, size);
+    walk_t walk = {data, size, 0, true};
     skip(&walk, SLICES_FIXED);
     skip(&walk, take_count(&walk, WH_SLICES_BYTES));
     skip(&walk, CHECK);
@@ -201,7 +191,7 @@ bool wh_link_is_slices(const void *data, size_t size) {
 }
 
 bool wh_link_decode_recording(const void *data, size_t size, waferhand_recording *message) {
-    walk_t walk = walk_over(data, size);
+    walk_t walk = {data, size, 0, true};
     skip(&walk, RECORDING_FIXED);
     skip_text(&walk);
     skip_text(&walk);

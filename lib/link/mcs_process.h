@@ -4,7 +4,7 @@
  * tells the commands on WAFERHAND_MCS. Requests from others are kept until a session has time for them, but
  * for three that are answered at once, also while a command runs:
  *
- *   STOP     the command and the requests that wait end with WH_STATUS_STOPPED
+ *   STOP     the command that runs, and the requests that wait, end with WH_STATUS_STOPPED
  *   STATUS   what wh_mcs_describe says
  *   VERSION  the program's
  *
@@ -20,21 +20,22 @@
 
 /* Requests that wait; more are answered with "busy". */
 #define WH_CONTROL_REQUESTS 16
-/* So many answers are remembered: asked again with the same line, they are given again. With another line
- * the number is taken: WH_STATUS_NUMBER_TAKEN. STATUS and VERSION change nothing: they are answered anew
- * each time and not remembered, nor is what was turned away before its turn. */
+/* So many answers are remembered: asked again with the same line and run, they are given again as they were,
+ * also after a RESET. The run is the same if it is 0, the request's, or that of its answer. With another line
+ * or run the number is taken: WH_STATUS_NUMBER_TAKEN. STATUS and VERSION change nothing: they are answered
+ * anew each time and not remembered, nor is what was turned away without being executed. */
 #define WH_CONTROL_ANSWERED 64
 
 typedef struct {
-    int64_t seq;
+    int64_t seq, run, layout_hash; /* as in the message */
     char line[WH_LINK_LINE];
 } wh_mcs_process_request_t;
 
 typedef struct {
-    int64_t seq; /* 0: free */
-    int32_t error;
+    waferhand_mcs message; /* as it was told, with these texts; its request is 0: free */
+    int64_t run;           /* as in the request */
     char line[WH_LINK_LINE];
-    char *text; /* of its own; null: free */
+    char *text; /* of its own */
 } wh_mcs_process_answer_t;
 
 /* Must not be moved once opened. */
@@ -49,13 +50,15 @@ typedef struct {
     int64_t utime, seq;
     char running[WH_LINK_LINE]; /* the command that goes on; empty: none */
     int running_line;
+    wh_status_t ended_with;             /* the last command, other than WH_OK if it failed */
     wh_mcs_process_request_t executing; /* seq 0: none */
     int64_t last_beat_us;
     wh_mcs_process_request_t waiting[WH_CONTROL_REQUESTS];
     size_t first_waiting, waiting_count;
     wh_mcs_process_answer_t answered[WH_CONTROL_ANSWERED];
     size_t answered_count;
-    uint64_t requests, garbage;            /* datagrams on WAFERHAND_REQUEST: sound ones, others */
+    uint64_t garbage;                      /* datagrams on WAFERHAND_REQUEST that are no request */
+    wh_senders_t speakers;                 /* on WAFERHAND_MCS: motion controls */
     wh_run_told_t outcome;                 /* what was told so far, and the verdict once there is one */
     char reason[WH_SANDBOX_MESSAGE_BYTES]; /* of the verdict */
     uint64_t simulator_layout; /* as the last cell told it: the hash, and the path, fit to print */
@@ -77,12 +80,16 @@ wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control);
 void wh_mcs_process_idle(wh_mcs_process_t *control);
 
 /* Takes the next request out of the queue, if there is one: it is then the one being executed, until
- * wh_mcs_process_answer. */
+ * wh_mcs_process_answer. One that is for another run or layout by now is told so, and the next one taken. */
 bool wh_mcs_process_next_request(wh_mcs_process_t *control, char line[WH_LINK_LINE]);
 
 /* Answers the request being executed: error is 0 or its number, text what an operator would read. Of a text
  * that does not fit a datagram the answer tells how much was cut off. */
-void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *line, const char *text);
+void wh_mcs_process_answer(wh_mcs_process_t *control, wh_status_t error, const char *text);
+
+/* As a STOP does: all requests that wait, and those that have come by now, end with WH_STATUS_STOPPED without
+ * being begun. */
+void wh_mcs_process_stop_waiting(wh_mcs_process_t *control);
 
 /* Tells what was expected before there was a run to tell it of. Call it once the identity is known, as
  * connecting by the partners does. */

@@ -47,20 +47,6 @@ wh_fault_t wh_link_take_fault(const waferhand_fault *in) {
                         .until = in->until_seq};
 }
 
-static void put_slot(const wh_fault_slot_t *slot, waferhand_fault_slot *out) {
-    out->phase = (int32_t)slot->phase;
-    wh_link_put_fault(&slot->fault, &out->it);
-    wh_link_put_pose(&slot->before, out->before_position, out->before_rotation);
-    wh_link_put_pose(&slot->placed, out->placed_position, out->placed_rotation);
-}
-
-static wh_fault_slot_t take_slot(const waferhand_fault_slot *in) {
-    return (wh_fault_slot_t){.phase = (wh_fault_phase_t)in->phase,
-                             .fault = wh_link_take_fault(&in->it),
-                             .before = wh_link_take_pose(in->before_position, in->before_rotation),
-                             .placed = wh_link_take_pose(in->placed_position, in->placed_rotation)};
-}
-
 static void put_measured(const wh_proximity_t *p, waferhand_measurement *out) {
     put_vec3(&p->dr, out->dr);
     out->n1_proj_n2 = p->n1_proj_n2;
@@ -203,7 +189,12 @@ static void put_arrays(const wh_state_t *state, wh_link_state_t *room) {
         put_event(&state->events[e], &room->events[e]);
     }
     for (size_t i = 0; i < (size_t)room->message.fault_count; ++i) {
-        put_slot(&state->physics->faults.slots[i], &room->faults[i]);
+        const wh_fault_slot_t *slot = &state->physics->faults.slots[i];
+        waferhand_fault_slot *out = &room->faults[i];
+        out->phase = (int32_t)slot->phase;
+        wh_link_put_fault(&slot->fault, &out->it);
+        wh_link_put_pose(&slot->before, out->before_position, out->before_rotation);
+        wh_link_put_pose(&slot->placed, out->placed_position, out->placed_rotation);
     }
 }
 
@@ -306,23 +297,12 @@ static bool names_fit(const waferhand_event *event, const waferhand_state *messa
            (no_gripper || wh_is_index(event->gripper, (size_t)message->gripper_count));
 }
 
-static bool parts_fit(const waferhand_event *event) {
-    return event->parts[0] >= WH_NONE && event->parts[0] < WH_LINK_PARTS && event->parts[1] >= WH_NONE &&
-           event->parts[1] < WH_LINK_PARTS;
-}
-
 /* True if a step could have yielded the event. Its readers trust its indices. */
 static bool event_fits(const waferhand_event *event, const waferhand_state *message) {
     return event->kind >= 0 && event->kind < WH_EVENT_KINDS && names_fit(event, message) &&
-           other_fits(event, message) && parts_fit(event) && event->measured_slice >= 0 &&
+           other_fits(event, message) && event->parts[0] >= WH_NONE && event->parts[0] < WH_LINK_PARTS &&
+           event->parts[1] >= WH_NONE && event->parts[1] < WH_LINK_PARTS && event->measured_slice >= 0 &&
            event->measured_slice <= message->seq;
-}
-
-static bool counts_fit(const waferhand_state *message) {
-    return message->wafer_count >= 0 && message->wafer_count <= WH_LINK_WAFERS &&
-           message->gripper_count >= 0 && message->gripper_count <= WH_GRIPPERS &&
-           message->event_count >= 0 && message->event_count <= WH_LINK_EVENTS && message->fault_count >= 0 &&
-           message->fault_count <= WH_FAULTS;
 }
 
 static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *tolerance,
@@ -345,14 +325,19 @@ static bool take_arrays(const waferhand_state *message, const wh_tolerance_t *to
     wh_faults_clear(&arrays->physics.faults);
     arrays->physics.faults.count = (size_t)message->fault_count;
     for (int32_t i = 0; i < message->fault_count; ++i) {
-        arrays->physics.faults.slots[i] = take_slot(&message->faults[i]);
+        const waferhand_fault_slot *in = &message->faults[i];
+        arrays->physics.faults.slots[i] =
+            (wh_fault_slot_t){.phase = (wh_fault_phase_t)in->phase,
+                              .fault = wh_link_take_fault(&in->it),
+                              .before = wh_link_take_pose(in->before_position, in->before_rotation),
+                              .placed = wh_link_take_pose(in->placed_position, in->placed_rotation)};
     }
     return sound;
 }
 
 wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_tolerance_t *tolerance,
                                        wh_link_arrays_t *arrays, wh_state_t *state) {
-    if (!counts_fit(message) || !take_arrays(message, tolerance, arrays)) {
+    if (!take_arrays(message, tolerance, arrays)) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     state->utime = message->utime;

@@ -109,10 +109,11 @@ wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_co
 void wh_link_state_to_message(const wh_state_t *state, const wh_link_identity_t *identity, uint64_t hash,
                               int64_t missed, wh_link_state_t *message);
 
-/* Back: fills `arrays`, and `state` as a view of them. Refuses counts out of range and events that no step
- * yields (WH_STATUS_OUT_OF_RANGE); wafers and grippers are for wh_grasp_restore to judge, the condition for
- * wh_physics_state_validate. Margins and verdicts of measured values, which do not travel, are made anew from
- * `tolerance`; those of a near miss from the limit that its message carries. */
+/* Back: fills `arrays`, and `state` as a view of them. The message's counts are within the arrays, as
+ * wh_link_decode_state sees to. Refuses events that no step yields (WH_STATUS_OUT_OF_RANGE); wafers and
+ * grippers are for wh_grasp_restore to judge, the condition for wh_physics_state_validate. Margins and
+ * verdicts of measured values, which do not travel, are made anew from `tolerance`; those of a near miss from
+ * the limit that its message carries. */
 wh_status_t wh_link_state_from_message(const waferhand_state *message, const wh_tolerance_t *tolerance,
                                        wh_link_arrays_t *arrays, wh_state_t *state);
 
@@ -147,6 +148,10 @@ bool wh_link_decode_state(const void *data, size_t size, waferhand_state *messag
 bool wh_link_decode_mcs(const void *data, size_t size, waferhand_mcs *message);
 bool wh_link_decode_request(const void *data, size_t size, waferhand_request *message);
 bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message);
+
+/* The number of a request that cannot be decoded, if it has a request's fingerprint and is long enough to
+ * carry one; else 0. */
+int64_t wh_link_request_number(const void *data, size_t size);
 
 /* The cell of a layout as a message. Returns false if it has more than WH_LINK_WAFERS wafers: the room is
  * then all zero. */

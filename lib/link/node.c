@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+
+#include "../text/clock.h"
 
 #define NO_ROUTE                                                                                             \
     "LCM is not to be had at this URL (expected a multicast route, as by "                                   \
@@ -15,18 +16,8 @@
     "scheme (expected a URL that begins with udpm://, as in udpm://239.255.76.67:7667, or with another "     \
     "scheme of LCM's)"
 
-static int64_t now_us(clockid_t clock) {
-    struct timespec now;
-    clock_gettime(clock, &now);
-    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
-}
-
-int64_t wh_node_wall_us(void) {
-    return now_us(CLOCK_REALTIME);
-}
-
 int64_t wh_node_clock_us(void) {
-    return now_us(CLOCK_MONOTONIC);
+    return wh_clock_us(CLOCK_MONOTONIC);
 }
 
 /* ---------------------------------------------------------------------------------------------------- URL */
@@ -74,15 +65,13 @@ bool wh_node_reaches_others(const char *url) {
 static bool open_multicast(wh_receiver_t *receiver, const url_t *url) {
     wh_multicast_t multicast;
     char problem[WH_MULTICAST_PROBLEM_BYTES];
-    if (!wh_multicast_parse(url->text, &multicast, problem)) {
-        refuse_url(url, problem);
-        return false;
+    const bool sound = wh_multicast_parse(url->text, &multicast, problem);
+    if (sound && wh_receiver_open(receiver, &multicast)) {
+        return true;
     }
-    if (!wh_receiver_open(receiver, &multicast)) {
-        refuse_url(url, errno == ENODEV ? NO_ROUTE : strerror(errno));
-        return false;
-    }
-    return true;
+    const char *reason = errno == ENODEV ? NO_ROUTE : strerror(errno);
+    refuse_url(url, sound ? reason : problem);
+    return false;
 }
 
 static bool connect_to(wh_node_t *node, const url_t *url) {
@@ -123,8 +112,9 @@ static void keep(wh_node_t *node, const char *channel, const void *data, size_t 
 
 /* Recorded before it is handled: the log has each message before what follows from it. */
 static void hand_over(const wh_node_subscriber_t *subscriber, const void *data, size_t size) {
-    ++subscriber->node->received;
-    keep(subscriber->node, subscriber->channel, data, size);
+    if (!subscriber->overhears) {
+        keep(subscriber->node, subscriber->channel, data, size);
+    }
     subscriber->handler(subscriber->user, data, size);
 }
 
@@ -138,7 +128,7 @@ bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *
         return false;
     }
     wh_node_subscriber_t *subscriber = &node->subscribers[node->subscriber_count++];
-    *subscriber = (wh_node_subscriber_t){node, channel, handler, user};
+    *subscriber = (wh_node_subscriber_t){node, channel, handler, user, false};
     if (node->receiver.socket >= 0) {
         return true;
     }
@@ -147,8 +137,15 @@ bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *
     return subscription && lcm_subscription_set_queue_capacity(subscription, 0) == 0;
 }
 
+bool wh_node_overhear(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user) {
+    const bool subscribed = wh_node_subscribe(node, channel, handler, user);
+    if (subscribed) {
+        node->subscribers[node->subscriber_count - 1].overhears = true;
+    }
+    return subscribed;
+}
+
 bool wh_node_publish(wh_node_t *node, const char *channel, const void *data, size_t size) {
-    ++node->published;
     keep(node, channel, data, size);
     return lcm_publish(node->lcm, channel, data, (unsigned)size) == 0;
 }
@@ -214,7 +211,7 @@ void wh_node_close(wh_node_t *node) {
 
 /* The time as ISO 8601 has it, in UTC and ms, and the level. */
 static void put_time(char *text, size_t size, const char *level) {
-    const int64_t us = wh_node_wall_us();
+    const int64_t us = wh_clock_us(CLOCK_REALTIME);
     const time_t seconds = (time_t)(us / 1000000);
     struct tm parts;
     char date[32];

@@ -17,7 +17,7 @@
 /* Nothing leaves the host unless another URL is asked for. */
 #define WH_NODE_URL "udpm://239.255.76.67:7667?ttl=0"
 
-#define WH_NODE_SUBSCRIPTIONS 8
+#define WH_NODE_SUBSCRIPTIONS 12
 
 typedef struct wh_node wh_node_t;
 
@@ -29,10 +29,30 @@ typedef struct {
     const char *channel; /* the caller's */
     wh_node_handler_t *handler;
     void *user;
+    bool overhears; /* what it hears is no part of the record */
 } wh_node_subscriber_t;
 
 /* Where a line for people goes; without its end. */
 typedef void wh_node_listener_t(void *user, const char *line);
+
+/* Who sends on a channel, for one on which there should be one sender. All zero to begin with. */
+typedef struct {
+    uint64_t last, other; /* the last one, and the other one before it; 0: unknown */
+    bool shared;          /* both send */
+} wh_senders_t;
+
+/* Hears a message of this sender; 0: unknown. True, once, if two send in turns: one that was started anew
+ * sends from another socket, and the one before it never again. */
+static inline bool wh_senders_hear(wh_senders_t *senders, uint64_t sender) {
+    if (sender == 0 || sender == senders->last) {
+        return false;
+    }
+    const bool is_new = sender == senders->other && !senders->shared;
+    senders->shared = senders->shared || is_new;
+    senders->other = senders->last;
+    senders->last = sender;
+    return is_new;
+}
 
 struct wh_node {
     const char *speaker; /* who says what wh_node_say prints, such as "sim"; null, as at first: nobody */
@@ -43,8 +63,7 @@ struct wh_node {
     wh_receiver_t receiver; /* receives multicast */
     wh_recording_t *record; /* the caller's; null: not recording */
     bool interrupted;       /* a signal ended a wait since this was last cleared */
-    uint64_t published, received;
-    uint64_t sender; /* of the message that is being handled: see wh_received_t */
+    uint64_t sender;        /* of the message that is being handled: see wh_received_t */
     wh_node_subscriber_t subscribers[WH_NODE_SUBSCRIPTIONS];
     size_t subscriber_count;
 };
@@ -62,6 +81,10 @@ bool wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
 
 /* Subscribes one channel, whose name must outlive the node. False if there is no room. */
 bool wh_node_subscribe(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user);
+
+/* The same, but what comes is not recorded: of a channel on which the node itself publishes, for over
+ * multicast all that comes back. */
+bool wh_node_overhear(wh_node_t *node, const char *channel, wh_node_handler_t *handler, void *user);
 
 /* Sends one datagram, of which nothing is kept. False when the network refused it. */
 bool wh_node_publish(wh_node_t *node, const char *channel, const void *data, size_t size);
@@ -87,8 +110,7 @@ void wh_node_say(const wh_node_t *node, const char *format, ...) __attribute__((
 /* The same, of something that is not as it should be: its level is "warning". */
 void wh_node_warn(const wh_node_t *node, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* us of wall-clock time, and of a clock that never jumps. */
-int64_t wh_node_wall_us(void);
+/* us of a clock that never jumps. */
 int64_t wh_node_clock_us(void);
 
 #endif

@@ -55,7 +55,9 @@ const char *wh_outcome_read(const char *text, wh_run_told_t *outcome) {
     rest = read_count(rest, ", expectations ", &read.expectations);
     rest = read_count(rest, ", met ", &read.met);
     rest = read_count(rest, ", cycles ", &read.cycles);
-    if (!rest || read.met > read.expectations || (rest[0] != '\0' && strncmp(rest, "; ", 2) != 0)) {
+    const bool is_contradicted =
+        read.met > read.expectations || (read.verdict == WH_OUTCOME_PASSED && read.met < read.expectations);
+    if (!rest || is_contradicted || (rest[0] != '\0' && strncmp(rest, "; ", 2) != 0)) {
         return NULL;
     }
     *outcome = read;

@@ -35,7 +35,7 @@ const char *wh_outcome_word(wh_outcome_verdict_t verdict);
 void wh_outcome_write(const wh_run_told_t *outcome, const char *reason, char *text, size_t size);
 
 /* Reads it. Returns the reason within `text`, "" if there is none; null, and nothing written, if it is no
- * such text, as from an older program. */
+ * such text: its verdict and counts may not fit each other, or an older program wrote it. */
 const char *wh_outcome_read(const char *text, wh_run_told_t *outcome);
 
 #endif

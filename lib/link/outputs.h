@@ -107,6 +107,9 @@ unsigned wh_outputs_update(wh_outputs_t *outputs, int64_t now_us);
  * WH_OUTPUTS_GOOD; a count that is not 1 to WH_GRIPPERS gives WH_OUTPUTS_GARBLED. Cost: linear in size. */
 wh_outputs_look_t wh_outputs_parse(const char *text, size_t size, size_t count, int32_t *valves);
 
+/* What is said of a run for which it was not written, of the file. */
+#define WH_OUTPUTS_UNWRITTEN "--outputs %s: the valves were not written"
+
 /* Writes the file, a value a line, by wh_output_replace (text/output.h): nobody sees half of it. Returns 0 or
  * an errno: EINVAL for wrong arguments as at open, else that of wh_output_replace. */
 int wh_outputs_write(const char *path, const int32_t *valves, size_t count);

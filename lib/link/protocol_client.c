@@ -1,10 +1,12 @@
 #include "protocol_client.h"
 
+#include <errno.h>
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 
 #include "../grasp/restore.h"
+#include "../text/output.h"
 #include "outputs.h"
 
 #define SETTLE_US 1000000
@@ -56,30 +58,28 @@ static void send_again(wh_protocol_client_t *client) {
     send_command(client);
 }
 
-static void say_restored(wh_protocol_client_t *client) {
-    const int64_t now = wh_node_clock_us();
-    if (!client->shared && (client->restored_us == 0 || now - client->restored_us > RESTORE_SAID_US)) {
-        client->restored_us = now;
-        wh_node_warn(client->node, "the simulator was started anew: it gets the state of slice %" PRId64,
-                     client->state.seq);
-    }
-}
-
 /* Sends the last state, then the command, if a simulator that was started anew has asked for it. */
 static void restore_simulator(wh_protocol_client_t *client) {
+    const int64_t now = wh_node_clock_us();
     const bool asked = client->asked_for_state;
     client->asked_for_state = false;
     if (!asked || !client->has_state) {
         return;
     }
     ++client->counters.restored;
-    say_restored(client);
+    if (!client->senders.shared &&
+        (client->restored_us == 0 || now - client->restored_us > RESTORE_SAID_US)) {
+        client->restored_us = now;
+        wh_node_warn(client->node, "the simulator was started anew: it gets the state of slice %" PRId64,
+                     client->state.seq);
+    }
     (void)wh_node_publish(client->node, WH_CHANNEL_RESTORE, client->restore, client->restore_size);
     send_again(client);
 }
 
 /* ---------------------------------------------------------------------------------------------- receiving */
 
+/* The simulator lives. */
 static void heard(wh_protocol_client_t *client) {
     client->asked_us = 0;
     client->timed_out = false;
@@ -87,22 +87,10 @@ static void heard(wh_protocol_client_t *client) {
         client->silent = false;
         wh_node_say(client->node, "the simulator answers again");
     }
-}
-
-/* A simulator that was started anew sends from another socket, and the one before it never again. Two send in
- * turns. */
-static void notice_second_simulator(wh_protocol_client_t *client) {
-    const uint64_t sender = client->node->sender;
-    if (sender == 0 || sender == client->senders[0]) {
-        return;
-    }
-    if (sender == client->senders[1] && !client->shared) {
-        client->shared = true;
+    if (wh_senders_hear(&client->senders, client->node->sender)) {
         wh_node_warn(client->node, "two simulators answer (expected one at a URL: stop the other one, or "
                                    "give it another --lcm-url)");
     }
-    client->senders[1] = client->senders[0];
-    client->senders[0] = sender;
 }
 
 /* Copies the state to client->arrays. False if it is not sound, or no grasp table could be in it. */
@@ -115,17 +103,13 @@ static bool take_over(wh_protocol_client_t *client, const waferhand_state *messa
     return wh_grasp_restore(&table, table.slice, state->wafers, state->grippers) == WH_OK;
 }
 
-static void keep_events(wh_protocol_client_t *client, const wh_state_t *state) {
-    const size_t room = sizeof client->events / sizeof client->events[0] - client->event_count;
-    const size_t count = state->event_count < room ? state->event_count : room;
-    memcpy(client->events + client->event_count, state->events, count * sizeof *state->events);
-    client->event_count += count;
-}
-
 static void take(wh_protocol_client_t *client, const waferhand_state *message, const wh_state_t *state,
                  const void *data, size_t size) {
     if (!client->has_state || state->seq != client->state.seq) {
-        keep_events(client, state);
+        const size_t room = sizeof client->events / sizeof client->events[0] - client->event_count;
+        const size_t count = state->event_count < room ? state->event_count : room;
+        memcpy(client->events + client->event_count, state->events, count * sizeof *state->events);
+        client->event_count += count;
     }
     client->state = *state;
     client->state.wafers = client->arrays.wafers;
@@ -141,8 +125,14 @@ static void take(wh_protocol_client_t *client, const waferhand_state *message, c
     client->answered = client->answered || state->seq == client->command.seq;
 }
 
+/* A slice whose state is still to come: the last one sent, in a free run those before it, too. */
+static bool is_awaited(const wh_protocol_client_t *client, int64_t seq) {
+    return seq == client->command.seq ||
+           (is_free_running(client) && seq > client->state.seq && seq < client->command.seq);
+}
+
 static void take_refusal(wh_protocol_client_t *client, const waferhand_state *message) {
-    if (message->seq != client->command.seq) {
+    if (!is_awaited(client, message->seq)) {
         ++client->counters.unasked;
     } else if (message->status == WH_STATUS_UNKNOWN_RUN) {
         client->asked_for_state = true;
@@ -155,18 +145,14 @@ static void take_refusal(wh_protocol_client_t *client, const waferhand_state *me
 static void take_message(wh_protocol_client_t *client, const waferhand_state *message, const void *data,
                          size_t size) {
     wh_state_t state;
-    const bool wanted =
-        message->seq == client->command.seq ||
-        (is_free_running(client) && message->seq > client->state.seq && message->seq < client->command.seq);
     if (message->run != client->identity.run) {
         ++client->counters.unasked;
         return;
     }
     heard(client);
-    notice_second_simulator(client);
     if (message->status != WH_OK) {
         take_refusal(client, message);
-    } else if (!wanted) {
+    } else if (!is_awaited(client, message->seq)) {
         ++client->counters.unasked;
     } else if (!take_over(client, message, &state)) {
         ++client->counters.malformed;
@@ -205,7 +191,9 @@ static void notice_silence(wh_protocol_client_t *client) {
                      "no answer from the simulator: holding at slice %" PRId64 " until it returns",
                      client->command.seq);
     } else {
-        wh_node_warn(client->node, "no answer from the simulator: waiting until there is one");
+        wh_node_warn(client->node,
+                     "no answer from the simulator: waiting until there is one (waferhand sim %s starts it)",
+                     client->layout->path);
     }
 }
 
@@ -233,6 +221,11 @@ static void resend_when_due(wh_protocol_client_t *client, resend_t *resend) {
     resend->due = wh_node_clock_us() + resend->pause;
 }
 
+/* The node sees a signal only while it waits. */
+static bool is_interrupted(const wh_protocol_client_t *client) {
+    return client->node->interrupted || (client->options.interrupted && client->options.interrupted());
+}
+
 /* WH_OK while an answer may come. Any signal ends a wait for a silent simulator: a program's own handler is
  * enough. `stopped_us` is when a stop was first seen, 0 before. */
 static wh_status_t why_give_up(wh_protocol_client_t *client, int64_t *stopped_us) {
@@ -245,7 +238,7 @@ static wh_status_t why_give_up(wh_protocol_client_t *client, int64_t *stopped_us
         *stopped_us = now;
     }
     const bool waited = *stopped_us != 0 && (client->silent || now - *stopped_us > STOP_GRACE_US);
-    return waited || (client->silent && client->node->interrupted) ? WH_STATUS_STOPPED : WH_OK;
+    return waited || (client->silent && is_interrupted(client)) ? WH_STATUS_STOPPED : WH_OK;
 }
 
 /* Waits for the answer to the last command, sending it again and again. */
@@ -271,8 +264,23 @@ static wh_status_t await_answer(wh_protocol_client_t *client) {
     return client->refusal;
 }
 
-/* Free-running: waits until the next slice is due, and longer if the simulator has fallen silent. */
-static wh_status_t await_due_time(wh_protocol_client_t *client) {
+static bool is_silent_for_long(const wh_protocol_client_t *client) {
+    const int64_t timeout = client->options.timeout_us;
+    return owed_us(client) > (timeout > 0 && timeout < WH_CLIENT_SILENCE_US ? timeout : WH_CLIENT_SILENCE_US);
+}
+
+/* Free-running: waits for the last slice's state. After a long wait the slices are due from then on. */
+static wh_status_t hold(wh_protocol_client_t *client) {
+    const int64_t begin = wh_node_clock_us();
+    const wh_status_t status = await_answer(client);
+    if (wh_node_clock_us() - begin > WH_CLIENT_SILENCE_US) {
+        client->start_us = 0;
+    }
+    return status;
+}
+
+/* False if there is no network any more. */
+static bool wait_until_due(wh_protocol_client_t *client) {
     const double period_us = (double)client->layout->slice_us / client->options.rate;
     if (client->start_us == 0) {
         client->start_us = wh_node_clock_us() - (int64_t)((double)(client->command.seq - 1) * period_us);
@@ -281,15 +289,23 @@ static wh_status_t await_due_time(wh_protocol_client_t *client) {
     client->counters.late += wh_node_clock_us() > due ? 1 : 0;
     for (int64_t now = wh_node_clock_us(); now < due && !is_stopped(client); now = wh_node_clock_us()) {
         if (wh_node_wait(client->node, clamp(due - now, 0, WAIT_MOST_US)) < 0) {
-            return WH_STATUS_NO_NETWORK;
+            return false;
         }
     }
     (void)wh_node_drain(client->node, 64);
-    if (client->asked_for_state || owed_us(client) > WH_CLIENT_SILENCE_US) {
-        client->start_us = 0;
-        return await_answer(client);
+    return true;
+}
+
+/* Free-running: waits until the next slice is due, and longer if the simulator has fallen silent or its state
+ * is awaited. */
+static wh_status_t await_due_time(wh_protocol_client_t *client) {
+    if (!wait_until_due(client)) {
+        return WH_STATUS_NO_NETWORK;
     }
-    return is_stopped(client) ? WH_STATUS_STOPPED : client->refusal;
+    if (client->refusal != WH_OK || is_stopped(client)) {
+        return client->refusal != WH_OK ? client->refusal : WH_STATUS_STOPPED;
+    }
+    return client->asked_for_state || client->awaited || is_silent_for_long(client) ? hold(client) : WH_OK;
 }
 
 /* ------------------------------------------------------------------------------------ the slice interface */
@@ -301,21 +317,17 @@ static void write_outputs(wh_protocol_client_t *client) {
         memcmp(client->written, client->command.valve, count * sizeof(int32_t)) == 0) {
         return;
     }
-    const int problem = wh_outputs_write(client->options.outputs, client->command.valve, count);
+    const char *path = client->options.outputs;
+    const int problem =
+        wh_output_is_kept(path) ? EEXIST : wh_outputs_write(path, client->command.valve, count);
     if (problem == 0) {
         memcpy(client->written, client->command.valve, count * sizeof(int32_t));
     } else if (client->counters.unwritten++ == 0) {
-        wh_node_warn(client->node, "%s: %s (expected a file that can be written)", client->options.outputs,
-                     strerror(problem));
+        wh_node_warn(client->node, "--outputs %s: %s (expected a file that can be written)", path,
+                     problem == EEXIST   ? "this is an input or another output"
+                     : problem == EINVAL ? "it is no regular file"
+                                         : strerror(problem));
     }
-}
-
-/* Keeps events that came after the last exchange, with a late state: they are still to be handed over. */
-static void forget_delivered_events(wh_protocol_client_t *client) {
-    const size_t left = client->event_count - client->events_delivered;
-    memmove(client->events, client->events + client->events_delivered, left * sizeof *client->events);
-    client->event_count = left;
-    client->events_delivered = 0;
 }
 
 /* Before the first answer the caller's state stays as it is: the beginning. */
@@ -329,52 +341,63 @@ static void hand_over(wh_protocol_client_t *client, wh_state_t *state, wh_status
     state->status = status;
 }
 
-/* A command that was given up may have arrived all the same. It must be answered before the next one is
- * sent. */
-static wh_status_t see_through(wh_protocol_client_t *client) {
-    if (!client->pending) {
+wh_status_t wh_protocol_client_resume(wh_protocol_client_t *client) {
+    if (!client->pending || client->answered) {
         return WH_OK;
     }
-    send_again(client);
-    const wh_status_t status = await_answer(client);
-    client->pending = !client->answered;
+    if (is_stopped(client)) {
+        return WH_STATUS_STOPPED;
+    }
+    if (client->timed_out) {
+        client->asked_us = 0; /* it may take its time again */
+    }
+    client->node->interrupted = false;
+    client->refusal = WH_OK;
+    const wh_status_t status = hold(client);
+    client->pending = !client->answered && client->refusal == WH_OK;
     return status;
 }
 
-static void tick(wh_protocol_client_t *client) {
-    const int64_t now = wh_node_clock_us();
-    if (client->options.tick && now - client->last_tick_us >= TICK_US) {
-        client->last_tick_us = now;
-        client->options.tick(client->options.user);
-    }
+void wh_protocol_client_await(wh_protocol_client_t *client) {
+    client->awaited = true;
 }
 
 static wh_status_t exchange(wh_link_t *link, const wh_command_t *command, wh_state_t *state) {
     wh_protocol_client_t *client = (wh_protocol_client_t *)link;
     const bool free_running = is_free_running(client);
     client->node->interrupted = false;
+    /* Events that came after the last exchange, with a late state, are still to be handed over. */
+    client->event_count -= client->events_delivered;
+    memmove(client->events, client->events + client->events_delivered,
+            client->event_count * sizeof *client->events);
+    client->events_delivered = 0;
+    if (is_stopped(client)) {
+        hand_over(client, state, WH_STATUS_STOPPED);
+        return WH_STATUS_STOPPED;
+    }
     client->refusal = WH_OK;
-    forget_delivered_events(client);
-    if (client->timed_out) {
-        client->asked_us = 0; /* it may take its time again */
-    }
-    const wh_status_t before = is_stopped(client) ? WH_STATUS_STOPPED : see_through(client);
-    if (before != WH_OK) {
-        hand_over(client, state, before);
-        return before;
-    }
+    client->asked_us = client->timed_out ? 0 : client->asked_us; /* it may take its time again */
     wh_link_command_to_message(command, &client->identity, !free_running, &client->command);
     client->answered = false;
     client->asked_for_state = false;
-    client->refusal = WH_OK;
     write_outputs(client);
     ++client->counters.sent;
     send_command(client);
-    tick(client);
+    const int64_t now = wh_node_clock_us();
+    if (client->options.tick && now - client->last_tick_us >= TICK_US) {
+        client->last_tick_us = now;
+        client->options.tick(client->options.user);
+    }
     const wh_status_t status = free_running ? await_due_time(client) : await_answer(client);
-    client->pending = !free_running && !client->answered && client->refusal == WH_OK;
+    client->pending = !client->answered && client->refusal == WH_OK;
+    client->awaited = false;
     hand_over(client, state, status);
     return status;
+}
+
+int64_t wh_protocol_client_reached(const wh_protocol_client_t *client) {
+    const int64_t answered = client->has_state ? client->state.seq : 0;
+    return client->refusal == WH_OK ? client->command.seq : answered;
 }
 
 /* The slice whose state is still to come; 0: none. */
@@ -400,8 +423,7 @@ static uint64_t last_hash(wh_link_t *link) {
 /* Those at the end that no state tells of count: nobody has seen that they arrived. */
 static int64_t missed_slices(wh_link_t *link) {
     const wh_protocol_client_t *client = (wh_protocol_client_t *)link;
-    const bool untold = client->options.rate > 0 && owed_slice(client) != 0;
-    return client->missed + (untold ? client->command.seq - client->state.seq : 0);
+    return client->missed + (client->options.rate > 0 ? client->command.seq - client->state.seq : 0);
 }
 
 void wh_protocol_client_heartbeat(wh_protocol_client_t *client) {
@@ -425,14 +447,12 @@ bool wh_protocol_client_settle(wh_protocol_client_t *client, int64_t timeout_us)
 }
 
 int64_t wh_protocol_client_draw_run(void) {
-    uint64_t bits = 0;
-    while (bits == 0) {
-        if (getrandom(&bits, sizeof bits, 0) != (ssize_t)sizeof bits) {
-            bits = (uint64_t)wh_node_wall_us();
-        }
-        bits >>= 1;
+    int64_t run = 0;
+    while (run == 0) {
+        arc4random_buf(&run, sizeof run);
+        run &= INT64_MAX;
     }
-    return (int64_t)bits;
+    return run;
 }
 
 void wh_protocol_client_begin(wh_protocol_client_t *client, const wh_layout_t *layout) {
@@ -455,9 +475,9 @@ void wh_protocol_client_begin(wh_protocol_client_t *client, const wh_layout_t *l
 
 bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node, const wh_layout_t *layout,
                              const wh_protocol_client_options_t *options) {
-    memset(client, 0, sizeof *client);
     client->node = node;
     client->options = *options;
+    memset(&client->counters, 0, sizeof client->counters);
     wh_protocol_client_begin(client, layout);
     return wh_node_subscribe(node, WH_CHANNEL_STATE, on_state, client);
 }

@@ -3,7 +3,8 @@
  * In lockstep an exchange sends the command, waits for its state, and sends it again until that comes: first
  * after a few round trips, then less and less often. A simulator that was started anew gets the last state
  * back. Free-running, it sends one command each slice of wall-clock time and takes the states as they come;
- * the first slice is always in lockstep. Silence of the simulator is reported within a second, and its
+ * the first slice is always in lockstep, and so is each that wh_protocol_client_await is called before.
+ * Silence of the simulator is reported within a second, and its
  * return: it is silent only while it owes an answer. Two simulators that answer in turns are reported, too.
  * No state is taken whose hash is not the one that its own content has, nor one that no grasp table could
  * be in.
@@ -33,6 +34,7 @@ typedef struct {
     double rate;                       /* wall-clock rate of a free-running run; 0: lockstep */
     int64_t timeout_us;                /* wait so long for an answer; 0: for ever */
     const volatile sig_atomic_t *stop; /* not zero: send nothing more; may be null */
+    bool (*interrupted)(void);         /* a signal came that is to end a wait for silence; may be null */
     void (*tick)(void *user);          /* called once a second of a long motion; may be null */
     void *user;
 } wh_protocol_client_options_t;
@@ -47,7 +49,8 @@ typedef struct {
     waferhand_command command;    /* the last one sent */
     wh_state_t state;             /* the last one taken; status WH_OK */
     int32_t written[WH_GRIPPERS]; /* the valves in the outputs file; -1 before the first */
-    bool pending;                 /* the last command was given up before its answer came */
+    bool pending;                 /* the last exchange ended before its answer came */
+    bool awaited;                 /* the next exchange waits for its state, in a free run, too */
     bool has_state, answered, asked_for_state;
     wh_status_t refusal;        /* why the last command was not stepped */
     uint64_t other_layout_hash; /* with WH_STATUS_OTHER_LAYOUT: the simulator's */
@@ -57,9 +60,8 @@ typedef struct {
     int64_t asked_us; /* when the first command went out that nothing was heard since; 0: no answer is owed */
     int64_t start_us, last_tick_us, restored_us;
     bool silent;
-    bool timed_out;      /* an exchange waited longer than it may, and nothing was heard since */
-    uint64_t senders[2]; /* of states: the last one, and the other one before it; 0: unknown */
-    bool shared;         /* both send: two simulators */
+    bool timed_out;       /* an exchange waited longer than it may, and nothing was heard since */
+    wh_senders_t senders; /* of states: simulators */
     wh_protocol_client_counters_t counters;
     wh_link_arrays_t arrays;
     wh_link_arrays_t spare;
@@ -73,6 +75,19 @@ typedef struct {
  * says when the simulator is silent or back, must outlive it. False when LCM has no room. */
 bool wh_protocol_client_open(wh_protocol_client_t *client, wh_node_t *node, const wh_layout_t *layout,
                              const wh_protocol_client_options_t *options);
+
+/* To be called before the first slice after an exchange that failed: waits for the answer to a command that
+ * was given up, since it may have arrived all the same, and the next one must not leave a gap. WH_OK if no
+ * answer is owed, otherwise as an exchange. */
+wh_status_t wh_protocol_client_resume(wh_protocol_client_t *client);
+
+/* The last slice that was sent, unless it was refused: then the last whose state has come; 0: none. A slice
+ * behind it has not gone out, and the next one takes its number. */
+int64_t wh_protocol_client_reached(const wh_protocol_client_t *client);
+
+/* The next exchange waits for its state, in a free run, too: to be called before the last slice of a motion,
+ * if what comes next is decided by its state. */
+void wh_protocol_client_await(wh_protocol_client_t *client);
 
 /* Forgets the run and begins another one, of a layout that may be another. Counters stay. */
 void wh_protocol_client_begin(wh_protocol_client_t *client, const wh_layout_t *layout);

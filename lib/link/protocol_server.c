@@ -126,14 +126,6 @@ static wh_protocol_server_result_t step(wh_protocol_server_t *server, const wafe
     return WH_SERVER_STEPPED;
 }
 
-static wh_protocol_server_result_t begin_run(wh_protocol_server_t *server, const waferhand_command *message,
-                                             const int32_t valves[]) {
-    leave_run(server);
-    start_run(server, message->run);
-    const wh_protocol_server_result_t result = step(server, message, valves);
-    return result == WH_SERVER_STEPPED ? WH_SERVER_NEW_RUN : result;
-}
-
 static wh_protocol_server_result_t go_on(wh_protocol_server_t *server, const waferhand_command *message,
                                          const int32_t valves[]) {
     const bool gap = message->seq > server->seq + 1;
@@ -174,7 +166,10 @@ wh_protocol_server_result_t wh_protocol_server_command(wh_protocol_server_t *ser
         return turn_away(server, message, WH_STATUS_RUN_OVER);
     }
     if (message->seq == 1) {
-        return begin_run(server, message, valves);
+        leave_run(server);
+        start_run(server, message->run);
+        const wh_protocol_server_result_t result = step(server, message, valves);
+        return result == WH_SERVER_STEPPED ? WH_SERVER_NEW_RUN : result;
     }
     ++server->counters.unknown_run;
     return turn_away(server, message, WH_STATUS_UNKNOWN_RUN);

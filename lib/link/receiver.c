@@ -3,8 +3,11 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+#include "../text/array.h"
 
 #define SCHEME "udpm://"
 #define HEADER_BYTES 8
@@ -17,53 +20,41 @@ bool wh_multicast_is(const char *url) {
     return strncmp(url, SCHEME, strlen(SCHEME)) == 0;
 }
 
-/* A part of a URL. */
-typedef struct {
-    const char *text;
-    size_t length;
-} part_t;
-
-/* Up to one of these characters or the end. */
-static part_t part_at(const char *text, const char *ends) {
-    return (part_t){text, strcspn(text, ends)};
-}
-
 /* A whole number up to `most`, written as people do; -1 if there is none: not 07, which liblcm would take for
  * an octal one. */
-static int64_t number(part_t part, int64_t most) {
-    int64_t value = 0;
-    for (size_t i = 0; i < part.length && value <= most; ++i) {
-        const char digit = part.text[i];
-        value = digit >= '0' && digit <= '9' ? 10 * value + (digit - '0') : INT64_MAX;
+static int64_t number(const char *text, int64_t most) {
+    const size_t length = strlen(text);
+    const bool led_by_zero = length > 1 && text[0] == '0';
+    if (length == 0 || led_by_zero || strspn(text, "0123456789") != length) {
+        return -1;
     }
-    const bool led_by_zero = part.length > 1 && part.text[0] == '0';
-    return part.length > 0 && !led_by_zero && value <= most ? value : -1;
+    const int64_t value = strtoll(text, NULL, 10); /* the greatest there is, if it is too great */
+    return value <= most ? value : -1;
 }
 
-/* At most so much of what a user typed is repeated. */
-static int shown(part_t part) {
-    return part.length < 40 ? (int)part.length : 40;
-}
-
-static bool refuse(char *problem, part_t name, part_t given, const char *expected) {
-    const part_t value = given.length > 0 ? given : part_at("nothing", "");
-    snprintf(problem, WH_MULTICAST_PROBLEM_BYTES, "%.*s: %.*s (expected %s)", shown(name), name.text,
-             shown(value), value.text, expected);
+/* At most 40 bytes of what a user typed are repeated. */
+static bool refuse(char *problem, const char *name, const char *value, const char *expected) {
+    snprintf(problem, WH_MULTICAST_PROBLEM_BYTES, "%.40s: %.40s (expected %s)", name,
+             value[0] != '\0' ? value : "nothing", expected);
     return false;
 }
 
-static bool is_named(part_t part, const char *name) {
-    return part.length == strlen(name) && strncmp(part.text, name, part.length) == 0;
+static bool take_place(const char *address, const char *port, wh_multicast_t *multicast, char *problem) {
+    if (inet_pton(AF_INET, address, &multicast->address) != 1 || !IN_MULTICAST(ntohl(multicast->address))) {
+        return refuse(problem, "address", address,
+                      "one of multicast, 224.0.0.0 to 239.255.255.255, as in udpm://239.255.76.67:7667");
+    }
+    multicast->port = (uint16_t)number(port, 65535);
+    return number(port, 65535) >= 1 ||
+           refuse(problem, "port", port, "1 to 65535 behind the address, as in udpm://239.255.76.67:7667");
 }
 
-/* One of liblcm's options, up to the next `&`. */
-static bool take_option(const char *text, wh_multicast_t *multicast, char *problem) {
-    const part_t name = part_at(text, "=&");
-    const part_t value = text[name.length] == '=' ? part_at(text + name.length + 1, "&") : (part_t){"", 0};
-    if (is_named(name, "ttl")) {
+/* One of liblcm's options. */
+static bool take_option(const char *name, const char *value, wh_multicast_t *multicast, char *problem) {
+    if (strcmp(name, "ttl") == 0) {
         return number(value, 255) >= 0 || refuse(problem, name, value, "a whole number from 0 to 255");
     }
-    if (is_named(name, "recv_buf_size")) {
+    if (strcmp(name, "recv_buf_size") == 0) {
         const int64_t bytes = number(value, INT32_MAX);
         multicast->buffer_bytes = bytes > 0 ? (int)bytes : 0;
         return bytes >= 0 || refuse(problem, name, value, "a whole number of bytes from 0 to 2147483647");
@@ -71,37 +62,21 @@ static bool take_option(const char *text, wh_multicast_t *multicast, char *probl
     return refuse(problem, name, value, "ttl=... or recv_buf_size=..., with a & between them");
 }
 
-static bool take_options(const char *options, wh_multicast_t *multicast, char *problem) {
-    const char *text = options;
-    while (*text != '\0') {
-        ++text; /* the `?`, or a `&` */
-        if (!take_option(text, multicast, problem)) {
-            return false;
-        }
-        text += strcspn(text, "&");
-    }
-    return true;
-}
-
 bool wh_multicast_parse(const char *url, wh_multicast_t *multicast,
                         char problem[WH_MULTICAST_PROBLEM_BYTES]) {
-    char text[INET_ADDRSTRLEN];
-    const part_t address = part_at(url + strlen(SCHEME), ":?");
-    const char *behind = address.text + address.length;
-    const part_t port = behind[0] == ':' ? part_at(behind + 1, "?") : (part_t){"", 0};
+    char *const copy = wh_text_copy(url + strlen(SCHEME));
+    char *options = copy;
+    char *port = strsep(&options, "?");
+    const char *address = strsep(&port, ":");
     memset(multicast, 0, sizeof *multicast);
-    snprintf(text, sizeof text, "%.*s", (int)(address.length < sizeof text ? address.length : 0),
-             address.text);
-    if (inet_pton(AF_INET, text, &multicast->address) != 1 || !IN_MULTICAST(ntohl(multicast->address))) {
-        return refuse(problem, part_at("address", ""), address,
-                      "one of multicast, 224.0.0.0 to 239.255.255.255, as in udpm://239.255.76.67:7667");
+    bool sound = take_place(address, port ? port : "", multicast, problem);
+    while (sound && options) {
+        char *value = strsep(&options, "&");
+        const char *name = strsep(&value, "=");
+        sound = take_option(name, value ? value : "", multicast, problem);
     }
-    if (number(port, 65535) < 1) {
-        return refuse(problem, part_at("port", ""), port,
-                      "1 to 65535 behind the address, as in udpm://239.255.76.67:7667");
-    }
-    multicast->port = (uint16_t)number(port, 65535);
-    return take_options(url + strcspn(url, "?"), multicast, problem);
+    free(copy);
+    return sound;
 }
 
 /* ------------------------------------------------------------------------------------------------- socket */

@@ -6,25 +6,19 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 #include <zstd.h>
 
+#include "../text/clock.h"
 #include "../text/output.h"
 
 /* Names that are tried. */
 #define ATTEMPTS 10000
 
-static int64_t clock_us(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
-}
-
 void wh_record_file_fail(wh_record_file_t *file, const char *path, const char *reason) {
     if (!file->failed) {
-        fprintf(stderr, "%s: %s: %s%s\n", file->speaker, path, reason,
-                file->fd >= 0 ? " (the recording ends here)" : "");
+        fprintf(stderr, "%s: %s%s%s: %s%s\n", file->speaker, file->option ? file->option : "",
+                file->option ? " " : "", path, reason, file->fd >= 0 ? " (the recording ends here)" : "");
     }
     file->failed = true;
 }
@@ -53,16 +47,12 @@ bool wh_record_file_name(const char *path, const char *tag, char name[PATH_MAX])
     return length > 0 && length < PATH_MAX;
 }
 
-static bool is_compressed(const char *path) {
-    const size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".zst") == 0;
-}
-
 /* ------------------------------------------------------------------------------------------------ opening */
 
 /* Begins with an open file. */
 static bool begin(wh_record_file_t *file, const char *path, int fd) {
     struct stat status;
+    const size_t length = strlen(path);
     file->fd = fd;
     file->written = 0;
     file->frame_bytes = 0;
@@ -72,7 +62,7 @@ static bool begin(wh_record_file_t *file, const char *path, int fd) {
         /* Nobody else has it yet. */
         (void)flock(fd, LOCK_EX | LOCK_NB);
     }
-    if (is_compressed(path)) {
+    if (length > 4 && strcmp(path + length - 4, ".zst") == 0) {
         file->zstd = ZSTD_createCCtx();
         if (!file->zstd) {
             wh_record_file_fail(file, path, strerror(ENOMEM));
@@ -90,11 +80,21 @@ static bool refuse(wh_record_file_t *file, const char *path, int error) {
     return false;
 }
 
-/* Returns a descriptor, or -1 and errno: EEXIST for a plain file that is there. */
+bool wh_record_file_has_parts(const char *path) {
+    char second[PATH_MAX];
+    struct stat status;
+    return wh_record_file_name(path, "part2", second) && lstat(second, &status) == 0;
+}
+
+/* Returns a descriptor, or -1 and errno: EEXIST for a plain file that is there, or that has parts. */
 static int open_new(const char *path) {
     struct stat status;
     if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) {
         return open(path, O_WRONLY | O_APPEND | O_CLOEXEC);
+    }
+    if (wh_record_file_has_parts(path)) {
+        errno = EEXIST;
+        return -1;
     }
     return open(path, O_WRONLY | O_APPEND | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
 }
@@ -113,7 +113,8 @@ bool wh_record_file_create(wh_record_file_t *file, const char *path) {
         return refuse(file, path, named ? errno : ENAMETOOLONG);
     }
     if (strcmp(name, path) != 0) {
-        fprintf(stderr, "%s: %s is there already: recording into %s\n", file->speaker, path, name);
+        fprintf(stderr, "%s: %s%s is there already: recording into %s\n", file->speaker,
+                wh_record_file_has_parts(path) ? "a part of " : "", path, name);
     }
     return begin(file, name, fd);
 }
@@ -129,22 +130,20 @@ static bool is_locked(const char *path) {
 }
 
 /* What must not be replaced at this path, in words; else null. */
-static const char *find_owner(const char *path, const char *const inputs[]) {
+static const char *find_owner(const char *path) {
     struct stat old;
     if (stat(path, &old) != 0 || !S_ISREG(old.st_mode)) {
         return NULL;
     }
-    for (size_t i = 0; inputs[i]; ++i) {
-        if (wh_output_is_one_file(inputs[i], path)) {
-            return "this is an input of the run (expected another name for its record)";
-        }
+    if (wh_output_is_kept(path)) {
+        return WH_OUTPUT_KEPT;
     }
     return is_locked(path) ? "another process records into it (expected another name)" : NULL;
 }
 
-bool wh_record_file_replace(wh_record_file_t *file, const char *path, const char *const inputs[]) {
+bool wh_record_file_replace(wh_record_file_t *file, const char *path) {
     wh_output_t output = {0};
-    const char *owner = find_owner(path, inputs);
+    const char *owner = find_owner(path);
     if (owner) {
         wh_record_file_fail(file, path, owner);
         return false;
@@ -213,7 +212,7 @@ static void write_packed(wh_record_file_t *file, ZSTD_EndDirective directive) {
 
 /* Packs what waits; with `ends`, or if it is large or old enough, the frame ends. */
 static void pack(wh_record_file_t *file, bool ends) {
-    const int64_t now = clock_us();
+    const int64_t now = wh_clock_us(CLOCK_MONOTONIC);
     file->frame_us = file->frame_bytes == 0 ? now : file->frame_us;
     file->frame_bytes += file->used;
     const bool over =
@@ -271,6 +270,7 @@ bool wh_record_file_close(wh_record_file_t *file) {
     (void)ZSTD_freeCCtx(file->zstd);
     file->zstd = NULL;
     file->fd = -1;
+    wh_output_keep(file->path);
     file->used = 0;
     return !file->failed;
 }

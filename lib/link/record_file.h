@@ -19,6 +19,7 @@
 /* Zero it to begin with, and set fd to -1. */
 typedef struct {
     const char *speaker; /* who says what goes wrong, such as "sim" */
+    const char *option;  /* that asked for the file, such as "--record"; null: none is named */
     char path[PATH_MAX]; /* as others find it */
     int fd;              /* -1: not open */
     bool is_plain_file;  /* not a pipe or a device */
@@ -32,14 +33,18 @@ typedef struct {
     uint8_t packed[WH_RECORD_PACKED];
 } wh_record_file_t;
 
-/* Creates a file, never one that is there: if the name is taken, run.1.log in place of run.log, and so on;
- * standard error tells. What is no plain file (a pipe, a device) is written to as it is. The file is locked
- * (flock) until it is closed. False, and standard error says why, if that was not possible. */
+/* True if the second part of a recording of this name is there: run.part2.log of run.log. Then the name is
+ * that recording's. */
+bool wh_record_file_has_parts(const char *path);
+
+/* Creates a file, never one that is there or has parts: if the name is taken, run.1.log in place of run.log,
+ * and so on; standard error tells. What is no plain file (a pipe, a device) is written to as it is. The file
+ * is locked (flock) until it is closed. False, and standard error says why, if that was not possible. */
 bool wh_record_file_create(wh_record_file_t *file, const char *path);
 
 /* The same, but replaces an old file: whoever reads that one goes on reading it. Refused are a file that
- * another recording has locked, and one of the `inputs` (a list that ends with null). */
-bool wh_record_file_replace(wh_record_file_t *file, const char *path, const char *const inputs[]);
+ * another recording has locked, and one that the process keeps (wh_output_keep): its inputs. */
+bool wh_record_file_replace(wh_record_file_t *file, const char *path);
 
 /* The name with "." and a tag put before its ending: run.log becomes run.TAG.log, run.log.zst
  * run.TAG.log.zst. False if that is too long. */

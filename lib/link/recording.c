@@ -2,156 +2,23 @@
 
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
-#include <time.h>
 
-#define SYNC UINT32_C(0xeda1da01)
-#define EVENT_HEADER 28
-/* Longer names are no channels of LCM. */
-#define CHANNEL_MOST 63
+#include "../text/clock.h"
 
-/* ------------------------------------------------------------------------------------------------- events */
-
-static uint8_t *put_big_endian(uint8_t *out, uint64_t value, size_t size) {
-    for (size_t i = 0; i < size; ++i) {
-        out[i] = (uint8_t)(value >> 8 * (size - 1 - i));
-    }
-    return out + size;
-}
-
-static int64_t wall_us(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_REALTIME, &now);
-    return (int64_t)now.tv_sec * 1000000 + now.tv_nsec / 1000;
-}
-
-static bool open_file(wh_recording_t *recording);
-
-/* Writes one event. What is longer than a datagram comes from nobody. */
-void wh_recording_write_event(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
-    const size_t length = strnlen(channel, CHANNEL_MOST);
-    uint8_t *out = recording->event;
-    if (size > WH_LINK_DATAGRAM) {
-        return;
-    }
-    out = put_big_endian(out, SYNC, 4);
-    out = put_big_endian(out, (uint64_t)recording->events, 8);
-    out = put_big_endian(out, (uint64_t)wall_us(), 8);
-    out = put_big_endian(out, length, 4);
-    out = put_big_endian(out, size, 4);
-    memcpy(out, channel, length);
-    memcpy(out + length, data, size);
-    const size_t whole = EVENT_HEADER + length + size;
-    if (!wh_record_file_put(&recording->file, recording->event, whole) && open_file(recording)) {
-        (void)wh_record_file_put(&recording->file, recording->event, whole);
-    }
-    if (strncmp(channel, WH_LINK_OURS, strlen(WH_LINK_OURS)) == 0) {
-        recording->digest = wh_link_digest(recording->digest, channel, data, size);
-    }
-    ++recording->events;
-}
-
-/* Says what the log is, and what is in it so far: at its beginning, behind a cell, and at its end. */
-static void write_recording(wh_recording_t *recording, int8_t closed) {
-    const wh_recording_place_t *last = &recording->last;
-    const waferhand_recording message = {.utime = last->utime,
-                                         .seq = last->seq,
-                                         .run = last->run,
-                                         .layout_hash = (int64_t)last->layout_hash,
-                                         .version = WH_RECORDING_VERSION,
-                                         .id = recording->id,
-                                         .part = recording->part,
-                                         .mode =
-                                             recording->options.all ? WH_RECORDING_ALL : WH_RECORDING_SLICES,
-                                         .closed = closed,
-                                         .program = wh_link_borrowed(recording->options.program),
-                                         .program_version = wh_link_borrowed(wh_version()),
-                                         .events = recording->events,
-                                         .slices = recording->slices,
-                                         .digest = (int64_t)recording->digest};
-    const int size =
-        waferhand_recording_encode(recording->encoded, 0, (int)sizeof recording->encoded, &message);
-    wh_link_seal(recording->encoded, (size_t)size);
-    wh_recording_write_event(recording, WH_CHANNEL_RECORDING, recording->encoded, (size_t)size);
-}
-
-void wh_recording_seal(wh_recording_t *recording) {
-    write_recording(recording, WH_RECORDING_BEGINS);
-}
-
-void wh_recording_flush_block(wh_recording_t *recording) {
-    wh_slices_t *block = &recording->block;
-    for (size_t from = 0; from < block->count;) {
-        const size_t size = wh_slices_encode(block, &from, recording->encoded);
-        wh_recording_write_event(recording, WH_CHANNEL_SLICES, recording->encoded, size);
-    }
-    block->count = 0;
-}
-
-/* -------------------------------------------------------------------------------------------------- parts */
-
-static void begin_part(wh_recording_t *recording) {
-    ++recording->part;
-    recording->events = 0;
-    recording->slices = 0;
-    recording->digest = 0;
-    write_recording(recording, WH_RECORDING_BEGINS);
-}
-
-static bool open_named(wh_recording_t *recording, const char *path) {
-    return recording->options.replaces
-               ? wh_record_file_replace(&recording->file, path, recording->options.inputs)
-               : wh_record_file_create(&recording->file, path);
-}
-
-/* Opens the file of the running part, which may have waited for it. */
-static bool open_file(wh_recording_t *recording) {
-    char name[PATH_MAX];
-    char tag[20];
-    if (recording->part == 1) {
-        return open_named(recording, recording->options.path);
-    }
-    snprintf(tag, sizeof tag, "part%d", (int)recording->part);
-    if (!wh_record_file_name(recording->options.path, tag, name)) {
-        wh_record_file_fail(&recording->file, recording->options.path, "the name is too long");
-        return false;
-    }
-    return open_named(recording, name);
-}
-
-/* Ends a part that has become large enough, at a whole state, with which the next part begins. */
-void wh_recording_split(wh_recording_t *recording, const void *state, size_t size) {
-    const double bytes = recording->options.part_mb * 1e6;
-    wh_record_file_t *file = &recording->file;
-    if (bytes <= 0 || !file->is_plain_file || file->failed || (double)file->written < bytes) {
-        return;
-    }
-    write_recording(recording, WH_RECORDING_GOES_ON);
-    if (!wh_record_file_close(file)) {
-        return;
-    }
-    begin_part(recording);
-    if (open_file(recording)) {
-        if (recording->cell_size > 0) {
-            wh_recording_write_event(recording, WH_CHANNEL_CELL, recording->cell, recording->cell_size);
-            wh_recording_seal(recording);
-        }
-        wh_recording_write_event(recording, WH_CHANNEL_STATE, state, size);
-    }
-}
+/* A cell's fingerprint; then utime, seq and run, which tell when it was sent; then what it says. */
+#define CELL_FINGERPRINT 8
+#define CELL_CONTENT (8 + 3 * 8)
 
 /* ------------------------------------------------------------------------------------------------- slices */
 
-/* The first slice of anything: a file that waits for it is opened. */
-void wh_recording_see_slice(wh_recording_t *recording) {
+/* The command's slice is the last one from now on. A file that waits for the first slice is opened. */
+static void note_slice(wh_recording_t *recording, const waferhand_command *command, int64_t missed) {
     if (recording->file.fd < 0 && !recording->file.failed) {
-        (void)open_file(recording);
+        (void)wh_recording_open_file(recording);
     }
     recording->slices += recording->options.all ? 0 : 1;
-}
-
-void wh_recording_note_place(wh_recording_t *recording, const waferhand_command *command, int64_t missed) {
     recording->last = (wh_recording_place_t){.run = command->run,
                                              .seq = command->seq,
                                              .utime = command->utime,
@@ -167,45 +34,278 @@ static bool follows(const wh_recording_place_t *last, const waferhand_command *c
     return command->seq == 1 && missed == 0;
 }
 
-static bool add_slice(wh_recording_t *recording, const waferhand_command *command, const int32_t told[],
-                      uint64_t hash) {
-    if (wh_slices_add(&recording->block, command, told, hash)) {
-        return true;
-    }
-    wh_recording_flush_block(recording);
-    return wh_slices_add(&recording->block, command, told, hash);
-}
-
-wh_recorded_t wh_recording_take_slice(wh_recording_t *recording, const waferhand_command *command,
-                                      const int32_t told[], int64_t missed, uint64_t hash, bool has_events) {
-    if (recording->is_interrupted || !follows(&recording->last, command, missed) ||
-        !add_slice(recording, command, told, hash)) {
+/* wh_recording_slice. A slice that does not fit the block begins another one. */
+static wh_recorded_t take_slice(wh_recording_t *recording, const waferhand_command *command,
+                                const int32_t told[], int64_t missed, uint64_t hash, bool has_events) {
+    if (recording->is_interrupted || !follows(&recording->last, command, missed)) {
         return WH_NOT_RECORDED;
     }
-    wh_recording_see_slice(recording);
-    wh_recording_note_place(recording, command, missed);
+    if (!wh_slices_add(&recording->block, command, told, hash)) {
+        wh_recording_flush_block(recording);
+        if (!wh_slices_add(&recording->block, command, told, hash)) {
+            return WH_NOT_RECORDED;
+        }
+    }
+    note_slice(recording, command, missed);
     ++recording->since_state;
     return has_events || recording->since_state >= WH_SLICES_MOST ? WH_RECORDED_STATE : WH_RECORDED;
 }
 
-void wh_recording_take_state(wh_recording_t *recording, const void *data, size_t size) {
+/* wh_recording_state. */
+static void take_state(wh_recording_t *recording, const void *data, size_t size) {
     wh_recording_flush_block(recording);
     wh_recording_write_event(recording, WH_CHANNEL_STATE, data, size);
     recording->since_state = 0;
     wh_recording_split(recording, data, size);
 }
 
+/* ----------------------------------------------------------------------------------------------- messages */
+
+static waferhand_command *waiting(wh_recording_t *recording, size_t i) {
+    return &recording->commands[(recording->first_command + i) % WH_RECORDING_COMMANDS];
+}
+
+/* A message that is sealed has these bytes alone. */
+static void write_command(wh_recording_t *recording, const waferhand_command *command) {
+    const int size = waferhand_command_encode(recording->encoded, 0, (int)sizeof recording->encoded, command);
+    wh_recording_write_event(recording, WH_CHANNEL_COMMAND, recording->encoded, (size_t)size);
+}
+
+/* The oldest commands, so many, were not answered, or will be later: they stand by themselves. */
+static void give_up(wh_recording_t *recording, size_t count) {
+    if (count > 0) {
+        wh_recording_flush_block(recording);
+    }
+    for (size_t i = 0; i < count; ++i) {
+        const waferhand_command *command = waiting(recording, i);
+        write_command(recording, command);
+        /* One of an earlier slice came late, and changes nothing. */
+        recording->is_interrupted = recording->is_interrupted || command->run != recording->last.run ||
+                                    command->seq > recording->last.seq;
+    }
+    recording->first_command = (recording->first_command + count) % WH_RECORDING_COMMANDS;
+    recording->command_count -= count;
+}
+
+/* Which of the waiting commands this slice's is; their count if it is none of them. */
+static size_t find_waiting(wh_recording_t *recording, int64_t run, int64_t seq) {
+    size_t i = 0;
+    /* A new command, as most are: without a search. */
+    if (recording->command_count > 0) {
+        const waferhand_command *newest = waiting(recording, recording->command_count - 1);
+        i = newest->run == run && newest->seq < seq ? recording->command_count : 0;
+    }
+    while (i < recording->command_count &&
+           (waiting(recording, i)->run != run || waiting(recording, i)->seq != seq)) {
+        ++i;
+    }
+    return i;
+}
+
+static void write_whole(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
+    wh_recording_flush_block(recording);
+    wh_recording_write_event(recording, channel, data, size);
+}
+
+/* True if the command is recorded, or waits, as it is. */
+static bool is_repeated(wh_recording_t *recording, const waferhand_command *message) {
+    const wh_recording_place_t *last = &recording->last;
+    const size_t i = find_waiting(recording, message->run, message->seq);
+    if (i < recording->command_count) {
+        return waiting(recording, i)->check == message->check;
+    }
+    return message->run == last->run && message->seq == last->seq && message->check == last->command_check;
+}
+
+static void on_command(wh_recording_t *recording, const void *data, size_t size) {
+    waferhand_command message;
+    if (!wh_link_decode_command(data, size, &message) || message.check == 0) {
+        write_whole(recording, WH_CHANNEL_COMMAND, data, size);
+        return;
+    }
+    if (is_repeated(recording, &message)) {
+        return;
+    }
+    if (recording->command_count == WH_RECORDING_COMMANDS) {
+        give_up(recording, 1);
+    }
+    *waiting(recording, recording->command_count++) = message;
+}
+
+/* The command and the state that answers it: a slice, if the state is what the command, replayed, can
+ * yield. */
+static void take_pair(wh_recording_t *recording, const waferhand_command *command,
+                      const waferhand_state *state, const void *data, size_t size) {
+    int32_t told[WH_GRIPPERS];
+    wh_recorded_t recorded = WH_NOT_RECORDED;
+    for (int32_t g = 0; g < state->gripper_count; ++g) {
+        told[g] = state->grippers[g].valve_told;
+    }
+    if (state->utime == command->utime && state->layout_hash == command->layout_hash &&
+        state->gripper_count == command->gripper_count) {
+        recorded = take_slice(recording, command, told, state->missed, (uint64_t)state->hash,
+                              state->event_count > 0);
+    }
+    if (recorded == WH_NOT_RECORDED) {
+        wh_recording_flush_block(recording);
+        write_command(recording, command);
+        note_slice(recording, command, state->missed);
+        recording->is_interrupted = false;
+    }
+    recording->last.command_check = command->check;
+    recording->last.state_check = state->check;
+    if (recorded != WH_RECORDED) {
+        take_state(recording, data, size);
+    }
+}
+
+/* A state that no waiting command asked for: of a simulator that was given a state, say. */
+static void take_lone_state(wh_recording_t *recording, const waferhand_state *state, const void *data,
+                            size_t size) {
+    wh_recording_place_t *last = &recording->last;
+    write_whole(recording, WH_CHANNEL_STATE, data, size);
+    if (state->status == WH_OK && state->check != 0 && (state->run != last->run || state->seq > last->seq)) {
+        *last = (wh_recording_place_t){.run = state->run,
+                                       .seq = state->seq,
+                                       .utime = state->utime,
+                                       .missed = state->missed,
+                                       .layout_hash = (uint64_t)state->layout_hash,
+                                       .state_check = state->check};
+        recording->since_state = 0;
+    }
+}
+
+static void on_sound_state(wh_recording_t *recording, const waferhand_state *state, const void *data,
+                           size_t size) {
+    const wh_recording_place_t *last = &recording->last;
+    const size_t i = find_waiting(recording, state->run, state->seq);
+    const bool is_answer = i < recording->command_count && state->check != 0;
+    if (state->run == last->run && state->seq == last->seq && state->check != 0 &&
+        state->check == last->state_check) {
+        return;
+    }
+    if (!is_answer) {
+        take_lone_state(recording, state, data, size);
+    } else if (state->status != WH_OK) {
+        give_up(recording, i + 1);
+        write_whole(recording, WH_CHANNEL_STATE, data, size);
+    } else {
+        give_up(recording, i);
+        const waferhand_command *command = waiting(recording, 0);
+        recording->first_command = (recording->first_command + 1) % WH_RECORDING_COMMANDS;
+        --recording->command_count;
+        take_pair(recording, command, state, data, size);
+    }
+}
+
+static void on_state(wh_recording_t *recording, const void *data, size_t size) {
+    waferhand_state message;
+    if (!wh_link_decode_state(data, size, &message)) {
+        write_whole(recording, WH_CHANNEL_STATE, data, size);
+        return;
+    }
+    on_sound_state(recording, &message, data, size);
+    (void)waferhand_state_decode_cleanup(&message);
+}
+
+/* True if the cell says what the last one said, but for when it was sent, and in which run. */
+static bool is_known_cell(const wh_recording_t *recording, const void *data, size_t size) {
+    const uint8_t *bytes = data;
+    return size == recording->cell_size && size > CELL_CONTENT &&
+           memcmp(bytes, recording->cell, CELL_FINGERPRINT) == 0 &&
+           memcmp(bytes + CELL_CONTENT, recording->cell + CELL_CONTENT, size - CELL_CONTENT) == 0;
+}
+
+static void keep_cell(wh_recording_t *recording, const void *data, size_t size) {
+    if (size <= sizeof recording->cell) {
+        memcpy(recording->cell, data, size);
+        recording->cell_size = size;
+    }
+}
+
+static void on_cell(wh_recording_t *recording, const void *data, size_t size) {
+    waferhand_cell message;
+    const bool known = is_known_cell(recording, data, size);
+    if (!known) {
+        write_whole(recording, WH_CHANNEL_CELL, data, size);
+    }
+    if (wh_link_decode_cell(data, size, &message)) {
+        keep_cell(recording, data, size);
+        if (!known) {
+            wh_recording_write_note(recording, WH_RECORDING_BEGINS);
+        }
+        (void)waferhand_cell_decode_cleanup(&message);
+    }
+}
+
+/* Progress, and that nothing moves: who replays the slices knows that. */
+static void on_mcs(wh_recording_t *recording, const void *data, size_t size) {
+    waferhand_mcs message;
+    bool wanted = true;
+    if (wh_link_decode_mcs(data, size, &message)) {
+        wanted = message.phase != WH_LINK_PHASE_IDLE && message.phase != WH_LINK_PHASE_GOES_ON;
+        (void)waferhand_mcs_decode_cleanup(&message);
+    }
+    if (wanted) {
+        write_whole(recording, WH_CHANNEL_MCS, data, size);
+    }
+}
+
+/* A part ends at a state that answers the last command. */
+static void see_state(wh_recording_t *recording, const void *data, size_t size) {
+    const wh_recording_place_t *last = &recording->last;
+    waferhand_state message;
+    if (wh_link_decode_state(data, size, &message)) {
+        if (message.run == last->run && message.seq == last->seq && message.status == WH_OK) {
+            wh_recording_split(recording, data, size);
+        }
+        (void)waferhand_state_decode_cleanup(&message);
+    }
+}
+
+/* Every message. */
+static void take_any(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
+    waferhand_command command;
+    wh_recording_write_event(recording, channel, data, size);
+    if (strcmp(channel, WH_CHANNEL_CELL) == 0) {
+        keep_cell(recording, data, size);
+    } else if (strcmp(channel, WH_CHANNEL_COMMAND) == 0 && wh_link_decode_command(data, size, &command)) {
+        note_slice(recording, &command, 0);
+    } else if (strcmp(channel, WH_CHANNEL_STATE) == 0 && recording->options.part_mb > 0) {
+        see_state(recording, data, size);
+    }
+}
+
+static void take_message(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
+    if (recording->options.all) {
+        take_any(recording, channel, data, size);
+    } else if (strcmp(channel, WH_CHANNEL_COMMAND) == 0) {
+        on_command(recording, data, size);
+    } else if (strcmp(channel, WH_CHANNEL_STATE) == 0) {
+        on_state(recording, data, size);
+    } else if (strcmp(channel, WH_CHANNEL_CELL) == 0) {
+        on_cell(recording, data, size);
+    } else if (strcmp(channel, WH_CHANNEL_MCS) == 0) {
+        on_mcs(recording, data, size);
+    } else if (strcmp(channel, WH_CHANNEL_RESTORE) == 0) {
+        write_whole(recording, channel, data, size);
+        recording->is_interrupted = true;
+    } else if (strcmp(channel, WH_CHANNEL_REQUEST) == 0) {
+        write_whole(recording, channel, data, size);
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------ calling */
 
-/* True if nothing is recorded any more. */
-static bool is_idle(const wh_recording_t *recording) {
-    return !recording->is_open || recording->file.failed;
+/* Locks it. False if nothing is recorded any more. */
+static bool enter(wh_recording_t *recording) {
+    (void)pthread_mutex_lock(&recording->lock);
+    return recording->is_open && !recording->file.failed;
 }
 
 void wh_recording_message(wh_recording_t *recording, const char *channel, const void *data, size_t size) {
-    (void)pthread_mutex_lock(&recording->lock);
-    if (!is_idle(recording)) {
-        wh_recording_take_message(recording, channel, data, size);
+    if (enter(recording)) {
+        take_message(recording, channel, data, size);
     }
     (void)pthread_mutex_unlock(&recording->lock);
 }
@@ -213,18 +313,16 @@ void wh_recording_message(wh_recording_t *recording, const char *channel, const 
 wh_recorded_t wh_recording_slice(wh_recording_t *recording, const waferhand_command *command,
                                  const int32_t told[], int64_t missed, uint64_t hash, bool has_events) {
     wh_recorded_t recorded = WH_RECORDED;
-    (void)pthread_mutex_lock(&recording->lock);
-    if (!is_idle(recording)) {
-        recorded = wh_recording_take_slice(recording, command, told, missed, hash, has_events);
+    if (enter(recording)) {
+        recorded = take_slice(recording, command, told, missed, hash, has_events);
     }
     (void)pthread_mutex_unlock(&recording->lock);
     return recorded;
 }
 
 void wh_recording_state(wh_recording_t *recording, const void *data, size_t size) {
-    (void)pthread_mutex_lock(&recording->lock);
-    if (!is_idle(recording)) {
-        wh_recording_take_state(recording, data, size);
+    if (enter(recording)) {
+        take_state(recording, data, size);
     }
     (void)pthread_mutex_unlock(&recording->lock);
 }
@@ -240,7 +338,7 @@ static void *flush_now_and_then(void *user) {
         until.tv_nsec += WH_RECORDING_WAIT_US * 1000L / 2;
         until.tv_sec += until.tv_nsec / 1000000000;
         until.tv_nsec %= 1000000000;
-        (void)pthread_cond_timedwait(&recording->wake, &recording->lock, &until);
+        (void)pthread_cond_clockwait(&recording->wake, &recording->lock, CLOCK_MONOTONIC, &until);
         if (recording->file.fd >= 0 && !recording->file.failed) {
             wh_recording_flush_block(recording);
             wh_record_file_flush(&recording->file);
@@ -252,15 +350,11 @@ static void *flush_now_and_then(void *user) {
 
 /* Signals are for the thread that waits for messages. */
 static bool start_flusher(wh_recording_t *recording) {
-    pthread_condattr_t attributes;
     sigset_t all;
     sigset_t before;
     sigfillset(&all);
     (void)pthread_mutex_init(&recording->lock, NULL);
-    (void)pthread_condattr_init(&attributes);
-    (void)pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    (void)pthread_cond_init(&recording->wake, &attributes);
-    (void)pthread_condattr_destroy(&attributes);
+    (void)pthread_cond_init(&recording->wake, NULL);
     (void)pthread_sigmask(SIG_SETMASK, &all, &before);
     const int error = pthread_create(&recording->flusher, NULL, flush_now_and_then, recording);
     (void)pthread_sigmask(SIG_SETMASK, &before, NULL);
@@ -270,34 +364,27 @@ static bool start_flusher(wh_recording_t *recording) {
     return error == 0;
 }
 
-static int64_t draw_id(void) {
-    uint64_t bits = 0;
-    if (getrandom(&bits, sizeof bits, 0) != (ssize_t)sizeof bits) {
-        bits = (uint64_t)wall_us();
-    }
-    return (int64_t)(bits >> 1);
-}
-
 bool wh_recording_open(wh_recording_t *recording) {
     recording->file.fd = -1;
     recording->file.speaker = recording->options.program;
-    recording->id = draw_id();
-    begin_part(recording);
-    if (!recording->options.replaces && !open_file(recording)) {
+    recording->file.option = recording->options.all ? "--record-all" : "--record";
+    arc4random_buf(&recording->id, sizeof recording->id);
+    recording->id &= INT64_MAX;
+    wh_recording_begin_part(recording);
+    if (!recording->options.replaces && !wh_recording_open_file(recording)) {
         return false;
     }
     recording->is_open = start_flusher(recording);
     return recording->is_open;
 }
 
-static void stop_flusher(wh_recording_t *recording) {
-    (void)pthread_mutex_lock(&recording->lock);
-    recording->closes = true;
-    (void)pthread_cond_signal(&recording->wake);
+bool wh_recording_is_sound(wh_recording_t *recording) {
+    if (enter(recording) && recording->file.fd >= 0) {
+        wh_record_file_flush(&recording->file);
+    }
+    const bool failed = recording->file.failed;
     (void)pthread_mutex_unlock(&recording->lock);
-    (void)pthread_join(recording->flusher, NULL);
-    (void)pthread_cond_destroy(&recording->wake);
-    (void)pthread_mutex_destroy(&recording->lock);
+    return !failed;
 }
 
 bool wh_recording_close(wh_recording_t *recording) {
@@ -305,7 +392,13 @@ bool wh_recording_close(wh_recording_t *recording) {
     if (!recording->is_open) {
         return !file->failed;
     }
-    stop_flusher(recording);
+    (void)pthread_mutex_lock(&recording->lock);
+    recording->closes = true;
+    (void)pthread_cond_signal(&recording->wake);
+    (void)pthread_mutex_unlock(&recording->lock);
+    (void)pthread_join(recording->flusher, NULL);
+    (void)pthread_cond_destroy(&recording->wake);
+    (void)pthread_mutex_destroy(&recording->lock);
     recording->is_open = false;
     if (file->fd < 0) {
         if (!file->failed) {
@@ -313,8 +406,8 @@ bool wh_recording_close(wh_recording_t *recording) {
         }
         return !file->failed;
     }
-    wh_recording_give_up(recording, recording->command_count);
+    give_up(recording, recording->command_count);
     wh_recording_flush_block(recording);
-    write_recording(recording, WH_RECORDING_ENDS);
+    wh_recording_write_note(recording, WH_RECORDING_ENDS);
     return wh_record_file_close(file);
 }

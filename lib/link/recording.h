@@ -17,9 +17,6 @@
 #define WH_RECORDING_WAIT_US 100000
 /* Commands that wait for their states: a free-running motion control may be so far ahead. */
 #define WH_RECORDING_COMMANDS 4096
-#define WH_RECORDING_COMMAND_BYTES 1500
-/* Files that a recording must not replace, at most. */
-#define WH_RECORDING_INPUTS 3
 
 typedef struct {
     const char *path;    /* null: nothing is to be recorded */
@@ -28,14 +25,7 @@ typedef struct {
     bool
         replaces; /* an old file is replaced, when the first slice comes; else a new one is created at once */
     double part_mb; /* a part ends when it is so large, 10^6 bytes; 0: there is one part only */
-    const char *inputs[WH_RECORDING_INPUTS + 1]; /* not to be replaced; the first null ends the list */
 } wh_recording_options_t;
-
-typedef struct {
-    int64_t run, seq;
-    uint8_t bytes[WH_RECORDING_COMMAND_BYTES];
-    size_t size;
-} wh_recording_command_t;
 
 /* The slice that was recorded last. */
 typedef struct {
@@ -52,6 +42,7 @@ typedef struct {
     pthread_t flusher;
     bool is_open, closes; /* from open to close; the flusher is to end */
     wh_record_file_t file;
+    char path[PATH_MAX]; /* of the first part: those that follow are named after it */
     int64_t id;
     int32_t part;
     int64_t events, slices; /* of the part */
@@ -60,7 +51,7 @@ typedef struct {
     bool is_interrupted; /* a command stands alone, or a state came back: the next slice stands whole */
     int64_t since_state; /* slices since a whole state */
     wh_slices_t block;
-    wh_recording_command_t commands[WH_RECORDING_COMMANDS];
+    waferhand_command commands[WH_RECORDING_COMMANDS];
     size_t first_command, command_count;
     uint8_t cell[WH_LINK_DATAGRAM]; /* the last one */
     size_t cell_size;
@@ -90,6 +81,9 @@ wh_recorded_t wh_recording_slice(wh_recording_t *recording, const waferhand_comm
 
 /* Records the whole state of the last slice. */
 void wh_recording_state(wh_recording_t *recording, const void *data, size_t size);
+
+/* False if a recording that is open has failed so far; standard error has said how. */
+bool wh_recording_is_sound(wh_recording_t *recording);
 
 /* Completes the log and closes it. False if the recording failed; standard error has said how. True without a
  * path, and of a recording that is not open. */

@@ -23,31 +23,20 @@ static void tell_cell(wh_sim_process_t *simulation) {
             waferhand_cell_encode(simulation->encoded, 0, (int)sizeof simulation->encoded, cell));
 }
 
-/* Before the first command of a run with another layout is turned away, so that its sender can name this
- * one. */
-static void tell_layout(wh_sim_process_t *simulation, int64_t run) {
-    if (simulation->other_run != run) {
-        simulation->other_run = run;
-        tell_cell(simulation);
-    }
-}
-
 static void tell_proximity(wh_sim_process_t *simulation) {
-    const int64_t now = wh_node_clock_us();
-    const bool due = now - simulation->last_proximity_us >= WH_SIMULATION_PROXIMITY_US;
     waferhand_proximity message;
-    if (!due && simulation->server.state.event_count == 0) {
-        return;
-    }
-    simulation->last_proximity_us = now;
+    simulation->proximity_waits = false;
+    simulation->last_proximity_us = wh_node_clock_us();
     wh_link_proximity_to_message(&simulation->server.state, &simulation->server.identity,
                                  &simulation->server.layout->grasp.tolerance, &message);
     publish(simulation, WH_CHANNEL_PROXIMITY, simulation->encoded,
             waferhand_proximity_encode(simulation->encoded, 0, (int)sizeof simulation->encoded, &message));
 }
 
-static void answer(wh_sim_process_t *simulation) {
-    publish(simulation, WH_CHANNEL_STATE, simulation->server.encoded, (int)simulation->server.encoded_size);
+static void tell_waiting_proximity(wh_sim_process_t *simulation, int64_t now) {
+    if (simulation->proximity_waits && now - simulation->last_proximity_us >= WH_SIMULATION_PROXIMITY_US) {
+        tell_proximity(simulation);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------- receiving */
@@ -74,7 +63,7 @@ static void act_on(wh_sim_process_t *simulation, wh_protocol_server_result_t res
         return;
     }
     /* First of all: motion control waits for the answer. */
-    answer(simulation);
+    publish(simulation, WH_CHANNEL_STATE, simulation->server.encoded, (int)simulation->server.encoded_size);
     if (result == WH_SERVER_RESTORED) {
         heard_motion_control(simulation);
     }
@@ -85,8 +74,14 @@ static void act_on(wh_sim_process_t *simulation, wh_protocol_server_result_t res
                     result == WH_SERVER_NEW_RUN ? "begins with" : "goes on from", simulation->server.seq);
         tell_cell(simulation);
     }
-    if (result != WH_SERVER_ANSWERED) {
+    if (result == WH_SERVER_ANSWERED) {
+        return;
+    }
+    simulation->proximity_waits = true;
+    if (simulation->server.state.event_count > 0) {
         tell_proximity(simulation);
+    } else {
+        tell_waiting_proximity(simulation, wh_node_clock_us());
     }
 }
 
@@ -95,8 +90,11 @@ static void handle_command(wh_sim_process_t *simulation, const waferhand_command
     const uint64_t others = simulation->server.counters.other_layout;
     const wh_protocol_server_result_t result =
         wh_protocol_server_command(&simulation->server, message, simulation->valves);
-    if (simulation->server.counters.other_layout > others) {
-        tell_layout(simulation, message->run);
+    /* Before the first command of a run with another layout is turned away, so that its sender can name this
+     * one. */
+    if (simulation->server.counters.other_layout > others && simulation->other_run != message->run) {
+        simulation->other_run = message->run;
+        tell_cell(simulation);
     }
     /* Late commands of an old run are no sign of life. */
     if (message->run == simulation->server.identity.run) {
@@ -131,12 +129,12 @@ static void on_restore(void *user, const void *data, size_t size) {
     (void)waferhand_state_decode_cleanup(&message);
 }
 
-/* The first command of a run begins before the run has a number. */
+/* The first command of a run begins before the run has a number. An answer, as of STATUS, ends no command. */
 static void note_command(wh_sim_process_t *simulation, const waferhand_mcs *message) {
-    const bool is_running = message->phase == WH_LINK_PHASE_BEGINS || message->phase == WH_LINK_PHASE_GOES_ON;
-    if (message->run == 0 || message->run == simulation->server.identity.run) {
-        (void)snprintf(simulation->command, sizeof simulation->command, "%s",
-                       is_running ? message->command : "");
+    const bool is_ours = message->run == 0 || message->run == simulation->server.identity.run;
+    const bool runs = message->phase == WH_LINK_PHASE_BEGINS || message->phase == WH_LINK_PHASE_GOES_ON;
+    if (is_ours && (runs || message->request == 0)) {
+        (void)snprintf(simulation->command, sizeof simulation->command, "%s", runs ? message->command : "");
     }
 }
 
@@ -147,9 +145,9 @@ static void on_mcs(void *user, const void *data, size_t size) {
         drop(simulation, WH_CHANNEL_MCS, size);
         return;
     }
+    const bool is_ours = message.run == simulation->server.identity.run;
     note_command(simulation, &message);
-    if (message.run == simulation->server.identity.run && message.phase == WH_LINK_PHASE_OVER &&
-        simulation->running) {
+    if (is_ours && message.phase == WH_LINK_PHASE_OVER && simulation->running) {
         simulation->running = false;
         wh_node_say(simulation->node, "run %016" PRIx64 " is over at slice %" PRId64 ", hash %016" PRIx64,
                     (uint64_t)message.run, simulation->server.seq,
@@ -204,6 +202,7 @@ void wh_sim_process_tick(wh_sim_process_t *simulation) {
     if (now - simulation->last_cell_us >= WH_SIMULATION_CELL_US) {
         tell_cell(simulation);
     }
+    tell_waiting_proximity(simulation, now);
     if (simulation->running && !simulation->silent &&
         now - simulation->last_command_us > WH_SIMULATION_SILENCE_US) {
         simulation->silent = true;
@@ -215,5 +214,8 @@ void wh_sim_process_tick(wh_sim_process_t *simulation) {
 }
 
 void wh_sim_process_close(wh_sim_process_t *simulation) {
+    if (simulation->proximity_waits) {
+        tell_proximity(simulation);
+    }
     wh_protocol_server_close(&simulation->server);
 }

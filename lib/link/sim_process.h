@@ -12,7 +12,7 @@
 /* How often the cell is told again, us. */
 #define WH_SIMULATION_CELL_US 1000000
 /* How often the proximity values go out at most, us of wall-clock time; slices with events always tell
- * them. */
+ * them. Those of the last slice always go out, in a tick if not before. */
 #define WH_SIMULATION_PROXIMITY_US 5000
 
 typedef struct {
@@ -27,6 +27,7 @@ typedef struct {
     wh_link_cell_t cell;
     const int32_t *valves; /* from outputs.txt; null: the commands' own */
     int64_t last_command_us, last_cell_us, last_proximity_us;
+    bool proximity_waits;       /* of the last slice, until it may go out */
     int64_t other_run;          /* the last one that was turned away for its layout */
     bool running;               /* a run has begun and is not over */
     bool silent;                /* and motion control has fallen silent */
@@ -47,10 +48,11 @@ wh_status_t wh_sim_process_open(wh_sim_process_t *simulation, wh_node_t *node, c
 wh_status_t wh_sim_process_step(wh_sim_process_t *simulation, const waferhand_command *message,
                                 wh_state_t *state);
 
-/* What is due by the clock: the cell, and the silence of motion control. To be called at least every 100
- * ms. */
+/* What is due by the clock: the cell, the proximity values of a cell that rests, and the silence of motion
+ * control. To be called at least every 100 ms. */
 void wh_sim_process_tick(wh_sim_process_t *simulation);
 
+/* Before the node is closed. */
 void wh_sim_process_close(wh_sim_process_t *simulation);
 
 #endif

@@ -2,12 +2,12 @@
 
 #include <string.h>
 
-#include "prediction.h"
-
 #define SIGN (UINT64_C(1) << 63)
 /* No time of a run is near to what 64 bits hold. */
 #define FARTHEST (INT64_C(1) << 62)
 #define SLICE_US_MOST 1000000
+/* Of polynomials that predict. */
+#define ORDERS 7
 
 /* How a column is coded. */
 enum { CONSTANT, SAME, NEGATIVE, PREDICTED };
@@ -78,8 +78,6 @@ static size_t take_run(bytes_t *bytes, size_t left) {
     return bytes->good ? (size_t)run : 0;
 }
 
-/* ------------------------------------------------------------------------------------------------- valves */
-
 static void put_valves(bytes_t *bytes, const wh_slices_t *slices, size_t from, size_t end) {
     for (size_t i = from, next = from; i < end; i = next) {
         while (next < end && slices->valves[next] == slices->valves[i] &&
@@ -105,15 +103,74 @@ static void take_valves(bytes_t *bytes, wh_slices_t *slices) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ columns */
+/* --------------------------------------------------------------------------------------------- prediction */
 
-static bool is_constant(const uint64_t *column, size_t from, size_t end) {
-    bool same = true;
-    for (size_t i = from + 1; same && i < end; ++i) {
-        same = column[i] == column[from];
-    }
-    return same;
+/* What a number that changes from slice to slice will be: coder and decoder foretell it the same way, so that
+ * only the miss is to be written. lcm_types/README.md has the rule.
+ *
+ * Each of the polynomials of degree 0 to 6 through the last values tells one: axes are cubic in time,
+ * poses are smooth. The one that was best of late is taken. Doubles go in and out as their bits. */
+typedef struct {
+    size_t seen;
+    uint64_t last;
+    double differences[ORDERS]; /* of order 0, the last value, to 6 */
+    uint64_t guesses[ORDERS];   /* bits, by each order */
+    uint32_t scores[ORDERS];    /* how badly each order has guessed of late */
+} prediction_t;
+
+/* The bits as a number that grows with the value, so that neighbouring values differ by little. Done
+ * twice, it is undone. */
+static uint64_t rank_of(uint64_t bits) {
+    return (bits & SIGN) != 0 ? bits ^ (SIGN - 1) : bits;
 }
+
+/* A difference of either sign as a number that is small if the difference is. */
+static uint64_t fold(uint64_t difference) {
+    return difference << 1 ^ ((difference & SIGN) != 0 ? UINT64_MAX : 0);
+}
+
+static uint64_t unfold(uint64_t folded) {
+    return folded >> 1 ^ ((folded & 1) != 0 ? UINT64_MAX : 0);
+}
+
+/* The rank of the next value, as far as one can tell: by the order that was best of late. */
+static uint64_t predict(prediction_t *prediction) {
+    double sum = 0;
+    size_t best = 0;
+    prediction->guesses[0] = prediction->last;
+    for (size_t order = 1; order < ORDERS; ++order) {
+        sum += prediction->differences[order];
+        const double guess = prediction->differences[0] + sum;
+        prediction->guesses[order] = prediction->last;
+        /* Which of many bits a sum that is no number has, differs from machine to machine. */
+        if (guess == guess) {
+            memcpy(&prediction->guesses[order], &guess, sizeof guess);
+        }
+        if (order < prediction->seen && prediction->scores[order] < prediction->scores[best]) {
+            best = order;
+        }
+    }
+    return rank_of(prediction->guesses[best]);
+}
+
+static void learn(prediction_t *prediction, uint64_t bits) {
+    double difference;
+    memcpy(&difference, &bits, sizeof difference);
+    for (size_t order = 0; prediction->seen > 0 && order < ORDERS; ++order) {
+        const uint64_t miss = fold(rank_of(bits) - rank_of(prediction->guesses[order]));
+        const uint32_t bits_of_miss = 64U - (uint32_t)__builtin_clzll(miss | 1);
+        prediction->scores[order] = prediction->scores[order] / 2 + 8 * bits_of_miss;
+    }
+    for (size_t order = 0; order < ORDERS; ++order) {
+        const double next = difference - prediction->differences[order];
+        prediction->differences[order] = difference;
+        difference = next;
+    }
+    prediction->last = bits;
+    ++prediction->seen;
+}
+
+/* ------------------------------------------------------------------------------------------------ columns */
 
 /* True if the bits differ by the mask everywhere. */
 static bool is_like(const uint64_t *column, const uint64_t *other, uint64_t mask, size_t from, size_t end) {
@@ -146,10 +203,12 @@ static void put_zeros(bytes_t *bytes, size_t *zeros) {
 }
 
 static void put_predicted(bytes_t *bytes, const uint64_t *column, size_t from, size_t end) {
-    wh_prediction_t prediction = {0};
+    prediction_t prediction = {0};
     size_t zeros = 0;
     for (size_t i = from; bytes->good && i < end; ++i) {
-        const uint64_t miss = wh_prediction_miss(&prediction, column[i]);
+        /* 0 or a small number if the value was foretold nearly right, one of 64 bits at worst. */
+        const uint64_t miss = fold(rank_of(column[i]) - predict(&prediction));
+        learn(&prediction, column[i]);
         if (miss == 0) {
             ++zeros;
         } else {
@@ -161,7 +220,7 @@ static void put_predicted(bytes_t *bytes, const uint64_t *column, size_t from, s
 }
 
 static void take_predicted(bytes_t *bytes, uint64_t *column, size_t count) {
-    wh_prediction_t prediction = {0};
+    prediction_t prediction = {0};
     size_t zeros = 0;
     for (size_t i = 0; bytes->good && i < count; ++i) {
         const uint64_t miss = zeros > 0 ? 0 : take_number(bytes);
@@ -170,7 +229,8 @@ static void take_predicted(bytes_t *bytes, uint64_t *column, size_t count) {
         } else if (miss == 0) {
             zeros = take_run(bytes, count - i) - 1;
         }
-        column[i] = wh_prediction_mend(&prediction, miss);
+        column[i] = rank_of(predict(&prediction) + unfold(miss));
+        learn(&prediction, column[i]);
     }
 }
 
@@ -181,7 +241,9 @@ static size_t column_count(const wh_slices_t *slices) {
 static void put_columns(bytes_t *bytes, const wh_slices_t *slices, size_t from, size_t end) {
     for (size_t c = 0; bytes->good && c < column_count(slices); ++c) {
         const uint64_t *column = slices->column[c];
-        if (is_constant(column, from, end)) {
+        const bool is_constant =
+            memcmp(column + from, column + from + 1, (end - from - 1) * sizeof *column) == 0;
+        if (is_constant) {
             put_byte(bytes, CONSTANT);
             put_word(bytes, column[from]);
         } else if (!put_like(bytes, slices, c, from, end)) {
@@ -245,20 +307,16 @@ static bool is_plain(const waferhand_command *command) {
     return plain;
 }
 
-static bool is_in_range(const waferhand_command *command) {
-    return command->gripper_count >= 1 && command->gripper_count <= WH_GRIPPERS && command->axis_count >= 0 &&
-           command->axis_count <= WH_AXES && (command->lockstep == 0 || command->lockstep == 1) &&
-           command->seq >= 1 && command->seq <= WH_LINK_SLICES && command->utime > -FARTHEST &&
-           command->utime < FARTHEST;
-}
-
-static int64_t last_utime(const wh_slices_t *slices) {
-    return slices->utime + (int64_t)(slices->count - 1) * slices->slice_us;
+/* True of what slices of a block, and the block, may have. */
+static bool is_in_range(int64_t seq, int64_t utime, int32_t grippers, int32_t axes, int8_t lockstep) {
+    return seq >= 1 && seq <= WH_LINK_SLICES && utime > -FARTHEST && utime < FARTHEST && grippers >= 1 &&
+           grippers <= WH_GRIPPERS && axes >= 0 && axes <= WH_AXES && (lockstep == 0 || lockstep == 1);
 }
 
 /* True if the command may follow in the block. */
 static bool follows(const wh_slices_t *slices, const waferhand_command *command) {
-    const int64_t step = command->utime - last_utime(slices);
+    const int64_t last_utime = slices->utime + (int64_t)(slices->count - 1) * slices->slice_us;
+    const int64_t step = command->utime - last_utime;
     return command->run == slices->identity.run &&
            (uint64_t)command->layout_hash == slices->identity.layout_hash &&
            command->lockstep == slices->lockstep && (size_t)command->gripper_count == slices->grippers &&
@@ -278,29 +336,21 @@ static bool gather(const int32_t valves[], int32_t count, uint8_t *mask) {
     return (any & ~1) == 0;
 }
 
-static void begin(wh_slices_t *slices, const waferhand_command *command) {
-    slices->identity = (wh_link_identity_t){command->run, (uint64_t)command->layout_hash};
-    slices->first = command->seq;
-    slices->utime = command->utime;
-    slices->slice_us = 0;
-    slices->lockstep = command->lockstep;
-    slices->grippers = (size_t)command->gripper_count;
-    slices->axes = (size_t)command->axis_count;
+/* Where in a command the double of a column stands. */
+static size_t place_of(const wh_slices_t *slices, size_t column) {
+    if (column < slices->axes) {
+        return offsetof(waferhand_command, axis_position) + column * sizeof(double);
+    }
+    const size_t g = (column - slices->axes) / 12;
+    const size_t k = (column - slices->axes) % 12;
+    return k < 3 ? offsetof(waferhand_command, gripper_position) + (3 * g + k) * sizeof(double)
+                 : offsetof(waferhand_command, gripper_rotation) + (9 * g + k - 3) * sizeof(double);
 }
 
-static void put_slice(wh_slices_t *slices, const waferhand_command *command) {
-    const size_t i = slices->count;
-    for (size_t a = 0; a < slices->axes; ++a) {
-        slices->column[a][i] = wh_prediction_bits(command->axis_position[a]);
-    }
-    for (size_t g = 0; g < slices->grippers; ++g) {
-        const size_t c = slices->axes + 12 * g;
-        for (size_t k = 0; k < 3; ++k) {
-            slices->column[c + k][i] = wh_prediction_bits(command->gripper_position[g][k]);
-        }
-        for (size_t k = 0; k < 9; ++k) {
-            slices->column[c + 3 + k][i] = wh_prediction_bits(command->gripper_rotation[g][k]);
-        }
+static void put_doubles(wh_slices_t *slices, const waferhand_command *command) {
+    for (size_t c = 0; c < column_count(slices); ++c) {
+        memcpy(&slices->column[c][slices->count], (const char *)command + place_of(slices, c),
+               sizeof(double));
     }
 }
 
@@ -308,18 +358,26 @@ bool wh_slices_add(wh_slices_t *slices, const waferhand_command *command, const 
                    uint64_t hash) {
     uint8_t valves;
     uint8_t in_force;
-    if (slices->count == WH_SLICES_MOST || !is_in_range(command) || !is_plain(command) ||
-        (slices->count > 0 && !follows(slices, command)) ||
+    if (slices->count == WH_SLICES_MOST ||
+        !is_in_range(command->seq, command->utime, command->gripper_count, command->axis_count,
+                     command->lockstep) ||
+        !is_plain(command) || (slices->count > 0 && !follows(slices, command)) ||
         !gather(command->valve, command->gripper_count, &valves) ||
         !gather(told, command->gripper_count, &in_force)) {
         return false;
     }
     if (slices->count == 0) {
-        begin(slices, command);
+        slices->identity = (wh_link_identity_t){command->run, (uint64_t)command->layout_hash};
+        slices->first = command->seq;
+        slices->utime = command->utime;
+        slices->slice_us = 0;
+        slices->lockstep = command->lockstep;
+        slices->grippers = (size_t)command->gripper_count;
+        slices->axes = (size_t)command->axis_count;
     } else if (slices->count == 1) {
         slices->slice_us = command->utime - slices->utime;
     }
-    put_slice(slices, command);
+    put_doubles(slices, command);
     slices->valves[slices->count] = valves;
     slices->told[slices->count] = in_force;
     slices->hash[slices->count++] = hash;
@@ -336,15 +394,10 @@ void wh_slices_get(const wh_slices_t *slices, size_t i, waferhand_command *comma
     command->lockstep = slices->lockstep;
     command->gripper_count = (int32_t)slices->grippers;
     command->axis_count = (int32_t)slices->axes;
-    for (size_t a = 0; a < slices->axes; ++a) {
-        command->axis_position[a] = wh_prediction_double(slices->column[a][i]);
+    for (size_t c = 0; c < column_count(slices); ++c) {
+        memcpy((char *)command + place_of(slices, c), &slices->column[c][i], sizeof(double));
     }
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        const size_t c = slices->axes + 12 * g;
-        for (size_t k = 0; g < slices->grippers && k < 12; ++k) {
-            *(k < 3 ? &command->gripper_position[g][k] : &command->gripper_rotation[g][k - 3]) =
-                wh_prediction_double(slices->column[c + k][i]);
-        }
         command->valve[g] = slices->valves[i] >> g & 1;
         told[g] = slices->told[i] >> g & 1;
     }
@@ -404,27 +457,19 @@ size_t wh_slices_encode(const wh_slices_t *slices, size_t *from, uint8_t bytes[W
     return (size_t)size;
 }
 
+/* True if the numbers of slices fit one another. */
 static bool is_counted(const waferhand_slices *message) {
     return message->count >= 1 && message->count <= WH_SLICES_MOST && message->first >= 1 &&
            message->first <= WH_LINK_SLICES && message->seq <= WH_LINK_SLICES &&
-           message->seq - message->first == message->count - 1;
-}
-
-static bool is_timed(const waferhand_slices *message) {
-    return message->slice_us >= 0 && message->slice_us <= SLICE_US_MOST &&
-           (message->count > 1 || message->slice_us == 0) && message->utime > -FARTHEST &&
-           message->utime < FARTHEST;
-}
-
-static bool fits(const waferhand_slices *message) {
-    return is_counted(message) && is_timed(message) && (message->lockstep == 0 || message->lockstep == 1) &&
-           message->gripper_count >= 1 && message->gripper_count <= WH_GRIPPERS && message->axis_count >= 0 &&
-           message->axis_count <= WH_AXES;
+           message->seq == message->first + message->count - 1;
 }
 
 static bool take_message(const waferhand_slices *message, wh_slices_t *slices) {
     slices->count = 0;
-    if (!fits(message)) {
+    if (!is_counted(message) || message->slice_us < 0 || message->slice_us > SLICE_US_MOST ||
+        (message->count == 1 && message->slice_us != 0) ||
+        !is_in_range(message->first, message->utime, message->gripper_count, message->axis_count,
+                     message->lockstep)) {
         return false;
     }
     slices->identity = (wh_link_identity_t){message->run, (uint64_t)message->layout_hash};

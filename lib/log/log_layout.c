@@ -1,5 +1,6 @@
 #include "log_layout.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,8 +22,8 @@ static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
     wh_sandbox_result_t result;
     struct stat status;
     if (stat(path, &status) != 0 || !S_ISREG(status.st_mode)) {
-        (void)snprintf(made->note, sizeof made->note, "%.200s, the layout that the log names, is not there",
-                       path);
+        (void)snprintf(made->note, sizeof made->note, "%.200s%s is not there", path,
+                       options->path ? "" : ", the layout that the log names,");
         return NULL;
     }
     made->sandbox = wh_sandbox_new_with(&limits, options->parameters, options->parameter_count, &result);
@@ -31,7 +32,9 @@ static const wh_layout_t *load(wh_log_layout_t *made, const char *path,
         (void)snprintf(made->note, sizeof made->note, "%.200s is no layout: %.300s", path, result.message);
     } else if (wh_layout_hash(layout) != made->hash) {
         (void)snprintf(made->note, sizeof made->note,
-                       "%.200s is not the layout of the log, or has other parameters", path);
+                       "%.200s is not the layout of the log, or has other parameters: its hash is %016" PRIx64
+                       " (expected %.200s, hash %016" PRIx64 ")",
+                       path, wh_layout_hash(layout), made->told->path, made->hash);
         layout = NULL;
     }
     return layout;
@@ -62,7 +65,7 @@ static void fill_shapes(wh_log_layout_t *made) {
     wh_robot_default(&robot);
     layout->wafer_diameter = DIAMETER;
     layout->wafer_thickness = THICKNESS;
-    layout->notch_depth = 1;
+    layout->notch_depth = 0; /* a log tells of none */
     layout->shapes =
         wh_shapes_default(DIAMETER, THICKNESS, robot.travel[WH_AXIS_R].max, robot.travel[WH_AXIS_Z].min);
     const size_t count = wh_layout_count_parts(layout);

@@ -15,7 +15,7 @@ typedef struct {
     const wh_layout_t *layout; /* null: no cell came yet */
     bool is_whole;             /* it is the file's */
     uint64_t hash;
-    char note[600];        /* why it is not, or empty */
+    char note[700];        /* why it is not, or empty */
     wh_sandbox_t *sandbox; /* of the file's */
     wh_layout_t *told;     /* the message's; and what it lacks: */
     wh_part_t *parts;
@@ -29,7 +29,8 @@ typedef struct {
     size_t parameter_count;
 } wh_log_layout_options_t;
 
-/* Makes it of a message. False if no layout could have made that message; nothing is then changed. */
+/* Makes it of a message. False if no layout could have made that message; nothing is then changed. If the
+ * options name a file and it is not the layout, is_whole is false: that is an error of who named it. */
 bool wh_log_layout_make(wh_log_layout_t *made, const waferhand_cell *cell,
                         const wh_log_layout_options_t *options);
 

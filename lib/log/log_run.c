@@ -1,7 +1,6 @@
 /* One run of a log: its record and its signals, as motion control would have kept them. */
 #include "log_run_internal.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -97,13 +96,19 @@ static bool find_axes(const wh_log_run_t *run, const waferhand_command *command,
     return known;
 }
 
+/* Slices that never reached the simulator are in no log. */
+static void note_gap(wh_log_run_t *run, const waferhand_state *message) {
+    const int64_t missed = message->missed - run->missed;
+    run->gaps += run->seq > 0 && message->seq - run->seq - 1 > missed ? 1 : 0;
+}
+
 static void take_slice(wh_log_run_t *run, const waferhand_command *command, const waferhand_state *message) {
     double axes[WH_AXES];
     if (!run->signals.layout) {
         start(run, message->seq == 1);
     }
     const bool known = find_axes(run, command, axes);
-    run->gaps += run->seq > 0 && message->seq > run->seq + 1 ? 1 : 0;
+    note_gap(run, message);
     run->seq = message->seq;
     run->hash = (uint64_t)message->hash;
     run->missed = message->missed;
@@ -121,7 +126,7 @@ static bool is_place(const wh_pose_t *pose) {
 }
 
 static bool is_index(int32_t index, size_t count) {
-    return index == WH_NONE || (index >= 0 && (size_t)index < count);
+    return index == WH_NONE || wh_is_index(index, count);
 }
 
 static bool are_wafers_sound(const wh_state_t *state) {
@@ -156,7 +161,7 @@ static bool is_sound(const wh_state_t *state, const wh_layout_t *layout) {
 static void on_state(void *user, const waferhand_command *command, const waferhand_state *message) {
     wh_log_run_t *run = user;
     const wh_layout_t *layout = run->cell.layout;
-    wh_log_run_take_told(run, message->seq);
+    wh_log_run_take_told_before(run, message->seq);
     if (wh_link_state_from_message(message, &layout->grasp.tolerance, &run->arrays, &run->state) != WH_OK ||
         !is_sound(&run->state, layout)) {
         return;
@@ -169,95 +174,110 @@ static void on_state(void *user, const waferhand_command *command, const waferha
 
 /* ------------------------------------------------------------------------------- what there is in the log */
 
-static void add_run(wh_log_run_t *run, int64_t id, uint64_t layout_hash) {
-    for (size_t i = run->run_count; i > 0; --i) {
-        if (run->runs[i - 1].run == id) {
-            return;
-        }
+static void add_run(wh_log_run_t *run, const wh_link_identity_t *identity) {
+    bool is_known = identity->run == 0;
+    for (size_t i = run->run_count; !is_known && i > 0; --i) {
+        is_known = run->runs[i - 1].run == identity->run;
+    }
+    if (is_known) {
+        return;
     }
     run->runs = wh_array_grow(run->runs, run->run_count, &run->run_capacity, sizeof *run->runs);
-    run->runs[run->run_count++] = (wh_log_run_entry_t){id, layout_hash};
-}
-
-static void look_at_slices(wh_log_run_t *run) {
-    static wh_slices_t slices;
-    if (wh_slices_decode(run->log.data, run->log.size, &slices) && slices.identity.run != 0) {
-        add_run(run, slices.identity.run, slices.identity.layout_hash);
-    }
+    run->runs[run->run_count++] = *identity;
 }
 
 static void look_at(wh_log_run_t *run) {
+    static wh_slices_t slices;
     const wh_log_t *log = &run->log;
     waferhand_mcs told;
     waferhand_state state;
     if (strcmp(log->channel, WH_CHANNEL_MCS) == 0 && wh_link_decode_mcs(log->data, log->size, &told)) {
         wh_log_run_add_told(run, &told);
-        (void)waferhand_mcs_decode_cleanup(&told);
-    } else if (strcmp(log->channel, WH_CHANNEL_SLICES) == 0) {
-        look_at_slices(run);
+    } else if (strcmp(log->channel, WH_CHANNEL_SLICES) == 0 &&
+               wh_slices_decode(log->data, log->size, &slices)) {
+        add_run(run, &slices.identity);
     } else if (strcmp(log->channel, WH_CHANNEL_STATE) == 0 &&
                wh_link_decode_state(log->data, log->size, &state)) {
-        if (state.status == WH_OK && state.seq > 0 && state.run != 0) {
-            add_run(run, state.run, (uint64_t)state.layout_hash);
+        if (state.status == WH_OK && state.seq > 0) {
+            add_run(run, &(wh_link_identity_t){state.run, (uint64_t)state.layout_hash});
         }
         (void)waferhand_state_decode_cleanup(&state);
     }
 }
 
-/* The first pass over the log: which runs have slices, and what was told. Returns how many events there
- * are. */
-static uint64_t look_ahead(wh_log_run_t *run, FILE *file) {
-    wh_log_result_t result;
-    wh_log_open(&run->log, file);
-    do {
-        result = wh_log_next(&run->log);
-        if (result == WH_LOG_EVENT) {
-            look_at(run);
-        }
-    } while (result == WH_LOG_EVENT || result == WH_LOG_DAMAGED);
-    return run->log.count;
-}
-
 /* The cell of the wanted run. False if the log has it not. */
 static bool find_cell(wh_log_run_t *run, FILE *file) {
-    wh_log_result_t result;
     waferhand_cell message;
     wh_log_open(&run->log, file);
-    do {
-        result = wh_log_next(&run->log);
-        if (result == WH_LOG_EVENT && strcmp(run->log.channel, WH_CHANNEL_CELL) == 0 &&
+    while (!run->cell.layout && wh_log_next_event(&run->log)) {
+        if (strcmp(run->log.channel, WH_CHANNEL_CELL) == 0 &&
             wh_link_decode_cell(run->log.data, run->log.size, &message)) {
             if ((uint64_t)message.layout_hash == run->wanted->layout_hash) {
                 (void)wh_log_layout_make(&run->cell, &message, &run->options.layout);
             }
             (void)waferhand_cell_decode_cleanup(&message);
         }
-    } while (!run->cell.layout && (result == WH_LOG_EVENT || result == WH_LOG_DAMAGED));
+    }
     return run->cell.layout != NULL;
 }
 
 /* ---------------------------------------------------------------------------------------------- the whole */
 
-static void watch_collisions(wh_log_run_t *run) {
+/* What a replay says, of all that is in the log. */
+static void judge_log(wh_log_run_t *run) {
+    const wh_replay_recording_t *recording = &run->replay.recording;
+    const wh_reading_verdict_t verdict = wh_reading_judge(&run->replay, &run->reading, false, run->reason);
+    run->worth = (wh_record_log_t){.verdict = wh_reading_word(verdict),
+                                   .reason = run->reason,
+                                   .has_id = recording->version > 0,
+                                   .id = (uint64_t)recording->id,
+                                   .part = recording->part,
+                                   .notes = run->notes};
+    run->record.log = &run->worth;
+    run->record.is_partial = verdict != WH_READING_SAME;
+}
+
+/* With several runs, all of them are replayed for that, and then the wanted one alone: between them a run may
+ * come back. */
+static void replay_all(wh_log_run_t *run, FILE *file) {
+    wh_reading_replay(file, &run->log, &run->replay, &run->reading);
+    judge_log(run);
+    wh_replay_close(&run->replay);
+    memset(&run->replay, 0, sizeof run->replay);
+}
+
+/* The second pass: the slices of the wanted run. */
+static void follow(wh_log_run_t *run, FILE *file) {
     const wh_layout_t *layout = run->cell.layout;
+    wh_recorder_open(&run->recorder, &run->record, run->options.path);
+    run->recorder.layout = layout;
+    run->recorder.cell = &layout->cell;
     if (run->cell.is_whole && layout->collision) {
         run->collision.memory = wh_array_new(wh_collision_bytes(layout), 1);
         run->collision.layout = layout;
         wh_robot_forward(layout->machine.robot.home, &run->collision.base_from_effector);
     }
-}
-
-/* The second pass: the slices of the wanted run. */
-static void follow(wh_log_run_t *run, FILE *file) {
-    wh_recorder_open(&run->recorder, &run->record, run->options.path);
-    run->recorder.layout = run->cell.layout;
-    run->recorder.cell = &run->cell.layout->cell;
-    watch_collisions(run);
-    run->replay.only_run = run->wanted->run;
+    run->replay.only_run = run->run_count > 1 ? run->wanted->run : 0;
     run->replay.listener = on_state;
     run->replay.user = run;
     wh_reading_replay(file, &run->log, &run->replay, &run->reading);
-    wh_log_run_take_told(run, INT64_MAX);
+    if (run->run_count == 1) {
+        judge_log(run);
+    }
+    wh_log_run_take_told_before(run, INT64_MAX);
+}
+
+static bool is_sound_log(const wh_log_run_t *run) {
+    return run->reason[0] == '\0';
+}
+
+static bool begins_late(const wh_log_run_t *run) {
+    return run->replay.run && run->replay.run->first_slice > 1;
+}
+
+/* The rest is in the next part. */
+static bool ends_early(const wh_log_run_t *run) {
+    return run->replay.run && !run->replay.run->over && run->replay.recording.closed == WH_RECORDING_GOES_ON;
 }
 
 static void finish_run(wh_log_run_t *run) {
@@ -266,11 +286,12 @@ static void finish_run(wh_log_run_t *run) {
         run->record.commands[run->recorder.running].end_s = wh_recorder_now(&run->recorder);
     }
     wh_log_run_judge(run);
+    run->record.is_partial = run->record.is_partial || begins_late(run) || ends_early(run) || run->gaps > 0;
     wh_recorder_finish(&run->recorder, &end);
     run->record.wall_s = (double)NAN;
     if (run->outcome.verdict == WH_OUTCOME_FAILED) {
         run->record.ok = false;
-    } else if (run->outcome.verdict != WH_OUTCOME_PASSED && run->record.ok) {
+    } else if ((run->outcome.verdict != WH_OUTCOME_PASSED || !is_sound_log(run)) && run->record.ok) {
         run->record.ok = false;
         run->record.is_untold = true;
     }
@@ -289,9 +310,30 @@ static void note_outcome(wh_log_run_t *run) {
         note(run, "The log does not tell if the run passed.");
         return;
     }
+    if (begins_late(run)) {
+        return; /* what came before is elsewhere */
+    }
     note_lost(run, "commands", outcome->commands, run->record.command_count);
     note_lost(run, "expectations", outcome->expectations, run->record.expectation_count);
     note_lost(run, "cycles", outcome->cycles, run->record.cycle_count);
+}
+
+/* What the replay says, and which part of the run this is. */
+static void note_worth(wh_log_run_t *run) {
+    const wh_replay_run_t *replayed = run->replay.run;
+    if (!is_sound_log(run)) {
+        note(run, "A replay says of the log: %s: %s.", run->worth.verdict, run->reason);
+    }
+    if (replayed && replayed->begins_in_part) {
+        note(run, "The log is part %d of a recording: the run begins in an earlier part.",
+             (int)run->worth.part);
+    } else if (replayed && begins_late(run)) {
+        note(run, "The log begins at slice %" PRId64 " of the run.", replayed->first_slice);
+    }
+    if (ends_early(run)) {
+        note(run, "The log is part %d of a recording: the run goes on in the next part.",
+             (int)run->worth.part);
+    }
 }
 
 static void note_reading(wh_log_run_t *run) {
@@ -311,48 +353,74 @@ static void note_reading(wh_log_run_t *run) {
 }
 
 static void tell(wh_log_run_t *run) {
+    note_worth(run);
     note_outcome(run);
     if (!run->cell.is_whole) {
         note(run, "Shapes are the defaults of 300 mm wafers: %.140s.", run->cell.note);
     }
     if (run->gaps > 0) {
-        note(run, "%zu %s of slices %s not in the log.", run->gaps, run->gaps == 1 ? "stretch" : "stretches",
-             run->gaps == 1 ? "is" : "are");
+        note(run, "%zu %s of slices %s not in the log: %" PRId64 " slices in all.", run->gaps,
+             run->gaps == 1 ? "stretch" : "stretches", run->gaps == 1 ? "is" : "are",
+             run->replay.run->skipped);
     }
     note_reading(run);
+    run->worth.note_count = run->note_count;
 }
 
-static bool read_runs(wh_log_run_t *run, FILE *file) {
-    const uint64_t events = look_ahead(run, file);
+/* The first pass over the log: which runs have slices, and what was told. Chooses the run; false if there is
+ * none. */
+static bool choose(wh_log_run_t *run, FILE *file) {
+    wh_log_open(&run->log, file);
+    while (wh_log_next_event(&run->log)) {
+        look_at(run);
+    }
+    const uint64_t events = run->log.count;
     if (events == 0) {
         return refuse(run, "no LCM event log (expected one, or a script)");
     }
     if (run->run_count == 0) {
-        return refuse(run, "no run in it (expected states on WAFERHAND_STATE, in %" PRIu64 " events)",
-                      events);
+        return refuse(run, "no slice of a run in it, in %" PRIu64 " events: nothing to show%s", events,
+                      run->told_count > 0 ? "; `waferhand replay` tells what is there" : "");
     }
     if (run->options.number > run->run_count) {
         return refuse(run, "no run %zu in it (expected 1 to %zu)", run->options.number, run->run_count);
     }
     run->wanted = &run->runs[(run->options.number > 0 ? run->options.number : run->run_count) - 1];
     wh_log_run_choose_told(run);
+    return true;
+}
+
+static bool choose_layout(wh_log_run_t *run, FILE *file) {
     if (!find_cell(run, file)) {
         return refuse(run, "no cell of this run in it (expected WAFERHAND_CELL, which a simulator tells once "
                            "a second)");
     }
-    follow(run, file);
-    if (!run->signals.layout) {
-        return refuse(run, "no sound slice of this run in it, in %" PRIu64 " events", events);
+    return !run->options.layout.path || run->cell.is_whole || refuse(run, "--layout: %s", run->cell.note);
+}
+
+static bool read_runs(wh_log_run_t *run, FILE *file) {
+    if (!choose(run, file) || !choose_layout(run, file)) {
+        return false;
     }
-    return true;
+    if (run->run_count > 1) {
+        replay_all(run, file);
+    }
+    follow(run, file);
+    if (wh_reading_is_unknown(&run->replay)) {
+        return refuse(run, "a recording of version %d (expected 1 or %d)", (int)run->replay.recording.version,
+                      WH_RECORDING_VERSION);
+    }
+    return run->signals.layout ||
+           refuse(run, "no sound slice of this run in it, in %" PRIu64 " events", run->reading.events);
 }
 
 bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options) {
     memset(run, 0, sizeof *run);
     run->options = *options;
-    FILE *file = wh_log_file(options->path);
+    const char *fault = NULL;
+    FILE *file = wh_log_file(options->path, &fault);
     if (!file) {
-        return refuse(run, "%s (expected an LCM event log, or a script)", strerror(errno));
+        return refuse(run, "%s (expected an LCM event log, or a script)", fault);
     }
     const bool read = read_runs(run, file);
     (void)fclose(file);
@@ -371,7 +439,7 @@ void wh_log_run_close(wh_log_run_t *run) {
     wh_replay_close(&run->replay);
     wh_log_close(&run->log);
     for (size_t i = 0; i < run->told_count; ++i) {
-        wh_log_run_forget_told(&run->told[i]);
+        (void)waferhand_mcs_decode_cleanup(&run->told[i].message);
     }
     free(run->told);
     free(run->runs);

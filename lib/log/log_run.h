@@ -16,7 +16,7 @@
 #include "reading.h"
 
 #define WH_LOG_NOTE_BYTES 240
-#define WH_LOG_NOTES 8
+#define WH_LOG_NOTES 12
 
 typedef struct {
     const char *path;
@@ -24,19 +24,10 @@ typedef struct {
     wh_log_layout_options_t layout;
 } wh_log_run_options_t;
 
-/* A run of the log. */
-typedef struct {
-    int64_t run;
-    uint64_t layout_hash;
-} wh_log_run_entry_t;
-
 /* What motion control told of a run. */
 typedef struct {
-    int64_t run, seq, utime;
+    waferhand_mcs message;
     size_t order; /* in the log */
-    int32_t phase, line, number;
-    bool is_answer; /* of a request */
-    char *command, *text;
 } wh_log_told_t;
 
 /* Zero it to begin with, or leave it static; must not be moved. Read record, signals, notes and message. */
@@ -45,9 +36,9 @@ typedef struct {
     wh_log_t log;
     wh_replay_t replay;
     wh_reading_t reading;
-    wh_log_run_entry_t *runs;
+    wh_link_identity_t *runs;
     size_t run_count, run_capacity;
-    const wh_log_run_entry_t *wanted;
+    const wh_link_identity_t *wanted;
     wh_log_told_t *told; /* sorted by their slices */
     size_t told_count, told_capacity, told_next;
     wh_log_layout_t cell;
@@ -68,12 +59,16 @@ typedef struct {
     char text[WH_LOG_NOTES][WH_LOG_NOTE_BYTES];
     const char *notes[WH_LOG_NOTES];
     size_t note_count;
-    char message[800]; /* why there is nothing to show */
+    char reason[WH_READING_REASON]; /* of the log's verdict */
+    wh_record_log_t worth;          /* the record's `log` */
+    char message[1200];             /* why there is nothing to show */
 } wh_log_run_t;
 
 /* Reads the whole log. False, and the reason in `message`, if the file cannot be read, is no log, or has no
- * such run. What is damaged or missing, a note says. The record says how the run ended if the log tells it:
- * else it is untold. To be closed in any case. */
+ * such run, or the layout that the options name is not its layout. What is damaged or missing, a note says.
+ * The record's `log` has the verdict of a replay of the whole log (wh_reading_judge, not lenient). The record
+ * says that the run passed only if the log tells it and the verdict is WH_READING_SAME: else it is untold. To
+ * be closed in any case. */
 bool wh_log_run_read(wh_log_run_t *run, const wh_log_run_options_t *options);
 
 void wh_log_run_close(wh_log_run_t *run);

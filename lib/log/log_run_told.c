@@ -1,18 +1,15 @@
-/* What motion control told of a run, by the slices that it names. */
+/* What motion control told of a run, slice by slice: commands, expectations, cycles and the verdict. */
+#include "log_run_internal.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "../text/array.h"
-#include "log_run_internal.h"
-
-static const char *running_text(const wh_log_run_t *run) {
-    return run->recorder.running == WH_NONE ? NULL : run->record.commands[run->recorder.running].text;
-}
 
 /* A command begins once, however often that is said. */
-static bool is_running(const wh_log_run_t *run, const wh_log_told_t *told) {
-    const char *text = running_text(run);
-    return text && strcmp(text, told->command) == 0;
+static bool is_running(const wh_log_run_t *run, const waferhand_mcs *told) {
+    const int32_t running = run->recorder.running;
+    return running != WH_NONE && strcmp(run->record.commands[running].text, told->command) == 0;
 }
 
 static void mark(wh_log_run_t *run) {
@@ -22,42 +19,39 @@ static void mark(wh_log_run_t *run) {
     }
 }
 
-static void take_begin(wh_log_run_t *run, const wh_log_told_t *told) {
-    if (!is_running(run, told)) {
-        wh_recorder_begin(&run->recorder, told->line, told->command, (double)told->utime / 1e6);
-        mark(run);
-    }
-}
-
-static void take_end(wh_log_run_t *run, const wh_log_told_t *told) {
-    if (!told->is_answer && is_running(run, told)) {
-        const wh_status_t error = told->phase == WH_LINK_PHASE_DONE ? WH_OK : (wh_status_t)told->number;
+static void take_end(wh_log_run_t *run, const waferhand_mcs *told) {
+    if (told->request == 0 && is_running(run, told)) {
+        const wh_status_t error = told->phase == WH_LINK_PHASE_DONE ? WH_OK : (wh_status_t)told->error;
         wh_recorder_end(&run->recorder, (double)told->utime / 1e6, error, told->text, run->state.wafers);
         mark(run);
     }
 }
 
 /* What comes again, as over a lossy network, has the same number. */
-static bool is_new(wh_log_run_t *run, const wh_log_told_t *told) {
+static bool is_new(wh_log_run_t *run, const waferhand_mcs *told) {
     const bool is_cycle = told->phase == WH_LINK_PHASE_CYCLE;
     int32_t *last = is_cycle ? &run->last_cycle : &run->last_expectation;
-    if (told->number > *last) {
-        *last = told->number;
+    if (told->error > *last) {
+        *last = told->error;
         return true;
     }
-    for (const wh_log_told_t *before = run->told; before < told; ++before) {
+    for (size_t i = 0; &run->told[i].message < told; ++i) {
+        const waferhand_mcs *before = &run->told[i].message;
         if (before->phase >= WH_LINK_PHASE_MET && (before->phase == WH_LINK_PHASE_CYCLE) == is_cycle &&
-            before->number == told->number) {
+            before->error == told->error) {
             return false;
         }
     }
     return true;
 }
 
-static void take_told(wh_log_run_t *run, const wh_log_told_t *told) {
+static void take_told(wh_log_run_t *run, const waferhand_mcs *told) {
     switch (told->phase) {
     case WH_LINK_PHASE_BEGINS:
-        take_begin(run, told);
+        if (!is_running(run, told)) {
+            wh_recorder_begin(&run->recorder, told->line, told->command, (double)told->utime / 1e6);
+            mark(run);
+        }
         break;
     case WH_LINK_PHASE_DONE:
     case WH_LINK_PHASE_FAILED:
@@ -79,54 +73,39 @@ static void take_told(wh_log_run_t *run, const wh_log_told_t *told) {
     }
 }
 
-/* What was told of slices before this one. */
-void wh_log_run_take_told(wh_log_run_t *run, int64_t seq) {
-    while (run->told_next < run->told_count && run->told[run->told_next].seq < seq) {
-        take_told(run, &run->told[run->told_next++]);
+void wh_log_run_take_told_before(wh_log_run_t *run, int64_t seq) {
+    while (run->told_next < run->told_count && run->told[run->told_next].message.seq < seq) {
+        take_told(run, &run->told[run->told_next++].message);
     }
 }
 
-void wh_log_run_add_told(wh_log_run_t *run, const waferhand_mcs *message) {
+void wh_log_run_add_told(wh_log_run_t *run, waferhand_mcs *message) {
     if (message->run == 0 || message->phase == WH_LINK_PHASE_IDLE ||
         message->phase == WH_LINK_PHASE_GOES_ON) {
+        (void)waferhand_mcs_decode_cleanup(message);
         return;
     }
     run->told = wh_array_grow(run->told, run->told_count, &run->told_capacity, sizeof *run->told);
-    run->told[run->told_count] = (wh_log_told_t){.run = message->run,
-                                                 .seq = message->seq,
-                                                 .utime = message->utime,
-                                                 .order = run->told_count,
-                                                 .phase = message->phase,
-                                                 .line = message->line,
-                                                 .number = message->error,
-                                                 .is_answer = message->request != 0,
-                                                 .command = wh_text_copy(message->command),
-                                                 .text = wh_text_copy(message->text)};
+    run->told[run->told_count] = (wh_log_told_t){*message, run->told_count};
     ++run->told_count;
 }
 
 static int compare(const void *a, const void *b) {
     const wh_log_told_t *one = a;
     const wh_log_told_t *two = b;
-    if (one->seq != two->seq) {
-        return one->seq < two->seq ? -1 : 1;
+    if (one->message.seq != two->message.seq) {
+        return one->message.seq < two->message.seq ? -1 : 1;
     }
     return (one->order > two->order) - (one->order < two->order);
 }
 
-void wh_log_run_forget_told(wh_log_told_t *told) {
-    free(told->command);
-    free(told->text);
-}
-
-/* Keeps what was told of the wanted run. */
 void wh_log_run_choose_told(wh_log_run_t *run) {
     size_t kept = 0;
     for (size_t i = 0; i < run->told_count; ++i) {
-        if (run->told[i].run == run->wanted->run) {
+        if (run->told[i].message.run == run->wanted->run) {
             run->told[kept++] = run->told[i];
         } else {
-            wh_log_run_forget_told(&run->told[i]);
+            (void)waferhand_mcs_decode_cleanup(&run->told[i].message);
         }
     }
     run->told_count = kept;
@@ -135,12 +114,11 @@ void wh_log_run_choose_told(wh_log_run_t *run) {
     }
 }
 
-/* What motion control told last of all: the verdict. */
 void wh_log_run_judge(wh_log_run_t *run) {
     const char *reason = NULL;
     for (size_t i = 0; i < run->told_count; ++i) {
-        if (run->told[i].phase == WH_LINK_PHASE_OVER) {
-            reason = wh_outcome_read(run->told[i].text, &run->outcome);
+        if (run->told[i].message.phase == WH_LINK_PHASE_OVER) {
+            reason = wh_outcome_read(run->told[i].message.text, &run->outcome);
         }
     }
     if (run->outcome.verdict == WH_OUTCOME_FAILED && reason && reason[0] != '\0') {

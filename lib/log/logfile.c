@@ -1,8 +1,15 @@
 #include "logfile.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
+#include <zstd.h>
+
+#include "../text/array.h"
+#include "../text/output.h"
 
 #define HEADER 28
 #define SYNC UINT32_C(0xeda1da01)
@@ -11,28 +18,133 @@
 #define LONGEST UINT64_C(0x10000000)
 /* No channel of any program has a longer name. */
 #define LONGEST_CHANNEL 1000
+/* What a compressed file, and each of its frames, begins with. */
+#define MAGIC_BYTES 4
 
-FILE *wh_log_file(const char *path) {
+static const uint8_t magic[MAGIC_BYTES] = {0x28, 0xB5, 0x2F, 0xFD};
+
+/* Opening a pipe must wait for nobody at its other end. */
+FILE *wh_log_file(const char *path, const char **fault) {
     struct stat status;
-    FILE *file = fopen(path, "rb");
-    if (file && fstat(fileno(file), &status) == 0 && S_ISDIR(status.st_mode)) {
-        (void)fclose(file);
-        errno = EISDIR;
+    FILE *file = NULL;
+    const int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    *fault = NULL;
+    if (fd < 0) {
+        *fault = strerror(errno);
         return NULL;
     }
+    if (fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
+        *fault = S_ISDIR(status.st_mode) ? "it is a directory" : "it is no regular file";
+    } else {
+        file = fdopen(fd, "rb");
+    }
+    if (!file) {
+        *fault = *fault ? *fault : strerror(errno);
+        (void)close(fd);
+        return NULL;
+    }
+    wh_output_keep(path);
     return file;
 }
 
+bool wh_log_is_packed(const void *bytes, size_t size) {
+    return size >= MAGIC_BYTES && memcmp(bytes, magic, MAGIC_BYTES) == 0;
+}
+
 void wh_log_open(wh_log_t *log, FILE *file) {
+    wh_log_source_t *source = &log->source;
     wh_log_close(log);
     memset(log, 0, offsetof(wh_log_t, window));
     log->begin = log->end = 0;
     rewind(file);
-    wh_log_source_open(&log->source, file);
+    source->file = file;
+    source->packed = wh_array_new(WH_LOG_PACKED, 1);
+    source->end = fread(source->packed, 1, MAGIC_BYTES, file);
+    source->zstd = wh_log_is_packed(source->packed, source->end) ? wh_memory_need(ZSTD_createDCtx()) : NULL;
 }
 
 void wh_log_close(wh_log_t *log) {
-    wh_log_source_close(&log->source);
+    (void)ZSTD_freeDCtx(log->source.zstd);
+    free(log->source.packed);
+    memset(&log->source, 0, sizeof log->source);
+}
+
+/* ------------------------------------------------------------------------------------------------- source */
+
+/* Reads on, behind what is kept: from the frame's beginning, if there is room. */
+static bool refill(wh_log_source_t *source) {
+    const bool fits = source->end - source->frame < WH_LOG_PACKED / 2;
+    const size_t from = fits ? source->frame : source->at;
+    memmove(source->packed, source->packed + from, source->end - from);
+    source->offset += from;
+    source->end -= from;
+    source->at -= from;
+    source->frame = fits ? 0 : source->at;
+    const size_t got = fread(source->packed + source->end, 1, WH_LOG_PACKED - source->end, source->file);
+    source->end += got;
+    return got > 0;
+}
+
+/* Finds where the next frame begins, behind the beginning of the damaged one. False if none does. */
+static bool find_frame(wh_log_source_t *source) {
+    source->at = source->frame + 1 < source->end ? source->frame + 1 : source->end;
+    for (;;) {
+        source->frame = source->at;
+        if (source->end - source->at < MAGIC_BYTES && !refill(source)) {
+            return false;
+        }
+        const uint8_t *from = source->packed + source->at;
+        const uint8_t *found = memchr(from, magic[0], source->end - source->at);
+        source->at = found ? (size_t)(found - source->packed) : source->end;
+        source->frame = source->at;
+        if (source->end - source->at >= MAGIC_BYTES) {
+            if (wh_log_is_packed(found, MAGIC_BYTES)) {
+                return true;
+            }
+            ++source->at;
+        }
+    }
+}
+
+static void note_broken(wh_log_source_t *source) {
+    if (!source->is_broken && source->broken++ == 0) {
+        source->first_broken = source->offset + source->frame;
+    }
+    source->is_broken = true;
+    source->is_within = false;
+    (void)ZSTD_DCtx_reset(source->zstd, ZSTD_reset_session_only);
+}
+
+/* Decompresses a piece of what is kept. False at the end. */
+static bool unpack(wh_log_source_t *source, ZSTD_outBuffer *out) {
+    if (source->at == source->end && !refill(source)) {
+        return false;
+    }
+    ZSTD_inBuffer in = {source->packed, source->end, source->at};
+    source->frame = source->is_within ? source->frame : source->at;
+    const size_t left = ZSTD_decompressStream(source->zstd, out, &in);
+    if (ZSTD_isError(left)) {
+        note_broken(source);
+        return find_frame(source);
+    }
+    source->at = in.pos;
+    source->is_within = left > 0;
+    source->is_broken = source->is_broken && left > 0;
+    return true;
+}
+
+/* Reads up to so many bytes; fewer at the end only. */
+static size_t read_source(wh_log_source_t *source, uint8_t *bytes, size_t size) {
+    if (!source->zstd) {
+        const size_t kept = source->end - source->at < size ? source->end - source->at : size;
+        memcpy(bytes, source->packed + source->at, kept);
+        source->at += kept;
+        return kept + fread(bytes + kept, 1, size - kept, source->file);
+    }
+    ZSTD_outBuffer out = {bytes, size, 0};
+    while (out.pos < out.size && unpack(source, &out)) {
+    }
+    return out.pos;
 }
 
 /* ------------------------------------------------------------------------------------------------- window */
@@ -43,7 +155,7 @@ static size_t look(wh_log_t *log, size_t wanted) {
         memmove(log->window, log->window + log->begin, log->end - log->begin);
         log->end -= log->begin;
         log->begin = 0;
-        log->end += wh_log_source_read(&log->source, log->window + log->end, sizeof log->window - log->end);
+        log->end += read_source(&log->source, log->window + log->end, sizeof log->window - log->end);
     }
     return log->end - log->begin;
 }
@@ -143,12 +255,10 @@ static void take_header(wh_log_t *log, const uint8_t *bytes) {
     const size_t channel = (size_t)big_endian(bytes + 20, 4);
     const bool fits = channel < sizeof log->channel;
     log->number = big_endian(bytes + 4, 8);
-    log->timestamp_us = (int64_t)big_endian(bytes + 12, 8);
     memcpy(log->channel, bytes + HEADER, fits ? channel : 0);
     log->channel[fits ? channel : 0] = '\0';
     log->data = bytes + HEADER + channel;
     log->size = (size_t)big_endian(bytes + 24, 4);
-    log->passed_over = log->size > WH_LOG_EVENT_BYTES;
 }
 
 /* An event of another program that is longer than ours are. */
@@ -180,7 +290,7 @@ static wh_log_result_t take_event(wh_log_t *log, uint64_t length) {
     }
     bytes = log->window + log->begin;
     take_header(log, bytes);
-    if (!fits || log->passed_over) {
+    if (!fits || log->size > WH_LOG_EVENT_BYTES) {
         return pass_event(log, length);
     }
     log->is_loose = !is_followed;
@@ -194,7 +304,7 @@ wh_log_result_t wh_log_next(wh_log_t *log) {
     const size_t there = look(log, HEADER);
     const uint8_t *bytes = log->window + log->begin;
     if (there == 0) {
-        return wh_log_source_is_cut(&log->source) ? WH_LOG_CUT : WH_LOG_END;
+        return log->source.is_within || log->source.is_broken ? WH_LOG_CUT : WH_LOG_END;
     }
     if (!is_sync(bytes, there)) {
         return skip_damage(log);
@@ -204,6 +314,14 @@ wh_log_result_t wh_log_next(wh_log_t *log) {
     }
     const uint64_t length = length_of(bytes);
     return length > 0 ? take_event(log, length) : skip_damage(log);
+}
+
+bool wh_log_next_event(wh_log_t *log) {
+    wh_log_result_t result = WH_LOG_DAMAGED;
+    while (result == WH_LOG_DAMAGED) {
+        result = wh_log_next(log);
+    }
+    return result == WH_LOG_EVENT;
 }
 
 /* ------------------------------------------------------------------------------------------------ numbers */

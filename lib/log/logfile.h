@@ -13,12 +13,26 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "log_source.h"
-
 #define WH_LOG_EVENT_BYTES 65536
 #define WH_LOG_CHANNEL_BYTES 64
 /* So much of the file is looked at together. */
 #define WH_LOG_WINDOW (1 << 18)
+/* So much of a compressed file is kept, to look in it for the next frame. */
+#define WH_LOG_PACKED ((size_t)1 << 22)
+
+/* The bytes of a log: as they stand in the file, or decompressed if it begins as zstd's do. A compressed file
+ * has frames that each stand alone. A frame that is damaged is left where it goes wrong. Reading goes on with
+ * the next one that begins in the file. */
+typedef struct {
+    FILE *file; /* the caller's */
+    void *zstd; /* ZSTD's; null: not compressed */
+    uint8_t *packed;
+    size_t frame, at, end;     /* in `packed`: where the frame begins, what comes next, the end */
+    uint64_t offset;           /* in the file, of the beginning of `packed` */
+    bool is_within, is_broken; /* a frame has begun and not ended; it is damaged */
+    uint64_t broken;           /* stretches of damaged frames */
+    uint64_t first_broken;     /* where in the file the first one begins */
+} wh_log_source_t;
 
 typedef enum {
     WH_LOG_EVENT,  /* channel, data and size hold the next event */
@@ -34,9 +48,7 @@ typedef struct {
     uint64_t next;   /* where it ends */
     uint64_t count;  /* events read */
     uint64_t number; /* as the event says: from 0, one more each */
-    int64_t timestamp_us;
     char channel[WH_LOG_CHANNEL_BYTES]; /* empty for a longer name, which is none of ours */
-    bool passed_over;                   /* it is too long for us: no data */
     bool is_loose;                      /* what follows is no event: its own end may be wrong */
     size_t size;                        /* of the data */
     const uint8_t *data;                /* valid until the next call */
@@ -44,8 +56,11 @@ typedef struct {
     size_t begin, end;
 } wh_log_t;
 
-/* Opens a file for reading. Null, and errno says why, if it cannot be read; a folder is no file. */
-FILE *wh_log_file(const char *path);
+/* Opens a regular file for reading. Null, and `fault` says why, if it is none or cannot be read. */
+FILE *wh_log_file(const char *path, const char **fault);
+
+/* True if these are the first bytes of a compressed file. */
+bool wh_log_is_packed(const void *bytes, size_t size);
 
 /* Starts at the beginning of the file, which stays the caller's. Also after an earlier opening. */
 void wh_log_open(wh_log_t *log, FILE *file);
@@ -55,6 +70,9 @@ void wh_log_close(wh_log_t *log);
 
 /* The next event, or what stands in its place. After WH_LOG_END and WH_LOG_CUT there is nothing more. */
 wh_log_result_t wh_log_next(wh_log_t *log);
+
+/* The next event, past damage. False if there is none. */
+bool wh_log_next_event(wh_log_t *log);
 
 /* ------------------------------------------------------------------------------------------------ numbers */
 

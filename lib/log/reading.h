@@ -40,9 +40,27 @@ const char *wh_reading_word(wh_reading_verdict_t verdict);
  * caller closes. */
 void wh_reading_replay(FILE *file, wh_log_t *log, wh_replay_t *replay, wh_reading_t *reading);
 
+/* Room for why a log is not the same. */
+#define WH_READING_REASON 240
+
+/* The reason where the digest is not that of what stands there. */
+#define WH_READING_CHANGED "the log's digest is another one: something in it was changed, lost or put in"
+
 /* What was read shows. `lenient` excuses what a network may do: messages that are lost, late or garbage, and
- * runs that begin in the middle; never what the file has lost. */
-wh_reading_verdict_t wh_reading_judge(const wh_replay_t *replay, const wh_reading_t *reading, bool lenient);
+ * runs that begin in the middle; never what the file has lost. The first reason found for the verdict goes
+ * into `reason`, of WH_READING_REASON bytes, empty for WH_READING_SAME; null: nobody asks. */
+wh_reading_verdict_t wh_reading_judge(const wh_replay_t *replay, const wh_reading_t *reading, bool lenient,
+                                      char *reason);
+
+/* What is said of each loss (wh_replay_loss_t), and its key in JSON. */
+typedef struct {
+    const char *key, *one, *many;
+} wh_reading_loss_t;
+extern const wh_reading_loss_t wh_reading_losses[WH_REPLAY_LOSSES];
+
+/* How many of the run's expectations are not in the log, though its end is: without those that an earlier
+ * part of the recording has. */
+int64_t wh_reading_lost_expectations(const wh_replay_run_t *run);
 
 /* True if the log is of a version of the format that this program does not know. */
 bool wh_reading_is_unknown(const wh_replay_t *replay);

@@ -98,7 +98,6 @@ static void empty(wh_replay_slot_t *slot) {
     free(slot->state);
     memset(slot, 0, offsetof(wh_replay_slot_t, command));
     slot->state = NULL;
-    slot->size = 0;
 }
 
 /* Slices up to this one have gone through. */
@@ -112,17 +111,10 @@ static void advance_to(wh_replay_t *replay, int64_t seq) {
     replay->seq = seq;
 }
 
-static int64_t first_command(wh_replay_t *replay) {
+/* The first slice that waits and has that; 0: none. */
+static int64_t first_with(wh_replay_t *replay, bool (*has)(wh_replay_t *replay, int64_t seq)) {
     int64_t seq = replay->seq + 1;
-    while (seq <= replay->last_pending && !has_command(replay, seq)) {
-        ++seq;
-    }
-    return seq <= replay->last_pending ? seq : 0;
-}
-
-static int64_t first_state(wh_replay_t *replay) {
-    int64_t seq = replay->seq + 1;
-    while (seq <= replay->last_pending && !has_state(replay, seq)) {
+    while (seq <= replay->last_pending && !has(replay, seq)) {
         ++seq;
     }
     return seq <= replay->last_pending ? seq : 0;
@@ -155,16 +147,21 @@ static void step_unanswered(wh_replay_t *replay, int64_t seq) {
     advance_to(replay, seq);
 }
 
+/* Counts the slices behind the last one, up to this one, as passed over. Those that an earlier part of the
+ * recording has are not. */
+static void skip_to(wh_replay_t *replay, int64_t seq) {
+    replay->run->skipped += replay->part_begins ? 0 : seq - replay->seq;
+}
+
 /* A state whose command, or one before it, is not in the log. */
 static void take_up(wh_replay_t *replay, int64_t seq) {
     const wh_replay_slot_t *slot = slot_of(replay, seq);
-    const int64_t skipped = seq - replay->seq - 1;
     waferhand_state message;
     if (wh_link_decode_state(slot->state, slot->size, &message)) {
+        skip_to(replay, seq);
         if (wh_replay_restore(replay, &message)) {
             replay->run->begins_in_part = replay->run->begins_in_part || replay->part_begins;
             replay->run->taken_up += replay->part_begins ? 0 : 1;
-            replay->run->skipped += replay->part_begins ? 0 : skipped;
             replay->part_begins = false;
             wh_replay_tell(replay, slot->has_command ? &slot->command : NULL, &message);
         } else {
@@ -186,7 +183,7 @@ static bool is_behind_missed(wh_replay_t *replay, int64_t state) {
 
 /* Lets the next slice through if it is there. */
 static bool let_through(wh_replay_t *replay) {
-    const int64_t state = first_state(replay);
+    const int64_t state = first_with(replay, has_state);
     if (state == 0) {
         return false;
     }
@@ -214,7 +211,7 @@ static bool is_stepped_to(wh_replay_t *replay, int64_t state) {
 /* Something does not come any more: what waits longest goes through without it. False if only commands
  * wait. */
 static bool force(wh_replay_t *replay) {
-    const int64_t state = first_state(replay);
+    const int64_t state = first_with(replay, has_state);
     if (state == 0) {
         return false;
     }
@@ -230,7 +227,7 @@ static bool force(wh_replay_t *replay) {
 
 /* The same where only commands wait. False if none does. */
 static bool force_command(wh_replay_t *replay) {
-    const int64_t command = first_command(replay);
+    const int64_t command = first_with(replay, has_command);
     if (command == 0) {
         return false;
     }
@@ -238,6 +235,7 @@ static bool force_command(wh_replay_t *replay) {
         step_unanswered(replay, command);
     } else {
         ++replay->run->unanswered;
+        skip_to(replay, command - 1);
         replay->is_synchronous = false;
         advance_to(replay, command);
     }
@@ -249,8 +247,10 @@ static wh_replay_slot_t *make_slot(wh_replay_t *replay, int64_t seq) {
     while (seq - replay->seq > WH_REPLAY_WINDOW && (force(replay) || force_command(replay))) {
     }
     if (seq - replay->seq > WH_REPLAY_WINDOW) {
+        const int64_t before = seq - 2; /* the state before the first command may come again */
+        skip_to(replay, before);
         replay->is_synchronous = false;
-        replay->seq = seq - 2; /* the state before the first command may come again */
+        replay->seq = before;
     }
     wh_replay_slot_t *slot = slot_of(replay, seq);
     if (slot->seq != seq) {
@@ -265,9 +265,9 @@ void wh_replay_finish(wh_replay_t *replay) {
     wh_replay_tell_last(replay);
     while (replay->run && (let_through(replay) || force(replay))) {
     }
-    while (replay->run && first_command(replay) > 0) {
+    while (replay->run && first_with(replay, has_command) > 0) {
         ++replay->run->last_unanswered;
-        advance_to(replay, first_command(replay));
+        advance_to(replay, first_with(replay, has_command));
         replay->is_synchronous = false;
     }
 }
@@ -281,8 +281,22 @@ static bool is_new(wh_replay_t *replay, int64_t run, int64_t seq, int64_t layout
     return !is_again && enter_run(replay, run, (uint64_t)layout_hash) && seq > replay->seq;
 }
 
+/* Keeps count of a command of a layout whose cell is not in the log. It is not lost if the simulator says
+ * that it has another layout. */
+static bool is_homeless(wh_replay_t *replay, const waferhand_command *message) {
+    const bool is_current = replay->run && replay->run->run == message->run;
+    if (is_current || wh_replay_find_cell(replay, (uint64_t)message->layout_hash)) {
+        return false;
+    }
+    wh_replay_run_t *run = wh_replay_entry(replay, message->run);
+    if (run && run->homeless++ == 0) {
+        run->homeless_at = replay->at;
+    }
+    return true;
+}
+
 void wh_replay_take_command(wh_replay_t *replay, const waferhand_command *message) {
-    if (!is_new(replay, message->run, message->seq, message->layout_hash)) {
+    if (is_homeless(replay, message) || !is_new(replay, message->run, message->seq, message->layout_hash)) {
         return;
     }
     wh_replay_slot_t *slot = make_slot(replay, message->seq);
@@ -345,7 +359,8 @@ void wh_replay_take_state(wh_replay_t *replay, const waferhand_state *message, c
     }
     wh_replay_tell_last(replay);
     if (is_last && !replay->is_synchronous && replay->seq > 0) {
-        --replay->seq; /* behind a block that could not be stepped */
+        --replay->seq; /* behind a block that could not be stepped, and was counted */
+        --replay->run->skipped;
     }
     if (is_new(replay, message->run, message->seq, message->layout_hash)) {
         keep_state(replay, message, data, size);
@@ -369,7 +384,7 @@ void wh_replay_take_slices(wh_replay_t *replay, const wh_slices_t *slices) {
             continue;
         }
         if (!follows || seq != replay->seq + 1) {
-            replay->run->skipped += end - replay->seq;
+            skip_to(replay, end);
             replay->is_synchronous = false;
             replay->seq = end;
             return;
@@ -387,17 +402,39 @@ bool wh_replay_is_vouched_for(const wh_replay_t *replay) {
     return recording->version > 0 && recording->closed != WH_RECORDING_BEGINS && !recording->is_changed;
 }
 
-/* A network may bring the cell of an earlier run late: no loss, if that is sure to have come so. */
-static bool is_of_no_run(wh_replay_t *replay, int64_t run) {
-    return run != 0 && !wh_replay_find_run(replay, run) && !wh_replay_is_vouched_for(replay);
+/* True if all expectations of the run are in the log, each once. */
+static bool has_expectations(const wh_replay_run_t *run) {
+    const wh_log_numbers_t *there = &run->expectations;
+    return there->next == (uint64_t)run->told.expectations && there->doubled == 0 &&
+           wh_log_numbers_missing(there) == 0;
+}
+
+/* What is known of a run when nothing more comes. */
+static void finish_run(wh_replay_t *replay, wh_replay_run_t *run) {
+    const wh_run_told_t *told = &run->told;
+    const bool passed = told->verdict == WH_OUTCOME_PASSED;
+    const bool counts = told->verdict != WH_OUTCOME_UNTOLD && has_expectations(run);
+    if ((passed && run->unmet > 0) || (counts && run->unmet != told->expectations - told->met)) {
+        run->is_told_wrong = true;
+        replay->at = run->over_at;
+        wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
+    }
+    if (run->homeless > 0 && !run->is_other_layout) {
+        replay->at = run->homeless_at;
+        wh_replay_lose(replay, WH_REPLAY_HOMELESS);
+        replay->losses[WH_REPLAY_HOMELESS].count += (uint64_t)run->homeless - 1;
+    }
 }
 
 void wh_replay_end(wh_replay_t *replay) {
     wh_replay_finish(replay);
     for (size_t i = 0; i < replay->run_count; ++i) {
         wh_log_numbers_finish(&replay->runs[i].expectations);
+        finish_run(replay, &replay->runs[i]);
     }
-    if (is_of_no_run(replay, replay->unknown_run)) {
+    /* A network may bring the cell of an earlier run late: no loss, if that is sure to have come so. */
+    if (replay->unknown_run != 0 && !wh_replay_find_run(replay, replay->unknown_run) &&
+        !wh_replay_is_vouched_for(replay)) {
         replay->at = replay->unknown_at;
         wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
     }
@@ -412,6 +449,10 @@ void wh_replay_close(wh_replay_t *replay) {
         free(replay->cells[i].told);
     }
     replay->cell_count = 0;
+    for (size_t i = 0; i < replay->run_count; ++i) {
+        free(replay->runs[i].reason);
+    }
+    replay->run_count = 0;
     if (replay->cell) {
         wh_protocol_server_close(&replay->server);
         replay->cell = NULL;

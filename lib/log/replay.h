@@ -47,15 +47,21 @@ typedef struct {
     int64_t doubtful;       /* slices that differ behind unanswered ones: their valves are not known */
     int64_t outside_valves; /* slices whose valves were not the command's */
     int64_t taken_up;       /* times that the log lacked something and a state was taken over */
-    int64_t skipped;        /* slices that were passed over by that */
+    int64_t skipped;        /* slices that were passed over: not compared, the one of that state included */
     int64_t missed;         /* free-running: commands that never came */
     int64_t refused;        /* commands that simulator and replay refused alike */
+    int64_t homeless;       /* commands of a layout whose cell is not in the log, */
+    uint64_t homeless_at;   /* the byte of the first one, */
+    bool is_other_layout;   /* and the simulator refused them for that */
     int64_t last_refused;   /* the slice of the last one */
     int64_t collisions;     /* events of the collision check: as recorded, not compared */
     uint64_t hash;          /* after the last slice */
     wh_replay_difference_t difference; /* if any differ */
     bool over;                         /* motion control said that the run was over */
-    wh_run_told_t told;                /* and how it ended */
+    uint64_t over_at;                  /* at this byte, */
+    wh_run_told_t told;                /* and how it ended, */
+    char *reason;                      /* and why so; null: it did not say */
+    bool is_told_wrong;                /* what it said does not fit itself, or its expectations */
     wh_log_numbers_t expectations;     /* those that are in the log */
     int64_t unmet;                     /* messages that say so of one */
 } wh_replay_run_t;
@@ -99,6 +105,7 @@ typedef struct {
 /* What the log is, as WAFERHAND_RECORDING tells. */
 typedef struct {
     int32_t version; /* 0: it does not tell, as logs of version 1 */
+    int64_t id;      /* of all its parts */
     int32_t part;
     int8_t mode, closed;
     bool is_changed;  /* what stands before it is not what was written */

@@ -50,12 +50,4 @@ void wh_replay_take_last_state(wh_replay_t *replay, const waferhand_state *messa
 /* A command that the simulator took and the replay refuses, or the other way round. */
 void wh_replay_differ_in_status(wh_replay_run_t *run, int64_t slice, int32_t recorded, int32_t replayed);
 
-/* True if an event is the collision check's, which a replay has not. */
-bool wh_replay_is_collision(int32_t kind);
-
-/* True if the states are not the same, bit for bit, but for their checks and events of the collision check.
- * `difference` then says where; else it is unchanged. */
-bool wh_replay_differs(const wh_layout_t *layout, const waferhand_state *recorded,
-                       const waferhand_state *replayed, wh_replay_difference_t *difference);
-
 #endif

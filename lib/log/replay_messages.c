@@ -1,5 +1,7 @@
 /* What stands on each channel of a log, and what becomes of it. */
+#include <endian.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../text/array.h"
@@ -34,10 +36,11 @@ static void on_command(wh_replay_t *replay, const void *data, size_t size) {
     }
 }
 
-/* What depends on more than the run: what another simulator knew. */
-static bool is_refusal_of_protocol(int32_t status) {
-    return status == WH_STATUS_UNKNOWN_RUN || status == WH_STATUS_RUN_OVER ||
-           status == WH_STATUS_OTHER_LAYOUT;
+static void note_other_layout(wh_replay_t *replay, int64_t id) {
+    wh_replay_run_t *run = wh_replay_entry(replay, id);
+    if (run) {
+        run->is_other_layout = true;
+    }
 }
 
 static void on_state(wh_replay_t *replay, const void *data, size_t size) {
@@ -51,8 +54,10 @@ static void on_state(wh_replay_t *replay, const void *data, size_t size) {
     } else if (is_wanted(replay, message.run) && is_to_be_had(replay, message.check)) {
         if (message.status == WH_OK) {
             wh_replay_take_state(replay, &message, data, size);
-        } else if (!is_refusal_of_protocol(message.status)) {
-            wh_replay_take_refusal(replay, &message, data, size);
+        } else if (message.status == WH_STATUS_OTHER_LAYOUT) {
+            note_other_layout(replay, message.run);
+        } else if (message.status != WH_STATUS_UNKNOWN_RUN && message.status != WH_STATUS_RUN_OVER) {
+            wh_replay_take_refusal(replay, &message, data, size); /* else what another simulator knew */
         }
     }
     (void)waferhand_state_decode_cleanup(&message);
@@ -60,18 +65,14 @@ static void on_state(wh_replay_t *replay, const void *data, size_t size) {
 
 /* ----------------------------------------------------------------------------------------- other messages */
 
-/* The cell as it is told each time: without when and in which run. Returns its size. */
-static size_t encode_cell(waferhand_cell *message, uint8_t bytes[WH_LINK_DATAGRAM]) {
-    message->utime = message->seq = message->run = 0;
-    const int size = waferhand_cell_encode(bytes, 0, WH_LINK_DATAGRAM, message);
-    return size > 0 ? (size_t)size : 0;
-}
-
 static void add_cell(wh_replay_t *replay, waferhand_cell *message) {
     static uint8_t bytes[WH_LINK_DATAGRAM];
     const uint64_t hash = (uint64_t)message->layout_hash;
     wh_replay_cell_t *known = wh_replay_find_cell(replay, hash);
-    const size_t size = encode_cell(message, bytes);
+    /* As it is told each time: without when and in which run. */
+    message->utime = message->seq = message->run = 0;
+    const int encoded = waferhand_cell_encode(bytes, 0, WH_LINK_DATAGRAM, message);
+    const size_t size = encoded > 0 ? (size_t)encoded : 0;
     if (known) {
         known->is_sure = known->is_sure || known->times > 0;
         ++known->times;
@@ -127,13 +128,25 @@ static void take_expectation(wh_replay_t *replay, wh_replay_run_t *run, const wa
     run->unmet += message->phase == WH_LINK_PHASE_UNMET ? 1 : 0;
 }
 
+/* How the run ended. Programs before version 2 of recordings told no verdict. */
+static void take_over(wh_replay_t *replay, wh_replay_run_t *run, const char *text) {
+    const char *reason = wh_outcome_read(text, &run->told);
+    run->over = true;
+    run->over_at = replay->at;
+    if (!reason && text[0] != '\0') {
+        run->is_told_wrong = true;
+        wh_replay_lose(replay, WH_REPLAY_CONTRADICTS);
+    }
+    free(run->reason);
+    run->reason = reason && reason[0] != '\0' ? wh_text_copy(reason) : NULL;
+}
+
 static void take_mcs(wh_replay_t *replay, const waferhand_mcs *message) {
     const bool tells = message->run != 0 && message->phase != WH_LINK_PHASE_IDLE &&
                        message->phase != WH_LINK_PHASE_GOES_ON && is_wanted(replay, message->run);
     wh_replay_run_t *run = tells ? wh_replay_entry(replay, message->run) : NULL;
     if (run && message->phase == WH_LINK_PHASE_OVER) {
-        run->over = true;
-        (void)wh_outcome_read(message->text, &run->told);
+        take_over(replay, run, message->text);
     } else if (run && (message->phase == WH_LINK_PHASE_MET || message->phase == WH_LINK_PHASE_UNMET)) {
         take_expectation(replay, run, message);
     }
@@ -189,6 +202,7 @@ static void take_recording(wh_replay_t *replay, const waferhand_recording *messa
     if (replay->events == 1) {
         replay->part_begins = message->part > 1;
     }
+    recording->id = message->id;
     recording->part = message->part;
     recording->mode = message->mode;
     recording->closed = message->closed;
@@ -257,18 +271,16 @@ static void on_proximity(wh_replay_t *replay, const void *data, size_t size) {
 /* ---------------------------------------------------------------------------------------------- the whole */
 
 /* True if a datagram begins with the fingerprint of one of our messages. */
-static bool is_ours(const uint8_t *data, size_t size) {
+static bool is_ours(const void *data, size_t size) {
     const int64_t fingerprints[] = {__waferhand_command_get_hash(), __waferhand_state_get_hash(),
                                     __waferhand_cell_get_hash(),    __waferhand_proximity_get_hash(),
                                     __waferhand_mcs_get_hash(),     __waferhand_request_get_hash(),
                                     __waferhand_slices_get_hash(),  __waferhand_recording_get_hash()};
     uint64_t first = 0;
     bool ours = false;
-    for (size_t i = 0; size >= 8 && i < 8; ++i) {
-        first = first << 8 | data[i];
-    }
+    memcpy(&first, data, size < sizeof first ? 0 : sizeof first);
     for (size_t i = 0; i < sizeof fingerprints / sizeof fingerprints[0]; ++i) {
-        ours = ours || (uint64_t)fingerprints[i] == first;
+        ours = ours || (uint64_t)fingerprints[i] == be64toh(first);
     }
     return ours;
 }

@@ -2,7 +2,247 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../sim/event_text.h"
 #include "replay_internal.h"
+
+typedef enum { REAL, VECTOR, MATRIX, INT8, INT32, INT64 } kind_t;
+
+typedef struct {
+    const char *name; /* null ends a table */
+    size_t offset;
+    kind_t kind;
+} field_t;
+
+#define AT(type, member) offsetof(waferhand_##type, member)
+
+static const field_t measured_fields[] = {{"dr", AT(measurement, dr), VECTOR},
+                                          {"n1_proj_n2", AT(measurement, n1_proj_n2), REAL},
+                                          {"dr_proj_z", AT(measurement, dr_proj_z), REAL},
+                                          {"dr_proj_xy", AT(measurement, dr_proj_xy), VECTOR},
+                                          {"dr_proj_xy_norm", AT(measurement, dr_proj_xy_norm), REAL},
+                                          {0}};
+
+static const field_t encounter_fields[] = {{"wafer", AT(encounter, wafer), INT32},
+                                           {"holder", AT(encounter, holder), INT32},
+                                           {"slice", AT(encounter, slice), INT64},
+                                           {0}};
+
+static const field_t head_fields[] = {{"utime", AT(state, utime), INT64},
+                                      {"slice", AT(state, seq), INT64},
+                                      {"run", AT(state, run), INT64},
+                                      {"layout_hash", AT(state, layout_hash), INT64},
+                                      {"status", AT(state, status), INT32},
+                                      {"wafers", AT(state, wafer_count), INT32},
+                                      {"grippers", AT(state, gripper_count), INT32},
+                                      {"faults", AT(state, fault_count), INT32},
+                                      {"missed slices", AT(state, missed), INT64},
+                                      {0}};
+
+static const field_t tail_fields[] = {
+    {"sensors", AT(state, sensors), INT32}, {"hash", AT(state, hash), INT64}, {0}};
+
+static const field_t wafer_fields[] = {{"rotation", AT(wafer_state, rotation), MATRIX},
+                                       {"position", AT(wafer_state, position), VECTOR},
+                                       {"index of the holder", AT(wafer_state, holder), INT32},
+                                       {0}};
+
+static const field_t gripper_fields[] = {
+    {"rotation", AT(gripper_state, rotation), MATRIX},
+    {"position", AT(gripper_state, position), VECTOR},
+    {"valve", AT(gripper_state, valve), INT32},
+    {"index of the held wafer", AT(gripper_state, wafer), INT32},
+    {"the held wafer in its frame, rotation", AT(gripper_state, wafer_rotation), MATRIX},
+    {"the held wafer in its frame, position", AT(gripper_state, wafer_position), VECTOR},
+    {"vacuum level", AT(gripper_state, vacuum_level), REAL},
+    {"valve's command", AT(gripper_state, valve_command), INT32},
+    {"valve that was told", AT(gripper_state, valve_told), INT32},
+    {"vacuum sensor", AT(gripper_state, vacuum_on), INT8},
+    {"slips", AT(gripper_state, slips), INT8},
+    {"positions known", AT(gripper_state, positions_known), INT32},
+    {"the held wafer a slice before", AT(gripper_state, wafer_before[0]), VECTOR},
+    {"the held wafer two slices before", AT(gripper_state, wafer_before[1]), VECTOR},
+    {0}};
+
+static const field_t event_fields[] = {{"kind", AT(event, kind), INT32},
+                                       {"wafer", AT(event, wafer), INT32},
+                                       {"gripper", AT(event, gripper), INT32},
+                                       {"other", AT(event, other), INT32},
+                                       {"status", AT(event, status), INT32},
+                                       {"measured slice", AT(event, measured_slice), INT64},
+                                       {"height", AT(event, height), REAL},
+                                       {"value", AT(event, value), REAL},
+                                       {"limit", AT(event, limit), REAL},
+                                       {"first part", AT(event, parts[0]), INT32},
+                                       {"second part", AT(event, parts[1]), INT32},
+                                       {"place", AT(event, at), VECTOR},
+                                       {0}};
+
+static const field_t fault_fields[] = {{"phase", AT(fault_slot, phase), INT32},
+                                       {"kind", AT(fault_slot, it.kind), INT32},
+                                       {"target", AT(fault_slot, it.target), INT32},
+                                       {"other", AT(fault_slot, it.other), INT32},
+                                       {"value", AT(fault_slot, it.value), REAL},
+                                       {"position", AT(fault_slot, it.position), VECTOR},
+                                       {"rotation", AT(fault_slot, it.rotation), MATRIX},
+                                       {"first slice", AT(fault_slot, it.from_seq), INT64},
+                                       {"end", AT(fault_slot, it.until_seq), INT64},
+                                       {"wafer before, position", AT(fault_slot, before_position), VECTOR},
+                                       {"wafer before, rotation", AT(fault_slot, before_rotation), MATRIX},
+                                       {"wafer placed, position", AT(fault_slot, placed_position), VECTOR},
+                                       {"wafer placed, rotation", AT(fault_slot, placed_rotation), MATRIX},
+                                       {0}};
+
+/* ------------------------------------------------------------------------------------------------- fields */
+
+static const size_t counts[] = {[REAL] = 1, [VECTOR] = 3, [MATRIX] = 9, [INT8] = 1, [INT32] = 1, [INT64] = 1};
+static const size_t sizes[] = {[REAL] = 8, [VECTOR] = 8, [MATRIX] = 8, [INT8] = 1, [INT32] = 4, [INT64] = 8};
+
+static double value_of(kind_t kind, const char *at) {
+    union {
+        double real;
+        int8_t small;
+        int32_t integer;
+        int64_t wide;
+    } value;
+    memcpy(&value, at, sizes[kind]);
+    if (kind == INT8) {
+        return value.small;
+    }
+    if (kind == INT32) {
+        return value.integer;
+    }
+    return kind == INT64 ? (double)value.wide : value.real;
+}
+
+static void name_entry(const field_t *field, size_t i, char name[80]) {
+    if (field->kind == VECTOR) {
+        (void)snprintf(name, 80, "%s %c", field->name, (char)('x' + (int)i));
+    } else if (field->kind == MATRIX) {
+        (void)snprintf(name, 80, "%s %zu,%zu", field->name, i / 3 + 1, i % 3 + 1);
+    } else {
+        (void)snprintf(name, 80, "%s", field->name);
+    }
+}
+
+/* By their bits: -0 is not 0. */
+static bool differ(const field_t fields[], const char *of, const void *recorded, const void *replayed,
+                   wh_replay_difference_t *difference) {
+    for (const field_t *field = fields; field->name; ++field) {
+        const char *a = (const char *)recorded + field->offset;
+        const char *b = (const char *)replayed + field->offset;
+        for (size_t i = 0; i < counts[field->kind]; ++i, a += sizes[field->kind], b += sizes[field->kind]) {
+            if (memcmp(a, b, sizes[field->kind]) != 0) {
+                char name[80];
+                name_entry(field, i, name);
+                (void)snprintf(difference->what, sizeof difference->what, "%.70s%s%s", of, of[0] ? ", " : "",
+                               name);
+                difference->recorded = value_of(field->kind, a);
+                difference->replayed = value_of(field->kind, b);
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* ------------------------------------------------------------------------------------------------- states */
+
+/* True if an event is the collision check's, which a replay has not. */
+static bool is_collision(int32_t kind) {
+    return kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED || kind == WH_EVENT_TOO_CLOSE;
+}
+
+/* The next event from `from` on that is not of the collision check, or the count. */
+static int32_t next_event(const waferhand_state *message, int32_t from) {
+    while (from < message->event_count && is_collision(message->events[from].kind)) {
+        ++from;
+    }
+    return from;
+}
+
+static bool encounter_differs(const char *of, const char *which, const waferhand_encounter *recorded,
+                              const waferhand_encounter *replayed, wh_replay_difference_t *difference) {
+    char name[80];
+    (void)snprintf(name, sizeof name, "%.40s, %s", of, which);
+    return differ(encounter_fields, name, recorded, replayed, difference) ||
+           differ(measured_fields, name, &recorded->measured, &replayed->measured, difference);
+}
+
+static bool gripper_differs(const char *of, const waferhand_gripper_state *recorded,
+                            const waferhand_gripper_state *replayed, wh_replay_difference_t *difference) {
+    return differ(gripper_fields, of, recorded, replayed, difference) ||
+           encounter_differs(of, "closest approach", &recorded->approach, &replayed->approach, difference) ||
+           encounter_differs(of, "contest", &recorded->contest, &replayed->contest, difference);
+}
+
+static bool event_differs(int number, const waferhand_event *recorded, const waferhand_event *replayed,
+                          wh_replay_difference_t *difference) {
+    char of[20];
+    (void)snprintf(of, sizeof of, "event %d", number);
+    return differ(event_fields, of, recorded, replayed, difference) ||
+           differ(measured_fields, of, &recorded->measured, &replayed->measured, difference);
+}
+
+static bool events_differ(const waferhand_state *recorded, const waferhand_state *replayed,
+                          wh_replay_difference_t *difference) {
+    int32_t a = next_event(recorded, 0);
+    int32_t b = next_event(replayed, 0);
+    for (int number = 1; a < recorded->event_count && b < replayed->event_count; ++number) {
+        if (event_differs(number, &recorded->events[a], &replayed->events[b], difference)) {
+            return true;
+        }
+        a = next_event(recorded, a + 1);
+        b = next_event(replayed, b + 1);
+    }
+    if (a == recorded->event_count && b == replayed->event_count) {
+        return false;
+    }
+    const bool lacks = a == recorded->event_count;
+    const waferhand_event *event = lacks ? &replayed->events[b] : &recorded->events[a];
+    (void)snprintf(difference->what, sizeof difference->what, "event: %s",
+                   wh_event_name((wh_event_kind_t)event->kind));
+    difference->recorded = lacks ? 0 : 1;
+    difference->replayed = lacks ? 1 : 0;
+    return true;
+}
+
+static bool faults_differ(const waferhand_state *recorded, const waferhand_state *replayed,
+                          wh_replay_difference_t *difference) {
+    for (int32_t i = 0; i < recorded->fault_count; ++i) {
+        char of[20];
+        (void)snprintf(of, sizeof of, "fault %d", (int)i + 1);
+        if (differ(fault_fields, of, &recorded->faults[i], &replayed->faults[i], difference)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* True if the states are not the same, bit for bit, but for their checks and events of the collision check.
+ * `difference` then says where; else it is unchanged. */
+static bool states_differ(const wh_layout_t *layout, const waferhand_state *recorded,
+                          const waferhand_state *replayed, wh_replay_difference_t *difference) {
+    /* The counts first: behind them they are the same. */
+    if (differ(head_fields, "", recorded, replayed, difference)) {
+        return true;
+    }
+    for (int32_t w = 0; w < recorded->wafer_count; ++w) {
+        if (differ(wafer_fields, layout->wafers[w].name, &recorded->wafers[w], &replayed->wafers[w],
+                   difference)) {
+            return true;
+        }
+    }
+    for (int32_t g = 0; g < recorded->gripper_count; ++g) {
+        if (gripper_differs(layout->grippers[g].name, &recorded->grippers[g], &replayed->grippers[g],
+                            difference)) {
+            return true;
+        }
+    }
+    return events_differ(recorded, replayed, difference) || faults_differ(recorded, replayed, difference) ||
+           differ(tail_fields, "", recorded, replayed, difference);
+}
+
+/* ------------------------------------------------------------------------------------------------- slices */
 
 static void note_slice(wh_replay_t *replay) {
     wh_replay_run_t *run = replay->run;
@@ -14,7 +254,16 @@ static void note_slice(wh_replay_t *replay) {
     run->hash = wh_protocol_server_hash(&replay->server);
 }
 
-/* ---------------------------------------------------------------------------------------------- comparing */
+/* True if the simulator takes the command; null: with its own valves. */
+static bool step(wh_replay_t *replay, const waferhand_command *command, const int32_t valves[]) {
+    const wh_protocol_server_result_t result = wh_protocol_server_command(&replay->server, command, valves);
+    replay->is_synchronous = result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN;
+    if (replay->is_synchronous) {
+        replay->run->outside_valves += valves ? 1 : 0;
+        note_slice(replay);
+    }
+    return replay->is_synchronous;
+}
 
 void wh_replay_tell(const wh_replay_t *replay, const waferhand_command *command,
                     const waferhand_state *message) {
@@ -39,12 +288,18 @@ static void note_difference(wh_replay_run_t *run, int64_t slice, const wh_replay
     }
 }
 
-static int64_t count_collisions(const waferhand_state *message) {
-    int64_t count = 0;
-    for (int32_t i = 0; i < message->event_count; ++i) {
-        count += wh_replay_is_collision(message->events[i].kind) ? 1 : 0;
+/* Counts a slice that was compared; null: it is the same. False if nobody knows, as its valves are not. */
+static bool count_compared(wh_replay_t *replay, int64_t slice, const wh_replay_difference_t *difference) {
+    ++replay->run->compared;
+    if (difference && replay->is_unsure) {
+        ++replay->run->doubtful;
+        return false;
     }
-    return count;
+    if (difference) {
+        note_difference(replay->run, slice, difference);
+    }
+    replay->is_unsure = false;
+    return true;
 }
 
 /* Goes on from a recorded state. False if no simulator could have been in it. */
@@ -65,29 +320,16 @@ static bool is_same(wh_replay_t *replay, const waferhand_state *message, const u
                     wh_replay_difference_t *difference) {
     wh_protocol_server_t *server = &replay->server;
     wh_protocol_server_encode(server);
-    replay->run->collisions += count_collisions(message);
-    return (size == server->encoded_size && memcmp(bytes, server->encoded, size - 8) == 0) ||
-           !wh_replay_differs(server->layout, message, &server->room.message, difference);
-}
-
-static void compare(wh_replay_t *replay, const waferhand_state *message, const uint8_t *bytes, size_t size) {
-    wh_replay_run_t *run = replay->run;
-    wh_replay_difference_t difference;
-    ++run->compared;
-    if (is_same(replay, message, bytes, size, &difference)) {
-        replay->is_unsure = false;
-    } else if (replay->is_unsure) {
-        ++run->doubtful;
-        (void)wh_replay_restore(replay, message);
-    } else {
-        note_difference(run, message->seq, &difference);
+    for (int32_t i = 0; i < message->event_count; ++i) {
+        replay->run->collisions += is_collision(message->events[i].kind) ? 1 : 0;
     }
+    return (size == server->encoded_size && memcmp(bytes, server->encoded, size - 8) == 0) ||
+           !states_differ(server->layout, message, &server->room.message, difference);
 }
 
 /* A command that the simulator took and the replay refuses, or the other way round. */
 void wh_replay_differ_in_status(wh_replay_run_t *run, int64_t slice, int32_t recorded, int32_t replayed) {
-    wh_replay_difference_t difference = {.recorded = recorded, .replayed = replayed};
-    (void)snprintf(difference.what, sizeof difference.what, "status");
+    const wh_replay_difference_t difference = {.what = "status", .recorded = recorded, .replayed = replayed};
     ++run->compared;
     note_difference(run, slice, &difference);
 }
@@ -106,15 +348,15 @@ static const int32_t *find_valves(const waferhand_command *command, const waferh
 void wh_replay_step(wh_replay_t *replay, const waferhand_command *command, const waferhand_state *message,
                     const uint8_t *bytes, size_t size) {
     int32_t told[WH_GRIPPERS] = {0};
-    const int32_t *valves = find_valves(command, message, told);
-    const wh_protocol_server_result_t result = wh_protocol_server_command(&replay->server, command, valves);
-    if (result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN) {
-        replay->is_synchronous = true;
-        replay->run->outside_valves += valves ? 1 : 0;
-        note_slice(replay);
-        compare(replay, message, bytes, size);
+    wh_replay_difference_t difference;
+    bool known = false;
+    if (step(replay, command, find_valves(command, message, told))) {
+        const bool same = is_same(replay, message, bytes, size, &difference);
+        known = count_compared(replay, message->seq, same ? NULL : &difference);
     } else {
         wh_replay_differ_in_status(replay->run, message->seq, WH_OK, replay->server.room.message.status);
+    }
+    if (!known) {
         (void)wh_replay_restore(replay, message);
     }
 }
@@ -134,39 +376,22 @@ void wh_replay_take_last_state(wh_replay_t *replay, const waferhand_state *messa
 void wh_replay_step_hashed(wh_replay_t *replay, const int32_t told[], uint64_t hash) {
     const waferhand_command *command = &replay->last;
     const bool outside = memcmp(told, command->valve, (size_t)command->gripper_count * sizeof *told) != 0;
-    const wh_protocol_server_result_t result =
-        wh_protocol_server_command(&replay->server, command, outside ? told : NULL);
     wh_replay_run_t *run = replay->run;
-    replay->is_synchronous = result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN;
     replay->seq = command->seq;
     replay->last_differs = true;
-    if (!replay->is_synchronous) {
+    if (!step(replay, command, outside ? told : NULL)) {
         wh_replay_differ_in_status(run, command->seq, WH_OK, replay->server.room.message.status);
         return;
     }
-    run->outside_valves += outside ? 1 : 0;
-    note_slice(replay);
-    ++run->compared;
+    const wh_replay_difference_t difference = {
+        .what = "hash", .recorded = (double)hash, .replayed = (double)run->hash};
     replay->has_last = true;
     replay->last_differs = hash != run->hash;
-    if (!replay->last_differs) {
-        replay->is_unsure = false;
-    } else if (replay->is_unsure) {
-        ++run->doubtful;
-        replay->is_synchronous = false;
-    } else {
-        wh_replay_difference_t difference = {.recorded = (double)hash, .replayed = (double)run->hash};
-        (void)snprintf(difference.what, sizeof difference.what, "hash");
-        note_difference(run, command->seq, &difference);
-    }
+    replay->is_synchronous = count_compared(replay, command->seq, replay->last_differs ? &difference : NULL);
 }
 
 void wh_replay_step_alone(wh_replay_t *replay, const waferhand_command *command) {
-    const wh_protocol_server_result_t result = wh_protocol_server_command(&replay->server, command, NULL);
     ++replay->run->unanswered;
     replay->is_unsure = true;
-    replay->is_synchronous = result == WH_SERVER_STEPPED || result == WH_SERVER_NEW_RUN;
-    if (replay->is_synchronous) {
-        note_slice(replay);
-    }
+    (void)step(replay, command, NULL);
 }

@@ -155,11 +155,17 @@ static void set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
 
 /* ------------------------------------------------------------------------------------- the layout for Lua */
 
+/* True if its slots are above one another to the last bit. */
+static bool is_upright(const wh_station_t *place) {
+    const wh_vec3_t up = wh_mat3_column(&place->base_from_station.R, 2);
+    return !(wh_real_abs(up.x) > 0 || wh_real_abs(up.y) > 0);
+}
+
 static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) {
     const wh_layout_station_t *station = &layout->stations[index];
     const wh_station_t *place = &layout->places[index];
     static const char *const modes[] = {"both", "get", "put", "none"};
-    lua_createtable(L, 0, 24);
+    lua_createtable(L, 0, 25);
     wh_lua_set_number(L, "pitch", place->pitch);
     wh_lua_set_number(L, "stroke", station->stroke);
     wh_lua_set_number(L, "offset", station->offset);
@@ -177,6 +183,7 @@ static void push_station(lua_State *L, const wh_layout_t *layout, size_t index) 
     wh_lua_set_integer(L, "slots", place->slots);
     wh_lua_set_index(L, "chuck", place->chuck);
     wh_lua_set_index(L, "effector", station->effector);
+    wh_lua_set_boolean(L, "upright", is_upright(place));
     wh_lua_set_boolean(L, "taught", station->taught);
     wh_lua_set_boolean(L, "check_map", station->check_map);
     wh_lua_set_text(L, "vacuum_check", modes[station->check]);
@@ -216,6 +223,11 @@ static void push_layout(lua_State *L, const wh_layout_t *layout) {
     lua_setfield(L, -2, "home");
 }
 
+void wh_mcs_set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {
+    set_up(L, mcs, layout);
+    push_layout(L, layout);
+}
+
 /* -------------------------------------------------------------------------------------------------- words */
 
 /* Registry key of the script's own study. */
@@ -226,35 +238,72 @@ static int set_study(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_of(L);
     luaL_checktype(L, 1, LUA_TTABLE);
     if (mcs->layout) {
-        return luaL_error(L, "study: %s was set up already (expected study before cell)", mcs->layout->path);
+        lua_pushfstring(L, "study: %s was set up already (expected study before cell)", mcs->layout->path);
+        return lua_error(L);
     }
     lua_settop(L, 1);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &study_key);
     return 0;
 }
 
+/* Leaves what the layout's file returns, or raises what is wrong. */
+static void evaluate_layout(lua_State *L, wh_mcs_t *mcs, const char *path) {
+    wh_sandbox_result_t result;
+    if (mcs->is_file && wh_output_is_one_file(path, mcs->script)) {
+        lua_pushfstring(L, "cell: %s is this script (expected a layout)", path);
+        (void)lua_error(L);
+    }
+    mcs->reads_layout = true;
+    const bool evaluated = wh_sandbox_evaluate(L, path, &result);
+    mcs->reads_layout = false;
+    if (!evaluated) {
+        lua_pushstring(L, result.message);
+        (void)lua_error(L);
+    }
+}
+
 /* native.cell(path): reads the layout and sets up the run; returns the layout as a table. */
 static int set_up_cell(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_of(L);
-    const char *name = luaL_checkstring(L, 1);
-    wh_sandbox_result_t result;
+    const char *name = wh_lua_word(L, 1);
+    if (!name[0]) {
+        lua_pushfstring(L, "cell: \"%s\" (expected a layout's path)", wh_lua_whole_text(L, 1));
+        return lua_error(L);
+    }
     if (mcs->layout) {
         lua_pushfstring(L, "cell: %s was set up already (expected one cell a script)", mcs->layout->path);
         return lua_error(L);
     }
-    const char *path = push_layout_path(L, mcs, name);
-    if (!wh_sandbox_evaluate(L, path, &result)) {
-        lua_pushstring(L, result.message);
+    if (mcs->reads_layout) {
+        lua_pushfstring(L, "cell: \"%s\", called while a layout is read (expected in a script alone)", name);
         return lua_error(L);
     }
+    const char *path = push_layout_path(L, mcs, name);
+    evaluate_layout(L, mcs, path);
     wh_layout_t *layout = wh_layout_read(L, path);
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &study_key) == LUA_TTABLE) {
         wh_layout_read_own_study(L, mcs->script, layout);
     }
     lua_pop(L, 1);
-    set_up(L, mcs, layout);
-    push_layout(L, layout);
+    wh_mcs_set_up(L, mcs, layout);
     return 1;
 }
 
-const luaL_Reg wh_mcs_cell_functions[] = {{"cell", set_up_cell}, {"study", set_study}, {NULL, NULL}};
+/* native.ranges(): the station parameters that are numbers, by name: { least, most, unit }. */
+static int list_ranges(lua_State *L) {
+    lua_newtable(L);
+    for (const wh_station_range_t *range = wh_station_ranges; range->name; ++range) {
+        lua_createtable(L, 3, 0);
+        lua_pushnumber(L, range->least);
+        lua_rawseti(L, -2, 1);
+        lua_pushnumber(L, range->most);
+        lua_rawseti(L, -2, 2);
+        lua_pushstring(L, range->unit);
+        lua_rawseti(L, -2, 3);
+        lua_setfield(L, -2, range->name);
+    }
+    return 1;
+}
+
+const luaL_Reg wh_mcs_cell_functions[] = {
+    {"cell", set_up_cell}, {"study", set_study}, {"ranges", list_ranges}, {NULL, NULL}};

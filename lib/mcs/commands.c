@@ -1,21 +1,29 @@
 /* Commands and what is kept of them: their beginning and end, errors, expectations, cycles, complaints, and
  * why a pick was missed. */
+#include <stdio.h>
+#include <string.h>
+
+#include "../math/trig.h"
 #include "../script/wh_module_values.h"
 #include "../sim/event_text.h"
+#include "../text/nearest.h"
 #include "native.h"
 
 /* What an entry of the record costs of the instruction budget. */
 #define STEPS_PER_ENTRY 256
 #define STEPS_PER_BYTE 4
 
+/* Among how many names the nearest one is looked for. */
+#define MOST_NAMES 1000
+
 /* An argument that goes into the record. The record is outside of Lua's memory cap, so an entry is paid for
  * from the budget: about as much as a script would spend on making as much text anew. Raises if the budget is
  * spent. */
 static const char *pay_for_text(lua_State *L, int argument) {
     size_t length = 0;
-    const char *text = luaL_checklstring(L, argument, &length);
+    (void)luaL_checklstring(L, argument, &length);
     wh_sandbox_charge(L, STEPS_PER_ENTRY + STEPS_PER_BYTE * (uint64_t)length);
-    return text;
+    return wh_lua_whole_text(L, argument);
 }
 
 static void tell(const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended) {
@@ -37,10 +45,19 @@ static int begin_command(lua_State *L) {
         wh_mcs_raise(L, mcs, WH_STATUS_BUSY, lua_tostring(L, -1));
     }
     wh_rehearsal_end(&mcs->rehearsal, &mcs->track); /* of a command that was cut short */
+    wh_mcs_find_callers(L, mcs, mcs->callers);
     tell(mcs,
          wh_recorder_begin(&mcs->recorder, wh_sandbox_line(L, mcs->script), text,
                            wh_recorder_now(&mcs->recorder)),
          false);
+    return 0;
+}
+
+/* native.begin_word(word): the script uses it. A word may be a command, or a question, which has no
+ * record. */
+static int begin_word(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_of(L);
+    (void)snprintf(mcs->word, sizeof mcs->word, "%s", luaL_checkstring(L, 1));
     return 0;
 }
 
@@ -53,7 +70,7 @@ static const wh_command_record_t *end_command(wh_mcs_t *mcs, wh_status_t error, 
 static int finish_command(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const wh_status_t error = (wh_status_t)luaL_optinteger(L, 1, WH_OK);
-    const char *message = error == WH_OK ? "" : luaL_checkstring(L, 2);
+    const char *message = error == WH_OK ? "" : wh_lua_whole_text(L, 2);
     const wh_command_record_t *command = end_command(mcs, error, message);
     luaL_argcheck(L, command, 1, "no command is running");
     if (error != WH_OK) {
@@ -71,6 +88,11 @@ void wh_mcs_cut_short(wh_mcs_t *mcs, wh_status_t error, const char *message) {
     }
 }
 
+void wh_mcs_refuse(wh_mcs_t *mcs, const char *text, wh_status_t error, const char *message) {
+    tell(mcs, wh_recorder_begin(&mcs->recorder, 0, text, wh_recorder_now(&mcs->recorder)), false);
+    wh_mcs_cut_short(mcs, error, message);
+}
+
 /* native.expect(ok, text) */
 static int add_expectation(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_of(L);
@@ -86,11 +108,10 @@ static int add_expectation(lua_State *L) {
 /* native.cycle(name): the next one begins. */
 static int begin_cycle(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const char *name = luaL_checkstring(L, 1);
     if (mcs->recorder.running != WH_NONE) {
         wh_mcs_raise(L, mcs, WH_STATUS_BUSY, "a cycle within a command");
     }
-    (void)pay_for_text(L, 1);
+    const char *name = pay_for_text(L, 1);
     wh_record_add_cycle(mcs->recorder.record, wh_sandbox_line(L, mcs->script), name, mcs->track.slice);
     if (mcs->partners.cycle) {
         mcs->partners.cycle(mcs->partners.user, mcs);
@@ -98,12 +119,33 @@ static int begin_cycle(lua_State *L) {
     return 0;
 }
 
-/* native.fail(number, detail): raises the numbered error. */
-static int fail(lua_State *L) {
-    wh_mcs_raise(L, wh_mcs_of(L), (wh_status_t)luaL_checkinteger(L, 1), luaL_optstring(L, 2, NULL));
+/* native.nearest(word, names): "; did you mean NAME?", or nil. A longer list is not looked at. */
+static int find_nearest(lua_State *L) {
+    const size_t length = strlen(luaL_checkstring(L, 1));
+    luaL_checktype(L, 2, LUA_TTABLE);
+    const size_t count = lua_rawlen(L, 2);
+    if (count > MOST_NAMES || length > WH_NEAREST_BYTES) {
+        return 0;
+    }
+    wh_sandbox_charge(L, count * (length + 1));
+    const char **names = lua_newuserdatauv(L, (count + 1) * sizeof *names, 0);
+    for (size_t i = 0; i < count; ++i) {
+        lua_rawgeti(L, 2, (lua_Integer)i + 1);
+        names[i] = luaL_checkstring(L, -1); /* which the list keeps */
+        lua_pop(L, 1);
+    }
+    char meant[WH_NEAREST_TEXT];
+    const char *nearest = wh_text_nearest(lua_tostring(L, 1), names, count);
+    lua_pushstring(L, nearest ? wh_text_did_you_mean(meant, "; ", "", nearest) : NULL);
+    return 1;
 }
 
-/* ------------------------------------------------------------------------------ missed picks, complaints */
+/* native.fail(number, detail): raises the numbered error. */
+static int fail(lua_State *L) {
+    wh_mcs_raise(L, wh_mcs_of(L), (wh_status_t)luaL_checkinteger(L, 1), wh_lua_whole_text(L, 2));
+}
+
+/* ------------------------------------------------------------------------------- missed picks, complaints */
 
 /* Pushes why it was missed: all conditions that failed. */
 static void push_reasons(lua_State *L, const wh_mcs_t *mcs, const wh_event_t *miss) {
@@ -115,28 +157,71 @@ static void push_reasons(lua_State *L, const wh_mcs_t *mcs, const wh_event_t *mi
         luaL_addstring(&text, i > 0 ? " and " : "");
         luaL_addstring(&text, reason);
     }
+    if ((miss->measured.failed & WH_FAILED_PLANAR) != 0) { /* the last of the reasons: it tells the tilt */
+        const double limit = wh_deg_from_rad(wh_acos(names.tolerance->planar));
+        luaL_addlstring(&text, reason, (size_t)snprintf(reason, sizeof reason, " (limit %.3f deg)", limit));
+    }
     luaL_pushresult(&text);
 }
 
-/* native.closest(gripper): the name of the wafer that came closest to it in the running command, which took
- * nothing with it, and why it was not taken; nothing if no wafer came near. */
-static int find_closest(lua_State *L) {
-    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+/* The event of the running command, the last one of this kind, that is of the gripper; null: none. A gripper
+ * of WH_NONE is any. */
+static const wh_event_t *last_event(const wh_mcs_t *mcs, wh_event_kind_t kind, int32_t gripper) {
     const wh_record_t *record = mcs->recorder.record;
-    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
-    wh_decisions_measured(mcs->decisions, "why a wafer was missed");
     for (size_t i = record->event_count; i > 0; --i) {
         const wh_event_record_t *kept = &record->events[i - 1];
         if (kept->command != mcs->recorder.running) {
             break;
         }
-        if (kept->event.kind == WH_EVENT_NEAR_MISS && kept->event.gripper == gripper) {
-            lua_pushstring(L, mcs->layout->wafers[kept->event.wafer].name);
-            push_reasons(L, mcs, &kept->event);
-            return 2;
+        if (kept->event.kind == kind && (gripper == WH_NONE || kept->event.gripper == gripper)) {
+            return &kept->event;
         }
     }
-    return 0;
+    return NULL;
+}
+
+/* native.closest(gripper): the name of the wafer that came closest to it in the running command, which took
+ * nothing with it, and why it was not taken; nothing if no wafer came near and left again. */
+static int find_closest(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t gripper = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    wh_decisions_measured(mcs->decisions, "why a wafer was missed");
+    const wh_event_t *miss = last_event(mcs, WH_EVENT_NEAR_MISS, gripper);
+    if (!miss) {
+        return 0;
+    }
+    lua_pushstring(L, mcs->layout->wafers[miss->wafer].name);
+    push_reasons(L, mcs, miss);
+    return 2;
+}
+
+/* native.let_go(chuck): the wafer that the running command let go last and that nobody holds: its name, dx,
+ * dy and dz against the chuck, and why that did not take it, no reason if all conditions hold; or nothing. */
+static int find_let_go(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const int32_t chuck = wh_mcs_index(L, 1, mcs->state.gripper_count);
+    const int32_t station = mcs->layout->grippers[chuck].station;
+    const wh_event_t *released = last_event(mcs, WH_EVENT_RELEASED, WH_NONE);
+    wh_decisions_measured(mcs->decisions, "why a wafer was lost");
+    if (station == WH_NONE || !released || mcs->state.wafers[released->wafer].holder != WH_NONE) {
+        return 0;
+    }
+    const wh_pose_t *pose = &mcs->state.wafers[released->wafer].base_from_wafer;
+    const wh_place_t place = wh_station_measure(&mcs->real->places[station], 1, pose);
+    wh_event_t miss = *released;
+    miss.kind = WH_EVENT_NEAR_MISS;
+    miss.gripper = chuck;
+    (void)wh_proximity_measure(pose, &mcs->state.grippers[chuck].base_from_gripper,
+                               &mcs->layout->grasp.tolerance, &miss.measured);
+    lua_pushstring(L, mcs->layout->wafers[released->wafer].name);
+    lua_pushnumber(L, place.dx);
+    lua_pushnumber(L, place.dy);
+    lua_pushnumber(L, place.dz);
+    if (miss.measured.failed == 0) {
+        return 4;
+    }
+    push_reasons(L, mcs, &miss);
+    return 5;
 }
 
 /* native.mark(): how many events the record has. */
@@ -172,10 +257,13 @@ static int list_complaints(lua_State *L) {
 
 const luaL_Reg wh_mcs_command_functions[] = {{"begin", begin_command},
                                              {"finish", finish_command},
+                                             {"begin_word", begin_word},
                                              {"expect", add_expectation},
                                              {"cycle", begin_cycle},
+                                             {"nearest", find_nearest},
                                              {"fail", fail},
                                              {"closest", find_closest},
+                                             {"let_go", find_let_go},
                                              {"mark", count_events},
                                              {"complaints", list_complaints},
                                              {NULL, NULL}};

@@ -62,22 +62,48 @@ static void put_number(description_t *to, const char *name, double value) {
     put(to, " %s=%s", name, text);
 }
 
-static void put_robot(description_t *to, const wh_mcs_t *mcs) {
+/* What the state and these axes, of one slice, tell. */
+static void see(wh_mcs_seen_t *seen, const wh_state_t *state, const wh_real_t axes[WH_ROBOT_AXES]) {
+    seen->seq = state->seq;
+    seen->utime = state->utime;
+    memcpy(seen->axes, axes, sizeof seen->axes);
+    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
+        seen->held[g] = g < state->gripper_count ? state->grippers[g].wafer : WH_NONE;
+    }
+}
+
+/* In a free run the state is of an earlier slice than the command. */
+static void hear_slice(void *user, const wh_command_t *command, const wh_state_t *state) {
+    wh_mcs_t *mcs = user;
+    wh_mcs_sent_t *sent = &mcs->sent[command->seq % WH_MCS_SENT];
+    sent->seq = command->seq;
+    memcpy(sent->axes, command->axes, sizeof sent->axes);
+    const wh_mcs_sent_t *answered = &mcs->sent[state->seq % WH_MCS_SENT];
+    if (state->seq > mcs->seen.seq && answered->seq == state->seq) {
+        see(&mcs->seen, state, answered->axes);
+    }
+}
+
+void wh_mcs_watch_slices(wh_mcs_t *mcs) {
+    see(&mcs->seen, &mcs->state, mcs->track.axes);
+    wh_mcs_listen(mcs, hear_slice, mcs);
+}
+
+static void put_robot(description_t *to, const wh_real_t axes[WH_ROBOT_AXES]) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
-        const double at = mcs->track.axes[axis];
+        const double at = axes[axis];
         put_number(to, names[axis], turns ? wh_deg_from_rad(at) : at);
     }
 }
 
-static void put_grippers(description_t *to, const wh_mcs_t *mcs) {
-    for (size_t g = 0; g < mcs->layout->machine.gripper_count; ++g) {
-        const int32_t wafer = g < mcs->state.gripper_count ? mcs->state.grippers[g].wafer : WH_NONE;
+static void put_grippers(description_t *to, const wh_layout_t *layout, const int32_t held[]) {
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         put(to, " ");
-        put_name(to, mcs->layout->grippers[g].name);
+        put_name(to, layout->grippers[g].name);
         put(to, ".holds=");
-        put_name(to, wafer == WH_NONE ? NULL : mcs->layout->wafers[wafer].name);
+        put_name(to, held[g] == WH_NONE ? NULL : layout->wafers[held[g]].name);
     }
 }
 
@@ -96,16 +122,20 @@ static void put_error(description_t *to, const wh_record_t *record) {
 void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]) {
     const int32_t running = mcs->recorder.running;
     description_t to = {text, 0};
+    wh_mcs_seen_t seen = mcs->seen;
+    if (!mcs->partners.connect) {
+        see(&seen, &mcs->state, mcs->track.axes);
+    }
     put(&to, "phase=%s", running == WH_NONE ? "idle" : "running");
     if (running != WH_NONE) {
         put(&to, " command=");
         put_command(&to, mcs->recorder.record->commands[running].text);
     }
-    put(&to, " seq=%lld", (long long)mcs->state.seq);
-    put_number(&to, "time", (double)mcs->state.utime / 1e6);
+    put(&to, " seq=%lld", (long long)seen.seq);
+    put_number(&to, "time", (double)seen.utime / 1e6);
     if (mcs->layout) {
-        put_robot(&to, mcs);
-        put_grippers(&to, mcs);
+        put_robot(&to, seen.axes);
+        put_grippers(&to, mcs->layout, seen.held);
     }
     put_error(&to, mcs->recorder.record);
 }

@@ -22,7 +22,7 @@ static size_t find_slot(lua_State *L, wh_mcs_t *mcs) {
     }
     if (slot == WH_FAULTS) {
         wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
-                     "16 faults are there already (expected one to be cleared)");
+                     "16 faults are there already (expected at most 16: clear one)");
     }
     return slot;
 }
@@ -35,8 +35,9 @@ static void send(lua_State *L, wh_mcs_t *mcs, size_t slot, const wh_fault_t *fau
         ++place;
     }
     if (place == WH_COMMAND_FAULTS) {
-        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
-                     "4 faults change with the next slice already (expected a wait before the next)");
+        wh_mcs_raise(
+            L, mcs, WH_STATUS_BAD_ARGUMENT,
+            "4 faults change with the next slice already (expected at most 4: wait before the next)");
     }
     command->faults[place].index = (int32_t)slot;
     command->faults[place].fault = *fault;
@@ -65,8 +66,8 @@ static int clear_fault(lua_State *L) {
     const lua_Integer number = luaL_checkinteger(L, 1);
     if (number < 1 || number > (lua_Integer)mcs->fault_count ||
         mcs->faults[number - 1].until <= mcs->track.slice) {
-        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT,
-                     "no such fault (expected the number of one that is not over)");
+        lua_pushfstring(L, "number: %I (expected that of a fault that is not over)", (LUAI_UACINT)number);
+        wh_mcs_raise(L, mcs, WH_STATUS_BAD_ARGUMENT, lua_tostring(L, -1));
     }
     wh_fault_t fault = mcs->faults[number - 1];
     if (fault.until > next_slice(mcs)) {

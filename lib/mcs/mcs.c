@@ -48,19 +48,46 @@ static void push_numbered_error_metatable(lua_State *L) {
     }
 }
 
+void wh_mcs_find_callers(lua_State *L, const wh_mcs_t *mcs, int callers[WH_MCS_CALLERS]) {
+    int lines[2 * WH_MCS_CALLERS];
+    const size_t count = wh_sandbox_lines(L, mcs->script, lines, sizeof lines / sizeof *lines);
+    size_t kept = 0;
+    for (size_t i = 1; i < count && kept < WH_MCS_CALLERS; ++i) {
+        if (lines[i] != lines[i - 1]) {
+            callers[kept++] = lines[i];
+        }
+    }
+    memset(callers + kept, 0, (WH_MCS_CALLERS - kept) * sizeof *callers);
+}
+
+/* Pushes "; called from line 9, 20", or nothing as text. */
+static void push_callers(lua_State *L, const int callers[WH_MCS_CALLERS]) {
+    lua_pushstring(L, callers[0] > 0 ? "; called from line " : "");
+    for (size_t i = 0; i < WH_MCS_CALLERS && callers[i] > 0; ++i) {
+        lua_pushfstring(L, i > 0 ? ", %d" : "%d", callers[i]);
+        lua_concat(L, 2);
+    }
+}
+
 int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *detail) {
     /* Within a pattern L is the pattern's coroutine, on whose stack the script is not: the command knows. */
     const wh_recorder_t *recorder = &mcs->recorder;
     const bool runs = recorder->running != WH_NONE;
     const int line =
         runs ? recorder->record->commands[recorder->running].line : wh_sandbox_line(L, mcs->script);
-    const char *command = runs ? recorder->record->commands[recorder->running].text : "";
+    const char *command = runs ? recorder->record->commands[recorder->running].text : mcs->word;
     lua_createtable(L, 0, 4);
     wh_lua_set_integer(L, "number", status);
     wh_lua_set_text(L, "name", wh_status_name(status));
     wh_lua_set_integer(L, "line", line);
-    lua_pushfstring(L, "error %d %s: %s%s%s", (int)status, wh_status_name(status),
-                    wh_record_error_text(status), detail ? "; " : "", detail ? detail : "");
+    if (!runs) {
+        wh_mcs_find_callers(L, mcs, mcs->callers);
+    }
+    push_callers(L, mcs->callers);
+    lua_pushfstring(L, "error %d %s: %s%s%s%s", (int)status, wh_status_name(status),
+                    wh_record_error_text(status), detail ? "; " : "", detail ? detail : "",
+                    lua_tostring(L, -1));
+    lua_remove(L, -2);
     lua_pushfstring(L, "%s:%d: %s%s%s", mcs->script, line, command, command[0] ? ": " : "",
                     lua_tostring(L, -1));
     lua_setfield(L, -3, "message");
@@ -80,7 +107,8 @@ static int load_module(lua_State *L) {
     for (size_t i = 0; i < wh_embedded_count; ++i) {
         const wh_embedded_t *file = &wh_embedded[i];
         if (strcmp(file->name, name) == 0) {
-            if (!wh_sandbox_evaluate_text(L, name, (const char *)file->text, file->size, &result)) {
+            const char *chunk = lua_pushfstring(L, "%s%s", WH_INNER_CHUNK, name);
+            if (!wh_sandbox_evaluate_text(L, chunk, (const char *)file->text, file->size, &result)) {
                 return luaL_error(L, "%s", result.message);
             }
             return 1;
@@ -101,6 +129,7 @@ static int connect(lua_State *L) {
     wh_mcs_t *mcs = wh_mcs_with_layout(L);
     mcs->link = &mcs->local.simulator.link;
     if (mcs->partners.connect) {
+        wh_mcs_watch_slices(mcs);
         mcs->link = mcs->partners.connect(mcs->partners.user, mcs);
     }
     if (!mcs->link) {
@@ -112,18 +141,39 @@ static int connect(lua_State *L) {
     return 0;
 }
 
-static const luaL_Reg module_functions[] = {{"module", load_module}, {"connect", connect}, {NULL, NULL}};
+/* native.parameters(function): how many it takes. */
+static int count_parameters(lua_State *L) {
+    lua_Debug function;
+    luaL_checktype(L, 1, LUA_TFUNCTION);
+    lua_settop(L, 1);
+    (void)lua_getinfo(L, ">u", &function);
+    lua_pushinteger(L, function.nparams);
+    return 1;
+}
 
-/* Registry key of what lua/mcs/init.lua returned: it opens the prompt. */
+/* native.outside(text): a message without a place in a file of lua/mcs. */
+static int strip_place(lua_State *L) {
+    lua_pushstring(L, wh_sandbox_skip_inner(wh_lua_whole_text(L, 1)));
+    return 1;
+}
+
+static const luaL_Reg module_functions[] = {{"module", load_module},
+                                            {"connect", connect},
+                                            {"parameters", count_parameters},
+                                            {"outside", strip_place},
+                                            {NULL, NULL}};
+
+/* Registry keys of what lua/mcs/init.lua returned: one opens the prompt, the other a survey. */
 static char prompt_key;
+static char survey_key;
 
 /* Runs protected: pushes the native table and hands it to lua/mcs/init.lua, which sets the globals. */
 static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
     const luaL_Reg *const groups[] = {
-        module_functions,       wh_mcs_cell_functions,     wh_mcs_command_functions,
-        wh_mcs_fault_functions, wh_mcs_describe_functions, wh_mcs_plan_functions,
-        wh_mcs_play_functions,  wh_mcs_query_functions,    wh_mcs_scan_functions};
+        module_functions,          wh_mcs_cell_functions,  wh_mcs_command_functions, wh_mcs_fault_functions,
+        wh_mcs_describe_functions, wh_mcs_plan_functions,  wh_mcs_play_functions,    wh_mcs_query_functions,
+        wh_mcs_scan_functions,     wh_mcs_survey_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -134,7 +184,8 @@ static int open_words(lua_State *L) {
         lua_pushlightuserdata(L, mcs);
         luaL_setfuncs(L, groups[i], 1);
     }
-    lua_call(L, 1, 1);
+    lua_call(L, 1, 2);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &survey_key);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &prompt_key);
     return 0;
 }
@@ -142,6 +193,10 @@ static int open_words(lua_State *L) {
 void wh_mcs_push_prompt(lua_State *L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &prompt_key);
     lua_call(L, 0, 2);
+}
+
+void wh_mcs_push_survey(lua_State *L) {
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &survey_key);
 }
 
 bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_record_t *record,
@@ -156,16 +211,29 @@ bool wh_mcs_open(wh_mcs_t *mcs, wh_sandbox_t *sandbox, const char *script, wh_re
 
 /* ---------------------------------------------------------------------------------------------- finishing */
 
+static void add_expectation(wh_mcs_t *mcs, const char *text, bool ok) {
+    wh_record_add_expectation(mcs->recorder.record, 0, text, ok);
+    if (mcs->partners.expected) {
+        mcs->partners.expected(mcs->partners.user, mcs);
+    }
+}
+
 /* A free-running simulator may miss some slices, but no more than the user allows. */
 static void judge_missed(wh_mcs_t *mcs, int64_t missed) {
     char text[100];
     if (mcs->limits_missed) {
         snprintf(text, sizeof text, "at most %lld missed slices; the simulator missed %lld",
                  (long long)mcs->most_missed, (long long)missed);
-        wh_record_add_expectation(mcs->recorder.record, 0, text, missed <= mcs->most_missed);
-        if (mcs->partners.expected) {
-            mcs->partners.expected(mcs->partners.user, mcs);
-        }
+        add_expectation(mcs, text, missed <= mcs->most_missed);
+    }
+}
+
+/* What a script asked of the cell as its layout says it, while no simulator has answered, is not shown. */
+static void judge_heard(wh_mcs_t *mcs) {
+    const wh_record_t *record = mcs->recorder.record;
+    const bool asked = record->expectation_count + record->command_count > 0;
+    if (asked && mcs->partners.is_heard && !mcs->partners.is_heard(mcs->partners.user)) {
+        add_expectation(mcs, "a simulator that answers; no state has come from one", false);
     }
 }
 
@@ -176,6 +244,7 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
         end.missed = mcs->link->missed(mcs->link);
         end.world = mcs->local.collision.world;
         judge_missed(mcs, end.missed);
+        judge_heard(mcs);
     }
     wh_recorder_finish(&mcs->recorder, &end);
     if (mcs->layout && mcs->partners.finished) {

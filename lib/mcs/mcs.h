@@ -26,6 +26,16 @@ typedef struct {
     wh_link_t *(*connect)(void *user, wh_mcs_t *mcs);
     /* A command of the record begins (`ended` false) or has ended. */
     void (*watch)(void *user, const wh_mcs_t *mcs, const wh_command_record_t *command, bool ended);
+    /* A segment is about to begin: what is owed of a slice that was given up is waited for. With anything but
+     * WH_OK no slice of the segment may go out. */
+    wh_status_t (*resume)(void *user);
+    /* The slice that goes out next is its segment's last: what comes next is decided by its state, so a link
+     * waits for that, in a free run, too. */
+    void (*await)(void *user);
+    /* The last slice that has gone out and was not refused. Null: the last that was answered with WH_OK. */
+    int64_t (*reached)(void *user);
+    /* False while no state has come: nothing was seen of the cell yet. Null: there is always one. */
+    bool (*is_heard)(void *user);
     /* Why the link answered a slice with this error, for its message: true until the next call. Null: the
      * error says it all. */
     const char *(*explain)(void *user, wh_status_t status);
@@ -50,9 +60,12 @@ typedef struct {
     void *user;
 } wh_mcs_listener_t;
 
-/* Who hears of slices: decisions, recorder, a collision check beside a simulator elsewhere, the run's
- * listener. */
+/* Who hears of slices: decisions, recorder, what STATUS tells and a collision check beside a simulator
+ * elsewhere, the run's listener. */
 #define WH_MCS_LISTENERS 5
+
+/* How many lines of a script are told that led to a command within functions. */
+#define WH_MCS_CALLERS 4
 
 /* A segment that was played, and the command of the record that asked for it (or WH_NONE). */
 typedef struct {
@@ -69,31 +82,53 @@ typedef struct {
     wh_trial_cell_t *trial; /* null: the cell is as its layout says */
 } wh_local_cell_t;
 
-/* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `decisions`,
+/* How many slices may be on their way in a free run for STATUS to tell the last one that has come back. */
+#define WH_MCS_SENT 256
+
+/* What STATUS tells of a slice. */
+typedef struct {
+    int64_t seq, utime; /* us */
+    wh_real_t axes[WH_ROBOT_AXES];
+    int32_t held[WH_GRIPPERS]; /* the wafer, or WH_NONE */
+} wh_mcs_seen_t;
+
+/* Where the axes were commanded to in a slice; seq 0: none. */
+typedef struct {
+    int64_t seq;
+    wh_real_t axes[WH_ROBOT_AXES];
+} wh_mcs_sent_t;
+
+/* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `decisions`, `is_file`,
  * `limits_missed`, `most_missed` and `rehearsal.look_ahead`, which may be set between opening and the cell.
  * Must not be moved once opened. */
 struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
+    bool is_file;       /* `script` is a file that is run: it is no layout */
     wh_sandbox_t *sandbox;
 
     /* The cell, from when the script names it. */
+    bool reads_layout;         /* the layout's file is running */
     const wh_layout_t *layout; /* null until then */
     const wh_layout_t *real;   /* the same, or with a trial's errors: what simulator and reports go by */
     wh_link_t *link;           /* the local cell's, or whoever stands in; null until connected */
 
     /* What is commanded and answered. */
     wh_track_t track;
-    wh_command_t command;     /* the last one sent */
-    wh_machine_cache_t cache; /* and what it was made of */
-    wh_state_t state;         /* the answer to it */
+    wh_command_t command;            /* the last one sent */
+    wh_machine_cache_t cache;        /* and what it was made of */
+    wh_state_t state;                /* the answer to it */
+    wh_mcs_seen_t seen;              /* over a caller's link: the last slice that a state has come for */
+    wh_mcs_sent_t sent[WH_MCS_SENT]; /* and the last ones that were sent, by seq % WH_MCS_SENT */
 
     wh_rehearsal_t rehearsal;
-    wh_vacuum_watch_t watch; /* of the running segment */
-    int64_t stop_slice;      /* at which a STOP comes; INT64_MAX: none */
-    bool stop_requested;     /* a STOP has come: see wh_mcs_stop */
-    bool link_stopped;       /* the link has answered a slice with WH_STATUS_STOPPED */
-    bool limits_missed;      /* the run fails if the simulator misses more slices than `most_missed` */
+    wh_vacuum_watch_t watch;     /* of the running segment */
+    int64_t stop_slice;          /* at which a STOP comes; INT64_MAX: none */
+    bool stop_requested;         /* a STOP has come: see wh_mcs_stop */
+    bool link_stopped;           /* the link has answered a slice with WH_STATUS_STOPPED */
+    int callers[WH_MCS_CALLERS]; /* of the running command's line, the lines that called it; 0: no more */
+    bool limits_missed;          /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;
+    char word[16];                /* of the script, the last one: what an error outside of a command names */
     wh_fault_t faults[WH_FAULTS]; /* by slot, as the simulator has them or is about to */
     size_t fault_count;
 
@@ -134,14 +169,18 @@ void wh_mcs_stop(wh_mcs_t *mcs);
 #define WH_MCS_DESCRIPTION_BYTES 4096
 
 /* What motion control does, as name=value with blanks between them, spelt as answers at the prompt are:
- * `phase`, idle or running, and the running `command`; `seq` and `time` (s) of the last slice; where the
- * robot's axes are commanded to, `theta` and `yaw` in degrees, `r` and `z` in mm; for each gripper the wafer
- * that it `holds`, as the last state tells; and `error`, the number of the last command's that failed in this
- * run, with its `error_name` and `error_command`, or 0. May be called from within the link's exchange. */
+ * `phase`, idle or running, and the running `command`; `seq` and `time` (s) of the last slice that a state
+ * has come for, 0 before the first; in that slice, where the robot's axes were commanded to, `theta` and
+ * `yaw` in degrees, `r` and `z` in mm, and for each gripper the wafer that it `holds`; and `error`, the
+ * number of the last command's that failed in this run, with its `error_name` and `error_command`, or 0. May
+ * be called from within the link's exchange. */
 void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]);
 
 /* The running command has ended with an error past all Lua. Without a running command nothing. */
 void wh_mcs_cut_short(wh_mcs_t *mcs, wh_status_t error, const char *message);
+
+/* A command is told and recorded that failed before its first slice. None may be running. */
+void wh_mcs_refuse(wh_mcs_t *mcs, const char *text, wh_status_t error, const char *message);
 
 /* Closes the record: wafers, slices, hash. The sandbox must still be there. */
 void wh_mcs_finish(wh_mcs_t *mcs);

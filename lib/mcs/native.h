@@ -17,11 +17,22 @@ wh_mcs_t *wh_mcs_with_layout(lua_State *L);
 int wh_mcs_raise(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *detail)
     __attribute__((noreturn));
 
+/* The lines from which the script's functions were called that L's stack is in, the innermost first. */
+void wh_mcs_find_callers(lua_State *L, const wh_mcs_t *mcs, int callers[WH_MCS_CALLERS]);
+
 /* Index (from 0) of a wafer, gripper or station given from 1 by lua/mcs. */
 int32_t wh_mcs_index(lua_State *L, int argument, size_t count);
 
 /* From now on this is called for each slice. */
 void wh_mcs_listen(wh_mcs_t *mcs, wh_slice_listener_t *hear, void *user);
+
+/* From now on motion control knows for STATUS which slice's state came last: of a link that is not the local
+ * cell's. To be called before the first slice. */
+void wh_mcs_watch_slices(wh_mcs_t *mcs);
+
+/* Sets the run up in the cell of this layout, whose table is on top of the stack if the run is a trial, and
+ * pushes the layout as Lua sees it. Raises if the cell cannot be. */
+void wh_mcs_set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout);
 
 /* The layout's faults, once it is read. */
 void wh_mcs_start_faults(wh_mcs_t *mcs);
@@ -45,5 +56,9 @@ extern const luaL_Reg wh_mcs_plan_functions[];
 extern const luaL_Reg wh_mcs_play_functions[];
 extern const luaL_Reg wh_mcs_query_functions[];
 extern const luaL_Reg wh_mcs_scan_functions[];
+extern const luaL_Reg wh_mcs_survey_functions[];
+
+/* Pushes what looks at the stations of a layout for a survey, see lua/mcs/init.lua. */
+void wh_mcs_push_survey(lua_State *L);
 
 #endif

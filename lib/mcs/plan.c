@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../layout/travel.h"
 #include "../math/trig.h"
 #include "../script/wh_module_values.h"
 #include "native.h"
@@ -13,22 +14,44 @@ static int read_axes(lua_State *L) {
     return 1;
 }
 
-/* native.inverse(x, y, z, heading, gripper): the axes with that gripper of the robot there, from where they
- * stand. */
-static int find_axes(lua_State *L) {
-    wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const wh_vec3_t at = wh_vec3(luaL_checknumber(L, 1), luaL_checknumber(L, 2), luaL_checknumber(L, 3));
-    const int32_t gripper = wh_mcs_index(L, 5, mcs->layout->machine.gripper_count);
-    wh_real_t axes[WH_AXES];
-    memcpy(axes, mcs->track.axes, sizeof axes);
-    const wh_status_t status = wh_machine_inverse(&mcs->layout->machine, (size_t)gripper, &at,
-                                                  luaL_checknumber(L, 4), mcs->track.axes, axes);
-    if (status != WH_OK) {
-        char detail[120];
-        snprintf(detail, sizeof detail, "x %.3f, y %.3f, z %.3f mm", at.x, at.y, at.z);
-        wh_mcs_raise(L, mcs, status, detail);
+/* Raises the error of a request, the table at stack index 1. Its `where` and its `target` say where the arm
+ * would be: "on the way into A slot 3". */
+static void refuse(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const char *reason) {
+    lua_getfield(L, 1, "where");
+    if (lua_isstring(L, -1) && lua_getfield(L, 1, "target") == LUA_TTABLE) {
+        lua_getfield(L, -1, "station");
+        lua_getfield(L, -2, "slot");
+        lua_pushfstring(L, "%s %s slot %d%s%s", lua_tostring(L, -4), lua_tostring(L, -2),
+                        (int)lua_tointeger(L, -1), reason[0] ? ": " : "", reason);
+        reason = lua_tostring(L, -1);
     }
-    wh_lua_push_numbers(L, axes, mcs->layout->machine.axis_count);
+    wh_mcs_raise(L, mcs, status, reason[0] ? reason : NULL);
+}
+
+/* native.inverse(request): the axes with the gripper of request.to there, from where they stand. */
+static int find_axes(lua_State *L) {
+    static const char *const fields[] = {"x", "y", "z", "heading"};
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_machine_t *machine = &mcs->layout->machine;
+    wh_real_t to[4], axes[WH_AXES];
+    luaL_checktype(L, 1, LUA_TTABLE);
+    lua_settop(L, 1);
+    lua_getfield(L, 1, "to");
+    for (size_t i = 0; i < 4; ++i) {
+        lua_getfield(L, 2, fields[i]);
+        to[i] = luaL_checknumber(L, -1);
+    }
+    lua_getfield(L, 2, "gripper");
+    const size_t gripper = (size_t)wh_mcs_index(L, -1, machine->gripper_count);
+    const wh_vec3_t at = wh_vec3(to[0], to[1], to[2]);
+    memcpy(axes, mcs->track.axes, sizeof axes);
+    const wh_status_t status = wh_machine_inverse(machine, gripper, &at, to[3], mcs->track.axes, axes);
+    if (status != WH_OK) {
+        char reason[WH_TRAVEL_BYTES];
+        wh_travel_say_point(mcs->layout, gripper, &at, to[3], mcs->track.axes, reason);
+        refuse(L, mcs, status, reason);
+    }
+    wh_lua_push_numbers(L, axes, machine->axis_count);
     return 1;
 }
 
@@ -140,6 +163,18 @@ static uint32_t may_lose(const wh_machine_t *machine, const wh_task_t *task) {
     return grippers;
 }
 
+static void refuse_segment(lua_State *L, wh_mcs_t *mcs, wh_status_t status, const wh_segment_t *segment) {
+    char reason[WH_TRAVEL_BYTES] = "";
+    if (status == WH_STATUS_BAD_SEGMENT) {
+        snprintf(reason, sizeof reason, "it would take more than 1e6 s");
+    } else if (segment->kind == WH_SEGMENT_AXES) {
+        wh_travel_say_axes(mcs->layout, segment->target, reason);
+    } else if (segment->kind == WH_SEGMENT_LINE) {
+        wh_travel_say_line(mcs->layout, mcs->track.axes, &segment->travel, reason);
+    }
+    refuse(L, mcs, status, reason);
+}
+
 void wh_mcs_plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
     const wh_segment_t segment = read_segment(L, mcs);
     lua_getfield(L, 1, "vacuum");
@@ -149,7 +184,7 @@ void wh_mcs_plan_segment(lua_State *L, wh_mcs_t *mcs, wh_planned_t *planned) {
     planned->may_lose = may_lose(mcs->track.machine, &planned->task);
     const wh_status_t status = wh_track_begin(&mcs->track, &segment);
     if (status != WH_OK) {
-        wh_mcs_raise(L, mcs, status, NULL);
+        refuse_segment(L, mcs, status, &segment);
     }
     planned->track = mcs->track;
 }
@@ -160,7 +195,7 @@ static void look_ahead(lua_State *L, wh_mcs_t *mcs) {
     if (rehearsal->is_judged && rehearsal->look_ahead) {
         if (rehearsal->look_ahead(rehearsal->look_ahead_user, &mcs->track, &mcs->state, rehearsal->count == 0,
                                   reason)) {
-            wh_mcs_raise(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
+            refuse(L, mcs, WH_STATUS_COLLISION_AHEAD, reason);
         }
         wh_sandbox_charge(L, wh_mcs_steps(mcs->track.segment_slices));
     }

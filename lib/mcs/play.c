@@ -1,5 +1,6 @@
 /* Segments, played slice by slice. */
 #include <math.h>
+#include <string.h>
 
 #include "../text/array.h"
 #include "../text/clock.h"
@@ -22,6 +23,9 @@ static void keep_slice(wh_mcs_t *mcs) {
 /* One slice: the command goes in, the state comes out, and whoever listens hears of both. */
 static wh_status_t exchange(wh_mcs_t *mcs) {
     wh_command_from_track(&mcs->command, &mcs->cache, &mcs->track);
+    if (mcs->partners.await && mcs->track.segment_slice == mcs->track.segment_slices) {
+        mcs->partners.await(mcs->partners.user);
+    }
     if (mcs->keep_segments) {
         keep_slice(mcs);
     }
@@ -62,16 +66,36 @@ __attribute__((noreturn)) static void raise_refused(lua_State *L, wh_mcs_t *mcs,
                                    : "the simulator refused a slice");
 }
 
+/* A slice that was refused, or did not go out, has not taken place: the next one has its number, and begins
+ * where it began. One that got no answer may have. */
+static bool has_gone_out(const wh_mcs_t *mcs) {
+    return mcs->partners.reached && mcs->partners.reached(mcs->partners.user) >= mcs->track.slice;
+}
+
+static wh_status_t play_slice(wh_mcs_t *mcs, const wh_real_t before[WH_AXES]) {
+    const wh_status_t status = exchange(mcs);
+    if (status != WH_OK && !has_gone_out(mcs)) {
+        memcpy(mcs->track.axes, before, sizeof mcs->track.axes);
+        --mcs->track.slice;
+        if (mcs->keep_segments) {
+            --mcs->segments[mcs->segment_count - 1].slices;
+        }
+    }
+    wh_vacuum_watch_slice(&mcs->watch, mcs->state.sensors);
+    return status;
+}
+
 /* Plays up to SLICES_PER_CHARGE slices of the segment; fewer if the sandbox is to stop, for over a link at a
  * wall-clock rate a portion may take seconds. */
 static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
     wh_track_state_t state = WH_TRACK_MOVING;
     const double begin = wh_clock_seconds();
     for (int i = 0; i < SLICES_PER_CHARGE && *status == WH_OK && state == WH_TRACK_MOVING; ++i) {
+        wh_real_t before[WH_AXES];
+        memcpy(before, mcs->track.axes, sizeof before);
         state = wh_track_next(&mcs->track, mcs->state.sensors);
         if (state == WH_TRACK_MOVING) {
-            *status = exchange(mcs);
-            wh_vacuum_watch_slice(&mcs->watch, mcs->state.sensors);
+            *status = play_slice(mcs, before);
         }
         if (wh_sandbox_stopping(mcs->sandbox) || stop_has_come(mcs)) {
             break;
@@ -81,11 +105,25 @@ static wh_track_state_t play_portion(wh_mcs_t *mcs, wh_status_t *status) {
     return state;
 }
 
+/* A slice that was given up may be refused later. Then the next one has its number, too. */
+static wh_status_t resume(wh_mcs_t *mcs) {
+    const wh_mcs_partners_t *partners = &mcs->partners;
+    const wh_status_t status = partners->resume ? partners->resume(partners->user) : WH_OK;
+    if (partners->reached && partners->reached(partners->user) < mcs->track.slice) {
+        mcs->track.slice = partners->reached(partners->user);
+    }
+    return status;
+}
+
 static wh_track_state_t play_through(lua_State *L, wh_mcs_t *mcs) {
     wh_status_t status = WH_OK;
     wh_track_state_t state = WH_TRACK_MOVING;
     if (mcs->stop_requested) {
         raise_stopped(L, mcs);
+    }
+    status = resume(mcs);
+    if (status != WH_OK) {
+        raise_refused(L, mcs, status);
     }
     while (state == WH_TRACK_MOVING) {
         const int64_t before = mcs->track.slice;

@@ -29,12 +29,14 @@ static int find_held(lua_State *L) {
     return 1;
 }
 
-/* native.wafer_names(): a list. */
+/* native.wafer_names(most): a list of all, or of the first so many. */
 static int list_wafers(lua_State *L) {
     const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
-    wh_sandbox_charge(L, layout->wafer_count);
-    lua_createtable(L, (int)layout->wafer_count, 0);
-    for (size_t w = 0; w < layout->wafer_count; ++w) {
+    const lua_Integer most = luaL_optinteger(L, 1, WH_LAYOUT_WAFERS);
+    const size_t count = layout->wafer_count < (size_t)most ? layout->wafer_count : (size_t)most;
+    wh_sandbox_charge(L, count);
+    lua_createtable(L, (int)count, 0);
+    for (size_t w = 0; w < count; ++w) {
         lua_pushstring(L, layout->wafers[w].name);
         lua_rawseti(L, -2, (lua_Integer)w + 1);
     }
@@ -44,7 +46,7 @@ static int list_wafers(lua_State *L) {
 /* native.wafer(name): the wafer's index, or nil. */
 static int find_wafer(lua_State *L) {
     const wh_layout_t *layout = wh_mcs_with_layout(L)->layout;
-    wh_lua_push_index(L, wh_layout_find_wafer(layout, luaL_checkstring(L, 1)));
+    wh_lua_push_index(L, wh_layout_find_wafer(layout, wh_lua_word(L, 1)));
     return 1;
 }
 
@@ -228,11 +230,21 @@ static int find_kind(const char *name) {
     return kind;
 }
 
+/* native.clearance_kinds(): their names. */
+static int list_clearances(lua_State *L) {
+    lua_createtable(L, WH_CLEARANCES, 0);
+    for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
+        lua_pushstring(L, wh_clearance_name((wh_clearance_kind_t)kind));
+        lua_rawseti(L, -2, kind + 1);
+    }
+    return 1;
+}
+
 /* native.clearance(kind): { gap, limit, time, parts, at } so far; only `limit` until something was near. Nil
  * if nobody looks for collisions, false for an unknown kind. */
 static int find_clearance(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
-    const int kind = find_kind(luaL_checkstring(L, 1));
+    const int kind = find_kind(wh_lua_word(L, 1));
     wh_decisions_measured(mcs->decisions, "clearance");
     if (kind == WH_CLEARANCES) {
         lua_pushboolean(L, 0);
@@ -269,4 +281,5 @@ const luaL_Reg wh_mcs_query_functions[] = {{"utime", read_utime},
                                            {"relate", relate},
                                            {"hits", list_hits},
                                            {"clearance", find_clearance},
+                                           {"clearance_kinds", list_clearances},
                                            {NULL, NULL}};

@@ -6,6 +6,7 @@
 
 #include "../grasp/restore.h"
 #include "../layout/collision.h"
+#include "../layout/travel.h"
 #include "../text/array.h"
 
 void wh_rehearsal_begin(wh_rehearsal_t *rehearsal, const wh_track_t *track, bool is_judged) {
@@ -47,19 +48,6 @@ static void note_axis(const wh_travel_t *travel, wh_real_t at, int32_t slot, wh_
     }
 }
 
-/* R is least between the ends of a line that passes base's axis; all else runs one way. False if this one
- * does not. */
-static bool passes_axis(const wh_line_t *line, wh_real_t *least_R) {
-    const wh_real_t outward = line->direction.x;
-    const wh_real_t level = outward * outward + line->direction.y * line->direction.y;
-    const wh_real_t R = line->from[WH_AXIS_R];
-    if (!(outward < 0 && -R * outward < level * line->path.distance)) {
-        return false; /* such as a line straight up, whose level is 0 */
-    }
-    *least_R = R * wh_real_abs(line->direction.y) / wh_real_sqrt(level);
-    return true;
-}
-
 void wh_rehearsal_note_reach(const wh_rehearsal_t *rehearsal, const wh_track_t *track, wh_record_t *record) {
     const wh_travel_t *travel = track->machine->robot.travel;
     wh_real_t least_R = 0;
@@ -67,7 +55,7 @@ void wh_rehearsal_note_reach(const wh_rehearsal_t *rehearsal, const wh_track_t *
         return;
     }
     wh_travel_margin_t *least = record->reach[rehearsal->reach_station].axes;
-    if (track->segment.kind == WH_SEGMENT_LINE && passes_axis(&track->plan.line, &least_R)) {
+    if (track->segment.kind == WH_SEGMENT_LINE && wh_travel_passes_axis(&track->plan.line, &least_R)) {
         note_axis(&travel[WH_AXIS_R], least_R, rehearsal->reach_slot, &least[WH_AXIS_R]);
     }
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
@@ -81,6 +69,7 @@ void wh_rehearsal_note_reach(const wh_rehearsal_t *rehearsal, const wh_track_t *
 typedef struct {
     const wh_layout_t *layout;
     wh_nominal_t *nominal; /* null: no trial */
+    bool is_begun;         /* the cell's state could be copied for this command */
     wh_simulator_t simulator;
     wh_collision_t collision;
     wh_gripper_t grippers[WH_GRIPPERS];
@@ -138,8 +127,13 @@ static bool judge(void *user, const wh_track_t *begun, const wh_state_t *now, bo
     if (first && ahead->nominal) {
         wh_nominal_believe(ahead->nominal, now, &state);
     }
-    if (track.segment.kind == WH_SEGMENT_SENSOR || (first && !begin(ahead, &state))) {
-        return false;
+    ahead->is_begun = first ? begin(ahead, &state) : ahead->is_begun;
+    if (!ahead->is_begun) {
+        snprintf(reason, WH_REHEARSAL_REASON_BYTES, "nothing can be said, the cell's state was refused");
+        return true;
+    }
+    if (track.segment.kind == WH_SEGMENT_SENSOR) {
+        return false; /* nothing moves */
     }
     track.machine = &ahead->layout->machine;
     while (wh_track_next(&track, 0) == WH_TRACK_MOVING) {

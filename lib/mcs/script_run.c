@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../text/array.h"
+#include "../text/utf8.h"
 
 static wh_script_run_outcome_t refuse(wh_script_run_t *run, const char *message) {
     snprintf(run->message, sizeof run->message, "%s", message);
@@ -24,12 +25,55 @@ static bool ended_by_numbered_error(lua_State *L) {
     return numbered;
 }
 
-static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_sandbox_result_t *result) {
+/* True for a table with a field that only layouts have. */
+static bool is_layout(lua_State *L) {
+    static const char *const fields[] = {"stations", "grippers", "robot", "wafers"};
+    for (size_t i = 0; i < sizeof fields / sizeof *fields; ++i) {
+        lua_pushstring(L, fields[i]);
+        const int type = lua_rawget(L, -2);
+        lua_pop(L, 1);
+        if (type == LUA_TTABLE) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* What is wrong with a script that ended well: it set up no cell, or took no notice of a parameter. What it
+ * returned is on top of the stack. False if nothing is wrong. */
+static bool find_fault(const wh_script_run_t *run, const wh_script_run_options_t *options,
+                       wh_sandbox_result_t *result) {
+    lua_State *L = wh_sandbox_state(run->sandbox);
+    const char *script = options->script;
+    char text[WH_SANDBOX_MESSAGE_BYTES] =
+        "no cell (expected cell \"LAYOUT.lua\" as the script's first command)";
+    char whole[2 * WH_SANDBOX_MESSAGE_BYTES];
+    if (!run->mcs.layout && lua_istable(L, -1) && is_layout(L)) {
+        (void)snprintf(text, sizeof text, "a layout: waferhand layout %.900s", script);
+    } else if (!run->mcs.layout && lua_istable(L, -1)) {
+        (void)snprintf(text, sizeof text,
+                       "no script: it returns a table and sets up no cell (expected cell \"LAYOUT.lua\"; "
+                       "scripts have the use of modules by require)");
+    } else if (run->mcs.layout &&
+               (options->unread_parameters || !wh_sandbox_find_unread(run->sandbox, text))) {
+        return false;
+    }
+    (void)snprintf(whole, sizeof whole, "%s: %s", script, text);
+    wh_utf8_visible(result->message, sizeof result->message, whole);
+    result->status = WH_SANDBOX_ERROR;
+    return true;
+}
+
+static wh_script_run_outcome_t conclude(wh_script_run_t *run, const wh_script_run_options_t *options,
+                                        wh_sandbox_result_t *result) {
+    lua_State *L = wh_sandbox_state(run->sandbox);
+    const bool ended = result->status == WH_SANDBOX_OK;
+    const bool is_unusable = ended && find_fault(run, options, result);
     const bool stopped = result->status == WH_SANDBOX_STOPPED;
     bool is_bad_input = false;
     if (result->status != WH_SANDBOX_OK) {
-        is_bad_input = !stopped && (result->status != WH_SANDBOX_ERROR ||
-                                    !ended_by_numbered_error(wh_sandbox_state(run->sandbox)));
+        is_bad_input =
+            !stopped && (is_unusable || result->status != WH_SANDBOX_ERROR || !ended_by_numbered_error(L));
         run->record.failure = wh_text_copy(result->message);
     }
     if (stopped) {
@@ -47,9 +91,15 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     memset(run, 0, sizeof *run);
     run->sandbox =
         wh_sandbox_new_with(&options->limits, options->parameters, options->parameter_count, &result);
-    if (!run->sandbox || !wh_mcs_open(&run->mcs, run->sandbox, options->script, &run->record, &result)) {
+    if (!run->sandbox) {
         return refuse(run, result.message);
     }
+    if (!wh_mcs_open(&run->mcs, run->sandbox, options->script, &run->record, &result)) {
+        (void)refuse(run, "");
+        (void)snprintf(run->message, sizeof run->message, "%.500s: %.500s", options->script, result.message);
+        return WH_RUN_BAD_INPUT;
+    }
+    run->mcs.is_file = true;
     run->mcs.keep_segments = options->keep_segments;
     run->mcs.limits_missed = options->limits_missed;
     run->mcs.most_missed = options->most_missed;
@@ -58,7 +108,7 @@ wh_script_run_outcome_t wh_script_run(wh_script_run_t *run, const wh_script_run_
     run->mcs.decisions = options->decisions;
     run->mcs.listener = options->listener;
     wh_sandbox_evaluate(wh_sandbox_state(run->sandbox), options->script, &result);
-    return conclude(run, &result);
+    return conclude(run, options, &result);
 }
 
 void wh_script_run_close(wh_script_run_t *run) {

@@ -14,6 +14,7 @@ typedef struct {
     bool keep_segments;         /* run->mcs.segments then holds what was played */
     bool limits_missed;         /* the run fails if the simulator misses more slices than `most_missed` */
     int64_t most_missed;
+    bool unread_parameters;    /* are no fault: a trial may end before it reads them */
     const wh_trial_t *trial;   /* of a study: the cell has its errors, if layout or script says which */
     wh_decisions_t *decisions; /* all zero: then keeps what is commanded and read back; null: nobody does */
 } wh_script_run_options_t;
@@ -29,7 +30,8 @@ typedef struct {
 typedef enum {
     WH_RUN_MET,    /* the script ended and all it expected came true */
     WH_RUN_FAILED, /* an expectation, the cell, or an uncaught numbered error: the record tells */
-    /* Script, layout or parameter is not usable: `message` tells. The record has what came before, and the
+    /* Script, layout or parameter is not usable, the script set up no cell, or it ended well and a parameter
+     * was never read: `message` tells. The record has what came before, and the
      * message as its failure; its layout is null if there was no cell yet. */
     WH_RUN_BAD_INPUT
 } wh_script_run_outcome_t;

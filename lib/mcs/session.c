@@ -93,41 +93,17 @@ void wh_session_close(wh_session_t *session) {
 
 /* ------------------------------------------------------------------------------------------------ answers */
 
-/* Bytes of the control character at `text`, 0 if it is none: U+0000 to U+001F, U+007F to U+009F. */
-static size_t control_bytes(const unsigned char *text) {
-    if (text[0] < 0x20 || text[0] == 0x7F) {
-        return 1;
-    }
-    return text[0] == 0xC2 && text[1] >= 0x80 && text[1] <= 0x9F ? 2 : 0;
-}
-
-/* Copies a text so that it stays on its line. What does not fit is cut off between characters. */
-static void write_answer(char *answer, size_t size, const char *text) {
-    static const char ellipsis[] = "...";
-    const unsigned char *from = (const unsigned char *)text;
-    size_t length = 0;
-    size_t cut = 0; /* the last place at which an ellipsis would fit */
-    while (*from) {
-        char piece[5] = {(char)*from, '\0'};
-        if (control_bytes(from) > 0 || (from > (const unsigned char *)text && control_bytes(from - 1) == 2)) {
-            snprintf(piece, sizeof piece, "\\x%02X", *from);
-        }
-        cut = !wh_utf8_goes_on((char)*from) && length + sizeof ellipsis <= size ? length : cut;
-        if (length + strlen(piece) >= size) {
-            snprintf(answer + cut, size - cut, "%s", ellipsis);
-            return;
-        }
-        length += (size_t)snprintf(answer + length, size - length, "%s", piece);
-        ++from;
-    }
-    answer[length] = '\0';
-}
-
-static void write_error(char *answer, size_t size, wh_status_t status, const char *detail) {
+void wh_session_write_error(char *answer, size_t size, wh_status_t status, const char *reason) {
     char text[WH_SANDBOX_MESSAGE_BYTES + 200];
-    snprintf(text, sizeof text, "ERROR %d %s: %s%s%s", (int)status, wh_status_name(status),
-             wh_record_error_text(status), detail[0] ? "; " : "", detail);
-    write_answer(answer, size, text);
+    snprintf(text, sizeof text, "ERROR %d %s: %s", (int)status, wh_status_name(status), reason);
+    wh_utf8_visible(answer, size, text);
+}
+
+/* With the catalogue's text before the detail. */
+static void write_error(char *answer, size_t size, wh_status_t status, const char *detail) {
+    char reason[WH_SANDBOX_MESSAGE_BYTES + 150];
+    snprintf(reason, sizeof reason, "%s%s%s", wh_record_error_text(status), detail[0] ? "; " : "", detail);
+    wh_session_write_error(answer, size, status, reason);
 }
 
 /* ---------------------------------------------------------------------------------------------- executing */
@@ -149,7 +125,7 @@ static int execute_line(lua_State *L) {
         return luaL_error(L, "the answer is no text"); /* a layout has changed the string library */
     }
     request->status = (wh_status_t)lua_tointeger(L, -2);
-    write_answer(request->answer, request->size, lua_tostring(L, -1));
+    wh_utf8_visible(request->answer, request->size, lua_tostring(L, -1));
     return 0;
 }
 
@@ -171,10 +147,11 @@ static void perform_reset(wh_session_t *session, request_t *request) {
     char message[WH_SANDBOX_MESSAGE_BYTES];
     if (reset(session, message)) {
         request->status = WH_OK;
-        write_answer(request->answer, request->size, "OK");
+        wh_utf8_visible(request->answer, request->size, "OK");
     } else {
         request->status = WH_STATUS_BAD_ARGUMENT;
         write_error(request->answer, request->size, request->status, message);
+        wh_mcs_refuse(&session->mcs, "RESET", request->status, message);
     }
 }
 

@@ -60,10 +60,15 @@ bool wh_session_open(wh_session_t *session, const wh_session_options_t *options)
 
 /* Executes a line with a fresh budget. RESET reads the layout anew and begins another run, with its wafers
  * and a slot book that knows nothing; if the layout is no longer usable, that is an error, and the session
- * goes on as it was. `answer`, of at least 8 bytes, gets one line of printable text without its end: "OK"
- * and values, or "ERROR 42 WAFER_MISSING: ..."; control characters stand in it as \xNN. Returns the
- * error's number. Called from within a command (a link's exchange, a report) it answers WH_STATUS_BUSY. */
+ * goes on as it was, with a command RESET that failed in its record. `answer`, of at least 8 bytes, gets one
+ * line of printable text without its end: "OK" and values, or "ERROR 42 WAFER_MISSING: ..."; control
+ * characters stand in it as \xNN. Returns the error's number. Called from within a command (a link's
+ * exchange, a report) it answers WH_STATUS_BUSY. */
 wh_status_t wh_session_execute(wh_session_t *session, const char *line, char *answer, size_t size);
+
+/* Writes an error as it is answered: "ERROR 54 BUSY: " and the reason, on one line, cut like an answer. A
+ * session's own reasons begin with the catalogue's text: wh_record_error_text. */
+void wh_session_write_error(char *answer, size_t size, wh_status_t status, const char *reason);
 
 /* Ends the running command with WH_STATUS_STOPPED; without one, nothing. For signal handlers of the thread
  * that executes. Over a link it takes effect when the exchange that is waited for returns, whatever its

@@ -12,12 +12,9 @@
 enum { PAIR, GAP, LIMIT, AT, BETWEEN };
 
 /* What a kind of clearance is between, in words: at most 24 letters. */
-static const char *clearance(size_t kind) {
-    static const char *const texts[WH_CLEARANCES] = {
-        "blade to the wafer above", "blade to the wafer below", "blade to the cell", "held wafer to another",
-        "held wafer to a ledge",    "held wafer to the cell",   "arm to the cell",   "arm to itself"};
-    return texts[kind];
-}
+static const char *const clearances[WH_CLEARANCES] = {
+    "blade to the wafer above", "blade to the wafer below", "blade to the cell", "held wafer to another",
+    "held wafer to a ledge",    "held wafer to the cell",   "arm to the cell",   "arm to itself"};
 
 static const char *part_name(const wh_printer_t *printer, int32_t part) {
     const char *name = wh_layout_part_name(printer->record->layout, part);
@@ -33,36 +30,19 @@ static void add_row(const wh_printer_t *printer, wh_grid_t *grid, size_t kind) {
     if (!found && !(limit > 0)) {
         return;
     }
-    wh_grid_named_row(grid, clearance(kind));
+    wh_grid_named_row(grid, clearances[kind]);
     if (limit > 0) {
-        wh_grid_text(grid, LIMIT, kept ? WH_INK_GOOD : WH_INK_BAD, "%g %s", (double)limit,
+        wh_grid_text(grid, LIMIT, kept ? WH_INK_GOOD : WH_INK_BAD, "%g %s", limit,
                      kept ? "kept" : "not kept");
     }
     if (!found) {
-        wh_grid_text(grid, BETWEEN, WH_INK_DIM, "never nearer than %g mm", (double)WH_CLEARANCE_RANGE);
+        wh_grid_text(grid, BETWEEN, WH_INK_DIM, "never nearer than %g mm", WH_CLEARANCE_RANGE);
         return;
     }
-    wh_grid_number(grid, GAP, kept ? WH_INK_PLAIN : WH_INK_BAD, (double)least->gap);
+    wh_grid_number(grid, GAP, kept ? WH_INK_PLAIN : WH_INK_BAD, least->gap);
     wh_grid_number(grid, AT, WH_INK_PLAIN, (double)((int64_t)least->slice * layout->slice_us) / 1e6);
     wh_grid_text(grid, BETWEEN, WH_INK_PLAIN, "%s and %s", part_name(printer, least->parts[0]),
                  part_name(printer, least->parts[1]));
-}
-
-void wh_print_clearances(const wh_printer_t *printer) {
-    if (!printer->record->checked) {
-        return;
-    }
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    const wh_grid_digits_t gap = {3, 3, false, 0};
-    wh_grid_text_columns(grid, "smallest gap", NULL);
-    wh_grid_number_columns(grid, gap, "mm", NULL);
-    wh_grid_text_columns(grid, "limit mm", NULL);
-    wh_grid_number_columns(grid, wh_print_seconds, "at s", NULL);
-    wh_grid_text_columns(grid, "between", NULL);
-    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
-        add_row(printer, grid, kind);
-    }
-    wh_print_titled(printer, "Clearances", grid);
 }
 
 /* ---------------------------------------------------------------------------------------------- over time */
@@ -125,10 +105,10 @@ static void print_curve(const wh_printer_t *printer, const plot_t *plot) {
     const wh_record_t *record = printer->record;
     const wh_clearance_t *least = &record->clearances[plot->kind];
     const int indent = (int)column_of(record->curves, plot, least->slice);
-    fprintf(printer->out, "%-24s  ", clearance(plot->kind));
+    fprintf(printer->out, "%-24s  ", clearances[plot->kind]);
     draw_curve(printer, plot);
-    fprintf(printer->out, "  0 to %g mm\n%26s%*s^ %.3f mm at %.3f s\n", (double)plot->top, "", indent, "",
-            (double)least->gap, (double)((int64_t)least->slice * record->layout->slice_us) / 1e6);
+    fprintf(printer->out, "  0 to %g mm\n%26s%*s^ %.3f mm at %.3f s\n", plot->top, "", indent, "", least->gap,
+            (double)((int64_t)least->slice * record->layout->slice_us) / 1e6);
 }
 
 static size_t columns_of(const wh_printer_t *printer) {
@@ -139,10 +119,10 @@ static size_t columns_of(const wh_printer_t *printer) {
     return columns < printer->record->curves->count ? columns : printer->record->curves->count;
 }
 
-void wh_print_curves(const wh_printer_t *printer) {
+static void print_curves(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
     bool titled = false;
-    if (!record->checked || !record->curves || record->curves->count == 0) {
+    if (!record->curves || record->curves->count == 0) {
         return;
     }
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
@@ -158,4 +138,16 @@ void wh_print_curves(const wh_printer_t *printer) {
         const plot_t plot = {kind, columns_of(printer), top_of(limit, least->gap), limit};
         print_curve(printer, &plot);
     }
+}
+
+void wh_print_clearances(const wh_printer_t *printer) {
+    if (!printer->record->checked) {
+        return;
+    }
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, "smallest gap;mm{3};limit mm;at s{3,6};between");
+    for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
+        add_row(printer, grid, kind);
+    }
+    wh_print_titled(printer, "Clearances", grid);
+    print_curves(printer);
 }

@@ -92,23 +92,15 @@ static void add_others(const wh_printer_t *printer, wh_grid_t *grid, const chain
 }
 
 static void print_table(const wh_printer_t *printer, const chains_t *chains) {
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
-    wh_grid_text_columns(grid, "command", NULL);
-    wh_grid_number_columns(grid, wh_print_seconds, "begin s", "end s", NULL);
-    wh_grid_text_columns(grid, "result", "taken", NULL);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, "line{0};command;begin s{3,6};end s{3,6};result;taken");
     wh_print_measured_columns(printer, grid);
     for (size_t i = 0; i < printer->record->command_count; ++i) {
         add_command(printer, grid, chains, i);
     }
     add_others(printer, grid, chains);
     wh_print_title(printer, "Commands");
-    if (wh_grid_rows(grid) > 0) {
-        wh_grid_print(grid, printer->out);
-    } else {
-        fputs("none\n", printer->out);
-        wh_grid_free(grid);
-    }
+    fputs(wh_grid_rows(grid) > 0 ? "" : "none\n", printer->out);
+    wh_grid_print(grid, printer->out);
 }
 
 void wh_print_commands(const wh_printer_t *printer) {
@@ -124,13 +116,11 @@ void wh_print_commands(const wh_printer_t *printer) {
 /* ------------------------------------------------------------------------------------------------- errors */
 
 static void put_error(const wh_printer_t *printer, const wh_command_record_t *command) {
-    const char *message = command->message ? command->message : wh_record_error_text(command->error);
     if (command->line > 0) {
         fprintf(printer->out, "line %d: ", command->line);
     }
-    wh_print_put(printer, command->text);
-    fputs(": ", printer->out);
-    wh_print_put(printer, message);
+    wh_print_say(printer, "%s: %s", command->text ? command->text : "",
+                 command->message ? command->message : wh_record_error_text(command->error));
     fputc('\n', printer->out);
 }
 
@@ -156,49 +146,42 @@ void wh_print_errors(const wh_printer_t *printer) {
 /* Columns of its table. */
 enum { VALUE, VALUE_MEASURED, LIMIT, MARGIN };
 
-static void add_value(wh_grid_t *grid, const char *name, double value) {
-    wh_grid_named_row(grid, name);
-    wh_grid_number(grid, VALUE_MEASURED, WH_INK_PLAIN, value);
-}
-
-static void add_limit(wh_grid_t *grid, const char *relation, double limit, double margin) {
-    wh_grid_text(grid, LIMIT, WH_INK_PLAIN, "%s %.10g", relation, limit);
-    wh_grid_number(grid, MARGIN, margin > 0 ? WH_INK_GOOD : WH_INK_BAD, margin);
-}
-
 static void print_values(const wh_printer_t *printer, const wh_proximity_t *p) {
     const wh_tolerance_t *limits = &printer->record->layout->grasp.tolerance;
-    const wh_grid_digits_t digits = {6, 6, false, 0};
-    const wh_grid_digits_t margin = {6, 6, true, 0};
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_text_columns(grid, "", NULL);
-    wh_grid_number_columns(grid, digits, "measured", NULL);
-    wh_grid_text_columns(grid, "limit", NULL);
-    wh_grid_number_columns(grid, margin, "margin", NULL);
-    add_value(grid, "  |dr_proj_z|", (double)wh_real_abs(p->dr_proj_z));
-    add_limit(grid, "<", (double)limits->projz, (double)p->margin_projz);
-    add_value(grid, "  |dr_proj_xy|", (double)p->dr_proj_xy_norm);
-    add_limit(grid, "<", (double)limits->projxy, (double)p->margin_projxy);
-    add_value(grid, "  n1_proj_n2", (double)p->n1_proj_n2);
-    add_limit(grid, ">", (double)limits->planar, (double)p->margin_planar);
-    add_value(grid, "  dr_proj_xy  x", (double)p->dr_proj_xy.x);
-    add_value(grid, "              y", (double)p->dr_proj_xy.y);
-    add_value(grid, "              z", (double)p->dr_proj_xy.z);
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, ";measured{6};limit;margin{6}");
+    wh_grid_limit(grid, 0);
+    const struct {
+        const char *name;
+        double measured;
+        char relation; /* 0: there is no limit */
+        double limit, margin;
+    } rows[] = {{"  |dr_proj_z|", wh_real_abs(p->dr_proj_z), '<', limits->projz, p->margin_projz},
+                {"  |dr_proj_xy|", p->dr_proj_xy_norm, '<', limits->projxy, p->margin_projxy},
+                {"  n1_proj_n2", p->n1_proj_n2, '>', limits->planar, p->margin_planar},
+                {"  dr_proj_xy  x", p->dr_proj_xy.x, 0, 0, 0},
+                {"              y", p->dr_proj_xy.y, 0, 0, 0},
+                {"              z", p->dr_proj_xy.z, 0, 0, 0}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        wh_grid_named_row(grid, rows[i].name);
+        wh_grid_number(grid, VALUE_MEASURED, WH_INK_PLAIN, rows[i].measured);
+        if (rows[i].relation) {
+            wh_grid_text(grid, LIMIT, WH_INK_PLAIN, "%c %.10g", rows[i].relation, rows[i].limit);
+            wh_grid_number(grid, MARGIN, rows[i].margin > 0 ? WH_INK_GOOD : WH_INK_BAD, rows[i].margin);
+        }
+    }
     wh_grid_print(grid, printer->out);
 }
 
 static void print_handover(const wh_printer_t *printer, const wh_event_record_t *record) {
     const wh_event_t *event = &record->event;
     const bool ready = event->measured.ready;
+    const wh_grid_digits_t seconds = {3, 6, false, 0};
     const double at = (double)record->utime / 1e6;
-    wh_print_put(printer, wh_print_wafer(printer, event->wafer));
-    fputs(", ", printer->out);
-    wh_print_put(printer, wh_print_gripper(printer, event->other));
-    fprintf(printer->out, " %s ", wh_style_glyph(printer->style, WH_GLYPH_ARROW));
-    wh_print_put(printer, wh_print_gripper(printer, event->gripper));
-    fprintf(printer->out, ", at %.*f s: isReadyToPick", wh_grid_decimals(&wh_print_seconds, at), at);
-    wh_print_put(printer, wh_print_gripper(printer, event->gripper));
-    fputs(": ", printer->out);
+    const char *gripper = wh_print_gripper(printer, event->gripper);
+    wh_print_title(printer, "Hand-over");
+    wh_print_say(printer, "%s, %s %s %s, at %.*f s: isReadyToPick%s: ", wh_print_wafer(printer, event->wafer),
+                 wh_print_gripper(printer, event->other), wh_style_glyph(printer->style, WH_GLYPH_ARROW),
+                 gripper, wh_grid_decimals(&seconds, at), at, gripper);
     wh_style_print(printer->style, printer->out, ready ? WH_INK_GOOD : WH_INK_BAD, "%s",
                    ready ? "true" : "false");
     fputc('\n', printer->out);
@@ -209,11 +192,7 @@ void wh_print_handovers(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
     size_t count = 0;
     for (size_t i = 0; i < record->event_count && record->layout; ++i) {
-        if (record->events[i].event.kind != WH_EVENT_HANDED_OVER) {
-            continue;
-        }
-        if (++count <= SHOWN) {
-            wh_print_title(printer, "Hand-over");
+        if (record->events[i].event.kind == WH_EVENT_HANDED_OVER && ++count <= SHOWN) {
             print_handover(printer, &record->events[i]);
         }
     }

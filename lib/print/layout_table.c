@@ -13,21 +13,17 @@ typedef struct {
     wh_printer_t frame;
 } listing_t;
 
-static const wh_grid_digits_t whole = {0, 6, false, 0};
-static const wh_grid_digits_t fine = {3, 3, false, 0};
-
 /* -------------------------------------------------------------------------------------------- the machine */
 
 static void print_axes(const listing_t *listing) {
     static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
     const wh_robot_t *robot = &listing->layout->machine.robot;
-    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_columns(grid, "axis", NULL);
-    wh_grid_number_columns(grid, whole, "from", "to", "home", "speed", "acceleration", "jerk", NULL);
-    wh_grid_text_columns(grid, "in", NULL);
+    wh_grid_t *grid =
+        wh_grid_new(listing->frame.style, 1,
+                    "axis;from{0,6};to{0,6};home{0,6};speed{0,6};acceleration{0,6};jerk{0,6};in");
     for (size_t i = 0; i < WH_ROBOT_AXES; ++i) {
         const bool turns = i == WH_AXIS_THETA || i == WH_AXIS_YAW;
-        const double unit = turns ? (double)wh_deg_from_rad(1) : 1;
+        const double unit = turns ? wh_deg_from_rad(1) : 1;
         const wh_limits_t *limits = &robot->limits[i];
         const double values[] = {unit * robot->travel[i].min, unit * robot->travel[i].max,
                                  unit * robot->home[i],       unit * limits->speed,
@@ -41,9 +37,7 @@ static void print_axes(const listing_t *listing) {
 
 static void print_grippers(const listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
-    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_columns(grid, "gripper", "on", "valve", "at mm", NULL);
-    wh_grid_number_columns(grid, whole, "turned deg", NULL);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, "gripper;on;valve;at mm;turned deg{0,6}");
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
         const wh_layout_gripper_t *gripper = &layout->grippers[g];
         wh_grid_named_row(grid, gripper->name);
@@ -52,10 +46,9 @@ static void print_grippers(const listing_t *listing) {
         wh_grid_text(grid, 2, WH_INK_PLAIN, "%s", gripper->valve);
         if (layout->machine.mounts[g].is_shifted) {
             const wh_pose_t *shift = &layout->machine.mounts[g].effector_from_gripper;
-            wh_grid_text(grid, 3, WH_INK_PLAIN, "%g, %g, %g", (double)shift->r.x, (double)shift->r.y,
-                         (double)shift->r.z);
+            wh_grid_text(grid, 3, WH_INK_PLAIN, "%g, %g, %g", shift->r.x, shift->r.y, shift->r.z);
             wh_grid_number(grid, 4, WH_INK_PLAIN,
-                           (double)wh_deg_from_rad(wh_atan2(shift->R.m[1][0], shift->R.m[0][0])));
+                           wh_deg_from_rad(wh_atan2(shift->R.m[1][0], shift->R.m[0][0])));
         }
     }
     wh_print_titled(&listing->frame, "Grippers", grid);
@@ -84,14 +77,16 @@ static void add_station(const listing_t *listing, wh_grid_t *grid, size_t s) {
                              station->offset,
                              station->retract,
                              (double)listing->check->entries[s].wafers};
-    wh_grid_numbers(grid, 2, values, sizeof values / sizeof values[0]);
+    const size_t count = sizeof values / sizeof values[0];
+    wh_grid_numbers(grid, 2, values, count);
+    wh_grid_text(grid, 2 + count, WH_INK_PLAIN, "%s", station->counts ? "yes" : "no");
 }
 
 static void print_stations(const listing_t *listing) {
-    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_columns(grid, "station", "kind", NULL);
-    wh_grid_number_columns(grid, whole, "x", "y", "z", "heading deg", "tilt deg", "slots", "pitch", "stroke",
-                           "offset", "retract", "wafers", NULL);
+    wh_grid_t *grid =
+        wh_grid_new(listing->frame.style, 1,
+                    "station;kind;x{0,6};y{0,6};z{0,6};heading deg{0,6};tilt deg{0,6};slots{0};pitch{0,6};"
+                    "stroke{0,6};offset{0,6};retract{0,6};wafers{0};counts");
     for (size_t s = 0; s < listing->layout->station_count; ++s) {
         add_station(listing, grid, s);
     }
@@ -100,20 +95,22 @@ static void print_stations(const listing_t *listing) {
 
 static void add_gap(wh_grid_t *grid, size_t column, bool has, wh_real_t gap) {
     if (has) {
-        wh_grid_number(grid, column, gap > 0 ? WH_INK_PLAIN : WH_INK_BAD, (double)gap);
+        wh_grid_number(grid, column, gap > 0 ? WH_INK_PLAIN : WH_INK_BAD, gap);
     }
 }
 
 static void print_room(const listing_t *listing) {
-    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_columns(grid, "blade entered at", NULL);
-    wh_grid_number_columns(grid, fine, "to the wafer above", "to the one below", "to ledges or chuck", NULL);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1,
+                                  "blade entered at;to the wafer above{3};to the one below{3};"
+                                  "to ledges or chuck{3};`retract` before{3};above a lifted wafer{3}");
     for (size_t s = 0; listing->check->has_parts && s < listing->layout->station_count; ++s) {
         const wh_entry_t *entry = &listing->check->entries[s];
         wh_grid_named_row(grid, listing->layout->stations[s].name);
         add_gap(grid, 1, entry->has_above, entry->above);
         add_gap(grid, 2, entry->has_below, entry->below);
         add_gap(grid, 3, entry->has_beside, entry->beside);
+        add_gap(grid, 4, entry->has_before, entry->before);
+        add_gap(grid, 5, entry->has_lifted, entry->lifted);
     }
     wh_print_titled(&listing->frame, "Room", grid);
 }
@@ -123,22 +120,21 @@ static void print_room(const listing_t *listing) {
 static void print_holding(const listing_t *listing) {
     const wh_vacuum_config_t *vacuum = &listing->layout->physics.vacuum;
     const wh_pads_t *pads = &listing->layout->physics.pads;
-    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_columns(grid, "of all grippers", "", NULL);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, "of all grippers;");
     wh_grid_named_row(grid, "vacuum");
     if (vacuum->build <= 0 && vacuum->vent <= 0) {
         wh_grid_text(grid, 1, WH_INK_PLAIN, "ideal: an open valve holds at once");
     } else {
         wh_grid_text(grid, 1, WH_INK_PLAIN, "builds in %g ms, vents in %g ms, is at %g without a wafer",
-                     (double)(vacuum->build * MS), (double)(vacuum->vent * MS), (double)vacuum->idle);
+                     (vacuum->build * MS), (vacuum->vent * MS), vacuum->idle);
         wh_grid_named_row(grid, "thresholds");
-        wh_grid_text(grid, 1, WH_INK_PLAIN, "sensor on at %g, off below %g; lets go below %g",
-                     (double)vacuum->on, (double)vacuum->off, (double)vacuum->release);
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "sensor on at %g, off below %g; lets go below %g", vacuum->on,
+                     vacuum->off, vacuum->release);
     }
     if (pads->mass > 0) {
         wh_grid_named_row(grid, "pads");
-        wh_grid_text(grid, 1, WH_INK_PLAIN, "friction %g, %g N of vacuum, a wafer of %.4g kg",
-                     (double)pads->friction, (double)pads->force, (double)pads->mass);
+        wh_grid_text(grid, 1, WH_INK_PLAIN, "friction %g, %g N of vacuum, a wafer of %.4g kg", pads->friction,
+                     pads->force, pads->mass);
     }
     wh_print_titled(&listing->frame, "Holding", grid);
 }
@@ -164,15 +160,13 @@ static void add_fault(const listing_t *listing, wh_grid_t *grid, const wh_fault_
         wh_grid_text(grid, 3, WH_INK_PLAIN, "%.10g", (double)(fault->until - 1) * slice_s);
     }
     if (fault->kind == WH_FAULT_LEAK || fault->kind == WH_FAULT_SLOW_VACUUM) {
-        wh_grid_text(grid, 4, WH_INK_PLAIN, "%g%s", (double)fault->value,
-                     fault->kind == WH_FAULT_LEAK ? "" : " s");
+        wh_grid_text(grid, 4, WH_INK_PLAIN, "%g%s", fault->value, fault->kind == WH_FAULT_LEAK ? "" : " s");
     }
 }
 
 static void print_faults(const listing_t *listing) {
     const wh_physics_t *physics = &listing->layout->physics;
-    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_columns(grid, "fault", "of", "from s", "until s", "value", NULL);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, "fault;of;from s;until s;value");
     for (size_t i = 0; i < physics->fault_count; ++i) {
         add_fault(listing, grid, &physics->faults[i]);
     }
@@ -183,35 +177,33 @@ static void print_faults(const listing_t *listing) {
 
 static void print_shapes(const listing_t *listing) {
     const wh_shapes_t *s = &listing->layout->shapes;
-    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_columns(grid, "shape", "size", NULL);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, "shape;size");
     wh_grid_named_row(grid, "blade");
     wh_grid_text(grid, 1, WH_INK_PLAIN, "%g thick, %g wide, fingers of %g, %g before its origin, %g behind",
-                 (double)s->blade.thickness, 2 * (double)s->blade.half_width, (double)s->blade.finger,
-                 (double)s->blade.length, (double)s->blade.palm);
+                 s->blade.thickness, 2 * s->blade.half_width, s->blade.finger, s->blade.length,
+                 s->blade.palm);
     wh_grid_named_row(grid, "ledges");
     wh_grid_text(grid, 1, WH_INK_PLAIN, "%g thick, %g long, from %g to %g beside the middle",
-                 (double)s->ledge.thickness, (double)s->ledge.length, (double)s->ledge.inner,
-                 (double)s->ledge.outer);
+                 s->ledge.thickness, s->ledge.length, s->ledge.inner, s->ledge.outer);
     wh_grid_named_row(grid, "arm");
     wh_grid_text(grid, 1, WH_INK_PLAIN, "two links of %g, wrist %g behind the end-effector, elbow %s",
-                 (double)s->arm.link, (double)s->arm.reach, s->arm.right_handed ? "right" : "left");
+                 s->arm.link, s->arm.reach, s->arm.right_handed ? "right" : "left");
     wh_grid_named_row(grid, "FOUP");
     wh_grid_text(grid, 1, WH_INK_PLAIN,
-                 "walls of %g, %g from the wafer; floor %g below, roof %g above the slots",
-                 (double)s->shell.wall, (double)s->shell.room, (double)s->shell.floor, (double)s->shell.roof);
+                 "walls of %g, %g from the wafer; floor %g below, roof %g above the slots", s->shell.wall,
+                 s->shell.room, s->shell.floor, s->shell.roof);
     wh_grid_named_row(grid, "chuck");
-    wh_grid_text(grid, 1, WH_INK_PLAIN, "radius %g, %g high; a body of radius %g below it",
-                 (double)s->chuck.radius, (double)s->chuck.height, (double)s->chuck.body);
+    wh_grid_text(grid, 1, WH_INK_PLAIN, "radius %g, %g high; a body of radius %g below it", s->chuck.radius,
+                 s->chuck.height, s->chuck.body);
     wh_print_titled(&listing->frame, "Shapes, mm", grid);
 }
 
 static void describe_size(wh_grid_t *grid, size_t column, const wh_convex_t *convex) {
-    const double x = 2 * (double)convex->half.x;
-    const double z = 2 * (double)convex->half.z;
+    const double x = 2 * convex->half.x;
+    const double z = 2 * convex->half.z;
     switch (convex->kind) {
     case WH_CONVEX_BOX:
-        wh_grid_text(grid, column, WH_INK_PLAIN, "box, %g by %g by %g", x, 2 * (double)convex->half.y, z);
+        wh_grid_text(grid, column, WH_INK_PLAIN, "box, %g by %g by %g", x, 2 * convex->half.y, z);
         break;
     case WH_CONVEX_CYLINDER:
         wh_grid_text(grid, column, WH_INK_PLAIN, "cylinder, %g wide, %g high", x, z);
@@ -235,9 +227,7 @@ static const char *carrier_of(const wh_layout_t *layout, const wh_part_t *part) 
 
 static void print_obstacles(const listing_t *listing) {
     const wh_world_config_t *world = &listing->layout->world;
-    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_columns(grid, "obstacle", "on", "shape", NULL);
-    wh_grid_number_columns(grid, whole, "x", "y", "z", NULL);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, "obstacle;on;shape;x{0,6};y{0,6};z{0,6}");
     for (size_t i = 0; i < world->part_count; ++i) {
         const wh_part_t *part = &world->parts[i];
         const bool hung = i + listing->layout->hung_count >= world->part_count;
@@ -253,13 +243,11 @@ static void print_obstacles(const listing_t *listing) {
 }
 
 static void print_limits(const listing_t *listing) {
-    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1);
-    wh_grid_text_columns(grid, "clearance", NULL);
-    wh_grid_number_columns(grid, whole, "at least mm", NULL);
+    wh_grid_t *grid = wh_grid_new(listing->frame.style, 1, "clearance;at least mm{0,6}");
     for (int kind = 0; kind < WH_CLEARANCES; ++kind) {
         if (listing->layout->world.limits[kind] > 0) {
             wh_grid_named_row(grid, wh_clearance_name((wh_clearance_kind_t)kind));
-            wh_grid_number(grid, 1, WH_INK_PLAIN, (double)listing->layout->world.limits[kind]);
+            wh_grid_number(grid, 1, WH_INK_PLAIN, listing->layout->world.limits[kind]);
         }
     }
     wh_print_titled(&listing->frame, "Clearances", grid);
@@ -267,19 +255,39 @@ static void print_limits(const listing_t *listing) {
 
 /* ----------------------------------------------------------------------------------------------- findings */
 
+static void print_finding(const listing_t *listing, const wh_finding_t *finding) {
+    FILE *out = listing->frame.out;
+    const char *cross = wh_style_glyph(listing->frame.style, WH_GLYPH_CROSS);
+    wh_style_print(listing->frame.style, out, finding->is_warning ? WH_INK_WARN : WH_INK_BAD, "%s",
+                   finding->is_warning ? "!" : cross);
+    fputc(' ', out);
+    wh_style_put(out, finding->text);
+    fputc('\n', out);
+}
+
 static void print_findings(const listing_t *listing) {
+    const wh_feasibility_t *check = listing->check;
     fputc('\n', listing->frame.out);
-    if (listing->check->count == 0) {
+    for (size_t i = 0; i < check->count; ++i) {
+        print_finding(listing, &check->findings[i]);
+    }
+    if (check->wrong == 0) {
         wh_style_print(listing->frame.style, listing->frame.out, WH_INK_GOOD, "%s",
                        wh_style_glyph(listing->frame.style, WH_GLYPH_TICK));
-        fputs(" nothing is wrong with it\n", listing->frame.out);
+        fprintf(listing->frame.out, " nothing%s is wrong with it%s\n", check->count > 0 ? " else" : "",
+                check->layout->station_count > 1 ? "; ways between stations are not judged" : "");
     }
-    for (size_t i = 0; i < listing->check->count; ++i) {
-        wh_style_print(listing->frame.style, listing->frame.out, WH_INK_BAD, "%s",
-                       wh_style_glyph(listing->frame.style, WH_GLYPH_CROSS));
-        fputc(' ', listing->frame.out);
-        wh_style_put(listing->frame.out, listing->check->findings[i].text);
-        fputc('\n', listing->frame.out);
+}
+
+static void print_wafers(const listing_t *listing) {
+    const wh_layout_t *layout = listing->layout;
+    fprintf(listing->frame.out, "\n%zu wafer%s of %g mm, %g mm thick, ", layout->wafer_count,
+            layout->wafer_count == 1 ? "" : "s", layout->wafer_diameter, layout->wafer_thickness);
+    if (layout->notch_depth > 0) {
+        fprintf(listing->frame.out, "notch at %g%s\n", wh_deg_from_rad(layout->notch),
+                wh_style_glyph(listing->frame.style, WH_GLYPH_DEGREE));
+    } else {
+        fputs("without a notch\n", listing->frame.out);
     }
 }
 
@@ -287,14 +295,10 @@ static void print_heading(const listing_t *listing) {
     const wh_layout_t *layout = listing->layout;
     const wh_tolerance_t *limits = &layout->grasp.tolerance;
     wh_style_put(listing->frame.out, layout->path);
-    fprintf(listing->frame.out, "\n%zu wafer%s of %g mm, %g mm thick, notch at %g%s\n", layout->wafer_count,
-            layout->wafer_count == 1 ? "" : "s", layout->wafer_diameter, layout->wafer_thickness,
-            (double)wh_deg_from_rad((wh_real_t)layout->notch),
-            wh_style_glyph(listing->frame.style, WH_GLYPH_DEGREE));
-    fprintf(listing->frame.out, "tolerance %s: %g mm, %g mm, %.10g; checked %s %g ms\n",
-            layout->tolerance_name, (double)limits->projz, (double)limits->projxy, (double)limits->planar,
-            layout->grasp.check == WH_CHECK_SWEPT ? "along the whole of each slice of"
-                                                  : "once a slice, every",
+    print_wafers(listing);
+    fprintf(listing->frame.out, "tolerance %s: %g mm%s, %g mm%s, %.10g%s; checked %s %g ms\n",
+            layout->tolerance_name, limits->projz, wh_print_default(layout, 0), limits->projxy,
+            wh_print_default(layout, 1), limits->planar, wh_print_default(layout, 2), wh_print_check(layout),
             (double)layout->slice_us / 1e3);
     fprintf(listing->frame.out, "wafers %s%s; collisions are %schecked, %zu parts\n",
             layout->grasp.seat ? "are drawn onto the pads" : "stay as they were taken",

@@ -2,6 +2,7 @@
 #ifndef WH_PRINT_PRINT_INTERNAL_H
 #define WH_PRINT_PRINT_INTERNAL_H
 
+#include "../layout/layout.h"
 #include "../record/record.h"
 #include "../text/grid.h"
 
@@ -16,15 +17,15 @@ typedef struct {
 void wh_print_commands(const wh_printer_t *printer);
 void wh_print_errors(const wh_printer_t *printer);
 void wh_print_handovers(const wh_printer_t *printer);
-void wh_print_complaints(const wh_printer_t *printer);
 void wh_print_clearances(const wh_printer_t *printer);
-void wh_print_curves(const wh_printer_t *printer);
-void wh_print_wafers(const wh_printer_t *printer);
 void wh_print_gantt(const wh_printer_t *printer);
 void wh_print_times(const wh_printer_t *printer);
 void wh_print_margins(const wh_printer_t *printer);
 
-/* The summary's line of wafers per hour, when there are any. */
+/* Wafers per hour, or why there is no such figure, without a line feed. True if there is one. */
+bool wh_print_figure(const wh_printer_t *printer);
+
+/* The same as the summary's line, with what the time goes into; nothing for a run without a slice. */
 void wh_print_throughput(const wh_printer_t *printer);
 
 /* A part's title, after a blank line. */
@@ -33,8 +34,8 @@ void wh_print_title(const wh_printer_t *printer, const char *title);
 /* Prints a table under its title and frees it; prints nothing if it has no rows. */
 void wh_print_titled(const wh_printer_t *printer, const char *title, wh_grid_t *grid);
 
-/* Text of a script, made printable; its later lines are indented. "" for null. */
-void wh_print_put(const wh_printer_t *printer, const char *text);
+/* Formatted text, with names and messages in it, made printable; its later lines are indented. */
+__attribute__((format(printf, 2, 3))) void wh_print_say(const wh_printer_t *printer, const char *format, ...);
 
 /* Names, never null: a dash for what has none. */
 const char *wh_print_wafer(const wh_printer_t *printer, int32_t wafer);
@@ -47,23 +48,22 @@ void wh_print_measured_columns(const wh_printer_t *printer, wh_grid_t *grid);
 /* Fills them in for an event, what failed in red. */
 void wh_print_measured(const wh_printer_t *printer, wh_grid_t *grid, size_t first, const wh_event_t *event);
 
-/* A column's rule: times in s, shown to the us where a slice is no whole ms; and offsets. */
-static const wh_grid_digits_t wh_print_seconds = {3, 6, false, 0};
-static const wh_grid_digits_t wh_print_millimetres = {4, 9, false, 0};
+/* Behind a limit of the tolerance: " (default)", if the layout gives others and not this one; else "". */
+const char *wh_print_default(const wh_layout_t *layout, size_t limit);
 
-/* The angle, in degrees, between wafer and gripper whose cosine is (2). */
-double wh_print_tilt_deg(double n1_proj_n2);
+/* When picks are checked: before a slice's length. */
+const char *wh_print_check(const wh_layout_t *layout);
 
 /* How far the wafer's rim is from the gripper's contact plane, mm; the centre's distance hides it. */
 double wh_print_rim_gap(const wh_printer_t *printer, const wh_event_t *event);
 
-/* A count as one would write it: 31,482; and with what is counted, one of it or many. */
+/* A count as one would write it: 31,482, in `text`, which is returned; and with what is counted, one of it or
+ * many. */
 #define WH_PRINT_NUMBER_SIZE 40
-void wh_print_count(char text[WH_PRINT_NUMBER_SIZE], int64_t count);
+const char *wh_print_count(char text[WH_PRINT_NUMBER_SIZE], int64_t count);
 void wh_print_counted(FILE *out, int64_t count, const char *one, const char *many);
 
-/* True if an event belongs among the misses; true if it is a complaint of the cell. */
-bool wh_print_is_miss(wh_event_kind_t kind);
+/* True if an event is a complaint of the cell. */
 bool wh_print_is_complaint(wh_event_kind_t kind);
 
 #endif

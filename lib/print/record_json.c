@@ -1,5 +1,6 @@
 #include "record_print.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "../math/trig.h"
@@ -8,74 +9,63 @@
 #include "../text/json.h"
 
 /* The format's number: goes up when a key changes its meaning or leaves. */
-#define FORMAT 1
+#define FORMAT 2
 
 /* ----------------------------------------------------------------------------------------------- commands */
 
-static json_t *seconds(const wh_record_t *record, int64_t slices) {
-    return wh_json_real(wh_throughput_seconds(record, slices));
-}
-
 /* What a time went into. */
 static json_t *split_of(const wh_record_t *record, const int64_t shares[WH_SHARES]) {
-    return wh_json_add(json_object(), "motion_s loaded_s empty_s vacuum_s handover_s waiting_s",
-                       seconds(record, shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY]),
-                       seconds(record, shares[WH_SHARE_LOADED]), seconds(record, shares[WH_SHARE_EMPTY]),
-                       seconds(record, shares[WH_SHARE_VACUUM]), seconds(record, shares[WH_SHARE_HANDOVER]),
-                       seconds(record, shares[WH_SHARE_WAITING]), NULL);
+    static const char *const keys[WH_SHARES] = {"loaded_s", "empty_s", "vacuum_s", "handover_s", "waiting_s"};
+    const int64_t motion = shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY];
+    json_t *object = wh_json_set(json_object(), "motion_s %g", wh_throughput_seconds(record, motion));
+    for (size_t share = 0; share < WH_SHARES; ++share) {
+        wh_json_put(object, keys[share], wh_json_real(wh_throughput_seconds(record, shares[share])));
+    }
+    return object;
 }
 
 static json_t *command(const void *subject, size_t i) {
     const wh_record_t *record = subject;
     const wh_command_record_t *from = &record->commands[i];
-    json_t *object = wh_json_add(json_object(), "line text error begin_s end_s split",
-                                 json_integer(from->line), wh_json_text(from->text),
-                                 json_integer((json_int_t)from->error), wh_json_real(from->begin_s),
-                                 wh_json_real(from->end_s), split_of(record, from->shares), NULL);
-    if (from->message) {
-        wh_json_put_text(object, "message", from->message);
-    }
-    return object;
+    json_t *object = wh_json_set(json_object(), "line %d text %s error %d begin_s %g end_s %g", from->line,
+                                 from->text, (int)from->error, from->begin_s, from->end_s);
+    wh_json_put(object, "split", split_of(record, from->shares));
+    return from->message ? wh_json_set(object, "message %s", from->message) : object;
 }
 
 /* ------------------------------------------------------------------------------------------------- wafers */
 
-static void put_place(const wh_record_t *record, json_t *object, const wh_place_t *place) {
-    const bool lies = place->station != WH_NONE;
-    (void)wh_json_add(object, "station slot dx dy dz tilt_deg",
-                      wh_json_text(wh_record_station_name(record, place->station)),
-                      lies ? json_integer(place->slot) : json_null(),
-                      lies ? wh_json_real((double)place->dx) : json_null(),
-                      lies ? wh_json_real((double)place->dy) : json_null(),
-                      lies ? wh_json_real((double)place->dz) : json_null(),
-                      lies ? wh_json_real((double)wh_deg_from_rad(place->tilt)) : json_null(), NULL);
-}
-
-/* Where the notch points, about the station's z from its x; about base's for a wafer in no slot. */
+/* Where the notch points, about the station's z from its x; about base's for a wafer in no slot. Infinite
+ * if there is none. */
 static double notch_deg(const wh_layout_t *layout, const wh_wafer_record_t *wafer) {
     wh_real_t sine = 0;
     wh_real_t cosine = 1;
-    wh_sin_cos((wh_real_t)layout->notch, &sine, &cosine);
+    wh_sin_cos(layout->notch, &sine, &cosine);
     const wh_vec3_t notch = {cosine, sine, 0};
+    if (!(layout->notch_depth > 0)) {
+        return HUGE_VAL;
+    }
     wh_vec3_t direction = wh_mat3_transform(&wafer->base_from_wafer.R, &notch);
     if (wafer->place.station != WH_NONE) {
         direction =
             wh_mat3_transform_back(&layout->places[wafer->place.station].base_from_station.R, &direction);
     }
-    return (double)wh_deg_from_rad(wh_atan2(direction.y, direction.x));
+    return wh_deg_from_rad(wh_atan2(direction.y, direction.x));
 }
 
 static json_t *wafer(const void *subject, size_t i) {
     const wh_record_t *record = subject;
     const wh_wafer_record_t *from = &record->wafers[i];
-    json_t *object =
-        wh_json_add(json_object(), "name holder", wh_json_text(wh_record_wafer_name(record, (int32_t)i)),
-                    wh_json_text(wh_record_gripper_name(record, from->holder)), NULL);
-    put_place(record, object, &from->place);
-    (void)wh_json_add(object, "notch_deg position rotation", wh_json_real(notch_deg(record->layout, from)),
-                      wh_json_vector(from->base_from_wafer.r), wh_json_matrix(&from->base_from_wafer.R),
-                      NULL);
-    return object;
+    const wh_place_t *place = &from->place;
+    const bool lies = place->station != WH_NONE;
+    json_t *object = wh_json_set(
+        json_object(), "name %s holder %s station %s slot %lld dx %g dy %g dz %g tilt_deg %g notch_deg %g",
+        wh_record_wafer_name(record, (int32_t)i), wh_record_gripper_name(record, from->holder),
+        wh_record_station_name(record, place->station), lies ? place->slot : WH_JSON_NONE,
+        lies ? place->dx : HUGE_VAL, lies ? place->dy : HUGE_VAL, lies ? place->dz : HUGE_VAL,
+        lies ? wh_deg_from_rad(place->tilt) : HUGE_VAL, notch_deg(record->layout, from));
+    return wh_json_add(object, "position rotation", wh_json_vector(from->base_from_wafer.r),
+                       wh_json_matrix(&from->base_from_wafer.R), NULL);
 }
 
 /* ------------------------------------------------------------------------------------------------- events */
@@ -94,16 +84,14 @@ static json_t *failed_conditions(unsigned failed) {
 
 static void put_measured(const wh_record_t *record, json_t *object, const wh_event_t *event) {
     const wh_proximity_t *measured = &event->measured;
-    (void)wh_json_add(
-        object, "dr_proj_z dr_proj_xy dr_proj_xy_norm n1_proj_n2 margins failed measured_utime",
-        wh_json_real(measured->dr_proj_z), wh_json_vector(measured->dr_proj_xy),
-        wh_json_real(measured->dr_proj_xy_norm), wh_json_real(measured->n1_proj_n2),
-        wh_json_add(json_object(), "projz projxy planar", wh_json_real(measured->margin_projz),
-                    wh_json_real(measured->margin_projxy), wh_json_real(measured->margin_planar), NULL),
-        failed_conditions(measured->failed),
-        record->layout ? json_integer((json_int_t)event->measured_slice * record->layout->slice_us)
-                       : json_null(),
-        NULL);
+    json_t *margins = wh_json_set(json_object(), "projz %g projxy %g planar %g", measured->margin_projz,
+                                  measured->margin_projxy, measured->margin_planar);
+    (void)wh_json_add(object, "dr_proj_xy margins failed", wh_json_vector(measured->dr_proj_xy), margins,
+                      failed_conditions(measured->failed), NULL);
+    (void)wh_json_set(object, "dr_proj_z %g dr_proj_xy_norm %g n1_proj_n2 %g measured_utime %lld",
+                      measured->dr_proj_z, measured->dr_proj_xy_norm, measured->n1_proj_n2,
+                      record->layout ? (json_int_t)event->measured_slice * record->layout->slice_us
+                                     : WH_JSON_NONE);
 }
 
 static bool is_unmeasured(wh_event_kind_t kind) {
@@ -122,32 +110,26 @@ static json_t *part_names(const wh_record_t *record, const int32_t parts[2]) {
     return json_pack("[o, o]", part_name(record, parts[0]), part_name(record, parts[1]));
 }
 
-/* A tilt in degrees, as everywhere in the result. */
-static json_t *found(const wh_event_t *event, wh_real_t value) {
-    const bool turned = event->kind == WH_EVENT_PLACED_ASKEW;
-    return wh_json_real((double)(turned ? wh_deg_from_rad(value) : value));
-}
-
 /* What was found against which limit, between which parts, by which fault. */
 static void put_found(const wh_record_t *record, json_t *object, const wh_event_t *event) {
-    static const uint32_t with_parts =
-        1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE;
     static const uint32_t with_values = 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_PLACED_OFF_CENTRE |
                                         1U << WH_EVENT_PLACED_ASKEW | 1U << WH_EVENT_SETTLED |
                                         1U << WH_EVENT_SLIPPED | 1U << WH_EVENT_VACUUM_LOST;
     static const uint32_t of_faults = 1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
     const uint32_t kind = 1U << (unsigned)event->kind;
-    if (kind & with_parts) {
+    if (wh_record_is_contact(event->kind)) {
         (void)wh_json_add(object, "parts at", part_names(record, event->parts), wh_json_vector(event->at),
                           NULL);
     }
     if (kind & with_values) {
-        (void)wh_json_add(object, "value limit", found(event, event->value), found(event, event->limit),
-                          NULL);
+        /* A tilt in degrees, as everywhere in the result. */
+        const bool turned = event->kind == WH_EVENT_PLACED_ASKEW;
+        (void)wh_json_set(object, "value %g limit %g", turned ? wh_deg_from_rad(event->value) : event->value,
+                          turned ? wh_deg_from_rad(event->limit) : event->limit);
     }
     if (kind & of_faults) {
-        (void)wh_json_add(object, "fault fault_kind", json_integer(event->parts[0] + 1),
-                          wh_json_text(wh_fault_name((wh_fault_kind_t)event->parts[1])), NULL);
+        (void)wh_json_set(object, "fault %d fault_kind %s", event->parts[0] + 1,
+                          wh_fault_name((wh_fault_kind_t)event->parts[1]));
     }
 }
 
@@ -155,20 +137,20 @@ static void put_found(const wh_record_t *record, json_t *object, const wh_event_
 static void put_particulars(const wh_record_t *record, json_t *object, const wh_event_t *event) {
     switch ((int)event->kind) {
     case WH_EVENT_HANDED_OVER:
-        wh_json_put_text(object, "from", wh_record_gripper_name(record, event->other));
+        (void)wh_json_set(object, "from %s", wh_record_gripper_name(record, event->other));
         break;
     case WH_EVENT_CONTESTED:
-        wh_json_put_text(object, "holder", wh_record_gripper_name(record, event->other));
+        (void)wh_json_set(object, "holder %s", wh_record_gripper_name(record, event->other));
         break;
     case WH_EVENT_SLOT_OCCUPIED:
-        wh_json_put_text(object, "other", wh_record_wafer_name(record, event->other));
+        (void)wh_json_set(object, "other %s", wh_record_wafer_name(record, event->other));
         break;
     case WH_EVENT_RELEASED_UNSUPPORTED:
-        wh_json_put_real(object, "height", event->height);
+        (void)wh_json_set(object, "height %g", event->height);
         break;
     case WH_EVENT_BAD_INPUT:
-        (void)wh_json_add(object, "status message", json_integer((json_int_t)event->status),
-                          wh_json_text(wh_record_error_text(event->status)), NULL);
+        (void)wh_json_set(object, "status %d message %s", (int)event->status,
+                          wh_record_error_text(event->status));
         break;
     default:
         put_found(record, object, event);
@@ -179,16 +161,15 @@ static void put_particulars(const wh_record_t *record, json_t *object, const wh_
 static json_t *event(const void *subject, size_t i) {
     const wh_record_t *record = subject;
     const wh_event_record_t *from = &record->events[i];
-    json_t *object = wh_json_add(json_object(), "utime kind wafer gripper", json_integer(from->utime),
-                                 wh_json_text(wh_event_name(from->event.kind)),
-                                 wh_json_text(wh_record_wafer_name(record, from->event.wafer)),
-                                 wh_json_text(wh_record_gripper_name(record, from->event.gripper)), NULL);
-    if (is_unmeasured(from->event.kind)) {
-        /* The same keys for an event that measured nothing. */
-        (void)wh_json_add(
-            object, "dr_proj_z dr_proj_xy dr_proj_xy_norm n1_proj_n2 margins failed measured_utime",
-            json_null(), json_null(), json_null(), json_null(), json_null(), json_null(), json_null(), NULL);
-    } else {
+    json_t *object =
+        wh_json_set(json_object(), "utime %lld kind %s wafer %s gripper %s", (json_int_t)from->utime,
+                    wh_event_name(from->event.kind), wh_record_wafer_name(record, from->event.wafer),
+                    wh_record_gripper_name(record, from->event.gripper));
+    /* An event that measured nothing has the same keys. */
+    (void)wh_json_add(object, "dr_proj_z dr_proj_xy dr_proj_xy_norm n1_proj_n2 margins failed measured_utime",
+                      json_null(), json_null(), json_null(), json_null(), json_null(), json_null(),
+                      json_null(), NULL);
+    if (!is_unmeasured(from->event.kind)) {
         put_measured(record, object, &from->event);
     }
     put_particulars(record, object, &from->event);
@@ -204,12 +185,11 @@ static json_t *clearance(const void *subject, size_t kind) {
     const wh_layout_t *layout = record->layout;
     const wh_real_t limit = layout->world.limits[kind];
     const bool found = from->parts[0] != WH_NONE;
-    return wh_json_add(json_object(), "kind gap limit utime parts at",
-                       wh_json_text(wh_clearance_name((wh_clearance_kind_t)kind)),
-                       found ? wh_json_real((double)from->gap) : json_null(),
-                       limit > 0 ? wh_json_real((double)limit) : json_null(),
-                       found ? json_integer((json_int_t)from->slice * layout->slice_us) : json_null(),
-                       found ? part_names(record, from->parts) : json_null(),
+    json_t *object = wh_json_set(json_object(), "kind %s gap %g limit %g utime %lld",
+                                 wh_clearance_name((wh_clearance_kind_t)kind), found ? from->gap : HUGE_VAL,
+                                 limit > 0 ? limit : HUGE_VAL,
+                                 found ? (json_int_t)from->slice * layout->slice_us : WH_JSON_NONE);
+    return wh_json_add(object, "parts at", found ? part_names(record, from->parts) : json_null(),
                        found ? wh_json_vector(from->at) : json_null(), NULL);
 }
 
@@ -221,46 +201,55 @@ static json_t *curve(const void *subject, size_t kind) {
     if (record->clearances[kind].parts[0] == WH_NONE) {
         return NULL;
     }
-    const int64_t slice_us = record->layout->slice_us;
-    json_t *object = json_object();
+    json_t *object = wh_json_set(json_object(), "kind %s", wh_clearance_name((wh_clearance_kind_t)kind));
     json_t *times = json_array();
     json_t *gaps = json_array();
     for (size_t bin = 0; bin < curves->count; ++bin) {
         const int64_t slice = (int64_t)(curves->first + (bin + 1) * curves->slices);
         const wh_real_t gap = curves->gaps[kind][bin];
-        wh_json_append(times, wh_json_real((double)(slice * slice_us) / 1e6));
-        wh_json_append(gaps, gap < WH_CLEARANCE_RANGE ? wh_json_real((double)gap) : json_null());
+        wh_json_append(times, wh_json_real(wh_throughput_seconds(record, slice)));
+        wh_json_append(gaps, wh_json_real(gap < WH_CLEARANCE_RANGE ? gap : HUGE_VAL));
     }
-    (void)wh_json_add(object, "kind times_s gaps", wh_json_text(wh_clearance_name((wh_clearance_kind_t)kind)),
-                      times, gaps, NULL);
-    return object;
+    return wh_json_add(object, "times_s gaps", times, gaps, NULL);
 }
 
 /* --------------------------------------------------------------------------------------------- throughput */
 
-static json_t *throughput(const wh_record_t *record) {
+/* The stations of which a put is a wafer done. */
+static json_t *counting(const wh_record_t *record) {
+    json_t *list = json_array();
+    for (size_t s = 0; record->layout && s < record->layout->station_count; ++s) {
+        if (record->layout->stations[s].counts) {
+            wh_json_append(list, wh_json_text(record->layout->stations[s].name));
+        }
+    }
+    return list;
+}
+
+json_t *wh_throughput_to_json(const wh_record_t *record) {
     const wh_throughput_t found = wh_throughput(record);
-    return wh_json_add(json_object(), "wafers seconds wafers_per_hour first_cycle last_cycle puts rule",
-                       json_integer((json_int_t)found.wafers), wh_json_real(found.seconds),
-                       wh_json_real(found.wafers_per_hour),
-                       found.first > 0 ? json_integer((json_int_t)found.first) : json_null(),
-                       found.first > 0 ? json_integer((json_int_t)found.last) : json_null(),
-                       json_integer((json_int_t)found.puts), wh_json_text(wh_throughput_rule(found.rank)),
-                       NULL);
+    const bool given = found.figure == WH_FIGURE_GIVEN;
+    json_t *object = wh_json_set(
+        json_object(),
+        "wafers_per_hour %g reason %s wafers %lld seconds %g first_cycle %lld last_cycle %lld puts %lld",
+        given ? found.wafers_per_hour : HUGE_VAL, wh_throughput_reason(found.figure),
+        (json_int_t)found.wafers, found.seconds, found.first > 0 ? (json_int_t)found.first : WH_JSON_NONE,
+        found.first > 0 ? (json_int_t)found.last : WH_JSON_NONE, (json_int_t)found.puts);
+    wh_json_put(object, "counting", counting(record));
+    return object;
 }
 
 /* ------------------------------------------------------------------------------------------------- cycles */
 
 static json_t *cycle(const wh_record_t *record, size_t i, size_t wafers) {
     const wh_cycle_record_t *from = &record->cycles[i];
-    return wh_json_add(json_object(), "line name begin_s end_s wafers", json_integer(from->line),
-                       from->name[0] != '\0' ? wh_json_text(from->name) : json_null(),
-                       seconds(record, from->begin), seconds(record, wh_throughput_cycle_end(record, i)),
-                       json_integer((json_int_t)wafers), NULL);
+    return wh_json_set(json_object(), "line %d name %s begin_s %g end_s %g wafers %lld", from->line,
+                       from->name[0] != '\0' ? from->name : NULL, wh_throughput_seconds(record, from->begin),
+                       wh_throughput_seconds(record, wh_throughput_cycle_end(record, i)), (json_int_t)wafers);
 }
 
 static json_t *cycles(const wh_record_t *record) {
-    size_t *wafers = wh_throughput_cycle_wafers(record, wh_throughput(record).rank);
+    size_t *wafers = wh_throughput_cycle_wafers(record);
     json_t *list = json_array();
     for (size_t i = 0; i < record->cycle_count; ++i) {
         wh_json_append(list, cycle(record, i, wafers[i]));
@@ -271,20 +260,20 @@ static json_t *cycles(const wh_record_t *record) {
 
 /* -------------------------------------------------------------------------------------------------- gantt */
 
-static json_t *interval_what(const wh_record_t *record, const wh_busy_span_t *interval) {
+static const char *interval_what(const wh_record_t *record, const wh_busy_span_t *interval) {
     static const char *const shares[WH_SHARES] = {"loaded", "empty", "vacuum", "handover", "waiting"};
     if (interval->who == WH_BUSY_WAFER) {
-        return wh_json_text(wh_record_wafer_name(record, interval->what - 1));
+        return wh_record_wafer_name(record, interval->what - 1);
     }
-    return json_string(interval->who == WH_BUSY_VALVE ? "open" : shares[interval->what - 1]);
+    return interval->who == WH_BUSY_VALVE ? "open" : shares[interval->what - 1];
 }
 
 static json_t *interval(const wh_record_t *record, const wh_busy_span_t *from) {
     static const char *const resources[] = {"robot", "chuck", "gripper", "valve"};
-    return wh_json_add(json_object(), "resource gripper from_s to_s what", wh_json_text(resources[from->who]),
-                       wh_json_text(wh_record_gripper_name(record, from->gripper)),
-                       seconds(record, from->begin), seconds(record, from->end), interval_what(record, from),
-                       NULL);
+    return wh_json_set(json_object(), "resource %s gripper %s from_s %g to_s %g what %s",
+                       resources[from->who], wh_record_gripper_name(record, from->gripper),
+                       wh_throughput_seconds(record, from->begin), wh_throughput_seconds(record, from->end),
+                       interval_what(record, from));
 }
 
 /* By resource, then by time. */
@@ -313,12 +302,11 @@ static json_t *reach(const void *subject, size_t i) {
     if (from->slot == 0) {
         return NULL;
     }
-    return wh_json_add(json_object(), "station slot axis margin at end unit",
-                       wh_json_text(wh_record_station_name(record, (int32_t)(i / WH_ROBOT_AXES))),
-                       json_integer(from->slot), wh_json_text(names[axis]),
-                       wh_json_real((double)(turns ? wh_deg_from_rad(from->margin) : from->margin)),
-                       wh_json_real((double)(turns ? wh_deg_from_rad(from->at) : from->at)),
-                       wh_json_text(from->is_max ? "max" : "min"), wh_json_text(turns ? "deg" : "mm"), NULL);
+    return wh_json_set(json_object(), "station %s slot %d axis %s margin %g at %g end %s unit %s",
+                       wh_record_station_name(record, (int32_t)(i / WH_ROBOT_AXES)), from->slot, names[axis],
+                       turns ? wh_deg_from_rad(from->margin) : from->margin,
+                       turns ? wh_deg_from_rad(from->at) : from->at, from->is_max ? "max" : "min",
+                       turns ? "deg" : "mm");
 }
 
 /* ---------------------------------------------------------------------------------------------------- all */
@@ -326,24 +314,42 @@ static json_t *reach(const void *subject, size_t i) {
 static json_t *expectation(const void *subject, size_t i) {
     const wh_record_t *record = subject;
     const wh_expectation_record_t *from = &record->expectations[i];
-    return wh_json_add(json_object(), "line text ok", json_integer(from->line), wh_json_text(from->text),
-                       json_boolean(from->ok), NULL);
+    return wh_json_set(json_object(), "line %d text %s ok %i", from->line, from->text, from->ok);
+}
+
+static json_t *log_note(const void *subject, size_t i) {
+    return wh_json_text(((const wh_record_log_t *)subject)->notes[i]);
+}
+
+static json_t *log_of(const wh_record_log_t *log) {
+    json_t *object = wh_json_set(json_object(), "verdict %s reason %s id %llx part %lld", log->verdict,
+                                 log->reason[0] ? log->reason : NULL, (unsigned long long)log->id,
+                                 log->has_id ? log->part : WH_JSON_NONE);
+    if (!log->has_id) {
+        wh_json_put(object, "id", json_null());
+    }
+    wh_json_put(object, "notes", wh_json_list(log_note, log, log->note_count));
+    return object;
 }
 
 static void put_head(const wh_record_t *record, json_t *root) {
-    wh_json_put_integer(root, "format", FORMAT);
-    wh_json_put(root, "ok", record->is_untold ? json_null() : json_boolean(record->ok));
-    if (record->failure) {
-        wh_json_put_text(root, "failure", record->failure);
+    (void)wh_json_set(root, "format %d", FORMAT);
+    const bool moved_nothing = wh_record_moved_nothing(record);
+    wh_json_put(root, "ok", record->is_untold || moved_nothing ? json_null() : json_boolean(record->ok));
+    if (moved_nothing) {
+        wh_json_put(root, "nothing_moved", json_true());
     }
-    wh_json_put_text(root, "script", record->script);
-    wh_json_put_text(root, "layout", record->layout ? record->layout->path : NULL);
-    wh_json_put_integer(root, "slices", record->slices);
-    wh_json_put_integer(root, "missed", record->missed);
-    wh_json_put_real(root, "simulated_s", record->simulated_s);
-    wh_json_put_real(root, "wall_s", record->wall_s);
-    wh_json_put(root, "hash", json_sprintf("%016llx", (unsigned long long)record->hash));
-    wh_json_put(root, "throughput", throughput(record));
+    if (record->failure) {
+        (void)wh_json_set(root, "failure %s", record->failure);
+    }
+    if (record->log) {
+        wh_json_put(root, "log", log_of(record->log));
+    }
+    (void)wh_json_set(root, "script %s layout %s slices %lld missed %lld simulated_s %g wall_s %g hash %llx",
+                      record->script, record->layout ? record->layout->path : NULL,
+                      (json_int_t)record->slices, (json_int_t)record->missed, record->simulated_s,
+                      record->wall_s, (unsigned long long)record->hash);
+    wh_json_put(root, "throughput", wh_throughput_to_json(record));
     wh_json_put(root, "split", split_of(record, record->activity.shares));
 }
 

@@ -10,12 +10,16 @@
  * not to be rounded onto a limit or across it; offsets show 1e-9 mm. The same record gives the same bytes,
  * but for the wall time in the last lines. Nothing is cut off at any width.
  *
- * As JSON, one object, its lists with one element a line. The keys, in this order: format (1), ok, failure
- * (only when the run ended in one), script, layout (path or null), slices, missed, simulated_s, wall_s,
+ * As JSON, one object, its lists with one element a line. The keys, in this order: format (2), ok (null if a
+ * log does not show it, and if no command came), nothing_moved (true, only when no command came), failure
+ * (only when the run ended in one), log (only when the run was read from one: { verdict, reason (null if it
+ * is the same), id (16 hex digits; null: it is no recording of ours), part, notes [text] }), script, layout
+ * (path or null), slices, missed, simulated_s, wall_s,
  * hash (16 hex digits),
- *   throughput:   { wafers, seconds, wafers_per_hour, first_cycle, last_cycle (of the marked cycles that
- *                 count, from 1; null: the whole run counts), puts (all of the run), rule (which puts
- *                 count, in words; null: there are none) }: see record/throughput.h
+ *   throughput:   { wafers_per_hour (null: there is no figure), reason (why not, in words, or null),
+ *                 wafers, seconds, first_cycle, last_cycle (of the marked cycles that count, from 1; null:
+ *                 the whole run counts), puts (all of the run), counting (the names of the stations that
+ *                 count) }: see record/throughput.h
  *   split:        { motion_s, of it loaded_s and empty_s, vacuum_s, handover_s (valves switching),
  *                 waiting_s }: what the run's time went into; motion, vacuum, handover and waiting add up
  *                 to simulated_s
@@ -24,7 +28,8 @@
  *                 is one
  *   wafers:       name, holder (or null), station, slot, dx, dy, dz (mm), tilt_deg (all six null when it
  *                 lies in no slot), notch_deg (where its notch points, about the station's z from its x; in
- *                 no slot about base's), position [3] (mm), rotation [3][3] (row by row)
+ *                 no slot about base's; null without a notch), position [3] (mm), rotation [3][3]
+ *                 (row by row)
  *   events:       utime (us), kind, wafer, gripper (names or null), dr_proj_z, dr_proj_xy [3],
  *                 dr_proj_xy_norm (mm), n1_proj_n2, margins { projz, projxy, planar }, failed (a list of
  *                 "projz", "projxy", "planar"), measured_utime (us, null without a layout); and by kind:
@@ -75,7 +80,8 @@ int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t
  * memory once more. */
 int wh_record_print_json(const wh_record_t *record, FILE *out);
 
-/* The object itself; the caller releases it. */
+/* The object itself, and its `throughput` alone; the caller releases it. */
+json_t *wh_throughput_to_json(const wh_record_t *record);
 json_t *wh_record_to_json(const wh_record_t *record);
 
 #endif

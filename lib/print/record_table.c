@@ -1,34 +1,232 @@
 #include "record_print.h"
 
-#include "../mcs/mcs.h"
+#include <stdlib.h>
+
+#include "../math/trig.h"
+#include "../sim/event_text.h"
+#include "../text/array.h"
 #include "print_internal.h"
 
 /* ------------------------------------------------------------------------------------------------ heading */
+
+/* The angle, in degrees, between wafer and gripper whose cosine is (2). */
+static double tilt_deg_of(double n1_proj_n2) {
+    return wh_deg_from_rad(wh_acos(n1_proj_n2));
+}
 
 /* "tolerance paper: |dr_proj_z| < 0.5 mm, ...; sampled every 1 ms" */
 static void print_tolerance(const wh_printer_t *printer) {
     const wh_layout_t *layout = printer->record->layout;
     const wh_tolerance_t *limits = &layout->grasp.tolerance;
-    fprintf(printer->out,
-            "tolerance %s: |dr_proj_z| < %.10g mm, |dr_proj_xy| < %.10g mm, n1_proj_n2 > %.10g (%.2f%s)\n",
-            layout->tolerance_name, (double)limits->projz, (double)limits->projxy, (double)limits->planar,
-            wh_print_tilt_deg((double)limits->planar), wh_style_glyph(printer->style, WH_GLYPH_DEGREE));
-    fprintf(printer->out, "checked %s %g ms; wafers %s\n",
-            layout->grasp.check == WH_CHECK_SWEPT ? "along the whole of each slice of"
-                                                  : "once a slice, every",
+    fprintf(
+        printer->out,
+        "tolerance %s: |dr_proj_z| < %.10g mm%s, |dr_proj_xy| < %.10g mm%s, n1_proj_n2 > %.10g (%.2f%s)%s\n",
+        layout->tolerance_name, limits->projz, wh_print_default(layout, 0), limits->projxy,
+        wh_print_default(layout, 1), limits->planar, tilt_deg_of(limits->planar),
+        wh_style_glyph(printer->style, WH_GLYPH_DEGREE), wh_print_default(layout, 2));
+    fprintf(printer->out, "checked %s %g ms; wafers %s\n", wh_print_check(layout),
             (double)layout->slice_us / 1e3,
             layout->grasp.seat ? "are drawn flat onto the pads" : "stay as they were taken");
 }
 
 static void print_heading(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
-    wh_print_put(printer, record->script ? record->script : "(no script)");
-    fputs(" on ", printer->out);
-    wh_print_put(printer, record->layout ? record->layout->path : "no layout");
+    wh_print_say(printer, "%s on %s", record->script ? record->script : "(no script)",
+                 record->layout ? record->layout->path : "no layout");
     fputc('\n', printer->out);
     if (record->layout) {
         print_tolerance(printer);
     }
+}
+
+/* --------------------------------------------------------------------------------------------- complaints */
+
+/* Misses and complaints: what almost happened or should not have, and which condition failed by how much. */
+enum { AT, WHAT, WAFER, GRIPPER, MEASURED, WHY = MEASURED + WH_PRINT_MEASURED_COLUMNS };
+
+static const char *part_name(const wh_layout_t *layout, int32_t part) {
+    const char *name = layout ? wh_layout_part_name(layout, part) : NULL;
+    return name ? name : "more than can be looked at";
+}
+
+static const char *find_name(const void *user, wh_name_kind_t kind, int32_t index) {
+    const wh_printer_t *printer = user;
+    if (kind == WH_NAME_PART) {
+        return part_name(printer->record->layout, index);
+    }
+    return kind == WH_NAME_WAFER ? wh_print_wafer(printer, index) : wh_print_gripper(printer, index);
+}
+
+/* One row for each reason, the first of them the event's own. */
+static void say_why(const wh_printer_t *printer, wh_grid_t *grid, double at, const wh_event_t *event) {
+    const wh_layout_t *layout = printer->record->layout;
+    const wh_event_names_t names = {find_name, printer, 1, layout ? &layout->grasp.tolerance : NULL,
+                                    wh_style_glyph(printer->style, WH_GLYPH_DEGREE)};
+    char why[WH_EVENT_TEXT_SIZE];
+    const bool is_unknown = event->kind == WH_EVENT_NEAR_MISS && !layout;
+    for (size_t i = 0; !is_unknown && wh_event_reason(event, &names, i, why, sizeof why) > 0; ++i) {
+        if (i > 0) {
+            wh_grid_row(grid);
+            wh_grid_number(grid, AT, WH_INK_DIM, at);
+        }
+        wh_grid_text(grid, WHY, WH_INK_PLAIN, "%s", why);
+    }
+}
+
+static void add_event(const wh_printer_t *printer, wh_grid_t *grid, const wh_event_record_t *record) {
+    const wh_event_t *event = &record->event;
+    const double at = (double)record->utime / 1e6;
+    char what[32];
+    wh_text_words(what, sizeof what, wh_event_name(event->kind));
+    wh_grid_row(grid);
+    wh_grid_number(grid, AT, WH_INK_PLAIN, at);
+    wh_grid_text(grid, WHAT, wh_print_is_complaint(event->kind) ? WH_INK_BAD : WH_INK_WARN, "%s", what);
+    wh_grid_text(grid, WAFER, WH_INK_PLAIN, "%s", wh_print_wafer(printer, event->wafer));
+    wh_grid_text(grid, GRIPPER, WH_INK_PLAIN, "%s", wh_print_gripper(printer, event->gripper));
+    if (event->kind == WH_EVENT_NEAR_MISS || event->kind == WH_EVENT_CONTESTED) {
+        wh_print_measured(printer, grid, MEASURED, event);
+    }
+    say_why(printer, grid, at, event);
+}
+
+/* True if an event belongs among the misses. */
+static bool is_miss(wh_event_kind_t kind) {
+    static const uint32_t others = 1U << WH_EVENT_NEAR_MISS | 1U << WH_EVENT_VACUUM_LOST |
+                                   1U << WH_EVENT_FAULT_ARMED | 1U << WH_EVENT_FAULT_CLEARED;
+    return (others >> (unsigned)kind & 1U) != 0 || wh_print_is_complaint(kind);
+}
+
+static void print_complaints(const wh_printer_t *printer) {
+    const wh_record_t *record = printer->record;
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, "at s{3,6};what;wafer;gripper");
+    wh_print_measured_columns(printer, grid);
+    wh_grid_columns(grid, "why");
+    for (size_t i = 0; i < record->event_count; ++i) {
+        if (is_miss(record->events[i].event.kind)) {
+            add_event(printer, grid, &record->events[i]);
+        }
+    }
+    wh_print_titled(printer, "Misses and complaints", grid);
+}
+
+/* ------------------------------------------------------------------------------------------------- wafers */
+
+/* Where the wafers are at the end, and which of them a gripper carries tilted. */
+enum { NAME, HELD_BY, LIES_IN, DX };
+
+/* Above this many wafers only those are listed that something happened to. */
+#define LISTED_ALL 30
+
+/* A tilt that is worth a sentence, degrees: what the table shows as more than 0.000. */
+#define TILT_SHOWN_DEG 0.0005
+
+/* By wafer: 1 + index of the last event that names it, and of the last pick by an end-effector; 0: none. */
+typedef struct {
+    size_t *named, *picked;
+} history_t;
+
+static void read_history(const wh_record_t *record, const history_t *history) {
+    for (size_t i = 0; i < record->event_count; ++i) {
+        const wh_event_t *event = &record->events[i].event;
+        if (event->wafer < 0 || (size_t)event->wafer >= record->layout->wafer_count) {
+            continue;
+        }
+        const bool taken = event->kind == WH_EVENT_PICKED || event->kind == WH_EVENT_HANDED_OVER;
+        history->named[event->wafer] = i + 1;
+        if (taken && wh_is_index(event->gripper, record->layout->machine.gripper_count) &&
+            record->layout->grippers[event->gripper].station == WH_NONE) {
+            history->picked[event->wafer] = i + 1;
+        }
+    }
+}
+
+static void fill_place(const wh_printer_t *printer, wh_grid_t *grid, const wh_wafer_record_t *wafer) {
+    const wh_place_t *place = &wafer->place;
+    const char *station = wh_record_station_name(printer->record, place->station);
+    if (!station) {
+        wh_grid_text(grid, LIES_IN, wafer->holder == WH_NONE ? WH_INK_BAD : WH_INK_PLAIN, "no slot");
+        return;
+    }
+    wh_grid_text(grid, LIES_IN, WH_INK_PLAIN, "%s %d", station, (int)place->slot);
+    const double values[] = {place->dx, place->dy, place->dz, wh_deg_from_rad(place->tilt)};
+    wh_grid_numbers(grid, DX, values, 4);
+}
+
+static void add_wafer(const wh_printer_t *printer, wh_grid_t *grid, size_t i) {
+    const wh_wafer_record_t *wafer = &printer->record->wafers[i];
+    wh_grid_named_row(grid, wh_print_wafer(printer, (int32_t)i));
+    if (wafer->holder != WH_NONE) {
+        wh_grid_text(grid, HELD_BY, WH_INK_PLAIN, "%s", wh_print_gripper(printer, wafer->holder));
+    }
+    fill_place(printer, grid, wafer);
+}
+
+/* Returns how many wafers were left out. */
+static size_t add_wafers(const wh_printer_t *printer, wh_grid_t *grid, const history_t *history) {
+    const wh_record_t *record = printer->record;
+    const size_t count = record->layout->wafer_count;
+    size_t left_out = 0;
+    for (size_t i = 0; i < count; ++i) {
+        if (count <= LISTED_ALL || history->named[i] != 0 || record->wafers[i].holder != WH_NONE) {
+            add_wafer(printer, grid, i);
+        } else {
+            ++left_out;
+        }
+    }
+    return left_out;
+}
+
+static void say_tilt(const wh_printer_t *printer, size_t wafer, const wh_event_t *pick, double tilt_deg) {
+    const bool seated = printer->record->layout->grasp.seat;
+    const char *degree = wh_style_glyph(printer->style, WH_GLYPH_DEGREE);
+    wh_print_say(printer, seated ? "%s was at %.3f%s to %s" : "%s keeps %.3f%s against %s",
+                 wh_print_wafer(printer, (int32_t)wafer), tilt_deg, degree,
+                 wh_print_gripper(printer, pick->gripper));
+    if (seated) {
+        fputs(" when it was taken, and was drawn flat onto the pads.\n", printer->out);
+    } else {
+        fprintf(printer->out, ", its rim %.2f mm from the pads' plane: the robot cannot tilt.\n",
+                wh_print_rim_gap(printer, pick));
+    }
+}
+
+static void say_tilts(const wh_printer_t *printer, const history_t *history) {
+    for (size_t i = 0; i < printer->record->layout->wafer_count; ++i) {
+        if (history->picked[i] == 0) {
+            continue;
+        }
+        const wh_event_t *pick = &printer->record->events[history->picked[i] - 1].event;
+        const double tilt_deg = tilt_deg_of(pick->measured.n1_proj_n2);
+        if (tilt_deg >= TILT_SHOWN_DEG) {
+            say_tilt(printer, i, pick, tilt_deg);
+        }
+    }
+}
+
+static void print_ends(const wh_printer_t *printer, const history_t *history) {
+    wh_grid_t *grid = wh_grid_new(printer->style, 1,
+                                  "wafer;held by;lies in;dX mm{4,9};dY mm{4,9};dz mm{4,9};tilt deg{3,6}");
+    const size_t left_out = add_wafers(printer, grid, history);
+    wh_print_title(printer, "Wafers");
+    wh_grid_print(grid, printer->out);
+    if (left_out > 0) {
+        wh_print_counted(printer->out, (int64_t)left_out, "wafer lies", "wafers lie");
+        fputs(" where nothing happened to them\n", printer->out);
+    }
+    say_tilts(printer, history);
+}
+
+static void print_wafers(const wh_printer_t *printer) {
+    const wh_layout_t *layout = printer->record->layout;
+    if (!layout || layout->wafer_count == 0) {
+        return;
+    }
+    const history_t history = {wh_array_new(layout->wafer_count, sizeof(size_t)),
+                               wh_array_new(layout->wafer_count, sizeof(size_t))};
+    read_history(printer->record, &history);
+    print_ends(printer, &history);
+    free(history.named);
+    free(history.picked);
 }
 
 /* ------------------------------------------------------------------------------------------- expectations */
@@ -44,10 +242,7 @@ static size_t count_unmet(const wh_record_t *record) {
 }
 
 static void print_unmet(const wh_printer_t *printer) {
-    wh_grid_t *grid = wh_grid_new(printer->style, 0);
-    wh_grid_text_columns(grid, "", NULL);
-    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
-    wh_grid_text_columns(grid, "expected", NULL);
+    wh_grid_t *grid = wh_grid_new(printer->style, 0, ";line{0};expected");
     for (size_t i = 0; i < printer->record->expectation_count; ++i) {
         const wh_expectation_record_t *expectation = &printer->record->expectations[i];
         if (expectation->ok) {
@@ -94,14 +289,12 @@ static void print_times(const wh_printer_t *printer) {
     fprintf(printer->out, "; %.3f s of wall time", record->wall_s);
     if (record->wall_s > 0 && record->simulated_s > record->wall_s) {
         const double times = record->simulated_s / record->wall_s;
+        char text[WH_PRINT_NUMBER_SIZE];
+        (void)wh_print_count(text, times < 9e15 ? (int64_t)times : INT64_C(9000000000000000));
         if (times < 10) {
-            fprintf(printer->out, ", %.1f", times);
-        } else {
-            char text[WH_PRINT_NUMBER_SIZE];
-            wh_print_count(text, times < 9e15 ? (int64_t)times : INT64_C(9000000000000000));
-            fprintf(printer->out, ", %s", text);
+            snprintf(text, sizeof text, "%.1f", times);
         }
-        fputs(" times faster than real time", printer->out);
+        fprintf(printer->out, ", %s times faster than real time", text);
     }
     fputc('\n', printer->out);
     wh_print_throughput(printer);
@@ -125,7 +318,7 @@ static size_t count_errors(const wh_record_t *record) {
     return errors;
 }
 
-/* Errors that the script caught are none. Complaints are, whatever was expected. */
+/* Errors that the script caught are no reason. Complaints are, whatever was expected. */
 static void put_reasons(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
     const size_t unmet = count_unmet(record);
@@ -147,15 +340,23 @@ static void put_reasons(const wh_printer_t *printer) {
 
 static void print_summary(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
+    const char *verdict = record->ok ? "ok" : "failed";
+    wh_ink_t ink = record->ok ? WH_INK_GOOD : WH_INK_BAD;
+    if (wh_record_moved_nothing(record)) {
+        verdict = "nothing moved";
+        ink = WH_INK_WARN;
+    }
     print_times(printer);
-    wh_style_print(printer->style, printer->out, record->ok ? WH_INK_GOOD : WH_INK_BAD, "%s",
-                   record->ok ? "ok" : "failed");
+    wh_style_print(printer->style, printer->out, ink, "%s", verdict);
     if (!record->ok) {
         put_reasons(printer);
+    } else {
+        const char *before = ", ";
+        put_reason(printer->out, &before, count_errors(record), "error caught", "errors caught");
     }
     fputc('\n', printer->out);
     if (record->failure) {
-        wh_print_put(printer, record->failure);
+        wh_print_say(printer, "%s", record->failure);
         fputc('\n', printer->out);
     }
 }
@@ -168,10 +369,9 @@ int wh_record_print_table(const wh_record_t *record, FILE *out, const wh_style_t
     wh_print_commands(&printer);
     wh_print_errors(&printer);
     wh_print_handovers(&printer);
-    wh_print_complaints(&printer);
+    print_complaints(&printer);
     wh_print_clearances(&printer);
-    wh_print_curves(&printer);
-    wh_print_wafers(&printer);
+    print_wafers(&printer);
     if (sections & WH_TABLE_GANTT) {
         wh_print_gantt(&printer);
         wh_print_times(&printer);

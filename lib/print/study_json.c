@@ -2,20 +2,16 @@
 #include <math.h>
 
 #include "../text/json.h"
+#include "record_print.h"
 #include "study_print.h"
-
-static void put_count(json_t *object, const char *key, uint64_t value) {
-    wh_json_put_integer(object, key, (json_int_t)value);
-}
 
 static void put_rate(json_t *object, uint64_t hits, uint64_t trials) {
     const wh_confidence_t rate = wh_wilson_interval(hits, trials);
-    (void)wh_json_add(object, "rate low high", wh_json_real(rate.rate), wh_json_real(rate.low),
-                      wh_json_real(rate.high), NULL);
+    (void)wh_json_set(object, "rate %g low %g high %g", rate.rate, rate.low, rate.high);
 }
 
-static void put_trial(json_t *object, const char *key, uint64_t trial) {
-    wh_json_put(object, key, trial == WH_TALLY_NO_TRIAL ? json_null() : json_integer((json_int_t)trial));
+static json_int_t number_of(uint64_t trial) {
+    return trial == WH_TALLY_NO_TRIAL ? WH_JSON_NONE : (json_int_t)trial;
 }
 
 /* --------------------------------------------------------------------------------------------------- rows */
@@ -25,24 +21,20 @@ static json_t *expectation(const void *subject, size_t i) {
     const wh_tally_row_t *row = &result->tally->expectations.rows[i];
     char expected[4096];
     wh_study_expected(row->text, expected, sizeof expected);
-    json_t *object = wh_json_add(json_object(), "line text seen met", json_integer(row->line),
-                                 wh_json_text(expected), json_integer((json_int_t)row->seen),
-                                 json_integer((json_int_t)(row->seen - row->bad)), NULL);
+    json_t *object = wh_json_set(json_object(), "line %d text %s seen %lld met %lld", row->line, expected,
+                                 (json_int_t)row->seen, (json_int_t)(row->seen - row->bad));
     put_rate(object, row->seen - row->bad, row->seen);
-    put_trial(object, "first_missed", row->first);
-    return object;
+    return wh_json_set(object, "first_missed %lld", number_of(row->first));
 }
 
 static json_t *error(const void *subject, size_t i) {
     const wh_study_result_t *result = subject;
     const wh_tally_row_t *row = &result->tally->errors.rows[i];
-    json_t *object = wh_json_add(json_object(), "line text error name trials", json_integer(row->line),
-                                 wh_json_text(row->text), json_integer(row->place),
-                                 wh_json_text(wh_status_name((wh_status_t)row->place)),
-                                 json_integer((json_int_t)row->bad), NULL);
+    json_t *object =
+        wh_json_set(json_object(), "line %d text %s error %d name %s trials %lld", row->line, row->text,
+                    row->place, wh_status_name((wh_status_t)row->place), (json_int_t)row->bad);
     put_rate(object, row->bad, result->tally->trials);
-    put_trial(object, "first", row->first);
-    return object;
+    return wh_json_set(object, "first %lld", number_of(row->first));
 }
 
 /* Null for a kind that never happened. */
@@ -52,12 +44,10 @@ static json_t *event(const void *subject, size_t kind) {
     if (counted->trials == 0) {
         return NULL;
     }
-    json_t *object =
-        wh_json_add(json_object(), "kind trials", wh_json_text(wh_event_name((wh_event_kind_t)kind)),
-                    json_integer((json_int_t)counted->trials), NULL);
+    json_t *object = wh_json_set(json_object(), "kind %s trials %lld", wh_event_name((wh_event_kind_t)kind),
+                                 (json_int_t)counted->trials);
     put_rate(object, counted->trials, result->tally->trials);
-    put_count(object, "total", counted->total);
-    return object;
+    return wh_json_set(object, "total %lld", (json_int_t)counted->total);
 }
 
 /* ------------------------------------------------------------------------------------------------- wafers */
@@ -68,14 +58,13 @@ static json_t *figures(const wh_sum_t *sum, double nominal) {
         uint32_t permille;
     } quantiles[] = {{"p0_1", 1},  {"p1", 10},   {"p5", 50},    {"p50", 500},
                      {"p95", 950}, {"p99", 990}, {"p99_9", 999}};
-    json_t *object =
-        wh_json_add(json_object(), "mean deviation min", wh_json_real(nominal + wh_sum_mean(sum)),
-                    wh_json_real(wh_sum_deviation(sum)), wh_json_real(nominal + wh_sum_least(sum)), NULL);
+    json_t *object = wh_json_set(json_object(), "mean %g deviation %g min %g", nominal + wh_sum_mean(sum),
+                                 wh_sum_deviation(sum), nominal + wh_sum_least(sum));
     for (size_t i = 0; i < sizeof quantiles / sizeof quantiles[0]; ++i) {
-        wh_json_put_real(object, quantiles[i].key, nominal + wh_sum_quantile(sum, quantiles[i].permille));
+        wh_json_put(object, quantiles[i].key,
+                    wh_json_real(nominal + wh_sum_quantile(sum, quantiles[i].permille)));
     }
-    wh_json_put_real(object, "max", nominal + wh_sum_most(sum));
-    return object;
+    return wh_json_set(object, "max %g", nominal + wh_sum_most(sum));
 }
 
 static json_t *wafer(const void *subject, size_t i) {
@@ -84,13 +73,13 @@ static json_t *wafer(const void *subject, size_t i) {
     const wh_study_wafer_t *end = &result->study->wafers[i];
     const wh_tally_wafer_t *tally = &result->tally->wafers[i];
     const bool lies = end->place.station != WH_NONE;
-    json_t *object = wh_json_add(
-        json_object(), "name station slot holder elsewhere count",
-        wh_json_text(result->study->layout->wafers[end->wafer].name),
-        wh_json_text(lies ? result->study->layout->stations[end->place.station].name : NULL),
-        lies ? json_integer(end->place.slot) : json_null(),
-        wh_json_text(end->holder == WH_NONE ? NULL : result->study->layout->grippers[end->holder].name),
-        json_integer((json_int_t)tally->elsewhere), json_integer((json_int_t)tally->of[0].count), NULL);
+    const wh_layout_t *layout = result->study->layout;
+    json_t *object =
+        wh_json_set(json_object(), "name %s station %s slot %lld holder %s elsewhere %lld count %lld",
+                    layout->wafers[end->wafer].name, lies ? layout->stations[end->place.station].name : NULL,
+                    lies ? end->place.slot : WH_JSON_NONE,
+                    end->holder == WH_NONE ? NULL : layout->grippers[end->holder].name,
+                    (json_int_t)tally->elsewhere, (json_int_t)tally->of[0].count);
     for (size_t q = 0; q < WH_TALLY_QUANTITIES; ++q) {
         wh_json_put(object, keys[q],
                     tally->of[q].count > 0 ? figures(&tally->of[q], wh_study_nominal(end, q)) : json_null());
@@ -135,11 +124,9 @@ static json_t *drawn_valve(const void *subject, size_t g) {
     if (!(layout->errors->valves[g].width > 0)) {
         return NULL;
     }
-    json_t *object = json_object();
-    const double late = (double)wh_errors_draw_valve(layout->errors, &draw->trial, g);
-    (void)wh_json_add(object, "gripper slices", wh_json_text(layout->grippers[g].name),
-                      json_integer((json_int_t)ceil(late * 1e6 / (double)layout->slice_us)), NULL);
-    return object;
+    const double late = wh_errors_draw_valve(layout->errors, &draw->trial, g);
+    return wh_json_set(json_object(), "gripper %s slices %lld", layout->grippers[g].name,
+                       (json_int_t)ceil(late * 1e6 / (double)layout->slice_us));
 }
 
 static json_t *worst_trial(const void *subject, size_t i) {
@@ -147,43 +134,38 @@ static json_t *worst_trial(const void *subject, size_t i) {
     const wh_tally_trial_t *worst = &result->tally->worst[i];
     const wh_layout_t *layout = result->study->layout;
     const draw_t draw = {layout, {result->study->seed, worst->trial}};
-    json_t *object = json_object();
-    json_t *drawn = json_object();
-    (void)wh_json_add(object, "trial ok off", json_integer((json_int_t)worst->trial),
-                      json_boolean(worst->met), wh_json_real(worst->off), NULL);
-    (void)wh_json_add(drawn, "wafers stations valves vacuum_s",
-                      wh_json_list(drawn_wafer, &draw, layout->wafer_count),
-                      wh_json_list(drawn_station, &draw, layout->station_count),
-                      wh_json_list(drawn_valve, &draw, layout->machine.gripper_count),
-                      wh_json_real((double)wh_errors_draw_vacuum(layout->errors, &draw.trial)), NULL);
-    wh_json_put(object, "drawn", drawn);
-    return object;
+    json_t *drawn = wh_json_add(json_object(), "wafers stations valves vacuum_s",
+                                wh_json_list(drawn_wafer, &draw, layout->wafer_count),
+                                wh_json_list(drawn_station, &draw, layout->station_count),
+                                wh_json_list(drawn_valve, &draw, layout->machine.gripper_count),
+                                wh_json_real(wh_errors_draw_vacuum(layout->errors, &draw.trial)), NULL);
+    return wh_json_add(wh_json_set(json_object(), "trial %lld ok %i off %g", (json_int_t)worst->trial,
+                                   worst->met, worst->off),
+                       "drawn", drawn, NULL);
 }
 
 /* ---------------------------------------------------------------------------------------------- all of it */
 
 static json_t *run_without_errors(const wh_study_result_t *result) {
     const wh_record_t *record = &result->study->nominal.record;
-    return wh_json_add(json_object(), "ok hash slices simulated_s", json_boolean(record->ok),
-                       json_sprintf("%016llx", (unsigned long long)record->hash),
-                       json_integer(record->slices), wh_json_real(record->simulated_s), NULL);
+    json_t *object =
+        wh_json_set(json_object(), "ok %i hash %llx slices %lld simulated_s %g", record->ok,
+                    (unsigned long long)record->hash, (json_int_t)record->slices, record->simulated_s);
+    return wh_json_add(object, "throughput", wh_throughput_to_json(record), NULL);
 }
 
 static void put_head(const wh_study_result_t *result, json_t *root) {
-    json_t *success = json_object();
-    wh_json_put_integer(root, "format", 1);
-    wh_json_put(root, "ok", json_boolean(wh_study_is_kept(result)));
-    wh_json_put_text(root, "script", result->study->run.script);
-    wh_json_put_text(root, "layout", result->study->layout->path);
-    put_count(root, "seed", result->study->seed);
-    put_count(root, "trials", result->tally->trials);
+    const wh_tally_t *tally = result->tally;
+    const wh_study_t *study = result->study;
+    json_t *success = wh_json_set(json_object(), "met %lld", (json_int_t)tally->met);
+    put_rate(success, tally->met, tally->trials);
+    (void)wh_json_set(root, "format %d ok %i script %s layout %s seed %lld trials %lld", 1,
+                      wh_study_is_kept(result), study->run.script, study->layout->path,
+                      (json_int_t)study->seed, (json_int_t)tally->trials);
     wh_json_put(root, "success", success);
-    put_count(success, "met", result->tally->met);
-    put_rate(success, result->tally->met, result->tally->trials);
-    wh_json_put(root, "require", result->require > 0 ? wh_json_real(result->require) : json_null());
-    put_count(root, "ended", result->tally->ended);
-    put_count(root, "whole", result->tally->whole);
-    wh_json_put_text(root, "whole_why", result->study->whole);
+    (void)wh_json_set(root, "require %g ended %lld whole %lld whole_why %s",
+                      result->require > 0 ? result->require : HUGE_VAL, (json_int_t)tally->ended,
+                      (json_int_t)tally->whole, study->whole);
     wh_json_put(root, "run_without_errors", run_without_errors(result));
 }
 

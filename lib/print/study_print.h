@@ -6,7 +6,7 @@
  *                 complaint of the cell; low and high are Wilson's interval at 95 % here and below
  *   require       (or null), ended (trials whose script ended by an uncaught error),
  *   whole         (trials that ran the script whole), whole_why (why all did, or null),
- *   run_without_errors: { ok, hash, slices, simulated_s }
+ *   run_without_errors: { ok, hash, slices, simulated_s, throughput (as of a run) }
  * and the lists
  *   expectations: line, text, seen (trials that came to it), met, rate, low, high, first_missed (the lowest
  *                 trial, or null)

@@ -13,9 +13,6 @@ typedef struct {
     wh_printer_t frame;
 } table_t;
 
-static const wh_grid_digits_t percent = {2, 4, false, 0};
-static const wh_grid_digits_t fine = {4, 4, false, 0};
-
 bool wh_study_is_kept(const wh_study_result_t *result) {
     const wh_confidence_t success = wh_wilson_interval(result->tally->met, result->tally->trials);
     return success.low >= result->require;
@@ -32,17 +29,12 @@ void wh_study_expected(const char *text, char *expected, size_t size) {
 }
 
 double wh_study_nominal(const wh_study_wafer_t *wafer, size_t q) {
-    const double values[] = {(double)wafer->place.dx, (double)wafer->place.dy, (double)wafer->place.dz,
-                             (double)wh_deg_from_rad(wafer->place.tilt), 0};
+    const double values[] = {wafer->place.dx, wafer->place.dy, wafer->place.dz,
+                             wh_deg_from_rad(wafer->place.tilt), 0};
     return values[q];
 }
 
 /* -------------------------------------------------------------------------------------------------- rates */
-
-static void rate_columns(wh_grid_t *grid) {
-    wh_grid_number_columns(grid, percent, "%", NULL);
-    wh_grid_text_columns(grid, "95 %", NULL);
-}
 
 /* In percent, with its interval. */
 static void put_rate(wh_grid_t *grid, size_t column, wh_ink_t ink, uint64_t hits, uint64_t trials) {
@@ -58,12 +50,8 @@ static void put_trial(wh_grid_t *grid, size_t column, uint64_t trial) {
 }
 
 static void print_expectations(const table_t *table) {
-    wh_grid_t *grid = wh_grid_new(table->frame.style, 2);
-    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
-    wh_grid_text_columns(grid, "expected", NULL);
-    wh_grid_number_columns(grid, wh_grid_whole, "met", NULL);
-    rate_columns(grid);
-    wh_grid_number_columns(grid, wh_grid_whole, "first missed", NULL);
+    wh_grid_t *grid =
+        wh_grid_new(table->frame.style, 2, "line{0};expected;met{0};%{2,4};95 %;first missed{0}");
     for (size_t i = 0; i < table->tally->expectations.count; ++i) {
         const wh_tally_row_t *row = &table->tally->expectations.rows[i];
         char expected[200];
@@ -79,12 +67,8 @@ static void print_expectations(const table_t *table) {
 }
 
 static void print_errors(const table_t *table) {
-    wh_grid_t *grid = wh_grid_new(table->frame.style, 2);
-    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
-    wh_grid_text_columns(grid, "command", "error", NULL);
-    wh_grid_number_columns(grid, wh_grid_whole, "trials", NULL);
-    rate_columns(grid);
-    wh_grid_number_columns(grid, wh_grid_whole, "first", NULL);
+    wh_grid_t *grid =
+        wh_grid_new(table->frame.style, 2, "line{0};command;error;trials{0};%{2,4};95 %;first{0}");
     for (size_t i = 0; i < table->tally->errors.count; ++i) {
         const wh_tally_row_t *row = &table->tally->errors.rows[i];
         wh_grid_row(grid);
@@ -99,11 +83,7 @@ static void print_errors(const table_t *table) {
 }
 
 static void print_events(const table_t *table) {
-    wh_grid_t *grid = wh_grid_new(table->frame.style, 1);
-    wh_grid_text_columns(grid, "event", NULL);
-    wh_grid_number_columns(grid, wh_grid_whole, "trials", NULL);
-    rate_columns(grid);
-    wh_grid_number_columns(grid, wh_grid_whole, "all in all", NULL);
+    wh_grid_t *grid = wh_grid_new(table->frame.style, 1, "event;trials{0};%{2,4};95 %;all in all{0}");
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
         const wh_tally_event_t *event = &table->tally->events[kind];
         if (event->trials > 0) {
@@ -151,10 +131,11 @@ static void add_wafer(const table_t *table, wh_grid_t *grid, size_t index) {
 }
 
 static void print_wafers(const table_t *table) {
-    wh_grid_t *grid = wh_grid_new(table->frame.style, 3);
-    wh_grid_text_columns(grid, "wafer", "in", "what", NULL);
-    wh_grid_number_columns(grid, fine, "mean", "deviation", "min", "0.1 %", "5 %", "50 %", "95 %", "99.9 %",
-                           "max", NULL);
+    const wh_study_t *study = table->study->study;
+    wh_grid_t *grid =
+        wh_grid_new(table->frame.style, 3,
+                    "wafer;in;what;mean{4};deviation{4};min{4};0.1 %{4};5 %{4};50 %{4};95 %{4};99.9 %{4};"
+                    "max{4}");
     for (size_t w = 0; w < table->tally->wafer_count; ++w) {
         add_wafer(table, grid, w);
     }
@@ -162,11 +143,11 @@ static void print_wafers(const table_t *table) {
     for (size_t w = 0; w < table->tally->wafer_count; ++w) {
         const wh_tally_wafer_t *tally = &table->tally->wafers[w];
         if (tally->elsewhere > 0) {
-            wh_print_put(&table->frame,
-                         table->study->study->layout->wafers[table->study->study->wafers[w].wafer].name);
-            fputs(" ends elsewhere in ", table->frame.out);
-            wh_print_counted(table->frame.out, (int64_t)tally->elsewhere, "trial", "trials");
-            fputs(", which are not in these figures\n", table->frame.out);
+            char count[WH_PRINT_NUMBER_SIZE];
+            wh_print_say(&table->frame, "%s ends elsewhere in %s trial%s, which are not in these figures",
+                         study->layout->wafers[study->wafers[w].wafer].name,
+                         wh_print_count(count, (int64_t)tally->elsewhere), tally->elsewhere == 1 ? "" : "s");
+            fputc('\n', table->frame.out);
         }
     }
 }
@@ -174,10 +155,7 @@ static void print_wafers(const table_t *table) {
 /* -------------------------------------------------------------------------------------------------- worst */
 
 static void print_worst(const table_t *table) {
-    wh_grid_t *grid = wh_grid_new(table->frame.style, 1);
-    wh_grid_number_columns(grid, wh_grid_whole, "trial", NULL);
-    wh_grid_text_columns(grid, "result", NULL);
-    wh_grid_number_columns(grid, fine, "off mm", NULL);
+    wh_grid_t *grid = wh_grid_new(table->frame.style, 1, "trial{0};result;off mm{4}");
     const size_t count =
         table->study->worst < table->tally->worst_count ? table->study->worst : table->tally->worst_count;
     for (size_t i = 0; i < count; ++i) {
@@ -198,12 +176,10 @@ static void print_worst(const table_t *table) {
 
 static void print_head(const table_t *table) {
     const wh_study_t *study = table->study->study;
-    wh_print_put(&table->frame, study->run.script);
-    fputs(" on ", table->frame.out);
-    wh_print_put(&table->frame, study->layout->path);
-    fputc('\n', table->frame.out);
-    wh_print_counted(table->frame.out, (int64_t)table->tally->trials, "trials", "trials");
-    fprintf(table->frame.out, " of seed %llu\n", (unsigned long long)study->seed);
+    char trials[WH_PRINT_NUMBER_SIZE];
+    wh_print_say(&table->frame, "%s on %s", study->run.script, study->layout->path);
+    fprintf(table->frame.out, "\n%s trials of seed %llu\n",
+            wh_print_count(trials, (int64_t)table->tally->trials), (unsigned long long)study->seed);
     if (!study->nominal.record.ok) {
         wh_style_print(table->frame.style, table->frame.out, WH_INK_WARN,
                        "without any errors the script fails already");
@@ -218,8 +194,10 @@ static void print_how(const table_t *table) {
                 "each trial ran the script whole, for in the run without errors this was read: %s\n",
                 study->whole);
     } else {
-        wh_print_counted(table->frame.out, (int64_t)table->tally->whole, "trials", "trials");
-        fputs(" ran the script whole, the others are the run without errors, replayed\n", table->frame.out);
+        char whole[WH_PRINT_NUMBER_SIZE];
+        fprintf(table->frame.out,
+                "%s trials ran the script whole, the others are the run without errors, replayed\n",
+                wh_print_count(whole, (int64_t)table->tally->whole));
     }
 }
 
@@ -229,13 +207,15 @@ static void print_summary(const table_t *table) {
     FILE *out = table->frame.out;
     char met[WH_PRINT_NUMBER_SIZE];
     char trials[WH_PRINT_NUMBER_SIZE];
-    wh_print_count(met, (int64_t)table->tally->met);
-    wh_print_count(trials, (int64_t)table->tally->trials);
     fputc('\n', out);
     print_how(table);
+    fputs("without errors: ", out);
+    (void)wh_print_figure(&table->frame);
+    fputc('\n', out);
     wh_style_print(table->frame.style, out,
                    table->tally->met == table->tally->trials ? WH_INK_GOOD : WH_INK_BAD, "%s of %s trials ok",
-                   met, trials);
+                   wh_print_count(met, (int64_t)table->tally->met),
+                   wh_print_count(trials, (int64_t)table->tally->trials));
     fprintf(out, ": %.4f %%, 95 %% sure from %.4f to %.4f %% (Wilson)\n", 100 * success.rate,
             100 * success.low, 100 * success.high);
     if (result->require > 0) {

@@ -5,8 +5,9 @@
 
 /* ---------------------------------------------------------------------------------------- wafers per hour */
 
-static void put_window(const wh_printer_t *printer, const wh_throughput_t *throughput) {
-    fprintf(printer->out, ": %zu in %.3f s, ", throughput->wafers, throughput->seconds);
+static void put_figure(const wh_printer_t *printer, const wh_throughput_t *throughput) {
+    fprintf(printer->out, "%.1f wafers per hour: %zu in %.3f s, ", throughput->wafers_per_hour,
+            throughput->wafers, throughput->seconds);
     if (throughput->first == 0) {
         fputs("the whole run", printer->out);
     } else if (throughput->first == throughput->last) {
@@ -24,19 +25,28 @@ static void put_share(const wh_printer_t *printer, int64_t slices, const char *w
     }
 }
 
-void wh_print_throughput(const wh_printer_t *printer) {
+bool wh_print_figure(const wh_printer_t *printer) {
     const wh_throughput_t throughput = wh_throughput(printer->record);
+    if (throughput.figure == WH_FIGURE_GIVEN) {
+        put_figure(printer, &throughput);
+    } else {
+        fprintf(printer->out, "no wafers per hour: %s", wh_throughput_reason(throughput.figure));
+    }
+    return throughput.figure == WH_FIGURE_GIVEN;
+}
+
+void wh_print_throughput(const wh_printer_t *printer) {
     const int64_t *shares = printer->record->activity.shares;
     const char *before = "; ";
-    if (throughput.wafers == 0 || throughput.slices == 0) {
+    if (!printer->record->layout || printer->record->slices == 0) {
         return;
     }
-    fprintf(printer->out, "%.1f wafers per hour", throughput.wafers_per_hour);
-    put_window(printer, &throughput);
-    put_share(printer, shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY], "motion", &before);
-    put_share(printer, shares[WH_SHARE_VACUUM], "vacuum", &before);
-    put_share(printer, shares[WH_SHARE_HANDOVER], "valves", &before);
-    put_share(printer, shares[WH_SHARE_WAITING], "waiting", &before);
+    if (wh_print_figure(printer)) {
+        put_share(printer, shares[WH_SHARE_LOADED] + shares[WH_SHARE_EMPTY], "motion", &before);
+        put_share(printer, shares[WH_SHARE_VACUUM], "vacuum", &before);
+        put_share(printer, shares[WH_SHARE_HANDOVER], "valves", &before);
+        put_share(printer, shares[WH_SHARE_WAITING], "waiting", &before);
+    }
     fputc('\n', printer->out);
 }
 
@@ -44,24 +54,18 @@ void wh_print_throughput(const wh_printer_t *printer) {
 
 enum { LINE, COMMAND, SECONDS, FIRST_SHARE };
 
-static void add_times(const wh_printer_t *printer, wh_grid_t *grid, const char *text, int64_t slices,
+static void add_times(const wh_printer_t *printer, wh_grid_t *grid, const char *text,
                       const int64_t shares[WH_SHARES]) {
+    int64_t slices = 0;
     wh_grid_text(grid, COMMAND, WH_INK_PLAIN, "%s", text);
-    wh_grid_number(grid, SECONDS, WH_INK_PLAIN, wh_throughput_seconds(printer->record, slices));
     for (size_t share = 0; share < WH_SHARES; ++share) {
+        slices += shares[share];
         if (shares[share] > 0) {
             wh_grid_number(grid, FIRST_SHARE + share, WH_INK_PLAIN,
                            wh_throughput_seconds(printer->record, shares[share]));
         }
     }
-}
-
-static int64_t sum_of(const int64_t shares[WH_SHARES]) {
-    int64_t sum = 0;
-    for (size_t share = 0; share < WH_SHARES; ++share) {
-        sum += shares[share];
-    }
-    return sum;
+    wh_grid_number(grid, SECONDS, WH_INK_PLAIN, wh_throughput_seconds(printer->record, slices));
 }
 
 void wh_print_times(const wh_printer_t *printer) {
@@ -69,22 +73,19 @@ void wh_print_times(const wh_printer_t *printer) {
     if (!record->layout || record->slices == 0) {
         return;
     }
-    wh_grid_t *grid = wh_grid_new(printer->style, 2);
-    wh_grid_number_columns(grid, wh_grid_whole, "line", NULL);
-    wh_grid_text_columns(grid, "command", NULL);
-    wh_grid_number_columns(grid, wh_print_seconds, "s", "with wafer", "without", "vacuum", "valves",
-                           "waiting", NULL);
+    wh_grid_t *grid = wh_grid_new(printer->style, 2,
+                                  "line{0};command;s{3,6};with wafer{3,6};without{3,6};vacuum{3,6};"
+                                  "valves{3,6};waiting{3,6}");
     for (size_t i = 0; i < record->command_count; ++i) {
         const wh_command_record_t *command = &record->commands[i];
         wh_grid_row(grid);
         if (command->line > 0) {
             wh_grid_number(grid, LINE, WH_INK_DIM, command->line);
         }
-        add_times(printer, grid, command->text ? command->text : "", sum_of(command->shares),
-                  command->shares);
+        add_times(printer, grid, command->text ? command->text : "", command->shares);
     }
     wh_grid_row(grid);
-    add_times(printer, grid, "all", sum_of(record->activity.shares), record->activity.shares);
+    add_times(printer, grid, "all", record->activity.shares);
     wh_print_titled(
         printer, "Time: motion with and without a wafer, standing still for vacuum, valves, waiting", grid);
 }
@@ -99,7 +100,7 @@ static void add_reach(const wh_printer_t *printer, wh_grid_t *grid, size_t stati
     for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
         const wh_travel_margin_t *reach = &printer->record->reach[station].axes[axis];
         const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
-        const double margin = (double)(turns ? wh_deg_from_rad(reach->margin) : reach->margin);
+        const double margin = (turns ? wh_deg_from_rad(reach->margin) : reach->margin);
         if (reach->slot != 0) {
             wh_grid_number(grid, 1 + 2 * axis, margin < SLENDER ? WH_INK_WARN : WH_INK_PLAIN, margin);
             wh_grid_text(grid, 2 + 2 * axis, WH_INK_DIM, "%s, slot %d", reach->is_max ? "max" : "min",
@@ -109,19 +110,12 @@ static void add_reach(const wh_printer_t *printer, wh_grid_t *grid, size_t stati
 }
 
 void wh_print_margins(const wh_printer_t *printer) {
-    static const char *const headings[WH_ROBOT_AXES] = {"theta deg", "r mm", "z mm", "yaw deg"};
-    const wh_grid_digits_t digits = {1, 3, false, 0};
     const wh_record_t *record = printer->record;
     if (!record->layout || !record->reach) {
         return;
     }
-    wh_grid_t *grid = wh_grid_new(printer->style, 1);
-    wh_grid_text_columns(grid, "station", NULL);
-    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
-        wh_grid_number_columns(grid, digits, headings[axis], NULL);
-        wh_grid_text_columns(grid, "from", NULL);
-        wh_grid_glue(grid);
-    }
+    wh_grid_t *grid = wh_grid_new(
+        printer->style, 1, "station;theta deg{1,3};+from;r mm{1,3};+from;z mm{1,3};+from;yaw deg{1,3};+from");
     for (size_t station = 0; station < record->layout->station_count; ++station) {
         add_reach(printer, grid, station);
     }

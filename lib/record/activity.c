@@ -47,8 +47,17 @@ wh_task_t wh_activity_task(const wh_track_t *track, const wh_segment_t *segment,
 
 /* ----------------------------------------------------------------------------------------------- counting */
 
+/* True for a wafer that is held and for a valve: of both a slice tells how they are at its end. The robot and
+ * a chuck are busy during the slice. */
+static bool is_state(size_t resource) {
+    return resource > 0 && (resource - 1) % 3 != 0;
+}
+
 static void add_interval(wh_activity_t *activity, size_t resource, int64_t end) {
     const size_t beside_robot = resource > 0 ? resource - 1 : 0;
+    if (end == activity->open[resource].begin) {
+        return;
+    }
     activity->intervals = wh_array_grow(activity->intervals, activity->interval_count,
                                         &activity->interval_capacity, sizeof *activity->intervals);
     activity->intervals[activity->interval_count++] =
@@ -65,17 +74,15 @@ size_t wh_activity_resource(const wh_busy_span_t *interval) {
                : (size_t)(3 * interval->gripper + (int32_t)interval->who - (int32_t)WH_BUSY_CHUCK + 1);
 }
 
-static void change(wh_activity_t *activity, size_t resource, int32_t what, int64_t slice) {
-    if (activity->open[resource].what != 0) {
-        add_interval(activity, resource, slice - 1);
-    }
-    activity->open[resource].what = what;
-    activity->open[resource].begin = slice - 1;
-}
-
 static void note(wh_activity_t *activity, size_t resource, int32_t what, int64_t slice) {
-    if (activity->open[resource].what != what) {
-        change(activity, resource, what, slice);
+    const int64_t border = is_state(resource) ? slice : slice - 1;
+    const int32_t before = activity->open[resource].what;
+    if (before != 0 && before != what) {
+        add_interval(activity, resource, border);
+    }
+    if (before != what) {
+        activity->open[resource].what = what;
+        activity->open[resource].begin = border;
     }
 }
 
@@ -132,7 +139,7 @@ wh_share_t wh_activity_count(wh_activity_t *activity, const wh_machine_t *machin
 
 void wh_activity_end(wh_activity_t *activity, int64_t slice) {
     for (size_t resource = 0; resource < WH_RESOURCES; ++resource) {
-        note(activity, resource, 0, slice + 1);
+        note(activity, resource, 0, is_state(resource) ? slice : slice + 1);
     }
     activity->last.is_known = false;
 }

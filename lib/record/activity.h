@@ -34,9 +34,11 @@ typedef enum {
 
 typedef struct {
     wh_busy_t who;
-    int32_t gripper;    /* index from 0; WH_NONE for the robot */
-    int32_t what;       /* never 0 */
-    int64_t begin, end; /* slices: busy from the end of `begin` to the end of `end`, which is later */
+    int32_t gripper; /* index from 0; WH_NONE for the robot */
+    int32_t what;    /* never 0 */
+    /* Slices: busy from the end of `begin` to the end of `end`, which is later. A wafer is held, and a valve
+     * open, from the end of the first slice that says so: at the time of its event. */
+    int64_t begin, end;
 } wh_busy_span_t;
 
 /* What a segment asks of the machine, for all of its slices. */

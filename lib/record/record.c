@@ -5,6 +5,10 @@
 
 #include "../text/array.h"
 
+bool wh_record_moved_nothing(const wh_record_t *record) {
+    return record->ok && record->command_count == 0 && record->slices == 0;
+}
+
 const char *wh_record_error_text(wh_status_t status) {
     static const struct {
         wh_status_t number;
@@ -59,8 +63,13 @@ void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_
 bool wh_record_is_complaint(wh_event_kind_t kind) {
     static const uint32_t complaints =
         1U << WH_EVENT_RELEASED_UNSUPPORTED | 1U << WH_EVENT_SLOT_OCCUPIED | 1U << WH_EVENT_BAD_INPUT |
-        1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED;
+        1U << WH_EVENT_PLACED_OFF_CENTRE | 1U << WH_EVENT_PLACED_ASKEW | 1U << WH_EVENT_HIT |
+        1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE | 1U << WH_EVENT_SLIPPED;
     return (complaints >> (unsigned)kind & 1U) != 0;
+}
+
+bool wh_record_is_contact(wh_event_kind_t kind) {
+    return kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED || kind == WH_EVENT_TOO_CLOSE;
 }
 
 void wh_record_begin_reach(wh_record_t *record, size_t stations) {

@@ -58,12 +58,25 @@ typedef struct {
     wh_place_t place; /* place.station is WH_NONE if it lies in no slot */
 } wh_wafer_record_t;
 
+/* What a log of a run is worth: what a replay of it says (log/reading.h). */
+typedef struct {
+    const char *verdict; /* same, differs, incomplete, cut */
+    const char *reason;  /* "" if it is the same */
+    bool has_id;         /* it is a recording that tells: */
+    uint64_t id;         /* all its parts have it */
+    int32_t part;
+    const char *const *notes; /* what the log lacks */
+    size_t note_count;
+} wh_record_log_t;
+
 typedef struct {
     char *script;              /* path as given */
     const wh_layout_t *layout; /* null when the script named none; lives as long as the record */
-    bool ok;        /* no command failed uncaught, every expectation was met, the cell had no complaint */
-    bool is_untold; /* read from a log that does not tell how the run ended: `ok` is then false */
-    char *failure;  /* the uncaught error's message with file and line, or null */
+    bool ok;         /* no command failed uncaught, every expectation was met, the cell had no complaint */
+    bool is_untold;  /* read from a log that does not show how the run ended: `ok` is then false */
+    bool is_partial; /* read from a log that has not the whole run as it was */
+    const wh_record_log_t *log; /* null: not read from a log; borrowed */
+    char *failure;              /* the uncaught error's message with file and line, or null */
     int64_t slices;
     int64_t missed; /* of them, those that a free-running run lost on the way to the simulator */
     double simulated_s, wall_s;
@@ -98,9 +111,16 @@ void wh_record_add_cycle(wh_record_t *record, int line, const char *name, int64_
  * For sessions without an end. */
 void wh_record_forget(wh_record_t *record);
 
-/* True if the cell complains by this event: a wafer was let go where it should not have been, something was
- * hit or may have been, a wafer slipped, or an input was refused. */
+/* True if the cell complains by this event: a wafer was let go where it should not have been, or lies beyond
+ * the layout's `placing`, something was hit or may have been, a gap is below its limit, a wafer slipped, or
+ * an input was refused. */
 bool wh_record_is_complaint(wh_event_kind_t kind);
+
+/* True if by this event two parts touched, or came or may have come too near: it names them and the place. */
+bool wh_record_is_contact(wh_event_kind_t kind);
+
+/* True if all was well because there was nothing: the cell stood, and no command came. */
+bool wh_record_moved_nothing(const wh_record_t *record);
 
 /* The catalogue's text for any status: what motion control and the link answer stands in it too, which
  * wh_status_text leaves out. Never null. */

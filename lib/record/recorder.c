@@ -17,10 +17,6 @@ double wh_recorder_now(const wh_recorder_t *recorder) {
 
 /* ------------------------------------------------------------------------------------------------- wafers */
 
-static bool locate(const wh_recorder_t *recorder, const wh_wafer_t *wafer, wh_place_t *place) {
-    return wh_cell_locate(recorder->cell, &wafer->base_from_wafer, place);
-}
-
 /* The events of the running command begin here. */
 static size_t first_event(const wh_recorder_t *recorder) {
     size_t first = recorder->record->event_count;
@@ -49,7 +45,7 @@ static bool is_known(const wh_record_t *record, size_t first, int32_t wafer) {
 /* A wafer that was let go is put if it lies in a slot, and nobody but the chuck there holds it. */
 static void add_put(wh_recorder_t *recorder, int32_t w, const wh_wafer_t *wafer) {
     wh_place_t place;
-    if (locate(recorder, wafer, &place) &&
+    if (wh_cell_locate(recorder->cell, &wafer->base_from_wafer, &place) &&
         (wafer->holder == WH_NONE || wafer->holder == recorder->layout->places[place.station].chuck)) {
         wh_record_add_put(recorder->record,
                           &(wh_put_record_t){w, place.station, place.slot, recorder->slice});
@@ -129,7 +125,7 @@ static void keep_wafers(wh_recorder_t *recorder, const wh_wafer_t wafers[]) {
     for (size_t w = 0; w < count; ++w) {
         kept[w].base_from_wafer = wafers[w].base_from_wafer;
         kept[w].holder = wafers[w].holder;
-        if (!locate(recorder, &wafers[w], &kept[w].place)) {
+        if (!wh_cell_locate(recorder->cell, &wafers[w].base_from_wafer, &kept[w].place)) {
             kept[w].place.station = WH_NONE;
         }
     }

@@ -1,16 +1,24 @@
 #include "signals.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "../layout/collision.h"
 #include "../text/array.h"
+#include "counterpart.h"
+#include "record.h"
 
 /* Up to so many wafers are compared in each slice. More are compared only in slices with events. */
 #define WATCHED_WAFERS 64
 
 /* wh_signals_walk looks at no more than so many places from one point to the next. */
 #define PLACES 32
+
+/* With more wafers than this, those near a gripper are on a list, made anew when it has gone so far, mm. */
+#define FEW_WAFERS 64
+#define ROOM 100.0
 
 /* This near to where its axes put it a gripper is there: another machine's sines may differ in their last
  * bits. */
@@ -21,15 +29,41 @@ const char *const wh_signals_link_names[WH_SIGNALS_LINKS] = {"lift", "upper arm"
 
 /* ------------------------------------------------------------------------------------------------ opening */
 
-static bool turns(size_t axis) {
+bool wh_signals_turns(size_t axis) {
     return axis != WH_AXIS_R && axis != WH_AXIS_Z;
+}
+
+void wh_signals_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size) {
+    static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
+    (void)snprintf(name, size, "%s", axis < WH_ROBOT_AXES ? names[axis] : "chuck");
+    for (size_t g = 0; axis >= WH_ROBOT_AXES && g < layout->machine.gripper_count; ++g) {
+        if (layout->machine.mounts[g].axis == (int32_t)axis) {
+            (void)snprintf(name, size, "%s chuck", layout->grippers[g].name);
+        }
+    }
+}
+
+double wh_signals_seconds(const wh_signals_t *signals, int64_t slice) {
+    return (double)(slice * signals->layout->slice_us) / 1e6;
 }
 
 static void open_curve(wh_path_t *curve, double tolerance) {
     wh_path_open(curve, WH_SIGNALS_SHARE * tolerance, WH_SIGNALS_POINTS);
 }
 
+/* An error of theta moves a shifted gripper about the base, one of yaw about the wrist. */
+double wh_signals_lever(const wh_layout_t *layout) {
+    double shift = 0;
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        const wh_mount_t *mount = &layout->machine.mounts[g];
+        shift = fmax(mount->is_shifted ? wh_vec3_norm(&mount->effector_from_gripper.r) : 0, shift);
+    }
+    return layout->machine.robot.travel[WH_AXIS_R].max + 2 * shift;
+}
+
 static void open_tracks(wh_signals_t *signals) {
+    const double rad =
+        WH_SIGNALS_RAD * fmin(WH_SIGNALS_LEVER / fmax(wh_signals_lever(signals->layout), 1), 1);
     static const double measured[WH_MEASURES] = {WH_SIGNALS_PROJZ, WH_SIGNALS_PROJXY, WH_SIGNALS_PLANAR};
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         open_curve(&signals->vacuum[g], WH_SIGNALS_VACUUM);
@@ -41,7 +75,7 @@ static void open_tracks(wh_signals_t *signals) {
                      WH_SIGNALS_SHARE * WH_SIGNALS_OWN_RAD, WH_SIGNALS_POINTS);
     }
     for (size_t axis = 0; axis < WH_AXES; ++axis) {
-        open_curve(&signals->axes[axis], turns(axis) ? WH_SIGNALS_RAD : WH_SIGNALS_MM);
+        open_curve(&signals->axes[axis], wh_signals_turns(axis) ? rad : WH_SIGNALS_MM);
     }
 }
 
@@ -126,7 +160,7 @@ static void add_axes(wh_signals_t *signals, const double axes[], size_t axis_cou
 
 /* -------------------------------------------------------------------------------------------------- steps */
 
-void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value) {
+static void step(wh_steps_t *steps, int64_t slice, int32_t value) {
     if (steps->count > 0 && steps->steps[steps->count - 1].value == value) {
         return;
     }
@@ -136,8 +170,8 @@ void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value) {
 
 static void add_signals(wh_signals_t *signals, const wh_state_t *state) {
     for (size_t g = 0; g < state->gripper_count; ++g) {
-        wh_signals_step(&signals->valves[g], state->seq, state->physics->told[g]);
-        wh_signals_step(&signals->sensors[g], state->seq, (int32_t)(state->sensors >> g & 1U));
+        step(&signals->valves[g], state->seq, state->physics->told[g]);
+        step(&signals->sensors[g], state->seq, (int32_t)(state->sensors >> g & 1U));
         wh_path_add(&signals->vacuum[g], state->seq, state->physics->vacuum[g].level);
     }
 }
@@ -170,6 +204,125 @@ static void add_wafers(wh_signals_t *signals, const wh_state_t *state) {
     }
 }
 
+/* ---------------------------------------------------------------------------------------------- proximity */
+
+/* Each gripper against its nearest wafer, over time: the paper's Fig. 9. */
+static double square_of(const wh_vec3_t *a, const wh_vec3_t *b) {
+    const wh_vec3_t way = wh_vec3_subtract(a, b);
+    return wh_vec3_dot(&way, &way);
+}
+
+static void add_neighbour(wh_neighbours_t *vicinity, int32_t wafer) {
+    vicinity->wafers =
+        wh_array_grow(vicinity->wafers, vicinity->count, &vicinity->capacity, sizeof *vicinity->wafers);
+    vicinity->wafers[vicinity->count++] = wafer;
+}
+
+static void look_around(const wh_signals_t *signals, wh_neighbours_t *vicinity, const wh_state_t *state,
+                        const wh_vec3_t *at) {
+    /* Within the plot's range a wafer's centre is at most so far from the gripper's. */
+    const double reach = WH_SIGNALS_REACH + 2 * signals->layout->grasp.near_projxy;
+    const double radius = reach + ROOM;
+    const bool few = state->wafer_count <= FEW_WAFERS;
+    vicinity->count = 0;
+    for (size_t w = 0; w < state->wafer_count; ++w) {
+        if (few || square_of(&state->wafers[w].base_from_wafer.r, at) < radius * radius) {
+            add_neighbour(vicinity, (int32_t)w);
+        }
+    }
+    vicinity->centre = *at;
+    vicinity->is_known = true;
+}
+
+/* The wafer that the gripper is measured against: see counterpart.h. Wafers that other grippers carry may
+ * come near without being on the list. */
+static int32_t find_nearest(wh_neighbours_t *vicinity, const wh_state_t *state, size_t g,
+                            const wh_tolerance_t *tolerance) {
+    const size_t listed = vicinity->count;
+    for (size_t other = 0; other < state->gripper_count; ++other) {
+        if (state->grippers[other].wafer != WH_NONE) {
+            add_neighbour(vicinity, state->grippers[other].wafer);
+        }
+    }
+    const int32_t found = wh_counterpart(state, g, tolerance, vicinity->wafers, vicinity->count);
+    vicinity->count = listed;
+    return found;
+}
+
+static void take_values(const wh_proximity_t *p, double values[WH_MEASURES]) {
+    values[WH_MEASURE_PROJZ] = wh_real_abs(p->dr_proj_z);
+    values[WH_MEASURE_PROJXY] = p->dr_proj_xy_norm;
+    values[WH_MEASURE_PLANAR] = p->n1_proj_n2;
+}
+
+/* The nearest wafer, its values in `values`; WH_NONE if none is near. */
+static int32_t measure(wh_signals_t *signals, const wh_state_t *state, size_t g, double values[WH_MEASURES]) {
+    const wh_pose_t *pose = &state->grippers[g].base_from_gripper;
+    wh_neighbours_t *vicinity = &signals->vicinity[g];
+    wh_proximity_t p;
+    if (!vicinity->is_known || square_of(&pose->r, &vicinity->centre) > ROOM * ROOM) {
+        look_around(signals, vicinity, state, &pose->r);
+    }
+    const int32_t nearest = find_nearest(vicinity, state, g, &signals->layout->grasp.tolerance);
+    if (nearest == WH_NONE || wh_proximity_measure(&state->wafers[nearest].base_from_wafer, pose,
+                                                   &signals->layout->grasp.tolerance, &p) != WH_OK) {
+        return WH_NONE;
+    }
+    take_values(&p, values);
+    const bool near = values[WH_MEASURE_PROJZ] < WH_SIGNALS_REACH &&
+                      values[WH_MEASURE_PROJXY] < 2 * signals->layout->grasp.near_projxy;
+    return near ? nearest : WH_NONE;
+}
+
+static void add_gripper(wh_signals_t *signals, const wh_state_t *state, size_t g) {
+    wh_steps_t *steps = &signals->nearest[g];
+    double values[WH_MEASURES] = {0};
+    const int32_t nearest = measure(signals, state, g, values);
+    const bool is_other = steps->count > 0 && steps->steps[steps->count - 1].value != nearest;
+    step(steps, state->seq, nearest);
+    for (size_t m = 0; m < WH_MEASURES; ++m) {
+        if (is_other) {
+            wh_path_break(&signals->proximity[g][m]);
+        }
+        if (nearest != WH_NONE) {
+            wh_path_add(&signals->proximity[g][m], state->seq, values[m]);
+        }
+    }
+}
+
+/* The wafer that the gripper was measured against at a slice. */
+static int32_t nearest_at(const wh_steps_t *steps, int64_t slice) {
+    size_t i = steps->count;
+    while (i > 0 && steps->steps[i - 1].slice > slice) {
+        --i;
+    }
+    return i > 0 ? steps->steps[i - 1].value : WH_NONE;
+}
+
+static void insert_past(wh_signals_t *signals, const wh_event_t *event) {
+    const int64_t slice = (int64_t)event->measured_slice;
+    double values[WH_MEASURES];
+    take_values(&event->measured, values);
+    if (nearest_at(&signals->nearest[event->gripper], slice) == event->wafer) {
+        for (size_t m = 0; m < WH_MEASURES; ++m) {
+            wh_path_insert(&signals->proximity[event->gripper][m], slice, values[m]);
+        }
+    }
+}
+
+static void add_proximity(wh_signals_t *signals, const wh_state_t *state) {
+    for (size_t g = 0; g < state->gripper_count; ++g) {
+        add_gripper(signals, state, g);
+    }
+    for (size_t i = 0; i < state->event_count; ++i) {
+        const wh_event_t *event = &state->events[i];
+        const bool past = event->kind == WH_EVENT_NEAR_MISS || event->kind == WH_EVENT_CONTESTED;
+        if (past && (int64_t)event->measured_slice < state->seq) {
+            insert_past(signals, event);
+        }
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------- events */
 
 /* False for events of a normal run: tracks and tables show them. */
@@ -182,8 +335,7 @@ static bool is_marked(wh_event_kind_t kind) {
 
 /* Where the event happened: at the contact, else at the wafer, else at the gripper. False if nowhere. */
 static bool place_of(const wh_event_t *event, const wh_state_t *state, wh_vec3_t *at) {
-    static const uint32_t contacts = 1U << WH_EVENT_HIT | 1U << WH_EVENT_UNDECIDED | 1U << WH_EVENT_TOO_CLOSE;
-    if (contacts >> (unsigned)event->kind & 1U) {
+    if (wh_record_is_contact(event->kind)) {
         *at = event->at;
         return true;
     }
@@ -213,10 +365,7 @@ static void add_marks(wh_signals_t *signals, const wh_state_t *state) {
 
 /* ------------------------------------------------------------------------------------------------- slices */
 
-typedef void each_curve_t(wh_path_t *curve);
-typedef void each_own_t(wh_thin_t *own);
-
-static void for_each(wh_signals_t *signals, each_curve_t *act, each_own_t *act_on_own) {
+static void for_each(wh_signals_t *signals, void (*act)(wh_path_t *), void (*act_on_own)(wh_thin_t *)) {
     for (size_t g = 0; g < WH_GRIPPERS; ++g) {
         act(&signals->vacuum[g]);
         for (size_t m = 0; m < WH_MEASURES; ++m) {
@@ -242,7 +391,7 @@ void wh_signals_slice(wh_signals_t *signals, const double axes[], size_t axis_co
     }
     add_signals(signals, state);
     add_wafers(signals, state);
-    wh_signals_proximity(signals, state);
+    add_proximity(signals, state);
     if (state->event_count > 0) {
         add_marks(signals, state);
         wh_signals_mark(signals);

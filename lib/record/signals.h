@@ -18,8 +18,9 @@
 #include "thin.h"
 
 /* Tolerances to begin with. A signal's tolerance grows if it has more points than it may. */
-#define WH_SIGNALS_MM 0.02 /* of axes */
-#define WH_SIGNALS_RAD 2e-5
+#define WH_SIGNALS_MM 0.02  /* of axes */
+#define WH_SIGNALS_RAD 2e-5 /* less for a robot with a longer lever than WH_SIGNALS_LEVER */
+#define WH_SIGNALS_LEVER 1290.0
 #define WH_SIGNALS_OWN_MM 0.05 /* of poses that do not follow from axes */
 #define WH_SIGNALS_OWN_RAD 5e-4
 #define WH_SIGNALS_VACUUM 1e-3
@@ -102,6 +103,18 @@ typedef struct {
     wh_neighbours_t vicinity[WH_GRIPPERS];
 } wh_signals_t;
 
+/* True for an axis in rad, false for one in mm. */
+bool wh_signals_turns(size_t axis);
+
+/* An axis' name: of a chuck's axis it is its gripper's. */
+void wh_signals_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size);
+
+/* When a slice ends, s. */
+double wh_signals_seconds(const wh_signals_t *signals, int64_t slice);
+
+/* mm: so far a gripper's origin is off at most by an error of theta and yaw, for each rad of it. */
+double wh_signals_lever(const wh_layout_t *layout);
+
 /* Begins with everything as the layout has it before the first slice. With `at_home` that is the first
  * sample. Without, the next slice is: the run's beginning is missing. */
 void wh_signals_begin(wh_signals_t *signals, const wh_layout_t *layout, bool at_home);
@@ -130,11 +143,5 @@ bool wh_signals_links(const wh_signals_t *signals, int64_t slice,
 /* Calls `visit` for slices in order, so close that grippers and links move between them nearly on straight
  * lines: at the points of all that moves them, and at places between. */
 void wh_signals_walk(const wh_signals_t *signals, void (*visit)(void *user, int64_t slice), void *user);
-
-/* For signals_proximity.c: adds a step unless the value is the last one. */
-void wh_signals_step(wh_steps_t *steps, int64_t slice, int32_t value);
-
-/* In signals_proximity.c: adds each gripper against the wafer that it holds or would take. */
-void wh_signals_proximity(wh_signals_t *signals, const wh_state_t *state);
 
 #endif

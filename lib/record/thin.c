@@ -77,10 +77,6 @@ static void thin_again(void *fit) {
     thin->turn *= 2;
 }
 
-static void keep_to_limit(wh_thin_t *thin) {
-    wh_points_keep_to_limit(&thin->list, thin_again, thin);
-}
-
 /* ------------------------------------------------------------------------------------------------- slopes */
 
 static double turned(const wh_thin_t *thin) {
@@ -140,7 +136,7 @@ static void take(wh_thin_t *thin, int64_t slice, const double values[]) {
 static void settle(wh_thin_t *thin, const double values[]) {
     if (thin->is_pending && thin->is_forced && !rests(thin, thin->last.values, values)) {
         keep(thin, true);
-        keep_to_limit(thin);
+        wh_points_keep_to_limit(&thin->list, thin_again, thin);
     }
 }
 
@@ -157,7 +153,7 @@ void wh_thin_add(wh_thin_t *thin, int64_t slice, const double values[]) {
     move(thin, values);
     if (thin->is_pending && !fits(thin, slices_to(thin, slice))) {
         keep(thin, thin->is_forced);
-        keep_to_limit(thin);
+        wh_points_keep_to_limit(&thin->list, thin_again, thin);
         move(thin, values);
     }
     narrow(thin, slices_to(thin, slice));

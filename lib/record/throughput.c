@@ -4,27 +4,11 @@
 
 #include "../text/array.h"
 
-static wh_rank_t rank_of(const wh_record_t *record, const wh_put_record_t *put) {
-    const wh_layout_station_t *station = &record->layout->stations[put->station];
-    if (station->prealigner) {
-        return WH_RANK_PREALIGNER;
-    }
-    if (station->foup) {
-        return WH_RANK_FOUP;
-    }
-    return record->layout->places[put->station].slots > 1 ? WH_RANK_SEVERAL : WH_RANK_SINGLE;
+static bool does_count(const wh_record_t *record, const wh_put_record_t *put) {
+    return record->layout->stations[put->station].counts;
 }
 
-static wh_rank_t highest_rank(const wh_record_t *record) {
-    wh_rank_t highest = WH_RANK_NONE;
-    for (size_t i = 0; i < record->put_count; ++i) {
-        const wh_rank_t rank = rank_of(record, &record->puts[i]);
-        highest = rank > highest ? rank : highest;
-    }
-    return highest;
-}
-
-size_t *wh_throughput_cycle_wafers(const wh_record_t *record, wh_rank_t rank) {
+size_t *wh_throughput_cycle_wafers(const wh_record_t *record) {
     size_t *wafers = wh_array_new(record->cycle_count, sizeof *wafers);
     /* By wafer: 1 + the last cycle in which it counted. */
     size_t *counted = wh_array_new(record->layout ? record->layout->wafer_count : 0, sizeof *counted);
@@ -34,7 +18,7 @@ size_t *wh_throughput_cycle_wafers(const wh_record_t *record, wh_rank_t rank) {
         while (after < record->cycle_count && record->cycles[after].begin < put->slice) {
             ++after;
         }
-        if (after > 0 && rank_of(record, put) == rank && counted[put->wafer] != after) {
+        if (after > 0 && does_count(record, put) && counted[put->wafer] != after) {
             counted[put->wafer] = after;
             ++wafers[after - 1];
         }
@@ -57,7 +41,7 @@ static int64_t cycle_slices(const wh_record_t *record, size_t cycle) {
 
 /* Counts from the second cycle on, or the first if there is no other; cycles without a slice are none. */
 static void count_cycles(const wh_record_t *record, wh_throughput_t *throughput) {
-    size_t *wafers = wh_throughput_cycle_wafers(record, throughput->rank);
+    size_t *wafers = wh_throughput_cycle_wafers(record);
     bool settling = true;
     for (size_t i = 0; i < record->cycle_count; ++i) {
         if (cycle_slices(record, i) == 0) {
@@ -77,38 +61,77 @@ static void count_cycles(const wh_record_t *record, wh_throughput_t *throughput)
     free(wafers);
 }
 
-static void count_run(const wh_record_t *record, wh_throughput_t *throughput) {
-    for (size_t i = 0; i < record->put_count; ++i) {
-        throughput->wafers += rank_of(record, &record->puts[i]) == throughput->rank ? 1 : 0;
+static bool counts_anywhere(const wh_layout_t *layout) {
+    bool counts = false;
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        counts = counts || layout->stations[s].counts;
     }
-    throughput->slices = record->slices;
+    return counts;
+}
+
+/* True if a wafer was put twice where puts count. */
+static bool is_put_twice(const wh_record_t *record) {
+    bool *seen = wh_array_new(record->layout->wafer_count, sizeof *seen);
+    bool twice = false;
+    for (size_t i = 0; i < record->put_count; ++i) {
+        const wh_put_record_t *put = &record->puts[i];
+        if (does_count(record, put)) {
+            twice = twice || seen[put->wafer];
+            seen[put->wafer] = true;
+        }
+    }
+    free(seen);
+    return twice;
+}
+
+static wh_figure_t judge(const wh_record_t *record, const wh_throughput_t *throughput) {
+    const bool stands[] = {[WH_FIGURE_PARTIAL] = record->is_partial,
+                           [WH_FIGURE_UNTOLD] = record->is_untold,
+                           [WH_FIGURE_FAILED] = !record->ok,
+                           [WH_FIGURE_NO_TIME] = throughput->slices == 0,
+                           [WH_FIGURE_NOWHERE] = !counts_anywhere(record->layout),
+                           [WH_FIGURE_NO_WAFER] = throughput->wafers == 0,
+                           [WH_FIGURE_TWICE] = throughput->first == 0 && is_put_twice(record)};
+    size_t reason = 0;
+    while (reason < sizeof stands && !stands[reason]) {
+        ++reason;
+    }
+    return reason < sizeof stands ? (wh_figure_t)reason : WH_FIGURE_GIVEN;
 }
 
 wh_throughput_t wh_throughput(const wh_record_t *record) {
-    wh_throughput_t throughput = {WH_RANK_NONE, 0, 0, 0, 0, 0, 0, 0};
+    wh_throughput_t throughput = {WH_FIGURE_NO_CELL, 0, 0, 0, 0, 0, 0, 0};
     if (!record->layout) {
         return throughput;
     }
-    throughput.rank = highest_rank(record);
     throughput.puts = record->put_count;
     count_cycles(record, &throughput);
     if (throughput.first == 0) {
-        count_run(record, &throughput);
+        throughput.slices = record->slices;
+        for (size_t i = 0; i < record->put_count; ++i) {
+            throughput.wafers += does_count(record, &record->puts[i]) ? 1 : 0;
+        }
     }
     throughput.seconds = wh_throughput_seconds(record, throughput.slices);
-    if (throughput.slices > 0) {
+    throughput.figure = judge(record, &throughput);
+    if (throughput.figure == WH_FIGURE_GIVEN) {
         throughput.wafers_per_hour = 3600 * (double)throughput.wafers / throughput.seconds;
     }
     return throughput;
 }
 
-const char *wh_throughput_rule(wh_rank_t rank) {
+const char *wh_throughput_reason(wh_figure_t figure) {
     static const char *const texts[] = {
-        [WH_RANK_NONE] = NULL,
-        [WH_RANK_PREALIGNER] = "puts onto prealigners",
-        [WH_RANK_SINGLE] = "puts into stations with one slot",
-        [WH_RANK_SEVERAL] = "puts into stations with several slots",
-        [WH_RANK_FOUP] = "puts into FOUPs",
+        [WH_FIGURE_GIVEN] = NULL,
+        [WH_FIGURE_NO_CELL] = "there is no cell",
+        [WH_FIGURE_PARTIAL] = "the log has not the whole run as it was",
+        [WH_FIGURE_UNTOLD] = "the log does not tell if the run passed",
+        [WH_FIGURE_FAILED] = "the run failed",
+        [WH_FIGURE_NO_TIME] = "nothing moved",
+        [WH_FIGURE_NOWHERE] = "no station is known to count",
+        [WH_FIGURE_NO_WAFER] = "no wafer was put into a station that counts",
+        [WH_FIGURE_TWICE] =
+            "a wafer was put twice into stations that count, and no cycle() says when one is over",
     };
-    return texts[rank];
+    return texts[figure];
 }

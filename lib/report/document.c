@@ -5,14 +5,11 @@
 
 #include "../math/config.h"
 #include "../record/quaternion.h"
+#include "../text/array.h"
+#include "../text/json.h"
 #include "../view/scene.h"
-#include "document_internal.h"
 
 #define FORMAT 2
-
-double wh_document_seconds(const wh_signals_t *signals, int64_t slice) {
-    return (double)(slice * signals->layout->slice_us) / 1e6;
-}
 
 static void put_text(wh_json_text_t *text, const char *key, const char *value) {
     wh_json_text_value(text, key, wh_json_text(value));
@@ -35,15 +32,19 @@ static void put_point(wh_json_text_t *text, const char *key, const wh_vec3_t *po
     put_list(text, key, values, 3);
 }
 
-void wh_document_put_pose(wh_json_text_t *text, const wh_pose_t *pose) {
+/* The members r and q. */
+static void put_pose(wh_json_text_t *text, const wh_pose_t *pose) {
     double q[4];
     wh_quaternion_from_matrix(&pose->R, NULL, q);
     put_point(text, "r", &pose->r);
     put_list(text, "q", q, 4);
 }
 
-void wh_document_put_each(wh_json_text_t *text, const wh_document_t *document, const char *key, size_t count,
-                          wh_document_put_t *put) {
+/* A list: `put` writes each of its elements, from 0 to count - 1. */
+typedef void put_t(wh_json_text_t *text, const wh_document_t *document, size_t i);
+
+static void put_each(wh_json_text_t *text, const wh_document_t *document, const char *key, size_t count,
+                     put_t *put) {
     wh_json_text_begin(text, key, '[');
     for (size_t i = 0; i < count; ++i) {
         put(text, document, i);
@@ -51,7 +52,8 @@ void wh_document_put_each(wh_json_text_t *text, const wh_document_t *document, c
     wh_json_text_end(text, ']');
 }
 
-void wh_document_put_index(wh_json_text_t *text, const char *key, int32_t index) {
+/* Null for WH_NONE. */
+static void put_index(wh_json_text_t *text, const char *key, int32_t index) {
     put_exact(text, key, index == WH_NONE ? HUGE_VAL : index);
 }
 
@@ -62,9 +64,8 @@ static void put_parameters(wh_json_text_t *text, const wh_document_t *document) 
     for (size_t i = 0; i < document->parameter_count; ++i) {
         const char *parameter = document->parameters[i];
         const size_t name = strcspn(parameter, "=");
-        char key[256];
-        (void)snprintf(key, sizeof key, "%.*s", (int)name, parameter);
-        (void)json_object_set_new(object, key, wh_json_text(parameter[name] ? parameter + name + 1 : ""));
+        (void)json_object_setn_new(object, parameter, name,
+                                   wh_json_text(parameter[name] ? parameter + name + 1 : ""));
     }
     wh_json_text_value(text, "parameters", object);
 }
@@ -81,44 +82,30 @@ static void put_head(wh_json_text_t *text, const wh_document_t *document) {
     put_text(text, "reproduce", document->reproduce);
     put_parameters(text, document);
     put_text(text, "source", document->source);
-    wh_document_put_each(text, document, "notes", document->note_count, put_note);
+    put_each(text, document, "notes", document->note_count, put_note);
     wh_json_text_value(text, "run", json_incref(document->run));
-    put_exact(text, "slice_s", wh_document_seconds(signals, 1));
+    put_exact(text, "slice_s", wh_signals_seconds(signals, 1));
     wh_json_text_integer(text, "slices", signals->last > 0 ? signals->last : 0);
-    put_exact(text, "begin_s", wh_document_seconds(signals, signals->first));
-    put_exact(text, "duration_s", wh_document_seconds(signals, signals->last));
+    put_exact(text, "begin_s", wh_signals_seconds(signals, signals->first));
+    put_exact(text, "duration_s", wh_signals_seconds(signals, signals->last));
 }
 
 /* -------------------------------------------------------------------------------------------------- names */
 
-void wh_document_name_axis(const wh_layout_t *layout, size_t axis, char *name, size_t size) {
-    static const char *const names[WH_ROBOT_AXES] = {"theta", "R", "Z", "yaw"};
-    (void)snprintf(name, size, "%s", axis < WH_ROBOT_AXES ? names[axis] : "chuck");
-    for (size_t g = 0; axis >= WH_ROBOT_AXES && g < layout->machine.gripper_count; ++g) {
-        if (layout->machine.mounts[g].axis == (int32_t)axis) {
-            (void)snprintf(name, size, "%s chuck", layout->grippers[g].name);
-        }
-    }
-}
-
-/* Null if the value is not known: a chuck's, or any of a log without its layout. */
-static void put_known(wh_json_text_t *text, const char *key, bool known, double value) {
-    put_exact(text, key, known ? value : HUGE_VAL);
-}
-
+/* Null is what is not known: a chuck's travel, or any value of a log without its layout. */
 static void put_axis(wh_json_text_t *text, const wh_document_t *document, size_t axis) {
     const wh_layout_t *layout = document->signals->layout;
     const wh_machine_t *machine = &layout->machine;
     const wh_travel_t travel = axis < WH_ROBOT_AXES ? machine->robot.travel[axis] : (wh_travel_t){0, 0};
     const double speed = axis < machine->axis_count ? wh_machine_limits(machine, axis)->speed : 0;
     char name[WH_NAME_SIZE + 8];
-    wh_document_name_axis(layout, axis, name, sizeof name);
+    wh_signals_name_axis(layout, axis, name, sizeof name);
     wh_json_text_begin(text, NULL, '{');
     put_text(text, "name", name);
-    wh_json_text_string(text, "unit", axis == WH_AXIS_R || axis == WH_AXIS_Z ? "mm" : "rad");
-    put_known(text, "low", travel.max > travel.min, travel.min);
-    put_known(text, "high", travel.max > travel.min, travel.max);
-    put_known(text, "speed", speed > 0, speed);
+    wh_json_text_string(text, "unit", wh_signals_turns(axis) ? "rad" : "mm");
+    put_exact(text, "low", travel.max > travel.min ? travel.min : HUGE_VAL);
+    put_exact(text, "high", travel.max > travel.min ? travel.max : HUGE_VAL);
+    put_exact(text, "speed", speed > 0 ? speed : HUGE_VAL);
     wh_json_text_end(text, '}');
 }
 
@@ -137,10 +124,10 @@ static void put_station_name(wh_json_text_t *text, const wh_document_t *document
 static void put_names(wh_json_text_t *text, const wh_document_t *document) {
     const wh_layout_t *layout = document->signals->layout;
     wh_json_text_begin(text, "names", '{');
-    wh_document_put_each(text, document, "wafers", layout->wafer_count, put_wafer_name);
-    wh_document_put_each(text, document, "grippers", layout->machine.gripper_count, put_gripper_name);
-    wh_document_put_each(text, document, "stations", layout->station_count, put_station_name);
-    wh_document_put_each(text, document, "axes", document->signals->axis_count, put_axis);
+    put_each(text, document, "wafers", layout->wafer_count, put_wafer_name);
+    put_each(text, document, "grippers", layout->machine.gripper_count, put_gripper_name);
+    put_each(text, document, "stations", layout->station_count, put_station_name);
+    put_each(text, document, "axes", document->signals->axis_count, put_axis);
     wh_json_text_end(text, '}');
 }
 
@@ -150,7 +137,9 @@ static void put_wafer(wh_json_text_t *text, const wh_layout_t *layout) {
     wh_json_text_begin(text, "wafer", '{');
     put_exact(text, "diameter", layout->wafer_diameter);
     put_exact(text, "thickness", layout->wafer_thickness);
-    put_exact(text, "notch", layout->notch);
+    if (layout->notch_depth > 0) {
+        put_exact(text, "notch", layout->notch);
+    }
     wh_json_text_end(text, '}');
 }
 
@@ -160,8 +149,8 @@ static void put_mount(wh_json_text_t *text, const wh_document_t *document, size_
     const wh_pose_t identity = wh_pose_identity();
     const wh_pose_t *on_robot = mount->is_shifted ? &mount->effector_from_gripper : &identity;
     wh_json_text_begin(text, NULL, '{');
-    wh_document_put_index(text, "axis", mount->axis);
-    wh_document_put_pose(text, mount->axis == WH_NONE ? on_robot : &mount->base_from_station);
+    put_index(text, "axis", mount->axis);
+    put_pose(text, mount->axis == WH_NONE ? on_robot : &mount->base_from_station);
     wh_json_text_end(text, '}');
 }
 
@@ -174,8 +163,8 @@ static void put_machine(wh_json_text_t *text, const wh_document_t *document) {
     const wh_layout_t *layout = document->signals->layout;
     const wh_arm_t *arm = &layout->shapes.arm;
     wh_json_text_begin(text, "machine", '{');
-    wh_document_put_each(text, document, "grippers", layout->machine.gripper_count, put_mount);
-    wh_document_put_each(text, document, "links", WH_SIGNALS_LINKS, put_link);
+    put_each(text, document, "grippers", layout->machine.gripper_count, put_mount);
+    put_each(text, document, "links", WH_SIGNALS_LINKS, put_link);
     wh_json_text_begin(text, "arm", '{');
     put_exact(text, "reach", arm->reach);
     put_exact(text, "link", arm->link);
@@ -202,7 +191,7 @@ static void put_slots(wh_json_text_t *text, const wh_layout_t *layout) {
             wh_json_text_begin(text, NULL, '{');
             wh_json_text_integer(text, "station", (long long)s);
             wh_json_text_integer(text, "slot", slot);
-            wh_document_put_pose(text, &pose);
+            put_pose(text, &pose);
             wh_json_text_end(text, '}');
         }
     }
@@ -218,41 +207,23 @@ static void append(char *text, size_t size, const char *before, const char *part
     }
 }
 
-static const char *wafer_name(const wh_layout_t *layout, int32_t wafer) {
-    return wafer >= 0 && (size_t)wafer < layout->wafer_count ? layout->wafers[wafer].name : NULL;
-}
-
-static const char *gripper_name(const wh_layout_t *layout, int32_t gripper) {
-    return gripper >= 0 && (size_t)gripper < layout->machine.gripper_count ? layout->grippers[gripper].name
-                                                                           : NULL;
-}
-
-static bool is_contact(wh_event_kind_t kind) {
-    return kind == WH_EVENT_HIT || kind == WH_EVENT_UNDECIDED || kind == WH_EVENT_TOO_CLOSE;
-}
-
 /* Such as "near miss: Wafer 1, EE" or "hit: A ledge 3 left and EE finger right". */
-static void describe(const wh_layout_t *layout, const wh_event_t *event, char *text, size_t size) {
-    (void)snprintf(text, size, "%s", wh_event_name(event->kind));
-    for (char *c = text; *c; ++c) {
-        if (*c == '_') {
-            *c = ' ';
-        }
-    }
-    if (is_contact(event->kind)) {
-        append(text, size, ": ", wh_layout_part_name(layout, event->parts[0]));
-        append(text, size, " and ", wh_layout_part_name(layout, event->parts[1]));
+static void describe(const wh_record_t *record, const wh_event_t *event, char *text, size_t size) {
+    wh_text_words(text, size, wh_event_name(event->kind));
+    if (wh_record_is_contact(event->kind)) {
+        append(text, size, ": ", wh_layout_part_name(record->layout, event->parts[0]));
+        append(text, size, " and ", wh_layout_part_name(record->layout, event->parts[1]));
         return;
     }
-    const char *wafer = wafer_name(layout, event->wafer);
+    const char *wafer = wh_record_wafer_name(record, event->wafer);
     append(text, size, ": ", wafer);
-    append(text, size, wafer ? ", " : ": ", gripper_name(layout, event->gripper));
+    append(text, size, wafer ? ", " : ": ", wh_record_gripper_name(record, event->gripper));
 }
 
 static void put_mark(wh_json_text_t *text, const wh_document_t *document, size_t i) {
     const wh_mark_t *mark = &document->signals->marks[i];
     char words[3 * WH_PART_NAME_SIZE];
-    describe(document->signals->layout, &mark->event, words, sizeof words);
+    describe(document->record, &mark->event, words, sizeof words);
     wh_json_text_begin(text, NULL, '{');
     wh_json_text_number(text, "t", (double)mark->utime / 1e6, 6, false);
     wh_json_text_string(text, "kind", wh_event_name(mark->event.kind));
@@ -262,6 +233,246 @@ static void put_mark(wh_json_text_t *text, const wh_document_t *document, size_t
     } else {
         wh_json_text_value(text, "at", json_null());
     }
+    wh_json_text_end(text, '}');
+}
+
+/* ---------------------------------------------------------------- tracks: all that changes over time */
+
+/* With so many decimals rounding adds at most a hundredth of what thinning leaves. A slope's error counts for
+ * up to 4 s. */
+enum { DECIMALS_S = 6, DECIMALS_OWN_MM = 4, DECIMALS_OWN = 6 };
+
+typedef struct {
+    int value, slope;
+} decimals_t;
+
+static const decimals_t decimals_mm = {4, 3};
+static const decimals_t decimals_rad = {7, 6};
+static const decimals_t decimals_level = {5, 4};
+static const decimals_t decimals_measure[WH_MEASURES] = {{6, 5}, {4, 3}, {9, 9}};
+
+typedef struct {
+    double mm, rad, own_mm, own_rad, vacuum, measured[WH_MEASURES];
+    int64_t of, kept;
+} sums_t;
+
+static void count(sums_t *sums, const wh_path_t *curve, double *tolerance) {
+    sums->of += curve->of;
+    sums->kept += (int64_t)curve->list.count;
+    *tolerance = fmax(curve->list.tolerance, *tolerance);
+}
+
+static sums_t sum_up(const wh_signals_t *signals) {
+    sums_t sums = {0};
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
+        const wh_thin_t *own = &signals->own[g];
+        count(&sums, &signals->vacuum[g], &sums.vacuum);
+        for (size_t m = 0; m < WH_MEASURES; ++m) {
+            count(&sums, &signals->proximity[g][m], &sums.measured[m]);
+        }
+        sums.of += own->of;
+        sums.kept += (int64_t)own->list.count;
+        if (own->list.count > 0) {
+            sums.own_mm = fmax(own->list.tolerance, sums.own_mm);
+            sums.own_rad = fmax(own->turn, sums.own_rad);
+        }
+    }
+    for (size_t axis = 0; axis < signals->axis_count; ++axis) {
+        count(&sums, &signals->axes[axis], wh_signals_turns(axis) ? &sums.rad : &sums.mm);
+    }
+    return sums;
+}
+
+/* The greatest distance between a gripper's origin and where its axes' curves put it: R and Z off, and theta
+ * and yaw at the robot's full reach. */
+static double gripper_mm(const wh_signals_t *signals, const sums_t *sums) {
+    const double across = sums->mm + wh_signals_lever(signals->layout) * sums->rad;
+    return fmax(sqrt(across * across + sums->mm * sums->mm), sums->own_mm);
+}
+
+/* The tolerance as it is told: with what rounding adds. */
+static void put_tolerance(wh_json_text_t *text, const char *key, double thinned) {
+    wh_json_text_number(text, key, thinned / WH_SIGNALS_SHARE, 9, false);
+}
+
+static void put_thinning(wh_json_text_t *text, const wh_signals_t *signals) {
+    const sums_t sums = sum_up(signals);
+    wh_json_text_begin(text, "thinning", '{');
+    put_tolerance(text, "mm", sums.mm);
+    put_tolerance(text, "rad", sums.rad);
+    put_tolerance(text, "gripper_mm", gripper_mm(signals, &sums));
+    put_tolerance(text, "gripper_rad", fmax(2 * sums.rad, sums.own_rad));
+    put_tolerance(text, "vacuum", sums.vacuum);
+    /* Twice: points that are inserted may take as much again. */
+    put_tolerance(text, "projz", 2 * sums.measured[WH_MEASURE_PROJZ]);
+    put_tolerance(text, "projxy", 2 * sums.measured[WH_MEASURE_PROJXY]);
+    put_tolerance(text, "planar", 2 * sums.measured[WH_MEASURE_PLANAR]);
+    wh_json_text_integer(text, "of", sums.of);
+    wh_json_text_integer(text, "kept", sums.kept);
+    wh_json_text_end(text, '}');
+}
+
+static void put_second(wh_json_text_t *text, const char *key, const wh_signals_t *signals, int64_t slice) {
+    wh_json_text_number(text, key, wh_signals_seconds(signals, slice), DECIMALS_S, false);
+}
+
+/* Where a curve breaks off, a null stands one slice after its last point. */
+static void put_times(wh_json_text_t *text, const wh_signals_t *signals, const wh_points_t *list) {
+    wh_json_text_begin(text, "t", '[');
+    for (size_t i = 0; i < list->count; ++i) {
+        put_second(text, NULL, signals, list->points[i].slice);
+        if (list->points[i].ends) {
+            put_second(text, NULL, signals, list->points[i].slice + 1);
+        }
+    }
+    wh_json_text_end(text, ']');
+}
+
+/* Some of each point's numbers, `count` from `first` on, times `scale`. */
+typedef struct {
+    const char *key;
+    size_t first, count;
+    double scale;
+    int decimals;
+    bool exact; /* as the points are; else always rounded */
+} column_t;
+
+static void put_numbers(wh_json_text_t *text, const wh_points_t *list, const column_t *of) {
+    wh_json_text_begin(text, of->key, '[');
+    for (size_t i = 0; i < list->count; ++i) {
+        const double *numbers = wh_points_numbers(list, i) + of->first;
+        for (size_t k = 0; k < of->count; ++k) {
+            wh_json_text_number(text, NULL, numbers[k] * of->scale, of->decimals,
+                                of->exact && list->points[i].exact);
+        }
+        if (list->points[i].ends) {
+            put_index(text, NULL, WH_NONE);
+        }
+    }
+    wh_json_text_end(text, ']');
+}
+
+static void put_curve(wh_json_text_t *text, const wh_signals_t *signals, const char *key,
+                      const wh_path_t *curve, decimals_t decimals) {
+    const double slices_a_second = 1e6 / (double)signals->layout->slice_us;
+    const column_t values = {"v", 0, 1, 1, decimals.value, true};
+    const column_t slopes = {"slope", 1, 1, slices_a_second, decimals.slope, false};
+    wh_json_text_begin(text, key, '{');
+    put_times(text, signals, &curve->list);
+    put_numbers(text, &curve->list, &values);
+    put_numbers(text, &curve->list, &slopes);
+    wh_json_text_end(text, '}');
+}
+
+static void put_axis_track(wh_json_text_t *text, const wh_document_t *document, size_t axis) {
+    put_curve(text, document->signals, NULL, &document->signals->axes[axis],
+              wh_signals_turns(axis) ? decimals_rad : decimals_mm);
+}
+
+static void put_own(wh_json_text_t *text, const wh_document_t *document, size_t g) {
+    static const column_t places = {"r", 0, 3, 1, DECIMALS_OWN_MM, true};
+    static const column_t turns = {"q", 3, 4, 1, DECIMALS_OWN, true};
+    const wh_points_t *own = &document->signals->own[g].list;
+    wh_json_text_begin(text, NULL, '{');
+    put_times(text, document->signals, own);
+    put_numbers(text, own, &places);
+    put_numbers(text, own, &turns);
+    wh_json_text_end(text, '}');
+}
+
+/* ------------------------------------------------------------------------------------------------- wafers */
+
+/* The list of stays is sorted by time alone. Looking through it for each wafer costs less than writing it. */
+static void put_stays(wh_json_text_t *text, const wh_document_t *document, size_t w) {
+    const wh_signals_t *signals = document->signals;
+    wh_json_text_begin(text, NULL, '[');
+    for (size_t i = 0; i < signals->stay_count; ++i) {
+        const wh_stay_t *stay = &signals->stays[i];
+        if (stay->wafer == (int32_t)w) {
+            wh_json_text_begin(text, NULL, '{');
+            put_second(text, "t", signals, stay->slice);
+            put_index(text, "holder", stay->holder);
+            put_pose(text, &stay->pose);
+            wh_json_text_end(text, '}');
+        }
+    }
+    wh_json_text_end(text, ']');
+}
+
+/* WH_NONE is null. */
+static void put_steps(wh_json_text_t *text, const wh_signals_t *signals, const char *key,
+                      const wh_steps_t lists[]) {
+    wh_json_text_begin(text, key, '[');
+    for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
+        wh_json_text_begin(text, NULL, '{');
+        wh_json_text_begin(text, "t", '[');
+        for (size_t i = 0; i < lists[g].count; ++i) {
+            put_second(text, NULL, signals, lists[g].steps[i].slice);
+        }
+        wh_json_text_end(text, ']');
+        wh_json_text_begin(text, "v", '[');
+        for (size_t i = 0; i < lists[g].count; ++i) {
+            put_index(text, NULL, lists[g].steps[i].value);
+        }
+        wh_json_text_end(text, ']');
+        wh_json_text_end(text, '}');
+    }
+    wh_json_text_end(text, ']');
+}
+
+static void put_vacuum(wh_json_text_t *text, const wh_document_t *document, size_t g) {
+    put_curve(text, document->signals, NULL, &document->signals->vacuum[g], decimals_level);
+}
+
+static void put_proximity(wh_json_text_t *text, const wh_document_t *document, size_t g) {
+    static const char *const names[WH_MEASURES] = {"dr_proj_z", "dr_proj_xy", "n1_proj_n2"};
+    const wh_path_t *curves = document->signals->proximity[g];
+    wh_json_text_begin(text, NULL, '{');
+    for (size_t m = 0; m < WH_MEASURES; ++m) {
+        put_curve(text, document->signals, names[m], &curves[m], decimals_measure[m]);
+    }
+    wh_json_text_end(text, '}');
+}
+
+/* Nothing of a pair that never came near. */
+static void put_clearance(wh_json_text_t *text, const wh_document_t *document, size_t kind) {
+    if (document->record->clearances[kind].parts[0] == WH_NONE) {
+        return;
+    }
+    const wh_curves_t *curves = document->record->curves;
+    const wh_signals_t *signals = document->signals;
+    const double limit = signals->layout->world.limits[kind];
+    wh_json_text_begin(text, NULL, '{');
+    wh_json_text_string(text, "pair", wh_clearance_name((wh_clearance_kind_t)kind));
+    wh_json_text_number(text, "limit", limit > 0 ? limit : HUGE_VAL, 0, true);
+    wh_json_text_begin(text, "t", '[');
+    for (size_t bin = 0; bin < curves->count; ++bin) {
+        put_second(text, NULL, signals, (int64_t)(curves->first + (bin + 1) * curves->slices));
+    }
+    wh_json_text_end(text, ']');
+    wh_json_text_begin(text, "gap", '[');
+    for (size_t bin = 0; bin < curves->count; ++bin) {
+        const double gap = curves->gaps[kind][bin];
+        wh_json_text_number(text, NULL, gap < WH_CLEARANCE_RANGE ? gap : HUGE_VAL, 0, true);
+    }
+    wh_json_text_end(text, ']');
+    wh_json_text_end(text, '}');
+}
+
+static void put_tracks(wh_json_text_t *text, const wh_document_t *document) {
+    const wh_signals_t *signals = document->signals;
+    const size_t grippers = signals->layout->machine.gripper_count;
+    const bool has_gaps = document->record->checked && document->record->curves;
+    wh_json_text_begin(text, "tracks", '{');
+    put_each(text, document, "axes", signals->axis_count, put_axis_track);
+    put_each(text, document, "grippers", grippers, put_own);
+    put_each(text, document, "wafers", signals->layout->wafer_count, put_stays);
+    put_steps(text, signals, "valves", signals->valves);
+    put_steps(text, signals, "sensors", signals->sensors);
+    put_steps(text, signals, "nearest", signals->nearest);
+    put_each(text, document, "vacuum", grippers, put_vacuum);
+    put_each(text, document, "proximity", grippers, put_proximity);
+    put_each(text, document, "clearances", has_gaps ? WH_CLEARANCES : 0, put_clearance);
     wh_json_text_end(text, '}');
 }
 
@@ -275,9 +486,9 @@ int wh_document_write(const wh_document_t *document, FILE *out) {
     put_machine(&text, document);
     put_limits(&text, &signals->layout->grasp);
     put_slots(&text, signals->layout);
-    wh_document_put_thinning(&text, signals);
-    wh_document_put_tracks(&text, document);
-    wh_document_put_each(&text, document, "marks", signals->mark_count, put_mark);
+    put_thinning(&text, signals);
+    put_tracks(&text, document);
+    put_each(&text, document, "marks", signals->mark_count, put_mark);
     wh_json_text_value(&text, "scene", wh_scene_make(signals, document->title, false));
     wh_json_text_end(&text, '}');
     fputc('\n', out);

@@ -8,7 +8,7 @@
  *   slice_s, slices, begin_s (0 but for a log that begins within a run), duration_s
  *   names        wafers, grippers, stations: [name]; axes: [{ name, unit "mm" or "rad", low, high, speed }]
  *                (nulls: not known)
- *   wafer        diameter, thickness, notch (about its z from its x)
+ *   wafer        diameter, thickness, notch (about its z from its x; only if it has one)
  *   limits       projz, projxy, planar, near_projz, near_projxy
  *   slots        [{ station, slot, r, q }]: base_from_slot
  *   machine      grippers [{ axis, r, q }]: of a chuck the axis that turns it and base_from_station, on the

@@ -25,16 +25,24 @@ static size_t put_character(FILE *out, const char *c) {
     return bytes;
 }
 
-/* Between single quotes gnuplot takes every character as it is, and two quotes for one. */
-void wh_plot_put_text(FILE *out, const char *text) {
+/* Between single quotes; what is in `doubled` gnuplot takes for itself once there are two of it. */
+static void put_quoted(FILE *out, const char *text, const char *doubled) {
     fputc('\'', out);
     for (const char *c = text; *c;) {
-        if (*c == '\'') {
-            fputc('\'', out);
+        if (strchr(doubled, *c)) {
+            fputc(*c, out);
         }
         c += put_character(out, c);
     }
     fputc('\'', out);
+}
+
+void wh_plot_put_text(FILE *out, const char *text) {
+    put_quoted(out, text, "'");
+}
+
+void wh_plot_put_tic(FILE *out, const char *text) {
+    put_quoted(out, text, "'%");
 }
 
 /* Writes a comment, which ends with its line. A backslash at its end would continue it on the next line. */

@@ -60,6 +60,9 @@ void wh_plot_fitting_label(wh_plot_t *plot, double begin, double end, const char
  * are no UTF-8 question marks. */
 void wh_plot_put_text(FILE *out, const char *text);
 
+/* The same for a tic's label, in which gnuplot would look for conversions as of printf. */
+void wh_plot_put_tic(FILE *out, const char *text);
+
 /* A block of data: what is in it, its columns; rows; a gap in the curve. Returns the index of the block that
  * ends; a block without rows is none, and has SIZE_MAX. */
 void wh_plot_block(wh_plot_t *plot, const char *of, const char *columns);

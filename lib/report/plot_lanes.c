@@ -4,7 +4,6 @@
 #include "../record/throughput.h"
 #include "../text/array.h"
 #include "../text/utf8.h"
-#include "document_internal.h"
 #include "plots_internal.h"
 
 /* -------------------------------------------------------------------------------------------------- lanes */
@@ -63,14 +62,12 @@ static void name_lane(lanes_t *lanes, const char *name, const char *what) {
     const size_t letters = wh_utf8_count(text);
     lanes->letters = letters > lanes->letters ? letters : lanes->letters;
     fputs(lanes->named > 0 ? ", " : "", lanes->out);
-    wh_plot_put_text(lanes->out, text);
+    wh_plot_put_tic(lanes->out, text);
     fprintf(lanes->out, " %g", lane_height(lanes, lanes->named++));
 }
 
 /* The script begins. Next come blocks of data and texts of bars, then what draws them, then the end. */
 static void begin_lanes(lanes_t *lanes, const char *title) {
-    const double begin_s = wh_plots_begin_s(lanes->plots);
-    const double end_s = wh_plots_end_s(lanes->plots);
     const size_t letters = lanes->letters < MOST_LETTERS ? lanes->letters : MOST_LETTERS;
     const wh_plot_frame_t frame = {.panels = 1,
                                    .panel_height = (int)lanes->count * ROW,
@@ -80,8 +77,8 @@ static void begin_lanes(lanes_t *lanes, const char *title) {
     if (fclose(lanes->out) != 0) {
         wh_memory_out();
     }
-    lanes->duration = end_s - begin_s;
-    wh_plot_begin(&lanes->plot, &frame, title, begin_s, end_s);
+    lanes->duration = lanes->plots->end_s - lanes->plots->begin_s;
+    wh_plot_begin(&lanes->plot, &frame, title, lanes->plots->begin_s, lanes->plots->end_s);
     wh_plot_panel(&lanes->plot, "");
     fprintf(lanes->plot.script, "set yrange [-0.5:%zu.5]\nset ytics scale 0 (%s)\n", lanes->count - 1,
             lanes->tics);
@@ -171,10 +168,10 @@ static size_t put_steps(lanes_t *lanes, const wh_steps_t *steps, bool inverted) 
     double value = 0;
     for (size_t i = 0; i < steps->count; ++i) {
         value = inverted ? 1 - steps->steps[i].value : steps->steps[i].value;
-        wh_plot_row(&lanes->plot, wh_document_seconds(signals, steps->steps[i].slice), &value, 1);
+        wh_plot_row(&lanes->plot, wh_signals_seconds(signals, steps->steps[i].slice), &value, 1);
     }
     if (steps->count > 0) {
-        wh_plot_row(&lanes->plot, wh_plots_end_s(lanes->plots), &value, 1);
+        wh_plot_row(&lanes->plot, lanes->plots->end_s, &value, 1);
     }
     return wh_plot_end_block(&lanes->plot);
 }
@@ -186,7 +183,7 @@ static void put_gripper_signals(lanes_t *lanes, size_t g) {
     wh_plot_block(&lanes->plot, name, "t (s), valve is open");
     draw_signal(lanes, put_steps(lanes, &signals->valves[g], true), 3 * g, "steps");
     wh_plot_block(&lanes->plot, name, "t (s), vacuum from 0 to 1");
-    draw_signal(lanes, wh_plot_curves(&lanes->plot, &level, wh_document_seconds(signals, 1)), 3 * g + 1,
+    draw_signal(lanes, wh_plot_curves(&lanes->plot, &level, wh_signals_seconds(signals, 1)), 3 * g + 1,
                 "lines");
     wh_plot_block(&lanes->plot, name, "t (s), vacuum sensor is on");
     draw_signal(lanes, put_steps(lanes, &signals->sensors[g], false), 3 * g + 2, "steps");

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "../math/trig.h"
-#include "document_internal.h"
+#include "../text/array.h"
 #include "plots_internal.h"
 
 /* With more wafers than these they are numbered. */
@@ -82,9 +82,9 @@ static void put_proximity(wh_plots_t *plots, int32_t g) {
     }
     (void)snprintf(title, sizeof title, "%s against the wafer that it holds (grey), or else would take",
                    name);
-    wh_plot_begin(&plot, &frame, title, wh_plots_begin_s(plots), wh_plots_end_s(plots));
+    wh_plot_begin(&plot, &frame, title, plots->begin_s, plots->end_s);
     wh_plot_block(&plot, name, "t (s), |dr_proj_z| (mm), |dr_proj_xy| (mm), n1_proj_n2, wafer (from 0)");
-    (void)wh_plot_curves(&plot, &values, wh_document_seconds(signals, 1));
+    (void)wh_plot_curves(&plot, &values, wh_signals_seconds(signals, 1));
     put_length(plots, &plot, g, "dr_proj_z", 2, limits->projz / 50, limits->projz,
                limits->projz * 4 > WH_SIGNALS_REACH ? limits->projz * 4 : WH_SIGNALS_REACH);
     put_length(plots, &plot, g, "dr_proj_xy", 3, limits->projxy / 50000, limits->projxy,
@@ -113,7 +113,7 @@ static const axis_panel_t axis_panels[] = {{"position (mm)", false, false},
 #define AXIS_PANELS (sizeof axis_panels / sizeof axis_panels[0])
 
 static bool is_in(const wh_signals_t *signals, size_t axis, const axis_panel_t *panel) {
-    return signals->axes[axis].list.count > 0 && panel->turns == (axis != WH_AXIS_R && axis != WH_AXIS_Z);
+    return signals->axes[axis].list.count > 0 && panel->turns == wh_signals_turns(axis);
 }
 
 /* How many curves a panel shows, and between which values. */
@@ -154,9 +154,9 @@ static void put_axis_panel(const wh_plots_t *plots, wh_plot_t *plot, const axis_
             const wh_plot_curves_t curve = {
                 {&signals->axes[axis]}, 1, panel->turns ? WH_PI / 180 : 1, panel->is_speed, NULL};
             char name[WH_NAME_SIZE + 8];
-            wh_document_name_axis(signals->layout, axis, name, sizeof name);
+            wh_signals_name_axis(signals->layout, axis, name, sizeof name);
             wh_plot_block(plot, name, panel->is_speed ? "t (s), speed" : "t (s), position");
-            const size_t block = wh_plot_curves(plot, &curve, wh_document_seconds(signals, 1));
+            const size_t block = wh_plot_curves(plot, &curve, wh_signals_seconds(signals, 1));
             ++line;
             fprintf(plot->script, "%s'%s.dat' index %zu using 1:2 with linespoints pn 9 lt %d title ",
                     line == 1 ? "plot " : ", \\\n  ", plot->name, block, line);
@@ -175,8 +175,8 @@ void wh_plots_axes(wh_plots_t *plots) {
     if (frame.panels == 0 || !wh_plots_open(plots, &plot, "axes", NULL)) {
         return;
     }
-    wh_plot_begin(&plot, &frame, "Axes: where they stand and how fast they are", wh_plots_begin_s(plots),
-                  wh_plots_end_s(plots));
+    wh_plot_begin(&plot, &frame, "Axes: where they stand and how fast they are", plots->begin_s,
+                  plots->end_s);
     for (size_t i = 0; i < AXIS_PANELS; ++i) {
         if (look_at(plots->document->signals, &axis_panels[i]).curves > 0) {
             put_axis_panel(plots, &plot, &axis_panels[i]);
@@ -204,9 +204,9 @@ static void put_gaps(const wh_plots_t *plots, wh_plot_t *plot, size_t kind) {
     wh_plot_block(plot, wh_clearance_name((wh_clearance_kind_t)kind), "t (s), smallest gap until then (mm)");
     for (size_t bin = 0; bin < curves->count; ++bin) {
         const int64_t slice = (int64_t)(curves->first + (bin + 1) * curves->slices);
-        const double gap = (double)curves->gaps[kind][bin];
-        if (gap < (double)WH_CLEARANCE_RANGE) {
-            wh_plot_row(plot, wh_document_seconds(plots->document->signals, slice), &gap, 1);
+        const double gap = curves->gaps[kind][bin];
+        if (gap < WH_CLEARANCE_RANGE) {
+            wh_plot_row(plot, wh_signals_seconds(plots->document->signals, slice), &gap, 1);
         } else {
             wh_plot_gap(plot);
         }
@@ -214,12 +214,9 @@ static void put_gaps(const wh_plots_t *plots, wh_plot_t *plot, size_t kind) {
 }
 
 static void put_clearance(const wh_plots_t *plots, wh_plot_t *plot, size_t kind) {
-    const double limit = (double)plots->document->signals->layout->world.limits[kind];
+    const double limit = plots->document->signals->layout->world.limits[kind];
     char words[60];
-    (void)snprintf(words, sizeof words, "%s", wh_clearance_name((wh_clearance_kind_t)kind));
-    for (char *c = words; *c; ++c) {
-        *c = *c == '_' ? ' ' : *c;
-    }
+    wh_text_words(words, sizeof words, wh_clearance_name((wh_clearance_kind_t)kind));
     wh_plot_panel(plot, "gap (mm)");
     put_gaps(plots, plot, kind);
     const size_t block = wh_plot_end_block(plot);
@@ -230,7 +227,7 @@ static void put_clearance(const wh_plots_t *plots, wh_plot_t *plot, size_t kind)
             "set label '%s' at graph 1, graph 1.1 right\n"
             "low = 0.1\nset logscale y\nset yrange [low:%g]\n"
             "plot '%s.dat' index %zu using 1:($2 > low ? $2 : low) with linespoints lt 1 pt 7 ps 0.2 notitle",
-            words, (double)WH_CLEARANCE_RANGE, plot->name, block);
+            words, WH_CLEARANCE_RANGE, plot->name, block);
     if (limit > 0) {
         wh_plot_limit_curve(plot, limit);
     }
@@ -247,8 +244,7 @@ void wh_plots_clearances(wh_plots_t *plots) {
     if (frame.panels == 0 || !wh_plots_open(plots, &plot, "clearances", NULL)) {
         return;
     }
-    wh_plot_begin(&plot, &frame, "The smallest gaps, known from 20 mm down", wh_plots_begin_s(plots),
-                  wh_plots_end_s(plots));
+    wh_plot_begin(&plot, &frame, "The smallest gaps, known from 20 mm down", plots->begin_s, plots->end_s);
     for (size_t kind = 0; kind < WH_CLEARANCES; ++kind) {
         if (is_known(record, kind)) {
             put_clearance(plots, &plot, kind);
@@ -280,7 +276,7 @@ static bool put_data(const wh_plots_t *plots, wh_plot_t *plot) {
     for (size_t i = 0; i < plots->document->signals->layout->wafer_count; ++i) {
         if (lies(record, i)) {
             const wh_place_t *place = &record->wafers[i].place;
-            const double offsets[] = {(double)place->dx, (double)place->dy};
+            const double offsets[] = {place->dx, place->dy};
             number += 1;
             is_seen = is_seen || fabs(offsets[0]) > LEAST_OFFSET || fabs(offsets[1]) > LEAST_OFFSET;
             wh_plot_row(plot, number, offsets, 2);
@@ -303,7 +299,7 @@ static void put_names(const wh_plots_t *plots, wh_plot_t *plot) {
             (void)snprintf(name, sizeof name, "%s in %s %d", layout->wafers[i].name,
                            layout->stations[place->station].name, (int)place->slot);
             fputs(number > 0 ? ", " : "", plot->script);
-            wh_plot_put_text(plot->script, name);
+            wh_plot_put_tic(plot->script, name);
             fprintf(plot->script, " %zu", ++number);
         }
     }

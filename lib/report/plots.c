@@ -10,7 +10,7 @@
 
 #include "../record/record.h"
 #include "../text/array.h"
-#include "document_internal.h"
+#include "../text/output.h"
 #include "plots_internal.h"
 
 extern char **environ;
@@ -23,8 +23,11 @@ extern char **environ;
 static const char *const endings[] = {"dat", "gp", "svg"};
 #define ENDINGS (sizeof endings / sizeof endings[0])
 
-static bool path_of(char path[PATH_BYTES], const char *folder, const char *name, const char *ending) {
-    return snprintf(path, PATH_BYTES, "%s/%s.%s", folder, name, ending) < PATH_BYTES;
+/* The path of file `i` of all plots' in a folder. False if it is too long. */
+static bool path_of(const wh_plots_t *plots, size_t i, const char *folder, char path[PATH_BYTES]) {
+    errno = ENAMETOOLONG;
+    return snprintf(path, PATH_BYTES, "%s/%s.%s", folder, plots->names[i / ENDINGS], endings[i % ENDINGS]) <
+           PATH_BYTES;
 }
 
 /* -------------------------------------------------------------------------------------------------- files */
@@ -54,10 +57,9 @@ static void choose_name(const wh_plots_t *plots, char name[WH_PLOT_NAME_BYTES], 
     }
 }
 
-static FILE *open_file(const wh_plots_t *plots, const wh_plot_t *plot, const char *ending) {
+static FILE *open_file(const wh_plots_t *plots, size_t i) {
     char path[PATH_BYTES];
-    errno = ENAMETOOLONG;
-    return path_of(path, plots->folder, plot->name, ending) ? fopen(path, "wb") : NULL;
+    return path_of(plots, i, plots->folder, path) ? fopen(path, "wb") : NULL;
 }
 
 static void close_file(wh_plots_t *plots, FILE *file) {
@@ -74,9 +76,10 @@ bool wh_plots_open(wh_plots_t *plots, wh_plot_t *plot, const char *name, const c
     memset(plot, 0, sizeof *plot);
     choose_name(plots, plot->name, name, of);
     plots->names = wh_array_grow(plots->names, plots->count, &plots->capacity, sizeof *plots->names);
-    memcpy(plots->names[plots->count++], plot->name, sizeof plot->name);
-    plot->data = open_file(plots, plot, "dat");
-    plot->script = plot->data ? open_file(plots, plot, "gp") : NULL;
+    memcpy(plots->names[plots->count], plot->name, sizeof plot->name);
+    plot->data = open_file(plots, plots->count * ENDINGS);
+    plot->script = plot->data ? open_file(plots, plots->count * ENDINGS + 1) : NULL;
+    ++plots->count;
     if (!plot->script) {
         plots->error = errno;
         close_file(plots, plot->data);
@@ -92,16 +95,6 @@ void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot) {
 
 /* ---------------------------------------------------------------------------------------------------- run */
 
-double wh_plots_begin_s(const wh_plots_t *plots) {
-    const wh_signals_t *signals = plots->document->signals;
-    return signals->first > 0 ? wh_document_seconds(signals, signals->first) : 0;
-}
-
-double wh_plots_end_s(const wh_plots_t *plots) {
-    const wh_signals_t *signals = plots->document->signals;
-    return signals->last > 0 ? wh_document_seconds(signals, signals->last) : 0;
-}
-
 /* A gripper holds one wafer at a time, so its stays end in the order in which they begin. */
 wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t *count) {
     const wh_signals_t *signals = plots->document->signals;
@@ -112,7 +105,7 @@ wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t 
     *count = 0;
     for (size_t i = 0; i < signals->stay_count; ++i) {
         const wh_stay_t *stay = &signals->stays[i];
-        const double at = wh_document_seconds(signals, stay->slice);
+        const double at = wh_signals_seconds(signals, stay->slice);
         if (holds && (stay->wafer == last->wafer || stay->holder == gripper)) {
             last->end_s = at;
             holds = false;
@@ -129,7 +122,7 @@ wh_plot_hold_t *wh_plots_holds(const wh_plots_t *plots, int32_t gripper, size_t 
         holds = true;
     }
     if (holds) {
-        last->end_s = wh_plots_end_s(plots);
+        last->end_s = plots->end_s;
     }
     return list;
 }
@@ -196,17 +189,30 @@ static bool draw(const wh_plots_t *plots, const char *name, char message[WH_PLOT
 
 /* ------------------------------------------------------------------------------------------------ placing */
 
+static bool refuse(const wh_plots_t *plots, size_t i, const char *why, char message[WH_PLOTS_MESSAGE_BYTES]) {
+    (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s.%s: %s", plots->names[i / ENDINGS],
+                   endings[i % ENDINGS], why);
+    return false;
+}
+
+/* Nothing is placed if one of the files is an input or another output. */
+static bool is_free(const wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
+    char to[PATH_BYTES];
+    for (size_t i = 0; i < plots->count * ENDINGS; ++i) {
+        if (path_of(plots, i, folder, to) && wh_output_is_kept(to)) {
+            return refuse(plots, i, WH_OUTPUT_KEPT, message);
+        }
+    }
+    return true;
+}
+
 static bool place(const wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
     char from[PATH_BYTES];
     char to[PATH_BYTES];
     for (size_t i = 0; i < plots->count * ENDINGS; ++i) {
-        const char *name = plots->names[i / ENDINGS];
-        const char *ending = endings[i % ENDINGS];
-        errno = ENAMETOOLONG;
-        if (!path_of(from, plots->folder, name, ending) || !path_of(to, folder, name, ending) ||
+        if (!path_of(plots, i, plots->folder, from) || !path_of(plots, i, folder, to) ||
             rename(from, to) != 0) {
-            (void)snprintf(message, WH_PLOTS_MESSAGE_BYTES, "%s.%s: %s", name, ending, strerror(errno));
-            return false;
+            return refuse(plots, i, strerror(errno), message);
         }
     }
     return true;
@@ -215,7 +221,7 @@ static bool place(const wh_plots_t *plots, const char *folder, char message[WH_P
 static void clear(const wh_plots_t *plots) {
     char path[PATH_BYTES];
     for (size_t i = 0; i < plots->count * ENDINGS; ++i) {
-        if (path_of(path, plots->folder, plots->names[i / ENDINGS], endings[i % ENDINGS])) {
+        if (path_of(plots, i, plots->folder, path)) {
             (void)unlink(path);
         }
     }
@@ -223,7 +229,7 @@ static void clear(const wh_plots_t *plots) {
 }
 
 static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_MESSAGE_BYTES]) {
-    if (wh_plots_end_s(plots) > wh_plots_begin_s(plots)) {
+    if (plots->end_s > plots->begin_s) {
         wh_plots_proximity(plots);
         wh_plots_signals(plots);
         wh_plots_holders(plots);
@@ -240,7 +246,7 @@ static bool make(wh_plots_t *plots, const char *folder, char message[WH_PLOTS_ME
     for (size_t i = 0; drawn && i < plots->count; ++i) {
         drawn = draw(plots, plots->names[i], message);
     }
-    return drawn && place(plots, folder, message);
+    return drawn && is_free(plots, folder, message) && place(plots, folder, message);
 }
 
 static bool make_within(const wh_document_t *document, const char *folder,
@@ -253,7 +259,11 @@ static bool make_within(const wh_document_t *document, const char *folder,
                        strerror(errno));
         return false;
     }
-    wh_plots_t plots = {.document = document, .folder = within};
+    const wh_signals_t *signals = document->signals;
+    wh_plots_t plots = {.document = document,
+                        .folder = within,
+                        .begin_s = signals->first > 0 ? wh_signals_seconds(signals, signals->first) : 0,
+                        .end_s = signals->last > 0 ? wh_signals_seconds(signals, signals->last) : 0};
     const bool made = make(&plots, folder, message);
     clear(&plots);
     free(plots.names);

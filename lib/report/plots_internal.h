@@ -11,17 +11,14 @@ typedef struct {
     const char *folder; /* where they are made */
     char (*names)[WH_PLOT_NAME_BYTES];
     size_t count, capacity;
-    int error; /* errno of the first file that could not be written; then nothing more is */
+    double begin_s, end_s; /* from when until when the run goes */
+    int error;             /* errno of the first file that could not be written; then nothing more is */
 } wh_plots_t;
 
 /* A plot's files, named by `name` and, unless it is null, what of `of` may stand in a file's name. False when
  * they cannot be opened, then there is nothing to close. */
 bool wh_plots_open(wh_plots_t *plots, wh_plot_t *plot, const char *name, const char *of);
 void wh_plots_close(wh_plots_t *plots, wh_plot_t *plot);
-
-/* From when until when the run goes, s. */
-double wh_plots_begin_s(const wh_plots_t *plots);
-double wh_plots_end_s(const wh_plots_t *plots);
 
 /* When a gripper held a wafer. */
 typedef struct {

@@ -60,8 +60,6 @@ void wh_pattern_init(pattern_t *m, lua_State *L, const char *subject, size_t sub
     m->subject = subject;
     m->subject_end = subject + subject_length;
     m->pattern_end = pattern + pattern_length;
-    m->depth = DEPTH_LIMIT;
-    m->captures = 0;
     m->steps = 0;
 }
 

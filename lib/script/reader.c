@@ -8,6 +8,9 @@
 #include <lauxlib.h>
 
 #include "../math/config.h"
+#include "../text/nearest.h"
+#include "../text/utf8.h"
+#include "wh_module_values.h"
 
 /* ----------------------------------------------------------------------------------------------- messages */
 
@@ -48,7 +51,7 @@ static void describe(lua_State *L, char *text, size_t size) {
         describe_table(L, text, size);
         break;
     case LUA_TSTRING:
-        snprintf(text, size, "\"%.60s\"", lua_tostring(L, -1));
+        snprintf(text, size, "\"%.60s\"", wh_lua_whole_text(L, -1));
         break;
     case LUA_TBOOLEAN:
         snprintf(text, size, "%s", lua_toboolean(L, -1) ? "true" : "false");
@@ -115,7 +118,7 @@ static bool is_known(const char *name, size_t length, const char *known) {
 static void name_key(lua_State *L, char *field, size_t size) {
     lua_pushvalue(L, -2);
     if (lua_type(L, -1) == LUA_TSTRING) {
-        snprintf(field, size, "%.60s", lua_tostring(L, -1));
+        snprintf(field, size, "%.60s", wh_lua_whole_text(L, -1));
     } else {
         char key[60];
         describe(L, key, sizeof key);
@@ -124,9 +127,23 @@ static void name_key(lua_State *L, char *field, size_t size) {
     lua_pop(L, 1);
 }
 
+/* Says which known name is nearest to an unknown one. */
+static const char *describe_nearest(const char *name, const char *known, char text[WH_NEAREST_TEXT]) {
+    char copy[WANTED_SIZE];
+    const char *names[WANTED_SIZE / 2];
+    char *rest = NULL;
+    size_t count = 0;
+    snprintf(copy, sizeof copy, "%s", known);
+    for (char *each = strtok_r(copy, " ", &rest); each; each = strtok_r(NULL, " ", &rest)) {
+        names[count++] = each;
+    }
+    return wh_text_did_you_mean(text, "; ", "", wh_text_nearest(name, names, count));
+}
+
 void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known) {
     lua_State *L = reader->L;
     const char *first = NULL;
+    size_t first_length = 0;
     lua_pushnil(L);
     while (lua_next(L, -2) != 0) {
         if (lua_type(L, -2) != LUA_TSTRING) {
@@ -138,14 +155,19 @@ void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known) {
         const char *name = lua_tolstring(L, -2, &length);
         if (!is_known(name, length, known) && (!first || strcmp(name, first) < 0)) {
             first = name;
+            first_length = length;
         }
         lua_pop(L, 1);
     }
     if (first) {
         char field[80];
-        snprintf(field, sizeof field, "%.60s", first);
-        (void)wh_reader_push(reader, first);
-        wh_reader_fail(reader, field, "one of the fields %s", known);
+        char nearest[WH_NEAREST_TEXT];
+        lua_pushlstring(L, first, first_length);
+        lua_pushvalue(L, -1);
+        (void)lua_rawget(L, -3);
+        name_key(L, field, sizeof field);
+        wh_reader_fail(reader, field, "one of the fields %s%s", known,
+                       describe_nearest(first, known, nearest));
     }
 }
 
@@ -245,6 +267,15 @@ bool wh_reader_open(wh_reader_t *reader, const char *field, const char *known) {
     return there;
 }
 
+void wh_reader_open_section(wh_reader_t *reader, const char *field, const char *known) {
+    if (wh_reader_push(reader, field) == LUA_TNIL) {
+        lua_newtable(reader->L);
+        lua_replace(reader->L, -2);
+    }
+    enter_top(reader, field);
+    wh_reader_refuse_unknown(reader, known);
+}
+
 bool wh_reader_enter_item(wh_reader_t *reader, lua_Integer index) {
     char name[32];
     snprintf(name, sizeof name, "[%lld]", (long long)index);
@@ -296,7 +327,8 @@ wh_real_t wh_reader_number(wh_reader_t *reader, const char *field, wh_real_t fal
 int32_t wh_reader_whole(wh_reader_t *reader, const char *field, int32_t fallback, int32_t min, int32_t max) {
     char expected[80];
     int is_whole = 0;
-    snprintf(expected, sizeof expected, "a whole number from %d to %d", (int)min, (int)max);
+    snprintf(expected, sizeof expected, min < max ? "a whole number from %d to %d" : "%d", (int)min,
+             (int)max);
     if (!push_field(reader, field, fallback < min, expected)) {
         return fallback;
     }
@@ -342,9 +374,11 @@ wh_vec3_t wh_reader_vector(wh_reader_t *reader, const char *field, const wh_vec3
 
 bool wh_reader_is_plain(const char *text, size_t length) {
     for (size_t i = 0; i < length; ++i) {
-        if ((unsigned char)text[i] < 0x20 || text[i] == 0x7f) {
+        if (wh_utf8_control_bytes(text + i) > 0) {
             return false;
         }
+        const size_t character = wh_utf8_bytes(text + i);
+        i += character > 0 ? character - 1 : 0;
     }
     return length > 0;
 }
@@ -358,8 +392,11 @@ void wh_reader_text(wh_reader_t *reader, const char *field, const char *fallback
     }
     size_t length = 0;
     const char *value = lua_type(reader->L, -1) == LUA_TSTRING ? lua_tolstring(reader->L, -1, &length) : NULL;
-    if (!value || length >= size || !wh_reader_is_plain(value, length)) {
+    if (!value || length >= size || length == 0) {
         wh_reader_fail(reader, field, "%s", expected);
+    }
+    if (!wh_reader_is_plain(value, length)) {
+        wh_reader_fail(reader, field, "text without control characters");
     }
     memcpy(text, value, length + 1);
     lua_pop(reader->L, 1);
@@ -369,7 +406,7 @@ int wh_reader_choice(wh_reader_t *reader, const char *field, int fallback, const
     if (!push_field(reader, field, false, "")) {
         return fallback;
     }
-    const char *value = lua_type(reader->L, -1) == LUA_TSTRING ? lua_tostring(reader->L, -1) : "";
+    const char *value = wh_lua_word(reader->L, -1);
     char expected[256] = "";
     for (int i = 0; choices[i]; ++i) {
         if (strcmp(value, choices[i]) == 0) {

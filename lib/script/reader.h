@@ -30,7 +30,7 @@ void wh_reader_start(wh_reader_t *reader, lua_State *L, const char *file);
 void wh_reader_fail(const wh_reader_t *reader, const char *field, const char *expected, ...)
     __attribute__((noreturn, format(printf, 3, 4)));
 
-/* wh_reader_fail for a value that is a text, which need not be on the stack. */
+/* wh_reader_fail for a value that is a text, which need not be on the stack; null: for nothing. */
 void wh_reader_refuse(const wh_reader_t *reader, const char *field, const char *text, const char *expected,
                       ...) __attribute__((noreturn, format(printf, 4, 5)));
 
@@ -42,7 +42,7 @@ void wh_reader_refuse_unknown(wh_reader_t *reader, const char *known);
  * entries. */
 size_t wh_reader_list(const wh_reader_t *reader);
 
-/* True if a text is not empty and has no control characters. */
+/* True if a text is not empty and has no control characters: see wh_utf8_control_bytes. */
 bool wh_reader_is_plain(const char *text, size_t length);
 
 /* Enters the table in a field or a list entry, which becomes the table that is read until wh_reader_leave.
@@ -52,6 +52,10 @@ bool wh_reader_enter_item(wh_reader_t *reader, lua_Integer index);
 
 /* wh_reader_enter and then, if there is such a table, wh_reader_refuse_unknown. */
 bool wh_reader_open(wh_reader_t *reader, const char *field, const char *known);
+
+/* The same where all fields have defaults: without such a table an empty one is entered, so that all of them
+ * are read as absent. */
+void wh_reader_open_section(wh_reader_t *reader, const char *field, const char *known);
 
 void wh_reader_leave(wh_reader_t *reader);
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "../text/array.h"
+#include "../text/output.h"
 #include "../text/utf8.h"
 #include "sandbox_internal.h"
 
@@ -14,7 +15,7 @@
 
 static int note_line(lua_State *L) {
     wh_sandbox_job_t *const job = wh_sandbox_of(L)->job;
-    if (job->path != NULL && !job->line_is_final) {
+    if (job->path != NULL) {
         job->line = wh_sandbox_line(L, job->path);
     }
     return 1;
@@ -37,17 +38,19 @@ static const char *text_of(lua_State *L, size_t *length) {
     return lua_tolstring(L, -1, length);
 }
 
-/* Makes one line of it, without characters that control a terminal. */
+/* Makes one line of it, without characters that control a terminal. Line ends and tabs become blanks. */
 static int describe(lua_State *L) {
     size_t length = 0;
-    const char *const text = text_of(L, &length);
+    const char *const all = text_of(L, &length);
+    const char *const text = wh_sandbox_skip_inner(all);
     char whole[WH_SANDBOX_MESSAGE_BYTES + 1];
+    length -= (size_t)(text - all);
     const size_t kept = length < sizeof whole ? length : sizeof whole - 1;
     for (size_t i = 0; i < kept; ++i) {
-        whole[i] = iscntrl((unsigned char)text[i]) ? ' ' : text[i];
+        whole[i] = isspace((unsigned char)text[i]) ? ' ' : text[i];
     }
     whole[kept] = '\0';
-    wh_utf8_clip(lua_touserdata(L, 2), WH_SANDBOX_MESSAGE_BYTES, whole);
+    wh_utf8_visible_bytes(lua_touserdata(L, 2), WH_SANDBOX_MESSAGE_BYTES, whole, kept);
     return 0;
 }
 
@@ -68,6 +71,19 @@ static void make_text(lua_State *L, char described[WH_SANDBOX_MESSAGE_BYTES]) {
     }
 }
 
+bool wh_sandbox_is_inner(const char *name) {
+    return strncmp(name, WH_INNER_CHUNK, sizeof WH_INNER_CHUNK - 1) == 0;
+}
+
+const char *wh_sandbox_skip_inner(const char *text) {
+    const char *const colon = wh_sandbox_is_inner(text) ? strchr(text, ':') : NULL;
+    if (colon == NULL) {
+        return text;
+    }
+    const char *const after = colon + 1 + strspn(colon + 1, "0123456789");
+    return strncmp(after, ": ", 2) == 0 ? after + 2 : text;
+}
+
 /* True if the text begins with Lua's own "short_source:line:". */
 static bool has_position(const char *text, const char *short_source) {
     const size_t length = strlen(short_source);
@@ -76,11 +92,14 @@ static bool has_position(const char *text, const char *short_source) {
 }
 
 static void report(lua_State *L, const wh_sandbox_job_t *job, char message[WH_SANDBOX_MESSAGE_BYTES]) {
+    const wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     char described[WH_SANDBOX_MESSAGE_BYTES];
     char whole[WH_SANDBOX_MESSAGE_BYTES * 3];
     make_text(L, described);
     lua_pop(L, 1);
-    if (job->path == NULL) {
+    if (sandbox->fatal != WH_SANDBOX_OK && sandbox->fatal_place[0] != '\0') {
+        snprintf(whole, sizeof whole, "%s: %s", sandbox->fatal_place, described);
+    } else if (job->path == NULL) {
         snprintf(whole, sizeof whole, "%s", described);
     } else if (has_position(described, job->short_source)) {
         snprintf(whole, sizeof whole, "%.1023s%s", job->path, described + strlen(job->short_source));
@@ -89,7 +108,7 @@ static void report(lua_State *L, const wh_sandbox_job_t *job, char message[WH_SA
     } else {
         snprintf(whole, sizeof whole, "%.1023s: %s", job->path, described);
     }
-    wh_utf8_clip(message, WH_SANDBOX_MESSAGE_BYTES, whole);
+    wh_utf8_visible(message, WH_SANDBOX_MESSAGE_BYTES, whole);
 }
 
 /* -------------------------------------------------------------------------------------------------- files */
@@ -110,7 +129,20 @@ static const char *file_fault(const char *path, size_t *size) {
     if (status.st_size > (off_t)WH_SANDBOX_FILE_BYTES) {
         return "it is larger than 16 MiB";
     }
+    wh_output_keep(path);
     return access(path, R_OK) == 0 ? NULL : strerror(errno);
+}
+
+/* What is given in place of a script now and then: a log begins with LCM's sync word or is compressed. */
+static bool is_log(const char *path) {
+    static const unsigned char begins[2][4] = {{0xED, 0xA1, 0xDA, 0x01}, {0x28, 0xB5, 0x2F, 0xFD}};
+    unsigned char begin[4] = {0};
+    FILE *file = fopen(path, "rb");
+    const size_t size = file ? fread(begin, 1, sizeof begin, file) : 0;
+    if (file) {
+        (void)fclose(file);
+    }
+    return size == sizeof begin && (memcmp(begin, begins[0], 4) == 0 || memcmp(begin, begins[1], 4) == 0);
 }
 
 /* ---------------------------------------------------------------------------------------------- a sandbox */
@@ -191,9 +223,11 @@ static void enter(lua_State *L, wh_sandbox_job_t *job) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     if (sandbox->job == NULL) {
         sandbox->refused = false;
+        sandbox->refused_place[0] = sandbox->fatal_place[0] = '\0';
         sandbox->power_pending = false;
         sandbox->stop = 0;
     }
+    job->state = L;
     job->outer = sandbox->job;
     job->outer_running = sandbox->running;
     job->outer_strict = wh_pow_set_strict(sandbox);
@@ -237,21 +271,54 @@ static bool conclude(lua_State *L, wh_sandbox_job_t *job, int base, int status, 
     return status == LUA_OK;
 }
 
+/* True if a script names the file that the job is about to read. */
+static bool is_named_by_script(const wh_sandbox_job_t *job) {
+    const wh_sandbox_job_t *outer = job->outer;
+    while (outer != NULL && outer->path == NULL) {
+        outer = outer->outer;
+    }
+    return outer != NULL;
+}
+
+/* Raises why the text is no Lua. A script hears nothing of what stands in another file: all that Lua quotes
+ * of it comes behind "near", or the message has no "near". */
+static int raise_syntax(lua_State *L, const wh_sandbox_job_t *job, int status) {
+    const char *const text = lua_tostring(L, -1);
+    if (status != LUA_ERRSYNTAX || job->text != NULL || !is_named_by_script(job)) {
+        return lua_error(L);
+    }
+    const char *const near = strstr(text, " near ");
+    const size_t source = strlen(job->short_source);
+    if (!has_position(text, job->short_source)) {
+        lua_pushstring(L, "no text");
+    } else {
+        const size_t position = source + 1 + strspn(text + source + 1, "0123456789");
+        lua_pushlstring(L, text, near != NULL ? (size_t)(near - text) : position);
+    }
+    lua_pushfstring(L, "%s (expected Lua; a script is told no more of another file)", lua_tostring(L, -1));
+    return lua_error(L);
+}
+
 /* Compiles and runs in one protected call, for compiling may run out of memory too. While it compiles, `^`
  * with a fractional exponent is left for the run: constant folding must not raise the error. */
 static int load_and_run(lua_State *L) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     wh_sandbox_job_t *const job = lua_touserdata(L, 1);
     wh_sandbox_charge(L, job->size);
+    const bool is_file = job->text == NULL;
     const char *const name = lua_pushfstring(L, "@%s", job->path);
+    const char *const text = is_file ? wh_sandbox_read_text(L, job->path, &job->size) : job->text;
     ++sandbox->loading;
-    const int status = job->text != NULL ? luaL_loadbufferx(L, job->text, job->size, name, "t")
-                                         : luaL_loadfilex(L, job->path, "t");
+    const int status = luaL_loadbufferx(L, text, job->size, name, "t");
     --sandbox->loading;
     if (status != LUA_OK) {
-        return lua_error(L);
+        return raise_syntax(L, job, status);
     }
     job->loaded = true;
+    if (is_file) {
+        wh_sandbox_own(L, name);
+        wh_literals_refuse_twice(L, job->short_source, text, job->size);
+    }
     lua_call(L, 0, job->results);
     return job->results;
 }
@@ -283,8 +350,10 @@ static bool run_job(lua_State *L, wh_sandbox_job_t *job, int arguments, wh_sandb
 static bool refuse(wh_sandbox_result_t *result, wh_sandbox_reason_t reason, const char *path,
                    const char *why) {
     if (result != NULL) {
+        char text[WH_SANDBOX_MESSAGE_BYTES];
         result->status = reason;
-        snprintf(result->message, sizeof result->message, "%.900s: %.100s", path, why);
+        snprintf(text, sizeof text, "%.900s: %.100s", path, why);
+        wh_utf8_visible(result->message, sizeof result->message, text);
     }
     return false;
 }
@@ -307,7 +376,10 @@ bool wh_sandbox_evaluate_text(lua_State *L, const char *name, const char *text, 
 
 bool wh_sandbox_evaluate(lua_State *L, const char *path, wh_sandbox_result_t *result) {
     wh_sandbox_job_t job = {.path = path, .results = 1};
-    const char *const why = file_fault(path, &job.size);
+    const char *why = file_fault(path, &job.size);
+    if (why == NULL && is_log(path)) {
+        why = "it is a log or compressed, no Lua (waferhand replay reads logs)";
+    }
     if (why != NULL) {
         char text[100];
         snprintf(text, sizeof text, "cannot be read: %.80s", why);

@@ -4,6 +4,7 @@
  * file and line, and the process lives on. The same script does the same on every machine: tables are read in
  * sorted order, the trigonometry is the library's own, and no address and no clock can be seen.
  * sandbox_library.h lists what a script finds.
+ * A key that stands twice in a table literal is an error, and so is a global that nobody defined.
  *
  * Rules for the host:
  * - Enter Lua by the functions below. At the outermost level never call lua_pcall or lua_resume yourself: the
@@ -105,6 +106,18 @@ void wh_sandbox_push_error(lua_State *L);
  * levels. */
 int wh_sandbox_line(lua_State *L, const char *path);
 
+/* Up to `room` of its lines on the call stack, the innermost first: where it is, and the lines from which it
+ * called its own functions. Returns how many there are. */
+size_t wh_sandbox_lines(lua_State *L, const char *path, int lines[], size_t room);
+
+/* Begins the names of chunks that messages never show: the library's own Lua files. No file can stand below
+ * it, so no path of a user's is such a name. */
+#define WH_INNER_CHUNK "/dev/null/"
+
+/* A message without the place at its beginning if that is in a chunk whose name begins with WH_INNER_CHUNK,
+ * else all of it. */
+const char *wh_sandbox_skip_inner(const char *text);
+
 /* ------------------------------------------------------------------------------------------------- Limits */
 
 /* Takes steps off the budget for work done in C, such as a simulated slice or a scanned byte. Raises an error
@@ -133,9 +146,17 @@ size_t wh_sandbox_memory_high_water(const wh_sandbox_t *sandbox);
 /* --------------------------------------------------------------------------------------------- Parameters */
 
 /* Sets params.NAME from "NAME=VALUE" (--set). NAME is a Lua identifier and not a reserved word. VALUE becomes
- * a number if all of it is a finite number as Lua writes them, else true or false, else a string. False, with
- * a message that names the fault, if it is refused; result may be null. */
+ * a number if all of it is a finite number as Lua writes them, else true or false, else a string. A NAME is
+ * set once. False, with a message that names the fault, if it is refused; result may be null. */
 bool wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *assignment, wh_sandbox_result_t *result);
+
+/* False if each parameter that was set has been read; else `message` is "--set NAME: nobody read
+ * params.NAME", for the first by name, and tells which were. All count as read once a script has gone
+ * through params with pairs. */
+bool wh_sandbox_find_unread(wh_sandbox_t *sandbox, char message[WH_SANDBOX_MESSAGE_BYTES]);
+
+/* True if any parameter was asked for by its name, given or not. */
+bool wh_sandbox_reads_parameters(wh_sandbox_t *sandbox);
 
 /* wh_sandbox_new, then wh_sandbox_set_parameter for each of the assignments. Null, and the reason in
  * `result`, if out of memory or if a parameter is refused. */

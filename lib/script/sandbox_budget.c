@@ -35,27 +35,60 @@ void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size)
 }
 
 int wh_sandbox_line(lua_State *L, const char *path) {
+    int line = 0;
+    (void)wh_sandbox_lines(L, path, &line, 1);
+    return line;
+}
+
+size_t wh_sandbox_lines(lua_State *L, const char *path, int lines[], size_t room) {
+    lua_Debug frame;
+    size_t count = 0;
+    for (int level = 0; count < room && level < SEARCHED_LEVELS && lua_getstack(L, level, &frame); ++level) {
+        if (lua_getinfo(L, "Sl", &frame) && frame.currentline > 0 && frame.source[0] == '@' &&
+            strcmp(frame.source + 1, path) == 0) {
+            lines[count++] = frame.currentline;
+        }
+    }
+    return count;
+}
+
+/* The innermost file on L's stack. False if there is none. */
+static bool find_file(lua_State *L, char place[WH_SANDBOX_PLACE_BYTES]) {
     lua_Debug frame;
     for (int level = 0; level < SEARCHED_LEVELS && lua_getstack(L, level, &frame); ++level) {
         if (lua_getinfo(L, "Sl", &frame) && frame.currentline > 0 && frame.source[0] == '@' &&
-            strcmp(frame.source + 1, path) == 0) {
-            return frame.currentline;
+            !wh_sandbox_is_inner(frame.source + 1)) {
+            snprintf(place, WH_SANDBOX_PLACE_BYTES, "%.900s:%d", frame.source + 1, frame.currentline);
+            return true;
         }
     }
-    return 0;
+    return false;
 }
 
-void wh_sandbox_exhaust(lua_State *L, wh_sandbox_reason_t reason) {
+void wh_sandbox_find_place(const wh_sandbox_t *sandbox, lua_State *L, char place[WH_SANDBOX_PLACE_BYTES]) {
+    const wh_sandbox_job_t *job = sandbox->job;
+    place[0] = '\0';
+    if (job != NULL && job->path != NULL && !job->loaded && !wh_sandbox_is_inner(job->path)) {
+        snprintf(place, WH_SANDBOX_PLACE_BYTES, "%.900s", job->path);
+        return;
+    }
+    bool found = find_file(L, place);
+    for (; !found && job != NULL; job = job->outer) {
+        found = find_file(job->state, place);
+    }
+}
+
+/* Enters the exhausted state. The first call in a run decides the reason. L is where it happened. */
+static void exhaust(lua_State *L, wh_sandbox_reason_t reason) {
     wh_sandbox_t *const sandbox = wh_sandbox_of(L);
     if (sandbox->fatal != WH_SANDBOX_OK) {
         return;
     }
     sandbox->fatal = reason;
-    wh_sandbox_job_t *const job = sandbox->job;
-    if (job != NULL && job->path != NULL) {
-        const bool was_refused = reason == WH_SANDBOX_MEMORY && sandbox->refused;
-        job->line = was_refused ? job->refused_line : wh_sandbox_line(L, job->path);
-        job->line_is_final = true;
+    if (reason == WH_SANDBOX_MEMORY && sandbox->refused) {
+        memcpy(sandbox->fatal_place, sandbox->refused_place, sizeof sandbox->fatal_place);
+    } else {
+        wh_sandbox_find_place(sandbox, L, sandbox->fatal_place);
     }
     wh_sandbox_alarm(sandbox);
 }
@@ -72,7 +105,7 @@ bool wh_sandbox_is_fatal(lua_State *L, int status) {
     const bool buffer_refused = sandbox->refused && lua_type(L, -1) == LUA_TSTRING &&
                                 strcmp(lua_tostring(L, -1), "not enough memory") == 0;
     if (status == LUA_ERRMEM || buffer_refused) {
-        wh_sandbox_exhaust(L, WH_SANDBOX_MEMORY);
+        exhaust(L, WH_SANDBOX_MEMORY);
     }
     return sandbox->fatal != WH_SANDBOX_OK;
 }
@@ -90,16 +123,16 @@ static void check_brim(lua_State *L, wh_sandbox_t *sandbox) {
     if (sandbox->memory > wh_sandbox_memory_brim(sandbox)) {
         /* the line to report is here, not that of an earlier refusal, which a collection healed */
         sandbox->refused = false;
-        wh_sandbox_exhaust(L, WH_SANDBOX_MEMORY);
+        exhaust(L, WH_SANDBOX_MEMORY);
     }
 }
 
 static void check_stop_and_budget(lua_State *L, const wh_sandbox_t *sandbox) {
     if (sandbox->stop) {
-        wh_sandbox_exhaust(L, WH_SANDBOX_STOPPED);
+        exhaust(L, WH_SANDBOX_STOPPED);
     }
     if (sandbox->spent > sandbox->budget) {
-        wh_sandbox_exhaust(L, WH_SANDBOX_BUDGET);
+        exhaust(L, WH_SANDBOX_BUDGET);
     }
 }
 

@@ -22,12 +22,17 @@ typedef struct wh_sandbox_job {
     bool loaded;                     /* past the syntax check */
     char short_source[LUA_IDSIZE];   /* the path as Lua abbreviates it in its own messages */
     int line;                        /* the line of the error in `path`; 0: unknown */
-    bool line_is_final;              /* an exhausted limit has set `line`: later errors come from unwinding */
-    int refused_line;                /* the line at which the allocator last refused */
+    lua_State *state;                /* where it was entered */
     struct wh_sandbox_job *outer;    /* null for the outermost */
     lua_State *outer_running;        /* restored at the end */
     struct wh_sandbox *outer_strict; /* restored at the end */
 } wh_sandbox_job_t;
+
+/* True if a chunk's name, or a text, begins with WH_INNER_CHUNK. */
+bool wh_sandbox_is_inner(const char *name);
+
+/* A file and its line, as messages have it. */
+#define WH_SANDBOX_PLACE_BYTES (WH_SANDBOX_MESSAGE_BYTES - 100)
 
 struct wh_sandbox {
     lua_State *main;
@@ -41,10 +46,12 @@ struct wh_sandbox {
     size_t memory_cap, memory, memory_high_water;
     /* the largest allocation so far of 64 KiB or more: bounds the cost of one scan of a table */
     size_t largest_block;
-    bool refused;  /* the allocator has refused in this run */
+    bool refused; /* the allocator has refused in this run, and where it did so last */
+    char refused_place[WH_SANDBOX_PLACE_BYTES];
     bool brimming; /* memory went above the brim since the hook looked last */
     volatile sig_atomic_t stop;
-    wh_sandbox_reason_t fatal; /* BUDGET, MEMORY or STOPPED once exhausted, else OK */
+    wh_sandbox_reason_t fatal;                /* BUDGET, MEMORY or STOPPED once exhausted, else OK */
+    char fatal_place[WH_SANDBOX_PLACE_BYTES]; /* where; empty if in no file */
     /* A fractional exponent that pow was asked for; the hook has yet to report it. */
     bool power_pending;
     double power_exponent;
@@ -66,14 +73,14 @@ void wh_sandbox_budget_open(lua_State *L);
 void wh_sandbox_spend(wh_sandbox_t *sandbox, uint64_t steps);
 /* Makes the hook fire at the running coroutine's next instruction. */
 void wh_sandbox_alarm(wh_sandbox_t *sandbox);
-/* Enters the exhausted state. The first call in a run decides the reason. L is where it happened. */
-void wh_sandbox_exhaust(lua_State *L, wh_sandbox_reason_t reason);
 /* True if the error on L's top, which ended a protected call, is an exhausted limit. */
 bool wh_sandbox_is_fatal(lua_State *L, int status);
 /* Raises the exhausted limit's error. */
 int wh_sandbox_raise(lua_State *L);
 /* "instruction budget of N spent" and the like. */
 void wh_sandbox_fatal_text(const wh_sandbox_t *sandbox, char *text, size_t size);
+/* Where the file stands that L runs, or that is loaded: "layout.lua:12", or empty. Needs no memory. */
+void wh_sandbox_find_place(const wh_sandbox_t *sandbox, lua_State *L, char place[WH_SANDBOX_PLACE_BYTES]);
 
 /* -------------------------------------------------------------------------------------------------- pow.c */
 /* Sets the sandbox whose scripts run on this thread: `^` is strict in it. Returns the one before. */
@@ -91,11 +98,37 @@ int wh_library_call_stock(lua_State *L);
 void wh_library_charge_strings(lua_State *L, const char *const *names, int shift);
 /* luaL_tolstring without addresses: pushes the text and returns it. */
 const char *wh_library_tostring(lua_State *L, int index, size_t *length);
-/* Each changes the globals and library tables that luaL_requiref has opened. */
-void wh_library_open_protect(lua_State *L);
-void wh_library_open_order(lua_State *L);
-void wh_library_open_math(lua_State *L);
-void wh_library_open_table(lua_State *L);
-void wh_library_open_string(lua_State *L, bool trust);
+/* What replaces globals, or functions of the library of that name. */
+extern const luaL_Reg wh_library_protect[], wh_library_order[], wh_library_modules[];
+extern const luaL_Reg wh_library_coroutine[], wh_library_math[], wh_library_string[], wh_library_table[];
+/* Gives the stock math.random its seed. */
+void wh_library_start_random(lua_State *L);
+/* Prepare the metatables of globals and of strings, and params. */
+void wh_library_open_globals(lua_State *L);
+/* Reading a function that is not there from one of Lua's libraries says what does it instead. */
+void wh_library_open_absent(lua_State *L);
+void wh_library_open_string(lua_State *L);
+void wh_library_open_params(lua_State *L);
+/* A list of the texts that are keys of the table on top of the stack, which becomes the list's owner, and of
+ * `*count` words; counts them. In order: the nearest one is the same on every machine. */
+const char **wh_library_list_names(lua_State *L, const char *const words[], size_t *count);
+/* If the value at the index is `params`, it gets all its parameters as fields of its own: they count as read.
+ * For functions that see a table without its metatable. */
+void wh_params_fill(lua_State *L, int index);
+
+/* --------------------------------------------------------------------------------------------- literals.c */
+/* Raises "SOURCE:LINE: KEY: ..." for the first key that stands twice in one table literal of a text that has
+ * been compiled: Lua keeps the last value and says nothing. Names, texts without escapes, whole numbers and
+ * places in a list are compared; other keys have values that only a run knows.
+ * Cost: linear. */
+void wh_literals_refuse_twice(lua_State *L, const char *source, const char *text, size_t size);
+
+/* -------------------------------------------------------------------------------------- sandbox_modules.c */
+/* The text of a file that has `size` bytes, and its size without a byte order mark and a first line of '#'.
+ * Pushes the userdata that owns it. */
+const char *wh_sandbox_read_text(lua_State *L, const char *path, size_t *size);
+/* Notes that a chunk is a script, a layout or a module of theirs; and asks. */
+void wh_sandbox_own(lua_State *L, const char *chunk_name);
+bool wh_sandbox_owns(lua_State *L, const char *chunk_name);
 
 #endif

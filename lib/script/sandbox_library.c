@@ -1,10 +1,9 @@
-/* Builds what a script finds, which sandbox_library.h lists, and params for --set NAME=VALUE. */
+/* Builds what a script finds, which sandbox_library.h lists. */
 #include "sandbox_library.h"
 
-#include <ctype.h>
-#include <math.h>
 #include <string.h>
 
+#include "../text/utf8.h"
 #include "sandbox_internal.h"
 
 /* --------------------------------------------------------------------------------------- global functions */
@@ -44,6 +43,15 @@ static int base_tostring(lua_State *L) {
     return 1;
 }
 
+static void put_visible(FILE *to, const char *text, size_t size) {
+    char piece[WH_UTF8_PIECE];
+    size_t length = 0;
+    for (size_t done = 0; done < size;) {
+        done += wh_utf8_piece(text + done, size - done, piece, &length);
+        fwrite(piece, 1, length, to);
+    }
+}
+
 static int base_print(lua_State *L) {
     FILE *const to = wh_sandbox_of(L)->print_to;
     const int count = lua_gettop(L);
@@ -54,7 +62,7 @@ static int base_print(lua_State *L) {
         if (i > 1) {
             fputc('\t', to);
         }
-        fwrite(text, 1, length, to);
+        put_visible(to, text, length);
         lua_pop(L, 1);
     }
     fputc('\n', to);
@@ -65,7 +73,7 @@ static int base_print(lua_State *L) {
 /* Lua looks up __gc once, when the metatable is set; it looks up __mode each time the collector runs. */
 static int base_setmetatable(lua_State *L) {
     static const char *const refused[] = {"__gc", "__mode"};
-    if (lua_type(L, 2) == LUA_TTABLE) {
+    if (lua_type(L, 2) == LUA_TTABLE && !wh_sandbox_of(L)->trust) {
         for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
             lua_pushstring(L, refused[i]);
             if (lua_rawget(L, 2) != LUA_TNIL) {
@@ -76,6 +84,15 @@ static int base_setmetatable(lua_State *L) {
             lua_pop(L, 1);
         }
     }
+    if (lua_type(L, 1) == LUA_TTABLE) {
+        wh_params_fill(L, 1);
+    }
+    return wh_library_call_stock(L);
+}
+
+static int base_rawget(lua_State *L) {
+    luaL_checktype(L, 1, LUA_TTABLE);
+    wh_params_fill(L, 1);
     return wh_library_call_stock(L);
 }
 
@@ -128,66 +145,6 @@ static int base_load(lua_State *L) {
     return 1;
 }
 
-/* --------------------------------------------------------------------------------------------- parameters */
-
-static bool looks_like_name(const char *text) {
-    static const char characters[] = "0123456789_ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
-    return text[0] != '\0' && !isdigit((unsigned char)text[0]) && text[strspn(text, characters)] == '\0';
-}
-
-/* Asks the compiler, which knows the reserved words. */
-static bool is_reserved(lua_State *L, const char *name) {
-    const char *const text = lua_pushfstring(L, "local %s", name);
-    const int status = luaL_loadbufferx(L, text, strlen(text), "=name", "t");
-    lua_pop(L, 2);
-    return status != LUA_OK;
-}
-
-static void push_value(lua_State *L, const char *text) {
-    const size_t length = strlen(text);
-    const bool spaced =
-        length == 0 || isspace((unsigned char)text[0]) || isspace((unsigned char)text[length - 1]);
-    if (!spaced && lua_stringtonumber(L, text) == length + 1) {
-        const double value = lua_tonumber(L, -1);
-        if (value - value == 0) {
-            return;
-        }
-        lua_pop(L, 1);
-    }
-    if (strcmp(text, "true") == 0 || strcmp(text, "false") == 0) {
-        lua_pushboolean(L, text[0] == 't');
-    } else {
-        lua_pushstring(L, text);
-    }
-}
-
-/* Runs protected, with where the text of the assignment stands. */
-static int assign(lua_State *L) {
-    const char *const text = *(const char **)lua_touserdata(L, 1);
-    const size_t length = strcspn(text, "=");
-    const char *const name = lua_pushlstring(L, text, length);
-    if (text[length] == '\0') {
-        return luaL_error(L, "'%s' is no NAME=VALUE", name);
-    }
-    if (!looks_like_name(name) || is_reserved(L, name)) {
-        return luaL_error(L,
-                          "'%s' is no name for a parameter: letters, digits and '_', not first a digit, no "
-                          "reserved word of Lua",
-                          name);
-    }
-    if (lua_getglobal(L, "params") != LUA_TTABLE) {
-        return luaL_error(L, "params is no table any more");
-    }
-    lua_pushvalue(L, 2);
-    push_value(L, text + length + 1);
-    lua_rawset(L, 3);
-    return 0;
-}
-
-bool wh_sandbox_set_parameter(wh_sandbox_t *sandbox, const char *text, wh_sandbox_result_t *result) {
-    return wh_sandbox_protect(sandbox->main, assign, &text, result);
-}
-
 /* ---------------------------------------------------------------------------------------------- all of it */
 
 void wh_library_set(lua_State *L, const luaL_Reg *functions) {
@@ -227,26 +184,6 @@ void wh_library_charge_strings(lua_State *L, const char *const *names, int shift
     }
 }
 
-static void open_base(lua_State *L, bool trust) {
-    static const luaL_Reg functions[] = {{"print", base_print}, {"tostring", base_tostring}, {NULL, NULL}};
-    static const char *const scanning[] = {"tonumber", NULL};
-    static const luaL_Reg untrusted[] = {{"setmetatable", base_setmetatable},
-                                         {"getmetatable", base_getmetatable},
-                                         {"load", base_load},
-                                         {"collectgarbage", NULL},
-                                         {"dofile", NULL},
-                                         {"loadfile", NULL},
-                                         {"warn", NULL},
-                                         {NULL, NULL}};
-    lua_pushglobaltable(L);
-    wh_library_set(L, functions);
-    wh_library_charge_strings(L, scanning, 4);
-    if (!trust) {
-        wh_library_set(L, untrusted);
-    }
-    lua_pop(L, 1);
-}
-
 static void open_untrusted(lua_State *L) {
     static const luaL_Reg libraries[] = {{LUA_GNAME, luaopen_base},       {LUA_COLIBNAME, luaopen_coroutine},
                                          {LUA_TABLIBNAME, luaopen_table}, {LUA_STRLIBNAME, luaopen_string},
@@ -268,14 +205,39 @@ static int charged_codes(lua_State *L) {
     return results;
 }
 
-static void open_utf8(lua_State *L) {
-    static const char *const scanning[] = {"len", "codepoint", "offset", NULL};
-    static const luaL_Reg wrapped[] = {{"codes", charged_codes}, {NULL, NULL}};
-    lua_getglobal(L, LUA_UTF8LIBNAME);
-    wh_library_charge_strings(L, scanning, 3);
-    wh_library_set(L, wrapped);
-    lua_pop(L, 1);
-}
+static const luaL_Reg base[] = {{"print", base_print},
+                                {"rawget", base_rawget},
+                                {"setmetatable", base_setmetatable},
+                                {"tostring", base_tostring},
+                                {NULL, NULL}};
+static const luaL_Reg untrusted_base[] = {{"getmetatable", base_getmetatable},
+                                          {"load", base_load},
+                                          {"collectgarbage", NULL},
+                                          {"dofile", NULL},
+                                          {"loadfile", NULL},
+                                          {"warn", NULL},
+                                          {NULL, NULL}};
+static const luaL_Reg untrusted_string[] = {{"dump", NULL}, {NULL, NULL}};
+static const luaL_Reg utf8[] = {{"codes", charged_codes}, {NULL, NULL}};
+
+/* What becomes of which table: functions that are set, and others that charge for the texts they read. */
+static const struct {
+    const char *table;
+    const luaL_Reg *functions;
+    const char *scanning[4];
+    int shift;
+    bool with_trust;
+} changes[] = {{LUA_GNAME, base, {"tonumber"}, 4, true},
+               {LUA_GNAME, untrusted_base, {NULL}, 0, false},
+               {LUA_GNAME, wh_library_protect, {NULL}, 0, true},
+               {LUA_COLIBNAME, wh_library_coroutine, {NULL}, 0, true},
+               {LUA_GNAME, wh_library_order, {NULL}, 0, true},
+               {LUA_MATHLIBNAME, wh_library_math, {NULL}, 0, true},
+               {LUA_TABLIBNAME, wh_library_table, {NULL}, 0, true},
+               {LUA_STRLIBNAME, wh_library_string, {"pack", "unpack", "packsize"}, 4, true},
+               {LUA_STRLIBNAME, untrusted_string, {NULL}, 0, false},
+               {LUA_UTF8LIBNAME, utf8, {"len", "codepoint", "offset"}, 3, true},
+               {LUA_GNAME, wh_library_modules, {NULL}, 0, true}};
 
 int wh_sandbox_library_open(lua_State *L) {
     const bool trust = wh_sandbox_of(L)->trust;
@@ -284,14 +246,18 @@ int wh_sandbox_library_open(lua_State *L) {
     } else {
         open_untrusted(L);
     }
-    open_base(L, trust);
-    wh_library_open_protect(L);
-    wh_library_open_order(L);
-    wh_library_open_math(L);
-    wh_library_open_table(L);
-    wh_library_open_string(L, trust);
-    open_utf8(L);
-    lua_newtable(L);
-    lua_setglobal(L, "params");
+    wh_library_start_random(L);
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; ++i) {
+        if (changes[i].with_trust || !trust) {
+            lua_getglobal(L, changes[i].table);
+            wh_library_set(L, changes[i].functions);
+            wh_library_charge_strings(L, changes[i].scanning, changes[i].shift);
+            lua_pop(L, 1);
+        }
+    }
+    wh_library_open_string(L);
+    wh_library_open_absent(L);
+    wh_library_open_params(L);
+    wh_library_open_globals(L); /* last: from here on what is not there is an error */
     return 0;
 }

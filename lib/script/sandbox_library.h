@@ -1,8 +1,8 @@
 /* What a script in a sandbox finds. A page to read: there is nothing to call.
  *
  * Present: assert, error, getmetatable, ipairs, load, next, pairs, pcall, print, rawequal, rawget, rawlen,
- * rawset, select, setmetatable, tonumber, tostring, type, xpcall, _G, _VERSION, params, and the tables
- * coroutine, math, string, table and utf8. Absent: os, io, debug, package, require, dofile, loadfile,
+ * rawset, require, select, setmetatable, tonumber, tostring, type, xpcall, _G, _VERSION, params, and the
+ * tables coroutine, math, string, table and utf8. Absent: os, io, debug, package, dofile, loadfile,
  * collectgarbage, warn, string.dump, math.exp, math.log, math.pow and their kin. --trust adds all of Lua's
  * libraries but changes nothing below that is marked (D).
  *
@@ -22,6 +22,15 @@
  * - (D) pcall, xpcall and coroutines pass an exhausted limit on. An error that ends a coroutine closes its
  *   to-be-closed variables at once; coroutine.wrap passes error values on as they are.
  * - (D) xpcall calls its handler after the stack has been unwound: debug.traceback sees the caller.
+ * - (D) Reading a global that nobody defined is an error, unless a module does it that only --trust finds.
+ *   rawget(_G, name) asks without an error. setmetatable(_G, ...) takes the place of this.
+ * - (D) A file with a table literal in which a key stands twice is refused.
+ * - (D) require takes names with dots between them, of files in and below the folder of the file that calls,
+ *   before it looks where Lua looks. A module runs once.
+ * - (D) params has nil for what nobody set.
+ * - (D) print shows a control character as \xNN, but for line ends and tabs. In messages these are blanks.
+ * - (D) Reading a function of math that is absent is an error, which says why; string.dump likewise without
+ *   --trust. A module that only --trust finds gets nil, as rawget(math, name) does.
  * - load takes a string of Lua text, not a function or a binary chunk.
  * - setmetatable refuses a metatable with __gc or __mode: their effect depends on the garbage collector.
  *   getmetatable of a string gives false, of a userdata its __metatable field or false.

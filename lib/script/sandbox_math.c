@@ -67,34 +67,30 @@ static int math_randomseed(lua_State *L) {
     return 0;
 }
 
-static void start_random(lua_State *L) {
+void wh_library_start_random(lua_State *L) {
+    lua_getglobal(L, LUA_MATHLIBNAME);
     lua_getfield(L, -1, "randomseed");
     lua_pushinteger(L, RANDOM_SEED);
     lua_pushinteger(L, 0);
     lua_call(L, 2, 0);
-}
-
-void wh_library_open_math(lua_State *L) {
-    static const luaL_Reg functions[] = {{"sin", math_sin},
-                                         {"cos", math_cos},
-                                         {"tan", math_tan},
-                                         {"asin", math_asin},
-                                         {"acos", math_acos},
-                                         {"atan", math_atan},
-                                         {"randomseed", math_randomseed},
-                                         /* absent: they differ between machines */
-                                         {"exp", NULL},
-                                         {"log", NULL},
-                                         {"log10", NULL},
-                                         {"pow", NULL},
-                                         {"cosh", NULL},
-                                         {"sinh", NULL},
-                                         {"tanh", NULL},
-                                         {"frexp", NULL},
-                                         {"ldexp", NULL},
-                                         {NULL, NULL}};
-    lua_getglobal(L, LUA_MATHLIBNAME);
-    start_random(L);
-    wh_library_set(L, functions);
     lua_pop(L, 1);
 }
+
+const luaL_Reg wh_library_math[] = {{"sin", math_sin},
+                                    {"cos", math_cos},
+                                    {"tan", math_tan},
+                                    {"asin", math_asin},
+                                    {"acos", math_acos},
+                                    {"atan", math_atan},
+                                    {"randomseed", math_randomseed},
+                                    /* absent: they differ between machines */
+                                    {"exp", NULL},
+                                    {"log", NULL},
+                                    {"log10", NULL},
+                                    {"pow", NULL},
+                                    {"cosh", NULL},
+                                    {"sinh", NULL},
+                                    {"tanh", NULL},
+                                    {"frexp", NULL},
+                                    {"ldexp", NULL},
+                                    {NULL, NULL}};

@@ -23,8 +23,8 @@ static void charge_block(wh_sandbox_t *sandbox, bool is_string, size_t size) {
 static void *refuse(wh_sandbox_t *sandbox) {
     sandbox->refused = true;
     wh_sandbox_spend(sandbox, sandbox->memory >> STEP_SHIFT);
-    if (sandbox->running != NULL && sandbox->job != NULL && sandbox->job->path != NULL) {
-        sandbox->job->refused_line = wh_sandbox_line(sandbox->running, sandbox->job->path);
+    if (sandbox->running != NULL && sandbox->job != NULL) {
+        wh_sandbox_find_place(sandbox, sandbox->running, sandbox->refused_place);
     }
     return NULL;
 }

@@ -1,18 +1,25 @@
 /* pairs and next in sorted order: the order of a hash table itself changes from run to run. */
-#include <math.h>
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "sandbox_internal.h"
 
+#if LDBL_MANT_DIG < 64
+#error "waferhand: keys are compared as long doubles, which must hold each whole number of Lua's"
+#endif
+
 /* A copy of a key. `text` points into the Lua string, which lives as long as its table keeps it. */
 typedef struct {
     enum { RANK_NUMBER, RANK_STRING, RANK_BOOLEAN } rank;
     bool is_integer;
-    lua_Integer integer; /* of a boolean, too: 0 or 1 */
-    lua_Number number;
-    const char *text;
-    size_t length;
+    union {
+        long double number; /* of a boolean, too: 0 or 1 */
+        struct {
+            const char *text;
+            size_t length;
+        } string;
+    } as;
 } order_key_t;
 
 static void key_read(lua_State *L, int index, order_key_t *key) {
@@ -21,17 +28,16 @@ static void key_read(lua_State *L, int index, order_key_t *key) {
     case LUA_TNUMBER:
         key->rank = RANK_NUMBER;
         key->is_integer = lua_isinteger(L, index);
-        key->integer = lua_tointeger(L, index);
-        key->number = lua_tonumber(L, index);
+        key->as.number =
+            key->is_integer ? (long double)lua_tointeger(L, index) : (long double)lua_tonumber(L, index);
         return;
     case LUA_TSTRING:
         key->rank = RANK_STRING;
-        key->text = lua_tolstring(L, index, &key->length);
+        key->as.string.text = lua_tolstring(L, index, &key->as.string.length);
         return;
     case LUA_TBOOLEAN:
         key->rank = RANK_BOOLEAN;
-        key->is_integer = true;
-        key->integer = lua_toboolean(L, index);
+        key->as.number = lua_toboolean(L, index);
         return;
     default:
         luaL_error(L, "a table with a %s for a key has no order to be read in", luaL_typename(L, index));
@@ -40,37 +46,14 @@ static void key_read(lua_State *L, int index, order_key_t *key) {
 
 static void key_push(lua_State *L, const order_key_t *key) {
     if (key->rank == RANK_STRING) {
-        lua_pushlstring(L, key->text, key->length);
+        lua_pushlstring(L, key->as.string.text, key->as.string.length);
     } else if (key->rank == RANK_BOOLEAN) {
-        lua_pushboolean(L, key->integer != 0);
+        lua_pushboolean(L, key->as.number > 0);
     } else if (key->is_integer) {
-        lua_pushinteger(L, key->integer);
+        lua_pushinteger(L, (lua_Integer)key->as.number);
     } else {
-        lua_pushnumber(L, key->number);
+        lua_pushnumber(L, (lua_Number)key->as.number);
     }
-}
-
-/* True if an integer is below a number that is none. Above all integers, and below them, doubles are too far
- * apart to be converted. */
-static bool is_integer_below(lua_Integer integer, lua_Number number) {
-    const lua_Number beyond = 9223372036854775808.0;
-    if (number >= beyond || number < -beyond) {
-        return number > 0;
-    }
-    return integer <= (lua_Integer)floor(number);
-}
-
-static int number_compare(const order_key_t *a, const order_key_t *b) {
-    if (a->is_integer && b->is_integer) {
-        return (a->integer > b->integer) - (a->integer < b->integer);
-    }
-    if (a->is_integer) {
-        return is_integer_below(a->integer, b->number) ? -1 : 1;
-    }
-    if (b->is_integer) {
-        return is_integer_below(b->integer, a->number) ? 1 : -1;
-    }
-    return (a->number > b->number) - (a->number < b->number);
 }
 
 /* Below 0, 0 or above 0, as qsort asks for it. */
@@ -81,10 +64,13 @@ static int key_compare(const void *one, const void *other) {
         return a->rank < b->rank ? -1 : 1;
     }
     if (a->rank != RANK_STRING) {
-        return number_compare(a, b);
+        return (a->as.number > b->as.number) - (a->as.number < b->as.number);
     }
-    const int order = memcmp(a->text, b->text, a->length < b->length ? a->length : b->length);
-    return order != 0 ? order : (a->length > b->length) - (a->length < b->length);
+    const size_t one_length = a->as.string.length;
+    const size_t other_length = b->as.string.length;
+    const int order =
+        memcmp(a->as.string.text, b->as.string.text, one_length < other_length ? one_length : other_length);
+    return order != 0 ? order : (one_length > other_length) - (one_length < other_length);
 }
 
 /* -------------------------------------------------------------------------------------------------- pairs */
@@ -153,6 +139,7 @@ static int order_pairs(lua_State *L) {
         return 3;
     }
     luaL_checktype(L, 1, LUA_TTABLE);
+    wh_params_fill(L, 1);
     push_sorted_keys(L, 1);
     lua_pushinteger(L, 0);
     lua_pushcclosure(L, pairs_step, 2);
@@ -169,6 +156,7 @@ static int order_next(lua_State *L) {
     uint64_t seen = 0;
     luaL_checktype(L, 1, LUA_TTABLE);
     lua_settop(L, 2);
+    wh_params_fill(L, 1);
     const bool from_start = lua_isnil(L, 2);
     if (!from_start) {
         key_read(L, 2, &last);
@@ -192,9 +180,4 @@ static int order_next(lua_State *L) {
     return 2;
 }
 
-void wh_library_open_order(lua_State *L) {
-    static const luaL_Reg functions[] = {{"pairs", order_pairs}, {"next", order_next}, {NULL, NULL}};
-    lua_pushglobaltable(L);
-    wh_library_set(L, functions);
-    lua_pop(L, 1);
-}
+const luaL_Reg wh_library_order[] = {{"pairs", order_pairs}, {"next", order_next}, {NULL, NULL}};

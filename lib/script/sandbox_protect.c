@@ -167,16 +167,9 @@ static int coroutine_close(lua_State *L) {
     return wh_sandbox_is_fatal(L, status) ? wh_sandbox_raise(L) : 2;
 }
 
-void wh_library_open_protect(lua_State *L) {
-    static const luaL_Reg base[] = {{"pcall", protect_pcall}, {"xpcall", protect_xpcall}, {NULL, NULL}};
-    static const luaL_Reg coroutines[] = {{"create", coroutine_create},
-                                          {"resume", coroutine_resume},
-                                          {"wrap", coroutine_wrap},
-                                          {"close", coroutine_close},
-                                          {NULL, NULL}};
-    lua_pushglobaltable(L);
-    wh_library_set(L, base);
-    lua_getfield(L, -1, LUA_COLIBNAME);
-    wh_library_set(L, coroutines);
-    lua_pop(L, 2);
-}
+const luaL_Reg wh_library_protect[] = {{"pcall", protect_pcall}, {"xpcall", protect_xpcall}, {NULL, NULL}};
+const luaL_Reg wh_library_coroutine[] = {{"create", coroutine_create},
+                                         {"resume", coroutine_resume},
+                                         {"wrap", coroutine_wrap},
+                                         {"close", coroutine_close},
+                                         {NULL, NULL}};

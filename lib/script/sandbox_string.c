@@ -326,7 +326,7 @@ static int string_gsub(lua_State *L) {
 /* ------------------------------------------------------------------------------------------------ opening */
 
 /* Arithmetic on strings scans them for numbers, so it is charged. */
-static void settle_metatable(lua_State *L) {
+void wh_library_open_string(lua_State *L) {
     static const luaL_Reg wrapped[] = {{"__pow", power_of_strings}, {NULL, NULL}};
     static const char *const arithmetic[] = {"__add", "__sub", "__mul",  "__div",
                                              "__mod", "__unm", "__idiv", NULL};
@@ -339,19 +339,7 @@ static void settle_metatable(lua_State *L) {
     lua_pop(L, 2);
 }
 
-void wh_library_open_string(lua_State *L, bool trust) {
-    static const luaL_Reg functions[] = {
-        {"find", string_find}, {"match", string_match}, {"gmatch", string_gmatch},
-        {"gsub", string_gsub}, {"rep", string_rep},     {"format", string_format},
-        {NULL, NULL}};
-    static const char *const scanning[] = {"pack", "unpack", "packsize", NULL};
-    lua_getglobal(L, LUA_STRLIBNAME);
-    wh_library_set(L, functions);
-    wh_library_charge_strings(L, scanning, 4);
-    if (!trust) {
-        lua_pushnil(L);
-        lua_setfield(L, -2, "dump");
-    }
-    lua_pop(L, 1);
-    settle_metatable(L);
-}
+const luaL_Reg wh_library_string[] = {
+    {"find", string_find}, {"match", string_match}, {"gmatch", string_gmatch},
+    {"gsub", string_gsub}, {"rep", string_rep},     {"format", string_format},
+    {NULL, NULL}};

@@ -132,15 +132,10 @@ static int table_sort(lua_State *L) {
     return 0;
 }
 
-void wh_library_open_table(lua_State *L) {
-    static const luaL_Reg functions[] = {{"insert", table_insert},
-                                         {"remove", table_remove},
-                                         {"concat", table_concat},
-                                         {"unpack", table_unpack},
-                                         {"move", table_move},
-                                         {"sort", table_sort},
-                                         {NULL, NULL}};
-    lua_getglobal(L, LUA_TABLIBNAME);
-    wh_library_set(L, functions);
-    lua_pop(L, 1);
-}
+const luaL_Reg wh_library_table[] = {{"insert", table_insert},
+                                     {"remove", table_remove},
+                                     {"concat", table_concat},
+                                     {"unpack", table_unpack},
+                                     {"move", table_move},
+                                     {"sort", table_sort},
+                                     {NULL, NULL}};

@@ -8,7 +8,7 @@ static void read_poses(lua_State *L, wh_pose_t *base_from_wafer, wh_pose_t *base
     const wh_field_t wafer = wh_lua_argument("wafer", 1);
     const wh_field_t gripper = wh_lua_argument("gripper", 2);
     luaL_checkstack(L, LUA_MINSTACK, NULL);
-    lua_settop(L, 3);
+    wh_lua_take_at_most(L, 3);
     lua_pushvalue(L, 1);
     wh_lua_take_valid_pose(L, &wafer, base_from_wafer);
     lua_pushvalue(L, 2);
@@ -43,7 +43,7 @@ static int rim_gap(lua_State *L) {
 
 static int tolerance(lua_State *L) {
     const wh_field_t at = wh_lua_argument("tolerance", 1);
-    lua_settop(L, 1);
+    wh_lua_take_at_most(L, 1);
     const wh_tolerance_t tolerance = wh_lua_take_tolerance(L, &at);
     wh_lua_push_tolerance(L, &tolerance);
     return 1;

@@ -10,13 +10,13 @@
 static wh_check_t read_check(lua_State *L, const wh_field_t *of) {
     const wh_field_t at = wh_lua_field(of, "check");
     const int type = lua_getfield(L, 1, "check");
-    const char *name = type == LUA_TSTRING ? lua_tostring(L, -1) : "sampled";
+    const char *name = type == LUA_TSTRING ? wh_lua_word(L, -1) : "sampled";
     const bool swept = strcmp(name, "swept") == 0;
     if (type != LUA_TNIL && type != LUA_TSTRING) {
         wh_lua_refuse(L, &at, "string expected, got %s", luaL_typename(L, -1));
     }
     if (!swept && strcmp(name, "sampled") != 0) {
-        wh_lua_refuse(L, &at, "\"%s\" (expected \"sampled\" or \"swept\")", name);
+        wh_lua_refuse(L, &at, "\"%s\" (expected \"sampled\" or \"swept\")", wh_lua_whole_text(L, -1));
     }
     lua_pop(L, 1);
     return swept ? WH_CHECK_SWEPT : WH_CHECK_SAMPLED;
@@ -60,8 +60,11 @@ typedef struct {
     wh_wafer_t wafers[];
 } cell_t;
 
-static cell_t *check_cell(lua_State *L) {
-    return luaL_checkudata(L, 1, CELL_TYPE);
+/* The cell of a method that takes so many arguments, itself included. */
+static cell_t *take_cell(lua_State *L, int arguments) {
+    cell_t *cell = luaL_checkudata(L, 1, CELL_TYPE);
+    wh_lua_take_at_most(L, arguments);
+    return cell;
 }
 
 static size_t read_gripper_count(lua_State *L, const wh_field_t *of) {
@@ -109,7 +112,7 @@ int wh_lua_cell(lua_State *L) {
                                         "seat",     "near_projz", "near_projxy", NULL};
     const wh_field_t argument = wh_lua_argument("", 1);
     const wh_field_t wafers = wh_lua_field(&argument, "wafers");
-    lua_settop(L, 1);
+    wh_lua_take_at_most(L, 1);
     wh_lua_check_record(L, 1, &argument, names);
     const wh_grasp_config_t config = read_config(L, &argument);
     wh_grasp_storage_t storage = {.gripper_count = read_gripper_count(L, &argument)};
@@ -152,13 +155,12 @@ static void push_events(lua_State *L, const wh_event_list_t *list) {
 
 /* Inputs and events are locals: an __index among the inputs may step this same cell while they are read. */
 static int cell_step(lua_State *L) {
-    cell_t *cell = check_cell(L);
+    cell_t *cell = take_cell(L, 2);
     const wh_field_t at = wh_lua_argument("inputs", 2);
     const size_t count = cell->table.storage.gripper_count;
     wh_gripper_input_t inputs[WH_GRIPPERS];
     wh_event_t events[WH_GRIPPERS * WH_EVENTS_PER_GRIPPER];
     wh_event_list_t list = {events, sizeof events / sizeof events[0], 0};
-    lua_settop(L, 2);
     ++cell->unread;
     wh_lua_check_list(L, 2, &at, (lua_Integer)count);
     for (size_t i = 0; i < count; ++i) {
@@ -178,11 +180,10 @@ static int cell_step(lua_State *L) {
 }
 
 static int cell_wafer(lua_State *L) {
-    cell_t *cell = check_cell(L);
+    cell_t *cell = take_cell(L, 2);
     const wh_field_t at = wh_lua_argument("wafer", 2);
     wh_pose_t pose;
     int32_t holder;
-    lua_settop(L, 2);
     const size_t wafer = wh_lua_take_index(L, &at, cell->table.storage.wafer_count);
     wh_grasp_wafer(&cell->table, wafer, &pose, &holder);
     wh_lua_push_pose(L, &pose);
@@ -191,10 +192,9 @@ static int cell_wafer(lua_State *L) {
 }
 
 static int cell_held(lua_State *L) {
-    cell_t *cell = check_cell(L);
+    cell_t *cell = take_cell(L, 2);
     const wh_field_t at = wh_lua_argument("gripper", 2);
     int32_t wafer;
-    lua_settop(L, 2);
     const size_t gripper = wh_lua_take_index(L, &at, cell->table.storage.gripper_count);
     wh_grasp_held(&cell->table, gripper, &wafer);
     wh_lua_push_index(L, wafer);
@@ -202,11 +202,10 @@ static int cell_held(lua_State *L) {
 }
 
 static int cell_place(lua_State *L) {
-    cell_t *cell = check_cell(L);
+    cell_t *cell = take_cell(L, 3);
     const wh_field_t wafer_at = wh_lua_argument("wafer", 2);
     const wh_field_t pose_at = wh_lua_argument("pose", 3);
     wh_pose_t pose;
-    lua_settop(L, 3);
     ++cell->unread;
     wh_lua_take_pose(L, &pose_at, &pose);
     const size_t wafer = wh_lua_take_index(L, &wafer_at, cell->table.storage.wafer_count);
@@ -220,7 +219,7 @@ static int cell_place(lua_State *L) {
 }
 
 static int cell_hash(lua_State *L) {
-    const cell_t *cell = check_cell(L);
+    const cell_t *cell = take_cell(L, 1);
     char digits[17];
     snprintf(digits, sizeof digits, "%016" PRIx64, wh_grasp_hash(&cell->table));
     lua_pushstring(L, digits);
@@ -228,7 +227,7 @@ static int cell_hash(lua_State *L) {
 }
 
 static int cell_counters(lua_State *L) {
-    const cell_t *cell = check_cell(L);
+    const cell_t *cell = take_cell(L, 1);
     const wh_grasp_counters_t *of = &cell->table.counters;
     const struct {
         const char *name;

@@ -3,6 +3,38 @@
 
 #include "wh_module_values.h"
 
+void wh_lua_take_at_most(lua_State *L, int count) {
+    for (int i = count + 1; i <= lua_gettop(L); ++i) {
+        if (!lua_isnil(L, i)) {
+            luaL_argerror(L, i, lua_pushfstring(L, "one too many (expected at most %d)", count));
+        }
+    }
+    lua_settop(L, count);
+}
+
+const char *wh_lua_word(lua_State *L, int index) {
+    size_t length = 0;
+    const char *text = lua_type(L, index) == LUA_TSTRING ? lua_tolstring(L, index, &length) : "";
+    return strlen(text) == length ? text : "";
+}
+
+const char *wh_lua_whole_text(lua_State *L, int index) {
+    size_t length = 0;
+    const char *text = lua_tolstring(L, index, &length);
+    if (!text || strlen(text) == length) {
+        return text;
+    }
+    const int place = lua_absindex(L, index);
+    luaL_Buffer whole;
+    luaL_buffinit(L, &whole);
+    for (const char *end = text + length; text < end; ++text) {
+        luaL_addlstring(&whole, *text ? text : "\\x00", *text ? 1 : 4);
+    }
+    luaL_pushresult(&whole);
+    lua_replace(L, place);
+    return lua_tostring(L, place);
+}
+
 /* -------------------------------------------------------------------------------------- fields and errors */
 
 /* From the leaf to the root: each step puts one more part before the rest. */
@@ -80,7 +112,7 @@ static bool is_expected(lua_State *L, int key, const keys_t *keys) {
         return false;
     }
     const char *const *name = keys->names;
-    while (*name && strcmp(*name, lua_tostring(L, key)) != 0) {
+    while (*name && strcmp(*name, wh_lua_word(L, key)) != 0) {
         ++name;
     }
     return *name != NULL;
@@ -114,7 +146,7 @@ static wh_field_t key_field(lua_State *L, const wh_field_t *of) {
         return wh_lua_entry(of, lua_tointeger(L, -1));
     }
     const char *type = lua_pushfstring(L, "(a %s as key)", luaL_typename(L, -1));
-    return wh_lua_field(of, lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : type);
+    return wh_lua_field(of, lua_type(L, -2) == LUA_TSTRING ? wh_lua_whole_text(L, -2) : type);
 }
 
 static const char *push_names(lua_State *L, const char *const *names) {
@@ -243,14 +275,14 @@ void wh_lua_take_valid_pose(lua_State *L, const wh_field_t *at, wh_pose_t *pose)
 }
 
 static wh_tolerance_t find_preset(lua_State *L, const wh_field_t *at) {
-    const char *name = lua_tostring(L, -1);
+    const char *name = wh_lua_word(L, -1);
     wh_tolerance_t tolerance;
     for (size_t i = 0; i < WH_TOLERANCE_PRESETS; ++i) {
         if (strcmp(wh_tolerance_preset(i, &tolerance), name) == 0) {
             return tolerance;
         }
     }
-    wh_lua_refuse(L, at, "\"%s\" (expected \"paper\", \"strict\" or a table)", name);
+    wh_lua_refuse(L, at, "\"%s\" (expected \"paper\", \"strict\" or a table)", wh_lua_whole_text(L, -1));
     return wh_tolerance_paper();
 }
 

@@ -23,6 +23,16 @@ typedef struct wh_field {
     lua_Integer index;         /* of the entry, from 1; of a whole argument its number */
 } wh_field_t;
 
+/* The text at a stack index of Lua, in which a name is looked for: no text at all, so the name of nothing, if
+ * the value is no text or has a byte 0, behind which C would read no further. Lua keeps it. */
+const char *wh_lua_word(lua_State *L, int index);
+
+/* Puts \x00 for each byte 0 of the text at a stack index, so that C reads all of it. */
+const char *wh_lua_whole_text(lua_State *L, int index);
+
+/* Makes room for so many arguments, nil where there are fewer; raises if there are more that are not nil. */
+void wh_lua_take_at_most(lua_State *L, int count);
+
 static inline wh_field_t wh_lua_argument(const char *name, int number) {
     const wh_field_t field = {NULL, name, number};
     return field;

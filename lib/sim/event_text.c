@@ -210,18 +210,25 @@ static void say_place(said_t *said) {
     put_text(said, " mm");
 }
 
-static void say_of_contact(said_t *said) {
-    switch ((int)said->event->kind) {
-    case WH_EVENT_HIT:
+/* Parts without a gap touch. */
+static void say_gap(said_t *said) {
+    if (said->event->kind == WH_EVENT_TOO_CLOSE && said->event->value > 0) {
+        put_parts(said, "", ": ");
+        put_against(said, said->event->value, " apart", said->event->limit, " mm");
+    } else {
         put_parts(said, "", " touch at ");
         say_place(said);
+    }
+}
+
+static void say_of_contact(said_t *said) {
+    switch ((int)said->event->kind) {
+    case WH_EVENT_TOO_CLOSE:
+    case WH_EVENT_HIT:
+        say_gap(said);
         break;
     case WH_EVENT_UNDECIDED:
         put_parts(said, "whether ", " touch could not be decided");
-        break;
-    case WH_EVENT_TOO_CLOSE:
-        put_parts(said, "", ": ");
-        put_against(said, said->event->value, " apart", said->event->limit, " mm");
         break;
     default:
         say_of_physics(said);

@@ -13,10 +13,6 @@
 
 /* -------------------------------------------------------------------------------------------- which study */
 
-static json_t *hex(uint64_t value) {
-    return json_sprintf("%016llx", (unsigned long long)value);
-}
-
 static json_t *parameter(const void *subject, size_t i) {
     return wh_json_text(((const wh_script_run_options_t *)subject)->parameters[i]);
 }
@@ -26,11 +22,12 @@ static json_t *identity_of(const wh_study_t *study) {
     const wh_script_run_options_t *run = &study->run;
     return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o, s:I, s:I, s:o}", "version", WH_VERSION,
                      "script", wh_json_text(run->script), "layout", wh_json_text(study->layout->path), "seed",
-                     hex(study->seed), "trials", (json_int_t)study->trials, "parameters",
+                     wh_json_hash(study->seed), "trials", (json_int_t)study->trials, "parameters",
                      wh_json_list(parameter, run, run->parameter_count), "script_text",
-                     hex(study->script_hash), "layout_text", hex(study->layout_hash), "budget",
-                     (json_int_t)run->limits.instructions, "memory", (json_int_t)run->limits.memory_bytes,
-                     "run_without_errors", hex(study->nominal.record.hash));
+                     wh_json_hash(study->script_hash), "layout_text", wh_json_hash(study->layout_hash),
+                     "budget", (json_int_t)run->limits.instructions, "memory",
+                     (json_int_t)run->limits.memory_bytes, "run_without_errors",
+                     wh_json_hash(study->nominal.record.hash));
 }
 
 /* True if it is this study's; else the message tells the first difference. */
@@ -319,7 +316,7 @@ wh_checkpoint_found_t wh_checkpoint_load(const char *path, const wh_study_t *stu
     }
     read = read && take(study, root, progress, message, sizeof message);
     if (!read) {
-        fprintf(stderr, "%s: %s\n", path, message);
+        fprintf(stderr, "--state %s: %s\n", path, message);
     }
     if (file) {
         fclose(file);

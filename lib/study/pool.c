@@ -193,25 +193,13 @@ size_t wh_pool_take(wh_pool_t *pool, uint64_t blocks[], size_t most) {
     return count;
 }
 
-size_t wh_pool_queued(wh_pool_t *pool) {
+wh_pool_news_t wh_pool_look(wh_pool_t *pool) {
     pthread_mutex_lock(&pool->lock);
-    const size_t count = pool->to - pool->from;
+    const size_t queued = pool->to - pool->from;
+    const bool done = pool->working == 0 && (queued == 0 || is_stopped(pool));
+    const wh_pool_news_t news = {pool->progress.tally.trials, queued, pool->failed, pool->failed || done};
     pthread_mutex_unlock(&pool->lock);
-    return count;
-}
-
-bool wh_pool_failed(wh_pool_t *pool) {
-    pthread_mutex_lock(&pool->lock);
-    const bool failed = pool->failed;
-    pthread_mutex_unlock(&pool->lock);
-    return failed;
-}
-
-bool wh_pool_is_idle(wh_pool_t *pool) {
-    pthread_mutex_lock(&pool->lock);
-    const bool idle = pool->failed || (pool->working == 0 && (pool->from == pool->to || is_stopped(pool)));
-    pthread_mutex_unlock(&pool->lock);
-    return idle;
+    return news;
 }
 
 void wh_pool_wait(wh_pool_t *pool, int milliseconds) {

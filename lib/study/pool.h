@@ -51,18 +51,18 @@ void wh_pool_queue(wh_pool_t *pool, const uint64_t blocks[], size_t count, bool 
 /* Takes up to `most` blocks off the queue, for someone else to play. Returns how many. */
 size_t wh_pool_take(wh_pool_t *pool, uint64_t blocks[], size_t most);
 
-/* How many blocks are queued. */
-size_t wh_pool_queued(wh_pool_t *pool);
+/* How things stand. */
+typedef struct {
+    uint64_t trials; /* done, as far as `progress` has them */
+    size_t queued;   /* blocks */
+    bool failed;     /* a trial was not usable; `message` then says why */
+    bool idle; /* it has failed; or the workers wait, all they did is in `progress`, and nothing is queued */
+} wh_pool_news_t;
 
-/* True if the workers are idle, all they did is in `progress` and nothing is queued; or if a trial was not
- * usable. */
-bool wh_pool_is_idle(wh_pool_t *pool);
+wh_pool_news_t wh_pool_look(wh_pool_t *pool);
 
 /* Makes the workers leave what they are at. */
 void wh_pool_stop(wh_pool_t *pool);
-
-/* True if a trial was not usable; `message` then says why. */
-bool wh_pool_failed(wh_pool_t *pool);
 
 /* Waits up to so many milliseconds for anything to change. */
 void wh_pool_wait(wh_pool_t *pool, int milliseconds);

@@ -95,7 +95,7 @@ static bool take_progress(wh_pool_t *pool, int from, const char *text, size_t si
 /* Sends fewer and fewer blocks, so that all ranks end at about the same time. */
 static bool send_blocks(const wh_ranks_t *ranks, wh_pool_t *pool, int to) {
     uint64_t blocks[MOST_BLOCKS];
-    const size_t share = wh_pool_queued(pool) / (4 * (size_t)ranks->size) + 1;
+    const size_t share = wh_pool_look(pool).queued / (4 * (size_t)ranks->size) + 1;
     const size_t count = wh_pool_take(pool, blocks, share < MOST_BLOCKS ? share : MOST_BLOCKS);
     return ranks->calls->send(to, blocks, count * sizeof blocks[0]) == 0;
 }
@@ -188,7 +188,7 @@ static bool take_blocks(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting,
 /* Asks for more blocks before the queue is empty, and takes those that come. */
 static bool go_on(const wh_ranks_t *ranks, wh_pool_t *pool, bool *wanting, bool *more) {
     bool sound = true;
-    if (*more && !*wanting && wh_pool_queued(pool) <= 2 * pool->worker_count) {
+    if (*more && !*wanting && wh_pool_look(pool).queued <= 2 * pool->worker_count) {
         sound = tell_progress(ranks, pool, WANTS_MORE);
         *wanting = true;
     }
@@ -203,10 +203,10 @@ bool wh_ranks_help(wh_ranks_t *ranks, wh_pool_t *pool, bool (*interrupted)(void)
     bool wanting = false;
     bool more = true;
     bool sound = true;
-    while (sound && !interrupted() && (more || !wh_pool_is_idle(pool))) {
-        sound = !wh_pool_failed(pool) && go_on(ranks, pool, &wanting, &more);
+    while (sound && !interrupted() && (more || !wh_pool_look(pool).idle)) {
+        sound = !wh_pool_look(pool).failed && go_on(ranks, pool, &wanting, &more);
     }
-    if (wh_pool_failed(pool)) {
+    if (wh_pool_look(pool).failed) {
         tell(ranks, HAS_FAILED, pool->message);
         return false;
     }

@@ -8,8 +8,11 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../math/hash.h"
 #include "../text/array.h"
 #include "../text/clock.h"
+#include "../text/guard.h"
+#include "../text/output.h"
 #include "../text/style.h"
 #include "checkpoint.h"
 
@@ -20,6 +23,81 @@
 
 /* The bar is so wide. */
 #define CELLS 30
+
+/* ---------------------------------------------------------------------------------- what all trials share */
+
+uint64_t wh_study_blocks(const wh_study_t *study) {
+    return (study->trials + WH_STUDY_BLOCK - 1) / WH_STUDY_BLOCK;
+}
+
+uint64_t wh_study_block_trials(const wh_study_t *study, uint64_t block) {
+    const uint64_t left = study->trials - block * WH_STUDY_BLOCK;
+    return left < WH_STUDY_BLOCK ? left : WH_STUDY_BLOCK;
+}
+
+static bool refuse(const char *path, const char *text) {
+    fprintf(stderr, "%s: %s\n", path, text);
+    return false;
+}
+
+static bool hash_file(const char *path, uint64_t *hash) {
+    FILE *file = fopen(path, "r");
+    if (!file) {
+        return refuse(path, strerror(errno));
+    }
+    *hash = WH_HASH_START;
+    for (int c = fgetc(file); c != EOF; c = fgetc(file)) {
+        *hash = wh_hash_word(*hash, (uint64_t)c);
+    }
+    fclose(file);
+    return true;
+}
+
+static bool is_known(const wh_study_t *study, int32_t wafer) {
+    bool known = false;
+    for (size_t i = 0; i < study->wafer_count; ++i) {
+        known = known || study->wafers[i].wafer == wafer;
+    }
+    return known;
+}
+
+/* Those that the run without errors takes, in that order. */
+static void choose_wafers(wh_study_t *study) {
+    const wh_record_t *record = &study->nominal.record;
+    for (size_t i = 0; i < record->event_count && study->wafer_count < WH_STUDY_WAFERS; ++i) {
+        const wh_event_t *event = &record->events[i].event;
+        if (event->kind == WH_EVENT_PICKED && event->wafer != WH_NONE && !is_known(study, event->wafer)) {
+            const wh_wafer_record_t *end = &record->wafers[event->wafer];
+            study->wafers[study->wafer_count++] = (wh_study_wafer_t){event->wafer, end->holder, end->place};
+        }
+    }
+}
+
+bool wh_study_open(wh_study_t *study) {
+    wh_script_run_options_t options = study->run;
+    options.decisions = &study->decisions;
+    if (wh_script_run(&study->nominal, &options) == WH_RUN_BAD_INPUT) {
+        fprintf(stderr, "%s\n", study->nominal.message);
+        return false;
+    }
+    study->layout = study->nominal.mcs.layout;
+    if (!study->layout || !study->nominal.record.wafers) {
+        return refuse(study->run.script, "no cell (expected cell \"LAYOUT.lua\")");
+    }
+    if (!study->layout->errors) {
+        return refuse(study->layout->path, "study: nil (expected what is drawn, as study = { placement = { "
+                                           "dx = 0.3 } }, here or in the script)");
+    }
+    study->whole = study->layout->collision ? "collisions are looked for" : study->decisions.unfit;
+    choose_wafers(study);
+    return hash_file(study->run.script, &study->script_hash) &&
+           hash_file(study->layout->path, &study->layout_hash);
+}
+
+void wh_study_close(wh_study_t *study) {
+    wh_decisions_free(&study->decisions);
+    wh_script_run_close(&study->nominal);
+}
 
 /* ------------------------------------------------------------------------------------------------ signals */
 
@@ -65,7 +143,7 @@ static bool keep(keeper_t *keeper, wh_pool_t *pool) {
     pthread_mutex_unlock(&pool->lock);
     const bool saved = text && wh_checkpoint_save(keeper->path, text);
     if (!saved && keeper->named) {
-        fprintf(stderr, "%s: %s (expected a file that can be written)\n", keeper->path, strerror(errno));
+        wh_output_tell("--state", keeper->path, errno);
     } else if (!saved) {
         free(keeper->path);
         keeper->path = NULL;
@@ -159,15 +237,8 @@ static void queue_rest(wh_pool_t *pool) {
     free(blocks);
 }
 
-static uint64_t trials_done(wh_pool_t *pool) {
-    pthread_mutex_lock(&pool->lock);
-    const uint64_t trials = pool->progress.tally.trials;
-    pthread_mutex_unlock(&pool->lock);
-    return trials;
-}
-
 static bool is_over(wh_pool_t *pool, const wh_ranks_t *ranks) {
-    return wh_pool_is_idle(pool) && ranks->ended == ranks->size - 1;
+    return wh_pool_look(pool).idle && ranks->ended == ranks->size - 1;
 }
 
 /* Each 50 ms: what other ranks sent is taken, and what is done is kept. False if that failed. */
@@ -177,19 +248,19 @@ static bool attend(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
 }
 
 static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper) {
-    bar_t bar = {.out = isatty(STDERR_FILENO) == 1 ? stderr : NULL,
-                 .style = wh_style_of(stderr),
+    bar_t bar = {.out = isatty(STDERR_FILENO) == 1 ? wh_guard_terminal() : NULL,
+                 .style = wh_style_of(wh_guard_terminal()),
                  .total = pool->study->trials,
-                 .begun = trials_done(pool),
+                 .begun = wh_pool_look(pool).trials,
                  .start = wh_clock_seconds()};
     bool sound = true;
     queue_rest(pool);
-    while (sound && !wh_pool_failed(pool) && !is_interrupted() && !is_over(pool, ranks)) {
+    while (sound && !wh_pool_look(pool).failed && !is_interrupted() && !is_over(pool, ranks)) {
         sound = attend(pool, ranks, keeper);
-        bar_show(&bar, trials_done(pool));
+        bar_show(&bar, wh_pool_look(pool).trials);
     }
     bar_close(&bar);
-    if (wh_pool_failed(pool)) {
+    if (wh_pool_look(pool).failed) {
         fprintf(stderr, "%s\n", pool->message);
         sound = false;
     }
@@ -198,8 +269,8 @@ static wh_study_end_t lead(wh_pool_t *pool, wh_ranks_t *ranks, keeper_t *keeper)
 }
 
 static void tell_interruption(const keeper_t *keeper, wh_pool_t *pool) {
-    fprintf(stderr, "interrupted: %llu of %llu trials are done", (unsigned long long)trials_done(pool),
-            (unsigned long long)pool->study->trials);
+    fprintf(stderr, "interrupted: %llu of %llu trials are done",
+            (unsigned long long)wh_pool_look(pool).trials, (unsigned long long)pool->study->trials);
     fprintf(stderr, keeper->path ? ", and kept in %s; the same command goes on from there\n" : "%s\n",
             keeper->path ? keeper->path : "");
 }
@@ -210,7 +281,7 @@ static wh_study_end_t play_first(wh_pool_t *pool, const wh_study_options_t *opti
     if (open_keeper(&keeper, options, pool)) {
         end = lead(pool, ranks, &keeper);
         wh_pool_stop(pool);
-        while (!wh_pool_is_idle(pool)) { /* until all that they have done is in the progress */
+        while (!wh_pool_look(pool).idle) { /* until all that they have done is in the progress */
             wh_pool_wait(pool, 5);
         }
         const bool used = keeper.named || end == WH_STUDY_INTERRUPTED;

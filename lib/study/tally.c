@@ -123,10 +123,8 @@ static void merge_rows(wh_tally_rows_t *rows, const wh_tally_rows_t *others) {
 static int compare_rows(const void *a, const void *b) {
     const wh_tally_row_t *one = a;
     const wh_tally_row_t *other = b;
-    if (one->line != other->line) {
-        return one->line < other->line ? -1 : 1;
-    }
-    return one->place < other->place ? -1 : one->place > other->place ? 1 : 0;
+    const int lines = (one->line > other->line) - (one->line < other->line);
+    return lines != 0 ? lines : (one->place > other->place) - (one->place < other->place);
 }
 
 static void sort_rows(wh_tally_rows_t *rows) {

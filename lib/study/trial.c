@@ -10,6 +10,7 @@ void wh_worker_open(wh_worker_t *worker, const wh_study_t *study) {
     memset(worker, 0, sizeof *worker);
     worker->study = study;
     worker->options = study->run;
+    worker->options.unread_parameters = true;
     worker->places = wh_array_new(layout->station_count, sizeof *worker->places);
     worker->start = wh_array_new(layout->wafer_count, sizeof *worker->start);
     worker->wafers = wh_array_new(layout->wafer_count, sizeof *worker->wafers);

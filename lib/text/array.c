@@ -20,6 +20,13 @@ char *wh_text_copy(const char *text) {
     return wh_memory_need(strdup(text));
 }
 
+void wh_text_words(char *to, size_t size, const char *name) {
+    (void)snprintf(to, size, "%s", name);
+    for (char *c = strchr(to, '_'); c; c = strchr(c, '_')) {
+        *c = ' ';
+    }
+}
+
 void *wh_array_reserve(void *items, size_t needed, size_t *capacity, size_t size) {
     if (needed <= *capacity) {
         return items;

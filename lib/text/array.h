@@ -17,6 +17,9 @@ void *wh_memory_need(void *made);
 /* A copy of a text. Never null; the caller frees it. */
 char *wh_text_copy(const char *text);
 
+/* Copies a name such as near_miss into `size` bytes, as far as they go, with blanks for its underscores. */
+void wh_text_words(char *to, size_t size, const char *name);
+
 /* Makes room for at least `needed` items of `size` bytes. `items` is null at the beginning, `capacity` is
  * then 0. Returns where the items are now; the caller frees them. */
 void *wh_array_reserve(void *items, size_t needed, size_t *capacity, size_t size);

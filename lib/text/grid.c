@@ -92,52 +92,45 @@ int wh_grid_decimals(const wh_grid_digits_t *digits, double value) {
 
 /* ------------------------------------------------------------------------------------------------ filling */
 
-wh_grid_t *wh_grid_new(const wh_style_t *style, size_t keys) {
+wh_grid_t *wh_grid_new(const wh_style_t *style, size_t keys, const char *columns) {
     wh_grid_t *grid = wh_array_new(1, sizeof *grid);
     grid->style = *style;
     grid->keys = keys;
+    wh_grid_columns(grid, columns);
     return grid;
 }
 
-void wh_grid_free(wh_grid_t *grid) {
-    for (size_t i = 0; i < grid->row_count * grid->column_count; ++i) {
-        free(grid->cells[i].text);
+/* Adds the column that `text` begins with. */
+static void add_column(wh_grid_t *grid, const char *text) {
+    wh_grid_column_t *column = &grid->columns[grid->column_count++];
+    wh_grid_digits_t *digits = &column->digits;
+    column->glued = *text == '+';
+    text += column->glued ? 1 : 0;
+    const size_t length = strcspn(text, "{;");
+    char *heading = wh_memory_need(strndup(text, length));
+    column->heading = wh_style_printable(heading);
+    free(heading);
+    column->to_right = text[length] == '{';
+    if (column->to_right) {
+        char *end;
+        digits->least = (int)strtol(text + length + 1, &end, 10);
+        digits->most = *end == ',' ? (int)strtol(end + 1, NULL, 10) : digits->least;
     }
-    for (size_t i = 0; i < grid->column_count; ++i) {
-        free(grid->columns[i].heading);
-    }
-    free(grid->cells);
-    free(grid);
+    column->decimals = digits->least;
 }
 
-static void add_columns(wh_grid_t *grid, bool to_right, wh_grid_digits_t digits, va_list headings) {
-    for (const char *heading = va_arg(headings, char *); heading; heading = va_arg(headings, char *)) {
-        if (grid->column_count < WH_GRID_COLUMNS) {
-            wh_grid_column_t *column = &grid->columns[grid->column_count++];
-            column->heading = wh_style_printable(heading);
-            column->to_right = to_right;
-            column->digits = digits;
-            column->decimals = digits.least;
-        }
+void wh_grid_columns(wh_grid_t *grid, const char *columns) {
+    while (columns && grid->column_count < WH_GRID_COLUMNS) {
+        add_column(grid, columns);
+        const char *end = strchr(columns, ';');
+        columns = end ? end + 1 : NULL;
     }
 }
 
-void wh_grid_text_columns(wh_grid_t *grid, ...) {
-    va_list headings;
-    va_start(headings, grid);
-    add_columns(grid, false, wh_grid_whole, headings);
-    va_end(headings);
-}
-
-void wh_grid_number_columns(wh_grid_t *grid, wh_grid_digits_t digits, ...) {
-    va_list headings;
-    va_start(headings, digits);
-    add_columns(grid, true, digits, headings);
-    va_end(headings);
-}
-
-void wh_grid_glue(wh_grid_t *grid) {
-    grid->columns[grid->column_count - 1].glued = true;
+void wh_grid_limit(wh_grid_t *grid, double limit) {
+    wh_grid_digits_t *digits = &grid->columns[grid->column_count - 1].digits;
+    digits->has_limit = true;
+    digits->limit = limit;
 }
 
 void wh_grid_row(wh_grid_t *grid) {
@@ -340,11 +333,18 @@ static void print_part(const wh_grid_t *grid, const part_t *part, FILE *out) {
 void wh_grid_print(wh_grid_t *grid, FILE *out) {
     format_numbers(grid);
     measure_columns(grid);
-    for (size_t first = 0; first < grid->column_count;) {
+    for (size_t first = 0; grid->row_count > 0 && first < grid->column_count;) {
         part_t part;
         fputs(first > 0 ? "\n" : "", out);
         first = plan_part(grid, first, &part);
         print_part(grid, &part, out);
     }
-    wh_grid_free(grid);
+    for (size_t i = 0; i < grid->row_count * grid->column_count; ++i) {
+        free(grid->cells[i].text);
+    }
+    for (size_t i = 0; i < grid->column_count; ++i) {
+        free(grid->columns[i].heading);
+    }
+    free(grid->cells);
+    free(grid);
 }

@@ -19,21 +19,22 @@ typedef struct {
     double limit; /* then more decimals until no number is rounded onto its limit or across it */
 } wh_grid_digits_t;
 
-/* Whole numbers. */
-static const wh_grid_digits_t wh_grid_whole = {0, 0, false, 0};
-
 typedef struct wh_grid wh_grid_t;
 
-/* An empty table; its first `keys` columns begin each part. */
-wh_grid_t *wh_grid_new(const wh_style_t *style, size_t keys);
+/* A table without rows; its first `keys` columns begin each part. `columns` has their headings, with a ';'
+ * between them. Behind a heading "{3}" or "{3,6}" makes it a column of numbers, to the right, with so many
+ * decimals at least and at most. A '+' before it keeps the column beside the one before wherever a part has
+ * room for both.
+ *
+ *     wh_grid_t *grid = wh_grid_new(style, 1, "station;x mm{0,6};y mm{0,6};+turned deg{1}");
+ */
+wh_grid_t *wh_grid_new(const wh_style_t *style, size_t keys, const char *columns);
 
-/* More columns, of text or of numbers (to the right, with a rule), by their headings; null ends them. At most
- * WH_GRID_COLUMNS, all of them before the first row. */
-__attribute__((sentinel)) void wh_grid_text_columns(wh_grid_t *grid, ...);
-__attribute__((sentinel)) void wh_grid_number_columns(wh_grid_t *grid, wh_grid_digits_t digits, ...);
+/* More columns, all of them before the first row. There are WH_GRID_COLUMNS at most. */
+void wh_grid_columns(wh_grid_t *grid, const char *columns);
 
-/* Keeps the last column beside the one before it wherever a part has room for both. */
-void wh_grid_glue(wh_grid_t *grid);
+/* No number of the last column is rounded onto this limit or across it. */
+void wh_grid_limit(wh_grid_t *grid, double limit);
 
 /* One more row, of empty cells; or with a text in its first cell. */
 void wh_grid_row(wh_grid_t *grid);
@@ -50,9 +51,8 @@ void wh_grid_numbers(wh_grid_t *grid, size_t column, const double values[], size
 /* How many rows there are. */
 size_t wh_grid_rows(const wh_grid_t *grid);
 
-/* Prints the table and frees it; frees it without printing it. */
+/* Prints the table, unless it has no rows, and frees it. */
 void wh_grid_print(wh_grid_t *grid, FILE *out);
-void wh_grid_free(wh_grid_t *grid);
 
 /* Formats a number by a rule into `text`, with the decimals given, -0 as 0. `decimals` is what
  * wh_grid_decimals says of it or more. */

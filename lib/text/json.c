@@ -26,6 +26,10 @@ json_t *wh_json_real(double value) {
     return isfinite(value) ? json_real(value) : json_null();
 }
 
+json_t *wh_json_hash(uint64_t value) {
+    return json_sprintf("%016llx", (unsigned long long)value);
+}
+
 json_t *wh_json_text(const char *text) {
     if (!text) {
         return json_null();
@@ -49,16 +53,34 @@ json_t *wh_json_matrix(const wh_mat3_t *m) {
                      wh_json_vector(wh_mat3_row(m, 2)));
 }
 
-void wh_json_put_real(json_t *object, const char *key, double value) {
-    wh_json_put(object, key, wh_json_real(value));
+/* The next value, as its conversion says. */
+static json_t *take_value(const char *conversion, va_list *values) {
+    switch (conversion[strlen(conversion) - 1]) {
+    case 'g':
+        return wh_json_real(va_arg(*values, double));
+    case 's':
+        return wh_json_text(va_arg(*values, const char *));
+    case 'i':
+        return json_boolean(va_arg(*values, int));
+    case 'x':
+        return json_sprintf("%016llx", va_arg(*values, unsigned long long));
+    default: {
+        const long long value = conversion[1] == 'l' ? va_arg(*values, long long) : va_arg(*values, int);
+        return value == WH_JSON_NONE ? json_null() : json_integer(value);
+    }
+    }
 }
 
-void wh_json_put_text(json_t *object, const char *key, const char *text) {
-    wh_json_put(object, key, wh_json_text(text));
-}
-
-void wh_json_put_integer(json_t *object, const char *key, json_int_t value) {
-    wh_json_put(object, key, json_integer(value));
+json_t *wh_json_set(json_t *object, const char *members, ...) {
+    char key[64], conversion[8];
+    int read;
+    va_list values;
+    va_start(values, members);
+    for (; sscanf(members, " %63s %7s%n", key, conversion, &read) == 2; members += read) {
+        wh_json_put(object, key, take_value(conversion, &values));
+    }
+    va_end(values);
+    return object;
 }
 
 json_t *wh_json_add(json_t *object, const char *keys, ...) {
@@ -86,10 +108,37 @@ json_t *wh_json_list(wh_json_element_t *element, const void *subject, size_t cou
     return list;
 }
 
+void wh_json_digits(double value, char digits[WH_JSON_DIGITS]) {
+    for (int precision = 15; precision <= 17; ++precision) {
+        (void)snprintf(digits, WH_JSON_DIGITS, "%.*g", precision, value);
+        if (strtod(digits, NULL) == value) {
+            break;
+        }
+    }
+}
+
 /* ----------------------------------------------------------------------------------------------- printing */
 
+/* jansson escapes what is below a blank; DEL and U+0080 to U+009F steer terminals, too. */
+static int write_visible(const char *buffer, size_t size, void *out) {
+    size_t done = 0;
+    for (size_t i = 0; i < size; ++i) {
+        const bool is_delete = buffer[i] == 0x7F;
+        const bool is_late =
+            i + 1 < size && (unsigned char)buffer[i] == 0xC2 && (unsigned char)buffer[i + 1] < 0xA0;
+        if (is_delete || is_late) {
+            fwrite(buffer + done, 1, i - done, out);
+            i += is_late ? 1 : 0;
+            fprintf(out, "\\u%04x", (unsigned)(unsigned char)buffer[i]);
+            done = i + 1;
+        }
+    }
+    fwrite(buffer + done, 1, size - done, out);
+    return 0;
+}
+
 static int dump(const json_t *value, FILE *out) {
-    return json_dumpf(value, out, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
+    return json_dump_callback(value, write_visible, out, JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
 }
 
 static int dump_list(const json_t *list, FILE *out) {
@@ -142,15 +191,9 @@ void wh_json_text_end(wh_json_text_t *text, char bracket) {
     text->follows = true;
 }
 
-/* The fewest digits that read back as the same double. */
 static void write_exact(FILE *out, double value) {
-    char digits[40];
-    for (int precision = 15; precision <= 17; ++precision) {
-        (void)snprintf(digits, sizeof digits, "%.*g", precision, value);
-        if (strtod(digits, NULL) == value) {
-            break;
-        }
-    }
+    char digits[WH_JSON_DIGITS];
+    wh_json_digits(value, digits);
     fputs(digits, out);
 }
 

@@ -7,7 +7,9 @@
 #define WH_TEXT_JSON_H
 
 #include <jansson.h>
+#include <limits.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
 #include "../math/vector.h"
@@ -21,6 +23,13 @@ void wh_json_append(json_t *list, json_t *value);
 /* A number; null for infinities and NaN, which JSON has not. */
 json_t *wh_json_real(double value);
 
+/* The fewest digits, from 15 to 17, that read back as the same double. */
+#define WH_JSON_DIGITS 40
+void wh_json_digits(double value, char digits[WH_JSON_DIGITS]);
+
+/* A hash or an identity: 16 hex digits as a text. */
+json_t *wh_json_hash(uint64_t value);
+
 /* A text, with U+FFFD for each byte that is no UTF-8; null for null. */
 json_t *wh_json_text(const char *text);
 
@@ -28,15 +37,19 @@ json_t *wh_json_text(const char *text);
 json_t *wh_json_vector(wh_vec3_t v);
 json_t *wh_json_matrix(const wh_mat3_t *m);
 
-/* A number or a text as a member. */
-void wh_json_put_real(json_t *object, const char *key, double value);
-void wh_json_put_text(json_t *object, const char *key, const char *text);
-void wh_json_put_integer(json_t *object, const char *key, json_int_t value);
-
-/* Adds members: their names, with blanks between them, and as many values, which it takes over. Null ends the
- * values. Returns the object.
+/* Adds members by their names and printf's conversions of their values, which the compiler checks: %g is a
+ * number as of wh_json_real, %s a text as of wh_json_text, %d and %lld are whole numbers, WH_JSON_NONE being
+ * null, %i is true or false, and %llx a text of 16 digits. Returns the object.
  *
- *     return wh_json_add(json_object(), "line text", json_integer(line), wh_json_text(text), NULL);
+ *     return wh_json_set(json_object(), "line %d text %s ok %i", line, text, ok);
+ */
+#define WH_JSON_NONE LLONG_MIN
+__attribute__((format(printf, 2, 3))) json_t *wh_json_set(json_t *object, const char *members, ...);
+
+/* Adds members of any kind: their names, with blanks between them, and as many values, which it takes over.
+ * Null ends the values. Returns the object.
+ *
+ *     return wh_json_add(json_object(), "at rotation", wh_json_vector(at), wh_json_matrix(&turn), NULL);
  */
 __attribute__((sentinel)) json_t *wh_json_add(json_t *object, const char *keys, ...);
 

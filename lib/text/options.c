@@ -3,8 +3,11 @@
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "array.h"
+#include "nearest.h"
 
 #define MOST_OPTIONS 48
 
@@ -42,7 +45,7 @@ static bool read_count(const wh_option_t *option, const char *text, uint64_t *va
 
 static void refuse(const wh_option_t *option, const char *text, const char *expected,
                    const struct argp_state *state) {
-    argp_error(state, "--%s: %s (expected %s)", option->name, text, expected);
+    argp_error(state, "--%s: %s (expected %s)", option->name, text[0] != '\0' ? text : "nothing", expected);
 }
 
 static void take_number(const wh_option_t *option, void *variable, const char *text,
@@ -74,6 +77,9 @@ static void take(const wh_option_t *option, void *variable, char *text, const st
         *(bool *)variable = true;
         break;
     case WH_OPTION_TEXT:
+        if (text[0] == '\0') {
+            refuse(option, text, option->argument, state);
+        }
         *(const char **)variable = text;
         break;
     case WH_OPTION_LIST:
@@ -92,22 +98,112 @@ static void take_operand(const parser_t *parser, char *text, const struct argp_s
     const char **operand = (const char **)(void *)(parser->arguments + parser->line->operand_variable);
     if (*operand) {
         argp_error(state, "%s: one %s is enough", text, parser->line->operand);
+    } else if (text[0] == '\0') {
+        argp_error(state, "%s: nothing (expected a file)", parser->line->operand);
     }
     *operand = text;
 }
 
 static void check(const parser_t *parser, struct argp_state *state) {
     const char *operand = *(const char **)(void *)(parser->arguments + parser->line->operand_variable);
-    if (parser->line->check) {
-        parser->line->check(parser->arguments, state);
-    } else if (!operand) {
+    if (!operand && !parser->line->operand_may_lack) {
         argp_error(state, "which %s?", parser->line->operand);
     }
+    if (parser->line->check) {
+        parser->line->check(parser->arguments, state);
+    }
+    for (const wh_option_table_t *table = parser->line->tables; table->options; ++table) {
+        if (table->check) {
+            table->check(parser->arguments + table->base, state);
+        }
+    }
 }
+
+/* ------------------------------------------------------------------------------------------------- names */
+
+/* Those that argp adds. */
+static const char *const own_names[] = {"help", "usage", "version"};
+
+#define OWN_NAMES (sizeof own_names / sizeof own_names[0])
+
+static void refuse_name(const parser_t *parser, const char *text, struct argp_state *state) {
+    const char *names[MOST_OPTIONS + OWN_NAMES];
+    char word[WH_NEAREST_BYTES + 2];
+    char meant[WH_NEAREST_TEXT];
+    size_t count = 0;
+    for (size_t i = 0; i < parser->count; ++i) {
+        if (parser->known[i].name) {
+            names[count++] = parser->known[i].name;
+        }
+    }
+    memcpy(names + count, own_names, sizeof own_names);
+    (void)snprintf(word, sizeof word, "%.*s", (int)strcspn(text + 2, "="), text + 2);
+    const char *near = wh_text_nearest(word, names, count + OWN_NAMES);
+    state->name = state->argv[0]; /* which argp sets later */
+    argp_error(state, "%s: no such option%s%s", text, wh_text_did_you_mean(meant, " (", "--", near),
+               near ? ")" : "");
+}
+
+/* The option of which this is the name, or else the beginning of it; null if there is none. */
+static const struct argp_option *find_name(const parser_t *parser, const char *name, size_t length) {
+    const struct argp_option *found = NULL;
+    for (size_t i = 0; i < parser->count; ++i) {
+        const struct argp_option *option = &parser->known[i];
+        if (option->name && strncmp(option->name, name, length) == 0) {
+            found = found && option->name[length] != '\0' ? found : option;
+        }
+    }
+    return found;
+}
+
+static bool is_own_name(const char *name, size_t length) {
+    bool is_own = false;
+    for (size_t i = 0; i < OWN_NAMES; ++i) {
+        is_own = is_own || strncmp(own_names[i], name, length) == 0;
+    }
+    return is_own;
+}
+
+/* True if "-o" is an option whose value is the next argument. */
+static bool takes_next(const parser_t *parser, const char *text) {
+    for (size_t i = 0; i < parser->count; ++i) {
+        if (parser->options[i] && parser->known[i].arg && parser->known[i].key == text[1]) {
+            return text[2] == '\0';
+        }
+    }
+    return false;
+}
+
+/* True if the value of the option "--name" is the next argument. Does not return if there is no such name. */
+static bool check_name(const parser_t *parser, const char *text, struct argp_state *state) {
+    const size_t length = strcspn(text + 2, "=");
+    const struct argp_option *option = find_name(parser, text + 2, length);
+    if (!option && !is_own_name(text + 2, length)) {
+        refuse_name(parser, text, state);
+    }
+    return option && option->arg && text[2 + length] == '\0';
+}
+
+/* Refuses a name that no option has before argp does, which names no other. */
+static void check_names(const parser_t *parser, struct argp_state *state) {
+    for (int i = 1; i < state->argc && strcmp(state->argv[i], "--") != 0; ++i) {
+        const char *text = state->argv[i];
+        if (strncmp(text, "--", 2) == 0) {
+            i += check_name(parser, text, state) ? 1 : 0;
+        } else if (text[0] == '-') {
+            i += takes_next(parser, text) ? 1 : 0;
+        }
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------- parsing */
 
 static error_t parse(int key, char *text, struct argp_state *state) {
     const parser_t *parser = state->input;
     switch (key) {
+    case ARGP_KEY_INIT:
+        check_names(parser, state);
+        return 0;
     case ARGP_KEY_ARG:
         take_operand(parser, text, state);
         return 0;
@@ -139,6 +235,16 @@ static void add(parser_t *parser, const wh_option_t *option, char *base) {
                              option->help,     0};
 }
 
+/* While argp parses: it ends the program after --help, which may not have left. */
+static bool is_parsing;
+
+static void check_help(void) {
+    if (is_parsing && (fflush(stdout) != 0 || ferror(stdout))) {
+        fprintf(stderr, "standard output: %s\n", strerror(errno));
+        _exit(argp_err_exit_status);
+    }
+}
+
 void wh_options_parse(const wh_command_line_t *line, int argc, char **argv, void *arguments) {
     static char name[64];
     parser_t parser = {.line = line, .arguments = arguments};
@@ -153,5 +259,7 @@ void wh_options_parse(const wh_command_line_t *line, int argc, char **argv, void
     const struct argp argp = {parser.known, parse, line->synopsis, line->about, NULL, NULL, NULL};
     (void)snprintf(name, sizeof name, "waferhand %s", line->name);
     argv[0] = name;
+    is_parsing = atexit(check_help) == 0;
     (void)argp_parse(&argp, argc, argv, 0, NULL, &parser);
+    is_parsing = false;
 }

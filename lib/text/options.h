@@ -8,7 +8,7 @@
  *
  * Variables are found by their offsets within a structure, so that tables are constant and commands can share
  * them. What is not given stays as it was. Wrong usage ends the program, as argp does:
- * "--rate: x (expected a number from 0.001 to 1000)".
+ * "--rate: x (expected a number from 0.001 to 1000)", "--rat: no such option (did you mean --rate?)".
  */
 #ifndef WH_TEXT_OPTIONS_H
 #define WH_TEXT_OPTIONS_H
@@ -51,6 +51,8 @@ typedef struct {
     const wh_option_t *options; /* null ends a list of tables */
     size_t base;                /* offset of the structure that it fills in, within the command's */
     const char *heading;        /* above these options in --help, or null */
+    /* Looks at what these options filled in and refuses by argp_error what does not go together, or null. */
+    void (*check)(const void *filled, struct argp_state *state);
 } wh_option_table_t;
 
 typedef struct {
@@ -60,7 +62,8 @@ typedef struct {
     const wh_option_table_t *tables;
     const char *operand; /* what the only argument is, such as "script" */
     size_t operand_variable;
-    /* Looks at what was given together and refuses by argp_error. Null: the operand must be given. */
+    bool operand_may_lack; /* `check` says when; else it must be given */
+    /* Looks at what was given together before the tables do, and refuses by argp_error; or null. */
     void (*check)(const void *arguments, struct argp_state *state);
 } wh_command_line_t;
 

@@ -2,10 +2,14 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "array.h"
 
 /* Names that are tried: others may be writing beside it, or have been killed. */
 #define ATTEMPTS 100
@@ -93,6 +97,10 @@ void wh_output_drop(wh_output_t *output) {
     }
 }
 
+void wh_output_tell(const char *option, const char *path, int error) {
+    fprintf(stderr, "%s %s: %s (expected a file that can be written)\n", option, path, strerror(error));
+}
+
 /* True, or errno says why not: of a disk that is full it may be close that fails. */
 static bool fill(int fd, mode_t mode, const void *bytes, size_t size) {
     errno = ENOSPC;
@@ -117,6 +125,70 @@ int wh_output_replace(const char *path, const void *bytes, size_t size) {
     error = errno;
     wh_output_drop(&output);
     return error;
+}
+
+/* --------------------------------------------------------------------------------------------------- kept */
+
+/* A number is given to another file when its file is gone: the time of birth tells the two apart. */
+typedef struct {
+    uint64_t number;
+    uint32_t device[2], born_ns;
+    int64_t born_s;
+} file_id_t;
+
+/* Static: a process reads its inputs in many places, and all of them are inputs of all that it writes. */
+static struct {
+    pthread_mutex_t mutex;
+    file_id_t *files;
+    size_t count, capacity;
+} kept = {.mutex = PTHREAD_MUTEX_INITIALIZER};
+
+static bool find_plain(const char *path, file_id_t *id) {
+    struct statx status;
+    const bool plain = path && statx(AT_FDCWD, path, 0, STATX_TYPE | STATX_INO | STATX_BTIME, &status) == 0 &&
+                       S_ISREG(status.stx_mode);
+    if (plain) {
+        *id = (file_id_t){.number = status.stx_ino,
+                          .device = {status.stx_dev_major, status.stx_dev_minor},
+                          .born_ns = status.stx_btime.tv_nsec,
+                          .born_s = status.stx_btime.tv_sec};
+    }
+    return plain;
+}
+
+static bool is_listed(const file_id_t *id) {
+    for (size_t i = 0; i < kept.count; ++i) {
+        const file_id_t *file = &kept.files[i];
+        if (file->number == id->number && file->device[0] == id->device[0] &&
+            file->device[1] == id->device[1] && file->born_s == id->born_s && file->born_ns == id->born_ns) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* True if it is in the list; if it is not and `adds`, it then is. */
+static bool look_up(const char *path, bool adds) {
+    file_id_t id;
+    if (!find_plain(path, &id)) {
+        return false;
+    }
+    pthread_mutex_lock(&kept.mutex);
+    const bool listed = is_listed(&id);
+    if (adds && !listed) {
+        kept.files = wh_array_grow(kept.files, kept.count, &kept.capacity, sizeof *kept.files);
+        kept.files[kept.count++] = id;
+    }
+    pthread_mutex_unlock(&kept.mutex);
+    return listed;
+}
+
+void wh_output_keep(const char *path) {
+    (void)look_up(path, true);
+}
+
+bool wh_output_is_kept(const char *path) {
+    return look_up(path, false);
 }
 
 /* -------------------------------------------------------------------------------------------------- state */

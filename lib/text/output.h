@@ -26,6 +26,9 @@ bool wh_output_commit(wh_output_t *output);
 /* Gives it up: the old file is still there. Does nothing after wh_output_commit. */
 void wh_output_drop(wh_output_t *output);
 
+/* Says on standard error that an option's output could not be written, and why, an errno. */
+void wh_output_tell(const char *option, const char *path, int error);
+
 /* Writes a small file so, whole: whoever reads it meanwhile sees the old one or the new one. Returns 0 or an
  * errno: EISDIR for a directory, EINVAL for what else is no plain file. Then nothing has changed. Nothing is
  * synced to the disk. */
@@ -33,6 +36,15 @@ int wh_output_replace(const char *path, const void *bytes, size_t size);
 
 /* True if both paths lead to one file, which is there: by links, or in other spellings. */
 bool wh_output_is_one_file(const char *a, const char *b);
+
+/* From now on nothing is to be written over this file: it is an input, or an output that is ready. Whoever
+ * writes files of its own asks wh_output_is_kept first. Does nothing if there is no such plain file. The list
+ * is the process's own; any thread may call both. Cost: linear in the files that are kept. */
+void wh_output_keep(const char *path);
+bool wh_output_is_kept(const char *path);
+
+/* What is said of an output that would be written over a kept file. */
+#define WH_OUTPUT_KEPT "this is an input or another output (expected a file of its own)"
 
 /* Where the program keeps a file for the next time: $XDG_STATE_HOME/waferhand/NAME, or
  * ~/.local/state/waferhand/NAME. Empty if the environment names no such place, or if `size` bytes do not hold

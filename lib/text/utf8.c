@@ -1,5 +1,6 @@
 #include "utf8.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,6 +53,71 @@ void wh_utf8_clip(char *to, size_t size, const char *from) {
     const size_t kept = wh_utf8_cut(from, size - sizeof "...");
     memcpy(to, from, kept);
     memcpy(to + kept, "...", sizeof "...");
+}
+
+size_t wh_utf8_control_bytes(const char *text) {
+    const unsigned char first = (unsigned char)text[0];
+    if (first < 0x20 || first == 0x7F) {
+        return 1;
+    }
+    if (first == 0xC2 && (unsigned char)text[1] >= 0x80 && (unsigned char)text[1] < 0xA0) {
+        return 2;
+    }
+    return first >= 0x80 && first < 0xA0 ? 1 : 0;
+}
+
+void wh_utf8_visible(char *to, size_t size, const char *from) {
+    wh_utf8_visible_bytes(to, size, from, strlen(from));
+}
+
+void wh_utf8_visible_bytes(char *to, size_t size, const char *from, size_t from_length) {
+    const char *const end = from + from_length;
+    size_t length = 0;
+    size_t cut = 0; /* the last place at which an ellipsis would fit */
+    while (from < end) {
+        const size_t control = wh_utf8_control_bytes(from);
+        const size_t valid = wh_utf8_bytes(from);
+        const size_t bytes = control > 0 ? control : valid > 0 ? valid : 1;
+        const size_t needed = control > 0 ? 4 * control : bytes;
+        cut = length + sizeof "..." <= size ? length : cut;
+        if (length + needed >= size) {
+            memcpy(to + cut, "...", sizeof "...");
+            return;
+        }
+        for (size_t i = 0; i < bytes; ++i, ++from) {
+            length += control > 0
+                          ? (size_t)snprintf(to + length, size - length, "\\x%02X", (unsigned char)*from)
+                          : (size_t)snprintf(to + length, size - length, "%c", *from);
+        }
+    }
+    to[length] = '\0';
+}
+
+/* The character, or the bytes of a control character, with which a text begins. */
+static size_t first_bytes(const char *text, size_t size, bool *is_control) {
+    char begin[5] = "";
+    memcpy(begin, text, size < 4 ? size : 4);
+    const size_t control = begin[0] == '\n' || begin[0] == '\t' ? 0 : wh_utf8_control_bytes(begin);
+    const size_t character = wh_utf8_bytes(begin);
+    *is_control = control > 0;
+    return control > 0 ? control : character > 0 ? character : 1;
+}
+
+size_t wh_utf8_piece(const char *text, size_t size, char piece[WH_UTF8_PIECE], size_t *length) {
+    size_t taken = 0;
+    *length = 0;
+    while (taken < size && *length < WH_UTF8_PIECE - 12) {
+        bool is_control = false;
+        const size_t bytes = first_bytes(text + taken, size - taken, &is_control);
+        for (const size_t end = taken + bytes; taken < end; ++taken) {
+            if (is_control) {
+                *length += (size_t)sprintf(piece + *length, "\\x%02X", (unsigned char)text[taken]);
+            } else {
+                piece[(*length)++] = text[taken];
+            }
+        }
+    }
+    return taken;
 }
 
 char *wh_utf8_repaired(const char *text) {

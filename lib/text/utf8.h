@@ -27,6 +27,23 @@ size_t wh_utf8_cut(const char *text, size_t length);
  * "...". */
 void wh_utf8_clip(char *to, size_t size, const char *from);
 
+/* How many bytes of `text` are a control character, 0 if it begins with none: U+0000 to U+001F, U+007F to
+ * U+009F, and a lone byte that some terminals take for one of these. */
+size_t wh_utf8_control_bytes(const char *text);
+
+/* wh_utf8_clip of a text in which each byte of a control character stands as \xNN: it stays on its line and
+ * steers no terminal. */
+void wh_utf8_visible(char *to, size_t size, const char *from);
+
+/* wh_utf8_visible of a text of `length` bytes, which may be 0 too, and a final zero. */
+void wh_utf8_visible_bytes(char *to, size_t size, const char *from, size_t length);
+
+/* The beginning of a text of any bytes with its control characters as \xNN, but for line ends and tabs.
+ * Returns how many of the bytes were taken, at least one of them; `piece` has them then, without a final
+ * zero. */
+#define WH_UTF8_PIECE 512
+size_t wh_utf8_piece(const char *text, size_t size, char piece[WH_UTF8_PIECE], size_t *length);
+
 /* A copy with U+FFFD for each byte that is no UTF-8. The caller frees it. Ends the program if out of
  * memory. */
 char *wh_utf8_repaired(const char *text);

@@ -9,7 +9,6 @@
 #include "../link/messages.h"
 #include "../text/array.h"
 #include "cell.h"
-#include "geometry.h"
 
 /* Aside from the robot's front, and above. */
 const wh_vec3_t wh_view_from = {1.1, -1.3, 1.1};
@@ -34,47 +33,32 @@ enum { POINTS = 4, POINT_NUMBERS = 12, NUMBERS = 18 };
 
 /* ------------------------------------------------------------------------------------------- characters */
 
-/* Rows from above, the leftmost dot is 0x10. */
-static const uint8_t dots[128][HIGH] = {
-    ['!'] = {0x04, 0x04, 0x04, 0x04, 0x04, 0x00, 0x04},  ['"'] = {0x0a, 0x0a, 0x0a, 0x00, 0x00, 0x00, 0x00},
-    ['#'] = {0x0a, 0x0a, 0x1f, 0x0a, 0x1f, 0x0a, 0x0a},  ['%'] = {0x19, 0x19, 0x02, 0x04, 0x08, 0x13, 0x13},
-    ['\''] = {0x04, 0x04, 0x04, 0x00, 0x00, 0x00, 0x00}, ['('] = {0x02, 0x04, 0x08, 0x08, 0x08, 0x04, 0x02},
-    [')'] = {0x08, 0x04, 0x02, 0x02, 0x02, 0x04, 0x08},  ['*'] = {0x00, 0x15, 0x0e, 0x1f, 0x0e, 0x15, 0x00},
-    ['+'] = {0x00, 0x04, 0x04, 0x1f, 0x04, 0x04, 0x00},  [','] = {0x00, 0x00, 0x00, 0x00, 0x0c, 0x04, 0x08},
-    ['-'] = {0x00, 0x00, 0x00, 0x1f, 0x00, 0x00, 0x00},  ['.'] = {0x00, 0x00, 0x00, 0x00, 0x00, 0x0c, 0x0c},
-    ['/'] = {0x01, 0x01, 0x02, 0x04, 0x08, 0x10, 0x10},  ['0'] = {0x0e, 0x11, 0x13, 0x15, 0x19, 0x11, 0x0e},
-    ['1'] = {0x04, 0x0c, 0x04, 0x04, 0x04, 0x04, 0x0e},  ['2'] = {0x0e, 0x11, 0x01, 0x02, 0x04, 0x08, 0x1f},
-    ['3'] = {0x0e, 0x11, 0x01, 0x06, 0x01, 0x11, 0x0e},  ['4'] = {0x02, 0x06, 0x0a, 0x12, 0x1f, 0x02, 0x02},
-    ['5'] = {0x1f, 0x10, 0x1e, 0x01, 0x01, 0x11, 0x0e},  ['6'] = {0x0e, 0x10, 0x10, 0x1e, 0x11, 0x11, 0x0e},
-    ['7'] = {0x1f, 0x01, 0x02, 0x02, 0x04, 0x04, 0x04},  ['8'] = {0x0e, 0x11, 0x11, 0x0e, 0x11, 0x11, 0x0e},
-    ['9'] = {0x0e, 0x11, 0x11, 0x0f, 0x01, 0x01, 0x0e},  [':'] = {0x00, 0x0c, 0x0c, 0x00, 0x0c, 0x0c, 0x00},
-    [';'] = {0x00, 0x0c, 0x0c, 0x00, 0x0c, 0x04, 0x08},  ['<'] = {0x02, 0x04, 0x08, 0x10, 0x08, 0x04, 0x02},
-    ['='] = {0x00, 0x00, 0x1f, 0x00, 0x1f, 0x00, 0x00},  ['>'] = {0x08, 0x04, 0x02, 0x01, 0x02, 0x04, 0x08},
-    ['?'] = {0x0e, 0x11, 0x01, 0x02, 0x04, 0x00, 0x04},  ['A'] = {0x0e, 0x11, 0x11, 0x1f, 0x11, 0x11, 0x11},
-    ['B'] = {0x1e, 0x11, 0x11, 0x1e, 0x11, 0x11, 0x1e},  ['C'] = {0x0e, 0x11, 0x10, 0x10, 0x10, 0x11, 0x0e},
-    ['D'] = {0x1e, 0x11, 0x11, 0x11, 0x11, 0x11, 0x1e},  ['E'] = {0x1f, 0x10, 0x10, 0x1e, 0x10, 0x10, 0x1f},
-    ['F'] = {0x1f, 0x10, 0x10, 0x1e, 0x10, 0x10, 0x10},  ['G'] = {0x0e, 0x11, 0x10, 0x17, 0x11, 0x11, 0x0e},
-    ['H'] = {0x11, 0x11, 0x11, 0x1f, 0x11, 0x11, 0x11},  ['I'] = {0x0e, 0x04, 0x04, 0x04, 0x04, 0x04, 0x0e},
-    ['J'] = {0x07, 0x02, 0x02, 0x02, 0x02, 0x12, 0x0c},  ['K'] = {0x11, 0x12, 0x14, 0x18, 0x14, 0x12, 0x11},
-    ['L'] = {0x10, 0x10, 0x10, 0x10, 0x10, 0x10, 0x1f},  ['M'] = {0x11, 0x1b, 0x15, 0x15, 0x11, 0x11, 0x11},
-    ['N'] = {0x11, 0x19, 0x19, 0x15, 0x13, 0x13, 0x11},  ['O'] = {0x0e, 0x11, 0x11, 0x11, 0x11, 0x11, 0x0e},
-    ['P'] = {0x1e, 0x11, 0x11, 0x1e, 0x10, 0x10, 0x10},  ['Q'] = {0x0e, 0x11, 0x11, 0x11, 0x15, 0x12, 0x0d},
-    ['R'] = {0x1e, 0x11, 0x11, 0x1e, 0x14, 0x12, 0x11},  ['S'] = {0x0f, 0x10, 0x10, 0x0e, 0x01, 0x01, 0x1e},
-    ['T'] = {0x1f, 0x04, 0x04, 0x04, 0x04, 0x04, 0x04},  ['U'] = {0x11, 0x11, 0x11, 0x11, 0x11, 0x11, 0x0e},
-    ['V'] = {0x11, 0x11, 0x11, 0x11, 0x11, 0x0a, 0x04},  ['W'] = {0x11, 0x11, 0x11, 0x15, 0x15, 0x1b, 0x11},
-    ['X'] = {0x11, 0x11, 0x0a, 0x04, 0x0a, 0x11, 0x11},  ['Y'] = {0x11, 0x11, 0x0a, 0x04, 0x04, 0x04, 0x04},
-    ['Z'] = {0x1f, 0x01, 0x02, 0x04, 0x08, 0x10, 0x1f},  ['['] = {0x0e, 0x08, 0x08, 0x08, 0x08, 0x08, 0x0e},
-    [']'] = {0x0e, 0x02, 0x02, 0x02, 0x02, 0x02, 0x0e},  ['_'] = {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x1f}};
+/* Seven rows from above, a byte each, in which the leftmost dot is 0x10. */
+static const uint64_t dots[128] = {
+    ['!'] = 0x04040404040004,  ['"'] = 0x0a0a0a00000000, ['#'] = 0x0a0a1f0a1f0a0a, ['%'] = 0x19190204081313,
+    ['\''] = 0x04040400000000, ['('] = 0x02040808080402, [')'] = 0x08040202020408, ['*'] = 0x00150e1f0e1500,
+    ['+'] = 0x0004041f040400,  [','] = 0x000000000c0408, ['-'] = 0x0000001f000000, ['.'] = 0x00000000000c0c,
+    ['/'] = 0x01010204081010,  ['0'] = 0x0e11131519110e, ['1'] = 0x040c040404040e, ['2'] = 0x0e11010204081f,
+    ['3'] = 0x0e11010601110e,  ['4'] = 0x02060a121f0202, ['5'] = 0x1f101e0101110e, ['6'] = 0x0e10101e11110e,
+    ['7'] = 0x1f010202040404,  ['8'] = 0x0e11110e11110e, ['9'] = 0x0e11110f01010e, [':'] = 0x000c0c000c0c00,
+    [';'] = 0x000c0c000c0408,  ['<'] = 0x02040810080402, ['='] = 0x00001f001f0000, ['>'] = 0x08040201020408,
+    ['?'] = 0x0e110102040004,  ['A'] = 0x0e11111f111111, ['B'] = 0x1e11111e11111e, ['C'] = 0x0e11101010110e,
+    ['D'] = 0x1e11111111111e,  ['E'] = 0x1f10101e10101f, ['F'] = 0x1f10101e101010, ['G'] = 0x0e11101711110e,
+    ['H'] = 0x1111111f111111,  ['I'] = 0x0e04040404040e, ['J'] = 0x0702020202120c, ['K'] = 0x11121418141211,
+    ['L'] = 0x1010101010101f,  ['M'] = 0x111b1515111111, ['N'] = 0x11191915131311, ['O'] = 0x0e11111111110e,
+    ['P'] = 0x1e11111e101010,  ['Q'] = 0x0e11111115120d, ['R'] = 0x1e11111e141211, ['S'] = 0x0f10100e01011e,
+    ['T'] = 0x1f040404040404,  ['U'] = 0x1111111111110e, ['V'] = 0x11111111110a04, ['W'] = 0x11111115151b11,
+    ['X'] = 0x11110a040a1111,  ['Y'] = 0x11110a04040404, ['Z'] = 0x1f01020408101f, ['['] = 0x0e08080808080e,
+    [']'] = 0x0e02020202020e,  ['_'] = 0x0000000000001f};
 
-static const uint8_t no_character[HIGH] = {0x1f, 0x11, 0x11, 0x11, 0x11, 0x11, 0x1f};
-
-static const uint8_t *dots_of(char character) {
+static uint64_t dots_of(char character) {
+    static const uint64_t box = 0x1f11111111111f;
     const int c = toupper((unsigned char)character);
-    static const uint8_t nothing[HIGH] = {0};
-    if (c == ' ') {
-        return nothing;
-    }
-    return c < 128 && memcmp(dots[c], nothing, sizeof nothing) != 0 ? dots[c] : no_character;
+    return c == ' ' ? 0 : c < 128 && dots[c] != 0 ? dots[c] : box;
+}
+
+static unsigned row_of(uint64_t left, unsigned row) {
+    return (unsigned)(left >> 8U * (HIGH - 1 - row)) & 0x1fU;
 }
 
 /* Bits `from` to before `to` of a row, counted from the left. */
@@ -89,24 +73,24 @@ typedef struct {
 
 /* The next rectangle of what is left of a character, which it is taken from: a row's run of dots, as far down
  * as there are the same ones. False if nothing is left. */
-static bool take_rectangle(uint8_t left[HIGH], rectangle_t *rectangle) {
+static bool take_rectangle(uint64_t *left, rectangle_t *rectangle) {
     unsigned row = 0, from = 0, below;
-    while (row < HIGH && left[row] == 0) {
+    while (row < HIGH && row_of(*left, row) == 0) {
         ++row;
     }
     if (row == HIGH) {
         return false;
     }
-    while ((left[row] & bits_between(from, from + 1)) == 0) {
+    while ((row_of(*left, row) & bits_between(from, from + 1)) == 0) {
         ++from;
     }
     unsigned to = from;
-    while (to < WIDE && (left[row] & bits_between(to, to + 1)) != 0) {
+    while (to < WIDE && (row_of(*left, row) & bits_between(to, to + 1)) != 0) {
         ++to;
     }
     const unsigned run = bits_between(from, to);
-    for (below = row; below < HIGH && (left[below] & run) == run; ++below) {
-        left[below] = (uint8_t)(left[below] & ~run);
+    for (below = row; below < HIGH && (row_of(*left, below) & run) == run; ++below) {
+        *left &= ~((uint64_t)run << 8U * (HIGH - 1 - below));
     }
     *rectangle = (rectangle_t){from, to, row, below};
     return true;
@@ -139,10 +123,9 @@ static void put_text(waferhand_viewer_link *body, const char *text, double dot) 
     float *points = shape->float_data + 2;
     size_t count = 0;
     for (size_t column = 0; text[column] != '\0'; ++column) {
-        uint8_t left[HIGH];
+        uint64_t left = dots_of(text[column]);
         rectangle_t rectangle;
-        memcpy(left, dots_of(text[column]), sizeof left);
-        while (count < WH_VIEW_RECTANGLES && take_rectangle(left, &rectangle)) {
+        while (count < WH_VIEW_RECTANGLES && take_rectangle(&left, &rectangle)) {
             rectangle.left += (double)(column * ADVANCE);
             rectangle.right += (double)(column * ADVANCE);
             put_rectangle(points, count++, &rectangle, dot);
@@ -171,31 +154,28 @@ static void copy_line(const char *text, size_t most, char line[WH_VIEW_COLUMNS +
 /* ----------------------------------------------------------------------------------------------- bodies */
 
 enum { BACK, UNIT, FIRST_LINE, FIRST_SEGMENT = FIRST_LINE + WH_VIEW_LINES };
+enum { BODIES = FIRST_SEGMENT + WH_VIEW_DIGITS * WH_VIEW_SEGMENTS };
 
 static void set_colour(waferhand_viewer_geometry *shape, uint32_t hex, float opacity) {
-    for (unsigned c = 0; c < 3; ++c) {
-        shape->color[c] = (float)(hex >> (16U - 8U * c) & 0xffU) / 255;
-    }
-    shape->color[3] = opacity;
+    const wh_view_colour_t colour = wh_view_colour(hex, opacity);
+    memcpy(shape->color, colour.rgba, sizeof shape->color);
 }
 
 /* A box with its middle at a place on the board, in mm. */
 static void make_box(waferhand_viewer_geometry *shape, const wh_vec3_t *half, const wh_vec3_t *middle) {
-    const wh_view_colour_t white = {{1, 1, 1, 1}};
+    const wh_view_colour_t colour = wh_view_colour(wh_ink_stage.light, 1);
     const wh_convex_t box = {.kind = WH_CONVEX_BOX, .half = *half};
     wh_pose_t place = wh_pose_identity();
     place.r = *middle;
-    wh_view_geometry_make(&box, &place, &white, false, shape);
-    set_colour(shape, wh_ink_stage.light, 1);
+    wh_view_geometry_make(&box, &place, &colour, false, shape);
 }
 
+/* Room for a text, which begins at a place on the board. */
 static void make_text(waferhand_viewer_geometry *shape, double left, double top) {
     const wh_vec3_t here = {0, 0, 0};
-    wh_pose_t place = wh_pose_identity();
-    place.r = wh_vec3(left, top, THICK / 2);
-    make_box(shape, &here, &here);
+    const wh_vec3_t place = {left, top, THICK / 2};
+    make_box(shape, &here, &place);
     wh_view_geometry_free(shape);
-    wh_view_put_pose(&place, shape->position, shape->quaternion);
     shape->type = WH_VIEW_TRIANGLES;
     shape->float_data = wh_array_new(2 + WH_VIEW_RECTANGLES * (size_t)NUMBERS, sizeof(float));
 }
@@ -218,31 +198,22 @@ static double top_of(int line) {
     return board_height - MARGIN - line * LINE;
 }
 
-static void name_bodies(wh_view_board_t *board) {
-    static const char *const names[FIRST_SEGMENT] = {"board::back", "board::s", "board::command",
-                                                     "board::hit", "board::with"};
-    for (size_t i = 0; i < WH_VIEW_BOARD_BODIES; ++i) {
+/* Adds the bodies, each with a shape that is to be made. */
+static void add_bodies(wh_view_board_t *board) {
+    static const char *const names[FIRST_SEGMENT] = {"back", "s", "command", "hit", "with"};
+    for (size_t i = 0; i < BODIES; ++i) {
         const size_t segment = i < FIRST_SEGMENT ? 0 : i - FIRST_SEGMENT;
-        if (i < FIRST_SEGMENT) {
-            (void)snprintf(board->names[i], sizeof board->names[i], "%s", names[i]);
-        } else {
-            (void)snprintf(board->names[i], sizeof board->names[i], "board::time %zu%c",
-                           segment / WH_VIEW_SEGMENTS + 1, "abcdefg"[segment % WH_VIEW_SEGMENTS]);
-        }
-        board->name_list[i] = board->names[i];
-        board->bodies[i].name = board->names[i];
-        board->bodies[i].geom = &board->shapes[i];
-        board->bodies[i].num_geom = 1;
-        board->positions[i] = board->places[i];
-        board->quaternions[i] = board->places[i] + 3;
+        char time[16];
+        (void)snprintf(time, sizeof time, "time %zu%c", segment / WH_VIEW_SEGMENTS + 1,
+                       "abcdefg"[segment % WH_VIEW_SEGMENTS]);
+        (void)wh_view_bodies_add(&board->bodies, "board", i < FIRST_SEGMENT ? names[i] : time);
+        (void)wh_view_bodies_add_shape(&board->bodies);
     }
-    board->load.num_links = WH_VIEW_BOARD_BODIES;
-    board->load.link = board->bodies;
-    board->draw = (waferhand_viewer_draw){.num_links = WH_VIEW_BOARD_BODIES,
-                                          .link_name = board->name_list,
-                                          .robot_num = board->robots,
-                                          .position = board->positions,
-                                          .quaternion = board->quaternions};
+    wh_view_bodies_open(&board->bodies);
+}
+
+static waferhand_viewer_geometry *shape_of(const wh_view_board_t *board, size_t body) {
+    return board->bodies.load.link[body].geom;
 }
 
 static void make_shapes(wh_view_board_t *board) {
@@ -250,20 +221,21 @@ static void make_shapes(wh_view_board_t *board) {
     const double dot = board->dot;
     const wh_vec3_t half = wh_vec3(board_width / 2 * dot, board_height / 2 * dot, THICK / 2);
     const wh_vec3_t middle = wh_vec3(half.x, half.y, -THICK / 2);
-    make_box(&board->shapes[BACK], &half, &middle);
-    set_colour(&board->shapes[BACK], wh_ink_stage.dark, 0.85F);
+    make_box(shape_of(board, BACK), &half, &middle);
+    set_colour(shape_of(board, BACK), wh_ink_stage.dark, 0.85F);
     /* The point stands between the last two digits, its dots in the middle of its place. */
-    make_text(&board->shapes[UNIT], (MARGIN + (WH_VIEW_DIGITS - 1) * DIGIT - 2.5) * dot, top_of(0) * dot);
-    put_text(&board->bodies[UNIT], ". s", dot);
+    make_text(shape_of(board, UNIT), (MARGIN + (WH_VIEW_DIGITS - 1) * DIGIT - 2.5) * dot, top_of(0) * dot);
+    put_text(&board->bodies.load.link[UNIT], ". s", dot);
     for (int line = 0; line < WH_VIEW_LINES; ++line) {
         const int column = line == WH_VIEW_COMMAND ? COMMAND_COLUMN : 0;
-        make_text(&board->shapes[FIRST_LINE + line], (MARGIN + column * ADVANCE) * dot, top_of(line) * dot);
-        put_text(&board->bodies[FIRST_LINE + line], "", dot);
+        make_text(shape_of(board, FIRST_LINE + (size_t)line), (MARGIN + column * ADVANCE) * dot,
+                  top_of(line) * dot);
+        put_text(&board->bodies.load.link[FIRST_LINE + line], "", dot);
     }
-    set_colour(&board->shapes[FIRST_LINE + WH_VIEW_HIT], red, 1);
-    set_colour(&board->shapes[FIRST_LINE + WH_VIEW_HIT_WITH], red, 1);
-    for (size_t i = FIRST_SEGMENT; i < WH_VIEW_BOARD_BODIES; ++i) {
-        make_segment(&board->shapes[i], (i - FIRST_SEGMENT) % WH_VIEW_SEGMENTS, dot);
+    set_colour(shape_of(board, FIRST_LINE + WH_VIEW_HIT), red, 1);
+    set_colour(shape_of(board, FIRST_LINE + WH_VIEW_HIT_WITH), red, 1);
+    for (size_t i = FIRST_SEGMENT; i < BODIES; ++i) {
+        make_segment(shape_of(board, i), (i - FIRST_SEGMENT) % WH_VIEW_SEGMENTS, dot);
     }
 }
 
@@ -337,19 +309,19 @@ static void place_board(wh_view_board_t *board, const wh_layout_t *layout) {
 void wh_view_board_open(wh_view_board_t *board, const wh_layout_t *layout) {
     memset(board, 0, sizeof *board);
     place_board(board, layout);
-    name_bodies(board);
+    add_bodies(board);
     make_shapes(board);
-    for (size_t i = 0; i < WH_VIEW_BOARD_BODIES; ++i) {
-        wh_view_put_pose(&board->base_from_board, board->positions[i], board->quaternions[i]);
+    for (size_t i = 0; i < BODIES; ++i) {
+        wh_view_bodies_place(&board->bodies, i, &board->base_from_board);
     }
     board->tenths = -1;
     (void)wh_view_board_set_time(board, 0);
 }
 
 int wh_view_board_room(const wh_view_board_t *board) {
-    const int shape = waferhand_viewer_geometry_encoded_size(&board->shapes[UNIT]);
+    const int shape = waferhand_viewer_geometry_encoded_size(shape_of(board, UNIT));
     const int most = (int)((2 + WH_VIEW_RECTANGLES * NUMBERS) * sizeof(float));
-    return waferhand_viewer_load_encoded_size(&board->load) + WH_VIEW_LINES * (shape + most);
+    return waferhand_viewer_load_encoded_size(&board->bodies.load) + WH_VIEW_LINES * (shape + most);
 }
 
 bool wh_view_board_write(wh_view_board_t *board, wh_view_line_t line, const char *text) {
@@ -359,7 +331,7 @@ bool wh_view_board_write(wh_view_board_t *board, wh_view_line_t line, const char
         return false;
     }
     memcpy(board->lines[line], written, sizeof written);
-    put_text(&board->bodies[FIRST_LINE + (int)line], written, board->dot);
+    put_text(&board->bodies.load.link[FIRST_LINE + (int)line], written, board->dot);
     return true;
 }
 
@@ -378,15 +350,14 @@ static void show_digit(wh_view_board_t *board, size_t place, size_t digit) {
     away.r.z = -WH_VIEW_AWAY;
     for (size_t s = 0; s < WH_VIEW_SEGMENTS; ++s) {
         const size_t body = FIRST_SEGMENT + place * WH_VIEW_SEGMENTS + s;
-        wh_view_put_pose(segments[digit] >> s & 1U ? &shown : &away, board->positions[body],
-                         board->quaternions[body]);
+        wh_view_bodies_place(&board->bodies, body, segments[digit] >> s & 1U ? &shown : &away);
     }
 }
 
 bool wh_view_board_set_time(wh_view_board_t *board, int64_t utime) {
     const int64_t shown = utime / 100000 % 1000000; /* as many as the digits show */
     int64_t tenths = shown;
-    board->draw.timestamp = utime / 1000;
+    board->bodies.draw.timestamp = utime / 1000;
     if (shown == board->tenths) {
         return false;
     }
@@ -399,8 +370,9 @@ bool wh_view_board_set_time(wh_view_board_t *board, int64_t utime) {
 }
 
 void wh_view_board_free(wh_view_board_t *board) {
-    for (size_t i = 0; i < WH_VIEW_BOARD_BODIES; ++i) {
-        wh_view_geometry_free(&board->shapes[i]);
+    for (int32_t i = 0; i < board->bodies.load.num_links; ++i) {
+        board->bodies.load.link[i].num_geom = 1; /* a line without text has not shown its own */
     }
+    wh_view_bodies_free(&board->bodies);
     memset(board, 0, sizeof *board);
 }

@@ -10,10 +10,8 @@
 #ifndef WH_VIEW_BOARD_H
 #define WH_VIEW_BOARD_H
 
-#include <waferhand_viewer_draw.h>
-#include <waferhand_viewer_load.h>
-
 #include "../layout/layout.h"
+#include "geometry.h"
 
 /* Characters across the board, and digits of the time, the last of them tenths of a second. */
 #define WH_VIEW_COLUMNS 30
@@ -26,24 +24,13 @@ typedef enum { WH_VIEW_COMMAND, WH_VIEW_HIT, WH_VIEW_HIT_WITH, WH_VIEW_LINES } w
 /* Rectangles of a line: a text that needs more is cut off. */
 #define WH_VIEW_RECTANGLES 300
 
-/* The back, the unit of time, the lines, the segments. */
-#define WH_VIEW_BOARD_BODIES (2 + WH_VIEW_LINES + WH_VIEW_DIGITS * WH_VIEW_SEGMENTS)
-
-/* Must not be moved once opened: the messages point into it. */
+/* The bodies: the back, the unit of time, the lines, the segments. */
 typedef struct {
-    waferhand_viewer_load load;
-    waferhand_viewer_draw draw;
+    wh_view_bodies_t bodies;
     wh_pose_t base_from_board; /* x to the right, y up, z to whom looks */
     double dot;                /* mm */
     int64_t tenths;            /* of a second: what the digits show */
     char lines[WH_VIEW_LINES][WH_VIEW_COLUMNS + 1];
-    waferhand_viewer_link bodies[WH_VIEW_BOARD_BODIES];
-    waferhand_viewer_geometry shapes[WH_VIEW_BOARD_BODIES];
-    char names[WH_VIEW_BOARD_BODIES][16];
-    char *name_list[WH_VIEW_BOARD_BODIES];
-    int32_t robots[WH_VIEW_BOARD_BODIES];
-    float places[WH_VIEW_BOARD_BODIES][7]; /* position, quaternion */
-    float *positions[WH_VIEW_BOARD_BODIES], *quaternions[WH_VIEW_BOARD_BODIES];
 } wh_view_board_t;
 
 /* Where one who looks at the cell stands, from the cell's middle, in base: of any length. */

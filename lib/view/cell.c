@@ -1,6 +1,5 @@
 #include "cell.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,8 +7,6 @@
 #include "../layout/inks.h"
 #include "../math/trig.h"
 #include "../text/array.h"
-#include "../text/utf8.h"
-#include "geometry.h"
 
 /* How far a cover and a notch's mark stand out of the wafer, mm. */
 #define COVER 0.25
@@ -19,22 +16,13 @@
  * long. */
 #define MARK_WIDTH 0.02
 
-/* Room for a written name: each byte becomes three at most. */
-#define WRITTEN_SIZE (3 * WH_NAME_SIZE)
-
 /* How far a held wafer's colour goes from its gripper's to the page's behind it. */
 #define PALER 0.42F
 
 /* ---------- colours * Those of the report's page, in light, but less transparent: there are no edges here */
 
-static wh_view_colour_t colour_of(uint32_t hex, float opacity) {
-    const wh_view_colour_t colour = {{(float)(hex >> 16 & 0xffU) / 255, (float)(hex >> 8 & 0xffU) / 255,
-                                      (float)(hex & 0xffU) / 255, opacity}};
-    return colour;
-}
-
 static wh_view_colour_t colour_of_gripper(size_t gripper) {
-    return colour_of(wh_ink_series[gripper % WH_INK_SERIES].light, 1);
+    return wh_view_colour(wh_ink_series[gripper % WH_INK_SERIES].light, 1);
 }
 
 /* Blades and chucks have their gripper's colour. Obstacles and shells are transparent. */
@@ -44,12 +32,12 @@ static wh_view_colour_t colour_of_part(const wh_part_t *part) {
     if (ink == WH_INK_BLADE || ink == WH_INK_CHUCK) {
         return colour_of_gripper((size_t)part->owner);
     }
-    return colour_of(wh_ink_looks[ink].shown.light, opacities[ink]);
+    return wh_view_colour(wh_ink_looks[ink].shown.light, opacities[ink]);
 }
 
 /* The colour of a held wafer: paler than its gripper's. */
 static wh_view_colour_t colour_of_held(size_t gripper) {
-    const wh_view_colour_t page = colour_of(wh_ink_stage.light, 1);
+    const wh_view_colour_t page = wh_view_colour(wh_ink_stage.light, 1);
     wh_view_colour_t colour = colour_of_gripper(gripper);
     for (size_t c = 0; c < 3; ++c) {
         colour.rgba[c] += PALER * (page.rgba[c] - colour.rgba[c]);
@@ -59,68 +47,19 @@ static wh_view_colour_t colour_of_held(size_t gripper) {
 
 /* ----------------------------------------------------------------------------------------------- bodies */
 
-/* The length of the character at `text` if it may stay as it is; 0 if the viewer would take it for part of a
- * path, or could not read it. */
-static size_t plain_bytes(const char *text) {
-    const unsigned char first = (unsigned char)*text;
-    if (first < ' ' || first == 0x7f || first == '/' || first == ':' || first == '%') {
-        return 0;
-    }
-    return wh_utf8_bytes(text);
-}
-
-/* Writes other characters as %2F and the like. '%' is one of them, so two names never become the same. */
-static void write_name(const char *name, char *written) {
-    static const char digits[] = "0123456789ABCDEF";
-    while (*name != '\0') {
-        const size_t plain = plain_bytes(name);
-        const char coded[3] = {'%', digits[(unsigned char)*name >> 4U], digits[(unsigned char)*name & 15U]};
-        const size_t size = plain > 0 ? plain : sizeof coded;
-        memcpy(written, plain > 0 ? name : coded, size);
-        written += size;
-        name += plain > 0 ? plain : 1;
-    }
-    *written = '\0';
-}
-
-static char *path_of(const char *folder, const char *name) {
-    char written[WRITTEN_SIZE] = "";
-    if (name) {
-        write_name(name, written);
-    }
-    char *path = NULL;
-    if (asprintf(&path, "%s%s%s", folder, name ? "::" : "", written) < 0) {
-        wh_memory_out();
-    }
-    return path;
-}
-
-/* Adds a body without shapes, at base, and returns its index. With a null `name` it has the folder's. */
-static size_t add_body(wh_view_cell_t *cell, const char *folder, const char *name) {
-    const waferhand_viewer_link body = {.name = path_of(folder, name)};
-    cell->load.link =
-        wh_array_grow(cell->load.link, (size_t)cell->load.num_links, &cell->capacity, sizeof body);
-    cell->load.link[cell->load.num_links] = body;
-    return (size_t)cell->load.num_links++;
-}
-
 /* Adds a shape to the body that was added last. */
 static void add_shape(wh_view_cell_t *cell, const wh_convex_t *convex, const wh_pose_t *body_from_shape,
                       const wh_view_colour_t *colour) {
-    waferhand_viewer_link *body = &cell->load.link[cell->load.num_links - 1];
-    /* The message's type has no place for a capacity: the array counts as full. */
-    size_t capacity = (size_t)body->num_geom;
-    body->geom = wh_array_grow(body->geom, capacity, &capacity, sizeof *body->geom);
     wh_view_geometry_make(convex, body_from_shape, colour, cell->detail >= WH_VIEW_BOXES,
-                          &body->geom[body->num_geom++]);
+                          wh_view_bodies_add_shape(&cell->bodies));
 }
 
 /* ------------------------------------------------------------------------------------------------ parts */
 
 /* Notes that the next shape of the last body is this part. */
 static void note_shape(wh_view_cell_t *cell, size_t part) {
-    cell->shown[part][0] = cell->load.num_links - 1;
-    cell->shown[part][1] = cell->load.link[cell->load.num_links - 1].num_geom;
+    cell->shown[part][0] = cell->bodies.load.num_links - 1;
+    cell->shown[part][1] = cell->bodies.load.link[cell->bodies.load.num_links - 1].num_geom;
 }
 
 static void open_shown(wh_view_cell_t *cell) {
@@ -148,15 +87,10 @@ static void add_parts(wh_view_cell_t *cell, uint32_t kinds, int32_t owner, const
     }
 }
 
-static void add_obstacles(wh_view_cell_t *cell) {
-    (void)add_body(cell, "obstacles", NULL);
-    add_parts(cell, 1U << WH_PART_FIXED, WH_NONE, NULL);
-}
-
 /* Body 0 is the obstacles; station s is body 1 + s. */
 static void add_stations(wh_view_cell_t *cell) {
     for (size_t s = 0; s < cell->layout->station_count; ++s) {
-        (void)add_body(cell, "stations", cell->layout->stations[s].name);
+        (void)wh_view_bodies_add(&cell->bodies, "stations", cell->layout->stations[s].name);
         add_parts(cell, 1U << WH_PART_FIXED | 1U << WH_PART_LEDGE, (int32_t)s,
                   &cell->layout->places[s].base_from_station);
     }
@@ -164,17 +98,17 @@ static void add_stations(wh_view_cell_t *cell) {
 
 static void add_robot(wh_view_cell_t *cell) {
     static const char *const names[WH_ARM_BODIES] = {"base", "lift", "upper arm", "forearm", "hand"};
-    cell->links = (size_t)cell->load.num_links;
+    cell->links = (size_t)cell->bodies.load.num_links;
     for (int32_t i = 0; i < WH_ARM_BODIES; ++i) {
-        (void)add_body(cell, "robot", names[i]);
+        (void)wh_view_bodies_add(&cell->bodies, "robot", names[i]);
         add_parts(cell, 1U << WH_PART_ARM, i, NULL);
     }
 }
 
 static void add_grippers(wh_view_cell_t *cell) {
-    cell->grippers = (size_t)cell->load.num_links;
+    cell->grippers = (size_t)cell->bodies.load.num_links;
     for (size_t g = 0; g < cell->layout->machine.gripper_count; ++g) {
-        (void)add_body(cell, "grippers", cell->layout->grippers[g].name);
+        (void)wh_view_bodies_add(&cell->bodies, "grippers", cell->layout->grippers[g].name);
         add_parts(cell, 1U << WH_PART_BLADE | 1U << WH_PART_CHUCK, (int32_t)g, NULL);
     }
 }
@@ -190,7 +124,7 @@ static void add_disc(wh_view_cell_t *cell, double larger, const wh_view_colour_t
 
 static void add_mark(wh_view_cell_t *cell) {
     const wh_convex_t disc = wh_shapes_wafer(&cell->layout->shapes);
-    const wh_view_colour_t colour = colour_of(wh_ink_edge.light, 1);
+    const wh_view_colour_t colour = wh_view_colour(wh_ink_edge.light, 1);
     const double width = MARK_WIDTH * disc.half.x;
     wh_convex_t mark = {.kind = WH_CONVEX_BOX, .body_from_shape = disc.body_from_shape};
     double sine, cosine;
@@ -207,19 +141,19 @@ static void add_mark(wh_view_cell_t *cell) {
 }
 
 static void add_covers(wh_view_cell_t *cell) {
-    cell->covers = (size_t)cell->load.num_links;
+    cell->covers = (size_t)cell->bodies.load.num_links;
     for (size_t g = 0; g < cell->layout->machine.gripper_count; ++g) {
         const wh_view_colour_t colour = colour_of_held(g);
-        (void)add_body(cell, "held", cell->layout->grippers[g].name);
+        (void)wh_view_bodies_add(&cell->bodies, "held", cell->layout->grippers[g].name);
         add_disc(cell, COVER, &colour);
     }
 }
 
 static void add_wafers(wh_view_cell_t *cell) {
-    const wh_view_colour_t colour = colour_of(wh_ink_looks[WH_INK_WAFER].shown.light, 1);
-    cell->wafers = (size_t)cell->load.num_links;
+    const wh_view_colour_t colour = wh_view_colour(wh_ink_looks[WH_INK_WAFER].shown.light, 1);
+    cell->wafers = (size_t)cell->bodies.load.num_links;
     for (size_t w = 0; w < cell->layout->wafer_count; ++w) {
-        (void)add_body(cell, "wafers", cell->layout->wafers[w].name);
+        (void)wh_view_bodies_add(&cell->bodies, "wafers", cell->layout->wafers[w].name);
         note_shape(cell, cell->layout->world.part_count + w);
         add_disc(cell, 0, &colour);
         add_mark(cell);
@@ -228,29 +162,6 @@ static void add_wafers(wh_view_cell_t *cell) {
 
 /* ----------------------------------------------------------------------------------------------- places */
 
-static void place(wh_view_cell_t *cell, size_t body, const wh_pose_t *base_from_body) {
-    wh_view_put_pose(base_from_body, cell->draw.position[body], cell->draw.quaternion[body]);
-}
-
-/* Makes `draw` of the bodies, once all are there. */
-static void open_draw(wh_view_cell_t *cell) {
-    const size_t count = (size_t)cell->load.num_links;
-    const wh_pose_t here = wh_pose_identity();
-    waferhand_viewer_draw *draw = &cell->draw;
-    draw->num_links = cell->load.num_links;
-    draw->link_name = wh_array_new(count, sizeof *draw->link_name);
-    draw->robot_num = wh_array_new(count, sizeof *draw->robot_num);
-    draw->position = wh_array_new(count, sizeof *draw->position);
-    draw->quaternion = wh_array_new(count, sizeof *draw->quaternion);
-    cell->places = wh_array_new(count, sizeof *cell->places);
-    for (size_t i = 0; i < count; ++i) {
-        draw->link_name[i] = cell->load.link[i].name;
-        draw->position[i] = cell->places[i];
-        draw->quaternion[i] = cell->places[i] + 3;
-        place(cell, i, &here);
-    }
-}
-
 /* A gripper on the robot tells where the arm is; without one the arm stays at home. */
 static void place_robot(wh_view_cell_t *cell, const wh_pose_t base_from_grippers[]) {
     const wh_layout_t *layout = cell->layout;
@@ -258,10 +169,10 @@ static void place_robot(wh_view_cell_t *cell, const wh_pose_t base_from_grippers
     (void)wh_collision_effector(&layout->machine, base_from_grippers, &cell->base_from_effector);
     wh_arm_place(&layout->shapes.arm, &cell->base_from_effector, bodies);
     for (size_t i = 0; i < WH_ARM_BODIES; ++i) {
-        place(cell, cell->links + i, &bodies[i]);
+        wh_view_bodies_place(&cell->bodies, cell->links + i, &bodies[i]);
     }
     for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
-        place(cell, cell->grippers + g, &base_from_grippers[g]);
+        wh_view_bodies_place(&cell->bodies, cell->grippers + g, &base_from_grippers[g]);
     }
 }
 
@@ -270,20 +181,21 @@ static void place_wafers(wh_view_cell_t *cell, const wh_wafer_t wafers[], bool m
     wh_pose_t away = wh_pose_identity();
     away.r.z = -WH_VIEW_AWAY;
     for (size_t g = 0; g < cell->layout->machine.gripper_count; ++g) {
-        place(cell, cell->covers + g, &away);
+        wh_view_bodies_place(&cell->bodies, cell->covers + g, &away);
     }
     for (size_t w = 0; w < cell->layout->wafer_count; ++w) {
-        place(cell, cell->wafers + w, &wafers[w].base_from_wafer);
+        wh_view_bodies_place(&cell->bodies, cell->wafers + w, &wafers[w].base_from_wafer);
         const int32_t part = (int32_t)(cell->layout->world.part_count + w);
         const bool is_red = part == cell->hit[0] || part == cell->hit[1];
         if (may_be_held && wafers[w].holder != WH_NONE && !is_red) {
-            place(cell, cell->covers + (size_t)wafers[w].holder, &wafers[w].base_from_wafer);
+            wh_view_bodies_place(&cell->bodies, cell->covers + (size_t)wafers[w].holder,
+                                 &wafers[w].base_from_wafer);
         }
     }
 }
 
 void wh_view_cell_move(wh_view_cell_t *cell, const wh_view_look_t *look) {
-    cell->draw.timestamp = look->utime / 1000;
+    cell->bodies.draw.timestamp = look->utime / 1000;
     place_robot(cell, look->base_from_grippers);
     place_wafers(cell, look->wafers, true);
 }
@@ -295,7 +207,7 @@ void wh_view_cell_rest(wh_view_cell_t *cell) {
     memcpy(axes, layout->machine.robot.home, sizeof layout->machine.robot.home);
     wh_robot_forward(axes, &cell->base_from_effector);
     wh_machine_grippers(&layout->machine, axes, base_from_grippers);
-    cell->draw.timestamp = 0;
+    cell->bodies.draw.timestamp = 0;
     place_robot(cell, base_from_grippers);
     place_wafers(cell, layout->start, false);
 }
@@ -305,15 +217,16 @@ void wh_view_cell_open(wh_view_cell_t *cell, const wh_layout_t *layout, wh_view_
     cell->layout = layout;
     cell->detail = detail;
     open_shown(cell);
-    add_obstacles(cell);
+    (void)wh_view_bodies_add(&cell->bodies, "obstacles", NULL);
+    add_parts(cell, 1U << WH_PART_FIXED, WH_NONE, NULL);
     add_stations(cell);
     add_robot(cell);
     add_grippers(cell);
     add_covers(cell);
     add_wafers(cell);
-    open_draw(cell);
+    wh_view_bodies_open(&cell->bodies);
     for (size_t s = 0; s < layout->station_count; ++s) {
-        place(cell, 1 + s, &layout->places[s].base_from_station);
+        wh_view_bodies_place(&cell->bodies, 1 + s, &layout->places[s].base_from_station);
     }
     wh_view_cell_rest(cell);
 }
@@ -326,11 +239,11 @@ static float *colour_at(const wh_view_cell_t *cell, int32_t part) {
     if (part < 0 || (size_t)part >= count || cell->shown[part][0] == WH_NONE) {
         return NULL;
     }
-    return cell->load.link[cell->shown[part][0]].geom[cell->shown[part][1]].color;
+    return cell->bodies.load.link[cell->shown[part][0]].geom[cell->shown[part][1]].color;
 }
 
 bool wh_view_cell_set_hit(wh_view_cell_t *cell, const int32_t parts[2]) {
-    const wh_view_colour_t red = colour_of(0xe5001f, 1);
+    const wh_view_colour_t red = wh_view_colour(0xe5001f, 1);
     if (memcmp(cell->hit, parts, sizeof cell->hit) == 0) {
         return false;
     }
@@ -351,24 +264,8 @@ bool wh_view_cell_set_hit(wh_view_cell_t *cell, const int32_t parts[2]) {
     return true;
 }
 
-static void free_body(waferhand_viewer_link *body) {
-    for (int32_t i = 0; i < body->num_geom; ++i) {
-        wh_view_geometry_free(&body->geom[i]);
-    }
-    free(body->geom);
-    free(body->name);
-}
-
 void wh_view_cell_free(wh_view_cell_t *cell) {
-    for (int32_t i = 0; i < cell->load.num_links; ++i) {
-        free_body(&cell->load.link[i]);
-    }
-    free(cell->load.link);
-    free(cell->draw.link_name);
-    free(cell->draw.robot_num);
-    free(cell->draw.position);
-    free(cell->draw.quaternion);
-    free(cell->places);
+    wh_view_bodies_free(&cell->bodies);
     free(cell->shown);
     memset(cell, 0, sizeof *cell);
 }

@@ -1,8 +1,7 @@
 /* A cell as Drake's viewer takes it: bodies in one message (LOAD), where they are in another (DRAW).
  *
  * Bodies have a folder before their name, which the viewer shows as a tree: "robot::forearm", "stations::A",
- * "grippers::EE", "held::EE", "wafers::Wafer 1", "obstacles". A name's '/', ':', '%' and what is no printable
- * UTF-8 become %2F and the like, for the viewer's own paths are made of the first two.
+ * "grippers::EE", "held::EE", "wafers::Wafer 1", "obstacles".
  *
  * A body's colour is part of LOAD, and a LOAD that differs from the last makes the viewer begin anew. So a
  * wafer that is held gets its gripper's colour by a cover, "held::EE", a quarter of a millimetre larger all
@@ -14,10 +13,8 @@
 #ifndef WH_VIEW_CELL_H
 #define WH_VIEW_CELL_H
 
-#include <waferhand_viewer_draw.h>
-#include <waferhand_viewer_load.h>
-
 #include "../layout/layout.h"
+#include "geometry.h"
 
 /* mm: beyond what the viewer's camera sees. */
 #define WH_VIEW_AWAY 1e6
@@ -25,16 +22,12 @@
 /* What to leave out of a cell that is too large for a message. */
 typedef enum { WH_VIEW_ALL, WH_VIEW_NO_LEDGES, WH_VIEW_BOXES, WH_VIEW_DETAILS } wh_view_detail_t;
 
-/* `load` and `draw` are in the order of their bodies, the same in both: `links` is the index of the arm's
- * first link, and so on. Must not be moved once opened: `draw` points into it. */
+/* `links` is the index of the arm's first link among the bodies, and so on. */
 typedef struct {
     const wh_layout_t *layout; /* borrowed */
     wh_view_detail_t detail;
-    waferhand_viewer_load load;
-    waferhand_viewer_draw draw;
-    size_t capacity;
+    wh_view_bodies_t bodies;
     size_t links, grippers, covers, wafers;
-    float (*places)[7]; /* of each body: position, quaternion */
     /* Of each part of the collision world, wafers included: its body, or WH_NONE, and its shape there. */
     int32_t (*shown)[2];
     int32_t hit[2];    /* the parts that are red, or WH_NONE */

@@ -1,14 +1,25 @@
 #include "geometry.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "../layout/layout.h"
 #include "../link/messages.h"
 #include "../record/quaternion.h"
 #include "../text/array.h"
+#include "../text/utf8.h"
 #include "mesh.h"
 
 #define M_PER_MM 1e-3
+
+/* Room for a written name: each byte becomes three at most. */
+#define WRITTEN_SIZE (3 * WH_NAME_SIZE)
+
+wh_view_colour_t wh_view_colour(uint32_t hex, float opacity) {
+    return (wh_view_colour_t){{(float)(hex >> 16 & 0xffU) / 255, (float)(hex >> 8 & 0xffU) / 255,
+                               (float)(hex & 0xffU) / 255, opacity}};
+}
 
 void wh_view_put_pose(const wh_pose_t *pose, float position[3], float quaternion[4]) {
     double q[4];
@@ -135,4 +146,96 @@ void wh_view_geometry_make(const wh_convex_t *convex, const wh_pose_t *body_from
 void wh_view_geometry_free(waferhand_viewer_geometry *geometry) {
     free(geometry->float_data);
     geometry->float_data = NULL;
+}
+
+/* ----------------------------------------------------------------------------------------------- bodies */
+
+/* The length of the character at `text` if it may stay as it is; 0 if the viewer would take it for part of a
+ * path, or could not read it. */
+static size_t plain_bytes(const char *text) {
+    const unsigned char first = (unsigned char)*text;
+    if (first < ' ' || first == 0x7f || first == '/' || first == ':' || first == '%') {
+        return 0;
+    }
+    return wh_utf8_bytes(text);
+}
+
+/* Writes other characters as %2F and the like. '%' is one of them, so two names never become the same. */
+static void write_name(const char *name, char *written) {
+    static const char digits[] = "0123456789ABCDEF";
+    while (*name != '\0') {
+        const size_t plain = plain_bytes(name);
+        const char coded[3] = {'%', digits[(unsigned char)*name >> 4U], digits[(unsigned char)*name & 15U]};
+        const size_t size = plain > 0 ? plain : sizeof coded;
+        memcpy(written, plain > 0 ? name : coded, size);
+        written += size;
+        name += plain > 0 ? plain : 1;
+    }
+    *written = '\0';
+}
+
+static char *path_of(const char *folder, const char *name) {
+    char written[WRITTEN_SIZE] = "";
+    if (name) {
+        write_name(name, written);
+    }
+    char *path = NULL;
+    if (asprintf(&path, "%s%s%s", folder, name ? "::" : "", written) < 0) {
+        wh_memory_out();
+    }
+    return path;
+}
+
+size_t wh_view_bodies_add(wh_view_bodies_t *bodies, const char *folder, const char *name) {
+    waferhand_viewer_load *load = &bodies->load;
+    load->link = wh_array_grow(load->link, (size_t)load->num_links, &bodies->capacity, sizeof *load->link);
+    load->link[load->num_links] = (waferhand_viewer_link){.name = path_of(folder, name)};
+    return (size_t)load->num_links++;
+}
+
+waferhand_viewer_geometry *wh_view_bodies_add_shape(wh_view_bodies_t *bodies) {
+    waferhand_viewer_link *body = &bodies->load.link[bodies->load.num_links - 1];
+    /* The message's type has no place for a capacity: the array counts as full. */
+    size_t capacity = (size_t)body->num_geom;
+    body->geom = wh_array_grow(body->geom, capacity, &capacity, sizeof *body->geom);
+    return memset(&body->geom[body->num_geom++], 0, sizeof *body->geom);
+}
+
+void wh_view_bodies_place(wh_view_bodies_t *bodies, size_t body, const wh_pose_t *base_from_body) {
+    wh_view_put_pose(base_from_body, bodies->draw.position[body], bodies->draw.quaternion[body]);
+}
+
+void wh_view_bodies_open(wh_view_bodies_t *bodies) {
+    const size_t count = (size_t)bodies->load.num_links;
+    const wh_pose_t here = wh_pose_identity();
+    waferhand_viewer_draw *draw = &bodies->draw;
+    draw->num_links = bodies->load.num_links;
+    draw->link_name = wh_array_new(count, sizeof *draw->link_name);
+    draw->robot_num = wh_array_new(count, sizeof *draw->robot_num);
+    draw->position = wh_array_new(count, sizeof *draw->position);
+    draw->quaternion = wh_array_new(count, sizeof *draw->quaternion);
+    bodies->places = wh_array_new(count, sizeof *bodies->places);
+    for (size_t i = 0; i < count; ++i) {
+        draw->link_name[i] = bodies->load.link[i].name;
+        draw->position[i] = bodies->places[i];
+        draw->quaternion[i] = bodies->places[i] + 3;
+        wh_view_bodies_place(bodies, i, &here);
+    }
+}
+
+void wh_view_bodies_free(wh_view_bodies_t *bodies) {
+    for (int32_t i = 0; i < bodies->load.num_links; ++i) {
+        waferhand_viewer_link *body = &bodies->load.link[i];
+        for (int32_t k = 0; k < body->num_geom; ++k) {
+            wh_view_geometry_free(&body->geom[k]);
+        }
+        free(body->geom);
+        free(body->name);
+    }
+    free(bodies->load.link);
+    free(bodies->draw.link_name);
+    free(bodies->draw.robot_num);
+    free(bodies->draw.position);
+    free(bodies->draw.quaternion);
+    free(bodies->places);
 }

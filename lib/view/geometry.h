@@ -1,4 +1,5 @@
-/* Convex shapes as Drake's viewer takes them: mm become m, rotations unit quaternions, doubles floats.
+/* Bodies and their convex shapes as Drake's viewer takes them: mm become m, rotations unit quaternions,
+ * doubles floats. What bodies are is one message (LOAD), where they are another (DRAW).
  *
  * The viewer ends if a length is not above 0, or a quaternion's length differs from 1 by more than 1e-5. No
  * shape that wh_convex_validate passes yields either.
@@ -8,7 +9,8 @@
 #ifndef WH_VIEW_GEOMETRY_H
 #define WH_VIEW_GEOMETRY_H
 
-#include <waferhand_viewer_geometry.h>
+#include <waferhand_viewer_draw.h>
+#include <waferhand_viewer_load.h>
 
 #include "../collision/convex.h"
 
@@ -16,6 +18,9 @@
 typedef struct {
     float rgba[4];
 } wh_view_colour_t;
+
+/* 0xrrggbb. */
+wh_view_colour_t wh_view_colour(uint32_t hex, float opacity);
 
 /* waferhand_viewer_geometry.type. */
 enum { WH_VIEW_BOX = 1, WH_VIEW_SPHERE, WH_VIEW_CYLINDER, WH_VIEW_TRIANGLES, WH_VIEW_CAPSULE };
@@ -29,5 +34,28 @@ void wh_view_geometry_make(const wh_convex_t *convex, const wh_pose_t *body_from
                            const wh_view_colour_t *colour, bool as_box, waferhand_viewer_geometry *geometry);
 
 void wh_view_geometry_free(waferhand_viewer_geometry *geometry);
+
+/* Zero it to begin with. `load` and `draw` are in the order of the bodies, the same in both. */
+typedef struct {
+    waferhand_viewer_load load;
+    waferhand_viewer_draw draw;
+    size_t capacity;
+    float (*places)[7]; /* of each body: position, quaternion */
+} wh_view_bodies_t;
+
+/* Adds a body without shapes and returns its index. Its path is "folder::name", or with a null `name` the
+ * folder. A name's '/', ':', '%' and what is no printable UTF-8 become %2F and the like, for the viewer's own
+ * paths are made of the first two. */
+size_t wh_view_bodies_add(wh_view_bodies_t *bodies, const char *folder, const char *name);
+
+/* A new shape of the body that was added last, all zero: valid until the next one. */
+waferhand_viewer_geometry *wh_view_bodies_add_shape(wh_view_bodies_t *bodies);
+
+/* Makes `draw` once all bodies are there, each at base. From then on they must not be moved. */
+void wh_view_bodies_open(wh_view_bodies_t *bodies);
+
+void wh_view_bodies_place(wh_view_bodies_t *bodies, size_t body, const wh_pose_t *base_from_body);
+
+void wh_view_bodies_free(wh_view_bodies_t *bodies);
 
 #endif

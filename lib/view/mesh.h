@@ -27,10 +27,6 @@ void wh_mesh_add_wafer(wh_mesh_t *mesh, double radius, double thickness, double 
 /* The convex hull of a mesh's points. */
 void wh_mesh_add_hull(wh_mesh_t *mesh, const wh_convex_t *convex, const wh_pose_t *body_from_shape);
 
-/* For hull.c: a triangle with a normal of its own, its corners counter-clockwise seen from outside. Nothing
- * if it has no area. */
-void wh_mesh_add_triangle(wh_mesh_t *mesh, const wh_vec3_t *a, const wh_vec3_t *b, const wh_vec3_t *c);
-
 void wh_mesh_free(wh_mesh_t *mesh);
 
 #endif

@@ -17,6 +17,9 @@ typedef struct {
     double last[4]; /* the last quaternion */
 } keyframes_t;
 
+/* Of the grippers, then of the links. */
+enum { FIRST_LINK = WH_GRIPPERS, PATHS = FIRST_LINK + WH_SIGNALS_LINKS };
+
 /* A node's meshes, one for each ink, while its parts are gathered. */
 typedef struct {
     wh_mesh_t inks[WH_INKS];
@@ -28,16 +31,16 @@ typedef struct {
     wh_gltf_t gltf;
     bool animated;
     /* Poses of grippers and links where they are animated, on straight lines from one to the next. */
-    wh_thin_t grippers[WH_GRIPPERS], links[WH_SIGNALS_LINKS];
+    wh_thin_t paths[PATHS];
 } scene_t;
 
 /* Tolerances to begin with, and the number of points beyond which they grow, for grippers and for links. */
-#define PATHS_MM 0.05
-#define PATHS_RAD 5e-4
-#define PATHS_LINK_MM 0.5
-#define PATHS_LINK_RAD 2e-3
-#define PATHS_POINTS 60000
-#define PATHS_LINK_POINTS 30000
+#define GRIPPER_MM 0.05
+#define GRIPPER_RAD 5e-4
+#define GRIPPER_POINTS 60000
+#define LINK_MM 0.5
+#define LINK_RAD 2e-3
+#define LINK_POINTS 30000
 
 static void add_key(keyframes_t *motion, double seconds, const wh_vec3_t *r, const double q[4]) {
     const size_t i = motion->count;
@@ -62,34 +65,26 @@ static void add_places(void *user, int64_t slice) {
     wh_pose_t gripper;
     for (size_t g = 0; g < signals->layout->machine.gripper_count; ++g) {
         wh_signals_gripper(signals, g, slice, &gripper);
-        wh_thin_add_pose(&scene->grippers[g], slice, &gripper);
+        wh_thin_add_pose(&scene->paths[g], slice, &gripper);
     }
     if (wh_signals_links(signals, slice, links)) {
         for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
-            wh_thin_add_pose(&scene->links[i], slice, &links[i]);
+            wh_thin_add_pose(&scene->paths[FIRST_LINK + i], slice, &links[i]);
         }
-    }
-}
-
-static void for_each_path(scene_t *scene, void (*act)(wh_thin_t *path)) {
-    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        act(&scene->grippers[g]);
-    }
-    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
-        act(&scene->links[i]);
     }
 }
 
 /* Cost: about 1 us for each place of wh_signals_walk. */
 static void trace_paths(scene_t *scene) {
-    for (size_t g = 0; g < WH_GRIPPERS; ++g) {
-        wh_thin_open(&scene->grippers[g], 3, PATHS_MM, PATHS_RAD, PATHS_POINTS);
-    }
-    for (size_t i = 0; i < WH_SIGNALS_LINKS; ++i) {
-        wh_thin_open(&scene->links[i], 3, PATHS_LINK_MM, PATHS_LINK_RAD, PATHS_LINK_POINTS);
+    for (size_t i = 0; i < PATHS; ++i) {
+        const bool is_link = i >= FIRST_LINK;
+        wh_thin_open(&scene->paths[i], 3, is_link ? LINK_MM : GRIPPER_MM, is_link ? LINK_RAD : GRIPPER_RAD,
+                     is_link ? LINK_POINTS : GRIPPER_POINTS);
     }
     wh_signals_walk(scene->signals, add_places, scene);
-    for_each_path(scene, wh_thin_finish);
+    for (size_t i = 0; i < PATHS; ++i) {
+        wh_thin_finish(&scene->paths[i]);
+    }
 }
 
 /* ---------------------------------------------------------------------------------------------- keyframes */
@@ -143,7 +138,7 @@ static int parts_of(const wh_stay_t *stay, const wh_thin_t *thin, size_t i) {
     const double square = turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
     const double off = wh_vec3_norm(&stay->pose.r) * square / 8;
     int parts = 1;
-    while ((double)(parts * parts) * thin->list.tolerance < off && parts < 256) {
+    while ((parts * parts) * thin->list.tolerance < off && parts < 256) {
         ++parts;
     }
     return parts;
@@ -179,7 +174,7 @@ static keyframes_t keyframes_of_wafer(const scene_t *scene, int32_t wafer) {
         }
         const int64_t end = over ? signals->last : signals->stays[i].slice;
         if (stay && stay->holder != WH_NONE) {
-            add_hold(&motion, signals, &scene->grippers[stay->holder], stay, end);
+            add_hold(&motion, signals, &scene->paths[stay->holder], stay, end);
         } else if (stay) {
             add_pose(&motion, signals, (double)stay->slice, &stay->pose);
             add_pose(&motion, signals, (double)end, &stay->pose);
@@ -292,7 +287,8 @@ static void add_links(scene_t *scene) {
     for (size_t i = 0; is_there && i < WH_SIGNALS_LINKS; ++i) {
         body_t body = {0};
         add_parts(scene, &body, 1U << WH_PART_ARM, (int32_t)(WH_ARM_LIFT + i), NULL);
-        add_moving(scene, &poses[i], &scene->links[i], &body, wh_signals_link_names[i], "link", i);
+        add_moving(scene, &poses[i], &scene->paths[FIRST_LINK + i], &body, wh_signals_link_names[i], "link",
+                   i);
     }
 }
 
@@ -303,7 +299,7 @@ static void add_grippers(scene_t *scene) {
         body_t body = {0};
         wh_signals_gripper(scene->signals, g, scene->signals->first, &pose);
         add_parts(scene, &body, 1U << WH_PART_BLADE | 1U << WH_PART_CHUCK, (int32_t)g, NULL);
-        add_moving(scene, &pose, &scene->grippers[g], &body, layout->grippers[g].name, "gripper", g);
+        add_moving(scene, &pose, &scene->paths[g], &body, layout->grippers[g].name, "gripper", g);
     }
 }
 
@@ -338,6 +334,8 @@ json_t *wh_scene_make(const wh_signals_t *signals, const char *name, bool animat
     add_links(&scene);
     add_grippers(&scene);
     add_wafers(&scene);
-    for_each_path(&scene, wh_thin_close);
+    for (size_t i = 0; i < PATHS; ++i) {
+        wh_thin_close(&scene.paths[i]);
+    }
     return wh_gltf_finish(&scene.gltf, name, "waferhand " WH_VERSION);
 }

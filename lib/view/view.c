@@ -26,10 +26,10 @@ static bool open_bytes(wh_viewer_bytes_t *bytes, const waferhand_viewer_load *lo
 static bool fit(wh_viewer_t *view, const wh_layout_t *layout) {
     for (int detail = WH_VIEW_ALL; detail < WH_VIEW_DETAILS; ++detail) {
         wh_view_cell_open(&view->cell, layout, (wh_view_detail_t)detail);
-        const int load_size = waferhand_viewer_load_encoded_size(&view->cell.load);
+        const int load_size = waferhand_viewer_load_encoded_size(&view->cell.bodies.load);
         if (load_size <= WH_VIEW_BYTES &&
-            waferhand_viewer_draw_encoded_size(&view->cell.draw) <= WH_LINK_DATAGRAM) {
-            return open_bytes(&view->cell_bytes, &view->cell.load, load_size, &view->cell.draw);
+            waferhand_viewer_draw_encoded_size(&view->cell.bodies.draw) <= WH_LINK_DATAGRAM) {
+            return open_bytes(&view->cell_bytes, &view->cell.bodies.load, load_size, &view->cell.bodies.draw);
         }
         wh_view_cell_free(&view->cell);
     }
@@ -44,8 +44,8 @@ wh_status_t wh_viewer_open(wh_viewer_t *view, wh_node_t *node, const wh_layout_t
         return WH_STATUS_BAD_CAPACITY;
     }
     wh_view_board_open(&view->board, layout);
-    if (!open_bytes(&view->board_bytes, &view->board.load, wh_view_board_room(&view->board),
-                    &view->board.draw)) {
+    if (!open_bytes(&view->board_bytes, &view->board.bodies.load, wh_view_board_room(&view->board),
+                    &view->board.bodies.draw)) {
         wh_viewer_close(view);
         return WH_STATUS_BAD_CAPACITY;
     }
@@ -78,7 +78,7 @@ static void look_at(wh_viewer_t *view, const wh_protocol_server_t *server) {
 
 static void write_line(wh_viewer_t *view, wh_view_line_t line, const char *text) {
     if (wh_view_board_write(&view->board, line, text)) {
-        (void)encode_load(&view->board_bytes, &view->board.load);
+        (void)encode_load(&view->board_bytes, &view->board.bodies.load);
     }
 }
 
@@ -91,7 +91,7 @@ static void show_hit(wh_viewer_t *view, const char *what, const int32_t parts[2]
     (void)snprintf(text, sizeof text, "%s%s", second ? "and " : "", second ? second : "");
     write_line(view, WH_VIEW_HIT_WITH, text);
     if (wh_view_cell_set_hit(&view->cell, parts)) {
-        (void)encode_load(&view->cell_bytes, &view->cell.load);
+        (void)encode_load(&view->cell_bytes, &view->cell.bodies.load);
     }
 }
 
@@ -129,14 +129,14 @@ static void send(wh_viewer_t *view, bool all, int64_t utime) {
         send_bodies(view, &view->cell_bytes, WH_CHANNEL_VIEWER_LOAD);
     }
     ++view->draws;
-    send_places(view, &view->cell_bytes, &view->cell.draw, WH_CHANNEL_VIEWER_DRAW);
+    send_places(view, &view->cell_bytes, &view->cell.bodies.draw, WH_CHANNEL_VIEWER_DRAW);
     const bool is_other_time = wh_view_board_set_time(&view->board, utime);
     if (all || view->board_bytes.is_new) {
         send_bodies(view, &view->board_bytes, WH_CHANNEL_BOARD_LOAD);
     } else if (!is_other_time) {
         return;
     }
-    send_places(view, &view->board_bytes, &view->board.draw, WH_CHANNEL_BOARD_DRAW);
+    send_places(view, &view->board_bytes, &view->board.bodies.draw, WH_CHANNEL_BOARD_DRAW);
 }
 
 void wh_viewer_tick(wh_viewer_t *view, const wh_protocol_server_t *server) {

@@ -7,19 +7,20 @@ local tostring, type = tostring, type
 
 return function(native, lookup)
   -- inside   the target whose straight line the arm has entered and not left
-  -- stopped  a command was cut short, and neither RECOVER nor HOME came since
+  -- since    the command that entered it
+  -- stopped  a command that was cut short, and neither RECOVER nor HOME came since; else nil
   -- homed    nil: as the layout says
-  local arm = { inside = nil, stopped = false, homed = nil }
-  local running = false
+  local arm = { inside = nil, since = nil, stopped = nil, homed = nil }
+  local running = nil
 
   -- Runs a command: it is recorded with the script's line, its times and its error number. One that an
   -- exhausted limit or a STOP from outside ended past all Lua is still `running` when the next begins.
   function arm.run(text, action, ...)
     native.begin(text)
     arm.stopped = arm.stopped or running
-    running = true
+    running = text
     local ok, result = pcall(action, ...)
-    running = false
+    running = nil
     if ok then
       native.finish()
       return result
@@ -27,8 +28,8 @@ return function(native, lookup)
     local numbered = type(result) == "table" and math.type(result.number) == "integer"
       and type(result.text) == "string"
     local number = numbered and result.number or lookup.errors.BAD_ARGUMENT.number
-    arm.stopped = arm.stopped or number == lookup.errors.STOPPED.number
-    native.finish(number, numbered and result.text or tostring(result))
+    arm.stopped = arm.stopped or number == lookup.errors.STOPPED.number and text or nil
+    native.finish(number, numbered and result.text or native.outside(tostring(result)))
     error(result, 0)
   end
 
@@ -46,24 +47,30 @@ return function(native, lookup)
   function arm.check_free()
     arm.check_homed()
     if arm.inside then
-      native.fail("STOPPED", ("the arm stands in %s: RECOVER or HOME comes first"):format(arm.inside.station))
+      local text = "the arm stands in %s slot %d since %s: RECOVER or HOME comes first"
+      native.fail("STOPPED", text:format(arm.inside.station, arm.inside.slot, arm.since))
     elseif arm.stopped then
-      native.fail("STOPPED", "an earlier one was: RECOVER or HOME comes first")
+      native.fail("STOPPED", arm.stopped .. " was: RECOVER or HOME comes first")
     end
   end
 
   -- RECOVER and HOME have brought the arm out.
   function arm.set_free()
-    arm.inside, arm.stopped = nil, false
+    arm.inside, arm.stopped = nil, nil
   end
 
   --------------------------------------------------------------------------------------- planning and playing
 
-  -- The segment of a request, its axes found for where the gripper shall be.
+  -- The segment of a request, its axes found for where the gripper shall be. Detour 1 turns theta the longer
+  -- way round, detour 2 the shorter way and a whole turn.
   local function segment_of(request)
-    local to = request.to
-    if to then
-      request.axes = native.inverse(to.x, to.y, to.z, to.heading, to.gripper)
+    if request.to then
+      request.axes = native.inverse(request)
+      if request.detour then
+        local theta = request.axes[1]
+        local is_left = theta > native.axes()[1]
+        request.axes[1] = theta + ((request.detour == 2) == is_left and 2 or -2) * math.pi
+      end
     end
     return request
   end
@@ -74,29 +81,61 @@ return function(native, lookup)
     return request.assume == nil or request.assume
   end
 
-  local function plan_through(pattern, target)
-    local plan, step = {}, coroutine.wrap(pattern)
+  -- The pattern's requests, one a call. `detours`: which detour each of its ways to a point takes, if any.
+  local function requests_of(pattern, detours)
+    local step, ways = coroutine.wrap(pattern), 0
+    return function(answer)
+      local request = step(answer)
+      if type(request) == "table" and request.to then
+        ways = ways + 1
+        request.way, request.detour = ways, detours[ways]
+      end
+      return request
+    end
+  end
+
+  local function plan_through(pattern, target, plan)
+    local step = requests_of(pattern, plan.detours)
     local request = step(target)
     while type(request) == "table" do
+      plan.way = request.way or plan.way
       request.planned = request.assume == nil and native.plan(segment_of(request)) or nil
       plan[#plan + 1] = request
       request = step(assumed(request))
     end
     plan.became = request
-    return plan
+  end
+
+  local function try(pattern, target, judged, detours)
+    local plan = { detours = detours }
+    native.rehearse(true, judged)
+    local ok, problem = pcall(plan_through, pattern, target, plan)
+    native.rehearse(false)
+    return plan, not ok and problem or nil
+  end
+
+  -- The shorter way to a station may end so near to the end of an axis's travel that the way in leaves it.
+  -- Then the longer one is tried, and last one with a whole turn.
+  local function can_go_round(plan, problem)
+    return type(problem) == "table" and problem.number == lookup.errors.LIMIT_EXCEEDED.number and plan.way
+      and plan.detours[plan.way] ~= 2
   end
 
   -- Plans all of a pattern from where the arm stands, without playing it; raises what is out of reach, and
   -- with `judged` a collision ahead. Returns the plan: the requests in order and, as `became`, what the
   -- pattern returned. It can be played until the next one is made.
   function arm.rehearse(pattern, target, judged)
-    native.rehearse(true, judged)
-    local ok, result = pcall(plan_through, pattern, target)
-    native.rehearse(false)
-    if not ok then
-      error(result, 0)
+    local detours = {}
+    local plan, problem = try(pattern, target, judged, detours)
+    local first = problem
+    while problem and can_go_round(plan, problem) do
+      detours[plan.way] = (detours[plan.way] or 0) + 1
+      plan, problem = try(pattern, target, judged, detours)
     end
-    return result
+    if problem then
+      error(first, 0)
+    end
+    return plan
   end
 
   -- Plays a segment or asks a question. `target.watched`: a wafer that is lost on the way is an error after
@@ -108,20 +147,25 @@ return function(native, lookup)
     elseif request.is_loaded then
       return native.held(request.is_loaded) ~= nil
     end
-    arm.inside = request.enters or arm.inside
+    if request.enters then
+      arm.inside, arm.since = request.enters, running
+    end
     local ended, lost = native.play(request.planned or segment_of(request))
     if request.leaves then
       arm.inside = nil
     end
     if lost and target.watched then
-      native.fail("WAFER_LOST_ON_WAY", lookup.quote(native.layout.grippers[lost].name) .. " lost its vacuum")
+      local name, at = native.layout.grippers[lost].name, request.target
+      local way = request.to and "on the way to" or request.where
+      local where = at and (" %s %s slot %d"):format(way, at.station, at.slot) or ""
+      native.fail("WAFER_LOST_ON_WAY", ("the sensor of %s went off%s"):format(name, where))
     end
     return ended
   end
 
   -- The answer at this place of the plan was not the assumed one: plans and plays anew from there.
   local function go_on(pattern, target, plan, place, answer)
-    local step = coroutine.wrap(pattern)
+    local step = requests_of(pattern, plan.detours)
     step(target)
     for before = 1, place - 1 do
       step(assumed(plan[before]))

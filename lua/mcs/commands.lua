@@ -1,7 +1,7 @@
 -- The operator's words that move something: those of lua/mcs/transfer.lua, and the single moves here.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, math, pairs, table, tostring, type = ipairs, math, pairs, table, tostring, type
+local ipairs, math, pairs, table, type = ipairs, math, pairs, table, type
 
 return function(native, patterns, lookup)
   local arm = native.module("mcs/arm.lua")(native, lookup)
@@ -15,10 +15,18 @@ return function(native, patterns, lookup)
     arm.play(patterns.single, { segment = segment, watched = true })
   end
 
+  local function prealigners()
+    local names = {}
+    for name, station in pairs(native.layout.stations) do
+      names[#names + 1] = station.chuck and name
+    end
+    return #names > 0 and "expected " .. lookup.listed(names) or "this cell has none"
+  end
+
   local function rotate(station_name, degrees)
     local station = lookup.station(station_name)
     if not station.chuck then
-      native.fail("NOT_A_PREALIGNER", lookup.quote(station_name))
+      native.fail("NOT_A_PREALIGNER", ("%s (%s)"):format(lookup.quote(station_name), prealigners()))
     end
     local axis = native.layout.grippers[station.chuck].axis
     local axes = native.axes()
@@ -32,7 +40,7 @@ return function(native, patterns, lookup)
 
   local function valve(gripper, level)
     if level ~= 0 and level ~= 1 then
-      native.fail("BAD_VALVE", "valve: " .. lookup.quote(level) .. " (expected 0, open, or 1, closed)")
+      native.fail("BAD_VALVE", ("level: %s (expected 0, open, or 1, closed)"):format(lookup.quote(level)))
     end
     play { valves = { [lookup.gripper(gripper)] = math.tointeger(level) } }
   end
@@ -41,21 +49,26 @@ return function(native, patterns, lookup)
     arm.run(lookup.command("VALVE", gripper, level), valve, gripper, level)
   end
 
-  local function axis_of(name)
-    for axis, known in ipairs(lookup.axes) do
-      if name == known then
-        return axis
-      end
+  -- The values of these fields by name, each checked.
+  local function read_fields(what, description, known)
+    local values, is_known = {}, {}
+    for _, name in ipairs(known) do
+      is_known[name] = true
     end
-    native.fail("BAD_ARGUMENT", tostring(name) .. ": no such axis (expected theta, r, z or yaw)")
+    for name, value in pairs(lookup.table(what, description)) do
+      if not is_known[name] then
+        lookup.refuse_field(name, value, known)
+      end
+      values[name] = lookup.number(name, value)
+    end
+    return values
   end
 
   local function move(positions)
-    local axes = native.axes()
-    for name, value in pairs(lookup.table("move", positions)) do
-      local axis = axis_of(name)
+    local axes, to = native.axes(), read_fields("move", positions, lookup.axes)
+    for axis, name in ipairs(lookup.axes) do
       local turns = name == "theta" or name == "yaw"
-      axes[axis] = turns and math.rad(lookup.number(name, value)) or lookup.number(name, value)
+      axes[axis] = to[name] and (turns and math.rad(to[name]) or to[name]) or axes[axis]
     end
     arm.check_homed()
     play { axes = axes }
@@ -77,27 +90,19 @@ return function(native, patterns, lookup)
   end
 
   local function line(by)
-    local parts = { dx = 0, dy = 0, dz = 0, speed = 0 }
-    for name, value in pairs(lookup.table("line", by)) do
-      if parts[name] == nil then
-        native.fail("BAD_ARGUMENT", tostring(name) .. ": no such field (expected dx, dy, dz or speed)")
-      end
-      parts[name] = lookup.number(name, value)
-    end
+    local parts = read_fields("line", by, lookup.line_fields)
     arm.check_homed()
-    play { line = { parts.dx, parts.dy, parts.dz }, speed = parts.speed }
+    play { line = { parts.dx or 0, parts.dy or 0, parts.dz or 0 }, speed = parts.speed or 0 }
   end
 
-  -- line { dx = , dy = , dz = , speed = }: the end-effector straight by so many mm in base, its heading kept.
+  -- line { dx = , dy = , dz = , speed = }: the end-effector straight by so many mm in base, its heading kept;
+  -- without a speed as fast as the axes go.
   function commands.line(by)
     arm.run(lookup.command("LINE", text_of(by, lookup.line_fields)), line, by)
   end
 
   local function wait(seconds)
-    if lookup.number("seconds", seconds) < 0 or seconds > 1e6 then
-      native.fail("BAD_ARGUMENT", ("seconds: %s (expected 0 to 1e6)"):format(tostring(seconds)))
-    end
-    play { dwell = seconds }
+    play { dwell = lookup.number("seconds", seconds) }
   end
 
   function commands.wait(seconds)
@@ -138,10 +143,7 @@ return function(native, patterns, lookup)
 
   -- A STOP comes so many simulated seconds from now, whatever then runs: it ends there with STOPPED.
   function commands.stop_in(seconds)
-    if lookup.number("seconds", seconds) < 0 or seconds > 1e6 then
-      native.fail("BAD_ARGUMENT", ("seconds: %s (expected 0 to 1e6)"):format(tostring(seconds)))
-    end
-    native.stop_in(seconds)
+    native.stop_in(lookup.number("seconds", seconds))
   end
 
   commands.run = arm.run

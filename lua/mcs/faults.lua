@@ -1,7 +1,8 @@
 -- The words for faults on purpose: fault { kind = , ... } and clear_fault(number).
 
 -- Kept, for a script may set globals of these names.
-local ipairs, math, pairs, table, tostring, type = ipairs, math, pairs, table, tostring, type
+local error, ipairs, math, pairs, pcall, table = error, ipairs, math, pairs, pcall, table
+local tostring, type = tostring, type
 
 return function(native, commands, run, lookup)
   local function text_of(value)
@@ -29,7 +30,13 @@ return function(native, commands, run, lookup)
   -- Begins with the next slice, or `after` seconds later, and lasts `lasting` seconds or until it is cleared.
   -- Returns its number.
   function commands.fault(description)
-    return run(describe(description), function() return native.fault(lookup.table("fault", description)) end)
+    return run(describe(description), function()
+      local ok, result = pcall(native.fault, lookup.table("fault", description))
+      if not ok and type(result) == "string" then
+        native.fail("BAD_ARGUMENT", result)
+      end
+      return ok and result or error(result, 0)
+    end)
   end
 
   -- It ends with the next slice.
@@ -37,7 +44,7 @@ return function(native, commands, run, lookup)
     local whole = type(number) == "number" and math.tointeger(number)
     run("CLEAR " .. tostring(whole or number), function()
       if not whole then
-        native.fail("BAD_ARGUMENT", "fault: " .. lookup.quote(number) .. " (expected its number)")
+        native.fail("BAD_ARGUMENT", ("number: %s (expected a fault's number)"):format(lookup.quote(number)))
       end
       native.clear_fault(whole)
     end)

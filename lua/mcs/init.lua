@@ -1,9 +1,10 @@
 -- Makes the operator's words out of what the host offers (`native`) and sets them as globals. Returns what
 -- makes the same words of typed lines: a session calls it before it sets up the cell, a script's run never
--- does.
+-- does. Returns as well what looks at stations for `waferhand layout`.
 
 -- Kept, for a script may set globals of these names.
-local error, ipairs, pairs, setmetatable, tostring, type = error, ipairs, pairs, setmetatable, tostring, type
+local error, ipairs, pairs, pcall, rawset, select = error, ipairs, pairs, pcall, rawset, select
+local setmetatable, tostring, type = setmetatable, tostring, type
 
 return function(native)
   -- native.layout: the cell's layout, a value that `cell` sets. Before that whoever reads it hears what is
@@ -24,51 +25,95 @@ return function(native)
   local lookup = native.module("mcs/lookup.lua")(native, wh.errors)
   local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), lookup)
   local queries = native.module("mcs/queries.lua")(native, lookup)
-  local rehearse, run = commands.rehearse, commands.run
-  commands.rehearse, commands.run = nil, nil
+  local run = commands.run
+  local reach = native.module("mcs/reach.lua")(native, {
+    rehearse = commands.rehearse, rehearse_map = commands.rehearse_map,
+    try_out = commands.try_out, try_carrying = commands.try_carrying,
+  })
+  commands.rehearse, commands.rehearse_map, commands.run = nil, nil, nil
+  commands.try_out, commands.try_carrying = nil, nil
   native.module("mcs/faults.lua")(native, commands, run, lookup)
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
 
-  -- cell "LAYOUT.lua", relative to the script: every slot's ends must be in reach.
-  function cell(path)
+  -- cell "LAYOUT.lua", relative to the script: every slot must be in reach.
+  local function cell(path)
     if type(path) ~= "string" then
       error(("cell: %s (expected a layout's path)"):format(tostring(path)), 0)
     end
     native.layout = native.cell(path)
     for name, station in pairs(native.layout.stations) do
-      for _, slot in ipairs(station.taught and { 1, station.slots } or {}) do
-        native.reach(station.index, slot)
-        local problem = rehearse(name, slot)
-        if problem then
-          local reason = type(problem) == "table" and problem.text or tostring(problem)
-          local message = "%s: stations.%s: slot %d (expected one in reach: %s)"
-          error(message:format(native.layout.path, name, slot, reason), 0)
-        end
-      end
+      reach.check(station, function(slot, _, reason)
+        local message = "%s: stations.%s: slot %d (expected one in reach: %s)"
+        error(message:format(native.layout.path, name, slot, reason), 0)
+      end)
     end
-    native.reach()
     native.connect()
   end
 
   -- study { placement = { dx = 0.3 }, ... }, before cell: what a study draws, in place of the layout's own.
-  function study(errors)
+  local function study(errors)
     if type(errors) ~= "table" then
       error(("study: %s (expected a table)"):format(tostring(errors)), 0)
     end
     native.study(errors)
   end
 
-  for _, group in ipairs({ commands, queries, cycles }) do
-    for word, action in pairs(group) do
-      _G[word] = action
+  -- What an action returned. An error tells no place in these files.
+  local function finish(ok, ...)
+    if ok then
+      return ...
+    end
+    local problem = ...
+    error(type(problem) == "string" and native.outside(problem) or problem, 0)
+  end
+
+  -- The word for scripts: it refuses what the action takes no notice of.
+  local function word(name, action)
+    local most = native.parameters(action)
+    return function(...)
+      native.begin_word(name)
+      for place = most + 1, select("#", ...) do
+        local extra = select(place, ...)
+        if extra ~= nil then
+          local text = "%s: %s is one argument too many (expected at most %d)"
+          native.fail("BAD_ARGUMENT", text:format(name, lookup.quote(extra), most))
+        end
+      end
+      return finish(pcall(action, ...))
     end
   end
 
-  return function()
+  for _, group in ipairs({ commands, queries, cycles, { cell = cell, study = study } }) do
+    for name, action in pairs(group) do
+      rawset(_G, name, word(name, action))
+    end
+  end
+
+  local function open_prompt()
     local tokens = native.module("mcs/tokens.lua")(native)
     local make_commands = native.module("mcs/prompt_commands.lua")
     local prompt_commands = make_commands(native, commands, queries, lookup, tokens)
     local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup)
     return execute, native.module("mcs/completion.lua")(prompt_commands, tokens)
   end
+
+  -- Of a layout that was read already: what looks at a station of it by its name, and what plays there, see
+  -- lua/mcs/reach.lua.
+  local function survey(layout)
+    native.layout = layout
+    return function(name, found, missed)
+      reach.check(layout.stations[name], found)
+      reach.check_later(layout.stations[name], found)
+      reach.check_blades(layout.stations[name], missed)
+    end, function(from, name, cell, failed, gripper)
+      local station = layout.stations[name]
+      if from then
+        reach.play_carrying(layout.stations[from], station, cell, failed)
+      else
+        reach.play(station, cell, failed, gripper)
+      end
+    end
+  end
+
+  return open_prompt, survey
 end

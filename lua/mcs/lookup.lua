@@ -2,39 +2,74 @@
 -- refuses what it does not know with a numbered error that names it.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, math, pairs, table = ipairs, math, pairs, table
+local ipairs, math, pairs, rawequal, table = ipairs, math, pairs, rawequal, table
 local tonumber, tostring, type = tonumber, tostring, type
 
 return function(native, errors)
   local lookup = { errors = errors }
 
-  -- Station parameters that a command may set for itself, what else it may say, and the fields of MOVE and
-  -- LINE in order.
-  lookup.parameters = {
-    stroke = "number", offset = "number", retract = "number", release = "number", wait = "number",
-    pickup_speed = "number", pickup_acceleration = "number", vacuum_delay = "number", vacuum_check = "string",
-    timeout = "number", retries = "number", map_speed = "number", check_map = "boolean", handover = "string",
-  }
-  lookup.options = { gripper = "string", force = "boolean" }
+  -- Station parameters that a command may set for itself, and what else it may say: { least, most, unit } of
+  -- a number; the `values` of another one, or none if it is a gripper's name.
+  lookup.parameters = native.ranges()
+  lookup.parameters.vacuum_check = { values = { "both", "get", "put", "none" } }
+  lookup.parameters.handover = { values = { "new_first", "same_slice" } }
+  lookup.parameters.check_map = { values = { true, false } }
+  lookup.options = { gripper = {}, force = { values = { true, false } } }
+
+  -- The fields of MOVE and LINE in order, and their ranges.
   lookup.axes = { "theta", "r", "z", "yaw" }
   lookup.line_fields = { "dx", "dy", "dz", "speed" }
+  local way, turn = { -1e6, 1e6, "mm" }, { nil, nil, "degrees" }
+  lookup.ranges = {
+    theta = turn, r = { nil, nil, "mm" }, z = { nil, nil, "mm" }, yaw = turn, degrees = turn,
+    dx = way, dy = way, dz = way, speed = lookup.parameters.pickup_speed, seconds = { 0, 1e6, "s" },
+  }
+
+  -- So many names are listed in an error.
+  local MOST_NAMES = 16
 
   function lookup.quote(value)
     return type(value) == "string" and ('"%s"'):format(value) or tostring(value)
   end
 
-  local function listed(map)
+  -- The keys of all these tables.
+  function lookup.names(...)
     local all = {}
-    for name in pairs(map) do
-      all[#all + 1] = name
+    for _, map in ipairs({ ... }) do
+      for name in pairs(map) do
+        all[#all + 1] = name
+      end
     end
-    return table.concat(all, ", ")
+    return all
+  end
+
+  -- The nearest of the names, as the end of a sentence; nothing if none is near.
+  function lookup.nearest(word, names)
+    return type(word) == "string" and native.nearest(word, names) or ""
+  end
+
+  -- "A, B, P", for an error.
+  function lookup.listed(names)
+    local text = table.concat(names, ", ", 1, math.min(#names, MOST_NAMES))
+    return #names > MOST_NAMES and text .. " and others" or text
+  end
+
+  local function refuse(error_name, name, names)
+    local expected = #names > 0 and "expected " .. lookup.listed(names) or "there is none"
+    native.fail(error_name, ("%s (%s%s)"):format(lookup.quote(name), expected, lookup.nearest(name, names)))
+  end
+
+  -- A field that a command does not have.
+  function lookup.refuse_field(name, value, names)
+    local expected = lookup.listed(names) .. lookup.nearest(name, names)
+    local text = "%s: %s (there is no such field: expected %s)"
+    native.fail("BAD_ARGUMENT", text:format(tostring(name), lookup.quote(value), expected))
   end
 
   function lookup.station(name)
     local stations = native.layout.stations
     if type(name) ~= "string" or not stations[name] then
-      native.fail("NO_SUCH_STATION", ("%s (expected %s)"):format(lookup.quote(name), listed(stations)))
+      refuse("NO_SUCH_STATION", name, lookup.names(stations))
     end
     return stations[name]
   end
@@ -42,8 +77,8 @@ return function(native, errors)
   function lookup.slot(station, slot)
     local whole = math.tointeger(slot)
     if type(slot) ~= "number" or not whole or whole < 1 or whole > station.slots then
-      local expected = ("%s has slots 1 to %d"):format(station.name, station.slots)
-      native.fail("NO_SUCH_SLOT", ("%s (%s)"):format(lookup.quote(slot), expected))
+      local last = station.slots > 1 and (" to %d"):format(station.slots) or ""
+      native.fail("NO_SUCH_SLOT", ("%s (expected 1%s in %s)"):format(lookup.quote(slot), last, station.name))
     end
     return whole
   end
@@ -54,35 +89,40 @@ return function(native, errors)
       if gripper.name == name then
         return index
       end
-      known[#known + 1] = gripper.name
+      known[index] = gripper.name
     end
-    native.fail("NO_SUCH_GRIPPER", ("%s (expected %s)"):format(lookup.quote(name), table.concat(known, ", ")))
+    refuse("NO_SUCH_GRIPPER", name, known)
+  end
+
+  -- The grippers on the robot: their indices and their names.
+  function lookup.on_robot()
+    local indices, names = {}, {}
+    for index, gripper in ipairs(native.layout.grippers) do
+      if gripper.on_robot then
+        indices[#indices + 1], names[#names + 1] = index, gripper.name
+      end
+    end
+    return indices, names
   end
 
   -- A gripper on the robot: the named one, the one with the index `otherwise`, or the first.
   function lookup.effector(name, otherwise)
-    local grippers = native.layout.grippers
-    if name ~= nil then
-      local index = lookup.gripper(name)
-      if not grippers[index].on_robot then
-        native.fail("NO_SUCH_GRIPPER", lookup.quote(name) .. " (expected one on the robot)")
-      end
-      return index
+    local indices, names = lookup.on_robot()
+    if name == nil then
+      return otherwise or indices[1]
     end
-    if otherwise then
-      return otherwise
+    local index = lookup.gripper(name)
+    if not native.layout.grippers[index].on_robot then
+      local text = "%s is on a chuck (expected one on the robot: %s)"
+      native.fail("NO_SUCH_GRIPPER", text:format(lookup.quote(name), lookup.listed(names)))
     end
-    for index, gripper in ipairs(grippers) do
-      if gripper.on_robot then
-        return index
-      end
-    end
+    return index
   end
 
   function lookup.wafer(name)
     local index = type(name) == "string" and native.wafer(name) or nil
     if not index then
-      native.fail("NO_SUCH_WAFER", lookup.quote(name))
+      refuse("NO_SUCH_WAFER", name, native.wafer_names(1001))
     end
     return index
   end
@@ -123,8 +163,9 @@ return function(native, errors)
     if station then
       lookup.slot(station, slot)
     end
-    local expected = 'expected "base" or the name of a wafer, a gripper, a station or a slot, such as "A/1"'
-    native.fail("BAD_ARGUMENT", ("%s: %s (%s)"):format(what, lookup.quote(name), expected))
+    local expected = '"base" or the name of a wafer, a gripper, a station or a slot, such as "A/1"'
+    local text, near = "%s: %s (expected %s%s)", lookup.nearest(name, lookup.frames())
+    native.fail("BAD_ARGUMENT", text:format(what, lookup.quote(name), expected, near))
   end
 
   -- The pose of a frame by its name. Of equal names a slot's comes first, as in a report's measuring tool.
@@ -152,9 +193,42 @@ return function(native, errors)
     return list
   end
 
-  function lookup.number(what, value)
-    if type(value) ~= "number" or value ~= value or value - value ~= 0 then
-      native.fail("BAD_ARGUMENT", ("%s: %s (expected a finite number)"):format(what, lookup.quote(value)))
+  local function fail_value(what, value, expected)
+    native.fail("BAD_ARGUMENT", ("%s: %s (expected %s)"):format(what, lookup.quote(value), expected))
+  end
+
+  -- A finite number. `range`: { least, most, unit }, least and most may be nil; of lookup.ranges if left out.
+  function lookup.number(what, value, range)
+    range = range or lookup.ranges[what]
+    local least, most = range[1] or -math.huge, range[2] or math.huge
+    if type(value) ~= "number" or value - value ~= 0 or value < least or value > most then
+      local expected = range[1] and ("a number from %g to %g %s"):format(least, most, range[3]):gsub(" $", "")
+        or "a finite number of " .. range[3]
+      fail_value(what, value, expected)
+    end
+    return value
+  end
+
+  local function one_of(values)
+    local text = {}
+    for place, value in ipairs(values) do
+      text[place] = lookup.quote(value)
+    end
+    return table.concat(text, ", ", 1, #text - 1) .. " or " .. text[#text]
+  end
+
+  -- A value of lookup.parameters or lookup.options.
+  function lookup.value(what, value, kind)
+    if kind[2] then
+      return lookup.number(what, value, kind)
+    end
+    for _, known in ipairs(kind.values or {}) do
+      if rawequal(value, known) then
+        return value
+      end
+    end
+    if kind.values then
+      fail_value(what, value, one_of(kind.values))
     end
     return value
   end

@@ -9,8 +9,9 @@
 --   valves = { [gripper] = 0 open or 1 closed }   lasts one slice
 --   dwell  = seconds, vacuum = true               `vacuum`: the time counts as waiting for vacuum
 --   sensor = gripper, timeout = seconds           answered with true or false
--- of which `enters = target` begins the way into a station and `leaves = true` ends the way out; or a
--- question, answered with true or false, of which a plan knows no more than what to `assume`:
+-- of which `enters = target` begins the way into a station and `leaves = true` ends the way out, and whose
+-- `target` and `where`, such as "on the way into", say in an error where the arm would be; or a question,
+-- answered with true or false, of which a plan knows no more than what to `assume`:
 --   is_on     = gripper                           its vacuum sensor
 --   is_loaded = gripper                           a wafer lies on its pads
 -- It returns what became of the wafer, a word, as the sensors tell.
@@ -27,13 +28,17 @@ local OPEN, CLOSED = 0, 1
 local function approach(target, height)
   local p = target.place
   local x, y = p.x - target.retract * p.dir_x, p.y - target.retract * p.dir_y
-  yield { to = { x = x, y = y, z = p.z + height, heading = p.heading, gripper = target.gripper } }
+  yield {
+    to = { x = x, y = y, z = p.z + height, heading = p.heading, gripper = target.gripper },
+    target = target, where = "in front of",
+  }
 end
 
 -- In, and a wait there if the station has one.
 local function enter(target)
   local place, way = target.place, target.retract
-  yield { line = { way * place.dir_x, way * place.dir_y, 0 }, enters = target }
+  local line = { way * place.dir_x, way * place.dir_y, 0 }
+  yield { line = line, enters = target, target = target, where = "on the way into" }
   if target.wait > 0 then
     yield { dwell = target.wait }
   end
@@ -41,11 +46,15 @@ end
 
 local function leave(target)
   local place, way = target.place, -target.retract
-  yield { line = { way * place.dir_x, way * place.dir_y, 0 }, leaves = true }
+  local line = { way * place.dir_x, way * place.dir_y, 0 }
+  yield { line = line, leaves = true, target = target, where = "on the way out of" }
 end
 
 local function stroke(target, by)
-  yield { line = { 0, 0, by }, speed = target.pickup_speed, acceleration = target.pickup_acceleration }
+  yield {
+    line = { 0, 0, by }, speed = target.pickup_speed, acceleration = target.pickup_acceleration,
+    target = target, where = "in",
+  }
 end
 
 local function switch(gripper, valve)
@@ -177,7 +186,8 @@ end
 -- From below the stack to above it, in front of the station.
 function patterns.map(target)
   approach(target, -target.margin)
-  yield { line = { 0, 0, target.height + 2 * target.margin }, speed = target.map_speed }
+  local line = { 0, 0, target.height + 2 * target.margin }
+  yield { line = line, speed = target.map_speed, target = target, where = "in front of" }
 end
 
 -- Out of the station that the arm stands in, from where it came to stand: with a wafer up to where a GET
@@ -192,7 +202,8 @@ function patterns.recover(target)
   end
   local inside = (at[1] - p.x) * p.dir_x + (at[2] - p.y) * p.dir_y + target.retract
   local way = inside > 0 and inside or 0
-  yield { line = { -way * p.dir_x, -way * p.dir_y, 0 }, leaves = true }
+  local line = { -way * p.dir_x, -way * p.dir_y, 0 }
+  yield { line = line, leaves = true, target = target, where = "on the way out of" }
 end
 
 -- One segment by itself.

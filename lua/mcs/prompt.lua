@@ -22,11 +22,9 @@ return function(native, prompt_commands, tokens, lookup)
   local function take_option(name, command, options, word)
     local kind = command.options and command.options[word.name]
     if not kind then
-      local expected = name .. " takes no options"
-      if command.options then
-        expected = "expected " .. prompt_commands.usage(name, true)
-      end
-      refuse("%s: no such option (%s)", word.raw, expected)
+      local known = lookup.names(command.options or {})
+      local expected = known[1] and "expected " .. lookup.listed(known) or name .. " takes no options"
+      refuse("%s: no such option (%s%s)", word.raw, expected, lookup.nearest(word.name, known))
     end
     if options[word.name] ~= nil then
       refuse("%s: given twice", word.name)
@@ -68,7 +66,7 @@ return function(native, prompt_commands, tokens, lookup)
     local name = list[1].raw:upper()
     local command = prompt_commands.commands[name]
     if not command then
-      native.fail("NO_SUCH_COMMAND", list[1].raw .. " (HELP lists them)")
+      prompt_commands.refuse(list[1].raw)
     end
     return command.run(read(name, command, list))
   end

@@ -41,15 +41,14 @@ return function(native, commands, queries, lookup, tokens)
   prompt_commands.kinds = {
     station = station_names, gripper = gripper_names, wafer = native.wafer_names, command = command_names,
     fault = native.fault_kinds, frame = lookup.frames,
-    handover = function() return { "new_first", "same_slice" } end,
-    vacuum_check = function() return { "both", "get", "put", "none" } end,
+    handover = function() return lookup.parameters.handover.values end,
+    vacuum_check = function() return lookup.parameters.vacuum_check.values end,
     switch = function() return { "true", "false" } end,
   }
 
   local station_options = { gripper = "gripper", force = "switch" }
-  local kind_of = { number = "number", boolean = "switch" }
   for name, kind in pairs(lookup.parameters) do
-    station_options[name] = kind_of[kind] or name
+    station_options[name] = kind[2] and "number" or kind.values[1] == true and "switch" or name
   end
 
   local function fields(list)
@@ -215,13 +214,18 @@ return function(native, commands, queries, lookup, tokens)
     return table.concat(text, " ")
   end
 
+  function prompt_commands.refuse(name)
+    local near = lookup.nearest(name, command_names())
+    native.fail("NO_SUCH_COMMAND", ("%s (HELP lists them%s)"):format(name, near))
+  end
+
   local function help(arguments)
     local name = arguments[1] and arguments[1]:upper()
     if not name then
       return table.concat(command_names(), " ") .. "; HELP COMMAND tells how it is typed"
     end
     if not prompt_commands.commands[name] then
-      native.fail("NO_SUCH_COMMAND", lookup.quote(arguments[1]) .. " (HELP lists them)")
+      prompt_commands.refuse(arguments[1])
     end
     return ("%s: %s"):format(prompt_commands.usage(name, true), prompt_commands.commands[name].does)
   end
@@ -321,7 +325,8 @@ return function(native, commands, queries, lookup, tokens)
              does = "moves the named axes to these positions, degrees and mm" },
     LINE = { takes = {}, options = fields(lookup.line_fields), needs_option = true,
              run = moving_by_name(commands.line),
-             does = "moves the end-effector straight by so much, mm and mm/s" },
+             does = "moves the end-effector straight by so much, mm and mm/s; "
+               .. "without a speed as fast as the axes go" },
     WAIT = { takes = { "seconds" }, run = moving(commands.wait), does = "stands still" },
     FAULT = { takes = { "fault" }, options = fault_options, run = fault,
               does = "lets a fault begin, and tells its number" },

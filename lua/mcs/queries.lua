@@ -1,7 +1,7 @@
 -- The operator's words that ask and judge: offset, holder, proximity, measure, expect, expect_offset, ...
 
 -- Kept, for a script may set globals of these names.
-local select, tostring, wh = select, tostring, wh
+local select, tostring, type, wh = select, tostring, type, wh
 
 return function(native, lookup)
   local queries = {}
@@ -55,7 +55,9 @@ return function(native, lookup)
   function queries.clearance(kind)
     local found = native.clearance(tostring(kind))
     if found == false then
-      native.fail("BAD_ARGUMENT", ("%s (expected a kind of clearance)"):format(lookup.quote(kind)))
+      local kinds = native.clearance_kinds()
+      local expected = lookup.listed(kinds) .. lookup.nearest(kind, kinds)
+      native.fail("BAD_ARGUMENT", ("kind: %s (expected %s)"):format(lookup.quote(kind), expected))
     end
     found = found or {}
     return found.gap, found.limit ~= 0 and found.limit or nil, found.time, found.parts
@@ -63,6 +65,10 @@ return function(native, lookup)
 
   -- States what should be so; the run fails if it is not, and goes on. Returns the condition.
   function queries.expect(condition, text)
+    if condition ~= nil and type(condition) ~= "boolean" then
+      local refusal = "condition: %s (expected true, false or nil: any other value counts as true in Lua)"
+      native.fail("BAD_ARGUMENT", refusal:format(lookup.quote(condition)))
+    end
     native.expect(condition, text == nil and "an expectation without words" or tostring(text))
     return condition
   end
@@ -73,7 +79,7 @@ return function(native, lookup)
 
   -- The wafer lies in that slot with this offset, mm; to 1e-9 mm unless a tolerance follows.
   function queries.expect_offset(wafer, station_name, slot, dx, dy, tolerance)
-    tolerance = lookup.number("tolerance", tolerance == nil and 1e-9 or tolerance)
+    tolerance = lookup.number("tolerance", tolerance == nil and 1e-9 or tolerance, { nil, nil, "mm" })
     if tolerance <= 0 then
       native.fail("BAD_ARGUMENT", ("tolerance: %s (expected above 0)"):format(tostring(tolerance)))
     end

@@ -43,7 +43,9 @@ return function(native)
   local function check_way(target, codes)
     for slot = target.slot - 1, target.slot + 1 do
       if codes[slot] == DOUBLE or codes[slot] == CROSSED then
-        native.fail("BAD_SLOT", ("%s slot %d is %s"):format(target.station, slot, WORDS[codes[slot]]))
+        local beside = slot ~= target.slot and (", beside slot %d,"):format(target.slot) or ""
+        local text = "%s slot %d%s is %s"
+        native.fail("BAD_SLOT", text:format(target.station, slot, beside, WORDS[codes[slot]]))
       end
     end
   end
@@ -66,13 +68,18 @@ return function(native)
 
   local function is_there(target, entry)
     if entry.mapped and entry.codes[target.slot] == EMPTY then
-      native.fail("WAFER_MISSING", ("%s slot %d is empty in the map"):format(target.station, target.slot))
+      local text = "%s slot %d is empty by the slot book; nothing has moved"
+      native.fail("WAFER_MISSING", text:format(target.station, target.slot))
     end
   end
 
   local function is_room(target, entry)
-    if entry.codes[target.slot] == SINGLE or target.chuck and native.sensor(target.chuck) then
-      native.fail("WAFER_ALREADY_THERE", ("%s slot %d"):format(target.station, target.slot))
+    local place = ("%s slot %d"):format(target.station, target.slot)
+    if entry.codes[target.slot] == SINGLE then
+      native.fail("WAFER_ALREADY_THERE", place .. ", by the slot book: from a MAP or a PUT")
+    elseif target.chuck and native.sensor(target.chuck) then
+      local chuck = native.layout.grippers[target.chuck].name
+      native.fail("WAFER_ALREADY_THERE", ("%s: the sensor of its chuck, %s, is on"):format(place, chuck))
     end
   end
 

@@ -2,7 +2,7 @@
 -- the command may set for itself. All is checked before anything moves.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, math, pairs, tostring, type = ipairs, math, pairs, tostring, type
+local ipairs, math, pairs, type = ipairs, math, pairs, type
 
 return function(native, lookup)
   local targets = {}
@@ -11,65 +11,42 @@ return function(native, lookup)
 
   local function check_options(options)
     if options ~= nil and type(options) ~= "table" then
-      native.fail("BAD_ARGUMENT", "options: " .. tostring(options) .. " (expected a table)")
+      native.fail("BAD_ARGUMENT", ("options: %s (expected a table)"):format(lookup.quote(options)))
     end
     for name, value in pairs(options or {}) do
-      local expected = lookup.options[name] or parameters[name]
-      if type(value) ~= expected then
-        local what = expected and "a " .. expected or "gripper, force or a station parameter"
-        native.fail("BAD_ARGUMENT", ("%s: %s (expected %s)"):format(tostring(name), tostring(value), what))
+      local kind = lookup.options[name] or parameters[name]
+      if not kind then
+        lookup.refuse_field(name, value, lookup.names(lookup.options, parameters))
       end
+      lookup.value(name, value, kind)
     end
     return options or {}
   end
 
-  local function is_one_of(value, ...)
-    for _, known in ipairs({ ... }) do
-      if value == known then
-        return true
-      end
-    end
-    return false
-  end
-
-  -- Strokes end where the neighbouring slots begin: a GET from below the next one would take its wafer.
-  local function stroke_rules(target, station)
+  -- What must hold between parameters. Strokes end where the neighbouring slots begin: a GET from below the
+  -- next one would take its wafer.
+  local function rules(target, station, layout)
     local pitch = station.slots > 1 and station.pitch or math.huge
-    return {
-      { "stroke", target.stroke > 0, "above 0" },
-      { "offset", target.offset >= 0 and target.offset <= target.stroke, "from 0 to the stroke" },
-      { "stroke", math.max(target.stroke - target.offset, target.offset) < pitch,
-        ("within the pitch of %.10g mm below and above the slot"):format(pitch) },
-      { "retract", target.retract > 0, "above 0" },
-      { "release", target.release >= target.offset - target.stroke and target.release <= target.offset,
-        "within the stroke" },
-    }
-  end
-
-  local function other_rules(target, layout)
     local window = layout.tolerance.projz / layout.slice
+    local bottom = target.offset - target.stroke
     return {
-      { "pickup_speed", target.pickup_speed > 0, "above 0" },
+      { "offset", target.offset <= target.stroke, "from 0 to the stroke, %.10g mm", target.stroke },
+      { "stroke", math.max(-bottom, target.offset) < pitch,
+        "within the pitch of %.10g mm below and above the slot", pitch },
+      { "release", target.release >= bottom and target.release <= target.offset,
+        "within the stroke: from %.10g to %.10g mm", bottom, target.offset },
       { "pickup_speed", not layout.sampled or target.pickup_speed <= window,
-        ('at most %.10g mm/s with these slices, or a layout with check = "swept"'):format(window) },
+        'at most %.10g mm/s with these slices, or a layout with check = "swept"', window },
       { "pickup_acceleration", target.pickup_acceleration == 0 or target.pickup_acceleration >= 1e-6,
-        "0, or 1e-6 or more" },
-      { "map_speed", target.map_speed > 0, "above 0" },
-      { "vacuum_delay", target.vacuum_delay >= 0, "0 or more" },
-      { "timeout", target.timeout >= 0, "0 or more" },
-      { "wait", target.wait >= 0, "0 or more" },
-      { "retries", math.tointeger(target.retries) and target.retries >= 0 and target.retries <= 100,
-        "a whole number from 0 to 100" },
-      { "handover", is_one_of(target.handover, "new_first", "same_slice"), '"new_first" or "same_slice"' },
-      { "vacuum_check", is_one_of(target.vacuum_check, "both", "get", "put", "none"),
-        '"both", "get", "put" or "none"' },
+        "0, or 1e-6 mm/s^2 or more" },
+      { "retries", math.tointeger(target.retries), "a whole number" },
     }
   end
 
-  local function check(target, rules)
-    for _, rule in ipairs(rules) do
+  local function check(target, all)
+    for _, rule in ipairs(all) do
       if not rule[2] then
-        local name, expected = rule[1], rule[3]
+        local name, expected = rule[1], rule[3]:format(rule[4], rule[5])
         local value = lookup.quote(target[name])
         native.fail("BAD_ARGUMENT", ("%s: %s (expected %s)"):format(name, value, expected))
       end
@@ -82,7 +59,7 @@ return function(native, lookup)
     local number = lookup.slot(station, slot)
     options = check_options(options)
     if not station.taught then
-      native.fail("NOT_TAUGHT", lookup.quote(station.name))
+      native.fail("NOT_TAUGHT", ("%s: its layout says taught = false"):format(lookup.quote(station.name)))
     end
     local target = { station = station.name, slot = number, chuck = station.chuck, force = options.force }
     target.gripper = gripper or lookup.effector(options.gripper, station.effector)
@@ -93,8 +70,7 @@ return function(native, lookup)
         target[name] = station[name]
       end
     end
-    check(target, stroke_rules(target, station))
-    check(target, other_rules(target, native.layout))
+    check(target, rules(target, station, native.layout))
     target.asks = target.vacuum_check == "both" or target.vacuum_check == word
     target.watched = target.asks
     return target

@@ -89,7 +89,8 @@ return function(native)
     local plain = mantissa:find("^[+-]?%d+%.?%d*$") or mantissa:find("^[+-]?%.%d+$")
     local value = plain and not word.quoted and tonumber(word.text)
     if not value or value - value ~= 0 then
-      refuse("%s: %s (expected a number)", what, word.text == "" and '""' or word.raw)
+      local typed = word.name and word.raw:sub(#word.name + 2) or word.raw
+      refuse("%s: %s (expected a number)", what, typed == "" and '""' or typed)
     end
     return value
   end

@@ -2,7 +2,7 @@
 -- looks.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, pcall = ipairs, pcall
+local ipairs, pcall, select, type = ipairs, pcall, select, type
 
 return function(native, patterns, lookup, arm, targets)
   local transfer = {}
@@ -11,23 +11,77 @@ return function(native, patterns, lookup, arm, targets)
 
   ------------------------------------------------------------------------------------------------ GET and PUT
 
+  local function name_of(gripper)
+    return native.layout.grippers[gripper].name
+  end
+
   -- A sensor that is on behind a closed valve says nothing of wafers.
   local function check_empty(target)
-    if target.asks and native.sensor(target.gripper) then
-      native.fail(native.is_open(target.gripper) and "WAFER_ON_GRIPPER" or "VACUUM_BEFORE_PICK")
+    local gripper = target.gripper
+    if target.asks and native.sensor(gripper) then
+      local name, wafer = name_of(gripper), native.held(gripper)
+      if native.is_open(gripper) then
+        native.fail("WAFER_ON_GRIPPER", wafer and ("%s holds %s"):format(name, wafer)
+          or ("the sensor of %s is on, without a wafer on its pads"):format(name))
+      end
+      native.fail("VACUUM_BEFORE_PICK", ("the sensor of %s is on, its valve closed"):format(name))
     end
+  end
+
+  -- "EE holds Wafer 1, PA holds Wafer 2": of all grippers, or that none does.
+  local function holders()
+    local list = {}
+    for index, gripper in ipairs(native.layout.grippers) do
+      local wafer = native.held(index)
+      list[#list + 1] = wafer and ("%s holds %s"):format(gripper.name, wafer)
+    end
+    return #list > 0 and lookup.listed(list) or "no gripper holds one"
   end
 
   local function check_loaded(target)
     if target.asks and not native.sensor(target.gripper) then
-      native.fail("NO_WAFER_ON_GRIPPER")
+      local text = "the sensor of %s is off; %s"
+      native.fail("NO_WAFER_ON_GRIPPER", text:format(name_of(target.gripper), holders()))
     end
   end
 
   -- Why the running command took nothing with it.
   local function explain(gripper)
     local wafer, reasons = native.closest(gripper)
-    return wafer and ("closest to %s: %s"):format(wafer, reasons) or "no wafer came near"
+    return wafer and ("%s came closest to %s: %s"):format(name_of(gripper), wafer, reasons)
+      or ("no wafer came near %s while its valve was open"):format(name_of(gripper))
+  end
+
+  -- A length as text, without a minus before zeros.
+  local function to_micrometre(length)
+    local text = ("%.3f"):format(length)
+    return text == "-0.000" and "0.000" or text
+  end
+
+  -- Why the chuck did not take what the running command let go: that wafer still lies there.
+  local function explain_lost(chuck)
+    local wafer, dx, dy, dz, reasons = native.let_go(chuck)
+    if not wafer then
+      return explain(chuck)
+    end
+    local text = "%s did not take %s, which lies at dX %s, dY %s, dz %s mm: %s"
+    reasons = reasons or "that is within the tolerance, so valve or vacuum did not act"
+    dx, dy, dz = to_micrometre(dx), to_micrometre(dy), to_micrometre(dz)
+    return text:format(name_of(chuck), wafer, dx, dy, dz, reasons)
+  end
+
+  -- The sensor of a gripper with a wafer that the simulator sees on it.
+  local function fail_late(target, gripper)
+    local wafer = native.held(gripper) or "a wafer"
+    local text = "the sensor of %s stayed off for %.10g s, its timeout, with %s on its pads"
+    native.fail("VACUUM_TIMEOUT", text:format(name_of(gripper), target.timeout, wafer))
+  end
+
+  -- A gripper that enters less than projz below the slot takes its wafer from there.
+  local function taken_below(target)
+    local below, projz = target.stroke - target.offset, native.layout.tolerance.projz
+    local text = ": it takes the wafer from %.6g mm below (expected stroke - offset above projz, %.6g mm)"
+    return below < projz and text:format(below, projz) or ""
   end
 
   -- What a GET's pattern found, as an error unless it is a wafer.
@@ -35,17 +89,18 @@ return function(native, patterns, lookup, arm, targets)
     if found == "missing" then
       native.fail("WAFER_MISSING", explain(target.gripper))
     elseif found == "late" then
-      native.fail("VACUUM_TIMEOUT", "a wafer lay on the pads")
+      fail_late(target, target.gripper)
     elseif found == "early" then
-      native.fail("VACUUM_BEFORE_PICK", "with the valve open below the slot")
+      local text = "the sensor of %s came on below the slot, as soon as its valve opened%s"
+      native.fail("VACUUM_BEFORE_PICK", text:format(name_of(target.gripper), taken_below(target)))
     end
   end
 
   local function judge_put(target, became)
     if became == "lost" then
-      native.fail("WAFER_LOST", explain(target.chuck))
+      native.fail("WAFER_LOST", explain_lost(target.chuck))
     elseif became == "loose" then
-      native.fail("VACUUM_TIMEOUT", "the wafer lies on the chuck")
+      fail_late(target, target.chuck)
     end
   end
 
@@ -92,20 +147,26 @@ return function(native, patterns, lookup, arm, targets)
       end
     end
     if count < 2 then
-      native.fail("NO_SUCH_GRIPPER", "SWAP takes with one and puts with another (expected two on the robot)")
+      local names = select(2, lookup.on_robot())
+      local text = "SWAP takes with one and puts with another (expected two on the robot; there is %s)"
+      native.fail("NO_SUCH_GRIPPER", text:format(lookup.listed(names)))
     elseif not loaded then
-      native.fail("NO_WAFER_ON_GRIPPER", "SWAP puts what one of them holds")
+      native.fail("NO_WAFER_ON_GRIPPER", "SWAP puts what one on the robot holds; " .. holders())
     elseif not empty then
-      native.fail("WAFER_ON_GRIPPER", "SWAP takes with an empty one")
+      native.fail("WAFER_ON_GRIPPER", "SWAP takes with an empty one on the robot; " .. holders())
     end
     return empty, loaded
   end
 
   local function swap(station, slot, options)
-    lookup.slot(lookup.station(station), slot)
+    local take = targets.at("get", station, slot, options, 1)
+    if type(options) == "table" and options.gripper ~= nil then
+      local text = "gripper: %s (expected none: SWAP takes with the empty one and puts with the other)"
+      native.fail("BAD_ARGUMENT", text:format(lookup.quote(options.gripper)))
+    end
     local empty, loaded = choose_grippers()
-    local take = targets.at("get", station, slot, options, empty)
     local give = targets.at("put", station, slot, options, loaded)
+    take.gripper = empty
     local target = { get = take, put = give, watched = take.watched }
     arm.check_free()
     check_empty(take)
@@ -139,12 +200,16 @@ return function(native, patterns, lookup, arm, targets)
 
   -------------------------------------------------------------------------------------------------------- MAP
 
-  local function map(name, options)
-    local target = targets.at("get", name, 1, options)
-    local station = lookup.station(name)
-    arm.check_free()
+  local function map_target(name, options)
+    local target, station = targets.at("get", name, 1, options), lookup.station(name)
     target.margin = station.pitch / 2
     target.height = (station.slots - 1) * station.pitch
+    return target, station
+  end
+
+  local function map(name, options)
+    local target, station = map_target(name, options)
+    arm.check_free()
     arm.play(patterns.map, target)
     local codes = native.scan(station.index)
     slot_map.map(name, codes)
@@ -158,14 +223,81 @@ return function(native, patterns, lookup, arm, targets)
 
   -------------------------------------------------------------------------------------------------- rehearsal
 
-  -- Plans GET and PUT at a slot from where the arm stands, without playing them; returns what is out of
-  -- reach.
-  function transfer.rehearse(station, slot)
-    local _, problem = pcall(function()
-      arm.rehearse(patterns.get, targets.at("get", station, slot))
-      arm.rehearse(patterns.put, targets.at("put", station, slot))
+  local function plan(word, station, slot, gripper)
+    return arm.rehearse(transfers[word].pattern, targets.at(word, station, slot, nil, gripper))
+  end
+
+  -- Plans GET and PUT at a slot from where the arm stands, without playing them, with the station's effector
+  -- or another gripper (an index). Returns the word of the one that is refused and the error, or nil, nil and
+  -- theta before the slot.
+  function transfer.rehearse(station, slot, gripper)
+    local can_get, got = pcall(plan, "get", station, slot, gripper)
+    if not can_get then
+      return "GET", got
+    end
+    local can_put, put = pcall(plan, "put", station, slot, gripper)
+    if not can_put then
+      return "PUT", put
+    end
+    return nil, nil, got[1].axes[1]
+  end
+
+  ------------------------------------------------------------------------------------------------ trying out
+
+  -- Plays a command as a run does, but for what the sensors say of wafers before it; returns what went wrong.
+  -- Here and below `cell` is what lib/mcs/survey.c stands it in.
+  local function try(word, station, slot, cell, gripper)
+    local good, problem = pcall(function()
+      local kind, target = transfers[word], targets.at(word, station, slot, nil, gripper)
+      kind.judge(target, arm.drive(kind.pattern, target, arm.rehearse(kind.pattern, target)))
+      if word == "get" and not native.held(target.gripper) then
+        judge_get(target, "missing")
+      end
     end)
-    return problem
+    return cell.complaint() or not good and problem or nil
+  end
+
+  -- GET and PUT at these slots, one after another in one cell, from in front of the first one; `gripper` as in
+  -- transfer.rehearse. Returns the slot at which a command fails, its word and the error; or nil; or false if
+  -- the cell cannot be had.
+  function transfer.try_out(station, slots, cell, gripper)
+    if not cell.stage(plan("get", station, slots[1], gripper)[1].axes) then
+      return false
+    end
+    for step = 1, 2 * #slots do
+      local slot, word = slots[(step + 1) // 2], step % 2 == 1 and "get" or "put"
+      local problem = try(word, station, slot, cell, gripper)
+      if problem then
+        return slot, word:upper() .. (step > 2 and " after others" or ""), problem
+      end
+    end
+    return nil
+  end
+
+  -- A GET at `from`, then a PUT at an empty slot: how the wafer lies on the blade is the other station's
+  -- doing. With `again` a GET follows. Returns the word of the one that fails and the error; or nil.
+  function transfer.try_carrying(from, station, slot, cell, again)
+    cell.stage(plan("get", from, 1)[1].axes, slot)
+    if try("get", from, 1, cell) then
+      return nil
+    end
+    cell.move(plan("put", station, slot)[1].axes)
+    local stand = { segment = { dwell = 4 * native.layout.slice } }
+    arm.drive(patterns.single, stand, arm.rehearse(patterns.single, stand))
+    cell.begin()
+    local word, problem = "PUT", try("put", station, slot, cell)
+    if again and not problem then
+      word, problem = "GET", try("get", station, slot, cell)
+    end
+    return problem and word, problem
+  end
+
+  -- The same for MAP: returns the error, or nil.
+  function transfer.rehearse_map(station)
+    local can_map, problem = pcall(function()
+      arm.rehearse(patterns.map, (map_target(station)))
+    end)
+    return not can_map and problem or nil
   end
 
   return transfer

@@ -6,6 +6,7 @@
 #include <setjmp.h>
 #include <string.h>
 
+#include "app/apart.h"
 #include "app/app.h"
 #include "app/connection.h"
 #include "app/run_arguments.h"
@@ -22,13 +23,14 @@ static int word_count;
 
 /* ------------------------------------------------------------------------------------------------- parsing */
 
-/* argp_error ends the process; here it ends the parser's call, which then fails. */
+/* argp_error ends the process; here it ends the parser's call, which then fails. The first call alone does not:
+ * argp would keep its memory. */
 static jmp_buf parser_call;
 static argp_parser_t own_parser;
 
 static error_t parse_own(int key, char *argument, struct argp_state *state) {
     if (setjmp(parser_call) != 0) {
-        return EINVAL;
+        return key == ARGP_KEY_INIT ? 0 : EINVAL;
     }
     return own_parser(key, argument, state);
 }
@@ -69,6 +71,9 @@ error_t __wrap_argp_parse(const struct argp *argp, int argc, char **argv, unsign
 
 int __wrap_wh_run_and_print(wh_run_arguments_t *arguments);
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options);
+bool __real_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints);
+bool __wrap_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints);
+FILE *__wrap_wh_log_file(const char *path, const char **fault);
 bool __wrap_wh_study_open(wh_study_t *study);
 bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
 bool __wrap_wh_node_reaches_others(const char *url);
@@ -101,6 +106,20 @@ int __wrap_wh_run_and_print(wh_run_arguments_t *arguments) {
         check_run(&arguments->run);
     }
     return WH_EXIT_USAGE;
+}
+
+/* Two of the files are one. */
+bool __wrap_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints) {
+    const bool apart = __real_wh_files_are_apart(files, count, prints);
+    refused = refused || !apart;
+    return apart;
+}
+
+FILE *__wrap_wh_log_file(const char *path, const char **fault) {
+    reached = true;
+    REQUIRE(refused || path != NULL);
+    *fault = "not opened";
+    return NULL;
 }
 
 bool __wrap_wh_study_open(wh_study_t *study) {

@@ -120,8 +120,8 @@ static wh_reading_verdict_t read_log(size_t size) {
     memset(&replay, 0, sizeof replay);
     wh_reading_replay(in, &log, &replay, &reading);
     check_runs(&replay);
-    const wh_reading_verdict_t verdict = wh_reading_judge(&replay, &reading, false);
-    const wh_reading_verdict_t lenient = wh_reading_judge(&replay, &reading, true);
+    const wh_reading_verdict_t verdict = wh_reading_judge(&replay, &reading, false, NULL);
+    const wh_reading_verdict_t lenient = wh_reading_judge(&replay, &reading, true, NULL);
     /* Leniency excuses what is missing, and nothing else. */
     REQUIRE(verdict == lenient || verdict == WH_READING_INCOMPLETE);
     REQUIRE(verdict != WH_READING_SAME || (reading.damage_count == 0 && !reading.is_cut));

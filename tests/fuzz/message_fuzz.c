@@ -228,7 +228,7 @@ static void take_requests(void) {
     REQUIRE(control.waiting_count <= WH_CONTROL_REQUESTS);
     while (wh_mcs_process_next_request(&control, line)) {
         REQUIRE(control.executing.seq != 0);
-        wh_mcs_process_answer(&control, strlen(line) % 2 == 0 ? WH_OK : WH_STATUS_BAD_ARGUMENT, line, line);
+        wh_mcs_process_answer(&control, strlen(line) % 2 == 0 ? WH_OK : WH_STATUS_BAD_ARGUMENT, line);
         REQUIRE(control.executing.seq == 0);
     }
 }

@@ -42,6 +42,7 @@ static inline void fixture_layout(fixture_t *f) {
     strcpy(layout->tolerance_name, "paper");
     layout->wafer_diameter = 300;
     layout->wafer_thickness = 0.775;
+    layout->notch_depth = 1;
     layout->grasp.tolerance.projz = 0.5;
     layout->grasp.tolerance.projxy = 50;
     layout->grasp.tolerance.planar = 0.99;

@@ -29,6 +29,17 @@ extern "C" {
 #define WH_TEST_SHARE 1
 #endif
 
+/* Room for what wh_test_path writes. */
+#define WH_TEST_PATH 200
+
+/* A template for mkstemp and mkdtemp, in TMPDIR if the environment has one. Returns `path`. */
+static inline char *wh_test_path(char path[WH_TEST_PATH], const char *name) {
+    const char *folder = getenv("TMPDIR");
+    const int length = snprintf(path, WH_TEST_PATH, "%s/waferhand_%s_XXXXXX", folder ? folder : "/tmp", name);
+    assert_in_range(length, 1, WH_TEST_PATH - 1);
+    return path;
+}
+
 static uint64_t wh_test_state;
 static int wh_test_seeded;
 

@@ -11,6 +11,7 @@
 #include <limits.h>
 
 #include "../../text/array.h"
+#include "../../text/guard.h"
 #include "../../text/output.h"
 #include "../../text/style.h"
 #include "../../text/utf8.h"
@@ -237,7 +238,7 @@ static void set_up(wh_editor_t *editor) {
 wh_editor_t *wh_editor_open(const wh_input_t *input) {
     wh_editor_t *editor = wh_array_new(1, sizeof *editor);
     editor->input = input;
-    editor->edit = el_init("waferhand", stdin, stdout, stderr);
+    editor->edit = el_init("waferhand", stdin, stdout, wh_guard_terminal());
     if (!editor->edit) {
         free(editor);
         return NULL;
@@ -280,7 +281,7 @@ void wh_editor_say(wh_editor_t *editor, const char *line) {
         /* Blanks over what is there; a line that has become longer than the terminal stays where it is. */
         const bool fits = columns == 0 || shown < columns;
         fflush(stdout);
-        fprintf(stderr, "%s%s%*s\n", fits ? "\r" : "\n", printable,
+        fprintf(wh_guard_terminal(), "%s%s%*s\n", fits ? "\r" : "\n", printable,
                 fits && shown > length ? (int)(shown - length) : 0, "");
         el_set(editor->edit, EL_REFRESH);
     }

@@ -61,23 +61,22 @@ void wh_interrupt_release(void) {
     signals.count = 0;
 }
 
-static bool is_pending(void) {
-    for (size_t i = 0; i < signals.count; ++i) {
-        if (signals.arrived[i]) {
-            return true;
-        }
+/* The first of those that have arrived, or signals.count. */
+static size_t find_arrived(void) {
+    size_t i = 0;
+    while (i < signals.count && !signals.arrived[i]) {
+        ++i;
     }
-    return false;
+    return i;
 }
 
 int wh_interrupt_take(void) {
-    for (size_t i = 0; i < signals.count; ++i) {
-        if (signals.arrived[i]) {
-            signals.arrived[i] = 0;
-            return held[i];
-        }
+    const size_t i = find_arrived();
+    if (i == signals.count) {
+        return 0;
     }
-    return 0;
+    signals.arrived[i] = 0;
+    return held[i];
 }
 
 bool wh_interrupt_is_due(void) {
@@ -96,6 +95,12 @@ void wh_interrupt_stop_session(wh_session_t *session) {
 
 /* ------------------------------------------------------------------------------------------------ waiting */
 
+void wh_input_tell_stop(const wh_input_t *input) {
+    if (wh_interrupt_is_due()) {
+        input->watch.stop(input->watch.user);
+    }
+}
+
 wh_input_event_t wh_input_wait(const wh_input_t *input) {
     static const struct timespec tenth = {0, 100000000};
     struct pollfd polled[] = {{.fd = input->watch.fd, .events = POLLIN},
@@ -109,7 +114,8 @@ wh_input_event_t wh_input_wait(const wh_input_t *input) {
         wh_interrupt_stop_session(input->session);
         input->watch.look(input->watch.user);
         wh_interrupt_stop_session(NULL);
-        if (is_pending()) {
+        wh_input_tell_stop(input);
+        if (find_arrived() < signals.count) {
             return WH_INPUT_SIGNAL;
         }
         if (polled[1].revents != 0) {

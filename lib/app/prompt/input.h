@@ -36,6 +36,9 @@ void wh_interrupt_release(void);
 /* Takes one of the signals that have arrived. Returns 0 if there is none. */
 int wh_interrupt_take(void);
 
+/* Tells the watch if such a signal has arrived. */
+void wh_input_tell_stop(const wh_input_t *input);
+
 /* True if SIGINT, SIGTERM or SIGHUP has arrived and was not taken yet. */
 bool wh_interrupt_is_due(void);
 

@@ -154,8 +154,8 @@ static wh_status_t perform(wh_prompt_t *prompt, const char *line) {
     if (!wh_interrupt_is_due()) {
         return wh_session_execute(prompt->input.session, line, prompt->answer, sizeof prompt->answer);
     }
-    snprintf(prompt->answer, sizeof prompt->answer, "ERROR %d %s: %s", (int)WH_STATUS_STOPPED,
-             wh_status_name(WH_STATUS_STOPPED), wh_record_error_text(WH_STATUS_STOPPED));
+    wh_session_write_error(prompt->answer, sizeof prompt->answer, WH_STATUS_STOPPED,
+                           wh_record_error_text(WH_STATUS_STOPPED));
     return WH_STATUS_STOPPED;
 }
 
@@ -163,6 +163,7 @@ static void execute(wh_prompt_t *prompt, const char *line) {
     wh_interrupt_stop_session(prompt->input.session);
     const wh_status_t status = perform(prompt, line);
     wh_interrupt_stop_session(NULL);
+    wh_input_tell_stop(&prompt->input);
     prompt->failed = prompt->failed || status != WH_OK;
     print_answer(prompt, status);
     prompt->leaving = is_interrupted(prompt);

@@ -19,10 +19,12 @@
 /* What is looked after besides the input: LCM, say. While the prompt waits for input, and never during a
  * command, `look` is called whenever it wakes: when `fd` can be read or has failed, when there is input, and
  * at least every 100 ms. It must read the descriptor, or it is called again at once. It may execute commands
- * of the session, which signals stop like those of the prompt. */
+ * of the session, which signals stop like those of the prompt. `stop` is called when a signal has
+ * come during a command or a look: what else waits is not to be begun. */
 typedef struct {
     int fd;
     void (*look)(void *user);
+    void (*stop)(void *user);
     void *user;
 } wh_prompt_watch_t;
 

@@ -6,7 +6,8 @@
     const WARN = ['near_miss', 'too_close', 'contested', 'undecided', 'placed_off_centre', 'placed_askew', 'fault_armed'];
 
     /* Those for which a run fails, whatever it expected. */
-    const COMPLAINTS = ['bad_input', 'released_unsupported', 'slot_occupied', 'hit', 'undecided', 'too_close', 'slipped'];
+    const COMPLAINTS = ['bad_input', 'released_unsupported', 'slot_occupied', 'placed_off_centre', 'placed_askew', 'hit',
+        'undecided', 'too_close', 'slipped'];
     const isComplaint = (kind) => COMPLAINTS.includes(kind);
 
     /* The style sheet's name of the colour. */

@@ -6,7 +6,7 @@
 
     function verdict(doc) {
         if (typeof doc.run.ok !== 'boolean') {
-            return W.element('span', { class: 'verdict' }, 'no verdict');
+            return W.element('span', { class: 'verdict' }, doc.run.nothing_moved ? 'nothing moved' : 'no verdict');
         }
         return W.element('span', { class: `verdict ${doc.run.ok ? 'good' : 'bad'}` },
             doc.run.ok ? '\u2713 passed' : '\u2717 failed');
@@ -54,8 +54,19 @@
 
     function throughput(doc) {
         const found = doc.run.throughput;
-        return found && found.wafers > 0 ? tile('wafers per hour', W.number(found.wafers_per_hour, 1),
-            `${counted(found.wafers, 'wafer', 'wafers')} in ${W.seconds(found.seconds)}`) : null;
+        if (!found || !(found.reason || found.wafers > 0)) {
+            return null;
+        }
+        return found.reason ? tile('wafers per hour', W.DASH, found.reason)
+            : tile('wafers per hour', W.number(found.wafers_per_hour, 1),
+                `${counted(found.wafers, 'wafer', 'wafers')} in ${W.seconds(found.seconds)}`);
+    }
+
+    /* Of a log: what a replay says of it. */
+    function recording(doc) {
+        const found = doc.run.log;
+        return !found || typeof found.verdict !== 'string' ? null : tile('the log, replayed', found.verdict,
+            found.reason || 'whole, and every slice as recorded', found.verdict === 'same' ? 'good' : 'bad');
     }
 
     function duration(doc) {
@@ -65,7 +76,8 @@
 
     W.summary = {
         start(doc) {
-            const tiles = [expectations(doc), commands(doc), events(doc), throughput(doc), duration(doc)];
+            const tiles = [expectations(doc), commands(doc), events(doc), throughput(doc), duration(doc),
+                recording(doc)];
             const theme = W.element('button', { type: 'button', id: 'theme', title: 'Light or dark (t)',
                 'aria-keyshortcuts': 't', click: W.theme.toggle }, 'Light / dark');
             const help = W.element('button', { type: 'button', id: 'helping', title: 'Keys (?)',

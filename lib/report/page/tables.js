@@ -107,9 +107,12 @@
         const made = section('split', 'Wafers per hour, and what the time went into', ['part', 'time (s)', '%', ''], rows,
             'The document does not hold what the time went into.');
         const found = doc.run.throughput;
-        if (found && found.wafers > 0) {
-            made.insertBefore(W.element('p', {}, W.element('b', {}, `${W.number(found.wafers_per_hour, 1)} wafers per hour`),
-                `: ${found.wafers} in ${W.seconds(found.seconds)}, counted by ${found.rule}.`), made.children[1] || null);
+        if (found && (found.reason || found.wafers > 0)) {
+            const counting = (found.counting || []).join(', ');
+            const figure = found.reason ? ['No wafers per hour', `: ${found.reason}.`]
+                : [`${W.number(found.wafers_per_hour, 1)} wafers per hour`,
+                    `: ${found.wafers} in ${W.seconds(found.seconds)}; a wafer counts when put into ${counting}.`];
+            made.insertBefore(W.element('p', {}, W.element('b', {}, figure[0]), figure[1]), made.children[1] || null);
         }
         return made;
     }

@@ -51,4 +51,15 @@ function cases.swap()
   get("A", 1) swap("P", 1) put("A", 2, { gripper = "BACK" })
 end
 
+-- One wafer, over B and back: two, if B counts.
+function cases.lock()
+  cell "figures_layout.lua"
+  get("A", 1) put("B", 1) get("B", 1) put("A", 1)
+end
+
+function cases.aligner()
+  cell "figures_layout.lua"
+  get("A", 1) put("P", 1)
+end
+
 cases[params.case or "cycles"]()

@@ -2,6 +2,7 @@
 return {
   tolerance = { projz = 0.51, projxy = 50, planar = 0.99 },
   seat = true,
+  study = params.study and { placement = { dx = 0.01 } },
   robot = {
     kind = "TRZY",
     theta = { speed = 1000, acceleration = 1000, jerk = 360 },
@@ -11,7 +12,7 @@ return {
   grippers = { { name = "EE" }, { name = "PA", on = "P" } },
   stations = {
     A = { at = { 700, 0, 900 }, slots = 3, vacuum_delay = 0.1 },
-    B = { at = { 0, 700, 900 }, rpy = { 0, 0, 90 }, slots = 3, vacuum_delay = 0.1 },
+    B = { at = { 0, 700, 900 }, rpy = { 0, 0, 90 }, slots = 3, vacuum_delay = 0.1, counts = params.b ~= "lock" },
     C = { at = { 300, -350, 900 }, retract = 600 },
     P = { kind = "prealigner", at = { -700, 0, 900 }, rpy = { 0, 0, 180 } },
   },

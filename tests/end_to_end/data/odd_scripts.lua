@@ -24,8 +24,148 @@ function cases.error_lines()
   cell "../../../lua/layouts/paper.lua"
   local _, far = pcall(get, "A", 1, { retract = 5000 })
   expect(far.name == "OUT_OF_REACH" and far.line == 25, "the first: " .. tostring(far))
-  local _, slow = pcall(line, { dz = 1, speed = 1e-300 })
-  expect(slow.name == "BAD_SEGMENT" and slow.line == 27, "the second: " .. tostring(slow))
+  local _, high = pcall(line, { dz = 1000 })
+  expect(high.name == "LIMIT_EXCEEDED" and high.line == 27, "the second: " .. tostring(high))
+end
+
+-- Every argument of every word, and every field of those that are tables, with values of each wrong kind: the error
+-- has its number, and names the field, the value and what was expected. Words and fields are those that there are.
+function cases.wrong_values()
+  cell "../../../lua/layouts/paper.lua"
+  local NIL, tried, wrong_errors = {}, 0, {}
+  local kinds = { "1", {}, true, 0/0, 1/0, -1/0 }
+
+  local function with(...)
+    local list = { ... }
+    for _, value in ipairs(kinds) do
+      list[#list + 1] = value
+    end
+    return list
+  end
+
+  local function quoted(value)
+    return type(value) == "string" and ('"%s"'):format(value) or tostring(value)
+  end
+
+  local function try(word, names, value, ...)
+    local ok, found = pcall(_G[word], ...)
+    local text = not ok and type(found) == "table" and found.text or "no numbered error: " .. tostring(found)
+    local good = text:find("^error") and text:find(quoted(value), 1, true) and text:find("expected", 1, true)
+    for _, name in ipairs(names) do
+      good = good and text:find(name, 1, true)
+    end
+    tried = tried + 1
+    if not good then
+      wrong_errors[#wrong_errors + 1] = ("%s %s %s: %s"):format(word, names[1], quoted(value), text)
+    end
+  end
+
+  -- Arguments: what the error names, a good value, wrong ones.
+  local station = { "NO_SUCH_STATION", "P", { "Q", "", 5, {}, true, NIL } }
+  local slot = { "NO_SUCH_SLOT", 1, with(0, 2, -1, 1.5, 1e300, NIL) }
+  local gripper = { "NO_SUCH_GRIPPER", "EE", { "Q", 5, {}, NIL } }
+  local wafer = { "NO_SUCH_WAFER", "Wafer 1", { "Q", 5, {}, NIL } }
+  local function frames(word)
+    local frame = { word .. ": ", "base", { "Q", 5, {}, NIL } }
+    return { frame, frame }
+  end
+  local function number(name, good, ...)
+    return { name .. ": ", good, with(NIL, ...) }
+  end
+  local description = { "", { kind = "leak" }, { 5, true, "leak", NIL } }
+  local options = { "options: ", nil, { 5, true, "force" } }
+
+  local words = {
+    get = { station, slot, options }, put = { station, slot, options }, swap = { station, slot, options },
+    ready = { station, slot, options }, map = { station, options }, home = {}, recover = {},
+    rotate = { station, number("degrees", 5) }, valve = { gripper, number("level", 1, 2, -1, 0.5) },
+    move = { { "move: ", {}, { 5, true, "z", NIL } } }, line = { { "line: ", {}, { 5, true, "dz", NIL } } },
+    wait = { number("seconds", 1, -1, 1e7) }, stop_in = { number("seconds", 1, -1, 1e7) },
+    fault = { description }, clear_fault = { number("number", 1, 0, 99, 1.5, 1e300) },
+    offset = { wafer, station, slot }, holder = { wafer }, proximity = { wafer, gripper },
+    measure = frames("measure"), distance = frames("distance"), angle = frames("angle"), hits = {},
+    clearance = { { "kind: ", "blade_other", { "blade_others", 5, {}, NIL } } }, expect = {},
+    cycle = { { "cycle: ", "A", { 5, {}, true } } },
+    expect_offset = { wafer, station, slot, number("dx", 0), number("dy", 0, 1e7),
+      { "tolerance: ", 1, with(0, -1) } },
+  }
+  local no_commands = { cell = true, study = true, assert = true, error = true, getmetatable = true, ipairs = true,
+    load = true, next = true, pairs = true, pcall = true, print = true, rawequal = true, rawget = true, rawlen = true, require = true,
+    rawset = true, select = true, setmetatable = true, tonumber = true, tostring = true, type = true, xpcall = true }
+  for name, value in pairs(_G) do
+    if type(value) == "function" and not words[name] and not no_commands[name] then
+      wrong_errors[#wrong_errors + 1] = name .. " is not tried"
+    end
+  end
+
+  for word, arguments in pairs(words) do
+    for place, argument in ipairs(arguments) do
+      for _, value in ipairs(argument[3]) do
+        local given = {}
+        for other, good in ipairs(arguments) do
+          given[other] = good[2]
+        end
+        given[place] = value
+        if value == NIL then
+          given[place] = nil
+        end
+        try(word, { argument[1] }, given[place], table.unpack(given, 1, #arguments))
+      end
+    end
+  end
+
+  -- The fields that a command has, as it says itself when there is none of that name; each with no value that any has.
+  local function try_fields(word, ...)
+    local before = table.pack(...)
+    local function call(fields)
+      before[before.n + 1] = fields
+      return table.unpack(before, 1, before.n + 1)
+    end
+    local near = ({ move = "thetta", line = "sped" })[word] or "strok"
+    try(word, { near .. ": ", "did you mean " }, 5, call { [near] = 5 })
+    local _, unknown = pcall(_G[word], call { q = 5 })
+    local known = 0
+    for name in unknown.text:match("expected ([%w_, ]+)%)"):gmatch("[%w_]+") do
+      known = known + 1
+      for _, value in ipairs { {}, 0/0, 1/0, -1/0, "wrong" } do
+        local number = name == "gripper" and word ~= "swap" and "NO_SUCH_GRIPPER"
+        try(word, { number or name .. ": " }, value, call { [name] = value })
+      end
+    end
+    return known
+  end
+  for _, word in ipairs { "get", "put", "swap", "ready" } do
+    expect(try_fields(word, "A", 1) == 16, word .. " has 16 fields")
+  end
+  expect(try_fields("map", "A") == 16 and try_fields("move") == 4 and try_fields("line") == 4, "and so on")
+  for field, values in pairs { stroke = with(0, -1, 2000), retract = with(0.5), timeout = with(-1), wait = with(-1),
+    release = with(4, -4), retries = with(0.5, -1, 101), pickup_speed = with(0, 501), map_speed = with(0),
+    pickup_acceleration = with(-1, 1e-7), offset = with(-1, 7), vacuum_delay = with(3601) } do
+    for _, value in ipairs(values) do
+      try("get", { field .. ": " }, value, "A", 1, { [field] = value })
+    end
+  end
+  for _, value in ipairs(with(0, -3, 1e-300, 1e5)) do
+    try("line", { "speed: ", "mm/s" }, value, { dz = 1, speed = value })
+  end
+  for _, value in ipairs(with(1e7)) do
+    try("line", { "dx: ", "mm" }, value, { dx = value })
+  end
+  for _, value in ipairs { 1000, -5 } do
+    try("move", { "; r: ", "(expected 300 to 900 mm)" }, value, { r = value })
+    try("move", { "; yaw: ", "(expected -270 to 270 degrees)" }, value * 300, { yaw = value * 300 })
+  end
+
+  -- Faults are read as a layout's are.
+  for field, kind in pairs { value = "leak", after = "leak", lasting = "leak", dx = "wafer_shifted", dy = "wafer_shifted" } do
+    for _, value in ipairs { "1", true, 0/0, 1/0, -1/0, -2000 } do
+      local given = kind == "leak" and { kind = kind, value = 0.5 } or { kind = kind, wafer = "Wafer 1" }
+      given[field] = value
+      try("fault", { "fault: ", field }, value, given)
+    end
+  end
+  expect(tried > 500, "tried " .. tried)
+  expect(#wrong_errors == 0, table.concat(wrong_errors, "\n"))
 end
 
 -- The record lies outside of Lua's memory: it must not grow without end.

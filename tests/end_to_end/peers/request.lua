@@ -40,7 +40,7 @@ local function ask(number, line)
       link:publish("WAFERHAND_REQUEST", message:encode())
       sent = os.time()
     end
-    link:timedhandle(200)
+    link:timedhandle(0.2)
   end
   return answers[number]
 end

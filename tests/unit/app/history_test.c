@@ -9,16 +9,15 @@
 #include "app/prompt/history.h"
 #include "text/output.h"
 
-static char folder[] = "/tmp/waferhand-history-XXXXXX";
-static char path[200];
+static char folder[WH_TEST_PATH];
+static char path[WH_TEST_PATH + 50];
 static char loaded[WH_HISTORY_LINES * 2][1100];
 static size_t count;
 
 static int make_folder(void **state) {
     (void)state;
-    strcpy(folder + sizeof folder - 7, "XXXXXX");
     count = 0;
-    if (!mkdtemp(folder)) {
+    if (!mkdtemp(wh_test_path(folder, "history"))) {
         return -1;
     }
     snprintf(path, sizeof path, "%s/waferhand/history", folder);
@@ -26,7 +25,7 @@ static int make_folder(void **state) {
 }
 
 static int remove_folder(void **state) {
-    char command[300];
+    char command[WH_TEST_PATH + 20];
     (void)state;
     snprintf(command, sizeof command, "rm -rf '%s'", folder);
     return system(command);
@@ -145,7 +144,7 @@ static void what_is_no_file_does_no_harm(void **state) {
 }
 
 static void a_file_is_replaced_whole_and_a_link_stays(void **state) {
-    char link[220];
+    char link[WH_TEST_PATH + 60];
     struct stat about;
     wh_output_t output = {0};
     (void)state;

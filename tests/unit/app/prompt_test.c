@@ -12,13 +12,13 @@
 static wh_session_t session;
 static wh_prompt_t *prompt;
 static int input[2], other[2], before;
-static int calls, looks;
+static int calls, looks, stops;
 static char answer[200];
 
 static int open_all(void **state) {
     const wh_session_options_t options = {.layout = "lua/layouts/paper.lua", .limits = {.print_to = stderr}};
     (void)state;
-    calls = looks = 0;
+    calls = looks = stops = 0;
     before = dup(STDIN_FILENO);
     if (pipe(input) != 0 || pipe(other) != 0 || dup2(input[0], STDIN_FILENO) < 0) {
         return -1;
@@ -56,8 +56,13 @@ static void take_request(void *user) {
     }
 }
 
+static void count_stop(void *user) {
+    (void)user;
+    ++stops;
+}
+
 static void open_prompt(void) {
-    const wh_prompt_watch_t watch = {other[0], take_request, &calls};
+    const wh_prompt_watch_t watch = {other[0], take_request, count_stop, &calls};
     prompt = wh_prompt_open(&session, &watch);
 }
 
@@ -92,7 +97,7 @@ static void leave_at_the_third_look(void *user) {
 
 /* Nothing comes: the watch is looked after all the same, every 100 ms. */
 static void the_watch_is_called_in_silence(void **state) {
-    const wh_prompt_watch_t watch = {other[0], leave_at_the_third_look, NULL};
+    const wh_prompt_watch_t watch = {other[0], leave_at_the_third_look, count_stop, NULL};
     struct timespec begin, end;
     (void)state;
     prompt = wh_prompt_open(&session, &watch);
@@ -124,7 +129,7 @@ static void a_signal_descriptor_wakes_it(void **state) {
     sigaddset(&mask, SIGTERM);
     sigprocmask(SIG_BLOCK, &mask, NULL);
     signal_descriptor = signalfd(-1, &mask, SFD_CLOEXEC | SFD_NONBLOCK);
-    const wh_prompt_watch_t watch = {signal_descriptor, take_signal, NULL};
+    const wh_prompt_watch_t watch = {signal_descriptor, take_signal, count_stop, NULL};
     prompt = wh_prompt_open(&session, &watch);
     raise(SIGTERM);
     assert_int_equal(wh_prompt_run(prompt), 0);
@@ -156,9 +161,9 @@ static void take_long_request(void *user) {
     }
 }
 
-/* A signal stops a watch's command, too, and is then the prompt's. */
+/* A signal stops a watch's command, too, and is then the prompt's. The watch is told. */
 static void signal_during_a_request(void **state) {
-    const wh_prompt_watch_t watch = {other[0], take_long_request, NULL};
+    const wh_prompt_watch_t watch = {other[0], take_long_request, count_stop, NULL};
     const struct itimerspec soon = {{0, 0}, {0, 100000000}};
     struct sigevent event = {.sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGTERM};
     timer_t timer;
@@ -169,6 +174,7 @@ static void signal_during_a_request(void **state) {
     assert_int_equal(timer_settime(timer, 0, &soon, NULL), 0);
     assert_int_equal(wh_prompt_run(prompt), 1);
     assert_memory_equal(answer, "ERROR 52 STOPPED", 16);
+    assert_int_equal(stops, 1); /* so that what else waits is not begun */
     timer_delete(timer);
 }
 

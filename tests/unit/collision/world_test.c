@@ -300,21 +300,28 @@ static void stepping_allocates_nothing(void **state) {
 
 /* ------------------------------------------------------------------------------------------------ before a run */
 
-static void what_touches_before_a_run_is_found(void **state) {
-    int32_t found[2];
+static void all_that_touches_before_a_run_is_found(void **state) {
+    int32_t found[4][2];
     (void)state;
     begin();
     const wh_world_input_t input = seen();
-    assert_false(wh_world_check_rest(world, &input, found));
+    assert_int_equal(wh_world_check_rest(world, &input, found, 4), 0);
     free(memory);
     wafers[0].base_from_wafer.r.z = 900 + 9.5; /* lies in slot 2, and so do its ledges' rules */
     begin();
-    assert_false(wh_world_check_rest(world, &input, found));
+    assert_int_equal(wh_world_check_rest(world, &input, found, 4), 0);
     free(memory);
     wafers[0].base_from_wafer.r.x = 900;
     begin();
-    assert_true(wh_world_check_rest(world, &input, found));
-    assert_true(is_pair(found, 0, PARTS));
+    const size_t count = wh_world_check_rest(world, &input, found, 4);
+    assert_true(count >= 1 && count <= 4);
+    assert_true(is_pair(found[0], 0, PARTS));
+    assert_int_equal(wh_world_check_rest(world, &input, NULL, 0), count);
+    for (size_t i = 0; i < count; ++i) {
+        for (size_t k = i + 1; k < count; ++k) {
+            assert_false(is_pair(found[i], found[k][0], found[k][1]));
+        }
+    }
 }
 
 static void bad_descriptions_are_refused(void **state) {
@@ -362,7 +369,7 @@ int main(void) {
         TEST(a_full_list_loses_events_but_no_figures),
         TEST(cost_is_flat_in_what_rests_elsewhere),
         TEST(stepping_allocates_nothing),
-        TEST(what_touches_before_a_run_is_found),
+        TEST(all_that_touches_before_a_run_is_found),
         TEST(bad_descriptions_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -67,7 +67,7 @@ static void defaults_that_follow_other_fields(void **state) {
         const char *diameter;
         double thickness, pitch;
     } rows[] = {{"100", 0.525, 4.76}, {"125", 0.625, 4.76}, {"150", 0.675, 4.76},
-                {"200", 0.725, 6.35}, {"300", 0.775, 10},   {"450", 0.775, 10}};
+                {"200", 0.725, 6.35}, {"300", 0.775, 10},   {"299.5", 0.775, 10}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
         char fields[200];
         snprintf(fields, sizeof fields, GRIPPERS STATIONS "wafer = { diameter = %s }", rows[i].diameter);
@@ -81,6 +81,15 @@ static void defaults_that_follow_other_fields(void **state) {
     assert_near(layout->stations[0].release, -0.2, 0);
     assert_near(layout->grasp.near_projxy, 14, 0);
     assert_near(layout->grasp.tolerance.planar, 0.99, 0);
+    assert_true(layout->tolerance_default[2] && !layout->tolerance_default[0] &&
+                !layout->tolerance_default[1]);
+}
+
+static void only_wafers_from_200_mm_on_have_a_notch_by_themselves(void **state) {
+    (void)state;
+    assert_near(read_sound(GRIPPERS STATIONS "wafer = { diameter = 200 }")->notch_depth, 1, 0);
+    assert_near(read_sound(GRIPPERS STATIONS "wafer = { diameter = 150 }")->notch_depth, 0, 0);
+    assert_near(read_sound(GRIPPERS STATIONS "wafer = { diameter = 150, notch = {} }")->notch_depth, 1, 0);
 }
 
 static void every_field_of_the_cell_is_read(void **state) {
@@ -182,6 +191,45 @@ static void what_a_station_asks_of_a_command_is_read(void **state) {
     assert_near(station->pickup_acceleration, 250, 0);
     assert_near(station->wait, 0.5, 0);
     assert_near(station->map_speed, 80, 0);
+}
+
+static void assert_counting(const char *stations, const char *wanted) {
+    char fields[2048];
+    char counting[256] = "";
+    (void)snprintf(fields, sizeof fields,
+                   "grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } }, stations = { "
+                   "P = { kind = 'prealigner', at = { -600, 0, 900 } }, %s }",
+                   stations);
+    const wh_layout_t *layout = read_sound(fields);
+    for (size_t s = 0; s < layout->station_count; ++s) {
+        strcat(counting, layout->stations[s].counts ? layout->stations[s].name : "");
+    }
+    assert_string_equal(counting, wanted);
+}
+
+/* FOUPs, else several slots, else one, of the stations that do not say it; never a chuck unless it says so. */
+static void stations_count_where_wafers_end_up_unless_they_say_it(void **state) {
+    (void)state;
+#define AT "at = { 700, 0, 900 }"
+#define A "A = { " AT " }, "
+#define B "B = { slots = 5, " AT " }, "
+#define F "F = { kind = 'foup', " AT " }, "
+    assert_counting("", "");
+    assert_counting(A, "A");
+    assert_counting(A B, "B");
+    assert_counting(A B "C = { slots = 2, " AT " }", "BC");
+    assert_counting(A B F "G = { kind = 'foup', slots = 1, " AT " }", "FG");
+    assert_counting(A B F "LL = { kind = 'foup', counts = false, " AT " }", "F");
+    assert_counting(A B "LL = { kind = 'foup', counts = false, " AT " }", "B");
+    assert_counting(A B "C = { counts = true, " AT " }", "BC");
+    assert_counting("A = { counts = false, " AT " }", "");
+    assert_counting("Q = { kind = 'foup', counts = true, " AT " }, " A, "AQ");
+    expect_refused("grippers = { { name = 'EE' } }, stations = { A = { counts = 1, " AT " } }",
+                   "cell.lua: stations.A.counts: 1 (expected true or false)");
+#undef AT
+#undef A
+#undef B
+#undef F
 }
 
 static void a_blade_of_two_sits_where_it_says(void **state) {
@@ -287,10 +335,14 @@ int main(void) {
         cmocka_unit_test_setup_teardown(the_default_robot, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(defaults_of_a_station, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(defaults_that_follow_other_fields, open_sandbox, close_sandbox),
+        cmocka_unit_test_setup_teardown(only_wafers_from_200_mm_on_have_a_notch_by_themselves, open_sandbox,
+                                        close_sandbox),
         cmocka_unit_test_setup_teardown(every_field_of_the_cell_is_read, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(degrees_become_radians_and_lengths_stay, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(every_field_of_a_station_is_read, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(what_a_station_asks_of_a_command_is_read, open_sandbox,
+                                        close_sandbox),
+        cmocka_unit_test_setup_teardown(stations_count_where_wafers_end_up_unless_they_say_it, open_sandbox,
                                         close_sandbox),
         cmocka_unit_test_setup_teardown(a_blade_of_two_sits_where_it_says, open_sandbox, close_sandbox),
         cmocka_unit_test_setup_teardown(a_blades_place_is_in_the_hash, open_sandbox, close_sandbox),

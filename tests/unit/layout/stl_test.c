@@ -1,6 +1,8 @@
 /* STL files of both formats, good and bad. */
 #include "layout/stl.h"
 
+#include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "support/support.h"
@@ -153,8 +155,8 @@ static void a_fine_polygon_is_convex(void **state) {
 
 static void a_file_is_read(void **state) {
     (void)state;
-    char path[] = "/tmp/waferhand_stl_XXXXXX";
-    const int descriptor = mkstemp(path);
+    char path[WH_TEST_PATH];
+    const int descriptor = mkstemp(wh_test_path(path, "stl"));
     assert_true(descriptor >= 0);
     assert_int_equal(write(descriptor, tetrahedron, sizeof tetrahedron - 1), sizeof tetrahedron - 1);
     assert_int_equal(close(descriptor), 0);
@@ -166,7 +168,21 @@ static void a_file_is_read(void **state) {
     assert_non_null(strstr(message, path));
     assert_non_null(strstr(message, "No such file"));
     assert_false(wh_stl_read("/", 1, &points, &count, message, sizeof message));
-    assert_string_equal(message, "/: Is a directory");
+    assert_string_equal(message, "/: it is no regular file");
+}
+
+/* A pipe that nobody writes into would be waited for, and a device has no end. */
+static void pipes_and_devices_are_not_read(void **state) {
+    (void)state;
+    char pipe[WH_TEST_PATH];
+    assert_non_null(mkdtemp(wh_test_path(pipe, "stl")));
+    assert_int_equal(rmdir(pipe), 0);
+    assert_int_equal(mkfifo(pipe, 0600), 0);
+    assert_false(wh_stl_read(pipe, 1, &points, &count, message, sizeof message));
+    assert_non_null(strstr(message, ": it is no regular file"));
+    assert_int_equal(unlink(pipe), 0);
+    assert_false(wh_stl_read("/dev/zero", 1, &points, &count, message, sizeof message));
+    assert_string_equal(message, "/dev/zero: it is no regular file");
 }
 
 /* ------------------------------------------------------------------------------------------------------- bad */
@@ -269,6 +285,7 @@ int main(void) {
         cmocka_unit_test(a_binary_is_read_whatever_its_head_says),
         cmocka_unit_test(a_fine_polygon_is_convex),
         cmocka_unit_test(a_file_is_read),
+        cmocka_unit_test(pipes_and_devices_are_not_read),
         cmocka_unit_test(bad_words_are_named),
         cmocka_unit_test(a_cut_text_is_refused),
         cmocka_unit_test(a_cut_binary_is_refused),

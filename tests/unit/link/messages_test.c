@@ -322,6 +322,12 @@ static void a_damaged_block_is_refused(void **state) {
         wh_link_seal(damaged, length);
         assert_false(wh_slices_decode(damaged, length, &decoded));
     }
+    /* The last slice's number, which stands behind fingerprint and utime, as far below the first one's as can be. */
+    memcpy(damaged, block, size);
+    memset(damaged + 16, 0, 8);
+    damaged[16] = 0x80;
+    wh_link_seal(damaged, size);
+    assert_false(wh_slices_decode(damaged, size, &decoded));
     memset(block + size - 8, 0, 8);
     assert_false(wh_slices_decode(block, size, &decoded));
 }

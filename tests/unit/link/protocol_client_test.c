@@ -175,6 +175,9 @@ static void impossible_states_are_not(void **state) {
 
 /* ------------------------------------------------------------------------------------ when to wait no longer */
 
+/* How the simulator answers: as one of another layout does, a slice late, or not. */
+static bool has_other_layout, is_late, is_silent;
+
 static volatile sig_atomic_t stop;
 static char said[4096];
 
@@ -186,6 +189,7 @@ static void hear_line(void *user, const char *line) {
 
 static void open_client(const wh_protocol_client_options_t *options) {
     stop = 0;
+    has_other_layout = is_late = is_silent = false;
     said[0] = '\0';
     assert_true(wh_node_open(&node, "memq://", NULL));
     node.speaker = "mcs";
@@ -206,8 +210,16 @@ static wh_status_t send_slice(int64_t seq, wh_state_t *state) {
 static void answer_truly(void *user, const void *data, size_t size) {
     (void)user;
     waferhand_command message;
+    const size_t late_bytes = is_late ? server.encoded_size : 0;
+    static uint8_t late[WH_LINK_DATAGRAM];
+    memcpy(late, server.encoded, late_bytes);
     assert_true(wh_link_decode_command(data, size, &message));
+    message.layout_hash += has_other_layout ? 1 : 0;
     (void)wh_protocol_server_command(&server, &message, NULL);
+    if (is_silent || is_late) {
+        assert_true(is_silent || wh_node_publish(&node, WH_CHANNEL_STATE, late, late_bytes));
+        return;
+    }
     assert_true(wh_node_publish(&node, WH_CHANNEL_STATE, server.encoded, server.encoded_size));
 }
 
@@ -228,10 +240,72 @@ static void a_simulator_that_does_not_answer_in_time_is_an_error_until_it_answer
         assert_in_range(wh_node_clock_us() - begin, 100000, 5000000);
         assert_true(client.timed_out);
     }
+    assert_int_equal(wh_protocol_client_resume(&client), WH_STATUS_NO_ANSWER);
+    assert_int_equal(wh_protocol_client_reached(&client), 1);
     assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_truly, NULL));
+    assert_int_equal(wh_protocol_client_resume(&client), WH_OK);
     assert_int_equal(send_slice(2, &answer), WH_OK);
     assert_false(client.timed_out);
     assert_int_equal(server.seq, 2);
+    wh_node_close(&node);
+}
+
+/* As fast as it can, after its first slice, which a simulator has answered. */
+static void begin_free_run(int64_t timeout_us, wh_state_t *answer) {
+    const wh_protocol_client_options_t options = {.rate = 1000, .timeout_us = timeout_us};
+    open_client(&options);
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_truly, NULL));
+    assert_int_equal(send_slice(1, answer), WH_OK);
+}
+
+static void a_refused_slice_has_not_gone_out(void **state) {
+    (void)state;
+    const wh_protocol_client_options_t options = {.rate = 0};
+    wh_state_t answer = {.status = WH_OK};
+    open_client(&options);
+    assert_int_equal(wh_protocol_client_reached(&client), 0);
+    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_truly, NULL));
+    assert_int_equal(send_slice(1, &answer), WH_OK);
+    has_other_layout = true;
+    assert_int_equal(send_slice(2, &answer), WH_STATUS_OTHER_LAYOUT);
+    assert_int_equal(wh_protocol_client_reached(&client), 1);
+    assert_int_equal(wh_protocol_client_resume(&client), WH_OK);
+    assert_int_equal(wh_protocol_client_reached(&client), 1);
+    has_other_layout = false;
+    assert_int_equal(send_slice(2, &answer), WH_OK);
+    assert_int_equal(wh_protocol_client_reached(&client), 2);
+    wh_node_close(&node);
+}
+
+/* Its answers come a slice late. */
+static void a_free_run_hears_that_a_slice_before_the_last_was_refused(void **state) {
+    (void)state;
+    wh_state_t answer = {.status = WH_OK};
+    begin_free_run(0, &answer);
+    has_other_layout = true;
+    is_late = true;
+    assert_int_equal(send_slice(2, &answer), WH_OK);
+    assert_int_equal(send_slice(3, &answer), WH_STATUS_OTHER_LAYOUT);
+    assert_int_equal(client.link.missed(&client.link), 2);
+    wh_node_close(&node);
+}
+
+/* Without a word from a simulator the next slice is due all the same, but for one whose state is awaited. */
+static void a_free_run_waits_for_a_state_that_is_awaited(void **state) {
+    (void)state;
+    wh_state_t answer = {.status = WH_OK};
+    begin_free_run(300000, &answer);
+    is_late = true;
+    assert_int_equal(send_slice(2, &answer), WH_OK);
+    assert_int_equal(answer.seq, 1);
+    wh_protocol_client_await(&client);
+    assert_int_equal(send_slice(3, &answer), WH_OK);
+    assert_int_equal(answer.seq, 3);
+    is_silent = true;
+    assert_int_equal(send_slice(4, &answer), WH_OK);
+    wh_protocol_client_await(&client);
+    assert_int_equal(send_slice(5, &answer), WH_STATUS_NO_ANSWER);
+    assert_int_equal(answer.seq, 3);
     wh_node_close(&node);
 }
 
@@ -253,6 +327,20 @@ static void a_stop_loses_no_slice(void **state) {
     wh_node_close(&node);
 }
 
+static bool has_come(void) {
+    return true;
+}
+
+/* It came while the client did not wait, as when it says that there is no answer. */
+static void a_signal_between_two_waits_ends_the_wait_for_a_silent_simulator(void **state) {
+    (void)state;
+    const wh_protocol_client_options_t options = {.interrupted = has_come, .timeout_us = 10000000};
+    wh_state_t answer = {.status = WH_OK};
+    open_client(&options);
+    assert_int_equal(send_slice(1, &answer), WH_STATUS_STOPPED);
+    wh_node_close(&node);
+}
+
 /* The senders of the states, slice by slice. */
 static bool is_shared(const uint64_t *senders, size_t count) {
     const wh_protocol_client_options_t options = {.rate = 0};
@@ -264,8 +352,8 @@ static bool is_shared(const uint64_t *senders, size_t count) {
         assert_int_equal(send_slice((int64_t)i + 1, &answer), WH_OK);
     }
     wh_node_close(&node);
-    assert_true(client.shared == (strstr(said, "two simulators answer") != NULL));
-    return client.shared;
+    assert_true(client.senders.shared == (strstr(said, "two simulators answer") != NULL));
+    return client.senders.shared;
 }
 
 static void two_simulators_are_told_from_one_that_was_started_anew(void **state) {
@@ -308,11 +396,8 @@ static void a_simulator_that_was_not_asked_is_not_silent(void **state) {
 /* Those behind the last state, of which nobody knows. */
 static void slices_that_no_state_tells_of_are_missed_ones_of_a_free_run(void **state) {
     (void)state;
-    const wh_protocol_client_options_t options = {.rate = 1000};
     wh_state_t answer = {.status = WH_OK};
-    open_client(&options);
-    assert_true(wh_node_subscribe(&node, WH_CHANNEL_COMMAND, answer_truly, NULL));
-    assert_int_equal(send_slice(1, &answer), WH_OK);
+    begin_free_run(0, &answer);
     assert_int_equal(client.link.missed(&client.link), 0);
     client.command.seq = 4;
     assert_int_equal(client.link.missed(&client.link), 3);
@@ -325,7 +410,13 @@ int main(void) {
         cmocka_unit_test_setup_teardown(impossible_states_are_not, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_simulator_that_does_not_answer_in_time_is_an_error_until_it_answers,
                                         set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_refused_slice_has_not_gone_out, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_free_run_hears_that_a_slice_before_the_last_was_refused, set_up,
+                                        tear_down),
+        cmocka_unit_test_setup_teardown(a_free_run_waits_for_a_state_that_is_awaited, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_stop_loses_no_slice, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_signal_between_two_waits_ends_the_wait_for_a_silent_simulator,
+                                        set_up, tear_down),
         cmocka_unit_test_setup_teardown(two_simulators_are_told_from_one_that_was_started_anew, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(a_simulator_that_was_not_asked_is_not_silent, set_up, tear_down),

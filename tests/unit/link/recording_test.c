@@ -16,9 +16,10 @@
 #include "link/sim_process.h"
 #include "log/logfile.h"
 #include "mcs/script_run.h"
+#include "text/output.h"
 
 static wh_recording_t record;
-static char folder[60];
+static char folder[WH_TEST_PATH];
 static char path[PATH_MAX];
 
 static const char *in_folder(const char *name) {
@@ -28,14 +29,13 @@ static const char *in_folder(const char *name) {
 
 static int set_up(void **state) {
     (void)state;
-    snprintf(folder, sizeof folder, "/tmp/waferhand_recording_XXXXXX");
-    return mkdtemp(folder) ? 0 : -1;
+    return mkdtemp(wh_test_path(folder, "recording")) ? 0 : -1;
 }
 
 static int tear_down(void **state) {
-    char command[100];
+    char command[WH_TEST_PATH + 20];
     (void)state;
-    snprintf(command, sizeof command, "rm -rf %s", folder);
+    snprintf(command, sizeof command, "rm -rf '%s'", folder);
     return system(command);
 }
 
@@ -154,9 +154,11 @@ static void take_event(content_t *content) {
     }
 }
 
+static const char *fault; /* of a log that cannot be opened */
+
 /* Reads a whole log that was closed. */
 static void read_log(const char *name, content_t *content) {
-    FILE *file = wh_log_file(in_folder(name));
+    FILE *file = wh_log_file(in_folder(name), &fault);
     assert_non_null(file);
     memset(content, 0, sizeof *content);
     wh_log_open(&in, file);
@@ -178,7 +180,7 @@ static void read_log(const char *name, content_t *content) {
 static void feed_all(void) {
     char name[PATH_MAX];
     snprintf(name, sizeof name, "%s/all.log", folder);
-    FILE *file = wh_log_file(name);
+    FILE *file = wh_log_file(name, &fault);
     wh_log_open(&in, file);
     while (wh_log_next(&in) == WH_LOG_EVENT) {
         wh_recording_message(&record, in.channel, in.data, in.size);
@@ -270,7 +272,7 @@ static void put_by_luck(message_t *message) {
 /* The first messages of all.log, as they come over a poor network. */
 static void make_poor(void) {
     static message_t message;
-    FILE *file = wh_log_file(in_folder("all.log"));
+    FILE *file = wh_log_file(in_folder("all.log"), &fault);
     wh_log_open(&in, file);
     fed_count = 0;
     while (fed_count < FED && wh_log_next(&in) == WH_LOG_EVENT) {
@@ -465,13 +467,55 @@ static void a_run_replaces_a_log_with_its_first_slice(void **state) {
     assert_int_equal(some.state_count, 1);
 }
 
+/* An old recording in parts is never mixed with a new one. */
+static void a_record_never_stands_beside_parts_of_another(void **state) {
+    (void)state;
+    for (int replaces = 0; replaces < 2; ++replaces) {
+        put_text("st.log", "old");
+        put_text("st.part2.log", "older");
+        assert_true(begin("st.log", false, replaces, 0));
+        send_slice(1);
+        assert_true(wh_recording_close(&record));
+        assert_true(has_text("st.log", "old") && has_text("st.part2.log", "older"));
+        (void)unlink(in_folder("st.log"));
+        assert_true(begin("st.log", false, replaces, 0));
+        send_slice(1);
+        assert_true(wh_recording_close(&record));
+        assert_int_not_equal(access(in_folder("st.log"), F_OK), 0);
+        assert_true(has_text("st.part2.log", "older"));
+    }
+    for (int i = 1; i <= 4; ++i) {
+        char name[20];
+        snprintf(name, sizeof name, "st.%d.log", i);
+        read_log(name, &some);
+        assert_int_equal(some.state_count, 1);
+    }
+}
+
+/* run.1.log goes on in run.1.part2.log. */
+static void parts_are_named_after_the_first_one(void **state) {
+    (void)state;
+    record_all("lua/examples/01_transfer.lua");
+    put_text("named.log", "old");
+    assert_true(begin("named.log", false, false, 0.05));
+    feed_all();
+    assert_true(wh_recording_close(&record));
+    assert_true(has_text("named.log", "old"));
+    read_log("named.1.log", &some);
+    const int64_t id = some.first.id;
+    read_log("named.1.part2.log", &some);
+    assert_int_equal(some.first.part, 2);
+    assert_true(some.first.id == id);
+    assert_int_not_equal(access(in_folder("named.part2.log"), F_OK), 0);
+}
+
 static void a_run_spares_inputs_and_the_records_of_others(void **state) {
     (void)state;
     put_text("script.lua", "old");
     assert_true(begin("script.lua", false, true, 0));
     char input[PATH_MAX];
     snprintf(input, sizeof input, "%s/../%s/script.lua", folder, strrchr(folder, '/') + 1);
-    record.options.inputs[0] = input;
+    wh_output_keep(input);
     send_slice(1);
     assert_false(wh_recording_close(&record));
     assert_true(has_text("script.lua", "old"));
@@ -572,7 +616,7 @@ static int64_t kill_after(const char *name, int64_t us, moments_t *moments) {
     const int64_t killed = moments->us[moments->count - 1];
     snprintf(command, sizeof command, "zstd -dqcf %s >%s/cut.log 2>/dev/null", in_folder(name), folder);
     (void)!system(command);
-    const int64_t last = find_last_seq(wh_log_file(in_folder("cut.log")));
+    const int64_t last = find_last_seq(wh_log_file(in_folder("cut.log"), &fault));
     size_t i = 0;
     while (i < moments->count && moments->seq[i] <= last) {
         ++i;
@@ -626,6 +670,8 @@ int main(void) {
         cmocka_unit_test(endings_stay_at_the_end),
         cmocka_unit_test(a_new_record_leaves_what_is_there),
         cmocka_unit_test(a_run_replaces_a_log_with_its_first_slice),
+        cmocka_unit_test(a_record_never_stands_beside_parts_of_another),
+        cmocka_unit_test(parts_are_named_after_the_first_one),
         cmocka_unit_test(a_run_spares_inputs_and_the_records_of_others),
         cmocka_unit_test(the_file_is_locked_while_it_is_written),
         cmocka_unit_test(what_was_recorded_reaches_the_file_though_nothing_comes),

@@ -198,6 +198,118 @@ static void a_hole_is_bridged(void **state) {
     assert_int_equal(only_run()->differing, 0);
     assert_int_equal(only_run()->taken_up, 1);
     assert_int_equal(only_run()->last_slice, 9);
+    assert_int_equal(only_run()->compared, 5);
+    assert_int_equal(only_run()->skipped, 4);
+}
+
+/* Each slice up to the last one is compared or passed over, however many are missing. */
+static void a_hole_of_any_size_is_counted(void **state) {
+    static const int64_t holes[][2] = {{4, 5}, {4, 9}, {4, 3000}, {1, 3000}, {1, 90000}, {7, 90000}};
+    (void)state;
+    for (size_t i = 0; i < sizeof holes / sizeof holes[0]; ++i) {
+        const int64_t last = holes[i][1] + 5;
+        wh_replay_close(&replay);
+        memset(&replay, 0, sizeof replay);
+        wh_protocol_server_close(&server);
+        assert_int_equal(wh_protocol_server_open(&server, layout), WH_OK);
+        tell_cell();
+        for (int64_t seq = 1; seq <= last; ++seq) {
+            simulate(seq);
+            if (seq < holes[i][0] || seq >= holes[i][1]) {
+                const waferhand_command message = command(seq);
+                record_command(&message);
+                record_state();
+            }
+        }
+        assert_int_equal(only_run()->last_slice, last);
+        assert_int_equal(only_run()->compared, holes[i][0] - 1 + 5);
+        assert_int_equal(only_run()->skipped, holes[i][1] - holes[i][0] + 1);
+        wh_replay_close(&replay);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------- how a run ended */
+
+static void record_mcs(int32_t phase, int32_t number, const char *text) {
+    const waferhand_mcs message = {.run = RUN,
+                                   .layout_hash = (int64_t)server.identity.layout_hash,
+                                   .phase = phase,
+                                   .error = number,
+                                   .command = wh_link_borrowed(""),
+                                   .text = wh_link_borrowed(text)};
+    const int size = waferhand_mcs_encode(bytes, 0, (int)sizeof bytes, &message);
+    wh_replay_event(&replay, WH_CHANNEL_MCS, bytes, (size_t)size);
+}
+
+static void the_reason_of_a_failed_run_is_kept(void **state) {
+    (void)state;
+    record_mcs(WH_LINK_PHASE_MET, 1, "so far");
+    record_mcs(WH_LINK_PHASE_OVER, 0,
+               "failed; commands 2, expectations 1, met 1, cycles 0; error.lua:4: GET Z 77");
+    assert_int_equal(only_run()->told.verdict, WH_OUTCOME_FAILED);
+    assert_string_equal(only_run()->reason, "error.lua:4: GET Z 77");
+    assert_false(only_run()->is_told_wrong);
+}
+
+/* No program tells a verdict that does not fit its counts, or what it told before. */
+static void a_verdict_that_contradicts_is_damage(void **state) {
+    static const struct {
+        int32_t second; /* the phase of the second expectation; the first one was met */
+        const char *text;
+        bool is_wrong;
+    } cases[] = {{WH_LINK_PHASE_MET, "passed; commands 0, expectations 2, met 2, cycles 0", false},
+                 {WH_LINK_PHASE_UNMET, "failed; commands 0, expectations 2, met 1, cycles 0", false},
+                 {WH_LINK_PHASE_MET, "failed; commands 0, expectations 2, met 2, cycles 0; why", false},
+                 {WH_LINK_PHASE_MET, "", false}, /* as older programs say it */
+                 {WH_LINK_PHASE_UNMET, "passed; commands 0, expectations 2, met 1, cycles 0", true},
+                 {WH_LINK_PHASE_UNMET, "passed; commands 0, expectations 2, met 2, cycles 0", true},
+                 {WH_LINK_PHASE_UNMET, "failed; commands 0, expectations 2, met 2, cycles 0", true},
+                 {WH_LINK_PHASE_MET, "failed; commands 0, expectations 2, met 1, cycles 0", true},
+                 {WH_LINK_PHASE_MET, "passed; commands 0, expectations 2, met 3, cycles 0", true},
+                 {WH_LINK_PHASE_MET, "passes; commands 0, expectations 2, met 2, cycles 0", true}};
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        wh_replay_close(&replay);
+        memset(&replay, 0, sizeof replay);
+        tell_cell();
+        record_mcs(WH_LINK_PHASE_MET, 1, "one");
+        record_mcs(cases[i].second, 2, "two");
+        record_mcs(WH_LINK_PHASE_OVER, 0, cases[i].text);
+        print_message("%s\n", cases[i].text);
+        assert_int_equal(only_run()->is_told_wrong, cases[i].is_wrong);
+        assert_int_equal(replay.losses[WH_REPLAY_CONTRADICTS].count, cases[i].is_wrong ? 1 : 0);
+        wh_replay_close(&replay);
+    }
+}
+
+/* Only the simulator's word tells that a command of an unknown layout is as good as answered. */
+static void a_run_of_another_layout_is_told(void **state) {
+    (void)state;
+    for (int refused = 0; refused < 2; ++refused) {
+        waferhand_command message = command(1);
+        wh_reading_t reading = {0};
+        char reason[WH_READING_REASON];
+        wh_replay_close(&replay);
+        memset(&replay, 0, sizeof replay);
+        tell_cell();
+        message.layout_hash += 1;
+        record_command(&message);
+        if (refused) {
+            assert_int_equal(wh_protocol_server_command(&server, &message, NULL), WH_SERVER_ANSWERED);
+            record_state();
+        }
+        record_mcs(WH_LINK_PHASE_OVER, 0,
+                   "failed; commands 1, expectations 0, met 0, cycles 0; OTHER_LAYOUT");
+        const wh_replay_run_t *run = only_run();
+        assert_false(run->is_begun);
+        assert_int_equal(run->is_other_layout, refused);
+        assert_int_equal(run->homeless, 1);
+        assert_int_equal(run->told.verdict, WH_OUTCOME_FAILED);
+        assert_int_equal(replay.losses[WH_REPLAY_HOMELESS].count, 1 - refused);
+        assert_int_equal(wh_reading_judge(&replay, &reading, false, reason), WH_READING_INCOMPLETE);
+        assert_non_null(strstr(reason, refused ? "no slice" : "layout"));
+        wh_replay_close(&replay);
+    }
 }
 
 static void narrow_projz(waferhand_cell *cell) {
@@ -468,8 +580,8 @@ static void make_version_1(void) {
 }
 
 static void record_whole(version_t version) {
-    char path[] = "/tmp/waferhand_replay_XXXXXX";
-    const int fd = mkstemp(path);
+    char path[WH_TEST_PATH];
+    const int fd = mkstemp(wh_test_path(path, "replay"));
     assert_true(fd >= 0);
     memset(&recording, 0, sizeof recording);
     recording.options =
@@ -504,7 +616,7 @@ static wh_reading_verdict_t verdict_of(log_t *log, bool lenient) {
     wh_reading_replay(file, &reader, &replay, &reading);
     wh_log_close(&reader);
     (void)fclose(file);
-    return wh_reading_judge(&replay, &reading, lenient);
+    return wh_reading_judge(&replay, &reading, lenient, NULL);
 }
 
 static void copy_whole(const log_t *log) {
@@ -690,6 +802,10 @@ int main(void) {
         cmocka_unit_test_setup_teardown(another_command_is_found_out, set_up, tear_down),
         cmocka_unit_test_setup_teardown(valves_from_outside_are_followed, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_hole_is_bridged, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_hole_of_any_size_is_counted, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(the_reason_of_a_failed_run_is_kept, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_verdict_that_contradicts_is_damage, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_run_of_another_layout_is_told, set_up, tear_down),
         cmocka_unit_test_setup_teardown(cells_that_no_layout_describes, set_up, tear_down),
         cmocka_unit_test_setup_teardown(garbage_is_counted, set_up, tear_down),
         cmocka_unit_test_setup_teardown(a_body_without_a_check_differs, set_up, tear_down),

@@ -46,8 +46,8 @@ static wh_link_t *connect_nowhere(void *user, wh_mcs_t *mcs) {
 /* The script has kept the error of `cell` to itself: without a link nothing may seem to move. */
 static void nothing_moves_without_a_link(void **state) {
     (void)state;
-    char script[] = "/tmp/waferhand_mcs_XXXXXX", folder[1000];
-    FILE *file = fdopen(mkstemp(script), "w");
+    char script[WH_TEST_PATH], folder[1000];
+    FILE *file = fdopen(mkstemp(wh_test_path(script, "mcs")), "w");
     assert_non_null(file);
     assert_non_null(getcwd(folder, sizeof folder));
     fprintf(file, "pcall(cell, '%s/lua/layouts/paper.lua')\npcall(wait, 0.1)\nwait(0.1)\n", folder);
@@ -83,6 +83,11 @@ static void errors_within_a_pattern_name_the_line(void **state) {
     assert_expected(ODD_SCRIPTS, "case=error_lines", 2);
 }
 
+static void a_wrong_value_of_any_word_is_named_with_what_was_expected(void **state) {
+    (void)state;
+    assert_expected(ODD_SCRIPTS, "case=wrong_values", 7);
+}
+
 static void frames_are_measured(void **state) {
     (void)state;
     assert_expected("tests/end_to_end/data/measure.lua", NULL, 77);
@@ -115,7 +120,7 @@ static void a_stop_may_come_at_any_time(void **state) {
 }
 
 static void write_text(const char *folder, const char *name, const char *text) {
-    char path[200];
+    char path[WH_TEST_PATH + 50];
     (void)snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *file = fopen(path, "w");
     assert_non_null(file);
@@ -124,7 +129,7 @@ static void write_text(const char *folder, const char *name, const char *text) {
 }
 
 static void remove_file(const char *folder, const char *name) {
-    char path[200];
+    char path[WH_TEST_PATH + 50];
     (void)snprintf(path, sizeof path, "%s/%s", folder, name);
     remove(path);
 }
@@ -142,15 +147,15 @@ static void a_put_leaves_the_wafer_on_its_support(void **state) {
         "  P = { kind = 'prealigner', at = { -600, 0, 950 }, rpy = { 0, 0, 180 } } },\n"
         "wafers = { { name = 'W', station = 'A', slot = 1 }, { name = 'V', station = 'A', slot = 2 } } }\n";
     static const char script[] =
-        "cell 'cell.lua'\n"
+        "cell 'cell.lua' local from\n"
         "for _, to in ipairs { { 'B', 2 }, { 'A', 1 }, { 'P', 1 }, { 'B', 3 }, { 'B', 4 } } do\n"
         "  get(from and from[1] or 'A', from and from[2] or 1) put(to[1], to[2]) from = to\n"
         "  local _, _, dz = offset('W', to[1], to[2])\n"
         "  expect(dz > -1.001e-3 and dz < 0.51, to[1] .. ': ' .. dz)\n"
         "end\n"
         "expect(#hits() == 0, 'no hit')\n";
-    char folder[] = "/tmp/waferhand_mcs_XXXXXX", path[200];
-    assert_non_null(mkdtemp(folder));
+    char folder[WH_TEST_PATH], path[WH_TEST_PATH + 50];
+    assert_non_null(mkdtemp(wh_test_path(folder, "mcs")));
     write_text(folder, "cell.lua", layout);
     write_text(folder, "script.lua", script);
     (void)snprintf(path, sizeof path, "%s/script.lua", folder);
@@ -184,14 +189,52 @@ static void the_record_is_paid_for_from_the_budget(void **state) {
     assert_in_range(run.record.expectation_count, 1, 13);
 }
 
+/* Plays a script of one expectation, which is met. */
+static void assert_texts(const char *layout, const char *script) {
+    char folder[WH_TEST_PATH], path[WH_TEST_PATH + 50];
+    assert_non_null(mkdtemp(wh_test_path(folder, "mcs")));
+    write_text(folder, "cell.lua", layout);
+    write_text(folder, "script.lua", script);
+    (void)snprintf(path, sizeof path, "%s/script.lua", folder);
+    assert_expected(path, NULL, 1);
+    remove_file(folder, "cell.lua");
+    remove_file(folder, "script.lua");
+    rmdir(folder);
+}
+
+/* Nobody holds it when the run begins, and the blade comes up to it with its valve closed. */
+static void a_blade_may_touch_the_wafer_on_a_tilted_chuck(void **state) {
+    (void)state;
+    assert_texts("return { wafer = { diameter = 150 }, collision = true, look_ahead = true,\n"
+                 "grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } },\n"
+                 "stations = { P = { kind = 'prealigner', at = { 700, 0, 900 }, rpy = { 0.1, 0.1, 0 } } },\n"
+                 "wafers = { { name = 'W', station = 'P', slot = 1 } } }\n",
+                 "cell 'cell.lua' get('P', 1) expect(#hits() == 0, 'no hit')\n");
+}
+
+/* The shorter way round ends within theta's travel, and the way in from there leaves it. */
+static void theta_goes_the_longer_way_round_if_the_way_in_asks_for_it(void **state) {
+    (void)state;
+    static const char layout[] = "return { robot = { theta = { min = -200, max = 200 } }, grippers = { { "
+                                 "name = 'EE' } }, stations = {\n"
+                                 "  A = { at = { -121.554, 689.365, 900 }, rpy = { 0, 0, 100 } },\n"
+                                 "  C = { at = { -655.2, -246.3, 900 }, rpy = { 0, 0, -158.5 } } },\n"
+                                 "wafers = { { name = 'W', station = 'A', slot = 1 } } }\n";
+    static const char script[] = "cell 'cell.lua' get('A', 1) put('C', 1) expect_offset('W', 'C', 1, 0, 0)\n";
+    assert_texts(layout, script);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(a_command_within_a_command_is_refused, close_run),
         cmocka_unit_test_teardown(nothing_moves_without_a_link, close_run),
         cmocka_unit_test_teardown(errors_within_a_pattern_name_the_line, close_run),
+        cmocka_unit_test_teardown(a_wrong_value_of_any_word_is_named_with_what_was_expected, close_run),
         cmocka_unit_test_teardown(frames_are_measured, close_run),
         cmocka_unit_test_teardown(a_script_may_use_the_names_of_functions, close_run),
         cmocka_unit_test(a_stop_may_come_at_any_time),
+        cmocka_unit_test_teardown(a_blade_may_touch_the_wafer_on_a_tilted_chuck, close_run),
+        cmocka_unit_test_teardown(theta_goes_the_longer_way_round_if_the_way_in_asks_for_it, close_run),
         cmocka_unit_test_teardown(a_put_leaves_the_wafer_on_its_support, close_run),
         cmocka_unit_test_teardown(the_record_is_paid_for_from_the_budget, close_run),
     };

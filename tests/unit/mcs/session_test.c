@@ -121,10 +121,10 @@ static void commands_are_recorded(void **state) {
 static void errors_have_their_numbers(void **state) {
     (void)state;
     static const exchange_t dialogue[] = {
-        {"FAULT leak value=0.3 after=-1",
-         "ERROR 48 BAD_ARGUMENT: fault: after: -1 (expected a number from 0 to "},
-        {"FAULT leak value=0.3 lasting=-1",
-         "ERROR 48 BAD_ARGUMENT: fault: lasting: -1 (expected a number from 0 to "},
+        {"FAULT leak value=0.3 after=-1", "ERROR 48 BAD_ARGUMENT: a command's argument is out of range or of "
+                                          "the wrong kind; fault: after: -1 "},
+        {"FAULT leak value=0.3 lasting=-1", "ERROR 48 BAD_ARGUMENT: a command's argument is out of range or "
+                                            "of the wrong kind; fault: lasting: -1 "},
         {"FLY", "ERROR 47 NO_SUCH_COMMAND: "},
         {"", "ERROR 47 "},
         {"   ", "ERROR 47 "},
@@ -199,6 +199,104 @@ static void bad_arguments(void **state) {
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; ++i) {
         assert_answer(lines[i], "ERROR 48 BAD_ARGUMENT: ");
     }
+    assert_int_equal(session.mcs.track.slice, 0);
+}
+
+/* A word of this kind that is right, and one that is wrong. Numbers are wrong in many ways. */
+typedef struct {
+    const char *kind, *right, *wrong[6];
+} kind_t;
+
+static const kind_t *find_kind(const char *name, size_t length) {
+    static const kind_t number = {"NUMBER", "1", {"x", "inf", "nan", "0x1", "1e999", "\"1\""}};
+    static const kind_t kinds[] = {{"STATION", "P", {"Q", "5"}},
+                                   {"SLOT", "1", {"0", "2", "1.5", "one", "-1", "nan"}},
+                                   {"GRIPPER", "EE", {"Q", "5"}},
+                                   {"WAFER", "\"Wafer 1\"", {"Q", "5"}},
+                                   {"FRAME", "base", {"Q", "P/2"}},
+                                   {"FAULT", "leak", {"leek", "5"}},
+                                   {"COMMAND", "GET", {"GTE", "5"}},
+                                   {"HANDOVER", "new_first", {"new", "5"}},
+                                   {"VACUUM_CHECK", "both", {"never", "5"}},
+                                   {"SWITCH", "true", {"yes", "1"}},
+                                   {"LEVEL", "1", {"2", "-1", "0.5", "x", "inf"}},
+                                   {"SECONDS", "1", {"-1", "2000000", "x", "inf", "nan"}}};
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; ++i) {
+        if (strlen(kinds[i].kind) == length && strncmp(kinds[i].kind, name, length) == 0) {
+            return &kinds[i];
+        }
+    }
+    return &number;
+}
+
+static void add(char line[400], const char *name, int length, const char *value) {
+    const size_t used = strlen(line);
+    snprintf(line + used, 400 - used, "%s%.*s%s", used > 0 ? " " : "", length, name, value);
+}
+
+/* A word of the usage "GET STATION SLOT [stroke=NUMBER]" as it can be typed; `attempt` -1: right, else the
+ * wrong value of this number, which is returned. */
+static const char *add_word(char line[400], const char *word, int attempt) {
+    const bool is_option = word[0] == '[' && strchr(word, '=');
+    const size_t name = is_option ? strcspn(word, "=") : 0;
+    const char *kind = word + name + (word[0] == '[' ? 1 : 0);
+    const kind_t *found = find_kind(kind, strcspn(kind, "]"));
+    const char *value = attempt < 0 ? found->right : found->wrong[attempt];
+    if (value && (!is_option || attempt >= 0)) {
+        add(line, word + 1, (int)name, value);
+    }
+    return attempt < 0 ? NULL : value;
+}
+
+/* All arguments with right values, but for the one at `place`. False if that has no such attempt. */
+static bool try_wrong(const char *usage, int place, int attempt) {
+    char text[1000], line[400] = "";
+    const char *wrong = NULL;
+    snprintf(text, sizeof text, "%s", usage);
+    char *save = NULL, *word = strtok_r(text, " ", &save);
+    add(line, "", 0, word);
+    for (int at = 0; (word = strtok_r(NULL, " ", &save)) != NULL; ++at) {
+        if (strncmp(word, "...", 3) != 0) {
+            const char *value = add_word(line, word, at == place ? attempt : -1);
+            wrong = value ? value : wrong;
+        }
+    }
+    if (wrong) {
+        const char *shown = strchr(wrong, '/') ? strchr(wrong, '/') + 1 : wrong;
+        assert_answer(line, "ERROR ");
+        if (!strstr(answer, shown) || !(strstr(answer, "expected") || strstr(answer, "HELP lists them"))) {
+            fail_msg("%s: answered %s", line, answer);
+        }
+    }
+    return wrong != NULL;
+}
+
+static size_t try_place(const char *usage, int place) {
+    int attempt = 0;
+    while (attempt < 6 && try_wrong(usage, place, attempt)) {
+        ++attempt;
+    }
+    return (size_t)attempt;
+}
+
+/* The commands and their options are those of HELP. */
+static void a_wrong_word_of_any_command_is_named_with_what_was_expected(void **state) {
+    (void)state;
+    char commands[1000];
+    size_t tried = 0;
+    assert_answer("HELP", "OK ");
+    snprintf(commands, sizeof commands, "%.*s", (int)strcspn(answer, ";"), answer);
+    for (char *save = NULL, *name = strtok_r(commands + 3, " ", &save); name;
+         name = strtok_r(NULL, " ", &save)) {
+        char line[60], usage[1000];
+        snprintf(line, sizeof line, "HELP %s", name);
+        assert_answer(line, "OK ");
+        snprintf(usage, sizeof usage, "%.*s", (int)strcspn(answer + 3, ":"), answer + 3);
+        for (int place = 0; place < 30; ++place) { /* no command has so many words */
+            tried += try_place(usage, place);
+        }
+    }
+    assert_in_range(tried, 500, 5000);
     assert_int_equal(session.mcs.track.slice, 0);
 }
 
@@ -349,8 +447,10 @@ static void stop(void **state) {
     assert_int_equal(session.record.commands[0].error, WH_STATUS_STOPPED);
     assert_near(session.record.commands[0].end_s, 0.7, 1e-9);
     wh_session_stop(&session);
-    assert_answer("GET A 1",
-                  "ERROR 52 STOPPED: the command was stopped before its end; the arm stands in A: RECOVER");
+    assert_answer(
+        "GET A 1",
+        "ERROR 52 STOPPED: a command was stopped before its end; the arm stands in A slot 1 since GET A "
+        "1: RECOVER");
     assert_answer("RECOVER", "OK seconds=");
     assert_answer("GET A 1", "OK wafer=\"Wafer 1\"");
     assert_answer("PUT B 2", "OK wafer=\"Wafer 1\"");
@@ -563,11 +663,15 @@ static void a_reset_to_a_layout_that_is_refused_changes_nothing(void **state) {
     assert_answer("RESET",
                   "ERROR 48 BAD_ARGUMENT: a command's argument is out of range or of the wrong kind; "
                   "build/session_test_layout.lua: stations: 5");
+    assert_answer("STATUS", "OK phase=idle seq=");
+    assert_non_null(strstr(answer, " EE.holds=W error=48 error_name=BAD_ARGUMENT error_command=RESET"));
     assert_answer("HOLDER W", "OK holder=EE");
     assert_answer("PUT A 2", "OK wafer=W");
     snprintf(text, sizeof text, good, 4);
     write_layout(path, text);
     assert_answer("RESET", "OK");
+    assert_answer("STATUS", "OK phase=idle seq=0 ");
+    assert_non_null(strstr(answer, " error=0"));
     assert_answer("GET A 4", "OK wafer=W");
     wh_session_close(&session);
     (void)remove(path);
@@ -582,6 +686,7 @@ int main(void) {
         IN_PAPER(commands_are_recorded),
         IN_PAPER(errors_have_their_numbers),
         IN_PAPER(bad_arguments),
+        IN_PAPER(a_wrong_word_of_any_command_is_named_with_what_was_expected),
         IN_PAPER(control_characters),
         IN_PAPER(line_length),
         IN_PAPER(injections),

@@ -125,7 +125,8 @@ static void a_wafer_is_lost_on_the_way(void **state) {
     liar.from += 900;
     liar.until += 900;
     assert_answer("PUT B 1 gripper=FRONT",
-                  "ERROR 60 WAFER_LOST_ON_WAY: the wafer was lost on the way; \"FRONT\"");
+                  "ERROR 60 WAFER_LOST_ON_WAY: the wafer was lost on the way; the sensor of FRONT went "
+                  "off on the way into B slot 1");
     assert_int_equal(session.mcs.track.valves[0], WH_VALVE_OPEN);
 }
 
@@ -232,7 +233,8 @@ static void a_collision_ahead(void **state) {
     memset(&judge, 0, sizeof judge);
     judge.refused_line = 3;
     assert_answer("GET A 1",
-                  "ERROR 61 COLLISION_AHEAD: the motion would collide; the blade would meet the moon");
+                  "ERROR 61 COLLISION_AHEAD: the motion would collide; on the way out of A slot 1: the "
+                  "blade would meet the moon");
     assert_int_equal(session.mcs.track.slice, 0);
     assert_int_equal(liar.slices, 0);
     assert_answer("AXES", "OK theta=0 r=150 z=900 yaw=0 ");

@@ -81,7 +81,7 @@ static void head(void **state) {
     fixture_transfer(&f);
     json_t *root = reread(&f.record);
     assert_keys(root, keys);
-    assert_int_equal(json_integer_value(json_object_get(root, "format")), 1);
+    assert_int_equal(json_integer_value(json_object_get(root, "format")), 2);
     assert_true(json_is_true(json_object_get(root, "ok")));
     assert_text(root, "script", "lua/examples/01_transfer.lua");
     assert_text(root, "layout", "lua/layouts/paper.lua");

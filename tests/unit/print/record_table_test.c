@@ -62,7 +62,8 @@ static void transfer(void **state) {
                       "the robot cannot tilt.\n");
     assert_says(text, "\n✓ all 2 met\n");
     assert_says(text, "4 commands, 22.870 s simulated in 22,870 slices; 0.009 s of wall time, "
-                      "2,628 times faster than real time\nhash 00c0ffee12345678\nok\n");
+                      "2,628 times faster than real time\n"
+                      "no wafers per hour: no station is known to count\nhash 00c0ffee12345678\nok\n");
     assert_silent(text, "Misses");
     assert_silent(text, "Hand-over");
     assert_silent(text, "Errors");
@@ -114,7 +115,7 @@ static void empty(void **state) {
     char *text = print(&f.record, &piped);
     assert_string_equal(text, "(no script) on no layout\n\nCommands\nnone\n\n"
                               "0 commands, 0.000 s simulated in 0 slices; 0.000 s of wall time\n"
-                              "hash 0000000000000000\nok\n");
+                              "hash 0000000000000000\nnothing moved\n");
     free(text);
 }
 

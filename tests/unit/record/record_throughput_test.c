@@ -37,7 +37,7 @@ static void begin(void) {
     f.record.activity.intervals = intervals;
     f.record.puts = made_puts;
     f.record.cycles = made_cycles;
-    f.stations[FIXTURE_P].prealigner = true;
+    f.stations[FIXTURE_P].prealigner = f.stations[FIXTURE_P].counts = true;
     fill_shares(fixture_command(&f, 3, "GET B 1", 0, 4)->shares, 2000, 1500, 499, 1, 0);
     fill_shares(fixture_command(&f, 4, "WAIT 1", 4, 5)->shares, 0, 0, 0, 0, 1000);
     fill_shares(fixture_command(&f, 5, "PUT P 1", 5, 10)->shares, 4000, 998, 0, 2, 0);
@@ -151,7 +151,7 @@ static void sections_are_asked_for(void **state) {
     assert_null(strstr(text, "Gantt"));
     assert_null(strstr(text, "Time"));
     assert_null(strstr(text, "Reach"));
-    assert_null(strstr(text, "per hour"));
+    assert_says(text, "\nno wafers per hour: no wafer was put into a station that counts\nhash");
     free(text);
 }
 
@@ -243,9 +243,10 @@ static void json_sums(void **state) {
     strcpy(f.texts[6], "second");
     add_cycle(4, f.texts[6], 5000);
     json_t *root = reread();
-    assert_json(json_object_get(root, "throughput"), "{\"wafers\": 1, \"seconds\": 5.0, \"wafers_per_hour\": "
-                                                     "720.0, \"first_cycle\": 2, \"last_cycle\": 2, "
-                                                     "\"puts\": 1, \"rule\": \"puts onto prealigners\"}");
+    assert_json(json_object_get(root, "throughput"), "{\"wafers_per_hour\": 720.0, \"reason\": null, "
+                                                     "\"wafers\": 1, \"seconds\": 5.0, "
+                                                     "\"first_cycle\": 2, \"last_cycle\": 2, "
+                                                     "\"puts\": 1, \"counting\": [\"P\"]}");
     assert_json(json_object_get(root, "split"),
                 "{\"motion_s\": 8.4979999999999993, \"loaded_s\": 6.0, \"empty_s\": 2.4980000000000002, "
                 "\"vacuum_s\": "
@@ -304,8 +305,8 @@ static void json_of_nothing(void **state) {
     json_t *root = reread();
     assert_json(
         json_object_get(root, "throughput"),
-        "{\"wafers\": 0, \"seconds\": 0.0, \"wafers_per_hour\": 0.0, \"first_cycle\": null, \"last_cycle\": "
-        "null, \"puts\": 0, \"rule\": null}");
+        "{\"wafers_per_hour\": null, \"reason\": \"there is no cell\", \"wafers\": 0, \"seconds\": 0.0, "
+        "\"first_cycle\": null, \"last_cycle\": null, \"puts\": 0, \"counting\": []}");
     assert_json(json_object_get(root, "gantt"), "[]");
     assert_json(json_object_get(root, "reach"), "[]");
     json_decref(root);

@@ -19,6 +19,7 @@ static void begin(int64_t slices) {
     f.places[FIXTURE_A].slots = f.places[FIXTURE_B].slots = 25;
     f.places[FIXTURE_P].slots = 1;
     f.stations[FIXTURE_P].prealigner = true;
+    f.stations[FIXTURE_A].counts = f.stations[FIXTURE_B].counts = true;
     f.record.slices = slices;
     f.record.puts = made_puts;
     f.record.cycles = made_cycles;
@@ -35,25 +36,25 @@ static void add_cycle(int64_t slice) {
     made_cycles[f.record.cycle_count++] = cycle;
 }
 
-static void assert_throughput(wh_rank_t rank, size_t wafers, double seconds, size_t first, size_t last) {
+static void assert_throughput(wh_figure_t figure, size_t wafers, double seconds, size_t first, size_t last) {
     const wh_throughput_t found = wh_throughput(&f.record);
-    assert_int_equal(found.rank, rank);
+    assert_int_equal(found.figure, figure);
+    assert_int_equal(wh_throughput_reason(figure) == NULL, figure == WH_FIGURE_GIVEN);
     assert_int_equal(found.puts, f.record.put_count);
     assert_int_equal(found.wafers, wafers);
     assert_true(found.seconds == seconds);
     assert_int_equal(found.first, first);
     assert_int_equal(found.last, last);
-    if (seconds > 0) {
-        assert_near(found.wafers_per_hour, 3600 * (double)wafers / seconds, 1e-12);
-    }
+    assert_near(found.wafers_per_hour, figure == WH_FIGURE_GIVEN ? 3600 * (double)wafers / seconds : 0,
+                1e-12);
 }
 
 static void a_record_of_nothing(void **state) {
     (void)state;
     fixture_empty(&f);
-    assert_throughput(WH_RANK_NONE, 0, 0, 0, 0);
+    assert_throughput(WH_FIGURE_NO_CELL, 0, 0, 0, 0);
     begin(0);
-    assert_throughput(WH_RANK_NONE, 0, 0, 0, 0);
+    assert_throughput(WH_FIGURE_NO_TIME, 0, 0, 0, 0);
     assert_true(wh_throughput(&f.record).wafers_per_hour == 0);
 }
 
@@ -62,8 +63,8 @@ static void without_marks_every_put_counts(void **state) {
     begin(9000);
     add_put(2000, 0, FIXTURE_B, 1);
     add_put(4000, 1, FIXTURE_B, 2);
-    add_put(9000, 0, FIXTURE_A, 1);
-    assert_throughput(WH_RANK_SEVERAL, 3, 9, 0, 0);
+    add_put(9000, 2, FIXTURE_A, 1);
+    assert_throughput(WH_FIGURE_GIVEN, 3, 9, 0, 0);
     assert_near(wh_throughput(&f.record).wafers_per_hour, 1200, 1e-9);
 }
 
@@ -71,15 +72,45 @@ static void what_is_on_its_way_does_not_count(void **state) {
     (void)state;
     begin(5000);
     add_put(1000, 0, FIXTURE_P, 1);
-    assert_throughput(WH_RANK_PREALIGNER, 1, 5, 0, 0);
-    f.places[FIXTURE_A].slots = 1;
+    assert_throughput(WH_FIGURE_NO_WAFER, 0, 5, 0, 0);
+    f.stations[FIXTURE_P].counts = true;
+    assert_throughput(WH_FIGURE_GIVEN, 1, 5, 0, 0);
+    f.stations[FIXTURE_P].counts = false;
+    f.stations[FIXTURE_A].counts = false;
     add_put(2000, 0, FIXTURE_A, 1);
-    assert_throughput(WH_RANK_SINGLE, 1, 5, 0, 0);
+    assert_throughput(WH_FIGURE_NO_WAFER, 0, 5, 0, 0);
     add_put(3000, 0, FIXTURE_B, 1);
     add_put(4000, 1, FIXTURE_B, 2);
-    assert_throughput(WH_RANK_SEVERAL, 2, 5, 0, 0);
-    f.stations[FIXTURE_A].foup = true;
-    assert_throughput(WH_RANK_FOUP, 1, 5, 0, 0);
+    assert_throughput(WH_FIGURE_GIVEN, 2, 5, 0, 0);
+    f.stations[FIXTURE_B].counts = false;
+    assert_throughput(WH_FIGURE_NOWHERE, 0, 5, 0, 0);
+}
+
+/* A load lock that counts, and the FOUP behind it: the wafer would be two. */
+static void a_wafer_that_is_put_twice_gives_no_figure_without_marks(void **state) {
+    (void)state;
+    begin(9000);
+    add_put(2000, 0, FIXTURE_B, 1);
+    add_put(4000, 1, FIXTURE_B, 2);
+    add_put(9000, 0, FIXTURE_A, 1);
+    assert_throughput(WH_FIGURE_TWICE, 3, 9, 0, 0);
+    f.stations[FIXTURE_A].counts = false;
+    assert_throughput(WH_FIGURE_GIVEN, 2, 9, 0, 0);
+    f.stations[FIXTURE_A].counts = true;
+    add_cycle(0);
+    assert_throughput(WH_FIGURE_GIVEN, 2, 9, 1, 1);
+}
+
+static void a_run_that_failed_or_whose_end_is_not_told_gives_no_figure(void **state) {
+    (void)state;
+    begin(9000);
+    add_put(2000, 0, FIXTURE_B, 1);
+    f.record.ok = false;
+    assert_throughput(WH_FIGURE_FAILED, 1, 9, 0, 0);
+    f.record.is_untold = true;
+    assert_throughput(WH_FIGURE_UNTOLD, 1, 9, 0, 0);
+    f.record.slices = 0;
+    assert_throughput(WH_FIGURE_UNTOLD, 1, 0, 0, 0);
 }
 
 static void the_first_cycle_is_left_out(void **state) {
@@ -91,9 +122,9 @@ static void the_first_cycle_is_left_out(void **state) {
     add_put(17000, 1, FIXTURE_B, 2);
     add_cycle(18000);
     add_put(26000, 2, FIXTURE_B, 3);
-    assert_throughput(WH_RANK_SEVERAL, 2, 16, 2, 3);
+    assert_throughput(WH_FIGURE_GIVEN, 2, 16, 2, 3);
     assert_near(wh_throughput(&f.record).wafers_per_hour, 450, 1e-9);
-    size_t *wafers = wh_throughput_cycle_wafers(&f.record, WH_RANK_SEVERAL);
+    size_t *wafers = wh_throughput_cycle_wafers(&f.record);
     for (size_t i = 0; i < 3; ++i) {
         assert_int_equal(wafers[i], 1);
     }
@@ -108,7 +139,7 @@ static void an_only_cycle_counts(void **state) {
     add_put(1000, 1, FIXTURE_B, 1); /* before the mark */
     add_cycle(2000);
     add_put(8000, 0, FIXTURE_B, 2);
-    assert_throughput(WH_RANK_SEVERAL, 1, 6, 1, 1);
+    assert_throughput(WH_FIGURE_GIVEN, 1, 6, 1, 1);
 }
 
 static void cycles_without_a_slice_are_none(void **state) {
@@ -120,11 +151,11 @@ static void cycles_without_a_slice_are_none(void **state) {
     add_cycle(5000);
     add_put(8000, 1, FIXTURE_B, 2);
     add_cycle(9000);
-    assert_throughput(WH_RANK_SEVERAL, 1, 4, 3, 3);
+    assert_throughput(WH_FIGURE_GIVEN, 1, 4, 3, 3);
     begin(9000);
     add_cycle(9000);
     add_put(8000, 1, FIXTURE_B, 2);
-    assert_throughput(WH_RANK_SEVERAL, 1, 9, 0, 0);
+    assert_throughput(WH_FIGURE_GIVEN, 1, 9, 0, 0);
 }
 
 static void a_wafer_counts_once_a_cycle(void **state) {
@@ -138,7 +169,7 @@ static void a_wafer_counts_once_a_cycle(void **state) {
     add_cycle(20000);
     add_put(25000, 0, FIXTURE_P, 1);
     add_put(28000, 0, FIXTURE_A, 1);
-    assert_throughput(WH_RANK_SEVERAL, 3, 20, 2, 3);
+    assert_throughput(WH_FIGURE_GIVEN, 3, 20, 2, 3);
 }
 
 /* ---------------------------------------------------------------------------------------------------- runs */
@@ -231,9 +262,9 @@ static void intervals_add_up(void **state) {
     assert_interval(interval(record, WH_BUSY_ROBOT, WH_NONE, 4), 1 + WH_SHARE_VACUUM, 1401, 1501);
     assert_interval(interval(record, WH_BUSY_ROBOT, WH_NONE, 6), 1 + WH_SHARE_WAITING, 2501, 3001);
     /* The valve closes with the slice after 3001 + 2000 + 1000 + 250. */
-    assert_interval(interval(record, WH_BUSY_WAFER, 0, 0), 1 + 0, 1175, 6251);
-    assert_interval(interval(record, WH_BUSY_VALVE, 0, 0), 1, 1000, 6251);
-    assert_interval(interval(record, WH_BUSY_WAFER, 0, 1), 1 + 1, 7502 + 3175, 7502 + 2000 + 6251);
+    assert_interval(interval(record, WH_BUSY_WAFER, 0, 0), 1 + 0, 1176, 6252);
+    assert_interval(interval(record, WH_BUSY_VALVE, 0, 0), 1, 1001, 6252);
+    assert_interval(interval(record, WH_BUSY_WAFER, 0, 1), 1 + 1, 7502 + 3176, 7502 + 2000 + 6252);
     assert_int_equal(record->put_count, 3);
     assert_int_equal(record->puts[2].wafer, 2);
     assert_int_equal(record->puts[2].slot, 3);
@@ -245,9 +276,9 @@ static void prealigner_and_drop(void **state) {
     (void)state;
     const wh_record_t *record = play("case=prealigner", WH_RUN_FAILED);
     const wh_throughput_t found = wh_throughput(record);
-    assert_int_equal(found.rank, WH_RANK_SEVERAL);
+    assert_int_equal(found.figure, WH_FIGURE_FAILED);
     assert_int_equal(record->put_count, 2);
-    size_t *wafers = wh_throughput_cycle_wafers(record, found.rank);
+    size_t *wafers = wh_throughput_cycle_wafers(record);
     assert_int_equal(wafers[0], 1);
     assert_int_equal(wafers[1], 0);
     free(wafers);
@@ -268,7 +299,7 @@ static void swap(void **state) {
     (void)state;
     const wh_record_t *record = play("case=swap", WH_RUN_MET);
     assert_int_equal(record->put_count, 5);
-    size_t *wafers = wh_throughput_cycle_wafers(record, WH_RANK_SEVERAL);
+    size_t *wafers = wh_throughput_cycle_wafers(record);
     assert_int_equal(wafers[0], 1);
     assert_int_equal(wafers[1], 1);
     free(wafers);
@@ -343,7 +374,7 @@ static void forgetting(void **state) {
     assert_shares(record.activity.shares, 1, 0, 0, 0, 1);
     wh_activity_end(&record.activity, 2);
     assert_interval(interval(&record, WH_BUSY_ROBOT, WH_NONE, 0), 1 + WH_SHARE_WAITING, 1, 2);
-    assert_interval(interval(&record, WH_BUSY_WAFER, 0, 0), 1 + 7, 0, 2);
+    assert_interval(interval(&record, WH_BUSY_WAFER, 0, 0), 1 + 7, 1, 2);
     wh_record_free(&record);
 }
 
@@ -352,6 +383,8 @@ int main(void) {
         cmocka_unit_test(a_record_of_nothing),
         cmocka_unit_test(without_marks_every_put_counts),
         cmocka_unit_test(what_is_on_its_way_does_not_count),
+        cmocka_unit_test(a_wafer_that_is_put_twice_gives_no_figure_without_marks),
+        cmocka_unit_test(a_run_that_failed_or_whose_end_is_not_told_gives_no_figure),
         cmocka_unit_test(the_first_cycle_is_left_out),
         cmocka_unit_test(an_only_cycle_counts),
         cmocka_unit_test(cycles_without_a_slice_are_none),

@@ -174,6 +174,10 @@ static void a_value_beside_its_limit_does_not_read_as_the_limit(void **state) {
     event.value = WH_REAL(0.49996);
     assert_string_equal(text_of(&event, NULL),
                         "too close: wafer 2, gripper 1: part 4 and part 5: 0.49996 mm apart (limit 0.5 mm)");
+    event.value = 0;
+    event.at = wh_vec3(1, -2, WH_REAL(0.125));
+    assert_string_equal(text_of(&event, NULL),
+                        "too close: wafer 2, gripper 1: part 4 and part 5 touch at 1.000, -2.000, 0.125 mm");
     event = missed_by_tolerance(0, 50.00004, 0);
     assert_string_equal(
         text_of(&event, NULL),

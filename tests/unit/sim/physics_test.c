@@ -370,14 +370,27 @@ static void a_wafer_at_the_plane_stays_there(void **state) {
     assert_near(height(), 0, 1e-6);
 }
 
+/* Of a tilted slot, or with a low `release`, the wafer is below the plane when its valve closes. */
+static void a_wafer_a_little_below_the_plane_goes_no_farther(void **state) {
+    (void)state;
+    stand_on_a_shelf();
+    step(0, WH_REAL(-0.004), OPEN);
+    step(0, WH_REAL(-0.3), OPEN);
+    assert_int_equal(answer.grippers[0].wafer, 0);
+    step(0, WH_REAL(-0.3), CLOSED);
+    assert_int_equal(answer.grippers[0].wafer, WH_NONE);
+    step(0, WH_REAL(-5.0), CLOSED);
+    assert_near(height(), 0, 1e-6);
+}
+
 static void only_a_support_below_stops_a_wafer(void **state) {
     (void)state;
     /* With an open valve the blade pulls on: collisions tell. */
     stand_on_a_shelf();
     step(0, WH_REAL(0.5), OPEN);
-    step(0, WH_REAL(-0.5), OPEN);
+    step(0, WH_REAL(-0.7), OPEN);
     assert_int_equal(answer.grippers[0].wafer, 0);
-    /* From below the plane, too, and upwards through the plane of slot 2. */
+    /* From farther below the plane, too, and upwards through the plane of slot 2. */
     step(0, WH_REAL(-1.0), CLOSED);
     step(0, WH_REAL(1.0), CLOSED);
     assert_int_equal(answer.grippers[0].wafer, 0);
@@ -402,6 +415,7 @@ int main(void) {
         cmocka_unit_test_setup(what_does_not_fit_is_not_told, set_up),
         cmocka_unit_test_setup(a_support_stops_a_wafer_whose_vacuum_still_holds, set_up),
         cmocka_unit_test_setup(a_wafer_at_the_plane_stays_there, set_up),
+        cmocka_unit_test_setup(a_wafer_a_little_below_the_plane_goes_no_farther, set_up),
         cmocka_unit_test_setup(only_a_support_below_stops_a_wafer, set_up),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,11 +1,12 @@
 /* Options that a table binds to variables: each kind, defaults, shared tables. Refusals are tests/end_to_end/bad_input's.
- * And the arrays that their lists are: without memory the program ends. */
+ * The arrays that their lists are: without memory the program ends. And the name that a wrong word is near to. */
 #include "support/support.h"
 
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "text/array.h"
+#include "text/nearest.h"
 #include "text/options.h"
 
 typedef struct {
@@ -38,7 +39,7 @@ static const wh_option_t others[] = {
     {0}};
 
 static const wh_option_table_t tables[] = {
-    {options, 0, NULL}, {others, offsetof(arguments_t, shared), "Of others:"}, {0}};
+    {options, 0, NULL, NULL}, {others, offsetof(arguments_t, shared), "Of others:", NULL}, {0}};
 
 static const wh_command_line_t command_line = {.name = "test",
                                                .synopsis = "SCRIPT",
@@ -103,9 +104,75 @@ static void without_memory_the_program_ends(void **state) {
     (void)close(ends[1]);
 }
 
+static void assert_nearest(const char *word, const char *expected) {
+    static const char *const names[] = {"collision", "look_ahead", "settle", "seat",
+                                        "slice",     "true",       "dx",     "dy"};
+    const char *const nearest = wh_text_nearest(word, names, sizeof names / sizeof *names);
+    if (!expected) {
+        assert_null(nearest);
+        return;
+    }
+    assert_non_null(nearest);
+    assert_string_equal(nearest, expected);
+}
+
+static void one_slip_of_the_keyboard_is_near(void **state) {
+    static const char *const names[] = {"valve", "rotate", "expect_offset"};
+    (void)state;
+    for (size_t n = 0; n < 3; ++n) {
+        const size_t length = strlen(names[n]);
+        for (size_t i = 0; i < length; ++i) {
+            char left_out[20] = "", put_in[20] = "", replaced[20] = "", swapped[20] = "";
+            (void)sprintf(left_out, "%.*s%s", (int)i, names[n], names[n] + i + 1);
+            (void)sprintf(put_in, "%.*sq%s", (int)i, names[n], names[n] + i);
+            (void)sprintf(replaced, "%.*sq%s", (int)i, names[n], names[n] + i + 1);
+            strcpy(swapped, names[n]);
+            swapped[i] = names[n][i + 1 < length ? i + 1 : i];
+            swapped[i + 1 < length ? i + 1 : i] = names[n][i];
+            assert_ptr_equal(wh_text_nearest(left_out, names, 3), names[n]);
+            assert_ptr_equal(wh_text_nearest(put_in, names, 3), names[n]);
+            assert_ptr_equal(wh_text_nearest(replaced, names, 3), names[n]);
+            assert_ptr_equal(wh_text_nearest(swapped, names, 3), names[n]);
+        }
+    }
+}
+
+static void longer_words_may_have_more_slips(void **state) {
+    (void)state;
+    assert_nearest("True", "true");
+    assert_nearest("colision", "collision");
+    assert_nearest("clolisoin", "collision");
+    assert_nearest("colour", NULL);
+    assert_nearest("lookahead", "look_ahead");
+    assert_nearest("set", "seat");
+    assert_nearest("sett", "seat");
+    assert_nearest("dz", "dx");
+    assert_nearest("z", NULL);
+    assert_nearest("qq", NULL);
+    assert_nearest("", NULL);
+    assert_nearest("wafer", NULL);
+    assert_null(wh_text_nearest("dx", NULL, 0));
+}
+
+static void words_without_end_are_near_to_nothing(void **state) {
+    char long_name[WH_NEAREST_BYTES + 2], longest[WH_NEAREST_BYTES + 1], word[WH_NEAREST_BYTES + 1];
+    const char *const names[] = {long_name, longest};
+    (void)state;
+    memset(long_name, 'a', sizeof long_name - 1);
+    long_name[sizeof long_name - 1] = '\0';
+    strcpy(longest, long_name + 1);
+    strcpy(word, longest);
+    word[5] = 'b';
+    assert_ptr_equal(wh_text_nearest(word, names, 2), longest);
+    assert_null(wh_text_nearest(long_name, names, 2));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(what_is_not_given_stays),
                                        cmocka_unit_test(each_kind_is_taken),
+                                       cmocka_unit_test(one_slip_of_the_keyboard_is_near),
+                                       cmocka_unit_test(longer_words_may_have_more_slips),
+                                       cmocka_unit_test(words_without_end_are_near_to_nothing),
                                        cmocka_unit_test(without_memory_the_program_ends)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

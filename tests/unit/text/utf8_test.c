@@ -44,9 +44,27 @@ static void what_is_no_character_is_replaced(void **state) {
     free(repaired);
 }
 
+static void control_characters_become_visible(void **state) {
+    char text[40];
+    (void)state;
+    wh_utf8_visible(text, sizeof text, "a\x1b[31mµ\n\x7f");
+    assert_string_equal(text, "a\\x1B[31mµ\\x0A\\x7F");
+    wh_utf8_visible(text, sizeof text, "\xc2\x9b|\x9b|\xc3\x9b|\xc2\xa0|\xff");
+    assert_string_equal(text, "\\xC2\\x9B|\\x9B|\xc3\x9b|\xc2\xa0|\xff");
+    wh_utf8_visible(text, 8, "aµ→𝄞");
+    assert_string_equal(text, "aµ...");
+    wh_utf8_visible(text, 8, "abcd\x1b");
+    assert_string_equal(text, "abcd...");
+    for (size_t size = 4; size < 12; ++size) {
+        wh_utf8_visible(text, size, "\x1b\x1b\x1b");
+        assert_true(strlen(text) < size && strspn(text, "\\x1B.") == strlen(text));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_character_is_what_jansson_takes_for_one),
                                        cmocka_unit_test(cuts_are_between_characters),
-                                       cmocka_unit_test(what_is_no_character_is_replaced)};
+                                       cmocka_unit_test(what_is_no_character_is_replaced),
+                                       cmocka_unit_test(control_characters_become_visible)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

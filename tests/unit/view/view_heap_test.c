@@ -21,7 +21,7 @@ static void look(void) {
 static void compare(size_t body, const wh_pose_t *pose) {
     const double mm[] = {pose->r.x, pose->r.y, pose->r.z};
     for (size_t i = 0; i < 3; ++i) {
-        assert_near(view.cell.draw.position[body][i], mm[i] / 1000, 2e-7);
+        assert_near(view.cell.bodies.draw.position[body][i], mm[i] / 1000, 2e-7);
     }
 }
 

@@ -176,16 +176,16 @@ static void bodies_of_a_cell(void **state) {
     const wh_layout_t *layout = read_sound(CELL);
     wh_view_cell_open(&cell, layout, WH_VIEW_ALL);
     size_t shapes = 0;
-    assert_int_equal(cell.load.num_links, 1 + 2 + WH_ARM_BODIES + 2 + 2 + 2);
-    assert_int_equal(cell.draw.num_links, cell.load.num_links);
-    for (int32_t i = 0; i < cell.load.num_links; ++i) {
-        const waferhand_viewer_link *body = &cell.load.link[i];
-        assert_string_equal(cell.draw.link_name[i], body->name);
+    assert_int_equal(cell.bodies.load.num_links, 1 + 2 + WH_ARM_BODIES + 2 + 2 + 2);
+    assert_int_equal(cell.bodies.draw.num_links, cell.bodies.load.num_links);
+    for (int32_t i = 0; i < cell.bodies.load.num_links; ++i) {
+        const waferhand_viewer_link *body = &cell.bodies.load.link[i];
+        assert_string_equal(cell.bodies.draw.link_name[i], body->name);
         assert_int_equal(body->robot_num, 0);
-        assert_int_equal(cell.draw.robot_num[i], 0);
-        assert_unit(cell.draw.quaternion[i]);
+        assert_int_equal(cell.bodies.draw.robot_num[i], 0);
+        assert_unit(cell.bodies.draw.quaternion[i]);
         for (int32_t k = 0; k < i; ++k) {
-            assert_string_not_equal(cell.load.link[k].name, body->name);
+            assert_string_not_equal(cell.bodies.load.link[k].name, body->name);
         }
         for (int32_t k = 0; k < body->num_geom; ++k, ++shapes) {
             check_geometry(&body->geom[k]);
@@ -193,13 +193,13 @@ static void bodies_of_a_cell(void **state) {
     }
     /* Every part, two covers, two wafers with their notches. */
     assert_int_equal(shapes, layout->world.part_count + 2 + 2 * 2);
-    assert_string_equal(cell.load.link[0].name, "obstacles");
-    assert_string_equal(cell.load.link[1].name, "stations::A");
-    assert_string_equal(cell.load.link[cell.links + 3].name, "robot::forearm");
-    assert_string_equal(cell.load.link[cell.grippers].name, "grippers::EE");
-    assert_string_equal(cell.load.link[cell.covers + 1].name, "held::PA");
-    assert_string_equal(cell.load.link[cell.wafers].name, "wafers::a%2Fb%25");
-    assert_string_equal(cell.load.link[cell.wafers + 1].name, "wafers::a%3A%3Ab");
+    assert_string_equal(cell.bodies.load.link[0].name, "obstacles");
+    assert_string_equal(cell.bodies.load.link[1].name, "stations::A");
+    assert_string_equal(cell.bodies.load.link[cell.links + 3].name, "robot::forearm");
+    assert_string_equal(cell.bodies.load.link[cell.grippers].name, "grippers::EE");
+    assert_string_equal(cell.bodies.load.link[cell.covers + 1].name, "held::PA");
+    assert_string_equal(cell.bodies.load.link[cell.wafers].name, "wafers::a%2Fb%25");
+    assert_string_equal(cell.bodies.load.link[cell.wafers + 1].name, "wafers::a%3A%3Ab");
     wh_view_cell_free(&cell);
 }
 
@@ -219,15 +219,15 @@ static void names_of_any_bytes(void **state) {
         snprintf(wafers[0].name, sizeof wafers[0].name, "%s", names[i][0]);
         own.wafers = wafers;
         wh_view_cell_open(&cell, &own, WH_VIEW_ALL);
-        assert_string_equal(cell.load.link[cell.wafers].name, names[i][1]);
+        assert_string_equal(cell.bodies.load.link[cell.wafers].name, names[i][1]);
         wh_view_cell_free(&cell);
     }
 }
 
 static void assert_at(const wh_view_cell_t *cell, size_t body, const wh_vec3_t *mm) {
-    assert_near(cell->draw.position[body][0], mm->x / 1000, 2e-7);
-    assert_near(cell->draw.position[body][1], mm->y / 1000, 2e-7);
-    assert_near(cell->draw.position[body][2], mm->z / 1000, 2e-7);
+    assert_near(cell->bodies.draw.position[body][0], mm->x / 1000, 2e-7);
+    assert_near(cell->bodies.draw.position[body][1], mm->y / 1000, 2e-7);
+    assert_near(cell->bodies.draw.position[body][2], mm->z / 1000, 2e-7);
 }
 
 static void assert_away(const wh_view_cell_t *cell, size_t body) {
@@ -245,7 +245,7 @@ static void bodies_are_where_they_are(void **state) {
     wh_view_cell_open(&cell, layout, WH_VIEW_ALL);
     assert_at(&cell, cell.wafers + 1, &layout->start[1].base_from_wafer.r);
     assert_at(&cell, 1, &layout->places[0].base_from_station.r);
-    assert_near(cell.draw.position[cell.grippers][0], 0.3, 1e-7); /* at home */
+    assert_near(cell.bodies.draw.position[cell.grippers][0], 0.3, 1e-7); /* at home */
     assert_away(&cell, cell.covers);
     assert_away(&cell, cell.covers + 1);
 
@@ -257,7 +257,7 @@ static void bodies_are_where_they_are(void **state) {
     wafers[1].holder = 0;
     const wh_view_look_t look = {1234567, grippers, wafers};
     wh_view_cell_move(&cell, &look);
-    assert_true(cell.draw.timestamp == 1234);
+    assert_true(cell.bodies.draw.timestamp == 1234);
     assert_at(&cell, cell.grippers, &grippers[0].r);
     assert_at(&cell, cell.grippers + 1, &grippers[1].r);
     assert_at(&cell, cell.wafers, &wafers[0].base_from_wafer.r);
@@ -267,7 +267,7 @@ static void bodies_are_where_they_are(void **state) {
     /* The hand is behind the blade, along its x. */
     const wh_vec3_t hand = {0, 500 - layout->shapes.arm.reach, 1000};
     assert_at(&cell, cell.links + WH_ARM_HAND, &hand);
-    assert_near(cell.draw.quaternion[cell.grippers][3], sqrt(0.5), 1e-7);
+    assert_near(cell.bodies.draw.quaternion[cell.grippers][3], sqrt(0.5), 1e-7);
     wh_view_cell_free(&cell);
 }
 
@@ -276,8 +276,8 @@ static void wafers_and_covers(void **state) {
     wh_view_cell_t cell;
     (void)state;
     wh_view_cell_open(&cell, read_sound(CELL ", wafer = { diameter = 200, thickness = 0.7 }"), WH_VIEW_ALL);
-    const waferhand_viewer_link *wafer = &cell.load.link[cell.wafers];
-    const waferhand_viewer_link *cover = &cell.load.link[cell.covers];
+    const waferhand_viewer_link *wafer = &cell.bodies.load.link[cell.wafers];
+    const waferhand_viewer_link *cover = &cell.bodies.load.link[cell.covers];
     assert_int_equal(wafer->num_geom, 2);
     assert_near(wafer->geom[0].float_data[0], 0.1, 1e-8);
     assert_near(wafer->geom[0].float_data[1], 0.0007, 1e-9);
@@ -286,7 +286,7 @@ static void wafers_and_covers(void **state) {
     assert_near(cover->geom[0].float_data[1], 0.0012, 1e-9);
     assert_near(cover->geom[0].position[2], 0.00035, 1e-9);
     assert_near(wafer->geom[1].float_data[2], 0.0017, 1e-9);
-    assert_memory_not_equal(cover->geom[0].color, cell.load.link[cell.covers + 1].geom[0].color,
+    assert_memory_not_equal(cover->geom[0].color, cell.bodies.load.link[cell.covers + 1].geom[0].color,
                             sizeof cover->geom[0].color);
     wh_view_cell_free(&cell);
 }
@@ -294,7 +294,7 @@ static void wafers_and_covers(void **state) {
 /* ----------------------------------------------------------------------------------------------------- hits */
 
 static const float *colour_of_body(const wh_view_cell_t *cell, size_t body, size_t shape) {
-    return cell->load.link[body].geom[shape].color;
+    return cell->bodies.load.link[body].geom[shape].color;
 }
 
 static bool is_red(const float rgba[4]) {
@@ -303,8 +303,8 @@ static bool is_red(const float rgba[4]) {
 
 static size_t count_red(const wh_view_cell_t *cell) {
     size_t count = 0;
-    for (int32_t i = 0; i < cell->load.num_links; ++i) {
-        for (int32_t k = 0; k < cell->load.link[i].num_geom; ++k) {
+    for (int32_t i = 0; i < cell->bodies.load.num_links; ++i) {
+        for (int32_t k = 0; k < cell->bodies.load.link[i].num_geom; ++k) {
             count += is_red(colour_of_body(cell, (size_t)i, (size_t)k));
         }
     }
@@ -327,11 +327,11 @@ static void what_collided_is_red_and_nothing_else(void **state) {
     (void)state;
     const wh_layout_t *layout = read_sound(CELL);
     wh_view_cell_open(&cell, layout, WH_VIEW_ALL);
-    const int size = waferhand_viewer_load_encoded_size(&cell.load);
+    const int size = waferhand_viewer_load_encoded_size(&cell.bodies.load);
     uint8_t *plain = calloc((size_t)size, 1), *again = calloc((size_t)size, 1);
     assert_non_null(plain);
     assert_non_null(again);
-    assert_int_equal(waferhand_viewer_load_encode(plain, 0, size, &cell.load), size);
+    assert_int_equal(waferhand_viewer_load_encode(plain, 0, size, &cell.bodies.load), size);
     assert_false(wh_view_cell_set_hit(&cell, none));
     for (int32_t part = 0; part < (int32_t)(layout->world.part_count + 2); ++part) {
         const int32_t parts[2] = {part, part_of(layout, WH_PART_BLADE, 0)};
@@ -342,7 +342,7 @@ static void what_collided_is_red_and_nothing_else(void **state) {
     }
     const int32_t beyond[2] = {(int32_t)(layout->world.part_count + 2), -7};
     assert_true(wh_view_cell_set_hit(&cell, beyond));
-    assert_int_equal(waferhand_viewer_load_encode(again, 0, size, &cell.load), size);
+    assert_int_equal(waferhand_viewer_load_encode(again, 0, size, &cell.bodies.load), size);
     assert_memory_equal(plain, again, (size_t)size);
     free(plain);
     free(again);
@@ -374,10 +374,10 @@ static void a_red_wafer_is_not_covered(void **state) {
 /* ---------------------------------------------------------------------------------------------------- board */
 
 static const waferhand_viewer_link *body_of(const wh_view_board_t *board, const char *name) {
-    for (int32_t i = 0; i < board->load.num_links; ++i) {
-        assert_string_equal(board->load.link[i].name, board->draw.link_name[i]);
-        if (strcmp(board->load.link[i].name, name) == 0) {
-            return &board->load.link[i];
+    for (int32_t i = 0; i < board->bodies.load.num_links; ++i) {
+        assert_string_equal(board->bodies.load.link[i].name, board->bodies.draw.link_name[i]);
+        if (strcmp(board->bodies.load.link[i].name, name) == 0) {
+            return &board->bodies.load.link[i];
         }
     }
     fail_msg("no body %s", name);
@@ -455,21 +455,22 @@ static void a_line_is_cut_off_at_the_edge(void **state) {
         }
         text[length] = '\0';
         (void)wh_view_board_write(&board, (wh_view_line_t)(i % WH_VIEW_LINES), text);
-        assert_in_range(waferhand_viewer_load_encoded_size(&board.load), 1, wh_view_board_room(&board));
+        assert_in_range(waferhand_viewer_load_encoded_size(&board.bodies.load), 1,
+                        wh_view_board_room(&board));
         assert_true(strlen(board.lines[i % WH_VIEW_LINES]) <= WH_VIEW_COLUMNS);
     }
     assert_in_range(wh_view_board_room(&board), 1, WH_VIEW_BYTES);
-    assert_in_range(waferhand_viewer_draw_encoded_size(&board.draw), 1, WH_LINK_DATAGRAM);
+    assert_in_range(waferhand_viewer_draw_encoded_size(&board.bodies.draw), 1, WH_LINK_DATAGRAM);
     wh_view_board_free(&board);
 }
 
 /* Bit s of each digit: its segment s is where it can be seen. */
 static void segments_of(const wh_view_board_t *board, unsigned digits[WH_VIEW_DIGITS]) {
     memset(digits, 0, WH_VIEW_DIGITS * sizeof *digits);
-    for (int32_t i = 0; i < board->draw.num_links; ++i) {
-        const char *name = board->draw.link_name[i];
-        assert_unit(board->draw.quaternion[i]);
-        if (strncmp(name, "board::time ", 12) == 0 && board->draw.position[i][2] > -100) {
+    for (int32_t i = 0; i < board->bodies.draw.num_links; ++i) {
+        const char *name = board->bodies.draw.link_name[i];
+        assert_unit(board->bodies.draw.quaternion[i]);
+        if (strncmp(name, "board::time ", 12) == 0 && board->bodies.draw.position[i][2] > -100) {
             digits[name[12] - '1'] |= 1U << (unsigned)(name[13] - 'a');
         }
     }
@@ -486,7 +487,7 @@ static void the_board_shows_the_time(void **state) {
     for (size_t i = 0; i < sizeof tenths / sizeof tenths[0]; ++i) {
         assert_int_equal(wh_view_board_set_time(&board, tenths[i] * 100000), tenths[i] > 0);
         assert_false(wh_view_board_set_time(&board, tenths[i] * 100000 + 99999));
-        assert_true(board.draw.timestamp == tenths[i] * 100 + 99);
+        assert_true(board.bodies.draw.timestamp == tenths[i] * 100 + 99);
         segments_of(&board, digits);
         snprintf(text, sizeof text, "%6lld", (long long)(tenths[i] % 1000000));
         for (size_t k = 0; k < WH_VIEW_DIGITS; ++k) {

@@ -1,0 +1,24 @@
+/* Shared by the files that judge a layout: feasibility.c, contact.c, room.c, blades.c, lifted.c. */
+#ifndef WH_LAYOUT_FEASIBILITY_INTERNAL_H
+#define WH_LAYOUT_FEASIBILITY_INTERNAL_H
+
+#include "feasibility.h"
+
+/* base_from_gripper with the end-effector level in a slot, heading in. */
+wh_pose_t wh_feasibility_slot(const wh_station_t *station, int32_t slot);
+
+/* How far a station is tilted, deg. */
+double wh_feasibility_tilt(const wh_station_t *station);
+
+/* All that touches at the start, and what would if every taught slot held a wafer. Both need parts. */
+void wh_feasibility_contacts(wh_feasibility_t *check);
+void wh_feasibility_full(wh_feasibility_t *check);
+
+/* The room of a wafer that a GET lifts. Needs parts. */
+void wh_feasibility_lifted(wh_feasibility_t *check, size_t station);
+
+/* The room at a station, and of the robot's blades beside one another. Both need parts. */
+void wh_feasibility_room(wh_feasibility_t *check, size_t station);
+void wh_feasibility_blades(wh_feasibility_t *check);
+
+#endif

@@ -1,0 +1,39 @@
+/* How far axes go, and in words why they may not: for the errors OUT_OF_REACH and LIMIT_EXCEEDED.
+ *
+ * The words name each axis that would leave its travel, where it would come to, its travel, and where that
+ * is: "r: 200 (expected 300 to 900 mm) with EE at x 200.000, y 0.000, z 897.000 mm". They follow the
+ * library's own judgement, which is asked for each axis alone.
+ *
+ * Lengths in mm, angles in rad; in the words angles are in degrees. All functions are reentrant and allocate
+ * nothing.
+ */
+#ifndef WH_LAYOUT_TRAVEL_H
+#define WH_LAYOUT_TRAVEL_H
+
+#include "../motion/line.h"
+#include "layout.h"
+
+/* The longest text, with its terminator. What does not fit is left out. */
+#define WH_TRAVEL_BYTES 400
+
+/* R is least between the ends of a line that passes base's axis; all else runs one way. False, *least_R
+ * unchanged, if this line does not pass it. */
+bool wh_travel_passes_axis(const wh_line_t *line, wh_real_t *least_R);
+
+/* Why the axes may not stand there: axes[0 .. machine.axis_count - 1]. Empty if they may. A chuck has its
+ * gripper's name. Cost: linear in the axes. */
+void wh_travel_say_axes(const wh_layout_t *layout, const wh_real_t axes[], char text[WH_TRAVEL_BYTES]);
+
+/* Why this gripper, which is on the robot, may not be brought to the point `at` with its x along `heading`,
+ * coming from near_q: what wh_machine_inverse refuses. Empty if it may, or if a number is not finite. Cost:
+ * some microseconds. */
+void wh_travel_say_point(const wh_layout_t *layout, size_t gripper, const wh_vec3_t *at, wh_real_t heading,
+                         const wh_real_t near_q[WH_ROBOT_AXES], char text[WH_TRAVEL_BYTES]);
+
+/* Why the end-effector may not go by `travel` from these axes in a straight line, and after how many mm of it
+ * an axis leaves its travel: what wh_line_plan refuses. Empty if it may, or if a number is not finite. Cost:
+ * some 100 microseconds. */
+void wh_travel_say_line(const wh_layout_t *layout, const wh_real_t from_q[WH_ROBOT_AXES],
+                        const wh_vec3_t *travel, char text[WH_TRAVEL_BYTES]);
+
+#endif

@@ -1,0 +1,399 @@
+#include "survey.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "../math/trig.h"
+#include "../sim/event_text.h"
+#include "native.h"
+
+/* One turn, rad. */
+static const wh_real_t turn = 2 * WH_PI;
+
+/* ------------------------------------------------------------------------------------------ words for Lua */
+
+/* native.windings(theta): the places farthest below and above theta, within its travel, at which the robot
+ * points the same way: a list of none to two, rad. What lies between them is freer than both. */
+static int list_windings(lua_State *L) {
+    const wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_travel_t *travel = &mcs->layout->machine.robot.travel[WH_AXIS_THETA];
+    const wh_real_t theta = luaL_checknumber(L, 1);
+    const wh_real_t turns[2] = {floor((theta - travel->min + WH_SLACK_RAD) / turn),
+                                floor((travel->max - theta + WH_SLACK_RAD) / turn)};
+    lua_newtable(L);
+    for (int i = 0; i < 2; ++i) {
+        if (turns[i] >= 1) {
+            lua_pushnumber(L, theta + (i == 0 ? -turns[i] : turns[i]) * turn);
+            lua_rawseti(L, -2, (lua_Integer)lua_rawlen(L, -2) + 1);
+        }
+    }
+    return 1;
+}
+
+/* native.stand(theta): what is rehearsed next begins there; without an argument: at home. */
+static int stand(lua_State *L) {
+    wh_mcs_t *mcs = wh_mcs_with_layout(L);
+    const wh_real_t *home = mcs->layout->machine.robot.home;
+    mcs->track.axes[WH_AXIS_THETA] = luaL_optnumber(L, 1, home[WH_AXIS_THETA]);
+    return 0;
+}
+
+const luaL_Reg wh_mcs_survey_functions[] = {{"windings", list_windings}, {"stand", stand}, {NULL, NULL}};
+
+/* Registry keys of what looks at a station, and of what plays there. */
+static char look_key, play_key;
+
+/* -------------------------------------------------------------------------------------------- one station */
+
+/* Neighbouring slots at which the same command is refused: one finding, with the first one's reason. */
+typedef struct {
+    wh_survey_t *survey;
+    const wh_layout_t *layout;
+    wh_feasibility_t *check;
+    size_t station;
+    size_t from;         /* whose wafers are put down there: its own, or another one's */
+    int32_t blade;       /* WH_NONE: the station's effector; else another gripper on the robot */
+    int32_t first, last; /* slots; 0: none yet */
+    char word[8];
+    char reason[WH_SANDBOX_MESSAGE_BYTES];
+} job_t;
+
+static void add_finding(job_t *job) {
+    char slots[40];
+    if (job->first == 0) {
+        return;
+    }
+    if (job->first == job->last) {
+        snprintf(slots, sizeof slots, "slot %d", (int)job->first);
+    } else {
+        snprintf(slots, sizeof slots, "slots %d to %d", (int)job->first, (int)job->last);
+    }
+    wh_finding_t *finding =
+        wh_feasibility_add(job->check, WH_FINDING_REACH, (int32_t)job->station, "%s %s: %s: %s",
+                           job->layout->stations[job->station].name, slots, job->word, job->reason);
+    finding->slot = job->first;
+    job->first = 0;
+}
+
+/* found(slot, word, reason), of lua/mcs/reach.lua. */
+static int take_refusal(lua_State *L) {
+    job_t *job = lua_touserdata(L, lua_upvalueindex(1));
+    const int32_t slot = (int32_t)luaL_checkinteger(L, 1);
+    const char *word = luaL_checkstring(L, 2);
+    const char *reason = luaL_checkstring(L, 3);
+    if (job->first != 0 && slot == job->last + 1 && strcmp(job->word, word) == 0) {
+        job->last = slot;
+        return 0;
+    }
+    add_finding(job);
+    job->first = job->last = slot;
+    snprintf(job->word, sizeof job->word, "%s", word);
+    snprintf(job->reason, sizeof job->reason, "%s", reason);
+    return 0;
+}
+
+/* missed(slot, word, reason, gripper), of lua/mcs/reach.lua. */
+static int take_warning(lua_State *L) {
+    job_t *job = lua_touserdata(L, lua_upvalueindex(1));
+    const int32_t slot = (int32_t)luaL_checkinteger(L, 1);
+    add_finding(job);
+    wh_feasibility_add(job->check, WH_FINDING_REACH, (int32_t)job->station, "%s slot %d: %s with %s: %s",
+                       job->layout->stations[job->station].name, (int)slot, luaL_checkstring(L, 2),
+                       luaL_checkstring(L, 4), luaL_checkstring(L, 3))
+        ->slot = slot;
+    wh_feasibility_warn(job->check);
+    return 0;
+}
+
+static void push_function(lua_State *L, job_t *job, lua_CFunction function) {
+    lua_pushlightuserdata(L, job);
+    lua_pushcclosure(L, function, 1);
+}
+
+/* ------------------------------------------------------------------------------------------------ playing */
+
+/* " with UP", unless it is the station's effector that is played. */
+static const char *with_blade(const job_t *job, char text[WH_NAME_SIZE + 8]) {
+    text[0] = '\0';
+    if (job->blade != WH_NONE) {
+        snprintf(text, WH_NAME_SIZE + 8, " with %s", job->layout->grippers[job->blade].name);
+    }
+    return text;
+}
+
+/* failed(slot, word, reason), of lua/mcs/reach.lua: a GET or PUT that was played. A wafer that lies on the
+ * blade as another station has it may touch this one's ledges: of a cell that does not look for collisions
+ * that is a warning. So is what only a command that names the blade meets. */
+static int take_failure(lua_State *L) {
+    job_t *job = lua_touserdata(L, lua_upvalueindex(1));
+    char unused[WH_EVENT_TEXT_SIZE];
+    char with[WH_NAME_SIZE + 8];
+    const int32_t slot = (int32_t)luaL_checkinteger(L, 1);
+    const bool touches = wh_tryout_complained(&job->survey->tryout, unused, sizeof unused);
+    wh_feasibility_add(job->check, WH_FINDING_PLAY, (int32_t)job->station, "%s slot %d: %s%s: %s",
+                       job->layout->stations[job->station].name, (int)slot, luaL_checkstring(L, 2),
+                       with_blade(job, with), luaL_checkstring(L, 3))
+        ->slot = slot;
+    if (job->blade != WH_NONE || (job->from != job->station && touches && !job->layout->collision)) {
+        wh_feasibility_warn(job->check);
+    }
+    return 0;
+}
+
+static int64_t count_slices(const wh_rehearsal_t *rehearsal) {
+    int64_t slices = 0;
+    for (size_t i = 0; i < rehearsal->count; ++i) {
+        slices += rehearsal->segments[i].track.segment_slices;
+    }
+    return slices;
+}
+
+static const wh_real_t *read_axes(lua_State *L, const wh_layout_t *layout, wh_real_t axes[WH_AXES]) {
+    luaL_checktype(L, 1, LUA_TTABLE);
+    for (size_t axis = 0; axis < layout->machine.axis_count; ++axis) {
+        lua_rawgeti(L, 1, (lua_Integer)axis + 1);
+        axes[axis] = luaL_checknumber(L, -1);
+        lua_pop(L, 1);
+    }
+    return axes;
+}
+
+static void say_too_long(const job_t *job, int64_t slices) {
+    char with[WH_NAME_SIZE + 8];
+    wh_feasibility_add(job->check, WH_FINDING_PLAY, (int32_t)job->station,
+                       "%s: GET%s takes %lld slices: GET and PUT were not played here",
+                       job->layout->stations[job->station].name, with_blade(job, with), (long long)slices);
+    wh_feasibility_warn(job->check);
+}
+
+/* cell.stage(axes, empty): a full cell in which the robot stands there; with `empty` a wafer is to be put
+ * into that slot. False: what was planned last takes too long to be played, and a warning says so. */
+static int stage(lua_State *L) {
+    const job_t *job = lua_touserdata(L, lua_upvalueindex(1));
+    wh_survey_t *survey = job->survey;
+    wh_real_t axes[WH_AXES] = {0};
+    const int64_t slices = count_slices(&survey->mcs.rehearsal);
+    const int32_t empty = (int32_t)luaL_optinteger(L, 2, 0);
+    (void)read_axes(L, job->layout, axes);
+    const bool fits = 2 * slices <= WH_TRYOUT_SLICES;
+    if (!fits) {
+        say_too_long(job, slices);
+    } else {
+        const wh_status_t status = wh_tryout_begin(&survey->tryout, job->from, axes, job->station, empty);
+        if (status != WH_OK) {
+            return luaL_error(L, "%s: %s", job->layout->path, wh_record_error_text(status));
+        }
+    }
+    lua_pushboolean(L, fits);
+    return 1;
+}
+
+/* cell.move(axes): the robot stands there, with what it holds. */
+static int move(lua_State *L) {
+    const job_t *job = lua_touserdata(L, lua_upvalueindex(1));
+    wh_real_t axes[WH_AXES] = {0};
+    wh_tryout_move(&job->survey->tryout, read_axes(L, job->layout, axes));
+    return 0;
+}
+
+/* cell.begin(): what has been does not count. */
+static int begin_anew(lua_State *L) {
+    const job_t *job = lua_touserdata(L, lua_upvalueindex(1));
+    wh_tryout_move(&job->survey->tryout, NULL);
+    return 0;
+}
+
+/* cell.complaint(): the cell's first one since then, or nil. */
+static int find_complaint(lua_State *L) {
+    const job_t *job = lua_touserdata(L, lua_upvalueindex(1));
+    char text[WH_EVENT_TEXT_SIZE];
+    if (wh_tryout_complained(&job->survey->tryout, text, sizeof text)) {
+        lua_pushstring(L, text);
+        return 1;
+    }
+    if (job->from == job->station && job->blade == WH_NONE) {
+        wh_tryout_note_lift(&job->survey->tryout, job->station);
+    }
+    return 0;
+}
+
+/* What is wrong with a station already would be found here again. */
+static bool is_to_be_played(const job_t *job) {
+    bool good = job->layout->stations[job->station].taught;
+    for (size_t i = 0; good && i < job->check->count; ++i) {
+        const wh_finding_t *finding = &job->check->findings[i];
+        const bool here =
+            finding->station == (int32_t)job->station || finding->other == (int32_t)job->station;
+        good = finding->is_warning || !here;
+    }
+    return good;
+}
+
+/* Runs protected. */
+static int play_at_station(lua_State *L) {
+    static const luaL_Reg cell[] = {
+        {"stage", stage}, {"move", move}, {"begin", begin_anew}, {"complaint", find_complaint}, {NULL, NULL}};
+    job_t *job = lua_touserdata(L, 1);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &play_key);
+    if (job->from != job->station) {
+        lua_pushstring(L, job->layout->stations[job->from].name);
+    } else {
+        lua_pushnil(L);
+    }
+    lua_pushstring(L, job->layout->stations[job->station].name);
+    lua_newtable(L);
+    lua_pushlightuserdata(L, job);
+    luaL_setfuncs(L, cell, 1);
+    push_function(L, job, take_failure);
+    if (job->blade != WH_NONE) {
+        lua_pushinteger(L, (lua_Integer)job->blade + 1);
+    } else {
+        lua_pushnil(L);
+    }
+    lua_call(L, 5, 0);
+    return 0;
+}
+
+/* ---------------------------------------------------------------------------------------------- all of it */
+
+/* Runs protected. */
+static int begin(lua_State *L) {
+    const job_t *job = lua_touserdata(L, 1);
+    wh_mcs_push_survey(L);
+    wh_mcs_set_up(L, &job->survey->mcs, job->layout);
+    lua_call(L, 1, 2);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &play_key);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &look_key);
+    return 0;
+}
+
+/* Runs protected. */
+static int look_at_station(lua_State *L) {
+    job_t *job = lua_touserdata(L, 1);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &look_key);
+    lua_pushstring(L, job->layout->stations[job->station].name);
+    push_function(L, job, take_refusal);
+    push_function(L, job, take_warning);
+    lua_call(L, 3, 0);
+    return 0;
+}
+
+static bool play(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
+    wh_sandbox_renew(sandbox);
+    const bool good = wh_sandbox_protect(wh_sandbox_state(sandbox), play_at_station, job, result);
+    wh_tryout_end(&job->survey->tryout);
+    return good;
+}
+
+/* What is left of a large cell is not played, and that is said. */
+static bool is_spent(const job_t *job) {
+    const bool spent = job->survey->tryout.slices > WH_TRYOUT_ALL_SLICES;
+    char with[WH_NAME_SIZE + 8];
+    if (spent) {
+        wh_feasibility_add(job->check, WH_FINDING_PLAY, (int32_t)job->station,
+                           "%s: GET and PUT%s%s were not played here, nor what follows: after %d slices no "
+                           "more is",
+                           job->layout->stations[job->station].name,
+                           job->from == job->station ? "" : " of other stations' wafers",
+                           with_blade(job, with), WH_TRYOUT_ALL_SLICES);
+        wh_feasibility_warn(job->check);
+    }
+    return spent;
+}
+
+/* A station with wafers of others, up to the first finding. */
+static bool play_carried(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result, bool *spent) {
+    const size_t found = job->check->count;
+    bool good = true;
+    for (job->from = 0; good && !*spent && job->from < job->layout->station_count; ++job->from) {
+        if (is_to_be_played(job) && wh_tryout_is_new(&job->survey->tryout, job->from, job->station)) {
+            *spent = is_spent(job);
+            good = *spent || play(job, sandbox, result);
+        }
+        if (job->check->count > found) {
+            break;
+        }
+    }
+    return good;
+}
+
+/* Wafers of other stations are not played in a cell that is too large, and that is said. */
+static bool is_too_large(const job_t *job) {
+    const size_t slots = wh_tryout_slots(&job->survey->tryout);
+    const bool large = slots > WH_TRYOUT_WAFERS;
+    if (large && job->layout->station_count > 1) {
+        wh_feasibility_add(job->check, WH_FINDING_PLAY, WH_NONE,
+                           "PUT of other stations' wafers was not played: of a cell with more than %d slots, "
+                           "here %zu, it is not",
+                           WH_TRYOUT_WAFERS, slots);
+        wh_feasibility_warn(job->check);
+    }
+    return large;
+}
+
+/* A station with the robot's other blades. */
+static bool play_blades(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result, bool *spent) {
+    const wh_layout_t *layout = job->layout;
+    const int32_t count = (int32_t)layout->machine.gripper_count;
+    bool good = true;
+    job->from = job->station;
+    for (int32_t g = 0; good && !*spent && g < count; ++g) {
+        const bool is_other = g != layout->stations[job->station].effector;
+        if (is_other && layout->grippers[g].station == WH_NONE && is_to_be_played(job)) {
+            job->blade = g;
+            *spent = is_spent(job);
+            good = *spent || play(job, sandbox, result);
+        }
+    }
+    job->blade = WH_NONE;
+    return good;
+}
+
+/* A station with its own wafers. */
+static bool play_own(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result, bool *spent) {
+    job->from = job->station;
+    *spent = is_spent(job);
+    return *spent || !is_to_be_played(job) || play(job, sandbox, result);
+}
+
+typedef bool (*step_t)(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result, bool *spent);
+
+/* Each station with its own wafers, then with those that lie on the blade as other stations have them, then
+ * with the other blades. */
+static bool play_all(job_t *job, wh_sandbox_t *sandbox, wh_sandbox_result_t *result) {
+    static const step_t steps[] = {play_own, play_carried, play_blades};
+    bool good = true, spent = false;
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; ++i) {
+        if (steps[i] == play_carried && good && !spent && is_too_large(job)) {
+            continue;
+        }
+        for (job->station = 0; good && !spent && job->station < job->layout->station_count; ++job->station) {
+            good = steps[i](job, sandbox, result, &spent);
+        }
+    }
+    return good;
+}
+
+bool wh_survey_open(wh_survey_t *survey, wh_sandbox_t *sandbox, const wh_layout_t *layout,
+                    wh_feasibility_t *check, wh_sandbox_result_t *result) {
+    lua_State *L = wh_sandbox_state(sandbox);
+    job_t job = {.survey = survey, .layout = layout, .check = check, .blade = WH_NONE};
+    memset(survey, 0, sizeof *survey);
+    wh_sandbox_renew(sandbox);
+    bool good = wh_mcs_open(&survey->mcs, sandbox, layout->path, &survey->record, result) &&
+                wh_sandbox_protect(L, begin, &job, result);
+    wh_tryout_open(&survey->tryout, &survey->mcs, layout);
+    for (; good && job.station < layout->station_count; ++job.station) {
+        wh_sandbox_renew(sandbox);
+        good = wh_sandbox_protect(L, look_at_station, &job, result);
+        add_finding(&job);
+    }
+    return good && play_all(&job, sandbox, result);
+}
+
+void wh_survey_close(wh_survey_t *survey) {
+    wh_tryout_close(&survey->tryout);
+    wh_mcs_close(&survey->mcs);
+    wh_record_free(&survey->record);
+}

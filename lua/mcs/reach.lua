@@ -1,0 +1,138 @@
+-- What a run asks of its layout before anything moves, and `waferhand layout` of each: that GET and PUT can
+-- be planned at the slots, from where the robot stands at home. `waferhand layout` plays them as well.
+
+-- Kept, for a script may set globals of these names.
+local ipairs, math, tostring, type = ipairs, math, tostring, type
+
+return function(native, transfer)
+  local rehearse, rehearse_map = transfer.rehearse, transfer.rehearse_map
+  local reach = {}
+
+  -- In an upright stack only the height differs, so its ends tell of all slots. In a tilted one a slot
+  -- between them may be nearer to the robot than both.
+  local function slots_of(station)
+    if not station.taught then
+      return {}
+    elseif station.upright then
+      return station.slots > 1 and { 1, station.slots } or { 1 }
+    end
+    local slots = {}
+    for slot = 1, station.slots do
+      slots[slot] = slot
+    end
+    return slots
+  end
+
+  local function reason_of(problem)
+    return type(problem) == "table" and problem.text or tostring(problem)
+  end
+
+  -- Calls found(slot, word, reason) for each slot at which a command of that word is refused: then a run
+  -- refuses the whole layout.
+  function reach.check(station, found)
+    for _, slot in ipairs(slots_of(station)) do
+      native.reach(station.index, slot)
+      local word, problem = rehearse(station.name, slot)
+      if problem then
+        found(slot, word, reason_of(problem))
+      end
+    end
+    native.reach()
+  end
+
+  -- Theta may have been wound up by the commands before, to where a slot is a turn or more away from home's
+  -- way. `found` as above, at most once a slot.
+  local function check_wound(station, slot, found)
+    local _, problem, theta = rehearse(station.name, slot)
+    for _, wound in ipairs(problem and {} or native.windings(theta)) do
+      native.stand(wound)
+      local word, refused = rehearse(station.name, slot)
+      native.stand()
+      if refused then
+        local from = "coming from theta %.5g deg, where earlier commands can lead it, %s"
+        found(slot, word, from:format(math.deg(wound), reason_of(refused)))
+        return
+      end
+    end
+  end
+
+  -- What else would be refused in the course of a run: a MAP at a station that insists on one, and the same
+  -- ways with theta wound up.
+  function reach.check_later(station, found)
+    for _, slot in ipairs(slots_of(station)) do
+      check_wound(station, slot, found)
+    end
+    local problem = station.taught and station.check_map and rehearse_map(station.name)
+    if problem then
+      found(1, "MAP", reason_of(problem))
+    end
+  end
+
+  local function check_blade(station, gripper, name, missed)
+    for _, slot in ipairs(slots_of(station)) do
+      native.reach(station.index, slot)
+      local word, problem = rehearse(station.name, slot, gripper)
+      if problem then
+        missed(slot, word, reason_of(problem), name)
+        break
+      end
+    end
+    native.reach()
+  end
+
+  -- Calls missed(slot, word, reason, name) for each blade that is not the station's effector, with the first
+  -- slot at which that blade is refused: a run refuses it when a command names the blade.
+  function reach.check_blades(station, missed)
+    for index, gripper in ipairs(native.layout.grippers) do
+      if gripper.on_robot and index ~= station.effector then
+        check_blade(station, index, gripper.name, missed)
+      end
+    end
+  end
+
+  -- What is played at a station: all that a slot can have above and below it, and what the commands before
+  -- have left there. A wafer goes to a chuck again only after it was elsewhere.
+  local function sequences_of(station)
+    if station.slots == 1 then
+      return { station.chuck and { 1 } or { 1, 1 } }
+    end
+    return { { 1, 1, 2 }, { 2, 1 }, { station.slots } }
+  end
+
+  -- True if no slot of the station is refused to this gripper.
+  local function is_reached(station, gripper)
+    for _, slot in ipairs(slots_of(station)) do
+      if transfer.rehearse(station.name, slot, gripper) then
+        return false
+      end
+    end
+    return true
+  end
+
+  -- Calls failed(slot, word, reason) for the first GET or PUT that fails when it is played; `cell` as in
+  -- lua/mcs/transfer.lua. With `gripper`, a blade that is not the station's effector, if that reaches it.
+  function reach.play(station, cell, failed, gripper)
+    for _, slots in ipairs((not gripper or is_reached(station, gripper)) and sequences_of(station) or {}) do
+      local slot, word, problem = transfer.try_out(station.name, slots, cell, gripper)
+      if slot == false then
+        return
+      elseif slot then
+        failed(slot, word, reason_of(problem))
+        return
+      end
+    end
+  end
+
+  -- The same for a PUT of a wafer that another station's GET has taken; from a chuck it is then taken again.
+  function reach.play_carrying(from, station, cell, failed)
+    for slot = 1, math.min(station.slots, 2) do
+      local word, problem = transfer.try_carrying(from.name, station.name, slot, cell, station.chuck)
+      if word then
+        failed(slot, word .. " of a wafer from " .. from.name, reason_of(problem))
+        return
+      end
+    end
+  end
+
+  return reach
+end
