@@ -101,9 +101,9 @@ typedef struct {
     double notch, notch_depth;
     wh_grasp_config_t grasp;
     int64_t slice_us;
-    wh_physics_t physics; /* vacuum, pads, faults at the start */
-    wh_machine_t machine; /* machine.gripper_count is the number of grippers */
-    bool homed;           /* false: commands that rely on the arm's position need a HOME first */
+    wh_physics_t physics;         /* vacuum, pads, faults at the start */
+    wh_machine_t machine;         /* machine.gripper_count is the number of grippers */
+    bool homed;                   /* false: commands that rely on the arm's position need a HOME first */
     wh_corrections_t corrections; /* the largest ones that a command may ask for */
     wh_layout_gripper_t grippers[WH_GRIPPERS];
     size_t station_count;

@@ -65,7 +65,7 @@ return function(native, errors)
 
   -- A field that a command does not have.
   function lookup.refuse_field(name, value, names)
-    local expected = lookup.listed(names) .. lookup.nearest(name, names)
+    local expected = table.concat(names, ", ") .. lookup.nearest(name, names)
     local text = "%s: %s (there is no such field: expected %s)"
     native.fail("BAD_ARGUMENT", text:format(tostring(name), lookup.quote(value), expected))
   end
