@@ -184,11 +184,11 @@ void wh_mcs_give_up(wh_mcs_t *mcs);
 #define WH_MCS_DESCRIPTION_BYTES 4096
 
 /* What motion control does, as name=value with blanks between them, spelt as answers at the prompt are:
- * `phase`, idle, running or held, the `command` that runs or is held, and, if held, where it `stop`s; `seq` and `time` (s) of the last slice that a state
- * has come for, 0 before the first; in that slice, where the robot's axes were commanded to, `theta` and
- * `yaw` in degrees, `r` and `z` in mm, and for each gripper the wafer that it `holds`; and `error`, the
- * number of the last command's that failed in this run, with its `error_name` and `error_command`, or 0. May
- * be called from within the link's exchange. */
+ * `phase`, idle, running or held, the `command` that runs or is held, and, if held, where it `stop`s; `seq`
+ * and `time` (s) of the last slice that a state has come for, 0 before the first; in that slice, where the
+ * robot's axes were commanded to, `theta` and `yaw` in degrees, `r` and `z` in mm, and for each gripper the
+ * wafer that it `holds`; and `error`, the number of the last command's that failed in this run, with its
+ * `error_name` and `error_command`, or 0. May be called from within the link's exchange. */
 void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]);
 
 /* The running command has ended with an error past all Lua. Without a running command nothing. */
