@@ -22,6 +22,8 @@
         { keys: ['m'], name: 'm', text: 'measure', act: () => W.measure.toggle() },
         { keys: ['f'], name: 'f', text: 'frames', act: option('frames') },
         { keys: ['n'], name: 'n', text: 'names of wafers and grippers', act: option('names') },
+        { keys: ['l'], name: 'l', text: 'a link to this moment and view', act: () => W.link.take() },
+        { keys: ['p'], name: 'p', text: 'save the picture', act: () => W.stage.view && W.link.picture() },
         { keys: ['+', '='], name: '+', text: 'plots: shorter time', act: () => W.clock.zoom(0.5) },
         { keys: ['-'], name: '\u2212', text: 'plots: longer time', act: () => W.clock.zoom(2) },
         { keys: ['0'], name: '0', text: 'plots: the whole run', act: () => W.clock.reset() },
