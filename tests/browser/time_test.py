@@ -107,6 +107,8 @@ class Time(unittest.TestCase):
             self.assertEqual(page.js("return document.querySelector('[data-name=%s]').getAttribute('aria-pressed')" % name), "true")
         page.key("n")
         self.assertIn("Wafer 1", page.js("return Array.from(document.querySelectorAll('.tag:not([hidden])'), (tag) => tag.textContent)"))
+        self.assertEqual(page.js("return Array.from(document.querySelectorAll('.tag.station:not([hidden])'), (tag) => tag.textContent).sort()"),
+                         sorted(document["names"]["stations"]))
         page.key("f")
         self.assertTrue(page.js("return Waferhand.stage.view.triads.every((triad) => triad.visible)"))
         page.key("t")

@@ -21,7 +21,7 @@
         { keys: ['4'], name: '4', text: 'ride along with a gripper; again: with the next', act: view('gripper') },
         { keys: ['m'], name: 'm', text: 'measure', act: () => W.measure.toggle() },
         { keys: ['f'], name: 'f', text: 'frames', act: option('frames') },
-        { keys: ['n'], name: 'n', text: 'names of wafers and grippers', act: option('names') },
+        { keys: ['n'], name: 'n', text: 'names of wafers, grippers and stations', act: option('names') },
         { keys: ['l'], name: 'l', text: 'a link to this moment and view', act: () => W.link.take() },
         { keys: ['p'], name: 'p', text: 'save the picture', act: () => W.stage.view && W.link.picture() },
         { keys: ['+', '='], name: '+', text: 'plots: shorter time', act: () => W.clock.zoom(0.5) },
