@@ -1,5 +1,9 @@
 /* What a customer asks of a layout: wafers per hour, what the time goes into, reach. */
 #include "../record/throughput.h"
+
+#include <math.h>
+#include <string.h>
+
 #include "../math/trig.h"
 #include "print_internal.h"
 
@@ -68,6 +72,73 @@ static void add_times(const wh_printer_t *printer, wh_grid_t *grid, const char *
     wh_grid_number(grid, SECONDS, WH_INK_PLAIN, wh_throughput_seconds(printer->record, slices));
 }
 
+/* How much of a command's text names what it does and where: GET A of GET A 1, WAIT of WAIT 2. A name with
+ * blanks stands in quotes. */
+static size_t kind_length(const char *text) {
+    const size_t verb = strcspn(text, " ");
+    const char *where = text + verb + strspn(text + verb, " ");
+    if (*where == '\0' || strchr("+-.0123456789", *where)) {
+        return verb;
+    }
+    const char *end = *where == '"' ? strchr(where + 1, '"') : NULL;
+    return (size_t)(where - text) + (end ? (size_t)(end - where) + 1 : strcspn(where, " "));
+}
+
+static bool is_of_kind(const wh_command_record_t *command, const char *kind, size_t length) {
+    return command->text && kind_length(command->text) == length && memcmp(command->text, kind, length) == 0;
+}
+
+/* Commands of one kind together, from the first of them on. */
+static void add_total(const wh_printer_t *printer, wh_grid_t *grid, size_t first) {
+    enum { KIND, COUNT, MEAN, LEAST, MOST, SHARE };
+    const wh_record_t *record = printer->record;
+    const char *kind = record->commands[first].text;
+    const size_t length = kind_length(kind);
+    double sum = 0;
+    double least = HUGE_VAL;
+    double most = 0;
+    size_t count = 0;
+    for (size_t i = first; i < record->command_count; ++i) {
+        if (is_of_kind(&record->commands[i], kind, length)) {
+            const double seconds = record->commands[i].end_s - record->commands[i].begin_s;
+            sum += seconds;
+            least = seconds < least ? seconds : least;
+            most = seconds > most ? seconds : most;
+            ++count;
+        }
+    }
+    wh_grid_row(grid);
+    wh_grid_text(grid, KIND, WH_INK_PLAIN, "%.*s", (int)length, kind);
+    wh_grid_number(grid, COUNT, WH_INK_PLAIN, (double)count);
+    const double values[] = {sum / (double)count, least, most, 100 * sum / record->simulated_s};
+    wh_grid_numbers(grid, MEAN, values, sizeof values / sizeof *values);
+}
+
+/* True if no command before this one is of its kind. */
+static bool is_first_of_kind(const wh_record_t *record, size_t command) {
+    const char *kind = record->commands[command].text;
+    const size_t length = kind ? kind_length(kind) : 0;
+    for (size_t i = 0; i < command && kind; ++i) {
+        if (is_of_kind(&record->commands[i], kind, length)) {
+            return false;
+        }
+    }
+    return kind != NULL;
+}
+
+/* What a long run's rows above do not show at a glance. */
+static void print_totals(const wh_printer_t *printer) {
+    const wh_record_t *record = printer->record;
+    wh_grid_t *grid =
+        wh_grid_new(printer->style, 1, "command;count{0};mean s{3};least s{3};most s{3};share %{1}");
+    for (size_t i = 0; i < record->command_count; ++i) {
+        if (is_first_of_kind(record, i)) {
+            add_total(printer, grid, i);
+        }
+    }
+    wh_print_titled(printer, "Totals: commands of one kind at one station, and their share of the run", grid);
+}
+
 void wh_print_times(const wh_printer_t *printer) {
     const wh_record_t *record = printer->record;
     if (!record->layout || record->slices == 0) {
@@ -88,6 +159,7 @@ void wh_print_times(const wh_printer_t *printer) {
     add_times(printer, grid, "all", record->activity.shares);
     wh_print_titled(
         printer, "Time: motion with and without a wafer, standing still for vacuum, valves, waiting", grid);
+    print_totals(printer);
 }
 
 /* -------------------------------------------------------------------------------------------------- reach */

@@ -81,7 +81,7 @@ static const char *const look = "set linetype 1 lc rgb '#000000' lw 1.1 dt 1 pt 
                                 "set linetype 3 lc rgb '#9c1c1c' lw 1.1 dt (3,3) pt 8 ps 0.45\n"
                                 "set linetype 4 lc rgb '#2b6b2b' lw 1.1 dt (12,3,3,3) pt 10 ps 0.45\n"
                                 "set linetype 5 lc rgb '#5c3a86' lw 1.1 dt (6,3,2,3,2,3) pt 12 ps 0.45\n"
-                                "set linetype 6 lc rgb '#4d4d4d' lw 1.1 dt (2,5) pt 2 ps 0.45\n"
+                                "set linetype 6 lc rgb '#8a6d00' lw 1.1 dt (2,5) pt 2 ps 0.45\n"
                                 "set linetype cycle 6\n"
                                 "set style line 9 lc rgb '#000000' lw 0.8 dt (5,4)\n"
                                 "set border 3 lw 0.7\n"

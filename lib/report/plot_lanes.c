@@ -249,7 +249,7 @@ enum { EVEN, ODD, FAILED, COMMANDS };
 
 static const look_t command_looks[COMMANDS] = {{NULL, "#ffffff", "solid", false},
                                                {NULL, "#e4e4e4", "solid", false},
-                                               {"failed", "#000000", "solid", true}};
+                                               {"failed", "#9c1c1c", "solid", true}};
 
 static int look_of(const wh_record_t *record, size_t command) {
     return record->commands[command].error != WH_OK ? FAILED : command % 2 == 0 ? EVEN : ODD;
@@ -272,7 +272,7 @@ static const look_t share_looks[WH_SHARES] = {
     [WH_SHARE_LOADED] = {"loaded", "#606060", "solid", false},
     [WH_SHARE_EMPTY] = {"empty", "#c8c8c8", "solid", false},
     [WH_SHARE_VACUUM] = {"vacuum", "#000000", "hatched", false},
-    [WH_SHARE_HANDOVER] = {"hand-over", "#000000", "crossed", false},
+    [WH_SHARE_HANDOVER] = {"hand-over", "#2b6b2b", "crossed", false},
     [WH_SHARE_WAITING] = {"waiting", "#ffffff", "solid", false}};
 
 /* Each chuck's lane. They come after the lanes of commands and of the robot; SIZE_MAX: the chuck does not

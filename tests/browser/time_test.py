@@ -15,7 +15,7 @@ def setUpModule():
 class Time(unittest.TestCase):
     # What asks for the picture of the cell, and one each of play, scrubber and zoom beside it.
     drawn = ["test_opens", "test_whole_cell_is_in_the_picture", "test_play_and_pause", "test_scrubber", "test_zoom_is_shared",
-             "test_views_and_switches", "test_riding_along", "test_orbit"]
+             "test_views_and_switches", "test_riding_along", "test_orbit", "test_link", "test_picture"]
 
     def setUp(self):
         global page
@@ -107,6 +107,8 @@ class Time(unittest.TestCase):
             self.assertEqual(page.js("return document.querySelector('[data-name=%s]').getAttribute('aria-pressed')" % name), "true")
         page.key("n")
         self.assertIn("Wafer 1", page.js("return Array.from(document.querySelectorAll('.tag:not([hidden])'), (tag) => tag.textContent)"))
+        self.assertEqual(page.js("return Array.from(document.querySelectorAll('.tag.station:not([hidden])'), (tag) => tag.textContent).sort()"),
+                         sorted(document["names"]["stations"]))
         page.key("f")
         self.assertTrue(page.js("return Waferhand.stage.view.triads.every((triad) => triad.visible)"))
         page.key("t")
@@ -128,6 +130,40 @@ class Time(unittest.TestCase):
         before = page.js("return Waferhand.stage.view.rig.camera.position.toArray()")
         page.drag((left + width / 2, top + height / 2), (left + width / 2 + 120, top + height / 2 + 10))
         self.assertNotEqual(page.js("return Waferhand.stage.view.rig.camera.position.toArray()"), before)
+
+    def test_link(self):
+        """Moment, window, view and eye come back with the address; nonsense in it is passed over."""
+        left, top, width, height = page.box("#canvas canvas")
+        page.drag((left + width / 2, top + height / 2), (left + width / 2 + 120, top + height / 2 + 10))
+        page.js("Waferhand.clock.setWindow(2, 4)")
+        page.seek(2.5)
+        state = """const { rig } = Waferhand.stage.view; return [Waferhand.clock.now, ...Waferhand.clock.window,
+            ...rig.camera.position.toArray(), ...rig.controls.target.toArray()]"""
+        wanted = page.js(state)
+        page.key("l")
+        address = page.driver.current_url
+        self.assertIn("#t=2.5&window=2,4&view=whole&eye=", address)
+        page.driver.get("about:blank")
+        page.driver.get(address)
+        page.wait("return performance.getEntriesByName('complete').length > 0")
+        for found, value in zip(page.js(state), wanted, strict=True):
+            self.assertAlmostEqual(found, value, delta=1e-3)
+        page.js("location.hash = 't=3&view=top&eye=1,2'")
+        page.settle()
+        self.assertEqual([page.now(), page.js("return Waferhand.stage.shown")], [3, "top"])
+        page.js("location.hash = 't=x&window=5,1&view=constructor&gripper=9&eye='")
+        page.settle()
+        self.assertEqual([page.now(), page.js("return Waferhand.stage.shown")], [3, "top"])
+
+    def test_picture(self):
+        """It is saved as a PNG that is named after the run and the moment."""
+        page.seek(2.5)
+        page.js("HTMLAnchorElement.prototype.click = function () { window.saved = [this.download, this.href]; }")
+        page.key("p")
+        name, data = page.js("return window.saved")
+        self.assertEqual(name, "01_transfer.lua_2.500s.png")
+        self.assertTrue(data.startswith("data:image/png;base64,iVBOR"))
+        self.assertGreater(len(data), 10000)
 
     def test_space_on_a_button_is_the_buttons(self):
         page.js("document.getElementById('theme').focus()")

@@ -155,6 +155,41 @@ class Values(unittest.TestCase):
         page.open(documents.example("01_transfer")[1])
         self.assertEqual(page.js("return document.querySelectorAll('.failure').length"), 0)
 
+    def test_reasons(self):
+        """What ended a run, what it did not do and what went wrong are each said in a sentence."""
+        document = documents.example("04_scrape")[0]
+        document["run"]["failure"] = "x.lua:9: no such slot"
+        document["run"]["expectations"] = [{"line": n, "text": f"wish {n}", "ok": n == 1} for n in range(1, 6)]
+        page.open(documents.page_of(document, "reasons"))
+        said = page.js("return Array.from(document.querySelectorAll('.failure'), (each) => each.textContent)")
+        self.assertEqual(said[:2], ["The script ended early: x.lua:9: no such slot",
+                                    "The script expected what did not come about: wish 2 (line 2); wish 3 (line 3); wish 4 (line 4); "
+                                    "1 other."])
+        self.assertRegex(said[2], "^It failed for too close: .*6.s[.]$")
+
+    def test_lone_value(self):
+        """A value between two gaps is a dot that can be seen."""
+        document = documents.example("04_scrape")[0]
+        track = next(each for each in document["tracks"]["clearances"] if len(each.get("t", [])) > 4)
+        track["gap"] = [2 if i == 2 else None for i in range(len(track["t"]))]
+        page.open(documents.page_of(document, "lone"))
+        dark = page.js("""const panel = Waferhand.plots.panels.find((each) => each.title === arguments[1]);
+            const [x, y] = panel.graph.toDomCoords(arguments[0], 2), pen = panel.graph.hidden_.getContext('2d');
+            const image = pen.getImageData(Math.round(x) - 5, Math.round(y) - 5, 11, 11).data;
+            return Array.from({ length: 121 }, (_, i) => image[4 * i + 3]).filter((alpha) => alpha > 128).length""",
+                       track["t"][2], track["pair"].replace("_", " "))
+        self.assertGreaterEqual(dark, 12)
+
+    def test_ticks(self):
+        """Neighbours differ in what is written, however narrow the range, and rounding shows nowhere."""
+        document = documents.example("01_transfer")[0]
+        page.open(documents.page_of(document, "ticks"))
+        told = page.js("""return [[1 - 1.2e-16, 2e-5], [0.99998, 2e-5], [1 - 2e-7, 1e-6], [900.0000001, 5e-7], [900.0000002, 5e-7],
+            [3599.999981, 1e-5], [3599.999982, 1e-5], [-2e-17, 3], [0.30000000000000004, 1], [-250, 900]]
+            .map(([value, span]) => Waferhand.tick(value, span))""")
+        self.assertEqual(told, ["1", "0.99998", "1 \u2212 2e\u22127", "900.0000001", "900.0000002", "3599.999981", "3599.999982", "0",
+                                "0.3", "\u2212250"])
+
     def test_tables(self):
         document, path = documents.example("01_transfer")
         page.open(path)

@@ -9,6 +9,7 @@
 #include "../../text/array.h"
 #include "../../text/style.h"
 #include "../app.h"
+#include "answer.h"
 #include "editor.h"
 
 /* Lines from a pipe or a file: bytes, whatever they are. */
@@ -126,6 +127,9 @@ static wh_line_event_t read_line(wh_prompt_t *prompt, const char **line) {
 static void print_answer(wh_prompt_t *prompt, wh_status_t status) {
     if (!prompt->editor) {
         puts(prompt->answer);
+        return;
+    }
+    if (wh_answer_print_wafers(prompt->answer, &prompt->style, stdout)) {
         return;
     }
     char *printable = wh_style_printable(prompt->answer);

@@ -44,6 +44,15 @@ window.Waferhand = {};
         return number(value, Math.max(0, 3 - before + (size < 1 ? 1 : 0)));
     }
 
+    /* A tick's number: as many digits as tell it from its neighbours in a range so wide, and none that rounding left. Near to
+     * 1, what is missing to it tells more. */
+    function tick(value, span) {
+        const decimals = clamp(3 - Math.floor(Math.log10(span)), 0, 18);
+        const lack = Number((1 - value).toFixed(decimals));
+        const text = lack > 0 && lack < 1e-5 ? `1 - ${lack.toExponential()}` : String(Number(value.toFixed(decimals)));
+        return (text === '-0' ? '0' : text).replace(/-/g, MINUS);
+    }
+
     /* A small picture of filled paths on 24 by 24. */
     function icon(path) {
         const space = 'http://www.w3.org/2000/svg';
@@ -72,5 +81,5 @@ window.Waferhand = {};
         document.getElementById('said').textContent = text;
     }
 
-    Object.assign(W, { element, icon, number, figure, seconds, words, clamp, why, say, DASH });
+    Object.assign(W, { element, icon, number, figure, tick, seconds, words, clamp, why, say, DASH });
 }(window.Waferhand));

@@ -58,6 +58,12 @@
         const rig = { camera, controls, view: 'whole', rider: null, moved: false };
         controls.addEventListener('start', () => { rig.moved = true; });
         rig.show = (view, rider) => show(rig, points, view, rider);
+        rig.place = (from, target) => {
+            rig.moved = true;
+            camera.position.fromArray(from);
+            controls.target.fromArray(target);
+            controls.update();
+        };
         rig.resize = (width, height) => resize(rig, points, width, height);
         rig.ride = () => {
             ride(rig);

@@ -1,4 +1,4 @@
-/* Words in the picture: names of what moves, marks, and the measured distance with its line. */
+/* Words in the picture: names of stations and what moves, marks, and the measured distance with its line. */
 (function (W) {
     'use strict';
 
@@ -11,10 +11,19 @@
         return made;
     }
 
-    /* Names for all that moves by itself, and the ruler. */
+    /* Stations are named at their lowest slots. */
+    function stations(view) {
+        const { slots, names } = view.doc;
+        return slots.filter((slot) => slot.slot === 1 && names.stations[slot.station] !== undefined)
+            .map((slot) => ({ at: new THREE.Vector3(...slot.r).multiplyScalar(M),
+                label: make(view, 'station', names.stations[slot.station]) }));
+    }
+
+    /* Names for stations and all that moves by itself, and the ruler. */
     function add(view) {
         view.tags = view.moving.filter((mover) => mover.kind !== 'link')
-            .map((mover) => ({ mover, label: make(view, mover.kind, mover.name) }));
+            .map((mover) => ({ at: mover.object.position, label: make(view, mover.kind, mover.name) }))
+            .concat(stations(view));
         view.ruler = W.shapes.line();
         view.rulerLabel = make(view, 'ruler', '');
         view.ruler.visible = false;
@@ -38,7 +47,7 @@
     function hang(view) {
         view.tags.forEach((tag) => {
             if (view.options.names) {
-                hangOne(view, tag.label, tag.mover.object.position);
+                hangOne(view, tag.label, tag.at);
             } else {
                 tag.label.hidden = true;
             }

@@ -32,7 +32,7 @@
             pen.moveTo(x, 0);
             pen.lineTo(x, height - AXIS);
             pen.stroke();
-            pen.fillText(`${Number(t.toPrecision(10))}\u00a0s`, x, height - 5);
+            pen.fillText(`${W.tick(t, W.clock.window[1] - W.clock.window[0])}\u00a0s`, x, height - 5);
         });
         pen.textAlign = 'left';
     }

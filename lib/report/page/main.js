@@ -55,6 +55,7 @@
         part(host('now'), () => W.now.start(doc));
         part(host('measure'), () => W.measure.start(doc));
         W.keys.start();
+        W.link.start();
         requestAnimationFrame(() => setTimeout(() => {
             performance.mark('interactive');
             rest(doc);

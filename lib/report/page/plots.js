@@ -10,15 +10,9 @@
 
     const area = (panel) => panel.graph.getArea();
 
-    /* Ticks are round numbers: all their digits, but not those that rounding left. Near to 1, what is missing to
-     * it tells more. */
-    function formatter(unit) {
-        return (value) => {
-            const lack = Number((1 - value).toPrecision(2));
-            const text = lack > 0 && lack < 1e-5 ? `1 - ${lack.toExponential()}` : String(Number(value.toPrecision(9)));
-            return text.replace(/-/g, '\u2212') + (unit && '\u00a0' + unit);
-        };
-    }
+    const extent = ([from, to]) => to - from;
+    const timeTick = (t, granularity, how, graph) => W.tick(t, extent(graph.xAxisRange())) + '\u00a0s';
+    const valueTick = (value, granularity, how, graph) => W.tick(value, extent(graph.yAxisRange()));
 
     /* The allowed side of each limit is tinted, the limit drawn. */
     function underlay(panel) {
@@ -37,6 +31,14 @@
         });
     }
 
+    /* Nothing smaller than this share of a value is shown as a difference: ticks keep ten digits at most. */
+    const LEAST_SHARE = 1e-8;
+
+    /* The middle of values that differ by less than can be told has air around it. */
+    function airOf(low, high) {
+        return Math.max((high - low || 1) * 0.06, LEAST_SHARE * Math.max(Math.abs(low), Math.abs(high)));
+    }
+
     /* Values with the limit in sight, and some air. */
     function valueRange(panel) {
         let [low, high] = panel.zero ? [0, 0] : [Infinity, -Infinity];
@@ -49,7 +51,7 @@
         panel.curves.forEach((curve) => W.reduce.range(curve).forEach(take));
         panel.limits.forEach((limit) => take(limit.value));
         [low, high] = panel.most ? [Math.max(low, panel.most[0]), Math.min(high, panel.most[1])] : [low, high];
-        const air = (high - low || 1) * 0.06;
+        const air = panel.most ? (high - low || 1) * 0.06 : airOf(low, high);
         return [panel.zero && low === 0 ? 0 : low - air, high + air];
     }
 
@@ -81,11 +83,12 @@
     function options(panel) {
         return Object.assign({
             labels: ['t'].concat(panel.curves.map((curve) => curve.name)), legend: 'never', animatedZooms: false,
-            connectSeparatedPoints: true, strokeWidth: 1.6, highlightCircleSize: 0, dateWindow: W.clock.window.slice(),
-            valueRange: panel.range, rightGap: 10, underlayCallback: underlay(panel), interactionModel: interaction(),
+            connectSeparatedPoints: true, strokeWidth: 1.6, pointSize: 2.5, highlightCircleSize: 0,
+            dateWindow: W.clock.window.slice(), valueRange: panel.range,
+            rightGap: 10, underlayCallback: underlay(panel), interactionModel: interaction(),
             axes: {
-                x: { axisLabelFormatter: formatter('s'), pixelsPerLabel: 90 },
-                y: { axisLabelFormatter: formatter(''), axisLabelWidth: plots.gutter() - 14, pixelsPerLabel: 28 },
+                x: { axisLabelFormatter: timeTick, pixelsPerLabel: 90 },
+                y: { axisLabelFormatter: valueTick, axisLabelWidth: plots.gutter() - 14, pixelsPerLabel: 28 },
             },
             clickCallback: (event) => W.clock.seek(panel.graph.toDataXCoord(panel.graph.eventToDomCoords(event)[0])),
             drawCallback: (graph, initial) => { if (!initial) { zoomed(panel); } },

@@ -5,6 +5,8 @@
     const VIEWS = [['whole', 'Whole', '1'], ['top', 'Top', '2'], ['side', 'Side', '3'], ['gripper', 'Gripper', '4']];
     const OPTIONS = [['names', 'Names', 'n'], ['frames', 'Frames', 'f']];
 
+    const TAKEN = [['link', 'Link', 'l', () => W.link.take()], ['picture', 'Picture', 'p', () => W.link.picture()]];
+
     const stage = { view: null, shown: 'whole', rider: 0, options: { names: false, frames: false }, buttons: {} };
 
     function button(name, text, key, pressed) {
@@ -51,7 +53,9 @@
         const bar = document.getElementById('toolbar');
         const views = VIEWS.map(([name, text, key]) => button(name, text, key, () => stage.show(name)));
         const options = OPTIONS.map(([name, text, key]) => button(name, text, key, () => stage.toggle(name)));
-        bar.append(W.element('span', { class: 'group' }, ...views), W.element('span', { class: 'group' }, ...options));
+        const taken = TAKEN.map(([name, text, key, act]) => W.element('button', { type: 'button', title: `${text} (${key})`,
+            'aria-keyshortcuts': key, 'data-name': name, click: act }, text));
+        bar.append(...[views, options, taken].map((group) => W.element('span', { class: 'group' }, ...group)));
     }
 
     function picture(host, doc) {

@@ -12,18 +12,37 @@
             doc.run.ok ? '\u2713 passed' : '\u2717 failed');
     }
 
-    /* Why a run failed, where its expectations do not say so: events that the cell complains about count, expected or not. */
-    function reason(doc) {
-        const unmet = doc.expectations.filter((each) => !each.ok).length;
-        if (doc.run.ok !== false || unmet > 0 || doc.run.failure) {
-            return '';
-        }
+    /* The first three of a list, told, and how many there are besides. */
+    function firsts(list, tell, one, many) {
+        const others = list.length > 3 ? [counted(list.length - 3, one, many)] : [];
+        return list.slice(0, 3).map(tell).concat(others).join('; ');
+    }
+
+    const fault = (text) => W.element('p', { class: 'failure' }, text);
+
+    /* What was expected and did not come about. */
+    function unmet(doc) {
+        const missing = doc.expectations.filter((each) => !each.ok);
+        return missing.length === 0 ? [] : [fault(`The script expected what did not come about: ${firsts(missing,
+            (each) => `${each.text} (line ${each.line})`, 'other', 'others')}.`)];
+    }
+
+    /* Events that the cell complains about count, expected or not. */
+    function complaints(doc) {
         const bad = doc.events.filter((event) => W.events.isComplaint(event.kind));
-        const told = bad.slice(0, 3).map((event) => `${W.events.tell(event)} at ${W.seconds(event.t)}`);
-        const others = bad.length > 3 ? [counted(bad.length - 3, 'other complaint', 'other complaints')] : [];
-        const though = doc.expectations.length > 0 ? ', though what the script expected came about' : '';
-        return bad.length === 0 ? '' : W.element('p', { class: 'failure' },
-            `It failed for ${told.concat(others).join('; ')}${though}.`);
+        const all = doc.expectations.length > 0 && doc.expectations.every((each) => each.ok) && !doc.run.failure;
+        const though = all ? ', though what the script expected came about' : '';
+        return bad.length === 0 ? [] : [fault(`It failed for ${firsts(bad, (event) => `${W.events.tell(event)} at ${
+            W.seconds(event.t)}`, 'other complaint', 'other complaints')}${though}.`)];
+    }
+
+    /* Why a run failed: what ended it, what it did not do, and what went wrong in the cell. */
+    function reasons(doc) {
+        if (doc.run.ok !== false) {
+            return doc.run.failure ? [fault(doc.run.failure)] : [];
+        }
+        const ended = doc.run.failure ? [fault(`The script ended early: ${doc.run.failure}`)] : [];
+        return ended.concat(unmet(doc), complaints(doc));
     }
 
     function tile(text, value, note, kind) {
@@ -85,7 +104,7 @@
             document.getElementById('head').append(
                 W.element('div', { class: 'row' }, W.element('h1', {}, doc.title), verdict(doc),
                     W.element('span', { class: 'space' }), help, theme),
-                doc.run.failure ? W.element('p', { class: 'failure' }, doc.run.failure) : reason(doc),
+                ...reasons(doc),
                 ...doc.notes.map((note) => W.why(note)),
                 W.element('div', { class: 'tiles' }, ...tiles.filter(Boolean)));
         },
