@@ -61,7 +61,7 @@ typedef struct {
     size_t expected, unmet;
 } checked_t;
 
-/* ------------------------------------------------------------------------------------------------ the slices */
+/* --------------------------------------------------------------------------------------------- the slices */
 
 static void keep(void *user, const wh_layout_t *layout, const double axes[], const wh_state_t *state,
                  uint64_t hash) {
@@ -90,7 +90,7 @@ static const double *find_slice(const checked_t *checked, int64_t seq) {
     return low > 0 ? checked->slices[low - 1].values : NULL;
 }
 
-/* ------------------------------------------------------------------------------------------------------- Lua */
+/* ---------------------------------------------------------------------------------------------------- Lua */
 
 static checked_t *checked_of(lua_State *L) {
     return lua_touserdata(L, lua_upvalueindex(1));
@@ -261,7 +261,7 @@ static bool prepare(const arguments_t *arguments, checked_t *checked, wh_sandbox
     return is_set;
 }
 
-/* ---------------------------------------------------------------------------------------------- the verdict */
+/* -------------------------------------------------------------------------------------------- the verdict */
 
 /* A log that is not whole cannot show that all went well. */
 static int judge(const arguments_t *arguments, const checked_t *checked) {

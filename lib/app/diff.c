@@ -60,7 +60,7 @@ typedef struct {
     int64_t common, differing;
 } result_t;
 
-/* ---------------------------------------------------------------------------------------------------- JSON */
+/* --------------------------------------------------------------------------------------------------- JSON */
 
 static char *word_of(const json_t *value) {
     char *text = value ? json_dumps(value, JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
@@ -102,7 +102,7 @@ static double slice_of(const json_t *root) {
                         : 0;
 }
 
-/* ---------------------------------------------------------------------------------------------------- files */
+/* -------------------------------------------------------------------------------------------------- files */
 
 typedef struct {
     const char *path;
@@ -177,7 +177,7 @@ static void close_side(side_t *side) {
     side->run = NULL;
 }
 
-/* -------------------------------------------------------------------------------------------------- compare */
+/* ------------------------------------------------------------------------------------------------ compare */
 
 static void compare_documents(const side_t sides[2], result_t *result) {
     wh_json_compare(sides[0].root, sides[1].root, aside, on_difference, result);
@@ -239,7 +239,7 @@ static bool compare_logs(side_t sides[2], result_t *result) {
     return read;
 }
 
-/* --------------------------------------------------------------------------------------------------- print */
+/* -------------------------------------------------------------------------------------------------- print */
 
 static void print_end(const result_t *result) {
     size_t i = 0;
@@ -300,30 +300,41 @@ static int print_json(const result_t *result) {
     return status;
 }
 
-static int diff(const arguments_t *arguments, side_t sides[2]) {
-    result_t result = {.time_s = (double)NAN, .end = json_array()};
-    int status = WH_EXIT_USAGE;
-    bool read = open_side(&sides[0]) && open_side(&sides[1]);
-    if (read && sides[0].is_log != sides[1].is_log) {
+static bool are_of_one_kind(const side_t sides[2]) {
+    if (sides[0].is_log != sides[1].is_log) {
         fprintf(stderr, "%s and %s: one is a log, the other is not (expected two of one kind)\n",
                 sides[0].path, sides[1].path);
-        read = false;
-    } else if (read && sides[0].is_log) {
-        read = compare_logs(sides, &result);
-    } else if (read) {
-        compare_documents(sides, &result);
     }
-    if (read) {
-        int printed = 0;
-        if (arguments->json) {
-            printed = print_json(&result);
-        } else {
-            print_table(&result);
-        }
-        status = !wh_app_is_printed(printed) ? WH_EXIT_USAGE
-                 : is_same(&result)          ? WH_EXIT_MET
-                                             : WH_EXIT_FAILED;
+    return sides[0].is_log == sides[1].is_log;
+}
+
+static bool compare_sides(side_t sides[2], result_t *result) {
+    if (!open_side(&sides[0]) || !open_side(&sides[1]) || !are_of_one_kind(sides)) {
+        return false;
     }
+    if (sides[0].is_log) {
+        return compare_logs(sides, result);
+    }
+    compare_documents(sides, result);
+    return true;
+}
+
+static int print(const arguments_t *arguments, const result_t *result) {
+    int printed = 0;
+    if (arguments->json) {
+        printed = print_json(result);
+    } else {
+        print_table(result);
+    }
+    if (!wh_app_is_printed(printed)) {
+        return WH_EXIT_USAGE;
+    }
+    return is_same(result) ? WH_EXIT_MET : WH_EXIT_FAILED;
+}
+
+static int diff(const arguments_t *arguments, side_t sides[2]) {
+    result_t result = {.time_s = (double)NAN, .end = json_array()};
+    const int status = compare_sides(sides, &result) ? print(arguments, &result) : WH_EXIT_USAGE;
     json_decref(result.end);
     free(result.field);
     free(result.values[0]);

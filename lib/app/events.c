@@ -2,27 +2,35 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "../link/node.h"
 #include "../print/lines_print.h"
 #include "../text/nearest.h"
 #include "apart.h"
 #include "app.h"
+#include "events_live.h"
 #include "log_arguments.h"
 
 typedef struct {
     wh_log_arguments_t log;
     wh_log_window_t window;
     wh_option_list_t wafers, kinds;
+    const char *url;
+    bool lcm;
 } arguments_t;
 
-static const wh_option_t options[] = {{"wafer", 0, "NAME", "Of this wafer alone; may be given several times",
-                                       WH_OPTION_LIST, .variable = offsetof(arguments_t, wafers)},
-                                      {"kind", 0, "KIND",
-                                       "Of this kind alone, such as picked; may be given several times",
-                                       WH_OPTION_LIST, .variable = offsetof(arguments_t, kinds)},
-                                      {0}};
+static const wh_option_t options[] = {
+    {"wafer", 0, "NAME", "Of this wafer alone; may be given several times", WH_OPTION_LIST,
+     .variable = offsetof(arguments_t, wafers)},
+    {"kind", 0, "KIND", "Of this kind alone, such as picked; may be given several times", WH_OPTION_LIST,
+     .variable = offsetof(arguments_t, kinds)},
+    {"lcm", 0, NULL, "Of no log: as they happen, of the simulator that is heard over LCM, until Ctrl-C",
+     WH_OPTION_FLAG, .variable = offsetof(arguments_t, lcm)},
+    {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --lcm", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, url)},
+    {0}};
 
 /* Refuses a kind that there is not. */
-static void check(const void *given, struct argp_state *state) {
+static void check_kinds(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     const char *names[WH_EVENT_KINDS];
     for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
@@ -42,8 +50,20 @@ static void check(const void *given, struct argp_state *state) {
     }
 }
 
+static void check(const void *given, struct argp_state *state) {
+    const arguments_t *arguments = given;
+    const bool of_log = arguments->log.layout || arguments->log.number > 0;
+    if (!arguments->lcm && !arguments->log.path) {
+        argp_error(state, "of which log? (expected one, or --lcm)");
+    } else if (arguments->lcm && (arguments->log.path || of_log)) {
+        argp_error(state, "--lcm: it goes with no log, and with nothing that is of one");
+    } else if (arguments->url && !arguments->lcm) {
+        argp_error(state, "--lcm-url: %s (goes with --lcm)", arguments->url);
+    }
+}
+
 static const wh_option_table_t tables[] = {
-    {options, 0, NULL, check},
+    {options, 0, NULL, check_kinds},
     {wh_log_window_options, offsetof(arguments_t, window), NULL, wh_log_window_check},
     {wh_log_options, offsetof(arguments_t, log), NULL, NULL},
     {0}};
@@ -51,11 +71,13 @@ static const wh_option_table_t tables[] = {
 static const wh_command_line_t command_line = {
     .name = "events",
     .synopsis = "LOG",
-    .about = "Prints the events of a recorded run, each as a line of JSON as in `events` of run "
-             "--json.\v" WH_HELP_EXIT,
+    .about = "Prints the events of a recorded run, or of a simulator that runs, each as a line of JSON as in "
+             "`events` of run --json.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "log",
-    .operand_variable = offsetof(arguments_t, log.path)};
+    .operand_variable = offsetof(arguments_t, log.path),
+    .operand_may_lack = true,
+    .check = check};
 
 static bool are_wafers_there(const arguments_t *arguments, const wh_layout_t *layout) {
     for (size_t i = 0; i < arguments->wafers.count; ++i) {
@@ -96,17 +118,32 @@ static int print(const arguments_t *arguments, const wh_log_run_t *run) {
     return wh_app_is_printed(status) ? wh_log_arguments_judge(&arguments->log, run) : WH_EXIT_USAGE;
 }
 
-int wh_app_events(int argc, char **argv) {
+static bool on_cell(void *user, const wh_layout_t *layout) {
+    return are_wafers_there(user, layout);
+}
+
+static bool on_event(void *user, const wh_record_t *record, size_t i) {
+    const int status = is_wanted(user, record, i) ? wh_event_print_line(record, i, stdout) : 0;
+    return wh_app_is_printed(status);
+}
+
+static int print_log(const arguments_t *arguments) {
     static wh_log_run_t run;
-    arguments_t arguments = {.window = {0, HUGE_VAL}};
-    wh_options_parse(&command_line, argc, argv, &arguments);
-    const wh_named_file_t named[] = {{"the log", arguments.log.path, false},
-                                     {"the layout", arguments.log.layout, false}};
+    const wh_named_file_t named[] = {{"the log", arguments->log.path, false},
+                                     {"the layout", arguments->log.layout, false}};
     int status = WH_EXIT_USAGE;
     if (wh_files_are_apart(named, 2, true)) {
-        status = wh_log_arguments_read(&arguments.log, NULL, NULL, &run) ? print(&arguments, &run) : status;
+        status = wh_log_arguments_read(&arguments->log, NULL, NULL, &run) ? print(arguments, &run) : status;
         wh_log_run_close(&run);
     }
+    return status;
+}
+
+int wh_app_events(int argc, char **argv) {
+    arguments_t arguments = {.window = {0, HUGE_VAL}};
+    wh_options_parse(&command_line, argc, argv, &arguments);
+    const wh_events_live_t live = {arguments.url, on_cell, on_event, &arguments};
+    const int status = arguments.lcm ? wh_events_live(&live) : print_log(&arguments);
     wh_option_list_free(&arguments.wafers);
     wh_option_list_free(&arguments.kinds);
     return status;

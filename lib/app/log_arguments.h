@@ -1,5 +1,5 @@
-/* What subcommands that read one run of a log have in common: which run, whose layout, and how it is told that the
- * log is not whole. */
+/* What subcommands that read one run of a log have in common: which run, whose layout, and how it is told
+ * that the log is not whole. */
 #ifndef WH_APP_LOG_ARGUMENTS_H
 #define WH_APP_LOG_ARGUMENTS_H
 
@@ -16,12 +16,13 @@ typedef struct {
 /* --layout and --run, into a wh_log_arguments_t; the log is the subcommand's operand. */
 extern const wh_option_t wh_log_options[];
 
-/* Reads the run (wh_log_run_read), with a listener or null. False, and standard error says why, if there is nothing
- * to show. To be closed in any case, and freed. */
+/* Reads the run (wh_log_run_read), with a listener or null. False, and standard error says why, if there is
+ * nothing to show. To be closed in any case, and freed. */
 bool wh_log_arguments_read(const wh_log_arguments_t *arguments, wh_log_run_listener_t *listener, void *user,
                            wh_log_run_t *run);
 
-/* WH_EXIT_MET if a replay calls the log the same; else WH_EXIT_FAILED, and standard error says what a replay says. */
+/* WH_EXIT_MET if a replay calls the log the same; else WH_EXIT_FAILED, and standard error says what a replay
+ * says. */
 int wh_log_arguments_judge(const wh_log_arguments_t *arguments, const wh_log_run_t *run);
 
 /* A stretch of time, s. Zero `from`, and `to` HUGE_VAL, to begin with. */

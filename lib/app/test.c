@@ -46,7 +46,7 @@ static const wh_command_line_t command_line = {
     .operand_variable = offsetof(arguments_t, paths),
     .operands = SIZE_MAX};
 
-/* ------------------------------------------------------------------------------------------------- results */
+/* ------------------------------------------------------------------------------------------------ results */
 
 typedef struct {
     bool tap;

@@ -15,9 +15,9 @@ typedef struct {
 /* Adds one more; the path is copied. */
 void wh_test_found_add(wh_test_found_t *found, const char *path, bool was_found);
 
-/* Adds each file, and of each folder, and of its folders, each *.lua, in the order of their names' bytes. Hidden
- * files and links to folders are left out. False, and standard error says why, if a path is not there or a
- * folder cannot be read. */
+/* Adds each file, and of each folder, and of its folders, each *.lua, in the order of their names' bytes.
+ * Hidden files and links to folders are left out. False, and standard error says why, if a path is not there
+ * or a folder cannot be read. */
 bool wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found);
 
 void wh_test_found_free(wh_test_found_t *found);

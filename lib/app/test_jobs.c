@@ -44,27 +44,39 @@ typedef struct {
 
 /* ----------------------------------------------------------------------------------------- in the process */
 
-/* Why a run failed: the error, else the first expectation, else the first complaint. */
-static void find_reason(const wh_record_t *record, told_t *told) {
-    for (size_t i = 0; !record->failure && i < record->expectation_count; ++i) {
+/* The first expectation that was not met. False if there is none. */
+static bool find_unmet(const wh_record_t *record, told_t *told) {
+    for (size_t i = 0; i < record->expectation_count; ++i) {
         const wh_expectation_record_t *expectation = &record->expectations[i];
         if (!expectation->ok) {
             (void)snprintf(told->reason, sizeof told->reason, "line %d: %.1000s", expectation->line,
                            expectation->text ? expectation->text : "not met");
-            return;
+            return true;
         }
     }
-    for (size_t i = 0; !record->failure && i < record->event_count; ++i) {
-        if (wh_record_is_complaint(record->events[i].event.kind)) {
-            const int32_t wafer = record->events[i].event.wafer;
-            const char *name = wh_record_wafer_name(record, wafer);
+    return false;
+}
+
+/* The first complaint of the cell. False if there is none. */
+static bool find_complaint(const wh_record_t *record, told_t *told) {
+    for (size_t i = 0; i < record->event_count; ++i) {
+        const wh_event_t *event = &record->events[i].event;
+        const char *name = wh_record_wafer_name(record, event->wafer);
+        if (wh_record_is_complaint(event->kind)) {
             (void)snprintf(told->reason, sizeof told->reason, "the cell complained: %s%s%s",
-                           wh_event_name(record->events[i].event.kind), name ? ": " : "", name ? name : "");
-            return;
+                           wh_event_name(event->kind), name ? ": " : "", name ? name : "");
+            return true;
         }
     }
-    (void)snprintf(told->reason, sizeof told->reason, "%.1000s",
-                   record->failure ? record->failure : "failed");
+    return false;
+}
+
+/* Why a run failed: the error, else the first expectation, else the first complaint. */
+static void find_reason(const wh_record_t *record, told_t *told) {
+    if (record->failure || (!find_unmet(record, told) && !find_complaint(record, told))) {
+        (void)snprintf(told->reason, sizeof told->reason, "%.1000s",
+                       record->failure ? record->failure : "failed");
+    }
 }
 
 static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, bool was_found, told_t *told) {
@@ -114,7 +126,7 @@ static void settle(const crew_t *crew, const wh_test_job_t *job, int answer, FIL
     play(crew, job, answer);
 }
 
-/* ------------------------------------------------------------------------------------------ from the outside */
+/* --------------------------------------------------------------------------------------- from the outside */
 
 static bool begin(crew_t *crew, player_t *player) {
     int ends[2] = {-1, -1};

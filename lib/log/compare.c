@@ -9,7 +9,7 @@
 #include "../text/array.h"
 #include "../text/json.h"
 
-/* ------------------------------------------------------------------------------------------------- digests */
+/* ------------------------------------------------------------------------------------------------ digests */
 
 static uint64_t bits_of(double value) {
     uint64_t bits = 0;
@@ -47,7 +47,7 @@ void wh_log_digests_free(wh_log_digests_t *digests) {
     *digests = (wh_log_digests_t){NULL, 0, 0, NULL};
 }
 
-/* ------------------------------------------------------------------------------------------------ one slice */
+/* ---------------------------------------------------------------------------------------------- one slice */
 
 typedef struct {
     int64_t seq;
@@ -124,34 +124,30 @@ static void name_field(wh_log_run_t *const runs[2], const wanted_t wanted[2], wh
     }
 }
 
-/* ------------------------------------------------------------------------------------------------- all of it */
+/* ---------------------------------------------------------------------------------------------- all of it */
 
-static void note_first(wh_compare_t *found, int64_t seq) {
-    found->slice = found->slice == 0 ? seq : found->slice;
+static int64_t number_of(const wh_log_digests_t *digests, size_t i) {
+    return i < digests->count ? digests->slices[i].seq : INT64_MAX;
 }
 
 /* Goes through both lists, which are in order. Returns if the first difference is one of values. */
 static bool merge(const wh_log_digests_t digests[2], wh_compare_t *found) {
-    size_t a = 0;
-    size_t b = 0;
+    size_t at[2] = {0, 0};
     bool is_value = false;
-    while (a < digests[0].count || b < digests[1].count) {
-        const int64_t first = a < digests[0].count ? digests[0].slices[a].seq : INT64_MAX;
-        const int64_t second = b < digests[1].count ? digests[1].slices[b].seq : INT64_MAX;
-        if (first == second) {
-            const bool differs = digests[0].slices[a++].digest != digests[1].slices[b++].digest;
-            ++found->common;
-            found->differing += differs ? 1 : 0;
-            is_value = is_value || (differs && found->slice == 0);
-            if (differs) {
-                note_first(found, first);
-            }
-        } else {
-            ++found->only[first < second ? 0 : 1];
-            note_first(found, first < second ? first : second);
-            a += first < second ? 1 : 0;
-            b += first < second ? 0 : 1;
+    while (at[0] < digests[0].count || at[1] < digests[1].count) {
+        const int64_t seqs[2] = {number_of(&digests[0], at[0]), number_of(&digests[1], at[1])};
+        const bool both = seqs[0] == seqs[1];
+        const size_t side = seqs[1] < seqs[0] ? 1 : 0;
+        const bool differs = !both || digests[0].slices[at[0]].digest != digests[1].slices[at[1]].digest;
+        found->common += both;
+        found->differing += both && differs;
+        found->only[side] += !both;
+        if (differs && found->slice == 0) {
+            found->slice = seqs[side];
+            is_value = both;
         }
+        ++at[side];
+        at[1 - side] += both;
     }
     return is_value;
 }

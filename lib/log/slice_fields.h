@@ -1,11 +1,11 @@
 /* A slice as a row of numbers, each with a name: what a table of slices has as its columns, and what two
  * recordings are compared by.
  *
- * In this order: each axis ("axis theta rad"); of each gripper its valve (0: open), its sensor (1: on), its
+ * * In this order: each axis ("axis theta rad"); of each gripper its valve (0: open), its sensor (1: on), its
  * vacuum (0 to 1), the wafer that it is measured against (record/counterpart.h) and, as absolute values, the
  * distances and the angle between the two (mm, mm, cosine); of each wafer who holds it, where it is (mm, in
- * base) and how it is turned (a unit quaternion). What is not known, or not there, is NaN: axes that a log does
- * not tell, and what a gripper is measured by if nothing is near it.
+ * base) and how it is turned (a unit quaternion). What is not known, or not there, is NaN: axes that a log
+ * does not tell, and what a gripper is measured by if nothing is near it.
  */
 #ifndef WH_LOG_SLICE_FIELDS_H
 #define WH_LOG_SLICE_FIELDS_H

@@ -137,18 +137,22 @@ static void compare_objects(comparison_t *all, const json_t *a, const json_t *b,
     }
 }
 
+/* Two values that have no members. */
+static bool is_same(const json_t *a, const json_t *b) {
+    if (!a || !b) {
+        return false;
+    }
+    return json_is_number(a) && json_is_number(b) ? is_same_number(a, b) : json_equal(a, b) != 0;
+}
+
 static void compare(comparison_t *all, const json_t *a, const json_t *b, double time_s) {
     const json_t *none[2] = {NULL, NULL};
+    const json_t *there = a ? a : b;
     if (json_is_object(a) && json_is_object(b)) {
         compare_objects(all, a, b, time_s);
     } else if (json_is_array(a) && json_is_array(b)) {
         compare_lists(all, a, b, none, time_s);
-    } else if (json_is_number(a) && json_is_number(b)) {
-        if (!is_same_number(a, b)) {
-            tell(all, a, b, time_s);
-        }
-    } else if (!a || !b || !json_equal(a, b)) {
-        const json_t *there = a ? a : b;
+    } else if (!is_same(a, b)) {
         tell(all, a, b, json_is_object(there) && is_element(all) ? own_time(there, time_s) : time_s);
     }
 }
