@@ -79,7 +79,9 @@ static bool is_set_read(const wh_log_run_t *run) {
 static bool write_log(const arguments_t *arguments, wh_log_run_t *run) {
     const wh_script_run_options_t *given = &arguments->run.run;
     const wh_log_run_options_t wanted = {
-        given->script, arguments->number, {arguments->layout, given->parameters, given->parameter_count}};
+        .path = given->script,
+        .number = (size_t)arguments->number,
+        .layout = {arguments->layout, given->parameters, given->parameter_count}};
     if (!wh_log_run_read(run, &wanted)) {
         fprintf(stderr, "%s\n", run->message);
         return false;

@@ -118,6 +118,11 @@ static void take_slice(wh_log_run_t *run, const waferhand_command *command, cons
     }
     wh_signals_slice(&run->signals, known ? axes : NULL, known ? (size_t)command->axis_count : 0,
                      &run->state);
+    if (run->options.listener) {
+        const bool whole = known && (size_t)command->axis_count == run->cell.layout->machine.axis_count;
+        run->options.listener(run->options.user, run->cell.layout, whole ? axes : NULL, &run->state,
+                              run->hash);
+    }
 }
 
 static bool is_place(const wh_pose_t *pose) {

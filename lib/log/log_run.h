@@ -18,10 +18,17 @@
 #define WH_LOG_NOTE_BYTES 240
 #define WH_LOG_NOTES 12
 
+/* Hears of each accepted slice of the run, in order. `axes` has the machine's axis_count numbers; null if
+ * they are not known. `hash` is the state's. All of it is valid until the call returns. */
+typedef void wh_log_run_listener_t(void *user, const wh_layout_t *layout, const double axes[],
+                                   const wh_state_t *state, uint64_t hash);
+
 typedef struct {
     const char *path;
     size_t number; /* which of the log's runs that have slices, from 1; 0: the last */
     wh_log_layout_options_t layout;
+    wh_log_run_listener_t *listener; /* null: nobody listens */
+    void *user;
 } wh_log_run_options_t;
 
 /* What motion control told of a run. */

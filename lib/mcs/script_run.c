@@ -41,13 +41,14 @@ static bool is_layout(lua_State *L) {
 
 /* What is wrong with a script that ended well: it set up no cell, or took no notice of a parameter. What it
  * returned is on top of the stack. False if nothing is wrong. */
-static bool find_fault(const wh_script_run_t *run, const wh_script_run_options_t *options,
+static bool find_fault(wh_script_run_t *run, const wh_script_run_options_t *options,
                        wh_sandbox_result_t *result) {
     lua_State *L = wh_sandbox_state(run->sandbox);
     const char *script = options->script;
     char text[WH_SANDBOX_MESSAGE_BYTES] =
         "no cell (expected cell \"LAYOUT.lua\" as the script's first command)";
     char whole[2 * WH_SANDBOX_MESSAGE_BYTES];
+    run->is_no_script = !run->mcs.layout && !lua_isnil(L, -1);
     if (!run->mcs.layout && lua_istable(L, -1) && is_layout(L)) {
         (void)snprintf(text, sizeof text, "a layout: waferhand layout %.900s", script);
     } else if (!run->mcs.layout && lua_istable(L, -1)) {

@@ -25,6 +25,7 @@ typedef struct {
     wh_mcs_t mcs;
     wh_record_t record;
     char message[WH_SANDBOX_MESSAGE_BYTES]; /* why the input was bad */
+    bool is_no_script; /* for it returned something and set up no cell: it is a layout or a module */
 } wh_script_run_t;
 
 typedef enum {

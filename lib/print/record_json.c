@@ -158,8 +158,7 @@ static void put_particulars(const wh_record_t *record, json_t *object, const wh_
     }
 }
 
-static json_t *event(const void *subject, size_t i) {
-    const wh_record_t *record = subject;
+json_t *wh_event_to_json(const wh_record_t *record, size_t i) {
     const wh_event_record_t *from = &record->events[i];
     json_t *object =
         wh_json_set(json_object(), "utime %lld kind %s wafer %s gripper %s", (json_int_t)from->utime,
@@ -174,6 +173,10 @@ static json_t *event(const void *subject, size_t i) {
     }
     put_particulars(record, object, &from->event);
     return object;
+}
+
+static json_t *event(const void *subject, size_t i) {
+    return wh_event_to_json(subject, i);
 }
 
 /* --------------------------------------------------------------------------------------------- clearances */

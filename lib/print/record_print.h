@@ -84,4 +84,7 @@ int wh_record_print_json(const wh_record_t *record, FILE *out);
 json_t *wh_throughput_to_json(const wh_record_t *record);
 json_t *wh_record_to_json(const wh_record_t *record);
 
+/* One element of `events`; the caller releases it. */
+json_t *wh_event_to_json(const wh_record_t *record, size_t i);
+
 #endif

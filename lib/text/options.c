@@ -70,8 +70,12 @@ static void take_number(const wh_option_t *option, void *variable, const char *t
     *(uint64_t *)variable = whole;
 }
 
+static void add_item(wh_option_list_t *list, const char *text) {
+    list->items = wh_array_grow(list->items, list->count, &list->capacity, sizeof *list->items);
+    list->items[list->count++] = text;
+}
+
 static void take(const wh_option_t *option, void *variable, char *text, const struct argp_state *state) {
-    wh_option_list_t *list = variable;
     switch (option->kind) {
     case WH_OPTION_FLAG:
         *(bool *)variable = true;
@@ -83,8 +87,7 @@ static void take(const wh_option_t *option, void *variable, char *text, const st
         *(const char **)variable = text;
         break;
     case WH_OPTION_LIST:
-        list->items = wh_array_grow(list->items, list->count, &list->capacity, sizeof *list->items);
-        list->items[list->count++] = text;
+        add_item(variable, text);
         break;
     case WH_OPTION_REAL:
     case WH_OPTION_WHOLE:
@@ -94,19 +97,35 @@ static void take(const wh_option_t *option, void *variable, char *text, const st
     }
 }
 
+static void *operand_of(const parser_t *parser) {
+    return parser->arguments + parser->line->operand_variable;
+}
+
 static void take_operand(const parser_t *parser, char *text, const struct argp_state *state) {
-    const char **operand = (const char **)(void *)(parser->arguments + parser->line->operand_variable);
-    if (*operand) {
-        argp_error(state, "%s: one %s is enough", text, parser->line->operand);
-    } else if (text[0] == '\0') {
-        argp_error(state, "%s: nothing (expected a file)", parser->line->operand);
+    const wh_command_line_t *line = parser->line;
+    const char **operand = operand_of(parser);
+    wh_option_list_t *list = operand_of(parser);
+    if (text[0] == '\0') {
+        argp_error(state, "%s: nothing (expected a file)", line->operand);
+    } else if (line->operands == 0 && *operand) {
+        argp_error(state, "%s: one %s is enough", text, line->operand);
+    } else if (line->operands > 0 && list->count == line->operands) {
+        argp_error(state, "%s: %zu %ss are enough", text, line->operands, line->operand);
     }
-    *operand = text;
+    if (line->operands > 0) {
+        add_item(list, text);
+    } else {
+        *operand = text;
+    }
+}
+
+static bool has_operand(const parser_t *parser) {
+    const wh_option_list_t *list = operand_of(parser);
+    return parser->line->operands > 0 ? list->count > 0 : *(const char **)operand_of(parser) != NULL;
 }
 
 static void check(const parser_t *parser, struct argp_state *state) {
-    const char *operand = *(const char **)(void *)(parser->arguments + parser->line->operand_variable);
-    if (!operand && !parser->line->operand_may_lack) {
+    if (!has_operand(parser) && !parser->line->operand_may_lack) {
         argp_error(state, "which %s?", parser->line->operand);
     }
     if (parser->line->check) {

@@ -60,9 +60,10 @@ typedef struct {
     const char *synopsis; /* its operands, as --help names them */
     const char *about;    /* what it does; behind \v, what follows the options */
     const wh_option_table_t *tables;
-    const char *operand; /* what the only argument is, such as "script" */
+    const char *operand; /* what the only argument is, such as "script"; or each of them */
     size_t operand_variable;
     bool operand_may_lack; /* `check` says when; else it must be given */
+    size_t operands;       /* 0: there is one, a text; else up to so many, a wh_option_list_t */
     /* Looks at what was given together before the tables do, and refuses by argp_error; or null. */
     void (*check)(const void *arguments, struct argp_state *state);
 } wh_command_line_t;

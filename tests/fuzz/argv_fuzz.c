@@ -10,6 +10,7 @@
 #include "app/app.h"
 #include "app/connection.h"
 #include "app/run_arguments.h"
+#include "app/test_find.h"
 #include "fuzz.h"
 #include "layout/layout.h"
 #include "study/study.h"
@@ -75,6 +76,9 @@ bool __real_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool
 bool __wrap_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints);
 FILE *__wrap_wh_log_file(const char *path, const char **fault);
 bool __wrap_wh_study_open(wh_study_t *study);
+bool __wrap_wh_test_play(const wh_test_job_t jobs[], size_t count, const wh_test_options_t *options,
+                         wh_test_result_t results[]);
+bool __wrap_wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found);
 bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
 bool __wrap_wh_node_reaches_others(const char *url);
 wh_sandbox_t *__wrap_wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
@@ -130,6 +134,31 @@ bool __wrap_wh_study_open(wh_study_t *study) {
         REQUIRE(study->trials >= 1 && study->trials <= 1000000000);
     }
     return false;
+}
+
+bool __wrap_wh_test_play(const wh_test_job_t jobs[], size_t count, const wh_test_options_t *options,
+                         wh_test_result_t results[]) {
+    (void)results;
+    reached = true;
+    if (!refused) {
+        for (size_t i = 0; i < count; ++i) {
+            REQUIRE(jobs[i].path != NULL);
+        }
+        check_run(&options->run);
+        REQUIRE(options->processes >= 1 && options->processes <= 1024);
+        REQUIRE(options->timeout_s >= 1e-3 && options->timeout_s <= 1e6);
+    }
+    return false;
+}
+
+/* The machine's folders are not searched. */
+bool __wrap_wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found) {
+    reached = true;
+    for (size_t i = 0; i < paths->count; ++i) {
+        REQUIRE(paths->items[i] != NULL);
+        wh_test_found_add(found, paths->items[i], true);
+    }
+    return true;
 }
 
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
@@ -239,8 +268,10 @@ static char *split(const uint8_t *data, size_t size, char **argv) {
 
 static int act(int argc, char **argv) {
     static int (*const subcommands[])(int argc, char **argv) = {
-        wh_app_run, wh_app_mcs, wh_app_sim, wh_app_replay, wh_app_report, wh_app_layout, wh_app_study};
-    static const char *const names[] = {"run", "mcs", "sim", "replay", "report", "layout", "study"};
+        wh_app_run,   wh_app_mcs,  wh_app_sim,  wh_app_replay, wh_app_report, wh_app_layout,
+        wh_app_study, wh_app_test, wh_app_diff, wh_app_events, wh_app_csv,    wh_app_check};
+    static const char *const names[] = {"run",   "mcs",  "sim",  "replay", "report", "layout",
+                                        "study", "test", "diff", "events", "csv",    "check"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(argv[0], names[i]) == 0) {
             return subcommands[i](argc, argv);

@@ -1,0 +1,335 @@
+/* waferhand check LOG CHECKS.lua */
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include <jansson.h>
+#include <lauxlib.h>
+
+#include "../log/slice_fields.h"
+#include "../print/record_print.h"
+#include "../script/sandbox.h"
+#include "../text/array.h"
+#include "../text/style.h"
+#include "apart.h"
+#include "app.h"
+#include "log_arguments.h"
+
+typedef struct {
+    wh_log_arguments_t log; /* its path is the first operand */
+    wh_option_list_t paths, parameters;
+} arguments_t;
+
+static const wh_option_t options[] = {{"set", 0, "NAME=VALUE",
+                                       "Hand the checks a parameter, params.NAME: a number if VALUE is one, "
+                                       "true, false or text",
+                                       WH_OPTION_LIST, .variable = offsetof(arguments_t, parameters)},
+                                      {0}};
+
+static void check(const void *given, struct argp_state *state) {
+    const arguments_t *arguments = given;
+    if (arguments->paths.count != 2) {
+        argp_error(state, "by what is %s checked? (expected a log and a file of checks)",
+                   arguments->paths.items[0]);
+    }
+}
+
+static const wh_option_table_t tables[] = {
+    {options, 0, NULL, check}, {wh_log_options, offsetof(arguments_t, log), NULL, NULL}, {0}};
+
+static const wh_command_line_t command_line = {
+    .name = "check",
+    .synopsis = "LOG CHECKS.lua",
+    .about = "Holds a recorded run against what a Lua file expects of it: its events, times, wafers and "
+             "slices.\v" WH_HELP_EXIT,
+    .tables = tables,
+    .operand = "file",
+    .operand_variable = offsetof(arguments_t, paths),
+    .operands = 2};
+
+/* What the checks see of the run. */
+typedef struct {
+    const char *path; /* of the checks */
+    wh_log_run_t run;
+    json_t *result; /* the record, as `run --json` has it */
+    struct {
+        int64_t seq;
+        double *values;
+    } * slices;
+    size_t count, capacity;
+    wh_sandbox_t *sandbox;
+    size_t expected, unmet;
+} checked_t;
+
+/* --------------------------------------------------------------------------------------------- the slices */
+
+static void keep(void *user, const wh_layout_t *layout, const double axes[], const wh_state_t *state,
+                 uint64_t hash) {
+    checked_t *checked = user;
+    double *values = wh_array_new(wh_slice_field_count(layout), sizeof *values);
+    (void)hash;
+    wh_slice_fields(layout, axes, state, values);
+    checked->slices =
+        wh_array_grow(checked->slices, checked->count, &checked->capacity, sizeof *checked->slices);
+    checked->slices[checked->count].seq = state->seq;
+    checked->slices[checked->count++].values = values;
+}
+
+/* The last slice that ends at this number or before; null: there is none. Cost: log n. */
+static const double *find_slice(const checked_t *checked, int64_t seq) {
+    size_t low = 0;
+    size_t high = checked->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (checked->slices[middle].seq <= seq) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low > 0 ? checked->slices[low - 1].values : NULL;
+}
+
+/* ---------------------------------------------------------------------------------------------------- Lua */
+
+static checked_t *checked_of(lua_State *L) {
+    return lua_touserdata(L, lua_upvalueindex(1));
+}
+
+static void push(lua_State *L, json_t *value);
+
+static void push_list(lua_State *L, const json_t *list) {
+    lua_createtable(L, (int)json_array_size(list), 0);
+    for (size_t i = 0; i < json_array_size(list); ++i) {
+        push(L, json_array_get(list, i));
+        lua_rawseti(L, -2, (lua_Integer)i + 1);
+    }
+}
+
+static void push_object(lua_State *L, json_t *object) {
+    lua_newtable(L);
+    for (void *member = json_object_iter(object); member; member = json_object_iter_next(object, member)) {
+        lua_pushstring(L, json_object_iter_key(member));
+        push(L, json_object_iter_value(member));
+        lua_rawset(L, -3);
+    }
+}
+
+/* Null is nil. */
+static void push(lua_State *L, json_t *value) {
+    luaL_checkstack(L, 8, "values within values");
+    switch (json_typeof(value)) {
+    case JSON_OBJECT:
+        push_object(L, value);
+        break;
+    case JSON_ARRAY:
+        push_list(L, value);
+        break;
+    case JSON_STRING:
+        lua_pushlstring(L, json_string_value(value), json_string_length(value));
+        break;
+    case JSON_INTEGER:
+        lua_pushinteger(L, json_integer_value(value));
+        break;
+    case JSON_REAL:
+        lua_pushnumber(L, json_real_value(value));
+        break;
+    case JSON_TRUE:
+    case JSON_FALSE:
+        lua_pushboolean(L, json_is_true(value));
+        break;
+    case JSON_NULL:
+        lua_pushnil(L);
+        break;
+    }
+}
+
+/* expect(condition, text) */
+static int expect(lua_State *L) {
+    checked_t *checked = checked_of(L);
+    const int type = lua_type(L, 1);
+    const char *text = luaL_optstring(L, 2, "an expectation");
+    if (lua_gettop(L) == 0 || (type != LUA_TBOOLEAN && type != LUA_TNIL)) {
+        return luaL_error(L, "expect: %s (expected true, false or nil)",
+                          lua_gettop(L) == 0 ? "nothing" : luaL_typename(L, 1));
+    }
+    ++checked->expected;
+    if (!lua_toboolean(L, 1)) {
+        ++checked->unmet;
+        printf("line %d: not met: ", wh_sandbox_line(L, checked->path));
+        wh_style_put(stdout, text);
+        putchar('\n');
+    }
+    return 0;
+}
+
+static int64_t slice_at(lua_State *L, const checked_t *checked) {
+    const double seconds = luaL_checknumber(L, 1);
+    const double slice = floor(seconds * 1e6 / (double)checked->run.cell.layout->slice_us + 1e-6);
+    luaL_argcheck(L, slice >= 0 && slice < 9e15, 1, "expected a time of the run in seconds");
+    return (int64_t)slice;
+}
+
+static void push_field(lua_State *L, const wh_layout_t *layout, wh_slice_field_t kind, double value) {
+    const char *word = wh_slice_field_word(layout, kind, value);
+    if (isnan(value) || (word && word[0] == '\0')) {
+        lua_pushnil(L);
+    } else if (word) {
+        lua_pushstring(L, word);
+    } else {
+        lua_pushnumber(L, value);
+    }
+}
+
+/* at(seconds): the slice that ends then, as a table from the names of its fields to their values. */
+static int at(lua_State *L) {
+    const checked_t *checked = checked_of(L);
+    const wh_layout_t *layout = checked->run.cell.layout;
+    const double *values = find_slice(checked, slice_at(L, checked));
+    if (!values) {
+        return luaL_error(L, "at: %f s (expected a time from %f s on, where the log begins)",
+                          lua_tonumber(L, 1), (double)(checked->slices[0].seq * layout->slice_us) / 1e6);
+    }
+    lua_newtable(L);
+    for (size_t i = 0; i < wh_slice_field_count(layout); ++i) {
+        char name[WH_SLICE_FIELD_NAME];
+        const wh_slice_field_t kind = wh_slice_field_name(layout, i, name);
+        push_field(L, layout, kind, values[i]);
+        lua_setfield(L, -2, name);
+    }
+    return 1;
+}
+
+/* In the sandbox's protection: memory may run out. */
+static int set_up(lua_State *L) {
+    checked_t *checked = lua_touserdata(L, 1);
+    const luaL_Reg functions[] = {{"expect", expect}, {"at", at}};
+    lua_pushglobaltable(L);
+    push(L, checked->result);
+    lua_setfield(L, -2, "run");
+    for (size_t i = 0; i < sizeof functions / sizeof functions[0]; ++i) {
+        lua_pushlightuserdata(L, checked);
+        lua_pushcclosure(L, functions[i].func, 1);
+        lua_setfield(L, -2, functions[i].name);
+    }
+    return 0;
+}
+
+/* events{kind = , wafer = , gripper = , from = , to = }: those that have all of it, in order. */
+static const char events_text[] =
+    "local known = { kind = 'string', wafer = 'string', gripper = 'string', from = 'number', to = 'number' "
+    "}\n"
+    "local insert, next, type, error, tostring = table.insert, next, type, error, tostring\n"
+    "local list = run.events\n"
+    "function events(wanted)\n"
+    "  if wanted ~= nil and type(wanted) ~= 'table' then\n"
+    "    error('events: ' .. type(wanted) .. ' (expected a table)', 2)\n"
+    "  end\n"
+    "  for name, value in next, wanted or {} do\n"
+    "    if type(value) ~= known[name] then\n"
+    "      error('events: ' .. tostring(name) .. ' (expected kind, wafer and gripper as texts, from and to "
+    "as numbers)', 2)\n"
+    "    end\n"
+    "  end\n"
+    "  local found, w = {}, wanted or {}\n"
+    "  for i = 1, #list do\n"
+    "    local event = list[i]\n"
+    "    local t = event.utime / 1e6\n"
+    "    if (w.kind or event.kind) == event.kind and (w.wafer == nil or w.wafer == event.wafer)\n"
+    "      and (w.gripper == nil or w.gripper == event.gripper)\n"
+    "      and t >= (w.from or t) and t <= (w.to or t) then\n"
+    "      insert(found, event)\n"
+    "    end\n"
+    "  end\n"
+    "  return found\n"
+    "end\n";
+
+static bool prepare(const arguments_t *arguments, checked_t *checked, wh_sandbox_result_t *result) {
+    const wh_sandbox_limits_t limits = {0};
+    checked->sandbox =
+        wh_sandbox_new_with(&limits, arguments->parameters.items, arguments->parameters.count, result);
+    if (!checked->sandbox) {
+        return false;
+    }
+    lua_State *L = wh_sandbox_state(checked->sandbox);
+    const bool is_set =
+        wh_sandbox_protect(L, set_up, checked, result) &&
+        wh_sandbox_evaluate_text(L, WH_INNER_CHUNK "check", events_text, sizeof events_text - 1, result);
+    if (is_set) {
+        lua_pop(L, 1);
+    }
+    return is_set;
+}
+
+/* -------------------------------------------------------------------------------------------- the verdict */
+
+/* A log that is not whole cannot show that all went well. */
+static int judge(const arguments_t *arguments, const checked_t *checked) {
+    const int whole = wh_log_arguments_judge(&arguments->log, &checked->run);
+    if (checked->expected == 0) {
+        fprintf(stderr, "%s: it expects nothing (expected calls of expect)\n", checked->path);
+        return WH_EXIT_USAGE;
+    }
+    if (checked->unmet > 0) {
+        printf("failed: %zu of %zu expectations met\n", checked->expected - checked->unmet,
+               checked->expected);
+    } else {
+        printf("%s: %zu %s met\n", whole == WH_EXIT_MET ? "ok" : "failed: the log is not whole",
+               checked->expected, checked->expected == 1 ? "expectation" : "expectations");
+    }
+    return checked->unmet > 0 ? WH_EXIT_FAILED : whole;
+}
+
+static int play(const arguments_t *arguments, checked_t *checked) {
+    wh_sandbox_result_t result;
+    char unread[WH_SANDBOX_MESSAGE_BYTES];
+    if (!prepare(arguments, checked, &result) ||
+        !wh_sandbox_evaluate(wh_sandbox_state(checked->sandbox), checked->path, &result)) {
+        fprintf(stderr, "%s\n", result.message);
+        return WH_EXIT_USAGE;
+    }
+    if (wh_sandbox_find_unread(checked->sandbox, unread)) {
+        fprintf(stderr, "%s: %s\n", checked->path, unread);
+        return WH_EXIT_USAGE;
+    }
+    const int status = judge(arguments, checked);
+    return wh_app_is_printed(0) ? status : WH_EXIT_USAGE;
+}
+
+static void close_checked(checked_t *checked) {
+    wh_sandbox_free(checked->sandbox);
+    json_decref(checked->result);
+    for (size_t i = 0; i < checked->count; ++i) {
+        free(checked->slices[i].values);
+    }
+    free(checked->slices);
+    wh_log_run_close(&checked->run);
+}
+
+static int check_log(arguments_t *arguments) {
+    static checked_t checked;
+    const wh_named_file_t named[] = {{"the log", arguments->paths.items[0], false},
+                                     {"the checks", arguments->paths.items[1], false},
+                                     {"the layout", arguments->log.layout, false}};
+    int status = WH_EXIT_USAGE;
+    if (!wh_files_are_apart(named, 3, true)) {
+        return status;
+    }
+    arguments->log.path = arguments->paths.items[0];
+    checked.path = arguments->paths.items[1];
+    if (wh_log_arguments_read(&arguments->log, keep, &checked, &checked.run)) {
+        checked.result = wh_record_to_json(&checked.run.record);
+        status = play(arguments, &checked);
+    }
+    close_checked(&checked);
+    return status;
+}
+
+int wh_app_check(int argc, char **argv) {
+    arguments_t arguments = {0};
+    wh_options_parse(&command_line, argc, argv, &arguments);
+    const int status = arguments.paths.count == 2 ? check_log(&arguments) : WH_EXIT_USAGE;
+    wh_option_list_free(&arguments.paths);
+    wh_option_list_free(&arguments.parameters);
+    return status;
+}

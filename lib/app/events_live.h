@@ -1,0 +1,22 @@
+/* Events as they happen, of a simulator that is heard over LCM. */
+#ifndef WH_APP_EVENTS_LIVE_H
+#define WH_APP_EVENTS_LIVE_H
+
+#include "../record/record.h"
+
+typedef struct {
+    const char *url; /* null: the default */
+    /* A cell is heard for the first time, or another one. False ends it. */
+    bool (*cell)(void *user, const wh_layout_t *layout);
+    /* The record's i-th event has happened; the record has those of one slice. False ends it. */
+    bool (*event)(void *user, const wh_record_t *record, size_t i);
+    void *user;
+} wh_events_live_t;
+
+/* Listens until SIGINT or SIGTERM. Of a slice whose state comes twice the events are told once. States that
+ * never come are not waited for: standard error says how many slices of a run were not heard. Returns the
+ * exit status: WH_EXIT_MET when a signal ended it, WH_EXIT_FAILED if LCM failed, WH_EXIT_USAGE if it could
+ * not be opened or a listener ended it. */
+int wh_events_live(const wh_events_live_t *live);
+
+#endif

@@ -1,0 +1,42 @@
+/* What subcommands that read one run of a log have in common: which run, whose layout, and how it is told
+ * that the log is not whole. */
+#ifndef WH_APP_LOG_ARGUMENTS_H
+#define WH_APP_LOG_ARGUMENTS_H
+
+#include "../log/log_run.h"
+#include "../text/options.h"
+
+/* Zero it to begin with. */
+typedef struct {
+    const char *path;
+    const char *layout;
+    uint64_t number; /* 0: the last */
+} wh_log_arguments_t;
+
+/* --layout and --run, into a wh_log_arguments_t; the log is the subcommand's operand. */
+extern const wh_option_t wh_log_options[];
+
+/* Reads the run (wh_log_run_read), with a listener or null. False, and standard error says why, if there is
+ * nothing to show. To be closed in any case, and freed. */
+bool wh_log_arguments_read(const wh_log_arguments_t *arguments, wh_log_run_listener_t *listener, void *user,
+                           wh_log_run_t *run);
+
+/* WH_EXIT_MET if a replay calls the log the same; else WH_EXIT_FAILED, and standard error says what a replay
+ * says. */
+int wh_log_arguments_judge(const wh_log_arguments_t *arguments, const wh_log_run_t *run);
+
+/* A stretch of time, s. Zero `from`, and `to` HUGE_VAL, to begin with. */
+typedef struct {
+    double from, to;
+} wh_log_window_t;
+
+/* --from and --to, into a wh_log_window_t; its check refuses one that ends before it begins. */
+extern const wh_option_t wh_log_window_options[];
+void wh_log_window_check(const void *window, struct argp_state *state);
+
+/* True if the moment is in it, its ends included. */
+static inline bool wh_log_window_has(const wh_log_window_t *window, double time_s) {
+    return time_s >= window->from && time_s <= window->to;
+}
+
+#endif

@@ -1,0 +1,104 @@
+#include "test_find.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "../text/array.h"
+
+/* Folders within folders; deeper ones are refused. */
+#define DEEPEST 64
+
+void wh_test_found_add(wh_test_found_t *found, const char *path, bool was_found) {
+    found->jobs = wh_array_grow(found->jobs, found->count, &found->capacity, sizeof *found->jobs);
+    found->paths = wh_array_grow(found->paths, found->count, &found->path_capacity, sizeof *found->paths);
+    found->paths[found->count] = wh_text_copy(path);
+    found->jobs[found->count] = (wh_test_job_t){found->paths[found->count], was_found};
+    ++found->count;
+}
+
+void wh_test_found_free(wh_test_found_t *found) {
+    for (size_t i = 0; i < found->count; ++i) {
+        free(found->paths[i]);
+    }
+    free(found->paths);
+    free(found->jobs);
+}
+
+static bool refuse(const char *path, const char *why) {
+    fprintf(stderr, "%s: %s (expected a script, or a folder of scripts)\n", path, why);
+    return false;
+}
+
+/* By bytes, whatever the locale says. */
+static int by_name(const struct dirent **a, const struct dirent **b) {
+    return strcmp((*a)->d_name, (*b)->d_name);
+}
+
+static int is_shown(const struct dirent *entry) {
+    return entry->d_name[0] != '.';
+}
+
+static bool is_lua(const char *name) {
+    const size_t length = strlen(name);
+    return length > 4 && strcmp(name + length - 4, ".lua") == 0;
+}
+
+static char *join(const char *folder, const char *name) {
+    const size_t length = strlen(folder);
+    char *path = wh_array_new(length + strlen(name) + 2, 1);
+    memcpy(path, folder, length);
+    if (length > 0 && folder[length - 1] != '/') {
+        strcat(path, "/");
+    }
+    return strcat(path, name);
+}
+
+static bool search(wh_test_found_t *found, const char *folder, int depth);
+
+/* A link to a folder is not followed: it may lead back. */
+static bool look_at(wh_test_found_t *found, const char *folder, const char *name, int depth) {
+    struct stat status;
+    char *path = join(folder, name);
+    bool taken = true;
+    if (lstat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
+        taken = search(found, path, depth + 1);
+    } else if (is_lua(name) && stat(path, &status) == 0 && S_ISREG(status.st_mode)) {
+        wh_test_found_add(found, path, true);
+    }
+    free(path);
+    return taken;
+}
+
+static bool search(wh_test_found_t *found, const char *folder, int depth) {
+    struct dirent **entries = NULL;
+    const int count = depth > DEEPEST ? -1 : scandir(folder, &entries, is_shown, by_name);
+    bool taken = count >= 0;
+    if (!taken) {
+        (void)refuse(folder, depth > DEEPEST ? "it is too deep" : strerror(errno));
+    }
+    for (int i = 0; i < count; ++i) {
+        taken = taken && look_at(found, folder, entries[i]->d_name, depth);
+        free(entries[i]);
+    }
+    free(entries);
+    return taken;
+}
+
+bool wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found) {
+    bool taken = true;
+    for (size_t i = 0; taken && i < paths->count; ++i) {
+        struct stat status;
+        if (stat(paths->items[i], &status) != 0) {
+            taken = refuse(paths->items[i], strerror(errno));
+        } else if (S_ISDIR(status.st_mode)) {
+            taken = search(found, paths->items[i], 0);
+        } else {
+            wh_test_found_add(found, paths->items[i], false);
+        }
+    }
+    return taken;
+}

@@ -1,0 +1,243 @@
+#include "tests_print.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "../text/utf8.h"
+
+static const struct {
+    const char *word;
+    wh_ink_t ink;
+    const char *element; /* of JUnit's XML; null: none */
+} verdicts[WH_TEST_VERDICTS] = {
+    [WH_TEST_OK] = {"ok", WH_INK_GOOD, NULL},
+    [WH_TEST_FAILED] = {"failed", WH_INK_BAD, "failure"},
+    [WH_TEST_BAD] = {"bad", WH_INK_BAD, "error"},
+    [WH_TEST_ENDLESS] = {"no end", WH_INK_BAD, "error"},
+    [WH_TEST_KILLED] = {"killed", WH_INK_BAD, "error"},
+    [WH_TEST_PASSED_OVER] = {"passed over", WH_INK_WARN, "skipped"},
+};
+
+const char *wh_test_word(wh_test_verdict_t verdict) {
+    return verdicts[verdict].word;
+}
+
+bool wh_test_is_bad(wh_test_verdict_t verdict) {
+    return verdict != WH_TEST_OK && verdict != WH_TEST_PASSED_OVER;
+}
+
+/* --------------------------------------------------------------------------------------------- for people */
+
+/* Calls `put` for each line of a text, without its end. */
+static void each_line(const char *text, void (*put)(FILE *out, const char *line), FILE *out) {
+    while (text && *text != '\0') {
+        const size_t length = strcspn(text, "\n");
+        char *line = strndup(text, length);
+        put(out, line ? line : "");
+        free(line);
+        text += text[length] == '\n' ? length + 1 : length;
+    }
+}
+
+static void put_indented(FILE *out, const char *line) {
+    fputs("    ", out);
+    wh_style_put(out, line);
+    fputc('\n', out);
+}
+
+/* A reason may begin with the script's own path. */
+static const char *without_path(const wh_test_result_t *result) {
+    const size_t length = strlen(result->path);
+    const bool begins = strncmp(result->reason, result->path, length) == 0;
+    return begins && strncmp(result->reason + length, ": ", 2) == 0 ? result->reason + length + 2
+                                                                    : result->reason;
+}
+
+static void put_good(const wh_test_result_t *result, FILE *out) {
+    fprintf(out, "%llu %s, %.3f s simulated", (unsigned long long)result->expectations,
+            result->expectations == 1 ? "expectation" : "expectations", result->simulated_s);
+}
+
+void wh_test_print(const wh_test_result_t *result, FILE *out, const wh_style_t *style) {
+    wh_style_print(style, out, verdicts[result->verdict].ink, "%-11s", wh_test_word(result->verdict));
+    fputs("  ", out);
+    wh_style_put(out, result->path);
+    fputs(": ", out);
+    if (result->reason) {
+        wh_style_put(out, without_path(result));
+    } else {
+        put_good(result, out);
+    }
+    fputc('\n', out);
+    if (wh_test_is_bad(result->verdict)) {
+        each_line(result->output, put_indented, out);
+    }
+}
+
+void wh_test_print_sum(const wh_test_result_t results[], size_t count, FILE *out, const wh_style_t *style) {
+    size_t counts[WH_TEST_VERDICTS] = {0};
+    for (size_t i = 0; i < count; ++i) {
+        ++counts[results[i].verdict];
+    }
+    const size_t passed_over = counts[WH_TEST_PASSED_OVER];
+    const size_t scripts = count - passed_over;
+    fprintf(out, "%zu %s: ", scripts, scripts == 1 ? "script" : "scripts");
+    wh_style_print(style, out, scripts > 0 && counts[WH_TEST_OK] == scripts ? WH_INK_GOOD : WH_INK_BAD,
+                   "%zu ok", counts[WH_TEST_OK]);
+    for (size_t verdict = WH_TEST_FAILED; verdict < WH_TEST_PASSED_OVER; ++verdict) {
+        if (counts[verdict] > 0) {
+            fprintf(out, ", %zu %s", counts[verdict], verdicts[verdict].word);
+        }
+    }
+    if (passed_over > 0) {
+        fprintf(out, "; %zu %s passed over", passed_over, passed_over == 1 ? "file" : "files");
+    }
+    fputc('\n', out);
+}
+
+/* ---------------------------------------------------------------------------------------------------- TAP */
+
+static void put_comment(FILE *out, const char *line) {
+    fputs("#   ", out);
+    wh_style_put(out, line);
+    fputc('\n', out);
+}
+
+/* A number sign would begin a directive. */
+static void put_tap_name(FILE *out, const char *path) {
+    char *name = wh_style_printable(path);
+    for (const char *c = name; *c != '\0'; ++c) {
+        if (*c == '#') {
+            fputc('\\', out);
+        }
+        fputc((unsigned char)*c, out);
+    }
+    free(name);
+}
+
+void wh_test_print_tap(const wh_test_result_t *result, size_t number, FILE *out) {
+    const bool is_bad = wh_test_is_bad(result->verdict);
+    if (result->verdict == WH_TEST_PASSED_OVER) {
+        fputs("# passed over: ", out);
+        wh_style_put(out, result->path);
+        fputs(": ", out);
+        wh_style_put(out, without_path(result));
+        fputc('\n', out);
+        return;
+    }
+    fprintf(out, "%sok %zu - ", is_bad ? "not " : "", number);
+    put_tap_name(out, result->path);
+    fputc('\n', out);
+    if (is_bad) {
+        fprintf(out, "# %s: ", wh_test_word(result->verdict));
+        wh_style_put(out, without_path(result));
+        fputc('\n', out);
+        each_line(result->output, put_comment, out);
+    }
+}
+
+void wh_test_print_plan(size_t scripts, FILE *out) {
+    fprintf(out, "1..%zu%s\n", scripts, scripts == 0 ? " # no scripts found" : "");
+}
+
+/* -------------------------------------------------------------------------------------------------- JUnit */
+
+/* How many bytes a character has that XML 1.0 has not: controls but for tab and line ends, U+FFFE and
+ * U+FFFF. 0: it has it. */
+static size_t forbidden_bytes(const char *text) {
+    const unsigned char first = (unsigned char)text[0];
+    if (first < 0x20 && !strchr("\t\n\r", first)) {
+        return 1;
+    }
+    return memcmp(text, "\xEF\xBF\xBE", 3) == 0 || memcmp(text, "\xEF\xBF\xBF", 3) == 0 ? 3 : 0;
+}
+
+static void put_xml_byte(FILE *out, char byte) {
+    switch (byte) {
+    case '&':
+        fputs("&amp;", out);
+        break;
+    case '<':
+        fputs("&lt;", out);
+        break;
+    case '>':
+        fputs("&gt;", out);
+        break;
+    case '"':
+        fputs("&quot;", out);
+        break;
+    case '\t':
+    case '\n':
+    case '\r':
+        fprintf(out, "&#%d;", byte); /* a reader would make a blank of it in an attribute */
+        break;
+    default:
+        fputc((unsigned char)byte, out);
+        break;
+    }
+}
+
+static void put_xml(FILE *out, const char *text) {
+    char *repaired = wh_utf8_repaired(text);
+    const char *c = repaired;
+    while (*c != '\0') {
+        const size_t bad = strnlen(c, 3) < 3 && (unsigned char)*c >= 0x20 ? 0 : forbidden_bytes(c);
+        if (bad > 0) {
+            fputs("\xEF\xBF\xBD", out);
+            c += bad;
+        } else {
+            put_xml_byte(out, *c++);
+        }
+    }
+    free(repaired);
+}
+
+static void put_attribute(FILE *out, const char *name, const char *value) {
+    fprintf(out, " %s=\"", name);
+    put_xml(out, value);
+    fputc('"', out);
+}
+
+static void put_case(FILE *out, const wh_test_result_t *result) {
+    const char *element = verdicts[result->verdict].element;
+    fputs("    <testcase classname=\"waferhand\"", out);
+    put_attribute(out, "name", result->path);
+    fprintf(out, " time=\"%.3f\">\n", result->wall_s);
+    if (element) {
+        fprintf(out, "      <%s", element);
+        put_attribute(out, "message", without_path(result));
+        if (result->verdict != WH_TEST_PASSED_OVER) {
+            put_attribute(out, "type", wh_test_word(result->verdict));
+        }
+        fputs("/>\n", out);
+    }
+    if (result->output) {
+        fputs("      <system-out>", out);
+        put_xml(out, result->output);
+        fputs("</system-out>\n", out);
+    }
+    fputs("    </testcase>\n", out);
+}
+
+bool wh_test_print_junit(const wh_test_result_t results[], size_t count, FILE *out) {
+    size_t failures = 0;
+    size_t skipped = 0;
+    size_t bad = 0;
+    double wall_s = 0;
+    for (size_t i = 0; i < count; ++i) {
+        failures += results[i].verdict == WH_TEST_FAILED ? 1 : 0;
+        skipped += results[i].verdict == WH_TEST_PASSED_OVER ? 1 : 0;
+        bad += wh_test_is_bad(results[i].verdict) ? 1 : 0;
+        wall_s += results[i].wall_s;
+    }
+    fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n", out);
+    fprintf(out,
+            "  <testsuite name=\"waferhand\" tests=\"%zu\" failures=\"%zu\" errors=\"%zu\" skipped=\"%zu\" "
+            "time=\"%.3f\">\n",
+            count, failures, bad - failures, skipped, wall_s);
+    for (size_t i = 0; i < count; ++i) {
+        put_case(out, &results[i]);
+    }
+    fputs("  </testsuite>\n</testsuites>\n", out);
+    return fflush(out) == 0 && !ferror(out);
+}

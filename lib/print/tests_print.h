@@ -1,0 +1,59 @@
+/* What came of many scripts: a line for each, the sum, TAP and JUnit's XML.
+ *
+ *     ok           cell.lua: 2 expectations, 8.283 s simulated
+ *     failed       tilt.lua: line 7: Wafer 1 held by EE: nobody holds it
+ *     passed over  paper.lua: a layout: waferhand layout paper.lua
+ *
+ * What a script printed follows, indented, if its verdict is a bad one. Text is made fit for where it goes:
+ * control characters stand as \xNN, and in XML each byte that is no UTF-8, and each character that XML
+ * cannot hold, is U+FFFD.
+ */
+#ifndef WH_PRINT_TESTS_PRINT_H
+#define WH_PRINT_TESTS_PRINT_H
+
+#include <stdint.h>
+
+#include "../text/style.h"
+
+typedef enum {
+    WH_TEST_OK,         /* as of `run`; and it moved or expected something */
+    WH_TEST_FAILED,     /* as of `run`; or it moves nothing and expects nothing */
+    WH_TEST_BAD,        /* script, layout or parameter cannot be used */
+    WH_TEST_ENDLESS,    /* it did not end in its time, and was ended */
+    WH_TEST_KILLED,     /* a signal ended it */
+    WH_TEST_PASSED_OVER /* found in a folder, and no script */
+} wh_test_verdict_t;
+
+#define WH_TEST_VERDICTS 6
+
+typedef struct {
+    const char *path;
+    wh_test_verdict_t verdict;
+    char *reason; /* null if it is ok */
+    char *output; /* what it printed, standard error too; null: nothing */
+    uint64_t expectations;
+    double simulated_s, wall_s;
+} wh_test_result_t;
+
+/* In words: "ok", "failed", "bad", "no end", "killed", "passed over". */
+const char *wh_test_word(wh_test_verdict_t verdict);
+
+/* True for those that make a test fail. */
+bool wh_test_is_bad(wh_test_verdict_t verdict);
+
+/* A result's line, and what it printed. */
+void wh_test_print(const wh_test_result_t *result, FILE *out, const wh_style_t *style);
+
+/* The same as TAP 13: `number`, from 1, counts up; what was passed over is a comment and has no number. Then
+ * the plan, which TAP lets stand at the end. */
+void wh_test_print_tap(const wh_test_result_t *result, size_t number, FILE *out);
+void wh_test_print_plan(size_t scripts, FILE *out);
+
+/* The sum: "3 scripts: 2 ok, 1 failed; 1 file passed over". */
+void wh_test_print_sum(const wh_test_result_t results[], size_t count, FILE *out, const wh_style_t *style);
+
+/* All of them as one suite of JUnit's XML: FAILED is a failure; BAD, ENDLESS and KILLED are errors;
+ * PASSED_OVER is skipped. False if `out` does not take it. */
+bool wh_test_print_junit(const wh_test_result_t results[], size_t count, FILE *out);
+
+#endif
