@@ -55,9 +55,9 @@ typedef struct {
     int64_t slice; /* 0: it has none */
     double time_s; /* NaN: none differs in time */
     char *field, *values[2];
-    json_t *end;      /* a list of what differs at no certain time: field, a, b */
-    size_t end_count; /* all of them */
-    int64_t common, differing;
+    json_t *end;                        /* a list of what differs at no certain time: field, a, b */
+    size_t end_count;                   /* all of them */
+    int64_t common, differing, only[2]; /* slices */
 } result_t;
 
 /* --------------------------------------------------------------------------------------------------- JSON */
@@ -200,7 +200,9 @@ static bool compare_run(side_t sides[2], size_t number, result_t *result) {
         return false;
     }
     result->common += found.common;
-    result->differing += found.differing + found.only[0] + found.only[1];
+    result->differing += found.differing;
+    result->only[0] += found.only[0];
+    result->only[1] += found.only[1];
     if (found.slice > 0) {
         result->slice = found.slice;
         result->time_s = found.time_s;
@@ -276,8 +278,14 @@ static void print_table(const result_t *result) {
         putchar('\n');
     }
     if (result->differing > 0) {
-        printf("%" PRId64 " slices differ, of %" PRId64 " that both have\n", result->differing,
+        printf("%" PRId64 " of %" PRId64 " slices that both have differ\n", result->differing,
                result->common);
+    }
+    for (size_t i = 0; i < 2; ++i) {
+        if (result->only[i] > 0) {
+            printf("slices that the %s alone has: %" PRId64 "\n", i == 0 ? "first" : "second",
+                   result->only[i]);
+        }
     }
     print_end(result);
     puts(is_same(result) ? "same" : "differs");
@@ -291,9 +299,12 @@ static int print_json(const result_t *result) {
                             result->field, result->values[0], result->values[1]);
     }
     json_t *root =
-        wh_json_add(json_object(), "format same slices_compared slices_differing first end end_count",
+        wh_json_add(json_object(),
+                    "format same slices_compared slices_differing slices_of_a_alone slices_of_b_alone first "
+                    "end end_count",
                     json_integer(1), json_boolean(is_same(result)), json_integer((json_int_t)result->common),
-                    json_integer((json_int_t)result->differing), first, json_incref(result->end),
+                    json_integer((json_int_t)result->differing), json_integer((json_int_t)result->only[0]),
+                    json_integer((json_int_t)result->only[1]), first, json_incref(result->end),
                     json_integer((json_int_t)result->end_count), NULL);
     const int status = wh_json_print(root, stdout);
     json_decref(root);
