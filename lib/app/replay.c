@@ -218,6 +218,14 @@ static void print_damage(const char *path, const wh_reading_t *reading) {
     }
 }
 
+static bool has_collisions(const wh_replay_t *replay) {
+    bool has = false;
+    for (size_t i = 0; i < replay->run_count; ++i) {
+        has = has || replay->runs[i].collisions > 0;
+    }
+    return has;
+}
+
 static int print_table(const result_t *result) {
     static const char *const verdicts[] = {[WH_READING_SAME] = "every slice is as recorded",
                                            [WH_READING_DIFFERS] = "not as recorded",
@@ -234,7 +242,10 @@ static int print_table(const result_t *result) {
     char *path = wh_style_printable(result->arguments->path);
     print_damage(path, result->reading);
     free(path);
-    printf("%s%s%s\n", verdicts[result->verdict], result->reason[0] ? ": " : "", result->reason);
+    printf("%s%s%s%s\n", verdicts[result->verdict], result->reason[0] ? ": " : "", result->reason,
+           result->verdict == WH_READING_SAME && has_collisions(result->replay)
+               ? ", but for what the collision check found, which was not compared"
+               : "");
     return 0;
 }
 

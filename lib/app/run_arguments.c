@@ -33,7 +33,7 @@ const wh_option_t wh_run_options[] = {
      WH_OPTION_LIST, .variable = offsetof(wh_run_arguments_t, parameters)},
     {"trust", 0, NULL, "Let the script use all of Lua, files and native modules too", WH_OPTION_FLAG,
      .variable = offsetof(wh_run_arguments_t, run.limits.trust)},
-    {"budget", 0, "N", "End the script after N steps of Lua and simulated slices (default 1e9)",
+    {"budget", 0, "N", "End the script after N steps: 1 each of Lua, 20 a slice (default 1e9)",
      WH_OPTION_REAL, .variable = offsetof(wh_run_arguments_t, budget), 1, 1e18, "a number from 1 to 1e+18"},
     {"memory", 0, "MIB", "Let the script use so many MiB of memory (default 256)", WH_OPTION_REAL,
      .variable = offsetof(wh_run_arguments_t, memory_mib), 1, 1e6, "a number from 1 to 1e+06"},

@@ -52,8 +52,14 @@ static const wh_command_line_t command_line = {.name = "sim",
                                                .operand = "layout",
                                                .operand_variable = offsetof(arguments_t, layout.path)};
 
+/* Datagrams that were no message of ours, or none of LCM. */
+static uint64_t count_garbage(const wh_sim_process_t *simulation) {
+    return simulation->counters.garbage + simulation->node->receiver.dropped;
+}
+
 static void say_counters(const wh_sim_process_t *simulation) {
     const wh_protocol_server_counters_t *c = &simulation->server.counters;
+    const uint64_t garbage = count_garbage(simulation);
     wh_node_say(simulation->node,
                 "%" PRIu64 " command%s: %" PRIu64 " stepped, %" PRIu64 " repeated, %" PRIu64
                 " stale, %" PRIu64 " refused, %" PRIu64 " of unknown runs, %" PRIu64
@@ -64,8 +70,8 @@ static void say_counters(const wh_sim_process_t *simulation) {
                 "%" PRIu64 " state%s taken back of %" PRIu64 "; %" PRId64 " slice%s missed; %" PRIu64
                 " datagram%s of garbage, %" PRIu64 " not sent",
                 c->restored, WH_PLURAL(c->restored), c->restores, simulation->server.missed,
-                WH_PLURAL(simulation->server.missed), simulation->counters.garbage,
-                WH_PLURAL(simulation->counters.garbage), simulation->counters.unsent);
+                WH_PLURAL(simulation->server.missed), garbage, WH_PLURAL(garbage),
+                simulation->counters.unsent);
 }
 
 static json_t *count(uint64_t value) {
@@ -87,7 +93,7 @@ static bool print_counters(const wh_sim_process_t *simulation) {
     (void)wh_json_add(root, "restores restored restore_ignored restore_refused", count(c->restores),
                       count(c->restored), count(c->restore_ignored), count(c->restore_refused), NULL);
     (void)wh_json_add(root, "missed garbage unsent silences", json_integer((json_int_t)server->missed),
-                      count(simulation->counters.garbage), count(simulation->counters.unsent),
+                      count(count_garbage(simulation)), count(simulation->counters.unsent),
                       count(simulation->counters.silences), NULL);
     const int status = wh_json_print(root, stdout);
     return wh_app_is_printed(status);

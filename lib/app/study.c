@@ -43,7 +43,7 @@ static const wh_option_t options[] = {
     {"set", 0, "NAME=VALUE",
      "Hand script and layout a parameter, params.NAME: a number if VALUE is one, true, false or text",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, run.parameters)},
-    {"budget", 0, "N", "End a trial's script after N steps of Lua and simulated slices (default 1e9)",
+    {"budget", 0, "N", "End a trial's script after N steps: 1 each of Lua, 20 a slice (default 1e9)",
      WH_OPTION_REAL, .variable = offsetof(arguments_t, run.budget), 1, 1e18, "a number from 1 to 1e+18"},
     {"memory", 0, "MIB", "Let a script use so many MiB of memory (default 256)", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, run.memory_mib), 1, 1e6, "a number from 1 to 1000000"},

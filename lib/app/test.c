@@ -28,7 +28,7 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, junit)},
     {"set", 0, "NAME=VALUE", "Hand each script a parameter, which each must read, as with run",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, run.parameters)},
-    {"budget", 0, "N", "End a script after N steps of Lua and simulated slices (default 1e9)", WH_OPTION_REAL,
+    {"budget", 0, "N", "End a script after N steps: 1 each of Lua, 20 a slice (default 1e9)", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, run.budget), 1, 1e18, "a number from 1 to 1e+18"},
     {"memory", 0, "MIB", "Let a script use so many MiB of memory (default 256)", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, run.memory_mib), 1, 1e6, "a number from 1 to 1e+06"},

@@ -41,6 +41,12 @@
 #if defined(WH_NO_CONTRACTION) && (0 - WH_NO_CONTRACTION - 1) != 1 && (0 - WH_NO_CONTRACTION - 1) != -2
 #error "waferhand: WH_NO_CONTRACTION is 0, or not 1: define it as 1 or as nothing, or leave it out"
 #endif
+#if defined(WH_DEBUG) && (0 - WH_DEBUG - 1) != 1 && (0 - WH_DEBUG - 1) != -2
+#error "waferhand: WH_DEBUG is 0, or not 1: define it as 1 or as nothing, or leave it out"
+#endif
+#if defined(WH_DEBUG_TABLE) && (0 - WH_DEBUG_TABLE - 1) != 1 && (0 - WH_DEBUG_TABLE - 1) != -2
+#error "waferhand: WH_DEBUG_TABLE is 0, or not 1: define it as 1 or as nothing, or leave it out"
+#endif
 #if defined(WH_WITHOUT_SWEEP)
 #define WH_SWEEP_BUILT false
 #else
