@@ -159,6 +159,15 @@ static void read_placing(wh_reader_t *reader, wh_cell_t *cell) {
     wh_reader_leave(reader);
 }
 
+static void read_corrections(wh_reader_t *reader, wh_corrections_t *corrections) {
+    wh_reader_open_section(reader, "corrections", "x y z turn");
+    corrections->x = wh_reader_number(reader, "x", 5, 0, 1000);
+    corrections->y = wh_reader_number(reader, "y", 5, 0, 1000);
+    corrections->z = wh_reader_number(reader, "z", 2.5, 0, 1000);
+    corrections->turn_deg = wh_reader_number(reader, "turn", 5, 0, 180);
+    wh_reader_leave(reader);
+}
+
 static void read_checks(wh_reader_t *reader, wh_layout_t *layout) {
     static const char *const checks[] = {"sampled", "swept", NULL};
     layout->grasp = wh_grasp_config_default();
@@ -170,6 +179,7 @@ static void read_checks(wh_reader_t *reader, wh_layout_t *layout) {
         wh_reader_choice(reader, "check", 0, checks) == 0 ? WH_CHECK_SAMPLED : WH_CHECK_SWEPT;
     layout->grasp.seat = wh_reader_boolean(reader, "seat", false);
     read_placing(reader, &layout->cell);
+    read_corrections(reader, &layout->corrections);
 }
 
 /* ---------------------------------------------------------------------------------------------- all of it */
@@ -187,7 +197,7 @@ wh_layout_t *wh_layout_read(lua_State *L, const char *path) {
     wh_reader_refuse_unknown(&reader,
                              "wafer tolerance near check slice seat settle placing collision "
                              "look_ahead robot homed chuck grippers stations wafers shapes obstacles "
-                             "clearance vacuum pads faults study");
+                             "clearance vacuum pads faults study corrections");
     read_checks(&reader, layout);
     wh_layout_read_physics(&reader, layout);
     wh_layout_read_robot(&reader, layout);

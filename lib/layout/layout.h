@@ -85,6 +85,11 @@ typedef struct {
     int32_t station, slot; /* slot from 1 */
 } wh_layout_wafer_t;
 
+/* How far a GET, PUT or SWAP may go beside what was taught: along the slot's axes, mm, and about its z. */
+typedef struct {
+    double x, y, z, turn_deg;
+} wh_corrections_t;
+
 /* Lives as long as the Lua state that read it. Nothing in it changes during a run. */
 typedef struct {
     const char *path;        /* as the caller named it */
@@ -96,9 +101,10 @@ typedef struct {
     double notch, notch_depth;
     wh_grasp_config_t grasp;
     int64_t slice_us;
-    wh_physics_t physics; /* vacuum, pads, faults at the start */
-    wh_machine_t machine; /* machine.gripper_count is the number of grippers */
-    bool homed;           /* false: commands that rely on the arm's position need a HOME first */
+    wh_physics_t physics;         /* vacuum, pads, faults at the start */
+    wh_machine_t machine;         /* machine.gripper_count is the number of grippers */
+    bool homed;                   /* false: commands that rely on the arm's position need a HOME first */
+    wh_corrections_t corrections; /* the largest ones that a command may ask for */
     wh_layout_gripper_t grippers[WH_GRIPPERS];
     size_t station_count;
     wh_layout_station_t *stations; /* sorted by name */

@@ -289,7 +289,7 @@ void wh_mcs_process_idle(wh_mcs_process_t *control) {
 
 void wh_mcs_process_finish(wh_mcs_process_t *control) {
     control->mcs = NULL;
-    wh_mcs_process_clear(control);
+    wh_mcs_process_stop_waiting(control);
     tell_over(control);
 }
 

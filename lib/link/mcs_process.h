@@ -95,8 +95,8 @@ void wh_mcs_process_stop_waiting(wh_mcs_process_t *control);
  * connecting by the partners does. */
 void wh_mcs_process_catch_up(wh_mcs_process_t *control, const wh_mcs_t *mcs);
 
-/* Answers the requests that wait, and tells that the run is over, how it ended, and how much was told of it
- * (link/outcome.h). Run or session may be gone by now. */
+/* Answers the requests that wait and those that have come by now, and tells that the run is over, how it ended,
+ * and how much was told of it (link/outcome.h). Run or session may be gone by now. */
 void wh_mcs_process_finish(wh_mcs_process_t *control);
 
 /* Frees the answers. One that was never opened must be all zero. */

@@ -121,6 +121,8 @@ static void stop_all(wh_mcs_process_t *control, const wh_mcs_process_request_t *
     if (control->mcs && (control->script || control->running[0] != '\0')) {
         wh_mcs_stop(control->mcs);
         control->node->interrupted = true; /* also a wait for a simulator that is silent */
+    } else if (control->mcs) {
+        wh_mcs_give_up(control->mcs);
     }
     wh_mcs_process_clear(control);
     remember(control, request, WH_OK, "OK");

@@ -197,10 +197,11 @@ static void push_gripper(lua_State *L, const wh_layout_t *layout, size_t g) {
     wh_lua_set_index(L, "axis", layout->machine.mounts[g].axis);
 }
 
-/* { path, slice, sampled, homed, tolerance, home: the robot's axes, grippers in order, stations by name }:
- * lengths in mm, angles in rad, times in s. */
+/* { path, slice, sampled, homed, tolerance, home: the robot's axes, corrections: the largest ones by the field
+ * of a command, its turn in degrees, grippers in order, stations by name }: lengths in mm, other angles in
+ * rad, times in s. */
 static void push_layout(lua_State *L, const wh_layout_t *layout) {
-    lua_createtable(L, 0, 8);
+    lua_createtable(L, 0, 9);
     wh_lua_set_text(L, "path", layout->path);
     wh_lua_set_number(L, "slice", (double)layout->slice_us / 1e6);
     wh_lua_set_boolean(L, "sampled", layout->grasp.check == WH_CHECK_SAMPLED);
@@ -221,6 +222,12 @@ static void push_layout(lua_State *L, const wh_layout_t *layout) {
     lua_setfield(L, -2, "grippers");
     wh_lua_push_numbers(L, layout->machine.robot.home, WH_ROBOT_AXES);
     lua_setfield(L, -2, "home");
+    lua_createtable(L, 0, 4);
+    wh_lua_set_number(L, "dx", layout->corrections.x);
+    wh_lua_set_number(L, "dy", layout->corrections.y);
+    wh_lua_set_number(L, "dz", layout->corrections.z);
+    wh_lua_set_number(L, "turn", layout->corrections.turn_deg);
+    lua_setfield(L, -2, "corrections");
 }
 
 void wh_mcs_set_up(lua_State *L, wh_mcs_t *mcs, const wh_layout_t *layout) {

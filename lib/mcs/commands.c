@@ -1,5 +1,5 @@
-/* Commands and what is kept of them: their beginning and end, errors, expectations, cycles, complaints, and
- * why a pick was missed. */
+/* Commands and what is kept of them: their beginning and end, phases, errors, expectations, cycles,
+ * complaints, and why a pick was missed. */
 #include <stdio.h>
 #include <string.h>
 
@@ -7,6 +7,7 @@
 #include "../script/wh_module_values.h"
 #include "../sim/event_text.h"
 #include "../text/nearest.h"
+#include "../text/utf8.h"
 #include "native.h"
 
 /* What an entry of the record costs of the instruction budget. */
@@ -80,7 +81,7 @@ static int finish_command(lua_State *L) {
     return 0;
 }
 
-void wh_mcs_cut_short(wh_mcs_t *mcs, wh_status_t error, const char *message) {
+static void end_early(wh_mcs_t *mcs, wh_status_t error, const char *message) {
     const wh_command_record_t *command = end_command(mcs, error, message);
     wh_rehearsal_end(&mcs->rehearsal, &mcs->track);
     if (command) {
@@ -88,9 +89,44 @@ void wh_mcs_cut_short(wh_mcs_t *mcs, wh_status_t error, const char *message) {
     }
 }
 
+void wh_mcs_cut_short(wh_mcs_t *mcs, wh_status_t error, const char *message) {
+    const bool runs = mcs->recorder.running != WH_NONE;
+    end_early(mcs, error, message);
+    if (runs) {
+        wh_mcs_give_up(mcs);
+    }
+}
+
 void wh_mcs_refuse(wh_mcs_t *mcs, const char *text, wh_status_t error, const char *message) {
     tell(mcs, wh_recorder_begin(&mcs->recorder, 0, text, wh_recorder_now(&mcs->recorder)), false);
-    wh_mcs_cut_short(mcs, error, message);
+    end_early(mcs, error, message);
+}
+
+/* ------------------------------------------------------------------------------------------------- phases */
+
+void wh_mcs_give_up(wh_mcs_t *mcs) {
+    mcs->held.command[0] = '\0';
+}
+
+/* native.hold(text, phase): this command is held from its end on. */
+static int hold(lua_State *L) {
+    wh_mcs_held_t *held = &wh_mcs_of(L)->held;
+    wh_utf8_clip(held->command, sizeof held->command, wh_lua_whole_text(L, 1));
+    (void)snprintf(held->phase, sizeof held->phase, "%s", luaL_checkstring(L, 2));
+    return 0;
+}
+
+/* native.release(): it is no longer held. */
+static int release(lua_State *L) {
+    wh_mcs_give_up(wh_mcs_of(L));
+    return 0;
+}
+
+/* native.is_held(): the phase in which a command is held, or nil. */
+static int find_phase(lua_State *L) {
+    const wh_mcs_held_t *held = &wh_mcs_of(L)->held;
+    lua_pushstring(L, held->command[0] != '\0' ? held->phase : NULL);
+    return 1;
 }
 
 /* native.expect(ok, text) */
@@ -258,6 +294,9 @@ static int list_complaints(lua_State *L) {
 const luaL_Reg wh_mcs_command_functions[] = {{"begin", begin_command},
                                              {"finish", finish_command},
                                              {"begin_word", begin_word},
+                                             {"hold", hold},
+                                             {"release", release},
+                                             {"is_held", find_phase},
                                              {"expect", add_expectation},
                                              {"cycle", begin_cycle},
                                              {"nearest", find_nearest},

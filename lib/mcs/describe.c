@@ -119,18 +119,28 @@ static void put_error(description_t *to, const wh_record_t *record) {
     }
 }
 
-void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]) {
+/* What runs, or else what is held. */
+static void put_phase(description_t *to, const wh_mcs_t *mcs) {
     const int32_t running = mcs->recorder.running;
+    if (running != WH_NONE) {
+        put(to, "phase=running command=");
+        put_command(to, mcs->recorder.record->commands[running].text);
+    } else if (mcs->held.command[0] != '\0') {
+        put(to, "phase=held command=");
+        put_command(to, mcs->held.command);
+        put(to, " stop=%s", mcs->held.phase);
+    } else {
+        put(to, "phase=idle");
+    }
+}
+
+void wh_mcs_describe(const wh_mcs_t *mcs, char text[WH_MCS_DESCRIPTION_BYTES]) {
     description_t to = {text, 0};
     wh_mcs_seen_t seen = mcs->seen;
     if (!mcs->partners.connect) {
         see(&seen, &mcs->state, mcs->track.axes);
     }
-    put(&to, "phase=%s", running == WH_NONE ? "idle" : "running");
-    if (running != WH_NONE) {
-        put(&to, " command=");
-        put_command(&to, mcs->recorder.record->commands[running].text);
-    }
+    put_phase(&to, mcs);
     put(&to, " seq=%lld", (long long)seen.seq);
     put_number(&to, "time", (double)seen.utime / 1e6);
     if (mcs->layout) {

@@ -237,6 +237,16 @@ static void judge_heard(wh_mcs_t *mcs) {
     }
 }
 
+/* A script that ends while a command is held has left the robot in a station. One that failed says why. */
+static void judge_held(wh_mcs_t *mcs) {
+    char text[WH_MCS_HELD_BYTES + 100];
+    if (mcs->held.command[0] != '\0' && !mcs->recorder.record->failure) {
+        snprintf(text, sizeof text, "CONTINUE or STOP after %s; at the script's end it is held, %s",
+                 mcs->held.command, mcs->held.phase);
+        add_expectation(mcs, text, false);
+    }
+}
+
 void wh_mcs_finish(wh_mcs_t *mcs) {
     wh_recorder_end_t end = {.wafers = mcs->state.wafers};
     if (mcs->link) {
@@ -246,6 +256,7 @@ void wh_mcs_finish(wh_mcs_t *mcs) {
         judge_missed(mcs, end.missed);
         judge_heard(mcs);
     }
+    judge_held(mcs);
     wh_recorder_finish(&mcs->recorder, &end);
     if (mcs->layout && mcs->partners.finished) {
         mcs->partners.finished(mcs->partners.user, mcs);

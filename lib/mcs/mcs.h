@@ -98,6 +98,16 @@ typedef struct {
     wh_real_t axes[WH_ROBOT_AXES];
 } wh_mcs_sent_t;
 
+/* Room for the text of a command that is held, which is cut to that, and for the phase's name. */
+#define WH_MCS_HELD_BYTES 1001
+#define WH_MCS_PHASE_BYTES 12
+
+/* A command that has come to a phase of its way and stands still there, between two commands. */
+typedef struct {
+    char command[WH_MCS_HELD_BYTES]; /* empty: none */
+    char phase[WH_MCS_PHASE_BYTES];  /* "extended" or "up" */
+} wh_mcs_held_t;
+
 /* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `decisions`, `is_file`,
  * `limits_missed`, `most_missed` and `rehearsal.look_ahead`, which may be set between opening and the cell.
  * Must not be moved once opened. */
@@ -122,6 +132,7 @@ struct wh_mcs {
 
     wh_rehearsal_t rehearsal;
     wh_vacuum_watch_t watch;     /* of the running segment */
+    wh_mcs_held_t held;          /* what CONTINUE goes on with */
     int64_t stop_slice;          /* at which a STOP comes; INT64_MAX: none */
     bool stop_requested;         /* a STOP has come: see wh_mcs_stop */
     bool link_stopped;           /* the link has answered a slice with WH_STATUS_STOPPED */
@@ -165,11 +176,15 @@ void wh_mcs_push_prompt(lua_State *L);
  * WH_STATUS_STOPPED after this slice, the next one before its first. A script can catch that error. */
 void wh_mcs_stop(wh_mcs_t *mcs);
 
+/* A STOP where no command runs and none is to come: a command that is held in a phase is given up, the arm
+ * stands in the station, and RECOVER or HOME must bring it out. Without a held one nothing. */
+void wh_mcs_give_up(wh_mcs_t *mcs);
+
 /* Room for what wh_mcs_describe writes. */
 #define WH_MCS_DESCRIPTION_BYTES 4096
 
 /* What motion control does, as name=value with blanks between them, spelt as answers at the prompt are:
- * `phase`, idle or running, and the running `command`; `seq` and `time` (s) of the last slice that a state
+ * `phase`, idle, running or held, the `command` that runs or is held, and, if held, where it `stop`s; `seq` and `time` (s) of the last slice that a state
  * has come for, 0 before the first; in that slice, where the robot's axes were commanded to, `theta` and
  * `yaw` in degrees, `r` and `z` in mm, and for each gripper the wafer that it `holds`; and `error`, the
  * number of the last command's that failed in this run, with its `error_name` and `error_command`, or 0. May

@@ -55,13 +55,36 @@ static int find_axes(lua_State *L) {
     return 1;
 }
 
-/* native.slot(station, slot): { x, y, z, dir_x, dir_y, heading }, the way in projected to horizontal. */
+/* The slot's frame, displaced in its own axes by the numbers from stack index 3 on: dx, dy, dz. */
+static wh_pose_t corrected_slot(lua_State *L, const wh_station_t *place, int32_t slot) {
+    wh_pose_t base_from_slot = wh_station_slot(place, slot);
+    const wh_vec3_t d = wh_vec3(luaL_checknumber(L, 3), luaL_checknumber(L, 4), luaL_checknumber(L, 5));
+    if (wh_vec3_norm(&d) > 0) { /* else the very bits of the slot, zeros of either sign, too */
+        const wh_vec3_t by = wh_mat3_transform(&base_from_slot.R, &d);
+        base_from_slot.r = wh_vec3_add(&base_from_slot.r, &by);
+    }
+    return base_from_slot;
+}
+
+/* The heading of the slot's x axis, turned about its z. */
+static wh_real_t corrected_heading(const wh_mat3_t *R, wh_real_t turn_deg) {
+    wh_real_t sine, cosine;
+    if (!(wh_real_abs(turn_deg) > 0)) {
+        return wh_atan2(R->m[1][0], R->m[0][0]);
+    }
+    wh_sin_cos_deg(turn_deg, &sine, &cosine);
+    return wh_atan2(cosine * R->m[1][0] + sine * R->m[1][1], cosine * R->m[0][0] + sine * R->m[0][1]);
+}
+
+/* native.slot(station, slot, dx, dy, dz, turn): { x, y, z, dir_x, dir_y, heading } of the gripper there,
+ * displaced in the slot's axes (mm) and turned about its z (degrees). The way in, projected to horizontal, is
+ * beside the taught one and goes the same way: it is not turned. */
 static int find_slot(lua_State *L) {
     const wh_mcs_t *mcs = wh_mcs_with_layout(L);
     const int32_t station = wh_mcs_index(L, 1, mcs->layout->station_count);
     const wh_station_t *place = &mcs->layout->places[station];
     const int32_t slot = wh_mcs_index(L, 2, (size_t)place->slots) + 1;
-    const wh_pose_t base_from_slot = wh_station_slot(place, slot);
+    const wh_pose_t base_from_slot = corrected_slot(L, place, slot);
     const wh_real_t x = base_from_slot.R.m[0][0];
     const wh_real_t y = base_from_slot.R.m[1][0];
     const wh_real_t length = wh_real_sqrt(x * x + y * y);
@@ -71,7 +94,7 @@ static int find_slot(lua_State *L) {
     wh_lua_set_number(L, "z", base_from_slot.r.z);
     wh_lua_set_number(L, "dir_x", x / length);
     wh_lua_set_number(L, "dir_y", y / length);
-    wh_lua_set_number(L, "heading", wh_atan2(y, x));
+    wh_lua_set_number(L, "heading", corrected_heading(&base_from_slot.R, luaL_checknumber(L, 6)));
     return 1;
 }
 

@@ -164,6 +164,11 @@ static json_t *findings(const wh_feasibility_t *check, bool warnings) {
     return list;
 }
 
+static json_t *corrections(const wh_corrections_t *from) {
+    return wh_json_set(json_object(), "x %g y %g z %g turn_deg %g", from->x, from->y, from->z,
+                       from->turn_deg);
+}
+
 static void put_checks(const wh_layout_t *layout, json_t *root) {
     const wh_tolerance_t *from = &layout->grasp.tolerance;
     json_t *tolerance = wh_json_set(json_object(), "name %s projz %g projxy %g planar %g",
@@ -198,7 +203,8 @@ int wh_layout_print_json(const wh_feasibility_t *check, FILE *out) {
         wh_json_list(station, check, layout->station_count), wh_json_list(wafer, layout, layout->wafer_count),
         vacuum(&layout->physics.vacuum), pads(&layout->physics.pads),
         wh_json_list(fault, layout, layout->physics.fault_count), NULL);
-    (void)wh_json_add(root, "shapes parts clearance findings warnings", shapes(&layout->shapes),
+    (void)wh_json_add(root, "corrections shapes parts clearance findings warnings",
+                      corrections(&layout->corrections), shapes(&layout->shapes),
                       wh_json_list(part, check, layout->world.part_count), clearances(layout),
                       findings(check, false), findings(check, true), NULL);
     const int status = wh_json_print(root, out);

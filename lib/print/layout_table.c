@@ -304,6 +304,9 @@ static void print_heading(const listing_t *listing) {
             layout->grasp.seat ? "are drawn onto the pads" : "stay as they were taken",
             layout->cell.settle ? ", and settle on what they are put down on" : "",
             layout->collision ? "" : "not ", layout->world.part_count + layout->wafer_count);
+    const wh_corrections_t *most = &layout->corrections;
+    fprintf(listing->frame.out, "corrections of a command are at most x %g, y %g, z %g mm, turn %g%s\n",
+            most->x, most->y, most->z, most->turn_deg, wh_style_glyph(listing->frame.style, WH_GLYPH_DEGREE));
 }
 
 int wh_layout_print_table(const wh_feasibility_t *check, FILE *out, const wh_style_t *style) {

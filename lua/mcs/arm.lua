@@ -1,8 +1,9 @@
 -- What the controller knows of its arm, and how a command goes: recorded, planned to its end before anything
--- moves, played, and refused while the arm may stand where a GET or PUT must not begin.
+-- moves, played, held in a phase if it asks for that, and refused while the arm may stand where it must not
+-- begin.
 
 -- Kept, for a script may set globals of these names.
-local coroutine, error, ipairs, math, pcall = coroutine, error, ipairs, math, pcall
+local coroutine, error, ipairs, math, pairs, pcall = coroutine, error, ipairs, math, pairs, pcall
 local tostring, type = tostring, type
 
 return function(native, lookup)
@@ -12,6 +13,26 @@ return function(native, lookup)
   -- homed    nil: as the layout says
   local arm = { inside = nil, since = nil, stopped = nil, homed = nil }
   local running = nil
+  -- The plan of a command that stands still in a phase, and its text; else nil. The host knows of it, too, and
+  -- may give it up.
+  local held = nil
+
+  -- As after a STOP: the arm has to be brought out.
+  local function give_up()
+    if held then
+      arm.stopped = arm.stopped or held.text
+      held = nil
+      native.release()
+    end
+  end
+
+  -- The plan that is held, if one is.
+  local function find_held()
+    if held and not native.is_held() then
+      give_up()
+    end
+    return held
+  end
 
   -- Runs a command: it is recorded with the script's line, its times and its error number. One that an
   -- exhausted limit or a STOP from outside ended past all Lua is still `running` when the next begins.
@@ -28,9 +49,25 @@ return function(native, lookup)
     local numbered = type(result) == "table" and math.type(result.number) == "integer"
       and type(result.text) == "string"
     local number = numbered and result.number or lookup.errors.BAD_ARGUMENT.number
-    arm.stopped = arm.stopped or number == lookup.errors.STOPPED.number and text or nil
+    if number == lookup.errors.STOPPED.number then
+      give_up()
+      arm.stopped = arm.stopped or text
+    end
     native.finish(number, numbered and result.text or native.outside(tostring(result)))
     error(result, 0)
+  end
+
+  local function run_free(action, ...)
+    if find_held() then
+      local text = "%s is held, %s: CONTINUE or STOP comes first"
+      native.fail("IN_PHASE", text:format(held.text, held.phase))
+    end
+    return action(...)
+  end
+
+  -- Runs one that moves something: refused while another one is held.
+  function arm.move(text, action, ...)
+    return arm.run(text, run_free, action, ...)
   end
 
   -- Before a command that counts on where the arm stands.
@@ -94,22 +131,33 @@ return function(native, lookup)
     end
   end
 
-  local function plan_through(pattern, target, plan)
-    local step = requests_of(pattern, plan.detours)
-    local request = step(target)
+  -- The pattern of a plan, brought to where these answers lead: what steps it, and its next request, or what
+  -- it returns.
+  local function forward(plan)
+    local step = requests_of(plan.pattern, plan.detours)
+    local request = step(plan.target)
+    for _, answer in ipairs(plan.answers) do
+      request = step(answer)
+    end
+    return step, request
+  end
+
+  local function plan_through(plan)
+    local step, request = forward(plan)
     while type(request) == "table" do
+      local is_segment = request.assume == nil and not request.hold
       plan.way = request.way or plan.way
-      request.planned = request.assume == nil and native.plan(segment_of(request)) or nil
+      request.planned = is_segment and native.plan(segment_of(request)) or nil
       plan[#plan + 1] = request
       request = step(assumed(request))
     end
     plan.became = request
   end
 
-  local function try(pattern, target, judged, detours)
-    local plan = { detours = detours }
+  local function try(begun, judged, detours)
+    local plan = { pattern = begun.pattern, target = begun.target, answers = begun.answers, detours = detours }
     native.rehearse(true, judged)
-    local ok, problem = pcall(plan_through, pattern, target, plan)
+    local ok, problem = pcall(plan_through, plan)
     native.rehearse(false)
     return plan, not ok and problem or nil
   end
@@ -121,21 +169,29 @@ return function(native, lookup)
       and plan.detours[plan.way] ~= 2
   end
 
-  -- Plans all of a pattern from where the arm stands, without playing it; raises what is out of reach, and
-  -- with `judged` a collision ahead. Returns the plan: the requests in order and, as `became`, what the
-  -- pattern returned. It can be played until the next one is made.
-  function arm.rehearse(pattern, target, judged)
+  -- Plans all that a begun pattern has ahead of it.
+  local function plan_ahead(begun, judged)
     local detours = {}
-    local plan, problem = try(pattern, target, judged, detours)
+    for way, detour in pairs(begun.detours) do
+      detours[way] = detour
+    end
+    local plan, problem = try(begun, judged, detours)
     local first = problem
     while problem and can_go_round(plan, problem) do
       detours[plan.way] = (detours[plan.way] or 0) + 1
-      plan, problem = try(pattern, target, judged, detours)
+      plan, problem = try(begun, judged, detours)
     end
     if problem then
       error(first, 0)
     end
     return plan
+  end
+
+  -- Plans all of a pattern from where the arm stands, without playing it; raises what is out of reach, and
+  -- with `judged` a collision ahead. Returns the plan: the requests in order and, as `became`, what the
+  -- pattern returned. It can be played until the next one is made.
+  function arm.rehearse(pattern, target, judged)
+    return plan_ahead({ pattern = pattern, target = target, answers = {}, detours = {} }, judged)
   end
 
   -- Plays a segment or asks a question. `target.watched`: a wafer that is lost on the way is an error after
@@ -163,33 +219,88 @@ return function(native, lookup)
     return ended
   end
 
-  -- The answer at this place of the plan was not the assumed one: plans and plays anew from there.
-  local function go_on(pattern, target, plan, place, answer)
-    local step = requests_of(pattern, plan.detours)
-    step(target)
-    for before = 1, place - 1 do
-      step(assumed(plan[before]))
-    end
-    local request = step(answer)
-    while type(request) == "table" do
-      request = step(perform(request, target))
-    end
-    return request
+  -- The command ends here, but its plan does not.
+  local function hold(plan, phase)
+    plan.answers[#plan.answers + 1] = true
+    plan.phase, plan.text = phase, plan.text or running
+    held = plan
+    native.hold(plan.text, phase)
   end
 
-  -- Plays what was planned, as long as the answers are the assumed ones; returns what became of it.
-  function arm.drive(pattern, target, plan)
-    for place, request in ipairs(plan) do
-      local answer = perform(request, target)
-      if answer ~= assumed(request) then
-        return go_on(pattern, target, plan, place, answer)
+  -- Performs a request and keeps its answer; nil if it is held there instead.
+  local function answer_to(plan, request)
+    if request.hold then
+      return hold(plan, request.hold)
+    end
+    local answer = perform(request, plan.target)
+    plan.answers[#plan.answers + 1] = answer
+    return answer
+  end
+
+  local function finish(plan, became)
+    if plan.conclude then
+      plan.conclude(became)
+    end
+    return became
+  end
+
+  -- The last answer was not the assumed one: plans and plays anew from there.
+  local function go_on(plan)
+    local step, request = forward(plan)
+    while type(request) == "table" do
+      local answer = answer_to(plan, request)
+      if answer == nil then
+        return nil
+      end
+      request = step(answer)
+    end
+    return finish(plan, request)
+  end
+
+  -- Plays what was planned, as long as the answers are the assumed ones. What became of it goes to `conclude`,
+  -- if there is one, and is returned; nil if the command is held before its end, which comes with a later
+  -- CONTINUE.
+  function arm.drive(plan, conclude)
+    plan.conclude = conclude
+    for _, request in ipairs(plan) do
+      local answer = answer_to(plan, request)
+      if answer == nil then
+        return nil
+      elseif answer ~= assumed(request) then
+        return go_on(plan)
       end
     end
-    return plan.became
+    return finish(plan, plan.became)
   end
 
   function arm.play(pattern, target)
-    return arm.drive(pattern, target, arm.rehearse(pattern, target, true))
+    return arm.drive(arm.rehearse(pattern, target, true))
+  end
+
+  ------------------------------------------------------------------------------------------------------ phases
+
+  local function go_on_held()
+    local begun = find_held()
+    if not begun then
+      native.fail("NOT_IN_PHASE", "none is held")
+    end
+    local plan = plan_ahead(begun, true)
+    plan.text, held = begun.text, nil
+    native.release()
+    arm.drive(plan, begun.conclude)
+  end
+
+  -- What is held goes on, to where it is held next or to its end. Refused before anything moves, it is held as
+  -- before.
+  function arm.continue()
+    arm.run("CONTINUE", go_on_held)
+  end
+
+  -- What is held is given up.
+  function arm.stop()
+    if find_held() then
+      arm.run("STOP", give_up)
+    end
   end
 
   return arm

@@ -1,7 +1,7 @@
 -- The operator's words that move something: those of lua/mcs/transfer.lua, and the single moves here.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, math, pairs, table, type = ipairs, math, pairs, table, type
+local ipairs, math, pairs = ipairs, math, pairs
 
 return function(native, patterns, lookup)
   local arm = native.module("mcs/arm.lua")(native, lookup)
@@ -35,7 +35,7 @@ return function(native, patterns, lookup)
   end
 
   function commands.rotate(station, degrees)
-    arm.run(lookup.command("ROTATE", station, degrees), rotate, station, degrees)
+    arm.move(lookup.command("ROTATE", station, degrees), rotate, station, degrees)
   end
 
   local function valve(gripper, level)
@@ -46,7 +46,7 @@ return function(native, patterns, lookup)
   end
 
   function commands.valve(gripper, level)
-    arm.run(lookup.command("VALVE", gripper, level), valve, gripper, level)
+    arm.move(lookup.command("VALVE", gripper, level), valve, gripper, level)
   end
 
   -- The values of these fields by name, each checked.
@@ -74,19 +74,9 @@ return function(native, patterns, lookup)
     play { axes = axes }
   end
 
-  local function text_of(positions, order)
-    local text = {}
-    for _, name in ipairs(order) do
-      if type(positions) == "table" and positions[name] ~= nil then
-        text[#text + 1] = ("%s=%s"):format(name, lookup.number_text(positions[name]))
-      end
-    end
-    return table.concat(text, " ")
-  end
-
   -- move { theta = , r = , z = , yaw = }: degrees and mm; an axis that is not named stays.
   function commands.move(positions)
-    arm.run(lookup.command("MOVE", text_of(positions, lookup.axes)), move, positions)
+    arm.move(lookup.command("MOVE", lookup.fields_text(positions, lookup.axes)), move, positions)
   end
 
   local function line(by)
@@ -98,7 +88,7 @@ return function(native, patterns, lookup)
   -- line { dx = , dy = , dz = , speed = }: the end-effector straight by so many mm in base, its heading kept;
   -- without a speed as fast as the axes go.
   function commands.line(by)
-    arm.run(lookup.command("LINE", text_of(by, lookup.line_fields)), line, by)
+    arm.move(lookup.command("LINE", lookup.fields_text(by, lookup.line_fields)), line, by)
   end
 
   local function wait(seconds)
@@ -124,7 +114,7 @@ return function(native, patterns, lookup)
   end
 
   function commands.recover()
-    arm.run("RECOVER", recover)
+    arm.move("RECOVER", recover)
   end
 
   local function home()
@@ -138,12 +128,22 @@ return function(native, patterns, lookup)
   end
 
   function commands.home()
-    arm.run("HOME", home)
+    arm.move("HOME", home)
   end
 
   -- A STOP comes so many simulated seconds from now, whatever then runs: it ends there with STOPPED.
   function commands.stop_in(seconds)
     native.stop_in(lookup.number("seconds", seconds))
+  end
+
+  -- What a `stop` of GET, PUT or SWAP holds in a phase goes on.
+  function commands.continue()
+    arm.continue()
+  end
+
+  -- Gives up what is held in a phase, as a STOP from outside does; without that nothing.
+  function commands.stop()
+    arm.stop()
   end
 
   commands.run = arm.run

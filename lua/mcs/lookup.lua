@@ -16,6 +16,10 @@ return function(native, errors)
   lookup.parameters.check_map = { values = { true, false } }
   lookup.options = { gripper = {}, force = { values = { true, false } } }
 
+  -- How far a GET, PUT or SWAP may go beside what was taught, and where it may stop: in order.
+  lookup.correction_fields = { "dx", "dy", "dz", "turn" }
+  lookup.phases = { "extended", "up" }
+
   -- The fields of MOVE and LINE in order, and their ranges.
   lookup.axes = { "theta", "r", "z", "yaw" }
   lookup.line_fields = { "dx", "dy", "dz", "speed" }
@@ -61,7 +65,7 @@ return function(native, errors)
 
   -- A field that a command does not have.
   function lookup.refuse_field(name, value, names)
-    local expected = lookup.listed(names) .. lookup.nearest(name, names)
+    local expected = table.concat(names, ", ") .. lookup.nearest(name, names)
     local text = "%s: %s (there is no such field: expected %s)"
     native.fail("BAD_ARGUMENT", text:format(tostring(name), lookup.quote(value), expected))
   end
@@ -244,6 +248,17 @@ return function(native, errors)
 
   function lookup.number_text(value)
     return math.type(value) == "float" and value == value and ("%.10g"):format(value) or tostring(value)
+  end
+
+  -- "dx=1 dz=2.5": of these fields the ones that a command's table has.
+  function lookup.fields_text(fields, order)
+    local text = {}
+    for _, name in ipairs(order) do
+      if type(fields) == "table" and fields[name] ~= nil then
+        text[#text + 1] = ("%s=%s"):format(name, lookup.number_text(fields[name]))
+      end
+    end
+    return table.concat(text, " ")
   end
 
   -- The command as the record has it: its word and its arguments.

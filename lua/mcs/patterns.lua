@@ -14,6 +14,8 @@
 -- answered with true or false, of which a plan knows no more than what to `assume`:
 --   is_on     = gripper                           its vacuum sensor
 --   is_loaded = gripper                           a wafer lies on its pads
+-- or, if the target's `stop` asks for it,
+--   hold = "extended" or "up"                     the command ends here, and CONTINUE goes on behind it
 -- It returns what became of the wafer, a word, as the sensors tell.
 --
 -- `target` is what the command fills in (lua/mcs/targets.lua): place (of the slot), gripper, chuck (nil at
@@ -67,6 +69,13 @@ local function hand_over(target, from, to)
     switch(from, CLOSED)
   else
     yield { valves = { [from] = CLOSED, [to] = OPEN } }
+  end
+end
+
+-- A phase ends: the blade stands in the station, before the stroke or behind it.
+local function pause(target, phase)
+  if target.stop == phase then
+    yield { hold = phase }
   end
 end
 
@@ -132,17 +141,22 @@ end
 
 -- In below the wafer, valve open, up through the slot, out. From a chuck: up to its plane, hand over, out
 -- above. Without a wafer down again, `retries` times up once more, and out below: "missing", or "late" when
--- the vacuum did not come though a wafer is there; "early" when the sensor was on before the stroke.
+-- the vacuum did not come though a wafer is there; "early" when the sensor was on before the stroke. Without
+-- a wafer nothing is held up there.
 function patterns.get(target)
   local take = target.chuck and take_from_chuck or take_from_slot
   local found
   approach(target, target.offset - target.stroke)
   enter(target)
+  pause(target, "extended")
   for _ = 0, target.retries do
     found = take(target)
     if found == "taken" or found == "early" then
       break
     end
+  end
+  if found == "taken" then
+    pause(target, "up")
   end
   leave(target)
   return found
@@ -156,6 +170,7 @@ function patterns.put(target)
   local became = "kept"
   approach(target, target.offset)
   enter(target)
+  pause(target, "extended")
   stroke(target, target.release - target.offset)
   if target.chuck then
     hand_over(target, target.gripper, target.chuck)
@@ -166,6 +181,9 @@ function patterns.put(target)
     switch(target.gripper, CLOSED)
   end
   stroke(target, target.offset - target.stroke - target.release)
+  if became == "kept" then
+    pause(target, "up")
+  end
   leave(target)
   return became
 end

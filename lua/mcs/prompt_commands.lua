@@ -44,12 +44,30 @@ return function(native, commands, queries, lookup, tokens)
     handover = function() return lookup.parameters.handover.values end,
     vacuum_check = function() return lookup.parameters.vacuum_check.values end,
     switch = function() return { "true", "false" } end,
+    phase = function() return lookup.phases end,
   }
 
   local station_options = { gripper = "gripper", force = "switch" }
   for name, kind in pairs(lookup.parameters) do
     station_options[name] = kind[2] and "number" or kind.values[1] == true and "switch" or name
   end
+
+  -- Those of a command that carries a wafer: with its corrections, and where it stops.
+  local function carrying_options(...)
+    local options = {}
+    for name, kind in pairs(station_options) do
+      options[name] = kind
+    end
+    for _, prefix in ipairs({ ... }) do
+      for _, name in ipairs(lookup.correction_fields) do
+        options[prefix .. name] = "number"
+      end
+      options[prefix .. "stop"] = "phase"
+    end
+    return options
+  end
+
+  local transfer_options, swap_options = carrying_options(""), carrying_options("get_", "put_")
 
   local function fields(list)
     local options = {}
@@ -80,28 +98,48 @@ return function(native, commands, queries, lookup, tokens)
     return lookup.effector(options.gripper, lookup.station(arguments[1]).effector)
   end
 
+  -- How the command that is held is answered: after a CONTINUE as after itself.
+  local answer_held
+
+  -- Runs one that may be held in a phase. `answer` makes the pairs that stand before the time.
+  local function carried(answer, action, ...)
+    local time = timed(action, ...)
+    local list = answer()
+    list[#list + 1] = time
+    local phase = native.is_held()
+    list[#list + 1] = phase and { "stop", phase }
+    answer_held = answer
+    return tokens.pairs(list)
+  end
+
   local function get(arguments, options)
-    local time = timed(commands.get, arguments[1], arguments[2], options)
-    return tokens.pairs { { "wafer", native.held(effector_for(arguments, options)) }, time }
+    return carried(function()
+      return { { "wafer", native.held(effector_for(arguments, options)) } }
+    end, commands.get, arguments[1], arguments[2], options)
   end
 
   local function put(arguments, options)
     local held = held_wafers()
-    local time = timed(commands.put, arguments[1], arguments[2], options)
-    return tokens.pairs { { "wafer", held[effector_for(arguments, options)] }, time }
+    return carried(function()
+      return { { "wafer", held[effector_for(arguments, options)] } }
+    end, commands.put, arguments[1], arguments[2], options)
   end
 
   -- What it took, and what it put.
   local function swap(arguments, options)
     local before = held_wafers()
-    local time = timed(commands.swap, arguments[1], arguments[2], options)
-    local after = held_wafers()
-    local taken, put_down
-    for index, gripper in ipairs(native.layout.grippers) do
-      taken = taken or gripper.on_robot and not before[index] and after[index]
-      put_down = put_down or gripper.on_robot and not after[index] and before[index]
-    end
-    return tokens.pairs { { "wafer", taken or nil }, { "put", put_down or nil }, time }
+    return carried(function()
+      local after, taken, put_down = held_wafers(), nil, nil
+      for index, gripper in ipairs(native.layout.grippers) do
+        taken = taken or gripper.on_robot and not before[index] and after[index]
+        put_down = put_down or gripper.on_robot and not after[index] and before[index]
+      end
+      return { { "wafer", taken or nil }, { "put", put_down or nil } }
+    end, commands.swap, arguments[1], arguments[2], options)
+  end
+
+  local function continue()
+    return carried(answer_held, commands.continue)
   end
 
   local function map(arguments, options)
@@ -261,8 +299,9 @@ return function(native, commands, queries, lookup, tokens)
     end
   end
 
-  -- STOP comes past the queue where a command runs: here none does.
+  -- STOP comes past the queue where a command runs: here none does, but one may be held.
   local function stop()
+    commands.stop()
   end
 
   -- RESET begins the session anew, which the host does: it comes here only with a word too many.
@@ -297,11 +336,13 @@ return function(native, commands, queries, lookup, tokens)
   end
 
   prompt_commands.commands = {
-    GET = { takes = { "station", "slot" }, options = station_options, run = get,
+    GET = { takes = { "station", "slot" }, options = transfer_options, run = get,
             does = "takes the wafer there" },
-    PUT = { takes = { "station", "slot" }, options = station_options, run = put,
+    PUT = { takes = { "station", "slot" }, options = transfer_options, run = put,
             does = "sets the wafer down there" },
-    SWAP = { takes = { "station", "slot" }, options = station_options, run = swap,
+    CONTINUE = { takes = {}, run = continue,
+                 does = "goes on with what is held, to its next stop or its end" },
+    SWAP = { takes = { "station", "slot" }, options = swap_options, run = swap,
              does = "takes the wafer there with the empty gripper and puts down the other's" },
     READY = { takes = { "station", "slot" }, options = station_options, run = moving(commands.ready),
               does = "goes in front of the slot, to where GET or PUT enters" },
@@ -311,7 +352,7 @@ return function(native, commands, queries, lookup, tokens)
              does = "out of the station if the arm stands in one, then home" },
     RECOVER = { takes = {}, run = moving(commands.recover),
                 does = "straight out of the station that the arm stands in" },
-    STOP = { takes = {}, run = stop, does = "ends the command that runs" },
+    STOP = { takes = {}, run = stop, does = "ends the command that runs, gives up one that is held" },
     RESET = { takes = {}, run = reset,
               does = "reads the layout anew and begins another run, with the layout's wafers" },
     STATUS = { takes = {}, run = status, does = "what goes on, where the robot is, what is held, the last error" },

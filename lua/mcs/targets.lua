@@ -9,18 +9,56 @@ return function(native, lookup)
 
   local parameters = lookup.parameters
 
-  local function check_options(options)
+  -- What else GET and PUT may say, and SWAP for its GET and its PUT: by prefix, the fields' kinds by name. The
+  -- unit of a length or an angle is at the same place as in lookup.parameters.
+  local kinds = { dx = { nil, nil, "mm" }, dy = { nil, nil, "mm" }, dz = { nil, nil, "mm" },
+                  turn = { nil, nil, "degrees" }, stop = { values = lookup.phases } }
+
+  local function with_prefixes(...)
+    local fields = {}
+    for _, prefix in ipairs({ ... }) do
+      for name, kind in pairs(kinds) do
+        fields[prefix .. name] = kind
+      end
+    end
+    return fields
+  end
+
+  local of_swap = with_prefixes("get_", "put_")
+  targets.phase_fields = { [""] = with_prefixes(""), get_ = of_swap, put_ = of_swap }
+
+  local function check_options(options, prefix)
     if options ~= nil and type(options) ~= "table" then
       native.fail("BAD_ARGUMENT", ("options: %s (expected a table)"):format(lookup.quote(options)))
     end
+    local own = targets.phase_fields[prefix] or {}
     for name, value in pairs(options or {}) do
-      local kind = lookup.options[name] or parameters[name]
+      local kind = lookup.options[name] or parameters[name] or own[name]
       if not kind then
-        lookup.refuse_field(name, value, lookup.names(lookup.options, parameters))
+        lookup.refuse_field(name, value, lookup.names(own, lookup.options, parameters))
+      elseif kind[3] and not kind[2] then
+        lookup.number(name, value, kind)
+      else
+        lookup.value(name, value, kind)
       end
-      lookup.value(name, value, kind)
     end
     return options or {}
+  end
+
+  -- The gripper goes so far beside the slot's frame as it was taught. Refused is what the layout does not
+  -- allow.
+  local function read_corrections(target, options, prefix)
+    for _, name in ipairs(lookup.correction_fields) do
+      local value = options[prefix .. name] or 0
+      local most, field = native.layout.corrections[name], name:match("^d([xyz])$") or name
+      if value > most or value < -most then
+        local text = "%s: %.10g (expected from %.10g to %.10g %s: corrections.%s of the layout)"
+        native.fail("CORRECTION_TOO_LARGE",
+          text:format(prefix .. name, value, -most, most, kinds[name][3], field))
+      end
+      target[name] = value
+    end
+    target.stop = options[prefix .. "stop"]
   end
 
   -- What must hold between parameters. Strokes end where the neighbouring slots begin: a GET from below the
@@ -40,37 +78,42 @@ return function(native, lookup)
       { "pickup_acceleration", target.pickup_acceleration == 0 or target.pickup_acceleration >= 1e-6,
         "0, or 1e-6 mm/s^2 or more" },
       { "retries", math.tointeger(target.retries), "a whole number" },
+      { "dz", math.max(-bottom - target.dz, target.offset + target.dz) < pitch,
+        "with the stroke within the pitch of %.10g mm below and above the slot", pitch },
     }
   end
 
-  local function check(target, all)
+  local function check(target, all, prefix)
     for _, rule in ipairs(all) do
       if not rule[2] then
         local name, expected = rule[1], rule[3]:format(rule[4], rule[5])
         local value = lookup.quote(target[name])
+        name = name == "dz" and (prefix or "") .. name or name
         native.fail("BAD_ARGUMENT", ("%s: %s (expected %s)"):format(name, value, expected))
       end
     end
   end
 
   -- The target of `word`, "get" or "put", at a slot. `gripper` (an index) overrules what the station says.
-  function targets.at(word, station_name, slot, options, gripper)
+  -- `prefix` stands before the names of the corrections among the options; nil: the command has none.
+  function targets.at(word, station_name, slot, options, gripper, prefix)
     local station = lookup.station(station_name)
     local number = lookup.slot(station, slot)
-    options = check_options(options)
+    options = check_options(options, prefix)
     if not station.taught then
       native.fail("NOT_TAUGHT", ("%s: its layout says taught = false"):format(lookup.quote(station.name)))
     end
     local target = { station = station.name, slot = number, chuck = station.chuck, force = options.force }
     target.gripper = gripper or lookup.effector(options.gripper, station.effector)
-    target.place = native.slot(station.index, number)
+    read_corrections(target, prefix and options or {}, prefix or "")
+    target.place = native.slot(station.index, number, target.dx, target.dy, target.dz, target.turn)
     for name in pairs(parameters) do
       target[name] = options[name]
       if target[name] == nil then
         target[name] = station[name]
       end
     end
-    check(target, rules(target, station, native.layout))
+    check(target, rules(target, station, native.layout), prefix)
     target.asks = target.vacuum_check == "both" or target.vacuum_check == word
     target.watched = target.asks
     return target

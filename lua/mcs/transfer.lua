@@ -1,5 +1,5 @@
--- The operator's words that carry wafers: GET, PUT, SWAP; READY, which only goes there; MAP, which only
--- looks.
+-- The operator's words that carry wafers: GET, PUT, SWAP, also in phases and beside what was taught; READY,
+-- which only goes there; MAP, which only looks.
 
 -- Kept, for a script may set globals of these names.
 local ipairs, pcall, select, type = ipairs, pcall, select, type
@@ -112,22 +112,36 @@ return function(native, patterns, lookup, arm, targets)
   }
 
   local function carry(word, station, slot, options)
-    local kind, target = transfers[word], targets.at(word, station, slot, options)
+    local kind, target = transfers[word], targets.at(word, station, slot, options, nil, "")
     arm.check_free()
     kind.check_gripper(target)
     kind.check_slot(target)
     local plan = arm.rehearse(kind.pattern, target, true)
     slot_map.forget(target)
-    kind.judge(target, arm.drive(kind.pattern, target, plan))
-    kind.note(target)
+    arm.drive(plan, function(became)
+      kind.judge(target, became)
+      kind.note(target)
+    end)
+  end
+
+  -- The command as the record has it: with its corrections, and where it stops.
+  local function text_of(word, station, slot, options, ...)
+    local fields = {}
+    for _, prefix in ipairs({ ... }) do
+      for _, name in ipairs(lookup.correction_fields) do
+        fields[#fields + 1] = prefix .. name
+      end
+      fields[#fields + 1] = prefix .. "stop"
+    end
+    return lookup.command(word, station, slot, lookup.fields_text(options, fields))
   end
 
   function transfer.get(station, slot, options)
-    arm.run(lookup.command("GET", station, slot), carry, "get", station, slot, options)
+    arm.move(text_of("GET", station, slot, options, ""), carry, "get", station, slot, options)
   end
 
   function transfer.put(station, slot, options)
-    arm.run(lookup.command("PUT", station, slot), carry, "put", station, slot, options)
+    arm.move(text_of("PUT", station, slot, options, ""), carry, "put", station, slot, options)
   end
 
   ------------------------------------------------------------------------------------------------------- SWAP
@@ -159,13 +173,13 @@ return function(native, patterns, lookup, arm, targets)
   end
 
   local function swap(station, slot, options)
-    local take = targets.at("get", station, slot, options, 1)
+    local take = targets.at("get", station, slot, options, 1, "get_")
     if type(options) == "table" and options.gripper ~= nil then
       local text = "gripper: %s (expected none: SWAP takes with the empty one and puts with the other)"
       native.fail("BAD_ARGUMENT", text:format(lookup.quote(options.gripper)))
     end
     local empty, loaded = choose_grippers()
-    local give = targets.at("put", station, slot, options, loaded)
+    local give = targets.at("put", station, slot, options, loaded, "put_")
     take.gripper = empty
     local target = { get = take, put = give, watched = take.watched }
     arm.check_free()
@@ -173,15 +187,16 @@ return function(native, patterns, lookup, arm, targets)
     slot_map.check_get(take)
     local plan = arm.rehearse(patterns.swap, target, true)
     slot_map.forget(take)
-    local became = arm.drive(patterns.swap, target, plan)
-    judge_get(take, became)
-    judge_put(give, became)
-    slot_map.note_put(give)
+    arm.drive(plan, function(became)
+      judge_get(take, became)
+      judge_put(give, became)
+      slot_map.note_put(give)
+    end)
   end
 
   -- Takes the wafer there with the empty gripper and puts down what another one holds.
   function transfer.swap(station, slot, options)
-    arm.run(lookup.command("SWAP", station, slot), swap, station, slot, options)
+    arm.move(text_of("SWAP", station, slot, options, "get_", "put_"), swap, station, slot, options)
   end
 
   ------------------------------------------------------------------------------------------------------ READY
@@ -195,7 +210,7 @@ return function(native, patterns, lookup, arm, targets)
 
   -- Goes in front of the slot, to where a GET or, with a wafer, a PUT enters.
   function transfer.ready(station, slot, options)
-    arm.run(lookup.command("READY", station, slot), ready, station, slot, options)
+    arm.move(lookup.command("READY", station, slot), ready, station, slot, options)
   end
 
   -------------------------------------------------------------------------------------------------------- MAP
@@ -218,7 +233,7 @@ return function(native, patterns, lookup, arm, targets)
 
   -- Sweeps over the station's slots; returns a list of their codes: 0 empty, 1 single, 2 double, 4 crossed.
   function transfer.map(station, options)
-    return arm.run(lookup.command("MAP", station), map, station, options)
+    return arm.move(lookup.command("MAP", station), map, station, options)
   end
 
   -------------------------------------------------------------------------------------------------- rehearsal
@@ -249,7 +264,7 @@ return function(native, patterns, lookup, arm, targets)
   local function try(word, station, slot, cell, gripper)
     local good, problem = pcall(function()
       local kind, target = transfers[word], targets.at(word, station, slot, nil, gripper)
-      kind.judge(target, arm.drive(kind.pattern, target, arm.rehearse(kind.pattern, target)))
+      kind.judge(target, arm.drive(arm.rehearse(kind.pattern, target)))
       if word == "get" and not native.held(target.gripper) then
         judge_get(target, "missing")
       end
@@ -283,7 +298,7 @@ return function(native, patterns, lookup, arm, targets)
     end
     cell.move(plan("put", station, slot)[1].axes)
     local stand = { segment = { dwell = 4 * native.layout.slice } }
-    arm.drive(patterns.single, stand, arm.rehearse(patterns.single, stand))
+    arm.drive(arm.rehearse(patterns.single, stand))
     cell.begin()
     local word, problem = "PUT", try("put", station, slot, cell)
     if again and not problem then

@@ -31,6 +31,7 @@ static struct {
     int64_t run[64];
     char text[WH_LINK_DATAGRAM]; /* of the last one */
     int begins, ends, overs;
+    int answers_at_end; /* when the run was over */
 } heard;
 
 /* The last proximity values that were told. */
@@ -96,6 +97,9 @@ static void on_mcs(void *user, const void *data, size_t size) {
     heard.ends += ends && message.request == 0 ? 1 : 0;
     if (message.phase == WH_LINK_PHASE_OVER) {
         ++heard.overs;
+        for (size_t i = 0; i < 64; ++i) {
+            heard.answers_at_end += heard.count[i];
+        }
         assert_int_equal(message.request, 0);
         assert_string_begins(message.text, "ended; commands ");
     }
@@ -674,6 +678,26 @@ static void requests_that_wait_when_all_ends_are_told_so(void **state) {
                         "begun");
 }
 
+/* A script may compute for long behind its last command, and hears nothing meanwhile. */
+static void what_came_after_the_last_command_is_answered_at_the_end(void **state) {
+    (void)state;
+    const waferhand_request elsewhere = {.seq = 3, .run = 4711};
+    control.script = "some/script.lua";
+    assert_int_equal(execute("GET A 1"), WH_OK);
+    publish_request(1, "STATUS");
+    publish_request(2, "GET A 2");
+    publish(elsewhere, "VERSION");
+    publish_request(4, "STOP");
+    wh_mcs_process_finish(&control);
+    (void)wh_node_drain(&node, 1000);
+    assert_heard(1, WH_OK);
+    assert_heard(2, WH_STATUS_BUSY);
+    assert_heard(3, WH_STATUS_UNKNOWN_RUN);
+    assert_heard(4, WH_OK);
+    assert_int_equal(heard.overs, 1);
+    assert_int_equal(heard.answers_at_end, 4);
+}
+
 /* As a signal asks for: what waits, and what has come but was not looked at yet. */
 static void requests_that_wait_are_stopped_with_those_that_have_come(void **state) {
     (void)state;
@@ -737,6 +761,7 @@ int main(void) {
         IN_PAPER(a_script_takes_no_requests_but_stop),
         IN_PAPER(an_answer_is_whole_or_tells_that_it_was_cut),
         IN_PAPER(requests_that_wait_when_all_ends_are_told_so),
+        IN_PAPER(what_came_after_the_last_command_is_answered_at_the_end),
         IN_PAPER(a_simulator_that_was_given_its_state_back_does_not_call_motion_control_silent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -200,7 +200,8 @@ static bool is_among_the_last(const content_t *content, size_t end, int64_t chec
 
 static void slices_hold_what_all_messages_hold(void **state) {
     static const char *const scripts[] = {"lua/examples/01_transfer.lua", "lua/examples/03_missed_pick.lua",
-                                          "lua/examples/05_leak.lua", "lua/examples/06_cross_slotted.lua"};
+                                          "lua/examples/05_leak.lua", "lua/examples/06_cross_slotted.lua",
+                                          "lua/examples/08_corrections.lua"};
     (void)state;
     for (size_t i = 0; i < sizeof scripts / sizeof scripts[0]; ++i) {
         record_all(scripts[i]);

@@ -1,4 +1,4 @@
-/* Commands against a cell whose sensors lie, two blades, and a judge that looks ahead. */
+/* Commands against a cell whose sensors lie, two blades, corrections, phases, and a judge that looks ahead. */
 #include "support/support.h"
 
 #include "mcs/session.h"
@@ -247,6 +247,134 @@ static void a_collision_ahead(void **state) {
     assert_answer("LINE dz=1", "OK");
 }
 
+/* --------------------------------------------------------------------------------------- corrections, phases */
+
+static void assert_offset(const char *line, double dx, double dy) {
+    const wh_status_t status = wh_session_execute(&session, line, answer, sizeof answer);
+    const char *at_x = strstr(answer, "dx="), *at_y = strstr(answer, "dy=");
+    assert_int_equal(status, WH_OK);
+    assert_non_null(at_x);
+    assert_non_null(at_y);
+    assert_near(strtod(at_x + 3, NULL), dx, 1e-9);
+    assert_near(strtod(at_y + 3, NULL), dy, 1e-9);
+}
+
+/* Wafer 2 lies 3, -2 mm aside. */
+static void a_get_with_the_true_offset_centres_the_wafer(void **state) {
+    (void)state;
+    assert_answer("GET A 2 dx=3 dy=-2", "OK wafer=\"Wafer 2\"");
+    assert_answer("PUT A 2 gripper=FRONT", "OK wafer=\"Wafer 2\"");
+    assert_offset("OFFSET \"Wafer 2\" A 2", 0, 0);
+    assert_answer("GET A 2", "OK");
+    assert_answer("PUT A 2 gripper=FRONT dx=1.5 dy=0.25", "OK");
+    assert_offset("OFFSET \"Wafer 2\" A 2", 1.5, 0.25);
+}
+
+/* In the slot's frame, whose x axis points to the side of the base: B stands turned by 90 degrees. */
+static void a_correction_is_in_the_frame_of_the_slot(void **state) {
+    (void)state;
+    assert_answer("GET B 3 dx=4 dy=1 turn=5", "OK wafer=\"Wafer 3\"");
+    assert_answer("PUT B 3 turn=5", "OK");
+    assert_offset("OFFSET \"Wafer 3\" B 3", -4, -1);
+    assert_answer("GET B 3 turn=-3", "OK");
+    assert_answer("PUT B 3 turn=2", "OK");
+    assert_answer("MEASURE B/3 \"Wafer 3\"", "OK distance=");
+    const char *turn = strstr(answer, "turn_deg=");
+    assert_non_null(turn);
+    assert_near(strtod(turn + 9, NULL), 5, 1e-9);
+}
+
+static void a_correction_out_of_its_limits_moves_nothing(void **state) {
+    (void)state;
+    assert_answer("GET A 1 dx=5.001",
+                  "ERROR 64 CORRECTION_TOO_LARGE: a correction is larger than the layout allows; dx: 5.001 "
+                  "(expected from -5 to 5 mm: corrections.x of the layout)");
+    assert_answer("GET A 1 turn=-5.1", "ERROR 64 CORRECTION_TOO_LARGE: ");
+    assert_answer("GET A 1 dy=nan", "ERROR 48 BAD_ARGUMENT: ");
+    assert_answer("GET A 1 dy=inf", "ERROR 48 BAD_ARGUMENT: ");
+    assert_answer("GET A 1 stop=down", "ERROR 48 BAD_ARGUMENT: ");
+    assert_answer("GET A 1 get_dx=1", "ERROR 48 BAD_ARGUMENT: ");
+    assert_answer("SWAP A 1 dx=1", "ERROR 48 BAD_ARGUMENT: ");
+    assert_answer("READY A 1 dx=1", "ERROR 48 BAD_ARGUMENT: ");
+    assert_answer("GET A 1 dz=2.5 stroke=6 offset=8", "ERROR 48 BAD_ARGUMENT: ");
+    assert_int_equal(liar.slices, 0);
+    assert_answer("GET A 1", "OK");
+    const int64_t slices = liar.slices;
+    assert_answer("SWAP A 2 put_dz=2.6", "ERROR 64 CORRECTION_TOO_LARGE: ");
+    assert_answer("SWAP A 2 get_turn=-6", "ERROR 64 CORRECTION_TOO_LARGE: ");
+    assert_int_equal(liar.slices, slices);
+}
+
+static void what_is_held_in_a_phase_moves_no_more(void **state) {
+    (void)state;
+    static const char *const moving[] = {"GET A 2",       "PUT A 2",    "SWAP A 2", "READY A 1",
+                                         "HOME",          "RECOVER",    "MAP A",    "ROTATE P 90",
+                                         "VALVE FRONT 0", "MOVE z=900", "LINE dz=1"};
+    assert_answer("CONTINUE", "ERROR 66 NOT_IN_PHASE: ");
+    assert_answer("GET A 1 stop=extended", "OK wafer=none seconds=0.");
+    const int64_t slices = liar.slices;
+    for (size_t i = 0; i < sizeof moving / sizeof moving[0]; ++i) {
+        assert_answer(moving[i], "ERROR 65 IN_PHASE: ");
+    }
+    assert_int_equal(liar.slices, slices);
+    assert_answer("STATUS", "OK phase=held command=\"GET A 1 stop=extended\" stop=extended ");
+    assert_answer("WAIT 0.1", "OK");
+    assert_answer("HOLDER \"Wafer 1\"", "OK holder=none");
+    assert_answer("CONTINUE", "OK wafer=\"Wafer 1\" seconds=");
+    assert_answer("PUT A 1 gripper=FRONT stop=up", "OK wafer=\"Wafer 1\" seconds=");
+    assert_answer("STOP", "OK");
+    assert_answer("CONTINUE", "ERROR 66 NOT_IN_PHASE: ");
+    assert_answer("GET A 2", "ERROR 52 STOPPED: ");
+    assert_answer("RECOVER", "OK");
+    assert_answer("GET A 1 stop=up", "OK wafer=\"Wafer 1\"");
+    assert_answer("CONTINUE", "OK wafer=\"Wafer 1\"");
+    assert_answer("SWAP B 3 get_stop=up put_stop=extended", "OK wafer=\"Wafer 3\"");
+    assert_answer("CONTINUE", "OK");
+    assert_answer("HOLDER \"Wafer 1\"", "OK holder=FRONT");
+    assert_answer("CONTINUE", "OK wafer=\"Wafer 3\" put=\"Wafer 1\"");
+}
+
+/* The vacuum that does not come is noticed by the CONTINUE, and so is a wafer that is lost while it is held. */
+static void what_fails_behind_a_phase_fails_the_continue(void **state) {
+    (void)state;
+    assert_answer("GET A 1 stop=extended", "OK");
+    lie(false, 0);
+    assert_answer("CONTINUE", "ERROR 57 VACUUM_TIMEOUT: ");
+    tell_the_truth();
+    assert_answer("GET A 1 stop=up", "OK");
+    lie(false, 0);
+    assert_answer("CONTINUE", "ERROR 60 WAFER_LOST_ON_WAY: ");
+    tell_the_truth();
+    assert_answer("CONTINUE", "ERROR 66 NOT_IN_PHASE: ");
+    assert_int_equal(session.complaints, 0);
+}
+
+static uint64_t hash_after(const char *const *lines) {
+    for (; *lines; ++lines) {
+        assert_answer(*lines, "OK");
+    }
+    const uint64_t got = liar.link.hash(&liar.link);
+    wh_session_close(&session);
+    assert_int_equal(open_dual(NULL), 0);
+    return got;
+}
+
+static void a_command_in_phases_ends_as_a_whole_one(void **state) {
+    (void)state;
+    static const char *const whole[] = {"GET A 1", "PUT P 1", "GET P 1", "SWAP B 3 get_dx=1", NULL};
+    static const char *const phased[] = {"GET A 1 stop=extended",
+                                         "CONTINUE",
+                                         "PUT P 1 stop=up",
+                                         "CONTINUE",
+                                         "GET P 1 stop=up",
+                                         "CONTINUE",
+                                         "SWAP B 3 get_dx=1 get_stop=up put_stop=extended",
+                                         "CONTINUE",
+                                         "CONTINUE",
+                                         NULL};
+    assert_true(hash_after(whole) == hash_after(phased));
+}
+
 #define IN_DUAL(test) cmocka_unit_test_setup_teardown(test, open_dual, close_session)
 
 int main(void) {
@@ -262,6 +390,12 @@ int main(void) {
         IN_DUAL(map),
         IN_DUAL(parameters_of_one_command),
         IN_DUAL(a_collision_ahead),
+        IN_DUAL(a_get_with_the_true_offset_centres_the_wafer),
+        IN_DUAL(a_correction_is_in_the_frame_of_the_slot),
+        IN_DUAL(a_correction_out_of_its_limits_moves_nothing),
+        IN_DUAL(what_is_held_in_a_phase_moves_no_more),
+        IN_DUAL(what_fails_behind_a_phase_fails_the_continue),
+        IN_DUAL(a_command_in_phases_ends_as_a_whole_one),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

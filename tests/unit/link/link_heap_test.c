@@ -1,6 +1,8 @@
 /* A step of the simulator allocates nothing: from the command's bytes to the bytes of the state and of the proximity values.
- * malloc and its kin are replaced by ones that count. What liblcm takes to receive a datagram is its own and not in this. */
+ * An update of outputs.txt never asks for memory, whatever it finds. malloc and its kin are replaced by ones that count. What
+ * liblcm takes to receive a datagram is its own and not in this. */
 #include "support/heap.h"
+#include "support/outputs.h"
 #include "support/server.h"
 
 #include "link/messages.h"
@@ -53,10 +55,51 @@ static void a_step_allocates_nothing(void **state) {
     wh_script_run_close(&run);
 }
 
+#if defined(WH_TEST_COUNTS_HEAP)
+
+/* Updates now and once what is there has settled; only this is counted. */
+static unsigned long calls_while_updating(outputs_fixture_t *f) {
+    const unsigned long before = calls;
+    (void)wh_outputs_update(&f->reader, f->now_us);
+    f->now_us += WH_OUTPUTS_SETTLE_US;
+    (void)wh_outputs_update(&f->reader, f->now_us);
+    return calls - before;
+}
+
+static void an_update_allocates_nothing(void **state) {
+    (void)state;
+    static const char *const texts[] = {"0 1", "", "1", "1 1 1", "garbage", "1 0"};
+    outputs_fixture_t f;
+    outputs_begin(&f);
+    for (int i = 0; i < 600; ++i) {
+        outputs_put(f.path, texts[i % 6]);
+        assert_int_equal(calls_while_updating(&f), 0);
+    }
+    assert_int_equal(unlink(f.path), 0);
+    assert_int_equal(calls_while_updating(&f), 0);
+    assert_int_equal(symlink("outputs.txt", f.path), 0);
+    assert_int_equal(calls_while_updating(&f), 0);
+    assert_int_equal(unlink(f.path), 0);
+    assert_int_equal(mkdir(f.path, 0777), 0);
+    assert_int_equal(calls_while_updating(&f), 0);
+    assert_int_equal(f.reader.counters.reports, 503);
+    outputs_teardown(&f);
+}
+
+#else
+
+static void an_update_allocates_nothing(void **state) {
+    (void)state;
+    skip();
+}
+
+#endif
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_count_counts),
         cmocka_unit_test(a_step_allocates_nothing),
+        cmocka_unit_test(an_update_allocates_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
