@@ -127,36 +127,42 @@ wh_status_t wh_frame_estimate(const wh_frame_point_t *points, size_t count, wh_f
     }
     *estimate = wh_frame_estimate_t();
     if (count < WH_FRAME_POINTS) {
-        return refuse(estimate, WH_STATUS_TOO_FEW_POINTS, "%zu of at least %d points", count, WH_FRAME_POINTS);
+        return refuse(estimate, WH_STATUS_TOO_FEW_POINTS, "%zu of at least %d points", count,
+                      WH_FRAME_POINTS);
     }
     if (!is_finite(points, count)) {
         return refuse(estimate, WH_STATUS_NO_FIT, "a number is not finite");
     }
     const moments_t moments = moments_of(points, count);
     const Vector3d widths = // rms distances from the centre, by direction, the largest first
-        (Eigen::JacobiSVD<Matrix3d>(moments.spread).singularValues() / static_cast<double>(count)).cwiseSqrt();
+        (Eigen::JacobiSVD<Matrix3d>(moments.spread).singularValues() / static_cast<double>(count))
+            .cwiseSqrt();
     const Matrix3d R = rotation_of(moments.products);
     store(R, moments.touched - R * moments.known, &estimate->base_from_station);
     const double squares = measure_residuals(points, count, estimate);
     if (widths(1) <= WH_FRAME_SPREAD_PART * widths(0)) {
-        return refuse(estimate, WH_STATUS_NOT_DETERMINED,
-                      "the points lie on a line (%.3g mm beside it, rms): touch one more that lies off it, far out",
-                      widths(1));
+        return refuse(
+            estimate, WH_STATUS_NOT_DETERMINED,
+            "the points lie on a line (%.3g mm beside it, rms): touch one more that lies off it, far out",
+            widths(1));
     }
     if (estimate->rms > WH_FRAME_MISFIT * widths.norm()) {
-        return refuse(estimate, WH_STATUS_NO_FIT,
-                      "the touched points lie to one another in another way than on the station: %.3g mm rms, "
-                      "the most at point %zu; are two mixed up, or is a unit wrong?",
-                      estimate->rms, estimate->largest_index + 1);
+        return refuse(
+            estimate, WH_STATUS_NO_FIT,
+            "the touched points lie to one another in another way than on the station: %.3g mm rms, "
+            "the most at point %zu; are two mixed up, or is a unit wrong?",
+            estimate->rms, estimate->largest_index + 1);
     }
     if (widths(1) < WH_FRAME_SPREAD_RMS * estimate->rms) {
-        return refuse(estimate, WH_STATUS_NOT_DETERMINED,
-                      "the points lie within %.3g mm of a line (rms), where the residuals are %.3g mm: touch one "
-                      "more that lies off it, far out",
-                      widths(1), estimate->rms);
+        return refuse(
+            estimate, WH_STATUS_NOT_DETERMINED,
+            "the points lie within %.3g mm of a line (rms), where the residuals are %.3g mm: touch one "
+            "more that lies off it, far out",
+            widths(1), estimate->rms);
     }
     if (std::hypot(R(0, 0), R(1, 0)) < 1e-3) {
-        return refuse(estimate, WH_STATUS_NOT_DETERMINED, "the station's x points up or down: rpy is not unique");
+        return refuse(estimate, WH_STATUS_NOT_DETERMINED,
+                      "the station's x points up or down: rpy is not unique");
     }
     fill_in(moments, R, squares / static_cast<double>(3 * count - 6), count, estimate);
     return estimate->status;

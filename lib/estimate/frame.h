@@ -34,12 +34,12 @@ typedef struct {
 } wh_frame_point_t;
 
 typedef struct {
-    wh_status_t status;          /* as wh_frame_estimate returns it; below: of no meaning unless WH_OK */
+    wh_status_t status; /* as wh_frame_estimate returns it; below: of no meaning unless WH_OK */
     wh_pose_t base_from_station;
-    double rpy[3], rpy_sd[3];    /* R = Rz(rpy[2]) * Ry(rpy[1]) * Rx(rpy[0]), rad */
-    double at_sd[3];             /* mm, in base */
-    double rms;                  /* of the residuals: root of their mean square length over all points */
-    double largest;              /* the longest residual */
+    double rpy[3], rpy_sd[3]; /* R = Rz(rpy[2]) * Ry(rpy[1]) * Rx(rpy[0]), rad */
+    double at_sd[3];          /* mm, in base */
+    double rms;               /* of the residuals: root of their mean square length over all points */
+    double largest;           /* the longest residual */
     size_t largest_index;
     char reason[WH_ESTIMATE_REASON]; /* of what is not WH_OK; else empty */
 } wh_frame_estimate_t;

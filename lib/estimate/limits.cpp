@@ -6,230 +6,16 @@
 #include <cstring>
 
 #include "../motion/profile.h"
-#include "rows_internal.hpp"
+#include "limits_internal.hpp"
 
 namespace {
 
-constexpr int limit_count = 3;
-constexpr int parameter_count = WH_LIMIT_PARAMETERS;
-constexpr double tukey = 4.685;
-constexpr double median_to_sd = 1.4826;
+using namespace wh_estimate;
+
 constexpr double needed_variances = 25;
 constexpr double largest_sd = 0.05;
-constexpr double least_sd_s = 1e-7; /* no clock of a log tells less */
-
-using rows_t = wh_estimate::rows_t<parameter_count>;
-
-/* The limits' logarithms, and the delay. */
-struct model_t {
-    double p[parameter_count];
-    bool is_free[parameter_count];
-    double squares; /* of the weighted residuals */
-};
-
-/* What all fits of an axis share. */
-struct data_t {
-    wh_timed_move_t *moves;
-    size_t count;
-    bool with_delay;
-    double scale[limit_count];  /* of the limits: what the quickest moves need at least */
-    double beyond[limit_count]; /* logarithm of a limit that no move meets */
-    double weights[WH_LIMITS_MOST_MOVES];
-    double sizes[WH_LIMITS_MOST_MOVES]; /* to be sorted */
-    bool is_used[WH_LIMITS_MOST_MOVES];
-};
-
-double seconds_of(const double p[parameter_count], double distance) {
-    const wh_limits_t limits = {std::exp(p[0]), std::exp(p[1]), std::exp(p[2])};
-    wh_profile_t profile;
-    return wh_profile_plan(&profile, distance, &limits) == WH_OK ? profile.duration + p[3] : HUGE_VAL;
-}
-
-double rest_of(const data_t &data, const model_t &model, size_t i) {
-    return data.moves[i].seconds - seconds_of(model.p, data.moves[i].distance);
-}
-
-/* The value that a part of the first `count` sizes does not exceed. */
-double quantile(data_t &data, size_t count, double part) {
-    const auto place = static_cast<size_t>(part * static_cast<double>(count - 1));
-    std::nth_element(data.sizes, data.sizes + place, data.sizes + count);
-    return data.sizes[place];
-}
-
-/* --------------------------------------------------------------------------------------------------- descent */
-
-/* The equations of a step, towards the times, or towards what all of them would be if they were `later`. */
-rows_t rows_of(const data_t &data, const model_t &model, double later = 0) {
-    constexpr double step = 1e-6;
-    rows_t rows;
-    for (size_t i = 0; i < data.count; ++i) {
-        rows_t::vector_t row = rows_t::vector_t::Zero();
-        for (int k = 0; data.weights[i] > 0 && k < limit_count; ++k) {
-            model_t more = model;
-            model_t less = model;
-            more.p[k] += step;
-            less.p[k] -= step;
-            row(k) = model.is_free[k] ? (rest_of(data, less, i) - rest_of(data, more, i)) / (2 * step) : 0;
-        }
-        row(WH_LIMIT_DELAY) = model.is_free[WH_LIMIT_DELAY] ? 1 : 0;
-        if (data.weights[i] > 0) {
-            const double root = std::sqrt(data.weights[i]);
-            rows.add(root * row, root * (later > 0 ? later : rest_of(data, model, i)));
-        }
-    }
-    rows.solve();
-    return rows;
-}
-
-double squares_of(const data_t &data, const model_t &model) {
-    double squares = 0;
-    for (size_t i = 0; i < data.count; ++i) {
-        if (data.weights[i] > 0) {
-            const double rest = rest_of(data, model, i);
-            squares += data.weights[i] * rest * rest;
-        }
-    }
-    return squares;
-}
-
-model_t stepped(const model_t &from, const rows_t::vector_t &step) {
-    model_t to = from;
-    for (int k = 0; k < parameter_count; ++k) {
-        const double most = k == WH_LIMIT_DELAY ? HUGE_VAL : 1;
-        to.p[k] += from.is_free[k] ? std::clamp(step(k), -most, most) : 0;
-    }
-    return to;
-}
-
-/* Levenberg and Marquardt's, with the weights as they are. */
-void descend(const data_t &data, model_t *model, int rounds) {
-    double damping = 1e-3;
-    model->squares = squares_of(data, *model);
-    for (int round = 0; round < rounds; ++round) {
-        const rows_t rows = rows_of(data, *model);
-        model_t next = *model;
-        for (bool is_better = false; !is_better; damping *= is_better ? 0.1 : 10) {
-            if (damping > 1e6) {
-                return;
-            }
-            next = stepped(*model, rows.step(damping));
-            next.squares = squares_of(data, next);
-            is_better = next.squares < model->squares;
-        }
-        const bool is_done = next.squares > model->squares * (1 - 1e-12);
-        *model = next;
-        if (is_done) {
-            return;
-        }
-    }
-}
-
-/* ---------------------------------------------------------------------------------------------------- starts */
-
-constexpr double factors[] = {1.02, 1.2, 1.6, 2.5, 5, 12, 40};
-constexpr int factor_count = sizeof factors / sizeof factors[0];
-constexpr int start_count = 4;
-
-double deviation_sum(const data_t &data, const model_t &model) {
-    double sum = 0;
-    for (size_t i = 0; i < data.count; ++i) {
-        sum += data.is_used[i] ? std::abs(rest_of(data, model, i)) : 0;
-    }
-    return sum;
-}
-
-/* Keeps the best, the first being the very best. */
-void keep_start(model_t starts[start_count], const model_t &model) {
-    for (int i = 0; i < start_count; ++i) {
-        if (model.squares < starts[i].squares) {
-            std::copy_backward(starts + i, starts + start_count - 1, starts + start_count);
-            starts[i] = model;
-            return;
-        }
-    }
-}
-
-/* The models on a grid whose times deviate least in sum: `free` says which limits there are. */
-void find_starts(const data_t &data, unsigned free, model_t starts[start_count]) {
-    std::fill(starts, starts + start_count, model_t{{}, {}, HUGE_VAL});
-    int most[limit_count];
-    for (int k = 0; k < limit_count; ++k) {
-        most[k] = (free >> k & 1U) != 0 ? factor_count : 1;
-    }
-    for (int at = 0; at < most[0] * most[1] * most[2]; ++at) {
-        const int place[limit_count] = {at % most[0], at / most[0] % most[1], at / most[0] / most[1]};
-        model_t model = {};
-        for (int k = 0; k < limit_count; ++k) {
-            model.is_free[k] = most[k] > 1;
-            model.p[k] = model.is_free[k] ? std::log(data.scale[k] * factors[place[k]]) : data.beyond[k];
-        }
-        model.is_free[WH_LIMIT_DELAY] = data.with_delay;
-        model.squares = deviation_sum(data, model);
-        keep_start(starts, model);
-    }
-}
-
-/* ---------------------------------------------------------------------------------------------------- robust */
-
-/* The standard deviation of the residuals by their median. */
-double deviation_of(data_t &data, const model_t &model) {
-    for (size_t i = 0; i < data.count; ++i) {
-        data.sizes[i] = std::abs(rest_of(data, model, i));
-    }
-    return std::max(median_to_sd * quantile(data, data.count, 0.5), least_sd_s);
-}
-
-/* Tukey's weights; returns the sum of his losses, from 0 to 1 each. */
-double weigh(data_t &data, const model_t &model, double deviation) {
-    double loss = 0;
-    for (size_t i = 0; i < data.count; ++i) {
-        const double part = rest_of(data, model, i) / (tukey * deviation);
-        const double left = part * part < 1 ? 1 - part * part : 0;
-        data.weights[i] = left * left;
-        loss += 1 - left * left * left;
-    }
-    return loss;
-}
-
-/* Weights of 1 for what is near enough, else 0. Returns how many are. */
-size_t set_aside(data_t &data, const model_t &model, double deviation) {
-    size_t used = 0;
-    for (size_t i = 0; i < data.count; ++i) {
-        data.is_used[i] = std::abs(rest_of(data, model, i)) <= tukey * deviation;
-        data.weights[i] = data.is_used[i] ? 1 : 0;
-        used += data.is_used[i] ? 1 : 0;
-    }
-    return used;
-}
-
-/* The model of all three limits that most moves agree with, by robust weights from the best starts. */
-model_t find_agreed(data_t &data) {
-    model_t starts[start_count];
-    double deviation = HUGE_VAL;
-    std::fill(data.is_used, data.is_used + data.count, true);
-    find_starts(data, 7U, starts);
-    for (model_t &start : starts) {
-        for (int round = 0; round < 8; ++round) {
-            (void)weigh(data, start, deviation_of(data, start));
-            descend(data, &start, 6);
-        }
-        deviation = std::min(deviation, deviation_of(data, start));
-    }
-    const model_t *best = starts;
-    double least = HUGE_VAL;
-    for (const model_t &start : starts) {
-        const double loss = weigh(data, start, deviation);
-        if (loss < least) {
-            least = loss;
-            best = &start;
-        }
-    }
-    return *best;
-}
 
 /* ---------------------------------------------------------------------------------------------- which limits */
-
-constexpr unsigned all_limits = 7U;
 
 /* Fits of each set of limits to the moves that are used, and the deviation of one time. */
 struct fits_t {
@@ -238,26 +24,10 @@ struct fits_t {
     double sd, quantum;
 };
 
-void fit_set(const data_t &data, unsigned set, model_t *best) {
-    model_t starts[start_count];
-    find_starts(data, set, starts);
-    best->squares = HUGE_VAL;
-    for (model_t &start : starts) {
-        descend(data, &start, 40);
-        *best = start.squares < best->squares ? start : *best;
-    }
-}
-
-/* All sets; that of all limits is no worse than any other. */
+/* All sets that lack a limit; that of all limits is no worse. */
 void fit_sets(const data_t &data, fits_t *fits) {
-    model_t &all = fits->of[all_limits];
-    descend(data, &all, 60);
     for (unsigned set = 1; set < all_limits; ++set) {
         fit_set(data, set, &fits->of[set]);
-        model_t whole = fits->of[set];
-        std::fill(whole.is_free, whole.is_free + limit_count, true);
-        descend(data, &whole, 40);
-        all = whole.squares < all.squares ? whole : all;
     }
 }
 
@@ -276,8 +46,8 @@ double quantum_of(const data_t &data) {
     return 0;
 }
 
-bool fits_well(const fits_t &fits, unsigned set) {
-    const double more = fits.of[set].squares - fits.of[all_limits].squares;
+bool fits_well(const fits_t &fits, const model_t &model) {
+    const double more = model.squares - fits.of[all_limits].squares;
     return more <= needed_variances * fits.sd * fits.sd;
 }
 
@@ -285,42 +55,52 @@ bool fits_well(const fits_t &fits, unsigned set) {
 bool is_needed(const fits_t &fits, int limit) {
     bool is_needed = true;
     for (unsigned set = 1; set < all_limits; ++set) {
-        is_needed = is_needed && ((set >> limit & 1U) != 0 || !fits_well(fits, set));
+        is_needed = is_needed && ((set >> limit & 1U) != 0 || !fits_well(fits, fits.of[set]));
     }
     return is_needed;
 }
 
-/* The largest speed, acceleration or jerk in the moves that are used. */
-double peak_of(const data_t &data, const model_t &model, int limit) {
-    const wh_limits_t limits = {std::exp(model.p[0]), std::exp(model.p[1]), std::exp(model.p[2])};
-    double most = 0;
-    for (size_t i = 0; i < data.count; ++i) {
-        wh_profile_t profile;
-        if (data.is_used[i] && wh_profile_plan(&profile, data.moves[i].distance, &limits) == WH_OK) {
-            const double peaks[limit_count] = {profile.speed, profile.acceleration, profile.jerk};
-            most = std::max(most, peaks[limit]);
+/* How low a limit can be if the others follow, from a model that fits with the limit at exp(model.p). */
+double lowest_of(const data_t &data, const fits_t &fits, int limit, model_t model) {
+    constexpr double far = 10;
+    const double lowest = model.p[limit] - far;
+    std::fill(model.is_free, model.is_free + limit_count, true);
+    model.is_free[limit] = false;
+    for (double step = 0.3; step > 0.005;) {
+        model_t next = model;
+        next.p[limit] -= step;
+        descend(data, &next, 60);
+        if (!fits_well(fits, next)) {
+            step /= 2;
+        } else if (next.p[limit] < lowest) {
+            return 0;
+        } else {
+            model = next;
         }
     }
-    return most;
+    return std::exp(model.p[limit] - 0.01);
 }
 
-/* What every set that fits says the limit is at least; 0 if none says anything. */
+/* What a limit is at least by every set that fits; 0 if one of them says nothing. */
 double at_least(const data_t &data, const fits_t &fits, int limit) {
     double least = HUGE_VAL;
     for (unsigned set = 1; set <= all_limits; ++set) {
-        if (fits_well(fits, set)) {
-            least = std::min(least, peak_of(data, fits.of[set], limit));
+        model_t model = fits.of[set];
+        if (fits_well(fits, model)) {
+            const double peak = peak_of(data, model, limit);
+            model.p[limit] = std::min(model.p[limit], std::log(peak));
+            least = std::min(least, lowest_of(data, fits, limit, model));
         }
     }
-    return std::log(least) > data.beyond[limit] - 1 ? 0 : least;
+    return least;
 }
 
 /* Standard deviations, with what it would do if all times were rounded the same way. */
 void fill_in(const data_t &data, const fits_t &fits, wh_limits_estimate_t *estimate) {
     const model_t &all = fits.of[all_limits];
-    const rows_t rows = rows_of(data, all);
-    const rows_t::vector_t rounded =
-        fits.quantum > 0 ? rows_of(data, all, fits.quantum / 2).step(0) : rows_t::vector_t::Zero();
+    const limit_rows_t rows = rows_of(data, all);
+    const limit_rows_t::vector_t rounded =
+        fits.quantum > 0 ? rows_of(data, all, fits.quantum / 2).step(0) : limit_rows_t::vector_t::Zero();
     for (int k = 0; k < parameter_count; ++k) {
         wh_estimate_value_t &value = estimate->values[k];
         const bool is_limit = k < limit_count;
@@ -390,18 +170,23 @@ double find_delay(const data_t &data, const fits_t &fits) {
     const double fewer = fits.of[all_limits].squares - delayed.squares;
     const double delay = delayed.p[WH_LIMIT_DELAY];
     const double variance = delayed.squares / static_cast<double>(fits.used - limit_count);
-    return fewer > needed_variances * variance && std::abs(delay) > std::max(fits.quantum, least_sd_s) ? delay : 0;
+    return fewer > needed_variances * variance && std::abs(delay) > std::max(fits.quantum, least_sd_s) ? delay
+                                                                                                       : 0;
 }
 
-wh_status_t judge(const data_t &data, const fits_t &fits, const size_t *order, wh_limits_estimate_t *estimate) {
+wh_status_t judge(const data_t &data, const fits_t &fits, const size_t *order,
+                  wh_limits_estimate_t *estimate) {
     const double delay = find_delay(data, fits);
     if (delay != 0) {
-        tell(estimate, "each time seems to have %.3g s that are not of its profile: fit the delay as well", delay);
+        tell(estimate, "each time seems to have %.3g s that are not of its profile: fit the delay as well",
+             delay);
         return WH_STATUS_NO_FIT;
     }
     if (is_of_another_law(data, fits, order)) {
-        tell(estimate, "the times depend on the distance in another way than a jerk-limited profile's: residuals of "
-                       "%.3g s rms that go with the distance", estimate->rms);
+        tell(estimate,
+             "the times depend on the distance in another way than a jerk-limited profile's: residuals of "
+             "%.3g s rms that go with the distance",
+             estimate->rms);
         return WH_STATUS_NO_FIT;
     }
     return WH_OK;
@@ -418,9 +203,11 @@ double reaching_distance(const wh_limits_estimate_t &estimate) {
 
 void tell_missing_of_acceleration(wh_limits_estimate_t *estimate, bool has_speed, bool has_jerk) {
     if (has_speed && !has_jerk) {
-        tell(estimate, "acceleration: moves too short to reach the speed, below %.4g; ", reaching_distance(*estimate));
+        tell(estimate, "acceleration: moves too short to reach the speed, below %.4g; ",
+             reaching_distance(*estimate));
     } else if (has_speed) {
-        tell(estimate, "acceleration: no move reaches it before the speed, so any from %.4g on gives these times; ",
+        tell(estimate,
+             "acceleration: no move reaches it before the speed, so any from %.4g on gives these times; ",
              estimate->at_least[WH_LIMIT_ACCELERATION]);
     } else {
         tell(estimate, "acceleration: moves of other lengths, longer than %.4g first; ", estimate->longest);
@@ -466,43 +253,20 @@ wh_status_t check(const wh_timed_move_t *moves, size_t count, wh_limits_estimate
     return WH_OK;
 }
 
-/* What the quickest moves need at least, those that a twentieth of all exceed. */
-void find_scales(data_t &data) {
-    const double of_rest[limit_count] = {1, 4, 32}; /* d = v t, a t^2 / 4, j t^3 / 32 */
-    for (int k = 0; k < limit_count; ++k) {
-        for (size_t i = 0; i < data.count; ++i) {
-            data.sizes[i] = of_rest[k] * data.moves[i].distance / std::pow(data.moves[i].seconds, k + 1);
-        }
-        data.scale[k] = quantile(data, data.count, 0.95);
-        data.beyond[k] = std::log(*std::max_element(data.sizes, data.sizes + data.count)) + 4 + 6 * (k + 1);
-    }
-}
-
 wh_status_t fit(data_t &data, fits_t &fits, wh_limits_estimate_t *estimate) {
-    model_t &all = fits.of[all_limits];
-    find_scales(data);
-    all = find_agreed(data);
-    double deviation = deviation_of(data, all);
-    for (int round = 0; round < 4; ++round) {
-        fits.used = set_aside(data, all, deviation);
-        if (fits.used < WH_LIMITS_MOVES) {
-            break;
-        }
-        descend(data, &all, 40);
-        const double freedom = static_cast<double>(fits.used) - (data.with_delay ? 4 : 3);
-        deviation = std::max(std::sqrt(all.squares / freedom), least_sd_s);
-    }
+    fits.used = wh_estimate::fit_agreed(data, &fits.of[all_limits], &fits.sd);
     estimate->used = fits.used;
     estimate->set_aside = data.count - fits.used;
     if (static_cast<double>(estimate->set_aside) > WH_LIMITS_ASIDE * static_cast<double>(data.count)) {
-        tell(estimate, "%zu of %zu times agree with no profile that the others agree with", estimate->set_aside, data.count);
+        tell(estimate, "%zu of %zu times agree with no profile that the others agree with",
+             estimate->set_aside, data.count);
         return WH_STATUS_NO_FIT;
     }
     if (fits.used < WH_LIMITS_MOVES) {
-        tell(estimate, "%zu of at least %d moves, %zu more were set aside", fits.used, WH_LIMITS_MOVES, estimate->set_aside);
+        tell(estimate, "%zu of at least %d moves, %zu more were set aside", fits.used, WH_LIMITS_MOVES,
+             estimate->set_aside);
         return WH_STATUS_TOO_FEW_POINTS;
     }
-    fits.sd = deviation;
     return WH_OK;
 }
 
@@ -515,7 +279,8 @@ wh_status_t conclude(data_t &data, fits_t &fits, wh_limits_estimate_t *estimate)
     estimate->shortest = data.moves[order[0]].distance;
     estimate->longest = data.moves[order[fits.used - 1]].distance;
     if (estimate->rms < fits.quantum / 2) { /* equal moves have equal errors of rounding */
-        fits.sd *= std::sqrt(static_cast<double>(fits.used) / static_cast<double>(count_distances(data, fits, order)));
+        fits.sd *= std::sqrt(static_cast<double>(fits.used) /
+                             static_cast<double>(count_distances(data, fits, order)));
     }
     const wh_status_t status = judge(data, fits, order, estimate);
     if (status != WH_OK) {

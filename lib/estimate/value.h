@@ -11,7 +11,7 @@
 
 /* One number. */
 typedef struct {
-    double value, sd;    /* of no meaning unless is_determined */
+    double value, sd; /* of no meaning unless is_determined */
     bool is_determined;
 } wh_estimate_value_t;
 
