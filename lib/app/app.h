@@ -30,5 +30,6 @@ int wh_app_sim(int argc, char **argv);
 int wh_app_report(int argc, char **argv);
 int wh_app_layout(int argc, char **argv);
 int wh_app_study(int argc, char **argv);
+int wh_app_estimate(int argc, char **argv);
 
 #endif

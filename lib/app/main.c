@@ -19,6 +19,7 @@ static const struct {
     {"report", "make a page of a run: the cell in motion, plots, tables", wh_app_report},
     {"layout", "list, check and draw a cell", wh_app_layout},
     {"study", "play a script many times, each time a little off", wh_app_study},
+    {"estimate", "fit frames and limits of a layout to measurements", wh_app_estimate},
 };
 
 #define SUBCOMMANDS (sizeof subcommands / sizeof subcommands[0])

@@ -43,7 +43,7 @@ bool wh_csv_refuse(wh_csv_t *csv, size_t column, const char *expected) {
 
 /* ------------------------------------------------------------------------------------------------ the file */
 
-static bool refuse_file(wh_csv_t *csv, const char *why) {
+bool wh_csv_refuse_file(wh_csv_t *csv, const char *why) {
     (void)snprintf(csv->message, sizeof csv->message, "%.300s: %s", csv->path, why);
     return false;
 }
@@ -51,14 +51,14 @@ static bool refuse_file(wh_csv_t *csv, const char *why) {
 static bool load(wh_csv_t *csv) {
     struct stat status;
     if (stat(csv->path, &status) != 0) {
-        return refuse_file(csv, strerror(errno));
+        return wh_csv_refuse_file(csv, strerror(errno));
     }
     if (!S_ISREG(status.st_mode)) {
-        return refuse_file(csv, "it is no regular file");
+        return wh_csv_refuse_file(csv, "it is no regular file");
     }
     FILE *file = fopen(csv->path, "rb");
     if (!file) {
-        return refuse_file(csv, strerror(errno));
+        return wh_csv_refuse_file(csv, strerror(errno));
     }
     csv->bytes = wh_memory_need(malloc(WH_CSV_BYTES + 2));
     csv->size = fread(csv->bytes, 1, WH_CSV_BYTES + 1, file);
@@ -66,13 +66,13 @@ static bool load(wh_csv_t *csv) {
     (void)fclose(file);
     csv->bytes[csv->size] = '\0';
     if (failed) {
-        return refuse_file(csv, "it cannot be read");
+        return wh_csv_refuse_file(csv, "it cannot be read");
     }
     if (csv->size > WH_CSV_BYTES) {
-        return refuse_file(csv, "it has more than 16777216 bytes");
+        return wh_csv_refuse_file(csv, "it has more than 16777216 bytes");
     }
     if (memchr(csv->bytes, '\0', csv->size)) {
-        return refuse_file(csv, "it has a byte 0 (expected text)");
+        return wh_csv_refuse_file(csv, "it has a byte 0 (expected text)");
     }
     wh_output_keep(csv->path);
     return true;
@@ -137,7 +137,8 @@ static char *take_field(wh_csv_t *csv, bool *is_last) {
 
 /* Splits the next line that is not blank. False at the end and if it is refused. */
 static bool split_line(wh_csv_t *csv, char *fields[WH_CSV_COLUMNS], size_t *count) {
-    for (csv->line = csv->next_line; is_blank(*csv->at) || (*csv->at != '\0' && ends_line(csv->at)); ++csv->at) {
+    for (csv->line = csv->next_line; is_blank(*csv->at) || (*csv->at != '\0' && ends_line(csv->at));
+         ++csv->at) {
         csv->line += *csv->at == '\n';
     }
     if (*csv->at == '\0') {
@@ -197,8 +198,9 @@ bool wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns
     }
     csv->at = csv->bytes + (strncmp(csv->bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0);
     if (!split_line(csv, fields, &csv->field_count)) {
-        return csv->message[0] == '\0' ? refuse_file(csv, "it is empty (expected a line that names the columns)")
-                                       : false;
+        return csv->message[0] == '\0'
+                   ? wh_csv_refuse_file(csv, "it is empty (expected a line that names the columns)")
+                   : false;
     }
     for (size_t i = 0; i < csv->field_count; ++i) {
         if (!take_name(csv, fields[i], i)) {

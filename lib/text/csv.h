@@ -53,6 +53,9 @@ bool wh_csv_read(wh_csv_t *csv);
  * `message`. Returns false. */
 bool wh_csv_refuse(wh_csv_t *csv, size_t column, const char *expected);
 
+/* Likewise the file as a whole: "a.csv: why". */
+bool wh_csv_refuse_file(wh_csv_t *csv, const char *why);
+
 void wh_csv_close(wh_csv_t *csv);
 
 #endif
