@@ -24,10 +24,17 @@ struct fits_t {
     double sd, quantum;
 };
 
-/* All sets that lack a limit; that of all limits is no worse. */
+/* All sets that lack a limit; each is also looked for from the fit of all limits, beside which it may lie. */
 void fit_sets(const data_t &data, fits_t *fits) {
     for (unsigned set = 1; set < all_limits; ++set) {
+        model_t model = fits->of[all_limits];
+        for (int k = 0; k < limit_count; ++k) {
+            model.is_free[k] = (set >> k & 1U) != 0;
+            model.p[k] = model.is_free[k] ? model.p[k] : data.beyond[k];
+        }
+        descend(data, &model, 60);
         fit_set(data, set, &fits->of[set]);
+        fits->of[set] = model.squares < fits->of[set].squares ? model : fits->of[set];
     }
 }
 

@@ -13,6 +13,7 @@
 #include "fuzz.h"
 #include "layout/layout.h"
 #include "study/study.h"
+#include "text/csv.h"
 
 #define WORDS 24
 
@@ -75,6 +76,7 @@ bool __real_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool
 bool __wrap_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints);
 FILE *__wrap_wh_log_file(const char *path, const char **fault);
 bool __wrap_wh_study_open(wh_study_t *study);
+bool __wrap_wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns, size_t count);
 bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
 bool __wrap_wh_node_reaches_others(const char *url);
 wh_sandbox_t *__wrap_wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
@@ -129,6 +131,13 @@ bool __wrap_wh_study_open(wh_study_t *study) {
         check_run(&study->run);
         REQUIRE(study->trials >= 1 && study->trials <= 1000000000);
     }
+    return false;
+}
+
+bool __wrap_wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns, size_t count) {
+    reached = true;
+    REQUIRE(columns != NULL && count > 0 && (refused || path != NULL));
+    snprintf(csv->message, sizeof csv->message, "not read");
     return false;
 }
 
@@ -238,9 +247,11 @@ static char *split(const uint8_t *data, size_t size, char **argv) {
 }
 
 static int act(int argc, char **argv) {
-    static int (*const subcommands[])(int argc, char **argv) = {
-        wh_app_run, wh_app_mcs, wh_app_sim, wh_app_replay, wh_app_report, wh_app_layout, wh_app_study};
-    static const char *const names[] = {"run", "mcs", "sim", "replay", "report", "layout", "study"};
+    static int (*const subcommands[])(int argc, char **argv) = {wh_app_run,    wh_app_mcs,     wh_app_sim,
+                                                                wh_app_replay, wh_app_report,  wh_app_layout,
+                                                                wh_app_study,  wh_app_estimate};
+    static const char *const names[] = {"run",    "mcs",    "sim",   "replay",
+                                        "report", "layout", "study", "estimate"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(argv[0], names[i]) == 0) {
             return subcommands[i](argc, argv);
