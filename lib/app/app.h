@@ -35,5 +35,6 @@ int wh_app_diff(int argc, char **argv);
 int wh_app_events(int argc, char **argv);
 int wh_app_csv(int argc, char **argv);
 int wh_app_check(int argc, char **argv);
+int wh_app_estimate(int argc, char **argv);
 
 #endif

@@ -3,7 +3,8 @@
 B := build
 include lib/build/switches.mk
 CFLAGS ?= -O2 -g
-CXXFLAGS ?= -O2 -g
+# Line numbers alone: all that debuggers are told of Eigen's templates is many times the code.
+CXXFLAGS ?= -O2 -g1
 PKG_CONFIG ?= pkg-config
 PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
@@ -28,6 +29,7 @@ MODULE_SOURCES := $(wildcard lib/script/wh_module*.c)
 # Loaded by itself, under mpirun.
 RANKS_SOURCE := lib/study/ranks_mpi.c
 PROGRAM_SOURCES := $(filter-out $(RANKS_SOURCE),$(wildcard $(HOST_ROOMS:%=lib/%/*.c) lib/app/prompt/*.c))
+PROGRAM_CXX_SOURCES := $(wildcard $(HOST_ROOMS:%=lib/%/*.cpp))
 MESSAGES := $(patsubst lcm_types/%.lcm,%,$(wildcard lcm_types/*.lcm))
 LUA_SOURCES := $(sort $(shell find lua -name '*.lua' 2>/dev/null))
 PAGE_SOURCES := $(sort $(wildcard lib/report/page/*))
@@ -35,7 +37,8 @@ HEADERS := $(wildcard lib/*.h lib/*/*.h lib/*/*/*.h lib/*/*.def)
 
 LIBRARY_OBJECTS := $(LIBRARY_SOURCES:%.c=$(B)/obj/%.o)
 COLLISION_OBJECTS := $(COLLISION_SOURCES:%.c=$(B)/obj/%.o)
-PROGRAM_OBJECTS := $(PROGRAM_SOURCES:%.c=$(B)/obj/%.o) $(B)/obj/embedded_lua.o $(B)/obj/embedded_page.o
+PROGRAM_CXX_OBJECTS := $(PROGRAM_CXX_SOURCES:%.cpp=$(B)/obj/%.o)
+PROGRAM_OBJECTS := $(PROGRAM_SOURCES:%.c=$(B)/obj/%.o) $(PROGRAM_CXX_OBJECTS) $(B)/obj/embedded_lua.o $(B)/obj/embedded_page.o
 MESSAGE_SOURCES := $(MESSAGES:%=$(B)/lcm/waferhand_%.c)
 MESSAGE_OBJECTS := $(MESSAGE_SOURCES:$(B)/%.c=$(B)/obj/%.o)
 MODULE_OBJECTS := $(MODULE_SOURCES:%.c=$(B)/pic/%.o)
@@ -76,6 +79,8 @@ LCM_FLAGS := -isystem $(B)/lcm
 package_flags = $(patsubst -I%,-isystem %,$(shell $(PKG_CONFIG) --cflags $(1) 2>/dev/null))
 LUA := $(firstword $(foreach name,lua5.4 lua-5.4 lua54 lua,$(shell $(PKG_CONFIG) --exists $(name) 2>/dev/null && echo $(name))))
 PROGRAM_FLAGS := $(HOST_FLAGS) $(NUMBER_WARNINGS) $(LCM_FLAGS) $(call package_flags,$(LUA) jansson smartcols libedit zlib libzstd)
+# Eigen without its heap, which no matrix of ours needs: what throws or asks for C++'s own library is left out, and C links it.
+PROGRAM_CXX_FLAGS := -std=c++17 -fno-exceptions -fno-rtti $(BASE) $(NUMBER_WARNINGS) -DEIGEN_NO_MALLOC -DEIGEN_MPL2_ONLY $(call package_flags,eigen3)
 TEST_FLAGS := $(HOST_FLAGS) $(if $(FLOAT),,$(NUMBER_WARNINGS)) -Ilib -Itests $(LCM_FLAGS) $(call package_flags,$(LUA) jansson)
 CXX_TEST_FLAGS := -std=c++17 $(BASE) -Ilib -Itests $(call package_flags,eigen3)
 
@@ -93,9 +98,9 @@ PROGRAM_LIBS = $(B)/libwaferhand_lcm.a $(LUA_ARCHIVE) $(shell $(PKG_CONFIG) --li
 
 # Written when its text changes: what depends on it is rebuilt when a flag or the set of files changes.
 STAMP := $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(EXTRA) $(COLLISION_FLAGS) $(PROGRAM_FLAGS) $(TEST_FLAGS) \
-         $(CXX_TEST_FLAGS) $(MESSAGE_FLAGS) $(JAVASCRIPT)
+         $(CXX_TEST_FLAGS) $(PROGRAM_CXX_FLAGS) $(MESSAGE_FLAGS) $(JAVASCRIPT)
 $(B)/flags: TEXT = $(STAMP)
-$(B)/sources: TEXT = $(LIBRARY_SOURCES) $(COLLISION_SOURCES) $(PROGRAM_SOURCES) $(LUA_SOURCES) $(PAGE_SOURCES)
+$(B)/sources: TEXT = $(LIBRARY_SOURCES) $(COLLISION_SOURCES) $(PROGRAM_SOURCES) $(PROGRAM_CXX_SOURCES) $(LUA_SOURCES) $(PAGE_SOURCES)
 $(B)/messages: TEXT = $(MESSAGES)
 $(B)/flags $(B)/sources $(B)/messages: FORCE
 	@mkdir -p $(@D)
@@ -123,6 +128,7 @@ library-test-names:
 $(LIBRARY_OBJECTS): FLAGS = $(LIBRARY_FLAGS)
 $(COLLISION_OBJECTS): FLAGS = $(COLLISION_FLAGS)
 $(PROGRAM_OBJECTS): FLAGS = $(PROGRAM_FLAGS)
+$(PROGRAM_CXX_OBJECTS): FLAGS = $(PROGRAM_CXX_FLAGS)
 $(LIBRARY_SOURCES:%.c=$(B)/pic/%.o): FLAGS = $(LIBRARY_FLAGS) -fPIC -fvisibility=hidden
 $(MODULE_OBJECTS): FLAGS = $(PROGRAM_FLAGS) -fPIC
 $(B)/obj/lib/report/page.o: FLAGS += -DWH_JAVASCRIPT='"$(JAVASCRIPT)"'

@@ -14,6 +14,7 @@
 #include "fuzz.h"
 #include "layout/layout.h"
 #include "study/study.h"
+#include "text/csv.h"
 
 #define WORDS 24
 
@@ -79,6 +80,7 @@ bool __wrap_wh_study_open(wh_study_t *study);
 bool __wrap_wh_test_play(const wh_test_job_t jobs[], size_t count, const wh_test_options_t *options,
                          wh_test_result_t results[]);
 bool __wrap_wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found);
+bool __wrap_wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns, size_t count);
 bool __wrap_wh_node_open(wh_node_t *node, const char *url, wh_recording_t *record);
 bool __wrap_wh_node_reaches_others(const char *url);
 wh_sandbox_t *__wrap_wh_sandbox_new_with(const wh_sandbox_limits_t *limits, const char *const assignments[],
@@ -159,6 +161,13 @@ bool __wrap_wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found) 
         wh_test_found_add(found, paths->items[i], true);
     }
     return true;
+}
+
+bool __wrap_wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns, size_t count) {
+    reached = true;
+    REQUIRE(columns != NULL && count > 0 && (refused || path != NULL));
+    snprintf(csv->message, sizeof csv->message, "not read");
+    return false;
 }
 
 bool __wrap_wh_mcs_link_open(wh_mcs_link_t *link, const wh_mcs_link_options_t *options) {
@@ -268,10 +277,10 @@ static char *split(const uint8_t *data, size_t size, char **argv) {
 
 static int act(int argc, char **argv) {
     static int (*const subcommands[])(int argc, char **argv) = {
-        wh_app_run,   wh_app_mcs,  wh_app_sim,  wh_app_replay, wh_app_report, wh_app_layout,
-        wh_app_study, wh_app_test, wh_app_diff, wh_app_events, wh_app_csv,    wh_app_check};
-    static const char *const names[] = {"run",   "mcs",  "sim",  "replay", "report", "layout",
-                                        "study", "test", "diff", "events", "csv",    "check"};
+        wh_app_run,      wh_app_mcs,  wh_app_sim,  wh_app_replay, wh_app_report, wh_app_layout, wh_app_study,
+        wh_app_estimate, wh_app_test, wh_app_diff, wh_app_events, wh_app_csv,    wh_app_check};
+    static const char *const names[] = {"run",      "mcs",  "sim",  "replay", "report", "layout", "study",
+                                        "estimate", "test", "diff", "events", "csv",    "check"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(argv[0], names[i]) == 0) {
             return subcommands[i](argc, argv);

@@ -1,0 +1,57 @@
+/* Within the limits: the model of an axis's times, and the search for what comes nearest to them. */
+#ifndef WH_ESTIMATE_LIMITS_INTERNAL_HPP
+#define WH_ESTIMATE_LIMITS_INTERNAL_HPP
+
+#include "limits.h"
+#include "rows_internal.hpp"
+
+namespace wh_estimate {
+
+constexpr int limit_count = 3;
+constexpr int parameter_count = WH_LIMIT_PARAMETERS;
+constexpr double least_sd_s = 1e-7; /* no clock of a log tells less */
+constexpr unsigned all_limits = 7U; /* a set of limits has a bit for each */
+
+using limit_rows_t = rows_t<parameter_count>;
+
+/* The limits' logarithms, and the delay. */
+struct model_t {
+    double p[parameter_count];
+    bool is_free[parameter_count];
+    double squares; /* of the weighted residuals */
+};
+
+/* What all fits of an axis share. */
+struct data_t {
+    wh_timed_move_t *moves;
+    size_t count;
+    bool with_delay;
+    double scale[limit_count];  /* of the limits: what the quickest moves need at least */
+    double beyond[limit_count]; /* logarithm of a limit that no move meets */
+    double weights[WH_LIMITS_MOST_MOVES];
+    double sizes[WH_LIMITS_MOST_MOVES]; /* to be sorted */
+    bool is_used[WH_LIMITS_MOST_MOVES];
+};
+
+/* The time of a move less the model's. */
+double rest_of(const data_t &data, const model_t &model, size_t i);
+
+/* The equations of a step, towards the times, or towards what all of them would be if they were `later`. */
+limit_rows_t rows_of(const data_t &data, const model_t &model, double later = 0);
+
+/* Levenberg and Marquardt's, with the weights as they are. */
+void descend(const data_t &data, model_t *model, int rounds);
+
+/* The largest speed, acceleration or jerk in the moves that are used. */
+double peak_of(const data_t &data, const model_t &model, int limit);
+
+/* The best fit, with the weights as they are, that has only the limits of a set. */
+void fit_set(const data_t &data, unsigned set, model_t *best);
+
+/* Sets scales, and which moves are used: those that agree with the model of all limits that most agree with. Returns
+ * their number; `sd` is the deviation of one time. */
+size_t fit_agreed(data_t &data, model_t *all, double *sd);
+
+} // namespace wh_estimate
+
+#endif

@@ -1,0 +1,100 @@
+/* Least squares row by row: the equations are turned into a triangle as they come (Givens), so that any number of them
+ * takes the same memory and no precision is lost by squaring. The triangle's singular values are those of all rows. */
+#ifndef WH_ESTIMATE_ROWS_INTERNAL_HPP
+#define WH_ESTIMATE_ROWS_INTERNAL_HPP
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace wh_estimate {
+
+/* A direction counts as not seen if its singular value is below this part of the largest. */
+constexpr double unseen = 1e-8;
+
+/* A parameter is not determined if it has more than this share in an unseen direction. */
+constexpr double unseen_share = 1e-6;
+
+template <int N> class rows_t {
+  public:
+    using vector_t = Eigen::Matrix<double, N, 1>;
+    using matrix_t = Eigen::Matrix<double, N, N>;
+
+    /* One more equation: row * step = rest. */
+    void add(vector_t row, double rest) {
+        for (int i = 0; i < N; ++i) {
+            const double length = std::hypot(triangle_(i, i), row(i));
+            if (length > 0) {
+                const double c = triangle_(i, i) / length;
+                const double s = row(i) / length;
+                for (int k = i; k < N; ++k) {
+                    turn(c, s, triangle_(i, k), row(k));
+                }
+                turn(c, s, rests_(i), rest);
+            }
+        }
+    }
+
+    /* To be called once after the last row. Columns are brought to one length first: parameters have different
+     * units. */
+    void solve() {
+        for (int k = 0; k < N; ++k) {
+            const double length = triangle_.col(k).norm();
+            lengths_(k) = length > 0 ? length : 1;
+        }
+        const matrix_t scaled = triangle_ * lengths_.cwiseInverse().asDiagonal();
+        const Eigen::JacobiSVD<matrix_t> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
+        if (svd.info() != Eigen::Success) { /* numbers that are not finite: nothing is seen */
+            return;
+        }
+        sigmas_ = svd.singularValues();
+        directions_ = svd.matrixV();
+        shares_ = svd.matrixU().transpose() * rests_;
+    }
+
+    /* The step of Levenberg and Marquardt; damping 0 is that of Gauss and Newton, without unseen directions. */
+    vector_t step(double damping) const {
+        vector_t along = vector_t::Zero();
+        for (int k = 0; k < N; ++k) {
+            if (is_seen(k)) {
+                along(k) = sigmas_(k) * shares_(k) / (sigmas_(k) * sigmas_(k) + damping);
+            }
+        }
+        return (directions_ * along).cwiseQuotient(lengths_);
+    }
+
+    /* The standard deviation of a parameter where rows have a deviation of 1; infinite if the rows do not tell it. */
+    double deviation(int parameter) const {
+        double square = 0;
+        for (int k = 0; k < N; ++k) {
+            const double share = directions_(parameter, k);
+            if (is_seen(k)) {
+                square += share * share / (sigmas_(k) * sigmas_(k));
+            } else if (std::abs(share) > unseen_share) {
+                return HUGE_VAL;
+            }
+        }
+        return std::sqrt(square) / lengths_(parameter);
+    }
+
+  private:
+    static void turn(double c, double s, double &above, double &below) {
+        const double old = above;
+        above = c * old + s * below;
+        below = c * below - s * old;
+    }
+
+    bool is_seen(int k) const {
+        return sigmas_(k) > unseen * sigmas_(0);
+    }
+
+    matrix_t triangle_ = matrix_t::Zero();
+    matrix_t directions_ = matrix_t::Zero();
+    vector_t rests_ = vector_t::Zero();
+    vector_t lengths_ = vector_t::Ones();
+    vector_t sigmas_ = vector_t::Zero();
+    vector_t shares_ = vector_t::Zero();
+};
+
+} // namespace wh_estimate
+
+#endif

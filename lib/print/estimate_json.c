@@ -1,0 +1,126 @@
+#include <stdlib.h>
+
+#include "../math/trig.h"
+#include "../text/array.h"
+#include "../text/json.h"
+#include "estimate_print.h"
+
+#define FORMAT 1
+
+/* What was found: 0 and OK, or the error and why. */
+static json_t *outcome(const char *name, wh_status_t status, const char *reason) {
+    return wh_json_set(json_object(), "name %s error %d status %s reason %s", name, (int)status,
+                       wh_status_name(status), reason[0] != '\0' ? reason : NULL);
+}
+
+static json_t *numbers(const double *values, size_t count, double unit) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < count; ++i) {
+        wh_json_append(list, wh_json_real(values[i] * unit));
+    }
+    return list;
+}
+
+/* Takes over `lua`, of open_memstream. */
+static int print(const char *path, bool ok, const char *key, json_t *list, char *lua, FILE *out) {
+    json_t *root = wh_json_set(json_object(), "format %d file %s ok %i", FORMAT, path, ok);
+    wh_json_put(root, key, list);
+    (void)wh_json_set(root, "lua %s", lua);
+    free(lua);
+    return wh_json_print(root, out);
+}
+
+/* ------------------------------------------------------------------------------------------------- frames */
+
+static json_t *residual(const void *subject, size_t i) {
+    const wh_station_points_t *station = subject;
+    const wh_vec3_t off = wh_frame_residual(&station->estimate, &station->points[i]);
+    return wh_json_set(json_object(), "line %lld dx %g dy %g dz %g", (long long)station->lines[i], off.x,
+                       off.y, off.z);
+}
+
+static json_t *station(const void *subject, size_t i) {
+    const wh_point_table_t *table = subject;
+    const wh_station_points_t *from = &table->stations[i];
+    const wh_frame_estimate_t *frame = &from->estimate;
+    const double deg = wh_deg_from_rad(1);
+    json_t *object = outcome(from->name, frame->status, frame->reason);
+    (void)wh_json_set(object, "points %lld", (long long)from->count);
+    if (frame->status != WH_OK) {
+        return object;
+    }
+    (void)wh_json_add(object, "at at_sd rpy rpy_sd", wh_json_vector(frame->base_from_station.r),
+                      numbers(frame->at_sd, 3, 1), numbers(frame->rpy, 3, deg),
+                      numbers(frame->rpy_sd, 3, deg), NULL);
+    (void)wh_json_set(object, "rms %g largest %g largest_line %lld", frame->rms, frame->largest,
+                      (long long)from->lines[frame->largest_index]);
+    wh_json_put(object, "residuals", wh_json_list(residual, from, from->count));
+    return object;
+}
+
+int wh_frames_print_json(const wh_point_table_t *table, FILE *out) {
+    char *lua = NULL;
+    size_t size = 0;
+    bool ok = true;
+    for (size_t i = 0; i < table->count; ++i) {
+        ok = ok && table->stations[i].estimate.status == WH_OK;
+    }
+    FILE *text = wh_memory_need(open_memstream(&lua, &size));
+    wh_frames_print_lua(table, text);
+    (void)fclose(text);
+    return print(table->csv.path, ok, "stations", wh_json_list(station, table, table->count), lua, out);
+}
+
+/* ------------------------------------------------------------------------------------------------- limits */
+
+/* A limit that is not determined is null, with what it is at least, or null. */
+static void put_limit(json_t *object, const wh_limits_estimate_t *limits, int k) {
+    const wh_estimate_value_t *value = &limits->values[k];
+    const bool told = value->is_determined;
+    json_t *limit = wh_json_set(json_object(), "value %g sd %g", told ? value->value : HUGE_VAL,
+                                told ? value->sd : HUGE_VAL);
+    if (k < WH_LIMIT_DELAY) {
+        const bool is_bound = !told && limits->at_least[k] > 0;
+        (void)wh_json_set(limit, "at_least %g", is_bound ? limits->at_least[k] : HUGE_VAL);
+    }
+    wh_json_put(object, wh_limit_name(k), limit);
+}
+
+static json_t *axis(const void *subject, size_t i) {
+    const wh_move_table_t *table = subject;
+    const wh_axis_moves_t *from = &table->axes[i];
+    const wh_limits_estimate_t *limits = &from->estimate;
+    if (from->count == 0) {
+        return NULL;
+    }
+    json_t *object = outcome(wh_table_axis_name(i), limits->status, limits->reason);
+    json_t *aside = json_array();
+    for (size_t k = 0; k < from->count; ++k) {
+        if (from->moves[k].is_set_aside) {
+            wh_json_append(aside, json_integer((json_int_t)from->lines[k]));
+        }
+    }
+    (void)wh_json_set(object, "moves %lld", (long long)from->count);
+    wh_json_put(object, "set_aside_lines", aside);
+    if (limits->status == WH_OK) {
+        for (int k = 0; k < WH_LIMIT_PARAMETERS; ++k) {
+            put_limit(object, limits, k);
+        }
+        (void)wh_json_set(object, "shortest %g longest %g rms_s %g", limits->shortest, limits->longest,
+                          limits->rms);
+    }
+    return object;
+}
+
+int wh_limits_print_json(const wh_move_table_t *table, FILE *out) {
+    char *lua = NULL;
+    size_t size = 0;
+    bool ok = true;
+    for (size_t i = 0; i < WH_TABLE_AXES; ++i) {
+        ok = ok && table->axes[i].estimate.status == WH_OK && table->axes[i].estimate.reason[0] == '\0';
+    }
+    FILE *text = wh_memory_need(open_memstream(&lua, &size));
+    wh_limits_print_lua(table, text);
+    (void)fclose(text);
+    return print(table->csv.path, ok, "axes", wh_json_list(axis, table, WH_TABLE_AXES), lua, out);
+}

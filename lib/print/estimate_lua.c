@@ -1,0 +1,132 @@
+#include <math.h>
+#include <string.h>
+
+#include "../math/trig.h"
+#include "estimate_print.h"
+
+const char *wh_limit_name(int limit) {
+    static const char *const names[WH_LIMIT_PARAMETERS] = {"speed", "acceleration", "jerk", "delay"};
+    return names[limit];
+}
+
+const char *wh_limit_unit(int limit, bool turns) {
+    static const char *const units[2][WH_LIMIT_PARAMETERS] = {{"mm/s", "mm/s^2", "mm/s^3", "s"},
+                                                              {"deg/s", "deg/s^2", "deg/s^3", "s"}};
+    return units[turns][limit];
+}
+
+/* A value with two digits of its standard deviation. */
+static void put_number(FILE *out, double value, double sd) {
+    const double digits = sd > 0 ? 1 - floor(log10(sd)) : 9;
+    const int decimals = digits > 9 ? 9 : (int)fmax(digits, 0);
+    const double unit = pow(10, -decimals);
+    fprintf(out, "%.*f", decimals, fabs(value) < unit / 2 ? 0 : value);
+}
+
+static void put_list(FILE *out, const double values[3], const double sds[3]) {
+    fputs("{ ", out);
+    for (int i = 0; i < 3; ++i) {
+        fputs(i > 0 ? ", " : "", out);
+        put_number(out, values[i], sds[i]);
+    }
+    fputs(" }", out);
+}
+
+/* ------------------------------------------------------------------------------------------------- frames */
+
+/* True for what Lua takes as a field's name without quotes; of a word of Lua's, quotes do no harm. */
+static bool is_plain(const char *name) {
+    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_";
+    static const char *const words[] = {
+        "and", "break", "do",  "else", "elseif", "end",    "false",  "for",  "function", "goto",  "if",
+        "in",  "local", "nil", "not",  "or",     "repeat", "return", "then", "true",     "until", "while"};
+    bool is_word = false;
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; ++i) {
+        is_word = is_word || strcmp(name, words[i]) == 0;
+    }
+    const size_t begin = strspn(name, letters) > 0 ? 1 : 0;
+    return !is_word && begin == 1 &&
+           name[strspn(name, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_0123456789")] == '\0';
+}
+
+static void put_key(FILE *out, const char *name) {
+    if (is_plain(name)) {
+        fputs(name, out);
+        return;
+    }
+    fputs("[\"", out);
+    for (; *name != '\0'; ++name) {
+        fputs(*name == '"' || *name == '\\' ? "\\" : "", out);
+        fputc(*name, out);
+    }
+    fputs("\"]", out);
+}
+
+void wh_frames_print_lua(const wh_point_table_t *table, FILE *out) {
+    fputs("stations = {\n", out);
+    for (size_t s = 0; s < table->count; ++s) {
+        const wh_frame_estimate_t *frame = &table->stations[s].estimate;
+        const wh_vec3_t *r = &frame->base_from_station.r;
+        double deg[3];
+        double sd_deg[3];
+        for (int i = 0; i < 3; ++i) {
+            deg[i] = wh_deg_from_rad(frame->rpy[i]);
+            sd_deg[i] = wh_deg_from_rad(frame->rpy_sd[i]);
+        }
+        fputs(frame->status == WH_OK ? "  " : "  -- ", out);
+        put_key(out, table->stations[s].name);
+        if (frame->status == WH_OK) {
+            fputs(" = { at = ", out);
+            put_list(out, (const double[]){r->x, r->y, r->z}, frame->at_sd);
+            fputs(", rpy = ", out);
+            put_list(out, deg, sd_deg);
+            fputs(" },\n", out);
+        } else {
+            fputs(" is not determined\n", out);
+        }
+    }
+    fputs("},\n", out);
+}
+
+/* ------------------------------------------------------------------------------------------------- limits */
+
+static void put_axis(const wh_move_table_t *table, size_t axis, FILE *out) {
+    const wh_limits_estimate_t *limits = &table->axes[axis].estimate;
+    const char *between = "";
+    if (limits->status != WH_OK) {
+        fprintf(out, "-- %s is not determined\n", wh_table_axis_name(axis));
+        return;
+    }
+    fprintf(out, "%s = { ", wh_table_axis_name(axis));
+    for (int k = WH_LIMIT_SPEED; k <= WH_LIMIT_JERK; ++k) {
+        if (limits->values[k].is_determined) {
+            fprintf(out, "%s%s = ", between, wh_limit_name(k));
+            put_number(out, limits->values[k].value, limits->values[k].sd);
+            between = ", ";
+        }
+    }
+    fputs(" },", out);
+    between = " -- ";
+    for (int k = WH_LIMIT_SPEED; k <= WH_LIMIT_JERK; ++k) {
+        if (!limits->values[k].is_determined) {
+            fprintf(out, "%s%s is not determined", between, wh_limit_name(k));
+            between = ", ";
+        }
+    }
+    fputc('\n', out);
+}
+
+void wh_limits_print_lua(const wh_move_table_t *table, FILE *out) {
+    bool has_robot = false;
+    for (size_t axis = 0; axis < WH_ROBOT_AXES; ++axis) {
+        if (table->axes[axis].count > 0) {
+            fputs(has_robot ? "  " : "robot = {\n  ", out);
+            put_axis(table, axis, out);
+            has_robot = true;
+        }
+    }
+    fputs(has_robot ? "},\n" : "", out);
+    if (table->axes[WH_ROBOT_AXES].count > 0) {
+        put_axis(table, WH_ROBOT_AXES, out);
+    }
+}

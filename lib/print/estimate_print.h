@@ -1,0 +1,26 @@
+/* Estimates from measurements: tables for people, JSON for programs, and what a layout can read. */
+#ifndef WH_PRINT_ESTIMATE_PRINT_H
+#define WH_PRINT_ESTIMATE_PRINT_H
+
+#include <stdio.h>
+
+#include "../estimate/tables.h"
+#include "../text/style.h"
+
+/* Each prints what was estimated from a table that was opened, and returns 0, or -1 if `out` does not take it.
+ * JSON is one object; its numbers, read back, are the same doubles. Lengths in mm, angles in degrees. */
+int wh_frames_print_table(const wh_point_table_t *table, FILE *out, const wh_style_t *style);
+int wh_frames_print_json(const wh_point_table_t *table, FILE *out);
+int wh_limits_print_table(const wh_move_table_t *table, FILE *out, const wh_style_t *style);
+int wh_limits_print_json(const wh_move_table_t *table, FILE *out);
+
+/* The fields of a layout, in Lua: what is determined, with as many digits as its standard deviation leaves. What is
+ * not is a comment. */
+void wh_frames_print_lua(const wh_point_table_t *table, FILE *out);
+void wh_limits_print_lua(const wh_move_table_t *table, FILE *out);
+
+/* How a limit is named in layouts, and its unit; of WH_LIMIT_SPEED to WH_LIMIT_DELAY. */
+const char *wh_limit_name(int limit);
+const char *wh_limit_unit(int limit, bool turns);
+
+#endif

@@ -1,0 +1,203 @@
+#include <string.h>
+
+#include "../math/trig.h"
+#include "estimate_print.h"
+#include "print_internal.h"
+
+/* Lines set aside that are named; of more, how many there are. */
+#define NAMED_LINES 20
+
+static void say(const wh_printer_t *printer, const char *name, wh_status_t status, const char *reason) {
+    const bool is_wrong = status != WH_OK;
+    wh_style_print(printer->style, printer->out, is_wrong ? WH_INK_BAD : WH_INK_WARN, "%s",
+                   is_wrong ? wh_style_glyph(printer->style, WH_GLYPH_CROSS) : "!");
+    if (is_wrong) {
+        wh_print_say(printer, " %s: error %d %s: %s; %s", name, (int)status, wh_status_name(status),
+                     wh_record_error_text(status), reason);
+    } else {
+        wh_print_say(printer, " %s: not determined, for want of these: %s", name, reason);
+    }
+    fputc('\n', printer->out);
+}
+
+static void print_heading(const wh_printer_t *printer, const char *path, size_t count, const char *what) {
+    wh_style_put(printer->out, path);
+    fprintf(printer->out, ": %zu %s%s\n", count, what, count == 1 ? "" : "s");
+}
+
+static int finish(FILE *out) {
+    return fflush(out) != 0 || ferror(out) ? -1 : 0;
+}
+
+/* ------------------------------------------------------------------------------------------------- frames */
+
+static void print_frames(const wh_printer_t *printer, const wh_point_table_t *table) {
+    static const char *const names[6] = {"x mm", "y mm", "z mm", "roll deg", "pitch deg", "yaw deg"};
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, "station;value;estimate{4,6};sd{4,6}");
+    for (size_t s = 0; s < table->count; ++s) {
+        const wh_frame_estimate_t *frame = &table->stations[s].estimate;
+        const wh_vec3_t *r = &frame->base_from_station.r;
+        const double at[3] = {r->x, r->y, r->z};
+        for (size_t i = 0; i < 6 && frame->status == WH_OK; ++i) {
+            const bool turns = i >= 3;
+            wh_grid_named_row(grid, table->stations[s].name);
+            wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", names[i]);
+            wh_grid_number(grid, 2, WH_INK_PLAIN, turns ? wh_deg_from_rad(frame->rpy[i - 3]) : at[i]);
+            wh_grid_number(grid, 3, WH_INK_PLAIN,
+                           turns ? wh_deg_from_rad(frame->rpy_sd[i - 3]) : frame->at_sd[i]);
+        }
+    }
+    wh_print_titled(printer, "Frames, in base", grid);
+}
+
+static void print_fits(const wh_printer_t *printer, const wh_point_table_t *table) {
+    wh_grid_t *grid = wh_grid_new(printer->style, 1, "station;points{0};rms mm{4};largest mm{4};in line{0}");
+    for (size_t s = 0; s < table->count; ++s) {
+        const wh_station_points_t *station = &table->stations[s];
+        wh_grid_named_row(grid, station->name);
+        wh_grid_number(grid, 1, WH_INK_PLAIN, (double)station->count);
+        if (station->estimate.status == WH_OK) {
+            wh_grid_number(grid, 2, WH_INK_PLAIN, station->estimate.rms);
+            wh_grid_number(grid, 3, WH_INK_PLAIN, station->estimate.largest);
+            wh_grid_number(grid, 4, WH_INK_PLAIN, (double)station->lines[station->estimate.largest_index]);
+        }
+    }
+    wh_print_titled(printer, "Residuals", grid);
+}
+
+static void print_points(const wh_printer_t *printer, const wh_point_table_t *table) {
+    wh_grid_t *grid = wh_grid_new(printer->style, 2, "line{0};station;dx mm{4};dy mm{4};dz mm{4}");
+    for (size_t s = 0; s < table->count; ++s) {
+        const wh_station_points_t *station = &table->stations[s];
+        for (size_t i = 0; i < station->count && station->estimate.status == WH_OK; ++i) {
+            const wh_vec3_t off = wh_frame_residual(&station->estimate, &station->points[i]);
+            wh_grid_row(grid);
+            wh_grid_number(grid, 0, WH_INK_PLAIN, (double)station->lines[i]);
+            wh_grid_text(grid, 1, WH_INK_PLAIN, "%s", station->name);
+            wh_grid_numbers(grid, 2, (const double[]){off.x, off.y, off.z}, 3);
+        }
+    }
+    wh_print_titled(printer, "Points touched, less where the frame has them", grid);
+}
+
+static void print_wrong_stations(const wh_printer_t *printer, const wh_point_table_t *table) {
+    const char *before = "\n";
+    for (size_t s = 0; s < table->count; ++s) {
+        const wh_frame_estimate_t *frame = &table->stations[s].estimate;
+        if (frame->status != WH_OK) {
+            fputs(before, printer->out);
+            say(printer, table->stations[s].name, frame->status, frame->reason);
+            before = "";
+        }
+    }
+}
+
+int wh_frames_print_table(const wh_point_table_t *table, FILE *out, const wh_style_t *style) {
+    const wh_printer_t printer = {NULL, style, out};
+    size_t points = 0;
+    for (size_t s = 0; s < table->count; ++s) {
+        points += table->stations[s].count;
+    }
+    print_heading(&printer, table->csv.path, points, "point");
+    print_frames(&printer, table);
+    print_fits(&printer, table);
+    print_points(&printer, table);
+    print_wrong_stations(&printer, table);
+    wh_print_title(&printer, "For a layout");
+    wh_frames_print_lua(table, out);
+    return finish(out);
+}
+
+/* ------------------------------------------------------------------------------------------------- limits */
+
+static void add_limit(wh_grid_t *grid, size_t axis, int k, const wh_limits_estimate_t *limits) {
+    const wh_estimate_value_t *value = &limits->values[k];
+    wh_grid_named_row(grid, wh_table_axis_name(axis));
+    wh_grid_text(grid, 1, WH_INK_PLAIN, "%s %s", wh_limit_name(k),
+                 wh_limit_unit(k, wh_table_axis_turns(axis)));
+    if (value->is_determined) {
+        wh_grid_numbers(grid, 2, (const double[]){value->value, value->sd}, 2);
+    } else if (limits->at_least[k] > 0) {
+        wh_grid_number(grid, 4, WH_INK_WARN, limits->at_least[k]);
+    }
+}
+
+static void print_limits(const wh_printer_t *printer, const wh_move_table_t *table) {
+    wh_grid_t *grid = wh_grid_new(printer->style, 2, "axis;limit;estimate{3};sd{3};at least{3}");
+    for (size_t axis = 0; axis < WH_TABLE_AXES; ++axis) {
+        const wh_limits_estimate_t *limits = &table->axes[axis].estimate;
+        const bool is_fitted = table->axes[axis].count > 0 && limits->status == WH_OK;
+        for (int k = 0; k < WH_LIMIT_PARAMETERS && is_fitted; ++k) {
+            if (k < WH_LIMIT_DELAY || limits->values[k].is_determined) {
+                add_limit(grid, axis, k, limits);
+            }
+        }
+    }
+    wh_print_titled(printer, "Limits", grid);
+}
+
+static void print_moves(const wh_printer_t *printer, const wh_move_table_t *table) {
+    wh_grid_t *grid =
+        wh_grid_new(printer->style, 1, "axis;moves{0};set aside{0};shortest{0,6};longest{0,6};rms ms{3}");
+    for (size_t axis = 0; axis < WH_TABLE_AXES; ++axis) {
+        const wh_axis_moves_t *moves = &table->axes[axis];
+        if (moves->count > 0) {
+            wh_grid_named_row(grid, wh_table_axis_name(axis));
+            wh_grid_number(grid, 1, WH_INK_PLAIN, (double)moves->count);
+            wh_grid_number(grid, 2, WH_INK_PLAIN, (double)moves->estimate.set_aside);
+        }
+        if (moves->estimate.longest > 0) {
+            wh_grid_numbers(grid, 3,
+                            (const double[]){moves->estimate.shortest, moves->estimate.longest,
+                                             moves->estimate.rms * 1e3},
+                            3);
+        }
+    }
+    wh_print_titled(printer, "Moves", grid);
+}
+
+/* Which lines were set aside. */
+static void print_aside(const wh_printer_t *printer, const wh_axis_moves_t *moves, const char *name) {
+    size_t named = 0;
+    for (size_t i = 0; i < moves->count && named < NAMED_LINES; ++i) {
+        if (moves->moves[i].is_set_aside) {
+            fprintf(printer->out, "%s%s%zu", named == 0 ? name : "", named == 0 ? " without line " : ", ",
+                    moves->lines[i]);
+            ++named;
+        }
+    }
+    if (moves->estimate.set_aside > named) {
+        fprintf(printer->out, " and %zu more", moves->estimate.set_aside - named);
+    }
+    fputs(named > 0 ? "\n" : "", printer->out);
+}
+
+static void print_remarks(const wh_printer_t *printer, const wh_move_table_t *table) {
+    const char *before = "\n";
+    for (size_t axis = 0; axis < WH_TABLE_AXES; ++axis) {
+        const wh_limits_estimate_t *limits = &table->axes[axis].estimate;
+        if (limits->set_aside > 0 || limits->reason[0] != '\0') {
+            fputs(before, printer->out);
+            before = "";
+        }
+        print_aside(printer, &table->axes[axis], wh_table_axis_name(axis));
+        if (limits->reason[0] != '\0') {
+            say(printer, wh_table_axis_name(axis), limits->status, limits->reason);
+        }
+    }
+}
+
+int wh_limits_print_table(const wh_move_table_t *table, FILE *out, const wh_style_t *style) {
+    const wh_printer_t printer = {NULL, style, out};
+    size_t count = 0;
+    for (size_t axis = 0; axis < WH_TABLE_AXES; ++axis) {
+        count += table->axes[axis].count;
+    }
+    print_heading(&printer, table->csv.path, count, "move");
+    print_limits(&printer, table);
+    print_moves(&printer, table);
+    print_remarks(&printer, table);
+    wh_print_title(&printer, "For a layout");
+    wh_limits_print_lua(table, out);
+    return finish(out);
+}

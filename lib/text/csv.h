@@ -1,0 +1,61 @@
+/* A table of comma-separated values (RFC 4180), read strictly: nothing is guessed, and what is not understood is
+ * refused by its file, line, column and value.
+ *
+ * The first line names the columns, in any order. Every other line has as many fields. Fields may stand in
+ * quotes, in which a comma is text and "" is a quote; a field ends on its line. Blanks around a field that has no
+ * quotes do not count. Lines end in LF or CRLF. Blank lines do not count, and a byte order mark of UTF-8 does not
+ * either. Numbers are decimal, with a point: no NaN, no infinity, no hex.
+ */
+#ifndef WH_TEXT_CSV_H
+#define WH_TEXT_CSV_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* The longest file; the most columns; the longest text, with its terminator. */
+#define WH_CSV_BYTES 16777216
+#define WH_CSV_COLUMNS 16
+#define WH_CSV_TEXT 64
+
+/* A column that the table may have. */
+typedef struct {
+    const char *name;
+    double least, most; /* of a number */
+    bool is_text;       /* 1 to WH_CSV_TEXT - 1 bytes of UTF-8, without control characters */
+    bool may_lack;      /* the column, or the number in a line: then it is NaN */
+} wh_csv_column_t;
+
+/* An open table; what is read last. Zero it to begin with. */
+typedef struct {
+    const char *path;
+    const wh_csv_column_t *columns;
+    size_t column_count;
+    bool has[WH_CSV_COLUMNS]; /* the file has the column */
+    size_t line;              /* of the fields below, from 1 */
+    double numbers[WH_CSV_COLUMNS];
+    const char *texts[WH_CSV_COLUMNS]; /* until wh_csv_close */
+    char message[512];                 /* what is wrong: "a.csv:3: x: 1,5 (expected ...)"; empty: nothing */
+    /* how far it is read */
+    char *bytes, *at;
+    size_t size, next_line, field_count;
+    size_t order[WH_CSV_COLUMNS]; /* the column of each field */
+} wh_csv_t;
+
+/* Opens the file, a regular one, and reads its first line. `path` and `columns` must outlive the table. False if
+ * it is refused: `message` says why. To be closed either way. Cost: linear in the file. */
+bool wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns, size_t count);
+
+/* Reads the next line that is not blank. False at the end, and if the line is refused: then `message` is not
+ * empty. */
+bool wh_csv_read(wh_csv_t *csv);
+
+/* Refuses what stands in a column of the line that was read last, for a reason that the caller knows: sets
+ * `message`. Returns false. */
+bool wh_csv_refuse(wh_csv_t *csv, size_t column, const char *expected);
+
+/* Likewise the file as a whole: "a.csv: why". */
+bool wh_csv_refuse_file(wh_csv_t *csv, const char *why);
+
+void wh_csv_close(wh_csv_t *csv);
+
+#endif

@@ -1,0 +1,288 @@
+/* Frames and limits from measurements with known answers; what they do not tell; tables that are refused. */
+#include "support/support.h"
+
+#include <unistd.h>
+
+#include "estimate/tables.h"
+#include "motion/profile.h"
+
+/* ------------------------------------------------------------------------------------------------- frames */
+
+static wh_frame_point_t at(double x, double y, double z, double known_x, double known_y, double known_z) {
+    const wh_frame_point_t point = {{x, y, z}, {known_x, known_y, known_z}};
+    return point;
+}
+
+static void a_quarter_turn_is_found_exactly(void **state) {
+    (void)state;
+    const wh_frame_point_t points[] = {at(700, 10, 900, 0, 0, 0), at(700, 110, 900, 100, 0, 0),
+                                       at(500, 10, 900, 0, 200, 0), at(700, 10, 930, 0, 0, 30)};
+    wh_frame_estimate_t frame;
+    assert_int_equal(wh_frame_estimate(points, 4, &frame), WH_OK);
+    assert_near(frame.base_from_station.r.x, 700, 1e-10);
+    assert_near(frame.base_from_station.r.y, 10, 1e-10);
+    assert_near(frame.base_from_station.r.z, 900, 1e-10);
+    assert_near(frame.rpy[0], 0, 1e-12);
+    assert_near(frame.rpy[1], 0, 1e-12);
+    assert_near(frame.rpy[2], 1.5707963267948966, 1e-12);
+    assert_true(frame.rms < 1e-10 && frame.at_sd[0] < 1e-9 && frame.rpy_sd[2] < 1e-11);
+    assert_string_equal(frame.reason, "");
+}
+
+static void a_point_that_is_off_shows_in_the_residuals(void **state) {
+    (void)state;
+    wh_frame_point_t points[9];
+    for (int i = 0; i < 9; ++i) {
+        const double x = 100 * (i % 3);
+        const double y = 100 * (double)(i / 3);
+        points[i] = at(x + 5, y, 7 + (i == 4 ? 0.9 : 0), x, y, 0);
+    }
+    wh_frame_estimate_t frame;
+    assert_int_equal(wh_frame_estimate(points, 9, &frame), WH_OK);
+    /* The middle: it lifts the plane by a ninth, and turns nothing. */
+    assert_near(frame.base_from_station.r.z, 7.1, 1e-9);
+    assert_near(frame.largest, 0.8, 1e-9);
+    assert_int_equal(frame.largest_index, 4);
+    assert_near(frame.rms, sqrt((0.64 + 8 * 0.01) / 9), 1e-9);
+}
+
+static void frames_that_points_do_not_tell_are_refused(void **state) {
+    (void)state;
+    wh_frame_estimate_t frame;
+    wh_frame_point_t points[] = {at(0, 0, 0, 0, 0, 0), at(100, 0, 0, 100, 0, 0), at(200, 0, 0, 200, 0, 0),
+                                 at(0, 50, 0, 0, 50, 0)};
+    assert_int_equal(wh_frame_estimate(NULL, 3, &frame), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_frame_estimate(points, 3, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_frame_estimate(points, 2, &frame), WH_STATUS_TOO_FEW_POINTS);
+    assert_string_equal(frame.reason, "2 of at least 3 points");
+    assert_int_equal(wh_frame_estimate(points, 3, &frame), WH_STATUS_NOT_DETERMINED);
+    assert_non_null(strstr(frame.reason, "on a line"));
+    assert_int_equal(wh_frame_estimate(points, 4, &frame), WH_OK);
+    points[3].touched.y = -50; /* x and y of the four are mirrored now, or z is */
+    assert_int_equal(wh_frame_estimate(points, 4, &frame), WH_OK);
+    assert_near(frame.rpy[0], 3.141592653589793, 1e-9);
+    points[3].touched.y = 500;
+    assert_int_equal(wh_frame_estimate(points, 4, &frame), WH_STATUS_NO_FIT);
+    points[3].touched.y = NAN;
+    assert_int_equal(wh_frame_estimate(points, 4, &frame), WH_STATUS_NO_FIT);
+    for (int i = 0; i < 4; ++i) {
+        points[i].known = wh_vec3(3, 4, 5);
+    }
+    points[3].touched.y = 50;
+    assert_int_not_equal(wh_frame_estimate(points, 4, &frame), WH_OK);
+}
+
+/* ------------------------------------------------------------------------------------------------- limits */
+
+static wh_timed_move_t moves[200];
+
+/* Moves over 1 to 100 % of the travel, with errors of 1 ms that alternate. */
+static void make_moves(const wh_limits_t *limits, double travel, double delay) {
+    for (int i = 0; i < 200; ++i) {
+        wh_profile_t profile;
+        const double distance = travel * (0.01 + 0.99 * i / 199);
+        assert_int_equal(wh_profile_plan(&profile, distance, limits), WH_OK);
+        const double error = (double)((i * 7) % 13 - 6) / 6 * 1.6e-3;
+        moves[i] = (wh_timed_move_t){distance, profile.duration + delay + error, false};
+    }
+}
+
+static void limits_are_found_and_pauses_are_set_aside(void **state) {
+    (void)state;
+    const wh_limits_t limits = {1000, 5000, 50000};
+    wh_limits_estimate_t found;
+    make_moves(&limits, 600, 0);
+    moves[17].seconds += 0.4;
+    moves[150].seconds += 3;
+    assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_OK);
+    assert_near(found.values[WH_LIMIT_SPEED].value, 1000, 10);
+    assert_near(found.values[WH_LIMIT_ACCELERATION].value, 5000, 50);
+    assert_near(found.values[WH_LIMIT_JERK].value, 50000, 500);
+    assert_int_equal(found.set_aside, 2);
+    assert_true(moves[17].is_set_aside && moves[150].is_set_aside && !moves[18].is_set_aside);
+    assert_string_equal(found.reason, "");
+    wh_profile_t profile;
+    assert_int_equal(wh_profile_plan(&profile, 123.4, &limits), WH_OK);
+    assert_near(wh_limits_seconds(&found, 123.4) / profile.duration, 1, 0.01);
+}
+
+static void short_moves_tell_no_speed_and_say_so(void **state) {
+    (void)state;
+    const wh_limits_t limits = {1000, 5000, 50000};
+    wh_limits_estimate_t found;
+    make_moves(&limits, 60, 0);
+    assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_OK);
+    assert_false(found.values[WH_LIMIT_SPEED].is_determined);
+    assert_true(found.at_least[WH_LIMIT_SPEED] > 100 && found.at_least[WH_LIMIT_SPEED] < 1000);
+    assert_non_null(strstr(found.reason, "speed: moves that reach it, longer than 60"));
+    assert_true(found.values[WH_LIMIT_JERK].is_determined);
+    assert_near(found.values[WH_LIMIT_JERK].value, 50000, 1500);
+}
+
+static void a_delay_is_refused_unless_it_is_asked_for(void **state) {
+    (void)state;
+    const wh_limits_t limits = {300, 1000, 10000};
+    wh_limits_estimate_t found;
+    make_moves(&limits, 180, 0.08);
+    assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_STATUS_NO_FIT);
+    assert_non_null(strstr(found.reason, "fit the delay as well"));
+    assert_int_equal(wh_limits_estimate(moves, 200, true, &found), WH_OK);
+    assert_true(found.values[WH_LIMIT_DELAY].is_determined);
+    assert_near(found.values[WH_LIMIT_DELAY].value, 0.08, 0.002);
+    assert_near(found.values[WH_LIMIT_SPEED].value, 300, 3);
+}
+
+static void limits_that_times_do_not_tell_are_refused(void **state) {
+    (void)state;
+    const wh_limits_t limits = {300, 1000, 10000};
+    wh_limits_estimate_t found;
+    make_moves(&limits, 180, 0);
+    assert_int_equal(wh_limits_estimate(NULL, 9, false, &found), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_limits_estimate(moves, 9, false, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_int_equal(wh_limits_estimate(moves, WH_LIMITS_MOST_MOVES + 1, false, &found),
+                     WH_STATUS_BAD_CAPACITY);
+    assert_int_equal(wh_limits_estimate(moves, 7, false, &found), WH_STATUS_TOO_FEW_POINTS);
+    moves[0].seconds = 0;
+    assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_STATUS_OUT_OF_RANGE);
+    moves[0].seconds = NAN;
+    assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_STATUS_OUT_OF_RANGE);
+    for (int i = 0; i < 200; ++i) { /* all of one length: one number is told, of three */
+        moves[i] = (wh_timed_move_t){50, 0.4 + 1e-3 * (i % 3), false};
+    }
+    assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_STATUS_NOT_DETERMINED);
+    for (int i = 0; i < 200; ++i) { /* the longer, the quicker */
+        moves[i] = (wh_timed_move_t){1 + i, 3 - 0.01 * i, false};
+    }
+    assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_STATUS_NO_FIT);
+    assert_true(found.reason[0] != '\0');
+}
+
+/* ------------------------------------------------------------------------------------------------- tables */
+
+static char path[WH_TEST_PATH];
+
+static void write_table(const char *text) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fputs(text, file) >= 0 && fclose(file) == 0, 1);
+}
+
+#define POINTS "station,touched_x,touched_y,touched_z,x,y,z\n"
+
+static void assert_refused(const char *text, const char *says) {
+    wh_point_table_t table = {.count = 0};
+    char message[700];
+    write_table(text);
+    assert_int_equal(wh_point_table_open(&table, path), WH_STATUS_BAD_TABLE);
+    (void)snprintf(message, sizeof message, "%s%s", path, says);
+    assert_string_equal(table.csv.message, message);
+    wh_point_table_close(&table);
+}
+
+static void tables_are_read_by_columns_quotes_and_lines(void **state) {
+    (void)state;
+    wh_point_table_t table = {.count = 0};
+    write_table("\xef\xbb\xbfz, x,y,station,touched_x,touched_y,touched_z\r\n"
+                "3,1,2,\"A \"\"1\"\", left\",+1.5e1, -.5 ,7\r\n\n \n"
+                "3,1,2,B,1,2,3\r\n4,1,2,\"A \"\"1\"\", left\",1,2,3");
+    assert_int_equal(wh_point_table_open(&table, path), WH_OK);
+    assert_int_equal(table.count, 2);
+    assert_string_equal(table.stations[0].name, "A \"1\", left");
+    assert_int_equal(table.stations[0].count, 2);
+    assert_int_equal(table.stations[0].lines[1], 6);
+    assert_near(table.stations[0].points[0].touched.x, 15, 0);
+    assert_near(table.stations[0].points[0].touched.y, -0.5, 0);
+    assert_near(table.stations[0].points[1].known.z, 4, 0);
+    assert_false(wh_point_table_estimate(&table));
+    assert_int_equal(table.stations[1].estimate.status, WH_STATUS_TOO_FEW_POINTS);
+    wh_point_table_close(&table);
+}
+
+static void tables_are_refused_by_line_column_and_value(void **state) {
+    (void)state;
+    assert_refused("", ": it is empty (expected a line that names the columns)");
+    assert_refused(POINTS, ": it has no line of measurements");
+    assert_refused("station,touched_x\n", ":1: no column is named touched_y");
+    assert_refused("station,x,x\n", ":1: x: this column is there twice");
+    assert_refused("station,touch_x\n",
+                   ":1: touch_x: no such column (expected station, touched_x, touched_y, "
+                   "touched_z, x, y, z; did you mean touched_x?)");
+    assert_refused(POINTS "A,1,2,3,4,5,6\nA,1,2,3,4,nan,6\n",
+                   ":3: y: nan (expected a number from -1000000 to 1000000)");
+    assert_refused(POINTS "A,1,2,3,4,5,inf\n", ":2: z: inf (expected a number from -1000000 to 1000000)");
+    assert_refused(POINTS "A,0x10,2,3,4,5,6\n",
+                   ":2: touched_x: 0x10 (expected a number from -1000000 to 1000000)");
+    assert_refused(POINTS "A,1,2,3,4,5,\n", ":2: z: nothing (expected a number from -1000000 to 1000000)");
+    assert_refused(POINTS "A,1,2,3,4,5,6e9\n", ":2: z: 6e9 (expected a number from -1000000 to 1000000)");
+    assert_refused(POINTS ",1,2,3,4,5,6\n",
+                   ":2: station: nothing (expected a name of 1 to 63 bytes of UTF-8)");
+    assert_refused(POINTS "A\x1b,1,2,3,4,5,6\n",
+                   ":2: station: A\\x1B (expected a name of 1 to 63 bytes of UTF-8)");
+    assert_refused(POINTS "A,1,2,3,4,5\n", ":2: 6 fields (expected 7, as in the first line)");
+    assert_refused(POINTS "\"A,1,2,3,4,5,6\n", ":2: a quote is not closed (expected a \" on this line)");
+    assert_refused(POINTS "\"A\"b,1,2,3,4,5,6\n",
+                   ":2: something stands behind a quote (expected a comma or the line's end)");
+}
+
+static void moves_are_refused_by_axis_way_and_time(void **state) {
+    (void)state;
+    static const struct {
+        const char *line, *says;
+    } bad[] = {{"R,1,2,3", ":3: axis: R (expected theta, r, z, yaw or chuck)"},
+               {"r,2,2,3", ":3: to: 2 (expected another place than `from`)"},
+               {"r,1,2,0", ":3: seconds: 0 (expected a number from 1e-06 to 100000)"}};
+    for (size_t i = 0; i < 3; ++i) {
+        wh_move_table_t table = {.csv = {.path = NULL}};
+        char text[100];
+        char message[300];
+        (void)snprintf(text, sizeof text, "axis,from,to,seconds\nchuck,1,2,3\n%s\n", bad[i].line);
+        write_table(text);
+        assert_int_equal(wh_move_table_open(&table, path), WH_STATUS_BAD_TABLE);
+        (void)snprintf(message, sizeof message, "%s%s", path, bad[i].says);
+        assert_string_equal(table.csv.message, message);
+        wh_move_table_close(&table);
+    }
+}
+
+static void a_move_table_keeps_axes_apart(void **state) {
+    (void)state;
+    wh_move_table_t table = {.csv = {.path = NULL}};
+    write_table("seconds,axis,from,to\n0.5,r,300,900\n0.4,theta,10,-20\n0.3,r,900,899\n");
+    assert_int_equal(wh_move_table_open(&table, path), WH_OK);
+    assert_int_equal(table.axes[WH_AXIS_R].count, 2);
+    assert_int_equal(table.axes[WH_AXIS_THETA].count, 1);
+    assert_int_equal(table.axes[WH_AXIS_Z].count, 0);
+    assert_near(table.axes[WH_AXIS_THETA].moves[0].distance, 30, 0);
+    assert_int_equal(table.axes[WH_AXIS_R].lines[1], 4);
+    assert_false(wh_move_table_estimate(&table, false));
+    assert_int_equal(table.axes[WH_AXIS_R].estimate.status, WH_STATUS_TOO_FEW_POINTS);
+    assert_string_equal(table.axes[WH_AXIS_Z].estimate.reason, "");
+    wh_move_table_close(&table);
+}
+
+static int make_path(void **state) {
+    (void)state;
+    return close(mkstemp(wh_test_path(path, "estimate")));
+}
+
+static int remove_path(void **state) {
+    (void)state;
+    return remove(path);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_quarter_turn_is_found_exactly),
+        cmocka_unit_test(a_point_that_is_off_shows_in_the_residuals),
+        cmocka_unit_test(frames_that_points_do_not_tell_are_refused),
+        cmocka_unit_test(limits_are_found_and_pauses_are_set_aside),
+        cmocka_unit_test(short_moves_tell_no_speed_and_say_so),
+        cmocka_unit_test(a_delay_is_refused_unless_it_is_asked_for),
+        cmocka_unit_test(limits_that_times_do_not_tell_are_refused),
+        cmocka_unit_test(tables_are_read_by_columns_quotes_and_lines),
+        cmocka_unit_test(tables_are_refused_by_line_column_and_value),
+        cmocka_unit_test(moves_are_refused_by_axis_way_and_time),
+        cmocka_unit_test(a_move_table_keeps_axes_apart),
+    };
+    return cmocka_run_group_tests(tests, make_path, remove_path);
+}
