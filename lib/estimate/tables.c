@@ -7,7 +7,7 @@
 #include "../text/array.h"
 
 /* Of places and distances; beyond, a double has no 1e-9 mm left. */
-#define MOST_MM 1e6
+#define LARGEST 1e6
 #define MOST_SECONDS 1e5
 
 /* ------------------------------------------------------------------------------------------------- points */
@@ -16,12 +16,12 @@ enum { STATION, TOUCHED_X, TOUCHED_Y, TOUCHED_Z, KNOWN_X, KNOWN_Y, KNOWN_Z, POIN
 
 static const wh_csv_column_t point_columns[POINT_COLUMNS] = {
     [STATION] = {"station", 0, 0, true, false},
-    [TOUCHED_X] = {"touched_x", -MOST_MM, MOST_MM, false, false},
-    [TOUCHED_Y] = {"touched_y", -MOST_MM, MOST_MM, false, false},
-    [TOUCHED_Z] = {"touched_z", -MOST_MM, MOST_MM, false, false},
-    [KNOWN_X] = {"x", -MOST_MM, MOST_MM, false, false},
-    [KNOWN_Y] = {"y", -MOST_MM, MOST_MM, false, false},
-    [KNOWN_Z] = {"z", -MOST_MM, MOST_MM, false, false},
+    [TOUCHED_X] = {"touched_x", -LARGEST, LARGEST, false, false},
+    [TOUCHED_Y] = {"touched_y", -LARGEST, LARGEST, false, false},
+    [TOUCHED_Z] = {"touched_z", -LARGEST, LARGEST, false, false},
+    [KNOWN_X] = {"x", -LARGEST, LARGEST, false, false},
+    [KNOWN_Y] = {"y", -LARGEST, LARGEST, false, false},
+    [KNOWN_Z] = {"z", -LARGEST, LARGEST, false, false},
 };
 
 /* The station of a name, a new one if there is none; null if there are too many. */
@@ -99,8 +99,8 @@ enum { AXIS, FROM, TO, SECONDS, MOVE_COLUMNS };
 
 static const wh_csv_column_t move_columns[MOVE_COLUMNS] = {
     [AXIS] = {"axis", 0, 0, true, false},
-    [FROM] = {"from", -MOST_MM, MOST_MM, false, false},
-    [TO] = {"to", -MOST_MM, MOST_MM, false, false},
+    [FROM] = {"from", -LARGEST, LARGEST, false, false},
+    [TO] = {"to", -LARGEST, LARGEST, false, false},
     [SECONDS] = {"seconds", 1e-6, MOST_SECONDS, false, false},
 };
 
