@@ -161,8 +161,8 @@ static void print_aside(const wh_printer_t *printer, const wh_axis_moves_t *move
     size_t named = 0;
     for (size_t i = 0; i < moves->count && named < NAMED_LINES; ++i) {
         if (moves->moves[i].is_set_aside) {
-            fprintf(printer->out, "%s%s%zu", named == 0 ? name : "", named == 0 ? " without line " : ", ",
-                    moves->lines[i]);
+            fprintf(printer->out, "%s%s%zu", named == 0 ? name : "",
+                    named == 0 ? ", set aside: lines " : ", ", moves->lines[i]);
             ++named;
         }
     }

@@ -63,7 +63,7 @@ static void frames_that_points_do_not_tell_are_refused(void **state) {
     assert_near(frame.rpy[0], 3.141592653589793, 1e-9);
     points[3].touched.y = 500;
     assert_int_equal(wh_frame_estimate(points, 4, &frame), WH_STATUS_NO_FIT);
-    points[3].touched.y = NAN;
+    points[3].touched.y = (double)NAN;
     assert_int_equal(wh_frame_estimate(points, 4, &frame), WH_STATUS_NO_FIT);
     for (int i = 0; i < 4; ++i) {
         points[i].known = wh_vec3(3, 4, 5);
@@ -144,7 +144,7 @@ static void limits_that_times_do_not_tell_are_refused(void **state) {
     assert_int_equal(wh_limits_estimate(moves, 7, false, &found), WH_STATUS_TOO_FEW_POINTS);
     moves[0].seconds = 0;
     assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_STATUS_OUT_OF_RANGE);
-    moves[0].seconds = NAN;
+    moves[0].seconds = (double)NAN;
     assert_int_equal(wh_limits_estimate(moves, 200, false, &found), WH_STATUS_OUT_OF_RANGE);
     for (int i = 0; i < 200; ++i) { /* all of one length: one number is told, of three */
         moves[i] = (wh_timed_move_t){50, 0.4 + 1e-3 * (i % 3), false};
