@@ -106,12 +106,50 @@ static void push_list(lua_State *L, const json_t *list) {
     }
 }
 
+/* Of a table whose field is nil: upvalue 1 has the fields that are nil rightly. A name that is none of
+ * them is an error: it would make many an expectation true. */
+static int find_absent(lua_State *L) {
+    lua_pushvalue(L, 2);
+    if (lua_rawget(L, lua_upvalueindex(1)) == LUA_TNIL) {
+        return luaL_error(L, "%s: there is no such field", luaL_tolstring(L, 2, NULL));
+    }
+    lua_pushnil(L);
+    return 1;
+}
+
+/* The table below the one at the top has those fields alone that it has now, and those that are the keys
+ * of the one at the top, which is taken off. */
+static void make_strict(lua_State *L) {
+    lua_pushcclosure(L, find_absent, 1);
+    lua_createtable(L, 0, 1);
+    lua_insert(L, -2);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
+}
+
+/* Puts a name into the set at the top. */
+static void set_name(lua_State *L, const char *name) {
+    lua_pushboolean(L, true);
+    lua_setfield(L, -2, name);
+}
+
+/* Events have fields by their kind, and are not strict. */
 static void push_object(lua_State *L, json_t *object) {
+    const bool is_event = json_object_get(object, "utime") && json_object_get(object, "kind");
+    lua_newtable(L);
     lua_newtable(L);
     for (void *member = json_object_iter(object); member; member = json_object_iter_next(object, member)) {
-        lua_pushstring(L, json_object_iter_key(member));
-        push(L, json_object_iter_value(member));
-        lua_rawset(L, -3);
+        if (json_is_null(json_object_iter_value(member))) {
+            set_name(L, json_object_iter_key(member));
+        } else {
+            push(L, json_object_iter_value(member));
+            lua_setfield(L, -3, json_object_iter_key(member));
+        }
+    }
+    if (is_event) {
+        lua_pop(L, 1);
+    } else {
+        make_strict(L);
     }
 }
 
@@ -170,15 +208,18 @@ static int64_t slice_at(lua_State *L, const checked_t *checked) {
     return (int64_t)slice;
 }
 
-static void push_field(lua_State *L, const wh_layout_t *layout, wh_slice_field_t kind, double value) {
-    const char *word = wh_slice_field_word(layout, kind, value);
+/* Sets a field of the table below the one at the top, which has the fields that are nil. */
+static void set_field(lua_State *L, const char *name, const char *word, double value) {
     if (isnan(value) || (word && word[0] == '\0')) {
-        lua_pushnil(L);
-    } else if (word) {
+        set_name(L, name);
+        return;
+    }
+    if (word) {
         lua_pushstring(L, word);
     } else {
         lua_pushnumber(L, value);
     }
+    lua_setfield(L, -3, name);
 }
 
 /* at(seconds): the slice that ends then, as a table from the names of its fields to their values. */
@@ -191,19 +232,43 @@ static int at(lua_State *L) {
                           lua_tonumber(L, 1), (double)(checked->slices[0].seq * layout->slice_us) / 1e6);
     }
     lua_newtable(L);
+    lua_newtable(L);
     for (size_t i = 0; i < wh_slice_field_count(layout); ++i) {
         char name[WH_SLICE_FIELD_NAME];
         const wh_slice_field_t kind = wh_slice_field_name(layout, i, name);
-        push_field(L, layout, kind, values[i]);
-        lua_setfield(L, -2, name);
+        set_field(L, name, wh_slice_field_word(layout, kind, values[i]), values[i]);
     }
+    make_strict(L);
     return 1;
+}
+
+/* { kind = , wafer = , gripper = }: of each the names that there are, as keys. It is called `events`
+ * until the function of that name has taken it. */
+static void push_names(lua_State *L, const wh_layout_t *layout) {
+    lua_createtable(L, 0, 3);
+    lua_newtable(L);
+    for (size_t kind = 0; kind < WH_EVENT_KINDS; ++kind) {
+        set_name(L, wh_event_name((wh_event_kind_t)kind));
+    }
+    lua_setfield(L, -2, "kind");
+    lua_newtable(L);
+    for (size_t w = 0; w < layout->wafer_count; ++w) {
+        set_name(L, layout->wafers[w].name);
+    }
+    lua_setfield(L, -2, "wafer");
+    lua_newtable(L);
+    for (size_t g = 0; g < layout->machine.gripper_count; ++g) {
+        set_name(L, layout->grippers[g].name);
+    }
+    lua_setfield(L, -2, "gripper");
+    lua_setglobal(L, "events");
 }
 
 /* In the sandbox's protection: memory may run out. */
 static int set_up(lua_State *L) {
     checked_t *checked = lua_touserdata(L, 1);
     const luaL_Reg functions[] = {{"expect", expect}, {"at", at}};
+    push_names(L, checked->run.cell.layout);
     lua_pushglobaltable(L);
     push(L, checked->result);
     lua_setfield(L, -2, "run");
@@ -220,7 +285,7 @@ static const char events_text[] =
     "local known = { kind = 'string', wafer = 'string', gripper = 'string', from = 'number', to = 'number' "
     "}\n"
     "local insert, next, type, error, tostring = table.insert, next, type, error, tostring\n"
-    "local list = run.events\n"
+    "local list, names, rawget = run.events, events, rawget\n"
     "function events(wanted)\n"
     "  if wanted ~= nil and type(wanted) ~= 'table' then\n"
     "    error('events: ' .. type(wanted) .. ' (expected a table)', 2)\n"
@@ -230,13 +295,19 @@ static const char events_text[] =
     "      error('events: ' .. tostring(name) .. ' (expected kind, wafer and gripper as texts, from and to "
     "as numbers)', 2)\n"
     "    end\n"
+    "    if names[name] and not names[name][value] then\n"
+    "      error('events: ' .. name .. ': ' .. value .. ' (there is none of that name)', 2)\n"
+    "    end\n"
     "  end\n"
     "  local found, w = {}, wanted or {}\n"
+    "  if w.from and w.to and w.from > w.to then\n"
+    "    error('events: from ' .. w.from .. ' to ' .. w.to .. ' (expected one that is not before)', 2)\n"
+    "  end\n"
     "  for i = 1, #list do\n"
     "    local event = list[i]\n"
     "    local t = event.utime / 1e6\n"
-    "    if (w.kind or event.kind) == event.kind and (w.wafer == nil or w.wafer == event.wafer)\n"
-    "      and (w.gripper == nil or w.gripper == event.gripper)\n"
+    "    if (w.kind or event.kind) == event.kind and (w.wafer == nil or w.wafer == rawget(event, 'wafer'))\n"
+    "      and (w.gripper == nil or w.gripper == rawget(event, 'gripper'))\n"
     "      and t >= (w.from or t) and t <= (w.to or t) then\n"
     "      insert(found, event)\n"
     "    end\n"

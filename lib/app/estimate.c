@@ -34,7 +34,7 @@ static const wh_option_t limits_options[] = {JSON, DELAY, {0}};
 static const wh_option_table_t frame_tables[] = {{frame_options, 0, NULL, NULL}, {0}};
 static const wh_option_table_t limits_tables[] = {{limits_options, 0, NULL, NULL}, {0}};
 
-/* ------------------------------------------------------------------------------------------- what is fitted */
+/* --------------------------------------------------------------------------------------- what is fitted */
 
 static int conclude(const wh_csv_t *csv, wh_status_t status) {
     fprintf(stderr, "%s: error %d %s\n", csv->message, (int)status, wh_status_name(status));
@@ -79,7 +79,7 @@ static int fit_limits(const arguments_t *arguments) {
     return ends;
 }
 
-/* ------------------------------------------------------------------------------------------------ its name */
+/* --------------------------------------------------------------------------------------------- its name */
 
 static void refuse_kind(const void *filled, struct argp_state *state) {
     const arguments_t *arguments = filled;

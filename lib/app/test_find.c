@@ -49,12 +49,10 @@ static bool is_lua(const char *name) {
 
 static char *join(const char *folder, const char *name) {
     const size_t length = strlen(folder);
-    char *path = wh_array_new(length + strlen(name) + 2, 1);
-    memcpy(path, folder, length);
-    if (length > 0 && folder[length - 1] != '/') {
-        strcat(path, "/");
-    }
-    return strcat(path, name);
+    const size_t room = length + strlen(name) + 2;
+    char *path = wh_array_new(room, 1);
+    (void)snprintf(path, room, "%s%s%s", folder, length > 0 && folder[length - 1] != '/' ? "/" : "", name);
+    return path;
 }
 
 static bool search(wh_test_found_t *found, const char *folder, int depth);

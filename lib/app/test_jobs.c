@@ -49,8 +49,13 @@ static bool find_unmet(const wh_record_t *record, told_t *told) {
     for (size_t i = 0; i < record->expectation_count; ++i) {
         const wh_expectation_record_t *expectation = &record->expectations[i];
         if (!expectation->ok) {
-            (void)snprintf(told->reason, sizeof told->reason, "line %d: %.1000s", expectation->line,
-                           expectation->text ? expectation->text : "not met");
+            const char *text = expectation->text ? expectation->text : "not met";
+            if (expectation->line > 0) {
+                (void)snprintf(told->reason, sizeof told->reason, "line %d: %.1000s", expectation->line,
+                               text);
+            } else {
+                (void)snprintf(told->reason, sizeof told->reason, "%.1000s", text);
+            }
             return true;
         }
     }
@@ -87,7 +92,7 @@ static void judge(const wh_script_run_t *run, wh_script_run_outcome_t outcome, b
     } else if (outcome == WH_RUN_FAILED) {
         told->verdict = WH_TEST_FAILED;
         find_reason(record, told);
-    } else if (wh_record_moved_nothing(record) && record->expectation_count == 0) {
+    } else if (record->slices == 0 && record->expectation_count == 0) {
         told->verdict = WH_TEST_FAILED;
         (void)snprintf(told->reason, sizeof told->reason, "it moves nothing and expects nothing");
     }
@@ -134,6 +139,9 @@ static bool begin(crew_t *crew, player_t *player) {
     FILE *output = tmpfile();
     if (!output || pipe(ends) != 0) {
         perror("waferhand test: no room for what a script prints");
+        if (output) {
+            (void)fclose(output);
+        }
         return false;
     }
     (void)fflush(stdout);
@@ -144,7 +152,8 @@ static bool begin(crew_t *crew, player_t *player) {
         settle(crew, &crew->jobs[crew->begun], ends[1], output, parent);
     }
     (void)close(ends[1]);
-    *player = (player_t){pid, crew->begun, ends[0], output, wh_clock_seconds(), false};
+    *player = (player_t){.pid = pid, .job = crew->begun, .answer = ends[0], .begin = wh_clock_seconds()};
+    player->output = output;
     if (pid < 0) {
         perror("waferhand test: no process");
         (void)close(ends[0]);

@@ -1,13 +1,12 @@
-/* A station's frame from points: where the station stands in base, from points that were touched there and
- * whose places on the station are known.
+/* A station's frame from points: where the station stands in base, from points that were touched there
+ * and whose places on the station are known.
  *
- * The frame is the rotation and shift that bring the known points nearest to the touched ones, in the sense of least
- * squares: by the singular value decomposition of their products (W. Kabsch, 1976; S. Umeyama, 1991, whose sign
- * keeps it from mirroring). Every point counts alike. Standard deviations come from the residuals, of
- * which there are 3 count - 6 more than unknowns: of three points they are rough.
+ * The frame is the rotation and shift that bring the known points nearest to the touched ones, in the
+ * sense of least squares: by the singular value decomposition of their products (W. Kabsch, 1976; S.
+ * Umeyama, 1991, whose sign keeps it from mirroring). Every point counts alike. Standard deviations come
+ * from the residuals, of which there are 3 count - 6 more than unknowns: of three points they are rough.
  *
- * Lengths in mm, angles in rad.
- */
+ * Lengths in mm, angles in rad. */
 #ifndef WH_ESTIMATE_FRAME_H
 #define WH_ESTIMATE_FRAME_H
 
@@ -19,12 +18,12 @@ WH_HEADER_BEGIN
 /* Points needed at least. */
 #define WH_FRAME_POINTS 3
 
-/* A frame is refused if the rms of its residuals is more than this part of the known points' own rms distance from
- * their centre: then points were mixed up, or units. */
+/* A frame is refused if the rms of its residuals is more than this part of the known points' own rms
+ * distance from their centre: then points were mixed up, or units. */
 #define WH_FRAME_MISFIT 0.05
 
-/* The points lie on a line, as far as anybody can tell, if their rms distance from it is below this many rms of the
- * residuals, or below this part of their rms distance along it. */
+/* The points lie on a line, as far as anybody can tell, if their rms distance from it is below this many
+ * rms of the residuals, or below this part of their rms distance along it. */
 #define WH_FRAME_SPREAD_RMS 10
 #define WH_FRAME_SPREAD_PART 1e-3
 
@@ -47,8 +46,8 @@ typedef struct {
 /* Fits the frame. `points` and `estimate` must not be null; the points' numbers must be finite. Returns
  *   WH_STATUS_NULL_ARGUMENT   nothing is written then
  *   WH_STATUS_TOO_FEW_POINTS  fewer than WH_FRAME_POINTS
- *   WH_STATUS_NOT_DETERMINED  the known points lie on a line, or at one place; or the station is turned about y by
- *                             90 degrees, where rpy is not unique
+ *   WH_STATUS_NOT_DETERMINED  the known points lie on a line, or at one place; or the station is turned
+ *                             about y by 90 degrees, where rpy is not unique
  *   WH_STATUS_NO_FIT          see WH_FRAME_MISFIT, or a number is not finite
  * Cost: linear in the points. */
 wh_status_t wh_frame_estimate(const wh_frame_point_t *points, size_t count, wh_frame_estimate_t *estimate);

@@ -1,21 +1,22 @@
-/* An axis's limits of speed, acceleration and jerk from the times that its moves took, as a field log has them.
+/* An axis's limits of speed, acceleration and jerk from the times that its moves took, as a field log has
+ * them.
  *
- * Each time is taken for that of the jerk-limited profile of motion/profile.h over the move's distance. The three
- * limits that come nearest to all times, in the sense of least squares, are searched for from many starts, with robust
- * weights (Tukey's biweight, 4.685 deviations by the median). What is then farther off than 4.685 standard deviations,
- * such as a move with a pause in it, is set aside; the others count alike.
+ * Each time is taken for that of the jerk-limited profile of motion/profile.h over the move's distance.
+ * The three limits that come nearest to all times, in the sense of least squares, are searched for from
+ * many starts, with robust weights (Tukey's biweight, 4.685 deviations by the median). What is then
+ * farther off than 4.685 standard deviations, such as a move with a pause in it, is set aside; the others
+ * count alike.
  *
- * A limit is determined only if the moves tell it: no profile without this limit fits them (the squares would grow by
- * more than 25 of their variance), and its standard deviation is below 5 %. For one that is not, the estimate
- * says how large it is at least, and which moves are missing. An axis that never reaches its acceleration has one all
- * the same in a layout: any from "at least" on gives the same times.
+ * A limit is determined only if the moves tell it: no profile without this limit fits them (the squares
+ * would grow by more than 25 of their variance), and its standard deviation is below 5 %. For one that is
+ * not, the estimate says how large it is at least, and which moves are missing. An axis that never
+ * reaches its acceleration has one all the same in a layout: any from "at least" on gives the same times.
  *
- * A delay that is the same in each time (of the line, until the axis has settled) looks much like a low jerk. It
- * is fitted only if asked for. If it is not, and the times have one, they are refused rather than fitted
- * wrongly; so are times that depend on the distance in another way than any profile's.
+ * A delay that is the same in each time (of the line, until the axis has settled) looks much like a low
+ * jerk. It is fitted only if asked for. If it is not, and the times have one, they are refused rather
+ * than fitted wrongly; so are times that depend on the distance in another way than any profile's.
  *
- * Units: those of the distances (mm, rad or degrees), and seconds.
- */
+ * Units: those of the distances (mm, rad or degrees), and seconds. */
 #ifndef WH_ESTIMATE_LIMITS_H
 #define WH_ESTIMATE_LIMITS_H
 
@@ -64,8 +65,8 @@ typedef struct {
 wh_status_t wh_limits_estimate(wh_timed_move_t *moves, size_t count, bool with_delay,
                                wh_limits_estimate_t *estimate);
 
-/* The time that a move over this distance takes by what was fitted: within the distances of the moves that were used
- * it is told even if not all limits are. NaN unless the estimate is WH_OK. */
+/* The time that a move over this distance takes by what was fitted: within the distances of the moves
+ * that were used it is told even if not all limits are. NaN unless the estimate is WH_OK. */
 double wh_limits_seconds(const wh_limits_estimate_t *estimate, double distance);
 
 WH_HEADER_END

@@ -1,8 +1,8 @@
-/* Tables of measurements, read from files of comma-separated values: points touched at stations, and timed moves of axes.
+/* Tables of measurements, read from files of comma-separated values: points touched at stations, and
+ * timed moves of axes.
  *
- * What is not understood is refused with file, line, column, value and what was expected (text/csv.h). Host code:
- * ends the program if out of memory.
- */
+ * What is not understood is refused with file, line, column, value and what was expected (text/csv.h).
+ * Host code: ends the program if out of memory. */
 #ifndef WH_ESTIMATE_TABLES_H
 #define WH_ESTIMATE_TABLES_H
 
@@ -60,9 +60,9 @@ typedef struct {
     wh_axis_moves_t axes[WH_TABLE_AXES];
 } wh_move_table_t;
 
-/* Reads a table with the columns axis (theta, r, z, yaw or chuck), from, to (mm; degrees of theta, yaw and chuck)
- * and seconds, from the command to the end of the move. WH_STATUS_BAD_TABLE if it is refused: then csv.message
- * says why. To be closed either way. */
+/* Reads a table with the columns axis (theta, r, z, yaw or chuck), from, to (mm; degrees of theta, yaw
+ * and chuck) and seconds, from the command to the end of the move. WH_STATUS_BAD_TABLE if it is refused:
+ * then csv.message says why. To be closed either way. */
 wh_status_t wh_move_table_open(wh_move_table_t *table, const char *path);
 
 /* Fits the limits of each axis that has moves, and a delay if asked to. True if all are determined. */

@@ -7,15 +7,16 @@
 #include "../estimate/tables.h"
 #include "../text/style.h"
 
-/* Each prints what was estimated from a table that was opened, and returns 0, or -1 if `out` does not take it.
- * JSON is one object; its numbers, read back, are the same doubles. Lengths in mm, angles in degrees. */
+/* Each prints what was estimated from a table that was opened, and returns 0, or -1 if `out` does not
+ * take it. JSON is one object; its numbers, read back, are the same doubles. Lengths in mm, angles in
+ * degrees. */
 int wh_frames_print_table(const wh_point_table_t *table, FILE *out, const wh_style_t *style);
 int wh_frames_print_json(const wh_point_table_t *table, FILE *out);
 int wh_limits_print_table(const wh_move_table_t *table, FILE *out, const wh_style_t *style);
 int wh_limits_print_json(const wh_move_table_t *table, FILE *out);
 
-/* The fields of a layout, in Lua: what is determined, with as many digits as its standard deviation leaves. What is
- * not is a comment. */
+/* The fields of a layout, in Lua: what is determined, with as many digits as its standard deviation
+ * leaves. What is not is a comment. */
 void wh_frames_print_lua(const wh_point_table_t *table, FILE *out);
 void wh_limits_print_lua(const wh_move_table_t *table, FILE *out);
 

@@ -41,7 +41,7 @@ bool wh_csv_refuse(wh_csv_t *csv, size_t column, const char *expected) {
     return refuse_value(csv, column, text, expected);
 }
 
-/* ------------------------------------------------------------------------------------------------ the file */
+/* --------------------------------------------------------------------------------------------- the file */
 
 bool wh_csv_refuse_file(wh_csv_t *csv, const char *why) {
     (void)snprintf(csv->message, sizeof csv->message, "%.300s: %s", csv->path, why);
@@ -78,7 +78,7 @@ static bool load(wh_csv_t *csv) {
     return true;
 }
 
-/* -------------------------------------------------------------------------------------------------- fields */
+/* ----------------------------------------------------------------------------------------------- fields */
 
 static bool is_blank(char byte) {
     return byte == ' ' || byte == '\t';
@@ -158,7 +158,7 @@ static bool split_line(wh_csv_t *csv, char *fields[WH_CSV_COLUMNS], size_t *coun
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------- columns */
+/* ---------------------------------------------------------------------------------------------- columns */
 
 static bool refuse_name(wh_csv_t *csv, const char *name) {
     const char *names[WH_CSV_COLUMNS];
@@ -215,7 +215,7 @@ bool wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns
     return true;
 }
 
-/* ---------------------------------------------------------------------------------------------------- rows */
+/* ------------------------------------------------------------------------------------------------- rows */
 
 static bool take_number(wh_csv_t *csv, size_t column, const char *text) {
     const wh_csv_column_t *of = &csv->columns[column];

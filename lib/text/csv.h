@@ -1,11 +1,10 @@
-/* A table of comma-separated values (RFC 4180), read strictly: nothing is guessed, and what is not understood is
- * refused by its file, line, column and value.
+/* A table of comma-separated values (RFC 4180), read strictly: nothing is guessed, and what is not
+ * understood is refused by its file, line, column and value.
  *
- * The first line names the columns, in any order. Every other line has as many fields. Fields may stand in
- * quotes, in which a comma is text and "" is a quote; a field ends on its line. Blanks around a field that has no
- * quotes do not count. Lines end in LF or CRLF. Blank lines do not count, and a byte order mark of UTF-8 does not
- * either. Numbers are decimal, with a point: no NaN, no infinity, no hex.
- */
+ * The first line names the columns, in any order. Every other line has as many fields. Fields may stand
+ * in quotes, in which a comma is text and "" is a quote; a field ends on its line. Blanks around a field
+ * that has no quotes do not count. Lines end in LF or CRLF. Blank lines do not count, and a byte order
+ * mark of UTF-8 does not either. Numbers are decimal, with a point: no NaN, no infinity, no hex. */
 #ifndef WH_TEXT_CSV_H
 #define WH_TEXT_CSV_H
 
@@ -41,8 +40,8 @@ typedef struct {
     size_t order[WH_CSV_COLUMNS]; /* the column of each field */
 } wh_csv_t;
 
-/* Opens the file, a regular one, and reads its first line. `path` and `columns` must outlive the table. False if
- * it is refused: `message` says why. To be closed either way. Cost: linear in the file. */
+/* Opens the file, a regular one, and reads its first line. `path` and `columns` must outlive the table.
+ * False if it is refused: `message` says why. To be closed either way. Cost: linear in the file. */
 bool wh_csv_open(wh_csv_t *csv, const char *path, const wh_csv_column_t *columns, size_t count);
 
 /* Reads the next line that is not blank. False at the end, and if the line is refused: then `message` is not

@@ -50,13 +50,14 @@ static void tell(comparison_t *all, const json_t *a, const json_t *b, double tim
     all->listener(all->user, &difference);
 }
 
+/* Zeros of both signs are two numbers; NaN is none of JSON's. */
 static bool is_same_number(const json_t *a, const json_t *b) {
     const double first = json_number_value(a);
     const double second = json_number_value(b);
     if (json_is_integer(a) && json_is_integer(b)) {
         return json_integer_value(a) == json_integer_value(b);
     }
-    return memcmp(&first, &second, sizeof first) == 0;
+    return !(first < second) && !(first > second) && !signbit(first) == !signbit(second);
 }
 
 static bool is_aside(const comparison_t *all, const char *name) {

@@ -1,5 +1,5 @@
-/* WHERE's answer is a list of name=value, one wafer after the other with "; " between them, as tokens.lua writes
- * it. */
+/* WHERE's answer is a list of name=value, one wafer after the other with "; " between them, as tokens.lua
+ * writes it. */
 #include "answer.h"
 
 #include <stdlib.h>
@@ -24,11 +24,15 @@ static bool is_wafer(const char *text) {
     return strncmp(text, wafer, sizeof wafer - 1) == 0;
 }
 
+static bool ends_value(char letter, bool quoted) {
+    return letter == '\0' || (quoted ? letter == '"' : letter == ' ' || letter == ';');
+}
+
 /* Copies a value without its quotes; returns what comes after it. */
 static const char *read_value(const char *at, char *value) {
     const bool quoted = *at == '"';
     at += quoted ? 1 : 0;
-    while (*at != '\0' && (quoted ? *at != '"' : *at != ' ' && *at != ';')) {
+    while (!ends_value(*at, quoted)) {
         at += quoted && *at == '\\' && at[1] != '\0' ? 1 : 0;
         *value++ = *at++;
     }
@@ -83,7 +87,8 @@ static const char *put_row(wh_grid_t *grid, const char *at, char *value, char *s
     return at;
 }
 
-/* True if the first row goes on with the wafer's holder: no other answer does. `value` has room for the answer. */
+/* True if the first row goes on with the wafer's holder: no other answer does. `value` has room for the
+ * answer. */
 static bool is_where(const char *at, char *value) {
     static const char holder[] = " holder=";
     return is_wafer(at) && strncmp(read_value(strchr(at, '=') + 1, value), holder, sizeof holder - 1) == 0;
