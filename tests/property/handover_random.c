@@ -13,26 +13,43 @@
 /* The margin to eps_projz that a hand-over leaves at least, mm. */
 #define LEAST_MARGIN 0.2
 
-/* The script that fetches and puts, beside no layout of its own. */
-static char script[WH_TEST_PATH];
+/* A chuck at a height and with a valve order that are drawn. */
+static const char handover_layout[] =
+    "return {\n"
+    "  grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } },\n"
+    "  stations = {\n"
+    "    B = { at = { 0, 700, params.slot_height }, rpy = { 0, 0, 90 } },\n"
+    "    P = { kind = 'prealigner', at = { -600, 0, params.chuck_height }, rpy = { 0, 0, 180 },\n"
+    "          handover = params.handover },\n"
+    "  },\n"
+    "  wafers = { { name = 'Wafer', station = 'B', slot = 1, dx = params.dx, dy = params.dy } },\n"
+    "}\n";
+
+/* The layout, and the script that fetches and puts. */
+static char layout_path[WH_TEST_PATH], script[WH_TEST_PATH];
+
+static FILE *create(char path[WH_TEST_PATH]) {
+    FILE *file = fdopen(mkstemp(wh_test_path(path, "handover")), "w");
+    assert_non_null(file);
+    return file;
+}
 
 static int write_script(void **state) {
     (void)state;
-    char folder[4096];
-    assert_non_null(getcwd(folder, sizeof folder));
-    FILE *file = fdopen(mkstemp(wh_test_path(script, "handover")), "w");
-    assert_non_null(file);
-    fprintf(file,
-            "cell \"%s/tests/end_to_end/data/handover_layout.lua\"\n"
-            "get(\"B\", 1) put(\"P\", 1)\n"
-            "expect(holder(\"Wafer\") == \"PA\", \"the chuck holds the wafer\")\n",
-            folder);
-    return fclose(file);
+    FILE *layout = create(layout_path);
+    FILE *lines = create(script);
+    fputs(handover_layout, layout);
+    fprintf(lines,
+            "cell '%s'\n"
+            "get('B', 1) put('P', 1)\n"
+            "expect(holder('Wafer') == 'PA', 'the chuck holds the wafer')\n",
+            layout_path);
+    return fclose(layout) + fclose(lines);
 }
 
 static int remove_script(void **state) {
     (void)state;
-    return unlink(script);
+    return unlink(layout_path) + unlink(script);
 }
 
 static double play(const char *handover) {
@@ -115,12 +132,6 @@ static char reach_script_path[WH_TEST_PATH];
 static double numbers[NUMBERS];
 static char number_texts[NUMBERS][60];
 static const char *number_parameters[NUMBERS];
-
-static FILE *create(char *path) {
-    FILE *file = fdopen(mkstemp(wh_test_path(path, "handover")), "w");
-    assert_non_null(file);
-    return file;
-}
 
 static void write_files(void) {
     FILE *layout = create(reach_path);

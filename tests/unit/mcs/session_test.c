@@ -583,8 +583,17 @@ static void completion(void **state) {
 static void a_layout_that_spoils_the_strings(void **state) {
     (void)state;
     static wh_session_t spoilt;
-    const wh_session_options_t options = {.layout = "tests/end_to_end/data/odd_strings_layout.lua",
-                                          .limits = {.print_to = stderr}};
+    char path[WH_TEST_PATH];
+    const wh_session_options_t options = {.layout = path, .limits = {.print_to = stderr}};
+    FILE *layout = fdopen(mkstemp(wh_test_path(path, "odd_strings")), "w");
+    assert_non_null(layout);
+    fputs("local odd = {}\n"
+          "setmetatable(odd, { __concat = function() return odd end })\n"
+          "string.gsub = function() return odd end\n"
+          "string.find = function() return 5 end\n"
+          "return { grippers = { { name = 'EE' } }, stations = { A = { at = { 700, 0, 900 } } } }\n",
+          layout);
+    assert_int_equal(fclose(layout), 0);
     wh_candidates_t candidates;
     assert_true(wh_session_open(&spoilt, &options));
     assert_int_equal(wh_session_execute(&spoilt, "FOO", answer, sizeof answer), WH_STATUS_BAD_ARGUMENT);
@@ -595,6 +604,7 @@ static void a_layout_that_spoils_the_strings(void **state) {
         assert_non_null(candidates.texts[i]);
     }
     wh_session_close(&spoilt);
+    assert_int_equal(unlink(path), 0);
 }
 
 /* ------------------------------------------------------------------------------------- STATUS, VERSION, RESET
