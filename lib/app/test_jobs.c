@@ -133,15 +133,24 @@ static void settle(const crew_t *crew, const wh_test_job_t *job, int answer, FIL
 
 /* --------------------------------------------------------------------------------------- from the outside */
 
+/* A file for what a script prints, and a pipe for what its process tells; null, and no pipe, if the system
+ * refuses. */
+static FILE *make_ends(int ends[2]) {
+    FILE *output = pipe(ends) == 0 ? tmpfile() : NULL;
+    if (!output) {
+        perror("waferhand test: no room for what a script prints");
+        (void)close(ends[0]);
+        (void)close(ends[1]);
+    }
+    return output;
+}
+
 static bool begin(crew_t *crew, player_t *player) {
     int ends[2] = {-1, -1};
     const pid_t parent = getpid();
-    FILE *output = tmpfile();
-    if (!output || pipe(ends) != 0) {
-        perror("waferhand test: no room for what a script prints");
-        if (output) {
-            (void)fclose(output);
-        }
+    *player = (player_t){.job = crew->begun, .begin = wh_clock_seconds()};
+    player->output = make_ends(ends);
+    if (!player->output) {
         return false;
     }
     (void)fflush(stdout);
@@ -149,18 +158,17 @@ static bool begin(crew_t *crew, player_t *player) {
     const pid_t pid = fork();
     if (pid == 0) {
         (void)close(ends[0]);
-        settle(crew, &crew->jobs[crew->begun], ends[1], output, parent);
+        settle(crew, &crew->jobs[crew->begun], ends[1], player->output, parent);
     }
     (void)close(ends[1]);
-    *player = (player_t){.pid = pid, .job = crew->begun, .answer = ends[0], .begin = wh_clock_seconds()};
-    player->output = output;
     if (pid < 0) {
         perror("waferhand test: no process");
         (void)close(ends[0]);
-        (void)fclose(output);
-        player->pid = 0;
+        (void)fclose(player->output);
         return false;
     }
+    player->pid = pid;
+    player->answer = ends[0];
     ++crew->begun;
     return true;
 }
