@@ -1,6 +1,6 @@
 -- Makes the operator's words out of what the host offers (`native`) and sets them as globals. Returns what
 -- makes the same words of typed lines: a session calls it before it sets up the cell, a script's run never
--- does. Returns as well what looks at stations for `waferhand layout`.
+-- does. Returns as well what looks at stations for `waferhand layout`, and what `waferhand definitions` prints.
 
 -- Kept, for a script may set globals of these names.
 local error, ipairs, pairs, pcall, rawset, select = error, ipairs, pairs, pcall, rawset, select
@@ -34,6 +34,7 @@ return function(native)
   commands.try_out, commands.try_carrying = nil, nil
   native.module("mcs/faults.lua")(native, commands, run, lookup)
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
+  local words = native.module("mcs/words.lua")
 
   -- cell "LAYOUT.lua", relative to the script: every slot must be in reach.
   local function cell(path)
@@ -69,7 +70,10 @@ return function(native)
 
   -- The word for scripts: it refuses what the action takes no notice of.
   local function word(name, action)
-    local most = native.parameters(action)
+    local most = #words.scripts[name].takes
+    if native.parameters(action) ~= most then
+      error(("%s does not take what lua/mcs/words.lua says"):format(name), 0)
+    end
     return function(...)
       native.begin_word(name)
       for place = most + 1, select("#", ...) do
@@ -115,5 +119,10 @@ return function(native)
     end
   end
 
-  return open_prompt, survey
+  local function define()
+    local targets = native.module("mcs/targets.lua")(native, lookup)
+    return native.module("mcs/definitions.lua")(native, lookup, targets, words)()
+  end
+
+  return open_prompt, survey, define
 end
