@@ -45,7 +45,7 @@ static int define(lua_State *L) {
 
 char *wh_definitions_make(wh_sandbox_result_t *result) {
     static wh_mcs_t mcs;
-    wh_record_t record;
+    wh_record_t record = {0};
     char *text = NULL;
     wh_sandbox_t *sandbox = wh_sandbox_new(NULL);
     if (!sandbox) {

@@ -167,6 +167,8 @@ return function(native, lookup, targets, words)
     add("---What --set NAME=VALUE handed over.")
     add("---@type table<string, number|string|boolean>")
     add("params = {}")
+    add("")
+    add("return {}")
     return table.concat(lines, "\n") .. "\n"
   end
 end
