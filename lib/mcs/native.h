@@ -56,6 +56,7 @@ extern const luaL_Reg wh_mcs_fault_functions[];
 extern const luaL_Reg wh_mcs_plan_functions[];
 extern const luaL_Reg wh_mcs_play_functions[];
 extern const luaL_Reg wh_mcs_query_functions[];
+extern const luaL_Reg wh_mcs_saved_functions[];
 extern const luaL_Reg wh_mcs_scan_functions[];
 extern const luaL_Reg wh_mcs_survey_functions[];
 

@@ -25,12 +25,12 @@ return function(native)
   local lookup = native.module("mcs/lookup.lua")(native, wh.errors)
   local commands = native.module("mcs/commands.lua")(native, native.module("mcs/patterns.lua"), lookup)
   local queries = native.module("mcs/queries.lua")(native, lookup)
-  local run = commands.run
+  local run, keep = commands.run, commands.keep
   local reach = native.module("mcs/reach.lua")(native, {
     rehearse = commands.rehearse, rehearse_map = commands.rehearse_map,
     try_out = commands.try_out, try_carrying = commands.try_carrying,
   })
-  commands.rehearse, commands.rehearse_map, commands.run = nil, nil, nil
+  commands.rehearse, commands.rehearse_map, commands.run, commands.keep = nil, nil, nil, nil
   commands.try_out, commands.try_carrying = nil, nil
   native.module("mcs/faults.lua")(native, commands, run, lookup)
   local cycles = native.module("mcs/cycles.lua")(native, lookup)
@@ -95,9 +95,10 @@ return function(native)
 
   local function open_prompt()
     local tokens = native.module("mcs/tokens.lua")(native)
+    local states = native.module("mcs/saved_states.lua")(native)
     local make_commands = native.module("mcs/prompt_commands.lua")
-    local prompt_commands = make_commands(native, commands, queries, lookup, tokens)
-    local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup)
+    local prompt_commands = make_commands(native, commands, queries, lookup, tokens, states, keep)
+    local execute = native.module("mcs/prompt.lua")(native, prompt_commands, tokens, lookup, states)
     return execute, native.module("mcs/completion.lua")(prompt_commands, tokens)
   end
 

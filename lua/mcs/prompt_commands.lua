@@ -5,7 +5,9 @@
 -- options   kinds of the options by name; with `needs_option` at least one must be there
 -- run       gets the arguments, a list, and the options, a table; returns the answer's values as text or nil
 
-return function(native, commands, queries, lookup, tokens)
+-- keeps     true: it changes nothing that UNDO could take back, or sees to that itself
+
+return function(native, commands, queries, lookup, tokens, states, keep)
   local prompt_commands = {}
 
   -- WHERE stops after so many bytes: an answer is one line.
@@ -45,6 +47,7 @@ return function(native, commands, queries, lookup, tokens)
     vacuum_check = function() return lookup.parameters.vacuum_check.values end,
     switch = function() return { "true", "false" } end,
     phase = function() return lookup.phases end,
+    name = function() return {} end, save = states.names,
   }
 
   local station_options = { gripper = "gripper", force = "switch" }
@@ -100,6 +103,15 @@ return function(native, commands, queries, lookup, tokens)
 
   -- How the command that is held is answered: after a CONTINUE as after itself.
   local answer_held
+
+  function states.keep()
+    local put_back, is_as_was = keep()
+    local answer = answer_held
+    return function()
+      put_back()
+      answer_held = answer
+    end, is_as_was
+  end
 
   -- Runs one that may be held in a phase. `answer` makes the pairs that stand before the time.
   local function carried(answer, action, ...)
@@ -312,6 +324,25 @@ return function(native, commands, queries, lookup, tokens)
     return native.status()
   end
 
+  local function place()
+    return tokens.pairs { { "time", native.utime() / 1e6 } }
+  end
+
+  local function save(arguments)
+    states.save(arguments[1])
+    return place()
+  end
+
+  local function restore(arguments)
+    states.restore(arguments[1])
+    return place()
+  end
+
+  local function undo()
+    local line, left = states.undo()
+    return tokens.pairs { { "undone", line }, { "left", left } } .. " " .. place()
+  end
+
   local function version()
     return tokens.pairs { { "version", native.version() } }
   end
@@ -355,6 +386,11 @@ return function(native, commands, queries, lookup, tokens)
     STOP = { takes = {}, run = stop, does = "ends the command that runs, gives up one that is held" },
     RESET = { takes = {}, run = reset,
               does = "reads the layout anew and begins another run, with the layout's wafers" },
+    SAVE = { takes = { "name" }, run = save, keeps = true,
+             does = "keeps under this name all that simulator and motion control are" },
+    RESTORE = { takes = { "save" }, run = restore, does = "puts back what was saved under this name" },
+    UNDO = { takes = {}, run = undo, keeps = true,
+             does = "takes back the last command that changed something, several times" },
     STATUS = { takes = {}, run = status, does = "what goes on, where the robot is, what is held, the last error" },
     VERSION = { takes = {}, run = version, does = "the program's version" },
     ROTATE = { takes = { "station", "degrees" }, run = moving(commands.rotate),
