@@ -183,6 +183,8 @@ static int64_t reached(void *user) {
     return wh_protocol_client_reached(&control->client);
 }
 
+typedef char saves_fit[sizeof(waferhand_command) + WH_LINK_DATAGRAM <= WH_MCS_SAVED_BYTES ? 1 : -1];
+
 static size_t save(void *user, uint8_t bytes[WH_MCS_SAVED_BYTES]) {
     wh_mcs_process_t *control = user;
     return wh_protocol_client_save(&control->client, bytes);

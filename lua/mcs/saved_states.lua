@@ -39,9 +39,9 @@ return function(native)
   local function find(name)
     local names = states.names()
     if not saved[name] then
-      local expected = #names > 0 and "expected " .. table.concat(names, ", ", 1, #names < 16 and #names or 16)
-        or "none was saved"
-      native.fail("NO_SUCH_SAVE", ('"%s" (%s)'):format(name, expected))
+      local known = table.concat(names, ", ", 1, #names < 16 and #names or 16)
+      local expected = #names > 0 and known or "a saved name; there is none"
+      native.fail("NO_SUCH_SAVE", ('"%s" (expected %s)'):format(name, expected))
     end
     return saved[name]
   end
