@@ -70,8 +70,8 @@ static void restore_simulator(wh_protocol_client_t *client) {
         client->refusal = WH_STATUS_NOT_RESTORED;
         return;
     }
-    ++client->counters.restored;
-    if (!client->senders.shared &&
+    client->counters.restored += client->restores_most > 0 ? 0 : 1; /* asked for by us: no news */
+    if (client->restores_most == 0 && !client->senders.shared &&
         (client->restored_us == 0 || now - client->restored_us > RESTORE_SAID_US)) {
         client->restored_us = now;
         wh_node_warn(client->node, "the simulator was started anew: it gets the state of slice %" PRId64,

@@ -44,7 +44,6 @@ static wh_status_t hand_over(wh_protocol_client_t *client) {
     client->events_delivered = 0;
     client->answered = false;
     client->pending = true;
-    client->restored_us = wh_node_clock_us(); /* it was not started anew: nothing is said of that */
     client->restores = 0;
     client->restores_most = RESTORES_MOST;
     const wh_status_t status = wh_protocol_client_resume(client);
