@@ -60,6 +60,7 @@ static void check_one(const arguments_t *arguments, struct argp_state *state) {
                          : arguments->state             ? "--state"
                          : arguments->require >= 0      ? "--require"
                          : arguments->worst != NO_WORST ? "--worst"
+                         : arguments->threads > 0       ? "--threads"
                                                         : NULL;
     if (option) {
         argp_error(state, "%s does not go with --trial, which plays one trial alone", option);

@@ -11,6 +11,8 @@
 #include "../text/json.h"
 #include "../text/output.h"
 
+#define FORMAT 2
+
 /* -------------------------------------------------------------------------------------------- which study */
 
 static json_t *parameter(const void *subject, size_t i) {
@@ -20,14 +22,13 @@ static json_t *parameter(const void *subject, size_t i) {
 /* In the order in which a difference is told. */
 static json_t *identity_of(const wh_study_t *study) {
     const wh_script_run_options_t *run = &study->run;
-    return json_pack("{s:s, s:o, s:o, s:o, s:I, s:o, s:o, s:o, s:I, s:I, s:o}", "version", WH_VERSION,
-                     "script", wh_json_text(run->script), "layout", wh_json_text(study->layout->path), "seed",
-                     wh_json_hash(study->seed), "trials", (json_int_t)study->trials, "parameters",
-                     wh_json_list(parameter, run, run->parameter_count), "script_text",
-                     wh_json_hash(study->script_hash), "layout_text", wh_json_hash(study->layout_hash),
-                     "budget", (json_int_t)run->limits.instructions, "memory",
-                     (json_int_t)run->limits.memory_bytes, "run_without_errors",
-                     wh_json_hash(study->nominal.record.hash));
+    return json_pack(
+        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I, s:o}", "version", WH_VERSION, "script",
+        wh_json_text(run->script), "layout", wh_json_text(study->layout->path), "seed",
+        wh_json_hash(study->seed), "parameters", wh_json_list(parameter, run, run->parameter_count),
+        "script_text", wh_json_hash(study->script_hash), "layout_text", wh_json_hash(study->layout_hash),
+        "budget", (json_int_t)run->limits.instructions, "memory", (json_int_t)run->limits.memory_bytes,
+        "run_without_errors", wh_json_hash(study->nominal.record.hash));
 }
 
 /* True if it is this study's; else the message tells the first difference. */
@@ -215,57 +216,47 @@ static bool take_tally(const json_t *root, wh_tally_t *tally) {
            take_worst(json_object_get(root, "worst"), tally);
 }
 
-/* ------------------------------------------------------------------------------------------------- blocks */
+/* ------------------------------------------------------------------------------------------------- trials */
 
-static json_t *put_blocks(const wh_progress_t *progress) {
-    json_t *list = json_array();
-    for (uint64_t block = 0; block < progress->block_count; ++block) {
-        const uint64_t first = block;
-        while (block < progress->block_count && wh_progress_has(progress, block)) {
-            ++block;
-        }
-        if (block > first) {
-            wh_json_append(list, json_pack("[I, I]", (json_int_t)first, (json_int_t)block - 1));
-        }
-    }
-    return list;
+static json_t *put_stretch(const void *subject, size_t i) {
+    const wh_stretch_t *stretch = &((const wh_stretches_t *)subject)->items[i];
+    return json_pack("[I, I]", (json_int_t)stretch->first, (json_int_t)(stretch->first + stretch->count - 1));
 }
 
-static bool take_stretch(const json_t *pair, wh_progress_t *progress) {
-    const json_int_t first = json_integer_value(json_array_get(pair, 0));
-    const json_int_t last = json_integer_value(json_array_get(pair, 1));
-    if (json_array_size(pair) != 2 || first < 0 || last < first || (uint64_t)last >= progress->block_count) {
+/* False, and the message says why, if they are not a study's, or if one of them is beyond this study. */
+static bool take_stretch(const wh_study_t *study, const json_t *pair, wh_stretches_t *done, char *message,
+                         size_t size) {
+    uint64_t first, last;
+    if (json_array_size(pair) != 2 || !take_count(json_array_get(pair, 0), &first) ||
+        !take_count(json_array_get(pair, 1), &last) || last < first) {
         return false;
     }
-    for (uint64_t block = (uint64_t)first; block <= (uint64_t)last; ++block) {
-        wh_progress_note(progress, block);
+    if (last >= study->trials) {
+        snprintf(message, size, "of a longer study: its trial %llu is done (expected at least %llu trials)",
+                 (unsigned long long)last, (unsigned long long)last + 1);
+        return false;
     }
-    return true;
+    const wh_stretch_t stretch = {first, last - first + 1};
+    return wh_stretches_add(done, stretch);
 }
 
-static uint64_t trials_of(const wh_study_t *study, const wh_progress_t *progress) {
-    uint64_t trials = 0;
-    for (uint64_t block = 0; block < progress->block_count; ++block) {
-        trials += wh_progress_has(progress, block) ? wh_study_block_trials(study, block) : 0;
-    }
-    return trials;
-}
-
-static bool take_progress(const wh_study_t *study, const json_t *root, wh_progress_t *progress) {
-    const json_t *blocks = json_object_get(root, "blocks");
-    bool sound = json_is_array(blocks);
-    for (size_t i = 0; sound && i < json_array_size(blocks); ++i) {
-        sound = take_stretch(json_array_get(blocks, i), progress);
+static bool take_progress(const wh_study_t *study, const json_t *root, wh_progress_t *progress, char *message,
+                          size_t size) {
+    const json_t *done = json_object_get(root, "done");
+    bool sound = json_is_array(done);
+    for (size_t i = 0; sound && i < json_array_size(done); ++i) {
+        sound = take_stretch(study, json_array_get(done, i), &progress->done, message, size);
     }
     return sound && take_tally(json_object_get(root, "tally"), &progress->tally) &&
-           progress->tally.trials == trials_of(study, progress);
+           progress->tally.trials == progress->done.trials;
 }
 
 /* ----------------------------------------------------------------------------------------- there and back */
 
 char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress) {
-    json_t *root = json_pack("{s:i, s:o, s:o, s:o}", "format", 1, "study", identity_of(study), "blocks",
-                             put_blocks(progress), "tally", put_tally(&progress->tally));
+    json_t *root = json_pack("{s:i, s:o, s:o, s:o}", "format", FORMAT, "study", identity_of(study), "done",
+                             wh_json_list(put_stretch, &progress->done, progress->done.count), "tally",
+                             put_tally(&progress->tally));
     char *text = json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(root);
     return text;
@@ -274,12 +265,12 @@ char *wh_checkpoint_text(const wh_study_t *study, const wh_progress_t *progress)
 /* Releases the root. */
 static bool take(const wh_study_t *study, json_t *root, wh_progress_t *progress, char *message, size_t size) {
     snprintf(message, size, "damaged (expected a study's state)");
-    bool sound = json_integer_value(json_object_get(root, "format")) == 1 &&
+    bool sound = json_integer_value(json_object_get(root, "format")) == FORMAT &&
                  is_same(json_object_get(root, "study"), study, message, size);
     if (sound) {
         wh_progress_t taken;
         wh_progress_init(&taken, study);
-        sound = take_progress(study, root, &taken);
+        sound = take_progress(study, root, &taken, message, size);
         if (sound) {
             wh_progress_merge(progress, &taken);
         }
@@ -333,7 +324,7 @@ char *wh_checkpoint_default_path(const wh_study_t *study) {
     for (const char *c = text; *c; ++c) {
         hash = wh_hash_word(hash, (unsigned char)*c);
     }
-    hash = wh_hash_word(hash, 0);
+    hash = wh_hash_word(hash, study->trials);
     free(text);
     json_decref(identity);
     snprintf(name, sizeof name, "study-%016llx", (unsigned long long)hash);

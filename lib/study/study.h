@@ -4,9 +4,6 @@
 
 #include "../mcs/script_run.h"
 
-/* Trials are shared out by so many, and kept by so many. */
-#define WH_STUDY_BLOCK 256
-
 /* The end is told of so many wafers: the first ones that the run without errors takes. */
 #define WH_STUDY_WAFERS 100
 
@@ -33,12 +30,9 @@ typedef struct {
 } wh_study_t;
 
 /* Plays the run without errors and gets ready for trials. Zero `study` but for run, seed and trials, and
- * close it either way. False, and the reason on stderr, when script, layout or study are not usable. */
+ * close it either way. False, and the reason on stderr, when script, layout or study are not usable, or when
+ * nothing is checked. */
 bool wh_study_open(wh_study_t *study);
 void wh_study_close(wh_study_t *study);
-
-/* How many blocks the study has, and how many trials are in one. */
-uint64_t wh_study_blocks(const wh_study_t *study);
-uint64_t wh_study_block_trials(const wh_study_t *study, uint64_t block);
 
 #endif
