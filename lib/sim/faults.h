@@ -32,7 +32,7 @@
  *     stack of wh_faults_validate               80    200      48    112
  *     stack of wh_faults_check                 104    224      64    136
  *     stack of wh_faults_take                   48     40      48     40
- *     stack of wh_faults_advance               176    264     124    168
+ *     stack of wh_faults_advance               176    264     132    168
  *     stack of wh_faults_overrule               80     64      72     56
  *     stack of wh_faults_of_vacuum              96     96      56     56
  *     stack of wh_faults_sensors                 4      8       0      8
