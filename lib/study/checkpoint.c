@@ -194,18 +194,56 @@ static bool take_events(const json_t *list, wh_tally_t *tally) {
     return sound;
 }
 
-static json_t *put_tally(const wh_tally_t *tally) {
-    return json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "trials", (json_int_t)tally->trials,
-                     "met", (json_int_t)tally->met, "ended", (json_int_t)tally->ended, "whole",
-                     (json_int_t)tally->whole, "events", put_events(tally), "expectations",
-                     wh_json_list(put_row, &tally->expectations, tally->expectations.count), "errors",
-                     wh_json_list(put_row, &tally->errors, tally->errors.count), "wafers",
-                     wh_json_list(put_wafer, tally, tally->wafer_count), "worst",
-                     wh_json_list(put_worst, tally, tally->worst_count));
+/* High and low halves. */
+static json_t *put_relation(const void *subject, size_t i) {
+    const wh_uint128_t number = (wh_uint128_t)*wh_relations_number(subject, i);
+    return json_pack("[I, I]", (json_int_t)(number >> 64), (json_int_t)(uint64_t)number);
 }
 
-static bool take_tally(const json_t *root, wh_tally_t *tally) {
-    return take_count(json_object_get(root, "trials"), &tally->trials) &&
+/* Without any trial there may be none. */
+static bool take_relations(const wh_study_t *study, const json_t *list, wh_tally_t *tally) {
+    wh_relations_t *relations = &tally->relations;
+    const size_t count = json_array_size(list);
+    if (count == 0 && tally->trials == 0) {
+        return json_is_array(list);
+    }
+    wh_relations_need(relations, study->cause_count,
+                      wh_relations_wafers(study->cause_count, study->wafer_count));
+    bool sound = json_is_array(list) && count == wh_relations_size(relations);
+    for (size_t i = 0; sound && i < count; ++i) {
+        json_int_t high, low;
+        sound = json_unpack(json_array_get(list, i), "[I, I]", &high, &low) == 0;
+        if (sound) {
+            *wh_relations_number(relations, i) =
+                (wh_int128_t)((wh_uint128_t)(uint64_t)high << 64 | (uint64_t)low);
+        }
+    }
+    return sound;
+}
+
+static json_t *put_lines(const wh_trial_lines_t *lines) {
+    char *text = wh_trial_lines_text(lines);
+    json_t *made = json_string(text);
+    free(text);
+    return made;
+}
+
+static json_t *put_tally(const wh_tally_t *tally) {
+    return json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "trials",
+                     (json_int_t)tally->trials, "met", (json_int_t)tally->met, "ended",
+                     (json_int_t)tally->ended, "whole", (json_int_t)tally->whole, "events", put_events(tally),
+                     "expectations", wh_json_list(put_row, &tally->expectations, tally->expectations.count),
+                     "errors", wh_json_list(put_row, &tally->errors, tally->errors.count), "wafers",
+                     wh_json_list(put_wafer, tally, tally->wafer_count), "worst",
+                     wh_json_list(put_worst, tally, tally->worst_count), "relations",
+                     wh_json_list(put_relation, &tally->relations, wh_relations_size(&tally->relations)),
+                     "lines", put_lines(&tally->lines));
+}
+
+static bool take_tally(const wh_study_t *study, const json_t *root, wh_tally_t *tally) {
+    const char *lines = json_string_value(json_object_get(root, "lines"));
+    return lines && wh_trial_lines_read(&tally->lines, lines, tally->wafer_count) &&
+           take_count(json_object_get(root, "trials"), &tally->trials) &&
            take_count(json_object_get(root, "met"), &tally->met) &&
            take_count(json_object_get(root, "ended"), &tally->ended) &&
            take_count(json_object_get(root, "whole"), &tally->whole) &&
@@ -213,7 +251,8 @@ static bool take_tally(const json_t *root, wh_tally_t *tally) {
            take_wafers(json_object_get(root, "wafers"), tally) &&
            take_rows(json_object_get(root, "expectations"), &tally->expectations) &&
            take_rows(json_object_get(root, "errors"), &tally->errors) &&
-           take_worst(json_object_get(root, "worst"), tally);
+           take_worst(json_object_get(root, "worst"), tally) &&
+           take_relations(study, json_object_get(root, "relations"), tally);
 }
 
 /* ------------------------------------------------------------------------------------------------- trials */
@@ -240,6 +279,19 @@ static bool take_stretch(const wh_study_t *study, const json_t *pair, wh_stretch
     return wh_stretches_add(done, stretch);
 }
 
+/* False, and the message says so, if trials are done whose lines are wanted and were not. */
+static bool has_lines(const wh_study_t *study, const wh_progress_t *progress, char *message, size_t size) {
+    const uint64_t wanted = wh_stretches_below(&progress->done, study->lines);
+    const uint64_t found = wh_trial_lines_below(&progress->tally.lines, study->lines);
+    if (found < wanted) {
+        snprintf(message, size,
+                 "has lines of %llu trials, and %llu are done (expected a file that a study "
+                 "with --csv wrote, or --csv without it)",
+                 (unsigned long long)found, (unsigned long long)wanted);
+    }
+    return found == wanted;
+}
+
 static bool take_progress(const wh_study_t *study, const json_t *root, wh_progress_t *progress, char *message,
                           size_t size) {
     const json_t *done = json_object_get(root, "done");
@@ -247,8 +299,8 @@ static bool take_progress(const wh_study_t *study, const json_t *root, wh_progre
     for (size_t i = 0; sound && i < json_array_size(done); ++i) {
         sound = take_stretch(study, json_array_get(done, i), &progress->done, message, size);
     }
-    return sound && take_tally(json_object_get(root, "tally"), &progress->tally) &&
-           progress->tally.trials == progress->done.trials;
+    return sound && take_tally(study, json_object_get(root, "tally"), &progress->tally) &&
+           progress->tally.trials == progress->done.trials && has_lines(study, progress, message, size);
 }
 
 /* ----------------------------------------------------------------------------------------- there and back */

@@ -77,6 +77,15 @@ wh_stretch_t wh_stretches_take(wh_stretches_t *stretches, uint64_t most) {
     return taken;
 }
 
+uint64_t wh_stretches_below(const wh_stretches_t *stretches, uint64_t trial) {
+    uint64_t below = 0;
+    for (size_t i = 0; i < stretches->count && stretches->items[i].first < trial; ++i) {
+        const uint64_t left = trial - stretches->items[i].first;
+        below += left < stretches->items[i].count ? left : stretches->items[i].count;
+    }
+    return below;
+}
+
 void wh_stretches_rest(wh_stretches_t *rest, const wh_stretches_t *done, uint64_t trials) {
     uint64_t from = 0;
     for (size_t i = 0; i <= done->count; ++i) {

@@ -26,6 +26,9 @@ bool wh_stretches_add(wh_stretches_t *stretches, wh_stretch_t stretch);
 /* Takes up to `most` trials in a row off the front; none if nothing is left. */
 wh_stretch_t wh_stretches_take(wh_stretches_t *stretches, uint64_t most);
 
+/* How many of them are below this. */
+uint64_t wh_stretches_below(const wh_stretches_t *stretches, uint64_t trial);
+
 /* Fills in, from empty, the trials from 0 up to `trials` that `done` has not. */
 void wh_stretches_rest(wh_stretches_t *rest, const wh_stretches_t *done, uint64_t trials);
 

@@ -66,6 +66,20 @@ static void choose_wafers(wh_study_t *study) {
     }
 }
 
+/* False, and standard error says so, if each trial's line is wanted and there would be too many. */
+static bool choose_lines(wh_study_t *study) {
+    const uint64_t each = study->wafer_count + 1;
+    if (study->lines > WH_STUDY_MOST_LINES / each) {
+        fprintf(stderr, "--csv: %llu trials (expected at most %llu, for a line has %zu wafer%s)\n",
+                (unsigned long long)study->trials, (unsigned long long)(WH_STUDY_MOST_LINES / each),
+                study->wafer_count, study->wafer_count == 1 ? "" : "s");
+        return false;
+    }
+    const uint64_t some = each > 10 ? 10 * WH_STUDY_LINES / each : WH_STUDY_LINES;
+    study->lines = study->lines > some ? study->lines : some;
+    return true;
+}
+
 /* True if no trial could fail, whatever is drawn: no wafer is touched, and nothing is looked at. */
 static bool checks_nothing(const wh_study_t *study) {
     const wh_record_t *record = &study->nominal.record;
@@ -94,12 +108,17 @@ bool wh_study_open(wh_study_t *study) {
     }
     study->whole = study->layout->collision ? "collisions are looked for" : study->decisions.unfit;
     choose_wafers(study);
+    study->causes = wh_causes_of(study->layout, &study->cause_count);
+    if (!choose_lines(study)) {
+        return false;
+    }
     return hash_file(study->run.script, &study->script_hash) &&
            hash_file(study->layout->path, &study->layout_hash);
 }
 
 void wh_study_close(wh_study_t *study) {
     wh_decisions_free(&study->decisions);
+    free(study->causes);
     wh_script_run_close(&study->nominal);
 }
 
