@@ -48,14 +48,13 @@ typedef struct {
     bool json, watch;
 } arguments_t;
 
-static const wh_option_t options[] = {{"json", 0, NULL, "Print one JSON object instead of tables",
-                                       WH_OPTION_FLAG, .variable = offsetof(arguments_t, json)},
-                                      {"svg", 0, "FILE",
-                                       "Also draw the cell into FILE, from above and from the side",
-                                       WH_OPTION_TEXT, .variable = offsetof(arguments_t, svg)},
-                                      {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG,
-                                       .variable = offsetof(arguments_t, watch)},
-                                      {0}};
+static const wh_option_t options[] = {
+    {"json", 0, NULL, "Print one JSON object instead of tables", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, json)},
+    {"svg", 0, "FILE", "Also draw the cell into FILE, from above and from the side", WH_OPTION_TEXT,
+     .variable = offsetof(arguments_t, svg)},
+    {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
+    {0}};
 
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL}, {wh_layout_options, offsetof(arguments_t, layout), NULL, NULL}, {0}};

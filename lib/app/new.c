@@ -22,7 +22,8 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, cell.foups), 1, WH_NEW_FOUPS, "a whole number from 1 to 4"},
     {"blades", 0, "N", "So many blades on the robot (default 1)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, cell.blades), 1, WH_NEW_BLADES, "1 or 2"},
-    {"aligner", 0, NULL, "A prealigner, too", WH_OPTION_FLAG, .variable = offsetof(arguments_t, cell.aligner)},
+    {"aligner", 0, NULL, "A prealigner, too", WH_OPTION_FLAG,
+     .variable = offsetof(arguments_t, cell.aligner)},
     {"collision", 0, NULL, "Look for collisions while stepping", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, cell.collision)},
     {0}};
@@ -47,9 +48,10 @@ static void check(const void *given, struct argp_state *state) {
 static const wh_command_line_t command_line = {
     .name = "new",
     .synopsis = "NAME",
-    .about = "Makes the folder NAME with a cell to start from: a layout, a script that runs in it, and what "
-             "editors that use the Lua language server need. At a terminal, without options, it asks what the "
-             "cell shall have. What is there is never overwritten.\v" WH_HELP_EXIT,
+    .about =
+        "Makes the folder NAME with a cell to start from: a layout, a script that runs in it, and what "
+        "editors that use the Lua language server need. At a terminal, without options, it asks what the "
+        "cell shall have. What is there is never overwritten.\v" WH_HELP_EXIT,
     .tables = tables,
     .operand = "name",
     .operand_variable = offsetof(arguments_t, folder),
@@ -111,8 +113,8 @@ static bool ask_all(wh_new_cell_t *cell) {
 }
 
 static bool complete(wh_new_cell_t *cell) {
-    const bool is_given = cell->wafer != 0 || cell->foups != 0 || cell->blades != 0 || cell->aligner ||
-                          cell->collision;
+    const bool is_given =
+        cell->wafer != 0 || cell->foups != 0 || cell->blades != 0 || cell->aligner || cell->collision;
     if (!is_given && isatty(STDIN_FILENO) && isatty(STDOUT_FILENO)) {
         return ask_all(cell);
     }
@@ -143,8 +145,8 @@ static bool make_files(const arguments_t *arguments) {
     }
     const bool made = folder >= 0 && !file->name;
     if (!made) {
-        fprintf(stderr, "%s/%s: %s (expected a file that can be written)\n", arguments->folder,
-                file->name, strerror(errno));
+        fprintf(stderr, "%s/%s: %s (expected a file that can be written)\n", arguments->folder, file->name,
+                strerror(errno));
     }
     if (folder >= 0) {
         (void)close(folder);

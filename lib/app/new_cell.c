@@ -37,14 +37,16 @@ static void write_stations(const wh_new_cell_t *cell, FILE *out) {
     fputs("  stations = {\n", out);
     for (uint64_t i = 0; i < cell->foups; ++i) {
         fprintf(out,
-                "    %s%" PRIu64 " = { %s, at = { %.10g, %.10g, 900 }, rpy = { 0, 0, %.10g }, retract = 440 },\n",
+                "    %s%" PRIu64
+                " = { %s, at = { %.10g, %.10g, 900 }, rpy = { 0, 0, %.10g }, retract = 440 },\n",
                 stack_of(cell), i + 1, cell->wafer < 200 ? "slots = 25" : "kind = \"foup\"", places[i].x,
                 places[i].y, places[i].heading);
     }
     if (cell->aligner) {
-        fputs("    ALIGN = { kind = \"prealigner\", at = { -640, 0, 950 }, rpy = { 0, 0, 180 }, retract = 320 "
-              "},\n",
-              out);
+        fputs(
+            "    ALIGN = { kind = \"prealigner\", at = { -640, 0, 950 }, rpy = { 0, 0, 180 }, retract = 320 "
+            "},\n",
+            out);
     }
     fputs("  },\n", out);
 }

@@ -20,8 +20,7 @@ static const wh_option_t options[] = {
      WH_OPTION_TEXT, .variable = offsetof(arguments_t, layout)},
     {"run", 0, "N", "Of a log: its N-th run that has slices (default: the last)", WH_OPTION_COUNT,
      .variable = offsetof(arguments_t, number), .least = 1, .expected = "a whole number from 1"},
-    {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG,
-     .variable = offsetof(arguments_t, watch)},
+    {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
 static const wh_option_table_t tables[] = {

@@ -68,7 +68,8 @@ static void watch_folder(const watch_t *watch, const char *path) {
     const int length = slash ? (int)(slash - path) + 1 : 0;
     (void)snprintf(folder, sizeof folder, "%.*s", length, path);
     (void)inotify_add_watch(watch->events, length > 0 ? folder : ".",
-                            IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_CREATE | IN_DELETE | IN_ONLYDIR);
+                            IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_CREATE | IN_DELETE |
+                                IN_ONLYDIR);
 }
 
 static void watch_file(const watch_t *watch, const char *path) {
@@ -188,7 +189,8 @@ static void remove_leftovers(const watch_t *watch, pid_t process) {
         char beside[PATH_MAX];
         for (int place = 0; path && place < 2; ++place) { /* beside it, and in it if it is a folder */
             (void)snprintf(beside, sizeof beside, "%.*s%s.waferhand-%ld-0",
-                           place == 0 ? length : (int)strlen(path), path, place == 0 ? "" : "/", (long)process);
+                           place == 0 ? length : (int)strlen(path), path, place == 0 ? "" : "/",
+                           (long)process);
             (void)unlink(beside);
         }
     }
@@ -205,8 +207,8 @@ static void give_up(watch_t *watch) {
 }
 
 static void tell_end(const watch_t *watch, int status) {
-    static const char *const words[] = {[WH_EXIT_MET] = "ok", [WH_EXIT_FAILED] = "failed",
-                                        [WH_EXIT_USAGE] = "not usable"};
+    static const char *const words[] = {
+        [WH_EXIT_MET] = "ok", [WH_EXIT_FAILED] = "failed", [WH_EXIT_USAGE] = "not usable"};
     const double took = wh_clock_seconds() - watch->begin;
     const size_t files = watch->file_count;
     if (WIFSIGNALED(status)) {

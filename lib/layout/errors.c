@@ -64,7 +64,7 @@ static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_error
 typedef struct {
     const char *field, *what;
     const wh_reader_field_t *known; /* the fields of each of its tables */
-    const void *items; /* each begins with its name */
+    const void *items;              /* each begins with its name */
     size_t size, count;
     wh_layout_find_t *find;
     void (*read)(wh_reader_t *reader, wh_layout_t *layout, size_t index);
@@ -149,10 +149,10 @@ static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t sh
 
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
     const section_t sections[] = {
-        {"wafers", "wafer", wh_layout_placement_fields, layout->wafers, sizeof *layout->wafers, layout->wafer_count,
-         wh_layout_find_wafer, read_wafer},
-        {"stations", "station", wh_layout_teaching_fields, layout->stations, sizeof *layout->stations, layout->station_count,
-         wh_layout_find_station, read_station},
+        {"wafers", "wafer", wh_layout_placement_fields, layout->wafers, sizeof *layout->wafers,
+         layout->wafer_count, wh_layout_find_wafer, read_wafer},
+        {"stations", "station", wh_layout_teaching_fields, layout->stations, sizeof *layout->stations,
+         layout->station_count, wh_layout_find_station, read_station},
         {"grippers", "gripper", wh_layout_valve_fields, layout->grippers, sizeof layout->grippers[0],
          layout->machine.gripper_count, wh_layout_find_gripper, read_gripper}};
     if (!wh_reader_open(reader, "study", wh_layout_study_fields)) {

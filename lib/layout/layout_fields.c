@@ -58,12 +58,11 @@ const wh_reader_field_t wh_layout_placing_fields[] = {
     {"askew", NUMBER, "degrees of tilt; 0: never", false},
     END};
 
-const wh_reader_field_t wh_layout_corrections_fields[] = {
-    {"x", NUMBER, "mm", false},
-    {"y", NUMBER, "mm", false},
-    {"z", NUMBER, "mm", false},
-    {"turn", NUMBER, "degrees", false},
-    END};
+const wh_reader_field_t wh_layout_corrections_fields[] = {{"x", NUMBER, "mm", false},
+                                                          {"y", NUMBER, "mm", false},
+                                                          {"z", NUMBER, "mm", false},
+                                                          {"turn", NUMBER, "degrees", false},
+                                                          END};
 
 const wh_reader_field_t wh_layout_vacuum_fields[] = {
     {"model", "\"ideal\"|\"delayed\"", "whose values the other fields have by default", false},
@@ -205,7 +204,8 @@ const wh_reader_field_t wh_layout_spindle_fields[] = {
 
 const wh_reader_field_t wh_layout_obstacle_fields[] = {
     {"name", "string", "how hits name it", false},
-    {"on", "string", "what carries it: \"base\", \"lift\", \"upper arm\", \"forearm\", \"hand\" or a gripper's name", false},
+    {"on", "string",
+     "what carries it: \"base\", \"lift\", \"upper arm\", \"forearm\", \"hand\" or a gripper's name", false},
     {"at", TRIPLE, "x, y, z in mm: its middle", true},
     {"rpy", TRIPLE, "roll, pitch, yaw in degrees", false},
     {"box", TRIPLE, "x, y, z in mm: its sizes", false},
@@ -288,12 +288,18 @@ static const wh_reader_field_t tilted[] = {
     END};
 
 const wh_reader_field_t *const wh_layout_fault_fields[WH_FAULT_KINDS] = {
-    [WH_FAULT_NO_VACUUM] = of_gripper,    [WH_FAULT_SLOW_VACUUM] = slow_vacuum,
-    [WH_FAULT_SENSOR_ON] = of_gripper,    [WH_FAULT_SENSOR_OFF] = of_gripper,
-    [WH_FAULT_LEAK] = leak,               [WH_FAULT_VALVE_STUCK] = of_gripper,
-    [WH_FAULT_AXIS_STOPPED] = of_gripper, [WH_FAULT_COMMAND_LOST] = of_command,
-    [WH_FAULT_WAFER_MISSING] = missing,   [WH_FAULT_WAFER_DOUBLED] = doubled,
-    [WH_FAULT_WAFER_CROSSED] = crossed,   [WH_FAULT_WAFER_SHIFTED] = shifted,
+    [WH_FAULT_NO_VACUUM] = of_gripper,
+    [WH_FAULT_SLOW_VACUUM] = slow_vacuum,
+    [WH_FAULT_SENSOR_ON] = of_gripper,
+    [WH_FAULT_SENSOR_OFF] = of_gripper,
+    [WH_FAULT_LEAK] = leak,
+    [WH_FAULT_VALVE_STUCK] = of_gripper,
+    [WH_FAULT_AXIS_STOPPED] = of_gripper,
+    [WH_FAULT_COMMAND_LOST] = of_command,
+    [WH_FAULT_WAFER_MISSING] = missing,
+    [WH_FAULT_WAFER_DOUBLED] = doubled,
+    [WH_FAULT_WAFER_CROSSED] = crossed,
+    [WH_FAULT_WAFER_SHIFTED] = shifted,
     [WH_FAULT_WAFER_TILTED] = tilted,
 };
 

@@ -43,7 +43,8 @@ static void read_axis(wh_reader_t *reader, wh_robot_t *robot, size_t axis, const
     const bool turns = axis == WH_AXIS_THETA || axis == WH_AXIS_YAW;
     const wh_real_t reach = turns ? WH_REAL(1e6) : WH_REAL(1e5);
     wh_travel_t *travel = &robot->travel[axis];
-    wh_reader_open_section(reader, name, turns ? wh_layout_turning_axis_fields : wh_layout_straight_axis_fields);
+    wh_reader_open_section(reader, name,
+                           turns ? wh_layout_turning_axis_fields : wh_layout_straight_axis_fields);
     travel->min = read_quantity(reader, "min", turns, travel->min, axis == WH_AXIS_R ? 0 : -reach, reach);
     travel->max = read_quantity(reader, "max", turns, travel->max, to_layout(turns, travel->min), reach);
     robot->home[axis] = read_quantity(reader, "home", turns, robot->home[axis], to_layout(turns, travel->min),

@@ -60,7 +60,8 @@ typedef struct {
     int64_t asked_us; /* when the first command went out that nothing was heard since; 0: no answer is owed */
     int64_t start_us, last_tick_us, restored_us;
     bool silent;
-    int restores_most, restores; /* so often the state is sent back to one that asks; 0: as often as it asks */
+    int restores_most,
+        restores;         /* so often the state is sent back to one that asks; 0: as often as it asks */
     bool timed_out;       /* an exchange waited longer than it may, and nothing was heard since */
     wh_senders_t senders; /* of states: simulators */
     wh_protocol_client_counters_t counters;

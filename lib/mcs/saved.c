@@ -132,8 +132,7 @@ static int restore(lua_State *L) {
     const saved_t *saved = luaL_checkudata(L, 1, SAVED);
     const wh_status_t status = is_local(mcs) ? restore_local(L, mcs, saved) : restore_partner(mcs, saved);
     if (status != WH_OK) {
-        const char *why =
-            mcs->partners.explain ? mcs->partners.explain(mcs->partners.user, status) : NULL;
+        const char *why = mcs->partners.explain ? mcs->partners.explain(mcs->partners.user, status) : NULL;
         wh_mcs_raise(L, mcs, status, status == WH_STATUS_NOT_RESTORED ? "all is as it was" : why);
     }
     put_back(mcs, saved);
@@ -157,8 +156,5 @@ static int count_most(lua_State *L) {
     return 1;
 }
 
-const luaL_Reg wh_mcs_saved_functions[] = {{"save", save},
-                                           {"restore", restore},
-                                           {"differs", differs},
-                                           {"most_undone", count_most},
-                                           {NULL, NULL}};
+const luaL_Reg wh_mcs_saved_functions[] = {
+    {"save", save}, {"restore", restore}, {"differs", differs}, {"most_undone", count_most}, {NULL, NULL}};

@@ -21,7 +21,8 @@ static const char base[] =
     " faults = { { kind = 'no_vacuum' }, { kind = 'slow_vacuum', value = 1 }, { kind = 'leak', value = 0.1 },"
     "   { kind = 'command_lost' }, { kind = 'wafer_missing', wafer = 'W1' },"
     "   { kind = 'wafer_doubled', wafer = 'W1', onto = 'W2' }, { kind = 'wafer_crossed', wafer = 'W1' },"
-    "   { kind = 'wafer_shifted', wafer = 'W1' }, { kind = 'wafer_tilted', wafer = 'W1', rpy = { 1, 0, 0 } } },"
+    "   { kind = 'wafer_shifted', wafer = 'W1' }, { kind = 'wafer_tilted', wafer = 'W1', rpy = { 1, 0, 0 } } "
+    "},"
     " study = { placement = {}, teaching = {}, timing = {}, wafers = { W1 = {} }, stations = { A = {} },"
     "   grippers = { EE = {} } } }\n";
 
@@ -120,8 +121,8 @@ static void join(char path[PATH_BYTES], const char *before, const char *name) {
 /* The obstacle that a shape's field belongs to; the others have their own. */
 static const char *mend_path(const char *path, const char *field) {
     if (strcmp(path, "obstacles[1]") == 0) {
-        return strcmp(field, "cylinder") == 0  ? "obstacles[2]"
-               : strcmp(field, "capsule") == 0 ? "obstacles[3]"
+        return strcmp(field, "cylinder") == 0                             ? "obstacles[2]"
+               : strcmp(field, "capsule") == 0                            ? "obstacles[3]"
                : strcmp(field, "mesh") == 0 || strcmp(field, "unit") == 0 ? "obstacles[4]"
                                                                           : path;
     }

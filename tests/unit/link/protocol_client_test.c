@@ -477,7 +477,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(two_simulators_are_told_from_one_that_was_started_anew, set_up,
                                         tear_down),
         cmocka_unit_test_setup_teardown(a_simulator_that_was_not_asked_is_not_silent, set_up, tear_down),
-        cmocka_unit_test_setup_teardown(a_run_is_put_back_if_the_simulator_takes_its_state, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(a_run_is_put_back_if_the_simulator_takes_its_state, set_up,
+                                        tear_down),
         cmocka_unit_test_setup_teardown(slices_that_no_state_tells_of_are_missed_ones_of_a_free_run, set_up,
                                         tear_down),
     };

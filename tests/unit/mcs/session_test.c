@@ -733,7 +733,8 @@ static void what_was_done_is_taken_back(void **state) {
     (void)state;
     static const exchange_t dialogue[] = {
         {"UNDO", "ERROR 68 NOTHING_TO_UNDO: "},
-        {"RESTORE a", "ERROR 67 NO_SUCH_SAVE: no state was saved under this name; \"a\" (expected a saved name; there is none)"},
+        {"RESTORE a", "ERROR 67 NO_SUCH_SAVE: no state was saved under this name; \"a\" (expected a saved "
+                      "name; there is none)"},
         {"SAVE \"to begin\"", "OK time=0"},
         {"GET A 1", "OK"},
         {"GET A 2", "ERROR 44 "}, /* refused: it changed nothing */
@@ -787,8 +788,9 @@ static void so_many_are_taken_back_and_no_more(void **state) {
 /* A link that tells nobody what its other side is. */
 static void what_a_link_does_not_tell_is_refused_by_name(void **state) {
     (void)state;
-    static const exchange_t dialogue[] = {{"SAVE a", "ERROR 69 NOT_RESTORED: the simulator does not take a saved "
-                                                     "state; this simulator does not tell all that it is"},
+    static const exchange_t dialogue[] = {{"SAVE a",
+                                           "ERROR 69 NOT_RESTORED: the simulator does not take a saved "
+                                           "state; this simulator does not tell all that it is"},
                                           {"GET A 1", "OK wafer=\"Wafer 1\""},
                                           {"UNDO", "ERROR 68 "}};
     ASSERT_DIALOGUE(dialogue);
