@@ -57,7 +57,7 @@ static const wh_command_line_t command_line = {
     .operand_variable = offsetof(arguments_t, folder),
     .check = check};
 
-/* -------------------------------------------------------------------------------------------------- asking */
+/* ----------------------------------------------------------------------------------------------- asking */
 
 /* A line without its end; false at the end of input. */
 static bool ask(const char *question, char answer[80]) {
@@ -112,10 +112,12 @@ static bool ask_all(wh_new_cell_t *cell) {
            ask_whether("Look for collisions, y or n? [n]", &cell->collision);
 }
 
+static bool is_given(const wh_new_cell_t *cell) {
+    return cell->wafer != 0 || cell->foups != 0 || cell->blades != 0 || cell->aligner || cell->collision;
+}
+
 static bool complete(wh_new_cell_t *cell) {
-    const bool is_given =
-        cell->wafer != 0 || cell->foups != 0 || cell->blades != 0 || cell->aligner || cell->collision;
-    if (!is_given && isatty(STDIN_FILENO) && isatty(STDOUT_FILENO)) {
+    if (!is_given(cell) && isatty(STDIN_FILENO) && isatty(STDOUT_FILENO)) {
         return ask_all(cell);
     }
     cell->wafer = cell->wafer != 0 ? cell->wafer : 300;
@@ -124,7 +126,7 @@ static bool complete(wh_new_cell_t *cell) {
     return true;
 }
 
-/* -------------------------------------------------------------------------------------------------- making */
+/* ----------------------------------------------------------------------------------------------- making */
 
 /* A file that is not there yet. False and errno if it cannot be made. */
 static bool make_file(int folder, const wh_new_file_t *file, const wh_new_cell_t *cell) {

@@ -16,7 +16,7 @@ static const char *stack_of(const wh_new_cell_t *cell) {
     return cell->wafer < 200 ? "CASSETTE" : "FOUP";
 }
 
-/* -------------------------------------------------------------------------------------------- layout.lua */
+/* ------------------------------------------------------------------------------------------- layout.lua */
 
 static void write_blades(const wh_new_cell_t *cell, FILE *out) {
     if (cell->blades == 2) {
@@ -73,7 +73,7 @@ static bool write_layout(const wh_new_cell_t *cell, FILE *out) {
     return !ferror(out);
 }
 
-/* -------------------------------------------------------------------------------------------- script.lua */
+/* ------------------------------------------------------------------------------------------- script.lua */
 
 /* Without a second stack wafers go to other slots of the first one. */
 static void write_put(const wh_new_cell_t *cell, const char *slot, FILE *out) {
@@ -127,7 +127,7 @@ static bool write_script(const wh_new_cell_t *cell, FILE *out) {
     return !ferror(out);
 }
 
-/* ------------------------------------------------------------------------------------------- for editors */
+/* ------------------------------------------------------------------------------------------ for editors */
 
 static bool write_settings(const wh_new_cell_t *cell, FILE *out) {
     (void)cell;

@@ -44,7 +44,7 @@ typedef struct {
     size_t file_count, file_capacity;
 } watch_t;
 
-/* -------------------------------------------------------------------------------------------------- files */
+/* ------------------------------------------------------------------------------------------------ files */
 
 static stand_t stand_of(const char *path) {
     struct stat status;
@@ -95,7 +95,7 @@ static const char *find_changed(const watch_t *watch, bool *is_missing) {
     return changed;
 }
 
-/* ------------------------------------------------------------------------------------------ in the process */
+/* --------------------------------------------------------------------------------------- in the process */
 
 static void tell_parent(void *user, const char *path) {
     const int *mouth = user;
@@ -122,7 +122,7 @@ __attribute__((noreturn)) static void carry_out(const watch_t *watch, int mouth,
     _exit(status);
 }
 
-/* ------------------------------------------------------------------------------------------ in the parent */
+/* ---------------------------------------------------------------------------------------- in the parent */
 
 static bool begin(watch_t *watch) {
     int ends[2];

@@ -7,7 +7,7 @@
 #define END                                                                                                  \
     { NULL, NULL, NULL, false }
 
-/* ------------------------------------------------------------------------------------------------- the cell */
+/* --------------------------------------------------------------------------------------------- the cell */
 
 const wh_reader_field_t wh_layout_top_fields[] = {
     {"wafer", "waferhand.wafer_size", "the wafers' size", false},
@@ -81,7 +81,7 @@ const wh_reader_field_t wh_layout_pads_fields[] = {
     {"gravity", NUMBER, "m/s^2, along -z of base", false},
     END};
 
-/* ---------------------------------------------------------------------------------------------- the robot */
+/* -------------------------------------------------------------------------------------------- the robot */
 
 const wh_reader_field_t wh_layout_robot_fields[] = {
     {"kind", "\"TRZY\"", "theta, R, Z and a yaw axis at the wrist", false},
@@ -122,7 +122,7 @@ const wh_reader_field_t wh_layout_gripper_fields[] = {
     {"rpy", TRIPLE, "0, 0 and yaw in degrees", false},
     END};
 
-/* ------------------------------------------------------------------------------------ stations and wafers */
+/* ---------------------------------------------------------------------------------- stations and wafers */
 
 const wh_reader_field_t wh_layout_station_fields[] = {
     {"kind", "\"slots\"|\"prealigner\"|\"foup\"", "what stands there", false},
@@ -159,7 +159,7 @@ const wh_reader_field_t wh_layout_wafer_fields[] = {
     {"rpy", TRIPLE, "roll, pitch, yaw in degrees, in the slot's frame", false},
     END};
 
-/* --------------------------------------------------------------------------------------------- collisions */
+/* ------------------------------------------------------------------------------------------- collisions */
 
 const wh_reader_field_t wh_layout_shapes_fields[] = {
     {"blade", "waferhand.blade", "a horseshoe below the wafer", false},
@@ -229,7 +229,7 @@ const wh_reader_field_t wh_layout_clearance_fields[] = {
     {"arm_itself", NUMBER, "mm from the arm to its own blades and what they hold", false},
     END};
 
-/* ------------------------------------------------------------------------------------------------- faults */
+/* ----------------------------------------------------------------------------------------------- faults */
 
 #define OF_EVERY_FAULT                                                                                       \
     {"after", NUMBER, "s until it begins", false}, {                                                         \
@@ -303,7 +303,7 @@ const wh_reader_field_t *const wh_layout_fault_fields[WH_FAULT_KINDS] = {
     [WH_FAULT_WAFER_TILTED] = tilted,
 };
 
-/* ------------------------------------------------------------------------------------------------ studies */
+/* ---------------------------------------------------------------------------------------------- studies */
 
 #define PLACEMENT_FIELDS                                                                                     \
     {"dx", NUMBER, "mm, in the slot's frame", false}, {"dy", NUMBER, "mm", false},                           \
@@ -340,7 +340,7 @@ const wh_reader_field_t wh_layout_timing_fields[] = {
 const wh_reader_field_t wh_layout_valve_fields[] = {
     {"valve", NUMBER, "s by which it acts late", false}, {"shape", SHAPE, "how that is spread", false}, END};
 
-/* ------------------------------------------------------------------------------------------------ the list */
+/* --------------------------------------------------------------------------------------------- the list */
 
 const wh_layout_class_t wh_layout_classes[] = {
     {"layout", "A cell, which a layout's file returns.", wh_layout_top_fields},

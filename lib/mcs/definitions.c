@@ -17,8 +17,8 @@ static void push_fields(lua_State *L, const wh_reader_field_t *fields) {
     }
 }
 
-/* native.classes(): the tables of layouts, a list of { name, text, fields }; fields is a list of { name, type,
- * text, required }. */
+/* native.classes(): the tables of layouts, a list of { name, text, fields }; fields is a list of
+ * { name, type, text, required }. */
 static int list_classes(lua_State *L) {
     lua_newtable(L);
     for (lua_Integer i = 0; wh_layout_classes[i].name; ++i) {

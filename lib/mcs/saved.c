@@ -1,4 +1,4 @@
-/* The state of a session, kept whole and put back: what motion control commands, and what the simulator is. */
+/* The state of a session, kept whole and put back: motion control's, and the simulator's. */
 #include <stdlib.h>
 #include <string.h>
 
