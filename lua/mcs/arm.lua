@@ -337,12 +337,15 @@ return function(native, lookup)
     return copied
   end
 
-  -- Of a held plan what going on needs.
+  -- A held plan but for its requests, which are planned anew when it goes on.
   local function copy_plan(plan)
-    return plan and {
-      pattern = plan.pattern, target = copy(plan.target), answers = copy(plan.answers),
-      detours = copy(plan.detours), conclude = plan.conclude, text = plan.text, phase = plan.phase,
-    }
+    local copied = {}
+    for name, part in pairs(plan or {}) do
+      if type(name) == "string" then
+        copied[name] = copy(part)
+      end
+    end
+    return plan and copied
   end
 
   -- A function that makes the arm again what it is now, and one that says if it still is.
