@@ -6,7 +6,7 @@
 #include "protocol_client.h"
 
 /* So long the state of the last slice is waited for. */
-#define SETTLE_US 1000000
+#define SETTLE_US 100000
 /* So often a simulator that asks for the state gets it. One in a lossy network asks several times. */
 #define RESTORES_MOST 20
 

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "../sim/snapshot.h"
-#include "../text/array.h"
 #include "native.h"
 
 /* The name of the type of userdata. */

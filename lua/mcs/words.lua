@@ -109,7 +109,8 @@ words.module = {
 -- What words take and give, but for what a layout's reader knows.
 words.classes = {
   { "measurement", "What the check found: lengths in mm.",
-    { "dr", "number[]", "the paper's (1)" }, { "n1_proj_n2", "number", "the paper's (2)" }, { "dr_proj_z", "number", "the paper's (3)" },
+    { "dr", "number[]", "the paper's (1)" }, { "n1_proj_n2", "number", "the paper's (2)" },
+    { "dr_proj_z", "number", "the paper's (3)" },
     { "dr_proj_xy", "number[]", "the paper's (4)" }, { "dr_proj_xy_norm", "number", "the paper's (5)" },
     { "ready", "boolean", "if all three conditions hold" },
     { "failed", "table<string, true>", "the conditions that do not" },
