@@ -1,9 +1,7 @@
 /* waferhand new NAME */
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "../text/options.h"
@@ -126,51 +124,11 @@ static bool complete(wh_new_cell_t *cell) {
     return true;
 }
 
-/* ----------------------------------------------------------------------------------------------- making */
-
-/* A file that is not there yet. False and errno if it cannot be made. */
-static bool make_file(int folder, const wh_new_file_t *file, const wh_new_cell_t *cell) {
-    const int descriptor = openat(folder, file->name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    FILE *out = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
-    if (!out) {
-        return false;
-    }
-    const bool written = file->write(cell, out);
-    return fclose(out) == 0 && written;
-}
-
-static bool make_files(const arguments_t *arguments) {
-    const int folder = open(arguments->folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    const wh_new_file_t *file = wh_new_cell_files;
-    while (folder >= 0 && file->name && make_file(folder, file, &arguments->cell)) {
-        ++file;
-    }
-    const bool made = folder >= 0 && !file->name;
-    if (!made) {
-        fprintf(stderr, "%s/%s: %s (expected a file that can be written)\n", arguments->folder, file->name,
-                strerror(errno));
-    }
-    if (folder >= 0) {
-        (void)close(folder);
-    }
-    return made;
-}
-
 int wh_app_new(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
-    if (access(arguments.folder, F_OK) == 0) {
-        fprintf(stderr, "%s: it is there already (expected a name that is free)\n", arguments.folder);
-        return WH_EXIT_USAGE;
-    }
-    if (!complete(&arguments.cell)) {
-        return WH_EXIT_USAGE;
-    }
-    if (mkdir(arguments.folder, 0777) != 0) {
-        fprintf(stderr, "%s: %s (expected a folder that can be made)\n", arguments.folder, strerror(errno));
-        return WH_EXIT_USAGE;
-    }
-    if (!make_files(&arguments)) {
+    if (!wh_new_cell_is_free(arguments.folder) || !complete(&arguments.cell) ||
+        !wh_new_cell_make(&arguments.cell, arguments.folder)) {
         return WH_EXIT_USAGE;
     }
     printf("waferhand run %s/script.lua\n", arguments.folder);

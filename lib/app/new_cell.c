@@ -1,7 +1,12 @@
 #include "new_cell.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "../mcs/definitions.h"
 
@@ -151,8 +156,60 @@ static bool write_definitions(const wh_new_cell_t *cell, FILE *out) {
     return written;
 }
 
-const wh_new_file_t wh_new_cell_files[] = {{"layout.lua", write_layout},
-                                           {"script.lua", write_script},
-                                           {"definitions.lua", write_definitions},
-                                           {".luarc.json", write_settings},
-                                           {NULL, NULL}};
+/* A file of the cell; `write` returns false if `out` does not take it. In the order in which they are made. */
+typedef struct {
+    const char *name;
+    bool (*write)(const wh_new_cell_t *cell, FILE *out);
+} new_file_t;
+
+static const new_file_t files[] = {{"layout.lua", write_layout},
+                                   {"script.lua", write_script},
+                                   {"definitions.lua", write_definitions},
+                                   {".luarc.json", write_settings},
+                                   {NULL, NULL}};
+
+/* ----------------------------------------------------------------------------------------------- making */
+
+/* A file that is not there yet. False and errno if it cannot be made. */
+static bool make_file(int folder, const new_file_t *file, const wh_new_cell_t *cell) {
+    const int descriptor = openat(folder, file->name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    FILE *out = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+    if (!out) {
+        return false;
+    }
+    const bool written = file->write(cell, out);
+    return fclose(out) == 0 && written;
+}
+
+static bool make_files(const wh_new_cell_t *cell, const char *path) {
+    const int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    const new_file_t *file = files;
+    while (folder >= 0 && file->name && make_file(folder, file, cell)) {
+        ++file;
+    }
+    const bool made = folder >= 0 && !file->name;
+    if (!made) {
+        fprintf(stderr, "%s/%s: %s (expected a file that can be written)\n", path, file->name,
+                strerror(errno));
+    }
+    if (folder >= 0) {
+        (void)close(folder);
+    }
+    return made;
+}
+
+bool wh_new_cell_is_free(const char *folder) {
+    const bool is_free = access(folder, F_OK) != 0;
+    if (!is_free) {
+        fprintf(stderr, "%s: it is there already (expected a name that is free)\n", folder);
+    }
+    return is_free;
+}
+
+bool wh_new_cell_make(const wh_new_cell_t *cell, const char *folder) {
+    if (mkdir(folder, 0777) != 0) {
+        fprintf(stderr, "%s: %s (expected a folder that can be made)\n", folder, strerror(errno));
+        return false;
+    }
+    return make_files(cell, folder);
+}

@@ -4,7 +4,6 @@
 
 #include <stdbool.h>
 #include <stdint.h>
-#include <stdio.h>
 
 #define WH_NEW_FOUPS 4
 #define WH_NEW_BLADES 2
@@ -20,13 +19,11 @@ typedef struct {
 /* mm; 0 ends the list. */
 extern const uint64_t wh_new_cell_sizes[];
 
-/* A file of the cell; `write` returns false if `out` does not take it. */
-typedef struct {
-    const char *name;
-    bool (*write)(const wh_new_cell_t *cell, FILE *out);
-} wh_new_file_t;
+/* True if nothing is there yet; else standard error says so. */
+bool wh_new_cell_is_free(const char *folder);
 
-/* In the order in which they are made; a null name ends the list. */
-extern const wh_new_file_t wh_new_cell_files[];
+/* Makes the folder and its files; nothing that is there is written over. False, and standard error says why,
+ * if one cannot be made; what was made by then stays. */
+bool wh_new_cell_make(const wh_new_cell_t *cell, const char *folder);
 
 #endif
