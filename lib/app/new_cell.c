@@ -156,7 +156,7 @@ static bool write_definitions(const wh_new_cell_t *cell, FILE *out) {
     return written;
 }
 
-/* A file of the cell, in the order in which they are made; `write` returns false if `out` does not take it. */
+/* A file of the cell, in the order of making; `write` returns false if `out` does not take it. */
 typedef struct {
     const char *name;
     bool (*write)(const wh_new_cell_t *cell, FILE *out);
