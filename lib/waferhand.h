@@ -39,6 +39,10 @@
 
 #include "cell/station.h"
 
+#include "align/rim.h"
+#include "align/sensing.h"
+#include "align/circle.h"
+
 #include "sim/event_text.h"
 #include "sim/faults.h"
 #include "sim/physics.h"

@@ -1,5 +1,5 @@
 /* A long run whose bits have to be the same on every machine: random steps of the grasp table, and random calls of
- * everything in lib/motion; the bytes of a snapshot; and random numbers, which are doubles in float as well. Prints a hash of
+ * everything in lib/motion; the bytes of a snapshot; random numbers, and scans of rims with their circles, which are doubles in float as well. Prints a hash of
  * each: the lines of tests/target/golden.txt for its number type, but for the last, "transfer", which tests/verify/bits makes.
  *
  * Needs nothing but the library, so that it can be built for a target of your own. */
@@ -233,6 +233,40 @@ static void deviates(void) {
     add_double(wh_ln((double)(1 + below(1U << 31)) / 1024));
 }
 
+/* A wafer with a notch and a chip, seen with noise, and the circle that its scan tells. False if it tells none. */
+static bool scan(void) {
+    enum { SAMPLES = 180 };
+    static wh_rim_point_t points[SAMPLES];
+    static wh_rim_ray_t rays[SAMPLES];
+    const wh_chip_t chip = {1, 8, 2};
+    const wh_trial_t trial = {state, below(1000)};
+    wh_rim_t rim = wh_rim_nominal(150);
+    wh_sensor_t sensor = wh_sensor_nominal(150);
+    wh_circle_t circle = {0};
+    rim.notch.direction = (double)below(6283) / 1000;
+    rim.chips[0] = chip;
+    rim.chip_count = 1;
+    sensor.samples = SAMPLES;
+    sensor.noise = 0.005;
+    sensor.error.offset = 0.125;
+    const wh_placement_t placement = {(double)below(9000) / 1000, -(double)below(9000) / 1000, 0.5};
+    for (uint32_t i = 0; i < SAMPLES; ++i) {
+        const wh_glance_t glance = {wh_sensor_angle(&sensor, i), 6, trial, i};
+        const int32_t sample = wh_sensor_read(&sensor, &rim, &placement, &glance);
+        hash = wh_hash_int(hash, sample);
+        add_double(wh_rim_distance(&rim, &placement, sensor.error.offset, -glance.turn));
+        points[i] = wh_sensor_point(&sensor, &sensor.error, &glance, sample);
+    }
+    const wh_rim_scan_t whole = {points, SAMPLES, sensor.error.offset, sensor.pixel};
+    const bool good = wh_circle_fit(&whole, rays, &circle) == WH_OK;
+    add_double(circle.x);
+    add_double(circle.y);
+    add_double(circle.radius);
+    add_double(circle.sd_centre);
+    add_double(circle.scatter);
+    return good;
+}
+
 /* In halves: newlib-nano prints no integer of 64 bits. */
 static int report(const char *what, bool good) {
     printf("%s %s %08lx%08lx\n", sizeof(wh_real_t) == sizeof(double) ? "double" : "float", what,
@@ -270,5 +304,11 @@ int main(void) {
         deviates();
     }
     failed += report("deviate", true);
+    hash = WH_HASH_START;
+    good = true;
+    for (int wafer = 0; wafer < 20; ++wafer) {
+        good = scan() && good;
+    }
+    failed += report("scan", good);
     return failed;
 }
