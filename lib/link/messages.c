@@ -124,6 +124,7 @@ wh_status_t wh_link_command_from_message(const waferhand_command *message, wh_co
         command->grippers[g].valve = message->valve[g];
     }
     memcpy(command->axes, message->axis_position, sizeof command->axes);
+    command->scan = (wh_scan_order_t){WH_SCAN_KEEP, 0, 0, 0};
     command->fault_count = (size_t)message->fault_count;
     for (size_t i = 0; i < command->fault_count; ++i) {
         command->faults[i].index = message->fault_index[i];
