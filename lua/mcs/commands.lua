@@ -38,6 +38,37 @@ return function(native, patterns, lookup)
     arm.move(lookup.command("ROTATE", station, degrees), rotate, station, degrees)
   end
 
+  local function sensing()
+    local names = {}
+    for name, station in pairs(native.layout.stations) do
+      names[#names + 1] = station.sensor and name
+    end
+    return #names > 0 and "expected a prealigner with an edge sensor: " .. lookup.listed(names)
+      or "expected a prealigner with an edge sensor: this cell has none"
+  end
+
+  -- A turn and two samples more: from the first sample that is at least one ahead of where the chuck stands.
+  local function edge_scan(station_name)
+    local station = lookup.station(station_name)
+    local sensor = station.sensor
+    if not sensor then
+      native.fail("BAD_ARGUMENT", ("station: %s (%s)"):format(lookup.quote(station_name), sensing()))
+    end
+    local axis = native.layout.grippers[station.chuck].axis
+    local axes, step = native.axes(), 2 * math.pi / sensor.samples
+    local first = (math.floor(axes[axis] / step) + 2) % sensor.samples
+    axes[axis] = axes[axis] + (sensor.samples + 2) * step
+    native.arm_edge(station.chuck, first, sensor.samples)
+    play { dwell = native.layout.slice }
+    play { axes = axes }
+    return native.edge()
+  end
+
+  -- Turns the chuck once round and returns what its edge sensor saw: { samples, first, count, missed, is_armed }.
+  function commands.edge_scan(station)
+    return arm.move(lookup.command("EDGE_SCAN", station), edge_scan, station)
+  end
+
   local function valve(gripper, level)
     if level ~= 0 and level ~= 1 then
       native.fail("BAD_VALVE", ("level: %s (expected 0, open, or 1, closed)"):format(lookup.quote(level)))
