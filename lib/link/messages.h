@@ -25,6 +25,8 @@
 /* A layout for two processes has at most so many wafers, so that a state fits one datagram. */
 #define WH_LINK_WAFERS 256
 #define WH_LINK_EVENTS WH_SLICE_EVENTS
+/* One for each wafer, and one for those that have none of their own. */
+#define WH_LINK_RIMS (WH_LINK_WAFERS + 1)
 /* Parts of a collision world, with which an event's must do. */
 #define WH_LINK_PARTS (1 << 20)
 /* LCM sends what is longer in fragments, which get lost one by one. */
@@ -71,6 +73,7 @@ typedef struct {
     waferhand_gripper_state grippers[WH_GRIPPERS];
     waferhand_event events[WH_LINK_EVENTS];
     waferhand_fault_slot faults[WH_FAULTS];
+    int32_t samples[WH_SCAN_SLICE];
 } wh_link_state_t;
 
 /* Room for a whole cell as a message; `message` points into the arrays, and to the layout's texts. */
@@ -81,6 +84,10 @@ typedef struct {
     char *wafer_names[WH_LINK_WAFERS];
     waferhand_wafer_state wafers[WH_LINK_WAFERS];
     waferhand_fault faults[WH_FAULTS];
+    waferhand_edge_sensor sensors[WH_GRIPPERS];
+    double hidden[WH_GRIPPERS][2][WH_SENSOR_ARCS];
+    waferhand_rim rims[WH_LINK_RIMS];
+    double chips[WH_LINK_RIMS][3][WH_RIM_CHIPS];
 } wh_link_cell_t;
 
 /* LCM's structs hold plain char pointers, though encoding only reads what they point to. */
