@@ -17,6 +17,7 @@
 #define STATE_COUNTS (FINGERPRINT + HEADER + 4)
 #define STATE_FIXED (STATE_COUNTS + 5 * 4 + 2 * 8 + 4 + 4 * 4 + 1 + 2 * 8)
 #define MCS_FIXED (FINGERPRINT + HEADER + 4 + 8 + 2 * 4)
+#define EDGE_SCAN_FIXED (FINGERPRINT + HEADER + 3 * 4 + 8 + 4 * 4 + 2 * 8 + 3 * 4)
 #define CELL_FIXED (8 + 7 * 8 + 3 + 10 * 8)
 #define STATION_FIXED (12 * 8 + 4 + 8 + 4)
 #define SENSOR_FIXED (4 + 8 + 4 * 8 + 2 * 4 + 6 * 8)
@@ -188,6 +189,13 @@ bool wh_link_decode_cell(const void *data, size_t size, waferhand_cell *message)
     skip_entries(&walk, sensors, SENSOR_FIXED, WH_SENSOR_ARCS, 2);
     skip_entries(&walk, rims, RIM_FIXED, WH_RIM_CHIPS, 3);
     return ends(&walk) && waferhand_cell_decode(data, 0, (int)size, message) == (int)size;
+}
+
+bool wh_link_decode_edge_scan(const void *data, size_t size, waferhand_edge_scan *message) {
+    walk_t walk = {data, size, 0, true};
+    skip(&walk, EDGE_SCAN_FIXED);
+    skip(&walk, take_count(&walk, WH_LINK_SAMPLES) * 4);
+    return ends(&walk) && waferhand_edge_scan_decode(data, 0, (int)size, message) == (int)size;
 }
 
 /* --------------------------------------------------------------------------------------------- recordings */

@@ -133,7 +133,7 @@ static void set_up_listeners(wh_mcs_t *mcs) {
     mcs->recorder.cell = &mcs->real->cell;
     wh_mcs_listen(mcs, hear_record, &mcs->recorder);
     if (mcs->layout->scanner_count > 0) {
-        wh_mcs_listen(mcs, wh_mcs_hear_edge, &mcs->edge);
+        wh_mcs_listen(mcs, wh_mcs_hear_edge, mcs);
     }
     if (mcs->decisions) {
         wh_mcs_listen(mcs, hear_decisions, mcs->decisions);

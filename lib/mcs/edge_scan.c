@@ -35,17 +35,22 @@ static void collect(wh_mcs_edge_t *edge, const wh_scan_t *scan) {
 
 /* Only a state of a slice after the last one that was heard of: in a free run it may come again. */
 void wh_mcs_hear_edge(void *user, const wh_command_t *command, const wh_state_t *state) {
-    wh_mcs_edge_t *edge = user;
+    wh_mcs_t *mcs = user;
+    wh_mcs_edge_t *edge = &mcs->edge;
     (void)command;
     if (!state->physics || state->seq <= edge->seq) {
         return;
     }
     const wh_scan_t *scan = &state->physics->scan;
+    const bool was_armed = edge->armed;
     edge->seq = state->seq;
+    edge->number = scan->number;
     if (is_of(edge, scan)) {
         collect(edge, scan);
+        if (was_armed && !edge->armed && mcs->partners.edge) {
+            mcs->partners.edge(mcs->partners.user, mcs);
+        }
     }
-    edge->number = scan->number;
 }
 
 void wh_mcs_free_edge(wh_mcs_edge_t *edge) {

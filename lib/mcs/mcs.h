@@ -42,6 +42,8 @@ typedef struct {
     /* The last expectation of the record was added, or its last cycle. */
     void (*expected)(void *user, const wh_mcs_t *mcs);
     void (*cycle)(void *user, const wh_mcs_t *mcs);
+    /* The scan in mcs->edge has ended. */
+    void (*edge)(void *user, const wh_mcs_t *mcs);
     /* The record is closed: the run has ended, also by an error. Not called without a cell, nor at a
      * prompt. */
     void (*finished)(void *user, const wh_mcs_t *mcs);

@@ -47,7 +47,7 @@ static inline uint64_t wh_mcs_steps(int64_t slices) {
     return 20 * (uint64_t)slices;
 }
 
-/* Hears of each slice for what wh_mcs_t.edge collects. */
+/* Hears of each slice for what `edge` collects; `user` is the wh_mcs_t. */
 void wh_mcs_hear_edge(void *user, const wh_command_t *command, const wh_state_t *state);
 
 void wh_mcs_free_edge(wh_mcs_edge_t *edge);
