@@ -8,6 +8,9 @@
 
 #define TURN (2 * 3.14159265358979323846)
 
+/* rad: more than WH_SCAN_REACH and WH_SCAN_TURNS turns, less than what align/sensing.h takes. */
+#define FARTHEST 9000
+
 /* ----------------------------------------------------------------------------------------------- validity */
 
 static const wh_scanner_t *find_scanner(const wh_scanning_t *scanning, int32_t gripper) {
@@ -214,7 +217,8 @@ static void take_samples(const wh_scanning_t *scanning, const wh_grasp_t *table,
     const double turn = turn_next_to(scanner, table, scan->turn);
     const double speed = (turn - scan->turn) / (double)slice_s;
     const size_t due = count_due(&scanner->sensor, scan, turn);
-    if (due > WH_SCAN_SLICE || speed > WH_SCAN_SPEED || speed < -WH_SCAN_SPEED) {
+    const bool fast = speed > WH_SCAN_SPEED || speed < -WH_SCAN_SPEED;
+    if (due > WH_SCAN_SLICE || fast || turn > FARTHEST || turn < -FARTHEST) {
         end_scan(scan);
         return;
     }

@@ -99,7 +99,7 @@ wh_status_t wh_scanning_check(const wh_scanning_t *scanning, const wh_scan_order
  * gap, WH_SCAN_GAP up and down; either must be off the axis by less than half its radius, less 1 mm. Without
  * one each sample is 0, whatever hides the line. A wafer that lies face down is seen mirrored; how it is
  * tilted does not count. A scan ends early, with fewer samples taken than were ordered, in a slice that has
- * more than WH_SCAN_SLICE of them or turns the chuck faster than WH_SCAN_SPEED. No argument may be null. Cost:
+ * more than WH_SCAN_SLICE of them, turns the chuck faster than WH_SCAN_SPEED, or takes it beyond 9000 rad. No argument may be null. Cost:
  * of a scan that is armed an arc tangent, linear in wafers if the chuck's gripper holds none, and
  * wh_sensor_read for each sample. */
 void wh_scanning_step(const wh_scanning_t *scanning, const wh_grasp_t *table, wh_real_t slice_s,

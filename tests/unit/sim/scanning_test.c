@@ -204,6 +204,21 @@ static void a_scan_that_is_too_fast_ends_early(void **state) {
     assert_int_equal(scan->taken, 0);
 }
 
+/* A chuck that turns the wrong way for ever is not followed for ever. */
+static void a_scan_that_waits_in_vain_ends(void **state) {
+    (void)state;
+    begin(&run, 1);
+    arm(&run, -3600 * 1000, 10);
+    int slices = 0;
+    do {
+        assert_int_equal(step(&run, -0.5 * slices), WH_OK);
+        assert_int_equal(wh_physics_state_validate(&run.simulator.physics, GRIPPERS, WAFERS), WH_OK);
+        ++slices;
+    } while (run.state.physics->scan.armed);
+    assert_in_range(slices, 5000, 6000);
+    assert_int_equal(run.count, 0);
+}
+
 static void a_chuck_that_stands_or_turns_back_gives_no_sample_twice(void **state) {
     (void)state;
     begin(&run, 0.01);
@@ -313,6 +328,7 @@ int main(void) {
         cmocka_unit_test(an_order_that_cannot_be_taken_changes_nothing),
         cmocka_unit_test(a_sensor_that_cannot_be_is_refused),
         cmocka_unit_test(a_scan_that_is_too_fast_ends_early),
+        cmocka_unit_test(a_scan_that_waits_in_vain_ends),
         cmocka_unit_test(a_chuck_that_stands_or_turns_back_gives_no_sample_twice),
         cmocka_unit_test(without_a_wafer_there_is_nothing_and_face_down_it_is_mirrored),
         cmocka_unit_test(a_run_without_a_scan_hashes_as_if_there_were_no_sensor),
