@@ -90,20 +90,32 @@ static uint64_t bits_of_turn(const wh_scan_t *scan) {
     return bits;
 }
 
-static wh_status_t check_scan(const wh_scan_t *scan, size_t gripper_count) {
+static bool is_between(int64_t value, int64_t least, int64_t most) {
+    return value >= least && value <= most;
+}
+
+/* What was ordered; before the first order nothing. */
+static bool is_ordered(const wh_scan_t *scan, size_t gripper_count) {
     const int32_t most = WH_SCAN_TURNS * WH_SENSOR_SAMPLES;
     const int64_t reach = (int64_t)WH_SCAN_REACH * WH_SENSOR_SAMPLES;
+    const bool none = (scan->gripper | scan->count) == 0 && scan->first == 0;
+    return wh_is_index(scan->gripper, gripper_count) && is_between(scan->count, -most, most) &&
+           is_between(scan->first, -reach, reach) && (scan->number > 0 || none);
+}
+
+static wh_status_t check_scan(const wh_scan_t *scan, size_t gripper_count) {
     const uint64_t turn = bits_of_turn(scan) & (UINT64_MAX >> 1);
     if (turn >= TURN_INFINITE) {
         return WH_STATUS_NOT_FINITE;
     }
-    const bool known = wh_is_index(scan->gripper, gripper_count) && scan->count <= most &&
-                       scan->count >= -most && scan->first >= -reach && scan->first <= reach;
-    const int32_t count = known && scan->count < 0 ? -scan->count : scan->count;
-    const bool sound = scan->taken >= scan->sample_count && scan->taken <= count &&
-                       (scan->armed ? scan->taken < count && turn < TURN_MOST : bits_of_turn(scan) == 0);
-    const bool begun = scan->number > 0 || (count == 0 && scan->first == 0 && scan->gripper == 0);
-    return known && sound && begun && is_sampled(scan) ? WH_OK : WH_STATUS_OUT_OF_RANGE;
+    if (!is_ordered(scan, gripper_count) || !is_sampled(scan)) {
+        return WH_STATUS_OUT_OF_RANGE;
+    }
+    const int32_t count = scan->count < 0 ? -scan->count : scan->count;
+    const bool goes_on = scan->taken < count && turn < TURN_MOST;
+    const bool good = is_between(scan->taken, scan->sample_count, count) &&
+                      (scan->armed ? goes_on : bits_of_turn(scan) == 0);
+    return good ? WH_OK : WH_STATUS_OUT_OF_RANGE;
 }
 
 wh_status_t wh_physics_state_validate(const wh_physics_state_t *state, size_t gripper_count,

@@ -32,9 +32,16 @@ static wh_status_t check_scanner(const wh_scanning_t *scanning, size_t i, size_t
     return status == WH_OK ? wh_sensor_validate(&scanner->sensor, NULL) : status;
 }
 
+static wh_status_t check_rims(const wh_scanning_t *scanning, size_t wafer_count) {
+    wh_status_t status = scanning->rims || wafer_count == 0 ? WH_OK : WH_STATUS_NULL_ARGUMENT;
+    for (size_t w = 0; status == WH_OK && w < wafer_count; ++w) {
+        status = wh_rim_validate(scanning->rims[w], NULL);
+    }
+    return status;
+}
+
 wh_status_t wh_scanning_validate(const wh_scanning_t *scanning, size_t gripper_count, size_t wafer_count) {
-    if (!scanning || (!scanning->scanners && scanning->scanner_count > 0) ||
-        (!scanning->rims && scanning->scanner_count > 0 && wafer_count > 0)) {
+    if (!scanning || (!scanning->scanners && scanning->scanner_count > 0)) {
         return WH_STATUS_NULL_ARGUMENT;
     }
     if (scanning->scanner_count > gripper_count) {
@@ -44,10 +51,7 @@ wh_status_t wh_scanning_validate(const wh_scanning_t *scanning, size_t gripper_c
     for (size_t i = 0; status == WH_OK && i < scanning->scanner_count; ++i) {
         status = check_scanner(scanning, i, gripper_count);
     }
-    for (size_t w = 0; status == WH_OK && scanning->scanner_count > 0 && w < wafer_count; ++w) {
-        status = wh_rim_validate(scanning->rims[w], NULL);
-    }
-    return status;
+    return status == WH_OK && scanning->scanner_count > 0 ? check_rims(scanning, wafer_count) : status;
 }
 
 wh_status_t wh_scanning_check(const wh_scanning_t *scanning, const wh_scan_order_t *order) {
