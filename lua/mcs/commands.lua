@@ -1,7 +1,7 @@
 -- The operator's words that move something: those of lua/mcs/transfer.lua, and the single moves here.
 
 -- Kept, for a script may set globals of these names.
-local ipairs, math, pairs = ipairs, math, pairs
+local error, ipairs, math, pairs, pcall = error, ipairs, math, pairs, pcall
 
 return function(native, patterns, lookup)
   local arm = native.module("mcs/arm.lua")(native, lookup)
@@ -59,9 +59,18 @@ return function(native, patterns, lookup)
     local first = (math.floor(axes[axis] / step) + 2) % sensor.samples
     axes[axis] = axes[axis] + (sensor.samples + 2) * step
     native.arm_edge(station.chuck, first, sensor.samples)
-    play { dwell = native.layout.slice }
-    play { axes = axes }
-    return native.edge()
+    local ok, problem = pcall(function()
+      play { dwell = native.layout.slice }
+      play { axes = axes }
+    end)
+    local scan = native.edge()
+    if scan.is_armed then
+      native.disarm_edge()
+    end
+    if not ok then
+      error(problem, 0)
+    end
+    return scan
   end
 
   -- Turns the chuck once round and returns what its edge sensor saw: { samples, first, count, missed, is_armed }.
