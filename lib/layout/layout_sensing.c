@@ -12,8 +12,13 @@
 /* A chuck may pass so many samples in a slice: two less than a state carries, for rounding to encoder steps. */
 #define MOST_PASSED (WH_SCAN_SLICE - 2)
 
+/* Required, or with a default, which keeps its bits. */
+static double read_required_angle(wh_reader_t *reader, const char *field) {
+    return wh_rad_from_deg(wh_reader_number(reader, field, WH_REAL(NAN), -360, 360));
+}
+
 static double read_angle(wh_reader_t *reader, const char *field, double fallback) {
-    return wh_rad_from_deg(wh_reader_number(reader, field, wh_deg_from_rad(fallback), -360, 360));
+    return wh_reader_has(reader, field) ? read_required_angle(reader, field) : fallback;
 }
 
 /* ------------------------------------------------------------------------------------------------ sensors */
@@ -51,7 +56,7 @@ static void read_hidden(wh_reader_t *reader, wh_sensor_t *sensor) {
         wh_arc_t *arc = &sensor->hidden[sensor->hidden_count];
         wh_reader_enter_item(reader, sensor->hidden_count + 1);
         wh_reader_refuse_unknown(reader, "from width");
-        arc->from = read_angle(reader, "from", NAN);
+        arc->from = read_required_angle(reader, "from");
         arc->width = wh_rad_from_deg(wh_reader_number(reader, "width", WH_REAL(NAN), 0.001, 360));
         wh_reader_leave(reader);
     }
@@ -140,8 +145,7 @@ static void read_notch(wh_reader_t *reader, wh_notch_shape_t *notch) {
     const wh_notch_shape_t usual = wh_rim_nominal(150).notch;
     notch->direction = read_angle(reader, "at", notch->direction);
     notch->depth = wh_reader_number(reader, "depth", notch->depth > 0 ? notch->depth : usual.depth, 0, 3);
-    notch->opening =
-        wh_rad_from_deg(wh_reader_number(reader, "angle", wh_deg_from_rad(usual.opening), 58, 120));
+    notch->opening = wh_rad_from_deg(wh_reader_number(reader, "angle", 90, 58, 120));
     notch->bottom = wh_reader_number(reader, "bottom", usual.bottom, 0, 2);
     notch->corner = wh_reader_number(reader, "corner", usual.corner, 0, 1);
     wh_reader_leave(reader);
@@ -175,7 +179,7 @@ static void read_flats(wh_reader_t *reader, wh_rim_t *rim) {
     }
     for (size_t i = 0; next_entry(reader, "flats", "at length", WH_RIM_FLATS, &i);) {
         wh_flat_shape_t *flat = &rim->flats[i - 1];
-        flat->direction = read_angle(reader, "at", NAN);
+        flat->direction = read_required_angle(reader, "at");
         flat->length = wh_reader_number(reader, "length", WH_REAL(NAN), 2, 1.4 * rim->radius);
     }
 }
@@ -183,7 +187,7 @@ static void read_flats(wh_reader_t *reader, wh_rim_t *rim) {
 static void read_chips(wh_reader_t *reader, wh_rim_t *rim) {
     for (size_t i = 0; next_entry(reader, "chips", "at width depth", WH_RIM_CHIPS, &i);) {
         wh_chip_t *chip = &rim->chips[rim->chip_count];
-        chip->direction = read_angle(reader, "at", NAN);
+        chip->direction = read_required_angle(reader, "at");
         chip->width = wh_reader_number(reader, "width", WH_REAL(NAN), 0.01, 30);
         chip->depth = wh_reader_number(reader, "depth", WH_REAL(NAN), 0, chip->width < 5 ? chip->width : 5);
         ++rim->chip_count;
