@@ -42,6 +42,7 @@
 #include "align/rim.h"
 #include "align/sensing.h"
 #include "align/circle.h"
+#include "align/centring.h"
 
 #include "sim/event_text.h"
 #include "sim/faults.h"
