@@ -43,7 +43,9 @@
 #include "align/sensing.h"
 #include "align/circle.h"
 #include "align/centring.h"
+#include "align/beam.h"
 
+#include "sim/latching.h"
 #include "sim/event_text.h"
 #include "sim/faults.h"
 #include "sim/physics.h"
