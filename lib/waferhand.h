@@ -44,6 +44,7 @@
 #include "align/circle.h"
 #include "align/centring.h"
 #include "align/beam.h"
+#include "align/teaching.h"
 
 #include "sim/latching.h"
 #include "sim/event_text.h"

@@ -64,7 +64,7 @@ wh_status_t wh_blade_outline_validate(const wh_blade_outline_t *outline) {
     return WH_OK;
 }
 
-/* ---------------------------------------------------------------------------------------------- the motion */
+/* -------------------------------------------------------------------------------------------- the motion */
 
 typedef struct {
     double x, y, z;
@@ -99,7 +99,7 @@ wh_slice_motion_t wh_slice_motion_between(const wh_pose_t *begin, const wh_pose_
         motion.angle = -1;
         return motion;
     }
-    /* w of the unit quaternion is root / 2; it is made a unit one by its own length, for the sake of floats. */
+    /* w is root / 2. A float's rotation is none to the last digit, so the length is taken out. */
     const double root = sqrt(square);
     const double length = sqrt(square + (x * x + y * y + z * z) / square);
     motion.w = root / length;
@@ -169,7 +169,7 @@ static point_t meet(const line_t *line) {
     return at;
 }
 
-/* ------------------------------------------------------------------------------------------- near and inside */
+/* --------------------------------------------------------------------------------------- near and inside */
 
 /* How far the beam is from breaking, mm, above 0; or below 0, how far from getting free: at least. */
 static double rim_distance(const wh_rim_t *rim, const point_t *at) {
@@ -213,8 +213,8 @@ static double distance_at(const wh_beam_t *beam, const wh_shade_t *shade, double
     return aside > outside ? aside : outside;
 }
 
-/* The way of the beam through the body's plane in the whole slice, mm, at most; EVER if that is not known, 0 if
- * nothing moves; negative: the body breaks no beam in this slice. */
+/* The way of the beam through the body's plane in the whole slice, mm, at most; EVER if that is not known, 0
+ * if nothing moves; negative: the body breaks no beam in this slice. */
 static double way_of(const wh_beam_t *beam, const wh_shade_t *shade) {
     const wh_slice_motion_t *motion = &shade->motion;
     const line_t first = line_in_body(beam, shade, 0);
@@ -244,7 +244,7 @@ static double way_of(const wh_beam_t *beam, const wh_shade_t *shade) {
     return slope * (travel + motion->angle * reach) / (1 - slope * motion->angle);
 }
 
-/* ------------------------------------------------------------------------------------------------ the search */
+/* -------------------------------------------------------------------------------------------- the search */
 
 typedef struct {
     const wh_beam_t *beam;

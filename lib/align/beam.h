@@ -23,13 +23,13 @@ typedef struct {
     double low, high;  /* where it begins and ends, along the direction from the point; -1e4 to 1e4 */
 } wh_beam_t;
 
-/* At (x, y) of a station, upright in the station's frame, `low` to `high` over the station's z = 0. The pose is
- * a valid one; nothing is checked. */
+/* At (x, y) of a station, upright in the station's frame, `low` to `high` over the station's z = 0. The pose
+ * is a valid one; nothing is checked. */
 wh_beam_t wh_beam_at(const wh_pose_t *base_from_station, double x, double y, double low, double high)
     WH_SYMBOL(wh_beam_at);
 
-/* WH_OK; else WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, or WH_STATUS_OUT_OF_RANGE: coordinates are beyond
- * 1e5, the direction is no unit vector to 1e-5, or `high` is not above `low`. */
+/* WH_OK; else WH_STATUS_NULL_ARGUMENT, WH_STATUS_NOT_FINITE, or WH_STATUS_OUT_OF_RANGE: coordinates are
+ * beyond 1e5, the direction is no unit vector to 1e-5, or `high` is not above `low`. */
 wh_status_t wh_beam_validate(const wh_beam_t *beam) WH_SYMBOL(wh_beam_validate);
 
 #define WH_OUTLINE_POINTS 24
@@ -65,23 +65,23 @@ typedef struct {
 /* The most bodies that are looked at together. */
 #define WH_SHADES 16
 
-/* The next change of a beam from *part on. Going in, *broken is what the beam was up to there; if it is not so
- * at *part, the change is right there. True: *part is the first instant of the other kind, exact to 1e-9 mm of
- * the bodies' motion, and *broken is turned over. False: nothing changes up to the slice's end; both are as
- * they were. A beam that is broken by several bodies is free when all have left it.
+/* The next change of a beam from *part on. Going in, *broken is what the beam was up to there; if it is not
+ * so at *part, the change is right there. True: *part is the first instant of the other kind, exact to 1e-9
+ * mm of the bodies' motion, and *broken is turned over. False: nothing changes up to the slice's end; both
+ * are as they were. A beam that is broken by several bodies is free when all have left it.
  *
  * Two changes within 1e-6 mm of a motion may be missed. So may two within 1/2000 of a slice next to an edge
- * along which the beam runs, and of a body that turns by more than 0.1 rad in the slice. A body whose plane is
- * inclined to the beam's by more than 60 degrees at either end of the slice breaks no beam.
- * At most WH_SHADES; arguments are valid, 0 <= *part <= 1. Cost: 0.2 us for each body that is not near, about
- * 25 us for one that crosses, ten times that at most. */
+ * along which the beam runs, and of a body that turns by more than 0.1 rad in the slice. A body whose plane
+ * is inclined to the beam's by more than 60 degrees at either end of the slice breaks no beam. At most
+ * WH_SHADES; arguments are valid, 0 <= *part <= 1. Cost: 0.2 us for each body that is not near, about 25 us
+ * for one that crosses, ten times that at most. */
 bool wh_beam_next(const wh_beam_t *beam, const wh_shade_t *shades, size_t count, double *part, bool *broken)
     WH_SYMBOL(wh_beam_next);
 
 /* A latch as a crossing for wh_centring_solve: the point of a gripper's plane z = 0 that is in the beam at a
  * part of the slice, and how fast the beam goes over it. `beam` and `edge` of the crossing are left alone.
- * The beam and the gripper's pose are what a controller believes in; with a slice's length above 0. False, and
- * the crossing unchanged: the plane is inclined by more than 60 degrees. */
+ * The beam and the gripper's pose are what a controller believes in; with a slice's length above 0. False,
+ * and the crossing unchanged: the plane is inclined by more than 60 degrees. */
 bool wh_beam_crossing(const wh_beam_t *beam, const wh_slice_motion_t *motion, double part, double slice_s,
                       wh_crossing_t *crossing) WH_SYMBOL(wh_beam_crossing);
 

@@ -1,9 +1,10 @@
-/* Each circle that three crossings agree on gathers the crossings that fit it; the cheapest explanation of all
- * crossings wins, if no other comes near to its price. */
+/* Each circle that three crossings agree on gathers the crossings that fit it; the cheapest explanation of
+ * all crossings wins, if no other comes near to its price. */
 #include "centring.h"
 
 #include "angle_internal.h"
 #include "check_internal.h"
+#include "mismatch_internal.h"
 #include "solve_internal.h"
 
 /* Explanations that are kept: maximal sets of crossings, of which few agree. */
@@ -80,15 +81,7 @@ static bool has(const guess_t *guess, size_t i) {
     return (guess->members >> i & 1) != 0;
 }
 
-/* ------------------------------------------------------------------------------------------------- the fit */
-
-/* The mismatch that noise exceeds once in a million: Wilson and Hilferty's form at 4.5 deviations. */
-static double mismatch_limit(int32_t used) {
-    const double spare = used - 2;
-    const double part = 2 / (9 * spare);
-    const double root = 1 - part + 4.5 * sqrt(part);
-    return spare * root * root * root;
-}
+/* ----------------------------------------------------------------------------------------------- the fit */
 
 /* A step of Gauss and Newton; how far it went, or a negative number. */
 static double step(const search_t *search, guess_t *guess, wh_normal_t *normal) {
@@ -139,7 +132,7 @@ static bool fit(const search_t *search, guess_t *guess) {
             guess->covariance[i][j] = i < normal.terms && j < normal.terms ? normal.matrix[i][j] : 0;
         }
     }
-    return moved <= 1e-10 && guess->mismatch <= mismatch_limit(guess->used);
+    return moved <= 1e-10 && guess->mismatch <= wh_mismatch_limit(guess->used - 2);
 }
 
 /* ---------------------------------------------------------------------------------------------- the notch */
@@ -194,7 +187,7 @@ static double explain(const search_t *search, const guess_t *guess, wh_crossing_
     return cost;
 }
 
-/* ---------------------------------------------------------------------------------------------- the search */
+/* -------------------------------------------------------------------------------------------- the search */
 
 /* The least strange crossing that may join; false if there is none. */
 static bool next_member(const search_t *search, const guess_t *guess, size_t *next) {

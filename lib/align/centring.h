@@ -20,7 +20,7 @@
  * count as noise, and move the centre by less than that.
  *
  * The blade's own edges cross beams, too. A crossing that fits no rim, or whose direction (in or out) is not
- * the rim's, is left out as WH_CROSSING_OTHER. Flats: as notches, of their width and depth.
+ * the rim's, is left out as WH_CROSSING_OTHER. So is a crossing on a flat, if three others agree.
  *
  * Latency. A latch comes late by its delay, t_on at a beam that is broken, t_off at one that gets free. Who
  * makes the points takes off what is believed of the delays. What is not taken off moves a crossing by v t
@@ -93,8 +93,9 @@ typedef struct {
     wh_centre_t candidates[2]; /* the likelier first */
 } wh_centres_t;
 
-/* A wafer whose centre is expected at (0, 0), up to 5 mm off: its radius exact, latches with 3 us, a notch of
- * 3.5 x 1.3 mm, the largest that SEMI M1 allows, in a direction that is not known; agree 0. Nothing is checked. */
+/* A wafer whose centre is expected at (0, 0), up to 5 mm off: its radius exact, latches with 3 us, a notch
+ * of 3.5 x 1.3 mm, the largest that SEMI M1 allows, in a direction that is not known; agree 0. Nothing is
+ * checked. */
 wh_centring_t wh_centring_nominal(double radius) WH_SYMBOL(wh_centring_nominal);
 
 /* WH_OK; else `bad`, which may be null, tells the first wrong field as wh_rim_validate does. A null `known`
@@ -102,14 +103,14 @@ wh_centring_t wh_centring_nominal(double radius) WH_SYMBOL(wh_centring_nominal);
 wh_status_t wh_centring_validate(const wh_centring_t *known, wh_bad_field_t *bad)
     WH_SYMBOL(wh_centring_validate);
 
-/* The centre, candidates[0]. WH_OK: there is no other, or one within `agree`, by whose distance sd_x, sd_y and
- * sd_centre have grown. WH_STATUS_CENTRE_NOT_SURE: two candidates explain the crossings about equally well, or
- * none does (count 0); nothing should be corrected.
- * Errors, `centres` then unchanged: WH_STATUS_NULL_ARGUMENT; what wh_centring_validate says; of the crossings
- * WH_STATUS_NOT_FINITE and WH_STATUS_OUT_OF_RANGE (of a number, of the edge, of the count); and
- * WH_STATUS_TOO_FEW_SAMPLES: fewer than WH_CROSSINGS_LEAST, or all of one beam, which the circle on its other
- * side would explain as well. Crossings may come in any order, of one pass or of several. Cost: 0.5 us for
- * four crossings, 2 us if one met the notch, 0.5 ms for the worst 16. */
+/* The centre, candidates[0]. WH_OK: there is no other, or one within `agree`, by whose distance sd_x, sd_y
+ * and sd_centre have grown. WH_STATUS_CENTRE_NOT_SURE: two candidates explain the crossings about equally
+ * well, or none does (count 0); nothing should be corrected. Errors, `centres` then unchanged:
+ * WH_STATUS_NULL_ARGUMENT; what wh_centring_validate says; of the crossings WH_STATUS_NOT_FINITE and
+ * WH_STATUS_OUT_OF_RANGE (of a number, of the edge, of the count); and WH_STATUS_TOO_FEW_SAMPLES: fewer than
+ * WH_CROSSINGS_LEAST, or all of one beam, which the circle on its other side would explain as well.
+ * Crossings may come in any order, of one pass or of several. Cost: 0.5 us for four crossings, 2 us if one
+ * met the notch, 0.5 ms for the worst 16. */
 wh_status_t wh_centring_solve(const wh_centring_t *known, const wh_crossing_t *crossings, size_t count,
                               wh_centres_t *centres) WH_SYMBOL(wh_centring_solve);
 

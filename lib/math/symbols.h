@@ -187,6 +187,8 @@
 #define wh_sweep_first_ready WH_SYMBOL_RENAMED(wh_sweep_first_ready)
 #define wh_sweep_pose_at WH_SYMBOL_RENAMED(wh_sweep_pose_at)
 #define wh_sweep_within WH_SYMBOL_RENAMED(wh_sweep_within)
+#define wh_teach_guess_at WH_SYMBOL_RENAMED(wh_teach_guess_at)
+#define wh_teach_solve WH_SYMBOL_RENAMED(wh_teach_solve)
 #define wh_tolerance_paper WH_SYMBOL_RENAMED(wh_tolerance_paper)
 #define wh_tolerance_preset WH_SYMBOL_RENAMED(wh_tolerance_preset)
 #define wh_tolerance_strict WH_SYMBOL_RENAMED(wh_tolerance_strict)

@@ -76,7 +76,7 @@ static size_t gather_shades(const wh_latching_t *latching, const wh_pose_t befor
     return count;
 }
 
-/* ------------------------------------------------------------------------------------------------- latches */
+/* ----------------------------------------------------------------------------------------------- latches */
 
 static bool is_earlier(const wh_latch_t *a, const wh_latch_t *b) {
     return a->slice < b->slice || (a->slice == b->slice && a->part < b->part);

@@ -6,8 +6,8 @@
  * (align/centring.h). Crossings lie within slices and are found there, so slices of any length give the same
  * latches, as far as the motion is the same.
  *
- * What breaks beams: wafers that grippers hold, by their true rims, and blades, by their outlines; both move as
- * their gripper does. A wafer that is taken within a slice counts as held from its begin on. Wafers that
+ * What breaks beams: wafers that grippers hold, by their true rims, and blades, by their outlines; both move
+ * as their gripper does. A wafer that is taken within a slice counts as held from its begin on. Wafers that
  * nobody holds lie in slots, not in doors: they break no beam.
  */
 #ifndef WH_SIM_LATCHING_H
@@ -75,10 +75,10 @@ typedef struct {
     wh_latch_t latches[WH_LATCHES]; /* of this slice, likewise */
 } wh_latches_t;
 
-/* WH_OK, or what is wrong for a cell with these counts: WH_STATUS_NULL_ARGUMENT; WH_STATUS_BAD_CAPACITY for more
- * than WH_BEAMS beams or WH_GRIPPERS grippers; what wh_beam_validate, wh_blade_outline_validate and wh_rim_validate
- * say; WH_STATUS_NOT_FINITE and WH_STATUS_OUT_OF_RANGE for a delay. Without beams rims and blades do not count.
- * Cost: wh_rim_validate for each wafer. */
+/* WH_OK, or what is wrong for a cell with these counts: WH_STATUS_NULL_ARGUMENT; WH_STATUS_BAD_CAPACITY for
+ * more than WH_BEAMS beams or WH_GRIPPERS grippers; what wh_beam_validate, wh_blade_outline_validate and
+ * wh_rim_validate say; WH_STATUS_NOT_FINITE and WH_STATUS_OUT_OF_RANGE for a delay. Without beams rims and
+ * blades do not count. Cost: wh_rim_validate for each wafer. */
 wh_status_t wh_latching_validate(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count)
     WH_SYMBOL(wh_latching_validate);
 
@@ -86,11 +86,11 @@ wh_status_t wh_latching_validate(const wh_latching_t *latching, size_t gripper_c
 wh_status_t wh_latching_check(const wh_latching_t *latching, const wh_latch_order_t *order)
     WH_SYMBOL(wh_latching_check);
 
-/* After a slice of `slice_s` seconds, above 0: looks for crossings in it and gives the latches that are due, then
- * takes the order, which wh_latching_check has accepted. `before` has the grippers' poses at the slice's begin,
- * `table` the rest, at its end. A beam that is broken while it is armed gives no latch for that. No argument may
- * be null. Cost: with nothing armed that of two assignments; else for each beam wh_beam_next over the blades and
- * the wafers that are held, and 100 ns a latch for jitter. */
+/* After a slice of `slice_s` seconds, above 0: looks for crossings in it and gives the latches that are due,
+ * then takes the order, which wh_latching_check has accepted. `before` has the grippers' poses at the
+ * slice's begin, `table` the rest, at its end. A beam that is broken while it is armed gives no latch for
+ * that. No argument may be null. Cost: with nothing armed that of two assignments; else for each beam
+ * wh_beam_next over the blades and the wafers that are held, and 100 ns a latch for jitter. */
 void wh_latching_step(const wh_latching_t *latching, const wh_pose_t before[], const wh_grasp_t *table,
                       wh_real_t slice_s, const wh_latch_order_t *order, wh_latches_t *latches)
     WH_SYMBOL(wh_latching_step);

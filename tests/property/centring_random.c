@@ -1,8 +1,11 @@
 /* Centring on the way: random wafers cross two beams. How far the centre is from the truth and from what it
- * states; a notch in a beam's way, found or said to be undecided; edges of the blade; what latency leaves. */
+ * states; a notch in a beam's way, found or said to be undecided; edges of the blade; what latency leaves. Teaching:
+ * random stations by touch and by beam. */
 #include "support/support.h"
 
 #include "align/centring.h"
+#include "align/teaching.h"
+#include "math/rotation.h"
 
 #define PI 3.14159265358979323846
 #define RAD (PI / 180)
@@ -430,10 +433,220 @@ static void what_tells_no_centre_is_refused(void **state) {
     assert_int_equal(wh_centring_solve(&good, list, count, &centres), WH_STATUS_OUT_OF_RANGE);
     list[2] = third;
     assert_memory_equal(&centres, &before, sizeof centres);
+    const wh_crossing_t second = list[1];
+    list[1].x += list[1].x > 0 ? -4 : 4; /* on a flat, say */
+    assert_int_equal(wh_centring_solve(&good, list, count, &centres), WH_OK);
+    assert_int_equal(centres.candidates[0].use[1], WH_CROSSING_OTHER);
+    assert_true(off(&centres.candidates[0], &scene) <= 0.02);
+    list[1] = second;
     known = good;
     known.radius += 0.3; /* another wafer's: no circle fits */
     assert_int_equal(wh_centring_solve(&known, list, count, &centres), WH_STATUS_CENTRE_NOT_SURE);
     assert_int_equal(centres.count, 0);
+}
+
+/* --------------------------------------------------------------------------------------------------- teaching */
+
+/* A station that is not where it was drawn, and a beam of which the same is true. */
+typedef struct {
+    wh_pose_t station;
+    wh_beam_t beam;
+    wh_teach_guess_t guess;
+    double late; /* what is left of the latches' delay, s */
+    wh_teach_measurement_t list[64];
+    size_t count;
+} lesson_t;
+
+/* A quaternion's vector is half of these. */
+static wh_pose_t turned(double roll, double pitch, double yaw) {
+    wh_pose_t pose = wh_pose_identity();
+    const double rest = 1 - (roll * roll + pitch * pitch + yaw * yaw) / 4;
+    assert_int_equal(wh_rotation_from_quaternion(&pose.R, sqrt(rest), roll / 2, pitch / 2, yaw / 2), WH_OK);
+    return pose;
+}
+
+static lesson_t draw_lesson(void) {
+    lesson_t lesson = {.late = wh_test_uniform(-10e-6, 10e-6)};
+    wh_pose_t drawn =
+        turned(wh_test_uniform(-0.01, 0.01), wh_test_uniform(-0.01, 0.01), wh_test_uniform(-1.5, 1.5));
+    drawn.r = wh_vec3(700, wh_test_uniform(-300, 300), 900);
+    lesson.guess = wh_teach_guess_at(&drawn, -250, 60);
+    lesson.guess.sd_beam = 1; /* the station's yaw moves the door */
+    const double yaw = wh_test_uniform(-0.2, 0.2) * RAD;
+    wh_pose_t turn = turned(0, 0, 0);
+    turn.R.m[0][0] = turn.R.m[1][1] = cos(yaw);
+    turn.R.m[1][0] = sin(yaw);
+    turn.R.m[0][1] = -sin(yaw);
+    lesson.station.R = wh_mat3_multiply(&turn.R, &drawn.R);
+    const wh_vec3_t off =
+        wh_vec3(wh_test_uniform(-0.25, 0.25), wh_test_uniform(-0.25, 0.25), wh_test_uniform(-0.25, 0.25));
+    lesson.station.r = wh_vec3_add(&drawn.r, &off);
+    lesson.beam = lesson.guess.beam;
+    lesson.beam.x += wh_test_uniform(-0.5, 0.5) + off.x;
+    lesson.beam.y += wh_test_uniform(-0.5, 0.5) + off.y;
+    return lesson;
+}
+
+/* The gripper at (x, y, z) of the station as drawn, turned by `turn` against it. */
+static wh_pose_t gripper_at(const lesson_t *lesson, double x, double y, double z, double turn) {
+    const wh_vec3_t place = wh_vec3(x, y, z);
+    wh_pose_t pose = turned(0, 0, turn);
+    pose.R = wh_mat3_multiply(&lesson->guess.base_from_station.R, &pose.R);
+    pose.r = wh_pose_point(&lesson->guess.base_from_station, &place);
+    return pose;
+}
+
+/* A ball of 2 mm at the blade's tip comes against a face next to (x, y, z), with 5 um of error. */
+static void touch(lesson_t *lesson, double x, double y, double z, const double normal_of_face[3],
+                  double distance) {
+    wh_teach_measurement_t *m = &lesson->list[lesson->count++];
+    memset(m, 0, sizeof *m);
+    m->kind = WH_TEACH_TOUCH;
+    m->sd = 0.005;
+    m->x = 30;
+    m->radius = 2;
+    memcpy(m->normal, normal_of_face, sizeof m->normal);
+    m->distance = distance;
+    m->base_from_gripper = gripper_at(lesson, x, y, z, 0.1);
+    const wh_vec3_t inner = wh_vec3(m->x, 0, 0);
+    const wh_vec3_t ball = wh_pose_point(&m->base_from_gripper, &inner);
+    const wh_vec3_t apart = wh_vec3_subtract(&ball, &lesson->station.r);
+    const wh_vec3_t face = wh_vec3(normal_of_face[0], normal_of_face[1], normal_of_face[2]);
+    const wh_vec3_t in_base = wh_mat3_transform(&lesson->station.R, &face);
+    const double gap = wh_vec3_dot(&in_base, &apart) - distance - m->radius;
+    const wh_vec3_t move = wh_vec3_scale(m->sd * normal() - gap, &in_base);
+    m->base_from_gripper.r = wh_vec3_add(&m->base_from_gripper.r, &move);
+}
+
+/* Where the beam and a circle are, seen from the gripper: how far the beam is outside. */
+static double beyond(const lesson_t *lesson, const wh_teach_measurement_t *m, const wh_pose_t *gripper) {
+    const wh_slice_motion_t motion = wh_slice_motion_between(gripper, gripper);
+    wh_crossing_t at;
+    assert_true(wh_beam_crossing(&lesson->beam, &motion, 0, 1, &at));
+    wh_vec3_t centre = wh_vec3(m->x, m->y, 0);
+    if (m->kind == WH_TEACH_CARRIED) {
+        const wh_vec3_t in_base = wh_pose_point(&lesson->station, &centre);
+        const wh_vec3_t apart = wh_vec3_subtract(&in_base, &m->base_from_pick.r);
+        centre = wh_mat3_transform_back(&m->base_from_pick.R, &apart);
+    }
+    return hypot(at.x - centre.x, at.y - centre.y) - m->radius;
+}
+
+/* Carries a circle through the beam along x, there and back at 100 mm/s, the beam `aside` of its centre as far as
+ * anybody knows; latches with 10 us of jitter and with a delay that is known to 10 us. */
+static void carry(lesson_t *lesson, wh_teach_kind_t kind, double x, double y, double radius, double aside) {
+    wh_teach_measurement_t m = {.kind = kind, .sd = 0.0015, .x = x, .y = y, .radius = radius};
+    m.base_from_pick = gripper_at(lesson, 0, 0, 0, 0);
+    const double half = sqrt(radius * radius - aside * aside);
+    for (int i = 0; i < 4; ++i) {
+        const double end = i % 2 ? half : -half;
+        double inside = -250 - x - end / 2;
+        double outside_at = -250 - x - end * (1 + 4 / half);
+        for (int k = 0; k < 60; ++k) {
+            const double middle = (inside + outside_at) / 2;
+            const wh_pose_t gripper = gripper_at(lesson, middle, 60 - y + aside, 20, 0);
+            if (beyond(lesson, &m, &gripper) < 0) {
+                inside = middle;
+            } else {
+                outside_at = middle;
+            }
+        }
+        const double late = (lesson->late + 10e-6 * normal()) * (i < 2 ? 100 : -100);
+        m.base_from_gripper = gripper_at(lesson, inside + late, 60 - y + aside, 20, 0);
+        lesson->list[lesson->count++] = m;
+    }
+}
+
+static const double front[3] = {-1, 0, 0};
+static const double side[3] = {0, -1, 0};
+static const double below[3] = {0, 0, -1};
+
+static void teach_by_touch(lesson_t *lesson) {
+    for (int i = 0; i < 2; ++i) {
+        touch(lesson, -190, -100, -5, front, 160);
+        touch(lesson, -190, 100, -5, front, 160);
+        touch(lesson, -60, -170, -5, side, 165);
+        touch(lesson, -80, 20, -3, below, 0);
+    }
+}
+
+static void teach_by_beam(lesson_t *lesson) {
+    carry(lesson, WH_TEACH_PIN, 20, 0, 8, -4);
+    carry(lesson, WH_TEACH_PIN, 20, 0, 8, 4);
+    carry(lesson, WH_TEACH_CARRIED, 0, 0, 150, 80);
+    carry(lesson, WH_TEACH_CARRIED, 0, 0, 150, -80);
+    carry(lesson, WH_TEACH_CARRIED, 10, 130, 8, 4);
+    carry(lesson, WH_TEACH_CARRIED, 10, 130, 8, -4);
+    touch(lesson, -30, 0, -3, below, 0);
+    touch(lesson, -30, 0, -3, below, 0);
+}
+
+static void stations_are_taught_within_20_um(void (*teach)(lesson_t *), const char *how) {
+    double worst = 0;
+    double worst_yaw = 0;
+    double squares = 0;
+    const int lessons = 2000 / WH_TEST_SHARE;
+    for (int k = 0; k < lessons; ++k) {
+        lesson_t lesson = draw_lesson();
+        wh_taught_t taught;
+        int32_t bad = 7;
+        teach(&lesson);
+        assert_int_equal(wh_teach_solve(&lesson.guess, lesson.list, lesson.count, &taught, &bad), WH_OK);
+        const wh_vec3_t off = wh_vec3_subtract(&taught.base_from_station.r, &lesson.station.r);
+        const wh_mat3_t turn = wh_mat3_multiply_back(&lesson.station.R, &taught.base_from_station.R);
+        worst = fmax(worst, fmax(fabs(off.x), fmax(fabs(off.y), fabs(off.z))));
+        worst_yaw = fmax(worst_yaw, fabs(turn.m[1][0]) / RAD);
+        squares += pow(off.x / taught.sd_shift[0], 2) + pow(off.y / taught.sd_shift[1], 2) +
+                   pow(off.z / taught.sd_shift[2], 2) + pow(turn.m[1][0] / taught.sd_yaw, 2);
+    }
+    const double honest = sqrt(squares / (4 * lessons));
+    printf(
+        "%d stations taught by %s: x, y, z off by at most %.4f mm, yaw by %.4f degrees; %.3f of the stated "
+        "deviations in the root mean square\n",
+        lessons, how, worst, worst_yaw, honest);
+    assert_true(worst <= 0.02);
+    assert_true(worst_yaw <= 0.02);
+    assert_true(honest <= 1.1 && honest >= 0.5); /* a delay that cancels is in the latches' deviation */
+}
+
+static void stations_are_taught(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    stations_are_taught_within_20_um(teach_by_touch, "touch");
+    stations_are_taught_within_20_um(teach_by_beam, "beam");
+}
+
+static void what_teaches_nothing_is_said(void **state) {
+    (void)state;
+    (void)wh_test_seed();
+    lesson_t lesson = draw_lesson();
+    wh_taught_t taught = {.yaw = 7};
+    int32_t bad = 7;
+    teach_by_touch(&lesson);
+    lesson_t wrong = lesson;
+    wrong.list[2].distance += 0.5;
+    assert_int_equal(wh_teach_solve(&lesson.guess, wrong.list, 8, &taught, &bad), WH_STATUS_CENTRE_NOT_SURE);
+    assert_true(bad == 2 || bad == 6); /* the one or the other touch of that face */
+    wrong = lesson;
+    wrong.list[3].sd = (double)NAN;
+    assert_int_equal(wh_teach_solve(&lesson.guess, wrong.list, 8, &taught, &bad), WH_STATUS_NOT_FINITE);
+    assert_int_equal(bad, 3);
+    wrong.list[3] = lesson.list[3];
+    wrong.list[5].normal[0] = 0.5;
+    assert_int_equal(wh_teach_solve(&lesson.guess, wrong.list, 8, &taught, &bad), WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(bad, 5);
+    wrong.list[0].base_from_gripper.R.m[0][0] = 2;
+    assert_int_equal(wh_teach_solve(&lesson.guess, wrong.list, 8, &taught, &bad), WH_STATUS_NOT_A_ROTATION);
+    wrong.guess.sd_yaw = 0;
+    assert_int_equal(wh_teach_solve(&wrong.guess, lesson.list, 8, &taught, &bad), WH_STATUS_OUT_OF_RANGE);
+    assert_int_equal(bad, WH_NONE);
+    assert_int_equal(wh_teach_solve(&lesson.guess, lesson.list, 0, &taught, NULL), WH_STATUS_TOO_FEW_SAMPLES);
+    assert_int_equal(wh_teach_solve(&lesson.guess, NULL, 8, &taught, NULL), WH_STATUS_NULL_ARGUMENT);
+    assert_true(taught.yaw == 7);
+    /* Two touches of one face tell neither the other axis nor the height. */
+    assert_int_equal(wh_teach_solve(&lesson.guess, lesson.list, 2, &taught, NULL), WH_OK);
+    assert_true(taught.sd_shift[2] > 0.24 && hypot(taught.sd_shift[0], taught.sd_shift[1]) > 0.24);
+    assert_true(taught.sd_yaw < 0.01 * RAD);
 }
 
 int main(void) {
@@ -446,6 +659,8 @@ int main(void) {
         cmocka_unit_test(latency_leaves_what_the_header_says),
         cmocka_unit_test(edges_of_the_blade_are_left_out),
         cmocka_unit_test(what_tells_no_centre_is_refused),
+        cmocka_unit_test(stations_are_taught),
+        cmocka_unit_test(what_teaches_nothing_is_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
