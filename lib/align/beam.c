@@ -184,7 +184,7 @@ static double outline_distance(const wh_blade_outline_t *outline, const point_t 
     bool inside = false;
     double least = EVER;
     size_t before = (size_t)outline->count - 1;
-    for (size_t i = 0; i < (size_t)outline->count; before = i++) {
+    for (size_t i = 0; i < (size_t)outline->count; ++i) {
         const double x = outline->x[before] - at->x;
         const double y = outline->y[before] - at->y;
         const double dx = outline->x[i] - outline->x[before];
@@ -198,6 +198,7 @@ static double outline_distance(const wh_blade_outline_t *outline, const point_t 
         if ((y > 0) != (y + dy > 0) && x - y / dy * dx > 0) {
             inside = !inside;
         }
+        before = i;
     }
     return inside ? -sqrt(least) : sqrt(least);
 }
@@ -290,9 +291,11 @@ static double holds(const look_t *look, double part) {
     return any ? -broken : clear;
 }
 
-/* Between an instant before the change and one after it. */
-static double bisect(const look_t *look, double before, double after, bool broken) {
+/* Between two instants of which the second alone is after the change. */
+static double bisect(const look_t *look, double first, double last, bool broken) {
     const double exact = look->longest > 0 ? EXACT / look->longest : 0;
+    double before = first;
+    double after = last;
     for (int i = 0; i < 60 && after - before > exact; ++i) {
         const double middle = (before + after) / 2;
         if ((holds(look, middle) < 0) == broken) {

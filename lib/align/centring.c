@@ -117,6 +117,7 @@ static double step(const search_t *search, guess_t *guess, wh_normal_t *normal) 
 static bool fit(const search_t *search, guess_t *guess) {
     const wh_centring_t *known = search->known;
     wh_normal_t normal;
+    wh_normal_begin(&normal, 2);
     double moved = 1;
     for (int i = 0; i < STEPS && moved > 1e-10; ++i) {
         moved = step(search, guess, &normal);
@@ -160,29 +161,36 @@ static bool is_in_notch(const search_t *search, const stand_t *s) {
     return known->notch_width > 0 && s->off < 0 && s->off >= -known->notch_depth;
 }
 
-/* What each crossing is to this circle, and what that costs. The one that is furthest in is in the notch; so
- * are those within the notch's width of it. */
-static double explain(const search_t *search, const guess_t *guess, wh_crossing_use_t use[WH_CROSSINGS]) {
-    stand_t deepest = {0, 0, 0, 0, false};
-    bool notched = false;
+/* The crossing that is left out and furthest in, where a notch may be; false if there is none. */
+static bool find_notch(const search_t *search, const guess_t *guess, stand_t *deepest) {
+    bool found = false;
     for (size_t i = 0; i < search->count; ++i) {
         const stand_t s = stand(search, guess, i);
-        use[i] = has(guess, i) ? WH_CROSSING_USED : WH_CROSSING_OTHER;
-        if (!has(guess, i) && is_in_notch(search, &s) && (!notched || s.off < deepest.off)) {
-            notched = true;
-            deepest = s;
+        if (!has(guess, i) && is_in_notch(search, &s) && (!found || s.off < deepest->off)) {
+            *deepest = s;
+            found = true;
         }
     }
+    return found;
+}
+
+/* What each crossing is to this circle, and what that costs. Left out for the notch is the one that is
+ * furthest in, and with it those within the notch's width of it. */
+static double explain(const search_t *search, const guess_t *guess, wh_crossing_use_t use[WH_CROSSINGS]) {
+    stand_t deepest = {0, 1, 0, 0, false};
+    const bool notched = find_notch(search, guess, &deepest);
     double cost = guess->mismatch + (notched ? COST_NOTCH - COST_SAME_NOTCH : 0);
     for (size_t i = 0; i < search->count; ++i) {
         const stand_t s = stand(search, guess, i);
-        if (!has(guess, i) && notched && is_in_notch(search, &s) &&
-            fabs(wh_align_wrap(direction_of(&s) - direction_of(&deepest))) * guess->radius <=
-                search->known->notch_width) {
-            use[i] = WH_CROSSING_NOTCH;
+        use[i] = WH_CROSSING_USED;
+        if (!has(guess, i)) {
+            const bool same =
+                notched && is_in_notch(search, &s) &&
+                fabs(wh_align_wrap(direction_of(&s) - direction_of(&deepest))) * guess->radius <=
+                    search->known->notch_width;
+            use[i] = same ? WH_CROSSING_NOTCH : WH_CROSSING_OTHER;
+            cost += same ? COST_SAME_NOTCH : COST_OTHER;
         }
-        cost += use[i] == WH_CROSSING_NOTCH ? COST_SAME_NOTCH : 0;
-        cost += use[i] == WH_CROSSING_OTHER ? COST_OTHER : 0;
     }
     return cost;
 }
@@ -405,25 +413,30 @@ static wh_status_t check_crossing(const wh_crossing_t *crossing) {
     return wh_field_check_end(&found, NULL);
 }
 
-wh_status_t wh_centring_solve(const wh_centring_t *known, const wh_crossing_t *crossings, size_t count,
-                              wh_centres_t *centres) {
-    const wh_status_t status = wh_centring_validate(known, NULL);
-    if (status != WH_OK || crossings == NULL || centres == NULL) {
-        return status != WH_OK ? status : WH_STATUS_NULL_ARGUMENT;
-    }
+static wh_status_t check_crossings(const wh_crossing_t *crossings, size_t count) {
     if (count > WH_CROSSINGS) {
         return WH_STATUS_OUT_OF_RANGE;
     }
     bool two_beams = false;
     for (size_t i = 0; i < count; ++i) {
-        const wh_status_t one = check_crossing(&crossings[i]);
-        if (one != WH_OK) {
-            return one;
+        const wh_status_t status = check_crossing(&crossings[i]);
+        if (status != WH_OK) {
+            return status;
         }
         two_beams = two_beams || crossings[i].beam != crossings[0].beam;
     }
-    if (count < WH_CROSSINGS_LEAST || !two_beams) {
-        return WH_STATUS_TOO_FEW_SAMPLES;
+    return count < WH_CROSSINGS_LEAST || !two_beams ? WH_STATUS_TOO_FEW_SAMPLES : WH_OK;
+}
+
+wh_status_t wh_centring_solve(const wh_centring_t *known, const wh_crossing_t *crossings, size_t count,
+                              wh_centres_t *centres) {
+    if (known == NULL || crossings == NULL || centres == NULL) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    wh_status_t status = wh_centring_validate(known, NULL);
+    status = status == WH_OK ? check_crossings(crossings, count) : status;
+    if (status != WH_OK) {
+        return status;
     }
     search_t search = {.known = known, .crossings = crossings, .count = count};
     search_all(&search);

@@ -19,19 +19,8 @@ static wh_status_t check_beam(const wh_door_beam_t *door) {
     return status == WH_OK ? check_delay(door->jitter, 0.001) : status;
 }
 
-wh_status_t wh_latching_validate(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count) {
-    if (!latching || (latching->beam_count > 0 && !latching->beams)) {
-        return WH_STATUS_NULL_ARGUMENT;
-    }
-    if (latching->beam_count == 0) {
-        return WH_OK;
-    }
-    if (!latching->rims && wafer_count > 0) {
-        return WH_STATUS_NULL_ARGUMENT;
-    }
-    if (latching->beam_count > WH_BEAMS || gripper_count > WH_GRIPPERS) {
-        return WH_STATUS_BAD_CAPACITY;
-    }
+/* What the arrays hold; they are there, and as long as these counts say. */
+static wh_status_t check_entries(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count) {
     wh_status_t status = WH_OK;
     for (size_t b = 0; status == WH_OK && b < latching->beam_count; ++b) {
         status = check_beam(&latching->beams[b]);
@@ -43,6 +32,22 @@ wh_status_t wh_latching_validate(const wh_latching_t *latching, size_t gripper_c
         status = wh_rim_validate(latching->rims[w], NULL);
     }
     return status;
+}
+
+wh_status_t wh_latching_validate(const wh_latching_t *latching, size_t gripper_count, size_t wafer_count) {
+    if (!latching) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (latching->beam_count == 0) {
+        return WH_OK;
+    }
+    if (!latching->beams || (!latching->rims && wafer_count > 0)) {
+        return WH_STATUS_NULL_ARGUMENT;
+    }
+    if (latching->beam_count > WH_BEAMS || gripper_count > WH_GRIPPERS) {
+        return WH_STATUS_BAD_CAPACITY;
+    }
+    return check_entries(latching, gripper_count, wafer_count);
 }
 
 wh_status_t wh_latching_check(const wh_latching_t *latching, const wh_latch_order_t *order) {
@@ -64,13 +69,16 @@ static size_t gather_shades(const wh_latching_t *latching, const wh_pose_t befor
         const wh_gripper_t *gripper = &table->storage.grippers[g];
         const wh_slice_motion_t motion = wh_slice_motion_between(&before[g], &gripper->base_from_gripper);
         if (latching->blades && latching->blades[g].count > 0) {
-            const wh_shade_t blade = {motion, NULL, NULL, &latching->blades[g]};
-            shades[count++] = blade;
+            const wh_shade_t blade = {.motion = motion, .outline = &latching->blades[g]};
+            shades[count] = blade;
+            ++count;
         }
         if (gripper->wafer != WH_NONE) {
-            const wh_shade_t wafer = {motion, &gripper->gripper_from_wafer, latching->rims[gripper->wafer],
-                                      NULL};
-            shades[count++] = wafer;
+            const wh_shade_t wafer = {.motion = motion,
+                                      .gripper_from_wafer = &gripper->gripper_from_wafer,
+                                      .rim = latching->rims[gripper->wafer]};
+            shades[count] = wafer;
+            ++count;
         }
     }
     return count;
@@ -154,7 +162,7 @@ static void give_out(wh_latches_t *latches) {
 static void note_broken(const wh_latching_t *latching, const wh_shade_t shades[], size_t count,
                         wh_latches_t *latches) {
     for (int32_t i = 0; i < latches->count; ++i) {
-        const size_t b = (size_t)(latches->first + i);
+        const size_t b = (size_t)latches->first + (size_t)i;
         double part = 1;
         bool broken = false;
         (void)wh_beam_next(&latching->beams[b].beam, shades, count, &part, &broken);
@@ -173,7 +181,8 @@ void wh_latching_step(const wh_latching_t *latching, const wh_pose_t before[], c
     if (latches->armed) {
         ++latches->slice;
         for (int32_t i = 0; i < latches->count; ++i) {
-            look_at_beam(latching, latches, (size_t)(latches->first + i), shades, count, (double)slice_s);
+            const size_t b = (size_t)latches->first + (size_t)i;
+            look_at_beam(latching, latches, b, shades, count, (double)slice_s);
         }
         give_out(latches);
     }
@@ -187,7 +196,9 @@ void wh_latching_step(const wh_latching_t *latching, const wh_pose_t before[], c
         latches->first = order->first;
         latches->count = order->count;
         latches->slice = 0;
-        latches->crossings = latches->lost = latches->broken = 0;
+        latches->crossings = 0;
+        latches->lost = 0;
+        latches->broken = 0;
         latches->waiting_count = 0;
         note_broken(latching, shades, count, latches);
     }
