@@ -361,11 +361,13 @@ static wh_status_t judge(const search_t *search, wh_centres_t *centres) {
     }
     tell(search, best, &centres->candidates[0]);
     const guess_t *rival = find_rival(search, best, &centres->candidates[0]);
-    centres->count = rival == NULL ? 1 : 2;
-    if (rival != NULL) {
-        tell(search, rival, &centres->candidates[1]);
+    centres->count = 1;
+    if (rival == NULL) {
+        return WH_OK;
     }
-    return rival == NULL ? WH_OK : WH_STATUS_CENTRE_NOT_SURE;
+    centres->count = 2;
+    tell(search, rival, &centres->candidates[1]);
+    return WH_STATUS_CENTRE_NOT_SURE;
 }
 
 wh_centring_t wh_centring_nominal(double radius) {
