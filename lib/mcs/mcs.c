@@ -176,7 +176,8 @@ static int open_words(lua_State *L) {
         module_functions,        wh_mcs_cell_functions,       wh_mcs_command_functions,
         wh_mcs_fault_functions,  wh_mcs_describe_functions,   wh_mcs_plan_functions,
         wh_mcs_play_functions,   wh_mcs_query_functions,      wh_mcs_scan_functions,
-        wh_mcs_survey_functions, wh_mcs_definition_functions, wh_mcs_saved_functions};
+        wh_mcs_survey_functions, wh_mcs_definition_functions, wh_mcs_saved_functions,
+        wh_mcs_edge_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -277,5 +278,6 @@ void wh_mcs_close(wh_mcs_t *mcs) {
     mcs->segments = NULL;
     mcs->kept_faults = NULL;
     mcs->segment_count = 0;
+    wh_mcs_free_edge(&mcs->edge);
     wh_rehearsal_free(&mcs->rehearsal);
 }
