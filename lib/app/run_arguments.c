@@ -15,6 +15,7 @@
 #include "apart.h"
 #include "app.h"
 #include "segments.h"
+#include "watch.h"
 
 const wh_option_t wh_run_options[] = {
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
@@ -317,4 +318,11 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
     wh_signals_close(&signals);
     wh_script_run_close(&run);
     return status;
+}
+
+int wh_run_watch(const wh_run_arguments_t *arguments, int (*act)(void *user), void *user) {
+    const char *const outputs[] = {arguments->files.page, arguments->files.scene, arguments->files.document,
+                                   arguments->files.plots, arguments->segments_path};
+    const wh_watch_options_t options = {act, user, outputs, sizeof outputs / sizeof outputs[0]};
+    return wh_watch(&options);
 }
