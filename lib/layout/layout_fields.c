@@ -147,7 +147,7 @@ const wh_reader_field_t wh_layout_station_fields[] = {
     {"check_map", SWITCH, "true: GET and PUT want a MAP before them", false},
     {"handover", "\"new_first\"|\"same_slice\"", "at a chuck: the order of the two valves", false},
     {"counts", SWITCH, "true: a wafer that is put here is done, for wafers per hour", false},
-    {"sensor", "waferhand.sensor", "of a prealigner: the line sensor beside its chuck", false},
+    {"sensor", "waferhand.sensor", "at a prealigner: what sees the wafer's edge", false},
     END};
 
 const wh_reader_field_t wh_layout_wafer_fields[] = {
@@ -158,47 +158,47 @@ const wh_reader_field_t wh_layout_wafer_fields[] = {
     {"dy", NUMBER, "mm off the slot's centre, along its y", false},
     {"dz", NUMBER, "mm above the slot", false},
     {"rpy", TRIPLE, "roll, pitch, yaw in degrees, in the slot's frame", false},
-    {"rim", "waferhand.rim", "what edge sensors see of it", false},
+    {"rim", "waferhand.rim", "its true rim, which edge sensors see", false},
     END};
 
-/* ------------------------------------------------------------------------------------------- edge sensors */
+/* --------------------------------------------------------------------------------- edge sensors and rims */
 
 const wh_reader_field_t wh_layout_sensor_fields[] = {
-    {"samples", "integer", "in a turn", false},
-    {"pixel", NUMBER, "mm: the length of a pixel", false},
-    {"noise", NUMBER, "mm: standard deviation of a sample", false},
-    {"length", NUMBER, "mm: of the line", false},
-    {"offset", NUMBER, "mm by which the line passes the axis, to the left of where it points", false},
-    {"tilt", NUMBER, "degrees of its light out of the upright", false},
-    {"latency", NUMBER, "s by which a sample is taken late", false},
+    {"samples", "integer", "how many in a turn", false},
+    {"pixel", NUMBER, "mm: a pixel's length", false},
+    {"length", NUMBER, "mm: the line's length", false},
+    {"noise", NUMBER, "mm: standard deviation of one sample", false},
+    {"seed", "integer", "names the noise, with the number of the scan", false},
+    {"at", NUMBER, "degrees: where the line points from the chuck's axis, about the station's z", false},
+    {"encoder", "integer", "counts in a turn of the chuck; 0: no steps", false},
+    {"offset", NUMBER, "mm by which the line passes the axis, to the left", false},
     {"zero", NUMBER, "mm by which its inner end is farther out", false},
-    {"gain", NUMBER, "the part of their length by which its pixels are longer", false},
-    {"at", NUMBER, "degrees about the station's z from its x: where the line points", false},
-    {"encoder", "integer", "counts in a turn; 0: no steps", false},
-    {"seed", "integer", "names the noise", false},
-    {"hidden", "waferhand.arc[]", "where something else covers the line", false},
+    {"gain", NUMBER, "the part of their length by which pixels are longer", false},
+    {"latency", NUMBER, "s by which a sample is taken later than it is due", false},
+    {"tilt", NUMBER, "degrees of its light out of the upright, outwards going up", false},
+    {"hidden", "waferhand.arc[]", "arcs of the chuck in which something covers the line", false},
     END};
 
 const wh_reader_field_t wh_layout_arc_fields[] = {
-    {"from", NUMBER, "degrees of the chuck", true}, {"width", NUMBER, "degrees", true}, END};
+    {"from", NUMBER, "degrees", true}, {"width", NUMBER, "degrees", true}, END};
 
 const wh_reader_field_t wh_layout_rim_fields[] = {
-    {"diameter", NUMBER, "mm: the true one", false},
-    {"notch", "waferhand.rim_notch", "the true notch", false},
-    {"flats", "waferhand.flat[]", "primary and secondary", false},
-    {"chips", "waferhand.chip[]", "bites out of the rim", false},
-    {"bow", NUMBER, "mm by which the rim is above the centre", false},
-    {"saddle", NUMBER, "mm by which the rim goes up and down, twice round", false},
+    {"diameter", NUMBER, "mm", false},
+    {"notch", "waferhand.rim_notch", "the notch", false},
+    {"flats", "waferhand.flat[]", "the flats", false},
+    {"chips", "waferhand.chip[]", "what is broken off", false},
+    {"bow", NUMBER, "mm: how far the rim is above the centre, the same all round", false},
+    {"saddle", NUMBER, "mm: how far the rim is above the centre, twice up and down", false},
     {"saddle_at", NUMBER, "degrees: where the saddle is highest", false},
-    {"glass", NUMBER, "the part of the light that comes through the wafer", false},
+    {"glass", NUMBER, "0 to 0.9: the part of the light that comes through", false},
     END};
 
 const wh_reader_field_t wh_layout_rim_notch_fields[] = {
     {"at", NUMBER, "degrees about the wafer's axis, from its x", false},
-    {"depth", NUMBER, "mm; 0: no notch", false},
+    {"depth", NUMBER, "mm; 0: none", false},
     {"angle", NUMBER, "degrees between its flanks", false},
-    {"bottom", NUMBER, "mm: the radius of its bottom", false},
-    {"corner", NUMBER, "mm: the radius of its corners", false},
+    {"bottom", NUMBER, "mm: the radius at its bottom", false},
+    {"corner", NUMBER, "mm: the radius where it meets the rim", false},
     END};
 
 const wh_reader_field_t wh_layout_flat_fields[] = {
@@ -411,12 +411,12 @@ const wh_layout_class_t wh_layout_classes[] = {
     {"gripper", "A blade on the robot, or a prealigner's chuck.", wh_layout_gripper_fields},
     {"station", "A place with slots, a prealigner or a FOUP.", wh_layout_station_fields},
     {"wafer", "A wafer, where it lies when a run begins.", wh_layout_wafer_fields},
-    {"sensor", "The line sensor beside a prealigner's chuck.", wh_layout_sensor_fields},
-    {"arc", "A part of a chuck's turn.", wh_layout_arc_fields},
+    {"sensor", "A line sensor beside a prealigner's chuck.", wh_layout_sensor_fields},
+    {"arc", "A part of a turn.", wh_layout_arc_fields},
     {"rim", "A wafer's true rim.", wh_layout_rim_fields},
-    {"rim_notch", "A wafer's true notch.", wh_layout_rim_notch_fields},
-    {"flat", "A flat of a wafer.", wh_layout_flat_fields},
-    {"chip", "A bite out of a wafer's rim.", wh_layout_chip_fields},
+    {"rim_notch", "A notch with its roundings.", wh_layout_rim_notch_fields},
+    {"flat", "A flat.", wh_layout_flat_fields},
+    {"chip", "What is broken off a rim.", wh_layout_chip_fields},
     {"shapes", "Sizes of what collisions look at.", wh_layout_shapes_fields},
     {"blade", "A gripper on the robot.", wh_layout_blade_fields},
     {"arm", "The links of the arm.", wh_layout_arm_fields},

@@ -119,9 +119,6 @@ typedef struct {
     char phase[WH_MCS_PHASE_BYTES];  /* "extended" or "up" */
 } wh_mcs_held_t;
 
-/* How many commands of a prompt UNDO takes back at most. */
-#define WH_MCS_UNDONE 50
-
 /* A scan of a wafer's edge, as the states have brought it. */
 typedef struct {
     wh_scan_order_t order;
@@ -132,6 +129,9 @@ typedef struct {
     int32_t missed;          /* of these, for no state brought them: WH_NONE */
     bool armed;              /* more are to come */
 } wh_mcs_edge_t;
+
+/* How many commands of a prompt UNDO takes back at most. */
+#define WH_MCS_UNDONE 50
 
 /* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `decisions`, `is_file`,
  * `limits_missed`, `most_missed` and `rehearsal.look_ahead`, which may be set between opening and the cell.

@@ -20,6 +20,8 @@ typedef struct {
     int64_t stop_slice;
     wh_fault_t faults[WH_FAULTS];
     size_t fault_count;
+    int64_t edge_seq; /* of the scans that were heard of: what they brought is not kept */
+    uint32_t edge_number;
     size_t size; /* of `bytes` */
     uint8_t bytes[];
 } saved_t;
@@ -39,6 +41,8 @@ static void keep(const wh_mcs_t *mcs, saved_t *saved) {
     saved->stop_slice = mcs->stop_slice;
     memcpy(saved->faults, mcs->faults, sizeof saved->faults);
     saved->fault_count = mcs->fault_count;
+    saved->edge_seq = mcs->edge.seq;
+    saved->edge_number = mcs->edge.number;
 }
 
 static void put_back(wh_mcs_t *mcs, const saved_t *saved) {
@@ -54,6 +58,8 @@ static void put_back(wh_mcs_t *mcs, const saved_t *saved) {
     mcs->stop_slice = saved->stop_slice;
     memcpy(mcs->faults, saved->faults, sizeof mcs->faults);
     mcs->fault_count = saved->fault_count;
+    wh_mcs_free_edge(&mcs->edge);
+    mcs->edge = (wh_mcs_edge_t){.seq = saved->edge_seq, .number = saved->edge_number};
     mcs->recorder.slice = saved->track.slice;
     /* The check begins anew: it would take what was put back for a motion. */
     mcs->local.collision.world = NULL;

@@ -70,7 +70,8 @@ return function(native)
 
   -- The word for scripts: it refuses what the action takes no notice of.
   local function word(name, action)
-    local most = #words.scripts[name].takes
+    local known = words.scripts[name]
+    local most = known and #known.takes
     if native.parameters(action) ~= most then
       error(("%s does not take what lua/mcs/words.lua says"):format(name), 0)
     end

@@ -12,10 +12,11 @@ static const char base[] =
     " robot = { theta = {}, r = {}, z = {}, yaw = {} },"
     " grippers = { { name = 'EE' }, { name = 'PA', on = 'P' } },"
     " stations = { A = { at = { 700, 0, 900 }, slots = 2 }, B = { at = { 0, 700, 900 } },"
-    "   P = { kind = 'prealigner', at = { -600, 0, 950 }, sensor = { hidden = { { from = 0, width = 1 } } } "
+    "   P = { kind = 'prealigner', at = { -600, 0, 950 }, sensor = { hidden = { { from = 1, width = 2 } } } "
     "} },"
-    " wafers = { { name = 'W1', station = 'A', slot = 1, rim = { notch = {}, flats = { { at = 0, length = 10 "
-    "} }, chips = { { at = 9, width = 1, depth = 0.1 } } } }, { name = 'W2', station = 'B', slot = 1 } },"
+    " wafers = { { name = 'W1', station = 'A', slot = 1, rim = { notch = {}, flats = { { at = 0, length = 50 "
+    "} },"
+    "   chips = { { at = 90, width = 1, depth = 0.5 } } } }, { name = 'W2', station = 'B', slot = 1 } },"
     " shapes = { blade = {}, arm = {}, ledge = {}, foup = {}, chuck = {} },"
     " obstacles = { { at = { 0, 0, -500 }, box = { 1, 1, 1 } },"
     "   { at = { 0, 0, -600 }, cylinder = { radius = 1, height = 1 } },"
@@ -120,8 +121,7 @@ static void join(char path[PATH_BYTES], const char *before, const char *name) {
     (void)snprintf(path, PATH_BYTES, "%.150s%s%.140s", before, before[0] ? "." : "", name);
 }
 
-/* The obstacle that a shape's field belongs to, and the station that a sensor belongs to; the others have their
- * own. */
+/* The obstacle that a shape's field belongs to, and the station that has a sensor; the others have their own. */
 static const char *mend_path(const char *path, const char *field) {
     if (strcmp(path, "stations.A") == 0 && strcmp(field, "sensor") == 0) {
         return "stations.P";
