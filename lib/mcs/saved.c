@@ -15,8 +15,6 @@ typedef struct {
     wh_machine_cache_t cache;
     wh_mcs_seen_t seen;
     wh_mcs_held_t held;
-    int64_t edge_seq; /* of edge scans: what was heard of last */
-    uint32_t edge_number;
     int64_t stop_slice;
     wh_fault_t faults[WH_FAULTS];
     size_t fault_count;
@@ -36,8 +34,6 @@ static void keep(const wh_mcs_t *mcs, saved_t *saved) {
     saved->cache = mcs->cache;
     saved->seen = mcs->seen;
     saved->held = mcs->held;
-    saved->edge_seq = mcs->edge.seq;
-    saved->edge_number = mcs->edge.number;
     saved->stop_slice = mcs->stop_slice;
     memcpy(saved->faults, mcs->faults, sizeof saved->faults);
     saved->fault_count = mcs->fault_count;
@@ -51,10 +47,6 @@ static void put_back(wh_mcs_t *mcs, const saved_t *saved) {
     mcs->cache = saved->cache;
     mcs->seen = saved->seen;
     mcs->held = saved->held;
-    mcs->edge.seq = saved->edge_seq;
-    mcs->edge.number = saved->edge_number;
-    mcs->edge.armed = false;
-    wh_mcs_free_edge(&mcs->edge);
     mcs->stop_slice = saved->stop_slice;
     memcpy(mcs->faults, saved->faults, sizeof mcs->faults);
     mcs->fault_count = saved->fault_count;
