@@ -49,6 +49,7 @@
 #include "sim/latching.h"
 #include "sim/event_text.h"
 #include "sim/faults.h"
+#include "sim/scanning.h"
 #include "sim/physics.h"
 #include "sim/slice.h"
 #include "sim/simulator.h"
