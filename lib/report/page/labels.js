@@ -15,19 +15,53 @@
     function stations(view) {
         const { slots, names } = view.doc;
         return slots.filter((slot) => slot.slot === 1 && names.stations[slot.station] !== undefined)
-            .map((slot) => ({ at: new THREE.Vector3(...slot.r).multiplyScalar(M),
+            .map((slot) => ({ at: new THREE.Vector3(...slot.r).multiplyScalar(M), kind: 'station', i: slot.station,
                 label: make(view, 'station', names.stations[slot.station]) }));
     }
 
-    /* Names for stations and all that moves by itself, and the ruler. */
+    /* Obstacles in the middle of their tops. */
+    function obstacles(view) {
+        return Object.values(view.named).map((object) => ({ object, node: object.userData.node }))
+            .filter(({ node }) => node.kind === 'obstacle').map(({ object, node }) => {
+                const box = new THREE.Box3().setFromObject(object);
+                const at = box.getCenter(new THREE.Vector3()).setZ(box.max.z);
+                return { at, kind: 'obstacle', i: node.index, label: make(view, 'obstacle', node.name) };
+            });
+    }
+
+    /* Names for what moves by itself, stations and obstacles, the weightiest first: where two would cover each other the first
+     * stays. And the ruler. */
     function add(view) {
-        view.tags = view.moving.filter((mover) => mover.kind !== 'link')
-            .map((mover) => ({ at: mover.object.position, label: make(view, mover.kind, mover.name) }))
-            .concat(stations(view));
+        const movers = view.moving.map(({ object, kind, i, name }) => ({ at: object.position, object, kind, i, name }));
+        const named = (kind) => movers.filter((mover) => mover.kind === kind)
+            .map((mover) => Object.assign(mover, { label: make(view, kind, mover.name) }));
+        view.tags = [].concat(named('gripper'), stations(view), obstacles(view), named('wafer'));
         view.ruler = W.shapes.line();
         view.rulerLabel = make(view, 'ruler', '');
         view.ruler.visible = false;
         view.scene.add(view.ruler);
+    }
+
+    /* Those that are held before the others. */
+    const isHeld = (view, tag) => tag.kind === 'wafer' && view.moving.some((mover) => mover.kind === 'wafer' && mover.i === tag.i
+        && mover.holder >= 0);
+
+    const isCovered = (box, others) => others.some((other) => box.left < other.right && other.left < box.right
+        && box.top < other.bottom && other.top < box.bottom);
+
+    function hangTag(view, tag, taken) {
+        const gone = (tag.object && !tag.object.visible) || W.parts.isHidden(tag.kind, tag.i)
+            || W.section.isAway(tag.at.toArray().map((x) => x / M));
+        tag.label.hidden = gone || !view.options.names;
+        if (tag.label.hidden) {
+            return;
+        }
+        hangOne(view, tag.label, tag.at);
+        if (!tag.label.hidden) {
+            const box = tag.label.getBoundingClientRect();
+            tag.label.hidden = isCovered(box, taken);
+            taken.push(...(tag.label.hidden ? [] : [box]));
+        }
     }
 
     /* Puts a label beside its point, or hides it. */
@@ -45,17 +79,13 @@
     }
 
     function hang(view) {
-        view.tags.forEach((tag) => {
-            if (view.options.names) {
-                hangOne(view, tag.label, tag.at);
-            } else {
-                tag.label.hidden = true;
-            }
-        });
         view.marks.shown.filter((each) => !each.label.hidden).forEach((each, i) => {
             hangOne(view, each.label, each.shape.position);
             each.label.style.marginTop = `${-20 - 24 * i}px`;
         });
+        const taken = view.marks.shown.filter((each) => !each.label.hidden).map((each) => each.label.getBoundingClientRect());
+        const [held, others] = [true, false].map((wanted) => view.tags.filter((tag) => isHeld(view, tag) === wanted));
+        held.concat(others).forEach((tag) => hangTag(view, tag, taken));
         if (view.ends) {
             hangOne(view, view.rulerLabel, view.ends[0].clone().lerp(view.ends[1], 0.5));
         } else {
