@@ -17,7 +17,7 @@
 typedef struct {
     wh_run_arguments_t run; /* the script, its parameters and limits, and --json */
     uint64_t trials, seed, trial, threads, worst;
-    const char *state;
+    const char *state, *csv;
     double require;
 } arguments_t;
 
@@ -38,6 +38,9 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, require), 0, 1, "a number from 0 to 1"},
     {"worst", 0, "K", "Tell the K worst trials (default 10)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, worst), 0, WH_STUDY_WORST, "a number from 0 to 100"},
+    {"csv", 0, "FILE",
+     "Write a line for each trial into FILE: if it was ok, where the wafers end up, and what was drawn",
+     WH_OPTION_TEXT, .variable = offsetof(arguments_t, csv)},
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, run.json)},
     {"set", 0, "NAME=VALUE",
@@ -60,6 +63,8 @@ static void check_one(const arguments_t *arguments, struct argp_state *state) {
                          : arguments->state             ? "--state"
                          : arguments->require >= 0      ? "--require"
                          : arguments->worst != NO_WORST ? "--worst"
+                         : arguments->csv               ? "--csv"
+                         : arguments->threads > 0       ? "--threads"
                                                         : NULL;
     if (option) {
         argp_error(state, "%s does not go with --trial, which plays one trial alone", option);
@@ -91,12 +96,18 @@ static const wh_command_line_t command_line = {
 
 /* ---------------------------------------------------------------------------------------------- the study */
 
-static int print(const arguments_t *arguments, const wh_study_t *study, const wh_tally_t *tally) {
-    const wh_study_result_t result = {study, tally, arguments->require, (size_t)arguments->worst};
+static bool write_csv(void *user, FILE *out) {
+    return wh_study_print_csv(user, out) == 0;
+}
+
+/* What cannot be written leaves the rest as it is: the trials may have taken long. */
+static int hand_on(const arguments_t *arguments, const wh_study_t *study, const wh_tally_t *tally) {
+    wh_study_result_t result = {study, tally, arguments->require, (size_t)arguments->worst};
     const wh_style_t style = wh_style_of(stdout);
+    const bool written = wh_file_write("--csv", arguments->csv, write_csv, &result, NULL);
     const int status = arguments->run.json ? wh_study_print_json(&result, stdout)
                                            : wh_study_print_table(&result, stdout, &style);
-    if (!wh_app_is_printed(status)) {
+    if (!wh_app_is_printed(status) || !written) {
         return WH_EXIT_USAGE;
     }
     return wh_study_is_kept(&result) ? WH_EXIT_MET : WH_EXIT_FAILED;
@@ -111,10 +122,16 @@ static int play(const arguments_t *arguments, const wh_study_t *study, wh_ranks_
     const wh_study_end_t end = wh_study_play(study, &wanted, ranks, &progress);
     int status = statuses[end];
     if (end == WH_STUDY_DONE) {
-        status = print(arguments, study, &progress.tally);
+        status = hand_on(arguments, study, &progress.tally);
         wh_progress_free(&progress);
     }
     return status;
+}
+
+/* Before the trials are played: no output is the script, the layout, or what they read. */
+static bool are_free(const arguments_t *arguments) {
+    return (!arguments->state || wh_file_is_free("--state", arguments->state)) &&
+           (!arguments->csv || wh_file_is_free("--csv", arguments->csv));
 }
 
 /* Scripts print into /dev/null: the output of many trials would be mixed. */
@@ -127,10 +144,12 @@ static int study_all(const arguments_t *arguments) {
         perror("/dev/null");
         return status;
     }
-    study = (wh_study_t){.run = arguments->run.run, .trials = arguments->trials, .seed = arguments->seed};
+    study = (wh_study_t){.run = arguments->run.run,
+                         .trials = arguments->trials,
+                         .seed = arguments->seed,
+                         .lines = arguments->csv ? arguments->trials : 0};
     study.run.limits.print_to = nowhere;
-    if (wh_study_open(&study) && (!arguments->state || wh_file_is_free("--state", arguments->state)) &&
-        wh_ranks_open(&ranks)) {
+    if (wh_study_open(&study) && are_free(arguments) && wh_ranks_open(&ranks)) {
         status = play(arguments, &study, &ranks);
         wh_ranks_close(&ranks, status == WH_EXIT_USAGE ? status : 0);
     }
@@ -161,9 +180,10 @@ int wh_app_study(int argc, char **argv) {
     fill_in(&arguments);
     wh_run_arguments_take(&arguments.run);
     const wh_named_file_t named[] = {{"the script", arguments.run.run.script, false},
-                                     {"--state", arguments.state, true}};
+                                     {"--state", arguments.state, true},
+                                     {"--csv", arguments.csv, true}};
     int status = WH_EXIT_USAGE;
-    if (wh_files_are_apart(named, 2, true)) {
+    if (wh_files_are_apart(named, 3, true)) {
         status = arguments.trial != NO_TRIAL ? play_one(&arguments) : study_all(&arguments);
     }
     wh_run_arguments_free(&arguments.run);

@@ -3,6 +3,7 @@
 
 #include "../text/json.h"
 #include "record_print.h"
+#include "study_causes.h"
 #include "study_print.h"
 
 static void put_rate(json_t *object, uint64_t hits, uint64_t trials) {
@@ -178,6 +179,7 @@ int wh_study_print_json(const wh_study_result_t *result, FILE *out) {
     wh_json_put(root, "errors", wh_json_list(error, result, result->tally->errors.count));
     wh_json_put(root, "events", wh_json_list(event, result, WH_EVENT_KINDS));
     wh_json_put(root, "wafers", wh_json_list(wafer, result, result->tally->wafer_count));
+    wh_json_put(root, "drawn", wh_causes_to_json(result));
     wh_json_put(root, "worst", wh_json_list(worst_trial, result, worst));
     const int status = wh_json_print(root, out);
     json_decref(root);

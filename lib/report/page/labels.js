@@ -56,38 +56,40 @@
         if (tag.label.hidden) {
             return;
         }
-        hangOne(view, tag.label, tag.at);
-        if (!tag.label.hidden) {
-            const box = tag.label.getBoundingClientRect();
-            tag.label.hidden = isCovered(box, taken);
-            taken.push(...(tag.label.hidden ? [] : [box]));
+        hangOne(view, tag.label, tag.at, false);
+        if (!tag.label.hidden && isCovered(tag.label.getBoundingClientRect(), taken)) {
+            hangOne(view, tag.label, tag.at, true);
         }
+        const box = tag.label.getBoundingClientRect();
+        tag.label.hidden = tag.label.hidden || isCovered(box, taken);
+        taken.push(...(tag.label.hidden ? [] : [box]));
     }
 
-    /* Puts a label beside its point, or hides it. */
-    function hangOne(view, each, point) {
+    /* Puts a label beside its point, to the left of it if asked for or if that is where a mark's has room; or hides it. */
+    function hangOne(view, each, point, left) {
         const spot = point.clone().project(view.rig.camera);
         const inside = Math.abs(spot.x) < 1 && Math.abs(spot.y) < 1 && spot.z < 1;
         each.hidden = !inside;
         if (inside) {
             const x = (spot.x + 1) / 2 * view.host.clientWidth;
             const y = (1 - spot.y) / 2 * view.host.clientHeight;
-            const left = x > 0.55 * view.host.clientWidth && each.classList.contains('mark');
-            const aside = left ? 'translateX(calc(-100% - 12px))' : '';
+            const room = x > 0.55 * view.host.clientWidth && each.classList.contains('mark');
+            const aside = left || room ? 'translateX(calc(-100% - 12px))' : '';
             each.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) ${aside}`;
         }
     }
 
     function hang(view) {
         view.marks.shown.filter((each) => !each.label.hidden).forEach((each, i) => {
-            hangOne(view, each.label, each.shape.position);
+            hangOne(view, each.label, each.shape.position, false);
             each.label.style.marginTop = `${-20 - 24 * i}px`;
         });
         const taken = view.marks.shown.filter((each) => !each.label.hidden).map((each) => each.label.getBoundingClientRect());
-        const [held, others] = [true, false].map((wanted) => view.tags.filter((tag) => isHeld(view, tag) === wanted));
-        held.concat(others).forEach((tag) => hangTag(view, tag, taken));
+        const rank = (tag) => (tag.kind === 'gripper' ? 0 : isHeld(view, tag) ? 1 : 2);
+        const ranked = [].concat(...[0, 1, 2].map((wanted) => view.tags.filter((tag) => rank(tag) === wanted)));
+        ranked.forEach((tag) => hangTag(view, tag, taken));
         if (view.ends) {
-            hangOne(view, view.rulerLabel, view.ends[0].clone().lerp(view.ends[1], 0.5));
+            hangOne(view, view.rulerLabel, view.ends[0].clone().lerp(view.ends[1], 0.5), false);
         } else {
             view.rulerLabel.hidden = true;
         }

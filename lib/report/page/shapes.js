@@ -110,7 +110,7 @@
         return object;
     }
 
-    /* A path of up to `most` points, with dots. */
+    /* A path of up to `most` points, with dots, through whatever is before it. */
     function path(most) {
         const buffer = () => {
             const made = new THREE.BufferGeometry();
@@ -118,11 +118,12 @@
                 new THREE.BufferAttribute(new Float32Array(3 * most), 3)));
             return made;
         };
-        const lines = new THREE.Line(buffer(), new THREE.LineBasicMaterial({ vertexColors: THREE.VertexColors }));
-        const dots = new THREE.Points(buffer(), new THREE.PointsMaterial({ vertexColors: THREE.VertexColors, size: 5,
-            sizeAttenuation: false }));
+        const look = { vertexColors: THREE.VertexColors, depthTest: false, transparent: true };
+        const lines = new THREE.Line(buffer(), new THREE.LineBasicMaterial(look));
+        const dots = new THREE.Points(buffer(),
+            new THREE.PointsMaterial(Object.assign({ size: 5, sizeAttenuation: false }, look)));
         const group = new THREE.Group();
-        [lines, dots].forEach((each) => { each.frustumCulled = false; });
+        [lines, dots].forEach((each) => Object.assign(each, { frustumCulled: false, renderOrder: 9 }));
         group.add(lines, dots);
         return group;
     }
