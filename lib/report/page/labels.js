@@ -4,6 +4,9 @@
 
     const THREE = window.THREE;
     const M = 0.001;
+    const MANY = 20;
+    /* Of a name: left of its point, pixels lower. Of wafers that nobody holds the first only where names are many. */
+    const PLACES = [[false, 0], [true, 0], [false, 19], [true, 19], [false, -19], [true, -19]];
 
     function make(view, kind, text) {
         const made = W.element('span', { class: 'tag ' + kind, text, 'aria-hidden': 'true', hidden: true });
@@ -56,17 +59,18 @@
         if (tag.label.hidden) {
             return;
         }
-        hangOne(view, tag.label, tag.at, false);
-        if (!tag.label.hidden && isCovered(tag.label.getBoundingClientRect(), taken)) {
-            hangOne(view, tag.label, tag.at, true);
-        }
-        const box = tag.label.getBoundingClientRect();
-        tag.label.hidden = tag.label.hidden || isCovered(box, taken);
-        taken.push(...(tag.label.hidden ? [] : [box]));
+        const one = tag.kind === 'wafer' && view.tags.length > MANY && !isHeld(view, tag);
+        const free = PLACES.slice(0, one ? 1 : PLACES.length).find(([left, down]) => {
+            hangOne(view, tag.label, tag.at, left, down);
+            return tag.label.hidden || !isCovered(tag.label.getBoundingClientRect(), taken);
+        });
+        tag.label.hidden = tag.label.hidden || !free;
+        taken.push(...(tag.label.hidden ? [] : [tag.label.getBoundingClientRect()]));
     }
 
-    /* Puts a label beside its point, to the left of it if asked for or if that is where a mark's has room; or hides it. */
-    function hangOne(view, each, point, left) {
+    /* Puts a label beside its point, to the left of it if asked for or if that is where a mark's has room, and so many pixels
+     * lower; or hides it. */
+    function hangOne(view, each, point, left, down) {
         const spot = point.clone().project(view.rig.camera);
         const inside = Math.abs(spot.x) < 1 && Math.abs(spot.y) < 1 && spot.z < 1;
         each.hidden = !inside;
@@ -75,21 +79,21 @@
             const y = (1 - spot.y) / 2 * view.host.clientHeight;
             const room = x > 0.55 * view.host.clientWidth && each.classList.contains('mark');
             const aside = left || room ? 'translateX(calc(-100% - 12px))' : '';
-            each.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) ${aside}`;
+            each.style.transform = `translate(${x.toFixed(1)}px, ${(y + down).toFixed(1)}px) ${aside}`;
         }
     }
 
     function hang(view) {
         view.marks.shown.filter((each) => !each.label.hidden).forEach((each, i) => {
-            hangOne(view, each.label, each.shape.position, false);
+            hangOne(view, each.label, each.shape.position, false, 0);
             each.label.style.marginTop = `${-20 - 24 * i}px`;
         });
         const taken = view.marks.shown.filter((each) => !each.label.hidden).map((each) => each.label.getBoundingClientRect());
-        const rank = (tag) => (tag.kind === 'gripper' ? 0 : isHeld(view, tag) ? 1 : 2);
+        const rank = (tag) => (tag.kind === 'gripper' || tag.kind === 'station' ? 0 : isHeld(view, tag) ? 1 : 2);
         const ranked = [].concat(...[0, 1, 2].map((wanted) => view.tags.filter((tag) => rank(tag) === wanted)));
         ranked.forEach((tag) => hangTag(view, tag, taken));
         if (view.ends) {
-            hangOne(view, view.rulerLabel, view.ends[0].clone().lerp(view.ends[1], 0.5), false);
+            hangOne(view, view.rulerLabel, view.ends[0].clone().lerp(view.ends[1], 0.5), false, 0);
         } else {
             view.rulerLabel.hidden = true;
         }
