@@ -52,15 +52,20 @@
     const isCovered = (box, others) => others.some((other) => box.left < other.right && other.left < box.right
         && box.top < other.bottom && other.top < box.bottom);
 
+    const isGone = (tag) => (tag.object && !tag.object.visible) || W.parts.isHidden(tag.kind, tag.i)
+        || W.section.isAway(tag.at.toArray().map((x) => x / M));
+
+    function placesOf(view, tag) {
+        const one = tag.kind === 'wafer' && view.tags.length > MANY && !isHeld(view, tag);
+        return PLACES.slice(0, one ? 1 : PLACES.length);
+    }
+
     function hangTag(view, tag, taken) {
-        const gone = (tag.object && !tag.object.visible) || W.parts.isHidden(tag.kind, tag.i)
-            || W.section.isAway(tag.at.toArray().map((x) => x / M));
-        tag.label.hidden = gone || !view.options.names;
+        tag.label.hidden = !view.options.names || isGone(tag);
         if (tag.label.hidden) {
             return;
         }
-        const one = tag.kind === 'wafer' && view.tags.length > MANY && !isHeld(view, tag);
-        const free = PLACES.slice(0, one ? 1 : PLACES.length).find(([left, down]) => {
+        const free = placesOf(view, tag).find(([left, down]) => {
             hangOne(view, tag.label, tag.at, left, down);
             return tag.label.hidden || !isCovered(tag.label.getBoundingClientRect(), taken);
         });
