@@ -14,6 +14,7 @@
 #include "apart.h"
 #include "app.h"
 #include "segments.h"
+#include "watch.h"
 
 /* Seconds: what --from and --to take. */
 #define SOONEST 1e-6
@@ -346,4 +347,11 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
     wh_signals_close(&signals);
     wh_script_run_close(&run);
     return status;
+}
+
+int wh_run_watch(const wh_run_arguments_t *arguments, int (*act)(void *user), void *user) {
+    const char *const outputs[] = {arguments->files.page, arguments->files.scene, arguments->files.document,
+                                   arguments->files.plots, arguments->segments_path};
+    const wh_watch_options_t options = {act, user, outputs, sizeof outputs / sizeof outputs[0]};
+    return wh_watch(&options);
 }

@@ -66,6 +66,9 @@ char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log);
 /* Runs the script and prints what came of it. Returns the exit status. */
 int wh_run_and_print(wh_run_arguments_t *arguments);
 
+/* wh_watch of a run that `act` makes of `user`. */
+int wh_run_watch(const wh_run_arguments_t *arguments, int (*act)(void *user), void *user);
+
 /* Writes those that are wanted, if any is, from a document that has source, record, signals and notes; the
  * rest is made of the arguments. Each file is there whole or as it was. False, with a line on standard error,
  * if one cannot be written. */
