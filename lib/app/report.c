@@ -25,7 +25,7 @@ static const wh_option_t options[] = {
 
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, NULL},
-    {wh_run_options, offsetof(arguments_t, run), NULL, NULL},
+    {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
 
@@ -34,9 +34,9 @@ static void check(const void *given, struct argp_state *state) {
     if (!arguments->run.run.script) {
         argp_error(state, "of which run?");
     }
-    if (arguments->run.gantt || arguments->run.margins) {
-        argp_error(state, "%s: a report prints no table (waferhand run SCRIPT does)",
-                   arguments->run.gantt ? "--gantt" : "--margins");
+    const char *table = wh_run_table_wanted(&arguments->run);
+    if (table) {
+        argp_error(state, "%s: a report prints no table (waferhand run SCRIPT does)", table);
     }
     if (!wh_run_files_wanted(&arguments->run.files) && !arguments->run.segments_path &&
         !arguments->run.json) {
@@ -166,8 +166,13 @@ static int report(arguments_t *arguments) {
     const char *fault = NULL; /* which a script's reader tells */
     FILE *file = wh_log_file(arguments->run.run.script, &fault);
     const size_t size = file ? fread(begin, 1, sizeof begin, file) : 0;
+    const bool is_empty = file && size == 0 && feof(file);
     if (file) {
         (void)fclose(file);
+    }
+    if (is_empty) {
+        fprintf(stderr, "%s: empty (expected an LCM event log or a script)\n", arguments->run.run.script);
+        return WH_EXIT_USAGE;
     }
     const bool is_log =
         wh_log_is_packed(begin, size) || (size >= sizeof sync && memcmp(begin, sync, sizeof sync) == 0);

@@ -33,7 +33,7 @@ static void check(const void *given, struct argp_state *state) {
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, check},
     {wh_record_options, offsetof(arguments_t, record), NULL, wh_record_arguments_check},
-    {wh_run_options, offsetof(arguments_t, run), NULL, NULL},
+    {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
 
