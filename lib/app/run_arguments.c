@@ -223,11 +223,21 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
     return wh_run_files_write(arguments, &document);
 }
 
+/* False, and says so, for a run that would not be the same when it is played again. */
+static bool are_segments_whole(const wh_run_arguments_t *arguments, const wh_mcs_t *mcs) {
+    if (!arguments->segments_path || !mcs->unplayed) {
+        return true;
+    }
+    fprintf(stderr, "--segments: %s: not written (expected a script without %s)\n", arguments->segments_path,
+            mcs->unplayed);
+    return false;
+}
+
 static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                         wh_signals_t *signals) {
     const char *layout = run->record.layout ? run->record.layout->path : NULL;
     wh_segments_t segments = {&run->mcs, arguments->segments_path};
-    return wh_run_files_are_apart(arguments, layout) &&
+    return wh_run_files_are_apart(arguments, layout) && are_segments_whole(arguments, &run->mcs) &&
            wh_file_write("--segments", segments.path, wh_segments_write, &segments, NULL) &&
            write_report(arguments, run, signals);
 }
