@@ -42,7 +42,11 @@
 #include "align/rim.h"
 #include "align/sensing.h"
 #include "align/circle.h"
+#include "align/centring.h"
+#include "align/beam.h"
+#include "align/teaching.h"
 
+#include "sim/latching.h"
 #include "sim/event_text.h"
 #include "sim/faults.h"
 #include "sim/scanning.h"

@@ -6,10 +6,12 @@
  *     rho(a) = p + sqrt(R^2 - q^2),   p = x cos a + y sin a,   q = d + x sin a - y cos a
  *
  * which for d = 0 is e cos(a - phi) + sqrt(R^2 - e^2 sin^2(a - phi)). The fit begins with the best of some
- * circles through three samples (least median), so that a third of the samples may be off the circle: notch,
- * flats, chips, light through glass. From there Gauss and Newton's steps minimise the weighted squares, with
- * Tukey's weights: a sample that is 6 standard deviations off, and its neighbours, count nothing. The
- * standard deviations take what remains for noise: of a wafer with both bow and saddle they say too little.
+ * circles through three samples (the least of their two-fifth quantiles), so that two fifths of the samples
+ * may be off the circle: notch, flats, chips, light through glass. From there Gauss and Newton's steps
+ * minimise the weighted squares, with Tukey's weights: a sample that is 6 standard deviations off, and its
+ * neighbours, count nothing. The standard deviations are those of independent noise, enlarged where
+ * neighbouring samples are off together. A shape below a micrometre, such as a small saddle's, is not told
+ * from noise: with half of the turn hidden it may move the centre by more than they say.
  */
 #ifndef WH_ALIGN_CIRCLE_H
 #define WH_ALIGN_CIRCLE_H
@@ -43,6 +45,7 @@ typedef struct {
     double sd_x, sd_y, sd_radius;
     double sd_centre; /* in the direction in which it is largest */
     double scatter;   /* standard deviation of a sample that counts, mm */
+    double inflation; /* of the squares of the deviations above: 1, more if neighbours are off together */
     size_t seen;      /* samples that see the rim */
     size_t used;      /* and count */
 } wh_circle_t;
@@ -50,8 +53,9 @@ typedef struct {
 /* WH_OK; WH_STATUS_NULL_ARGUMENT; WH_STATUS_OUT_OF_RANGE for an offset or a count out of range;
  * WH_STATUS_TOO_FEW_SAMPLES: fewer than WH_SCAN_LEAST see the rim; WH_STATUS_BAD_SCAN: a number is NaN or
  * infinite, a radius is not from 1 to 1e3, angles are out of order or leave one turn, or all samples are the
- * same; WH_STATUS_CENTRE_NOT_SURE: no circle is near half of the samples. If it fails, `circle` is unchanged;
- * `rays`, `count` of them, are not. Cost for 3600 samples: about 200 us, of which a third are sines. */
+ * same; WH_STATUS_CENTRE_NOT_SURE: no circle is near half of the samples, or what remains has a shape of more
+ * than 0.03 mm. If it fails, `circle` is unchanged; `rays`, `count` of them, are not. Cost for 3600 samples:
+ * about 200 us, of which a third are sines. */
 wh_status_t wh_circle_fit(const wh_rim_scan_t *scan, wh_rim_ray_t *rays, wh_circle_t *circle)
     WH_SYMBOL(wh_circle_fit);
 

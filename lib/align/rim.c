@@ -28,8 +28,8 @@ wh_rim_t wh_rim_nominal(double radius) {
 
 /* ------------------------------------------------------------------------------------------- the notch */
 
-/* One half of a notch in the frame of its axis: x outwards, y >= 0 across. The flank begins at the apex, where
- * both would meet, and goes along (cosine, sine). */
+/* One half of a notch in the frame of its axis: x outwards, y >= 0 across. The flank begins at the apex,
+ * where both would meet, and goes along (cosine, sine). */
 typedef struct {
     double cosine, sine;
     double apex;          /* x; y is 0 */
@@ -153,8 +153,10 @@ static double outside(const wh_rim_t *rim, const line_t *line, double distance) 
 }
 
 /* The root between a point inside and one outside, by the rule of Illinois. */
-static double way_out(const wh_rim_t *rim, const line_t *line, double far, double far_outside) {
-    double step = 2 * far_outside + 0.01;
+static double way_out(const wh_rim_t *rim, const line_t *line, double from, double over) {
+    double far = from;
+    double far_outside = over;
+    double step = 2 * over + 0.01;
     double near = far - step;
     double inside = outside(rim, line, near);
     for (int i = 0; i < 12 && inside > 0; ++i) {
@@ -196,7 +198,7 @@ double wh_rim_distance(const wh_rim_t *rim, const wh_placement_t *placement, dou
     double turn_sine;
     double turn_cosine;
     wh_align_sin_cos(placement->turn, &turn_sine, &turn_cosine);
-    const double x = 0 - aside * sine - placement->x;
+    const double x = -aside * sine - placement->x;
     const double y = aside * cosine - placement->y;
     const line_t line = {turn_cosine * x + turn_sine * y, turn_cosine * y - turn_sine * x,
                          turn_cosine * cosine + turn_sine * sine, turn_cosine * sine - turn_sine * cosine};

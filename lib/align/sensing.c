@@ -59,8 +59,7 @@ double wh_sensor_angle(const wh_sensor_t *sensor, int64_t k) {
 /* The first sample that is due after this turn, or at it. */
 static int64_t first_from(const wh_sensor_t *sensor, double turn, bool after) {
     int64_t k = (int64_t)wh_align_nearest(turn * (sensor->samples / WH_ALIGN_TURN)) - 2;
-    for (double angle = wh_sensor_angle(sensor, k); after ? angle <= turn : angle < turn;
-         angle = wh_sensor_angle(sensor, k)) {
+    while (wh_sensor_angle(sensor, k) < turn || (after && wh_sensor_angle(sensor, k) <= turn)) {
         ++k;
     }
     return k;
@@ -75,7 +74,8 @@ size_t wh_sensor_due(const wh_sensor_t *sensor, double from, double to, int64_t 
         return 0;
     }
     *first = up ? low : end - 1;
-    return (size_t)(end - low);
+    const int64_t due = end - low;
+    return (size_t)due;
 }
 
 static bool is_hidden(const wh_sensor_t *sensor, double look) {

@@ -6,7 +6,7 @@
 
 #define WH_NORMAL_TERMS 7
 
-/* The sums of weight times products of the derivatives, the upper triangle, and of derivatives and residual. */
+/* Sums of weight times products of the derivatives (the upper triangle), and of derivatives and residual. */
 typedef struct {
     size_t terms;
     double matrix[WH_NORMAL_TERMS][WH_NORMAL_TERMS];

@@ -93,9 +93,7 @@ static void write_word(FILE *out, const char *word) {
     fputc('\'', out);
 }
 
-/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and
- * a log. */
-static char *make_command(const wh_run_arguments_t *arguments, bool is_log) {
+char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log) {
     const wh_script_run_options_t *run = &arguments->run;
     const char *command = arguments->command ? arguments->command : "run";
     char *text = NULL;
@@ -122,7 +120,8 @@ typedef struct {
 
 static bool write_page(void *user, FILE *out) {
     content_t *content = user;
-    return wh_page_write(out, content->document->title, content->text, content->size, content->message);
+    return wh_page_write(out, WH_PAGE_REPORT, content->document->title, content->text, content->size,
+                         content->message);
 }
 
 static bool write_scene(void *user, FILE *out) {
@@ -171,7 +170,7 @@ bool wh_run_files_write(const wh_run_arguments_t *arguments, const wh_document_t
         return true;
     }
     FILE *out = wh_memory_need(open_memstream(&content.text, &content.size));
-    char *command = make_command(arguments, strcmp(document->source, "log") == 0);
+    char *command = wh_run_command(arguments, strcmp(document->source, "log") == 0);
     whole.title = arguments->run.script;
     whole.reproduce = command;
     whole.parameters = arguments->run.parameters;
