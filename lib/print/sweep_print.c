@@ -1,6 +1,7 @@
 #include "sweep_print.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "../text/grid.h"
@@ -18,24 +19,69 @@ size_t wh_sweep_count(const wh_script_sweep_t *sweep, wh_sweep_verdict_t verdict
 
 /* -------------------------------------------------------------------------------------------------- table */
 
-static void add_row(const wh_script_sweep_t *sweep, wh_grid_t *grid, size_t i) {
-    const wh_sweep_point_t *point = &sweep->points[i];
-    const double figures[] = {point->simulated_s, point->wafers_per_hour, point->projz, point->projxy,
-                              point->gap};
-    const size_t first = sweep->axis_count;
-    wh_grid_row(grid);
-    for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
-        wh_grid_number(grid, axis, WH_INK_PLAIN, wh_sweep_value(sweep, i, axis));
-    }
-    wh_grid_text(grid, first, point->verdict == WH_SWEEP_OK ? WH_INK_GOOD : WH_INK_BAD, "%s",
-                 verdicts[point->verdict]);
-    for (size_t k = 0; k < sizeof figures / sizeof figures[0]; ++k) {
-        if (isfinite(figures[k])) {
-            wh_grid_number(grid, first + 1 + k, WH_INK_PLAIN, figures[k]);
+static const struct {
+    const char *heading;
+    size_t offset; /* of the figure in a point */
+} figures[] = {{";simulated s{3}", offsetof(wh_sweep_point_t, simulated_s)},
+               {";wafers/h{1}", offsetof(wh_sweep_point_t, wafers_per_hour)},
+               {";|dr_proj_z|{4}", offsetof(wh_sweep_point_t, projz)},
+               {";|dr_proj_xy|{4}", offsetof(wh_sweep_point_t, projxy)},
+               {";gap mm{3}", offsetof(wh_sweep_point_t, gap)}};
+#define FIGURES (sizeof figures / sizeof figures[0])
+
+static double figure_of(const wh_sweep_point_t *point, size_t k) {
+    double value;
+    memcpy(&value, (const char *)point + figures[k].offset, sizeof value);
+    return value;
+}
+
+/* True if any run has this figure; `FIGURES`: a reason. */
+static bool has_any(const wh_script_sweep_t *sweep, size_t k) {
+    for (size_t i = 0; i < sweep->point_count; ++i) {
+        const wh_sweep_point_t *point = &sweep->points[i];
+        if (k == FIGURES ? point->reason != NULL : (bool)isfinite(figure_of(point, k))) {
+            return true;
         }
     }
+    return false;
+}
+
+static wh_grid_t *new_grid(const wh_script_sweep_t *sweep, const wh_style_t *style,
+                           const bool shown[FIGURES + 1]) {
+    char columns[800] = "";
+    size_t length = 0;
+    for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
+        length += (size_t)snprintf(columns + length, sizeof columns - length, "%.60s{0,12};",
+                                   sweep->axes[axis].name);
+    }
+    length += (size_t)snprintf(columns + length, sizeof columns - length, "result");
+    for (size_t k = 0; k < FIGURES; ++k) {
+        length += shown[k]
+                      ? (size_t)snprintf(columns + length, sizeof columns - length, "%s", figures[k].heading)
+                      : 0;
+    }
+    (void)snprintf(columns + length, sizeof columns - length, "%s", shown[FIGURES] ? ";why" : "");
+    return wh_grid_new(style, sweep->axis_count, columns);
+}
+
+static void add_row(const wh_script_sweep_t *sweep, wh_grid_t *grid, size_t i,
+                    const bool shown[FIGURES + 1]) {
+    const wh_sweep_point_t *point = &sweep->points[i];
+    size_t column = 0;
+    wh_grid_row(grid);
+    for (; column < sweep->axis_count; ++column) {
+        wh_grid_number(grid, column, WH_INK_PLAIN, wh_sweep_value(sweep, i, column));
+    }
+    wh_grid_text(grid, column++, point->verdict == WH_SWEEP_OK ? WH_INK_GOOD : WH_INK_BAD, "%s",
+                 verdicts[point->verdict]);
+    for (size_t k = 0; k < FIGURES; ++k) {
+        if (isfinite(figure_of(point, k))) {
+            wh_grid_number(grid, column, WH_INK_PLAIN, figure_of(point, k));
+        }
+        column += shown[k] ? 1 : 0;
+    }
     if (point->reason) {
-        wh_grid_text(grid, first + 6, WH_INK_PLAIN, "%s", point->reason);
+        wh_grid_text(grid, column, WH_INK_PLAIN, "%s", point->reason);
     }
 }
 
@@ -71,16 +117,13 @@ static void print_best(const wh_script_sweep_t *sweep, FILE *out) {
 
 int wh_sweep_print_table(const wh_script_sweep_t *sweep, FILE *out, const wh_style_t *style) {
     const size_t ok = wh_sweep_count(sweep, WH_SWEEP_OK);
-    char columns[400] = "";
-    for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
-        const size_t length = strlen(columns);
-        (void)snprintf(columns + length, sizeof columns - length, "%s%.40s{0,12}", axis > 0 ? ";" : "",
-                       sweep->axes[axis].name);
+    bool shown[FIGURES + 1];
+    for (size_t k = 0; k <= FIGURES; ++k) {
+        shown[k] = has_any(sweep, k);
     }
-    wh_grid_t *grid = wh_grid_new(style, sweep->axis_count, columns);
-    wh_grid_columns(grid, "result;simulated s{3};wafers/h{1};|dr_proj_z|{4};|dr_proj_xy|{4};gap mm{3};why");
+    wh_grid_t *grid = new_grid(sweep, style, shown);
     for (size_t i = 0; i < sweep->point_count; ++i) {
-        add_row(sweep, grid, i);
+        add_row(sweep, grid, i, shown);
     }
     wh_style_put(out, sweep->run.script);
     fputs("\n\n", out);
