@@ -99,8 +99,9 @@ static bool is_ordered(const wh_scan_t *scan, size_t gripper_count) {
     const int32_t most = WH_SCAN_TURNS * WH_SENSOR_SAMPLES;
     const int64_t reach = (int64_t)WH_SCAN_REACH * WH_SENSOR_SAMPLES;
     const bool none = (scan->gripper | scan->count) == 0 && scan->first == 0;
-    return wh_is_index(scan->gripper, gripper_count) && is_between(scan->count, -most, most) &&
-           is_between(scan->first, -reach, reach) && (scan->number > 0 || none);
+    const bool some = wh_is_index(scan->gripper, gripper_count) && is_between(scan->count, -most, most) &&
+                      is_between(scan->first, -reach, reach);
+    return scan->number > 0 ? some : none;
 }
 
 static wh_status_t check_scan(const wh_scan_t *scan, size_t gripper_count) {

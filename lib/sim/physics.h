@@ -6,7 +6,7 @@
  *     stack of wh_physics_default             2376   2376    1384   1408
  *     stack of wh_physics_validate              88    200      48    112
  *     stack of wh_physics_state_start          240    232     184    184
- *     stack of wh_physics_state_validate       116    236      80    144
+ *     stack of wh_physics_state_validate       128    236      80    144
  *     stack of wh_physics_state_sensors         16     20       8     24
  *     stack of wh_physics_state_hash           112    140     116    136
  *     size of wh_physics_t                    2272           1336

@@ -316,6 +316,12 @@ static void a_saved_scan_goes_on_bit_for_bit(void **state) {
     broken.scan.samples[63] = -1;
     assert_int_equal(wh_physics_state_validate(&broken, GRIPPERS, WAFERS), WH_STATUS_OUT_OF_RANGE);
     broken = run.simulator.physics;
+    broken.scan.gripper = GRIPPERS;
+    assert_int_equal(wh_physics_state_validate(&broken, GRIPPERS, WAFERS), WH_STATUS_OUT_OF_RANGE);
+    /* a state that is never scanned in is one of a cell without grippers, too */
+    wh_physics_state_start(&broken, NULL);
+    assert_int_equal(wh_physics_state_validate(&broken, 0, WAFERS), WH_OK);
+    broken = run.simulator.physics;
     broken.scan.turn = (double)NAN;
     assert_int_equal(wh_physics_state_validate(&broken, GRIPPERS, WAFERS), WH_STATUS_NOT_FINITE);
 }
