@@ -76,6 +76,34 @@ template <int N> class rows_t {
         return std::sqrt(square) / lengths_(parameter);
     }
 
+    /* What a row takes of each seen direction, by that one's deviation: products of two rows' are the covariances of what
+     * the fit says of them, where rows have a deviation of 1. Unseen directions are left out. */
+    vector_t pull(const vector_t &row) const {
+        vector_t along = directions_.transpose() * row.cwiseQuotient(lengths_);
+        for (int k = 0; k < N; ++k) {
+            along(k) = is_seen(k) ? along(k) / sigmas_(k) : 0;
+        }
+        return along;
+    }
+
+    /* A row's parts in the directions that the rows do not tell. */
+    vector_t unseen_part(const vector_t &row) const {
+        vector_t beside = directions_.transpose() * row.cwiseQuotient(lengths_);
+        for (int k = 0; k < N; ++k) {
+            beside(k) = is_seen(k) ? 0 : beside(k);
+        }
+        return beside;
+    }
+
+    /* How many directions the rows tell. */
+    int rank() const {
+        int count = 0;
+        for (int k = 0; k < N; ++k) {
+            count += is_seen(k) ? 1 : 0;
+        }
+        return count;
+    }
+
   private:
     static void turn(double c, double s, double &above, double &below) {
         const double old = above;
@@ -94,6 +122,30 @@ template <int N> class rows_t {
     vector_t sigmas_ = vector_t::Zero();
     vector_t shares_ = vector_t::Zero();
 };
+
+/* Levenberg and Marquardt's descent, with the weights as they are: `data` and `model` have rows_of, squares_of and
+ * stepped beside them, and the model its squares. */
+template <typename Data, typename Model> void descend(const Data &data, Model *model, int rounds) {
+    double damping = 1e-3;
+    model->squares = squares_of(data, *model);
+    for (int round = 0; round < rounds; ++round) {
+        const auto rows = rows_of(data, *model);
+        Model next = *model;
+        for (bool is_better = false; !is_better; damping *= is_better ? 0.1 : 10) {
+            if (damping > 1e6) {
+                return;
+            }
+            next = stepped(*model, rows.step(damping));
+            next.squares = squares_of(data, next);
+            is_better = next.squares < model->squares;
+        }
+        const bool is_done = next.squares > model->squares * (1 - 1e-12);
+        *model = next;
+        if (is_done) {
+            return;
+        }
+    }
+}
 
 } // namespace wh_estimate
 
