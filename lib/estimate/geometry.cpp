@@ -13,19 +13,11 @@ using namespace wh_estimate;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double full_turn = 6.283185307179586;
 constexpr double most_pull = 100; /* times an error of the touches in a number, at the arm's length */
 constexpr double nearly_alone =
     0.3; /* of its error the fit takes over, where a touch may be the only one that tells */
-constexpr double heading_misfit = 0.02; /* rad */
-constexpr int yaw_zero = WH_GEOMETRY_ZERO + WH_AXIS_YAW;
-constexpr int theta_zero = WH_GEOMETRY_ZERO + WH_AXIS_THETA;
 
 const char *const axis_names[WH_ROBOT_AXES] = {"theta", "r", "z", "yaw"};
-
-const char *const names[WH_GEOMETRY_PARAMETERS] = {
-    "x",        "y",      "tilt_x", "tilt_y",      "zero_theta", "zero_r",  "zero_z",
-    "zero_yaw", "tool_x", "tool_y", "scale_theta", "scale_r",    "scale_z", "scale_yaw"};
 
 /* A fit that was agreed upon. */
 struct agreed_t {
@@ -156,7 +148,7 @@ void tell_missing(const size_t *missing, wh_geometry_estimate_t *estimate) {
     for (int k = 0; k < WH_GEOMETRY_PARAMETERS; ++k) {
         for (int other = k; !is_named[k] && other < WH_GEOMETRY_PARAMETERS; ++other) {
             if (!is_named[other] && missing[other] == missing[k]) {
-                tell(estimate->reason, "%s%s", other == k ? before : ", ", names[other]);
+                tell(estimate->reason, "%s%s", other == k ? before : ", ", wh_geometry_name(other));
                 is_named[other] = other != k;
             }
         }
@@ -167,157 +159,6 @@ void tell_missing(const size_t *missing, wh_geometry_estimate_t *estimate) {
             before = "; ";
         }
     }
-}
-
-/* -------------------------------------------------------------------------------------------------- headings */
-
-/* What the zero of yaw would be by a touch's heading: the tool's x as the turned column sees it, less theta and yaw. */
-double yaw_zero_of(const double *p, const wh_touch_t &touch) {
-    const Matrix3d tilt = tilt_of(p);
-    const double x = std::cos(touch.heading);
-    const double y = std::sin(touch.heading);
-    const double z = -(tilt(0, 2) * x + tilt(1, 2) * y) / tilt(2, 2); /* level with the blade */
-    const Vector3d ahead = tilt.transpose() * Vector3d(x, y, z);
-    const double theta = p[WH_GEOMETRY_SCALE + WH_AXIS_THETA] * touch.axes[WH_AXIS_THETA] + p[theta_zero];
-    const double yaw = p[WH_GEOMETRY_SCALE + WH_AXIS_YAW] * touch.axes[WH_AXIS_YAW];
-    return std::remainder(std::atan2(ahead(1), ahead(0)) - theta - yaw, full_turn);
-}
-
-/* What the headings say, each less the middle of all. */
-struct headings_t {
-    double rests[WH_GEOMETRY_MOST_TOUCHES];
-    double sizes[WH_GEOMETRY_MOST_TOUCHES]; /* to be sorted */
-    size_t touches[WH_GEOMETRY_MOST_TOUCHES];
-    bool is_used[WH_GEOMETRY_MOST_TOUCHES];
-    size_t count, used;
-    double middle, mean, sd;
-};
-
-double middle_of(double *values, size_t count) {
-    std::nth_element(values, values + count / 2, values + count);
-    return values[count / 2];
-}
-
-void read_headings(const touches_t &data, const double *p, headings_t *headings) {
-    double x = 0;
-    double y = 0;
-    for (size_t i = 0; i < data.count; ++i) {
-        if (data.is_used[i] && !std::isnan(data.touches[i].heading)) {
-            headings->rests[headings->count] = yaw_zero_of(p, data.touches[i]);
-            headings->touches[headings->count] = i;
-            x += std::cos(headings->rests[headings->count]);
-            y += std::sin(headings->rests[headings->count]);
-            ++headings->count;
-        }
-    }
-    const double about = std::atan2(y, x);
-    for (size_t i = 0; i < headings->count; ++i) {
-        headings->rests[i] = std::remainder(headings->rests[i] - about, full_turn);
-        headings->sizes[i] = headings->rests[i];
-    }
-    headings->middle = headings->count > 0 ? middle_of(headings->sizes, headings->count) : 0;
-    for (size_t i = 0; i < headings->count; ++i) {
-        headings->rests[i] -= headings->middle;
-        headings->sizes[i] = std::abs(headings->rests[i]);
-    }
-    headings->middle += about;
-}
-
-/* Sets aside, and takes the mean of the others. */
-void average(headings_t *headings) {
-    const auto count = static_cast<double>(headings->count);
-    headings->sd = 1.4826 * (1 + 5 / count) * middle_of(headings->sizes, headings->count);
-    headings->sd = std::max(headings->sd, 1e-9);
-    for (int round = 0; round < 4; ++round) {
-        const double most = WH_GEOMETRY_ASIDE_SDS * headings->sd;
-        const double centre = headings->mean;
-        double sum = 0;
-        double squares = 0;
-        headings->used = 0;
-        for (size_t i = 0; i < headings->count; ++i) {
-            const double rest = headings->rests[i];
-            headings->is_used[i] = std::abs(rest - centre) <= most;
-            headings->used += headings->is_used[i] ? 1 : 0;
-            sum += headings->is_used[i] ? rest : 0;
-            squares += headings->is_used[i] ? rest * rest : 0;
-        }
-        const auto used = static_cast<double>(headings->used);
-        headings->mean = sum / used;
-        headings->sd = std::sqrt((squares - sum * headings->mean) / std::max(used - 1, 1.0));
-        headings->sd = std::max(headings->sd, 1e-9);
-    }
-}
-
-/* How many deviations a number of normal errors may be off, if its own deviation comes from so few, to be as rare as five
- * where it is known (D. L. Wallace, 1959). */
-double rare_of(double freedom) {
-    constexpr double five_squared = 25;
-    const double part = (freedom - 5.0 / 6) / ((freedom - 2.0 / 3) * (freedom - 2.0 / 3));
-    return freedom > 2 ? std::sqrt(freedom * std::expm1(five_squared * part)) : HUGE_VAL;
-}
-
-/* True if the headings go with an axis, which the mean would not show. */
-bool goes_with(const touches_t &data, const headings_t &headings, int axis) {
-    double products = 0;
-    double spread = 0;
-    double mean = 0;
-    for (size_t i = 0; i < headings.count; ++i) {
-        mean += headings.is_used[i] ? data.touches[headings.touches[i]].axes[axis] : 0;
-    }
-    mean /= static_cast<double>(headings.used);
-    for (size_t i = 0; i < headings.count; ++i) {
-        const double off = data.touches[headings.touches[i]].axes[axis] - mean;
-        products += headings.is_used[i] ? off * headings.rests[i] : 0;
-        spread += headings.is_used[i] ? off * off : 0;
-    }
-    const double freedom = static_cast<double>(headings.used) - 2;
-    const double left = headings.sd * headings.sd * (freedom + 1) - products * products / spread;
-    return spread > 1e-6 && products * products / spread > left / freedom * std::pow(rare_of(freedom), 2);
-}
-
-wh_status_t judge_headings(const touches_t &data, const headings_t &headings,
-                           wh_geometry_estimate_t *estimate) {
-    if (static_cast<double>(headings.count - headings.used) >
-        WH_GEOMETRY_ASIDE * static_cast<double>(headings.count)) {
-        tell(estimate->reason, "%zu of %zu headings disagree with the others", headings.count - headings.used,
-             headings.count);
-        return WH_STATUS_NO_FIT;
-    }
-    if (headings.sd > heading_misfit || goes_with(data, headings, WH_AXIS_YAW) ||
-        goes_with(data, headings, WH_AXIS_THETA)) {
-        tell(estimate->reason,
-             "the headings do not go with theta and yaw: residuals of %.3g degrees rms; is yaw told the "
-             "other way round, or its scale off?",
-             headings.sd * 360 / full_turn);
-        return WH_STATUS_NO_FIT;
-    }
-    return WH_OK;
-}
-
-/* The zero of yaw. `missing` is what it lacks. */
-wh_status_t fit_headings(touches_t &data, wh_geometry_estimate_t *estimate, size_t *missing) {
-    headings_t headings = {};
-    wh_estimate_value_t &zero = estimate->values[yaw_zero];
-    const wh_estimate_value_t &theta = estimate->values[theta_zero];
-    read_headings(data, estimate->fitted, &headings);
-    missing[yaw_zero] = HEADINGS;
-    if (headings.count < WH_GEOMETRY_HEADINGS) {
-        return WH_OK;
-    }
-    average(&headings);
-    estimate->headings = headings.used;
-    estimate->headings_aside = headings.count - headings.used;
-    estimate->heading_rms = headings.sd;
-    for (size_t i = 0; i < headings.count; ++i) {
-        data.touches[headings.touches[i]].is_heading_set_aside = !headings.is_used[i];
-    }
-    const wh_status_t status = judge_headings(data, headings, estimate);
-    zero.value = std::remainder(headings.middle + headings.mean, full_turn);
-    zero.sd = std::hypot(headings.sd / std::sqrt(static_cast<double>(headings.used)), theta.sd);
-    zero.is_determined = theta.is_determined && zero.sd <= WH_GEOMETRY_ANGLE_SD;
-    estimate->fitted[yaw_zero] = zero.value;
-    missing[yaw_zero] = theta.is_determined ? static_cast<size_t>(MORE) : missing[theta_zero];
-    return status;
 }
 
 /* ---------------------------------------------------------------------------------------------- what is wrong */
@@ -508,9 +349,15 @@ wh_status_t conclude(touches_t &data, agreed_t &fit, wh_geometry_estimate_t *est
         missing[k] = lone[k] > 0 ? LONE + lone[k] : static_cast<size_t>(NOTHING);
     }
     find_missing(data, fit, *estimate, missing);
-    const wh_status_t status = fit_headings(data, estimate, missing);
+    const wh_status_t status = wh_estimate::fit_headings(data, estimate);
     if (status != WH_OK) {
         return status;
+    }
+    if (estimate->headings == 0) {
+        missing[yaw_zero] = HEADINGS;
+    } else {
+        missing[yaw_zero] =
+            estimate->values[theta_zero].is_determined ? static_cast<size_t>(MORE) : missing[theta_zero];
     }
     store_base(estimate);
     tell_missing(missing, estimate);
@@ -522,6 +369,13 @@ wh_status_t conclude(touches_t &data, agreed_t &fit, wh_geometry_estimate_t *est
 }
 
 } // namespace
+
+const char *wh_geometry_name(int number) {
+    static const char *const names[WH_GEOMETRY_PARAMETERS] = {
+        "x",        "y",      "tilt_x", "tilt_y",      "zero_theta", "zero_r",  "zero_z",
+        "zero_yaw", "tool_x", "tool_y", "scale_theta", "scale_r",    "scale_z", "scale_yaw"};
+    return names[number];
+}
 
 wh_vec3_t wh_geometry_residual(const wh_geometry_estimate_t *estimate, const wh_touch_t *touch) {
     const Vector3d there = point_of(estimate->fitted, touch->axes, nullptr);

@@ -15,12 +15,12 @@
  *
  * The nine numbers (thirteen with scales) that come nearest to the points, in the sense of least squares, are
  * searched for from many starts with robust weights (Tukey's biweight). A touch that lies farther off than
- * WH_GEOMETRY_ASIDE_SDS standard deviations, its own pull on the fit counted, is set aside; the others count alike. What
- * is not a number's own is not seen: a Jacobian's direction of singular value below 1e-8 of the largest.
+ * WH_GEOMETRY_ASIDE_SDS standard deviations, its own pull on the fit counted, is set aside; the others count
+ * alike. A direction of the Jacobian counts as not seen if its singular value is below 1e-8 of the largest.
  *
  * A number is determined only if it has no part in such a direction, if its standard deviation is below the
- * limits here, and if both hold without any one of the touches: else a single wrong line could not be
- * noticed. Of what is not determined the estimate says which moves are missing. It finds them by trying: the
+ * limits here, if an error of the touches does not count a hundredfold in it, and if all this holds without
+ * any one of the touches: else a single wrong line could not be noticed. Of what is not determined the estimate says which moves are missing. It finds them by trying: the
  * touches that there are, once more with an axis turned or moved, and looks which of them would tell it.
  *
  * Scales that are off by more than five standard deviations are refused unless they are fitted, for they
@@ -106,6 +106,9 @@ typedef struct {
  * Cost: about 50 ms, and 0.1 ms a touch; 300 kB of stack. */
 wh_status_t wh_geometry_estimate(wh_touch_t *touches, size_t count, bool with_scales,
                                  wh_geometry_estimate_t *estimate);
+
+/* The name of a number: x, y, tilt_x, tilt_y, zero_theta and so on, tool_x, tool_y, scale_theta and so on. */
+const char *wh_geometry_name(int number);
 
 /* The touched point less where the fitted robot has it, mm. */
 wh_vec3_t wh_geometry_residual(const wh_geometry_estimate_t *estimate, const wh_touch_t *touch);

@@ -10,6 +10,10 @@ namespace wh_estimate {
 /* No touch tells less. */
 constexpr double least_sd_mm = 1e-6;
 
+constexpr double full_turn = 6.283185307179586;
+constexpr int yaw_zero = WH_GEOMETRY_ZERO + WH_AXIS_YAW;
+constexpr int theta_zero = WH_GEOMETRY_ZERO + WH_AXIS_THETA;
+
 /* The zero of yaw has no part in where a point is: it is never free here. */
 using geometry_rows_t = rows_t<WH_GEOMETRY_PARAMETERS>;
 using jacobian_t = Eigen::Matrix<double, 3, WH_GEOMETRY_PARAMETERS>;
@@ -56,6 +60,14 @@ Eigen::Matrix3d pull_of(const geometry_rows_t &rows, const geometry_t &model, co
 /* Sets which touches are used: those that agree with the geometry that most agree with. Returns their number; `sd` is
  * the deviation of a coordinate of one touch. */
 size_t fit_agreed(touches_t &data, bool with_scales, geometry_t *model, double *sd);
+
+/* How many deviations a number of normal errors may be off, if its own deviation comes from so few, to be as rare as five
+ * where it is known (D. L. Wallace, 1959). */
+double rare_of(double freedom);
+
+/* The zero of yaw, from the headings of the touches that are used, and of what else is in `estimate`; it stays as it was if there
+ * are too few. */
+wh_status_t fit_headings(touches_t &data, wh_geometry_estimate_t *estimate);
 
 } // namespace wh_estimate
 
