@@ -204,14 +204,15 @@ static void draw(touches_t &data, uint32_t start) {
 
 /* ----------------------------------------------------------------------------------------------------- robust */
 
-/* The standard deviation of a coordinate by the median of the residuals' lengths. */
+/* The standard deviation of a coordinate by the median of the residuals' lengths; of few touches that is too small (P. J.
+ * Rousseeuw, 1984). */
 static double deviation_of(touches_t &data, const geometry_t &model) {
     for (size_t i = 0; i < data.count; ++i) {
         data.sizes[i] = rest_of(model, data.touches[i]).norm();
     }
     double *middle = data.sizes + data.count / 2;
     std::nth_element(data.sizes, middle, data.sizes + data.count);
-    return std::max(median_to_sd * *middle, least_sd_mm);
+    return std::max(median_to_sd * (1 + 5 / static_cast<double>(data.count)) * *middle, least_sd_mm);
 }
 
 /* Tukey's weights. */

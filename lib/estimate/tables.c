@@ -90,7 +90,7 @@ void wh_point_table_close(wh_point_table_t *table) {
     }
     free(table->stations);
     table->stations = NULL;
-    table->count = 0;
+    table->count = table->capacity = 0;
     wh_csv_close(&table->csv);
 }
 
@@ -227,6 +227,6 @@ void wh_touch_table_close(wh_touch_table_t *table) {
     free(table->lines);
     table->touches = NULL;
     table->lines = NULL;
-    table->count = 0;
+    table->count = table->capacity = table->line_capacity = 0;
     wh_csv_close(&table->csv);
 }

@@ -148,14 +148,15 @@ const char *wh_geometry_unit(int number, double *factor) {
     return "mm";
 }
 
-/* A comment of why, or a field with its value. */
+/* The fields of the gripper; a comment where one is not determined. */
 static void put_tool(const wh_geometry_estimate_t *found, FILE *out) {
     const wh_estimate_value_t *x = &found->values[WH_GEOMETRY_TOOL_X];
     const wh_estimate_value_t *y = &found->values[WH_GEOMETRY_TOOL_Y];
     const wh_estimate_value_t *yaw = &found->values[WH_GEOMETRY_ZERO + WH_AXIS_YAW];
+    const bool has_at = x->is_determined && y->is_determined;
     const double deg = wh_deg_from_rad(1);
     fputs("grippers = {\n  { ", out);
-    if (x->is_determined && y->is_determined) {
+    if (has_at) {
         fputs("at = ", out);
         put_list(out, (const double[]){x->value, y->value, 0}, (const double[]){x->sd, y->sd, 10});
         fputs(yaw->is_determined ? ", " : " ", out);
@@ -165,9 +166,10 @@ static void put_tool(const wh_geometry_estimate_t *found, FILE *out) {
         put_list(out, (const double[]){0, 0, yaw->value * deg}, (const double[]){10, 10, yaw->sd * deg});
         fputc(' ', out);
     }
-    fputs("},", out);
-    fputs(x->is_determined && y->is_determined ? "" : " -- at is not determined", out);
-    fputs(yaw->is_determined ? "" : " -- rpy is not determined", out);
+    fputs(has_at && yaw->is_determined ? "}," : "}, --", out);
+    fputs(has_at ? "" : " at is not determined", out);
+    fputs(has_at || yaw->is_determined ? "" : ",", out);
+    fputs(yaw->is_determined ? "" : " rpy is not determined", out);
     fputs("\n},\n", out);
 }
 
