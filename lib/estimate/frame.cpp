@@ -70,8 +70,9 @@ double measure_residuals(const wh_frame_point_t *points, size_t count, wh_frame_
     return squares;
 }
 
-/* Angles and all standard deviations. A small turn w about base's axes moves a known point p, seen from the centre, by
- * w x p: so the covariance of w is variance * inverse(sum of |p|^2 I - p p'). The origin moves with the centre, and with w. */
+/* Angles and all standard deviations. A small turn w about base's axes moves a known point p, seen from
+ * the centre, by w x p: so the covariance of w is variance * inverse(sum of |p|^2 I - p p'). The origin
+ * moves with the centre, and with w. */
 void fill_in(const moments_t &moments, const Matrix3d &R, double variance, size_t count,
              wh_frame_estimate_t *estimate) {
     const Matrix3d spread = R * moments.spread * R.transpose();

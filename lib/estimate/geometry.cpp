@@ -27,7 +27,7 @@ struct agreed_t {
     double reach; /* rms distance of the touching point from the column */
 };
 
-/* --------------------------------------------------------------------------------------------- what is told */
+/* ------------------------------------------------------------------------------------------- what is told */
 
 bool is_angle(int k) {
     return k == WH_GEOMETRY_TILT_X || k == WH_GEOMETRY_TILT_Y || k == theta_zero || k == yaw_zero;
@@ -47,7 +47,8 @@ double largest_pull(const agreed_t &fit, const wh_touch_t &touch) {
     return Eigen::SelfAdjointEigenSolver<Matrix3d>(pull_of(fit.rows, fit.model, touch)).eigenvalues()(2);
 }
 
-/* Sets is_determined; lone[k] is the number of the only touch that tells k, from 1, or 0. Few touches can be such. */
+/* Sets is_determined; lone[k] is the number of the only touch that tells k, from 1, or 0. Few touches can
+ * be such. */
 void judge_values(touches_t &data, const agreed_t &fit, wh_geometry_estimate_t *estimate, size_t *lone) {
     for (int k = 0; k < WH_GEOMETRY_PARAMETERS; ++k) {
         estimate->values[k].is_determined = is_told(fit, fit.rows, k);
@@ -68,9 +69,10 @@ void judge_values(touches_t &data, const agreed_t &fit, wh_geometry_estimate_t *
     }
 }
 
-/* ------------------------------------------------------------------------------------------- what is missing */
+/* ---------------------------------------------------------------------------------------- what is missing */
 
-/* Why a number is not determined: sets of axes to be moved by their bits, or one of these, or a touch behind them. */
+/* Why a number is not determined: sets of axes to be moved by their bits, or one of these, or a touch
+ * behind them. */
 enum { MORE = 0, NOTHING = 16, HEADINGS = 17, LONE = 32 };
 
 /* The touches once more with an axis moved, both ways. */
@@ -138,30 +140,34 @@ void tell_way(size_t missing, char *reason) {
     }
 }
 
-/* The numbers that want for the same, together. */
+/* Names the numbers that want for the same as `first` does, and sets that they are named. */
+void name_numbers(const size_t *missing, int first, bool *is_named, char *reason) {
+    const char *before = "";
+    for (int k = first; k < WH_GEOMETRY_PARAMETERS; ++k) {
+        if (!is_named[k] && missing[k] == missing[first]) {
+            tell(reason, "%s%s", before, wh_geometry_name(k));
+            is_named[k] = true;
+            before = ", ";
+        }
+    }
+}
+
 void tell_missing(const size_t *missing, wh_geometry_estimate_t *estimate) {
     bool is_named[WH_GEOMETRY_PARAMETERS];
     for (int k = 0; k < WH_GEOMETRY_PARAMETERS; ++k) {
         is_named[k] = estimate->values[k].is_determined || (k >= WH_GEOMETRY_SCALE && !estimate->has_scales);
     }
-    const char *before = "";
     for (int k = 0; k < WH_GEOMETRY_PARAMETERS; ++k) {
-        for (int other = k; !is_named[k] && other < WH_GEOMETRY_PARAMETERS; ++other) {
-            if (!is_named[other] && missing[other] == missing[k]) {
-                tell(estimate->reason, "%s%s", other == k ? before : ", ", wh_geometry_name(other));
-                is_named[other] = other != k;
-            }
-        }
         if (!is_named[k]) {
+            tell(estimate->reason, "%s", estimate->reason[0] != '\0' ? "; " : "");
+            name_numbers(missing, k, is_named, estimate->reason);
             tell(estimate->reason, ":");
             tell_way(missing[k], estimate->reason);
-            is_named[k] = true;
-            before = "; ";
         }
     }
 }
 
-/* ---------------------------------------------------------------------------------------------- what is wrong */
+/* ------------------------------------------------------------------------------------------ what is wrong */
 
 wh_status_t check(const wh_touch_t *touches, size_t count, wh_geometry_estimate_t *estimate) {
     if (count > WH_GEOMETRY_MOST_TOUCHES) {
@@ -270,7 +276,7 @@ wh_status_t judge(touches_t &data, const agreed_t &fit, wh_geometry_estimate_t *
     return WH_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------- the whole */
+/* ---------------------------------------------------------------------------------------------- the whole */
 
 wh_status_t fit_touches(touches_t &data, agreed_t *fit, wh_geometry_estimate_t *estimate) {
     estimate->used = wh_estimate::fit_agreed(data, estimate->has_scales, &fit->model, &fit->sd);
@@ -336,12 +342,28 @@ void store_base(wh_geometry_estimate_t *estimate) {
     estimate->base_rpy[2] = std::atan2(R(1, 0), R(0, 0));
 }
 
+/* What the zero of yaw lacks, if it is not determined. */
+size_t missing_of_yaw(const wh_geometry_estimate_t &estimate, const size_t *missing) {
+    if (estimate.headings == 0) {
+        return HEADINGS;
+    }
+    return estimate.values[theta_zero].is_determined ? static_cast<size_t>(MORE) : missing[theta_zero];
+}
+
+bool is_any_determined(const wh_geometry_estimate_t &estimate) {
+    bool is_any = false;
+    for (const wh_estimate_value_t &value : estimate.values) {
+        is_any = is_any || value.is_determined;
+    }
+    return is_any;
+}
+
 wh_status_t conclude(touches_t &data, agreed_t &fit, wh_geometry_estimate_t *estimate) {
     size_t missing[WH_GEOMETRY_PARAMETERS];
     size_t lone[WH_GEOMETRY_PARAMETERS];
     for (int k = 0; k < WH_GEOMETRY_PARAMETERS; ++k) {
-        const bool turns = k == theta_zero;
-        estimate->fitted[k] = turns ? std::remainder(fit.model.p[k], full_turn) : fit.model.p[k];
+        const double found = fit.model.p[k];
+        estimate->fitted[k] = k == theta_zero ? std::remainder(found, full_turn) : found;
         estimate->values[k] = {estimate->fitted[k], fit.sd * fit.rows.deviation(k), false};
     }
     judge_values(data, fit, estimate, lone);
@@ -353,19 +375,10 @@ wh_status_t conclude(touches_t &data, agreed_t &fit, wh_geometry_estimate_t *est
     if (status != WH_OK) {
         return status;
     }
-    if (estimate->headings == 0) {
-        missing[yaw_zero] = HEADINGS;
-    } else {
-        missing[yaw_zero] =
-            estimate->values[theta_zero].is_determined ? static_cast<size_t>(MORE) : missing[theta_zero];
-    }
+    missing[yaw_zero] = missing_of_yaw(*estimate, missing);
     store_base(estimate);
     tell_missing(missing, estimate);
-    bool is_any = false;
-    for (const wh_estimate_value_t &value : estimate->values) {
-        is_any = is_any || value.is_determined;
-    }
-    return is_any ? WH_OK : WH_STATUS_NOT_DETERMINED;
+    return is_any_determined(*estimate) ? WH_OK : WH_STATUS_NOT_DETERMINED;
 }
 
 } // namespace

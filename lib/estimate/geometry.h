@@ -18,10 +18,11 @@
  * WH_GEOMETRY_ASIDE_SDS standard deviations, its own pull on the fit counted, is set aside; the others count
  * alike. A direction of the Jacobian counts as not seen if its singular value is below 1e-8 of the largest.
  *
- * A number is determined only if it has no part in such a direction, if its standard deviation is below the
- * limits here, if an error of the touches does not count a hundredfold in it, and if all this holds without
- * any one of the touches: else a single wrong line could not be noticed. Of what is not determined the estimate says which moves are missing. It finds them by trying: the
- * touches that there are, once more with an axis turned or moved, and looks which of them would tell it.
+ * A number is determined only if it has no part in such a direction, if its standard deviation is below
+ * the limits here, if an error of the touches does not count a hundredfold in it, and if all this holds
+ * without any one of the touches: else a single wrong line could not be noticed. Of what is not
+ * determined the estimate says which moves are missing. It finds them by trying: the touches that there
+ * are, once more with an axis turned or moved, and looks which of them would tell it.
  *
  * Scales that are off by more than five standard deviations are refused unless they are fitted, for they
  * would shift all other numbers.

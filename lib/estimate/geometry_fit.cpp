@@ -15,7 +15,7 @@ constexpr int touches_of_a_start = 6;
 constexpr double median_to_sd =
     1 / 1.5382; /* of the lengths of what has a deviation of 1 in three directions */
 
-/* -------------------------------------------------------------------------------------------------- the model */
+/* ---------------------------------------------------------------------------------------------- the model */
 
 static Matrix3d about(int axis, double angle) {
     return Eigen::AngleAxisd(angle, Vector3d::Unit(axis)).toRotationMatrix();
@@ -72,7 +72,7 @@ static jacobian_t jacobian_of(const geometry_t &model, const double axes[WH_ROBO
     return by;
 }
 
-/* ----------------------------------------------------------------------------------------------- least squares */
+/* ------------------------------------------------------------------------------------------ least squares */
 
 void add_touch(geometry_rows_t *rows, const geometry_t &model, const double axes[WH_ROBOT_AXES],
                const Vector3d &rest) {
@@ -116,10 +116,10 @@ geometry_t stepped(const geometry_t &from, const geometry_rows_t::vector_t &step
     return to;
 }
 
-/* ----------------------------------------------------------------------------------------------------- starts */
+/* ------------------------------------------------------------------------------------------------- starts */
 
-/* Of a level column x and y are linear in four pairs of numbers: place, direction times r, direction times the zero of
- * r, and direction times the tool. */
+/* Of a level column x and y are linear in four pairs of numbers: place, direction times r, direction times
+ * the zero of r, and direction times the tool. */
 using level_rows_t = rows_t<8>;
 
 static void add_level(level_rows_t *rows, const wh_touch_t &touch, double weight, double reach) {
@@ -202,10 +202,10 @@ static void draw(touches_t &data, uint32_t start) {
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- robust */
+/* ------------------------------------------------------------------------------------------------- robust */
 
-/* The standard deviation of a coordinate by the median of the residuals' lengths; of few touches that is too small (P. J.
- * Rousseeuw, 1984). */
+/* The standard deviation of a coordinate by the median of the residuals' lengths; of few touches that is
+ * too small (P. J. Rousseeuw, 1984). */
 static double deviation_of(touches_t &data, const geometry_t &model) {
     for (size_t i = 0; i < data.count; ++i) {
         data.sizes[i] = rest_of(model, data.touches[i]).norm();
@@ -260,8 +260,8 @@ Matrix3d pull_of(const geometry_rows_t &rows, const geometry_t &model, const wh_
     return pulls.transpose() * pulls;
 }
 
-/* How far off a touch is, in deviations, less what it pulls the fit towards itself, or more what the fit may be off
- * without it. Directions that it alone tells do not count. */
+/* How far off a touch is, in deviations, less what it pulls the fit towards itself, or more what the fit
+ * may be off without it. Directions that it alone tells do not count. */
 static double distance_of(const touches_t &data, const geometry_rows_t &rows, const geometry_t &model,
                           size_t i) {
     constexpr double alone = 1e-6;

@@ -18,7 +18,8 @@ namespace {
 
 constexpr double heading_misfit = 0.02; /* rad */
 
-/* What the zero of yaw would be by a touch's heading: the tool's x as the turned column sees it, less theta and yaw. */
+/* What the zero of yaw would be by a touch's heading: the tool's x as the turned column sees it, less
+ * theta and yaw. */
 double yaw_zero_of(const double *p, const wh_touch_t &touch) {
     const Matrix3d tilt = tilt_of(p);
     const double x = std::cos(touch.heading);

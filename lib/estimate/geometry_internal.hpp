@@ -1,4 +1,5 @@
-/* Within the geometry: where the model has a touching point, and the search for what comes nearest to the touches. */
+/* Within the geometry: where the model has a touching point, and the search for what comes nearest to the
+ * touches. */
 #ifndef WH_ESTIMATE_GEOMETRY_INTERNAL_HPP
 #define WH_ESTIMATE_GEOMETRY_INTERNAL_HPP
 
@@ -53,20 +54,21 @@ geometry_rows_t rows_of(const touches_t &data, const geometry_t &model);
 double squares_of(const touches_t &data, const geometry_t &model);
 geometry_t stepped(const geometry_t &from, const geometry_rows_t::vector_t &step);
 
-/* The covariance of what the fit says of a touch, where touches have a deviation of 1. Of one that is used, the
- * eigenvalues are what the fit takes over of its error, from 0 to 1; of another one, that is huge where nothing tells. */
+/* The covariance of what the fit says of a touch, where touches have a deviation of 1. Of one that is
+ * used, the eigenvalues are what the fit takes over of its error, from 0 to 1; of another one, that is
+ * huge where nothing tells. */
 Eigen::Matrix3d pull_of(const geometry_rows_t &rows, const geometry_t &model, const wh_touch_t &touch);
 
-/* Sets which touches are used: those that agree with the geometry that most agree with. Returns their number; `sd` is
- * the deviation of a coordinate of one touch. */
+/* Sets which touches are used: those that agree with the geometry that most agree with. Returns their
+ * number; `sd` is the deviation of a coordinate of one touch. */
 size_t fit_agreed(touches_t &data, bool with_scales, geometry_t *model, double *sd);
 
-/* How many deviations a number of normal errors may be off, if its own deviation comes from so few, to be as rare as five
- * where it is known (D. L. Wallace, 1959). */
+/* How many deviations a number of normal errors may be off, if its own deviation comes from so few, to be
+ * as rare as five where it is known (D. L. Wallace, 1959). */
 double rare_of(double freedom);
 
-/* The zero of yaw, from the headings of the touches that are used, and of what else is in `estimate`; it stays as it was if there
- * are too few. */
+/* The zero of yaw, from the headings of the touches that are used, and of what else is in `estimate`; it
+ * stays as it was if there are too few. */
 wh_status_t fit_headings(touches_t &data, wh_geometry_estimate_t *estimate);
 
 } // namespace wh_estimate

@@ -14,7 +14,7 @@ using namespace wh_estimate;
 constexpr double needed_variances = 25;
 constexpr double largest_sd = 0.05;
 
-/* ---------------------------------------------------------------------------------------------- which limits */
+/* ------------------------------------------------------------------------------------------- which limits */
 
 /* Fits of each set of limits to the moves that are used, and the deviation of one time. */
 struct fits_t {
@@ -120,7 +120,7 @@ void fill_in(const data_t &data, const fits_t &fits, wh_limits_estimate_t *estim
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ what is wrong */
+/* ------------------------------------------------------------------------------------------ what is wrong */
 
 /* The moves' indices, the shortest first. */
 void sort_used(const data_t &data, size_t *order) {
@@ -137,7 +137,8 @@ void sort_used(const data_t &data, size_t *order) {
     });
 }
 
-/* True if the residuals of neighbours in distance are alike, as they are where the times follow another law. */
+/* True if the residuals of neighbours in distance are alike, as they are where the times follow another
+ * law. */
 bool is_of_another_law(const data_t &data, const fits_t &fits, const size_t *order) {
     const model_t &all = fits.of[all_limits];
     double products = 0;
@@ -190,7 +191,7 @@ wh_status_t judge(const data_t &data, const fits_t &fits, const size_t *order,
     return WH_OK;
 }
 
-/* ------------------------------------------------------------------------------------------- which are missing */
+/* -------------------------------------------------------------------------------------- which are missing */
 
 /* The shortest distance at which the speed is reached; what rises and falls takes but for the cruise. */
 double reaching_distance(const wh_limits_estimate_t &estimate) {
@@ -230,7 +231,7 @@ void tell_missing(wh_limits_estimate_t *estimate) {
     estimate->reason[length >= 2 ? length - 2 : 0] = '\0';
 }
 
-/* ------------------------------------------------------------------------------------------------- the whole */
+/* ---------------------------------------------------------------------------------------------- the whole */
 
 wh_status_t check(const wh_timed_move_t *moves, size_t count, wh_limits_estimate_t *estimate) {
     if (count > WH_LIMITS_MOST_MOVES) {

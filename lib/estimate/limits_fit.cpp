@@ -27,7 +27,7 @@ static double quantile(data_t &data, size_t count, double part) {
     return data.sizes[place];
 }
 
-/* --------------------------------------------------------------------------------------------------- descent */
+/* ------------------------------------------------------------------------------------------------ descent */
 
 limit_rows_t rows_of(const data_t &data, const model_t &model, double later) {
     constexpr double step = 1e-6;
@@ -84,7 +84,7 @@ double peak_of(const data_t &data, const model_t &model, int limit) {
     return most;
 }
 
-/* ---------------------------------------------------------------------------------------------------- starts */
+/* ------------------------------------------------------------------------------------------------- starts */
 
 constexpr double factors[] = {1.02, 1.2, 1.6, 2.5, 5, 12, 40};
 constexpr int factor_count = sizeof factors / sizeof factors[0];
@@ -139,7 +139,7 @@ void fit_set(const data_t &data, unsigned set, model_t *best) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------------------- robust */
+/* ------------------------------------------------------------------------------------------------- robust */
 
 /* The standard deviation of the residuals by their median. */
 static double deviation_of(data_t &data, const model_t &model) {

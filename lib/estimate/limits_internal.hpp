@@ -49,8 +49,8 @@ double peak_of(const data_t &data, const model_t &model, int limit);
 /* The best fit, with the weights as they are, that has only the limits of a set. */
 void fit_set(const data_t &data, unsigned set, model_t *best);
 
-/* Sets scales, and which moves are used: those that agree with the model of all limits that most agree with. Returns
- * their number; `sd` is the deviation of one time. */
+/* Sets scales, and which moves are used: those that agree with the model of all limits that most agree
+ * with. Returns their number; `sd` is the deviation of one time. */
 size_t fit_agreed(data_t &data, model_t *all, double *sd);
 
 } // namespace wh_estimate

@@ -11,8 +11,9 @@
 namespace wh_estimate {
 
 /* Appends to a reason, which keeps what fits. */
-__attribute__((format(printf, 2, 3))) inline void tell(char reason[WH_ESTIMATE_REASON], const char *format,
-                                                       ...) {
+void tell(char *reason, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+inline void tell(char *reason, const char *format, ...) {
     const size_t length = std::strlen(reason);
     va_list arguments;
     va_start(arguments, format);

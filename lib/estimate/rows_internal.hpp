@@ -1,5 +1,6 @@
-/* Least squares row by row: the equations are turned into a triangle as they come (Givens), so that any number of them
- * takes the same memory and no precision is lost by squaring. The triangle's singular values are those of all rows. */
+/* Least squares row by row: the equations are turned into a triangle as they come (Givens), so that any
+ * number of them takes the same memory and no precision is lost by squaring. The triangle's singular
+ * values are those of all rows. */
 #ifndef WH_ESTIMATE_ROWS_INTERNAL_HPP
 #define WH_ESTIMATE_ROWS_INTERNAL_HPP
 
@@ -34,8 +35,8 @@ template <int N> class rows_t {
         }
     }
 
-    /* To be called once after the last row. Columns are brought to one length first: parameters have different
-     * units. */
+    /* To be called once after the last row. Columns are brought to one length first: parameters have
+     * different units. */
     void solve() {
         for (int k = 0; k < N; ++k) {
             const double length = triangle_.col(k).norm();
@@ -51,7 +52,8 @@ template <int N> class rows_t {
         shares_ = svd.matrixU().transpose() * rests_;
     }
 
-    /* The step of Levenberg and Marquardt; damping 0 is that of Gauss and Newton, without unseen directions. */
+    /* The step of Levenberg and Marquardt; damping 0 is that of Gauss and Newton, without unseen
+     * directions. */
     vector_t step(double damping) const {
         vector_t along = vector_t::Zero();
         for (int k = 0; k < N; ++k) {
@@ -62,7 +64,8 @@ template <int N> class rows_t {
         return (directions_ * along).cwiseQuotient(lengths_);
     }
 
-    /* The standard deviation of a parameter where rows have a deviation of 1; infinite if the rows do not tell it. */
+    /* The standard deviation of a parameter where rows have a deviation of 1; infinite if the rows do not
+     * tell it. */
     double deviation(int parameter) const {
         double square = 0;
         for (int k = 0; k < N; ++k) {
@@ -76,8 +79,9 @@ template <int N> class rows_t {
         return std::sqrt(square) / lengths_(parameter);
     }
 
-    /* What a row takes of each seen direction, by that one's deviation: products of two rows' are the covariances of what
-     * the fit says of them, where rows have a deviation of 1. Unseen directions are left out. */
+    /* What a row takes of each seen direction, by that one's deviation: products of two rows' are the
+     * covariances of what the fit says of them, where rows have a deviation of 1. Unseen directions are
+     * left out. */
     vector_t pull(const vector_t &row) const {
         vector_t along = directions_.transpose() * row.cwiseQuotient(lengths_);
         for (int k = 0; k < N; ++k) {
@@ -123,8 +127,8 @@ template <int N> class rows_t {
     vector_t shares_ = vector_t::Zero();
 };
 
-/* Levenberg and Marquardt's descent, with the weights as they are: `data` and `model` have rows_of, squares_of and
- * stepped beside them, and the model its squares. */
+/* Levenberg and Marquardt's descent, with the weights as they are: `data` and `model` have rows_of,
+ * squares_of and stepped beside them, and the model its squares. */
 template <typename Data, typename Model> void descend(const Data &data, Model *model, int rounds) {
     double damping = 1e-3;
     model->squares = squares_of(data, *model);

@@ -148,6 +148,14 @@ const char *wh_geometry_unit(int number, double *factor) {
     return "mm";
 }
 
+static void put_comment(bool has_at, bool has_rpy, FILE *out) {
+    if (!has_at) {
+        fputs(has_rpy ? " -- at is not determined" : " -- at is not determined, rpy neither", out);
+    } else if (!has_rpy) {
+        fputs(" -- rpy is not determined", out);
+    }
+}
+
 /* The fields of the gripper; a comment where one is not determined. */
 static void put_tool(const wh_geometry_estimate_t *found, FILE *out) {
     const wh_estimate_value_t *x = &found->values[WH_GEOMETRY_TOOL_X];
@@ -166,10 +174,8 @@ static void put_tool(const wh_geometry_estimate_t *found, FILE *out) {
         put_list(out, (const double[]){0, 0, yaw->value * deg}, (const double[]){10, 10, yaw->sd * deg});
         fputc(' ', out);
     }
-    fputs(has_at && yaw->is_determined ? "}," : "}, --", out);
-    fputs(has_at ? "" : " at is not determined", out);
-    fputs(has_at || yaw->is_determined ? "" : ",", out);
-    fputs(yaw->is_determined ? "" : " rpy is not determined", out);
+    fputs("},", out);
+    put_comment(has_at, yaw->is_determined, out);
     fputs("\n},\n", out);
 }
 

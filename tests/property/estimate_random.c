@@ -11,7 +11,7 @@
 #define FRAMES (2000 / WH_TEST_SHARE)
 #define AXES (30 / WH_TEST_SHARE)
 #define MOVES 200
-#define ROBOTS (150 / WH_TEST_SHARE)
+#define ROBOTS (120 / WH_TEST_SHARE)
 
 /* Standard deviations beyond which an estimate is wrong; those of few points have wider tails. */
 #define WRONG 6
@@ -252,6 +252,29 @@ static double off_by(const wh_geometry_estimate_t *found, const double *truth, i
     return (turns ? remainder(off, 6.283185307179586) : off) / found->values[k].sd;
 }
 
+/* Puts the first lines wrong, and measures headings. */
+static void spoil(const double *truth, size_t count, size_t wrong, double sd) {
+    for (size_t i = 0; i < count; ++i) {
+        if (i < wrong) {
+            const int axis = (int)wh_test_below(4);
+            touches[i].axes[axis] += axis == 1 || axis == 2 ? 2 + 200 * sd : 2 * DEG + sd;
+        }
+        touches[i].heading = headed(truth, touches[i].axes) + noise(0.02 * DEG);
+    }
+}
+
+/* Returns how many of the good lines were set aside; of the wrong ones all are that show. */
+static size_t count_aside(const double *truth, size_t count, size_t wrong, double sd) {
+    size_t aside = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const wh_vec3_t there = reached(truth, touches[i].axes);
+        const wh_vec3_t off = wh_vec3_subtract(&there, &touches[i].touched);
+        assert_true(touches[i].is_set_aside || sqrt(wh_vec3_dot(&off, &off)) < 12 * sd);
+        aside += touches[i].is_set_aside && i >= wrong ? 1 : 0;
+    }
+    return aside;
+}
+
 static void robots_lie_within_their_deviations(void **state) {
     (void)state;
     int near = 0;
@@ -266,21 +289,10 @@ static void robots_lie_within_their_deviations(void **state) {
         const double sd = wh_test_decades(1e-3, 0.1);
         random_robot(truth);
         touch_points(truth, count, sd, 15);
-        for (size_t i = 0; i < count; ++i) {
-            if (i < wrong) {
-                const int axis = (int)wh_test_below(4);
-                touches[i].axes[axis] += axis == 1 || axis == 2 ? 2 + 200 * sd : 2 * DEG + sd;
-            }
-            touches[i].heading = headed(truth, touches[i].axes) + noise(0.02 * DEG);
-        }
+        spoil(truth, count, wrong, sd);
         assert_int_equal(wh_geometry_estimate(touches, count, false, &found), WH_OK);
         assert_string_equal(found.reason, "");
-        for (size_t i = 0; i < count; ++i) {
-            const wh_vec3_t there = reached(truth, touches[i].axes);
-            const wh_vec3_t off = wh_vec3_subtract(&there, &touches[i].touched);
-            assert_true(touches[i].is_set_aside || sqrt(wh_vec3_dot(&off, &off)) < 12 * sd);
-            wrongly_aside += touches[i].is_set_aside && i >= wrong ? 1 : 0;
-        }
+        wrongly_aside += count_aside(truth, count, wrong, sd);
         for (int k = 0; k < WH_GEOMETRY_SCALE; ++k) {
             const double off = off_by(&found, truth, k);
             assert_true(found.values[k].is_determined);
@@ -332,6 +344,47 @@ static double inverse_entry(double a[NUMBERS][NUMBERS], const int *list, int cou
     return m[which][count] / m[which][which];
 }
 
+/* The normal equations at a fit: products of derivatives, slopes of the squares, the squares. */
+typedef struct {
+    double products[NUMBERS][NUMBERS], slopes[NUMBERS], squares;
+} normal_t;
+
+static void add_normal(normal_t *normal, const wh_geometry_estimate_t *found, const wh_touch_t *touch) {
+    double by[3][NUMBERS];
+    const wh_vec3_t there = reached(found->fitted, touch->axes);
+    const wh_vec3_t rest = wh_vec3_subtract(&touch->touched, &there);
+    const wh_vec3_t off = wh_geometry_residual(found, touch);
+    assert_near(off.x, rest.x, 1e-9);
+    assert_near(off.y, rest.y, 1e-9);
+    assert_near(off.z, rest.z, 1e-9);
+    differ(found->fitted, touch->axes, by);
+    for (int i = 0; i < NUMBERS && !touch->is_set_aside; ++i) {
+        for (int k = 0; k < NUMBERS; ++k) {
+            normal->products[i][k] += by[0][i] * by[0][k] + by[1][i] * by[1][k] + by[2][i] * by[2][k];
+        }
+        normal->slopes[i] += by[0][i] * rest.x + by[1][i] * rest.y + by[2][i] * rest.z;
+    }
+    normal->squares += touch->is_set_aside ? 0 : wh_vec3_dot(&rest, &rest);
+}
+
+static void judge_robot(const wh_geometry_estimate_t *found, normal_t *normal, const double *truth) {
+    int list[NUMBERS];
+    int count = 0;
+    for (int k = 0; k < (found->has_scales ? NUMBERS : WH_GEOMETRY_SCALE); ++k) {
+        list[count] = k;
+        count += k == WH_GEOMETRY_ZERO + 3 ? 0 : 1;
+    }
+    const double variance = normal->squares / (3 * (double)found->used - count);
+    for (int i = 0; i < count; ++i) {
+        const int k = list[i];
+        const double sd = sqrt(variance * inverse_entry(normal->products, list, count, i));
+        assert_true(found->values[k].is_determined);
+        assert_near(found->values[k].sd / sd, 1, 1e-4);
+        assert_near(off_by(found, truth, k), 0, WRONG);
+        assert_near(normal->slopes[k] / sqrt(normal->products[k][k] * normal->squares), 0, 1e-5);
+    }
+}
+
 /* No other numbers fit better, and deviations are those of the normal equations. */
 static void robots_are_the_best_fit_by_differences(void **state) {
     (void)state;
@@ -339,11 +392,7 @@ static void robots_are_the_best_fit_by_differences(void **state) {
         const bool scales = round % 2 == 1;
         const size_t count = 30 + wh_test_below(60);
         double truth[NUMBERS];
-        double normal[NUMBERS][NUMBERS] = {{0}};
-        double slope[NUMBERS] = {0};
-        double squares = 0;
-        int list[NUMBERS];
-        int free_count = 0;
+        normal_t normal = {.squares = 0};
         wh_geometry_estimate_t found;
         random_robot(truth);
         truth[WH_GEOMETRY_TOOL_X] = 150;
@@ -353,42 +402,38 @@ static void robots_are_the_best_fit_by_differences(void **state) {
         touch_points(truth, count, 0.02, 15);
         assert_int_equal(wh_geometry_estimate(touches, count, scales, &found), WH_OK);
         for (size_t i = 0; i < count; ++i) {
-            double by[3][NUMBERS];
-            const wh_vec3_t there = reached(found.fitted, touches[i].axes);
-            const wh_vec3_t off = wh_geometry_residual(&found, &touches[i]);
-            const double rest[3] = {touches[i].touched.x - there.x, touches[i].touched.y - there.y,
-                                    touches[i].touched.z - there.z};
-            assert_near(off.x, rest[0], 1e-9);
-            assert_near(off.y, rest[1], 1e-9);
-            assert_near(off.z, rest[2], 1e-9);
-            differ(found.fitted, touches[i].axes, by);
-            for (int j = 0; j < 3 * NUMBERS * NUMBERS && !touches[i].is_set_aside; ++j) {
-                normal[j / 3 / NUMBERS][j / 3 % NUMBERS] +=
-                    by[j % 3][j / 3 / NUMBERS] * by[j % 3][j / 3 % NUMBERS];
-            }
-            for (int j = 0; j < 3 * NUMBERS && !touches[i].is_set_aside; ++j) {
-                slope[j / 3] += by[j % 3][j / 3] * rest[j % 3];
-                squares += j < 3 ? rest[j] * rest[j] : 0;
-            }
+            add_normal(&normal, &found, &touches[i]);
         }
-        for (int k = 0; k < (scales ? NUMBERS : WH_GEOMETRY_SCALE); ++k) {
-            list[free_count] = k;
-            free_count += k == WH_GEOMETRY_ZERO + 3 ? 0 : 1;
-        }
-        const double variance = squares / (3 * (double)found.used - free_count);
-        for (int i = 0; i < free_count; ++i) {
-            const int k = list[i];
-            const double sd = sqrt(variance * inverse_entry(normal, list, free_count, i));
-            assert_true(found.values[k].is_determined);
-            assert_near(found.values[k].sd / sd, 1, 1e-4);
-            assert_near(off_by(&found, truth, k), 0, WRONG);
-            assert_near(slope[k] / sqrt(normal[k][k] * squares), 0, 1e-5);
-        }
+        judge_robot(&found, &normal, truth);
     }
 }
 
-/* Touches with all sets of axes varied: what is told is right, and once the moves are made that are said to be missing all is
- * told. */
+/* What a fit to touches with some axes varied must tell, and must not; what it tells is right. */
+static void judge_varied(const wh_geometry_estimate_t *found, const double *truth, unsigned varied) {
+    const bool reaches = (varied & 3) != 0;
+    for (int k = 0; k < NUMBERS; ++k) {
+        if (found->values[k].is_determined) {
+            assert_near(off_by(found, truth, k), 0, WRONG);
+        }
+    }
+    assert_false(found->values[WH_GEOMETRY_ZERO + 3].is_determined);
+    assert_non_null(strstr(found->reason, "zero_yaw"));
+    assert_int_equal(found->values[WH_GEOMETRY_ZERO + 1].is_determined, (varied & 9) == 9);
+    assert_int_equal(found->values[WH_GEOMETRY_TOOL_X].is_determined, (varied & 8) != 0 && reaches);
+    assert_true(reaches || !found->values[WH_GEOMETRY_X].is_determined);
+}
+
+/* The axes that a reason names, as bits. */
+static unsigned named_by(const char *reason) {
+    static const char *const says[4] = {"theta turned", "other r", "other z", "yaw turned"};
+    unsigned named = 0;
+    for (unsigned k = 0; k < 4; ++k) {
+        named |= strstr(reason, says[k]) ? 1U << k : 0;
+    }
+    return named;
+}
+
+/* Touches with all sets of axes varied; once the moves are made that are said to be missing, all is told. */
 static void robots_are_right_or_not_determined(void **state) {
     (void)state;
     for (unsigned round = 0; round < ROBOTS; ++round) {
@@ -401,24 +446,8 @@ static void robots_are_right_or_not_determined(void **state) {
         touch_points(truth, count, sd, varied);
         const wh_status_t status = wh_geometry_estimate(touches, count, false, &found);
         assert_true(status == WH_OK || status == WH_STATUS_NOT_DETERMINED);
-        for (int k = 0; k < NUMBERS; ++k) {
-            if (found.values[k].is_determined) {
-                assert_near(off_by(&found, truth, k), 0, WRONG);
-            }
-        }
-        assert_false(found.values[WH_GEOMETRY_ZERO + 3].is_determined);
-        assert_non_null(strstr(found.reason, "zero_yaw"));
-        /* theta and yaw turned, or theta and r: else no zero of r */
-        assert_int_equal(found.values[WH_GEOMETRY_ZERO + 1].is_determined, (varied & 9) == 9);
-        assert_int_equal(found.values[WH_GEOMETRY_TOOL_X].is_determined,
-                         (varied & 8) != 0 && (varied & 3) != 0);
-        if ((varied & 3) == 0) {
-            assert_false(found.values[WH_GEOMETRY_X].is_determined);
-        }
-        const unsigned named =
-            (strstr(found.reason, "theta turned") ? 1U : 0) | (strstr(found.reason, "other r") ? 2U : 0) |
-            (strstr(found.reason, "other z") ? 4U : 0) | (strstr(found.reason, "yaw turned") ? 8U : 0);
-        touch_points(truth, count, sd, varied | named);
+        judge_varied(&found, truth, varied);
+        touch_points(truth, count, sd, varied | named_by(found.reason));
         for (size_t i = 0; i < count; ++i) {
             touches[i].heading = headed(truth, touches[i].axes);
         }
