@@ -3,12 +3,13 @@
 #include "app.h"
 #include "connection.h"
 #include "run_arguments.h"
+#include "watch.h"
 
 typedef struct {
     wh_run_arguments_t run;
     wh_record_arguments_t record;
     const char *url;
-    bool lcm;
+    bool lcm, watch;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -16,12 +17,16 @@ static const wh_option_t options[] = {
      WH_OPTION_FLAG, .variable = offsetof(arguments_t, lcm)},
     {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --lcm", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, url)},
+    {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
 static void check(const void *given, struct argp_state *state) {
     const arguments_t *arguments = given;
     if (arguments->url && !arguments->lcm) {
         argp_error(state, "--lcm-url: %s (goes with --lcm)", arguments->url);
+    }
+    if (arguments->watch && (arguments->lcm || arguments->record.slices || arguments->record.all)) {
+        argp_error(state, "--watch goes neither with --lcm nor with a recording");
     }
 }
 
@@ -132,6 +137,7 @@ static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
                                         .watch = told.watch,
                                         .expected = told.expected,
                                         .cycle = told.cycle,
+                                        .edge = told.edge,
                                         .finished = told.finished,
                                         .user = told.user};
     const wh_protocol_client_options_t lockstep = {.rate = 0};
@@ -164,16 +170,21 @@ static int run_published(arguments_t *arguments) {
     return wh_recording_close(&broadcast.record) ? status : WH_EXIT_USAGE;
 }
 
+static int play(void *user) {
+    arguments_t *arguments = user;
+    const bool published = arguments->lcm || arguments->run.record;
+    if (!wh_run_files_are_apart(&arguments->run, NULL)) {
+        return WH_EXIT_USAGE;
+    }
+    return published ? run_published(arguments) : wh_run_and_print(&arguments->run);
+}
+
 int wh_app_run(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
     arguments.run.record = wh_record_arguments_path(&arguments.record, &arguments.run.record_option);
-    const bool published = arguments.lcm || arguments.run.record;
-    int status = WH_EXIT_USAGE;
-    if (wh_run_files_are_apart(&arguments.run, NULL)) {
-        status = published ? run_published(&arguments) : wh_run_and_print(&arguments.run);
-    }
+    const int status = arguments.watch ? wh_run_watch(&arguments.run, play, &arguments) : play(&arguments);
     wh_run_arguments_free(&arguments.run);
     return status;
 }

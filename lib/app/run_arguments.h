@@ -51,8 +51,15 @@ bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *inp
  * does not take it. */
 int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record);
 
+/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and
+ * a log. */
+char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log);
+
 /* Runs the script and prints what came of it. Returns the exit status. */
 int wh_run_and_print(wh_run_arguments_t *arguments);
+
+/* wh_watch of a run that `act` makes of `user`. */
+int wh_run_watch(const wh_run_arguments_t *arguments, int (*act)(void *user), void *user);
 
 /* Writes those that are wanted, if any is, from a document that has source, record, signals and notes; the
  * rest is made of the arguments. Each file is there whole or as it was. False, with a line on standard error,
