@@ -25,7 +25,7 @@ static const struct {
     {"events", "print a recording's events, a line of JSON each", wh_app_events},
     {"csv", "print a recording's slices as a table", wh_app_csv},
     {"check", "hold a recording against what a Lua file expects of it", wh_app_check},
-    {"estimate", "fit frames and limits of a layout to measurements", wh_app_estimate},
+    {"estimate", "fit frames, limits and robots to measurements", wh_app_estimate},
     {"new", "make a cell to start from: a layout and a script", wh_app_new},
     {"definitions", "print what layouts and scripts may say, for editors", wh_app_definitions},
 };
