@@ -84,7 +84,7 @@ bool wh_study_open(wh_study_t *study) {
     if (!study->layout || !study->nominal.record.wafers) {
         return refuse(study->run.script, "no cell (expected cell \"LAYOUT.lua\")");
     }
-    if (!study->layout->errors) {
+    if (!study->layout->errors && !study->draws_nothing) {
         return refuse(study->layout->path, "study: nil (expected what is drawn, as study = { placement = { "
                                            "dx = 0.3 } }, here or in the script)");
     }
