@@ -13,7 +13,7 @@
 #include "app.h"
 #include "run_arguments.h"
 
-#define MOST_THREADS 1024
+#define BUDGET_THREADS 1024
 
 typedef struct {
     wh_run_arguments_t run; /* the script, its parameters and limits, and --json */
@@ -29,14 +29,14 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, limit_mm), 0.001, WH_ERRORS_MOST_MM, "a number from 0.001 to 100"},
     {"limit-deg", 0, "DEG", "How far roll, pitch and yaw may be off at most (default 45)", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, limit_deg), 0.001, WH_ERRORS_MOST_DEG, "a number from 0.001 to 45"},
-    {"steps", 0, "N", "Look for failures in at least N steps to the limit (default 100)", WH_OPTION_WHOLE,
+    {"steps", 0, "N", "Look for failures in at least N steps to the limit (default 100; with collisions by what they cost)", WH_OPTION_WHOLE,
      .variable = offsetof(arguments_t, steps), 1, 100000, "a number from 1 to 100000"},
     {"samples", 0, "N", "Try N corners and N points by chance of all errors together (default 256)",
      WH_OPTION_WHOLE, .variable = offsetof(arguments_t, samples), 1, 1000000, "a number from 1 to 1000000"},
     {"seed", 0, "S", "Which ones (default 1)", WH_OPTION_COUNT, .variable = offsetof(arguments_t, seed),
      .expected = "a whole number from 0 to 18446744073709551615"},
     {"threads", 0, "N", "On so many threads (default: one for each processor)", WH_OPTION_WHOLE,
-     .variable = offsetof(arguments_t, threads), 1, MOST_THREADS, "a number from 1 to 1024"},
+     .variable = offsetof(arguments_t, threads), 1, BUDGET_THREADS, "a number from 1 to 1024"},
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, run.json)},
     {"set", 0, "NAME=VALUE",
@@ -91,7 +91,7 @@ static size_t count_threads(const arguments_t *arguments) {
         return 1;
     }
     const int count = CPU_COUNT(&processors);
-    return count < 1 ? 1 : count > MOST_THREADS ? MOST_THREADS : (size_t)count;
+    return count < 1 ? 1 : count > BUDGET_THREADS ? BUDGET_THREADS : (size_t)count;
 }
 
 static int32_t thousandths(double value) {
@@ -185,7 +185,6 @@ static int budget_of(const arguments_t *arguments) {
 int wh_app_budget(int argc, char **argv) {
     arguments_t arguments = {.limit_mm = WH_ERRORS_MOST_MM,
                              .limit_deg = WH_ERRORS_MOST_DEG,
-                             .steps = 100,
                              .samples = 256,
                              .seed = 1};
     wh_options_parse(&command_line, argc, argv, &arguments);

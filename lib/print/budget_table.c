@@ -206,22 +206,30 @@ static uint64_t sum_of(const uint64_t tried[WH_BOX_KINDS]) {
 }
 
 static void print_counts(const table_t *table, const uint64_t tried[WH_BOX_KINDS]) {
-    fprintf(table->frame.out,
-            "%llu corners alike at all stations,\n%llu opposite at every other one, %llu of one station alone, "
-            "%llu others and %llu points inside by chance",
-            (unsigned long long)tried[WH_BOX_ALIKE], (unsigned long long)tried[WH_BOX_OPPOSITE],
-            (unsigned long long)tried[WH_BOX_ALONE], (unsigned long long)tried[WH_BOX_CORNER],
-            (unsigned long long)tried[WH_BOX_INSIDE]);
+    static const char *const texts[WH_BOX_KINDS] = {"corners alike at all stations",
+                                                    "opposite at every other one",
+                                                    "of one station alone",
+                                                    "by chance",
+                                                    "points inside by chance",
+                                                    "corners beside the one that fails first"};
+    bool is_first = true;
+    for (size_t kind = 0; kind < WH_BOX_KINDS; ++kind) {
+        if (tried[kind] > 0) {
+            fprintf(table->frame.out, "%s%llu %s", is_first ? "" : ", ", (unsigned long long)tried[kind],
+                    texts[kind]);
+            is_first = false;
+        }
+    }
 }
 
 static void print_tried(const table_t *table) {
     const wh_budget_box_t *box = &table->budget->box;
     char count[WH_PRINT_NUMBER_SIZE];
-    fprintf(table->frame.out, "\nno counterexample among %s trials of this box, which is no proof: ",
+    fprintf(table->frame.out, "\nno counterexample among %s trials of this box, which is no proof:\n",
             wh_print_count(count, (int64_t)sum_of(box->tried)));
     print_counts(table, box->tried);
     if (sum_of(box->tried_without) > 0) {
-        fputs(";\nbefore that, without collisions, ", table->frame.out);
+        fputs(";\nnot looking for collisions, ", table->frame.out);
         print_counts(table, box->tried_without);
     }
     fputc('\n', table->frame.out);

@@ -116,14 +116,23 @@ static bool is_between(const wh_budget_side_t *side, int32_t value) {
     return side->inside < value && value < side->outside;
 }
 
-/* Narrows down where it fails first, beginning where other searches have found it. */
+/* Begins where another search has found it: it is often the same, or near. */
+static void take_hint(search_t *search, int32_t hint) {
+    wh_budget_side_t *side = search->side;
+    if (is_between(side, hint)) {
+        const bool passes = try(search, hint);
+        const int32_t way = passes ? 1 : -1;
+        for (int32_t step = way; is_between(side, hint + step) && try(search, hint + step) == passes;) {
+            step *= 8;
+        }
+    }
+}
+
+/* Narrows down where it fails first. */
 static void bisect(search_t *search, const int32_t hints[], size_t hint_count) {
     wh_budget_side_t *side = search->side;
-    for (size_t i = 0; i < 2 * hint_count; ++i) {
-        const int32_t value = hints[i / 2] - (int32_t)(i % 2);
-        if (is_between(side, value)) {
-            (void)try(search, value);
-        }
+    for (size_t i = 0; i < hint_count; ++i) {
+        take_hint(search, hints[i]);
     }
     while (side->outside - side->inside > 1) {
         (void)try(search, side->inside + (side->outside - side->inside) / 2);
@@ -147,13 +156,39 @@ static bool go_outwards(search_t *search, const pace_t *pace, int32_t most) {
     return passes;
 }
 
+/* With collisions a trial takes long: about so many seconds for a slice. */
+#define SLICE_S 2e-6
+
+/* So many seconds all searches may spend outwards, and so many trials each does at least and at most. */
+#define OUTWARDS_S 60
+#define OUTWARDS_LEAST 8
+#define OUTWARDS_MOST 100
+
+/* Each step is a fifth of the way so far, until there are `steps` to the end. */
+static pace_t dense_pace(uint64_t steps, int32_t most) {
+    const int32_t longest = (int32_t)((uint64_t)most / steps);
+    return (pace_t){WH_BUDGET_UNIT / 100, longest > 1 ? longest : 1, 0.2};
+}
+
+/* Fewer and longer steps: the number of slices says how many, so that it is the same on every machine. */
+static pace_t sparse_pace(const wh_budget_t *budget, int32_t most) {
+    const double slices = (double)budget->study->nominal.record.slices;
+    const double searches = 2.0 * WH_SPREADS * (double)budget->study->layout->station_count;
+    double trials = OUTWARDS_S / (SLICE_S * slices * searches + 1e-9);
+    trials = trials < OUTWARDS_LEAST ? OUTWARDS_LEAST : trials > OUTWARDS_MOST ? OUTWARDS_MOST : trials;
+    pace_t pace = dense_pace((uint64_t)trials / 3, most);
+    pace.first = WH_BUDGET_UNIT / 10;
+    pace.step = 10 / trials;
+    return pace;
+}
+
 /* One direction of an error: first without collisions, where that decides, for it costs little. */
 static void search_side(const wh_budget_t *budget, search_t *search, int32_t most, const int32_t hints[],
                         size_t hint_count) {
     wh_budget_side_t *side = search->side;
-    const int32_t longest = most / (int32_t)budget->options.steps;
-    const pace_t dense = {WH_BUDGET_UNIT / 100, longest > 1 ? longest : 1, 0.2};
-    const pace_t sparse = {WH_BUDGET_UNIT / 20, 5 * dense.longest, 0.5};
+    const uint64_t steps = budget->options.steps;
+    const pace_t dense = dense_pace(steps > 0 ? steps : 100, most);
+    const pace_t sparse = steps > 0 ? dense : sparse_pace(budget, most);
     const bool costly = budget->study->layout->collision;
     search->level = budget->two_ways ? WH_BUDGET_WITHOUT : WH_BUDGET_WITH;
     if (!go_outwards(search, costly && !budget->two_ways ? &sparse : &dense, most)) {

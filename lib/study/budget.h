@@ -22,7 +22,7 @@
 typedef struct {
     size_t threads;     /* at least 1 */
     int32_t most[2];    /* how far errors grow: mm and degrees, in thousandths, at least 1 */
-    uint64_t steps;     /* at least so many steps to there, once they do not grow any more */
+    uint64_t steps;     /* at least so many steps to there; 0: 100, or with collisions by what they cost */
     uint64_t samples;   /* of the box, of each random kind */
     uint64_t seed;      /* of these */
     const bool *wanted; /* of each station: its errors are looked for; null: all stations' */
@@ -64,9 +64,17 @@ typedef struct {
 } wh_budget_station_t;
 
 /* The kinds of points of the box that are tried: corners that are alike at all stations; that are opposite
- * at every other one; of one station alone; of all by chance; and points inside, by chance. */
-typedef enum { WH_BOX_ALIKE, WH_BOX_OPPOSITE, WH_BOX_ALONE, WH_BOX_CORNER, WH_BOX_INSIDE } wh_box_kind_t;
-#define WH_BOX_KINDS 5
+ * at every other one; of one station alone; of all by chance; points inside, by chance; and corners beside the
+ * one beyond which it fails: one error turned over, or, where collisions are not looked for, two. */
+typedef enum {
+    WH_BOX_ALIKE,
+    WH_BOX_OPPOSITE,
+    WH_BOX_ALONE,
+    WH_BOX_CORNER,
+    WH_BOX_INSIDE,
+    WH_BOX_BESIDE
+} wh_box_kind_t;
+#define WH_BOX_KINDS 6
 
 /* Of points there is a number for each error of each station, in a row: WH_SPREADS * station_count. */
 typedef struct {

@@ -7,8 +7,10 @@
 #include "../text/array.h"
 #include "budget_internal.h"
 
-/* So many points are tried at a time, by all threads: the result does not depend on how many there are. */
+/* So many points are tried at a time, by all threads: the result does not depend on how many there are. With
+ * collisions it is fewer, for those behind one that fails are tried again. */
 #define BATCH 64
+#define BATCH_WITH 8
 
 /* How many corners one station has. */
 #define CORNERS (1U << WH_SPREADS)
@@ -17,7 +19,7 @@
 #define PLACES 8
 
 /* With collisions there is one for so many samples. */
-#define SAMPLES_WITH 8
+#define SAMPLES_WITH 16
 
 typedef struct {
     wh_budget_crew_t *crew;
@@ -28,6 +30,7 @@ typedef struct {
     size_t *order;              /* of each station among those that are looked at */
     size_t wanted;              /* so many are */
     const int32_t **width;      /* of each error; null: not looked at */
+    int8_t *signs;              /* of the corner that failed last */
     wh_budget_level_t level;    /* of the list that is tried */
     /* A batch. */
     size_t first;
@@ -71,6 +74,7 @@ static int32_t clip(int32_t value, int32_t most) {
 static size_t count_of(const boxing_t *boxing, wh_box_kind_t kind) {
     const bool with = boxing->level == WH_BUDGET_WITH && boxing->budget->study->layout->collision;
     const uint64_t samples = boxing->budget->options.samples;
+    const size_t errors = WH_SPREADS * boxing->wanted;
     switch (kind) {
     case WH_BOX_ALIKE:
         return CORNERS;
@@ -78,6 +82,8 @@ static size_t count_of(const boxing_t *boxing, wh_box_kind_t kind) {
         return boxing->wanted > 1 ? CORNERS : 0;
     case WH_BOX_ALONE:
         return boxing->wanted > 1 && !with ? CORNERS * boxing->wanted : 0;
+    case WH_BOX_BESIDE:
+        return !boxing->box->outside ? 0 : with ? errors : errors * (errors + 1) / 2;
     case WH_BOX_CORNER:
     case WH_BOX_INSIDE:
     default:
@@ -109,6 +115,28 @@ static int32_t corner_of(size_t pattern, size_t axis, int32_t half) {
     return (pattern >> axis & 1U) != 0 ? half : -half;
 }
 
+/* Of all pairs one, which may be twice the same: number `index` is `one` and `other`, at most `one`. */
+static void find_pair(size_t index, size_t *one, size_t *other) {
+    *one = 0;
+    while (index > *one) {
+        index -= ++*one;
+    }
+    *other = index;
+}
+
+/* The corner that failed last, with one error turned over for each of the first numbers, then with two. */
+static int32_t beside(const boxing_t *boxing, size_t index, size_t i, int32_t half) {
+    const size_t errors = WH_SPREADS * boxing->wanted;
+    const size_t number = boxing->order[i / WH_SPREADS] * WH_SPREADS + i % WH_SPREADS;
+    size_t one = index;
+    size_t other = index;
+    if (index >= errors) {
+        find_pair(index - errors, &one, &other);
+        ++one;
+    }
+    return (number == one || number == other ? -1 : 1) * boxing->signs[i] * half;
+}
+
 static int32_t coordinate(const boxing_t *boxing, wh_box_kind_t kind, size_t index, size_t i) {
     const int32_t half = boxing->box->half[i];
     const size_t axis = i % WH_SPREADS;
@@ -122,6 +150,8 @@ static int32_t coordinate(const boxing_t *boxing, wh_box_kind_t kind, size_t ind
         return place == index / CORNERS ? corner_of(index % CORNERS, axis, half) : 0;
     case WH_BOX_CORNER:
         return draw(boxing, kind, index, i) >> 31 != 0 ? half : -half;
+    case WH_BOX_BESIDE:
+        return boxing->order[i / WH_SPREADS] == SIZE_MAX ? 0 : beside(boxing, index, i, half);
     case WH_BOX_INSIDE:
     default:
         return (int32_t)((2 * (uint64_t)half + 1) * draw(boxing, kind, index, i) >> 32) - half;
@@ -173,6 +203,13 @@ static void go_back(boxing_t *boxing, int32_t end[]) {
     free(point);
 }
 
+static void note_corner(boxing_t *boxing) {
+    for (size_t i = 0; i < boxing->size; ++i) {
+        const int32_t value = boxing->box->outside[i];
+        boxing->signs[i] = (int8_t)(value > 0 ? 1 : value < 0 ? -1 : boxing->signs[i]);
+    }
+}
+
 /* Shrinks the box until a point that fails is outside, and the point of the box next to it passes: these are
  * its witnesses. */
 static void shrink(boxing_t *boxing, const int32_t failing[]) {
@@ -184,6 +221,7 @@ static void shrink(boxing_t *boxing, const int32_t failing[]) {
     do {
         memcpy(box->outside, box->inside, bytes);
         go_back(boxing, box->outside);
+        note_corner(boxing);
         set_share(boxing, share_of(boxing, box->outside) - 1);
         for (size_t i = 0; i < boxing->size; ++i) {
             box->inside[i] = clip(box->outside[i], box->half[i]);
@@ -204,22 +242,24 @@ static void try_point(wh_budget_player_t *player, void *user, size_t index) {
  * `*clean` becomes false if one failed. */
 static bool try_list(boxing_t *boxing, wh_budget_level_t level, bool *clean) {
     int32_t *ignored = wh_array_new(boxing->size, sizeof *ignored);
+    const bool costly = level == WH_BUDGET_WITH && boxing->budget->study->layout->collision;
+    const size_t batch = costly ? BATCH_WITH : BATCH;
     boxing->level = level;
     boxing->first = 0;
     while (boxing->box->share > 0 && make_point(boxing, boxing->first, ignored)) {
-        if (!wh_budget_share_out(boxing->crew, BATCH, try_point, boxing, NULL)) {
+        if (!wh_budget_share_out(boxing->crew, batch, try_point, boxing, NULL)) {
             free(ignored);
             return false;
         }
         size_t failed = 0;
-        while (failed < BATCH && boxing->passes[failed]) {
+        while (failed < batch && boxing->passes[failed]) {
             ++failed;
         }
-        if (failed < BATCH) {
+        if (failed < batch) {
             shrink(boxing, boxing->points + failed * boxing->size);
             *clean = false;
         }
-        boxing->first += failed < BATCH ? failed + 1 : BATCH;
+        boxing->first += failed < batch ? failed + 1 : batch;
     }
     free(ignored);
     return true;
@@ -320,6 +360,8 @@ static void open(boxing_t *boxing) {
     boxing->size = WH_SPREADS * stations;
     boxing->order = wh_array_new(stations, sizeof *boxing->order);
     boxing->width = wh_array_new(boxing->size, sizeof *boxing->width);
+    boxing->signs = wh_array_new(boxing->size, sizeof *boxing->signs);
+    memset(boxing->signs, 1, boxing->size * sizeof *boxing->signs);
     boxing->points = wh_array_new(BATCH * boxing->size, sizeof *boxing->points);
     boxing->box->half = wh_array_new(boxing->size, sizeof *boxing->box->half);
     for (size_t s = 0; s < stations; ++s) {
@@ -352,6 +394,7 @@ bool wh_budget_find_box(wh_budget_crew_t *crew) {
     }
     free(boxing.order);
     free(boxing.width);
+    free(boxing.signs);
     free(boxing.points);
     return found;
 }
