@@ -212,12 +212,12 @@ static void print_counts(const table_t *table, const uint64_t tried[WH_BOX_KINDS
                                                     "by chance",
                                                     "points inside by chance",
                                                     "corners beside the one that fails first"};
-    bool is_first = true;
+    size_t told = 0;
     for (size_t kind = 0; kind < WH_BOX_KINDS; ++kind) {
         if (tried[kind] > 0) {
-            fprintf(table->frame.out, "%s%llu %s", is_first ? "" : ", ", (unsigned long long)tried[kind],
-                    texts[kind]);
-            is_first = false;
+            fprintf(table->frame.out, "%s%llu %s", told == 0 ? "" : told == 3 ? ",\n" : ", ",
+                    (unsigned long long)tried[kind], texts[kind]);
+            ++told;
         }
     }
 }
