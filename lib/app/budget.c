@@ -29,8 +29,9 @@ static const wh_option_t options[] = {
      .variable = offsetof(arguments_t, limit_mm), 0.001, WH_ERRORS_MOST_MM, "a number from 0.001 to 100"},
     {"limit-deg", 0, "DEG", "How far roll, pitch and yaw may be off at most (default 45)", WH_OPTION_REAL,
      .variable = offsetof(arguments_t, limit_deg), 0.001, WH_ERRORS_MOST_DEG, "a number from 0.001 to 45"},
-    {"steps", 0, "N", "Look for failures in at least N steps to the limit (default 100; with collisions by what they cost)", WH_OPTION_WHOLE,
-     .variable = offsetof(arguments_t, steps), 1, 100000, "a number from 1 to 100000"},
+    {"steps", 0, "N",
+     "Look for failures in at least N steps to the limit (default 100; with collisions by what they cost)",
+     WH_OPTION_WHOLE, .variable = offsetof(arguments_t, steps), 1, 100000, "a number from 1 to 100000"},
     {"samples", 0, "N", "Try N corners and N points by chance of all errors together (default 256)",
      WH_OPTION_WHOLE, .variable = offsetof(arguments_t, samples), 1, 1000000, "a number from 1 to 1000000"},
     {"seed", 0, "S", "Which ones (default 1)", WH_OPTION_COUNT, .variable = offsetof(arguments_t, seed),
@@ -115,15 +116,15 @@ static bool choose_stations(const arguments_t *arguments, const wh_layout_t *lay
 static int find(const arguments_t *arguments, const wh_study_t *study, const bool wanted[]) {
     FILE *terminal = isatty(STDERR_FILENO) == 1 ? wh_guard_terminal() : NULL;
     const wh_style_t style = wh_style_of(stdout);
-    const wh_budget_options_t how = {.threads = count_threads(arguments),
-                                     .most = {thousandths(arguments->limit_mm),
-                                              thousandths(arguments->limit_deg)},
-                                     .steps = arguments->steps,
-                                     .samples = arguments->samples,
-                                     .seed = arguments->seed,
-                                     .wanted = arguments->stations.count > 0 ? wanted : NULL,
-                                     .tell = terminal ? tell : NULL,
-                                     .user = terminal};
+    const wh_budget_options_t how = {
+        .threads = count_threads(arguments),
+        .most = {thousandths(arguments->limit_mm), thousandths(arguments->limit_deg)},
+        .steps = arguments->steps,
+        .samples = arguments->samples,
+        .seed = arguments->seed,
+        .wanted = arguments->stations.count > 0 ? wanted : NULL,
+        .tell = terminal ? tell : NULL,
+        .user = terminal};
     wh_budget_t budget;
     int status = WH_EXIT_USAGE;
     const bool found = wh_budget_find(&budget, study, &how);
@@ -183,10 +184,8 @@ static int budget_of(const arguments_t *arguments) {
 }
 
 int wh_app_budget(int argc, char **argv) {
-    arguments_t arguments = {.limit_mm = WH_ERRORS_MOST_MM,
-                             .limit_deg = WH_ERRORS_MOST_DEG,
-                             .samples = 256,
-                             .seed = 1};
+    arguments_t arguments = {
+        .limit_mm = WH_ERRORS_MOST_MM, .limit_deg = WH_ERRORS_MOST_DEG, .samples = 256, .seed = 1};
     wh_options_parse(&command_line, argc, argv, &arguments);
     wh_run_arguments_take(&arguments.run);
     const wh_named_file_t named[] = {{"the script", arguments.run.run.script, false}};

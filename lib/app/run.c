@@ -18,7 +18,8 @@ static const wh_option_t options[] = {
     {"lcm-url", 0, "URL", "Where LCM is (default " WH_NODE_URL "); goes with --lcm", WH_OPTION_TEXT,
      .variable = offsetof(arguments_t, url)},
     {"error", 0, "NAME.FIELD=VALUE",
-     "Play in a cell that is off by this, such as A.x=0.12: a station's x, y, z, roll, pitch, yaw, a wafer's dx, "
+     "Play in a cell that is off by this, such as A.x=0.12: a station's x, y, z, roll, pitch, yaw, a wafer's "
+     "dx, "
      "dy, dz, tilt_x, tilt_y, turn, a gripper's valve, or vacuum; may be given again",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, errors)},
     {0}};

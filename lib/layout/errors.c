@@ -25,7 +25,8 @@ static void read_spreads(wh_reader_t *reader, const char *const names[], wh_spre
     for (size_t i = 0; names[i]; ++i) {
         wh_spread_t *spread = &spreads->of[i];
         spread->shape = read_shape(reader, spread->shape);
-        spread->width = wh_reader_number(reader, names[i], spread->width, 0, i < 3 ? WH_ERRORS_MOST_MM : WH_ERRORS_MOST_DEG);
+        spread->width = wh_reader_number(reader, names[i], spread->width, 0,
+                                         i < 3 ? WH_ERRORS_MOST_MM : WH_ERRORS_MOST_DEG);
     }
 }
 

@@ -75,7 +75,8 @@ static void give_part(lua_State *L, const given_t *given, wh_displacement_t *all
                       size_t axis) {
     const double most = axis < 3 ? WH_ERRORS_MOST_MM : WH_ERRORS_MOST_DEG;
     if (index == WH_NONE) {
-        refuse(L, given, "nothing of the layout has that name (expected a station's, a wafer's, a gripper's)");
+        refuse(L, given,
+               "nothing of the layout has that name (expected a station's, a wafer's, a gripper's)");
     }
     check_range(L, given, -most, most, axis < 3 ? "mm" : "degrees");
     *wh_displacement_part(&all[index], axis) = (wh_real_t)given->value;
@@ -105,9 +106,10 @@ static void give(lua_State *L, const wh_layout_t *layout, given_t *given, wh_giv
         check_range(L, given, 0, WH_ERRORS_MOST_S, "s");
         to->vacuum = (wh_real_t)given->value;
     } else {
-        refuse(L, given,
-               "no such error (expected of a station x, y, z, roll, pitch, yaw, of a wafer dx, dy, dz, tilt_x, "
-               "tilt_y, turn, of a gripper valve, or vacuum)");
+        refuse(
+            L, given,
+            "no such error (expected of a station x, y, z, roll, pitch, yaw, of a wafer dx, dy, dz, tilt_x, "
+            "tilt_y, turn, of a gripper valve, or vacuum)");
     }
 }
 

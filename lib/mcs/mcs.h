@@ -161,7 +161,7 @@ struct wh_mcs {
     size_t kept_fault_count, kept_fault_capacity;
 
     wh_local_cell_t local;
-    const wh_trial_t *trial; /* of a study, whose errors the cell then has; null: as its layout says */
+    const wh_trial_t *trial;   /* of a study, whose errors the cell then has; null: as its layout says */
     const char *const *errors; /* in a trial: what it has in place of what it would draw, if there are any */
     size_t error_count;
     bool without_collisions; /* nobody looks for them, whatever the layout says */

@@ -91,11 +91,10 @@ static json_t *witness_of(const wh_budget_t *budget, const int32_t *point) {
 }
 
 static json_t *counts_of(const uint64_t tried[WH_BOX_KINDS]) {
-    return wh_json_set(json_object(), "alike %lld opposite %lld alone %lld corner %lld inside %lld beside %lld",
-                       (json_int_t)tried[WH_BOX_ALIKE], (json_int_t)tried[WH_BOX_OPPOSITE],
-                       (json_int_t)tried[WH_BOX_ALONE], (json_int_t)tried[WH_BOX_CORNER],
-                       (json_int_t)tried[WH_BOX_INSIDE],
-                       (json_int_t)tried[WH_BOX_BESIDE]);
+    return wh_json_set(
+        json_object(), "alike %lld opposite %lld alone %lld corner %lld inside %lld beside %lld",
+        (json_int_t)tried[WH_BOX_ALIKE], (json_int_t)tried[WH_BOX_OPPOSITE], (json_int_t)tried[WH_BOX_ALONE],
+        (json_int_t)tried[WH_BOX_CORNER], (json_int_t)tried[WH_BOX_INSIDE], (json_int_t)tried[WH_BOX_BESIDE]);
 }
 
 static json_t *all_of(const wh_budget_t *budget) {

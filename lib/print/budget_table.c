@@ -192,7 +192,8 @@ static void print_half(const table_t *table) {
             wh_grid_number(grid, 1 + axis, WH_INK_PLAIN, number_of(budget->box.half[s * WH_SPREADS + axis]));
         }
     }
-    (void)snprintf(title, sizeof title, "All errors together: each up to %.1f %% of its own width, up or down",
+    (void)snprintf(title, sizeof title,
+                   "All errors together: each up to %.1f %% of its own width, up or down",
                    budget->box.whole > 0 ? 100.0 * (double)budget->box.share / (double)budget->box.whole : 0);
     wh_print_titled(&table->frame, title, grid);
 }
@@ -206,16 +207,17 @@ static uint64_t sum_of(const uint64_t tried[WH_BOX_KINDS]) {
 }
 
 static void print_counts(const table_t *table, const uint64_t tried[WH_BOX_KINDS]) {
-    static const char *const texts[WH_BOX_KINDS] = {"corners alike at all stations",
-                                                    "opposite at every other one",
-                                                    "of one station alone",
-                                                    "by chance",
-                                                    "points inside by chance",
-                                                    "corners beside the one that fails first"};
+    static const char *const texts[WH_BOX_KINDS] = {
+        "corners alike at all stations", "opposite at every other one",
+        "of one station alone",          "by chance",
+        "points inside by chance",       "corners beside the one that fails first"};
     size_t told = 0;
     for (size_t kind = 0; kind < WH_BOX_KINDS; ++kind) {
         if (tried[kind] > 0) {
-            fprintf(table->frame.out, "%s%llu %s", told == 0 ? "" : told == 3 ? ",\n" : ", ",
+            fprintf(table->frame.out, "%s%llu %s",
+                    told == 0   ? ""
+                    : told == 3 ? ",\n"
+                                : ", ",
                     (unsigned long long)tried[kind], texts[kind]);
             ++told;
         }

@@ -50,8 +50,7 @@ static void *work_off(void *user) {
 
 bool wh_budget_share_out(wh_budget_crew_t *crew, size_t count, wh_budget_work_t *work, void *user,
                          const char *what) {
-    queue_t queue = {
-        .crew = crew, .count = count, .work = work, .user = user, .what = what};
+    queue_t queue = {.crew = crew, .count = count, .work = work, .user = user, .what = what};
     const size_t most = crew->budget->options.threads;
     const size_t wanted = count < most ? count : most;
     hand_t *hands = wh_array_new(wanted + 1, sizeof *hands);
@@ -209,9 +208,9 @@ static void search_side(const wh_budget_t *budget, search_t *search, int32_t mos
 /* All errors, one by one: number `index` is error index % WH_SPREADS of a station. */
 typedef struct {
     wh_budget_t *budget;
-    const size_t *stations; /* which */
+    const size_t *stations;           /* which */
     const wh_budget_station_t *model; /* a station that may be like these; null: none yet */
-    bool *sound; /* of each error: its witnesses do what was found */
+    bool *sound;                      /* of each error: its witnesses do what was found */
 } errors_t;
 
 /* Plays what was found once more, by the script itself. */
@@ -251,8 +250,8 @@ static void search_error(wh_budget_player_t *player, void *user, size_t index) {
         error->has_effect = error->has_effect || search.differs;
         errors->sound[index] = errors->sound[index] && confirm(budget, &search);
     }
-    error->width = error->sides[0].inside < error->sides[1].inside ? error->sides[0].inside
-                                                                   : error->sides[1].inside;
+    error->width =
+        error->sides[0].inside < error->sides[1].inside ? error->sides[0].inside : error->sides[1].inside;
 }
 
 static bool tell_unsound(const wh_budget_t *budget, const errors_t *errors, size_t count) {
@@ -274,8 +273,7 @@ static bool find_errors(wh_budget_crew_t *crew, const size_t stations[], size_t 
     wh_budget_t *budget = crew->budget;
     bool *sound = wh_array_new(WH_SPREADS * (count + 1), sizeof *sound);
     bool done = true;
-    for (size_t begin = 0, end = count > 0 ? 1 : 0; done && begin < end;
-         begin = end, end = count) {
+    for (size_t begin = 0, end = count > 0 ? 1 : 0; done && begin < end; begin = end, end = count) {
         errors_t errors = {budget, stations + begin, begin > 0 ? &budget->stations[stations[0]] : NULL,
                            sound};
         done = wh_budget_share_out(crew, WH_SPREADS * (end - begin), search_error, &errors,

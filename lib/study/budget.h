@@ -43,9 +43,9 @@ typedef struct {
 
 /* An error in one direction, as its magnitude. */
 typedef struct {
-    int32_t inside;      /* passes, and so did all that was tried below it */
-    int32_t outside;     /* fails: inside + 1. 0: nothing failed up to the most */
-    int32_t widest;      /* the largest step between two trials from 0 to `inside` */
+    int32_t inside;  /* passes, and so did all that was tried below it */
+    int32_t outside; /* fails: inside + 1. 0: nothing failed up to the most */
+    int32_t widest;  /* the largest step between two trials from 0 to `inside` */
     uint32_t trials;
     wh_budget_why_t why; /* `outside` fails */
 } wh_budget_side_t;
@@ -78,11 +78,11 @@ typedef enum {
 
 /* Of points there is a number for each error of each station, in a row: WH_SPREADS * station_count. */
 typedef struct {
-    int64_t share, whole;          /* each error may have share/whole of its width */
-    int32_t *half;                 /* so far up and down, rounded down */
-    int32_t *inside, *outside;     /* passes in the box; fails, one thousandth beyond it. Null: none fails */
-    wh_budget_why_t why;           /* `outside` fails */
-    uint64_t tried[WH_BOX_KINDS];  /* points of the box that were tried in the end */
+    int64_t share, whole;         /* each error may have share/whole of its width */
+    int32_t *half;                /* so far up and down, rounded down */
+    int32_t *inside, *outside;    /* passes in the box; fails, one thousandth beyond it. Null: none fails */
+    wh_budget_why_t why;          /* `outside` fails */
+    uint64_t tried[WH_BOX_KINDS]; /* points of the box that were tried in the end */
     uint64_t tried_without[WH_BOX_KINDS]; /* and before, collisions aside, where these take long */
 } wh_budget_box_t;
 
@@ -91,10 +91,10 @@ typedef struct {
     wh_budget_options_t options;
     wh_budget_station_t *stations; /* the layout's */
     wh_budget_box_t box;
-    bool two_ways;       /* trials without collisions first, then with them */
-    uint64_t trials;     /* all in all */
-    int32_t tightest;    /* the station that allows least: see wh_budget_tightness; WH_NONE: nothing failed */
-    int32_t next;        /* the station that allows least but for it and those like it; or WH_NONE */
+    bool two_ways;    /* trials without collisions first, then with them */
+    uint64_t trials;  /* all in all */
+    int32_t tightest; /* the station that allows least: see wh_budget_tightness; WH_NONE: nothing failed */
+    int32_t next;     /* the station that allows least but for it and those like it; or WH_NONE */
 } wh_budget_t;
 
 /* Finds the budget of an opened study whose run without errors is ok. To be freed. False, with the reason on

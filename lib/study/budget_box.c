@@ -234,8 +234,8 @@ static void shrink(boxing_t *boxing, const int32_t failing[]) {
 static void try_point(wh_budget_player_t *player, void *user, size_t index) {
     boxing_t *boxing = user;
     int32_t *point = boxing->points + index * boxing->size;
-    boxing->passes[index] = !make_point(boxing, boxing->first + index, point) ||
-                            wh_budget_passes(player, point, boxing->level);
+    boxing->passes[index] =
+        !make_point(boxing, boxing->first + index, point) || wh_budget_passes(player, point, boxing->level);
 }
 
 /* Tries all points of the level's list, each in the box as it then is. False if there are no threads;
@@ -337,9 +337,10 @@ static bool confirm(boxing_t *boxing) {
                           !wh_budget_run(boxing->player, box->outside, &box->why))) {
         return true;
     }
-    fputs("waferhand budget: all errors together: the script alone does not end as its trials did (expected a "
-          "script that does the same each time)\n",
-          stderr);
+    fputs(
+        "waferhand budget: all errors together: the script alone does not end as its trials did (expected a "
+        "script that does the same each time)\n",
+        stderr);
     return false;
 }
 
@@ -376,10 +377,8 @@ static void open(boxing_t *boxing) {
 }
 
 bool wh_budget_find_box(wh_budget_crew_t *crew) {
-    boxing_t boxing = {.crew = crew,
-                       .budget = crew->budget,
-                       .box = &crew->budget->box,
-                       .player = &crew->players[0]};
+    boxing_t boxing = {
+        .crew = crew, .budget = crew->budget, .box = &crew->budget->box, .player = &crew->players[0]};
     open(&boxing);
     bool found = true;
     if (boxing.box->whole > 0) {

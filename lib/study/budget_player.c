@@ -121,8 +121,7 @@ static bool passes_at(wh_budget_player_t *player, const int32_t point[], wh_budg
 }
 
 bool wh_budget_passes(wh_budget_player_t *player, const int32_t point[], wh_budget_level_t level) {
-    return (!player->two_ways || level == WH_BUDGET_WITHOUT ||
-            passes_at(player, point, WH_BUDGET_WITHOUT)) &&
+    return (!player->two_ways || level == WH_BUDGET_WITHOUT || passes_at(player, point, WH_BUDGET_WITHOUT)) &&
            passes_at(player, point, level);
 }
 

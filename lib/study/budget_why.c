@@ -62,7 +62,8 @@ static bool explain_error(const wh_record_t *record, wh_budget_why_t *why) {
     why->line = command->line;
     (void)snprintf(why->name, sizeof why->name, "%s", wh_status_name(command->error));
     (void)snprintf(why->command, sizeof why->command, "%.99s", command->text);
-    (void)snprintf(why->text, sizeof why->text, "%.399s", miss[0] ? miss : wh_record_error_text(command->error));
+    (void)snprintf(why->text, sizeof why->text, "%.399s",
+                   miss[0] ? miss : wh_record_error_text(command->error));
     return true;
 }
 

@@ -145,8 +145,7 @@ static void closed_forms_of_one_station(void **state) {
 
 /* ------------------------------------------------------------------------------------------- plain search */
 
-static const char transfer[] =
-    "get('A', 1) put('B 2', 1)\nexpect_offset('W', 'B 2', 1, 0, 0, limit)\n";
+static const char transfer[] = "get('A', 1) put('B 2', 1)\nexpect_offset('W', 'B 2', 1, 0, 0, limit)\n";
 
 static void what_passes_is_what_a_grid_finds(void **state) {
     (void)state;
@@ -160,7 +159,8 @@ static void what_passes_is_what_a_grid_finds(void **state) {
             const wh_budget_side_t *side = &error->sides[way];
             const int32_t sign = way == 0 ? -1 : 1;
             for (int32_t i = 0; i <= GRID; ++i) {
-                assert_true(one_passes(cell, station, axis, sign * (int32_t)((int64_t)side->inside * i / GRID)));
+                assert_true(
+                    one_passes(cell, station, axis, sign * (int32_t)((int64_t)side->inside * i / GRID)));
             }
             assert_true(side->outside == 0 || !one_passes(cell, station, axis, sign * side->outside));
             assert_in_range(error->width, 0, side->inside);
@@ -217,7 +217,8 @@ static void two_stations_share_a_limit(void **state) {
         }
     }
     /* Along x alone both may have a half, so the box is no larger than that. */
-    assert_in_range(cell->budget.box.half[0] + cell->budget.box.half[WH_SPREADS], 1, (int32_t)(1000 * limit) + 1);
+    assert_in_range(cell->budget.box.half[0] + cell->budget.box.half[WH_SPREADS], 1,
+                    (int32_t)(1000 * limit) + 1);
     close_cell(cell);
 }
 
@@ -231,11 +232,11 @@ static void what_passes_behind_a_hole_is_not_safe(void **state) {
         const double begins = wh_test_uniform(0.2, 0.8);
         const double ends = 1.3 * begins;
         (void)snprintf(lines, sizeof lines,
-                 "get('A', 1) put('B 2', 1)\n"
-                 "local dx, dy = offset('W', 'B 2', 1)\n"
-                 "local off = math.sqrt(dx * dx + dy * dy)\n"
-                 "expect(off < %.17g or off > %.17g)\nexpect(limit > 0)\n",
-                 begins, ends);
+                       "get('A', 1) put('B 2', 1)\n"
+                       "local dx, dy = offset('W', 'B 2', 1)\n"
+                       "local off = math.sqrt(dx * dx + dy * dy)\n"
+                       "expect(off < %.17g or off > %.17g)\nexpect(limit > 0)\n",
+                       begins, ends);
         cell_t *cell = open_cell(lines);
         find(cell, &plain);
         for (size_t axis = 0; axis < 2; ++axis) {
