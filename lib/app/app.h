@@ -31,6 +31,7 @@ int wh_app_report(int argc, char **argv);
 int wh_app_layout(int argc, char **argv);
 int wh_app_study(int argc, char **argv);
 int wh_app_budget(int argc, char **argv);
+int wh_app_sweep(int argc, char **argv);
 int wh_app_test(int argc, char **argv);
 int wh_app_diff(int argc, char **argv);
 int wh_app_events(int argc, char **argv);

@@ -1,19 +1,17 @@
 /* waferhand budget SCRIPT */
 #include <math.h>
-#include <sched.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "../print/budget_print.h"
 #include "../study/budget_player.h"
+#include "../study/study_play.h"
 #include "../text/array.h"
 #include "../text/guard.h"
 #include "../text/nearest.h"
 #include "apart.h"
 #include "app.h"
 #include "run_arguments.h"
-
-#define BUDGET_THREADS 1024
 
 typedef struct {
     wh_run_arguments_t run; /* the script, its parameters and limits, and --json */
@@ -37,7 +35,7 @@ static const wh_option_t options[] = {
     {"seed", 0, "S", "Which ones (default 1)", WH_OPTION_COUNT, .variable = offsetof(arguments_t, seed),
      .expected = "a whole number from 0 to 18446744073709551615"},
     {"threads", 0, "N", "On so many threads (default: one for each processor)", WH_OPTION_WHOLE,
-     .variable = offsetof(arguments_t, threads), 1, BUDGET_THREADS, "a number from 1 to 1024"},
+     .variable = offsetof(arguments_t, threads), 1, 1024, "a number from 1 to 1024"},
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
      .variable = offsetof(arguments_t, run.json)},
     {"set", 0, "NAME=VALUE",
@@ -83,18 +81,6 @@ static void clear(FILE *out) {
 
 /* ------------------------------------------------------------------------------------------------- finding */
 
-static size_t count_threads(const arguments_t *arguments) {
-    cpu_set_t processors;
-    if (arguments->threads > 0) {
-        return (size_t)arguments->threads;
-    }
-    if (sched_getaffinity(0, sizeof processors, &processors) != 0) {
-        return 1;
-    }
-    const int count = CPU_COUNT(&processors);
-    return count < 1 ? 1 : count > BUDGET_THREADS ? BUDGET_THREADS : (size_t)count;
-}
-
 static int32_t thousandths(double value) {
     return (int32_t)lround(value * WH_BUDGET_UNIT);
 }
@@ -117,7 +103,7 @@ static int find(const arguments_t *arguments, const wh_study_t *study, const boo
     FILE *terminal = isatty(STDERR_FILENO) == 1 ? wh_guard_terminal() : NULL;
     const wh_style_t style = wh_style_of(stdout);
     const wh_budget_options_t how = {
-        .threads = count_threads(arguments),
+        .threads = wh_study_threads((size_t)arguments->threads),
         .most = {thousandths(arguments->limit_mm), thousandths(arguments->limit_deg)},
         .steps = arguments->steps,
         .samples = arguments->samples,

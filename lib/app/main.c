@@ -20,6 +20,7 @@ static const struct {
     {"layout", "list, check and draw a cell", wh_app_layout},
     {"study", "play a script many times, each time a little off", wh_app_study},
     {"budget", "tell how far stations may be off, and which one allows least", wh_app_budget},
+    {"sweep", "run a script for each value of a parameter", wh_app_sweep},
     {"test", "play many scripts and tell which ended well", wh_app_test},
     {"diff", "compare two recordings, or two results", wh_app_diff},
     {"events", "print a recording's events, a line of JSON each", wh_app_events},

@@ -167,6 +167,7 @@ static int run_on(broadcast_t *broadcast, wh_run_arguments_t *arguments) {
                                         .watch = told.watch,
                                         .expected = told.expected,
                                         .cycle = told.cycle,
+                                        .edge = told.edge,
                                         .finished = told.finished,
                                         .user = told.user};
     const wh_protocol_client_options_t lockstep = {.rate = 0};

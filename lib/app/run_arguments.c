@@ -76,9 +76,7 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
 
 /* ------------------------------------------------------------------------------------------------ command */
 
-/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and
- * a log. */
-static char *make_command(const wh_run_arguments_t *arguments, bool is_log) {
+char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log) {
     const wh_script_run_options_t *run = &arguments->run;
     const char *command = arguments->command ? arguments->command : "run";
     char *text = NULL;
@@ -109,7 +107,8 @@ typedef struct {
 
 static bool write_page(void *user, FILE *out) {
     content_t *content = user;
-    return wh_page_write(out, content->document->title, content->text, content->size, content->message);
+    return wh_page_write(out, WH_PAGE_REPORT, content->document->title, content->text, content->size,
+                         content->message);
 }
 
 static bool write_scene(void *user, FILE *out) {
@@ -158,7 +157,7 @@ bool wh_run_files_write(const wh_run_arguments_t *arguments, const wh_document_t
         return true;
     }
     FILE *out = wh_memory_need(open_memstream(&content.text, &content.size));
-    char *command = make_command(arguments, strcmp(document->source, "log") == 0);
+    char *command = wh_run_command(arguments, strcmp(document->source, "log") == 0);
     whole.title = arguments->run.script;
     whole.reproduce = command;
     whole.parameters = arguments->run.parameters;
@@ -211,11 +210,21 @@ static bool write_report(const wh_run_arguments_t *arguments, const wh_script_ru
     return wh_run_files_write(arguments, &document);
 }
 
+/* False, and says so, for a run that would not be the same when it is played again. */
+static bool are_segments_whole(const wh_run_arguments_t *arguments, const wh_mcs_t *mcs) {
+    if (!arguments->segments_path || !mcs->unplayed) {
+        return true;
+    }
+    fprintf(stderr, "--segments: %s: not written (expected a script without %s)\n", arguments->segments_path,
+            mcs->unplayed);
+    return false;
+}
+
 static bool write_files(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
                         wh_signals_t *signals) {
     const char *layout = run->record.layout ? run->record.layout->path : NULL;
     wh_segments_t segments = {&run->mcs, arguments->segments_path};
-    return wh_run_files_are_apart(arguments, layout) &&
+    return wh_run_files_are_apart(arguments, layout) && are_segments_whole(arguments, &run->mcs) &&
            wh_file_write("--segments", segments.path, wh_segments_write, &segments, NULL) &&
            write_report(arguments, run, signals);
 }

@@ -51,6 +51,10 @@ bool wh_run_files_are_apart(const wh_run_arguments_t *arguments, const char *inp
  * does not take it. */
 int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record);
 
+/* The command that makes the run again, to be freed: "waferhand run SCRIPT --set NAME=VALUE", or "replay" and
+ * a log. */
+char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log);
+
 /* Runs the script and prints what came of it. Returns the exit status. */
 int wh_run_and_print(wh_run_arguments_t *arguments);
 

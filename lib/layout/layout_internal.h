@@ -35,6 +35,7 @@ void wh_layout_read_stations(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_grippers(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_effectors(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_wafers(wh_reader_t *reader, wh_layout_t *layout);
+void wh_layout_read_sensing(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_shapes(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_world(wh_reader_t *reader, wh_layout_t *layout);
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout);

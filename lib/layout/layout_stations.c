@@ -13,7 +13,7 @@
 #define STATION_FIELDS                                                                                       \
     "kind at rpy taught slots pitch effector stroke offset retract pickup_speed pickup_acceleration "        \
     "release "                                                                                               \
-    "vacuum_delay vacuum_check timeout retries wait map_speed check_map handover counts"
+    "vacuum_delay vacuum_check timeout retries wait map_speed check_map handover counts sensor"
 
 /* A default for wafers up to 150 mm, up to 200 mm, and larger ones. */
 static double by_size(const wh_layout_t *layout, double small, double middle, double large) {
@@ -259,7 +259,7 @@ static void read_position(wh_reader_t *reader, const wh_layout_t *layout, const 
 static void read_wafer(wh_reader_t *reader, wh_layout_t *layout, size_t w) {
     char fallback[WH_NAME_SIZE];
     wh_layout_wafer_t *wafer = &layout->wafers[w];
-    wh_reader_refuse_unknown(reader, "name station slot dx dy dz rpy");
+    wh_reader_refuse_unknown(reader, "name station slot dx dy dz rpy rim");
     snprintf(fallback, sizeof fallback, "Wafer %zu", w + 1);
     wh_reader_text(reader, "name", fallback, wafer->name, sizeof wafer->name);
     wafer->station = wh_layout_read_name(reader, layout, "station", NULL, wh_layout_find_station,

@@ -171,9 +171,9 @@ static char survey_key;
 static int open_words(lua_State *L) {
     wh_mcs_t *mcs = lua_touserdata(L, 1);
     const luaL_Reg *const groups[] = {
-        module_functions,          wh_mcs_cell_functions,  wh_mcs_command_functions, wh_mcs_fault_functions,
-        wh_mcs_describe_functions, wh_mcs_plan_functions,  wh_mcs_play_functions,    wh_mcs_query_functions,
-        wh_mcs_scan_functions,     wh_mcs_survey_functions};
+        module_functions,          wh_mcs_cell_functions,   wh_mcs_command_functions, wh_mcs_fault_functions,
+        wh_mcs_describe_functions, wh_mcs_plan_functions,   wh_mcs_play_functions,    wh_mcs_query_functions,
+        wh_mcs_scan_functions,     wh_mcs_survey_functions, wh_mcs_edge_functions};
     luaopen_wh(L);
     lua_setglobal(L, "wh");
     lua_pushcfunction(L, load_module);
@@ -269,5 +269,6 @@ void wh_mcs_close(wh_mcs_t *mcs) {
     mcs->segments = NULL;
     mcs->kept_faults = NULL;
     mcs->segment_count = 0;
+    wh_mcs_free_edge(&mcs->edge);
     wh_rehearsal_free(&mcs->rehearsal);
 }

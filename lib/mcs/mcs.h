@@ -42,6 +42,8 @@ typedef struct {
     /* The last expectation of the record was added, or its last cycle. */
     void (*expected)(void *user, const wh_mcs_t *mcs);
     void (*cycle)(void *user, const wh_mcs_t *mcs);
+    /* The scan in mcs->edge has ended. */
+    void (*edge)(void *user, const wh_mcs_t *mcs);
     /* The record is closed: the run has ended, also by an error. Not called without a cell, nor at a
      * prompt. */
     void (*finished)(void *user, const wh_mcs_t *mcs);
@@ -60,9 +62,9 @@ typedef struct {
     void *user;
 } wh_mcs_listener_t;
 
-/* Who hears of slices: decisions, recorder, what STATUS tells and a collision check beside a simulator
+/* Who hears of slices: decisions, recorder, the collected scan, what STATUS tells and a collision check beside a simulator
  * elsewhere, the run's listener. */
-#define WH_MCS_LISTENERS 5
+#define WH_MCS_LISTENERS 6
 
 /* How many lines of a script are told that led to a command within functions. */
 #define WH_MCS_CALLERS 4
@@ -108,6 +110,17 @@ typedef struct {
     char phase[WH_MCS_PHASE_BYTES];  /* "extended" or "up" */
 } wh_mcs_held_t;
 
+/* A scan of a wafer's edge, as the states have brought it. */
+typedef struct {
+    wh_scan_order_t order;
+    int64_t seq;             /* of the last state that was heard */
+    uint32_t number, before; /* of the last scan that was heard of, now and when this one was armed */
+    int32_t *samples;        /* as many as were ordered; null: none was */
+    int32_t taken;           /* so many are there */
+    int32_t missed;          /* of these, for no state brought them: WH_NONE */
+    bool armed;              /* more are to come */
+} wh_mcs_edge_t;
+
 /* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `errors`, `error_count`,
  * `without_collisions`, `decisions`, `is_file`, `limits_missed`, `most_missed` and `rehearsal.look_ahead`,
  * which may be set between opening and the cell.
@@ -130,6 +143,8 @@ struct wh_mcs {
     wh_state_t state;                /* the answer to it */
     wh_mcs_seen_t seen;              /* over a caller's link: the last slice that a state has come for */
     wh_mcs_sent_t sent[WH_MCS_SENT]; /* and the last ones that were sent, by seq % WH_MCS_SENT */
+
+    wh_mcs_edge_t edge;
 
     wh_rehearsal_t rehearsal;
     wh_vacuum_watch_t watch;     /* of the running segment */
@@ -157,6 +172,8 @@ struct wh_mcs {
     bool keep_segments;        /* collect what is played, for --segments */
     wh_kept_segment_t *segments;
     size_t segment_count, segment_capacity;
+    const char
+        *unplayed; /* what it has commanded that segments do not tell, a constant text; null: nothing */
     wh_played_fault_t *kept_faults;
     size_t kept_fault_count, kept_fault_capacity;
 

@@ -66,4 +66,9 @@ void wh_print_counted(FILE *out, int64_t count, const char *one, const char *man
 /* True if an event is a complaint of the cell. */
 bool wh_print_is_complaint(wh_event_kind_t kind);
 
+/* A cell of a table as of RFC 4180: a text, in quotes if it has a character that would end it; a number with
+ * the digits that read back as the same double, nothing for NaN and infinities. */
+void wh_print_csv_text(const char *text, FILE *out);
+void wh_print_csv_number(double value, FILE *out);
+
 #endif

@@ -190,12 +190,12 @@ void wh_faults_take(wh_faults_t *faults, const wh_fault_request_t requests[], si
 
 /* -------------------------------------------------------------------------------------- beginning, ending */
 
-/* False if the wafer is held: the fault must wait then. */
+/* False if the wafer is held, or the one that it is to lie on: the fault must wait then. */
 static bool move_wafer(wh_fault_slot_t *slot, wh_grasp_t *table) {
     const wh_fault_t *fault = &slot->fault;
     const wh_wafer_t *wafer = &table->storage.wafers[fault->target];
     const wh_wafer_t *from = fault->other == WH_NONE ? wafer : &table->storage.wafers[fault->other];
-    if (wafer->holder != WH_NONE) {
+    if (wafer->holder != WH_NONE || from->holder != WH_NONE) {
         return false;
     }
     slot->before = wafer->base_from_wafer;

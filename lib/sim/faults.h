@@ -14,14 +14,14 @@
  *   WAFER_*         the wafer goes to base_from_wafer * offset: missing (out of the cell), shifted, tilted,
  *                   crossed; doubled: to base_from_other * offset, onto the wafer `other`
  *
- * If a gripper holds the wafer when its fault should begin, the fault waits: it begins in the first slice
- * after one in which nobody held the wafer. When the fault ends, the wafer goes back to where it was,
- * unless it was taken or moved since. Taken is a wafer that a gripper held for a slice, even if it was set
- * down where the fault had put it. Moved is one that wh_grasp_place put elsewhere, and that lies there
- * when a later slice begins; a wafer that was put exactly where a fault had put it counts as unmoved. If
- * another fault has moved the wafer since, the wafer goes back to its place before both when that other
- * fault ends. A command must be valid even if a fault overrules it. In the first slice of a run there is
- * no earlier state: a stuck valve is closed, and axes move.
+ * If a gripper holds the wafer when its fault should begin, or the one that it is doubled onto, the fault
+ * waits: it begins in the first slice after one in which nobody held them. When the fault ends, the wafer
+ * goes back to where it was, unless it was taken or moved since. Taken is a wafer that a gripper held for a
+ * slice, even if it was set down where the fault had put it. Moved is one that wh_grasp_place put elsewhere,
+ * and that lies there when a later slice begins; a wafer that was put exactly where a fault had put it counts
+ * as unmoved. If another fault has moved the wafer since, the wafer goes back to its place before both when
+ * that other fault ends. A command must be valid even if a fault overrules it. In the first slice of a run
+ * there is no earlier state: a stuck valve is closed, and axes move.
  *
  * No heap; a wh_faults_t is a plain struct.
  *
@@ -32,7 +32,7 @@
  *     stack of wh_faults_validate               80    200      48    112
  *     stack of wh_faults_check                 104    224      64    136
  *     stack of wh_faults_take                   48     40      48     40
- *     stack of wh_faults_advance               176    264     124    168
+ *     stack of wh_faults_advance               176    264     132    168
  *     stack of wh_faults_overrule               80     64      72     56
  *     stack of wh_faults_of_vacuum              96     96      56     56
  *     stack of wh_faults_sensors                 4      8       0      8

@@ -39,6 +39,8 @@ void wh_budget_player_open(wh_budget_player_t *player, const wh_study_t *study) 
     player->two_ways = wh_budget_has_two_ways(study);
     player->layout = *study->layout;
     player->own.layout = &player->layout;
+    player->own.cause_count = 0;
+    player->own.lines = 0;
     player->point_size = WH_SPREADS * study->layout->station_count;
     player->given.stations = wh_array_new(study->layout->station_count, sizeof *player->given.stations);
     player->given.wafers = wh_array_new(study->layout->wafer_count, sizeof *player->given.wafers);
@@ -113,7 +115,8 @@ static bool passes_at(wh_budget_player_t *player, const int32_t point[], wh_budg
     give(player, point);
     player->own.whole = without ? player->shared->decisions.unfit : player->shared->whole;
     player->worker.options.without_collisions = without;
-    wh_tally_clear(&player->tally);
+    wh_tally_free(&player->tally);
+    wh_tally_init(&player->tally, player->shared->wafer_count);
     const bool usable = wh_worker_play(&player->worker, 0, &player->tally, message);
     const bool passes = usable && player->worker.outcome.met;
     player->differs = !passes || !is_as_without_errors(player);

@@ -20,6 +20,7 @@ typedef struct {
     struct argp_option known[MOST_OPTIONS]; /* as argp has them, headings among them */
     const wh_option_t *options[MOST_OPTIONS];
     void *variables[MOST_OPTIONS];
+    bool given[MOST_OPTIONS];
     size_t count;
 } parser_t;
 
@@ -217,8 +218,17 @@ static void check_names(const parser_t *parser, struct argp_state *state) {
 
 /* ----------------------------------------------------------------------------------------------- parsing */
 
+/* Refuses the second value of an option that has one: the first would be lost without a word. */
+static void note_given(parser_t *parser, size_t i, const struct argp_state *state) {
+    const wh_option_kind_t kind = parser->options[i]->kind;
+    if (parser->given[i] && kind != WH_OPTION_FLAG && kind != WH_OPTION_LIST) {
+        argp_error(state, "--%s: given twice", parser->options[i]->name);
+    }
+    parser->given[i] = true;
+}
+
 static error_t parse(int key, char *text, struct argp_state *state) {
-    const parser_t *parser = state->input;
+    parser_t *parser = state->input;
     switch (key) {
     case ARGP_KEY_INIT:
         check_names(parser, state);
@@ -234,6 +244,7 @@ static error_t parse(int key, char *text, struct argp_state *state) {
     }
     for (size_t i = 0; i < parser->count; ++i) {
         if (parser->options[i] && parser->known[i].key == key) {
+            note_given(parser, i, state);
             take(parser->options[i], parser->variables[i], text, state);
             return 0;
         }

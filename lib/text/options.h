@@ -7,8 +7,9 @@
  *         {0}};
  *
  * Variables are found by their offsets within a structure, so that tables are constant and commands can share
- * them. What is not given stays as it was. Wrong usage ends the program, as argp does:
- * "--rate: x (expected a number from 0.001 to 1000)", "--rat: no such option (did you mean --rate?)".
+ * them. What is not given stays as it was; what is given twice is refused, but for flags and lists. Wrong
+ * usage ends the program, as argp does: "--rate: x (expected a number from 0.001 to 1000)", "--rat: no such
+ * option (did you mean --rate?)".
  */
 #ifndef WH_TEXT_OPTIONS_H
 #define WH_TEXT_OPTIONS_H
@@ -20,7 +21,7 @@
 
 typedef enum {
     WH_OPTION_FLAG,  /* bool: becomes true */
-    WH_OPTION_TEXT,  /* const char *: the last one given */
+    WH_OPTION_TEXT,  /* const char * */
     WH_OPTION_LIST,  /* wh_option_list_t: all, in order */
     WH_OPTION_REAL,  /* double, from `least` to `most` */
     WH_OPTION_WHOLE, /* uint64_t, from `least` to `most`, which a double must hold: 1000000 or 1e6 */

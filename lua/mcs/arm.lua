@@ -219,10 +219,19 @@ return function(native, lookup)
     return ended
   end
 
+  -- The grippers whose sensors are on.
+  local function sensors_on()
+    local on = {}
+    for index in ipairs(native.layout.grippers) do
+      on[index] = native.sensor(index) or nil
+    end
+    return on
+  end
+
   -- The command ends here, but its plan does not.
   local function hold(plan, phase)
     plan.answers[#plan.answers + 1] = true
-    plan.phase, plan.text = phase, plan.text or running
+    plan.phase, plan.text, plan.on = phase, plan.text or running, sensors_on()
     held = plan
     native.hold(plan.text, phase)
   end
@@ -279,11 +288,22 @@ return function(native, lookup)
 
   ------------------------------------------------------------------------------------------------------ phases
 
+  -- A wafer that was lost while its command was held would not be missed: no segment of it has seen the loss.
+  local function check_kept(begun)
+    for index, gripper in ipairs(begun.target.watched and native.layout.grippers or {}) do
+      if begun.on[index] and not native.sensor(index) then
+        local text = "the sensor of %s went off while %s was held: STOP comes first"
+        native.fail("WAFER_LOST_ON_WAY", text:format(gripper.name, begun.text))
+      end
+    end
+  end
+
   local function go_on_held()
     local begun = find_held()
     if not begun then
       native.fail("NOT_IN_PHASE", "none is held")
     end
+    check_kept(begun)
     local plan = plan_ahead(begun, true)
     plan.text, held = begun.text, nil
     native.release()

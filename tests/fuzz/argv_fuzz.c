@@ -3,6 +3,7 @@
  *
  * The linker puts __wrap_... in the place of what would end the process or begin the work: see tests/fuzz/fuzz.mk. */
 #include <argp.h>
+#include <math.h>
 #include <setjmp.h>
 #include <string.h>
 
@@ -14,6 +15,7 @@
 #include "fuzz.h"
 #include "layout/layout.h"
 #include "study/study.h"
+#include "study/sweep.h"
 #include "text/csv.h"
 
 #define WORDS 24
@@ -77,6 +79,9 @@ bool __real_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool
 bool __wrap_wh_files_are_apart(const wh_named_file_t files[], size_t count, bool prints);
 FILE *__wrap_wh_log_file(const char *path, const char **fault);
 bool __wrap_wh_study_open(wh_study_t *study);
+bool __real_wh_sweep_open(wh_script_sweep_t *sweep);
+bool __wrap_wh_sweep_open(wh_script_sweep_t *sweep);
+bool __wrap_wh_sweep_play(wh_script_sweep_t *sweep, size_t threads);
 bool __wrap_wh_test_play(const wh_test_job_t jobs[], size_t count, const wh_test_options_t *options,
                          wh_test_result_t results[]);
 bool __wrap_wh_test_find(const wh_option_list_t *paths, wh_test_found_t *found);
@@ -136,6 +141,24 @@ bool __wrap_wh_study_open(wh_study_t *study) {
         check_run(&study->run);
         REQUIRE(study->trials >= 1 && study->trials <= 1000000000);
     }
+    return false;
+}
+
+/* Ranges are read as they are; one that is none is refused. */
+bool __wrap_wh_sweep_open(wh_script_sweep_t *sweep) {
+    refused = refused || !__real_wh_sweep_open(sweep);
+    return !refused;
+}
+
+bool __wrap_wh_sweep_play(wh_script_sweep_t *sweep, size_t threads) {
+    reached = true;
+    REQUIRE(sweep->run.script != NULL && threads >= 1);
+    REQUIRE(sweep->axis_count >= 1 && sweep->axis_count <= WH_SWEEP_AXES);
+    REQUIRE(sweep->point_count >= 1 && sweep->point_count <= WH_SWEEP_MOST);
+    for (size_t axis = 0; axis < sweep->axis_count; ++axis) {
+        REQUIRE(isfinite(wh_sweep_value(sweep, sweep->point_count - 1, axis)));
+    }
+    check_parameters(sweep->parameters, sweep->parameter_count);
     return false;
 }
 
@@ -280,9 +303,10 @@ static int act(int argc, char **argv) {
     static int (*const subcommands[])(int argc, char **argv) = {
         wh_app_run,    wh_app_mcs,   wh_app_sim,      wh_app_replay, wh_app_report,
         wh_app_layout, wh_app_study, wh_app_estimate, wh_app_test,   wh_app_diff,
-        wh_app_events, wh_app_csv,   wh_app_check,    wh_app_budget};
-    static const char *const names[] = {"run",      "mcs",  "sim",  "replay", "report", "layout", "study",
-                                        "estimate", "test", "diff", "events", "csv",    "check",  "budget"};
+        wh_app_events, wh_app_csv,   wh_app_check,    wh_app_sweep,  wh_app_budget};
+    static const char *const names[] = {"run",    "mcs",   "sim",      "replay", "report",
+                                        "layout", "study", "estimate", "test",   "diff",
+                                        "events", "csv",   "check",    "sweep",  "budget"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(argv[0], names[i]) == 0) {
             return subcommands[i](argc, argv);

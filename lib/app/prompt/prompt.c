@@ -206,8 +206,21 @@ static wh_line_event_t take_lines(wh_prompt_t *prompt) {
     return event;
 }
 
+/* The arm stays in a station behind a command that nobody ended. */
+static void judge_held(wh_prompt_t *prompt) {
+    const wh_mcs_held_t *held = &prompt->input.session->mcs.held;
+    if (held->command[0] != '\0') {
+        char text[WH_MCS_HELD_BYTES + 100];
+        (void)snprintf(text, sizeof text, "mcs: %s is left held, %s: no CONTINUE or STOP came", held->command,
+                       held->phase);
+        wh_prompt_say(prompt, text);
+        prompt->failed = true;
+    }
+}
+
 int wh_prompt_run(wh_prompt_t *prompt) {
     const wh_line_event_t event = take_lines(prompt);
+    judge_held(prompt);
     if (!wh_app_is_printed(0)) {
         return WH_EXIT_USAGE;
     }

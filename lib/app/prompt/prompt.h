@@ -34,7 +34,7 @@ typedef struct wh_prompt wh_prompt_t;
 wh_prompt_t *wh_prompt_open(wh_session_t *session, const wh_prompt_watch_t *watch);
 
 /* Until the input ends or is left. Returns the exit status: 0, or in plain mode 1 when a command failed or
- * the cell complained, 1 when a signal ended it, 2 when the answers could not be written. */
+ * is left held, or the cell complained, 1 when a signal ended it, 2 when the answers could not be written. */
 int wh_prompt_run(wh_prompt_t *prompt);
 
 /* Prints a line of another matter on standard error: at a terminal above the line that is being typed, which

@@ -757,10 +757,10 @@ static void an_unknown_version_is_refused(void **state) {
     const log_t *log = &whole[OF_SLICES];
     copy_whole(log);
     const size_t data = log->starts[0] + HEADER + strlen(WH_CHANNEL_RECORDING);
-    damaged.bytes[data + 43] = 3;
+    damaged.bytes[data + 43] = 4;
     wh_link_seal(damaged.bytes + data, log->starts[1] - data);
     assert_int_equal(verdict_of(&damaged, false), WH_READING_UNUSABLE);
-    assert_int_equal(replay.recording.version, 3);
+    assert_int_equal(replay.recording.version, 4);
 }
 
 /* A bit of the cell alone: the slices may be what they were. */

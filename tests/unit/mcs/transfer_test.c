@@ -334,7 +334,8 @@ static void what_is_held_in_a_phase_moves_no_more(void **state) {
     assert_answer("CONTINUE", "OK wafer=\"Wafer 3\" put=\"Wafer 1\"");
 }
 
-/* The vacuum that does not come is noticed by the CONTINUE, and so is a wafer that is lost while it is held. */
+/* The vacuum that does not come is noticed by the CONTINUE, and so is a wafer that is lost while it is held.
+ * If a WAIT between has seen that, nothing moves, and the command is held as before. */
 static void what_fails_behind_a_phase_fails_the_continue(void **state) {
     (void)state;
     assert_answer("GET A 1 stop=extended", "OK");
@@ -345,6 +346,20 @@ static void what_fails_behind_a_phase_fails_the_continue(void **state) {
     lie(false, 0);
     assert_answer("CONTINUE", "ERROR 60 WAFER_LOST_ON_WAY: ");
     tell_the_truth();
+    assert_answer("CONTINUE", "ERROR 66 NOT_IN_PHASE: ");
+    assert_answer("RECOVER", "OK");
+    assert_answer("WAIT 0.01", "OK");
+    assert_answer("PUT A 1 stop=extended", "OK");
+    lie(false, 0);
+    assert_answer("WAIT 0.01", "ERROR 60 WAFER_LOST_ON_WAY: ");
+    const int64_t slices = liar.slices;
+    assert_answer(
+        "CONTINUE",
+        "ERROR 60 WAFER_LOST_ON_WAY: the wafer was lost on the way; the sensor of FRONT went off while");
+    assert_int_equal(liar.slices, slices);
+    tell_the_truth();
+    assert_answer("WAIT 0.01", "OK");
+    assert_answer("CONTINUE", "OK");
     assert_answer("CONTINUE", "ERROR 66 NOT_IN_PHASE: ");
     assert_int_equal(session.complaints, 0);
 }

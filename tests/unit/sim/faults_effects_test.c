@@ -208,6 +208,24 @@ static void doubled_is_onto_the_other(void **state) {
     assert_true(answer.wafers[0].base_from_wafer.r.z == 911);
 }
 
+/* A wafer that a gripper carries lies in no slot: the other one waits until it does. */
+static void doubled_waits_while_the_other_is_held(void **state) {
+    (void)state;
+    wh_fault_t f = fault_of(WH_FAULT_WAFER_DOUBLED, 0);
+    f.other = 1;
+    f.offset = wh_test_at(0, 0, 1);
+    step(910, OPEN);
+    assert_int_equal(answer.grippers[0].wafer, 1);
+    bring(0, &f);
+    step(912, OPEN);
+    assert_null(find(WH_EVENT_FAULT_ARMED));
+    assert_true(answer.wafers[0].base_from_wafer.r.z == 900);
+    step(912, CLOSED);
+    step(912, CLOSED);
+    expect_event(WH_EVENT_FAULT_ARMED, 0, WH_NONE, 0);
+    assert_true(answer.wafers[0].base_from_wafer.r.z == 913);
+}
+
 /* A wafer that somebody took meanwhile stays where it came to. */
 static void a_wafer_that_was_taken_is_not_put_back(void **state) {
     (void)state;
@@ -453,6 +471,7 @@ int main(void) {
         cmocka_unit_test_setup(a_wafer_is_moved_and_put_back, set_up),
         cmocka_unit_test_setup(a_turn_that_just_passes_is_mended, set_up),
         cmocka_unit_test_setup(doubled_is_onto_the_other, set_up),
+        cmocka_unit_test_setup(doubled_waits_while_the_other_is_held, set_up),
         cmocka_unit_test_setup(a_wafer_that_was_taken_is_not_put_back, set_up),
         cmocka_unit_test_setup(two_faults_of_one_wafer, set_up),
         cmocka_unit_test_setup(three_faults_of_one_wafer_among_others, set_up),
