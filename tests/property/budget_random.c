@@ -9,7 +9,7 @@
 
 #include <unistd.h>
 
-enum { ROUNDS = WH_TEST_SHARE > 1 ? 1 : 2, GRID = 40, POINTS = 200 / WH_TEST_SHARE };
+enum { ROUNDS = 1, GRID = 40, POINTS = 100 / WH_TEST_SHARE };
 
 static const char layout_text[] =
     "return {\n"
