@@ -38,5 +38,7 @@ int wh_app_events(int argc, char **argv);
 int wh_app_csv(int argc, char **argv);
 int wh_app_check(int argc, char **argv);
 int wh_app_estimate(int argc, char **argv);
+int wh_app_definitions(int argc, char **argv);
+int wh_app_new(int argc, char **argv);
 
 #endif

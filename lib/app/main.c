@@ -27,6 +27,8 @@ static const struct {
     {"csv", "print a recording's slices as a table", wh_app_csv},
     {"check", "hold a recording against what a Lua file expects of it", wh_app_check},
     {"estimate", "fit frames and limits of a layout to measurements", wh_app_estimate},
+    {"new", "make a cell to start from: a layout and a script", wh_app_new},
+    {"definitions", "print what layouts and scripts may say, for editors", wh_app_definitions},
 };
 
 #define SUBCOMMANDS (sizeof subcommands / sizeof subcommands[0])
@@ -36,7 +38,7 @@ static void print_help(FILE *out) {
           "Run, test and judge wafer handling robots before any robot moves.\n\nCommands:\n",
           out);
     for (size_t i = 0; i < SUBCOMMANDS; ++i) {
-        fprintf(out, "  %-8s %s\n", subcommands[i].name, subcommands[i].purpose);
+        fprintf(out, "  %-11s %s\n", subcommands[i].name, subcommands[i].purpose);
     }
     fputs("\n  waferhand COMMAND --help    tells the options of a command\n"
           "  waferhand --version         prints the version\n\n" WH_HELP_EXIT "\n",

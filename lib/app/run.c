@@ -3,13 +3,14 @@
 #include "app.h"
 #include "connection.h"
 #include "run_arguments.h"
+#include "watch.h"
 
 typedef struct {
     wh_run_arguments_t run;
     wh_record_arguments_t record;
     wh_option_list_t errors;
     const char *url;
-    bool lcm;
+    bool lcm, watch;
 } arguments_t;
 
 static const wh_option_t options[] = {
@@ -22,6 +23,7 @@ static const wh_option_t options[] = {
      "dx, "
      "dy, dz, tilt_x, tilt_y, turn, a gripper's valve, or vacuum; may be given again",
      WH_OPTION_LIST, .variable = offsetof(arguments_t, errors)},
+    {"watch", 0, NULL, WH_WATCH_HELP, WH_OPTION_FLAG, .variable = offsetof(arguments_t, watch)},
     {0}};
 
 /* What is before the last equals sign. */
@@ -58,12 +60,15 @@ static void check(const void *given, struct argp_state *state) {
         argp_error(state, "--lcm-url: %s (goes with --lcm)", arguments->url);
     }
     check_errors(arguments, state);
+    if (arguments->watch && (arguments->lcm || arguments->record.slices || arguments->record.all)) {
+        argp_error(state, "--watch goes neither with --lcm nor with a recording");
+    }
 }
 
 static const wh_option_table_t tables[] = {
     {options, 0, NULL, check},
     {wh_record_options, offsetof(arguments_t, record), NULL, wh_record_arguments_check},
-    {wh_run_options, offsetof(arguments_t, run), NULL, NULL},
+    {wh_run_options, offsetof(arguments_t, run), NULL, wh_run_arguments_check},
     {wh_run_files_options, offsetof(arguments_t, run.files), NULL, NULL},
     {0}};
 
@@ -200,6 +205,15 @@ static int run_published(arguments_t *arguments) {
     return wh_recording_close(&broadcast.record) ? status : WH_EXIT_USAGE;
 }
 
+static int play(void *user) {
+    arguments_t *arguments = user;
+    const bool published = arguments->lcm || arguments->run.record;
+    if (!wh_run_files_are_apart(&arguments->run, NULL)) {
+        return WH_EXIT_USAGE;
+    }
+    return published ? run_published(arguments) : wh_run_and_print(&arguments->run);
+}
+
 int wh_app_run(int argc, char **argv) {
     arguments_t arguments = {0};
     wh_options_parse(&command_line, argc, argv, &arguments);
@@ -207,11 +221,7 @@ int wh_app_run(int argc, char **argv) {
     arguments.run.run.errors = arguments.errors.items;
     arguments.run.run.error_count = arguments.errors.count;
     arguments.run.record = wh_record_arguments_path(&arguments.record, &arguments.run.record_option);
-    const bool published = arguments.lcm || arguments.run.record;
-    int status = WH_EXIT_USAGE;
-    if (wh_run_files_are_apart(&arguments.run, NULL)) {
-        status = published ? run_published(&arguments) : wh_run_and_print(&arguments.run);
-    }
+    const int status = arguments.watch ? wh_run_watch(&arguments.run, play, &arguments) : play(&arguments);
     wh_run_arguments_free(&arguments.run);
     wh_option_list_free(&arguments.errors);
     return status;

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include "../link/outputs.h"
-#include "../print/record_print.h"
 #include "../report/page.h"
 #include "../report/plots.h"
 #include "../text/array.h"
@@ -16,14 +15,28 @@
 #include "apart.h"
 #include "app.h"
 #include "segments.h"
+#include "watch.h"
+
+/* Seconds: what --from and --to take. */
+#define SOONEST 1e-6
+#define LATEST 1e9
 
 const wh_option_t wh_run_options[] = {
     {"json", 0, NULL, "Print the result as one JSON object", WH_OPTION_FLAG,
      .variable = offsetof(wh_run_arguments_t, json)},
     {"gantt", 0, NULL, "Also print who was busy when, and what each command's time went into", WH_OPTION_FLAG,
-     .variable = offsetof(wh_run_arguments_t, gantt)},
+     .variable = offsetof(wh_run_arguments_t, sections.gantt)},
+    {"from", 0, "S", "With --gantt: from this time of the run on, in simulated seconds", WH_OPTION_REAL,
+     .variable = offsetof(wh_run_arguments_t, sections.from_s), 0, LATEST, "a number from 0 to 1e+09"},
+    {"to", 0, "S", "With --gantt: up to this time", WH_OPTION_REAL,
+     .variable = offsetof(wh_run_arguments_t, sections.to_s), SOONEST, LATEST,
+     "a number from 1e-06 to 1e+09"},
+    {"cycle", 0, NULL,
+     "Also print the first steady cycle by itself: how long it takes, what is in it, its wafers per hour; or "
+     "why there is none",
+     WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, sections.cycle)},
     {"margins", 0, NULL, "Also print how near the axes come to the ends of their travel at each station",
-     WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, margins)},
+     WH_OPTION_FLAG, .variable = offsetof(wh_run_arguments_t, sections.margins)},
     {"segments", 0, "FILE",
      "Write the run as C source that a firmware test plays; its names begin with FILE's, in which all but "
      "ASCII "
@@ -52,6 +65,25 @@ const wh_option_t wh_run_files_options[] = {
      "is made of",
      WH_OPTION_TEXT, .variable = offsetof(wh_run_files_t, plots)},
     {0}};
+
+void wh_run_arguments_check(const void *filled, struct argp_state *state) {
+    const wh_run_arguments_t *arguments = filled;
+    const wh_record_sections_t *sections = &arguments->sections;
+    const bool is_window = sections->from_s > 0 || sections->to_s > 0;
+    if (is_window && (!sections->gantt || arguments->json)) {
+        argp_error(state, "%s: %g (goes with --gantt%s)", sections->from_s > 0 ? "--from" : "--to",
+                   sections->from_s > 0 ? sections->from_s : sections->to_s,
+                   arguments->json ? ", not with --json, which has all times" : "");
+    }
+    if (sections->to_s > 0 && sections->to_s <= sections->from_s) {
+        argp_error(state, "--to: %g (expected a time after --from, %g)", sections->to_s, sections->from_s);
+    }
+}
+
+const char *wh_run_table_wanted(const wh_run_arguments_t *arguments) {
+    const wh_record_sections_t *sections = &arguments->sections;
+    return sections->gantt ? "--gantt" : sections->cycle ? "--cycle" : sections->margins ? "--margins" : NULL;
+}
 
 bool wh_run_files_wanted(const wh_run_files_t *files) {
     return files->page || files->scene || files->document || files->plots;
@@ -187,9 +219,7 @@ int wh_run_print(const wh_run_arguments_t *arguments, const wh_record_t *record)
         return 0;
     }
     const wh_style_t style = wh_style_of(stdout);
-    const unsigned sections =
-        (arguments->gantt ? WH_TABLE_GANTT : 0U) | (arguments->margins ? WH_TABLE_MARGINS : 0U);
-    return wh_record_print_table(record, stdout, &style, sections);
+    return wh_record_print_table(record, stdout, &style, &arguments->sections);
 }
 
 static bool write_report(const wh_run_arguments_t *arguments, const wh_script_run_t *run,
@@ -304,4 +334,11 @@ int wh_run_and_print(wh_run_arguments_t *arguments) {
     wh_signals_close(&signals);
     wh_script_run_close(&run);
     return status;
+}
+
+int wh_run_watch(const wh_run_arguments_t *arguments, int (*act)(void *user), void *user) {
+    const char *const outputs[] = {arguments->files.page, arguments->files.scene, arguments->files.document,
+                                   arguments->files.plots, arguments->segments_path};
+    const wh_watch_options_t options = {act, user, outputs, sizeof outputs / sizeof outputs[0]};
+    return wh_watch(&options);
 }

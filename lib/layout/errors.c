@@ -14,10 +14,8 @@ static wh_shape_t read_shape(wh_reader_t *reader, wh_shape_t fallback) {
     return (wh_shape_t)wh_reader_choice(reader, "shape", (int)fallback, shapes);
 }
 
-#define PLACEMENT "dx dy dz tilt turn shape"
 static const char *const placement_names[] = {"dx", "dy", "dz", "tilt", "turn", NULL};
 
-#define TEACHING "x y z roll pitch yaw shape"
 static const char *const teaching_names[] = {"x", "y", "z", "roll", "pitch", "yaw", NULL};
 
 /* Reads a width for each name, with its own default and the table's shape. The first three are in mm. */
@@ -61,8 +59,8 @@ static void read_timing(wh_reader_t *reader, const wh_layout_t *layout, wh_error
 /* A table whose keys are names of the layout's wafers, stations or grippers. */
 typedef struct {
     const char *field, *what;
-    const char *known; /* the fields of each of its tables */
-    const void *items; /* each begins with its name */
+    const wh_reader_field_t *known; /* the fields of each of its tables */
+    const void *items;              /* each begins with its name */
     size_t size, count;
     wh_layout_find_t *find;
     void (*read)(wh_reader_t *reader, wh_layout_t *layout, size_t index);
@@ -128,13 +126,13 @@ static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t sh
     }
     wh_spreads_t teaching = placement;
     layout->errors->vacuum.shape = shape;
-    wh_reader_open_section(reader, "placement", PLACEMENT);
+    wh_reader_open_section(reader, "placement", wh_layout_placement_fields);
     read_spreads(reader, placement_names, &placement);
     wh_reader_leave(reader);
-    wh_reader_open_section(reader, "teaching", TEACHING);
+    wh_reader_open_section(reader, "teaching", wh_layout_teaching_fields);
     read_spreads(reader, teaching_names, &teaching);
     wh_reader_leave(reader);
-    wh_reader_open_section(reader, "timing", "valve vacuum shape");
+    wh_reader_open_section(reader, "timing", wh_layout_timing_fields);
     read_timing(reader, layout, layout->errors);
     wh_reader_leave(reader);
     for (size_t w = 0; w < layout->wafer_count; ++w) {
@@ -147,13 +145,13 @@ static void read_for_all(wh_reader_t *reader, wh_layout_t *layout, wh_shape_t sh
 
 void wh_layout_read_study(wh_reader_t *reader, wh_layout_t *layout) {
     const section_t sections[] = {
-        {"wafers", "wafer", PLACEMENT, layout->wafers, sizeof *layout->wafers, layout->wafer_count,
-         wh_layout_find_wafer, read_wafer},
-        {"stations", "station", TEACHING, layout->stations, sizeof *layout->stations, layout->station_count,
-         wh_layout_find_station, read_station},
-        {"grippers", "gripper", "valve shape", layout->grippers, sizeof layout->grippers[0],
+        {"wafers", "wafer", wh_layout_placement_fields, layout->wafers, sizeof *layout->wafers,
+         layout->wafer_count, wh_layout_find_wafer, read_wafer},
+        {"stations", "station", wh_layout_teaching_fields, layout->stations, sizeof *layout->stations,
+         layout->station_count, wh_layout_find_station, read_station},
+        {"grippers", "gripper", wh_layout_valve_fields, layout->grippers, sizeof layout->grippers[0],
          layout->machine.gripper_count, wh_layout_find_gripper, read_gripper}};
-    if (!wh_reader_open(reader, "study", "shape placement teaching timing wafers stations grippers")) {
+    if (!wh_reader_open(reader, "study", wh_layout_study_fields)) {
         return;
     }
     wh_errors_t *errors = wh_layout_memory(reader->L, 1, sizeof *errors);

@@ -4,6 +4,7 @@
 
 #include "../script/reader.h"
 #include "layout.h"
+#include "layout_fields.h"
 
 /* Zeroed memory for `count` items that lives as long as the Lua state. */
 void *wh_layout_memory(lua_State *L, size_t count, size_t size);

@@ -23,8 +23,6 @@ static double read_angle(wh_reader_t *reader, const char *field, double fallback
 
 /* ------------------------------------------------------------------------------------------------ sensors */
 
-#define SENSOR_FIELDS "samples pixel noise length offset tilt latency zero gain at encoder seed hidden"
-
 /* Refuses what would end each scan early: more samples in a slice than a state carries, or a chuck too fast. */
 static void check_speed(wh_reader_t *reader, const wh_layout_t *layout, const wh_sensor_t *sensor) {
     const double speed = layout->machine.chuck_limits.speed;
@@ -55,7 +53,7 @@ static void read_hidden(wh_reader_t *reader, wh_sensor_t *sensor) {
     for (; (size_t)sensor->hidden_count < count; ++sensor->hidden_count) {
         wh_arc_t *arc = &sensor->hidden[sensor->hidden_count];
         wh_reader_enter_item(reader, sensor->hidden_count + 1);
-        wh_reader_refuse_unknown(reader, "from width");
+        wh_reader_refuse_unknown(reader, wh_layout_arc_fields);
         arc->from = read_required_angle(reader, "from");
         arc->width = wh_rad_from_deg(wh_reader_number(reader, "width", WH_REAL(NAN), 0.001, 360));
         wh_reader_leave(reader);
@@ -100,7 +98,7 @@ static void read_sensor(wh_reader_t *reader, const wh_layout_t *layout, wh_scann
 }
 
 static void read_station(wh_reader_t *reader, wh_layout_t *layout, size_t s) {
-    if (!wh_reader_open(reader, "sensor", SENSOR_FIELDS)) {
+    if (!wh_reader_open(reader, "sensor", wh_layout_sensor_fields)) {
         return;
     }
     if (!layout->stations[s].prealigner) {
@@ -139,7 +137,7 @@ static wh_rim_t nominal_rim(wh_reader_t *reader, const wh_layout_t *layout) {
 }
 
 static void read_notch(wh_reader_t *reader, wh_notch_shape_t *notch) {
-    if (!wh_reader_open(reader, "notch", "at depth angle bottom corner")) {
+    if (!wh_reader_open(reader, "notch", wh_layout_rim_notch_fields)) {
         return;
     }
     const wh_notch_shape_t usual = wh_rim_nominal(150).notch;
@@ -153,7 +151,8 @@ static void read_notch(wh_reader_t *reader, wh_notch_shape_t *notch) {
 
 /* Enters each entry of a list of tables with these fields in turn; false behind the last one, or without a
  * list. The list is left then. `i` begins at 0. */
-static bool next_entry(wh_reader_t *reader, const char *list, const char *fields, size_t most, size_t *i) {
+static bool next_entry(wh_reader_t *reader, const char *list, const wh_reader_field_t *fields, size_t most,
+                       size_t *i) {
     if (*i > 0) {
         wh_reader_leave(reader);
     } else if (!wh_reader_enter(reader, list)) {
@@ -177,7 +176,7 @@ static void read_flats(wh_reader_t *reader, wh_rim_t *rim) {
     if (wh_reader_has(reader, "flats")) {
         memset(rim->flats, 0, sizeof rim->flats);
     }
-    for (size_t i = 0; next_entry(reader, "flats", "at length", WH_RIM_FLATS, &i);) {
+    for (size_t i = 0; next_entry(reader, "flats", wh_layout_flat_fields, WH_RIM_FLATS, &i);) {
         wh_flat_shape_t *flat = &rim->flats[i - 1];
         flat->direction = read_required_angle(reader, "at");
         flat->length = wh_reader_number(reader, "length", WH_REAL(NAN), 2, 1.4 * rim->radius);
@@ -185,7 +184,7 @@ static void read_flats(wh_reader_t *reader, wh_rim_t *rim) {
 }
 
 static void read_chips(wh_reader_t *reader, wh_rim_t *rim) {
-    for (size_t i = 0; next_entry(reader, "chips", "at width depth", WH_RIM_CHIPS, &i);) {
+    for (size_t i = 0; next_entry(reader, "chips", wh_layout_chip_fields, WH_RIM_CHIPS, &i);) {
         wh_chip_t *chip = &rim->chips[rim->chip_count];
         chip->direction = read_required_angle(reader, "at");
         chip->width = wh_reader_number(reader, "width", WH_REAL(NAN), 0.01, 30);
@@ -214,8 +213,7 @@ static void read_rim(wh_reader_t *reader, const wh_layout_t *layout, wh_rim_t *r
 }
 
 static const wh_rim_t *read_wafer(wh_reader_t *reader, const wh_layout_t *layout, const wh_rim_t *nominal) {
-    static const char *const fields = "diameter notch flats chips bow saddle saddle_at glass";
-    if (!wh_reader_open(reader, "rim", fields)) {
+    if (!wh_reader_open(reader, "rim", wh_layout_rim_fields)) {
         return nominal;
     }
     if (layout->scanner_count == 0) {

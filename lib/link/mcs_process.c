@@ -222,6 +222,28 @@ static int64_t reached(void *user) {
     return wh_protocol_client_reached(&control->client);
 }
 
+typedef char saves_fit[sizeof(waferhand_command) + WH_LINK_DATAGRAM <= WH_MCS_SAVED_BYTES ? 1 : -1];
+
+static size_t save(void *user, uint8_t bytes[WH_MCS_SAVED_BYTES]) {
+    wh_mcs_process_t *control = user;
+    return wh_protocol_client_save(&control->client, bytes);
+}
+
+/* Another run begins: the one before is over. */
+static wh_status_t restore(void *user, const uint8_t bytes[], size_t size, wh_state_t *state) {
+    wh_mcs_process_t *control = user;
+    control->utime = control->client.command.utime;
+    control->seq = control->client.command.seq;
+    control->identity = control->client.identity;
+    const wh_status_t status = wh_protocol_client_restore(&control->client, bytes, size, state);
+    if (status == WH_OK) {
+        control->connected = false; /* so it is told of the run before */
+        tell_over(control);
+        control->connected = true;
+    }
+    return status;
+}
+
 static bool is_heard(void *user) {
     const wh_mcs_process_t *control = user;
     return control->client.has_state;
@@ -306,6 +328,8 @@ wh_mcs_partners_t wh_mcs_process_partners(wh_mcs_process_t *control) {
                                .await = await,
                                .reached = reached,
                                .is_heard = is_heard,
+                               .save = save,
+                               .restore = restore,
                                .explain = explain,
                                .expected = expected,
                                .cycle = cycle,

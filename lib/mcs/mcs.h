@@ -18,6 +18,9 @@
 
 typedef struct wh_mcs wh_mcs_t;
 
+/* Room for what a partner saves. */
+#define WH_MCS_SAVED_BYTES ((size_t)1 << 17)
+
 /* Who else takes part in a run; each function may be null. */
 typedef struct {
     /* Called once, after the cell was set up and found in reach and before the first slice: returns the link
@@ -39,6 +42,12 @@ typedef struct {
     /* Why the link answered a slice with this error, for its message: true until the next call. Null: the
      * error says it all. */
     const char *(*explain)(void *user, wh_status_t status);
+    /* What the link's other side is after the last slice, as bytes: how many, 0 if that is not known. Null:
+     * such a link cannot tell. Not during an exchange. */
+    size_t (*save)(void *user, uint8_t bytes[WH_MCS_SAVED_BYTES]);
+    /* Makes the link's other side that again, and `state` its answer, without events. With anything but WH_OK
+     * it is as it was. */
+    wh_status_t (*restore)(void *user, const uint8_t bytes[], size_t size, wh_state_t *state);
     /* The last expectation of the record was added, or its last cycle. */
     void (*expected)(void *user, const wh_mcs_t *mcs);
     void (*cycle)(void *user, const wh_mcs_t *mcs);
@@ -120,6 +129,9 @@ typedef struct {
     int32_t missed;          /* of these, for no state brought them: WH_NONE */
     bool armed;              /* more are to come */
 } wh_mcs_edge_t;
+
+/* How many commands of a prompt UNDO takes back at most. */
+#define WH_MCS_UNDONE 50
 
 /* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `errors`, `error_count`,
  * `without_collisions`, `decisions`, `is_file`, `limits_missed`, `most_missed` and `rehearsal.look_ahead`,

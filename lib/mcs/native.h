@@ -59,16 +59,21 @@ void wh_mcs_push_edge_sensor(lua_State *L, const wh_scanner_t *scanner);
 /* Functions of the native table, by file. */
 extern const luaL_Reg wh_mcs_cell_functions[];
 extern const luaL_Reg wh_mcs_command_functions[];
+extern const luaL_Reg wh_mcs_definition_functions[];
 extern const luaL_Reg wh_mcs_describe_functions[];
 extern const luaL_Reg wh_mcs_edge_functions[];
 extern const luaL_Reg wh_mcs_fault_functions[];
 extern const luaL_Reg wh_mcs_plan_functions[];
 extern const luaL_Reg wh_mcs_play_functions[];
 extern const luaL_Reg wh_mcs_query_functions[];
+extern const luaL_Reg wh_mcs_saved_functions[];
 extern const luaL_Reg wh_mcs_scan_functions[];
 extern const luaL_Reg wh_mcs_survey_functions[];
 
 /* Pushes what looks at the stations of a layout for a survey, see lua/mcs/init.lua. */
 void wh_mcs_push_survey(lua_State *L);
+
+/* Pushes what makes definitions, see lua/mcs/definitions.lua. */
+void wh_mcs_push_definitions(lua_State *L);
 
 #endif

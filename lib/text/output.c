@@ -191,6 +191,23 @@ bool wh_output_is_kept(const char *path) {
     return look_up(path, false);
 }
 
+/* Static, as the list is. */
+static struct {
+    void (*hear)(void *user, const char *path);
+    void *user;
+} listener;
+
+void wh_output_hear_inputs(void (*hear)(void *user, const char *path), void *user) {
+    listener.hear = hear;
+    listener.user = user;
+}
+
+void wh_output_note_input(const char *path) {
+    if (listener.hear) {
+        listener.hear(listener.user, path);
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------- state */
 
 void wh_output_state_path(const char *name, char *path, size_t size) {

@@ -186,6 +186,19 @@ return function(native, patterns, lookup)
     arm.stop()
   end
 
+  local keep_slots = commands.keep_slots
+  commands.keep_slots = nil
+
+  -- What motion control knows: a function that puts it back, and one that says if the arm is as it was.
+  function commands.keep()
+    local put_slots_back = keep_slots()
+    local put_arm_back, is_as_was = arm.keep()
+    return function()
+      put_slots_back()
+      put_arm_back()
+    end, is_as_was
+  end
+
   commands.run = arm.run
   return commands
 end

@@ -278,7 +278,8 @@ static bool pass_beams(void) {
     wh_pose_t lies = base;
     size_t count = 0;
     rim.notch.direction = (double)below(6283) / 1000;
-    lies.r = wh_vec3((wh_real_t)below(1000) / 500, -(wh_real_t)below(1000) / 500, 0);
+    lies.r.x = (wh_real_t)below(1000) / 500;
+    lies.r.y = -(wh_real_t)below(1000) / 500;
     for (int32_t beam = 0; beam < 2; ++beam) {
         const wh_beam_t line = wh_beam_at(&base, 0, across[beam], -10, 10);
         bool broken = false;
