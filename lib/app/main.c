@@ -19,6 +19,7 @@ static const struct {
     {"report", "make a page of a run: the cell in motion, plots, tables", wh_app_report},
     {"layout", "list, check and draw a cell", wh_app_layout},
     {"study", "play a script many times, each time a little off", wh_app_study},
+    {"budget", "tell how far stations may be off, and which one allows least", wh_app_budget},
     {"sweep", "run a script for each value of a parameter", wh_app_sweep},
     {"test", "play many scripts and tell which ended well", wh_app_test},
     {"diff", "compare two recordings, or two results", wh_app_diff},

@@ -9,6 +9,7 @@
 #include "../report/page.h"
 #include "../report/plots.h"
 #include "../text/array.h"
+#include "../text/output.h"
 #include "../text/style.h"
 #include "../view/scene.h"
 #include "apart.h"
@@ -107,24 +108,6 @@ static void on_boundary(void *user, const wh_layout_t *layout) {
 
 /* ------------------------------------------------------------------------------------------------ command */
 
-/* Writes a word so that a shell reads it back unchanged. */
-static void write_word(FILE *out, const char *word) {
-    const char *plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=+,:@%";
-    if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
-        fputs(word, out);
-        return;
-    }
-    fputc('\'', out);
-    for (const char *c = word; *c; ++c) {
-        if (*c == '\'') {
-            fputs("'\\''", out);
-        } else {
-            fputc((unsigned char)*c, out);
-        }
-    }
-    fputc('\'', out);
-}
-
 char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log) {
     const wh_script_run_options_t *run = &arguments->run;
     const char *command = arguments->command ? arguments->command : "run";
@@ -132,10 +115,14 @@ char *wh_run_command(const wh_run_arguments_t *arguments, bool is_log) {
     size_t size = 0;
     FILE *out = wh_memory_need(open_memstream(&text, &size));
     fprintf(out, "waferhand %s ", is_log ? "replay" : command);
-    write_word(out, run->script);
+    wh_output_word(out, run->script);
     for (size_t i = 0; i < run->parameter_count && !is_log; ++i) {
         fputs(" --set ", out);
-        write_word(out, run->parameters[i]);
+        wh_output_word(out, run->parameters[i]);
+    }
+    for (size_t i = 0; i < run->error_count; ++i) {
+        fputs(" --error ", out);
+        wh_output_word(out, run->errors[i]);
     }
     (void)fclose(out);
     return text;

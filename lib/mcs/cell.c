@@ -2,6 +2,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "../layout/given.h"
 #include "../script/wh_module_values.h"
 #include "../text/output.h"
 #include "native.h"
@@ -302,6 +303,10 @@ static int set_up_cell(lua_State *L) {
         wh_layout_read_own_study(L, mcs->script, layout);
     }
     lua_pop(L, 1);
+    if (mcs->error_count > 0) {
+        wh_layout_give_errors(L, layout, mcs->errors, mcs->error_count);
+    }
+    layout->collision = layout->collision && !mcs->without_collisions;
     wh_mcs_set_up(L, mcs, layout);
     return 1;
 }

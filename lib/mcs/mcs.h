@@ -133,8 +133,9 @@ typedef struct {
 /* How many commands of a prompt UNDO takes back at most. */
 #define WH_MCS_UNDONE 50
 
-/* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `decisions`, `is_file`,
- * `limits_missed`, `most_missed` and `rehearsal.look_ahead`, which may be set between opening and the cell.
+/* Written by lib/mcs only, but for `partners`, `listener`, `keep_segments`, `trial`, `errors`, `error_count`,
+ * `without_collisions`, `decisions`, `is_file`, `limits_missed`, `most_missed` and `rehearsal.look_ahead`,
+ * which may be set between opening and the cell.
  * Must not be moved once opened. */
 struct wh_mcs {
     const char *script; /* as the user gave it; borrowed */
@@ -189,7 +190,10 @@ struct wh_mcs {
     size_t kept_fault_count, kept_fault_capacity;
 
     wh_local_cell_t local;
-    const wh_trial_t *trial; /* of a study, whose errors the cell then has; null: as its layout says */
+    const wh_trial_t *trial;   /* of a study, whose errors the cell then has; null: as its layout says */
+    const char *const *errors; /* in a trial: what it has in place of what it would draw, if there are any */
+    size_t error_count;
+    bool without_collisions; /* nobody looks for them, whatever the layout says */
 };
 
 /* Opens the operator's words in a sandbox for one run of `script`. `mcs` and `record` must outlive the

@@ -98,7 +98,7 @@ bool wh_study_open(wh_study_t *study) {
     if (!study->layout || !study->nominal.record.wafers) {
         return refuse(study->run.script, "no cell (expected cell \"LAYOUT.lua\")");
     }
-    if (!study->layout->errors) {
+    if (!study->layout->errors && !study->draws_nothing) {
         return refuse(study->layout->path, "study: nil (expected what is drawn, as study = { placement = { "
                                            "dx = 0.3 } }, here or in the script)");
     }
@@ -108,7 +108,7 @@ bool wh_study_open(wh_study_t *study) {
     }
     study->whole = study->layout->collision ? "collisions are looked for" : study->decisions.unfit;
     choose_wafers(study);
-    study->causes = wh_causes_of(study->layout, &study->cause_count);
+    study->causes = study->draws_nothing ? NULL : wh_causes_of(study->layout, &study->cause_count);
     if (!choose_lines(study)) {
         return false;
     }

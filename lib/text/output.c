@@ -241,3 +241,20 @@ bool wh_output_is_one_file(const char *a, const char *b) {
     struct stat two;
     return stat(a, &one) == 0 && stat(b, &two) == 0 && one.st_dev == two.st_dev && one.st_ino == two.st_ino;
 }
+
+void wh_output_word(FILE *out, const char *word) {
+    const char *plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=+,:@%";
+    if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
+        fputs(word, out);
+        return;
+    }
+    fputc('\'', out);
+    for (const char *c = word; *c; ++c) {
+        if (*c == '\'') {
+            fputs("'\\''", out);
+        } else {
+            fputc((unsigned char)*c, out);
+        }
+    }
+    fputc('\'', out);
+}

@@ -61,4 +61,7 @@ void wh_output_state_path(const char *name, char *path, size_t size);
  * possible. */
 bool wh_output_make_folders(const char *path);
 
+/* Writes a word so that a shell reads it back unchanged. */
+void wh_output_word(FILE *out, const char *word);
+
 #endif

@@ -112,6 +112,7 @@ static void check_parameters(const char *const *parameters, size_t count) {
 
 static void check_run(const wh_script_run_options_t *run) {
     check_parameters(run->parameters, run->parameter_count);
+    check_parameters(run->errors, run->error_count);
     REQUIRE(run->limits.instructions <= UINT64_C(1000000000000000000));
     REQUIRE(run->limits.memory_bytes == 0 || run->limits.memory_bytes >= (size_t)1 << 20);
     REQUIRE(run->limits.memory_bytes <= (size_t)1000000 << 20);
@@ -334,12 +335,12 @@ static char *split(const uint8_t *data, size_t size, char **argv) {
 
 static int act(int argc, char **argv) {
     static int (*const subcommands[])(int argc, char **argv) = {
-        wh_app_run,   wh_app_mcs,      wh_app_sim,  wh_app_replay,     wh_app_report, wh_app_layout,
-        wh_app_study, wh_app_estimate, wh_app_test, wh_app_diff,       wh_app_events, wh_app_csv,
-        wh_app_check, wh_app_sweep,    wh_app_new,  wh_app_definitions};
-    static const char *const names[] = {"run",   "mcs",      "sim",  "replay",     "report", "layout",
-                                        "study", "estimate", "test", "diff",       "events", "csv",
-                                        "check", "sweep",    "new",  "definitions"};
+        wh_app_run,   wh_app_mcs,      wh_app_sim,  wh_app_replay,      wh_app_report, wh_app_layout,
+        wh_app_study, wh_app_estimate, wh_app_test, wh_app_diff,        wh_app_events, wh_app_csv,
+        wh_app_check, wh_app_sweep,    wh_app_new,  wh_app_definitions, wh_app_budget};
+    static const char *const names[] = {"run",   "mcs",      "sim",  "replay",      "report", "layout",
+                                        "study", "estimate", "test", "diff",        "events", "csv",
+                                        "check", "sweep",    "new",  "definitions", "budget"};
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         if (strcmp(argv[0], names[i]) == 0) {
             return subcommands[i](argc, argv);
