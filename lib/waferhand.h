@@ -42,6 +42,8 @@
 #include "align/rim.h"
 #include "align/sensing.h"
 #include "align/circle.h"
+#include "align/marks.h"
+#include "align/align.h"
 
 #include "sim/event_text.h"
 #include "sim/faults.h"
